@@ -1,0 +1,91 @@
+#include "core/bytes.hpp"
+
+#include <fmt/format.h>
+#include <nmmintrin.h>
+#include <sodium.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "core/clock.hpp"
+#include "core/require.hpp"
+
+namespace core {
+namespace {
+const unsigned char* raw(ByteView bytes) {
+  return reinterpret_cast<const unsigned char*>(bytes.data());
+}
+
+bool all_hex(std::string_view text) noexcept {
+  return std::ranges::all_of(
+      text, [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); });
+}
+}  // namespace
+
+struct Sha256::State {
+  crypto_hash_sha256_state sodium;
+};
+
+std::uint32_t crc32c(ByteView bytes, std::uint32_t seed) noexcept {
+  std::uint64_t crc = ~seed;
+  while (bytes.size() >= 8) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, bytes.data(), 8);
+    crc = _mm_crc32_u64(crc, word);
+    bytes = bytes.subspan(8);
+  }
+  for (const std::byte b : bytes)
+    crc = _mm_crc32_u8(static_cast<std::uint32_t>(crc), std::to_integer<std::uint8_t>(b));
+  return ~static_cast<std::uint32_t>(crc);
+}
+
+Sha256::Sha256() : state_(std::make_unique<State>()) { crypto_hash_sha256_init(&state_->sodium); }
+Sha256::~Sha256() = default;
+Sha256::Sha256(Sha256&&) noexcept = default;
+Sha256& Sha256::operator=(Sha256&&) noexcept = default;
+void Sha256::add(ByteView part) noexcept {
+  crypto_hash_sha256_update(&state_->sodium, raw(part), part.size());
+}
+std::string Sha256::hex() {
+  std::array<std::byte, crypto_hash_sha256_BYTES> digest{};
+  crypto_hash_sha256_final(&state_->sodium, reinterpret_cast<unsigned char*>(digest.data()));
+  return core::hex(digest);
+}
+
+std::string sha256(ByteView bytes) {
+  Sha256 hash;
+  hash.add(bytes);
+  return hash.hex();
+}
+
+bool is_sha256(std::string_view text) noexcept { return text.size() == 64 && all_hex(text); }
+
+std::string hex(ByteView bytes) {
+  std::string out(bytes.size() * 2 + 1, '\0');
+  sodium_bin2hex(out.data(), out.size(), raw(bytes), bytes.size());
+  out.pop_back();
+  return out;
+}
+
+std::string base64(ByteView bytes) {
+  std::string out(sodium_base64_ENCODED_LEN(bytes.size(), sodium_base64_VARIANT_ORIGINAL), '\0');
+  sodium_bin2base64(out.data(), out.size(), raw(bytes), bytes.size(),
+                    sodium_base64_VARIANT_ORIGINAL);
+  out.pop_back();
+  return out;
+}
+
+Bytes random_bytes(std::size_t length) {
+  require(sodium_init() >= 0, "libsodium starts");
+  Bytes out(length);
+  randombytes_buf(out.data(), out.size());
+  return out;
+}
+
+std::string new_id() {
+  return fmt::format("{:012x}{}", utc_us() / 1000, hex(random_bytes(10)));
+}
+
+bool is_id(std::string_view text) noexcept { return text.size() == 32 && all_hex(text); }
+
+}  // namespace core

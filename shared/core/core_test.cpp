@@ -1,0 +1,112 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+
+#include "core/bytes.hpp"
+#include "core/clock.hpp"
+#include "core/file.hpp"
+#include "core/json.hpp"
+#include "core/quantity.hpp"
+#include "core/signing.hpp"
+
+namespace core {
+namespace {
+
+TEST(Crc32c, MatchesTheCheckValueOfRfc3720) {
+  EXPECT_EQ(crc32c(bytes_of("123456789")), 0xE3069283u);  // RFC 3720 B.4 and the CRC catalogue's check
+  EXPECT_EQ(crc32c(bytes_of("56789"), crc32c(bytes_of("1234"))), 0xE3069283u);
+}
+
+TEST(Sha256, MatchesFips180) {
+  // FIPS 180-2, appendix B.1
+  EXPECT_EQ(sha256(bytes_of("abc")), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+}
+
+TEST(Id, IsNewAndRecognised) {
+  const auto a = new_id(), b = new_id();
+  EXPECT_TRUE(is_id(a));
+  EXPECT_NE(a, b);
+  EXPECT_FALSE(is_id("../../etc/passwd"));
+}
+
+TEST(Signature, HoldsForTheMessageAndForNothingElse) {
+  const auto key = KeyPair::generate();
+  const auto signature = sign(bytes_of("case"), key);
+  EXPECT_TRUE(verify(bytes_of("case"), signature, key.public_hex));
+  EXPECT_FALSE(verify(bytes_of("cast"), signature, key.public_hex));
+  EXPECT_FALSE(verify(bytes_of("case"), signature, KeyPair::generate().public_hex));
+  EXPECT_FALSE(verify(bytes_of("case"), "zz", key.public_hex));
+}
+
+template <class A, class B>
+concept addable = requires(A a, B b) { a + b; };
+
+TEST(Quantity, MultipliesDimensions) {
+  using namespace literals;
+  const Force f = 50.0_N_per_m * 2.0_mm;
+  EXPECT_DOUBLE_EQ(f.si, 0.1);
+  static_assert(addable<Force, Force>);
+  static_assert(!addable<Force, Pressure>);
+}
+
+class FileTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() / ("tractus_core_" + std::to_string(::getpid()) + "_" + new_id());
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  std::filesystem::path folder_;
+};
+
+TEST_F(FileTest, WritesWholeAndLeavesNothingBeside) {
+  ASSERT_TRUE(write_file(folder_ / "a", bytes_of("one")));
+  ASSERT_TRUE(write_file(folder_ / "a", bytes_of("two")));
+  EXPECT_EQ(text_of(*read_file(folder_ / "a")), "two");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);
+}
+
+TEST_F(FileTest, RefusesAFileOverTheLimitBeforeReadingIt) {
+  ASSERT_TRUE(write_file(folder_ / "a", bytes_of("12345")));
+  const auto read = read_file(folder_ / "a", 4);
+  ASSERT_FALSE(read);
+  EXPECT_EQ(read.error().code, Errc::too_large);
+}
+
+TEST_F(FileTest, ScratchFolderVanishesUnlessKept) {
+  {
+    auto scratch = ScratchFolder::make(folder_ / "out");
+    ASSERT_TRUE(scratch);
+    ASSERT_TRUE(write_file(scratch->path() / "x", bytes_of("x")));
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder_));
+  auto scratch = ScratchFolder::make(folder_ / "out");
+  ASSERT_TRUE(scratch);
+  ASSERT_TRUE(scratch->keep_as(folder_ / "out"));
+  EXPECT_TRUE(std::filesystem::is_directory(folder_ / "out"));
+}
+
+TEST(Fields, NamesTheFieldThatIsWrong) {
+  const auto json = parse_json(R"({"a": 1, "b": "x", "typo": 3})", "t.json");
+  ASSERT_TRUE(json);
+  Fields range(*json, "t.json: ");
+  range.number("a", 2, 3);
+  EXPECT_EQ(range.done().error().what, "t.json: /a: 1 is outside 2 … 3");
+  Fields unknown(*json, "t.json: ");
+  EXPECT_EQ(unknown.number("a", 0, 3), 1.0);
+  EXPECT_EQ(unknown.text("b"), "x");
+  EXPECT_EQ(unknown.done().error().what, "t.json: /typo: this field is not known");
+}
+
+TEST(Json, SaysWhereTheTextBreaks) {
+  const auto json = parse_json("{\"a\": }", "t.json");
+  ASSERT_FALSE(json);
+  EXPECT_THAT(json.error().what, testing::HasSubstr("line 1, column 7"));
+}
+
+TEST(Clock, FormatsUtc) { EXPECT_EQ(utc_text(1'700'000'000'123'456), "2023-11-14T22:13:20.123456Z"); }
+
+}  // namespace
+}  // namespace core

@@ -1,0 +1,41 @@
+/// Whole files, safely: a reader sees the old file or the new one, never half of one.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "core/bytes.hpp"
+#include "core/result.hpp"
+
+namespace core {
+
+/// Reads all of a regular file. Errors: not_found, io, too_large (over `limit_bytes`, checked before reading).
+Result<Bytes> read_file(const std::filesystem::path& path, std::uint64_t limit_bytes = 1ull << 30);
+
+/// Writes beside, flushes to the disk, renames, flushes the folder. Nothing is left behind on failure.
+Result<void> write_file(const std::filesystem::path& path, ByteView bytes);
+
+/// The errno of the last call as an Error: "PATH: cannot open: Permission denied".
+Error system_error(const std::filesystem::path& path, const char* what);
+
+/// fsync of a folder, so that a rename in it lasts.
+Result<void> sync_folder(const std::filesystem::path& folder);
+
+/// A new empty folder beside `beside`, removed with all in it when this goes, unless `keep_as` renamed it.
+/// For results of several files: build inside, then keep.
+class ScratchFolder {
+ public:
+  static Result<ScratchFolder> make(const std::filesystem::path& beside);
+  ~ScratchFolder();
+  ScratchFolder(ScratchFolder&&) noexcept;
+  ScratchFolder& operator=(ScratchFolder&&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+  /// Moves it to `target`; an existing `target` of that name is an Error conflict.
+  Result<void> keep_as(const std::filesystem::path& target);
+
+ private:
+  explicit ScratchFolder(std::filesystem::path path) : path_(std::move(path)) {}
+  std::filesystem::path path_;
+};
+
+}  // namespace core

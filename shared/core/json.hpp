@@ -1,0 +1,56 @@
+/// JSON read with messages that name the file and the field.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+#include "core/result.hpp"
+
+namespace core {
+
+using Json = nlohmann::ordered_json;
+
+/// Parses; `name` (a file or a sender) leads the message. Errors: bad_input with line and column.
+Result<Json> parse_json(std::string_view text, std::string_view name);
+/// Reads and parses a file of at most 64 MiB.
+Result<Json> read_json(const std::filesystem::path& path);
+/// Writes with two-space indent and a final newline, atomically.
+Result<void> write_json(const std::filesystem::path& path, const Json& json);
+
+/// Reads fields of one JSON object, remembering the first thing wrong. Fields left unread are errors at `done`,
+/// so that a misspelt name never passes silently.
+class Fields {
+ public:
+  /// @param where  file and JSON pointer of the object, as "case.json: /probe".
+  Fields(const Json& object, std::string where);
+
+  double number(const char* key, double low, double high);
+  double number_or(const char* key, double fallback, double low, double high);
+  long integer(const char* key, long low, long high);
+  long integer_or(const char* key, long fallback, long low, long high);
+  std::string text(const char* key, std::size_t limit = 4096);
+  std::string text_or(const char* key, std::string fallback, std::size_t limit = 4096);
+  /// Exactly `size` finite numbers.
+  std::vector<double> numbers(const char* key, std::size_t size);
+  /// The raw member, or null (with the error noted when `needed`).
+  const Json* member(const char* key, bool needed = true);
+  bool has(const char* key) const;
+  /// Marks a field as known and ignored.
+  void skip(const char* key);
+  /// Notes an error of the caller's own on a field.
+  void wrong(const char* key, std::string why);
+  /// The first error, or an unknown field, or nothing.
+  Result<void> done() const;
+  const std::string& where() const { return where_; }
+
+ private:
+  const Json* find(const char* key);
+  const Json& object_;
+  std::string where_;
+  std::string first_error_;
+  std::vector<std::string> seen_;
+};
+
+}  // namespace core

@@ -1,0 +1,70 @@
+#include "core/signing.hpp"
+
+#include <fmt/format.h>
+#include <sodium.h>
+
+#include "core/file.hpp"
+
+namespace core {
+namespace {
+const unsigned char* raw(ByteView bytes) {
+  return reinterpret_cast<const unsigned char*>(bytes.data());
+}
+
+bool unhex(std::string_view text, std::span<unsigned char> out) noexcept {
+  std::size_t length = 0;
+  return sodium_hex2bin(out.data(), out.size(), text.data(), text.size(), nullptr, &length,
+                        nullptr) == 0 &&
+         length == out.size() && text.size() == 2 * out.size();
+}
+
+std::string public_part(const Bytes& secret) {
+  std::array<std::byte, crypto_sign_PUBLICKEYBYTES> key{};
+  crypto_sign_ed25519_sk_to_pk(reinterpret_cast<unsigned char*>(key.data()), raw(secret));
+  return hex(key);
+}
+}  // namespace
+
+KeyPair KeyPair::generate() {
+  require(sodium_init() >= 0, "libsodium starts");
+  std::array<unsigned char, crypto_sign_PUBLICKEYBYTES> open_key{};
+  KeyPair pair;
+  pair.secret.resize(crypto_sign_SECRETKEYBYTES);
+  crypto_sign_keypair(open_key.data(), reinterpret_cast<unsigned char*>(pair.secret.data()));
+  pair.public_hex = public_part(pair.secret);
+  return pair;
+}
+
+Result<KeyPair> KeyPair::open_or_make(const std::filesystem::path& path) {
+  if (!std::filesystem::exists(path)) {
+    KeyPair pair = generate();
+    std::error_code failure;
+    if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), failure);
+    if (auto written = write_file(path, pair.secret); !written) return written.error();
+    std::filesystem::permissions(path, std::filesystem::perms::owner_read | std::filesystem::perms::owner_write,
+                                 failure);
+    return pair;
+  }
+  auto secret = read_file(path, 4096);
+  if (!secret) return secret.error();
+  if (secret->size() != crypto_sign_SECRETKEYBYTES)
+    return Error{Errc::corrupt, fmt::format("{}: {} bytes, a signing key has {}", path.string(),
+                                            secret->size(), crypto_sign_SECRETKEYBYTES)};
+  return KeyPair{public_part(*secret), std::move(*secret)};
+}
+
+std::string sign(ByteView message, const KeyPair& key) {
+  std::array<std::byte, crypto_sign_BYTES> signature{};
+  crypto_sign_detached(reinterpret_cast<unsigned char*>(signature.data()), nullptr, raw(message),
+                       message.size(), raw(key.secret));
+  return hex(signature);
+}
+
+bool verify(ByteView message, std::string_view signature_hex, std::string_view public_hex) noexcept {
+  std::array<unsigned char, crypto_sign_BYTES> signature{};
+  std::array<unsigned char, crypto_sign_PUBLICKEYBYTES> open_key{};
+  return unhex(signature_hex, signature) && unhex(public_hex, open_key) &&
+         crypto_sign_verify_detached(signature.data(), raw(message), message.size(), open_key.data()) == 0;
+}
+
+}  // namespace core

@@ -1,0 +1,62 @@
+/// The force field of a volume: position → negative gradient of blurred opacity.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+#include "core/progress.hpp"
+#include "core/result.hpp"
+#include "volume/transfer_function.hpp"
+#include "volume/volume.hpp"
+
+namespace volume {
+
+/// How the field is had between voxels (design: "The palpation law, made precise").
+enum class FieldKind {
+  paper,      ///< vectors −∇(ω∗α) by central differences at the voxels, interpolated by Catmull–Rom; not conservative
+  potential,  ///< −∇ of the Catmull–Rom interpolant of ω∗α; conservative
+};
+
+/// g and how it changes, at one point.
+struct FieldSample {
+  Vec3 g_per_m;           ///< −∇(ω∗α), 1/m, in V
+  Mat3 jacobian_per_m2;   ///< ∂g_a/∂p_b, 1/m², in V
+};
+
+/// The field of [Zoller2020, eq. (1)]:
+///
+///     g = −∇(ω ∗ α)                                                         (1)
+///
+/// α by the transfer function at the voxels; ω the 15-tap Gaussian exp(−k²/2), normalised, per axis (σ = 1 voxel);
+/// ∇ per metre; edge voxels repeat outward.
+/// Holds the blurred opacity alone (4 bytes a voxel); the paper's vectors are formed where they are needed, to the
+/// same value. Immutable but for `update`; sampling is free of allocation and safe from several threads.
+class ForceField {
+ public:
+  /// Errors: too_large (over 2^31 voxels), cancelled.
+  static core::Result<ForceField> make(const Volume& volume, const TransferFunction& transfer, FieldKind kind,
+                                       const core::Progress& progress = {});
+  ~ForceField();
+  ForceField(ForceField&&) noexcept;
+  ForceField& operator=(ForceField&&) noexcept;
+
+  /// g at a point of V, 1/m.
+  Vec3 gradient_per_m(const Vec3& p_V_m) const noexcept;
+  /// g and its Jacobian.
+  FieldSample sample(const Vec3& p_V_m) const noexcept;
+  /// (ω∗α)(p), Catmull–Rom between voxels.
+  double opacity(const Vec3& p_V_m) const noexcept;
+
+  /// Makes the field that of `volume` again after voxels within `changed` were written. Not beside samplers.
+  void update(const Volume& volume, const Box& changed) noexcept;
+
+  FieldKind kind() const noexcept;
+  const Geometry& geometry() const noexcept;
+
+ private:
+  struct Grid;
+  explicit ForceField(std::unique_ptr<Grid> grid);
+  std::unique_ptr<Grid> grid_;
+};
+
+}  // namespace volume

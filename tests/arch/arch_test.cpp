@@ -1,0 +1,123 @@
+/// Who may include whom: the table of the architecture, held against every #include of the tree.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace {
+namespace fs = std::filesystem;
+using Names = std::set<std::string>;
+
+const fs::path kRoot = TRACTUS_SOURCE_DIR;
+
+/// Folder → folders its files may include (itself always). Only `*/app` sees everything on its side.
+const std::map<std::string, Names> kAllowed = {
+    {"shared/core", {}},
+    {"shared/math", {"shared/core"}},
+    {"shared/volume", {"shared/core", "shared/math"}},
+    {"shared/volume/io", {"shared/core", "shared/math", "shared/volume"}},
+    {"shared/laws", {"shared/core", "shared/math", "shared/volume"}},
+    {"shared/models", {"shared/core", "shared/math", "shared/volume", "shared/laws"}},
+    {"shared/cases", {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/models"}},
+    {"shared/trial", {"shared/core", "shared/math"}},
+    {"shared/metrics", {"shared/core", "shared/math", "shared/volume", "shared/trial"}},
+    {"shared/wire", {"shared/core", "shared/math", "shared/trial"}},
+    {"shared/plot", {"shared/core"}},
+    {"db/store", {"shared/core", "shared/trial"}},
+    {"station/devices", {"shared/core", "shared/math"}},
+    {"station/loop", {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/models", "shared/trial", "station/devices"}},
+    {"station/uplink", {"shared/core", "shared/trial", "shared/wire", "shared/cases"}},
+    {"station/view", {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/models", "shared/cases", "shared/trial"}},
+    {"station/session", {"shared/core", "shared/math", "shared/volume", "shared/models", "shared/cases", "shared/trial", "shared/metrics",
+                         "shared/wire", "station/devices", "station/loop", "station/uplink"}},
+    {"server/http", {"shared/core"}},
+    {"server/jobs", {"shared/core", "shared/trial", "shared/metrics", "shared/cases", "shared/volume", "db/store"}},
+    {"server/api", {"shared/core", "shared/math", "shared/trial", "shared/metrics", "shared/cases", "shared/volume", "shared/wire",
+                    "db/store", "server/http", "server/jobs"}},
+};
+
+bool is_source(const fs::path& path) { return path.extension() == ".hpp" || path.extension() == ".cpp"; }
+
+std::vector<fs::path> sources() {
+  std::vector<fs::path> out;
+  for (const char* top : {"shared", "db", "server", "station"})
+    for (const auto& entry : fs::recursive_directory_iterator(kRoot / top))
+      if (entry.is_regular_file() && is_source(entry.path())) out.push_back(entry.path());
+  std::ranges::sort(out);
+  return out;
+}
+
+/// The folder of the table that a path (relative to the root) lies in: the longest that fits.
+std::string layer_of(const std::string& path) {
+  std::string best;
+  for (const auto& [folder, _] : kAllowed)
+    if (path.starts_with(folder + "/") && folder.size() > best.size()) best = folder;
+  return best;
+}
+
+std::string text_of(const fs::path& path) {
+  std::ifstream file(path);
+  std::stringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+std::string layer_included(const std::string& quoted) {
+  for (const auto& candidate : {"shared/" + quoted, quoted})
+    if (fs::exists(kRoot / candidate)) return layer_of(candidate);
+  return "";
+}
+
+TEST(Architecture, IncludesFollowTheTable) {
+  const std::regex include("#include \"([^\"]+)\"");
+  for (const auto& path : sources()) {
+    const std::string relative = fs::relative(path, kRoot).string();
+    if (relative.find("/app/") != std::string::npos || relative.ends_with("_test.cpp")) continue;
+    const std::string layer = layer_of(relative);
+    ASSERT_FALSE(layer.empty()) << relative << " lies in no folder of the table";
+    const std::string text = text_of(path);
+    for (std::sregex_iterator it(text.begin(), text.end(), include), end; it != end; ++it) {
+      const std::string to = layer_included((*it)[1]);
+      ASSERT_FALSE(to.empty()) << relative << " includes " << (*it)[1] << ", which lies in no folder of the table";
+      EXPECT_TRUE(to == layer || kAllowed.at(layer).contains(to)) << relative << " must not include " << (*it)[1];
+    }
+  }
+}
+
+TEST(Architecture, EveryFolderOfTheTableSaysWhatItIs) {
+  for (const auto& [folder, _] : kAllowed) {
+    if (!fs::exists(kRoot / folder)) continue;
+    EXPECT_TRUE(fs::exists(kRoot / folder / "README.md")) << folder << " has no README.md";
+  }
+}
+
+TEST(Architecture, HeadersAreGuardedAndWithoutUsingNamespace) {
+  for (const auto& path : sources()) {
+    if (path.extension() != ".hpp") continue;
+    const std::string text = text_of(path);
+    EXPECT_NE(text.find("#pragma once"), std::string::npos) << path;
+    EXPECT_EQ(text.find("using namespace"), std::string::npos) << path;
+  }
+}
+
+TEST(Architecture, PrintsTheTenLargestSources) {
+  std::vector<std::pair<long, std::string>> sizes;
+  for (const auto& path : sources()) {
+    const std::string text = text_of(path);
+    sizes.emplace_back(std::ranges::count(text, '\n'), fs::relative(path, kRoot).string());
+  }
+  std::ranges::sort(sizes, std::greater<>());
+  for (std::size_t i = 0; i < std::min<std::size_t>(10, sizes.size()); ++i)
+    std::printf("%5ld  %s\n", sizes[i].first, sizes[i].second.c_str());
+  ASSERT_FALSE(sizes.empty());
+  EXPECT_LE(sizes.front().first, 500) << sizes.front().second << " has grown too large: split it";
+}
+
+}  // namespace
