@@ -10,19 +10,21 @@
 
 namespace trial {
 
-/// One tick of a palpation trial. 136 bytes, little-endian, no padding: also the layout on disk (ADR-0004).
+/// One tick of a palpation trial. 136 bytes, little-endian, no padding: also the layout on disk
+/// (ADR-0004).
 struct Sample {
-  double t_s = 0.0;                         ///< since the trial's start, one monotonic clock
-  std::array<double, 3> p_VH_m{};           ///< handle frame's origin in V
-  std::array<double, 4> q_VH{1, 0, 0, 0};   ///< handle frame's orientation in V: w, x, y, z
-  std::array<float, 3> force_N{};           ///< what the bone does to the probe by the model, at the origin of H, in H
+  double t_s = 0.0;                        ///< since the trial's start, one monotonic clock
+  std::array<double, 3> p_VH_m{};          ///< handle frame's origin in V
+  std::array<double, 4> q_VH{1, 0, 0, 0};  ///< handle frame's orientation in V: w, x, y, z
+  std::array<float, 3>
+      force_N{};  ///< what the bone does to the probe by the model, at the origin of H, in H
   std::array<float, 3> torque_Nm{};
   std::array<float, 3> rendered_force_N{};  ///< what the limiter let through to the device
   std::array<float, 3> rendered_torque_Nm{};
-  std::array<float, 2> deflection_m{};      ///< δ of the tip, in H
-  std::uint32_t tick = 0;                   ///< counts from 0; a gap is a tick that was skipped
-  std::uint16_t iterations = 0;             ///< of the equilibrium
-  std::uint16_t flags = 0;                  ///< Flag bits
+  std::array<float, 2> deflection_m{};  ///< δ of the tip, in H
+  std::uint32_t tick = 0;               ///< counts from 0; a gap is a tick that was skipped
+  std::uint16_t iterations = 0;         ///< of the equilibrium
+  std::uint16_t flags = 0;              ///< Flag bits
   std::uint32_t reserved0 = 0, reserved1 = 0;
 
   math::Pose pose() const {
@@ -32,32 +34,34 @@ struct Sample {
 static_assert(sizeof(Sample) == 136);
 
 enum Flag : std::uint16_t {
-  kNotConverged = 1,   ///< the equilibrium was not reached
-  kLimited = 2,        ///< the limiter changed the wrench
-  kLate = 4,           ///< this tick woke more than a quarter period late
-  kStale = 8,          ///< the device had no fresh sample: zero was rendered
-  kSaturated = 16,     ///< the device reports that it could not give what was asked
+  kNotConverged = 1,  ///< the equilibrium was not reached
+  kLimited = 2,       ///< the limiter changed the wrench
+  kLate = 4,          ///< this tick woke more than a quarter period late
+  kStale = 8,         ///< the device had no fresh sample: zero was rendered
+  kSaturated = 16,    ///< the device reports that it could not give what was asked
 };
 
 /// Something that happened at a time: "start", "answer", "end", "fault".
 struct Event {
   double t_s = 0.0;
   std::string kind;
-  core::Json detail;  ///< object; for "answer": {"breach": bool, "wall": "medial"|…|null, "confidence": 0…1}
+  core::Json detail;  ///< object; for "answer": {"breach": bool, "wall": "medial"|…|null,
+                      ///< "confidence": 0…1}
 };
 
 /// What is known before the first sample.
 struct Header {
-  std::string id;            ///< core::new_id()
-  std::string case_id;       ///< content id of the case, SHA-256
-  std::string station;       ///< its name
-  std::string operator_name; ///< who; "simulated hand, seed 7" for a simulated one
-  bool simulated = false;    ///< true when a simulated device stood in for hand and machine
-  std::string device;        ///< "sim-lambda6", …
+  std::string id;             ///< core::new_id()
+  std::string case_id;        ///< content id of the case, SHA-256
+  std::string station;        ///< its name
+  std::string operator_name;  ///< who; "simulated hand, seed 7" for a simulated one
+  bool simulated = false;     ///< true when a simulated device stood in for hand and machine
+  std::string device;         ///< "sim-lambda6", …
   std::int64_t started_utc_us = 0;
   double rate_Hz = 4000.0;
-  core::Json probe;          ///< length_m, radius_m, points, point_spacing_m, pose_offset_m of the model that ran
-  core::Json extra;          ///< anything further a later version knows
+  core::Json
+      probe;  ///< length_m, radius_m, points, point_spacing_m, pose_offset_m of the model that ran
+  core::Json extra;  ///< anything further a later version knows
 
   core::Json to_json() const;
   static core::Result<Header> from_json(const core::Json& json, const std::string& where);
