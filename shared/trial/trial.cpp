@@ -13,14 +13,9 @@ constexpr std::size_t kMaxName = 200;  // characters of a station, a device, a p
 constexpr double kMaxRate_Hz = 1e5;
 constexpr long kMaxUtc_us = 4'102'444'800'000'000;  // the year 2100
 
-template <std::size_t N>
-bool finite(const std::array<float, N>& values) {
-  return std::ranges::all_of(values, [](float v) { return std::isfinite(v); });
-}
-
-template <std::size_t N>
-bool finite(const std::array<double, N>& values) {
-  return std::ranges::all_of(values, [](double v) { return std::isfinite(v); });
+template <class T, std::size_t N>
+bool plausible(const std::array<T, N>& values) {
+  return std::ranges::all_of(values, [](T v) { return std::abs(v) <= T(kMaxMagnitude); });
 }
 
 bool truth_of(core::Fields& fields, const char* key) {
@@ -39,16 +34,18 @@ core::Json object_of(core::Fields& fields, const char* key) {
 }  // namespace
 
 std::string fault_of(const Sample& s, const Sample* before) {
-  if (!std::isfinite(s.t_s) || s.t_s < 0.0 || s.t_s > kMaxTime_s)
+  if (!std::isplausible(s.t_s) || s.t_s < 0.0 || s.t_s > kMaxTime_s)
     return fmt::format("time {} s, expected 0 … {}", s.t_s, kMaxTime_s);
   if (before && s.t_s < before->t_s)
     return fmt::format("time runs backwards from {} s to {} s", before->t_s, s.t_s);
   if (before && s.tick <= before->tick)
     return fmt::format("tick {} after tick {}, expected a later one", s.tick, before->tick);
-  const bool numbers = finite(s.p_VH_m) && finite(s.q_VH) && finite(s.force_N) &&
-                       finite(s.torque_Nm) && finite(s.rendered_force_N) &&
-                       finite(s.rendered_torque_Nm) && finite(s.deflection_m);
-  if (!numbers) return fmt::format("tick {} holds a number that is not finite", s.tick);
+  const bool numbers = plausible(s.p_VH_m) && plausible(s.q_VH) && plausible(s.force_N) &&
+                       plausible(s.torque_Nm) && plausible(s.rendered_force_N) &&
+                       plausible(s.rendered_torque_Nm) && plausible(s.deflection_m);
+  if (!numbers)
+    return fmt::format("tick {} holds a number that is not finite or beyond {}", s.tick,
+                       kMaxMagnitude);
   const auto& q = s.q_VH;
   const double norm2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
   if (std::abs(norm2 - 1.0) > 0.02)

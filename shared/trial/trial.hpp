@@ -99,6 +99,8 @@ struct Trial {
 
 /// The largest time a trial may hold, s (eleven days): what is beyond is a broken clock.
 inline constexpr double kMaxTime_s = 1e6;
+/// The largest position, force, torque or deflection a sample may hold, in its unit.
+inline constexpr double kMaxMagnitude = 1e6;
 
 /// What is wrong with `sample` after `before` (null for the first): a number that is not finite, a
 /// time outside 0 … kMaxTime_s or running backwards, a tick that does not increase, a quaternion

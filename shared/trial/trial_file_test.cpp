@@ -357,6 +357,10 @@ TEST_F(TrialFile, SamplesThatCannotBeAreRefused) {
   put_samples(bad);
   EXPECT_THAT(refusal(), HasSubstr("sample 2: tick 2 holds a number that is not finite"));
   bad = samples(0, 3);
+  bad[0].rendered_force_N[1] = 1e30f;
+  put_samples(bad);
+  EXPECT_THAT(refusal(), HasSubstr("sample 0: tick 0 holds a number"));
+  bad = samples(0, 3);
   bad[2].t_s = 0.0;
   put_samples(bad);
   EXPECT_THAT(refusal(), HasSubstr("sample 2: time runs backwards"));
