@@ -1,7 +1,9 @@
 /// A trial: one attempt at a case, as it was recorded.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,12 +43,26 @@ enum Flag : std::uint16_t {
   kSaturated = 16,    ///< the device reports that it could not give what was asked
 };
 
-/// Something that happened at a time: "start", "answer", "end", "fault".
+/// Something that happened at a time: "start", "answer", "end", "fault", "interrupted".
 struct Event {
   double t_s = 0.0;
   std::string kind;
-  core::Json detail;  ///< object; for "answer": {"breach": bool, "wall": "medial"|…|null,
-                      ///< "confidence": 0…1}
+  core::Json detail = core::Json::object();  ///< object; for "answer" see Answer
+
+  core::Json to_json() const;
+  /// Errors: bad_input naming `where` and the field.
+  static core::Result<Event> from_json(const core::Json& json, const std::string& where);
+};
+
+/// What the trainee said: {"breach": bool, "wall": "medial"|…|null, "confidence": 0…1}; wall and
+/// confidence may be missing.
+struct Answer {
+  bool breach = false;
+  std::optional<std::string> wall;   ///< name of a volume::Wall; only with a breach
+  std::optional<double> confidence;  ///< 0 … 1
+
+  core::Json to_json() const;
+  static core::Result<Answer> from_json(const core::Json& json, const std::string& where);
 };
 
 /// What is known before the first sample.
@@ -59,11 +75,13 @@ struct Header {
   std::string device;         ///< "sim-lambda6", …
   std::int64_t started_utc_us = 0;
   double rate_Hz = 4000.0;
-  core::Json
-      probe;  ///< length_m, radius_m, points, point_spacing_m, pose_offset_m of the model that ran
-  core::Json extra;  ///< anything further a later version knows
+  core::Json probe = core::Json::object();  ///< length_m, radius_m, points, point_spacing_m,
+                                            ///< pose_offset_m of the model that ran
+  core::Json extra = core::Json::object();  ///< anything further a later version knows
 
   core::Json to_json() const;
+  /// Errors: bad_input naming `where` and the field: an id or case_id of the wrong shape, an
+  /// unknown field, …
   static core::Result<Header> from_json(const core::Json& json, const std::string& where);
 };
 
@@ -72,7 +90,21 @@ struct Trial {
   Header header;
   std::vector<Sample> samples;  ///< in order of tick
   std::vector<Event> events;    ///< in order of time
-  bool complete = false;        ///< an "end" event was recorded; false after a crash
+  bool complete = false;  ///< an "end" event was recorded and the file sealed; false after a crash
+  bool sealed = false;    ///< the end frame is there and its hash holds: nothing can follow
+
+  /// The last answer that was given; nothing when there was none, or when it cannot be understood.
+  std::optional<Answer> answer() const;
 };
+
+/// The largest time a trial may hold, s (eleven days): what is beyond is a broken clock.
+inline constexpr double kMaxTime_s = 1e6;
+/// The largest position, force, torque or deflection a sample may hold, in its unit.
+inline constexpr double kMaxMagnitude = 1e6;
+
+/// What is wrong with `sample` after `before` (null for the first): a number that is not finite, a
+/// time outside 0 … kMaxTime_s or running backwards, a tick that does not increase, a quaternion
+/// that is no rotation. Empty if nothing.
+std::string fault_of(const Sample& sample, const Sample* before);
 
 }  // namespace trial
