@@ -4,73 +4,19 @@
 
 #include <array>
 #include <cstring>
-#include <functional>
-#include <limits>
 
+#include "tests/support/nifti_file.hpp"
 #include "tests/support/scratch.hpp"
 #include "volume/io/read_volume.hpp"
 
 namespace {
+using File = test_support::NiftiFile;
+using test_support::kNiftiDims;
+using test_support::plain_nifti;
 using test_support::Scratch;
 using volume::Mat3;
 using volume::Vec3;
 namespace fs = std::filesystem;
-
-constexpr std::array kDims{5, 4, 3};
-
-/// A NIfTI-1 file in memory, byte by byte as nifti1.h lays it out; millimetres, int16, value = 100
-/// k + 10 j + i − 50.
-struct File {
-  core::Bytes bytes = core::Bytes(352);
-  template <class T>
-  void set(std::size_t at, T value) {
-    std::memcpy(bytes.data() + at, &value, sizeof(T));
-  }
-  File() {
-    set<std::int32_t>(0, 348);
-    set<std::int16_t>(40, 3);
-    for (std::size_t a = 0; a < 3; ++a)
-      set<std::int16_t>(42 + 2 * a, static_cast<std::int16_t>(kDims[a]));
-    set<std::int16_t>(70, 4);
-    set<std::int16_t>(72, 16);
-    for (std::size_t a = 0; a < 4; ++a) set<float>(76 + 4 * a, 1.0f);
-    set<float>(108, 352.0f);
-    set<char>(123, 2);
-    std::memcpy(bytes.data() + 344, "n+1", 4);
-    for (int k = 0; k < 3; ++k)
-      for (int j = 0; j < 4; ++j)
-        for (int i = 0; i < 5; ++i) {
-          const auto value = static_cast<std::int16_t>(100 * k + 10 * j + i - 50);
-          bytes.insert(bytes.end(), {static_cast<std::byte>(value & 0xff),
-                                     static_cast<std::byte>(value >> 8 & 0xff)});
-        }
-  }
-  void sform(const Mat3& steps_mm, const Vec3& origin_mm, std::int16_t code = 1) {
-    set<std::int16_t>(254, code);
-    for (std::size_t r = 0; r < 3; ++r) {
-      for (std::size_t c = 0; c < 3; ++c)
-        set<float>(280 + 16 * r + 4 * c, static_cast<float>(steps_mm(int(r), int(c))));
-      set<float>(292 + 16 * r, static_cast<float>(origin_mm[int(r)]));
-    }
-  }
-  void qform(const Eigen::Quaterniond& q, double qfac, const Vec3& spacing_mm,
-             const Vec3& origin_mm) {
-    set<std::int16_t>(252, 1);
-    const double sign = q.w() < 0 ? -1 : 1;
-    for (std::size_t a = 0; a < 3; ++a) {
-      set<float>(256 + 4 * a, static_cast<float>(sign * q.vec()[int(a)]));
-      set<float>(268 + 4 * a, static_cast<float>(origin_mm[int(a)]));
-      set<float>(80 + 4 * a, static_cast<float>(spacing_mm[int(a)]));
-    }
-    set<float>(76, static_cast<float>(qfac));
-  }
-};
-
-File plain() {
-  File file;
-  file.sform(Mat3::Identity(), Vec3::Zero());
-  return file;
-}
 
 core::Result<volume_io::Imported> read(const File& file) {
   const Scratch folder;
@@ -81,7 +27,7 @@ core::Result<volume_io::Imported> read(const File& file) {
 /// Every voxel of the file is where its affine says, turned from RAS mm to LPS m, and holds its
 /// value.
 void expect_voxels(const volume_io::Imported& in, const Mat3& steps_mm, const Vec3& origin_mm) {
-  ASSERT_EQ(in.volume.geometry.dims, kDims);
+  ASSERT_EQ(in.volume.geometry.dims, kNiftiDims);
   for (int k = 0; k < 3; ++k)
     for (int j = 0; j < 4; ++j)
       for (int i = 0; i < 5; ++i) {
@@ -161,7 +107,7 @@ TEST(Nifti, TheSformWinsWhereTheyDisagreeAndThatIsSaid) {
 TEST(Nifti, ReadsEveryKindOfNumberAndItsScaling) {
   const auto check = [](std::int16_t code, std::int16_t bits, auto sample) {
     using T = decltype(sample);
-    File file = plain();
+    File file = plain_nifti();
     file.set<std::int16_t>(70, code);
     file.set<std::int16_t>(72, bits);
     file.set<float>(112, 2.0f);
@@ -187,7 +133,7 @@ TEST(Nifti, ReadsEveryKindOfNumberAndItsScaling) {
 }
 
 TEST(Nifti, ANegativeSlopeTurnsValuesRound) {
-  File file = plain();
+  File file = plain_nifti();
   file.set<float>(112, -2.0f);
   file.set<float>(116, 10.0f);
   const auto in = read(file);
@@ -198,7 +144,7 @@ TEST(Nifti, ANegativeSlopeTurnsValuesRound) {
 }
 
 TEST(Nifti, FractionsAreKeptToOneOf65536LevelsAndThatIsSaid) {
-  File file = plain();
+  File file = plain_nifti();
   file.set<std::int16_t>(70, 16);
   file.bytes.resize(352 + 240);
   for (std::size_t n = 0; n < 60; ++n)
@@ -214,7 +160,7 @@ TEST(Nifti, FractionsAreKeptToOneOf65536LevelsAndThatIsSaid) {
 }
 
 TEST(Nifti, AnInt32RangeOver65535IsRoundedAndUpTo65535IsKept) {
-  File file = plain();
+  File file = plain_nifti();
   file.set<std::int16_t>(70, 8);
   file.bytes.resize(352);
   file.bytes.resize(352 + 240);
@@ -230,7 +176,7 @@ TEST(Nifti, AnInt32RangeOver65535IsRoundedAndUpTo65535IsKept) {
 }
 
 TEST(Nifti, ReadsBigEndianAndGzipToTheSameVolume) {
-  File file = plain();
+  File file = plain_nifti();
   const Scratch folder;
   test_support::put_gzip(folder / "v.nii.gz", file.bytes);
   const auto zipped = volume_io::read_volume(folder / "v.nii.gz");
@@ -251,7 +197,7 @@ TEST(Nifti, ReadsBigEndianAndGzipToTheSameVolume) {
 TEST(Nifti, ReadsVersion2) {
   // nifti2.h: magic 4, datatype 12, dim 16, pixdim 104, vox_offset 168, slope 176, codes 344, srow
   // 400, units 500.
-  const File one = plain();
+  const File one = plain_nifti();
   File two;
   two.bytes.assign(544, std::byte{});
   two.set<std::int32_t>(0, 540);
@@ -259,7 +205,7 @@ TEST(Nifti, ReadsVersion2) {
   two.set<std::int16_t>(12, 4);
   two.set<std::int64_t>(16, 3);
   for (std::size_t a = 0; a < 3; ++a) {
-    two.set<std::int64_t>(24 + 8 * a, kDims[a]);
+    two.set<std::int64_t>(24 + 8 * a, kNiftiDims[a]);
     two.set<double>(112 + 8 * a, 1.0);
     two.set<double>(400 + 40 * a, 1.0);
   }
@@ -316,113 +262,6 @@ TEST(Nifti, ImportsTheThreeRealCtsWhereTheirHeadersSay) {
     EXPECT_EQ(in->volume.intercept + in->volume.slope * *high, ct.high);
     EXPECT_EQ(in->volume.slope, 1.0);
   }
-}
-
-struct Lie {
-  const char* name;
-  std::function<void(File&)> tell;
-  const char* word;  ///< in the message
-};
-
-class NiftiLies : public testing::TestWithParam<Lie> {};
-
-TEST_P(NiftiLies, IsRefusedInOneLineThatNamesTheFileAndThePlace) {
-  File file = plain();
-  GetParam().tell(file);
-  const auto in = read(file);
-  ASSERT_FALSE(in);
-  EXPECT_NE(in.error().what.find("v.nii: "), std::string::npos) << in.error().what;
-  EXPECT_NE(in.error().what.find(GetParam().word), std::string::npos) << in.error().what;
-  EXPECT_EQ(in.error().what.find('\n'), std::string::npos);
-}
-
-const float kNaN = std::numeric_limits<float>::quiet_NaN();
-INSTANTIATE_TEST_SUITE_P(
-    All, NiftiLies,
-    testing::Values(
-        Lie{"NegativeDim", [](File& f) { f.set<std::int16_t>(44, -4); }, "dim: axis 2"},
-        Lie{"ZeroDim", [](File& f) { f.set<std::int16_t>(46, 0); }, "dim: axis 3"},
-        Lie{"HugeDims",
-            [](File& f) {
-              for (std::size_t a = 42; a < 48; a += 2) f.set<std::int16_t>(a, 32767);
-            },
-            "dim: axis 1"},
-        Lie{"TooManyVoxels",
-            [](File& f) {
-              for (std::size_t a = 42; a < 48; a += 2) f.set<std::int16_t>(a, 4096);
-            },
-            "4096 × 4096"},
-        Lie{"MoreThanTheFileHas", [](File& f) { f.set<std::int16_t>(42, 6); },
-            "its header declares 496"},
-        Lie{"LessThanTheFileHas", [](File& f) { f.set<std::int16_t>(42, 4); },
-            "its header declares 448"},
-        Lie{"Truncated", [](File& f) { f.bytes.resize(400); }, "has 400 bytes"},
-        Lie{"CutInTheHeader", [](File& f) { f.bytes.resize(200); }, "no NIfTI"},
-        Lie{"Series",
-            [](File& f) {
-              f.set<std::int16_t>(40, 4);
-              f.set<std::int16_t>(48, 7);
-            },
-            "dim[4] is 7"},
-        Lie{"Colours", [](File& f) { f.set<std::int16_t>(70, 128); }, "datatype 128"},
-        Lie{"NanSpacing", [](File& f) { f.set<float>(280, kNaN); }, "sform"},
-        Lie{"ZeroSpacing", [](File& f) { f.set<float>(280, 0.0f); }, "sform"},
-        Lie{"InfiniteOrigin",
-            [](File& f) { f.set<float>(292, std::numeric_limits<float>::infinity()); }, "sform"},
-        Lie{"FarOrigin", [](File& f) { f.set<float>(292, 1e30f); }, "origin"},
-        Lie{"Sheared", [](File& f) { f.set<float>(284, 0.3f); }, "right angles"},
-        Lie{"NoOrientation", [](File& f) { f.set<std::int16_t>(254, 0); },
-            "sform_code and qform_code are 0"},
-        Lie{"NanQuaternion",
-            [](File& f) {
-              f.set<std::int16_t>(254, 0);
-              f.set<std::int16_t>(252, 1);
-              f.set<float>(256, kNaN);
-            },
-            "qform"},
-        Lie{"OffsetInTheHeader", [](File& f) { f.set<float>(108, 10.0f); }, "vox_offset 10"},
-        Lie{"OffsetNan", [](File& f) { f.set<float>(108, kNaN); }, "vox_offset"},
-        Lie{"OffsetFar", [](File& f) { f.set<float>(108, 1e15f); }, "vox_offset"},
-        Lie{"SlopeNan", [](File& f) { f.set<float>(112, kNaN); }, "scl_slope"},
-        Lie{"NanVoxel",
-            [](File& f) {
-              f.set<std::int16_t>(70, 16);
-              f.bytes.resize(352);
-              f.bytes.resize(592);
-              f.set<float>(352 + 28, kNaN);
-            },
-            "voxel 7 of 60"},
-        Lie{"Pair", [](File& f) { f.bytes[345] = std::byte{'i'}; }, ".hdr/.img"}),
-    [](const auto& named) { return std::string(named.param.name); });
-
-TEST(Nifti, ATextFileRenamedIsNoNifti) {
-  const Scratch folder;
-  test_support::put(folder / "v.nii", core::bytes_of("Dear diary, today the drill slipped.\n"));
-  const auto in = volume_io::read_volume(folder / "v.nii");
-  ASSERT_FALSE(in);
-  EXPECT_NE(in.error().what.find("v.nii: starts with \"Dear diary, toda\""), std::string::npos)
-      << in.error().what;
-}
-
-TEST(Nifti, GzipThatInflatesToMoreOrLessThanDeclaredIsRefused) {
-  const Scratch folder;
-  const File file = plain();
-  test_support::put_gzip_of_zeros(folder / "more.nii.gz", file.bytes, 64u << 20);
-  auto in = volume_io::read_volume(folder / "more.nii.gz");
-  ASSERT_FALSE(in);
-  EXPECT_NE(in.error().what.find("inflates to more than the 472 bytes"), std::string::npos)
-      << in.error().what;
-  File huge = file;  // 1200³ int16 are 3.5 GB; the file inflates to 64 MiB
-  for (std::size_t a = 42; a < 48; a += 2) huge.set<std::int16_t>(a, 1200);
-  test_support::put_gzip_of_zeros(folder / "less.nii.gz", huge.bytes, 64u << 20);
-  in = volume_io::read_volume(folder / "less.nii.gz");
-  ASSERT_FALSE(in);
-  EXPECT_NE(in.error().what.find("which no CT reaches"), std::string::npos) << in.error().what;
-  test_support::put_gzip(folder / "cut.nii.gz", file.bytes);
-  fs::resize_file(folder / "cut.nii.gz", fs::file_size(folder / "cut.nii.gz") - 30);
-  in = volume_io::read_volume(folder / "cut.nii.gz");
-  ASSERT_FALSE(in);
-  EXPECT_NE(in.error().what.find("truncated or damaged"), std::string::npos) << in.error().what;
 }
 
 }  // namespace

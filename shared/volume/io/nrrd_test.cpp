@@ -5,6 +5,7 @@
 
 #include <cstring>
 #include <functional>
+#include <random>
 
 #include "tests/support/scratch.hpp"
 #include "volume/io/read_volume.hpp"
@@ -166,6 +167,24 @@ INSTANTIATE_TEST_SUITE_P(
         Lie{"Missing", {.more = "data file: nowhere.raw\n"}, "there is no such file"},
         Lie{"Pattern", {.more = "data file: s%03d.raw 1 9 1\n"}, "several files"}),
     [](const auto& named) { return std::string(named.param.name); });
+
+TEST(Nrrd, RandomDamageIsReadOrRefusedAndNothingElse) {
+  std::mt19937 random(3);
+  const core::Bytes plain = joined(Header{}.text() + "\n", voxels());
+  const core::Bytes gzip = joined(Header{.encoding = "gzip"}.text() + "\n", zipped(voxels()));
+  const Scratch folder;
+  for (int n = 0; n < 3000; ++n) {
+    core::Bytes bytes = n % 2 ? plain : gzip;
+    for (int d = 0; d < 3; ++d) bytes[8 + random() % 300] = static_cast<std::byte>(random());
+    if (n % 5 == 0) bytes.resize(random() % bytes.size());
+    test_support::put(folder / "v.nrrd", bytes);
+    const auto in = volume_io::read_volume(folder / "v.nrrd");
+    if (in)
+      EXPECT_EQ(in->volume.counts.size(), in->volume.geometry.voxel_count());
+    else
+      EXPECT_EQ(in.error().what.find('\n'), std::string::npos) << in.error().what;
+  }
+}
 
 TEST(Nrrd, ALinkThatLeadsOutOfTheFolderIsRefused) {
   const Scratch folder;
