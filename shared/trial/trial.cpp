@@ -34,7 +34,7 @@ core::Json object_of(core::Fields& fields, const char* key) {
 }  // namespace
 
 std::string fault_of(const Sample& s, const Sample* before) {
-  if (!std::isplausible(s.t_s) || s.t_s < 0.0 || s.t_s > kMaxTime_s)
+  if (!std::isfinite(s.t_s) || s.t_s < 0.0 || s.t_s > kMaxTime_s)
     return fmt::format("time {} s, expected 0 … {}", s.t_s, kMaxTime_s);
   if (before && s.t_s < before->t_s)
     return fmt::format("time runs backwards from {} s to {} s", before->t_s, s.t_s);

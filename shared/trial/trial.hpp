@@ -47,7 +47,6 @@ enum Flag : std::uint16_t {
 struct Event {
   double t_s = 0.0;
   std::string kind;
-<<<<<<< HEAD
   core::Json detail = core::Json::object();  ///< object; for "answer" see Answer
 
   core::Json to_json() const;
@@ -64,10 +63,6 @@ struct Answer {
 
   core::Json to_json() const;
   static core::Result<Answer> from_json(const core::Json& json, const std::string& where);
-=======
-  core::Json detail;  ///< object; for "answer": {"breach": bool, "wall": "medial"|…|null,
-                      ///< "confidence": 0…1}
->>>>>>> main
 };
 
 /// What is known before the first sample.
@@ -80,15 +75,9 @@ struct Header {
   std::string device;         ///< "sim-lambda6", …
   std::int64_t started_utc_us = 0;
   double rate_Hz = 4000.0;
-<<<<<<< HEAD
   core::Json probe = core::Json::object();  ///< length_m, radius_m, points, point_spacing_m,
                                             ///< pose_offset_m of the model that ran
   core::Json extra = core::Json::object();  ///< anything further a later version knows
-=======
-  core::Json
-      probe;  ///< length_m, radius_m, points, point_spacing_m, pose_offset_m of the model that ran
-  core::Json extra;  ///< anything further a later version knows
->>>>>>> main
 
   core::Json to_json() const;
   /// Errors: bad_input naming `where` and the field: an id or case_id of the wrong shape, an

@@ -18,13 +18,8 @@ namespace trial {
 /// finish(), the file is as after a crash: recover_trial() ends it.
 class TrialWriter {
  public:
-<<<<<<< HEAD
   /// Makes a new file: it appears with its header, flushed to the disk, or not at all. Errors:
   /// conflict (there is such a file), bad_input (a header that a reader would refuse), io.
-=======
-  /// Makes a new file (an existing one is a conflict), writes the header frame and flushes it to
-  /// the disk.
->>>>>>> main
   static core::Result<TrialWriter> create(const std::filesystem::path& path, const Header& header);
   ~TrialWriter();
   TrialWriter(TrialWriter&&) noexcept;
@@ -49,17 +44,11 @@ struct ReadLimits {
   std::uint64_t max_bytes = 8ull << 30;
 };
 
-<<<<<<< HEAD
 /// Reads frame by frame; the memory is that of the samples the file really holds.
 /// A torn last frame (or a tail of zeros) ends the trial quietly, with `sealed` and `complete`
 /// false. Errors: corrupt with the offset for anything else that does not hold; bad_input with the
 /// offset for numbers that are not finite, times or ticks that run backwards (fault_of), a field of
 /// a header or an event; too_large.
-=======
-/// Reads frame by frame in bounded memory.
-/// A torn last frame ends the trial quietly (`complete` false); anything else that does not hold is
-/// Errc::corrupt with the offset. Non-finite values and times that run backwards are bad_input.
->>>>>>> main
 core::Result<Trial> read_trial(const std::filesystem::path& path, const ReadLimits& limits = {});
 /// The same in the memory of one frame, handing out the frames' samples in order; `trial` returned
 /// holds header and events only. An Error may come after samples were handed out: they then count
@@ -69,13 +58,9 @@ core::Result<Trial> scan_trial(const std::filesystem::path& path,
                                const ReadLimits& limits = {});
 /// Cuts a file that a crash left open after its last whole frame and ends it with an "interrupted"
 /// event and an end frame, so that it can be handed over. Returns the samples kept. Does nothing to
-<<<<<<< HEAD
 /// a finished file; may itself be interrupted and repeated. Errors: conflict (its writer is alive),
 /// corrupt or bad_input for damage that no interrupted writer leaves (the file is then as it was),
 /// io.
-=======
-/// a finished file.
->>>>>>> main
 core::Result<std::uint64_t> recover_trial(const std::filesystem::path& path);
 
 }  // namespace trial
