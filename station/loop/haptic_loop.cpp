@@ -14,9 +14,15 @@ std::array<float, 3> floats_of(const Vec3& v) {
 }
 std::array<double, 4> array_of(const math::Quat& q) { return {q.w(), q.x(), q.y(), q.z()}; }
 
-/// What of a step may be recorded: a number that is not finite becomes zero (the limiter has
-/// latched by then).
-Vec3 recordable(const Vec3& v) { return v.allFinite() ? v : Vec3::Zero(); }
+/// What of a step may be recorded: what no trial may hold becomes zero (the limiter has latched or
+/// clamped by then).
+Vec3 recordable(const Vec3& v) {
+  return v.allFinite() && v.cwiseAbs().maxCoeff() < trial::kMaxMagnitude ? v : Vec3::Zero();
+}
+bool plausible(const math::Pose& pose) {
+  return pose.p.allFinite() && pose.p.cwiseAbs().maxCoeff() < 100.0 &&
+         std::abs(pose.q.squaredNorm() - 1.0) < 1e-3;  // NaN compares false
+}
 }  // namespace
 
 double TimeHistogram::quantile_us(double share) const noexcept {
@@ -65,9 +71,7 @@ void HapticLoop::tick(core::Instant_ns now, std::uint32_t number, bool late) noe
   devices::Sample sample;
   const Status status = parts_.device.read(now, sample);
   const bool usable =
-      status == Status::ok && sample.X_DH.p.allFinite() && sample.X_DH.q.coeffs().allFinite();
-
-  if (usable) X_DH_ = sample.X_DH;  // else the last good pose stands, flagged
+      status == Status::ok && plausible(sample.X_DH);  // else the last good pose stands, flagged
   const math::Pose X_VH = X_VD_ * X_DH_;
   laws::PalpationStep step;
   if (usable) step = parts_.contact.step(X_VH);
@@ -96,13 +100,15 @@ void HapticLoop::tick(core::Instant_ns now, std::uint32_t number, bool late) noe
       (late ? trial::kLate : 0) | (passed.stale ? trial::kStale : 0) |
       (sample.saturated ? trial::kSaturated : 0));
   record(out);
-  parts_.live.write({.t_s = out.t_s,
-                     .p_VH_m = array_of(Vec3(X_VH.p + pose_offset_m_)),
-                     .q_VH = out.q_VH,
-                     .deflection_m = {out.deflection_m[0], out.deflection_m[1]},
-                     .rendered_force_N = array_of(rendered_H),
-                     .tick = number,
-                     .late_ticks = static_cast<std::uint32_t>(counts_.late)});
+  parts_.live.write(
+      {.t_s = out.t_s,
+       .p_VH_m = array_of(Vec3(X_VH.p + pose_offset_m_)),
+       .q_VH = out.q_VH,
+       .deflection_m = {out.deflection_m[0], out.deflection_m[1]},
+       .rendered_force_N = array_of(rendered_H),
+       .rendered_torque_Nm = array_of(Vec3(q_DH.conjugate() * passed.wrench.torque_Nm)),
+       .tick = number,
+       .late_ticks = static_cast<std::uint32_t>(counts_.late)});
 }
 
 void HapticLoop::record(const trial::Sample& sample) noexcept {

@@ -58,6 +58,7 @@ struct Live {
   std::array<double, 4> q_VH{1, 0, 0, 0};    ///< w, x, y, z
   std::array<double, 2> deflection_m{};      ///< δ of the tip, in H
   std::array<double, 3> rendered_force_N{};  ///< in H
+  std::array<double, 3> rendered_torque_Nm{};
   std::uint32_t tick = 0;
   std::uint32_t late_ticks = 0;
 };
