@@ -70,8 +70,8 @@ void HapticLoop::run(const std::function<void()>& each_tick) noexcept {
 void HapticLoop::tick(core::Instant_ns now, std::uint32_t number, bool late) noexcept {
   devices::Sample sample;
   const Status status = parts_.device.read(now, sample);
-  const bool usable =
-      status == Status::ok && plausible(sample.X_DH);  // else the last good pose stands, flagged
+  const bool usable = status == Status::ok && plausible(sample.X_DH);
+  if (usable) X_DH_ = sample.X_DH;  // else the last good pose stands, flagged
   const math::Pose X_VH = X_VD_ * X_DH_;
   laws::PalpationStep step;
   if (usable) step = parts_.contact.step(X_VH);

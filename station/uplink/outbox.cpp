@@ -63,7 +63,8 @@ core::Result<void> Outbox::queue(const std::string& trial_id, const std::string&
   return write({.trial_id = trial_id,
                 .case_id = case_id,
                 .size_bytes = digest->size_bytes,
-                .sha256 = digest->sha256});
+                .sha256 = digest->sha256,
+                .reason = {}});
 }
 
 core::Result<std::vector<OutboxEntry>> Outbox::entries() const {
