@@ -16,8 +16,8 @@ namespace uplink {
 struct Request {
   std::string method;  ///< "GET", "PUT", "PATCH", "POST"
   std::string path;    ///< "/api/v1/…", with its query
-  std::vector<std::pair<std::string, std::string>> headers;
-  core::ByteView body;
+  std::vector<std::pair<std::string, std::string>> headers = {};
+  core::ByteView body = {};
   std::uint64_t max_answer_bytes = 1u << 20;
 };
 
