@@ -1,4 +1,5 @@
-/// Plots as SVG text: panels under one another, lines, bands, histograms; for reports and the tool's pictures.
+/// Plots as SVG text: panels under one another, lines, bands, histograms; for reports and the
+/// tool's pictures.
 #pragma once
 
 #include <string>
@@ -8,8 +9,9 @@ namespace plot {
 
 struct Line {
   std::string label;
-  std::vector<double> x, y;  ///< equal length; more points than the picture can show are thinned to their extremes
-  std::string colour;        ///< "#1b4f8f"
+  std::vector<double> x,
+      y;  ///< equal length; more points than the picture can show are thinned to their extremes
+  std::string colour;  ///< "#1b4f8f"
   double width_px = 1.2;
   bool right_axis = false;
 };
