@@ -188,6 +188,16 @@ void PartialFiles::remove(const std::string& trial_id) const noexcept {
   ::unlink(path_of(trial_id).c_str());
 }
 
+std::vector<std::string> PartialFiles::ids() const {
+  std::vector<std::string> out;
+  std::error_code failure;
+  for (const auto& entry : fs::directory_iterator(root_, failure)) {
+    const std::string id = entry.path().stem().string();
+    if (entry.path().extension() == ".part" && core::is_id(id)) out.push_back(id);
+  }
+  return out;
+}
+
 core::Result<std::string> file_sha256(const fs::path& path) {
   core::Sha256 hash;
   auto read =

@@ -48,6 +48,9 @@ class PartialFiles {
                               core::ByteView bytes) const;
   core::Result<void> cut(const std::string& trial_id, std::uint64_t size) const;
   void remove(const std::string& trial_id) const noexcept;
+  /// Trials that have one.
+  std::vector<std::string> ids() const;
+  const std::filesystem::path& folder() const { return root_; }
 
  private:
   explicit PartialFiles(std::filesystem::path root) : root_(std::move(root)) {}
