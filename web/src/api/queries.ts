@@ -1,5 +1,6 @@
 /** What can be asked, as queries: one key each, so that pages share answers. */
 import { infiniteQueryOptions, queryOptions, type QueryClient } from '@tanstack/react-query';
+import { address } from './address';
 import { ApiError, ask, bytes, tell } from './client';
 import { parsePreview } from './preview';
 import { pathSchema, sessionSchema, signalsSchema, trialPageSchema, trialSchema, type Session } from './schemas';
@@ -18,7 +19,7 @@ export const sessionQuery = queryOptions({
   queryKey: ['session'],
   queryFn: async ({ signal }): Promise<Session | null> => {
     try {
-      return await ask('/session', sessionSchema, { signal });
+      return await ask(address('/api/v1/session', {}), sessionSchema, { signal });
     } catch (reason) {
       if (reason instanceof ApiError && reason.code === 'unauthorised') return null;
       throw reason;
@@ -28,16 +29,16 @@ export const sessionQuery = queryOptions({
 });
 
 export const signIn = (name: string, password: string) =>
-  ask('/session', sessionSchema, { method: 'POST', body: { name, password } });
+  ask(address('/api/v1/session', {}), sessionSchema, { method: 'POST', body: { name, password } });
 
-export const signOut = () => tell('/session', { method: 'DELETE' });
+export const signOut = () => tell(address('/api/v1/session', {}), { method: 'DELETE' });
 
 /** Newest first; asked again while anything is being assessed, and now and then for trials that have arrived. */
 export const trialsQuery = infiniteQueryOptions({
   queryKey: ['trials'],
   queryFn: ({ pageParam, signal }) => {
-    const before = pageParam === null ? '' : `&before_utc_us=${pageParam}`;
-    return ask(`/trials?limit=${kPage}${before}`, trialPageSchema, { signal });
+    const before = pageParam === null ? {} : { before_utc_us: pageParam };
+    return ask(address('/api/v1/trials', {}, { limit: kPage, ...before }), trialPageSchema, { signal });
   },
   initialPageParam: null as number | null,
   getNextPageParam: (last) => (last.more ? (last.trials.at(-1)?.started_utc_us ?? null) : null),
@@ -50,22 +51,19 @@ export const trialsQuery = infiniteQueryOptions({
 export const trialQuery = (id: string) =>
   queryOptions({
     queryKey: ['trial', id],
-    queryFn: ({ signal }) => ask(`/trials/${encodeURIComponent(id)}`, trialSchema, { signal }),
+    queryFn: ({ signal }) => ask(address('/api/v1/trials/{id}', { id }), trialSchema, { signal }),
     refetchInterval: (query) => (query.state.data?.state === 'assessing' ? kAssessing_ms : false),
   });
 
-export interface SignalWindow { readonly from_s: number; readonly to_s: number; readonly points: number }
+export interface SignalWindow { from_s: number; to_s: number; points: number }
 
 /** Signals of a trial never change, so a window once fetched is kept. */
 export const signalsQuery = (id: string, window: SignalWindow) =>
   queryOptions({
     queryKey: ['signals', id, window],
     queryFn: ({ signal }) => {
-      const query = new URLSearchParams({
-        channels: kChannels.join(','),
-        from_s: String(window.from_s), to_s: String(window.to_s), points: String(window.points),
-      });
-      return ask(`/trials/${encodeURIComponent(id)}/signals?${query}`, signalsSchema, { signal });
+      const query = { channels: kChannels.join(','), ...window };
+      return ask(address('/api/v1/trials/{id}/signals', { id }, query), signalsSchema, { signal });
     },
     staleTime: Infinity,
   });
@@ -73,7 +71,7 @@ export const signalsQuery = (id: string, window: SignalWindow) =>
 export const pathQuery = (id: string) =>
   queryOptions({
     queryKey: ['path', id],
-    queryFn: ({ signal }) => ask(`/trials/${encodeURIComponent(id)}/path?points=2000`, pathSchema, { signal }),
+    queryFn: ({ signal }) => ask(address('/api/v1/trials/{id}/path', { id }, { points: 2000 }), pathSchema, { signal }),
     staleTime: Infinity,
   });
 
@@ -81,7 +79,7 @@ export const previewQuery = (caseId: string) =>
   queryOptions({
     queryKey: ['preview', caseId],
     queryFn: async ({ signal }) => {
-      const { headers, data } = await bytes(`/cases/${encodeURIComponent(caseId)}/preview?max_side=64`, { signal });
+      const { headers, data } = await bytes(address('/api/v1/cases/{id}/preview', { id: caseId }, { max_side: 64 }), { signal });
       return parsePreview(headers, data);
     },
     staleTime: Infinity,

@@ -8,6 +8,7 @@ const inSeconds = v.pipe(finite, v.transform(second));
 const inMetres = v.pipe(finite, v.transform(metre));
 const inNewtons = v.pipe(finite, v.transform(newton));
 const inUtc = v.pipe(finite, v.transform(utcMicroseconds));
+/** Three numbers of the patient's frame. */
 const point = v.tuple([finite, finite, finite]);
 const wall = v.picklist(['medial', 'lateral', 'superior', 'inferior', 'anterior']);
 
@@ -74,6 +75,8 @@ export const trialSchema = v.object({
   samples: count,
   rate_Hz: finite,
   complete: v.boolean(),
+  /** Why the assessment failed, where it did. */
+  failure: v.nullish(v.string(), null),
   state: trialStateSchema,
   late_ticks: count,
   not_converged: count,
@@ -82,7 +85,7 @@ export const trialSchema = v.object({
   answer: v.nullish(answerSchema, null),
   truth: v.nullish(truthSchema, null),
   metrics: v.array(metricSchema),
-  tract: tractSchema,
+  tract: v.nullable(tractSchema),
   coverage: v.nullish(coverageSchema, null),
 });
 

@@ -37,11 +37,10 @@ export const kHeatLevels = 5;
 /** The angle bin that a column of the map shows. */
 export const binOf = (column: number, angleBins: number) => (column - Math.floor(angleBins / 8) + angleBins) % angleBins;
 
-/** 0 untouched, then 1…5 on a logarithmic scale up to the most touched bin. */
+/** 0 untouched, then 1…5 up to the most touched bin, by the root, so that a short contact still shows. */
 export function heatOf(samples: number, most: number): number {
   if (samples <= 0) return 0;
-  if (most <= 1) return kHeatLevels;
-  return Math.min(kHeatLevels, 1 + Math.floor((Math.log(samples) / Math.log(most)) * (kHeatLevels - 1e-9)));
+  return Math.min(kHeatLevels, 1 + Math.floor(Math.sqrt(samples / most) * kHeatLevels));
 }
 
 /** One SVG path per heat level, of unit squares: column × row. */

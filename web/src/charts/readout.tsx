@@ -1,5 +1,5 @@
 import { useSyncExternalStore } from 'react';
-import { digits, withUnit, kNone, type Quantity } from '@/units';
+import { axisTitle, digits, withUnit, kNone, type Quantity } from '@/units';
 import type { Cursor } from './cursor';
 import styles from './signal-chart.module.css';
 import type { Panel } from './signal-types';
@@ -25,12 +25,12 @@ export function Readout({ panel, detail, cursor }: { readonly panel: Panel; read
   const at = moment === null || detail.t.length === 0 ? null : nearest(detail.t, moment);
   return (
     <div className={styles.legend}>
-      <h3 className={styles.panelTitle}>{panel.title}</h3>
+      <h3 className={styles.panelTitle}>{axisTitle(panel.title, panel.quantity)}</h3>
       <ul>
         {panel.traces.map((trace) => (
           <li key={trace.channel}>
             <span className={styles.swatch} style={{ background: `var(${trace.colour})` }} />
-            {trace.label}
+            <span>{trace.label}{trace.symbol ? <> <i>{trace.symbol[0]}<sub>{trace.symbol[1]}</sub></i></> : null}</span>
             <span className={styles.value} data-channel={trace.channel}>
               {at === null ? '' : said(detail.channels[trace.channel]?.min[at], detail.channels[trace.channel]?.max[at], panel.quantity)}
             </span>

@@ -24,6 +24,8 @@ interface Props {
   readonly palette: number;
   /** What the chart shows, in words, for who cannot see it. */
   readonly summary: string;
+  /** What the signs mean, below the chart. */
+  readonly note: string;
   /** Drawn as a button by who owns the look of buttons. */
   readonly button: (label: string, sign: string, press: () => void, disabled?: boolean) => ReactNode;
   readonly onRange: (range: Range) => void;
@@ -40,7 +42,7 @@ function resolution(samplesPerPoint: number): string {
 
 /** Panels over one another with one time axis, one cursor and one view. */
 export function SignalChart(props: Props) {
-  const { panels, detail, overview, duration_s, range, marks, cursor, palette, summary, button, onRange, onWidth } = props;
+  const { panels, detail, overview, duration_s, range, marks, cursor, palette, summary, note, button, onRange, onWidth } = props;
   const place = useRef<HTMLDivElement>(null);
   const width = useWidth(place);
   const syncKey = useId();
@@ -66,7 +68,7 @@ export function SignalChart(props: Props) {
           {button('Later', '→', () => onRange(panned(range, 0.25, duration_s)), range.to >= duration_s)}
           {button('Zoom in', '+', () => onRange(zoomed(range, 0.5, middle, duration_s)))}
           {button('Zoom out', '−', () => onRange(zoomed(range, 2, middle, duration_s)), isWhole(range, duration_s))}
-          {button('Show the whole trial', 'All', reset, isWhole(range, duration_s))}
+          {button('All: show the whole trial', 'All', reset, isWhole(range, duration_s))}
         </div>
       </div>
       {/* eslint-disable-next-line jsx-a11y/no-noninteractive-element-interactions -- an application takes keys */}
@@ -95,7 +97,7 @@ export function SignalChart(props: Props) {
           range={range} width_px={width - kAxes_px} palette={palette} onRange={onRange} />
       ) : null}
       <p className={styles.hint}>
-        Drag across to zoom, drag the strip to move, double-click for the whole trial. Wheel: zoom after a click or with Ctrl, move with Shift.
+        {note} Drag across to zoom, drag the strip to move, double-click for the whole trial. Wheel: zoom after a click or with Ctrl, move with Shift.
       </p>
       <figcaption id={summaryId} className="hidden-visually">{summary}</figcaption>
     </figure>

@@ -4,6 +4,8 @@ export interface Trace {
   /** Channel in the detail. */
   readonly channel: string;
   readonly label: string;
+  /** The quantity's letter and its index, as printed: F, xy. */
+  readonly symbol?: readonly [string, string];
   /** Colour token, "--series-across". */
   readonly colour: string;
 }

@@ -112,7 +112,7 @@ export function TractView({ tract, path, bone, cursor, palette, summary, button 
         <span className={styles.gap} />
         {bone ? (
           <>
-            {button('Bone with its superior half cut away', 'Cut open', () => setShown('cut'), shown === 'cut')}
+            {button('Cut open: without the superior half of the bone', 'Cut open', () => setShown('cut'), shown === 'cut')}
             {button('Whole bone', 'Whole', () => setShown('whole'), shown === 'whole')}
             {button('No bone', 'No bone', () => setShown('none'), shown === 'none')}
           </>

@@ -13,9 +13,8 @@ export function Button({ look = 'plain', label, pressed, className, type = 'butt
     <button
       type={type}
       className={[styles.button, styles[look], className].filter(Boolean).join(' ')}
-      aria-label={label}
-      title={label}
       aria-pressed={pressed}
+      {...(label === undefined ? {} : { 'aria-label': label, title: label })}
       {...rest}
     />
   );

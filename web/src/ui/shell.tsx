@@ -11,7 +11,7 @@ interface Props {
 }
 
 const kNext: Record<Theme, Theme> = { system: 'light', light: 'dark', dark: 'system' };
-const kThemeName: Record<Theme, string> = { system: 'As the system', light: 'Light', dark: 'Dark' };
+const kThemeName: Record<Theme, string> = { system: 'As system', light: 'Light', dark: 'Dark' };
 const kThemeSign: Record<Theme, string> = { system: '◐', light: '○', dark: '●' };
 
 function toContent(event: MouseEvent): void {
@@ -30,9 +30,10 @@ export function Shell({ account, home, children }: Props) {
           {home}
           <div className={styles.account}>
             {account}
-            <Button look="quiet" label={`Colours: ${kThemeName[theme]}. Change to: ${kThemeName[kNext[theme]]}`} onClick={() => setTheme(kNext[theme])}>
+            <Button look="quiet" title={`Colours. Next: ${kThemeName[kNext[theme]]}`} onClick={() => setTheme(kNext[theme])}>
               <span aria-hidden="true">{kThemeSign[theme]}</span>
-              <span className={styles.themeName} aria-hidden="true">{kThemeName[theme]}</span>
+              <span className="hidden-visually">Colours: </span>
+              <span className={styles.themeName}>{kThemeName[theme]}</span>
             </Button>
           </div>
         </div>

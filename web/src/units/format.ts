@@ -4,7 +4,7 @@ import {
   type Metre, type Newton, type NewtonMetre, type Quantity, type Radian, type Second, type Share, type UtcMicroseconds,
 } from './quantity';
 
-const kNarrowSpace = ' ';  // no line break between a number and its unit
+const kNarrowSpace = '\u202f';  // no line break between a number and its unit
 const kMinus = '−';
 export const kNone = '–';
 

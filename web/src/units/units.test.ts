@@ -5,7 +5,7 @@ import {
   tickLabels,
 } from '@/units';
 
-const plain = (text: string) => text.replaceAll(' ', ' ');
+const plain = (text: string) => text.replaceAll('\u202f', ' ');
 
 describe('a number of the trial', () => {
   it('is shown in the unit of the clinic, from SI', () => {

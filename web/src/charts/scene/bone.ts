@@ -6,6 +6,7 @@ import type vtkPolyData from '@kitware/vtk.js/Common/DataModel/PolyData';
 import vtkImageMarchingCubes from '@kitware/vtk.js/Filters/General/ImageMarchingCubes';
 import vtkActor from '@kitware/vtk.js/Rendering/Core/Actor';
 import vtkMapper from '@kitware/vtk.js/Rendering/Core/Mapper';
+import { makeSlice } from './slice';
 import { kPerMetre, scaled, type SceneBone, type SceneTract, type Vec3 } from './types';
 
 /** Half of full opacity: where the transfer function says that bone begins to resist. */
@@ -40,9 +41,8 @@ function surfaceOf(bone: SceneBone): vtkPolyData {
 }
 
 export interface BoneActor {
-  readonly actor: vtkActor;
-  show(visible: boolean): void;
-  cut(away: boolean): void;
+  readonly actors: readonly vtkActor[];
+  show(visible: boolean, cut: boolean): void;
   colour(colour: Vec3): void;
 }
 
@@ -57,13 +57,14 @@ export function makeBone(bone: SceneBone, tract: SceneTract): BoneActor {
     origin: [...scaled(tract.entry_m, kPerMetre)] as [number, number, number],
     normal: [...scaled(tract.superior, -1)] as [number, number, number],
   });
-  mapper.addClippingPlane(plane);
+  const slice = makeSlice(bone, tract);
   return {
-    actor,
-    show: (visible) => { actor.setVisibility(visible); },
-    cut: (away) => {
+    actors: [actor, slice],
+    show: (visible, cut) => {
+      actor.setVisibility(visible);
+      slice.setVisibility(visible && cut);
       mapper.removeAllClippingPlanes();
-      if (away) mapper.addClippingPlane(plane);
+      if (cut) mapper.addClippingPlane(plane);
     },
     colour: (colour) => { actor.getProperty().setColor(colour[0], colour[1], colour[2]); },
   };

@@ -67,7 +67,7 @@ export function makeScene(container: HTMLElement, labelHolder: HTMLElement, cont
   renderer.addActor(tube);
   if (content.path.tip_m.length > 1) renderer.addActor(makePath(content.path, content.most_N));
   renderer.addActor(ball.actor);
-  if (bone) renderer.addActor(bone.actor);
+  for (const actor of bone?.actors ?? []) renderer.addActor(actor);
 
   const placeLabels = makeLabels(labelHolder, tract, renderer);
   const camera = renderer.getActiveCamera();
@@ -87,7 +87,7 @@ export function makeScene(container: HTMLElement, labelHolder: HTMLElement, cont
     const middle = sum(scaled(tract.entry_m), scaled(tract.axis, (tract.length_m * kPerMetre) / 2));
     const { from, up } = stand(name, tract);
     const size = Math.sqrt(from[0] ** 2 + from[1] ** 2 + from[2] ** 2);
-    const distance = tract.length_m * kPerMetre * 2.5;
+    const distance = tract.length_m * kPerMetre * 2.2;
     camera.setFocalPoint(...middle);
     camera.setPosition(...sum(middle, scaled(from, distance / size)));
     camera.setViewUp(up[0], up[1], up[2]);
@@ -110,8 +110,7 @@ export function makeScene(container: HTMLElement, labelHolder: HTMLElement, cont
       render();
     },
     bone(visible, cut) {
-      bone?.show(visible);
-      bone?.cut(cut);
+      bone?.show(visible, cut);
       render();
     },
     colour(colours) {

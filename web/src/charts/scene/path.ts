@@ -12,7 +12,7 @@ import { viridis } from '@/charts/colour';
 import { lowerBound } from '@/charts/tiles';
 import { kPerMetre, type ScenePath } from './types';
 
-const kTube_mm = 0.09;
+const kTube_mm = 0.13;
 const kBall_mm = 0.75;
 const kStops = 16;
 
@@ -27,6 +27,8 @@ export function makePath(path: ScenePath, most_N: number): vtkActor {
 
   const tube = vtkTubeFilter.newInstance({ radius: kTube_mm, numberOfSides: 6, capping: true });
   tube.setInputData(line);
+  const surface = tube.getOutputData();
+  surface.getPointData().setActiveScalars('force'); // the filter passes the values on, but not which ones to show
   const colours = vtkColorTransferFunction.newInstance();
   for (let stop = 0; stop <= kStops; ++stop) {
     colours.addRGBPoint((most_N * stop) / kStops, ...viridis(stop / kStops));
@@ -34,7 +36,7 @@ export function makePath(path: ScenePath, most_N: number): vtkActor {
   const mapper = vtkMapper.newInstance({ interpolateScalarsBeforeMapping: false, useLookupTableScalarRange: true });
   mapper.setLookupTable(colours);
   mapper.setScalarRange(0, most_N);
-  mapper.setInputConnection(tube.getOutputPort());
+  mapper.setInputData(surface);
   const actor = vtkActor.newInstance();
   actor.setMapper(mapper);
   actor.getProperty().set({ ambient: 0.45, diffuse: 0.55 });

@@ -18,6 +18,6 @@ export function makeTract(tract: SceneTract): vtkActor {
   mapper.setInputConnection(source.getOutputPort());
   const actor = vtkActor.newInstance();
   actor.setMapper(mapper);
-  actor.getProperty().set({ opacity: 0.22, ambient: 0.6, diffuse: 0.4 });
+  actor.getProperty().set({ opacity: 0.14, ambient: 0.6, diffuse: 0.4 });
   return actor;
 }

@@ -12,7 +12,7 @@ function Cell({ metric }: { readonly metric: Metric | undefined }) {
   if (!metric) return <td className={styles.number}>{kNone}</td>;
   return (
     <td className={styles.number} data-metric={metric.id}>
-      <Term definition={<Definition metric={metric} />}>{measureDigits(metric.value, metric.unit)}</Term>
+      <Term align="end" definition={<Definition metric={metric} />}>{measureDigits(metric.value, metric.unit)}</Term>
     </td>
   );
 }

@@ -7,15 +7,15 @@ export const kPanels: readonly Panel[] = [
   {
     id: 'force', title: 'Force on the probe', quantity: kForce, height_px: 170, fromZero: true,
     traces: [
-      { channel: 'force_xy_N', label: 'across F_xy', colour: '--series-across' },
-      { channel: 'force_z_N', label: 'along F_z', colour: '--series-along' },
+      { channel: 'force_xy_N', label: 'across', symbol: ['F', 'xy'], colour: '--series-across' },
+      { channel: 'force_z_N', label: 'along', symbol: ['F', 'z'], colour: '--series-along' },
     ],
   },
   {
     id: 'torque', title: 'Torque on the probe', quantity: kTorque, height_px: 130, fromZero: true,
     traces: [
-      { channel: 'torque_xy_Nm', label: 'bending T_xy', colour: '--series-across' },
-      { channel: 'torque_z_Nm', label: 'twisting T_z', colour: '--series-along' },
+      { channel: 'torque_xy_Nm', label: 'bending', symbol: ['T', 'xy'], colour: '--series-across' },
+      { channel: 'torque_z_Nm', label: 'twisting', symbol: ['T', 'z'], colour: '--series-along' },
     ],
   },
   {
@@ -31,10 +31,12 @@ export const kPanels: readonly Panel[] = [
   },
 ];
 
-const kEventNames: Record<string, string | undefined> = { start: 'start', answer: 'answer', end: 'end', fault: 'fault' };
+export const kNote =
+  'Forces and torques are what the bone does to the probe, in the frame of its handle: a negative axial force pushes it out of the tract.';
 
+/** Start and end are the ends of the axis and need no mark. */
 export function marksOf(trial: Trial): Mark[] {
-  return trial.events.map((event) => ({ t_s: event.t_s, label: kEventNames[event.kind] ?? event.kind }));
+  return trial.events.filter(({ kind }) => kind !== 'start' && kind !== 'end').map(({ t_s, kind }) => ({ t_s, label: kind }));
 }
 
 function strongest(detail: Detail, channel: string): { value: number; t: number } | null {

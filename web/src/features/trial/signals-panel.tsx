@@ -2,7 +2,7 @@ import { useMemo, useState } from 'react';
 import type { Trial } from '@/api';
 import { SignalChart, whole, type Cursor, type Range } from '@/charts';
 import { Button, Notice, usePalette } from '@/ui';
-import { kPanels, marksOf, summaryOf } from './panels';
+import { kNote, kPanels, marksOf, summaryOf } from './panels';
 import { useSignals } from './use-signals';
 
 const kUsualWidth_px = 1200;
@@ -20,7 +20,7 @@ export function SignalsPanel({ trial, cursor }: { readonly trial: Trial; readonl
       {error ? <Notice tone="bad" title="Part of the signals could not be loaded." onRetry={retry}>{error.message}</Notice> : null}
       <SignalChart
         panels={kPanels} detail={detail} overview={overview} duration_s={trial.duration_s} range={range} marks={marks} cursor={cursor}
-        palette={palette} summary={summary} onRange={setRange} onWidth={setWidth}
+        palette={palette} summary={summary} note={kNote} onRange={setRange} onWidth={setWidth}
         button={(label, sign, press, disabled) => <Button label={label} onClick={press} disabled={disabled}>{sign}</Button>}
       />
     </>

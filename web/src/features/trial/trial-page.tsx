@@ -79,7 +79,7 @@ export function TrialPage({ id }: { readonly id: string }) {
     <Frame>
       <Header trial={trial} />
       {trial.state === 'assessing' ? <Notice title="This trial is being assessed.">Measures, walls and the verdict appear here when that is done.</Notice> : null}
-      {trial.state === 'failed' ? <Notice tone="warn" title="The assessment of this trial failed.">The recording is whole and shown below; its measures could not be made.</Notice> : null}
+      {trial.state === 'failed' ? <Notice tone="warn" title="The assessment of this trial failed.">{trial.failure ?? 'Its measures could not be made.'} What was recorded is shown below.</Notice> : null}
       <div className={styles.pair}>
         <Verdict answer={trial.answer} truth={trial.truth} />
         <Recording trial={trial} />

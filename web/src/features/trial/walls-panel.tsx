@@ -14,7 +14,7 @@ export function WallsPanel({ trial, cursor }: { readonly trial: Trial; readonly 
   const { tract, coverage } = trial;
   const depthAt = useMemo(() => (t_s: number) => {
     const tip = path?.tip_m[Math.min(lowerBound(path.t_s, t_s), path.t_s.length - 1)];
-    if (!tip) return null;
+    if (!tip || !tract) return null;
     return tract.axis.reduce((depth, along, i) => depth + along * ((tip[i] ?? 0) - (tract.entry_m[i] ?? 0)), 0);
   }, [path, tract]);
   const bins = useMemo(
@@ -23,7 +23,7 @@ export function WallsPanel({ trial, cursor }: { readonly trial: Trial; readonly 
   );
   return (
     <Card title="Walls touched">
-      {bins && bins.depthBins > 0 && bins.angleBins > 0
+      {tract && bins && bins.depthBins > 0 && bins.angleBins > 0
         ? <WallMap bins={bins} length_m={tract.length_m} breached={sideBreached(trial)} depthAt={depthAt} cursor={cursor} />
         : <p>{trial.state === 'assessing' ? 'Being assessed.' : 'Not known for this trial.'}</p>}
       {trial.truth?.breached === 'anterior' ? <p>The breach is at the anterior end, beyond the side walls.</p> : null}
