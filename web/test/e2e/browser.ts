@@ -7,12 +7,13 @@ import { inject } from 'vitest';
 export const kShots = fileURLToPath(new URL('../screenshots/', import.meta.url));
 mkdirSync(kShots, { recursive: true });
 
-export function launch(extra: readonly string[] = []): Promise<Browser> {
+/** `drawing` says how pictures are made: by default so that 3-D is as fast as it gets without a graphics processor. */
+export function launch(drawing: readonly string[] = ['--use-gl=angle', '--use-angle=gl-egl', '--ignore-gpu-blocklist']): Promise<Browser> {
   return chromium.launch({
     executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
     args: [
       '--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync',
-      '--use-gl=angle', '--use-angle=gl-egl', '--ignore-gpu-blocklist', ...extra,
+      ...drawing,
     ],
   });
 }
@@ -45,10 +46,13 @@ export async function signIn(page: Page, path = '/'): Promise<void> {
   await page.getByRole('button', { name: 'Sign out' }).waitFor();
 }
 
-/** The id of the newest trial that has been assessed; the fixture's has 10⁶ samples. */
+/** What the server answers to who is signed in on this page. */
+export const asked = <Answer>(page: Page, path: string): Promise<Answer> =>
+  page.evaluate(async (address) => (await fetch(address)).json() as Promise<Answer>, `/api/v1${path}`);
+
+/** The id of the newest trial that has been assessed. */
 export async function assessedTrial(page: Page): Promise<string> {
-  const answer = await page.request.get('/api/v1/trials?limit=50');
-  const { trials } = (await answer.json()) as { trials: { id: string; state: string }[] };
+  const { trials } = await asked<{ trials: { id: string; state: string }[] }>(page, '/trials?limit=50');
   const found = trials.find((trial) => trial.state === 'assessed');
   if (!found) throw new Error('the server has no assessed trial');
   return found.id;

@@ -1,6 +1,6 @@
 /** Before the tests: against TRACTUS_URL, or else the pages built anew and served with the fixture. */
 import type { TestProject } from 'vitest/node';
-import { build } from 'vite';
+import { execFileSync } from 'node:child_process';
 import { fileURLToPath } from 'node:url';
 import { kAccount } from '../fixture/api.ts';
 import { serveFixture } from '../fixture/server.ts';
@@ -26,7 +26,8 @@ export default async function setup(project: TestProject) {
     project.provide('fixture', false);
     return;
   }
-  await build({ root: kRoot, logLevel: 'warn', mode: 'production' });
+  // In a process of its own: within the test runner the libraries would be built for testing, and slow.
+  execFileSync('npm', ['run', '--silent', 'build', '--', '--logLevel', 'warn'], { cwd: kRoot, stdio: 'inherit', env: { ...process.env, NODE_ENV: 'production', VITEST: '' } });
   const { url: served, server } = await serveFixture(`${kRoot}/dist`);
   project.provide('url', served);
   project.provide('account', kAccount);

@@ -31,7 +31,7 @@ describe('the table of trials', () => {
     [{ correct: false }, '✗ wrong', 'assessed'],
     [{ correct: null }, 'none', 'assessed'],
     [{ correct: null, state: 'assessing' }, '–', 'assessing…'],
-    [{ correct: null, state: 'failed' }, '–', 'assessment failed'],
+    [{ correct: null, state: 'failed' }, '–', 'failed'],
   ] satisfies [Partial<TrialSummary>, string, string][])('says of %o: %s, %s', (changes, answer, state) => {
     render(<TrialsTable trials={[trial(changes)]} />);
     const [, row] = screen.getAllByRole('row');

@@ -16,7 +16,7 @@ function AnswerCell({ trial }: { readonly trial: TrialSummary }) {
 function StateCell({ trial }: { readonly trial: TrialSummary }) {
   switch (trial.state) {
     case 'assessing': return <Badge tone="accent">assessing…</Badge>;
-    case 'failed': return <Badge tone="bad">assessment failed</Badge>;
+    case 'failed': return <Badge tone="bad">failed</Badge>;
     case 'assessed': return <span className={styles.none}>assessed</span>;
   }
 }
