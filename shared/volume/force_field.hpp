@@ -13,29 +13,30 @@ namespace volume {
 
 /// How the field is had between voxels (design: "The palpation law, made precise").
 enum class FieldKind {
-  paper,      ///< vectors −∇(ω∗α) by central differences at the voxels, interpolated by Catmull–Rom; not conservative
+  paper,  ///< vectors −∇(ω∗α) by central differences at the voxels, interpolated by Catmull–Rom;
+          ///< not conservative
   potential,  ///< −∇ of the Catmull–Rom interpolant of ω∗α; conservative
 };
 
 /// g and how it changes, at one point.
 struct FieldSample {
-  Vec3 g_per_m;           ///< −∇(ω∗α), 1/m, in V
-  Mat3 jacobian_per_m2;   ///< ∂g_a/∂p_b, 1/m², in V
+  Vec3 g_per_m;          ///< −∇(ω∗α), 1/m, in V
+  Mat3 jacobian_per_m2;  ///< ∂g_a/∂p_b, 1/m², in V
 };
 
 /// The field of [Zoller2020, eq. (1)]:
 ///
 ///     g = −∇(ω ∗ α)                                                         (1)
 ///
-/// α by the transfer function at the voxels; ω the 15-tap Gaussian exp(−k²/2), normalised, per axis (σ = 1 voxel);
-/// ∇ per metre; edge voxels repeat outward.
-/// Holds the blurred opacity alone (4 bytes a voxel); the paper's vectors are formed where they are needed, to the
-/// same value. Immutable but for `update`; sampling is free of allocation and safe from several threads.
+/// α by the transfer function at the voxels; ω the 15-tap Gaussian exp(−k²/2), normalised, per axis
+/// (σ = 1 voxel); ∇ per metre; edge voxels repeat outward. Holds the blurred opacity alone (4 bytes
+/// a voxel); the paper's vectors are formed where they are needed, to the same value. Immutable but
+/// for `update`; sampling is free of allocation and safe from several threads.
 class ForceField {
  public:
   /// Errors: too_large (over 2^31 voxels), cancelled.
-  static core::Result<ForceField> make(const Volume& volume, const TransferFunction& transfer, FieldKind kind,
-                                       const core::Progress& progress = {});
+  static core::Result<ForceField> make(const Volume& volume, const TransferFunction& transfer,
+                                       FieldKind kind, const core::Progress& progress = {});
   ~ForceField();
   ForceField(ForceField&&) noexcept;
   ForceField& operator=(ForceField&&) noexcept;
@@ -47,7 +48,8 @@ class ForceField {
   /// (ω∗α)(p), Catmull–Rom between voxels.
   double opacity(const Vec3& p_V_m) const noexcept;
 
-  /// Makes the field that of `volume` again after voxels within `changed` were written. Not beside samplers.
+  /// Makes the field that of `volume` again after voxels within `changed` were written. Not beside
+  /// samplers.
   void update(const Volume& volume, const Box& changed) noexcept;
 
   FieldKind kind() const noexcept;
