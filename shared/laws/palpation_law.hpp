@@ -1,4 +1,5 @@
-/// The palpation of a drilled tract with a bending probe: from the pose of the handle to what the bone does to it.
+/// The palpation of a drilled tract with a bending probe: from the pose of the handle to what the
+/// bone does to it.
 #pragma once
 
 #include <array>
@@ -15,15 +16,16 @@ using math::Vec3;
 
 /// The numbers of [Zoller2020]; field names are those of the model file (`/base`).
 struct PalpationParameters {
-  double force_factor_Nm = 0.005;       ///< c_f, eq. (2). The paper prints "5 Nm"; only 5 N·mm gives its own maxima
-  double force_scale = 0.3;             ///< s_f, eq. (3)
-  double torque_scale = 0.3;            ///< s_t, eq. (3)
-  int points = 3;                       ///< n, 1 … 64
+  double force_factor_Nm =
+      0.005;  ///< c_f, eq. (2). The paper prints "5 Nm"; only 5 N·mm gives its own maxima
+  double force_scale = 0.3;   ///< s_f, eq. (3)
+  double torque_scale = 0.3;  ///< s_t, eq. (3)
+  int points = 3;             ///< n, 1 … 64
   double point_spacing_m = 0.009;
-  double youngs_modulus_Pa = 1.95e11;   ///< E
-  double length_m = 0.13;               ///< L
-  double radius_m = 0.0007;             ///< r; I = π r⁴ / 4
-  Vec3 pose_offset_m = Vec3::Zero();    ///< added to the recorded position, in V
+  double youngs_modulus_Pa = 1.95e11;  ///< E
+  double length_m = 0.13;              ///< L
+  double radius_m = 0.0007;            ///< r; I = π r⁴ / 4
+  Vec3 pose_offset_m = Vec3::Zero();   ///< added to the recorded position, in V
 };
 
 inline constexpr int kMaxPoints = 64;
@@ -34,29 +36,33 @@ struct PalpationState {
 };
 
 struct PalpationStep {
-  math::Wrench wrench_H;             ///< F*, τ*: what the bone does to the probe, at the handle's origin, in H
+  math::Wrench wrench_H;  ///< F*, τ*: what the bone does to the probe, at the handle's origin, in H
   Vec2 deflection_m = Vec2::Zero();  ///< δ
   int iterations = 0;
-  bool converged = true;             ///< |k δ − Σ φ F| < 0.001 N was reached
-  std::array<Vec3, kMaxPoints> force_H_N;  ///< F_i at each point, before scaling, in H; the first `points` are set
+  bool converged = true;  ///< |k δ − Σ φ F| < 0.001 N was reached
+  std::array<Vec3, kMaxPoints>
+      force_H_N;  ///< F_i at each point, before scaling, in H; the first `points` are set
 };
 
 /// The law [Zoller2020, eqs (2)–(4)], as made precise in the design:
 ///
-///     p_i = X_VH (z_i ẑ + φ(z_i) (δx x̂ + δy ŷ)),   z_i = L − i·spacing,   φ(z) = z²(3L − z)/(2L³)   (4)
-///     F_i = c_f g(p_i)                                                                               (2)
-///     k δ = Σ φ(z_i) F_i,⊥,   k = 3EI/L³            (quasi-static equilibrium, to < 0.001 N)
-///     F* = s_f Σ F_i,   τ* = s_t Σ (p_i − origin) × F_i                                              (3)
+///     p_i = X_VH (z_i ẑ + φ(z_i) (δx x̂ + δy ŷ)),   z_i = L − i·spacing,   φ(z) = z²(3L − z)/(2L³)
+///     (4) F_i = c_f g(p_i) (2) k δ = Σ φ(z_i) F_i,⊥,   k = 3EI/L³            (quasi-static
+///     equilibrium, to < 0.001 N) F* = s_f Σ F_i,   τ* = s_t Σ (p_i − origin) × F_i (3)
 ///
 /// Assumes small deflections, a straight uniform shank, contact at the n points alone.
-/// Departs from the source: the equilibrium is found by Newton with a trust region instead of relaxation (which fails
-/// to converge where the wall is stiffer than the shank), to the same tolerance.
+/// Departs from the source: the equilibrium is found by Newton with a trust region instead of
+/// relaxation (which fails to converge where the wall is stiffer than the shank), to the same
+/// tolerance.
 class PalpationLaw {
  public:
-  /// Errors: out_of_range naming the first parameter outside its range. `field` must outlive the law.
-  static core::Result<PalpationLaw> make(const PalpationParameters& parameters, const volume::ForceField& field);
+  /// Errors: out_of_range naming the first parameter outside its range. `field` must outlive the
+  /// law.
+  static core::Result<PalpationLaw> make(const PalpationParameters& parameters,
+                                         const volume::ForceField& field);
 
-  /// One step from the handle's pose in V. Never fails, never allocates. `state` is the last step's.
+  /// One step from the handle's pose in V. Never fails, never allocates. `state` is the last
+  /// step's.
   PalpationStep step(const math::Pose& X_VH, PalpationState& state) const noexcept;
 
   /// Tip of the bent probe in V, m.

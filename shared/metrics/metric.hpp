@@ -19,10 +19,11 @@ struct Truth {
 struct Subject {
   const trial::Trial& trial;
   const volume::Tract& tract;
-  std::optional<Truth> truth;   ///< absent where the scorer must not know
+  std::optional<Truth> truth;  ///< absent where the scorer must not know
 };
 
-/// `value` is empty where the score does not exist for this trial (no contact, no answer, truth unknown).
+/// `value` is empty where the score does not exist for this trial (no contact, no answer, truth
+/// unknown).
 struct Score {
   std::optional<double> value;
   std::string note;  ///< one line why, when there is no value or something is to be known about it
@@ -43,7 +44,8 @@ std::vector<MetricInfo> all();
 /// Wall contact unrolled: for the 3-D page and the coverage metrics.
 struct Coverage {
   int depth_bins = 0, angle_bins = 0;
-  std::vector<std::uint32_t> samples;  ///< [depth][angle]; angle 0 = medial, quarter turn = superior, half = lateral
+  std::vector<std::uint32_t>
+      samples;  ///< [depth][angle]; angle 0 = medial, quarter turn = superior, half = lateral
 };
 
 }  // namespace metrics
