@@ -98,7 +98,7 @@ plot::Panel distribution_panel(std::span<const math::Wrench> measured,
   plot::Panel panel;
   panel.title = channel.label;
   panel.x_label = channel.unit;
-  panel.y_label = fmt::format("density, 1/({})", channel.unit);
+  panel.y_label = channel.unit == "N" ? "density, 1/N" : "density, 1/(N·m)";
   panel.log_y = true;
   std::vector<double> edges;
   for (int k = 0; k <= kBins; ++k) edges.push_back(low + width * k);

@@ -56,20 +56,25 @@ class Field:
 
     def g(self, p):
         """At points p (..., 3) of V, 1/m, in V."""
-        u = (p - self.origin) @ self.directions / self.spacing + 1.0  # +1: the padding
+        u = (p.reshape(-1, 3) - self.origin) @ self.directions / self.spacing + 1.0  # +1: the padding
         cell = np.floor(u).astype(int)
         f = u - cell
-        take = [np.clip(cell[..., a, None] + np.arange(-1, 3), 0, self.scalar.shape[a] - 1) for a in range(3)]
-        i, j, k = take[0][..., :, None, None], take[1][..., None, :, None], take[2][..., None, None, :]
-        w = [catmull_rom(f[..., a]) for a in range(3)]
+        i, j, k = (np.clip(cell[:, a, None] + np.arange(-1, 3), 0, self.scalar.shape[a] - 1) for a in range(3))
+        _, nj, nk = self.scalar.shape
+        at = ((i[:, :, None, None] * nj + j[:, None, :, None]) * nk + k[:, None, None, :]).reshape(len(u), 64)
+        w = [catmull_rom(f[:, a]) for a in range(3)]
         if self.kind == "paper":
-            local = np.einsum("...i,...j,...k,...ijkc->...c", *w, self.vectors[i, j, k])
+            local = np.einsum("nk,nkc->nc", products(*w), self.vectors.reshape(-1, 3)[at])
         else:
-            values = self.scalar[i, j, k]
-            local = np.stack([-np.einsum("...i,...j,...k,...ijk->...",
-                                         *[catmull_rom_slope(f[..., b]) if b == a else w[b] for b in range(3)], values)
-                              / self.spacing[a] for a in range(3)], -1)
-        return local @ self.directions.T
+            values = self.scalar.reshape(-1)[at]
+            slopes = [products(*[catmull_rom_slope(f[:, b]) if b == a else w[b] for b in range(3)]) for a in range(3)]
+            local = -np.stack([(s * values).sum(1) for s in slopes], -1) / self.spacing
+        return (local @ self.directions.T).reshape(p.shape)
+
+
+def products(x, y, z):
+    """The 64 weights of each point from its four along each axis."""
+    return (x[:, :, None, None] * y[:, None, :, None] * z[:, None, None, :]).reshape(len(x), 64)
 
 
 class Probe:
@@ -97,17 +102,17 @@ class Probe:
 
     def jacobian(self, field, p, R, delta, h=2e-8):
         """By central differences over 2h, N/m."""
-        columns = []
-        for e in np.eye(2) * h:
-            columns.append((self.residual(field, p, R, delta + e) - self.residual(field, p, R, delta - e)) / (2 * h))
-        return np.stack(columns, -1)
+        moves = h * np.array([[1, 0], [-1, 0], [0, 1], [0, -1]])
+        many = (delta + moves[:, None, :]).reshape(-1, 2)
+        r = self.residual(field, np.tile(p, (4, 1)), np.tile(R, (4, 1, 1)), many).reshape(4, -1, 2)
+        return np.stack([r[0] - r[1], r[2] - r[3]], -1) / (2 * h)
 
     def wrench(self, field, p, R, delta):
         """Force and torque on the handle, equation (3), in H, (N, 6)."""
         p_H, F = self.forces(field, p, R, delta)
         return np.concatenate([self.s_f * F.sum(1), self.s_t * np.cross(p_H, F).sum(1)], -1)
 
-    def rest(self, field, p, R, start, step_m=1e-5, tolerance_N=1e-11, rounds=120):
+    def rest(self, field, p, R, start, step_m=1e-4, tolerance_N=1e-10, rounds=60):
         """delta at rest, near `start`, for N poses at once: the overdamped shank's motion delta' = -r, by implicit
         steps that lengthen as it comes to rest (pseudo-transient continuation). Returns delta and |r|.
 
@@ -127,7 +132,7 @@ class Probe:
             new = self.residual(*at, delta[open_] + step)
             new_norm = np.linalg.norm(new, axis=-1)
             good = new_norm < 2.0 * norm[open_]
-            inverse_time[open_] *= np.where(good, np.clip(new_norm / norm[open_], 0.02, 2.0), 4.0)
+            inverse_time[open_] *= np.where(new_norm < norm[open_], 0.1, np.where(good, 1.0, 8.0))
             taken = open_[good]
             delta[taken] += step[good]
             r[taken], norm[taken] = new[good], new_norm[good]

@@ -49,7 +49,7 @@ def bone(seed):
     solid = 1 / (1 + np.exp(-inside / 0.12e-3))
     waves = np.prod(np.sin((p - ENTRY) / np.array([0.9e-3, 1.1e-3, 1.0e-3]) + [0.3, 1.0, 2.0]), -1)
     noise = np.random.default_rng(seed).normal(0, 20, DIMS)
-    return np.clip(np.round(-60 + solid * (900 + 420 * waves) + noise), -1000, 3000).astype(np.int16)
+    return np.clip(np.round(-60 + solid * (900 + 650 * waves) + noise), -1000, 3000).astype(np.int16)
 
 
 def write_nrrd(path, values):
