@@ -89,9 +89,12 @@ inline std::string bytes_of(const std::filesystem::path& path) {
 /// The bytes of such a file, made in `folder`.
 inline std::string trial_bytes(const std::filesystem::path& folder, const std::string& id,
                                const std::string& case_id, std::uint32_t samples,
-                               Ending ending = Ending::sealed) {
+                               Ending ending = Ending::sealed,
+                               std::int64_t started_utc_us = kStarted_utc_us) {
   const auto path = folder / (id + ".trial");
-  write_trial(path, header_of(id, case_id), samples, ending);
+  trial::Header header = header_of(id, case_id);
+  header.started_utc_us = started_utc_us;
+  write_trial(path, header, samples, ending);
   std::string bytes = bytes_of(path);
   std::filesystem::remove(path);
   return bytes;
