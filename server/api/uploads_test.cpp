@@ -5,7 +5,7 @@
 #include "db/store/jobs.hpp"
 #include "db/store/trials.hpp"
 #include "server/api/api_test_support.hpp"
-#include "tests/support/server_world.hpp"
+#include "tests/support/server/world.hpp"
 
 namespace api {
 namespace {

@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "core/bytes.hpp"
-#include "tests/support/server_process.hpp"
+#include "tests/support/server/process.hpp"
 
 namespace {
 using namespace world;

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <thread>
 
-#include "tests/support/server_process.hpp"
+#include "tests/support/server/process.hpp"
 
 namespace {
 using namespace world;

@@ -3,8 +3,8 @@
 
 #include <thread>
 
-#include "tests/support/server_process.hpp"
-#include "tests/support/server_world.hpp"
+#include "tests/support/server/process.hpp"
+#include "tests/support/server/world.hpp"
 
 namespace {
 using namespace world;

@@ -1,4 +1,4 @@
-#include "tests/support/server_process.hpp"
+#include "tests/support/server/process.hpp"
 
 #include <arpa/inet.h>
 #include <curl/curl.h>
@@ -15,7 +15,7 @@
 #include <fstream>
 
 #include "core/bytes.hpp"
-#include "tests/support/server_world.hpp"
+#include "tests/support/server/world.hpp"
 
 extern char** environ;
 
