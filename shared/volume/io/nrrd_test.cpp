@@ -164,6 +164,9 @@ INSTANTIATE_TEST_SUITE_P(
             {.more = "data file: ../../../../etc/passwd\n"},
             "within the header's own folder"},
         Lie{"Absolute", {.more = "data file: /etc/passwd\n"}, "within the header's own folder"},
+        Lie{"PasswordsInAPair",
+            {.more = "data file: ../v.raw:=x\n"},
+            "within the header's own folder"},
         Lie{"Missing", {.more = "data file: nowhere.raw\n"}, "there is no such file"},
         Lie{"Pattern", {.more = "data file: s%03d.raw 1 9 1\n"}, "several files"}),
     [](const auto& named) { return std::string(named.param.name); });
