@@ -11,16 +11,9 @@ namespace plot {
 /// the picture can show are thinned to first, lowest, highest and last of each pixel column, so
 /// that no peak is lost.
 struct Line {
-<<<<<<< HEAD
-  std::string label;
-  std::vector<double> x,
-      y;  ///< equal length; more points than the picture can show are thinned to their extremes
-  std::string colour;  ///< "#1b4f8f"
-=======
   std::string label;         ///< in the legend; none if empty
   std::vector<double> x, y;  ///< equal length
   std::string colour;        ///< "#1b4f8f"; the palette's next if empty
->>>>>>> refs/heads/replay
   double width_px = 1.2;
   bool right_axis = false;
 };
