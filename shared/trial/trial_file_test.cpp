@@ -228,6 +228,21 @@ TEST_F(TrialFile, AnyFlippedBitIsDetected) {
   }
 }
 
+TEST_F(TrialFile, AFrameThatIsMissingOrTwiceThereIsNoticed) {
+  write(4, 3, false);
+  const auto all = bytes();
+  const auto ends = edges();
+  const auto at = [&](std::size_t edge) { return all.begin() + std::ptrdiff_t(ends[edge]); };
+  core::Bytes without(all.begin(), at(3));
+  without.insert(without.end(), at(4), all.end());
+  put(without);
+  EXPECT_THAT(refusal(), HasSubstr("frame 4 where frame 3 is expected"));
+  core::Bytes twice(all.begin(), at(4));
+  twice.insert(twice.end(), at(3), all.end());
+  put(twice);
+  EXPECT_THAT(refusal(), HasSubstr("frame 3 where frame 4 is expected"));
+}
+
 TEST_F(TrialFile, AFlippedBitOfAnUnfinishedFileNeverGivesAWrongSample) {
   write(4, 3, false);
   auto all = bytes();
@@ -313,11 +328,11 @@ TEST_F(TrialFile, AWriteThatTheDiskRefusesLeavesWholeFramesAndMayBeTriedAgain) {
   EXPECT_EQ(refused.error().code, core::Errc::io);
   EXPECT_EQ(read_trial(path_)->samples.size(), 10u);
   EXPECT_EQ(writer->samples_written(), 10u);
-  ASSERT_TRUE(writer->append(samples(10, 10)));
+  ASSERT_TRUE(writer->append(samples(10, 1)));  // shorter than what had been written of the other
   ASSERT_TRUE(writer->finish());
   const auto trial = read_trial(path_);
   ASSERT_TRUE(trial) << trial.error().what;
-  EXPECT_EQ(trial->samples.size(), 20u);
+  EXPECT_EQ(trial->samples.size(), 11u);
 }
 
 TEST_F(TrialFile, RecoveryOfALivingWritersFileIsAConflict) {
