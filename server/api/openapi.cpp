@@ -59,12 +59,22 @@ core::Json responses(const RouteInfo& route) {
   out["401"] = error_answer("credentials are missing or wrong");
   if (!route.open) out["403"] = error_answer("known, and not allowed");
   if (route.path.find('{') != std::string::npos) out["404"] = error_answer("nothing by that name");
+  if (route.method == "PUT" || route.method == "PATCH" || route.path.ends_with("/commit"))
+    out["409"] = error_answer("it contradicts what is already there");
+  if (!route.body.empty()) out["413"] = error_answer("the body is over the limit");
+  if (route.open) out["429"] = error_answer("too many failures: wait");
   return out;
+}
+
+/// "/api/v1/cases/{id}" is of cases.
+std::string resource_of(std::string_view path) {
+  path.remove_prefix(path.starts_with("/api/v1/") ? 8 : 5);
+  return std::string(path.substr(0, path.find('/')));
 }
 
 core::Json operation(const RouteInfo& route) {
   core::Json out{{"operationId", route.id}, {"summary", route.summary}};
-  out["tags"] = core::Json::array({route.path.substr(0, route.path.find('{'))});
+  out["tags"] = core::Json::array({resource_of(route.path)});
   core::Json roles = core::Json::array(), security = core::Json::array();
   for (const Role role : route.who) {
     roles.push_back(name(role));

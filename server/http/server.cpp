@@ -84,6 +84,39 @@ class File {
   int fd_;
 };
 
+/// A library threw where a handler did not expect it: this request fails, the server goes on.
+Response broken(const std::exception& failure) {
+  fmt::print(stderr, "tractus-server: a request failed: {}\n", failure.what());
+  return error_response(500, "io", "the server could not do this; its log says why");
+}
+
+// What workers do, as plain values of pointers into the waiting coroutine's frame: gcc 12 destroys
+// a lambda's captures twice when it is made within a co_await expression.
+struct Handling {
+  const Service* service;
+  const Request* request;
+  Response operator()() const try {
+    return service->handle(*request);
+  } catch (const std::exception& failure) {
+    return broken(failure);
+  }
+};
+struct Admitting {
+  const Service* service;
+  const RequestHead* head;
+  Admission operator()() const try {
+    return service->admit(*head);
+  } catch (const std::exception& failure) {
+    return broken(failure);
+  }
+};
+struct ReadingPiece {
+  const File* file;
+  std::string* piece;
+  std::uint64_t offset;
+  bool operator()() const { return file->read_at(offset, *piece); }
+};
+
 std::string lower_case(beast::string_view text) {
   std::string out(text);
   for (char& c : out)
@@ -139,11 +172,11 @@ struct Server::State {
   net::awaitable<void> serve(std::list<Connection>::iterator connection);
   /// One request and its answer; false when the connection is to be closed.
   net::awaitable<bool> exchange(Connection& connection);
-  net::awaitable<Admission> admission(const RequestHead& head);
   net::awaitable<std::optional<Response>> read_body(Connection& connection, Parser& parser,
                                                     const RequestHead& head);
-  net::awaitable<bool> write(Connection& connection, const RequestHead& head, Response response,
+  net::awaitable<bool> write(Connection& connection, const RequestHead& head, Response& response,
                              bool keep_alive);
+  net::awaitable<void> refuse(Connection& connection, const RequestHead& head, Response& refusal);
   net::awaitable<bool> write_file(Connection& connection, const FileSlice& slice);
   net::awaitable<void> linger(Connection& connection);
   void drain();
@@ -207,47 +240,44 @@ net::awaitable<bool> Server::State::exchange(Connection& c) {
   c.idle = false;
   Parser parser;
   parser.header_limit(options.max_header_bytes);
-  parser.body_limit(boost::none);
+  parser.body_limit(UINT64_MAX);  // the service says later how much; 1.74 takes "none" for 0
   c.stream.expires_after(options.header_time);
   co_await beast::http::async_read_header(c.stream, c.buffer, parser, into(failure));
-  RequestHead nobody;
   if (failure) {
-    if (auto refusal = answer_to(failure)) {
-      co_await write(c, nobody, std::move(*refusal), false);
-      co_await linger(c);
-    }
+    auto refusal = answer_to(failure);
+    const RequestHead nobody;
+    if (refusal) co_await refuse(c, nobody, *refusal);
     co_return false;
   }
   auto head = head_of(parser, c.peer);
   if (!head) {
-    co_await write(c, nobody, error_response(400, "bad_input", head.error().what), false);
+    Response refusal = error_response(400, "bad_input", head.error().what);
+    const RequestHead nobody;
+    co_await refuse(c, nobody, refusal);
     co_return false;
   }
-  if (auto refusal = co_await read_body(c, parser, *head)) {
-    co_await write(c, *head, std::move(*refusal), false);
-    co_await linger(c);
+  std::optional<Response> refusal = co_await read_body(c, parser, *head);
+  if (refusal) {
+    co_await refuse(c, *head, *refusal);
     co_return false;
   }
   const bool keep_alive = parser.get().keep_alive();
-  auto request = std::make_shared<Request>(Request{*head, std::move(parser.get().body())});
-  c.stream.expires_never();
-  Response response =
-      co_await on_workers(workers, [this, request] { return service.handle(*request); });
-  request.reset();
+  Response response;
+  {
+    Request request{*head, std::move(parser.get().body())};
+    c.stream.expires_never();
+    response = co_await on_workers(workers, Handling{&service, &request});
+  }
   const bool stays = keep_alive && !draining;
-  const bool written = co_await write(c, *head, std::move(response), stays);
+  const bool written = co_await write(c, *head, response, stays);
   co_return written&& stays;
-}
-
-net::awaitable<Admission> Server::State::admission(const RequestHead& head) {
-  co_return co_await on_workers(workers, [this, &head] { return service.admit(head); });
 }
 
 net::awaitable<std::optional<Response>> Server::State::read_body(Connection& c, Parser& parser,
                                                                  const RequestHead& head) {
   if (parser.is_done()) co_return std::nullopt;
   c.stream.expires_never();
-  Admission admitted = co_await admission(head);
+  Admission admitted = co_await on_workers(workers, Admitting{&service, &head});
   if (auto* refusal = std::get_if<Response>(&admitted)) co_return std::move(*refusal);
   const std::uint64_t limit = std::get<std::uint64_t>(admitted);
   if (head.body_bytes > limit)
@@ -264,12 +294,12 @@ net::awaitable<std::optional<Response>> Server::State::read_body(Connection& c, 
   if (!failure) co_await beast::http::async_read(c.stream, c.buffer, parser, into(failure));
   if (!failure) co_return std::nullopt;
   auto refusal = answer_to(failure);
-  co_return refusal ? std::move(*refusal)
-                    : error_response(400, "bad_input", "the request ended within its body");
+  if (!refusal) refusal = error_response(400, "bad_input", "the request ended within its body");
+  co_return refusal;
 }
 
-net::awaitable<bool> Server::State::write(Connection& c, const RequestHead& head, Response response,
-                                          bool keep_alive) {
+net::awaitable<bool> Server::State::write(Connection& c, const RequestHead& head,
+                                          Response& response, bool keep_alive) {
   namespace bh = beast::http;
   add_security_headers(response);
   const auto* slice = std::get_if<FileSlice>(&response.body);
@@ -301,8 +331,8 @@ net::awaitable<bool> Server::State::write_file(Connection& c, const FileSlice& s
   for (std::uint64_t done = 0; done < slice.size;) {
     piece.resize(std::min<std::uint64_t>(kPiece_bytes, slice.size - done));
     c.stream.expires_never();
-    const bool read = co_await on_workers(
-        workers, [&file, &piece, at = slice.offset + done] { return file.read_at(at, piece); });
+    const bool read =
+        co_await on_workers(workers, ReadingPiece{&file, &piece, slice.offset + done});
     if (!read) co_return false;  // the length is already sent: closing is the only way to say so
     error_code failure;
     c.stream.expires_after(options.write_time);
@@ -311,6 +341,12 @@ net::awaitable<bool> Server::State::write_file(Connection& c, const FileSlice& s
     done += piece.size();
   }
   co_return true;
+}
+
+net::awaitable<void> Server::State::refuse(Connection& c, const RequestHead& head,
+                                           Response& refusal) {
+  co_await write(c, head, refusal, false);
+  co_await linger(c);
 }
 
 /// Reads what the other side still sends, so that it sees the answer instead of a reset.

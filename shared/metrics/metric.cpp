@@ -11,4 +11,14 @@ std::vector<std::pair<MetricInfo, Score>> score_all(const Subject& subject) {
   return out;
 }
 
+core::Json to_json(const MetricInfo& info, const Score& score) {
+  return {{"id", info.id},
+          {"label", info.label},
+          {"unit", info.unit},
+          {"value", score.value ? core::Json(*score.value) : core::Json(nullptr)},
+          {"note", score.note},
+          {"definition", info.definition},
+          {"source", info.source}};
+}
+
 }  // namespace metrics

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/json.hpp"
 #include "trial/trial.hpp"
 #include "volume/tract.hpp"
 
@@ -72,5 +73,9 @@ std::optional<Coverage> coverage(const Subject& subject);
 
 /// All scores of one trial, in the order of all().
 std::vector<std::pair<MetricInfo, Score>> score_all(const Subject& subject);
+
+/// {"id","label","unit","value"|null,"note","definition","source"}: as files, tool and server say
+/// it.
+core::Json to_json(const MetricInfo& info, const Score& score);
 
 }  // namespace metrics

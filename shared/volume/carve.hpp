@@ -47,9 +47,10 @@ struct Breach {
 ///
 /// The rays are bundles of seven (axis and a hexagon at 0.7 of the tract's radius), averaged, so
 /// that the noise of single voxels does not pass for bone; a side ray starts at the tract's
-/// surface, the anterior one at its end. Along a bundle bone is a run with opacity of 0.1 or more,
-/// ended by 2 mm without (less is a gap within bone), with a peak of at least 0.2; its faces are
-/// where the opacity crosses half of its peak. The first run is the wall.
+/// surface, the anterior one at its end. Along a bundle bone is a run with opacity of 0.03 or more
+/// and a peak of at least 0.06, ended by 2 mm without (5 mm where the peak is under 0.2, as the
+/// front of a porous body; less is a gap within bone); its faces are where the opacity crosses half
+/// of its peak. The first run is the wall.
 class WallFinder {
  public:
   static constexpr double kReach_m = 0.025;  ///< no farther is a wall looked for
@@ -62,21 +63,25 @@ class WallFinder {
   /// never left within reach, or the volume ends first).
   core::Result<WallFound> wall_at(const Tract& tract, Wall wall, double at_m) const;
 
-  /// The thinnest place of a side wall along the pedicle: where medial, lateral, superior and
-  /// inferior walls are all found (in the vertebral body the medial one lies out of reach), from 5
-  /// mm behind the first such depth on, every 0.5 mm; for `anterior`, the wall ahead of the end.
-  /// Errors: as `wall_at`; out_of_range where no part of the tract is so enclosed.
+  /// The thinnest place of a side wall along the pedicle: of the depths (every 0.5 mm, from 5 mm
+  /// behind the first) where all four side walls begin within 12 mm of the axis, those that are at
+  /// most 1.15 times as wide, medial to lateral, as the narrowest, the isthmus; of places that
+  /// differ by less than 0.3 mm the one nearest to the isthmus. For `anterior`, the wall ahead of
+  /// the end. Errors: as `wall_at`; out_of_range where no part of the tract is so enclosed.
   core::Result<WallFound> thinnest(const Tract& tract, Wall wall) const;
 
   /// How far behind the entry the bone reaches on the tract's line, m: the drill came through that.
   /// Bone is followed over gaps of up to 5 mm, for at most 40 mm.
   double behind_entry_m(const Tract& tract) const;
 
-  /// Mean opacity along the tract's axis, entry to end.
-  double mean_opacity(const Tract& tract) const;
+  /// Is there bone on the tract's axis or to a side of it within 12 mm, anywhere along it?
+  bool bone_about(const Tract& tract) const;
 
  private:
   struct Bundle;
+  using Section = std::array<WallFound, 4>;  // medial, lateral, superior, inferior, as in kWalls
+  std::optional<Section> section_at(const Tract& tract, double at_m) const;
+  std::vector<Section> sections_of(const Tract& tract) const;
   core::Result<WallFound> first_run(const Bundle& bundle, WallFound found, double from_m) const;
   std::optional<double> opacity_at(const Bundle& bundle, double distance_m) const;
   const Volume& volume_;

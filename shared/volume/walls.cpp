@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -9,11 +10,17 @@ namespace volume {
 namespace {
 
 constexpr double kStep_m = 1e-4;
-constexpr double kFelt = 0.1;         // opacity from which a run of bone goes on
-constexpr double kLeastPeak = 0.2;    // a run that never reaches it is noise or marrow
-constexpr double kOutside_m = 0.002;  // so much without bone is outside
+constexpr double kFelt = 0.03;       // opacity from which a run of bone goes on
+constexpr double kLeastPeak = 0.06;  // a run that never reaches it is noise or marrow
+constexpr double kFirmPeak =
+    0.2;  // a run that never reaches it may be a trabecula: more must be free behind it
+constexpr double kOutside_m = 0.002, kOutsideOfFaint_m = 0.005;  // so much without bone is outside
 constexpr double kMouthGap_m = 0.005, kMouthReach_m = 0.040;
-constexpr double kAlong_m = 0.0005, kPastEntry_m = 0.005;
+constexpr double kPedicle_m =
+    0.012;  // from the axis to where a wall begins; lumbar pedicles are up to 18 mm high
+constexpr double kWider = 1.15;      // than the isthmus is no longer pedicle
+constexpr double kAlike_m = 0.0003;  // lengths that differ by less are taken for equal
+constexpr double kAlong_m = 0.0005, kPastEntry_m = 0.005, kCoarsely_m = 0.002;
 constexpr double kHexagon = 0.7;  // of the tract's radius
 
 core::Error refused(std::string why) { return {core::Errc::out_of_range, std::move(why)}; }
@@ -75,7 +82,8 @@ core::Result<WallFound> WallFinder::first_run(const Bundle& bundle, WallFound fo
     run.push_back(*opacity);
     peak = std::max(peak, *opacity);
     if (*opacity >= kFelt) last = run.size() - 1;
-    if (double(run.size() - 1 - last) * kStep_m < kOutside_m) continue;
+    const double free_m = peak < kFirmPeak ? kOutsideOfFaint_m : kOutside_m;
+    if (double(run.size() - 1 - last) * kStep_m < free_m) continue;
     if (peak < kLeastPeak) {
       run.clear(), peak = 0.0, last = 0;
       continue;
@@ -101,30 +109,47 @@ core::Result<WallFound> WallFinder::wall_at(const Tract& tract, Wall wall, doubl
                    {.wall = wall, .at_m = at_m}, tract.radius_m);
 }
 
+std::optional<WallFinder::Section> WallFinder::section_at(const Tract& tract, double at_m) const {
+  Section section;
+  for (std::size_t k = 0; k < section.size(); ++k) {
+    const auto found = wall_at(tract, kWalls[k], at_m);
+    if (!found || found->inner_m > kPedicle_m) return std::nullopt;
+    section[k] = *found;
+  }
+  return section;
+}
+
+std::vector<WallFinder::Section> WallFinder::sections_of(const Tract& tract) const {
+  std::vector<Section> sections;
+  std::optional<double> enclosed_m;
+  for (double at = 0.0; at <= tract.length_m; at += kAlong_m) {
+    const auto section = section_at(tract, at);
+    if (section && !enclosed_m) enclosed_m = at;
+    if (section && at >= *enclosed_m + kPastEntry_m) sections.push_back(*section);
+  }
+  return sections;
+}
+
 core::Result<WallFound> WallFinder::thinnest(const Tract& tract, Wall wall) const {
   if (wall == Wall::anterior) return wall_at(tract, wall, tract.length_m);
-  std::optional<double> enclosed_m;  // first depth with bone on all sides
-  std::optional<WallFound> best;
-  for (double at = 0.0; at <= tract.length_m; at += kAlong_m) {
-    std::optional<WallFound> here;
-    bool all = true;
-    for (const Wall side : {Wall::medial, Wall::lateral, Wall::superior, Wall::inferior}) {
-      const auto found = wall_at(tract, side, at);
-      all = all && found;
-      if (found && side == wall) here = *found;
-      if (!all) break;
-    }
-    if (!all) continue;
-    if (!enclosed_m) enclosed_m = at;
-    if (at < *enclosed_m + kPastEntry_m) continue;
-    if (!best || here->thickness_m() < best->thickness_m()) best = here;
-  }
-  if (!best)
+  const auto width = [](const Section& s) { return s[0].outer_m + s[1].outer_m; };
+  const auto thickness = [&](const Section& s) { return s[std::size_t(wall)].thickness_m(); };
+  std::vector<Section> sections = sections_of(tract);
+  if (sections.empty())
     return refused(
         fmt::format("{}: no part of the tract is enclosed by bone on all four sides within {:.0f} "
                     "mm; say the depth",
-                    name(wall), kReach_m * 1e3));
-  return *best;
+                    name(wall), kPedicle_m * 1e3));
+  const double narrowest_m = width(*std::ranges::min_element(sections, {}, width));
+  std::erase_if(sections, [&](const Section& s) { return width(s) > kWider * narrowest_m; });
+  double isthmus_m = 0.0, narrow = 0.0;  // the middle of what is as narrow as the narrowest
+  for (const Section& s : sections)
+    if (width(s) <= narrowest_m + kAlike_m) isthmus_m += s[0].at_m, narrow += 1.0;
+  isthmus_m /= narrow;
+  const double thin_m = thickness(*std::ranges::min_element(sections, {}, thickness));
+  std::erase_if(sections, [&](const Section& s) { return thickness(s) > thin_m + kAlike_m; });
+  const auto away = [&](const Section& s) { return std::abs(s[0].at_m - isthmus_m); };
+  return (*std::ranges::min_element(sections, {}, away))[std::size_t(wall)];
 }
 
 double WallFinder::behind_entry_m(const Tract& tract) const {
@@ -138,13 +163,14 @@ double WallFinder::behind_entry_m(const Tract& tract) const {
   return last;
 }
 
-double WallFinder::mean_opacity(const Tract& tract) const {
-  constexpr int kSamples = 100;
-  double sum = 0.0;
-  for (int k = 0; k <= kSamples; ++k)
-    sum += transfer_.opacity(
-        volume_.value_at(tract.entry_m + tract.length_m * k / double(kSamples) * tract.axis));
-  return sum / (kSamples + 1);
+bool WallFinder::bone_about(const Tract& tract) const {
+  for (double at = 0.0; at <= tract.length_m; at += kCoarsely_m) {
+    if (transfer_.opacity(volume_.value_at(tract.entry_m + at * tract.axis)) > 0.0) return true;
+    for (const Wall side : {Wall::medial, Wall::lateral, Wall::superior, Wall::inferior})
+      if (const auto found = wall_at(tract, side, at); found && found->inner_m <= kPedicle_m)
+        return true;
+  }
+  return false;
 }
 
 core::Result<Breach> place_breach(const Volume& volume, const TransferFunction& transfer,

@@ -1,5 +1,6 @@
 /// The API's own description.
 #include "server/api/openapi.hpp"
+#include "server/api/schema.hpp"
 
 namespace api {
 namespace {
@@ -14,8 +15,8 @@ std::vector<RouteInfo> description_routes() {
            .who = {Role::admin, Role::station},
            .parameters = {},
            .body = "",
-           .answer = kBytes,
-           .schemas = {},
+           .answer = "Description",
+           .schemas = {{"Description", schema::anything("OpenAPI 3.1")}},
            .handle = describe}};
 }
 
