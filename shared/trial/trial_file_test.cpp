@@ -237,7 +237,7 @@ TEST_F(TrialFile, RecoveryEndsACutFileAnywhere) {
   write(6, 5, false);
   const auto all = bytes();
   const auto ends = edges();
-  for (std::size_t cut = ends[1]; cut <= all.size(); cut += 3) {
+  for (std::size_t cut = ends[1]; cut <= all.size(); cut += 17) {
     put(core::ByteView(all).first(cut));
     const auto kept = recover_trial(path_);
     ASSERT_TRUE(kept) << "cut at " << cut << ": " << kept.error().what;
@@ -384,6 +384,50 @@ TEST_F(TrialFile, LimitsHold) {
   EXPECT_EQ(read_trial(path_, {.max_bytes = 100}).error().code, core::Errc::too_large);
   EXPECT_EQ(read_trial(folder_).error().code, core::Errc::bad_input);
   EXPECT_EQ(read_trial(folder_ / "none").error().code, core::Errc::not_found);
+}
+
+// Written by tests/golden/trial-format-1/make.py, which shares no code with the reader.
+TEST_F(TrialFile, OfTheReleasedFormatIsReadForEver) {
+  const fs::path golden = fs::path(TRACTUS_SOURCE_DIR) / "tests/golden/trial-format-1";
+  const auto expected = core::read_json(golden / "expected.json").value();
+  const auto trial = read_trial(golden / "small.trial");
+  ASSERT_TRUE(trial) << trial.error().what;
+  EXPECT_EQ(trial->header.to_json(), expected["header"]);
+  ASSERT_EQ(trial->events.size(), expected["events"].size());
+  for (std::size_t i = 0; i < trial->events.size(); ++i)
+    EXPECT_EQ(trial->events[i].to_json(), expected["events"][i]);
+  ASSERT_EQ(trial->samples.size(), 12u);
+  for (std::size_t i = 0; i < 12; ++i) {
+    const Sample& s = trial->samples[i];
+    const core::Json found{{"t_s", s.t_s},
+                           {"p_VH_m", s.p_VH_m},
+                           {"q_VH", s.q_VH},
+                           {"force_N", s.force_N},
+                           {"torque_Nm", s.torque_Nm},
+                           {"rendered_force_N", s.rendered_force_N},
+                           {"rendered_torque_Nm", s.rendered_torque_Nm},
+                           {"deflection_m", s.deflection_m},
+                           {"tick", s.tick},
+                           {"iterations", s.iterations},
+                           {"flags", s.flags}};
+    EXPECT_EQ(found, expected["samples"][i]) << i;
+  }
+  EXPECT_TRUE(trial->complete);
+  EXPECT_TRUE(trial->sealed);
+  EXPECT_EQ(trial->answer()->wall, "medial");
+  EXPECT_EQ(trial->answer()->confidence, 0.8);
+  const auto ticks = count_ticks(trial->samples);
+  EXPECT_EQ(ticks.late, 1u);
+  EXPECT_EQ(ticks.skipped, 1u);
+
+  const auto torn = read_trial(golden / "torn.trial");
+  ASSERT_TRUE(torn) << torn.error().what;
+  EXPECT_EQ(torn->samples.size(), 5u);
+  EXPECT_EQ(torn->events.size(), 1u);
+  EXPECT_FALSE(torn->sealed);
+  fs::copy_file(golden / "torn.trial", path_);
+  EXPECT_EQ(recover_trial(path_).value(), 5u);
+  EXPECT_EQ(read_trial(path_)->events.back().kind, "interrupted");
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "volume/io/counts.hpp"
 #include "volume/io/dicom_slices.hpp"
 #include "volume/io/formats.hpp"
+#include "volume/io/isolated.hpp"
 #include "volume/io/upright.hpp"
 #include "volume/io/vtk_quiet.hpp"
 
@@ -55,9 +56,7 @@ core::Result<Counts> read_voxels(const Series& series, const fs::path& folder) {
   return counts;
 }
 
-}  // namespace
-
-core::Result<Imported> read_dicom(const fs::path& folder, const core::Progress& progress) {
+core::Result<Imported> read_series(const fs::path& folder, const core::Progress& progress) {
   auto series = scan_series(folder, progress);
   if (!series) return series.error();
   auto voxels = read_voxels(*series, folder);
@@ -76,6 +75,14 @@ core::Result<Imported> read_dicom(const fs::path& folder, const core::Progress& 
       fmt::format("the gantry was tilted by {:.2f}°: slices were shifted back within their planes",
                   series->tilt_rad * 180.0 / std::numbers::pi));
   return out;
+}
+
+}  // namespace
+
+core::Result<Imported> read_dicom(const fs::path& folder, const core::Progress& progress) {
+  return isolated(
+      folder, [&](const core::Progress& passed_on) { return read_series(folder, passed_on); },
+      progress);
 }
 
 }  // namespace volume_io

@@ -138,7 +138,6 @@ class Walk {
     if (depth > kMaxDepth)
       return bad(path_, fmt::format("sequences nested over {} deep at byte {}", kMaxDepth, at));
     while (at < end) {
-      if (depth == 0 && end - at < 8) break;  // padding after the last element
       auto e = next(at, end, with_vr, big_);
       if (!e) return e.error();
       if (e->tag == kItemEnd && open) return e->value_at;

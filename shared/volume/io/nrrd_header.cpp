@@ -79,6 +79,26 @@ std::string field_name(std::string_view raw) {
   return name;
 }
 
+/// A field goes to `fields`; comments and key/value pairs ("key:=value") are passed over. What teem
+/// takes for a field is one here, whatever else the line holds.
+core::Result<void> take_line(const std::string& line, int number, const fs::path& path,
+                             std::map<std::string, std::string>& fields) {
+  if (line[0] == '#') return {};
+  const std::size_t colon = line.find(": ");
+  const std::string name = colon == std::string::npos ? "" : field_name(line.substr(0, colon));
+  if (std::ranges::find(kKnown, name) == kKnown.end()) {
+    if (line.find(":=") != std::string::npos) return {};
+    return bad(
+        path, colon == std::string::npos
+                  ? fmt::format("line {}: \"{}\", a field and its value are expected", number,
+                                printable(line))
+                  : fmt::format("line {}: the field \"{}\" is not known", number, printable(name)));
+  }
+  if (!fields.emplace(name, trimmed(line.substr(colon + 2))).second)
+    return bad(path, fmt::format("line {}: a second \"{}\"", number, name));
+  return {};
+}
+
 core::Result<Lines> lines_of(std::string_view text, const fs::path& path) {
   Lines out;
   std::size_t at = 0;
@@ -90,18 +110,8 @@ core::Result<Lines> lines_of(std::string_view text, const fs::path& path) {
     if (number > 1 && line.empty()) break;
     if (last && number > 1 && text.size() >= (1u << 16))
       return bad(path, "no blank line ends its header within 64 KiB");
-    if (number > 1 && line[0] != '#' && line.find(":=") == std::string::npos) {
-      const std::size_t colon = line.find(": ");
-      if (colon == std::string::npos)
-        return bad(path, fmt::format("line {}: \"{}\", a field and its value are expected", number,
-                                     printable(line)));
-      const std::string name = field_name(line.substr(0, colon));
-      if (std::ranges::find(kKnown, name) == kKnown.end())
-        return bad(path,
-                   fmt::format("line {}: the field \"{}\" is not known", number, printable(name)));
-      if (!out.fields.emplace(name, trimmed(line.substr(colon + 2))).second)
-        return bad(path, fmt::format("line {}: a second \"{}\"", number, name));
-    }
+    if (number > 1)
+      if (auto taken = take_line(line, number, path, out.fields); !taken) return taken.error();
     if (last) break;
   }
   out.end = at;
