@@ -114,7 +114,7 @@ TEST_F(Replay, AgreesWithTheOracleOnThePublishedField) {
 // The potential's valleys are finer than the averaged vectors of the published field: more places
 // to rest.
 TEST_F(Replay, AgreesWithTheOracleOnThePotentialField) {
-  expect_agreement("--trials 4 --seconds 0.5 --field potential", 0.4);
+  expect_agreement("--trials 4 --seconds 0.5 --field potential", 0.25);
 }
 
 TEST_F(Replay, WritesAllItPromisesAndTheSameTwice) {
@@ -123,6 +123,7 @@ TEST_F(Replay, WritesAllItPromisesAndTheSameTwice) {
   ASSERT_EQ(answer.code, 0) << answer.out;
   EXPECT_THAT(answer.out, HasSubstr("F_xy [N]"));
   EXPECT_THAT(answer.out, HasSubstr("did not reach the equilibrium"));
+  EXPECT_THAT(answer.out, HasSubstr("its measurements are simulated"));
   ASSERT_EQ(replay("again").code, 0);
   for (const char* name : {"trials/t00.csv", "trials/t00.svg", "trials/t01.csv", "trials/t01.svg",
                            "distributions.svg", "table.csv", "summary.json"}) {

@@ -10,9 +10,11 @@ says neither to which of the others it goes, nor when: it takes any place where 
 a rest, so a shank may stay at a place that has just ceased to be one. Whether a sample is one of those is found here without
 the product. The oracle walks the whole path in FIVE ways: from the last rest; from its extrapolation; twice from the last
 rest moved by 0.05 to 0.3 mm (up to most of a voxel, in opposite directions, turned at random at every step), all to
-1e-10 N; and stopping at 0.001 N as printed. A sample is *smooth* if the first four agree to 1e-7 N, the fifth has not
-stayed behind (0.001 N moves the free tip by 20 um, so it must lie within 25 um of them), and the rest is no flat one (in no
-direction less than half as stiff as the free shank). On smooth samples forces must agree with the product's to 1e-6 N.
+1e-10 N; and stopping at 0.001 N as printed. A sample is *smooth* if the first four agree to 1e-7 N; if the fifth has not
+stayed behind (0.001 N moves the free tip by 20 um, so it must lie within 25 um of them); if the rest is no flat one (in no
+direction less than half as stiff as the free shank); and if there is no other place round it that the published rule would
+take: from 16 starts up to 0.25 mm away one comes, stopping at 0.001 N, within 50 um of it. On smooth samples forces must
+agree with the product's to 1e-6 N.
 
 On every sample that the product calls converged, smooth or not, two more things must hold: its forces are the law's at its
 own deflection, and that deflection is a rest to the published 0.001 N.
@@ -28,7 +30,7 @@ import law
 
 MOVED = 2
 WAYS = 3 + MOVED  # last rest, extrapolated, moved ..., the published stop
-SAME_N, BEHIND_M = 1e-7, 25e-6
+SAME_N, BEHIND_M, ALONE_M = 1e-7, 25e-6, 50e-6
 STOPS_N = [1e-10] * (WAYS - 1) + [1e-3]
 
 
@@ -82,6 +84,18 @@ def walk(field, probe, paths):
     return [[np.array(rows) for rows in way] for way in out]
 
 
+def alone(field, probe, p, R, rest_m):
+    """Is each rest the only place around that the published rule would take?"""
+    turn = 2 * np.pi * np.arange(8) / 8
+    ring = np.stack([np.cos(turn), np.sin(turn)], -1)
+    yes = np.ones(len(p), bool)
+    for reach in (0.12e-3, 0.25e-3):
+        for way in reach * ring:
+            end, _ = probe.rest(field, p[yes], R[yes], rest_m[yes] + way, tolerance_N=1e-3)
+            yes[yes] = np.linalg.norm(end - rest_m[yes], axis=1) < ALONE_M
+    return yes
+
+
 def main():
     folder, model_path, replayed = map(pathlib.Path, sys.argv[1:4])
     index, model = json.loads((folder / "set.json").read_text()), json.loads(model_path.read_text())
@@ -114,6 +128,7 @@ def main():
         J = probe.jacobian(field, p, R, way[0][:, :2])
         stiff = np.linalg.eigvalsh((J + J.transpose(0, 2, 1)) / 2)[:, 0] > 0.5 * probe.k
         smooth = (spread < SAME_N) & (rest < 1e-9) & (behind < BEHIND_M) & stiff
+        smooth[smooth] = alone(field, probe, p[smooth], R[smooth], way[0][smooth, :2])
         off_law = np.abs(probe.wrench(field, p, R, delta) - wrench)
         miss = np.linalg.norm(probe.residual(field, p, R, delta), axis=1)
         count["samples"] += len(wrench)
