@@ -15,7 +15,7 @@ using volume_io::Overlay;
 constexpr Colour kChannel{255, 220, 0}, kWalls{0, 220, 255}, kMiddle{0, 230, 90},
     kHole{255, 60, 60};
 constexpr double kArrowFrom_m = 0.015, kArrowTo_m = 0.023, kMiddle_m = 0.035, kAround_m = 0.022,
-                 kLabel_m = 0.007;
+                 kLabel_m = 0.007, kAside_m = 0.011;
 
 /// Turns patient coordinates about a point so that the tract runs straight to the front and its
 /// superior wall is up: the picture's axial, coronal and sagittal slices then follow the tract.
@@ -76,6 +76,7 @@ void add_channel(std::vector<Overlay>& out, const cases::Carved& carved) {
   add_note(out, tract.entry_m, beside, "entry", kChannel);
 }
 
+/// Each pair of arrows stands aside, so that seen along itself it does not hide the channel.
 void add_directions(std::vector<Overlay>& out, const volume::Tract& tract, const Vec3& at) {
   const auto arrow = [&](const Vec3& from, const Vec3& along, const char* text) {
     out.push_back({.kind = Overlay::Kind::arrow,
@@ -84,11 +85,12 @@ void add_directions(std::vector<Overlay>& out, const volume::Tract& tract, const
                    .text = text,
                    .colour = kWalls});
   };
-  arrow(at, tract.medial, "M");
-  arrow(at, -tract.medial, "L");
-  arrow(at, tract.superior, "S");
-  arrow(at, -tract.superior, "I");
-  arrow(tract.end_m() - 0.01 * tract.axis, tract.axis, "A");
+  const Vec3 up = kAside_m * tract.superior, out_side = -kAside_m * tract.medial;
+  arrow(at + up, tract.medial, "M");
+  arrow(at + up, -tract.medial, "L");
+  arrow(at + out_side, tract.superior, "S");
+  arrow(at + out_side, -tract.superior, "I");
+  arrow(tract.end_m() - kArrowFrom_m * tract.axis + out_side - up, tract.axis, "A");
 }
 
 /// Where the midline's plane meets the slices.
@@ -133,6 +135,7 @@ core::Result<void> draw_case(const std::filesystem::path& path, volume::Volume s
     overlay.to_m = straight(overlay.to_m);
   }
   volume_io::PictureOptions options;
+  options.window = {.centre = 300.0, .width = 1100.0};
   options.extent_m = carved.tract.length_m + 2 * kAround_m;
   return volume_io::write_slices_png(path, surroundings, at, options, overlays);
 }

@@ -67,7 +67,7 @@ core::Result<volume::Tract> tract_of(const volume::Volume& ct,
   if (!tract) return tract;
   if (!ct.geometry.contains(tract->end_m()))
     return outside("the tract's end", tract->end_m(), ct.geometry);
-  if (volume::WallFinder(ct, transfer).mean_opacity(*tract) == 0.0)
+  if (!volume::WallFinder(ct, transfer).bone_about(*tract))
     return Error{Errc::out_of_range,
                  fmt::format("the tract from {} to {} meets no bone: are these LPS coordinates?",
                              mm(tract->entry_m), mm(tract->end_m()))};

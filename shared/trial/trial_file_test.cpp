@@ -2,8 +2,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <cmath>
+#include <csignal>
 #include <cstring>
 #include <fstream>
 #include <limits>
@@ -111,7 +113,11 @@ class TrialFile : public testing::Test {
     return trial.error().what;
   }
 
-  const fs::path folder_ = fs::temp_directory_path() / ("tractus_trial_" + core::new_id());
+  /// In memory where the system offers it: these tests flush thousands of times.
+  static fs::path scratch() {
+    return fs::exists("/dev/shm") ? fs::path("/dev/shm") : fs::temp_directory_path();
+  }
+  const fs::path folder_ = scratch() / ("tractus_trial_" + core::new_id());
   const fs::path path_ = folder_ / "a.trial";
 };
 
@@ -222,6 +228,21 @@ TEST_F(TrialFile, AnyFlippedBitIsDetected) {
   }
 }
 
+TEST_F(TrialFile, AFrameThatIsMissingOrTwiceThereIsNoticed) {
+  write(4, 3, false);
+  const auto all = bytes();
+  const auto ends = edges();
+  const auto at = [&](std::size_t edge) { return all.begin() + std::ptrdiff_t(ends[edge]); };
+  core::Bytes without(all.begin(), at(3));
+  without.insert(without.end(), at(4), all.end());
+  put(without);
+  EXPECT_THAT(refusal(), HasSubstr("frame 4 where frame 3 is expected"));
+  core::Bytes twice(all.begin(), at(4));
+  twice.insert(twice.end(), at(3), all.end());
+  put(twice);
+  EXPECT_THAT(refusal(), HasSubstr("frame 3 where frame 4 is expected"));
+}
+
 TEST_F(TrialFile, AFlippedBitOfAnUnfinishedFileNeverGivesAWrongSample) {
   write(4, 3, false);
   auto all = bytes();
@@ -289,6 +310,29 @@ TEST_F(TrialFile, RecoveryLeavesDamageInTheMiddleAlone) {
   put(all);
   EXPECT_FALSE(recover_trial(path_));
   EXPECT_EQ(bytes(), all);
+}
+
+TEST_F(TrialFile, AWriteThatTheDiskRefusesLeavesWholeFramesAndMayBeTriedAgain) {
+  auto writer = TrialWriter::create(path_, header());
+  ASSERT_TRUE(writer);
+  ASSERT_TRUE(writer->append(samples(0, 10)));
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit full = before;
+  full.rlim_cur = fs::file_size(path_) + 700;  // room for half of the next frame
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &full), 0);
+  const auto refused = writer->append(samples(10, 10));
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, core::Errc::io);
+  EXPECT_EQ(read_trial(path_)->samples.size(), 10u);
+  EXPECT_EQ(writer->samples_written(), 10u);
+  ASSERT_TRUE(writer->append(samples(10, 1)));  // shorter than what had been written of the other
+  ASSERT_TRUE(writer->finish());
+  const auto trial = read_trial(path_);
+  ASSERT_TRUE(trial) << trial.error().what;
+  EXPECT_EQ(trial->samples.size(), 11u);
 }
 
 TEST_F(TrialFile, RecoveryOfALivingWritersFileIsAConflict) {

@@ -18,8 +18,9 @@ constexpr double kOutside_m = 0.002, kOutsideOfFaint_m = 0.005;  // so much with
 constexpr double kMouthGap_m = 0.005, kMouthReach_m = 0.040;
 constexpr double kPedicle_m =
     0.012;  // from the axis to where a wall begins; lumbar pedicles are up to 18 mm high
-constexpr double kWider = 1.3;  // than the isthmus is no longer pedicle
-constexpr double kAlong_m = 0.0005, kPastEntry_m = 0.005;
+constexpr double kWider = 1.15;      // than the isthmus is no longer pedicle
+constexpr double kAlike_m = 0.0003;  // lengths that differ by less are taken for equal
+constexpr double kAlong_m = 0.0005, kPastEntry_m = 0.005, kCoarsely_m = 0.002;
 constexpr double kHexagon = 0.7;  // of the tract's radius
 
 core::Error refused(std::string why) { return {core::Errc::out_of_range, std::move(why)}; }
@@ -118,26 +119,37 @@ std::optional<WallFinder::Section> WallFinder::section_at(const Tract& tract, do
   return section;
 }
 
-core::Result<WallFound> WallFinder::thinnest(const Tract& tract, Wall wall) const {
-  if (wall == Wall::anterior) return wall_at(tract, wall, tract.length_m);
+std::vector<WallFinder::Section> WallFinder::sections_of(const Tract& tract) const {
   std::vector<Section> sections;
   std::optional<double> enclosed_m;
-  const auto width = [](const Section& s) { return s[0].outer_m + s[1].outer_m; };
   for (double at = 0.0; at <= tract.length_m; at += kAlong_m) {
     const auto section = section_at(tract, at);
     if (section && !enclosed_m) enclosed_m = at;
     if (section && at >= *enclosed_m + kPastEntry_m) sections.push_back(*section);
   }
+  return sections;
+}
+
+core::Result<WallFound> WallFinder::thinnest(const Tract& tract, Wall wall) const {
+  if (wall == Wall::anterior) return wall_at(tract, wall, tract.length_m);
+  const auto width = [](const Section& s) { return s[0].outer_m + s[1].outer_m; };
+  const auto thickness = [&](const Section& s) { return s[std::size_t(wall)].thickness_m(); };
+  std::vector<Section> sections = sections_of(tract);
   if (sections.empty())
     return refused(
         fmt::format("{}: no part of the tract is enclosed by bone on all four sides within {:.0f} "
                     "mm; say the depth",
                     name(wall), kPedicle_m * 1e3));
-  const double isthmus_m = width(*std::ranges::min_element(sections, {}, width));
-  std::erase_if(sections, [&](const Section& s) { return width(s) > kWider * isthmus_m; });
-  const auto side = std::size_t(wall);
-  return (*std::ranges::min_element(sections, {},
-                                    [&](const Section& s) { return s[side].thickness_m(); }))[side];
+  const double narrowest_m = width(*std::ranges::min_element(sections, {}, width));
+  std::erase_if(sections, [&](const Section& s) { return width(s) > kWider * narrowest_m; });
+  double isthmus_m = 0.0, narrow = 0.0;  // the middle of what is as narrow as the narrowest
+  for (const Section& s : sections)
+    if (width(s) <= narrowest_m + kAlike_m) isthmus_m += s[0].at_m, narrow += 1.0;
+  isthmus_m /= narrow;
+  const double thin_m = thickness(*std::ranges::min_element(sections, {}, thickness));
+  std::erase_if(sections, [&](const Section& s) { return thickness(s) > thin_m + kAlike_m; });
+  const auto away = [&](const Section& s) { return std::abs(s[0].at_m - isthmus_m); };
+  return (*std::ranges::min_element(sections, {}, away))[std::size_t(wall)];
 }
 
 double WallFinder::behind_entry_m(const Tract& tract) const {
@@ -151,13 +163,14 @@ double WallFinder::behind_entry_m(const Tract& tract) const {
   return last;
 }
 
-double WallFinder::mean_opacity(const Tract& tract) const {
-  constexpr int kSamples = 100;
-  double sum = 0.0;
-  for (int k = 0; k <= kSamples; ++k)
-    sum += transfer_.opacity(
-        volume_.value_at(tract.entry_m + tract.length_m * k / double(kSamples) * tract.axis));
-  return sum / (kSamples + 1);
+bool WallFinder::bone_about(const Tract& tract) const {
+  for (double at = 0.0; at <= tract.length_m; at += kCoarsely_m) {
+    if (transfer_.opacity(volume_.value_at(tract.entry_m + at * tract.axis)) > 0.0) return true;
+    for (const Wall side : {Wall::medial, Wall::lateral, Wall::superior, Wall::inferior})
+      if (const auto found = wall_at(tract, side, at); found && found->inner_m <= kPedicle_m)
+        return true;
+  }
+  return false;
 }
 
 core::Result<Breach> place_breach(const Volume& volume, const TransferFunction& transfer,

@@ -7,9 +7,9 @@
 namespace devices {
 namespace {
 constexpr double kPi = std::numbers::pi;
-constexpr double kOutside_m = 0.030;  // tip before the mouth at start and end
-constexpr double kPress_m =
-    0.012;  // how far beyond the wall the straight tip would be at the deepest point
+constexpr double kOutside_m =
+    0.030;  // How far beyond the wall the straight tip would be at the deepest point.
+constexpr double kPress_m = 0.0105;
 constexpr double kMaxTilt_rad = 0.35;
 constexpr double kSweep_rad = 0.35;  // to both sides of the wall's direction
 constexpr double kSweep_Hz = 0.7;
@@ -32,7 +32,7 @@ PalpationPlan::PalpationPlan(const DeviceOptions& options)
   add(2.0, deepest_m_, 0.0, Act::approach);
   const double tilt = std::min(kMaxTilt_rad, std::atan2(channel_.radius_m + kPress_m, deepest_m_));
   for (int wall = 0; wall < 4; ++wall) {
-    const double pressed = tilt * (0.9 + 0.2 * uniform());
+    const double pressed = tilt * (0.97 + 0.06 * uniform());
     add(0.8, deepest_m_, pressed, Act::approach, wall);
     add(2.2, shallowest_m_ * (0.9 + 0.2 * uniform()), pressed, Act::stroke, wall);
     add(2.2, deepest_m_, pressed, Act::stroke, wall);

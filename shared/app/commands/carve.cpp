@@ -182,31 +182,45 @@ cases::NewCase case_of(const Options& o, const cases::Carved& carved,
   return made;
 }
 
+/// The message, led by the file it is about.
+Error about(const std::string& file, const Error& error) {
+  return {error.code, file + ": " + error.what};
+}
+
+/// The picture of its own goes away again if the case cannot be written.
+Outcome write(const Options& o, cases::NewCase definition, const core::KeyPair& key,
+              const cases::Carved& carved) {
+  if (!o.png.empty())
+    if (auto drawn = definition.draw(o.png); !drawn) return drawn.error();
+  const auto made =
+      cases::write_case(o.out, std::move(definition), key, core::terminal_progress("writing"));
+  if (!made) {
+    std::error_code ignored;
+    if (!o.png.empty()) std::filesystem::remove(o.png, ignored);
+    return made.error();
+  }
+  o.json ? void(std::puts(report_of(*made, carved).dump(2).c_str())) : print_text(*made, carved);
+  return 0;
+}
+
 Outcome run(const Options& o) {
   const auto plan = plan_of(o);
   if (!plan) return plan.error();
   const auto model = model_of(o);
   if (!model) return model.error();
-  if (std::filesystem::exists(o.out))
+  if (std::error_code ignored; std::filesystem::exists(o.out, ignored))
     return Error{Errc::conflict,
                  fmt::format("{}: exists already; remove it or choose another name", o.out)};
   const auto ct = volume_io::read_volume(o.volume, core::terminal_progress("reading"));
   if (!ct) return ct.error();
   const auto carved =
       cases::carve(ct->volume, model->transfer, *plan, core::terminal_progress("carving"));
-  if (!carved) return carved.error();
+  if (!carved) return about(o.volume, carved.error());
   auto surroundings = cases::drilled_surroundings(ct->volume, *carved);
-  if (!surroundings) return surroundings.error();
+  if (!surroundings) return about(o.volume, surroundings.error());
   const auto key = key_of(o);
   if (!key) return key.error();
-  auto definition = case_of(o, *carved, *model, ct->source, std::move(*surroundings));
-  if (!o.png.empty())
-    if (auto drawn = definition.draw(o.png); !drawn) return drawn.error();
-  const auto made =
-      cases::write_case(o.out, std::move(definition), *key, core::terminal_progress("writing"));
-  if (!made) return made.error();
-  o.json ? void(std::puts(report_of(*made, *carved).dump(2).c_str())) : print_text(*made, *carved);
-  return 0;
+  return write(o, case_of(o, *carved, *model, ct->source, std::move(*surroundings)), *key, *carved);
 }
 
 void add_options(CLI::App& app, Options& o) {

@@ -8,6 +8,8 @@ import { pathSchema, sessionSchema, signalsSchema, trialPageSchema, trialSchema,
 const kAssessing_ms = 2_000;
 const kIdle_ms = 15_000;
 const kPage = 50;
+/** Voxels along the longest side; the box round a tract is slender, so that it stays small. */
+const kPreview = 128;
 
 export const kChannels = [
   'force_xy_N', 'force_z_N', 'torque_xy_Nm', 'torque_z_Nm', 'depth_m', 'offset_m', 'angle_rad',
@@ -79,7 +81,7 @@ export const previewQuery = (caseId: string) =>
   queryOptions({
     queryKey: ['preview', caseId],
     queryFn: async ({ signal }) => {
-      const { headers, data } = await bytes(address('/api/v1/cases/{id}/preview', { id: caseId }, { max_side: 64 }), { signal });
+      const { headers, data } = await bytes(address('/api/v1/cases/{id}/preview', { id: caseId }, { max_side: kPreview }), { signal });
       return parsePreview(headers, data);
     },
     staleTime: Infinity,

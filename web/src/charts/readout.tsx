@@ -1,5 +1,5 @@
 import { useSyncExternalStore } from 'react';
-import { axisTitle, digits, withUnit, kNone, type Quantity } from '@/units';
+import { axisTitle, formatTime, kNone, rounded, second, united, type Quantity } from '@/units';
 import type { Cursor } from './cursor';
 import styles from './signal-chart.module.css';
 import type { Panel } from './signal-types';
@@ -15,8 +15,8 @@ function nearest(t: readonly number[], moment: number): number {
 /** "0.42 N", or "0.10…0.42 N" where a drawn point stands for several samples. */
 function said(least: number | null | undefined, greatest: number | null | undefined, quantity: Quantity): string {
   if (least === null || least === undefined || greatest === null || greatest === undefined) return kNone;
-  const low = digits(least, quantity), high = digits(greatest, quantity);
-  return low === high ? withUnit(greatest, quantity) : `${low} … ${withUnit(greatest, quantity)}`;
+  const low = rounded(least, quantity), high = rounded(greatest, quantity);
+  return united(low === high ? high : `${low} … ${high}`, quantity);
 }
 
 /** Legend of a panel, with the values under the pointer. */
@@ -44,5 +44,5 @@ export function Readout({ panel, detail, cursor }: { readonly panel: Panel; read
 /** The moment under the pointer, in the chart's tool bar. */
 export function Moment({ cursor }: { readonly cursor: Cursor }) {
   const moment = useSyncExternalStore(cursor.subscribe, cursor.now);
-  return <span className={styles.moment}>{moment === null ? '' : `at ${withUnit(moment, { name: 'Time', unit: 's', perSi: 1, decimals: 3 })}`}</span>;
+  return <span className={styles.moment}>{moment === null ? '' : `at ${formatTime(second(moment), 3)}`}</span>;
 }

@@ -58,8 +58,8 @@ export function SignalChart(props: Props) {
   return (
     <figure className={styles.chart} aria-describedby={summaryId}>
       <div className={styles.tools}>
-        <p className={styles.shown} role="status">
-          <span data-part="range">{formatTime(second(range.from), decimals)} – {formatTime(second(range.to), decimals)}</span>
+        <p className={styles.shown}>
+          <span data-part="range" role="status">{formatTime(second(range.from), decimals)} – {formatTime(second(range.to), decimals)}</span>
           <span className={styles.resolution}>{resolution(detail.samplesPerPoint)}</span>
           <Moment cursor={cursor} />
         </p>

@@ -38,10 +38,10 @@ function canDraw(): boolean {
   return context !== null;
 }
 
-/** Top of the colour scale: above all but the strongest hundredth, so that one tap does not darken the rest. */
+/** Top of the colour scale: above all but the strongest twentieth, so that a few taps do not darken the rest. */
 function topOf(force_N: readonly number[]): number {
   const sorted = [...force_N].sort((a, b) => a - b);
-  return Math.max(sorted[Math.floor(0.99 * (sorted.length - 1))] ?? 0, 0.05);
+  return Math.max(sorted[Math.floor(0.95 * (sorted.length - 1))] ?? 0, 0.05);
 }
 
 /** The tract, the bone round it and the way of the tip, to be turned about. */
@@ -65,7 +65,9 @@ export function TractView({ tract, path, bone, cursor, palette, summary, button 
       const { makeScene } = await import('./scene');
       if (gone) return;
       made = makeScene(place, holder, { tract, path, bone, most_N });
-      place.querySelector('canvas')?.addEventListener('webglcontextlost', () => setFailure('The graphics processor has dropped the picture. Reload the page to draw it again.'));
+      place.querySelector('canvas')?.addEventListener('webglcontextlost', () => {
+        if (!gone) setFailure('The graphics processor has dropped the picture. Reload the page to draw it again.');
+      });
       setScene(made);
     };
     start().catch(fail);
@@ -133,7 +135,7 @@ export function TractView({ tract, path, bone, cursor, palette, summary, button 
         <span className={styles.scale}>
           force on the tip 0<i style={{ background: kScale }} />{formatForce(newton(most_N))} and above
         </span>
-        <span>Drag to turn, Shift-drag to move, wheel after a click to zoom. Arrow keys turn.</span>
+        <span className={styles.hint}>Drag to turn, Shift-drag to move, wheel after a click to zoom. Arrow keys turn.</span>
       </figcaption>
     </figure>
   );

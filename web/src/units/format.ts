@@ -19,6 +19,13 @@ export function digits(si: number, quantity: Quantity, decimals = quantity.decim
   return grouped(Math.abs(shown).toFixed(decimals), shown < 0 ? kMinus : '');
 }
 
+/** Digits rounded as they come: for a reading that moves, where a bound would only flicker. */
+export function rounded(si: number, quantity: Quantity): string {
+  if (!Number.isFinite(si)) return kNone;
+  const text = Math.abs(si * quantity.perSi).toFixed(quantity.decimals);
+  return grouped(text, si < 0 && Number(text) !== 0 ? kMinus : '');
+}
+
 function grouped(text: string, sign: string): string {
   const [whole = '', fraction] = text.split('.');
   const spaced = whole.length > 4 ? whole.replace(/\B(?=(\d{3})+$)/g, kNarrowSpace) : whole;
@@ -27,7 +34,11 @@ function grouped(text: string, sign: string): string {
 
 /** "1.23 N": digits and unit. The degree sign stands without a space. */
 export function withUnit(si: number, quantity: Quantity, decimals = quantity.decimals): string {
-  const text = digits(si, quantity, decimals);
+  return united(digits(si, quantity, decimals), quantity);
+}
+
+/** Puts the unit behind digits. */
+export function united(text: string, quantity: Quantity): string {
   if (text === kNone) return text;
   return quantity.unit === '°' ? `${text}°` : text + kNarrowSpace + quantity.unit;
 }

@@ -1,7 +1,7 @@
 import { describe, expect, it } from 'vitest';
 import {
   decimalsFor, digits, formatAngle, formatCount, formatDuration, formatForce, formatLength, formatMeasure, formatRate,
-  formatShare, formatTorque, kForce, kTorque, measureDigits, metre, newton, newtonMetre, radian, second, share, shownUnit,
+  formatShare, formatTorque, kForce, kTorque, measureDigits, metre, newton, newtonMetre, radian, rounded, second, share, shownUnit,
   tickLabels,
 } from '@/units';
 
@@ -19,6 +19,11 @@ describe('a number of the trial', () => {
     expect(plain(digits(0.0004, kTorque))).toBe('< 0.001'); // how the paper prints the sd of T_z
     expect(plain(digits(-0.0004, kTorque))).toBe('> −0.001');
     expect(digits(0, kTorque)).toBe('0.000');
+  });
+
+  it('that moves under the pointer is rounded plainly, without a minus before zero', () => {
+    expect(rounded(-0.0004, kTorque)).toBe('0.000');
+    expect(rounded(-0.0016, kTorque)).toBe('−0.002');
   });
 
   it('that is missing or not finite is a dash', () => {

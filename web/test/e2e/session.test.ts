@@ -78,8 +78,17 @@ it('the choice of dark is kept over a reload, without a flash of white', async (
   await button.click();
   const dark = await ground();
   expect(dark).not.toBe(light);
-  await page.goto('/', { waitUntil: 'commit' });
-  await page.waitForFunction(() => document.body !== null);
+  // Noted when the body is first there: nothing can have been painted before.
+  await page.addInitScript(() => {
+    new MutationObserver((_, observer) => {
+      if (document.body === null) return;
+      Object.assign(window, { themeAtBody: document.documentElement.dataset.theme });
+      observer.disconnect();
+    }).observe(document, { childList: true, subtree: true });
+  });
+  await page.reload();
+  await page.getByLabel('Name').waitFor();
+  expect(await page.evaluate(() => (window as unknown as { themeAtBody?: string }).themeAtBody)).toBe('dark');
   expect(await ground()).toBe(dark);
   await context.close();
 });

@@ -174,6 +174,19 @@ describe('the tract in 3-D', () => {
     expect(faults).toEqual([]);
   });
 
+  it('can be left and come back to more often than a browser holds contexts', async () => {
+    const { page, faults } = seen;
+    await openTrial(page);
+    for (let visits = 0; visits < 18; ++visits) {
+      await page.locator('[data-part="scene"][data-ready]').waitFor();
+      await page.getByRole('link', { name: '← Trials' }).click();
+      await page.locator(`tbody a[href="/trials/${id}"]`).click();
+    }
+    await page.locator('[data-part="scene"][data-ready]').waitFor();
+    expect(await page.getByText('dropped the picture').count()).toBe(0);
+    expect(faults).toEqual([]);
+  }, 120_000);
+
   it('is replaced by a sentence where the browser cannot draw it, and the page is otherwise whole', async () => {
     const blind = await launch(['--disable-3d-apis']);
     const { page, faults } = await visit(blind);

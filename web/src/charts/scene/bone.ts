@@ -9,8 +9,8 @@ import vtkMapper from '@kitware/vtk.js/Rendering/Core/Mapper';
 import { makeSlice } from './slice';
 import { kPerMetre, scaled, type SceneBone, type SceneTract, type Vec3 } from './types';
 
-/** Half of full opacity: where the transfer function says that bone begins to resist. */
-const kSurface = 127.5;
+/** A tenth of full opacity: where bone begins to resist. The cancellous inside of a vertebra hardly reaches a half. */
+const kSurface = 25.5;
 
 /** Points and normals from the grid's own axes into the patient's frame. */
 function place(surface: vtkPolyData, bone: SceneBone): void {

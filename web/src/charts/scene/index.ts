@@ -131,9 +131,12 @@ export function makeScene(container: HTMLElement, labelHolder: HTMLElement, cont
       watching.unsubscribe();
       interactor.unbindEvents();
       labelHolder.replaceChildren();
+      // A browser holds few contexts: this one is given back now, not when memory is next swept.
+      const context = container.querySelector('canvas')?.getContext('webgl2');
       drawing.removeView(view);
       view.delete();
       drawing.delete();
+      context?.getExtension('WEBGL_lose_context')?.loseContext();
     },
   };
   scene.resize();

@@ -7,7 +7,9 @@ import vtkMapper from '@kitware/vtk.js/Rendering/Core/Mapper';
 import vtkTexture from '@kitware/vtk.js/Rendering/Core/Texture';
 import { dot, scaled, sum, type SceneBone, type SceneTract, type Vec3 } from './types';
 
-const kPixels = 192;
+const kPixels = 320;
+/** Opacities between which the cut fades in: below there is no bone. */
+const kClear = 6, kSolid = 26;
 
 /** Opacity 0…255 at a point of the patient's frame, trilinear; 0 outside the grid. */
 export function opacityAt(bone: SceneBone, p_m: Vec3): number {
@@ -43,8 +45,8 @@ export function makeSlice(bone: SceneBone, tract: SceneTract): vtkActor {
   for (let row = 0, at = 0; row < kPixels; ++row) {
     for (let column = 0; column < kPixels; ++column, at += 4) {
       const value = opacityAt(bone, sum(corner, scaled(along, (column + 0.5) / kPixels), scaled(across, (row + 0.5) / kPixels)));
-      pixels.fill(60 + Math.round(value * 0.72), at, at + 3);
-      pixels[at + 3] = value < 40 ? 0 : 255;
+      pixels.fill(70 + Math.round(175 * Math.sqrt(value / 255)), at, at + 3);
+      pixels[at + 3] = 255 * Math.min(Math.max((value - kClear) / (kSolid - kClear), 0), 1);
     }
   }
   const image = vtkImageData.newInstance();

@@ -22,7 +22,7 @@ function Header({ trial }: { readonly trial: Trial }) {
         {trial.simulated ? <Badge tone="warn">simulated</Badge> : null}
         {trial.complete ? null : <Badge tone="bad">incomplete recording</Badge>}
       </div>
-      <Facts
+      <div className={styles.facts}><Facts
         facts={[
           { name: 'Operator', value: trial.operator_name },
           { name: 'Started', value: <time dateTime={isoDateTime(trial.started_utc_us)} title={formatDateTimeLong(trial.started_utc_us)}>{formatDateTime(trial.started_utc_us)}</time> },
@@ -31,7 +31,7 @@ function Header({ trial }: { readonly trial: Trial }) {
           { name: 'Device', value: trial.device },
           { name: 'Recorded', value: `${formatCount(trial.samples)} samples at ${formatRate(trial.rate_Hz)}` },
         ]}
-      />
+      /></div>
     </>
   );
 }
