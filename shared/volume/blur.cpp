@@ -18,7 +18,10 @@ namespace {
 using blur_kernels::Store;
 constexpr int kTaps = blur_kernels::kTaps;
 // A tile's window of 16 slices, 64 rows of 128 floats, is half of a 1 MiB level-2 cache.
-constexpr int kTileX = 128, kTileY = 64;
+constexpr int kTileX = 128, kTileY = 72;
+constexpr int kPitch = kTileX + 16;  // floats from row to row: an odd number of cache lines,
+constexpr int kSlicePitch =
+    kPitch * kTileY + 16;  // and so from slice to slice: scalar_grid.hpp says why
 constexpr int kColumns = 16,
               kTileZ = 96;   // below that many tiles side by side, they are cut along z too
 constexpr int kWindow = 16;  // slices held: so many are needed for four results
@@ -30,8 +33,8 @@ struct Scratch {
   std::vector<float> row, rows, window;
   Scratch()
       : row(kTileX + 2 * 8),
-        rows(std::size_t(kTileX) * (kTileY + 2 * kTaps)),
-        window(std::size_t(kTileX) * kTileY * kWindow) {}
+        rows(std::size_t(kPitch) * (kTileY + 2 * kTaps)),
+        window(std::size_t(kSlicePitch) * kWindow) {}
 };
 
 /// One tile: a box of results at most kTileX × kTileY wide, streamed through along z.
@@ -61,7 +64,7 @@ class Tile {
 
  private:
   float* window_row(int z, int y) {
-    return scratch_.window.data() + (std::size_t(z % kWindow) * kTileY + std::size_t(y)) * kTileX;
+    return scratch_.window.data() + (z % kWindow) * kSlicePitch + y * kPitch;
   }
 
   /// Opacity of slice z blurred along x and y, into the window.
@@ -71,7 +74,7 @@ class Tile {
     const float* sources[kTileY + 2 * kTaps];
     for (int r = 0; r < rows; ++r) {
       const int y = std::clamp(first_row + r, 0, last);
-      float* const out = scratch_.rows.data() + std::size_t(r) * kTileX;
+      float* const out = scratch_.rows.data() + std::size_t(r) * kPitch;
       const bool repeated = r > 0 && y == std::clamp(first_row + r - 1, 0, last);
       if (!repeated) along_row(y, z, out);
       sources[r] = repeated ? sources[r - 1] : out;
