@@ -1,7 +1,6 @@
 #include "volume/blur.hpp"
 
 #include <tbb/parallel_for.h>
-#include <tbb/task_group.h>
 
 #include <algorithm>
 #include <atomic>
@@ -9,7 +8,6 @@
 #include <span>
 #include <vector>
 
-#include "core/require.hpp"
 #include "volume/blur_kernels.hpp"
 
 namespace volume {
@@ -17,14 +15,14 @@ namespace {
 
 using blur_kernels::Store;
 constexpr int kTaps = blur_kernels::kTaps;
-// A tile's window of 16 slices, 64 rows of 128 floats, is half of a 1 MiB level-2 cache.
+// A tile's window of 16 slices, 72 rows of 128 floats, is two thirds of a 1 MiB level-2 cache.
 constexpr int kTileX = 128, kTileY = 72;
-constexpr int kPitch = kTileX + 16;  // floats from row to row: an odd number of cache lines,
-constexpr int kSlicePitch =
-    kPitch * kTileY + 16;  // and so from slice to slice: scalar_grid.hpp says why
-constexpr int kColumns = 16,
-              kTileZ = 96;   // below that many tiles side by side, they are cut along z too
 constexpr int kWindow = 16;  // slices held: so many are needed for four results
+// Floats from row to row and from slice to slice: odd numbers of cache lines (scalar_grid.hpp says
+// why).
+constexpr int kPitch = kTileX + 16, kSlicePitch = kPitch * kTileY + 16;
+// With fewer tiles than this side by side, they are cut along z too, this deep.
+constexpr int kColumns = 16, kTileZ = 96;
 
 int rounded_up(int n, int to) { return (n + to - 1) / to * to; }
 
