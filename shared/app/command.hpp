@@ -18,7 +18,8 @@ struct Command {
   std::string name;     ///< "import"
   std::string summary;  ///< one line
   std::string example;  ///< shown at the end of --help
-  /// Adds its options to `app`; the returned function runs after parsing. Options live in what it captures.
+  /// Adds its options to `app`; the returned function runs after parsing. Options live in what it
+  /// captures.
   std::function<std::function<Outcome()>(CLI::App& app)> make;
 };
 

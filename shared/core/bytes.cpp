@@ -82,9 +82,7 @@ Bytes random_bytes(std::size_t length) {
   return out;
 }
 
-std::string new_id() {
-  return fmt::format("{:012x}{}", utc_us() / 1000, hex(random_bytes(10)));
-}
+std::string new_id() { return fmt::format("{:012x}{}", utc_us() / 1000, hex(random_bytes(10))); }
 
 bool is_id(std::string_view text) noexcept { return text.size() == 32 && all_hex(text); }
 

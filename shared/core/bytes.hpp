@@ -49,7 +49,8 @@ std::string hex(ByteView bytes);
 std::string base64(ByteView bytes);
 /// `length` random bytes of the system's generator: keys, tokens, salts.
 Bytes random_bytes(std::size_t length);
-/// A new name nobody has: 32 hexadecimal characters, the first 12 the UTC milliseconds, so that names sort by time.
+/// A new name nobody has: 32 hexadecimal characters, the first 12 the UTC milliseconds, so that
+/// names sort by time.
 std::string new_id();
 /// Is `text` such a name?
 bool is_id(std::string_view text) noexcept;

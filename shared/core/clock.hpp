@@ -37,7 +37,8 @@ class ManualClock final : public Clock {
   Instant_ns now_ = 0;
 };
 
-/// Wall-clock time of day, UTC, microseconds since 1970: for records that people read, never for intervals.
+/// Wall-clock time of day, UTC, microseconds since 1970: for records that people read, never for
+/// intervals.
 std::int64_t utc_us() noexcept;
 /// "2026-03-01T12:00:00.123456Z" of such a time.
 std::string utc_text(std::int64_t us);

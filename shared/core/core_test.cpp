@@ -15,13 +15,15 @@ namespace core {
 namespace {
 
 TEST(Crc32c, MatchesTheCheckValueOfRfc3720) {
-  EXPECT_EQ(crc32c(bytes_of("123456789")), 0xE3069283u);  // RFC 3720 B.4 and the CRC catalogue's check
+  EXPECT_EQ(crc32c(bytes_of("123456789")),
+            0xE3069283u);  // RFC 3720 B.4 and the CRC catalogue's check
   EXPECT_EQ(crc32c(bytes_of("56789"), crc32c(bytes_of("1234"))), 0xE3069283u);
 }
 
 TEST(Sha256, MatchesFips180) {
   // FIPS 180-2, appendix B.1
-  EXPECT_EQ(sha256(bytes_of("abc")), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(sha256(bytes_of("abc")),
+            "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
 }
 
 TEST(Id, IsNewAndRecognised) {
@@ -41,7 +43,9 @@ TEST(Signature, HoldsForTheMessageAndForNothingElse) {
 }
 
 template <class A, class B>
-concept addable = requires(A a, B b) { a + b; };
+concept addable = requires(A a, B b) {
+  a + b;
+};
 
 TEST(Quantity, MultipliesDimensions) {
   using namespace literals;
@@ -54,7 +58,8 @@ TEST(Quantity, MultipliesDimensions) {
 class FileTest : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() / ("tractus_core_" + std::to_string(::getpid()) + "_" + new_id());
+    folder_ = std::filesystem::temp_directory_path() /
+              ("tractus_core_" + std::to_string(::getpid()) + "_" + new_id());
     std::filesystem::create_directories(folder_);
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
@@ -106,7 +111,9 @@ TEST(Json, SaysWhereTheTextBreaks) {
   EXPECT_THAT(json.error().what, testing::HasSubstr("line 1, column 7"));
 }
 
-TEST(Clock, FormatsUtc) { EXPECT_EQ(utc_text(1'700'000'000'123'456), "2023-11-14T22:13:20.123456Z"); }
+TEST(Clock, FormatsUtc) {
+  EXPECT_EQ(utc_text(1'700'000'000'123'456), "2023-11-14T22:13:20.123456Z");
+}
 
 }  // namespace
 }  // namespace core

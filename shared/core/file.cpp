@@ -57,8 +57,8 @@ Result<Bytes> read_file(const fs::path& path, std::uint64_t limit_bytes) {
     return Error{Errc::bad_input, fmt::format("{}: not a regular file", path.string())};
   const auto size = static_cast<std::uint64_t>(info.st_size);
   if (size > limit_bytes)
-    return Error{Errc::too_large,
-                 fmt::format("{}: {} bytes, at most {} are read", path.string(), size, limit_bytes)};
+    return Error{Errc::too_large, fmt::format("{}: {} bytes, at most {} are read", path.string(),
+                                              size, limit_bytes)};
   Bytes out(size);
   std::size_t done = 0;
   while (done < out.size()) {
@@ -99,8 +99,8 @@ Result<void> sync_folder(const fs::path& folder) {
 }
 
 Result<ScratchFolder> ScratchFolder::make(const fs::path& beside) {
-  const fs::path path =
-      parent_of(beside) / fmt::format(".{}.{}.part", beside.filename().string(), hex(random_bytes(4)));
+  const fs::path path = parent_of(beside) / fmt::format(".{}.{}.part", beside.filename().string(),
+                                                        hex(random_bytes(4)));
   std::error_code failure;
   if (!fs::create_directories(path, failure) || failure)
     return Error{Errc::io, fmt::format("{}: cannot create a folder there: {}",
@@ -120,11 +120,12 @@ ScratchFolder::ScratchFolder(ScratchFolder&& other) noexcept : path_(std::move(o
 Result<void> ScratchFolder::keep_as(const fs::path& target) {
   std::error_code failure;
   if (fs::exists(target, failure))
-    return Error{Errc::conflict,
-                 fmt::format("{}: exists already; remove it or choose another name", target.string())};
+    return Error{Errc::conflict, fmt::format("{}: exists already; remove it or choose another name",
+                                             target.string())};
   fs::rename(path_, target, failure);
   if (failure)
-    return Error{Errc::io, fmt::format("{}: cannot put in place: {}", target.string(), failure.message())};
+    return Error{Errc::io,
+                 fmt::format("{}: cannot put in place: {}", target.string(), failure.message())};
   path_.clear();
   return sync_folder(parent_of(target));
 }

@@ -9,10 +9,12 @@
 
 namespace core {
 
-/// Reads all of a regular file. Errors: not_found, io, too_large (over `limit_bytes`, checked before reading).
+/// Reads all of a regular file. Errors: not_found, io, too_large (over `limit_bytes`, checked
+/// before reading).
 Result<Bytes> read_file(const std::filesystem::path& path, std::uint64_t limit_bytes = 1ull << 30);
 
-/// Writes beside, flushes to the disk, renames, flushes the folder. Nothing is left behind on failure.
+/// Writes beside, flushes to the disk, renames, flushes the folder. Nothing is left behind on
+/// failure.
 Result<void> write_file(const std::filesystem::path& path, ByteView bytes);
 
 /// The errno of the last call as an Error: "PATH: cannot open: Permission denied".
@@ -21,8 +23,8 @@ Error system_error(const std::filesystem::path& path, const char* what);
 /// fsync of a folder, so that a rename in it lasts.
 Result<void> sync_folder(const std::filesystem::path& folder);
 
-/// A new empty folder beside `beside`, removed with all in it when this goes, unless `keep_as` renamed it.
-/// For results of several files: build inside, then keep.
+/// A new empty folder beside `beside`, removed with all in it when this goes, unless `keep_as`
+/// renamed it. For results of several files: build inside, then keep.
 class ScratchFolder {
  public:
   static Result<ScratchFolder> make(const std::filesystem::path& beside);

@@ -13,7 +13,8 @@ Result<Json> parse_json(std::string_view text, std::string_view name) {
   try {
     return Json::parse(text);
   } catch (const Json::exception& failure) {
-    std::string why = failure.what();  // "[json.exception.parse_error.101] parse error at line 1, column 2: …"
+    std::string why =
+        failure.what();  // "[json.exception.parse_error.101] parse error at line 1, column 2: …"
     if (const auto end = why.find("] "); end != std::string::npos) why.erase(0, end + 2);
     return Error{Errc::bad_input, fmt::format("{}: not valid JSON: {}", name, why)};
   }

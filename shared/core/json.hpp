@@ -19,8 +19,8 @@ Result<Json> read_json(const std::filesystem::path& path);
 /// Writes with two-space indent and a final newline, atomically.
 Result<void> write_json(const std::filesystem::path& path, const Json& json);
 
-/// Reads fields of one JSON object, remembering the first thing wrong. Fields left unread are errors at `done`,
-/// so that a misspelt name never passes silently.
+/// Reads fields of one JSON object, remembering the first thing wrong. Fields left unread are
+/// errors at `done`, so that a misspelt name never passes silently.
 class Fields {
  public:
   /// @param where  file and JSON pointer of the object, as "case.json: /probe".

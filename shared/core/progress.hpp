@@ -6,7 +6,8 @@
 
 namespace core {
 
-/// Called with 0…1 now and then, from the thread that works; returning false asks it to stop (Errc::cancelled).
+/// Called with 0…1 now and then, from the thread that works; returning false asks it to stop
+/// (Errc::cancelled).
 using Progress = std::function<bool(double share)>;
 
 /// A bar on standard error when that is a terminal, nothing otherwise.

@@ -1,4 +1,5 @@
-/// Scalars with their dimension: mass^M · length^L · time^T, always SI inside. Mixing dimensions does not compile.
+/// Scalars with their dimension: mass^M · length^L · time^T, always SI inside. Mixing dimensions
+/// does not compile.
 #pragma once
 
 #include <compare>

@@ -1,4 +1,5 @@
-/// Errors as values: what the world (files, devices, network, input) may do to us comes back as a Result.
+/// Errors as values: what the world (files, devices, network, input) may do to us comes back as a
+/// Result.
 #pragma once
 
 #include <string>
@@ -39,7 +40,9 @@ class [[nodiscard]] Result {
 
   explicit operator bool() const noexcept { return held_.index() == 0; }
   /// Our bug if there is none: check first.
-  T& value() & { return require(bool(*this), "a Result was read without a check"), std::get<0>(held_); }
+  T& value() & {
+    return require(bool(*this), "a Result was read without a check"), std::get<0>(held_);
+  }
   const T& value() const& {
     return require(bool(*this), "a Result was read without a check"), std::get<0>(held_);
   }

@@ -41,8 +41,8 @@ Result<KeyPair> KeyPair::open_or_make(const std::filesystem::path& path) {
     std::error_code failure;
     if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), failure);
     if (auto written = write_file(path, pair.secret); !written) return written.error();
-    std::filesystem::permissions(path, std::filesystem::perms::owner_read | std::filesystem::perms::owner_write,
-                                 failure);
+    std::filesystem::permissions(
+        path, std::filesystem::perms::owner_read | std::filesystem::perms::owner_write, failure);
     return pair;
   }
   auto secret = read_file(path, 4096);
@@ -60,11 +60,13 @@ std::string sign(ByteView message, const KeyPair& key) {
   return hex(signature);
 }
 
-bool verify(ByteView message, std::string_view signature_hex, std::string_view public_hex) noexcept {
+bool verify(ByteView message, std::string_view signature_hex,
+            std::string_view public_hex) noexcept {
   std::array<unsigned char, crypto_sign_BYTES> signature{};
   std::array<unsigned char, crypto_sign_PUBLICKEYBYTES> open_key{};
   return unhex(signature_hex, signature) && unhex(public_hex, open_key) &&
-         crypto_sign_verify_detached(signature.data(), raw(message), message.size(), open_key.data()) == 0;
+         crypto_sign_verify_detached(signature.data(), raw(message), message.size(),
+                                     open_key.data()) == 0;
 }
 
 }  // namespace core

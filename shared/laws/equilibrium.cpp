@@ -17,10 +17,11 @@ using math::Vec2;
 using math::Vec3;
 
 constexpr double kTolerance_N = 1e-3;  // [Zoller2020, "Iterative pedicle probe bending"]
-// Newton goes on to here when it can, so that the answer does not depend on where it started; the
-// rounding of the field lies just below.
-constexpr double kPolished_N = 2e-6;
-constexpr int kPolishing = 2;  // iterations at most spent between the two
+// Newton goes on to here when it can, so that the answer depends neither on where it started nor on
+// how it came: a residual is up to k⁻¹ times as much deflection, and that many walls' stiffness more
+// in force.
+constexpr double kPolished_N = 1e-7;
+constexpr int kPolishing = 3;  // iterations at most spent between the two
 constexpr int kMostIterations = 60;
 
 /// One trial bending and what follows from it.
@@ -45,11 +46,9 @@ class Solver {
     bend(start_m, *now_);
     keep_best();
     double radius = 0.5 * voxel_m_;
-    int polishing = 0;
-    while (iterations_ < kMostIterations && now_->miss_N() > kPolished_N) {
-      if (now_->miss_N() < kTolerance_N && ++polishing > kPolishing) break;
-      step(radius);
-    }
+    while (iterations_ < kMostIterations && now_->miss_N() >= kTolerance_N) step(radius);
+    for (int k = 0; k < kPolishing && now_->miss_N() > kPolished_N; ++k)
+      if (!polish()) break;
     std::copy_n(best_force_.begin(), force_H_N.size(), force_H_N.begin());
     return {best_deflection_m_, iterations_, best_miss_N_ < kTolerance_N};
   }
@@ -93,6 +92,18 @@ class Solver {
       std::swap(now_, next_);
       keep_best();
     }
+  }
+
+  /// A Newton step with all of A, taken if |r| falls. Near rest the symmetric part alone, which the
+  /// search needs, would let the published field's curl hold r up at a hundredth a step.
+  bool polish() {
+    const Vec2 s = -now_->stiffness_N_per_m.inverse() * now_->residual_N;
+    if (!(s.norm() < 0.5 * voxel_m_)) return false;
+    bend(now_->deflection_m + s, *next_);
+    if (!(next_->miss_N() < now_->miss_N())) return false;
+    std::swap(now_, next_);
+    keep_best();
+    return true;
   }
 
   void keep_best() {

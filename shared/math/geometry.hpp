@@ -1,5 +1,5 @@
-/// Points, poses and wrenches. Vectors carry frames in their names: p_VT is the point T seen from V, X_VH the pose of
-/// H in V, f_H a force expressed in H. Units SI.
+/// Points, poses and wrenches. Vectors carry frames in their names: p_VT is the point T seen from
+/// V, X_VH the pose of H in V, f_H a force expressed in H. Units SI.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -14,7 +14,7 @@ using Quat = Eigen::Quaterniond;
 
 /// Pose X_AB of a frame B in a frame A: p_A = p + q p_B. `q` is a unit quaternion.
 struct Pose {
-  Vec3 p = Vec3::Zero();       ///< origin of B in A, m
+  Vec3 p = Vec3::Zero();  ///< origin of B in A, m
   Quat q = Quat::Identity();
 
   Vec3 operator*(const Vec3& p_B) const { return p + q * p_B; }

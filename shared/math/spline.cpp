@@ -12,8 +12,9 @@ core::Result<CubicSpline> CubicSpline::make(std::span<const double> t, std::span
     return core::Error{core::Errc::bad_input, "a spline needs at least two points"};
   for (std::size_t k = 1; k < t.size(); ++k)
     if (!(t[k] > t[k - 1]))
-      return core::Error{core::Errc::bad_input,
-                         fmt::format("time {} s does not come after {} s (point {})", t[k], t[k - 1], k)};
+      return core::Error{
+          core::Errc::bad_input,
+          fmt::format("time {} s does not come after {} s (point {})", t[k], t[k - 1], k)};
   CubicSpline out;
   out.t_.assign(t.begin(), t.end());
   out.y_.assign(y.begin(), y.end());
@@ -41,7 +42,8 @@ CubicSpline::At CubicSpline::at(double t) const noexcept {
 
 double CubicSpline::value(double t) const noexcept {
   const auto [k, h, a, b] = at(t);
-  return a * y_[k] + b * y_[k + 1] + ((a * a * a - a) * m_[k] + (b * b * b - b) * m_[k + 1]) * h * h / 6.0;
+  return a * y_[k] + b * y_[k + 1] +
+         ((a * a * a - a) * m_[k] + (b * b * b - b) * m_[k + 1]) * h * h / 6.0;
 }
 
 double CubicSpline::derivative(double t) const noexcept {
@@ -88,7 +90,8 @@ Vec3 PoseSpline::acceleration_m_s2(double t) const noexcept {
 }
 
 Vec3 PoseSpline::angular_velocity_rad_s(double t) const noexcept {
-  // ω = 2 q̇ q*, with the unnormalised spline's norm n divided out (the part of q̇ along q drops from the vector part).
+  // ω = 2 q̇ q*, with the unnormalised spline's norm n divided out (the part of q̇ along q drops from
+  // the vector part).
   const Quat q(q_[0].value(t), q_[1].value(t), q_[2].value(t), q_[3].value(t));
   const Quat dq(q_[0].derivative(t), q_[1].derivative(t), q_[2].derivative(t), q_[3].derivative(t));
   return 2.0 * (dq * q.conjugate()).vec() / q.squaredNorm();

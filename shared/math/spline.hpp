@@ -28,8 +28,8 @@ class CubicSpline {
   std::vector<double> t_, y_, m_;  // m: second derivatives at the knots
 };
 
-/// Motion through recorded poses: position by a natural cubic spline per axis; orientation by one per component of
-/// the quaternions, made continuous in sign, normalised at the end (ADR-0003).
+/// Motion through recorded poses: position by a natural cubic spline per axis; orientation by one
+/// per component of the quaternions, made continuous in sign, normalised at the end (ADR-0003).
 class PoseSpline {
  public:
   static core::Result<PoseSpline> make(std::span<const double> t, std::span<const Pose> X);

@@ -9,7 +9,8 @@ namespace math {
 namespace {
 
 TEST(CubicSpline, MatchesAHandCalculation) {
-  // Natural spline through (0,0) (1,1) (2,0): m1 = 6(−1 −1)/(2·2) = −3; s(½) = ½ + (⅛−½)(−3)/6 = 0.6875.
+  // Natural spline through (0,0) (1,1) (2,0): m1 = 6(−1 −1)/(2·2) = −3; s(½) = ½ + (⅛−½)(−3)/6 =
+  // 0.6875.
   const std::vector<double> t{0, 1, 2}, y{0, 1, 0};
   const auto s = CubicSpline::make(t, y);
   ASSERT_TRUE(s);
@@ -39,7 +40,8 @@ TEST(PoseSpline, GivesTheAngularVelocityOfASteadyTurn) {
   const auto s = PoseSpline::make(t, X);
   ASSERT_TRUE(s);
   EXPECT_NEAR((s->angular_velocity_rad_s(0.505) - Vec3(0, 0, 2)).norm(), 0.0, 1e-6);
-  EXPECT_NEAR(s->pose(0.505).q.angularDistance(Quat(Eigen::AngleAxisd(1.01, Vec3::UnitZ()))), 0.0, 1e-8);
+  EXPECT_NEAR(s->pose(0.505).q.angularDistance(Quat(Eigen::AngleAxisd(1.01, Vec3::UnitZ()))), 0.0,
+              1e-8);
   EXPECT_NEAR(s->velocity_m_s(0.3).z(), 0.1, 1e-12);
 }
 

@@ -1,7 +1,10 @@
 /// A trial: one attempt at a case, as it was recorded.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -10,19 +13,21 @@
 
 namespace trial {
 
-/// One tick of a palpation trial. 136 bytes, little-endian, no padding: also the layout on disk (ADR-0004).
+/// One tick of a palpation trial. 136 bytes, little-endian, no padding: also the layout on disk
+/// (ADR-0004).
 struct Sample {
-  double t_s = 0.0;                         ///< since the trial's start, one monotonic clock
-  std::array<double, 3> p_VH_m{};           ///< handle frame's origin in V
-  std::array<double, 4> q_VH{1, 0, 0, 0};   ///< handle frame's orientation in V: w, x, y, z
-  std::array<float, 3> force_N{};           ///< what the bone does to the probe by the model, at the origin of H, in H
+  double t_s = 0.0;                        ///< since the trial's start, one monotonic clock
+  std::array<double, 3> p_VH_m{};          ///< handle frame's origin in V
+  std::array<double, 4> q_VH{1, 0, 0, 0};  ///< handle frame's orientation in V: w, x, y, z
+  std::array<float, 3>
+      force_N{};  ///< what the bone does to the probe by the model, at the origin of H, in H
   std::array<float, 3> torque_Nm{};
   std::array<float, 3> rendered_force_N{};  ///< what the limiter let through to the device
   std::array<float, 3> rendered_torque_Nm{};
-  std::array<float, 2> deflection_m{};      ///< δ of the tip, in H
-  std::uint32_t tick = 0;                   ///< counts from 0; a gap is a tick that was skipped
-  std::uint16_t iterations = 0;             ///< of the equilibrium
-  std::uint16_t flags = 0;                  ///< Flag bits
+  std::array<float, 2> deflection_m{};  ///< δ of the tip, in H
+  std::uint32_t tick = 0;               ///< counts from 0; a gap is a tick that was skipped
+  std::uint16_t iterations = 0;         ///< of the equilibrium
+  std::uint16_t flags = 0;              ///< Flag bits
   std::uint32_t reserved0 = 0, reserved1 = 0;
 
   math::Pose pose() const {
@@ -32,34 +37,52 @@ struct Sample {
 static_assert(sizeof(Sample) == 136);
 
 enum Flag : std::uint16_t {
-  kNotConverged = 1,   ///< the equilibrium was not reached
-  kLimited = 2,        ///< the limiter changed the wrench
-  kLate = 4,           ///< this tick woke more than a quarter period late
-  kStale = 8,          ///< the device had no fresh sample: zero was rendered
-  kSaturated = 16,     ///< the device reports that it could not give what was asked
+  kNotConverged = 1,  ///< the equilibrium was not reached
+  kLimited = 2,       ///< the limiter changed the wrench
+  kLate = 4,          ///< this tick woke more than a quarter period late
+  kStale = 8,         ///< the device had no fresh sample: zero was rendered
+  kSaturated = 16,    ///< the device reports that it could not give what was asked
 };
 
-/// Something that happened at a time: "start", "answer", "end", "fault".
+/// Something that happened at a time: "start", "answer", "end", "fault", "interrupted".
 struct Event {
   double t_s = 0.0;
   std::string kind;
-  core::Json detail;  ///< object; for "answer": {"breach": bool, "wall": "medial"|…|null, "confidence": 0…1}
+  core::Json detail = core::Json::object();  ///< object; for "answer" see Answer
+
+  core::Json to_json() const;
+  /// Errors: bad_input naming `where` and the field.
+  static core::Result<Event> from_json(const core::Json& json, const std::string& where);
+};
+
+/// What the trainee said: {"breach": bool, "wall": "medial"|…|null, "confidence": 0…1}; wall and
+/// confidence may be missing.
+struct Answer {
+  bool breach = false;
+  std::optional<std::string> wall;   ///< name of a volume::Wall; only with a breach
+  std::optional<double> confidence;  ///< 0 … 1
+
+  core::Json to_json() const;
+  static core::Result<Answer> from_json(const core::Json& json, const std::string& where);
 };
 
 /// What is known before the first sample.
 struct Header {
-  std::string id;            ///< core::new_id()
-  std::string case_id;       ///< content id of the case, SHA-256
-  std::string station;       ///< its name
-  std::string operator_name; ///< who; "simulated hand, seed 7" for a simulated one
-  bool simulated = false;    ///< true when a simulated device stood in for hand and machine
-  std::string device;        ///< "sim-lambda6", …
+  std::string id;             ///< core::new_id()
+  std::string case_id;        ///< content id of the case, SHA-256
+  std::string station;        ///< its name
+  std::string operator_name;  ///< who; "simulated hand, seed 7" for a simulated one
+  bool simulated = false;     ///< true when a simulated device stood in for hand and machine
+  std::string device;         ///< "sim-lambda6", …
   std::int64_t started_utc_us = 0;
   double rate_Hz = 4000.0;
-  core::Json probe;          ///< length_m, radius_m, points, point_spacing_m, pose_offset_m of the model that ran
-  core::Json extra;          ///< anything further a later version knows
+  core::Json probe = core::Json::object();  ///< length_m, radius_m, points, point_spacing_m,
+                                            ///< pose_offset_m of the model that ran
+  core::Json extra = core::Json::object();  ///< anything further a later version knows
 
   core::Json to_json() const;
+  /// Errors: bad_input naming `where` and the field: an id or case_id of the wrong shape, an
+  /// unknown field, …
   static core::Result<Header> from_json(const core::Json& json, const std::string& where);
 };
 
@@ -68,7 +91,28 @@ struct Trial {
   Header header;
   std::vector<Sample> samples;  ///< in order of tick
   std::vector<Event> events;    ///< in order of time
-  bool complete = false;        ///< an "end" event was recorded; false after a crash
+  bool complete = false;  ///< an "end" event was recorded and the file sealed; false after a crash
+  bool sealed = false;    ///< the end frame is there and its hash holds: nothing can follow
+
+  /// The last answer that was given; nothing when there was none, or when it cannot be understood.
+  std::optional<Answer> answer() const;
 };
+
+/// The largest time a trial may hold, s (eleven days): what is beyond is a broken clock.
+inline constexpr double kMaxTime_s = 1e6;
+/// The largest position, force, torque or deflection a sample may hold, in its unit.
+inline constexpr double kMaxMagnitude = 1e6;
+
+/// What is wrong with `sample` after `before` (null for the first): a number that is not finite, a
+/// time outside 0 … kMaxTime_s or running backwards, a tick that does not increase, a quaternion
+/// that is no rotation. Empty if nothing.
+std::string fault_of(const Sample& sample, const Sample* before);
+
+/// How the loop that recorded `samples` fared.
+struct TickCounts {
+  std::uint64_t not_converged = 0, limited = 0, late = 0, stale = 0, saturated = 0;
+  std::uint64_t skipped = 0;  ///< ticks from 0 to the last one that left no sample
+};
+TickCounts count_ticks(std::span<const Sample> samples);
 
 }  // namespace trial

@@ -1,4 +1,5 @@
-/// The channel of a pedicle screw, and what is medial, lateral, superior, inferior and anterior of it.
+/// The channel of a pedicle screw, and what is medial, lateral, superior, inferior and anterior of
+/// it.
 #pragma once
 
 #include <array>
@@ -12,10 +13,12 @@ namespace volume {
 using math::Vec3;
 
 enum class Wall { medial, lateral, superior, inferior, anterior };
-inline constexpr std::array kWalls{Wall::medial, Wall::lateral, Wall::superior, Wall::inferior, Wall::anterior};
+inline constexpr std::array kWalls{Wall::medial, Wall::lateral, Wall::superior, Wall::inferior,
+                                   Wall::anterior};
 
 constexpr std::string_view name(Wall wall) {
-  constexpr std::array<std::string_view, 5> names{"medial", "lateral", "superior", "inferior", "anterior"};
+  constexpr std::array<std::string_view, 5> names{"medial", "lateral", "superior", "inferior",
+                                                  "anterior"};
   return names[std::size_t(wall)];
 }
 inline std::optional<Wall> wall_named(std::string_view text) {
@@ -24,11 +27,12 @@ inline std::optional<Wall> wall_named(std::string_view text) {
   return std::nullopt;
 }
 
-/// A straight channel from its entry along `axis`. The side walls' directions are unit vectors in V, perpendicular to
-/// the axis; medial = −lateral, inferior = −superior, and the two pairs are perpendicular. Anterior is the end: the axis.
+/// A straight channel from its entry along `axis`. The side walls' directions are unit vectors in
+/// V, perpendicular to the axis; medial = −lateral, inferior = −superior, and the two pairs are
+/// perpendicular. Anterior is the end: the axis.
 struct Tract {
-  Vec3 entry_m = Vec3::Zero();    ///< centre of the mouth, in V
-  Vec3 axis = Vec3::UnitZ();      ///< unit vector into the bone, in V
+  Vec3 entry_m = Vec3::Zero();  ///< centre of the mouth, in V
+  Vec3 axis = Vec3::UnitZ();    ///< unit vector into the bone, in V
   double length_m = 0.0;
   double radius_m = 0.0;
   Vec3 medial = Vec3::UnitX();    ///< unit vector, perpendicular to axis
@@ -44,7 +48,8 @@ struct Tract {
   }
   /// The side wall nearest to a direction (towards medial, towards superior).
   static Wall side_of(const math::Vec2& offset) {
-    if (std::abs(offset.x()) >= std::abs(offset.y())) return offset.x() >= 0 ? Wall::medial : Wall::lateral;
+    if (std::abs(offset.x()) >= std::abs(offset.y()))
+      return offset.x() >= 0 ? Wall::medial : Wall::lateral;
     return offset.y() >= 0 ? Wall::superior : Wall::inferior;
   }
 };

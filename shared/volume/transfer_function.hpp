@@ -7,8 +7,8 @@
 
 namespace volume {
 
-/// α(v): piecewise linear through its points, constant beyond the first and the last [Zoller2020, "Haptic rendering":
-/// a transfer function maps grey values to opacity].
+/// α(v): piecewise linear through its points, constant beyond the first and the last [Zoller2020,
+/// "Haptic rendering": a transfer function maps grey values to opacity].
 class TransferFunction {
  public:
   struct Point {
@@ -16,7 +16,8 @@ class TransferFunction {
     double opacity;  ///< 0 … 1
     bool operator==(const Point&) const = default;
   };
-  /// @param points  at least two, values strictly increasing, opacities within 0 … 1. Errors: bad_input.
+  /// @param points  at least two, values strictly increasing, opacities within 0 … 1. Errors:
+  /// bad_input.
   static core::Result<TransferFunction> make(std::vector<Point> points);
   /// The default for calibrated CT: nothing below 150 HU, full from 700 HU (design: models).
   static TransferFunction bone();

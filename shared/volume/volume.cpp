@@ -6,7 +6,8 @@
 namespace volume {
 
 std::uint16_t Volume::count_of(double value) const {
-  return static_cast<std::uint16_t>(std::clamp(std::round((value - intercept) / slope), 0.0, 65535.0));
+  return static_cast<std::uint16_t>(
+      std::clamp(std::round((value - intercept) / slope), 0.0, 65535.0));
 }
 
 double Volume::value_at(const Vec3& p_V_m) const {
@@ -23,7 +24,8 @@ double Volume::value_at(const Vec3& p_V_m) const {
   double sum = 0.0;
   for (int corner = 0; corner < 8; ++corner) {
     const bool x = corner & 1, y = corner & 2, z = corner & 4;
-    const double weight = (x ? share[0] : 1 - share[0]) * (y ? share[1] : 1 - share[1]) * (z ? share[2] : 1 - share[2]);
+    const double weight = (x ? share[0] : 1 - share[0]) * (y ? share[1] : 1 - share[1]) *
+                          (z ? share[2] : 1 - share[2]);
     if (weight != 0.0)
       sum += weight * value(x ? high[0] : low[0], y ? high[1] : low[1], z ? high[2] : low[2]);
   }

@@ -12,13 +12,15 @@ namespace volume {
 using math::Mat3;
 using math::Vec3;
 
-/// Where voxels lie. The volume's frame V is the patient's: LPS (x to the patient's left, y to posterior, z to
-/// superior), metres. Voxel (i, j, k) is centred at origin + directions · (i dx, j dy, k dz).
+/// Where voxels lie. The volume's frame V is the patient's: LPS (x to the patient's left, y to
+/// posterior, z to superior), metres. Voxel (i, j, k) is centred at origin + directions · (i dx, j
+/// dy, k dz).
 struct Geometry {
-  std::array<int, 3> dims{};                   ///< voxels along i, j, k
-  Vec3 spacing_m = Vec3::Ones();               ///< > 0
-  Vec3 origin_m = Vec3::Zero();                ///< centre of voxel (0, 0, 0)
-  Mat3 directions = Mat3::Identity();          ///< columns: unit vectors of i, j, k in V; orthonormal, may be left-handed
+  std::array<int, 3> dims{};      ///< voxels along i, j, k
+  Vec3 spacing_m = Vec3::Ones();  ///< > 0
+  Vec3 origin_m = Vec3::Zero();   ///< centre of voxel (0, 0, 0)
+  Mat3 directions =
+      Mat3::Identity();  ///< columns: unit vectors of i, j, k in V; orthonormal, may be left-handed
 
   std::size_t voxel_count() const {
     return std::size_t(dims[0]) * std::size_t(dims[1]) * std::size_t(dims[2]);
@@ -44,7 +46,8 @@ struct Box {
   std::array<int, 3> begin{}, end{};
 };
 
-/// Voxels as 16-bit counts; the CT value (HU where the source is calibrated) is intercept + slope · count.
+/// Voxels as 16-bit counts; the CT value (HU where the source is calibrated) is intercept + slope ·
+/// count.
 struct Volume {
   Geometry geometry;
   double slope = 1.0;
@@ -52,7 +55,8 @@ struct Volume {
   std::vector<std::uint16_t> counts;  ///< [k][j][i], geometry.voxel_count() of them
 
   std::size_t offset(int i, int j, int k) const {
-    return (std::size_t(k) * std::size_t(geometry.dims[1]) + std::size_t(j)) * std::size_t(geometry.dims[0]) +
+    return (std::size_t(k) * std::size_t(geometry.dims[1]) + std::size_t(j)) *
+               std::size_t(geometry.dims[0]) +
            std::size_t(i);
   }
   double value(int i, int j, int k) const { return intercept + slope * counts[offset(i, j, k)]; }

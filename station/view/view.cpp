@@ -1,0 +1,163 @@
+#include "station/view/view.hpp"
+
+#include <X11/Xlib.h>
+#include <fmt/format.h>
+#include <vtkCallbackCommand.h>
+#include <vtkCamera.h>
+#include <vtkGenericOpenGLRenderWindow.h>
+#include <vtkImageData.h>
+#include <vtkInteractorStyleTrackballCamera.h>
+#include <vtkOpenGLRenderWindow.h>
+#include <vtkPNGWriter.h>
+#include <vtkPointData.h>
+#include <vtkRenderWindowInteractor.h>
+#include <vtkRenderer.h>
+#include <vtkTextActor.h>
+#include <vtkTextProperty.h>
+#include <vtkUnsignedCharArray.h>
+
+#include "core/file.hpp"
+#include "station/view/egl_context.hpp"
+#include "station/view/scene_parts.hpp"
+
+namespace view {
+
+struct View::Parts {
+  std::unique_ptr<EglContext> egl;  // outlives the window below it
+  vtkSmartPointer<vtkRenderWindow> window;
+  vtkSmartPointer<vtkRenderWindowInteractor> interactor;  // null off screen
+  vtkNew<vtkRenderer> renderer;
+  vtkNew<vtkTextActor> caption;
+  Bone bone;
+  TractOutline outline;
+  Shank shank;
+  TipPath path;
+  bool closed = false;
+};
+
+namespace {
+
+core::Result<void> display_is_there() {
+  Display* display = XOpenDisplay(nullptr);
+  if (!display)
+    return core::Error{
+        core::Errc::unavailable,
+        "--view window: no X display answers; set DISPLAY, or use --view offscreen or none"};
+  XCloseDisplay(display);
+  return {};
+}
+
+/// VTK asks these of a context that is not its own.
+void lend_context(vtkGenericOpenGLRenderWindow& window, EglContext& context) {
+  vtkNew<vtkCallbackCommand> current;
+  current->SetClientData(&context);
+  current->SetCallback([](vtkObject*, unsigned long event, void* data, void* answer) {
+    const bool ok = static_cast<EglContext*>(data)->make_current();
+    if (event == vtkCommand::WindowIsCurrentEvent && answer) *static_cast<bool*>(answer) = ok;
+  });
+  window.AddObserver(vtkCommand::WindowMakeCurrentEvent, current);
+  window.AddObserver(vtkCommand::WindowIsCurrentEvent, current);
+}
+
+void look_at(vtkRenderer& renderer, const volume::Tract& tract) {
+  const math::Vec3 focus = tract.entry_m + 0.4 * tract.length_m * tract.axis;
+  const math::Vec3 eye = focus + 0.115 * tract.medial - 0.045 * tract.axis + 0.02 * tract.superior;
+  vtkCamera* camera = renderer.GetActiveCamera();
+  camera->SetFocalPoint(focus.x(), focus.y(), focus.z());
+  camera->SetPosition(eye.x(), eye.y(), eye.z());
+  camera->SetViewUp(tract.superior.x(), tract.superior.y(), tract.superior.z());
+  camera->SetViewAngle(32);
+  renderer.ResetCameraClippingRange();
+}
+
+}  // namespace
+
+View::View(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+
+View::~View() {
+  // VTK frees its textures in the context: the window goes first.
+  if (parts_->egl) parts_->egl->make_current();
+  parts_->window->Finalize();
+}
+
+core::Result<std::unique_ptr<View>> View::make(const Scene& scene, Mode mode, int width_px,
+                                               int height_px) {
+  auto parts = std::make_unique<Parts>();
+  if (mode == Mode::window) {
+    if (auto there = display_is_there(); !there) return there.error();
+    parts->window = vtkSmartPointer<vtkRenderWindow>::New();
+    parts->interactor = vtkSmartPointer<vtkRenderWindowInteractor>::New();
+    parts->interactor->SetInteractorStyle(vtkNew<vtkInteractorStyleTrackballCamera>());
+    parts->interactor->SetRenderWindow(parts->window);
+    vtkNew<vtkCallbackCommand> closing;
+    closing->SetClientData(parts.get());
+    closing->SetCallback([](vtkObject*, unsigned long, void* data, void*) {
+      static_cast<Parts*>(data)->closed = true;
+    });
+    parts->interactor->AddObserver(vtkCommand::ExitEvent, closing);
+  } else {
+    auto egl = EglContext::make();
+    if (!egl) return egl.error();
+    parts->egl = std::move(*egl);
+    vtkNew<vtkGenericOpenGLRenderWindow> window;
+    window->SetFrameBlitModeToNoBlit();
+    lend_context(*window, *parts->egl);
+    parts->window = window;
+  }
+  parts->window->SetSize(width_px, height_px);
+  parts->window->SetMultiSamples(0);
+  parts->window->SetWindowName("Tractus");
+  parts->window->AddRenderer(parts->renderer);
+  if (parts->egl &&
+      !static_cast<vtkOpenGLRenderWindow&>(*parts->window).InitializeFromCurrentContext())
+    return core::Error{core::Errc::unavailable,
+                       "off-screen view: VTK cannot use the OpenGL context"};
+
+  parts->renderer->SetBackground(0.09, 0.10, 0.12);
+  parts->bone.add(*parts->renderer, scene);
+  parts->outline.add(*parts->renderer, scene.tract);
+  parts->path.add(*parts->renderer);
+  parts->shank.add(*parts->renderer, scene.probe);
+  parts->caption->GetTextProperty()->SetFontSize(16);
+  parts->caption->GetTextProperty()->SetColor(0.92, 0.94, 0.96);
+  parts->caption->SetDisplayPosition(16, 14);
+  parts->renderer->AddActor2D(parts->caption);
+  look_at(*parts->renderer, scene.tract);
+  if (parts->interactor) parts->interactor->Initialize();
+  return std::unique_ptr<View>(new View(std::move(parts)));
+}
+
+void View::draw(const ProbeState& state, std::span<const math::Vec3> path_m) {
+  parts_->shank.pose(state);
+  parts_->path.points(path_m);
+  const math::Vec3& f = state.wrench_H.force_N;
+  parts_->caption->SetInput(fmt::format("F_xy {:.2f} N   F_z {:.2f} N   bend {:.1f} mm",
+                                        std::hypot(f.x(), f.y()), std::abs(f.z()),
+                                        1e3 * state.deflection_m.norm())
+                                .c_str());
+  parts_->window->Render();
+  if (parts_->interactor) parts_->interactor->ProcessEvents();
+}
+
+core::Result<void> View::save_png(const std::filesystem::path& path) const {
+  const int* size = parts_->window->GetSize();
+  vtkNew<vtkUnsignedCharArray> pixels;  // RGB, row by row from below
+  parts_->window->GetPixelData(0, 0, size[0] - 1, size[1] - 1, 0, pixels, 0);
+  vtkNew<vtkImageData> image;
+  image->SetDimensions(size[0], size[1], 1);
+  image->GetPointData()->SetScalars(pixels);
+  vtkNew<vtkPNGWriter> writer;
+  writer->SetInputData(image);
+  writer->WriteToMemoryOn();
+  writer->Write();
+  vtkUnsignedCharArray* png = writer->GetResult();
+  if (!png || png->GetNumberOfValues() == 0)
+    return core::Error{core::Errc::unavailable,
+                       path.string() + ": the picture could not be read back"};
+  const std::span bytes(png->GetPointer(0), static_cast<std::size_t>(png->GetNumberOfValues()));
+  return core::write_file(path, std::as_bytes(bytes));
+}
+
+bool View::closed() const { return parts_->closed; }
+
+}  // namespace view
