@@ -21,7 +21,7 @@ constexpr double kTolerance_N = 1e-3;  // [Zoller2020, "Iterative pedicle probe 
 // how it came: a residual is up to k⁻¹ times as much deflection, and that many walls' stiffness
 // more in force.
 constexpr double kPolished_N = 1e-7;
-constexpr double kRounding_N = 2e-5;  // what misses less and falls no more is the field's rounding
+constexpr double kRounding_N = 2e-6;  // what misses less and falls no more is the field's rounding
 constexpr int kMostIterations = 60;
 
 /// One trial bending and what follows from it.
@@ -45,7 +45,9 @@ class Solver {
   Equilibrium solve(const Vec2& start_m, std::span<Vec3> force_H_N) {
     bend(start_m, *now_);
     keep_best();
-    double radius = 0.5 * voxel_m_;
+    // Short first, so that where a rest has ceased to be, the shank slides to the next one down and
+    // is not thrown over it.
+    double radius = 0.1 * voxel_m_;
     while (iterations_ < kMostIterations && now_->miss_N() >= kTolerance_N) step(radius);
     while (iterations_ < kMostIterations && now_->miss_N() > kPolished_N) {
       if (polish()) continue;
@@ -91,7 +93,7 @@ class Solver {
       radius = 0.25 * s.norm();
     else if (truth > 0.75)
       radius = std::max(radius, 2.5 * s.norm());
-    if (truth > 1e-3) {
+    if (truth > 0.25) {
       std::swap(now_, next_);
       keep_best();
     }
@@ -104,7 +106,7 @@ class Solver {
     const Vec2 s = -now_->stiffness_N_per_m.inverse() * now_->residual_N;
     if (!(s.norm() < 0.5 * voxel_m_)) return false;
     bend(now_->deflection_m + s, *next_);
-    if (!(next_->miss_N() < 0.25 * now_->miss_N())) return false;
+    if (!(next_->miss_N() < 0.5 * now_->miss_N())) return false;
     std::swap(now_, next_);
     keep_best();
     return true;
