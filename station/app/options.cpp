@@ -17,6 +17,9 @@ constexpr const char* kExamples = R"(Examples:
 const std::map<std::string, session::Speed> kSpeeds{{"real", session::Speed::real},
                                                     {"fast", session::Speed::fast}};
 
+const std::map<std::string, Show> kShows{
+    {"none", Show::none}, {"window", Show::window}, {"offscreen", Show::offscreen}};
+
 void add_data(CLI::App& app, Options& options, bool needed) {
   auto* data = app.add_option("--data", options.data, "the station's folder; made when missing");
   if (needed) data->required();
@@ -49,6 +52,11 @@ void add_run(CLI::App& app, Options& options) {
   app.add_option("--trials", options.trials, "how many, one after the other")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
+  app.add_option("--view", options.show, "window, offscreen (drawn, not shown) or none")
+      ->transform(CLI::CheckedTransformer(kShows))
+      ->default_str("none");
+  app.add_option("--picture", options.picture,
+                 "PNG of the (last) trial: bone cut open, probe, the tip's way");
   app.add_flag("--follow", options.follow,
                "a JSON line on standard error whenever samples have reached the disk");
 }

@@ -41,24 +41,30 @@ core::Result<std::optional<trial::Answer>> answer_of(const Options& options,
   return core::Error{core::Errc::bad_input, fmt::format("{}: no such wall", wall)};
 }
 
-session::Watch watch_of(const Options& options, const core::Progress& shown) {
-  return [&options, &shown, said = std::uint64_t{0}](const session::Glimpse& seen) mutable {
-    if (options.follow && seen.samples_safe != said) {
-      said = seen.samples_safe;
-      fmt::print(stderr, "{}\n",
-                 core::Json{{"trial_id", seen.trial_id}, {"samples_safe", said}}.dump());
-    }
-    shown(seen.progress);
-    return !asked_to_stop();
-  };
+session::Watch watch_of(const Options& options, const core::Progress& shown, Onlooker& onlooker) {
+  return
+      [&options, &shown, &onlooker, said = std::uint64_t{0}](const session::Glimpse& seen) mutable {
+        if (options.follow && seen.samples_safe != said) {
+          said = seen.samples_safe;
+          fmt::print(stderr, "{}\n",
+                     core::Json{{"trial_id", seen.trial_id}, {"samples_safe", said}}.dump());
+        }
+        shown(seen.progress);
+        const bool looking = onlooker.look(seen);
+        return looking && !asked_to_stop();
+      };
 }
 
 core::Result<TrialReport> one_trial(const Options& options, session::Station& station,
                                     const std::shared_ptr<const session::PreparedCase>& prepared,
                                     std::uint64_t seed) {
   if (auto ready = station.prepare(prepared, seed); !ready) return ready.error();
+  auto onlooker = Onlooker::make(*prepared, options.show, options.picture);
+  if (!onlooker) return onlooker.error();
   const core::Progress shown = core::terminal_progress(fmt::format("Trial, seed {}", seed));
-  if (auto ran = station.run(watch_of(options, shown)); !ran) return ran.error();
+  if (auto ran = station.run(watch_of(options, shown, *onlooker)); !ran) return ran.error();
+  if (auto left = onlooker->leave_picture(); !left)
+    std::fprintf(stderr, "warning: no picture: %s\n", left.error().what.c_str());
   std::optional<trial::Answer> said;
   if (station.state() == session::State::answering) {
     auto answer = answer_of(options, station);

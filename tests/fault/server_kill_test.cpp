@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <atomic>
 #include <random>
 #include <thread>
 
@@ -28,10 +29,10 @@ struct HandOver {
 
 class KilledServer {
  public:
-  /// Goes on handing over until the connection breaks.
-  void hand_over(Client& client) {
-    while (step(client)) {
-    }
+  /// Goes on handing over until the connection breaks; `steps` counts the requests begun.
+  void hand_over(Client& client, std::atomic<int>& steps) {
+    do ++steps;
+    while (step(client));
   }
   /// What must hold whenever the server is up again.
   void check(Client& client) {
@@ -122,13 +123,17 @@ TEST(KilledAtAnyMoment, TheServerLosesNothingItAcknowledgedAndKeepsNoHalfTrial) 
     ServerProcess server(station.world().data);
     client.speak_to(server.port());
     station.check(client);
-    const auto after =
-        std::chrono::microseconds(std::uniform_int_distribution<int>(0, 40'000)(random));
+    // Within one of the next requests, wherever the machine is by then.
+    const int request = std::uniform_int_distribution<int>(1, 8)(random);
+    const std::chrono::microseconds within(std::uniform_int_distribution<int>(0, 3000)(random));
+    std::atomic<int> steps = 0;
     std::thread killer([&] {
-      std::this_thread::sleep_for(after);
+      while (steps < request) std::this_thread::sleep_for(std::chrono::microseconds(100));
+      std::this_thread::sleep_for(within);
       ::kill(server.pid(), SIGKILL);
     });
-    station.hand_over(client);
+    station.hand_over(client, steps);
+    steps = request;
     killer.join();
   }
   ServerProcess last(station.world().data);
