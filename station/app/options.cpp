@@ -40,6 +40,7 @@ void add_run(CLI::App& app, Options& options) {
                  "a case's folder, or 8 or more characters of the id of one in the data folder");
   app.add_option("--model", options.model_file, "feel the case by this model instead of its own");
   app.add_option("--seed", options.setup.seed, "of the simulated hand; +1 for each further trial")
+      ->check(CLI::Range(0.0, 9e15))
       ->capture_default_str();
   app.add_option("--duration", options.setup.duration_s, "s, of the trial")
       ->check(CLI::Range(1.0, 3600.0))

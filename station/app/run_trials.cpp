@@ -7,6 +7,7 @@
 
 #include "station/app/deeds.hpp"
 #include "station/app/exchange.hpp"
+#include "station/session/scores.hpp"
 #include "station/session/station.hpp"
 
 namespace app {
@@ -101,6 +102,18 @@ void print_report(const TrialReport& report, bool fast) {
   fmt::print("  answer: {}\n  {}\n", answer_text(report), report.file.string());
 }
 
+void print_scores(const session::Scores& scores) {
+  for (const auto& [info, score] : scores)
+    if (score.value) fmt::print("  {:<34} {:>10.4g} {}\n", info.label, *score.value, info.unit);
+}
+
+core::Json json_of(const TrialReport& report, const session::Scores& scores) {
+  core::Json out = report.to_json();
+  out["metrics"] = core::Json::array();
+  for (const auto& [info, score] : scores) out["metrics"].push_back(metrics::to_json(info, score));
+  return out;
+}
+
 void say_recovered(const session::Recovered& recovered) {
   for (const auto& one : recovered.trials)
     std::fprintf(stderr, "an interrupted trial was kept: %s, %llu samples\n", one.trial_id.c_str(),
@@ -140,8 +153,12 @@ core::Result<int> run_trials(const Options& options) {
     auto report = one_trial(options, station, *prepared, options.setup.seed + std::uint64_t(i));
     if (!report) return report.error();
     faulted = faulted || !report->complete;
-    trials.push_back(report->to_json());
-    if (!options.json) print_report(*report, options.setup.speed == session::Speed::fast);
+    auto scores = session::scores_of(report->file, (*prepared)->opened.definition.tract);
+    if (!scores) return scores.error();
+    trials.push_back(json_of(*report, *scores));
+    if (options.json) continue;
+    print_report(*report, options.setup.speed == session::Speed::fast);
+    print_scores(*scores);
   }
   const core::Json uploads = hand_over_after(options, *folder);
   if (options.json)
