@@ -129,6 +129,9 @@ core::Result<Bisquare> bisquare(const Design& design, const Vector& response,
   Bisquare fit;
   fit.names = design.names;
   if (!start(design.columns, response, fit)) return collinear_error(design);
+  if (!std::isfinite(fit.ols_sigma) || !fit.covariance.allFinite())
+    return core::Error{core::Errc::out_of_range,
+                       "the numbers are too large or too small for sums of squares: rescale them"};
   Problem problem{design.columns, response, options.tuning, 1e-6 * sample_deviation(response),
                   (1.0 - fit.leverage.array()).rsqrt()};
   if (problem.tiny_sigma == 0.0) problem.tiny_sigma = 1.0;

@@ -39,7 +39,8 @@ struct Bisquare {
   bool converged = false;
 };
 
-/// Errors: bad_input (check(), collinear columns by name).
+/// Errors: bad_input (check(), collinear columns by name); out_of_range where sums of squares leave
+/// a double or too few observations keep a weight.
 core::Result<Bisquare> bisquare(const Design& design, const Vector& response,
                                 const BisquareOptions& options = {});
 

@@ -100,9 +100,11 @@ std::string collinear_columns(const Design& design) {
 }
 
 core::Error collinear_error(const Design& design) {
-  const std::string named = collinear_columns(design);
-  return wrong("the columns are collinear: " +
-               (named.empty() ? "they agree to the last digits of a double" : named));
+  if (const std::string named = collinear_columns(design); !named.empty())
+    return wrong("the columns are collinear: " + named);
+  return {
+      core::Errc::out_of_range,
+      "the columns are too large, too small or too close to collinear for a double: rescale them"};
 }
 
 }  // namespace statistics

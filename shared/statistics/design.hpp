@@ -29,7 +29,7 @@ core::Result<void> check(const Design& design, const Vector& response);
 /// Names the columns that others already determine, with those others: "x3 is a linear combination
 /// of x1, x2". Nothing wrong: empty.
 std::string collinear_columns(const Design& design);
-/// That, as an Error bad_input.
+/// That, as an Error bad_input; out_of_range where none can be named.
 core::Error collinear_error(const Design& design);
 
 }  // namespace statistics

@@ -97,10 +97,11 @@ double noncentral_t_upper(double t, double df, double delta) {
   if (!(df > 0.0) || !std::isfinite(t) || !std::isfinite(delta)) return kNaN;
   return bm::cdf(bm::complement(NonCentralT(df, delta), t));
 }
-double binomial_cdf(double x, double n, double p) {
+double binomial_upper(double x, double n, double p) {
   if (!(n >= 0.0 && p >= 0.0 && p <= 1.0)) return kNaN;
-  if (x < 0.0) return 0.0;
-  return bm::cdf(Binomial(n, p), std::min(std::floor(x), n));
+  if (x <= 0.0) return 1.0;
+  if (x > n) return 0.0;
+  return bm::cdf(bm::complement(Binomial(n, p), x - 1.0));
 }
 
 double studentized_range_upper(double q, double groups, double df) {

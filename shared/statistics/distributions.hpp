@@ -34,8 +34,8 @@ double noncentral_f_upper(double f, double df1, double df2, double lambda);
 double noncentral_t_cdf(double t, double df, double delta);
 /// P(T ≥ t) for the noncentral t.
 double noncentral_t_upper(double t, double df, double delta);
-/// P(X ≤ x) for X ~ Binomial(n, p).
-double binomial_cdf(double x, double n, double p);
+/// P(X ≥ x) for X ~ Binomial(n, p), x whole.
+double binomial_upper(double x, double n, double p);
 /// P(Q ≥ q) for the range of `groups` standard normals over an independent s with `df` degrees of
 /// freedom (Tukey). Absolute error below 1e-10.
 double studentized_range_upper(double q, double groups, double df);
