@@ -3,6 +3,7 @@
 
 #include "app/stats_report.hpp"
 #include "statistics/bisquare.hpp"
+#include "statistics/glmm.hpp"
 #include "statistics/lmm.hpp"
 #include "statistics/logistic.hpp"
 #include "statistics/ols.hpp"
@@ -201,47 +202,88 @@ core::Result<Json> firth_report(const Analysis& of, const Design& design,
 
 }  // namespace
 
-core::Result<Json> logistic_report(const Analysis& of) {
-  if (!of.formula.group.empty())
-    return wrong("logistic takes no (1|" + of.formula.group + "): it knows no groups");
-  const auto design = design_of(of.formula, of.table);
-  if (!design) return design.error();
-  const auto counts = counts_of(of);
-  if (!counts) return counts.error();
-  const auto fit = statistics::logistic(*design, *counts);
-  if (!fit && fit.error().code == core::Errc::out_of_range)
-    return firth_report(of, *design, *counts);
+namespace {
+
+core::Result<Json> mixed_report(const Analysis& of, const Design& design,
+                                const statistics::Counts& counts) {
+  const auto& cells = of.table.texts(of.formula.group);
+  const auto fit = statistics::logistic_mixed(design, counts, {cells.begin(), cells.end()});
   if (!fit) return located(of, fit.error());
   const Vector odds = fit->coefficients.array().exp();
-  Vector low(odds.size()), high(odds.size());
-  for (Eigen::Index j = 0; j < odds.size(); ++j) {
-    const auto ends = statistics::profile_interval(*design, *counts, *fit, j);
-    low[j] = ends ? ends->first : std::nan("");
-    high[j] = ends ? ends->second : std::nan("");
-  }
-  Json out = report_head(of, "logistic regression");
+  Json out = report_head(of, "logistic mixed model, random intercept, 50-node quadrature");
   out["coefficients"] = coefficient_table(fit->names, {{"estimate", &fit->coefficients},
                                                        {"standard_error", &fit->standard_errors},
                                                        {"z", &fit->z},
                                                        {"p", &fit->p},
-                                                       {"profile95_low", &low},
-                                                       {"profile95_high", &high},
                                                        {"odds_ratio", &odds}});
-  out["model"] = {{"deviance", fit->deviance},
-                  {"null_deviance", fit->null_deviance},
-                  {"df_residual", fit->df_residual},
-                  {"likelihood_ratio", fit->lr_chi_squared},
-                  {"likelihood_ratio_df", fit->lr_df},
-                  {"likelihood_ratio_p", fit->lr_p},
-                  {"log_likelihood", fit->log_likelihood},
-                  {"AIC", fit->aic},
-                  {"pearson_dispersion", fit->dispersion}};
-  if (counts->trials.maxCoeff() > 1.0) {
-    const auto quasi = statistics::quasi_binomial(*fit);
-    out["allowing_for_dispersion"] = coefficient_table(
-        fit->names, {{"standard_error", &quasi.standard_errors}, {"t", &quasi.t}, {"p", &quasi.p}});
-  }
+  out["model"] = {{"groups", fit->groups.size()},
+                  {"sd_between_groups", fit->sigma_u},
+                  {"sd_between_groups_se", fit->sigma_u_se},
+                  {"log_likelihood", fit->log_likelihood}};
+  out["notes"] = Json::array();
+  if (fit->sigma_u == 0.0)
+    out["notes"].push_back("the spread between groups is estimated as 0: this is plain logistic");
+  if (fit->groups.size() < 30)
+    out["notes"].push_back(
+        fmt::format("{} groups: the normal p is somewhat too small; an exact "
+                    "permutation test is safer",
+                    fit->groups.size()));
   return out;
+}
+
+/// Likelihood-profile ends of every coefficient; NaN where the likelihood does not bound it.
+std::pair<Vector, Vector> profiles(const Design& design, const statistics::Counts& counts,
+                                   const statistics::Logistic& fit) {
+  Vector low(fit.coefficients.size()), high(fit.coefficients.size());
+  for (Eigen::Index j = 0; j < low.size(); ++j) {
+    const auto ends = statistics::profile_interval(design, counts, fit, j);
+    low[j] = ends ? ends->first : std::nan("");
+    high[j] = ends ? ends->second : std::nan("");
+  }
+  return {low, high};
+}
+
+Json plain_report(const Analysis& of, const Design& design, const statistics::Counts& counts,
+                  const statistics::Logistic& fit) {
+  const Vector odds = fit.coefficients.array().exp();
+  const auto [low, high] = profiles(design, counts, fit);
+  Json out = report_head(of, "logistic regression");
+  out["coefficients"] = coefficient_table(fit.names, {{"estimate", &fit.coefficients},
+                                                      {"standard_error", &fit.standard_errors},
+                                                      {"z", &fit.z},
+                                                      {"p", &fit.p},
+                                                      {"profile95_low", &low},
+                                                      {"profile95_high", &high},
+                                                      {"odds_ratio", &odds}});
+  out["model"] = {{"deviance", fit.deviance},
+                  {"null_deviance", fit.null_deviance},
+                  {"df_residual", fit.df_residual},
+                  {"likelihood_ratio", fit.lr_chi_squared},
+                  {"likelihood_ratio_df", fit.lr_df},
+                  {"likelihood_ratio_p", fit.lr_p},
+                  {"log_likelihood", fit.log_likelihood},
+                  {"AIC", fit.aic},
+                  {"pearson_dispersion", fit.dispersion}};
+  if (counts.trials.maxCoeff() <= 1.0) return out;
+  const auto quasi = statistics::quasi_binomial(fit);
+  out["allowing_for_dispersion"] = coefficient_table(
+      fit.names, {{"standard_error", &quasi.standard_errors}, {"t", &quasi.t}, {"p", &quasi.p}});
+  return out;
+}
+
+}  // namespace
+
+core::Result<Json> logistic_report(const Analysis& of) {
+  const auto design = design_of(of.formula, of.table);
+  if (!design) return design.error();
+  const auto counts = counts_of(of);
+  if (!counts) return counts.error();
+  if (!of.formula.group.empty()) return mixed_report(of, *design, *counts);
+  const auto fit = statistics::logistic(*design, *counts);
+  if (!fit && fit.error().code == core::Errc::out_of_range)
+    return firth_report(of, *design, *counts);
+  if (!fit) return located(of, fit.error());
+  return plain_report(of, *design, *counts, *fit);
 }
 
 }  // namespace commands

@@ -79,6 +79,30 @@ std::string Table::add_row(std::size_t line, const std::vector<std::string_view>
   return "";
 }
 
+core::Result<void> Table::read_header(std::string_view line,
+                                      std::vector<std::string_view>& header) {
+  if (std::ranges::any_of(line, [](char c) {
+        return (static_cast<unsigned char>(c) < 32 && c != '\t' && c != '\r') || c == 127;
+      }))
+    return wrong(name_ + ":1: this is no text file");
+  if (!split(line, header) || (header.size() == 1 && header[0].empty()))
+    return wrong(name_ + ":1: the header line is empty or leaves a quote open");
+  for (const auto& column : wanted_) {
+    const auto at = std::ranges::find(header, column);
+    if (at == header.end()) {
+      const auto listed = header.size() > 20
+                              ? fmt::format("{} others", header.size())
+                              : shown(fmt::format("{}", fmt::join(header, ", ")), 400);
+      return wrong(
+          fmt::format("{}: there is no column '{}'; the columns are {}", name_, column, listed));
+    }
+    if (std::ranges::count(header, column) > 1)
+      return wrong(fmt::format("{}: column '{}' stands there twice", name_, column));
+    places_.push_back(static_cast<std::size_t>(at - header.begin()));
+  }
+  return {};
+}
+
 core::Result<Table> Table::read(const std::filesystem::path& path,
                                 std::span<const std::string> columns, bool drop_missing) {
   auto bytes = core::read_file(path, kLargest);
@@ -91,26 +115,7 @@ core::Result<Table> Table::read(const std::filesystem::path& path,
   std::string_view rest = core::text_of(out.bytes_);
   if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
   std::vector<std::string_view> header, cells;
-  const auto first_line = next_line(rest);
-  if (std::ranges::any_of(first_line, [](char c) {
-        return (static_cast<unsigned char>(c) < 32 && c != '\t' && c != '\r') || c == 127;
-      }))
-    return wrong(out.name_ + ":1: this is no text file");
-  if (!split(first_line, header) || (header.size() == 1 && header[0].empty()))
-    return wrong(out.name_ + ":1: the header line is empty or leaves a quote open");
-  for (const auto& column : out.wanted_) {
-    const auto at = std::ranges::find(header, column);
-    if (at == header.end()) {
-      const auto listed = header.size() > 20
-                              ? fmt::format("{} others", header.size())
-                              : shown(fmt::format("{}", fmt::join(header, ", ")), 400);
-      return wrong(fmt::format("{}: there is no column '{}'; the columns are {}", out.name_, column,
-                               listed));
-    }
-    if (std::ranges::count(header, column) > 1)
-      return wrong(fmt::format("{}: column '{}' stands there twice", out.name_, column));
-    out.places_.push_back(static_cast<std::size_t>(at - header.begin()));
-  }
+  if (auto fine = out.read_header(next_line(rest), header); !fine) return fine.error();
   for (std::size_t line = 2; !rest.empty(); ++line) {
     const auto text = next_line(rest);
     if (trimmed(text).empty()) continue;

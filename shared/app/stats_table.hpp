@@ -33,6 +33,8 @@ class Table {
   const std::string& name() const { return name_; }
 
  private:
+  core::Result<void> read_header(std::string_view line, std::vector<std::string_view>& header);
+  /// Keeps the row's wanted cells; otherwise says what is wrong.
   std::string add_row(std::size_t line, const std::vector<std::string_view>& cells,
                       bool drop_missing);
   std::string name_;

@@ -68,6 +68,18 @@ Scaled<T> scaled(const Design& design, const Vector& response) {
   return s;
 }
 
+/// What follows from the residual and the total sum of squares, with k columns beside an intercept.
+template <class T>
+void add_model(T rss, T tss, Eigen::Index k, Eigen::Index df_residual, Ols& out) {
+  const T df = T(df_residual);
+  out.rss = static_cast<double>(rss);
+  out.sigma = static_cast<double>(std::sqrt(rss / df));
+  out.r_squared = static_cast<double>(T(1) - rss / tss);
+  out.adjusted_r_squared = static_cast<double>(T(1) - (rss / df) / (tss / T(df_residual + k)));
+  out.f_df1 = static_cast<double>(k);
+  out.f = k > 0 ? static_cast<double>(((tss - rss) / T(k)) / (rss / df)) : kNaN;
+}
+
 /// Coefficients, (XᵀX)⁻¹, fitted values, residuals and leverage; the rest follows in double.
 /// False when the columns are collinear.
 template <class T>
@@ -108,14 +120,7 @@ bool solve(const Design& design, const Vector& response, Ols& out) {
   out.leverage = leverage.template cast<double>();
   out.residuals = residuals.template cast<double>();
   out.fitted = response - out.residuals;
-  const T rss = residuals.squaredNorm(), tss = s.y.squaredNorm();
-  const T df = T(n - k - first);
-  out.rss = static_cast<double>(rss);
-  out.sigma = static_cast<double>(std::sqrt(rss / df));
-  out.r_squared = static_cast<double>(T(1) - rss / tss);
-  out.adjusted_r_squared = static_cast<double>(T(1) - (rss / df) / (tss / T(n - first)));
-  out.f_df1 = static_cast<double>(k);
-  out.f = k > 0 ? static_cast<double>(((tss - rss) / T(k)) / (rss / df)) : kNaN;
+  add_model<T>(residuals.squaredNorm(), s.y.squaredNorm(), k, n - k - first, out);
   return true;
 }
 

@@ -77,6 +77,29 @@ TEST(Ols, HoldsOnTheCollinearHaldCementData) {
              golden::expected("ols_hald")["fit"], 1e-10);
 }
 
+TEST(Ols, HoldsOnCarsmall) {
+  const golden::Csv csv("data/carsmall_93.csv");
+  Matrix x(93, 3);
+  x << csv.numbers("weight"), csv.numbers("horsepower"), csv.numbers("acceleration");
+  expect_fit(with_intercept(x, {"weight", "horsepower", "acceleration"}), csv.numbers("mpg"),
+             golden::expected("ols_carsmall")["fit"], 1e-10);
+}
+
+TEST(Ols, GivesTheSameLineForManyCopiesOfTheData) {
+  // 15 000 copies of Table 2 pass the size up to which 80-bit arithmetic is used: the line stays,
+  // the residual sum of squares is 15 000 times as large.
+  const PaperTables paper;
+  const auto& want = paper.want["table3"];
+  const Eigen::Index copies = 15000;
+  const Matrix x = paper.design.columns.col(1).replicate(copies, 1);
+  const Vector y = paper.csv.numbers("wrong_breach").replicate(copies, 1);
+  const auto fit = ols(with_intercept(x, {"years"}), y);
+  ASSERT_TRUE(fit);
+  expect_near(fit->coefficients, want["coef"], 1e-12, "coef");
+  expect_near(fit->rss / static_cast<double>(copies), want["rss"], 1e-12, "rss");
+  expect_near(fit->r_squared, want["r2"], 1e-11, "r2");
+}
+
 TEST(Ols, KeepsTwelveDigitsWhenXIsFarFromZero) {
   const core::Json reference = golden::expected("ols_hard_offset_exact");
   for (const auto& [name, want] : reference["cases"].items()) {

@@ -120,6 +120,10 @@ TEST_F(Stats, GivesTheReferenceValuesByEveryMethod) {
   const auto want = expected("logistic")["paper_table2"];
   expect_near(logistic["coefficients"][1]["estimate"], want["coef"][1], 1e-11);
   expect_near(logistic["model"]["likelihood_ratio_p"], want["LR_p"], 1e-11);
+
+  const auto mixed = json("logistic", "glmm_paper_total.csv", "y/m ~ experience_years + (1|group)");
+  const auto want_mixed = expected("glmm_random_intercept")["fits"]["glmm_paper_total"]["exact_ML"];
+  expect_near(mixed["model"]["sd_between_groups"], want_mixed["sigma_u"], 1e-8);
 }
 
 TEST_F(Stats, MakesFactorsOfTextAndOfNumbersOnRequest) {

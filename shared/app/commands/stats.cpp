@@ -62,7 +62,7 @@ Command stats_command() {
         app.add_option("--data", options->data, "CSV file with a header line")->required();
         app.add_option("--formula", options->formula,
                        "y ~ x + text_column + factor(number) + (1|subject); 0 for no intercept; "
-                       "successes/trials on the left for logistic")
+                       "successes/trials on the left for logistic (with (1|subject): mixed)")
             ->required();
         app.add_flag("--drop-missing", options->drop_missing,
                      "leave out rows with an empty cell in a column used, and say how many");
