@@ -26,8 +26,8 @@ TEST(LogisticMixed, ReachesTheExactMaximumToEightDigits) {
     expect_near(fit->coefficients, want["fixef"], 1e-8, name + " fixef");
     expect_near(fit->sigma_u, want["sigma_u"], 1e-8, name + " sigma");
     expect_near(fit->log_likelihood, want["logLik"], 1e-8, name + " logLik");
-    expect_near(fit->standard_errors, want["se_fixef"], 1e-7, name + " se");
-    expect_near(fit->sigma_u_se, want["se_sigma_u"], 1e-7, name + " se sigma");
+    expect_near(fit->standard_errors, want["se_fixef"], 1e-8, name + " se");
+    expect_near(fit->sigma_u_se, want["se_sigma_u"], 1e-8, name + " se sigma");
   }
   EXPECT_EQ(compared, 4);
 }

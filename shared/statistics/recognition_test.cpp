@@ -34,7 +34,7 @@ TEST(Proportions, DifferenceAgreesWithNewcombeAndFisher) {
   for (const auto& want : reference["difference"]) {
     const Proportion a{want["x1"], want["n1"]}, b{want["x2"], want["n2"]};
     expect_interval(newcombe_difference(a, b), want["newcombe95"], "newcombe");
-    expect_near(fisher_exact(a, b), want["fisher_p"], 1e-11, "fisher");
+    expect_near(fisher_exact(a, b), want["fisher_p"], 1e-12, "fisher");
   }
 }
 
@@ -52,10 +52,10 @@ void expect_detection(const core::Result<SignalDetection>& got, const core::Json
   // Sums of two z of order 1, which may cancel: 1e-12 of a z.
   EXPECT_NEAR(got->d_prime, want["d_prime"].get<double>(), 1e-12) << what;
   EXPECT_NEAR(got->criterion, want["criterion_c"].get<double>(), 1e-12) << what;
-  expect_near(got->beta, want["beta"], 1e-11, what + " beta");
+  expect_near(got->beta, want["beta"], 1e-12, what + " beta");
   expect_near(got->a_prime, want["A_prime"], 1e-12, what + " A'");
   expect_near(got->auc, want["auc_equal_var"], 1e-12, what + " auc");
-  expect_near(got->variance, want["var_d_GourevitchGalanter"], 1e-11, what + " var");
+  expect_near(got->variance, want["var_d_GourevitchGalanter"], 1e-12, what + " var");
   EXPECT_NEAR(got->d_prime_95.low, want["ci95"][0].get<double>(), 1e-12) << what;
   EXPECT_NEAR(got->d_prime_95.high, want["ci95"][1].get<double>(), 1e-12) << what;
 }
@@ -102,7 +102,7 @@ TEST(ConfusionMatrix, AgreesWithRToTwelveDigits) {
     expect_near(got->macro_f1, want["macro_f1"], 1e-12, name);
     expect_near(got->weighted_f1, want["weighted_f1"], 1e-12, name);
     expect_near(got->mcc, want["mcc_multiclass_RK"], 1e-12, name);
-    expect_near(got->p_above_no_information, want["p_acc_gt_nir"], 1e-11, name);
+    expect_near(got->p_above_no_information, want["p_acc_gt_nir"], 1e-12, name);
     expect_near(got->mutual_information_bits, want["mutual_information_bits"], 1e-12, name);
     if (want.contains("bowker_symmetry_chi2"))
       expect_near(got->bowker, want["bowker_symmetry_chi2"], 1e-12, name);

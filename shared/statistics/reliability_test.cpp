@@ -69,9 +69,9 @@ TEST(Icc, AgreesWithShroutAndFleissAndR) {
     expect_near(got->icc3k, want["ICC3k"], 1e-11, name);
     expect_near(got->p1, want["F1_p"], 1e-11, name);
     expect_near(got->p23, want["F23_p"], 1e-11, name);
-    expect_interval(got->icc1_95, want["ci95_ICC1"], 1e-10, name + " 1");
-    expect_interval(got->icc2_95, want["ci95_ICC2"], 1e-10, name + " 2");
-    expect_interval(got->icc3_95, want["ci95_ICC3"], 1e-10, name + " 3");
+    expect_interval(got->icc1_95, want["ci95_ICC1"], 1e-11, name + " 1");
+    expect_interval(got->icc2_95, want["ci95_ICC2"], 1e-11, name + " 2");
+    expect_interval(got->icc3_95, want["ci95_ICC3"], 1e-11, name + " 3");
     expect_near(got->sem_agreement, want["SEM_agreement"], 1e-11, name);
     expect_near(got->mdc95_consistency, want["MDC95_consistency"], 1e-11, name);
   }

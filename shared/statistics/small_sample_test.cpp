@@ -175,7 +175,7 @@ TEST(Learning, CurvesReachTheFiftyDigitOptimum) {
     ASSERT_TRUE(fit) << key;
     expect_near(fit->coefficients, want["coef"], 1e-8, key);
     expect_near(fit->standard_errors, want["se"], 1e-8, key);
-    expect_near(fit->p, want["p_value"], 1e-7, key);
+    expect_near(fit->p, want["p_value"], 1e-8, key);
     expect_near(fit->rss, want["rss"], 1e-10, key);
     expect_near(fit->aic, want["AIC"], 1e-10, key);
     expect_near(fit->aicc, want["AICc"], 1e-10, key);
