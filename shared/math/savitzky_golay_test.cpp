@@ -7,9 +7,9 @@
 namespace math {
 namespace {
 
-TEST(SavitzkyGolay, HasThePublishedWeights) {
-  // [SavitzkyGolay1964], tables I and IV: 5 points, order 2: smoothing (-3 12 17 12 -3)/35, slope
-  // (-2 -1 0 1 2)/10.
+TEST(SavitzkyGolay, HasTheKnownWeightsOfFivePoints) {
+  // Exact rationals for 5 points, order 2 (tests/golden/statistics/motion_metrics.json): smoothing
+  // (-3 12 17 12 -3)/35, slope (-2 -1 0 1 2)/10.
   const double smooth[] = {-3 / 35., 12 / 35., 17 / 35., 12 / 35., -3 / 35.};
   const double slope[] = {-.2, -.1, 0., .1, .2};
   for (int i = 0; i < 5; ++i) {

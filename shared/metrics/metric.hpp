@@ -1,10 +1,13 @@
 /// One score of a trial: a number with its unit and what it means. One file each in catalogue/.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "core/json.hpp"
 #include "trial/trial.hpp"
 #include "volume/tract.hpp"
 
@@ -42,10 +45,37 @@ struct MetricInfo {
 std::vector<MetricInfo> all();
 
 /// Wall contact unrolled: for the 3-D page and the coverage metrics.
+///
+/// A sample touches a wall when the part of the model's force that is perpendicular to the tract's
+/// axis is at least kContact_N and the tip lies between mouth and end. Its bin is the tip's depth
+/// along the axis and the direction from which that force comes: bone pushes the probe away from
+/// itself, so the wall that is touched lies opposite to the force, wherever the shank leans.
+/// (The tip's offset from the axis would name the same wall while the tip touches, and a wrong one
+/// while only the shank does.) Own definition.
 struct Coverage {
   int depth_bins = 0, angle_bins = 0;
-  std::vector<std::uint32_t>
-      samples;  ///< [depth][angle]; angle 0 = medial, quarter turn = superior, half = lateral
+  /// [depth][angle], samples that touched. Bins are centred on their angle: 0 = medial, a quarter
+  /// turn = superior, half a turn = lateral.
+  std::vector<std::uint32_t> samples;
+
+  /// Counts one contact; a depth outside 0 … 1 (of the tract's length) is not counted.
+  void add(double depth_share, double angle_rad);
+  /// Share of bins touched: of all side walls, or of one side wall's quarter.
+  double share(std::optional<volume::Wall> side = {}) const;
 };
+
+/// From here on a force is a contact, N [Zoller2020, Table 1].
+inline constexpr double kContact_N = 0.01;
+inline constexpr int kDepthBins = 10, kAngleBins = 12;
+
+/// Nothing when the trial's header does not place the tip.
+std::optional<Coverage> coverage(const Subject& subject);
+
+/// All scores of one trial, in the order of all().
+std::vector<std::pair<MetricInfo, Score>> score_all(const Subject& subject);
+
+/// {"id","label","unit","value"|null,"note","definition","source"}: as files, tool and server say
+/// it.
+core::Json to_json(const MetricInfo& info, const Score& score);
 
 }  // namespace metrics

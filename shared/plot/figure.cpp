@@ -59,7 +59,7 @@ double widest(const Axis& axis) {
   return out;
 }
 
-void choose_axes(const Panel& panel, Prepared& out) {
+void choose_axes(const Panel& panel, double width_px, Prepared& out) {
   Range across, left, right;
   for (const Line& line : panel.lines) {
     core::require(line.x.size() == line.y.size(), "a line has as many x as y");
@@ -83,7 +83,7 @@ void choose_axes(const Panel& panel, Prepared& out) {
   for (const Mark& mark : panel.marks)
     (mark.right_axis && out.has_right ? right : left).take(mark.at);
   const int wanted = std::max(2, int(panel.height_px / 42.0));
-  out.across = Axis::linear(across, 8, true);
+  out.across = Axis::linear(across, std::max(3, int(width_px / 110.0)), true);
   out.left = panel.log_y ? Axis::decades(left) : Axis::linear(left, wanted, false);
   out.right = Axis::linear(right, wanted, false);
   out.left_px = widest(out.left) + 10.0 + (panel.y_label.empty() ? 0.0 : 18.0);
@@ -288,7 +288,7 @@ class Page {
         all_(figure.panels.size()) {
     for (std::size_t k = 0; k < all_.size(); ++k) {
       all_[k].panel = &figure.panels[k];
-      choose_axes(figure.panels[k], all_[k]);
+      choose_axes(figure.panels[k], figure.width_px / double(columns_), all_[k]);
       choose_colours(figure.panels[k], all_[k]);
       left_ = std::max(left_, all_[k].left_px);
       right_ = std::max(right_, all_[k].right_px);

@@ -22,18 +22,38 @@ std::optional<std::size_t> channel_named(std::string_view name) {
   return std::size_t(found - kChannels.begin());
 }
 
+struct Extremes {
+  float low, high;
+};
+
+/// Eight at a time, each lane on its own, so that the compiler may use one instruction for all.
+Extremes extremes_of(std::span<const float> values) {
+  constexpr std::size_t kLanes = 8;
+  std::array<float, kLanes> low, high;
+  low.fill(values[0]);
+  high.fill(values[0]);
+  const std::size_t whole = values.size() - values.size() % kLanes;
+  for (std::size_t at = 0; at < whole; at += kLanes)
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const float v = values[at + lane];
+      low[lane] = v < low[lane] ? v : low[lane];
+      high[lane] = v > high[lane] ? v : high[lane];
+    }
+  for (const float v : values.subspan(whole)) {
+    low[0] = std::min(low[0], v);
+    high[0] = std::max(high[0], v);
+  }
+  return {*std::ranges::min_element(low), *std::ranges::max_element(high)};
+}
+
 Envelope envelope_of(std::span<const float> values, std::size_t per_point) {
   Envelope out;
   const std::size_t points = (values.size() + per_point - 1) / per_point;
   out.min.reserve(points);
   out.max.reserve(points);
   for (std::size_t at = 0; at < values.size(); at += per_point) {
-    const auto part = values.subspan(at, std::min(per_point, values.size() - at));
-    float low = part[0], high = part[0];
-    for (const float v : part) {
-      low = v < low ? v : low;
-      high = v > high ? v : high;
-    }
+    const auto [low, high] =
+        extremes_of(values.subspan(at, std::min(per_point, values.size() - at)));
     out.min.push_back(low);
     out.max.push_back(high);
   }

@@ -95,6 +95,29 @@ TEST(Signals, ARangeShowsTheSamplesInItAndNoOthers) {
   EXPECT_TRUE(none->channels[0].second.min.empty());
 }
 
+TEST(Signals, TheExtremesAreThoseOfASlowSearch) {
+  auto samples = ramp(1000);
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    samples[i].force_N = {0, 0, float(int(i * 7919 % 1009) - 500)};  // scattered, both signs
+  Signals signals(Header{}, {});
+  signals.add(samples);
+  for (const std::size_t points : {1, 3, 7, 60, 130, 999, 1000}) {
+    const auto view = signals.view(std::vector<std::string>{"force_z_N"}, 0, 1, points);
+    ASSERT_TRUE(view);
+    const auto& [low, high] = view->channels[0].second;
+    for (std::size_t p = 0; p < low.size(); ++p) {
+      float least = 1e9f, most = -1e9f;
+      for (std::size_t i = p * view->samples_per_point;
+           i < std::min(samples.size(), (p + 1) * view->samples_per_point); ++i) {
+        least = std::min(least, samples[i].force_N[2]);
+        most = std::max(most, samples[i].force_N[2]);
+      }
+      ASSERT_EQ(low[p], least) << points << " points, point " << p;
+      ASSERT_EQ(high[p], most) << points << " points, point " << p;
+    }
+  }
+}
+
 TEST(Signals, NeverGivesMorePointsThanAskedFor) {
   Signals signals(Header{}, {});
   signals.add(ramp(1237));

@@ -100,6 +100,19 @@ std::optional<Answer> Trial::answer() const {
   return std::nullopt;
 }
 
+TickCounts count_ticks(std::span<const Sample> samples) {
+  TickCounts out;
+  for (const Sample& s : samples) {
+    out.not_converged += (s.flags & kNotConverged) != 0;
+    out.limited += (s.flags & kLimited) != 0;
+    out.late += (s.flags & kLate) != 0;
+    out.stale += (s.flags & kStale) != 0;
+    out.saturated += (s.flags & kSaturated) != 0;
+  }
+  if (!samples.empty()) out.skipped = std::uint64_t{samples.back().tick} + 1 - samples.size();
+  return out;
+}
+
 core::Json Header::to_json() const {
   return {{"format", "tractus-trial/1"},
           {"id", id},

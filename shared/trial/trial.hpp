@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -106,5 +107,12 @@ inline constexpr double kMaxMagnitude = 1e6;
 /// time outside 0 … kMaxTime_s or running backwards, a tick that does not increase, a quaternion
 /// that is no rotation. Empty if nothing.
 std::string fault_of(const Sample& sample, const Sample* before);
+
+/// How the loop that recorded `samples` fared.
+struct TickCounts {
+  std::uint64_t not_converged = 0, limited = 0, late = 0, stale = 0, saturated = 0;
+  std::uint64_t skipped = 0;  ///< ticks from 0 to the last one that left no sample
+};
+TickCounts count_ticks(std::span<const Sample> samples);
 
 }  // namespace trial

@@ -2,8 +2,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <cmath>
+#include <csignal>
 #include <cstring>
 #include <fstream>
 #include <limits>
@@ -111,7 +113,11 @@ class TrialFile : public testing::Test {
     return trial.error().what;
   }
 
-  const fs::path folder_ = fs::temp_directory_path() / ("tractus_trial_" + core::new_id());
+  /// In memory where the system offers it: these tests flush thousands of times.
+  static fs::path scratch() {
+    return fs::exists("/dev/shm") ? fs::path("/dev/shm") : fs::temp_directory_path();
+  }
+  const fs::path folder_ = scratch() / ("tractus_trial_" + core::new_id());
   const fs::path path_ = folder_ / "a.trial";
 };
 
@@ -222,6 +228,21 @@ TEST_F(TrialFile, AnyFlippedBitIsDetected) {
   }
 }
 
+TEST_F(TrialFile, AFrameThatIsMissingOrTwiceThereIsNoticed) {
+  write(4, 3, false);
+  const auto all = bytes();
+  const auto ends = edges();
+  const auto at = [&](std::size_t edge) { return all.begin() + std::ptrdiff_t(ends[edge]); };
+  core::Bytes without(all.begin(), at(3));
+  without.insert(without.end(), at(4), all.end());
+  put(without);
+  EXPECT_THAT(refusal(), HasSubstr("frame 4 where frame 3 is expected"));
+  core::Bytes twice(all.begin(), at(4));
+  twice.insert(twice.end(), at(3), all.end());
+  put(twice);
+  EXPECT_THAT(refusal(), HasSubstr("frame 3 where frame 4 is expected"));
+}
+
 TEST_F(TrialFile, AFlippedBitOfAnUnfinishedFileNeverGivesAWrongSample) {
   write(4, 3, false);
   auto all = bytes();
@@ -237,7 +258,7 @@ TEST_F(TrialFile, RecoveryEndsACutFileAnywhere) {
   write(6, 5, false);
   const auto all = bytes();
   const auto ends = edges();
-  for (std::size_t cut = ends[1]; cut <= all.size(); cut += 3) {
+  for (std::size_t cut = ends[1]; cut <= all.size(); cut += 17) {
     put(core::ByteView(all).first(cut));
     const auto kept = recover_trial(path_);
     ASSERT_TRUE(kept) << "cut at " << cut << ": " << kept.error().what;
@@ -289,6 +310,29 @@ TEST_F(TrialFile, RecoveryLeavesDamageInTheMiddleAlone) {
   put(all);
   EXPECT_FALSE(recover_trial(path_));
   EXPECT_EQ(bytes(), all);
+}
+
+TEST_F(TrialFile, AWriteThatTheDiskRefusesLeavesWholeFramesAndMayBeTriedAgain) {
+  auto writer = TrialWriter::create(path_, header());
+  ASSERT_TRUE(writer);
+  ASSERT_TRUE(writer->append(samples(0, 10)));
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit full = before;
+  full.rlim_cur = fs::file_size(path_) + 700;  // room for half of the next frame
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &full), 0);
+  const auto refused = writer->append(samples(10, 10));
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, core::Errc::io);
+  EXPECT_EQ(read_trial(path_)->samples.size(), 10u);
+  EXPECT_EQ(writer->samples_written(), 10u);
+  ASSERT_TRUE(writer->append(samples(10, 1)));  // shorter than what had been written of the other
+  ASSERT_TRUE(writer->finish());
+  const auto trial = read_trial(path_);
+  ASSERT_TRUE(trial) << trial.error().what;
+  EXPECT_EQ(trial->samples.size(), 11u);
 }
 
 TEST_F(TrialFile, RecoveryOfALivingWritersFileIsAConflict) {
@@ -384,6 +428,50 @@ TEST_F(TrialFile, LimitsHold) {
   EXPECT_EQ(read_trial(path_, {.max_bytes = 100}).error().code, core::Errc::too_large);
   EXPECT_EQ(read_trial(folder_).error().code, core::Errc::bad_input);
   EXPECT_EQ(read_trial(folder_ / "none").error().code, core::Errc::not_found);
+}
+
+// Written by tests/golden/trial-format-1/make.py, which shares no code with the reader.
+TEST_F(TrialFile, OfTheReleasedFormatIsReadForEver) {
+  const fs::path golden = fs::path(TRACTUS_SOURCE_DIR) / "tests/golden/trial-format-1";
+  const auto expected = core::read_json(golden / "expected.json").value();
+  const auto trial = read_trial(golden / "small.trial");
+  ASSERT_TRUE(trial) << trial.error().what;
+  EXPECT_EQ(trial->header.to_json(), expected["header"]);
+  ASSERT_EQ(trial->events.size(), expected["events"].size());
+  for (std::size_t i = 0; i < trial->events.size(); ++i)
+    EXPECT_EQ(trial->events[i].to_json(), expected["events"][i]);
+  ASSERT_EQ(trial->samples.size(), 12u);
+  for (std::size_t i = 0; i < 12; ++i) {
+    const Sample& s = trial->samples[i];
+    const core::Json found{{"t_s", s.t_s},
+                           {"p_VH_m", s.p_VH_m},
+                           {"q_VH", s.q_VH},
+                           {"force_N", s.force_N},
+                           {"torque_Nm", s.torque_Nm},
+                           {"rendered_force_N", s.rendered_force_N},
+                           {"rendered_torque_Nm", s.rendered_torque_Nm},
+                           {"deflection_m", s.deflection_m},
+                           {"tick", s.tick},
+                           {"iterations", s.iterations},
+                           {"flags", s.flags}};
+    EXPECT_EQ(found, expected["samples"][i]) << i;
+  }
+  EXPECT_TRUE(trial->complete);
+  EXPECT_TRUE(trial->sealed);
+  EXPECT_EQ(trial->answer()->wall, "medial");
+  EXPECT_EQ(trial->answer()->confidence, 0.8);
+  const auto ticks = count_ticks(trial->samples);
+  EXPECT_EQ(ticks.late, 1u);
+  EXPECT_EQ(ticks.skipped, 1u);
+
+  const auto torn = read_trial(golden / "torn.trial");
+  ASSERT_TRUE(torn) << torn.error().what;
+  EXPECT_EQ(torn->samples.size(), 5u);
+  EXPECT_EQ(torn->events.size(), 1u);
+  EXPECT_FALSE(torn->sealed);
+  fs::copy_file(golden / "torn.trial", path_);
+  EXPECT_EQ(recover_trial(path_).value(), 5u);
+  EXPECT_EQ(read_trial(path_)->events.back().kind, "interrupted");
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ constexpr int kTaps = blur_kernels::kTaps;
 constexpr int kTileX = 128, kTileY = 64;
 constexpr int kColumns = 16,
               kTileZ = 96;   // below that many tiles side by side, they are cut along z too
-constexpr int kWindow = 16;  // slices held: 14 are needed for two results, and a power of two
+constexpr int kWindow = 16;  // slices held: so many are needed for four results
 
 int rounded_up(int n, int to) { return (n + to - 1) / to * to; }
 
@@ -51,9 +51,11 @@ class Tile {
   void blur() {
     const int last = volume_.geometry.dims[2] - 1;
     int next = std::max(box_.begin[2] - kTaps, 0);  // the next slice to enter the window
-    for (int z = box_.begin[2]; z < box_.end[2]; z += 2) {
-      for (; next <= std::min(z + 1 + kTaps, last); ++next) enter(next);
-      across_slices<kStore>(z, std::min(z + 2, box_.end[2]) - z);
+    for (int z = box_.begin[2]; z < box_.end[2];) {
+      const int count = box_.end[2] - z >= 4 ? 4 : 1;
+      for (; next <= std::min(z + count - 1 + kTaps, last); ++next) enter(next);
+      across_slices<kStore>(z, count);
+      z += count;
     }
   }
 
@@ -75,10 +77,12 @@ class Tile {
       sources[r] = repeated ? sources[r - 1] : out;
     }
     int y = 0;
-    for (; y + 2 <= height_; y += 2)
-      blur_kernels::across_two<Store::cached>(weights_, sources + y, width_, window_row(z, y),
-                                              window_row(z, y + 1));
-    if (y < height_)
+    for (; y + 4 <= height_; y += 4) {
+      float* const out[4] = {window_row(z, y), window_row(z, y + 1), window_row(z, y + 2),
+                             window_row(z, y + 3)};
+      blur_kernels::across_four<Store::cached>(weights_, sources + y, width_, out);
+    }
+    for (; y < height_; ++y)
       blur_kernels::across_one<Store::cached>(weights_, sources + y, width_, window_row(z, y));
   }
 
@@ -88,6 +92,7 @@ class Tile {
     const int from = box_.begin[0] - kTaps, to = box_.begin[0] + width_ + kTaps;  // voxels wanted
     const int have_from = std::max(from, 0), have_to = std::min(to, last + 1);
     float* const row = scratch_.row.data() + 8 - box_.begin[0];  // row[x] is voxel x
+    prefetch(have_from, have_to, y, std::min(z + 1, volume_.geometry.dims[2] - 1));
     ramps_.opacities(volume_.counts.data() + volume_.offset(have_from, y, z), have_to - have_from,
                      row + have_from);
     std::fill(row + from, row + have_from, row[have_from]);
@@ -95,19 +100,30 @@ class Tile {
     blur_kernels::along_row(weights_, row + box_.begin[0], width_, out);
   }
 
-  /// Slices z and, when `count` is 2, z + 1 of the result, from the window.
+  /// Fetches counts of the next slice: the strides of a tile are too wild for the processor to
+  /// foresee.
+  void prefetch(int from, int to, int y, int z) const {
+    constexpr int kLineCounts = 32;
+    const std::uint16_t* const counts = volume_.counts.data() + volume_.offset(0, y, z);
+    for (int x = from; x < to; x += kLineCounts)
+      _mm_prefetch(reinterpret_cast<const char*>(counts + x), _MM_HINT_T0);
+  }
+
+  /// Slice z of the result or, when `count` is 4, z … z + 3, from the window.
   template <Store kStore>
   void across_slices(int z, int count) {
     const int last = volume_.geometry.dims[2] - 1;
     for (int y = 0; y < height_; ++y) {
-      const float* sources[2 * kTaps + 2];
-      for (int m = 0; m < 2 * kTaps + 2; ++m)
+      const float* sources[kWindow];
+      for (int m = 0; m < kWindow; ++m)
         sources[m] = window_row(std::clamp(z - kTaps + m, 0, last), y);
-      float* const out = grid_.row(box_.begin[1] + y, z) + box_.begin[0];
-      if (count == 2)
-        blur_kernels::across_two<kStore>(weights_, sources, width_, out, out + grid_.slice_pitch());
+      float* const first = grid_.row(box_.begin[1] + y, z) + box_.begin[0];
+      const std::ptrdiff_t pitch = grid_.slice_pitch();
+      float* const out[4] = {first, first + pitch, first + 2 * pitch, first + 3 * pitch};
+      if (count == 4)
+        blur_kernels::across_four<kStore>(weights_, sources, width_, out);
       else
-        blur_kernels::across_one<kStore>(weights_, sources, width_, out);
+        blur_kernels::across_one<kStore>(weights_, sources, width_, first);
     }
   }
 

@@ -64,24 +64,26 @@ inline void across_one(Weights weights, const float* const* in, int n, float* ou
   }
 }
 
-/// Across 14 rows: two neighbouring results. From the middle outward, so that each row is loaded
-/// once.
+/// Across 16 rows: four neighbouring results out[0 … 4). From the middle outward, so that each row
+/// is loaded once: at step k the results need rows 6 − k … 9 − k, which slide down, and 6 + k … 9 +
+/// k, which slide up.
 template <Store kStore>
-inline void across_two(Weights weights, const float* const* in, int n, float* out0, float* out1) {
+inline void across_four(const Weights& weights, const float* const* in, int n, float* const* out) {
   for (int x = 0; x < n; x += 8) {
     const auto row = [&](int m) { return _mm256_loadu_ps(in[m] + x); };
-    __m256 low = row(kTaps), high = row(kTaps + 1);  // rows 6 − k + 1 and 6 + k at step k
-    __m256 sum0 = _mm256_mul_ps(weights.w[0], low);
-    __m256 sum1 = _mm256_mul_ps(weights.w[0], high);
+    __m256 low[4] = {row(kTaps), row(kTaps + 1), row(kTaps + 2), row(kTaps + 3)};
+    __m256 high[4] = {low[0], low[1], low[2], low[3]};
+    __m256 sum[4];
+    for (int j = 0; j < 4; ++j) sum[j] = _mm256_mul_ps(weights.w[0], low[j]);
+#pragma GCC unroll 6
     for (int k = 1; k <= kTaps; ++k) {
-      const __m256 lower = row(kTaps - k), higher = row(kTaps + 1 + k);
-      sum0 = _mm256_fmadd_ps(weights.w[k], _mm256_add_ps(lower, high), sum0);
-      sum1 = _mm256_fmadd_ps(weights.w[k], _mm256_add_ps(low, higher), sum1);
-      low = lower;
-      high = higher;
+      low[3] = low[2], low[2] = low[1], low[1] = low[0], low[0] = row(kTaps - k);
+      high[0] = high[1], high[1] = high[2], high[2] = high[3], high[3] = row(kTaps + 3 + k);
+#pragma GCC unroll 4
+      for (int j = 0; j < 4; ++j)
+        sum[j] = _mm256_fmadd_ps(weights.w[k], _mm256_add_ps(low[j], high[j]), sum[j]);
     }
-    store<kStore>(out0 + x, sum0);
-    store<kStore>(out1 + x, sum1);
+    for (int j = 0; j < 4; ++j) store<kStore>(out[j] + x, sum[j]);
   }
 }
 

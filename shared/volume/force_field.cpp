@@ -6,7 +6,7 @@
 
 #include "core/require.hpp"
 #include "volume/blur.hpp"
-#include "volume/field_sampling.hpp"
+#include "volume/force_field_grid.hpp"
 
 namespace volume {
 namespace {
@@ -28,26 +28,21 @@ Box reached_from(const Box& changed, const std::array<int, 3>& dims) {
 
 }  // namespace
 
-struct ForceField::Grid {
-  Grid(const Volume& volume, const TransferFunction& transfer, FieldKind kind_of_field,
-       ScalarGrid scalars)
-      : geometry(volume.geometry),
-        kind(kind_of_field),
-        ramps(transfer, volume.slope, volume.intercept),
-        blurred(std::move(scalars)),
-        // g in V = directions · (index gradient / spacing); u = index of p.
-        V_from_index(geometry.directions * geometry.spacing_m.cwiseInverse().asDiagonal()),
-        index_from_V(V_from_index.transpose()) {}
-
-  Vec3 index_of(const Vec3& p_V_m) const { return index_from_V * (p_V_m - geometry.origin_m); }
-
-  Geometry geometry;
-  FieldKind kind;
-  OpacityRamps ramps;
-  ScalarGrid blurred;
-  Mat3 V_from_index;  // of gradients, 1/m
-  Mat3 index_from_V;  // of positions, 1/m
-};
+ForceField::Grid::Grid(const Volume& volume, const TransferFunction& transfer,
+                       FieldKind kind_of_field, ScalarGrid scalars)
+    : geometry(volume.geometry),
+      kind(kind_of_field),
+      ramps(transfer, volume.slope, volume.intercept),
+      blurred(std::move(scalars)),
+      V_from_index(geometry.directions * geometry.spacing_m.cwiseInverse().asDiagonal()) {
+  const Vec3 at_origin = -(V_from_index.transpose() * geometry.origin_m);
+  for (int c = 0; c < 3; ++c) {
+    const Vec3 g = -V_from_index.col(c), index = V_from_index.row(c);
+    g_of[c] = {{g.x(), g.y(), g.z(), 0.0}};
+    index_of[c] = {{index.x(), index.y(), index.z(), 0.0}};
+  }
+  index_at_origin = {{at_origin.x(), at_origin.y(), at_origin.z(), 0.0}};
+}
 
 ForceField::ForceField(std::unique_ptr<Grid> grid) : grid_(std::move(grid)) {}
 ForceField::~ForceField() = default;
@@ -75,25 +70,6 @@ core::Result<ForceField> ForceField::make(const Volume& volume, const TransferFu
   if (!blur(volume, grid->ramps, {{0, 0, 0}, dims}, progress, grid->blurred))
     return core::Error{core::Errc::cancelled, "force field: stopped"};
   return ForceField(std::move(grid));
-}
-
-Vec3 ForceField::gradient_per_m(const Vec3& p_V_m) const noexcept {
-  const Vec3 u = grid_->index_of(p_V_m);
-  const Vec3 g = grid_->kind == FieldKind::paper ? paper_gradient(grid_->blurred, u)
-                                                 : potential_gradient(grid_->blurred, u);
-  return -(grid_->V_from_index * g);
-}
-
-FieldSample ForceField::sample(const Vec3& p_V_m) const noexcept {
-  const Vec3 u = grid_->index_of(p_V_m);
-  const IndexSample at = grid_->kind == FieldKind::paper ? paper_sample(grid_->blurred, u)
-                                                         : potential_sample(grid_->blurred, u);
-  const Mat3& D = grid_->V_from_index;
-  return {-(D * at.gradient), -(D * at.jacobian * D.transpose())};
-}
-
-double ForceField::opacity(const Vec3& p_V_m) const noexcept {
-  return interpolated(grid_->blurred, grid_->index_of(p_V_m));
 }
 
 void ForceField::update(const Volume& volume, const Box& changed) noexcept {

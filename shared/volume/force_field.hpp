@@ -29,9 +29,10 @@ struct FieldSample {
 ///     g = −∇(ω ∗ α)                                                         (1)
 ///
 /// α by the transfer function at the voxels; ω the 15-tap Gaussian exp(−k²/2), normalised, per axis
-/// (σ = 1 voxel); ∇ per metre; edge voxels repeat outward. Holds the blurred opacity alone (4 bytes
-/// a voxel); the paper's vectors are formed where they are needed, to the same value. Immutable but
-/// for `update`; sampling is free of allocation and safe from several threads.
+/// (σ = 1 voxel); ∇ per metre; edge voxels repeat outward: of the opacities under ω, of the blurred
+/// ones beyond the volume. Holds the blurred opacity alone (4 bytes a voxel); the paper's vectors
+/// are formed where they are needed, to the same value. Immutable but for `update`; sampling is
+/// free of allocation and safe from several threads.
 class ForceField {
  public:
   /// Errors: too_large (over 2^31 voxels), cancelled.

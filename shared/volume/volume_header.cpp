@@ -57,6 +57,35 @@ Histogram parse_histogram(const core::Json& json, const std::string& where,
   return out;
 }
 
+/// Columns of the directions, each an array of three numbers.
+Mat3 parse_directions(core::Fields& fields) {
+  Mat3 out = Mat3::Zero();
+  const auto* columns = fields.member("directions");
+  const bool shaped = columns && columns->is_array() && columns->size() == 3;
+  if (!shaped) fields.wrong("directions", "three unit vectors are expected");
+  for (std::size_t a = 0; shaped && a < 3; ++a) {
+    const core::Json one{{"column", (*columns)[a]}};
+    core::Fields column(one, fields.where());
+    out.col(static_cast<Eigen::Index>(a)) = vec3_of(column.numbers("column", 3));
+    if (const auto done = column.done(); !done)
+      fields.wrong("directions", "three unit vectors are expected");
+  }
+  return out;
+}
+
+Geometry parse_geometry(core::Fields& fields) {
+  Geometry out;
+  const auto dims = fields.numbers("dims", 3);
+  for (std::size_t a = 0; a < 3; ++a) {
+    out.dims[a] = static_cast<int>(std::clamp(dims[a], -1.0, 1e6));
+    if (out.dims[a] != dims[a]) fields.wrong("dims", "three whole numbers are expected");
+  }
+  out.spacing_m = vec3_of(fields.numbers("spacing_m", 3));
+  out.origin_m = vec3_of(fields.numbers("origin_m", 3));
+  out.directions = parse_directions(fields);
+  return out;
+}
+
 }  // namespace
 
 core::Result<void> check_geometry(const Geometry& geometry, const std::string& where) {
@@ -127,25 +156,7 @@ core::Result<VolumeHeader> parse_header(std::string_view text, const std::string
     fields.wrong("format",
                  fmt::format("\"{}\" is not known, \"tractus-volume/1\" is expected", format));
   VolumeHeader out;
-  const auto dims = fields.numbers("dims", 3);
-  for (std::size_t a = 0; a < 3; ++a) {
-    out.geometry.dims[a] = static_cast<int>(std::clamp(dims[a], -1.0, 1e6));
-    if (out.geometry.dims[a] != dims[a]) fields.wrong("dims", "three whole numbers are expected");
-  }
-  out.geometry.spacing_m = vec3_of(fields.numbers("spacing_m", 3));
-  out.geometry.origin_m = vec3_of(fields.numbers("origin_m", 3));
-  if (const auto* columns = fields.member("directions")) {
-    const bool shaped = columns->is_array() && columns->size() == 3;
-    if (!shaped) fields.wrong("directions", "three unit vectors are expected");
-    for (std::size_t a = 0; shaped && a < 3; ++a) {
-      const core::Json one{{"column", (*columns)[a]}};
-      core::Fields column(one, where + "/directions/" + std::to_string(a));
-      out.geometry.directions.col(static_cast<Eigen::Index>(a)) =
-          vec3_of(column.numbers("column", 3));
-      if (const auto done = column.done(); !done)
-        fields.wrong("directions", "three unit vectors are expected");
-    }
-  }
+  out.geometry = parse_geometry(fields);
   out.slope = fields.number("slope", 0.0, 1e9);
   out.intercept = fields.number("intercept", -1e12, 1e12);
   const auto range = fields.numbers("value_range", 2);

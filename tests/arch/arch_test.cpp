@@ -32,6 +32,8 @@ const std::map<std::string, Names> kAllowed = {
     {"shared/metrics", {"shared/core", "shared/math", "shared/volume", "shared/trial"}},
     {"shared/wire", {"shared/core", "shared/math", "shared/trial"}},
     {"shared/plot", {"shared/core"}},
+    // The replay's pictures and tables are of a recording and a model together.
+    {"shared/replay", {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/models", "shared/trial", "shared/plot"}},
     {"db/store", {"shared/core", "shared/trial"}},
     {"station/devices", {"shared/core", "shared/math"}},
     {"station/loop",

@@ -38,13 +38,13 @@ struct Overlay {
   Vec3 from_m = Vec3::Zero();
   Vec3 to_m = Vec3::Zero();
   double radius_m = 0.0;
-  std::string text;  ///< UTF-8, drawn beside the end of any kind when not empty
-  Colour colour;
+  std::string text{};  ///< UTF-8, drawn beside the end of any kind when not empty
+  Colour colour{};
 };
 
 /// What part of the patient is shown, and how large.
 struct PictureOptions {
-  Window window;
+  Window window{};
   int panel_px = 512;     ///< height and width of the square each slice is fitted into, 64 … 4096
   double extent_m = 0.0;  ///< edge of the square shown about the point, m; 0 shows the whole volume
 };

@@ -1,0 +1,39 @@
+/// Published cases and their parts.
+#pragma once
+
+#include <vector>
+
+#include "db/store/store.hpp"
+
+namespace store {
+
+struct CaseSummary {
+  std::string id;  ///< SHA-256 of case.json
+  std::string title;
+  std::string source;
+  std::int64_t made_utc_us = 0;
+  std::uint64_t trials = 0;  ///< counted on reading
+};
+
+/// A file of the bundle, case.json and case.sig among them.
+struct CasePart {
+  std::string name;
+  std::string sha256;  ///< of the object that holds it
+  std::uint64_t size_bytes = 0;
+  bool secret = false;  ///< never for a station
+};
+
+/// Notes the case, its parts and their objects. Publishing the same case again changes nothing.
+core::Result<void> add_case(Writing& tx, const CaseSummary& summary,
+                            const std::vector<CasePart>& parts, std::int64_t now_utc_us);
+/// Newest first.
+core::Result<std::vector<CaseSummary>> all_cases(Reading& tx);
+core::Result<std::optional<CaseSummary>> case_of(Reading& tx, const std::string& id);
+core::Result<std::optional<CasePart>> case_part(Reading& tx, const std::string& case_id,
+                                                const std::string& name);
+
+/// Notes a file that lies among the objects; one that is known already stays as it is.
+core::Result<void> add_object(Writing& tx, const std::string& sha256, std::uint64_t size_bytes,
+                              std::int64_t now_utc_us);
+
+}  // namespace store

@@ -1,0 +1,78 @@
+#include "db/store/objects.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "core/file.hpp"
+#include "db/store/store_test_support.hpp"
+
+namespace store {
+namespace {
+using testing::TestFolder;
+
+// SHA-256 of "abc": FIPS 180-4, example B.1.
+const std::string kAbc = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
+const std::string kTrial(32, '1');
+
+std::size_t files_in(const std::filesystem::path& folder) {
+  std::size_t count = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+    count += entry.is_regular_file() ? 1 : 0;
+  return count;
+}
+
+TEST(Objects, AreNamedByTheirContent) {
+  const TestFolder folder;
+  const auto objects = std::move(Objects::open(folder.path()).value());
+  auto name = objects.put(core::bytes_of("abc"));
+  ASSERT_TRUE(name);
+  EXPECT_EQ(*name, kAbc);
+  EXPECT_EQ(objects.path_of(kAbc), folder.path() / "objects" / "ba" / kAbc.substr(2));
+  EXPECT_EQ(core::text_of(core::read_file(objects.path_of(kAbc)).value()), "abc");
+}
+
+TEST(Objects, AFileThatIsNotWhatItIsSaidToBeIsNotTakenAndLeavesNothing) {
+  const TestFolder folder;
+  const auto objects = std::move(Objects::open(folder.path()).value());
+  std::ofstream(folder.path() / "in") << "abd";
+  auto taken = objects.copy_in(folder.path() / "in", kAbc);
+  ASSERT_FALSE(taken);
+  EXPECT_EQ(taken.error().code, core::Errc::corrupt);
+  EXPECT_EQ(files_in(folder.path() / "objects"), 0u);
+}
+
+TEST(Objects, LinkingTwiceIsLinkingOnce) {
+  const TestFolder folder;
+  const auto objects = std::move(Objects::open(folder.path()).value());
+  std::ofstream(folder.path() / "in") << "abc";
+  EXPECT_TRUE(objects.link_in(folder.path() / "in", kAbc));
+  EXPECT_TRUE(objects.link_in(folder.path() / "in", kAbc));
+  EXPECT_TRUE(objects.has(kAbc));
+  EXPECT_EQ(files_in(folder.path() / "objects"), 1u);
+}
+
+TEST(PartialFiles, GrowByPiecesAndAreCutBack) {
+  const TestFolder folder;
+  const auto parts = std::move(PartialFiles::open(folder.path()).value());
+  EXPECT_EQ(parts.size_of(kTrial), 0u);
+  ASSERT_TRUE(parts.write_at(kTrial, 0, core::bytes_of("abX")));
+  ASSERT_TRUE(parts.write_at(kTrial, 2, core::bytes_of("cXX")));
+  EXPECT_EQ(parts.size_of(kTrial), 5u);
+  ASSERT_TRUE(parts.cut(kTrial, 3));
+  EXPECT_EQ(file_sha256(parts.path_of(kTrial)).value(), kAbc);
+}
+
+TEST(PartialFiles, ACrcOverMoreThanIsThereIsCorrupt) {
+  const TestFolder folder;
+  const auto parts = std::move(PartialFiles::open(folder.path()).value());
+  ASSERT_TRUE(parts.write_at(kTrial, 0, core::bytes_of("123456789 and a tail")));
+  // CRC-32C of "123456789": the check value of the CRC catalogue (iSCSI), RFC 3720.
+  EXPECT_EQ(file_crc32c(parts.path_of(kTrial), 9).value(), 0xe3069283u);
+  auto beyond = file_crc32c(parts.path_of(kTrial), 21);
+  ASSERT_FALSE(beyond);
+  EXPECT_EQ(beyond.error().code, core::Errc::corrupt);
+}
+
+}  // namespace
+}  // namespace store

@@ -1,0 +1,145 @@
+/// Every write with its 1st, 2nd, … step failing until it succeeds: before that, nothing of it is
+/// there.
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "db/store/accounts.hpp"
+#include "db/store/cases.hpp"
+#include "db/store/jobs.hpp"
+#include "db/store/migrations.hpp"
+#include "db/store/store_test_support.hpp"
+#include "db/store/trials.hpp"
+#include "db/store/uploads.hpp"
+
+namespace store {
+namespace {
+using testing::FaultyConnection;
+using testing::TestFolder;
+
+const std::string kTrial(32, 'a');
+const std::string kSha(64, 'b');
+const std::string kCase(64, 'c');
+
+using Work = std::function<core::Result<void>(Writing&)>;
+
+/// A database in which a station has uploaded all bytes of a trial of a published case.
+core::Result<void> furnish(Writing& tx) {
+  if (auto done = add_account(tx, {"1", "ada", "admin", "hash"}, 1); !done) return done;
+  if (auto done = add_station(tx, {"s", "station-1"}, "token", 1); !done) return done;
+  if (auto done = add_case(tx, {kCase, "L3", "made", 1, 0}, {{"case.json", kCase, 9, false}}, 1);
+      !done)
+    return done;
+  return add_upload(tx, {kTrial, "s", kCase, 10, kSha, 10, 0, "receiving"}, 1);
+}
+
+TrialRecord trial() {
+  TrialRecord out;
+  out.summary.id = kTrial;
+  out.summary.case_id = kCase;
+  out.station_id = "s";
+  out.sha256 = kSha;
+  out.header = out.events = "{}";
+  return out;
+}
+
+/// Everything that is in the database, as text.
+std::string contents(Store& store) {
+  std::string out;
+  auto read = store.read([&](Reading& tx) -> core::Result<void> {
+    for (const char* table :
+         {"accounts", "sessions", "login_failures", "stations", "objects", "cases", "case_parts",
+          "uploads", "trials", "trial_metrics", "jobs"}) {
+      auto rows = tx.query(std::string("select * from ") + table);
+      if (!rows) return rows.error();
+      out += std::string(table) + ":" + std::to_string(rows->size()) + "\n";
+      for (const Row& row : *rows)
+        for (std::size_t i = 0; i < row.size(); ++i)
+          if (const auto* text = std::get_if<std::string>(&row.value(i))) out += *text + ",";
+    }
+    return {};
+  });
+  EXPECT_TRUE(read);
+  return out;
+}
+
+/// @returns how many steps the work takes when none fails.
+int fails_cleanly_at_every_step(const Work& work) {
+  for (int n = 1; n < 100; ++n) {
+    const TestFolder folder;
+    const auto path = folder.path() / "tractus.db";
+    {
+      auto plain = std::move(Store::open(path).value());
+      EXPECT_TRUE(plain.write(furnish));
+    }
+    int fails_at = 0;
+    Store store(std::move(open_sqlite(path, Access::read).value()),
+                std::make_unique<FaultyConnection>(
+                    std::move(open_sqlite(path, Access::write).value()), fails_at));
+    const std::string before = contents(store);
+    fails_at = n;
+    if (store.write(work)) {
+      EXPECT_NE(contents(store), before) << "the work changes nothing: the test shows nothing";
+      return n - 1;
+    }
+    EXPECT_EQ(contents(store), before) << "half written when step " << n << " failed";
+    fails_at = 0;
+    EXPECT_TRUE(store.write(work)) << "cannot be done again after step " << n << " failed";
+  }
+  ADD_FAILURE() << "never succeeded";
+  return 0;
+}
+
+TEST(StoreFaults, ACommittedTrialIsWholeOrAbsent) {
+  const int steps = fails_cleanly_at_every_step([](Writing& tx) -> core::Result<void> {
+    if (auto done = add_object(tx, kSha, 10, 2); !done) return done;
+    if (auto done = add_trial(tx, trial(), 2); !done) return done;
+    if (auto done = complete_upload(tx, kTrial); !done) return done;
+    return queue_job(tx, "metrics", kTrial, 2);
+  });
+  EXPECT_EQ(steps, 6);  // begin, four statements, commit
+}
+
+TEST(StoreFaults, APublishedCaseIsWholeOrAbsent) {
+  const std::string id(64, 'd');
+  EXPECT_GE(fails_cleanly_at_every_step([&](Writing& tx) {
+              return add_case(tx, {id, "L4", "made", 1, 0},
+                              {{"case.json", id, 9, false}, {"truth.json", kSha, 4, true}}, 2);
+            }),
+            7);
+}
+
+TEST(StoreFaults, AnAssessmentIsWholeOrAbsent) {
+  EXPECT_GE(fails_cleanly_at_every_step([](Writing& tx) -> core::Result<void> {
+              if (auto done = add_object(tx, kSha, 10, 2); !done) return done;
+              if (auto done = add_trial(tx, trial(), 2); !done) return done;
+              return set_assessment(tx, kTrial, {{"a", 1.5, ""}, {"b", std::nullopt, "no contact"}},
+                                    true, "{}");
+            }),
+            8);
+}
+
+TEST(StoreFaults, ASignInIsWholeOrAbsent) {
+  EXPECT_GE(fails_cleanly_at_every_step([](Writing& tx) -> core::Result<void> {
+              if (auto done = clear_login_failures(tx, "ada", "peer"); !done) return done;
+              return add_session(tx, "token", "1", 2);
+            }),
+            4);
+}
+
+TEST(StoreFaults, MigratingIsDoneAgainFromWhereItFailed) {
+  for (int n = 1; n < 100; ++n) {
+    const TestFolder folder;
+    int fails_at = n;
+    FaultyConnection faulty(std::move(open_sqlite(folder.path() / "t.db", Access::write).value()),
+                            fails_at);
+    const bool first = bool(migrate(faulty, migrations()));
+    fails_at = 0;
+    ASSERT_TRUE(migrate(faulty, migrations())) << "after step " << n << " failed";
+    if (first) return;
+  }
+  FAIL() << "never succeeded";
+}
+
+}  // namespace
+}  // namespace store

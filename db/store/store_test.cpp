@@ -1,0 +1,219 @@
+/// What every driver behind Store must do; run here on SQLite.
+#include "db/store/store.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <type_traits>
+
+#include "db/store/accounts.hpp"
+#include "db/store/jobs.hpp"
+#include "db/store/migrations.hpp"
+#include "db/store/store_test_support.hpp"
+
+namespace store {
+namespace {
+using testing::TestFolder;
+
+static_assert(!std::is_convertible_v<Reading&, Writing&>, "a reading transaction cannot write");
+static_assert(!std::is_invocable_v<decltype(&remove_session), Reading&, const std::string&>,
+              "what changes something does not take a reading transaction");
+
+struct Opened {
+  TestFolder folder;
+  Store store = std::move(Store::open(folder.path() / "tractus.db").value());
+};
+
+core::Result<std::uint64_t> rows_in(Reading& tx, const std::string& table) {
+  auto rows = tx.query("select count(*) from " + table);
+  if (!rows) return rows.error();
+  return rows->front().count(0);
+}
+
+TEST(Store, KeepsEveryValueToTheBit) {
+  Opened db;
+  const core::Bytes blob{std::byte{0}, std::byte{255}, std::byte{7}};
+  const double third = 1.0 / 3.0, tiny = std::numeric_limits<double>::denorm_min();
+  const std::string text("zero \0 inside, \xc3\xa9", 17);
+  auto kept = db.store.write([&](Writing& tx) -> core::Result<Row> {
+    auto made = tx.query(
+        "create table v (a bigint, b double precision, c text, d bytea, e text, f double "
+        "precision)");
+    if (!made) return made.error();
+    auto rows = tx.query(
+        "insert into v (a, b, c, d, e, f) values (?, ?, ?, ?, ?, ?) returning a, b, c, d, e, f",
+        {std::int64_t{INT64_MIN}, third, text, blob, Value(), tiny});
+    if (!rows) return rows.error();
+    return rows->front();
+  });
+  ASSERT_TRUE(kept) << kept.error().what;
+  EXPECT_EQ(kept->integer(0), INT64_MIN);
+  EXPECT_EQ(kept->number(1), third);
+  EXPECT_EQ(kept->text(2), text);
+  EXPECT_EQ(std::get<core::Bytes>(kept->value(3)), blob);
+  EXPECT_FALSE(kept->text_or_null(4));
+  EXPECT_EQ(kept->number(5), tiny);
+}
+
+TEST(Store, AWholeNumberInADoubleColumnComesBackAsADouble) {
+  Opened db;
+  auto kept = db.store.write([](Writing& tx) -> core::Result<Row> {
+    if (auto made = tx.query("create table v (b double precision)"); !made) return made.error();
+    auto rows = tx.query("insert into v (b) values (?) returning b", {2.0});
+    if (!rows) return rows.error();
+    return rows->front();
+  });
+  ASSERT_TRUE(kept) << kept.error().what;
+  EXPECT_EQ(kept->number(0), 2.0);
+}
+
+TEST(Store, AWriteThatFailsLeavesNothing) {
+  Opened db;
+  auto outcome = db.store.write([](Writing& tx) -> core::Result<void> {
+    if (auto added = add_account(tx, {"1", "ada", "admin", "hash"}, 5); !added) return added;
+    return core::Error{core::Errc::cancelled, "changed my mind"};
+  });
+  ASSERT_FALSE(outcome);
+  EXPECT_EQ(outcome.error().code, core::Errc::cancelled);
+  EXPECT_EQ(db.store.read([](Reading& tx) { return account_count(tx); }).value(), 0u);
+}
+
+TEST(Store, AReadingConnectionIsRefusedWritesByTheDatabase) {
+  Opened db;
+  auto outcome = db.store.read([](Reading& tx) -> core::Result<void> {
+    auto done = tx.query("delete from accounts");
+    if (!done) return done.error();
+    return {};
+  });
+  ASSERT_FALSE(outcome);
+  EXPECT_NE(outcome.error().what.find("readonly"), std::string::npos) << outcome.error().what;
+}
+
+TEST(Store, AReaderSeesOneStateWhileAWriterCommits) {
+  Opened db;
+  auto counts =
+      db.store.read([&](Reading& tx) -> core::Result<std::pair<std::uint64_t, std::uint64_t>> {
+        const auto before = rows_in(tx, "accounts").value();
+        auto added = db.store.write([](Writing& w) {
+          return add_account(w, {"1", "ada", "admin", "hash"}, 5);
+        });
+        if (!added) return added.error();
+        return std::pair(before, rows_in(tx, "accounts").value());
+      });
+  ASSERT_TRUE(counts) << counts.error().what;
+  EXPECT_EQ(*counts, std::pair(std::uint64_t{0}, std::uint64_t{0}));
+  EXPECT_EQ(db.store.read([](Reading& tx) { return account_count(tx); }).value(), 1u);
+}
+
+TEST(Store, AForeignKeyThatPointsNowhereIsAConflict) {
+  Opened db;
+  auto outcome = db.store.write([](Writing& tx) { return add_session(tx, "token", "nobody", 5); });
+  ASSERT_FALSE(outcome);
+  EXPECT_EQ(outcome.error().code, core::Errc::conflict);
+}
+
+TEST(Store, ANameIsTakenOnce) {
+  Opened db;
+  const auto add = [&](const char* id) {
+    return db.store.write([&](Writing& tx) {
+      return add_account(tx, {id, "ada", "admin", "hash"}, 5);
+    });
+  };
+  EXPECT_TRUE(add("1"));
+  auto again = add("2");
+  ASSERT_FALSE(again);
+  EXPECT_EQ(again.error().code, core::Errc::conflict);
+  EXPECT_NE(again.error().what.find("ada"), std::string::npos);
+}
+
+TEST(Store, WhatWasCommittedIsThereAfterReopening) {
+  const TestFolder folder;
+  {
+    auto store = std::move(Store::open(folder.path() / "tractus.db").value());
+    ASSERT_TRUE(store.write([](Writing& tx) {
+      return add_account(tx, {"1", "ada", "admin", "hash"}, 5);
+    }));
+  }
+  auto store = std::move(Store::open(folder.path() / "tractus.db").value());
+  auto account = store.read([](Reading& tx) { return account_named(tx, "ada"); });
+  ASSERT_TRUE(account);
+  ASSERT_TRUE(account->has_value());
+  EXPECT_EQ((*account)->password_hash, "hash");
+}
+
+TEST(Migrations, AreNumberedFromOneWithoutGaps) {
+  const auto steps = migrations();
+  ASSERT_FALSE(steps.empty());
+  for (std::size_t i = 0; i < steps.size(); ++i)
+    EXPECT_EQ(steps[i].version, static_cast<std::int64_t>(i + 1)) << steps[i].name;
+}
+
+TEST(Migrations, ANewerDatabaseIsRefusedByNumber) {
+  const TestFolder folder;
+  auto connection = std::move(open_sqlite(folder.path() / "t.db", Access::write).value());
+  const std::vector<Migration> newer{{1, "first", "create table a (x bigint)"},
+                                     {2, "second", "create table b (x bigint)"}};
+  ASSERT_TRUE(migrate(*connection, newer));
+  auto refused = migrate(*connection, {newer.front()});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, core::Errc::conflict);
+  EXPECT_NE(refused.error().what.find("schema 2"), std::string::npos) << refused.error().what;
+}
+
+TEST(Migrations, AStepThatBreaksLeavesTheDatabaseAtTheStepBefore) {
+  const TestFolder folder;
+  auto connection = std::move(open_sqlite(folder.path() / "t.db", Access::write).value());
+  const Migration first{1, "first", "create table a (x bigint)"};
+  auto broken = migrate(
+      *connection, {first, {2, "second", "create table b (x bigint); create table a (x bigint)"}});
+  ASSERT_FALSE(broken);
+  EXPECT_NE(broken.error().what.find("0002_second"), std::string::npos) << broken.error().what;
+  ASSERT_TRUE(migrate(*connection, {first, {2, "second", "create table b (y bigint)"}}));
+  EXPECT_TRUE(connection->query("select y from b", {}));
+}
+
+TEST(Jobs, AreClaimedOnceInTheOrderTheyWereQueued) {
+  Opened db;
+  auto claimed = db.store.write([](Writing& tx) -> core::Result<std::vector<std::string>> {
+    if (auto q = queue_job(tx, "metrics", "later", 20); !q) return q.error();
+    if (auto q = queue_job(tx, "metrics", "sooner", 10); !q) return q.error();
+    std::vector<std::string> subjects;
+    while (true) {
+      auto job = claim_job(tx, 30);
+      if (!job) return job.error();
+      if (!job->has_value()) return subjects;
+      subjects.push_back((*job)->subject);
+    }
+  });
+  ASSERT_TRUE(claimed) << claimed.error().what;
+  EXPECT_EQ(*claimed, (std::vector<std::string>{"sooner", "later"}));
+}
+
+TEST(Jobs, WhatADeadProcessHadClaimedWaitsAgainAndCountsItsAttempts) {
+  Opened db;
+  auto again = db.store.write([](Writing& tx) -> core::Result<std::optional<Job>> {
+    if (auto q = queue_job(tx, "metrics", "t", 10); !q) return q.error();
+    if (auto first = claim_job(tx, 20); !first) return first.error();
+    if (auto back = requeue_claimed_jobs(tx, 30); !back) return back.error();
+    return claim_job(tx, 40);
+  });
+  ASSERT_TRUE(again) << again.error().what;
+  ASSERT_TRUE(again->has_value());
+  EXPECT_EQ((*again)->attempts, 2u);
+}
+
+TEST(Logins, FailuresAreCountedByNameAndAddressSinceATime) {
+  Opened db;
+  auto counted = db.store.write([](Writing& tx) -> core::Result<Failures> {
+    for (const auto& [name, peer, at] :
+         {std::tuple{"ada", "a", 10}, {"ada", "a", 20}, {"ada", "b", 30}, {"bob", "a", 30}})
+      if (auto added = add_login_failure(tx, name, peer, at, 0); !added) return added.error();
+    return login_failures(tx, "ada", "a", 15);
+  });
+  ASSERT_TRUE(counted) << counted.error().what;
+  EXPECT_EQ(counted->from_peer, 1u);
+  EXPECT_EQ(counted->for_name, 2u);
+}
+
+}  // namespace
+}  // namespace store

@@ -1,0 +1,84 @@
+/// A server without sockets, with an admin, two stations and a clock of the test's own.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "db/store/cases.hpp"
+#include "db/store/store_test_support.hpp"
+#include "server/api/authentication.hpp"
+#include "server/api/backend.hpp"
+#include "server/api/service.hpp"
+
+namespace api::testing {
+
+inline const std::string kCase(64, 'c');
+inline const std::string kPassword = "correct horse";
+
+class ApiTest : public ::testing::Test {
+ protected:
+  ApiTest() {
+    const std::string hash = quick_hash();
+    auto furnished = store_.write([&](store::Writing& tx) -> core::Result<void> {
+      if (auto done = store::add_account(tx, {"1", "ada", "admin", hash}, 0); !done) return done;
+      if (auto done = store::add_station(tx, {"s1", "station-1"}, token_hash("token-1"), 0); !done)
+        return done;
+      if (auto done = store::add_station(tx, {"s2", "station-2"}, token_hash("token-2"), 0); !done)
+        return done;
+      return store::add_case(tx, {kCase, "L3", "made", 1, 0}, {}, 0);
+    });
+    EXPECT_TRUE(furnished);
+  }
+
+  /// Hashed once: 64 MiB each time would make the tests slow.
+  static std::string quick_hash() {
+    static const std::string hash = password_hash(kPassword).value();
+    return hash;
+  }
+
+  http::Request request(const std::string& method, const std::string& target,
+                        std::map<std::string, std::string> headers = {}, std::string body = "") {
+    http::Request out;
+    out.method = method;
+    out.headers = std::move(headers);
+    out.body = std::move(body);
+    out.peer = "127.0.0.1";
+    EXPECT_TRUE(http::read_target(target, out));
+    return out;
+  }
+  http::Response ask(const http::Request& asked) { return answer(backend_, routes(), asked); }
+  http::Response sign_in_as(const std::string& name, const std::string& password) {
+    return ask(request("POST", "/api/v1/session", {{"content-type", "application/json"}},
+                       core::Json{{"name", name}, {"password", password}}.dump()));
+  }
+  /// "tractus_session=…" of a new session.
+  std::string cookie() {
+    const http::Response in = sign_in_as("ada", kPassword);
+    EXPECT_EQ(in.status, 200);
+    const std::string set(in.header("Set-Cookie"));
+    return set.substr(0, set.find(';'));
+  }
+  static std::map<std::string, std::string> station(const std::string& token) {
+    return {{"authorization", "Bearer " + token}};
+  }
+  static std::string text(const http::Response& response) {
+    const auto* held = std::get_if<std::string>(&response.body);
+    return held ? *held : std::string();
+  }
+  static core::Json json(const http::Response& response) {
+    return core::Json::parse(text(response), nullptr, false);
+  }
+
+  store::testing::TestFolder folder_;
+  store::Store store_ = std::move(store::Store::open(folder_.path() / "tractus.db").value());
+  store::Objects objects_ = std::move(store::Objects::open(folder_.path()).value());
+  store::PartialFiles partials_ = std::move(store::PartialFiles::open(folder_.path()).value());
+  std::int64_t now_ = 1'000'000'000'000'000;
+  int woken_ = 0;
+  Backend backend_{.store = store_,
+                   .objects = objects_,
+                   .partials = partials_,
+                   .now_utc_us = [this] { return now_; },
+                   .work_waits = [this] { ++woken_; }};
+};
+
+}  // namespace api::testing

@@ -1,0 +1,36 @@
+/// What handlers work with. One per process; safe from several threads.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <mutex>
+
+#include "db/store/objects.hpp"
+#include "db/store/store.hpp"
+#include "server/api/trial_views.hpp"
+
+namespace api {
+
+/// One request at a time may touch an upload; uploads that share a slot wait for one another, which
+/// harms nobody.
+class UploadLocks {
+ public:
+  std::unique_lock<std::mutex> hold(const std::string& trial_id) {
+    return std::unique_lock(slots_[std::hash<std::string>()(trial_id) % slots_.size()]);
+  }
+
+ private:
+  std::array<std::mutex, 64> slots_;
+};
+
+struct Backend {
+  store::Store& store;
+  const store::Objects& objects;
+  const store::PartialFiles& partials;
+  std::function<std::int64_t()> now_utc_us;
+  std::function<void()> work_waits;  ///< tells the job runner
+  UploadLocks upload_locks{};
+  TrialViews trial_views{};
+};
+
+}  // namespace api

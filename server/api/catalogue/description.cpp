@@ -1,0 +1,23 @@
+/// The API's own description.
+#include "server/api/openapi.hpp"
+#include "server/api/schema.hpp"
+
+namespace api {
+namespace {
+core::Result<http::Response> describe(const Call&) { return json_response(openapi(routes())); }
+}  // namespace
+
+std::vector<RouteInfo> description_routes() {
+  return {{.method = "GET",
+           .path = "/api/openapi.json",
+           .id = "description",
+           .summary = "This description, OpenAPI 3.1",
+           .who = {Role::admin, Role::station},
+           .parameters = {},
+           .body = "",
+           .answer = "Description",
+           .schemas = {{"Description", schema::anything("OpenAPI 3.1")}},
+           .handle = describe}};
+}
+
+}  // namespace api

@@ -1,0 +1,192 @@
+/// Trials: the list, one whole, its curves and its path.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "server/api/backend.hpp"
+#include "server/api/schema.hpp"
+#include "server/api/trial_json.hpp"
+#include "server/api/uploads.hpp"
+#include "server/jobs/case_facts.hpp"
+#include "trial/trial_file.hpp"
+
+namespace api {
+namespace {
+
+constexpr double kEndOfTime_us = 9e15;  // exact in a double; the year 2255
+constexpr double kLongest_s = 1e6;
+
+core::Result<http::Response> list_trials(const Call& call) {
+  const std::int64_t limit = call.integer("limit");
+  auto found = call.backend.store.read([&](store::Reading& tx) {
+    return store::trials_before(tx, call.integer("before_utc_us"), limit + 1);
+  });
+  if (!found) return found.error();
+  const bool more = found->size() > static_cast<std::size_t>(limit);
+  if (more) found->pop_back();
+  core::Json list = core::Json::array();
+  for (const store::TrialSummary& trial : *found) list.push_back(summary_json(trial));
+  return json_response({{"trials", list}, {"more", more}});
+}
+
+struct Found {
+  store::TrialRecord trial;
+  std::vector<store::ScoreRecord> scores;
+};
+
+core::Result<Found> find_trial(const Call& call) {
+  const std::string& id = call.text("id");
+  return call.backend.store.read([&](store::Reading& tx) -> core::Result<Found> {
+    auto trial = store::trial_of(tx, id);
+    if (!trial) return trial.error();
+    if (!*trial) return core::Error{core::Errc::not_found, "no trial " + id.substr(0, 32)};
+    auto scores = store::scores_of(tx, id);
+    if (!scores) return scores.error();
+    return Found{std::move(**trial), std::move(*scores)};
+  });
+}
+
+core::Json truth_json(const std::optional<cases::Truth>& truth) {
+  if (!truth) return {};
+  core::Json out = truth->to_json();
+  core::Json shown = core::Json::object();  // without the salt
+  for (const char* field : {"breached", "breach_m", "breach_depth_m", "wall_thickness_m"})
+    shown[field] = out.contains(field) ? out[field] : core::Json();
+  return shown;
+}
+
+core::Result<http::Response> one_trial(const Call& call) {
+  auto found = find_trial(call);
+  if (!found) return found.error();
+  auto facts =
+      jobs::case_facts(call.backend.store, call.backend.objects, found->trial.summary.case_id);
+  if (!facts) return facts.error();
+  return json_response(
+      trial_json(found->trial, found->scores, &facts->definition.tract, truth_json(facts->truth)));
+}
+
+core::Result<trial::Signals> decode(Backend& backend, const store::TrialRecord& trial) {
+  auto facts = jobs::case_facts(backend.store, backend.objects, trial.summary.case_id);
+  if (!facts) return facts.error();
+  auto header_json = core::parse_json(trial.header, "trial " + trial.summary.id);
+  if (!header_json) return header_json.error();
+  auto header = trial::Header::from_json(*header_json, "trial " + trial.summary.id);
+  if (!header) return header.error();
+  const volume::Tract& tract = facts->definition.tract;
+  trial::Signals signals(*header, trial::TractLine{tract.entry_m, tract.axis});
+  auto read =
+      trial::scan_trial(backend.objects.path_of(trial.sha256),
+                        [&](std::span<const trial::Sample> samples) { signals.add(samples); },
+                        {.max_samples = kMaxTrialSamples, .max_bytes = kMaxTrial_bytes});
+  if (!read) return read.error();
+  return signals;
+}
+
+core::Result<std::shared_ptr<const trial::Signals>> signals_of(const Call& call) {
+  auto found = find_trial(call);
+  if (!found) return found.error();
+  return call.backend.trial_views.of(found->trial.summary.id,
+                                     [&] { return decode(call.backend, found->trial); });
+}
+
+std::vector<std::string> channels_of(const Call& call) {
+  std::vector<std::string> out;
+  std::string_view rest = call.text("channels");
+  while (!rest.empty()) {
+    const auto end = std::min(rest.find(','), rest.size());
+    out.emplace_back(rest.substr(0, end));
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  return out;
+}
+
+core::Result<http::Response> trial_signals(const Call& call) {
+  auto signals = signals_of(call);
+  if (!signals) return signals.error();
+  const auto channels = channels_of(call);
+  if (channels.size() > trial::kChannels.size())
+    return core::Error{core::Errc::bad_input, "channels: each may be asked for once"};
+  auto view = (*signals)->view(channels, call.number("from_s"), call.number("to_s"),
+                               static_cast<std::size_t>(call.integer("points")));
+  if (!view) return view.error();
+  core::Json shown = core::Json::object();
+  for (const auto& [name, envelope] : view->channels)
+    shown[name] = {{"min", envelope.min}, {"max", envelope.max}};
+  return json_response({{"t_s", view->t_s},
+                        {"channels", shown},
+                        {"from_s", view->from_s},
+                        {"to_s", view->to_s},
+                        {"samples_per_point", view->samples_per_point}});
+}
+
+core::Result<http::Response> trial_path(const Call& call) {
+  auto signals = signals_of(call);
+  if (!signals) return signals.error();
+  const trial::Path path = (*signals)->path(static_cast<std::size_t>(call.integer("points")));
+  core::Json tips = core::Json::array();
+  for (const math::Vec3& tip : path.tip_m) tips.push_back({tip.x(), tip.y(), tip.z()});
+  return json_response({{"t_s", path.t_s}, {"tip_m", tips}, {"force_N", path.force_N}});
+}
+
+Parameter query(std::string name, Parameter::Kind kind, std::string unit, std::string meaning,
+                double low, double high, std::string fallback) {
+  return {.in = Parameter::In::query,
+          .name = std::move(name),
+          .kind = kind,
+          .unit = std::move(unit),
+          .meaning = std::move(meaning),
+          .low = low,
+          .high = high,
+          .fallback = std::move(fallback)};
+}
+
+RouteInfo trial_route(std::string tail, std::string id, std::string summary, std::string answer) {
+  return {.method = "GET",
+          .path = "/api/v1/trials" + tail,
+          .id = std::move(id),
+          .summary = std::move(summary),
+          .who = {Role::admin},
+          .parameters = {},
+          .body = "",
+          .answer = std::move(answer),
+          .schemas = {},
+          .handle = nullptr};
+}
+
+std::string all_channels() { return fmt::format("{}", fmt::join(trial::kChannels, ",")); }
+
+}  // namespace
+
+std::vector<RouteInfo> trials_routes() {
+  using Kind = Parameter::Kind;
+  const Parameter id = path_text("id", "32 hexadecimal characters");
+  RouteInfo list = trial_route("", "trials", "Trials, newest first", "TrialList");
+  list.parameters = {query("limit", Kind::integer, "1", "at most so many", 1, 500, "50"),
+                     query("before_utc_us", Kind::integer, "us", "started before this time, UTC", 0,
+                           kEndOfTime_us, "9000000000000000")};
+  list.schemas = trial_schemas();
+  list.handle = list_trials;
+
+  RouteInfo one = trial_route("/{id}", "trial", "One trial with its scores and the truth", "Trial");
+  one.parameters = {id};
+  one.handle = one_trial;
+
+  RouteInfo curves = trial_route(
+      "/{id}/signals", "trialSignals",
+      "Channels over time, least and greatest of the samples behind each point", "TrialSignals");
+  curves.parameters = {
+      id, query("channels", Kind::text, "", "names, separated by commas", 0, 0, all_channels()),
+      query("from_s", Kind::number, "s", "from this time", 0, kLongest_s, "0"),
+      query("to_s", Kind::number, "s", "to this time", 0, kLongest_s, "1000000"),
+      query("points", Kind::integer, "1", "at most so many", 1, 20000, "1000")};
+  curves.schemas = curve_schemas();
+  curves.handle = trial_signals;
+
+  RouteInfo path =
+      trial_route("/{id}/path", "trialPath", "The path of the probe's tip", "TrialPath");
+  path.parameters = {id, query("points", Kind::integer, "1", "at most so many", 1, 20000, "2000")};
+  path.handle = trial_path;
+  return {list, one, curves, path};
+}
+
+}  // namespace api

@@ -1,0 +1,129 @@
+#include "server/api/openapi.hpp"
+
+#include <algorithm>
+
+#include "server/api/schema.hpp"
+
+namespace api {
+namespace {
+
+std::string_view where(Parameter::In in) {
+  switch (in) {
+    case Parameter::In::path:
+      return "path";
+    case Parameter::In::query:
+      return "query";
+    case Parameter::In::header:
+      return "header";
+  }
+  return "query";
+}
+
+core::Json schema_of(const Parameter& p) {
+  if (p.kind == Parameter::Kind::text) {
+    core::Json out{{"type", "string"}};
+    if (p.fallback) out["default"] = *p.fallback;
+    return out;
+  }
+  const bool whole = p.kind == Parameter::Kind::integer;
+  core::Json out{{"type", whole ? "integer" : "number"}, {"x-unit", p.unit}};
+  if (whole) {
+    out["minimum"] = static_cast<std::int64_t>(p.low);
+    out["maximum"] = static_cast<std::int64_t>(p.high);
+    if (p.fallback) out["default"] = std::stoll(*p.fallback);
+  } else {
+    out["minimum"] = p.low;
+    out["maximum"] = p.high;
+    if (p.fallback) out["default"] = std::stod(*p.fallback);
+  }
+  return out;
+}
+
+core::Json content(const std::string& name) {
+  if (name == kBytes)
+    return {{"application/octet-stream", {{"schema", {{"type", "string"}, {"format", "binary"}}}}}};
+  return {{"application/json", {{"schema", schema::ref(name)}}}};
+}
+
+core::Json error_answer(const char* description) {
+  return {{"description", description}, {"content", content("Error")}};
+}
+
+core::Json responses(const RouteInfo& route) {
+  core::Json out = core::Json::object();
+  if (route.answer.empty())
+    out["204"] = {{"description", "done"}};
+  else
+    out["200"] = {{"description", route.summary}, {"content", content(route.answer)}};
+  out["400"] = error_answer("what was sent is not what was asked for");
+  out["401"] = error_answer("credentials are missing or wrong");
+  if (!route.open) out["403"] = error_answer("known, and not allowed");
+  if (route.path.find('{') != std::string::npos) out["404"] = error_answer("nothing by that name");
+  if (route.method == "PUT" || route.method == "PATCH" || route.path.ends_with("/commit"))
+    out["409"] = error_answer("it contradicts what is already there");
+  if (!route.body.empty()) out["413"] = error_answer("the body is over the limit");
+  if (route.open) out["429"] = error_answer("too many failures: wait");
+  return out;
+}
+
+/// "/api/v1/cases/{id}" is of cases.
+std::string resource_of(std::string_view path) {
+  path.remove_prefix(path.starts_with("/api/v1/") ? 8 : 5);
+  return std::string(path.substr(0, path.find('/')));
+}
+
+core::Json operation(const RouteInfo& route) {
+  core::Json out{{"operationId", route.id}, {"summary", route.summary}};
+  out["tags"] = core::Json::array({resource_of(route.path)});
+  core::Json roles = core::Json::array(), security = core::Json::array();
+  for (const Role role : route.who) {
+    roles.push_back(name(role));
+    security.push_back({{role == Role::station ? "station" : "session", core::Json::array()}});
+  }
+  out["x-roles"] = roles;
+  out["security"] = security;
+  core::Json parameters = core::Json::array();
+  for (const Parameter& p : route.parameters)
+    parameters.push_back({{"name", p.name},
+                          {"in", where(p.in)},
+                          {"required", p.required && !p.fallback},
+                          {"description", p.meaning},
+                          {"schema", schema_of(p)}});
+  out["parameters"] = parameters;
+  if (!route.body.empty())
+    out["requestBody"] = {{"required", true}, {"content", content(route.body)}};
+  out["responses"] = responses(route);
+  return out;
+}
+
+std::string lower_case(std::string text) {
+  std::ranges::transform(text, text.begin(),
+                         [](char c) { return c >= 'A' && c <= 'Z' ? char(c + 32) : c; });
+  return text;
+}
+
+}  // namespace
+
+core::Json openapi(const std::vector<RouteInfo>& table) {
+  core::Json paths = core::Json::object(), schemas = core::Json::object();
+  schemas["Error"] = schema::object({{"error", schema::text("one line for a person")},
+                                     {"code", schema::text("the cause, for a program")}});
+  for (const RouteInfo& route : table) {
+    paths[route.path][lower_case(route.method)] = operation(route);
+    for (const NamedSchema& named : route.schemas) schemas[named.name] = named.schema;
+  }
+  return {
+      {"openapi", "3.1.0"},
+      {"info",
+       {{"title", "Tractus"},
+        {"version", "1"},
+        {"description", "Cases, trials and their assessment. Units are SI and end each name."}}},
+      {"paths", paths},
+      {"components",
+       {{"schemas", schemas},
+        {"securitySchemes",
+         {{"session", {{"type", "apiKey"}, {"in", "cookie"}, {"name", "tractus_session"}}},
+          {"station", {{"type", "http"}, {"scheme", "bearer"}}}}}}}};
+}
+
+}  // namespace api

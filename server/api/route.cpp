@@ -1,0 +1,113 @@
+#include "server/api/route.hpp"
+
+#include <charconv>
+
+namespace api {
+
+std::string_view name(Role role) { return role == Role::admin ? "admin" : "station"; }
+
+Parameter path_text(std::string name, std::string meaning) {
+  return {.in = Parameter::In::path,
+          .name = std::move(name),
+          .kind = Parameter::Kind::text,
+          .unit = "",
+          .meaning = std::move(meaning),
+          .fallback = std::nullopt};
+}
+
+const std::string& Call::text(const std::string& name) const {
+  const auto found = arguments.find(name);
+  core::require(found != arguments.end(), "a handler asks for arguments its route declares");
+  return found->second;
+}
+
+std::int64_t Call::integer(const std::string& name) const {
+  const std::string& given = text(name);
+  std::int64_t value = 0;
+  std::from_chars(given.data(), given.data() + given.size(), value);
+  return value;
+}
+
+double Call::number(const std::string& name) const {
+  const std::string& given = text(name);
+  double value = 0.0;
+  std::from_chars(given.data(), given.data() + given.size(), value);
+  return value;
+}
+
+const std::vector<RouteInfo>& routes() {
+  static const std::vector<RouteInfo> flat = [] {
+    std::vector<RouteInfo> out;
+    for (auto& file : all())
+      for (auto& route : file) out.push_back(std::move(route));
+    return out;
+  }();
+  return flat;
+}
+
+http::Response json_response(const core::Json& json, int status) {
+  http::Response response{.status = status,
+                          .headers = {},
+                          .body = json.dump(-1, ' ', false, core::Json::error_handler_t::replace)};
+  response.with("Content-Type", "application/json").with("Cache-Control", "no-store");
+  return response;
+}
+
+int status_of(core::Errc code) {
+  switch (code) {
+    case core::Errc::bad_input:
+    case core::Errc::out_of_range:
+    case core::Errc::corrupt:
+      return 400;
+    case core::Errc::unauthorised:
+      return 401;
+    case core::Errc::forbidden:
+      return 403;
+    case core::Errc::not_found:
+      return 404;
+    case core::Errc::conflict:
+      return 409;
+    case core::Errc::too_large:
+      return 413;
+    case core::Errc::unavailable:
+    case core::Errc::cancelled:
+      return 503;
+    case core::Errc::io:
+      return 500;
+  }
+  return 500;
+}
+
+std::string_view name(core::Errc code) {
+  switch (code) {
+    case core::Errc::bad_input:
+      return "bad_input";
+    case core::Errc::out_of_range:
+      return "out_of_range";
+    case core::Errc::not_found:
+      return "not_found";
+    case core::Errc::corrupt:
+      return "corrupt";
+    case core::Errc::io:
+      return "io";
+    case core::Errc::conflict:
+      return "conflict";
+    case core::Errc::unauthorised:
+      return "unauthorised";
+    case core::Errc::forbidden:
+      return "forbidden";
+    case core::Errc::too_large:
+      return "too_large";
+    case core::Errc::unavailable:
+      return "unavailable";
+    case core::Errc::cancelled:
+      return "cancelled";
+  }
+  return "io";
+}
+
+http::Response error_response(const core::Error& error) {
+  return http::error_response(status_of(error.code), name(error.code), error.what);
+}
+
+}  // namespace api

@@ -1,0 +1,195 @@
+#include "server/api/service.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "server/api/authentication.hpp"
+
+namespace api {
+namespace {
+
+constexpr std::string_view kKeepOut =
+    "a request by cookie that changes something needs the header X-Tractus: 1";
+
+std::vector<std::string_view> segments_of(std::string_view path) {
+  std::vector<std::string_view> out;
+  while (!path.empty()) {
+    path.remove_prefix(1);
+    const auto end = std::min(path.find('/'), path.size());
+    out.push_back(path.substr(0, end));
+    path.remove_prefix(end);
+  }
+  return out;
+}
+
+bool is_placeholder(std::string_view segment) { return segment.starts_with('{'); }
+
+/// Do the fixed segments agree?
+bool fits(const std::vector<std::string_view>& pattern, const std::vector<std::string_view>& path) {
+  return std::ranges::equal(pattern, path, [](std::string_view want, std::string_view is) {
+    return is_placeholder(want) ? !is.empty() : want == is;
+  });
+}
+
+core::Result<Match> bound(const RouteInfo& route, const std::vector<std::string_view>& pattern,
+                          const std::vector<std::string_view>& path) {
+  Match out{&route, {}};
+  for (std::size_t i = 0; i < pattern.size(); ++i) {
+    if (!is_placeholder(pattern[i])) continue;
+    auto value = http::percent_decoded(path[i]);
+    if (!value) return value.error();
+    out.segments.emplace(pattern[i].substr(1, pattern[i].size() - 2), std::move(*value));
+  }
+  return out;
+}
+
+template <class Number>
+bool is_number_within(std::string_view text, double low, double high) {
+  Number value{};
+  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return failure == std::errc() && end == text.data() + text.size() &&
+         static_cast<double>(value) >= low && static_cast<double>(value) <= high;
+}
+
+core::Result<void> check(const Parameter& p, const std::string& value) {
+  if (p.kind == Parameter::Kind::text) return {};
+  const bool whole = p.kind == Parameter::Kind::integer;
+  if (whole ? is_number_within<std::int64_t>(value, p.low, p.high)
+            : is_number_within<double>(value, p.low, p.high))
+    return {};
+  return core::Error{
+      core::Errc::out_of_range,
+      fmt::format("{}: {} from {} to {} is expected, not '{}'", p.name,
+                  whole ? "a whole number" : "a number", p.low, p.high, value.substr(0, 64))};
+}
+
+std::optional<std::string> given(const Parameter& p, const Match& matched,
+                                 const http::RequestHead& head) {
+  if (p.in == Parameter::In::path) return matched.segments.at(p.name);
+  if (p.in == Parameter::In::query) {
+    const auto found = head.query.find(p.name);
+    return found == head.query.end() ? std::nullopt : std::optional(found->second);
+  }
+  std::string lower = p.name;
+  std::ranges::transform(lower, lower.begin(),
+                         [](char c) { return c >= 'A' && c <= 'Z' ? char(c + 32) : c; });
+  const std::string_view value = head.header(lower);
+  return value.empty() ? std::nullopt : std::optional(std::string(value));
+}
+
+core::Result<void> check_query_is_declared(const RouteInfo& route, const http::RequestHead& head) {
+  for (const auto& [key, _] : head.query)
+    if (std::ranges::none_of(route.parameters, [&key = key](const Parameter& p) {
+          return p.in == Parameter::In::query && p.name == key;
+        }))
+      return core::Error{core::Errc::bad_input,
+                         key.substr(0, 64) + ": this parameter is not known"};
+  return {};
+}
+
+/// A page of another site can make a browser send its cookie, but not this header.
+core::Result<void> check_not_forged(const RouteInfo& route, const Caller& caller,
+                                    const http::RequestHead& head) {
+  if (route.method == "GET" || !head.header("x-tractus").empty()) return {};
+  const bool signing_in = route.open && head.header("content-type").starts_with("application/json");
+  if (signing_in || (!route.open && caller.session_hash.empty())) return {};
+  return core::Error{core::Errc::forbidden, std::string(kKeepOut)};
+}
+
+core::Result<Caller> allowed_caller(Backend& backend, const RouteInfo& route,
+                                    const http::RequestHead& head) {
+  Caller caller{Role::station, "", "", ""};
+  if (!route.open) {
+    auto known = authenticate(backend, head);
+    if (!known) return known.error();
+    caller = std::move(*known);
+    if (std::ranges::find(route.who, caller.role) == route.who.end())
+      return core::Error{core::Errc::forbidden,
+                         fmt::format("this is not for the role {}", name(caller.role))};
+  }
+  if (auto own = check_not_forged(route, caller, head); !own) return own.error();
+  return caller;
+}
+
+http::Response refusal(const core::Error& error, const std::string& allowed) {
+  if (error.code == core::Errc::not_found && !allowed.empty()) {
+    auto response = http::error_response(405, "bad_input", "this address takes " + allowed);
+    return response.with("Allow", allowed), response;
+  }
+  auto response = error_response(error);
+  if (error.code == core::Errc::unauthorised) response.with("WWW-Authenticate", "Bearer");
+  return response;
+}
+
+}  // namespace
+
+core::Result<Match> match(const std::vector<RouteInfo>& table, const http::RequestHead& head,
+                          std::string* allowed) {
+  const auto path = segments_of(head.path);
+  for (const RouteInfo& route : table) {
+    const auto pattern = segments_of(route.path);
+    if (!fits(pattern, path)) continue;
+    const bool same =
+        route.method == head.method || (head.method == "HEAD" && route.method == "GET");
+    if (same) return bound(route, pattern, path);
+    if (allowed) *allowed += (allowed->empty() ? "" : ", ") + route.method;
+  }
+  return core::Error{core::Errc::not_found, "there is nothing at this address"};
+}
+
+core::Result<std::map<std::string, std::string>> arguments(const Match& matched,
+                                                           const http::RequestHead& head) {
+  if (auto declared = check_query_is_declared(*matched.route, head); !declared)
+    return declared.error();
+  std::map<std::string, std::string> out;
+  for (const Parameter& p : matched.route->parameters) {
+    auto value = given(p, matched, head);
+    if (!value) value = p.fallback;
+    if (!value && p.required)
+      return core::Error{core::Errc::bad_input, p.name + ": is missing (" + p.meaning + ")"};
+    if (!value) continue;
+    if (auto fine = check(p, *value); !fine) return fine.error();
+    out.emplace(p.name, std::move(*value));
+  }
+  return out;
+}
+
+http::Response answer(Backend& backend, const std::vector<RouteInfo>& table,
+                      const http::Request& request) {
+  std::string allowed;
+  auto matched = match(table, request, &allowed);
+  // Who may not come in is not told which addresses there are.
+  if (!matched) {
+    auto known = authenticate(backend, request);
+    return known ? refusal(matched.error(), allowed) : refusal(known.error(), "");
+  }
+  auto caller = allowed_caller(backend, *matched->route, request);
+  if (!caller) return refusal(caller.error(), "");
+  if (request.body.size() > matched->route->body_limit_bytes)
+    return error_response({core::Errc::too_large,
+                           fmt::format("the body has {} bytes, at most {} are taken",
+                                       request.body.size(), matched->route->body_limit_bytes)});
+  auto checked = arguments(*matched, request);
+  if (!checked) return error_response(checked.error());
+  auto response = matched->route->handle(Call{backend, request, *caller, std::move(*checked)});
+  return response ? std::move(*response) : refusal(response.error(), "");
+}
+
+std::variant<std::uint64_t, http::Response> admit(Backend& backend,
+                                                  const std::vector<RouteInfo>& table,
+                                                  const http::RequestHead& head) {
+  std::string allowed;
+  auto matched = match(table, head, &allowed);
+  if (!matched) {
+    auto known = authenticate(backend, head);
+    return known ? refusal(matched.error(), allowed) : refusal(known.error(), "");
+  }
+  if (auto caller = allowed_caller(backend, *matched->route, head); !caller)
+    return refusal(caller.error(), "");
+  return matched->route->body_limit_bytes;
+}
+
+}  // namespace api

@@ -1,0 +1,33 @@
+/// From a request to its answer: route, credentials, arguments, handler.
+#pragma once
+
+#include "server/api/backend.hpp"
+#include "server/api/route.hpp"
+#include "server/http/server.hpp"
+
+namespace api {
+
+/// A route and what its path's placeholders stand for.
+struct Match {
+  const RouteInfo* route;
+  std::map<std::string, std::string> segments;
+};
+/// Errors: not_found; bad_input (a broken escape); Errc::forbidden is never one of these. When the
+/// path exists with another method, `allowed` (if given) gets those methods.
+core::Result<Match> match(const std::vector<RouteInfo>& table, const http::RequestHead& head,
+                          std::string* allowed = nullptr);
+
+/// Path, query and header arguments by the route's declaration. Errors: bad_input for one missing
+/// or not declared, out_of_range for a number outside its limits.
+core::Result<std::map<std::string, std::string>> arguments(const Match& matched,
+                                                           const http::RequestHead& head);
+
+/// Everything under /api by `table`.
+http::Response answer(Backend& backend, const std::vector<RouteInfo>& table,
+                      const http::Request& request);
+/// Before the body is read: the same refusals, and how much body the route takes.
+std::variant<std::uint64_t, http::Response> admit(Backend& backend,
+                                                  const std::vector<RouteInfo>& table,
+                                                  const http::RequestHead& head);
+
+}  // namespace api

@@ -1,0 +1,91 @@
+#include "server/api/trial_json.hpp"
+
+#include <algorithm>
+
+#include "metrics/metric.hpp"
+#include "trial/trial.hpp"
+
+namespace api {
+namespace {
+
+core::Json vector_json(const math::Vec3& v) { return core::Json::array({v.x(), v.y(), v.z()}); }
+
+core::Json tract_json(const volume::Tract& tract) {
+  return {{"entry_m", vector_json(tract.entry_m)},
+          {"axis", vector_json(tract.axis)},
+          {"length_m", tract.length_m},
+          {"radius_m", tract.radius_m},
+          {"medial", vector_json(tract.medial)},
+          {"superior", vector_json(tract.superior)}};
+}
+
+core::Json scores_json(const std::vector<store::ScoreRecord>& scores) {
+  const auto known = metrics::all();
+  core::Json out = core::Json::array();
+  for (const store::ScoreRecord& score : scores) {
+    const auto info = std::ranges::find(known, score.metric_id, &metrics::MetricInfo::id);
+    if (info == known.end()) continue;  // scored by another version
+    out.push_back({{"id", info->id},
+                   {"label", info->label},
+                   {"unit", info->unit},
+                   {"value", score.value ? core::Json(*score.value) : core::Json()},
+                   {"note", score.note},
+                   {"definition", info->definition},
+                   {"source", info->source}});
+  }
+  return out;
+}
+
+/// The last answer of the events, or null.
+core::Json answer_json(const core::Json& events) {
+  trial::Trial trial;
+  for (const core::Json& event : events)
+    trial.events.push_back({event.at("t_s"), event.at("kind"), event.at("detail")});
+  const auto answer = trial.answer();
+  if (!answer) return {};
+  return {{"breach", answer->breach},
+          {"wall", answer->wall ? core::Json(*answer->wall) : core::Json()},
+          {"confidence", answer->confidence ? core::Json(*answer->confidence) : core::Json()}};
+}
+
+}  // namespace
+
+core::Json summary_json(const store::TrialSummary& trial) {
+  return {{"id", trial.id},
+          {"case_id", trial.case_id},
+          {"case_title", trial.case_title},
+          {"station", trial.station},
+          {"operator_name", trial.operator_name},
+          {"simulated", trial.simulated},
+          {"started_utc_us", trial.started_utc_us},
+          {"duration_s", trial.duration_s},
+          {"samples", trial.samples},
+          {"state", trial.state},
+          {"correct", trial.correct ? core::Json(*trial.correct) : core::Json()}};
+}
+
+core::Json trial_json(const store::TrialRecord& trial,
+                      const std::vector<store::ScoreRecord>& scores, const volume::Tract* tract,
+                      const core::Json& truth) {
+  const core::Json header =
+      core::Json::parse(trial.header);  // written by us, as the events and the coverage
+  const core::Json events = core::Json::parse(trial.events);
+  core::Json out = summary_json(trial.summary);
+  out["device"] = header.value("device", "");
+  out["rate_Hz"] = header.value("rate_Hz", 0.0);
+  out["complete"] = trial.complete;
+  out["failure"] = trial.failure.empty() ? core::Json() : core::Json(trial.failure);
+  out["late_ticks"] = trial.late_ticks;
+  out["not_converged"] = trial.not_converged;
+  out["skipped_ticks"] = trial.skipped_ticks;
+  out["answer"] = answer_json(events);
+  out["events"] = events;
+  out["truth"] = truth;
+  out["metrics"] = scores_json(scores);
+  out["tract"] = tract ? tract_json(*tract) : core::Json();
+  out["coverage"] = trial.coverage ? core::Json::parse(*trial.coverage) : core::Json();
+  out["probe"] = header.value("probe", core::Json::object());
+  return out;
+}
+
+}  // namespace api

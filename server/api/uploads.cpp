@@ -1,0 +1,207 @@
+#include "server/api/uploads.hpp"
+
+#include <fmt/format.h>
+
+#include <set>
+
+#include "db/store/cases.hpp"
+#include "db/store/uploads.hpp"
+#include "server/api/backend.hpp"
+#include "server/api/commit.hpp"
+
+namespace api {
+namespace {
+
+constexpr std::uint64_t kReserve_bytes = 256ull
+                                         << 20;  ///< left free for the database and running trials
+
+wire::UploadState state_of(const store::Upload& upload) {
+  return {upload.offset_bytes, upload.state};
+}
+
+core::Error unknown(const std::string& trial_id) {
+  return {core::Errc::not_found,
+          fmt::format("upload {}: not announced by this station", trial_id.substr(0, 32))};
+}
+
+core::Result<store::Upload> own_upload(Backend& backend, const Caller& station,
+                                       const std::string& trial_id) {
+  if (!core::is_id(trial_id)) return unknown(trial_id);
+  auto upload =
+      backend.store.read([&](store::Reading& tx) { return store::upload_of(tx, trial_id); });
+  if (!upload) return upload.error();
+  if (!*upload || (*upload)->station_id != station.id) return unknown(trial_id);
+  return std::move(**upload);
+}
+
+core::Result<void> check_room(Backend& backend, std::uint64_t size_bytes) {
+  std::error_code failure;
+  const auto space = std::filesystem::space(backend.partials.folder(), failure);
+  if (failure || space.available >= size_bytes + kReserve_bytes) return {};
+  return core::Error{
+      core::Errc::unavailable,
+      fmt::format("the server's disk has {} bytes left: too few for this trial", space.available)};
+}
+
+core::Result<wire::UploadState> insert(store::Writing& tx, const Caller& station,
+                                       const std::string& trial_id,
+                                       const wire::UploadAnnouncement& announced,
+                                       std::int64_t now_utc_us) {
+  auto known = store::case_of(tx, announced.case_id);
+  if (!known) return known.error();
+  if (!*known)
+    return core::Error{core::Errc::not_found,
+                       "case_id: no case " + announced.case_id + " on this server"};
+  auto open = store::open_upload_count(tx, station.id);
+  if (!open) return open.error();
+  if (*open >= kMaxOpenUploads)
+    return core::Error{
+        core::Errc::unavailable,
+        fmt::format("{} uploads of this station are unfinished: finish some first", *open)};
+  store::Upload upload{
+      trial_id, station.id, announced.case_id, announced.size_bytes, announced.sha256,
+      0,        0,          "receiving"};
+  if (auto added = store::add_upload(tx, upload, now_utc_us); !added) return added.error();
+  return state_of(upload);
+}
+
+}  // namespace
+
+core::Result<void> restart_upload(Backend& backend, const std::string& trial_id) {
+  auto done = backend.store.write(
+      [&](store::Writing& tx) { return store::set_upload_offset(tx, trial_id, 0, 0); });
+  if (done) backend.partials.remove(trial_id);
+  return done;
+}
+
+core::Result<wire::UploadState> announce_upload(Backend& backend, const Caller& station,
+                                                const std::string& trial_id,
+                                                const wire::UploadAnnouncement& announced) {
+  if (!core::is_id(trial_id))
+    return core::Error{core::Errc::bad_input, "trial_id: 32 hexadecimal characters are expected"};
+  if (announced.size_bytes > kMaxTrial_bytes)
+    return core::Error{core::Errc::too_large,
+                       fmt::format("size_bytes: {} bytes, at most {} are taken",
+                                   announced.size_bytes, kMaxTrial_bytes)};
+  const auto held = backend.upload_locks.hold(trial_id);
+  if (auto room = check_room(backend, announced.size_bytes); !room) return room.error();
+  return backend.store.write([&](store::Writing& tx) -> core::Result<wire::UploadState> {
+    auto upload = store::upload_of(tx, trial_id);
+    if (!upload) return upload.error();
+    if (!*upload) return insert(tx, station, trial_id, announced, backend.now_utc_us());
+    const store::Upload& known = **upload;
+    if (known.station_id != station.id) return unknown(trial_id);
+    if (known.case_id == announced.case_id && known.size_bytes == announced.size_bytes &&
+        known.sha256 == announced.sha256)
+      return state_of(known);
+    return core::Error{core::Errc::conflict,
+                       fmt::format("trial {} was announced differently before", trial_id)};
+  });
+}
+
+core::Result<wire::UploadState> upload_state(Backend& backend, const Caller& station,
+                                             const std::string& trial_id) {
+  auto upload = own_upload(backend, station, trial_id);
+  if (!upload) return upload.error();
+  return state_of(*upload);
+}
+
+core::Result<Appended> append_upload(Backend& backend, const Caller& station,
+                                     const std::string& trial_id, std::uint64_t offset_bytes,
+                                     std::uint32_t crc32c, core::ByteView bytes) {
+  auto first =
+      own_upload(backend, station, trial_id);  // before the lock: others' ids wait for nothing
+  if (!first) return first.error();
+  const auto held = backend.upload_locks.hold(trial_id);
+  auto upload = own_upload(backend, station, trial_id);
+  if (!upload) return upload.error();
+  if (upload->state != "receiving")
+    return core::Error{core::Errc::conflict, fmt::format("trial {} is complete", trial_id)};
+  const std::uint64_t there = backend.partials.size_of(trial_id);
+  if (there < upload->offset_bytes) {  // acknowledged bytes were lost under us: begin again
+    if (auto again = restart_upload(backend, trial_id); !again) return again.error();
+    return Appended{{0, upload->state}, false};
+  }
+  if (offset_bytes != upload->offset_bytes) return Appended{state_of(*upload), false};
+  if (bytes.empty()) return core::Error{core::Errc::bad_input, "the piece is empty"};
+  if (bytes.size() > upload->size_bytes - upload->offset_bytes)
+    return core::Error{core::Errc::out_of_range,
+                       fmt::format("{} bytes at {} go beyond the {} announced", bytes.size(),
+                                   offset_bytes, upload->size_bytes)};
+  if (core::crc32c(bytes) != crc32c)
+    return core::Error{core::Errc::corrupt,
+                       fmt::format("X-Crc32c: the body's checksum is {:08x}, not {:08x}",
+                                   core::crc32c(bytes), crc32c)};
+  if (there > offset_bytes)
+    if (auto cut = backend.partials.cut(trial_id, offset_bytes); !cut) return cut.error();
+  if (auto done = backend.partials.write_at(trial_id, offset_bytes, bytes); !done)
+    return done.error();
+  upload->offset_bytes += bytes.size();
+  const std::uint32_t chained = core::crc32c(bytes, upload->crc32c);
+  auto noted = backend.store.write([&](store::Writing& tx) {
+    return store::set_upload_offset(tx, trial_id, upload->offset_bytes, chained);
+  });
+  if (!noted) return noted.error();
+  return Appended{state_of(*upload), true};
+}
+
+core::Result<wire::UploadState> commit_upload(Backend& backend, const Caller& station,
+                                              const std::string& trial_id) {
+  auto first = own_upload(backend, station, trial_id);
+  if (!first) return first.error();
+  const auto held = backend.upload_locks.hold(trial_id);
+  auto upload = own_upload(backend, station, trial_id);
+  if (!upload) return upload.error();
+  if (upload->state == "complete") return state_of(*upload);
+  if (upload->offset_bytes != upload->size_bytes)
+    return core::Error{core::Errc::conflict,
+                       fmt::format("{} of {} bytes are here: send the rest first",
+                                   upload->offset_bytes, upload->size_bytes)};
+  auto trial = checked_trial(backend, *upload);
+  if (!trial) {
+    const auto code = trial.error().code;
+    if (code != core::Errc::corrupt && code != core::Errc::bad_input &&
+        code != core::Errc::too_large)
+      return trial.error();
+    if (auto again = restart_upload(backend, trial_id); !again) return again.error();
+    return trial.error();
+  }
+  if (auto stored = store_trial(backend, *upload, *trial); !stored) return stored.error();
+  backend.partials.remove(trial_id);
+  backend.work_waits();
+  return wire::UploadState{upload->size_bytes, "complete"};
+}
+
+namespace {
+
+core::Result<void> reconcile(Backend& backend, const store::Upload& upload) {
+  const std::uint64_t there = backend.partials.size_of(upload.trial_id);
+  if (there >= upload.offset_bytes) {
+    if (upload.offset_bytes == 0)
+      return backend.partials.remove(upload.trial_id), core::Result<void>();
+    auto crc = store::file_crc32c(backend.partials.path_of(upload.trial_id), upload.offset_bytes);
+    if (!crc) return crc.error();
+    if (*crc == upload.crc32c)
+      return there > upload.offset_bytes
+                 ? backend.partials.cut(upload.trial_id, upload.offset_bytes)
+                 : core::Result<void>();
+  }
+  return restart_upload(backend, upload.trial_id);
+}
+
+}  // namespace
+
+core::Result<void> reconcile_uploads(Backend& backend) {
+  auto open = backend.store.read([](store::Reading& tx) { return store::open_uploads(tx); });
+  if (!open) return open.error();
+  std::set<std::string> ids;
+  for (const store::Upload& upload : *open) {
+    if (auto done = reconcile(backend, upload); !done) return done;
+    ids.insert(upload.trial_id);
+  }
+  for (const std::string& id : backend.partials.ids())
+    if (!ids.contains(id)) backend.partials.remove(id);
+  return {};
+}
+
+}  // namespace api

@@ -1,0 +1,38 @@
+/// A server's folder: database, objects, partial files.
+#pragma once
+
+#include <filesystem>
+
+#include "db/store/objects.hpp"
+#include "db/store/store.hpp"
+
+namespace app {
+
+struct DataFolder {
+  std::filesystem::path path;
+  store::Store store;
+  store::Objects objects;
+  store::PartialFiles partials;
+};
+
+/// Opens one that `init` made. Errors: not_found, and those of the database.
+core::Result<DataFolder> open_data(const std::filesystem::path& path);
+/// Makes one, or opens what is there (accounts are another matter).
+core::Result<DataFolder> make_data(const std::filesystem::path& path);
+
+/// Held while a process serves a folder; the system lets go of it when the process ends, however it
+/// ends.
+class ServingLock {
+ public:
+  /// Errors: conflict when another process serves the folder.
+  static core::Result<ServingLock> take(const std::filesystem::path& data);
+  ~ServingLock();
+  ServingLock(ServingLock&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+  ServingLock& operator=(ServingLock&&) = delete;
+
+ private:
+  explicit ServingLock(int fd) : fd_(fd) {}
+  int fd_;
+};
+
+}  // namespace app

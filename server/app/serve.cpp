@@ -1,0 +1,132 @@
+#include "server/app/serve.hpp"
+
+#include <fmt/format.h>
+#include <pthread.h>
+#include <signal.h>
+
+#include <charconv>
+#include <cstdio>
+#include <thread>
+
+#include "core/clock.hpp"
+#include "core/json.hpp"
+#include "server/api/backend.hpp"
+#include "server/api/service.hpp"
+#include "server/api/uploads.hpp"
+#include "server/app/data_folder.hpp"
+#include "server/http/static_files.hpp"
+#include "server/jobs/runner.hpp"
+
+namespace app {
+namespace {
+
+/// SIGTERM and SIGINT are kept from every thread (call before any starts) and taken by one that
+/// waits for them.
+class StopSignals {
+ public:
+  StopSignals() {
+    sigemptyset(&signals_);
+    sigaddset(&signals_, SIGTERM);
+    sigaddset(&signals_, SIGINT);
+    sigaddset(&signals_, SIGUSR1);  // our own, to end the waiting
+    pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
+    signal(SIGPIPE, SIG_IGN);
+  }
+  void watch(http::Server& server) {
+    thread_ = std::thread([this, &server] {
+      int which = 0;
+      sigwait(&signals_, &which);
+      server.stop();
+    });
+  }
+  ~StopSignals() {
+    if (!thread_.joinable()) return;
+    pthread_kill(thread_.native_handle(), SIGUSR1);
+    thread_.join();
+  }
+  StopSignals(const StopSignals&) = delete;
+  StopSignals& operator=(const StopSignals&) = delete;
+
+ private:
+  sigset_t signals_;
+  std::thread thread_;
+};
+
+http::Service service_of(api::Backend& backend, const std::optional<std::filesystem::path>& web) {
+  const auto is_api = [](const http::RequestHead& head) {
+    return head.path == "/api" || head.path.starts_with("/api/");
+  };
+  const auto pages = [web](const http::RequestHead& head) {
+    if (web) return http::StaticFiles(*web).answer(head);
+    return http::error_response(404, "not_found",
+                                "this server has no pages; see /api/openapi.json");
+  };
+  return {
+      .admit = [&backend, is_api](
+                   const http::RequestHead& head) -> std::variant<std::uint64_t, http::Response> {
+        if (is_api(head)) return api::admit(backend, api::routes(), head);
+        return http::error_response(405, "bad_input", "pages take no body");
+      },
+      .handle =
+          [&backend, is_api, pages](const http::Request& request) {
+            return is_api(request) ? api::answer(backend, api::routes(), request) : pages(request);
+          }};
+}
+
+void say_where(const ServeOptions& options, std::uint16_t port) {
+  const bool six = options.http.address.find(':') != std::string::npos;
+  const std::string address = six ? "[" + options.http.address + "]" : options.http.address;
+  const std::string url = fmt::format("http://{}:{}/", address, port);
+  if (options.json)
+    fmt::print("{}\n", core::Json{{"listening", url}}.dump());
+  else
+    fmt::print("listening on {}\n", url);
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+core::Result<std::pair<std::string, std::uint16_t>> listening_address(const std::string& text) {
+  const core::Error wrong{
+      core::Errc::bad_input,
+      fmt::format("--listen {}: ADDRESS:PORT is expected, as 127.0.0.1:8480", text)};
+  const auto colon = text.rfind(':');
+  if (colon == std::string::npos || colon == 0) return wrong;
+  std::string address = text.substr(0, colon);
+  if (address.front() == '[' && address.back() == ']')
+    address = address.substr(1, address.size() - 2);
+  std::uint16_t port = 0;
+  const char* end = text.data() + text.size();
+  const auto [stopped, failure] = std::from_chars(text.data() + colon + 1, end, port);
+  if (failure != std::errc() || stopped != end) return wrong;
+  return std::pair(address, port);
+}
+
+core::Result<void> serve(const ServeOptions& options) {
+  StopSignals signals;
+  auto data = open_data(options.data);
+  if (!data) return data.error();
+  auto lock = ServingLock::take(options.data);
+  if (!lock) return lock.error();
+  if (options.web && !std::filesystem::is_regular_file(*options.web / "index.html"))
+    return core::Error{core::Errc::not_found,
+                       options.web->string() + ": no index.html there; build the web pages first"};
+  auto runner = jobs::Runner::start(data->store, data->objects, [](const std::string& line) {
+    fmt::print(stderr, "tractus-server: {}\n", line);
+  });
+  if (!runner) return runner.error();
+  api::Backend backend{.store = data->store,
+                       .objects = data->objects,
+                       .partials = data->partials,
+                       .now_utc_us = core::utc_us,
+                       .work_waits = [&runner] { (*runner)->wake(); }};
+  if (auto fine = api::reconcile_uploads(backend); !fine) return fine;
+  auto server = http::Server::open(options.http, service_of(backend, options.web));
+  if (!server) return server.error();
+  signals.watch(*server);
+  say_where(options, server->port());
+  server->run();
+  return {};
+}
+
+}  // namespace app

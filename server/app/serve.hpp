@@ -1,0 +1,26 @@
+/// The running server.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "core/result.hpp"
+#include "server/http/server.hpp"
+
+namespace app {
+
+struct ServeOptions {
+  std::filesystem::path data;
+  std::optional<std::filesystem::path> web;  ///< built pages; none: the API alone
+  http::ServerOptions http;
+  bool json = false;  ///< the line that says where it listens
+};
+
+/// Splits "127.0.0.1:8480" or "[::1]:8480". Errors: bad_input.
+core::Result<std::pair<std::string, std::uint16_t>> listening_address(const std::string& text);
+
+/// Serves until SIGTERM or SIGINT. Prints one line, "listening on http://…", once it answers.
+core::Result<void> serve(const ServeOptions& options);
+
+}  // namespace app

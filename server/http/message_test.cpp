@@ -1,0 +1,67 @@
+#include "server/http/message.hpp"
+
+#include <gtest/gtest.h>
+
+#include <tuple>
+
+namespace http {
+namespace {
+
+RequestHead head_with(std::string name, std::string value) {
+  RequestHead head;
+  head.headers.emplace(std::move(name), std::move(value));
+  return head;
+}
+
+TEST(Target, IsTakenApartAndDecoded) {
+  RequestHead head;
+  ASSERT_TRUE(read_target("/a/b%2Fc?x=1&name=J%C3%BCrg+K&flag", head));
+  EXPECT_EQ(head.path, "/a/b%2Fc");
+  EXPECT_EQ(head.query, (std::map<std::string, std::string>{
+                            {"x", "1"}, {"name", "J\xc3\xbcrg K"}, {"flag", ""}}));
+}
+
+TEST(Target, ABrokenEscapeAZeroByteANameTwiceOrAnAbsoluteAddressIsRefused) {
+  for (const char* bad :
+       {"/?x=%", "/?x=%2", "/?x=%zz", "/?x=%00", "/?x=1&x=2", "x", "", "http://elsewhere/"}) {
+    RequestHead head;
+    EXPECT_FALSE(read_target(bad, head)) << bad;
+  }
+}
+
+TEST(Cookies, AreFoundByTheirWholeName) {
+  const RequestHead head = head_with("cookie", "xsession=1; session=two;session2=3");
+  EXPECT_EQ(head.cookie("session"), "two");
+  EXPECT_EQ(head.cookie("sess"), "");
+}
+
+// Expected values: RFC 9110, section 14.1.2, with its file of 10000 bytes.
+TEST(Ranges, AreThoseOfTheStandard) {
+  using Range = std::pair<std::uint64_t, std::uint64_t>;
+  EXPECT_EQ(byte_range("bytes=0-499", 10000).value(), Range(0, 499));
+  EXPECT_EQ(byte_range("bytes=500-999", 10000).value(), Range(500, 999));
+  EXPECT_EQ(byte_range("bytes=-500", 10000).value(), Range(9500, 9999));
+  EXPECT_EQ(byte_range("bytes=9500-", 10000).value(), Range(9500, 9999));
+  EXPECT_EQ(byte_range("bytes=9500-20000", 10000).value(), Range(9500, 9999));
+  EXPECT_EQ(byte_range("bytes=-20000", 10000).value(), Range(0, 9999));
+}
+
+TEST(Ranges, BeyondTheEndIsAnErrorAndAnUnknownFormIsNoRange) {
+  for (const char* beyond : {"bytes=10000-", "bytes=10000-10001", "bytes=-0"})
+    EXPECT_FALSE(byte_range(beyond, 10000)) << beyond;
+  for (const char* unknown : {"", "bytes=", "bytes=a-b", "bytes=5-4", "lines=1-2", "bytes=0-1,5-6",
+                              "bytes=1-2x", "bytes=--5", "bytes=99999999999999999999-"}) {
+    const auto range = byte_range(unknown, 10000);
+    ASSERT_TRUE(range) << unknown;
+    EXPECT_FALSE(range.value()) << unknown;
+  }
+}
+
+TEST(Errors, AreJsonEvenWhenTheTextIsNotUnicode) {
+  const Response response = error_response(400, "bad_input", "a \"quote\" and \xff");
+  EXPECT_EQ(std::get<std::string>(response.body),
+            "{\"error\":\"a \\\"quote\\\" and \xef\xbf\xbd\",\"code\":\"bad_input\"}");
+}
+
+}  // namespace
+}  // namespace http

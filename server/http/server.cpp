@@ -1,0 +1,412 @@
+/// The one file that includes Asio and Beast.
+#include <utility>  // before Asio: 1.74 uses std::exchange without it
+//
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/executor_work_guard.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/redirect_error.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/thread_pool.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/asio/write.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/http.hpp>
+#include <list>
+
+#include "server/http/server.hpp"
+#include "server/http/static_files.hpp"
+
+namespace http {
+namespace {
+namespace net = boost::asio;
+namespace beast = boost::beast;
+using boost::system::error_code;
+using net::ip::tcp;
+using Admission = std::variant<std::uint64_t, Response>;
+using Parser = beast::http::request_parser<beast::http::string_body>;
+
+constexpr std::size_t kPiece_bytes = 256 * 1024;
+constexpr std::size_t kLingering_bytes = 16u << 20;
+constexpr std::chrono::seconds kLingering_time{2};
+
+auto into(error_code& failure) { return net::redirect_error(net::use_awaitable, failure); }
+
+/// Runs `work` on the pool and comes back to the connection's own thread with its answer.
+template <class Work>
+net::awaitable<std::invoke_result_t<Work>> on_workers(net::thread_pool& pool, Work work) {
+  using Answer = std::invoke_result_t<Work>;
+  auto start = [&pool, &work](auto handler) {
+    net::post(pool, [work = std::move(work), handler = std::move(handler)]() mutable {
+      Answer answer = work();
+      const auto home = net::get_associated_executor(handler);
+      net::post(home, [handler = std::move(handler), answer = std::move(answer)]() mutable {
+        std::move(handler)(std::move(answer));
+      });
+    });
+  };
+  co_return co_await net::async_initiate<const net::use_awaitable_t<>&, void(Answer)>(
+      std::move(start), net::use_awaitable);
+}
+
+class File {
+ public:
+  explicit File(const std::filesystem::path& path)
+      : fd_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {}
+  ~File() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+  explicit operator bool() const { return fd_ >= 0; }
+  /// Fills all of `piece`; false when the file is shorter or cannot be read.
+  bool read_at(std::uint64_t offset, std::string& piece) const {
+    std::size_t done = 0;
+    while (done < piece.size()) {
+      const ssize_t n =
+          ::pread(fd_, piece.data() + done, piece.size() - done, static_cast<off_t>(offset + done));
+      if (n < 0 && errno == EINTR) continue;
+      if (n <= 0) return false;
+      done += static_cast<std::size_t>(n);
+    }
+    return true;
+  }
+
+ private:
+  int fd_;
+};
+
+/// A library threw where a handler did not expect it: this request fails, the server goes on.
+Response broken(const std::exception& failure) {
+  fmt::print(stderr, "tractus-server: a request failed: {}\n", failure.what());
+  return error_response(500, "io", "the server could not do this; its log says why");
+}
+
+// What workers do, as plain values of pointers into the waiting coroutine's frame: gcc 12 destroys
+// a lambda's captures twice when it is made within a co_await expression.
+struct Handling {
+  const Service* service;
+  const Request* request;
+  Response operator()() const try {
+    return service->handle(*request);
+  } catch (const std::exception& failure) {
+    return broken(failure);
+  }
+};
+struct Admitting {
+  const Service* service;
+  const RequestHead* head;
+  Admission operator()() const try {
+    return service->admit(*head);
+  } catch (const std::exception& failure) {
+    return broken(failure);
+  }
+};
+struct ReadingPiece {
+  const File* file;
+  std::string* piece;
+  std::uint64_t offset;
+  bool operator()() const { return file->read_at(offset, *piece); }
+};
+
+std::string lower_case(beast::string_view text) {
+  std::string out(text);
+  for (char& c : out)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return out;
+}
+
+core::Result<RequestHead> head_of(const Parser& parser, std::string peer) {
+  const auto& message = parser.get();
+  RequestHead head;
+  head.method = std::string(message.method_string());
+  head.peer = std::move(peer);
+  for (const auto& field : message)
+    head.headers.emplace(lower_case(field.name_string()), std::string(field.value()));
+  if (const auto length = parser.content_length()) head.body_bytes = *length;
+  const auto target = message.target();
+  if (auto read = read_target({target.data(), target.size()}, head); !read) return read.error();
+  return head;
+}
+
+/// What a refused or broken request is answered, or nothing when there is nobody to answer.
+std::optional<Response> answer_to(error_code failure) {
+  using beast::http::error;
+  if (failure == error::header_limit)
+    return error_response(431, "too_large", "the request's head is too large");
+  if (failure == error::body_limit)
+    return error_response(413, "too_large", "the request's body is too large");
+  if (failure == beast::error::timeout)
+    return error_response(408, "unavailable", "the request took too long to arrive");
+  if (failure.category() == make_error_code(error::bad_version).category() &&
+      failure != error::end_of_stream && failure != error::partial_message)
+    return error_response(400, "bad_input", "this is not HTTP/1.1: " + failure.message());
+  return std::nullopt;
+}
+
+}  // namespace
+
+struct Server::State {
+  State(ServerOptions given, Service what)
+      : options(std::move(given)),
+        service(std::move(what)),
+        workers(static_cast<std::size_t>(options.workers)) {}
+
+  struct Connection {
+    explicit Connection(tcp::socket socket) : stream(std::move(socket)) {}
+    beast::tcp_stream stream;
+    beast::flat_buffer buffer;
+    std::string peer;
+    bool idle = true;  ///< between requests: closed at once when told to stop
+  };
+
+  net::awaitable<void> accept_all();
+  net::awaitable<void> serve(std::list<Connection>::iterator connection);
+  /// One request and its answer; false when the connection is to be closed.
+  net::awaitable<bool> exchange(Connection& connection);
+  net::awaitable<std::optional<Response>> read_body(Connection& connection, Parser& parser,
+                                                    const RequestHead& head);
+  net::awaitable<bool> write(Connection& connection, const RequestHead& head, Response& response,
+                             bool keep_alive);
+  net::awaitable<void> refuse(Connection& connection, const RequestHead& head, Response& refusal);
+  net::awaitable<bool> write_file(Connection& connection, const FileSlice& slice);
+  net::awaitable<void> linger(Connection& connection);
+  void drain();
+  void ended(std::list<Connection>::iterator connection);
+
+  ServerOptions options;
+  Service service;
+  net::io_context io{1};
+  net::executor_work_guard<net::io_context::executor_type> guard{io.get_executor()};
+  tcp::acceptor acceptor{io};
+  net::steady_timer drained{io};
+  net::thread_pool workers;
+  std::list<Connection> connections;  ///< touched by the input/output thread alone
+  bool draining = false;
+};
+
+net::awaitable<void> Server::State::accept_all() {
+  while (acceptor.is_open()) {
+    error_code failure;
+    tcp::socket socket = co_await acceptor.async_accept(into(failure));
+    if (failure == net::error::operation_aborted) co_return;
+    if (failure) {  // out of descriptors: wait for some to come back
+      net::steady_timer pause(io, std::chrono::milliseconds(100));
+      co_await pause.async_wait(into(failure));
+      continue;
+    }
+    if (connections.size() >= static_cast<std::size_t>(options.max_connections)) continue;
+    const auto endpoint = socket.remote_endpoint(failure);
+    socket.set_option(tcp::no_delay(true), failure);
+    connections.emplace_front(std::move(socket));
+    connections.front().peer = endpoint.address().to_string(failure);
+    net::co_spawn(io, serve(connections.begin()), net::detached);
+  }
+}
+
+net::awaitable<void> Server::State::serve(std::list<Connection>::iterator connection) {
+  try {
+    while (!draining && co_await exchange(*connection)) {
+    }
+    error_code ignored;
+    connection->stream.socket().shutdown(tcp::socket::shutdown_both, ignored);
+  } catch (const std::exception&) {  // out of memory: this connection ends, the others go on
+  }
+  ended(connection);
+}
+
+void Server::State::ended(std::list<Connection>::iterator connection) {
+  connections.erase(connection);
+  if (draining && connections.empty()) io.stop();
+}
+
+net::awaitable<bool> Server::State::exchange(Connection& c) {
+  error_code failure;
+  c.idle = true;
+  if (c.buffer.size() == 0) {
+    c.stream.expires_after(options.idle_time);
+    const auto n = co_await c.stream.async_read_some(c.buffer.prepare(4096), into(failure));
+    if (failure) co_return false;
+    c.buffer.commit(n);
+  }
+  c.idle = false;
+  Parser parser;
+  parser.header_limit(options.max_header_bytes);
+  parser.body_limit(UINT64_MAX);  // the service says later how much; 1.74 takes "none" for 0
+  c.stream.expires_after(options.header_time);
+  co_await beast::http::async_read_header(c.stream, c.buffer, parser, into(failure));
+  if (failure) {
+    auto refusal = answer_to(failure);
+    const RequestHead nobody;
+    if (refusal) co_await refuse(c, nobody, *refusal);
+    co_return false;
+  }
+  auto head = head_of(parser, c.peer);
+  if (!head) {
+    Response refusal = error_response(400, "bad_input", head.error().what);
+    const RequestHead nobody;
+    co_await refuse(c, nobody, refusal);
+    co_return false;
+  }
+  std::optional<Response> refusal = co_await read_body(c, parser, *head);
+  if (refusal) {
+    co_await refuse(c, *head, *refusal);
+    co_return false;
+  }
+  const bool keep_alive = parser.get().keep_alive();
+  Response response;
+  {
+    Request request{*head, std::move(parser.get().body())};
+    c.stream.expires_never();
+    response = co_await on_workers(workers, Handling{&service, &request});
+  }
+  const bool stays = keep_alive && !draining;
+  const bool written = co_await write(c, *head, response, stays);
+  co_return written&& stays;
+}
+
+net::awaitable<std::optional<Response>> Server::State::read_body(Connection& c, Parser& parser,
+                                                                 const RequestHead& head) {
+  if (parser.is_done()) co_return std::nullopt;
+  c.stream.expires_never();
+  Admission admitted = co_await on_workers(workers, Admitting{&service, &head});
+  if (auto* refusal = std::get_if<Response>(&admitted)) co_return std::move(*refusal);
+  const std::uint64_t limit = std::get<std::uint64_t>(admitted);
+  if (head.body_bytes > limit)
+    co_return error_response(
+        413, "too_large",
+        fmt::format("the body has {} bytes, at most {} are taken", head.body_bytes, limit));
+  parser.body_limit(limit);
+  error_code failure;
+  c.stream.expires_after(options.body_time);
+  if (lower_case(parser.get()[beast::http::field::expect]) == "100-continue") {
+    static constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
+    co_await net::async_write(c.stream, net::buffer(kContinue), into(failure));
+  }
+  if (!failure) co_await beast::http::async_read(c.stream, c.buffer, parser, into(failure));
+  if (!failure) co_return std::nullopt;
+  auto refusal = answer_to(failure);
+  if (!refusal) refusal = error_response(400, "bad_input", "the request ended within its body");
+  co_return refusal;
+}
+
+net::awaitable<bool> Server::State::write(Connection& c, const RequestHead& head,
+                                          Response& response, bool keep_alive) {
+  namespace bh = beast::http;
+  add_security_headers(response);
+  const auto* slice = std::get_if<FileSlice>(&response.body);
+  bh::response<bh::string_body> message(bh::int_to_status(static_cast<unsigned>(response.status)),
+                                        11);
+  for (const auto& [name, value] : response.headers) message.insert(name, value);
+  message.keep_alive(keep_alive);
+  const bool bodiless = response.status == 204 || response.status == 304;
+  const std::uint64_t size = slice ? slice->size : std::get<std::string>(response.body).size();
+  if (!bodiless) message.content_length(size);
+  const bool send_body = !bodiless && head.method != "HEAD";
+  if (send_body && !slice) message.body() = std::move(std::get<std::string>(response.body));
+  bh::response_serializer<bh::string_body> serializer(message);
+  error_code failure;
+  c.stream.expires_after(options.write_time);
+  if (send_body && !slice)
+    co_await bh::async_write(c.stream, serializer, into(failure));
+  else
+    co_await bh::async_write_header(c.stream, serializer, into(failure));
+  if (failure) co_return false;
+  if (send_body && slice) co_return co_await write_file(c, *slice);
+  co_return true;
+}
+
+net::awaitable<bool> Server::State::write_file(Connection& c, const FileSlice& slice) {
+  const File file(slice.path);
+  if (!file) co_return false;
+  std::string piece;
+  for (std::uint64_t done = 0; done < slice.size;) {
+    piece.resize(std::min<std::uint64_t>(kPiece_bytes, slice.size - done));
+    c.stream.expires_never();
+    const bool read =
+        co_await on_workers(workers, ReadingPiece{&file, &piece, slice.offset + done});
+    if (!read) co_return false;  // the length is already sent: closing is the only way to say so
+    error_code failure;
+    c.stream.expires_after(options.write_time);
+    co_await net::async_write(c.stream, net::buffer(piece), into(failure));
+    if (failure) co_return false;
+    done += piece.size();
+  }
+  co_return true;
+}
+
+net::awaitable<void> Server::State::refuse(Connection& c, const RequestHead& head,
+                                           Response& refusal) {
+  co_await write(c, head, refusal, false);
+  co_await linger(c);
+}
+
+/// Reads what the other side still sends, so that it sees the answer instead of a reset.
+net::awaitable<void> Server::State::linger(Connection& c) {
+  error_code failure;
+  c.stream.socket().shutdown(tcp::socket::shutdown_send, failure);
+  c.stream.expires_after(kLingering_time);
+  std::string waste(64 * 1024, '\0');
+  for (std::size_t read = 0; !failure && read < kLingering_bytes;)
+    read += co_await c.stream.async_read_some(net::buffer(waste), into(failure));
+}
+
+void Server::State::drain() {
+  if (draining) return;
+  draining = true;
+  error_code ignored;
+  acceptor.close(ignored);
+  for (Connection& connection : connections)
+    if (connection.idle) connection.stream.socket().close(ignored);
+  if (connections.empty()) return io.stop();
+  drained.expires_after(options.drain_time);
+  drained.async_wait([this](error_code failure) {
+    if (!failure) io.stop();
+  });
+}
+
+core::Result<Server> Server::open(const ServerOptions& options, Service service) {
+  auto state = std::make_unique<State>(options, std::move(service));
+  error_code failure;
+  const auto address = net::ip::make_address(options.address, failure);
+  if (failure)
+    return core::Error{core::Errc::bad_input,
+                       fmt::format("{}: not an address to listen on", options.address)};
+  const tcp::endpoint endpoint(address, options.port);
+  auto& acceptor = state->acceptor;
+  acceptor.open(endpoint.protocol(), failure);
+  if (!failure) acceptor.set_option(tcp::acceptor::reuse_address(true), failure);
+  if (!failure) acceptor.bind(endpoint, failure);
+  if (!failure) acceptor.listen(tcp::socket::max_listen_connections, failure);
+  if (failure)
+    return core::Error{core::Errc::unavailable,
+                       fmt::format("cannot listen on {}:{}: {}", options.address, options.port,
+                                   failure.message())};
+  return Server(std::move(state));
+}
+
+Server::Server(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Server::Server(Server&&) noexcept = default;
+Server::~Server() = default;
+
+std::uint16_t Server::port() const { return state_->acceptor.local_endpoint().port(); }
+
+void Server::run() {
+  net::co_spawn(state_->io, state_->accept_all(), net::detached);
+  state_->io.run();
+  state_->workers.join();
+}
+
+void Server::stop() {
+  net::post(state_->io, [state = state_.get()] { state->drain(); });
+}
+
+}  // namespace http

@@ -1,0 +1,56 @@
+/// The listening side: sockets, limits, time-outs.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "server/http/message.hpp"
+
+namespace http {
+
+struct ServerOptions {
+  std::string address = "127.0.0.1";
+  std::uint16_t port = 8480;  ///< 0: any free one
+  int workers = 4;            ///< threads on which handlers run
+  int max_connections = 256;  ///< one more is closed at once
+  std::uint32_t max_header_bytes = 16 * 1024;
+  std::chrono::milliseconds header_time{
+      10'000};  ///< from a request's first byte to the end of its head
+  std::chrono::milliseconds idle_time{60'000};   ///< between requests
+  std::chrono::milliseconds body_time{60'000};   ///< for a whole body
+  std::chrono::milliseconds write_time{60'000};  ///< for each piece (256 KiB) of an answer
+  std::chrono::milliseconds drain_time{10'000};  ///< for requests under way once told to stop
+};
+
+/// What the server does with requests. Both are called on worker threads, several at a time.
+struct Service {
+  /// Sees the head before the body is read: how many bytes of body to take at most, or a refusal.
+  std::function<std::variant<std::uint64_t, Response>(const RequestHead&)> admit;
+  std::function<Response(const Request&)> handle;
+};
+
+/// One listening socket, HTTP/1.1 with keep-alive. `open` binds; `run` serves in the calling thread
+/// until `stop`.
+class Server {
+ public:
+  /// Errors: bad_input (not an address), unavailable (in use, not allowed).
+  static core::Result<Server> open(const ServerOptions& options, Service service);
+  ~Server();
+  Server(Server&&) noexcept;
+  std::uint16_t port() const;
+  /// Returns after the last connection is closed, at the latest `drain_time` after `stop`.
+  void run();
+  /// Closes the listening socket, lets requests under way finish. Safe from any thread, more than
+  /// once.
+  void stop();
+
+ private:
+  struct State;
+  explicit Server(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace http

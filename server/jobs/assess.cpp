@@ -1,0 +1,56 @@
+#include "server/jobs/assess.hpp"
+
+#include "core/json.hpp"
+#include "db/store/trials.hpp"
+#include "metrics/metric.hpp"
+#include "server/jobs/case_facts.hpp"
+#include "trial/trial_file.hpp"
+
+namespace jobs {
+namespace {
+
+struct Assessment {
+  std::vector<store::ScoreRecord> scores;
+  std::optional<bool> correct;
+  std::string coverage;
+};
+
+std::string coverage_text(const metrics::Subject& subject) {
+  const auto coverage = metrics::coverage(subject);
+  if (!coverage) return "null";
+  return core::Json{{"depth_bins", coverage->depth_bins},
+                    {"angle_bins", coverage->angle_bins},
+                    {"samples", coverage->samples}}
+      .dump();
+}
+
+Assessment assessment(const metrics::Subject& subject) {
+  Assessment out;
+  for (const auto& [info, score] : metrics::score_all(subject)) {
+    out.scores.push_back({info.id, score.value, score.note});
+    if (info.id == "answer_right" && score.value) out.correct = *score.value > 0.5;
+  }
+  out.coverage = coverage_text(subject);
+  return out;
+}
+
+}  // namespace
+
+core::Result<void> assess_trial(store::Store& store, const store::Objects& objects,
+                                const std::string& trial_id) {
+  auto record = store.read([&](store::Reading& tx) { return store::trial_of(tx, trial_id); });
+  if (!record) return record.error();
+  if (!*record) return core::Error{core::Errc::not_found, "no trial " + trial_id};
+  auto facts = case_facts(store, objects, (*record)->summary.case_id);
+  if (!facts) return facts.error();
+  auto trial = trial::read_trial(objects.path_of((*record)->sha256));
+  if (!trial) return trial.error();
+  metrics::Subject subject{.trial = *trial, .tract = facts->definition.tract, .truth = {}};
+  if (facts->truth) subject.truth = metrics::Truth{facts->truth->breached};
+  const Assessment done = assessment(subject);
+  return store.write([&](store::Writing& tx) {
+    return store::set_assessment(tx, trial_id, done.scores, done.correct, done.coverage);
+  });
+}
+
+}  // namespace jobs

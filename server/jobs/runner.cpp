@@ -1,0 +1,87 @@
+#include "server/jobs/runner.hpp"
+
+#include <fmt/format.h>
+
+#include "core/clock.hpp"
+#include "db/store/trials.hpp"
+#include "server/jobs/assess.hpp"
+
+namespace jobs {
+
+core::Result<std::unique_ptr<Runner>> Runner::start(store::Store& store,
+                                                    const store::Objects& objects, Log log) {
+  auto back = store.write(
+      [](store::Writing& tx) { return store::requeue_claimed_jobs(tx, core::utc_us()); });
+  if (!back) return back.error();
+  return std::unique_ptr<Runner>(new Runner(store, objects, std::move(log)));
+}
+
+Runner::Runner(store::Store& store, const store::Objects& objects, Log log)
+    : store_(store), objects_(objects), log_(std::move(log)), thread_([this] { run(); }) {}
+
+Runner::~Runner() {
+  {
+    const std::lock_guard held(mutex_);
+    ending_ = true;
+  }
+  changed_.notify_one();
+  thread_.join();
+}
+
+void Runner::wake() {
+  {
+    const std::lock_guard held(mutex_);
+    woken_ = true;
+  }
+  changed_.notify_one();
+}
+
+void Runner::run() {
+  std::unique_lock held(mutex_);
+  while (!ending_) {
+    if (!woken_) {
+      changed_.wait(held);
+      continue;
+    }
+    woken_ = false;
+    held.unlock();
+    const bool did = do_one();
+    held.lock();
+    woken_ = woken_ || did;
+  }
+}
+
+bool Runner::do_one() {
+  auto job = store_.write([](store::Writing& tx) { return store::claim_job(tx, core::utc_us()); });
+  if (!job) {
+    log_("jobs: " + job.error().what);
+    return false;
+  }
+  if (!*job) return false;
+  core::Result<void> done = work_on(**job);
+  if (!done) {
+    log_(fmt::format("job {} of {} failed: {}", (*job)->kind, (*job)->subject, done.error().what));
+    done = note_failure(**job, done.error());
+  } else {
+    done = store_.write(
+        [&](store::Writing& tx) { return store::finish_job(tx, (*job)->id, core::utc_us()); });
+  }
+  if (!done) log_("jobs: " + done.error().what);
+  return true;
+}
+
+core::Result<void> Runner::work_on(const store::Job& job) {
+  if (job.kind != "metrics")
+    return core::Error{core::Errc::bad_input, "no work of the kind " + job.kind + " is known"};
+  return assess_trial(store_, objects_, job.subject);
+}
+
+core::Result<void> Runner::note_failure(const store::Job& job, const core::Error& error) {
+  return store_.write([&](store::Writing& tx) -> core::Result<void> {
+    if (auto shown = store::set_assessment_failed(tx, job.subject, error.what); !shown)
+      return shown;
+    return store::fail_job(tx, job.id, error.what, core::utc_us());
+  });
+}
+
+}  // namespace jobs

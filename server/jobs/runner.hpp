@@ -1,0 +1,49 @@
+/// The thread that works on jobs.
+#pragma once
+
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <thread>
+
+#include "db/store/jobs.hpp"
+#include "db/store/objects.hpp"
+#include "db/store/store.hpp"
+
+namespace jobs {
+
+/// Claims and does one job after the other until nothing waits, then waits to be woken. Ends with
+/// its object, after the job in hand.
+class Runner {
+ public:
+  /// Called with one line when something is to be known: a job that failed, a database that
+  /// refuses.
+  using Log = std::function<void(const std::string& line)>;
+
+  /// Puts jobs that a dead process had claimed back in the queue, then starts.
+  static core::Result<std::unique_ptr<Runner>> start(store::Store& store,
+                                                     const store::Objects& objects, Log log);
+  ~Runner();
+  Runner(const Runner&) = delete;
+  Runner& operator=(const Runner&) = delete;
+  /// Something was queued. Safe from any thread.
+  void wake();
+
+ private:
+  Runner(store::Store& store, const store::Objects& objects, Log log);
+  void run();
+  /// Does one job; false when there is none.
+  bool do_one();
+  core::Result<void> work_on(const store::Job& job);
+  core::Result<void> note_failure(const store::Job& job, const core::Error& error);
+
+  store::Store& store_;
+  const store::Objects& objects_;
+  Log log_;
+  std::mutex mutex_;  ///< guards the two below
+  bool woken_ = true, ending_ = false;
+  std::condition_variable changed_;
+  std::thread thread_;
+};
+
+}  // namespace jobs

@@ -1,0 +1,272 @@
+/// `tractus carve`: a CT, an entry and a target become a case.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <numbers>
+
+#include "app/case_picture.hpp"
+#include "app/command.hpp"
+#include "app/lengths.hpp"
+#include "cases/carving.hpp"
+#include "core/clock.hpp"
+#include "core/file.hpp"
+#include "volume/io/read_volume.hpp"
+
+namespace commands {
+namespace {
+
+using core::Errc;
+using core::Error;
+using core::Json;
+
+struct Options {
+  std::string volume, out, title, source, model, key, png;
+  std::string entry, target, length, radius = "1.5", midline;
+  std::string breach, breach_depth, breach_at, spacing = "0.35", margin = "20";
+  bool json = false;
+};
+
+/// The options that hold one length, where it goes, and its name.
+template <class Plan>
+core::Result<void> read_length(const std::string& text, const char* option, Plan& into) {
+  if (text.empty()) return {};
+  const auto length = length_m(text, option);
+  if (!length) return length.error();
+  into = *length;
+  return {};
+}
+
+core::Result<void> read_breach(const Options& o, cases::CarvingPlan& plan) {
+  if (o.breach.empty()) {
+    for (const auto& [text, option] :
+         {std::pair(&o.breach_depth, "--breach-depth"), std::pair(&o.breach_at, "--breach-at")})
+      if (!text->empty())
+        return Error{Errc::bad_input, fmt::format("{}: needs --breach WALL", option)};
+    return {};
+  }
+  const auto wall = volume::wall_named(o.breach);
+  if (!wall)
+    return Error{
+        Errc::bad_input,
+        fmt::format("--breach: '{}': medial, lateral, superior, inferior or anterior is expected",
+                    o.breach)};
+  plan.breach = volume::BreachPlan{.wall = *wall};
+  if (auto read = read_length(o.breach_depth, "--breach-depth", plan.breach->depth_m); !read)
+    return read;
+  return read_length(o.breach_at, "--breach-at", plan.breach->at_m);
+}
+
+core::Result<cases::CarvingPlan> plan_of(const Options& o) {
+  cases::CarvingPlan plan;
+  const auto entry = point_m(o.entry, "--entry"), target = point_m(o.target, "--target");
+  if (!entry) return entry.error();
+  if (!target) return target.error();
+  plan.entry_m = *entry;
+  plan.target_m = *target;
+  if (auto read = read_length(o.length, "--length", plan.length_m); !read) return read.error();
+  if (auto read = read_length(o.radius, "--radius", plan.radius_m); !read) return read.error();
+  if (auto read = read_length(o.midline, "--midline-x", plan.midline_x_m); !read)
+    return read.error();
+  if (auto read = read_length(o.spacing, "--spacing", plan.spacing_m); !read) return read.error();
+  if (auto read = read_length(o.margin, "--margin", plan.margin_m); !read) return read.error();
+  if (auto read = read_breach(o, plan); !read) return read.error();
+  return plan;
+}
+
+core::Result<models::PalpationModel> model_of(const Options& o) {
+  if (!o.model.empty()) return models::PalpationModel::read(o.model);
+  models::PalpationModel model;
+  model.name = "uniform cantilever";
+  return model;
+}
+
+core::Result<core::KeyPair> key_of(const Options& o) {
+  if (!o.key.empty()) return core::KeyPair::open_or_make(o.key);
+  const char *config = std::getenv("XDG_CONFIG_HOME"), *home = std::getenv("HOME");
+  if (!(config && *config) && !(home && *home))
+    return Error{Errc::not_found, "no home folder to keep the signing key in: give --key FILE"};
+  const auto base =
+      config && *config ? std::filesystem::path(config) : std::filesystem::path(home) / ".config";
+  return core::KeyPair::open_or_make(base / "tractus" / "signing.key");
+}
+
+Json json_of(const math::Vec3& v) { return Json::array({v.x(), v.y(), v.z()}); }
+
+Json wall_json(volume::Wall wall, const core::Result<volume::WallFound>& found) {
+  if (!found) return {{"wall", volume::name(wall)}, {"why_not", found.error().what}};
+  return {{"wall", volume::name(wall)},
+          {"thickness_m", found->thickness_m()},
+          {"inner_m", found->inner_m},
+          {"at_m", found->at_m}};
+}
+
+Json report_of(const cases::OpenedCase& made, const cases::Carved& carved) {
+  const auto& grid = carved.volume.geometry;
+  Json out = {
+      {"case", made.id},
+      {"folder", made.folder.string()},
+      {"title", made.definition.title},
+      {"signer", made.signer_public_hex},
+      {"side", carved.left_side() ? "left" : "right"},
+      {"tract", made.definition.to_json()["tract"]},
+      {"mouth_m", carved.mouth_m},
+      {"midline", {{"x_m", carved.midline.at_m.x()}, {"turn_rad", carved.midline.turn_rad}}},
+      {"volume", {{"dims", grid.dims}, {"spacing_m", json_of(grid.spacing_m)}}},
+      {"empty_value", carved.empty_value},
+      {"walls", Json::array()},
+      {"breach", Json()}};
+  out["midline"]["symmetry"] = carved.midline.symmetry ? Json(*carved.midline.symmetry) : Json();
+  for (std::size_t k = 0; k < carved.walls.size(); ++k)
+    out["walls"].push_back(wall_json(volume::kWalls[k], carved.walls[k]));
+  if (const auto& breach = carved.breach)
+    out["breach"] = {{"wall", volume::name(breach->wall.wall)},
+                     {"at_m", breach->wall.at_m},
+                     {"centre_m", json_of(breach->centre_m)},
+                     {"tip_m", json_of(breach->tip_m)},
+                     {"depth_m", breach->depth_m},
+                     {"wall_thickness_m", breach->wall.thickness_m()}};
+  return out;
+}
+
+void print_text(const cases::OpenedCase& made, const cases::Carved& carved) {
+  const auto& grid = carved.volume.geometry;
+  const auto& midline = carved.midline;
+  fmt::print(
+      "{} pedicle, tract of {:.1f} mm; midline at x = {:.1f} mm, turned {:.0f} degrees ({})\n",
+      carved.left_side() ? "left" : "right", carved.tract.length_m * 1e3, midline.at_m.x() * 1e3,
+      midline.turn_rad * 180 / std::numbers::pi,
+      midline.symmetry ? fmt::format("estimated, symmetry {:.2f}", *midline.symmetry)
+                       : "as stated");
+  for (std::size_t k = 0; k < carved.walls.size(); ++k) {
+    const auto& wall = carved.walls[k];
+    if (wall)
+      fmt::print(
+          "{:>9} wall: {:.1f} mm thick where thinnest, {:.1f} mm from the axis, at depth {:.1f} "
+          "mm\n",
+          volume::name(volume::kWalls[k]), wall->thickness_m() * 1e3, wall->inner_m * 1e3,
+          wall->at_m * 1e3);
+    else
+      fmt::print("          {}\n", wall.error().what);
+  }
+  if (const auto& breach = carved.breach)
+    fmt::print("{} breach at depth {:.1f} mm, through {:.1f} mm of bone and {:.1f} mm beyond\n",
+               volume::name(breach->wall.wall), breach->wall.at_m * 1e3,
+               breach->wall.thickness_m() * 1e3, breach->depth_m * 1e3);
+  fmt::print(
+      "{} x {} x {} voxels of {:.3g} x {:.3g} x {:.3g} mm; removed bone has the CT value {:g}\n",
+      grid.dims[0], grid.dims[1], grid.dims[2], grid.spacing_m.x() * 1e3, grid.spacing_m.y() * 1e3,
+      grid.spacing_m.z() * 1e3, carved.empty_value);
+  fmt::print("{}  {}\n", made.id, made.folder.string());
+}
+
+cases::NewCase case_of(const Options& o, const cases::Carved& carved,
+                       const models::PalpationModel& model, const std::string& source,
+                       volume::Volume surroundings) {
+  cases::NewCase made{
+      .definition = {}, .truth = carved.truth(), .volume = carved.volume, .meta = {}, .draw = {}};
+  made.definition.title =
+      o.title.empty()
+          ? fmt::format("{} pedicle of {}", carved.left_side() ? "left" : "right", source)
+          : o.title;
+  made.definition.source = o.source.empty() ? source : o.source;
+  made.definition.made_utc_us = core::utc_us();
+  made.definition.tract = carved.tract;
+  made.definition.model = model;
+  made.definition.model.volume.clear();
+  made.meta = {source, "part about a tract, drilled"};
+  made.draw = [&carved, surroundings = std::move(surroundings)](const std::filesystem::path& path) {
+    return draw_case(path, surroundings, carved);
+  };
+  return made;
+}
+
+/// The message, led by the file it is about.
+Error about(const std::string& file, const Error& error) {
+  return {error.code, file + ": " + error.what};
+}
+
+/// The picture of its own goes away again if the case cannot be written.
+Outcome write(const Options& o, cases::NewCase definition, const core::KeyPair& key,
+              const cases::Carved& carved) {
+  if (!o.png.empty())
+    if (auto drawn = definition.draw(o.png); !drawn) return drawn.error();
+  const auto made =
+      cases::write_case(o.out, std::move(definition), key, core::terminal_progress("writing"));
+  if (!made) {
+    std::error_code ignored;
+    if (!o.png.empty()) std::filesystem::remove(o.png, ignored);
+    return made.error();
+  }
+  o.json ? void(std::puts(report_of(*made, carved).dump(2).c_str())) : print_text(*made, carved);
+  return 0;
+}
+
+Outcome run(const Options& o) {
+  const auto plan = plan_of(o);
+  if (!plan) return plan.error();
+  const auto model = model_of(o);
+  if (!model) return model.error();
+  if (std::error_code ignored; std::filesystem::exists(o.out, ignored))
+    return Error{Errc::conflict,
+                 fmt::format("{}: exists already; remove it or choose another name", o.out)};
+  const auto ct = volume_io::read_volume(o.volume, core::terminal_progress("reading"));
+  if (!ct) return ct.error();
+  const auto carved =
+      cases::carve(ct->volume, model->transfer, *plan, core::terminal_progress("carving"));
+  if (!carved) return about(o.volume, carved.error());
+  auto surroundings = cases::drilled_surroundings(ct->volume, *carved);
+  if (!surroundings) return about(o.volume, surroundings.error());
+  const auto key = key_of(o);
+  if (!key) return key.error();
+  return write(o, case_of(o, *carved, *model, ct->source, std::move(*surroundings)), *key, *carved);
+}
+
+void add_options(CLI::App& app, Options& o) {
+  app.add_option("--volume", o.volume, "CT: NIfTI, NRRD, .tvol or a folder of DICOM slices")
+      ->required();
+  app.add_option(
+         "--entry", o.entry,
+         "centre of the tract's mouth, x,y,z in mm, patient LPS (x to the left, y to the back, "
+         "z up); a unit may follow: 45,199,-61mm or 0.045,0.199,-0.061m")
+      ->required();
+  app.add_option("--target", o.target, "a point ahead on the tract's axis, as --entry")->required();
+  app.add_option("--length", o.length, "length of the tract, mm (default: to the target)");
+  app.add_option("--radius", o.radius, "radius of the drill, mm (default 1.5)");
+  app.add_option("--breach", o.breach,
+                 "wall to break through: medial, lateral, superior, inferior, anterior");
+  app.add_option("--breach-depth", o.breach_depth, "how far beyond the bone, mm (default 3)");
+  app.add_option("--breach-at", o.breach_at,
+                 "depth along the tract, mm (default: where that wall is thinnest in the pedicle)");
+  app.add_option("--midline-x", o.midline,
+                 "x of the midline, mm (default: estimated from the bone's symmetry)");
+  app.add_option("--spacing", o.spacing,
+                 "voxel of the drilled volume where the CT is coarser, mm (default 0.35)");
+  app.add_option("--margin", o.margin, "kept about the tract, mm (default 20)");
+  app.add_option("--model", o.model,
+                 "model file with probe and transfer function (default: the published one)");
+  app.add_option("--out", o.out, "folder of the case; must not exist")->required();
+  app.add_option("--title", o.title, "what the case is called");
+  app.add_option("--source", o.source,
+                 "where the CT came from and its licence (default: its file name)");
+  app.add_option("--key", o.key,
+                 "signing key, made if it is not there (default ~/.config/tractus/signing.key)");
+  app.add_option("--png", o.png, "writes the picture here as well; it shows the breach");
+  app.add_flag("--json", o.json, "print what was made as JSON (SI units)");
+}
+
+}  // namespace
+
+Command carve_command() {
+  return {"carve", "Drills a tract (and a breach) into a CT and writes a signed case",
+          "tractus carve --volume l3.nii.gz --entry 46,200,-61 --target 39,158,-61 --breach medial "
+          "--out l3-left-medial",
+          [](CLI::App& app) {
+            auto options = std::make_shared<Options>();
+            add_options(app, *options);
+            return [options] { return run(*options); };
+          }};
+}
+
+}  // namespace commands

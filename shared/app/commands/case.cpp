@@ -1,0 +1,95 @@
+/// `tractus case`: looks at a case and says whether it is whole.
+#include "cases/case.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+
+#include "app/command.hpp"
+#include "core/clock.hpp"
+
+namespace commands {
+namespace {
+
+using core::Json;
+
+struct Options {
+  std::string folder;
+  bool json = false;
+};
+
+/// What a part is to whoever holds the folder.
+std::string state_of(const cases::OpenedCase& opened, const cases::Part& part) {
+  const bool here = std::filesystem::exists(opened.folder / part.name);
+  return fmt::format("{}{}", part.secret ? "secret" : "open", here ? "" : ", not here");
+}
+
+int say_broken(const Options& o, const core::Error& error) {
+  if (o.json)
+    std::puts(Json({{"holds", false}, {"why", error.what}}).dump(2).c_str());
+  else
+    fmt::print("does not hold: {}\n", error.what);
+  return 1;
+}
+
+Outcome verify(const Options& o) {
+  const auto opened = cases::open_case(o.folder);
+  if (!opened && opened.error().code == core::Errc::corrupt) return say_broken(o, opened.error());
+  if (!opened) return opened.error();
+  if (o.json)
+    std::puts(Json({{"holds", true}, {"case", opened->id}, {"signer", opened->signer_public_hex}})
+                  .dump(2)
+                  .c_str());
+  else
+    fmt::print("holds: {}\nsigned by {}\n", opened->id, opened->signer_public_hex);
+  return 0;
+}
+
+Outcome show(const Options& o) {
+  const auto opened = cases::open_case(o.folder);
+  if (!opened) return opened.error();
+  if (o.json) {
+    Json out = {{"case", opened->id}, {"signer", opened->signer_public_hex}};
+    out["manifest"] = opened->definition.to_json();
+    std::puts(out.dump(2).c_str());
+    return 0;
+  }
+  const auto& made = opened->definition;
+  const auto& tract = made.tract;
+  const math::Vec3 entry = tract.entry_m * 1e3, end = tract.end_m() * 1e3;
+  fmt::print("{}\nsource  {}\nmade    {}\ncase    {}\nsigner  {}\n", made.title, made.source,
+             core::utc_text(made.made_utc_us), opened->id, opened->signer_public_hex);
+  fmt::print(
+      "tract   ({:.1f}, {:.1f}, {:.1f}) to ({:.1f}, {:.1f}, {:.1f}) mm, {:.1f} mm long, {:.1f} mm "
+      "wide\n",
+      entry.x(), entry.y(), entry.z(), end.x(), end.y(), end.z(), tract.length_m * 1e3,
+      tract.radius_m * 2e3);
+  fmt::print("model   {}, {} points on {:.0f} mm\n", made.model.name, made.model.base.points,
+             made.model.base.length_m * 1e3);
+  for (const auto& part : made.parts)
+    fmt::print("part    {:<12} {:>10} bytes  {:.12}…  {}\n", part.name, part.size_bytes,
+               part.sha256, state_of(*opened, part));
+  return 0;
+}
+
+}  // namespace
+
+Command case_command() {
+  return {"case", "Shows a case, or verifies that nobody changed it since it was signed",
+          "tractus case verify l3-left-medial", [](CLI::App& app) {
+            auto options = std::make_shared<Options>();
+            app.require_subcommand(1);
+            CLI::App* check = app.add_subcommand(
+                "verify", "exit 0 if signature and every part hold, 1 if not, saying which");
+            CLI::App* look =
+                app.add_subcommand("show", "title, tract, model, parts; never the truth");
+            for (CLI::App* each : {check, look}) {
+              each->add_option("DIR", options->folder, "folder of the case")->required();
+              each->add_flag("--json", options->json, "print as JSON");
+            }
+            return [options, check] { return check->parsed() ? verify(*options) : show(*options); };
+          }};
+}
+
+}  // namespace commands

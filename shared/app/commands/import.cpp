@@ -1,0 +1,74 @@
+/// `tractus import`: somebody's CT becomes ours.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+
+#include "app/command.hpp"
+#include "core/progress.hpp"
+#include "volume/io/read_volume.hpp"
+#include "volume/volume_file.hpp"
+
+namespace commands {
+namespace {
+
+struct Options {
+  std::string source, target;
+  bool json = false;
+};
+
+std::string joined(const std::vector<std::string>& lines) {
+  std::string out;
+  for (const auto& line : lines) out += (out.empty() ? "" : "; ") + line;
+  return out;
+}
+
+void print_json(const Options& o, const volume_io::Imported& in, const std::string& id) {
+  const auto& g = in.volume.geometry;
+  const core::Json out = {{"file", o.target},
+                          {"id", id},
+                          {"format", in.format},
+                          {"dims", g.dims},
+                          {"spacing_m", {g.spacing_m.x(), g.spacing_m.y(), g.spacing_m.z()}},
+                          {"value_range", volume::value_range_of(in.volume)},
+                          {"notes", in.notes}};
+  std::puts(out.dump(2).c_str());
+}
+
+void print_text(const Options& o, const volume_io::Imported& in, const std::string& id) {
+  const auto& g = in.volume.geometry;
+  const auto range = volume::value_range_of(in.volume);
+  fmt::print("{}: {} x {} x {} voxels of {:.4g} x {:.4g} x {:.4g} mm, CT values {:.6g} to {:.6g}\n",
+             in.format, g.dims[0], g.dims[1], g.dims[2], g.spacing_m.x() * 1e3,
+             g.spacing_m.y() * 1e3, g.spacing_m.z() * 1e3, range[0], range[1]);
+  for (const auto& note : in.notes) fmt::print("note: {}\n", note);
+  fmt::print("{}  {}\n", id, o.target);
+}
+
+Outcome run(const Options& o) {
+  auto in = volume_io::read_volume(o.source, core::terminal_progress("reading"));
+  if (!in) return in.error();
+  const auto id = volume::write_volume(o.target, in->volume, {in->source, joined(in->notes)},
+                                       core::terminal_progress("writing"));
+  if (!id) return id.error();
+  o.json ? print_json(o, *in, *id) : print_text(o, *in, *id);
+  return 0;
+}
+
+}  // namespace
+
+Command import_command() {
+  return {"import", "Reads a CT (NIfTI, NRRD, or a folder of DICOM slices) into a .tvol file",
+          "tractus import spine.nii.gz spine.tvol", [](CLI::App& app) {
+            auto options = std::make_shared<Options>();
+            app.add_option("SRC", options->source,
+                           "NIfTI, NRRD or .tvol file, or the folder of one DICOM series")
+                ->required();
+            app.add_option("OUT", options->target, "file to write; an older one is replaced")
+                ->required();
+            app.add_flag("--json", options->json, "print what was read as JSON");
+            return [options] { return run(*options); };
+          }};
+}
+
+}  // namespace commands

@@ -1,0 +1,134 @@
+#include "cases/carving.hpp"
+
+#include <fmt/format.h>
+
+#include "volume/resample.hpp"
+
+namespace cases {
+namespace {
+
+using core::Errc;
+using core::Error;
+using math::Vec3;
+
+constexpr double kLongest_m = 0.2, kWidest_m = 0.01, kThinnest_m = 0.0002;
+constexpr double kSurroundings_m = 0.040, kSurroundingsSpacing_m = 0.0005;
+constexpr double kOpenAir_m = 0.002;  // the channel goes on for so much behind the bone
+
+std::string mm(const Vec3& p_m) {
+  return fmt::format("({:.1f}, {:.1f}, {:.1f}) mm", p_m.x() * 1e3, p_m.y() * 1e3, p_m.z() * 1e3);
+}
+
+Error outside(const char* what, const Vec3& p, const volume::Geometry& geometry) {
+  Vec3 low = Vec3::Constant(1e30), high = Vec3::Constant(-1e30);
+  for (int corner = 0; corner < 8; ++corner) {
+    Vec3 index;
+    for (int a = 0; a < 3; ++a)
+      index[a] = (corner >> a) & 1 ? geometry.dims[std::size_t(a)] - 1 : 0;
+    low = low.cwiseMin(geometry.position_of(index));
+    high = high.cwiseMax(geometry.position_of(index));
+  }
+  return {Errc::out_of_range,
+          fmt::format("{} {} lies outside the volume, which spans {} to {} in LPS", what, mm(p),
+                      mm(low), mm(high))};
+}
+
+/// A number within limits, told in millimetres.
+core::Result<void> within(const char* what, double value_m, double low_m, double high_m) {
+  if (value_m >= low_m && value_m <= high_m) return {};
+  return Error{Errc::out_of_range, fmt::format("{} of {:.4g} mm is outside {:g} … {:g} mm", what,
+                                               value_m * 1e3, low_m * 1e3, high_m * 1e3)};
+}
+
+core::Result<void> check(const CarvingPlan& plan, double length_m,
+                         const volume::Geometry& geometry) {
+  if (!plan.entry_m.allFinite() || !plan.target_m.allFinite())
+    return Error{Errc::bad_input, "entry and target must be finite numbers"};
+  if (auto ok = within("a length", length_m, 1e-4, kLongest_m); !ok) return ok;
+  if (auto ok = within("a radius", plan.radius_m, kThinnest_m, kWidest_m); !ok) return ok;
+  if (auto ok = within("a margin", plan.margin_m, 1e-3, 0.1); !ok) return ok;
+  if (auto ok = within("a spacing", plan.spacing_m, 5e-5, 5e-3); !ok) return ok;
+  if (!geometry.contains(plan.entry_m)) return outside("the entry", plan.entry_m, geometry);
+  return {};
+}
+
+core::Result<volume::Midline> midline_of(const volume::Volume& ct,
+                                         const volume::TransferFunction& transfer,
+                                         const CarvingPlan& plan) {
+  if (plan.midline_x_m) return volume::stated_midline(*plan.midline_x_m, plan.entry_m);
+  return volume::midline_about(ct, transfer, plan.entry_m, plan.target_m);
+}
+
+core::Result<volume::Tract> tract_of(const volume::Volume& ct,
+                                     const volume::TransferFunction& transfer,
+                                     const CarvingPlan& plan, double length_m,
+                                     const volume::Midline& midline) {
+  auto tract = volume::tract_between(plan.entry_m, plan.target_m, length_m, plan.radius_m, midline);
+  if (!tract) return tract;
+  if (!ct.geometry.contains(tract->end_m()))
+    return outside("the tract's end", tract->end_m(), ct.geometry);
+  if (!volume::WallFinder(ct, transfer).bone_about(*tract))
+    return Error{Errc::out_of_range,
+                 fmt::format("the tract from {} to {} meets no bone: are these LPS coordinates?",
+                             mm(tract->entry_m), mm(tract->end_m()))};
+  return tract;
+}
+
+volume::Box region_of(const volume::Geometry& geometry, const Carved& carved, double margin_m) {
+  std::vector<Vec3> points{carved.tract.entry_m, carved.tract.end_m()};
+  if (carved.breach) points.push_back(carved.breach->tip_m);
+  return volume::box_about(geometry, points, margin_m);
+}
+
+}  // namespace
+
+Truth Carved::truth() const {
+  Truth truth;
+  if (!breach) return truth;
+  truth.breached = breach->wall.wall;
+  truth.breach_m = breach->centre_m;
+  truth.breach_depth_m = breach->depth_m;
+  truth.wall_thickness_m = breach->wall.thickness_m();
+  return truth;
+}
+
+core::Result<Carved> carve(const volume::Volume& ct, const volume::TransferFunction& transfer,
+                           const CarvingPlan& plan, const core::Progress& progress) {
+  const double length_m = plan.length_m.value_or((plan.target_m - plan.entry_m).norm());
+  if (auto ok = check(plan, length_m, ct.geometry); !ok) return ok.error();
+  const auto empty = volume::empty_value(ct, transfer);
+  if (!empty) return empty.error();
+  const auto midline = midline_of(ct, transfer, plan);
+  if (!midline) return midline.error();
+  const auto tract = tract_of(ct, transfer, plan, length_m, *midline);
+  if (!tract) return tract.error();
+  const volume::WallFinder finder(ct, transfer);
+  Carved carved{.volume = {},
+                .tract = *tract,
+                .midline = *midline,
+                .empty_value = *empty,
+                .breach = {},
+                .walls = {}};
+  carved.mouth_m = finder.behind_entry_m(*tract) + kOpenAir_m;
+  for (const auto wall : volume::kWalls) carved.walls.push_back(finder.thinnest(*tract, wall));
+  if (plan.breach) {
+    auto breach = volume::place_breach(ct, transfer, *tract, *plan.breach);
+    if (!breach) return breach.error();
+    carved.breach = *breach;
+  }
+  auto part = volume::resample_finer(ct, region_of(ct.geometry, carved, plan.margin_m),
+                                     plan.spacing_m, progress);
+  if (!part) return part.error();
+  carved.volume = std::move(*part);
+  volume::drill(carved.volume, carved.tract, carved.mouth_m, carved.breach, carved.empty_value);
+  return carved;
+}
+
+core::Result<volume::Volume> drilled_surroundings(const volume::Volume& ct, const Carved& carved) {
+  auto part = volume::resample_finer(ct, region_of(ct.geometry, carved, kSurroundings_m),
+                                     kSurroundingsSpacing_m);
+  if (part) volume::drill(*part, carved.tract, carved.mouth_m, carved.breach, carved.empty_value);
+  return part;
+}
+
+}  // namespace cases

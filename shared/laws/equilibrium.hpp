@@ -1,0 +1,39 @@
+/// Where a bent probe comes to rest in a force field.
+#pragma once
+
+#include <span>
+
+#include "math/geometry.hpp"
+#include "volume/force_field.hpp"
+
+namespace laws {
+
+/// The shank as a cantilever with contact points, in symbols of PalpationLaw.
+struct Beam {
+  const volume::ForceField* field;
+  double force_factor_Nm;         ///< c_f
+  double stiffness_N_per_m;       ///< k, of the tip
+  std::span<const double> z_m;    ///< z_i, from the tip on
+  std::span<const double> shape;  ///< φ(z_i)
+};
+
+struct Equilibrium {
+  math::Vec2 deflection_m;  ///< δ, in H
+  int iterations;           ///< how often the forces of all points were computed
+  bool converged;           ///< |k δ − Σ φ F_⊥| < 0.001 N
+};
+
+/// The δ with  r(δ) = k δ − Σ φ(z_i) F_i,⊥(δ) = 0, near `start_m`, and F_i there in `force_H_N` (as
+/// many as points).
+///
+/// Newton on r with a trust region. r is the gradient of ½ k δ² + c_f Σ (ω∗α)(p_i) where the field
+/// is a potential; the fall of that energy over a step s is had from r and its derivative A at both
+/// ends, −½ (r₀ + r₁)·s − sᵀ(A₀ − A₁)s/12, and a step is taken when enough of what was promised
+/// comes true. So the rest found is one the shank can stay in. The published field is no gradient,
+/// but nearly: the same work along the step is asked of it first; where that goes in circles, |r|
+/// itself must fall. At most 60 iterations; then the δ of least |r| met, with `converged` false.
+/// Never allocates.
+Equilibrium equilibrium(const Beam& beam, const math::Pose& X_VH, const math::Vec2& start_m,
+                        std::span<math::Vec3> force_H_N) noexcept;
+
+}  // namespace laws

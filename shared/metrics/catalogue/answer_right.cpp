@@ -1,0 +1,28 @@
+#include "metrics/metric.hpp"
+
+namespace metrics {
+namespace {
+Score judged(const Subject& subject) {
+  const auto answer = subject.trial.answer();
+  if (!answer) return {{}, "no answer was given"};
+  if (!subject.truth) return {{}, "the truth is not known here"};
+  const auto& breached = subject.truth->breached;
+  if (answer->breach != breached.has_value())
+    return {0.0, breached ? "a breach was missed" : "a breach was seen where there is none"};
+  if (breached && answer->wall != volume::name(*breached))
+    return {0.0, answer->wall ? "the breach is in another wall" : "no wall was named"};
+  return {1.0, ""};
+}
+}  // namespace
+
+MetricInfo answer_right() {
+  return {"answer_right",
+          "Answer right",
+          "1",
+          "1 if the last answer says whether there is a breach and, if there is, in which wall; "
+          "else 0.",
+          "own definition",
+          judged};
+}
+
+}  // namespace metrics

@@ -1,0 +1,19 @@
+#include <fmt/format.h>
+
+#include "metrics/metric.hpp"
+
+namespace metrics {
+
+MetricInfo late_ticks() {
+  return {"late_ticks",
+          "Late ticks",
+          "1",
+          "Number of ticks of the station's loop that woke more than a quarter period late.",
+          "own definition",
+          [](const Subject& subject) -> Score {
+            const auto ticks = trial::count_ticks(subject.trial.samples);
+            return {double(ticks.late), fmt::format("and {} skipped", ticks.skipped)};
+          }};
+}
+
+}  // namespace metrics

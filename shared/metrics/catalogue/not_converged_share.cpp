@@ -1,0 +1,19 @@
+#include "metrics/metric.hpp"
+
+namespace metrics {
+
+MetricInfo not_converged_share() {
+  return {"not_converged_share",
+          "Steps not converged",
+          "1",
+          "Share of the samples whose probe was not in equilibrium to 0.001 N.",
+          "own definition",
+          [](const Subject& subject) -> Score {
+            const auto& samples = subject.trial.samples;
+            if (samples.empty()) return {{}, "no sample was recorded"};
+            const auto count = trial::count_ticks(samples).not_converged;
+            return {double(count) / double(samples.size()), ""};
+          }};
+}
+
+}  // namespace metrics

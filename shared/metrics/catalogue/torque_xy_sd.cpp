@@ -1,0 +1,18 @@
+#include "metrics/threshold_statistics.hpp"
+
+namespace metrics {
+
+MetricInfo torque_xy_sd() {
+  return {
+      "torque_xy_sd",
+      "Standard deviation of transverse torque",
+      "N·m",
+      "Standard deviation (n − 1) of T_xy = hypot(T_x, T_y) of the model's wrench on the probe, "
+      "in the handle's frame, over the samples strictly above 0.001 N·m.",
+      "Zoller2020, Table 2",
+      [](const Subject& subject) {
+        return wrench_score(subject, WrenchPart::torque_xy, Statistic::sd);
+      }};
+}
+
+}  // namespace metrics

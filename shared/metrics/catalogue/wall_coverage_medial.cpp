@@ -1,0 +1,15 @@
+#include "metrics/coverage_score.hpp"
+
+namespace metrics {
+
+MetricInfo wall_coverage_medial() {
+  return {"wall_coverage_medial",
+          "Medial wall covered",
+          "1",
+          "Share of the medial wall (a quarter turn, 10 depths × 3 angles) "
+          "in which the force across the tract's axis reached 0.01 N.",
+          "own definition",
+          [](const Subject& subject) { return coverage_score(subject, volume::Wall::medial); }};
+}
+
+}  // namespace metrics

@@ -1,0 +1,95 @@
+#include "replay/replay.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "math/spline.hpp"
+
+namespace replay {
+namespace {
+
+using core::Errc;
+using core::Error;
+
+constexpr double kLongestGap_s = 1.0;
+constexpr double kMostSteps = 1e9;
+constexpr std::size_t kSamplesPerWord = 256;  // between two words to the progress
+
+/// Steps from one recorded time to the next. The small allowance keeps times printed with few
+/// digits from adding one.
+std::uint64_t steps_between(double from_s, double to_s) {
+  return std::uint64_t(std::max(1.0, std::ceil((to_s - from_s) * kRate_Hz - 1e-3)));
+}
+
+core::Result<double> steps_of(const trial::PalpationMeasurement& recording) {
+  double steps = 1.0;
+  for (std::size_t k = 1; k < recording.t_s.size(); ++k) {
+    const double from = recording.t_s[k - 1], to = recording.t_s[k];
+    if (to - from > kLongestGap_s)
+      return Error{
+          Errc::bad_input,
+          fmt::format("{}: no sample between {} s and {} s; gaps of at most {} s are replayed",
+                      recording.file, from, to, kLongestGap_s)};
+    steps += double(steps_between(from, to));
+  }
+  if (steps > kMostSteps)
+    return Error{Errc::bad_input,
+                 fmt::format("{}: {:.3g} steps of {} Hz, at most {:.0g} are replayed",
+                             recording.file, steps, kRate_Hz, kMostSteps)};
+  return steps;
+}
+
+/// Holds what runs through a replay from step to step.
+class Run {
+ public:
+  explicit Run(const models::PalpationRuntime& runtime) : runtime_(runtime) {}
+
+  laws::PalpationStep step(const math::Pose& X_VH) {
+    const auto answer = runtime_.step(X_VH, state_);
+    ++out_.steps;
+    out_.not_converged += !answer.converged;
+    return answer;
+  }
+
+  void keep(const math::Pose& X_VH) {
+    const auto answer = step(X_VH);
+    out_.wrench_H.push_back(answer.wrench_H);
+    out_.deflection_m.push_back(answer.deflection_m);
+    out_.converged.push_back(answer.converged);
+    out_.samples_in_volume +=
+        runtime_.field().geometry().contains(runtime_.tip_m(X_VH, answer.deflection_m));
+  }
+
+  Replayed result() && { return std::move(out_); }
+
+ private:
+  const models::PalpationRuntime& runtime_;
+  laws::PalpationState state_;
+  Replayed out_;
+};
+
+}  // namespace
+
+core::Result<Replayed> replay(const models::PalpationRuntime& runtime,
+                              const trial::PalpationMeasurement& recording,
+                              const core::Progress& progress) {
+  if (const auto steps = steps_of(recording); !steps) return steps.error();
+  const auto motion = math::PoseSpline::make(recording.t_s, recording.X_VH);
+  if (!motion) return Error{motion.error().code, recording.file + ": " + motion.error().what};
+  Run run(runtime);
+  run.keep(recording.X_VH.front());
+  for (std::size_t k = 1; k < recording.t_s.size(); ++k) {
+    const double from = recording.t_s[k - 1], width = recording.t_s[k] - from;
+    const std::uint64_t steps = steps_between(from, recording.t_s[k]);
+    for (std::uint64_t s = 1; s < steps; ++s)
+      run.step(motion->pose(from + width * double(s) / double(steps)));
+    run.keep(recording.X_VH[k]);
+    if (progress && k % kSamplesPerWord == 0 && !progress(double(k) / double(recording.t_s.size())))
+      return Error{Errc::cancelled, "the replay was stopped"};
+  }
+  return std::move(run).result();
+}
+
+}  // namespace replay

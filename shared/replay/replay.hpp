@@ -1,0 +1,42 @@
+/// A recorded palpation replayed through a model: what the model would have done to the hand.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/progress.hpp"
+#include "core/result.hpp"
+#include "models/model.hpp"
+#include "trial/measurement_set.hpp"
+
+namespace replay {
+
+/// The published rate of the simulation, Hz: recorded motion is interpolated to it [Zoller2020,
+/// "Parameter tuning"].
+inline constexpr double kRate_Hz = 4000.0;
+
+/// A model's answer to one recording, at the recording's times.
+struct Replayed {
+  std::vector<math::Wrench>
+      wrench_H;  ///< simulated: what the bone does to the probe, at the origin of H, in H
+  std::vector<math::Vec2> deflection_m;  ///< δ of the tip, in H
+  std::vector<std::uint8_t> converged;   ///< 1 where the equilibrium was reached
+  std::uint64_t steps = 0;  ///< at kRate_Hz, the ones between the recording's times among them
+  std::uint64_t not_converged = 0;  ///< of those
+  std::uint64_t samples_in_volume =
+      0;  ///< recorded times at which the bent tip lay within the volume's box
+};
+
+/// Replays one recording. Between two recorded times the motion runs on cubic splines
+/// (math::PoseSpline) in equal steps of at most 1 / kRate_Hz, so that every recorded time is a step
+/// of its own and gives its recorded pose; a recording at kRate_Hz or faster is taken step for
+/// step. Each step starts from the deflection of the last, the first from the unbent probe.
+///
+/// Assumes that the hand moved as recorded whatever the model answers [Zoller2020, "Discussion"].
+/// Errors: bad_input for a gap of more than a second (the motion in it is not known) or more than
+/// 10⁹ steps, naming the file; cancelled.
+core::Result<Replayed> replay(const models::PalpationRuntime& runtime,
+                              const trial::PalpationMeasurement& recording,
+                              const core::Progress& progress = {});
+
+}  // namespace replay

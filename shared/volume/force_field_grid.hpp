@@ -1,0 +1,32 @@
+/// What a ForceField holds. For its own sources alone: force_field.cpp makes it, field_sampling.cpp
+/// reads it.
+#pragma once
+
+#include <utility>
+
+#include "volume/force_field.hpp"
+#include "volume/opacity_ramps.hpp"
+#include "volume/scalar_grid.hpp"
+
+namespace volume {
+
+struct ForceField::Grid {
+  Grid(const Volume& volume, const TransferFunction& transfer, FieldKind kind_of_field,
+       ScalarGrid scalars);
+
+  /// Three columns of a 3 × 3 matrix or a vector, each with a fourth number that is zero.
+  struct alignas(32) Column {
+    double v[4];
+  };
+
+  Geometry geometry;
+  FieldKind kind;
+  OpacityRamps ramps;
+  ScalarGrid blurred;  ///< ω∗α
+  Mat3 V_from_index;   ///< of gradients: directions / spacing, 1/m
+  Column g_of[3];      ///< −V_from_index
+  Column index_of[3];  ///< u = index_of · p + index_at_origin, u the continuous voxel index of p
+  Column index_at_origin;
+};
+
+}  // namespace volume

@@ -1,0 +1,21 @@
+/// The readers behind `read_volume`, one per format.
+#pragma once
+
+#include <filesystem>
+
+#include "core/bytes.hpp"
+#include "volume/io/read_volume.hpp"
+
+namespace volume_io {
+
+/// Do these first bytes open a NIfTI-1 or -2 header?
+bool looks_like_nifti(core::ByteView first);
+
+core::Result<Imported> read_nifti(const std::filesystem::path& path,
+                                  const core::Progress& progress);
+core::Result<Imported> read_nrrd(const std::filesystem::path& path, const core::Progress& progress);
+/// A folder of the slices of one series, one file each.
+core::Result<Imported> read_dicom(const std::filesystem::path& folder,
+                                  const core::Progress& progress);
+
+}  // namespace volume_io

@@ -1,0 +1,17 @@
+/// What `tractus-station` does, each to its end. An Error becomes one line and exit 2.
+#pragma once
+
+#include "station/app/options.hpp"
+
+namespace app {
+
+/// 0: done. 1: the answer is "no" (a trial ended in a fault; trials still wait for the server).
+core::Result<int> run_trials(const Options& options);
+core::Result<int> sync_cases(const Options& options);
+core::Result<int> upload_trials(const Options& options);
+core::Result<int> trust_signer(const Options& options);
+
+/// From a signal handler: ends what is running in good order.
+void ask_to_stop() noexcept;
+
+}  // namespace app

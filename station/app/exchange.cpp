@@ -1,0 +1,126 @@
+/// sync, upload, trust: what a station does with its server and its folder.
+#include "station/app/exchange.hpp"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <cstdio>
+
+#include "core/file.hpp"
+#include "station/app/deeds.hpp"
+#include "station/uplink/http_server.hpp"
+#include "station/uplink/sync.hpp"
+
+namespace app {
+namespace {
+std::atomic<bool> stop_asked = false;
+
+core::Progress stoppable(core::Progress shown) {
+  return [shown = std::move(shown)](double share) { return shown(share) && !stop_asked; };
+}
+
+core::Result<std::unique_ptr<uplink::HttpServer>> connect(const Options& options) {
+  auto bytes = core::read_file(options.token_file, 64 * 1024);
+  if (!bytes) return bytes.error();
+  std::string token(core::text_of(*bytes));
+  while (!token.empty() && (token.back() == '\n' || token.back() == '\r')) token.pop_back();
+  auto server = uplink::HttpServer::make(options.server_url, token);
+  if (!server) return core::Error{server.error().code, server.error().what};
+  return server;
+}
+
+/// Waits in small steps, so that a person can stop it.
+class PatientClock final : public core::Clock {
+ public:
+  core::Instant_ns now() const noexcept override { return clock_.now(); }
+  void sleep_until(core::Instant_ns deadline) noexcept override {
+    while (now() < deadline && !stop_asked)
+      clock_.sleep_until(std::min(deadline, now() + kStep_ns));
+  }
+
+ private:
+  static constexpr core::Instant_ns kStep_ns = 100'000'000;
+  core::MonotonicClock clock_;
+};
+}  // namespace
+
+void ask_to_stop() noexcept { stop_asked = true; }
+bool asked_to_stop() noexcept { return stop_asked; }
+
+core::Result<core::Json> fetch_cases(const Options& options, const session::StationFolder& folder) {
+  auto server = connect(options);
+  if (!server) return server.error();
+  auto report = uplink::sync_cases(**server, folder.cases(), folder.trusted(),
+                                   stoppable(core::terminal_progress("Cases")));
+  if (!report) return report.error();
+  return report->to_json();
+}
+
+core::Result<uplink::UploadReport> hand_over(const Options& options,
+                                             const session::StationFolder& folder) {
+  auto lock = folder.upload_lock();
+  if (!lock) return lock.error();
+  auto server = connect(options);
+  if (!server) return server.error();
+  PatientClock clock;
+  uplink::Patience patience;
+  patience.give_up_after_ns = static_cast<core::Instant_ns>(options.wait_s * 1e9);
+  return uplink::upload_all(**server, folder.outbox(), folder.trials(), clock, patience,
+                            stoppable(core::terminal_progress("Upload")));
+}
+
+core::Result<int> sync_cases(const Options& options) {
+  auto folder = session::StationFolder::open(options.data);
+  if (!folder) return folder.error();
+  auto lock = folder->lock();
+  if (!lock) return lock.error();
+  auto report = fetch_cases(options, *folder);
+  if (!report) return report.error();
+  const bool refused = !(*report)["refused"].empty();
+  if (options.json) {
+    fmt::print("{}\n", report->dump(2));
+    return refused ? 1 : 0;
+  }
+  fmt::print("{} cases fetched, {} were here, {} refused\n", (*report)["fetched"].size(),
+             (*report)["present"].size(), (*report)["refused"].size());
+  for (const auto& line : (*report)["refused"]) fmt::print("  {}\n", line.get<std::string>());
+  return refused ? 1 : 0;
+}
+
+std::string text_of(const uplink::UploadReport& report) {
+  std::string out = fmt::format("{} trials handed over", report.handed_over);
+  if (report.refused) out += fmt::format(", {} refused by the server (see outbox)", report.refused);
+  if (report.waiting) out += fmt::format(", {} still wait: {}", report.waiting, report.why);
+  return out;
+}
+
+core::Result<int> upload_trials(const Options& options) {
+  auto folder = session::StationFolder::open(options.data);
+  if (!folder) return folder.error();
+  // What a crash left is queued first, unless a station is recording here just now.
+  if (auto lock = folder->lock(); lock)
+    if (auto recovered = folder->recover(); !recovered) return recovered.error();
+  auto report = hand_over(options, *folder);
+  if (!report) return report.error();
+  fmt::print("{}\n", options.json ? report->to_json().dump(2) : text_of(*report));
+  return report->waiting || report->refused ? 1 : 0;
+}
+
+core::Result<int> trust_signer(const Options& options) {
+  auto folder = session::StationFolder::open(options.data);
+  if (!folder) return folder.error();
+  std::string key = options.signer_hex;
+  if (key.empty()) {
+    auto opened = cases::open_case(options.signer_of_case);
+    if (!opened) return opened.error();
+    key = opened->signer_public_hex;
+  }
+  if (auto trusted = folder->trust(key); !trusted) return trusted.error();
+  if (options.json)
+    fmt::print("{}\n", core::Json{{"signers", folder->trusted()}}.dump(2));
+  else
+    fmt::print("cases signed by {} are taken\n", key);
+  return 0;
+}
+
+}  // namespace app

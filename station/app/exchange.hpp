@@ -1,0 +1,17 @@
+/// Parts of an exchange with the server that a run of trials shares.
+#pragma once
+
+#include "core/json.hpp"
+#include "station/app/options.hpp"
+#include "station/session/station_folder.hpp"
+#include "station/uplink/upload.hpp"
+
+namespace app {
+
+core::Result<core::Json> fetch_cases(const Options& options, const session::StationFolder& folder);
+core::Result<uplink::UploadReport> hand_over(const Options& options,
+                                             const session::StationFolder& folder);
+std::string text_of(const uplink::UploadReport& report);
+bool asked_to_stop() noexcept;
+
+}  // namespace app

@@ -1,0 +1,32 @@
+/// `tractus-station`: one training station.
+#include <csignal>
+#include <cstdio>
+
+#include "station/app/deeds.hpp"
+
+namespace {
+core::Result<int> done(const app::Options& options) {
+  switch (options.deed) {
+    case app::Deed::run:
+      return app::run_trials(options);
+    case app::Deed::sync:
+      return app::sync_cases(options);
+    case app::Deed::upload:
+      return app::upload_trials(options);
+    case app::Deed::trust:
+      return app::trust_signer(options);
+  }
+  return 2;
+}
+}  // namespace
+
+int main(int argc, char** argv) {
+  const app::Parsed parsed = app::parse(argc, argv);
+  if (parsed.leave) return *parsed.leave;
+  std::signal(SIGINT, [](int) { app::ask_to_stop(); });
+  std::signal(SIGTERM, [](int) { app::ask_to_stop(); });
+  const auto outcome = done(parsed.options);
+  if (outcome) return *outcome;
+  std::fprintf(stderr, "%s\n", outcome.error().what.c_str());
+  return 2;
+}

@@ -1,0 +1,42 @@
+/// What a person may ask of `tractus-station`.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "station/session/trial_run.hpp"
+
+namespace app {
+
+enum class Deed { run, sync, upload, trust };
+
+struct Options {
+  Deed deed = Deed::run;
+  std::filesystem::path data;
+  std::string server_url;
+  std::filesystem::path token_file;
+  bool json = false;
+  bool follow = false;
+  // run
+  session::TrialSetup setup;
+  std::string case_name;
+  std::filesystem::path model_file;
+  std::string answer;  ///< empty: the simulated hand's own, or asked at the terminal
+  int trials = 1;
+  // upload
+  double wait_s = 0.0;
+  // trust
+  std::string signer_hex;
+  std::filesystem::path signer_of_case;
+};
+
+/// The options, or the exit code with which to leave (help: 0, wrong use: 2, said on standard
+/// error).
+struct Parsed {
+  Options options;
+  std::optional<int> leave;
+};
+Parsed parse(int argc, char** argv);
+
+}  // namespace app

@@ -1,0 +1,149 @@
+/// The trials themselves: prepare, run, answer, hand over.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <iostream>
+
+#include "station/app/deeds.hpp"
+#include "station/app/exchange.hpp"
+#include "station/session/station.hpp"
+
+namespace app {
+namespace {
+using session::TrialReport;
+
+core::Result<std::shared_ptr<const session::PreparedCase>> prepare(
+    const Options& options, const session::StationFolder& folder) {
+  if (!options.server_url.empty() && !session::find_case(folder, options.case_name)) {
+    if (auto fetched = fetch_cases(options, folder); !fetched)
+      std::fprintf(stderr, "warning: cases were not fetched: %s\n", fetched.error().what.c_str());
+  }
+  auto made = session::prepare_case(folder, options.case_name, options.model_file,
+                                    core::terminal_progress("Preparing the case"));
+  if (!made) return made.error();
+  return std::shared_ptr<const session::PreparedCase>(std::move(*made));
+}
+
+/// The trainee's answer: what was given on the command line, the simulated hand's, or typed.
+core::Result<std::optional<trial::Answer>> answer_of(const Options& options,
+                                                     const session::Station& station) {
+  std::string wall = options.answer;
+  if (wall.empty()) {
+    if (auto simulated = station.simulated_answer()) return simulated;
+    if (!::isatty(STDIN_FILENO)) return std::optional<trial::Answer>();
+    fmt::print(stderr, "Breach? none, medial, lateral, superior, inferior, anterior: ");
+    if (!(std::cin >> wall)) return std::optional<trial::Answer>();
+  }
+  if (wall == "none") return std::optional(trial::Answer{});
+  if (volume::wall_named(wall))
+    return std::optional(trial::Answer{.breach = true, .wall = wall, .confidence = std::nullopt});
+  return core::Error{core::Errc::bad_input, fmt::format("{}: no such wall", wall)};
+}
+
+session::Watch watch_of(const Options& options, const core::Progress& shown) {
+  return [&options, &shown, said = std::uint64_t{0}](const session::Glimpse& seen) mutable {
+    if (options.follow && seen.samples_safe != said) {
+      said = seen.samples_safe;
+      fmt::print(stderr, "{}\n",
+                 core::Json{{"trial_id", seen.trial_id}, {"samples_safe", said}}.dump());
+    }
+    shown(seen.progress);
+    return !asked_to_stop();
+  };
+}
+
+core::Result<TrialReport> one_trial(const Options& options, session::Station& station,
+                                    const std::shared_ptr<const session::PreparedCase>& prepared,
+                                    std::uint64_t seed) {
+  if (auto ready = station.prepare(prepared, seed); !ready) return ready.error();
+  const core::Progress shown = core::terminal_progress(fmt::format("Trial, seed {}", seed));
+  if (auto ran = station.run(watch_of(options, shown)); !ran) return ran.error();
+  std::optional<trial::Answer> said;
+  if (station.state() == session::State::answering) {
+    auto answer = answer_of(options, station);
+    if (!answer) return answer.error();
+    said = *answer;
+  }
+  return station.answer(said);
+}
+
+std::string answer_text(const TrialReport& report) {
+  if (!report.answer) return "no answer";
+  const std::string wall =
+      report.answer->breach ? report.answer->wall.value_or("breach") : "no breach";
+  if (!report.answer->confidence) return wall;
+  return fmt::format("{}, confidence {:.2f}", wall, *report.answer->confidence);
+}
+
+void print_report(const TrialReport& report, bool fast) {
+  const loop::Counts& n = report.counts;
+  const double share = n.ticks ? 100.0 * double(n.late) / double(n.ticks) : 0.0;
+  fmt::print("trial {}{}\n", report.trial_id,
+             report.simulated ? "  (SIMULATED hand and device)" : "");
+  fmt::print(
+      "  {:.1f} s, {} samples, {} late ({:.3f} %), {} skipped, {} not converged, {} limited\n",
+      report.duration_s, n.ticks, n.late, share, n.skipped, n.not_converged, n.limited);
+  if (fast)
+    fmt::print("  simulated time, run as fast as it goes; tick p50 {:.0f} us\n",
+               report.work_p50_us);
+  else
+    fmt::print("  wake-up p50 {:.0f} us, p99 {:.0f} us; tick p50 {:.0f} us, p99 {:.0f} us\n",
+               report.wake_p50_us, report.wake_p99_us, report.work_p50_us, report.work_p99_us);
+  for (const auto& warning : report.grant.warnings) fmt::print("  warning: {}\n", warning);
+  if (!report.fault.empty()) fmt::print("  FAULT: {}\n", report.fault);
+  fmt::print("  answer: {}\n  {}\n", answer_text(report), report.file.string());
+}
+
+void say_recovered(const session::Recovered& recovered) {
+  for (const auto& one : recovered.trials)
+    std::fprintf(stderr, "an interrupted trial was kept: %s, %llu samples\n", one.trial_id.c_str(),
+                 static_cast<unsigned long long>(one.samples));
+  for (const auto& line : recovered.damaged)
+    std::fprintf(stderr, "warning: a trial cannot be read and stays as it is: %s\n", line.c_str());
+}
+
+/// After the trials, never during one. That the server is away is no failure of the station.
+core::Json hand_over_after(const Options& options, const session::StationFolder& folder) {
+  if (options.server_url.empty()) return nullptr;
+  auto report = hand_over(options, folder);
+  if (!report) {
+    std::fprintf(stderr, "warning: nothing was handed over: %s\n", report.error().what.c_str());
+    return {{"why", report.error().what}};
+  }
+  if (!options.json) fmt::print("{}\n", text_of(*report));
+  return report->to_json();
+}
+}  // namespace
+
+core::Result<int> run_trials(const Options& options) {
+  auto folder = session::StationFolder::open(options.data);
+  if (!folder) return folder.error();
+  auto lock = folder->lock();
+  if (!lock) return lock.error();
+  auto recovered = folder->recover();
+  if (!recovered) return recovered.error();
+  say_recovered(*recovered);
+  auto prepared = prepare(options, *folder);
+  if (!prepared) return prepared.error();
+
+  session::Station station(*folder, options.setup);
+  core::Json trials = core::Json::array();
+  bool faulted = false;
+  for (int i = 0; i < options.trials && !asked_to_stop(); ++i) {
+    auto report = one_trial(options, station, *prepared, options.setup.seed + std::uint64_t(i));
+    if (!report) return report.error();
+    faulted = faulted || !report->complete;
+    trials.push_back(report->to_json());
+    if (!options.json) print_report(*report, options.setup.speed == session::Speed::fast);
+  }
+  const core::Json uploads = hand_over_after(options, *folder);
+  if (options.json)
+    fmt::print(
+        "{}\n",
+        core::Json{{"case_id", (*prepared)->opened.id}, {"trials", trials}, {"upload", uploads}}
+            .dump(2));
+  return faulted ? 1 : 0;
+}
+
+}  // namespace app

@@ -1,0 +1,69 @@
+/// Which devices there are. One file each in catalogue/: a file `sim_lambda6.cpp` defines
+/// `DeviceInfo sim_lambda6()`.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "station/devices/device.hpp"
+
+namespace devices {
+
+/// The drilled channel as a simulated hand knows it from planning: where to go, not what is wrong
+/// with it. In D.
+struct Channel {
+  math::Vec3 entry_m = math::Vec3::Zero();    ///< centre of the mouth
+  math::Vec3 axis = -math::Vec3::UnitX();     ///< unit vector into the bone
+  math::Vec3 medial = math::Vec3::UnitY();    ///< unit vector, perpendicular to axis
+  math::Vec3 superior = math::Vec3::UnitZ();  ///< unit vector, perpendicular to both
+  double length_m = 0.04;
+  double radius_m = 0.0025;
+};
+
+/// What a device is told before it is made. A machine that is held by a person needs none of it.
+struct DeviceOptions {
+  std::uint64_t seed = 1;        ///< of everything random in a simulated device
+  double duration_s = 30.0;      ///< of a simulated hand's plan
+  double probe_length_m = 0.13;  ///< handle's origin to tip
+  Channel channel;
+};
+
+/// What a trainee says afterwards.
+struct Answer {
+  bool breach = false;
+  std::string wall;         ///< "medial", …, "anterior"; empty when there is no breach
+  double confidence = 0.0;  ///< 0 … 1
+};
+
+/// The simulated person that moves a simulated device. It is never told the truth of a case: it
+/// answers from the forces and motions of its own hand. All but `answer` may be called from any
+/// thread.
+class SimulatedTrainee {
+ public:
+  virtual ~SimulatedTrainee() = default;
+  virtual std::string name() const = 0;          ///< "simulated hand, seed 7"
+  virtual bool done() const noexcept = 0;        ///< the plan is over
+  virtual double progress() const noexcept = 0;  ///< 0 … 1
+  virtual Answer answer() const = 0;             ///< after the loop has ended
+};
+
+/// A device and, when it is simulated, who moves it (owned by the device).
+struct MadeDevice {
+  std::unique_ptr<Device> device;
+  SimulatedTrainee* trainee = nullptr;
+};
+
+struct DeviceInfo {
+  std::string id;       ///< "sim-lambda6"
+  std::string summary;  ///< one line
+  bool simulated = false;
+  /// Errors: out_of_range naming the option.
+  core::Result<MadeDevice> (*make)(const DeviceOptions& options);
+};
+
+/// Every device, in file-name order.
+std::vector<DeviceInfo> all();
+
+}  // namespace devices

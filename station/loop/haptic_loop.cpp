@@ -1,0 +1,123 @@
+#include "station/loop/haptic_loop.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace loop {
+namespace {
+using devices::Status;
+using math::Vec3;
+
+std::array<double, 3> array_of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+std::array<float, 3> floats_of(const Vec3& v) {
+  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
+}
+std::array<double, 4> array_of(const math::Quat& q) { return {q.w(), q.x(), q.y(), q.z()}; }
+
+/// What of a step may be recorded: what no trial may hold becomes zero (the limiter has latched or
+/// clamped by then).
+Vec3 recordable(const Vec3& v) {
+  return v.allFinite() && v.cwiseAbs().maxCoeff() < trial::kMaxMagnitude ? v : Vec3::Zero();
+}
+bool plausible(const math::Pose& pose) {
+  return pose.p.allFinite() && pose.p.cwiseAbs().maxCoeff() < 100.0 &&
+         std::abs(pose.q.squaredNorm() - 1.0) < 1e-3;  // NaN compares false
+}
+}  // namespace
+
+double TimeHistogram::quantile_us(double share) const noexcept {
+  const auto wanted = static_cast<std::uint64_t>(std::ceil(share * static_cast<double>(count_)));
+  std::uint64_t seen = 0;
+  for (std::size_t bin = 0; bin < bins_.size(); ++bin) {
+    seen += bins_[bin];
+    if (seen >= wanted && seen > 0) return static_cast<double>(bin + 1);
+  }
+  return 0.0;
+}
+
+HapticLoop::HapticLoop(Parts parts, const math::Pose& X_VD, const Vec3& pose_offset_m,
+                       double rate_Hz)
+    : parts_(parts),
+      X_VD_(X_VD),
+      pose_offset_m_(pose_offset_m),
+      period_(static_cast<core::Instant_ns>(std::llround(1e9 / rate_Hz))) {
+  core::require(rate_Hz >= 100.0 && rate_Hz <= 20000.0, "a loop runs at 100 … 20000 Hz");
+}
+
+void HapticLoop::run(const std::function<void()>& each_tick) noexcept {
+  start_ = parts_.clock.now();
+  core::Instant_ns deadline = start_;
+  std::uint32_t number = 0;
+  while (!stop_.load(std::memory_order_relaxed)) {
+    parts_.clock.sleep_until(deadline);
+    const core::Instant_ns now = parts_.clock.now();
+    const core::Instant_ns behind = now - deadline;
+    const bool late = behind > period_ / 4;
+    tick(now, number, late);
+    wake_.add(behind);
+    work_.add(parts_.clock.now() - now);
+    if (each_tick) each_tick();
+    if (parts_.limiter.guard() == Guard::latched) break;
+    const auto missed = static_cast<std::uint32_t>(std::max(behind, core::Instant_ns{0}) / period_);
+    counts_.skipped += missed;
+    number += 1 + missed;
+    deadline += (1 + core::Instant_ns{missed}) * period_;
+  }
+  static_cast<void>(
+      parts_.device.write({}));  // a device that fails here is at zero by its own watchdog
+}
+
+void HapticLoop::tick(core::Instant_ns now, std::uint32_t number, bool late) noexcept {
+  devices::Sample sample;
+  const Status status = parts_.device.read(now, sample);
+  const bool usable = status == Status::ok && plausible(sample.X_DH);
+  if (usable) X_DH_ = sample.X_DH;  // else the last good pose stands, flagged
+  const math::Pose X_VH = X_VD_ * X_DH_;
+  laws::PalpationStep step;
+  if (usable) step = parts_.contact.step(X_VH);
+
+  const math::Quat& q_DH = X_DH_.q;
+  const math::Wrench wanted_D{q_DH * step.wrench_H.force_N, q_DH * step.wrench_H.torque_Nm};
+  const Limiter::Passed passed = parts_.limiter.pass(now, status, sample, wanted_D);
+  if (parts_.device.write(passed.wrench) == Status::fault) parts_.limiter.fail(Fault::device);
+
+  trial::Sample out;
+  out.t_s = static_cast<double>(now - start_) * 1e-9;
+  out.p_VH_m = array_of(X_VH.p);
+  out.q_VH = array_of(X_VH.q);
+  out.force_N = floats_of(recordable(step.wrench_H.force_N));
+  out.torque_Nm = floats_of(recordable(step.wrench_H.torque_Nm));
+  const Vec3 rendered_H = q_DH.conjugate() * passed.wrench.force_N;
+  out.rendered_force_N = floats_of(rendered_H);
+  out.rendered_torque_Nm = floats_of(q_DH.conjugate() * passed.wrench.torque_Nm);
+  const bool bent = step.deflection_m.allFinite();
+  out.deflection_m = {bent ? float(step.deflection_m.x()) : 0.0f,
+                      bent ? float(step.deflection_m.y()) : 0.0f};
+  out.tick = number;
+  out.iterations = static_cast<std::uint16_t>(std::clamp(step.iterations, 0, 65535));
+  out.flags = static_cast<std::uint16_t>(
+      (step.converged ? 0 : trial::kNotConverged) | (passed.limited ? trial::kLimited : 0) |
+      (late ? trial::kLate : 0) | (passed.stale ? trial::kStale : 0) |
+      (sample.saturated ? trial::kSaturated : 0));
+  record(out);
+  parts_.live.write(
+      {.t_s = out.t_s,
+       .p_VH_m = array_of(Vec3(X_VH.p + pose_offset_m_)),
+       .q_VH = out.q_VH,
+       .deflection_m = {out.deflection_m[0], out.deflection_m[1]},
+       .rendered_force_N = array_of(rendered_H),
+       .rendered_torque_Nm = array_of(Vec3(q_DH.conjugate() * passed.wrench.torque_Nm)),
+       .tick = number,
+       .late_ticks = static_cast<std::uint32_t>(counts_.late)});
+}
+
+void HapticLoop::record(const trial::Sample& sample) noexcept {
+  ++counts_.ticks;
+  counts_.late += (sample.flags & trial::kLate) != 0;
+  counts_.not_converged += (sample.flags & trial::kNotConverged) != 0;
+  counts_.limited += (sample.flags & trial::kLimited) != 0;
+  counts_.stale += (sample.flags & trial::kStale) != 0;
+  counts_.lost += !parts_.ring.push(sample);
+}
+
+}  // namespace loop

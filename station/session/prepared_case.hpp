@@ -1,0 +1,34 @@
+/// A case ready to be felt.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "cases/case.hpp"
+#include "core/progress.hpp"
+#include "models/model.hpp"
+#include "station/session/station_folder.hpp"
+
+namespace session {
+
+struct PreparedCase {
+  cases::OpenedCase opened;
+  models::PalpationModel model;  ///< the case's, or the one that was asked for
+  volume::Volume volume;
+  models::PalpationRuntime runtime;
+};
+
+/// @param which       a case's id (or its first eight characters or more) in the station's folder,
+///                    or a bundle's folder
+/// @param model_file  another model to feel the case by; empty: the case's own
+/// Errors: not_found, corrupt, forbidden (the signer is not trusted), bad_input.
+core::Result<std::unique_ptr<PreparedCase>> prepare_case(const StationFolder& folder,
+                                                         const std::string& which,
+                                                         const std::filesystem::path& model_file,
+                                                         const core::Progress& progress = {});
+
+/// The folder of the case that `which` means. Errors: not_found.
+core::Result<std::filesystem::path> find_case(const StationFolder& folder,
+                                              const std::string& which);
+
+}  // namespace session

@@ -1,0 +1,56 @@
+#include "station/session/station.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+
+namespace session {
+
+std::string_view name(State state) {
+  constexpr std::array<std::string_view, 6> names{"idle",      "ready", "running",
+                                                  "answering", "done",  "fault"};
+  return names[std::size_t(state)];
+}
+
+core::Error Station::not_now(const char* deed) const {
+  return {core::Errc::conflict,
+          fmt::format("the station is {}: it cannot {} now", name(state_), deed)};
+}
+
+core::Result<void> Station::prepare(std::shared_ptr<const PreparedCase> prepared,
+                                    std::uint64_t seed) {
+  if (state_ != State::idle && state_ != State::done && state_ != State::fault)
+    return not_now("prepare a trial");
+  trial_.reset();
+  state_ = State::idle;
+  prepared_ = std::move(prepared);
+  setup_.seed = seed;
+  auto made = TrialRun::make(folder_, *prepared_, setup_);
+  if (!made) return made.error();
+  trial_ = std::move(*made);
+  state_ = State::ready;
+  return {};
+}
+
+core::Result<void> Station::run(const Watch& watch) {
+  if (state_ != State::ready) return not_now("start");
+  state_ = State::running;
+  auto ran = trial_->run(watch);
+  state_ = !ran || trial_->faulted() ? State::fault : State::answering;
+  return ran;
+}
+
+std::optional<trial::Answer> Station::simulated_answer() const {
+  return state_ == State::answering ? trial_->simulated_answer() : std::nullopt;
+}
+
+core::Result<TrialReport> Station::answer(const std::optional<trial::Answer>& answer) {
+  const bool faulted = state_ == State::fault && trial_;
+  if (state_ != State::answering && !faulted) return not_now("take an answer");
+  auto report = trial_->finish(faulted ? std::nullopt : answer);
+  trial_.reset();
+  state_ = report && !faulted ? State::done : State::fault;
+  return report;
+}
+
+}  // namespace session

@@ -1,0 +1,44 @@
+/// The states of a training session.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string_view>
+
+#include "station/session/trial_run.hpp"
+
+namespace session {
+
+enum class State { idle, ready, running, answering, done, fault };
+std::string_view name(State state);
+
+/// One station, one trial at a time. Every deed says in which states it is allowed; elsewhere it is
+/// Errc::conflict and nothing happens. Not for several threads.
+class Station {
+ public:
+  Station(const StationFolder& folder, TrialSetup setup)
+      : folder_(folder), setup_(std::move(setup)) {}
+
+  State state() const noexcept { return state_; }
+  /// idle, done, fault → ready. `prepared` is kept for this trial. From `fault` this is the
+  /// operator's deed that arms anew.
+  core::Result<void> prepare(std::shared_ptr<const PreparedCase> prepared, std::uint64_t seed);
+  /// ready → running → answering, or fault.
+  core::Result<void> run(const Watch& watch = {});
+  /// answering → done; fault → fault (a fault takes no answer, but the trial is sealed and kept).
+  core::Result<TrialReport> answer(const std::optional<trial::Answer>& answer);
+  /// What the simulated hand says, in `answering`.
+  std::optional<trial::Answer> simulated_answer() const;
+  /// The trial that is prepared or running; null elsewhere.
+  const TrialRun* trial() const { return trial_.get(); }
+
+ private:
+  core::Error not_now(const char* deed) const;
+  const StationFolder& folder_;
+  TrialSetup setup_;
+  State state_ = State::idle;
+  std::shared_ptr<const PreparedCase> prepared_;
+  std::unique_ptr<TrialRun> trial_;
+};
+
+}  // namespace session

@@ -1,0 +1,274 @@
+#include "station/session/trial_run.hpp"
+
+#include <fmt/format.h>
+
+#include <future>
+#include <thread>
+
+#include "station/loop/placement.hpp"
+#include "station/loop/recorder.hpp"
+
+namespace session {
+namespace {
+constexpr std::size_t kRing = 16384;            // four seconds
+constexpr std::uint64_t kDrainEveryTicks = 40;  // of a fast trial: 10 ms of its time
+constexpr auto kWatch = std::chrono::milliseconds(30);
+constexpr double kGrace_s = 2.0;  // beyond the plan, for a hand that lags
+
+core::Json array_of(const math::Vec3& v) { return core::Json::array({v.x(), v.y(), v.z()}); }
+
+core::Json probe_of(const laws::PalpationParameters& base) {
+  return {{"length_m", base.length_m},
+          {"radius_m", base.radius_m},
+          {"points", base.points},
+          {"point_spacing_m", base.point_spacing_m},
+          {"pose_offset_m", array_of(base.pose_offset_m)}};
+}
+
+devices::Channel channel_of(const volume::Tract& in_D) {
+  return {.entry_m = in_D.entry_m,
+          .axis = in_D.axis,
+          .medial = in_D.medial,
+          .superior = in_D.superior,
+          .length_m = in_D.length_m,
+          .radius_m = in_D.radius_m};
+}
+
+core::Result<devices::DeviceInfo> find_device(const std::string& id) {
+  std::string known;
+  for (devices::DeviceInfo& info : devices::all()) {
+    if (info.id == id) return std::move(info);
+    known += (known.empty() ? "" : ", ") + info.id;
+  }
+  return core::Error{core::Errc::not_found,
+                     fmt::format("--device {}: not known; there is {}", id, known)};
+}
+
+core::Json json_of(const loop::Counts& counts) {
+  return {{"ticks", counts.ticks},           {"late_ticks", counts.late},
+          {"skipped_ticks", counts.skipped}, {"not_converged", counts.not_converged},
+          {"limited", counts.limited},       {"stale", counts.stale},
+          {"lost_samples", counts.lost}};
+}
+}  // namespace
+
+core::Json TrialReport::to_json() const {
+  core::Json out = {{"trial_id", trial_id},
+                    {"file", file.string()},
+                    {"simulated", simulated},
+                    {"complete", complete},
+                    {"fault", fault},
+                    {"duration_s", duration_s},
+                    {"wake_p50_us", wake_p50_us},
+                    {"wake_p99_us", wake_p99_us},
+                    {"work_p50_us", work_p50_us},
+                    {"work_p99_us", work_p99_us},
+                    {"realtime", grant.to_json()}};
+  out.update(json_of(counts));
+  out["answer"] = answer ? answer->to_json() : core::Json();
+  return out;
+}
+
+struct TrialRun::Parts {
+  const StationFolder& folder;
+  TrialSetup setup;
+  trial::Header header;
+  devices::MadeDevice made;
+  core::MonotonicClock real_clock;
+  core::ManualClock manual_clock;
+  loop::SampleRing ring{kRing};
+  loop::LiveState live;
+  loop::PalpationContact contact;
+  loop::Limiter limiter;
+  std::optional<loop::Recorder> recorder;
+  std::optional<loop::HapticLoop> loop;
+  loop::RealtimeGrant grant;
+  std::string fault;
+
+  Parts(const StationFolder& where, const PreparedCase& prepared, const TrialSetup& how)
+      : folder(where),
+        setup(how),
+        contact(prepared.runtime),
+        limiter(where.config().limits, static_cast<core::Instant_ns>(1e9 / how.rate_Hz)) {}
+
+  bool fast() const { return setup.speed == Speed::fast; }
+  core::Clock& clock() { return fast() ? static_cast<core::Clock&>(manual_clock) : real_clock; }
+  double elapsed_s() { return static_cast<double>(clock().now() - loop->started()) * 1e-9; }
+  Glimpse glimpse() const;
+  core::Result<void> open_device(const devices::DeviceInfo& info, const PreparedCase& prepared,
+                                 const math::Pose& X_VD);
+  core::Result<void> make_file(const PreparedCase& prepared, const devices::DeviceInfo& info);
+  void after_tick();
+  void loop_thread(std::promise<void>& prepared, const std::future<void>& go);
+  void watch_until(const std::future<void>& done, const Watch& watch);
+  core::Result<void> append_end(const TrialReport& report);
+};
+
+Glimpse TrialRun::Parts::glimpse() const {
+  const auto seen = live.read().value_or(loop::Live{});
+  const double share = static_cast<double>(seen.tick) / (setup.duration_s * setup.rate_Hz);
+  return {.trial_id = header.id,
+          .live = seen,
+          .progress = made.trainee ? made.trainee->progress() : std::min(1.0, share),
+          .samples_safe = recorder->samples_safe()};
+}
+
+core::Result<void> TrialRun::Parts::open_device(const devices::DeviceInfo& info,
+                                                const PreparedCase& prepared,
+                                                const math::Pose& X_VD) {
+  const auto& base = prepared.model.base;
+  const auto& tract = prepared.opened.definition.tract;
+  auto device =
+      info.make({.seed = setup.seed,
+                 .duration_s = setup.duration_s,
+                 .probe_length_m = base.length_m,
+                 .channel = channel_of(loop::tract_in_device(tract, X_VD, base.pose_offset_m))});
+  if (!device) return device.error();
+  made = std::move(*device);
+  auto limits = made.device->open();
+  if (!limits) return limits.error();
+  loop::HandLimits device_limits = loop::HandLimits::kCeiling;
+  device_limits.max_force_N = limits->max_force_N;
+  device_limits.max_torque_Nm = limits->max_torque_Nm;
+  limiter.lower(device_limits);
+  return {};
+}
+
+core::Result<void> TrialRun::Parts::make_file(const PreparedCase& prepared,
+                                              const devices::DeviceInfo& info) {
+  header.id = core::new_id();
+  header.case_id = prepared.opened.id;
+  header.station = folder.config().name;
+  header.operator_name = made.trainee ? made.trainee->name() : "not named";
+  header.simulated = info.simulated;
+  header.device = info.id;
+  header.started_utc_us = core::utc_us();
+  header.rate_Hz = setup.rate_Hz;
+  header.probe = probe_of(prepared.model.base);
+  header.extra = {
+      {"clock", fast() ? "manual: simulated time, run as fast as it goes" : "monotonic: real time"},
+      {"model", prepared.model.name},
+      {"limits", limiter.limits().to_json()}};
+  if (info.simulated) header.extra["seed"] = setup.seed;
+  auto writer = trial::TrialWriter::create(folder.trial_file(header.id), header);
+  if (!writer) return writer.error();
+  recorder.emplace(ring, std::move(*writer), real_clock);
+  return {};
+}
+
+core::Result<std::unique_ptr<TrialRun>> TrialRun::make(const StationFolder& folder,
+                                                       const PreparedCase& prepared,
+                                                       const TrialSetup& setup) {
+  auto info = find_device(setup.device);
+  if (!info) return info.error();
+  if (setup.speed == Speed::fast && !info->simulated)
+    return core::Error{core::Errc::bad_input,
+                       fmt::format("--speed fast: {} is held by a person", info->id)};
+  const double bytes = setup.duration_s * setup.rate_Hz * 1.1 * double(sizeof(trial::Sample));
+  if (auto checked = folder.check_room(static_cast<std::uint64_t>(bytes)); !checked)
+    return checked.error();
+  auto parts = std::make_unique<Parts>(folder, prepared, setup);
+  const auto& base = prepared.model.base;
+  const math::Pose X_VD =
+      loop::place_device(prepared.opened.definition.tract, base.length_m, base.pose_offset_m);
+  if (auto opened = parts->open_device(*info, prepared, X_VD); !opened) return opened.error();
+  if (auto created = parts->make_file(prepared, *info); !created) return created.error();
+  parts->loop.emplace(loop::HapticLoop::Parts{parts->clock(), *parts->made.device, parts->contact,
+                                              parts->limiter, parts->ring, parts->live},
+                      X_VD, base.pose_offset_m, setup.rate_Hz);
+  return std::unique_ptr<TrialRun>(new TrialRun(std::move(parts)));
+}
+
+TrialRun::TrialRun(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+TrialRun::~TrialRun() { parts_->made.device->close(); }
+const loop::LiveState& TrialRun::live() const { return parts_->live; }
+bool TrialRun::faulted() const { return !parts_->fault.empty(); }
+
+// In real time this is under the tick's rules: only atomics are read.
+void TrialRun::Parts::after_tick() {
+  const loop::Counts& counts = loop->counts();
+  const bool over = made.trainee && made.trainee->done();
+  const double longest_s = setup.duration_s + (made.trainee ? kGrace_s : 0.0);
+  const auto passed = static_cast<double>(counts.ticks + counts.skipped);
+  if (over || passed >= longest_s * setup.rate_Hz || recorder->failed()) loop->stop();
+  if (fast() && counts.ticks % kDrainEveryTicks == 0) recorder->drain();
+}
+
+void TrialRun::Parts::loop_thread(std::promise<void>& prepared, const std::future<void>& go) {
+  if (!fast()) grant = loop::prepare_realtime();
+  prepared.set_value();
+  go.wait();
+  loop->run([this] { after_tick(); });
+}
+
+void TrialRun::Parts::watch_until(const std::future<void>& done, const Watch& watch) {
+  for (bool over = false; !over;) {
+    over = done.wait_for(kWatch) == std::future_status::ready;
+    if (watch && !watch(glimpse())) loop->stop();
+  }
+}
+
+core::Result<void> TrialRun::run(const Watch& watch) {
+  Parts& p = *parts_;
+  std::promise<void> prepared, go, done;
+  const std::future<void> ended = done.get_future(), started = go.get_future();
+  std::thread thread([&] {
+    p.loop_thread(prepared, started);
+    done.set_value();
+  });
+  prepared.get_future().wait();
+  const core::Json detail = {{"realtime", p.grant.to_json()}};
+  if (!p.recorder->append({0.0, "start", detail})) p.loop->stop();  // the error is kept for stop()
+  p.limiter.arm();
+  if (!p.fast()) p.recorder->start();
+  go.set_value();
+  p.watch_until(ended, watch);
+  thread.join();
+  if (p.limiter.guard() == loop::Guard::latched) p.fault = loop::text_of(p.limiter.fault());
+  if (p.loop->counts().lost > 0)
+    p.fault =
+        fmt::format("{} samples were not recorded: the disk was too slow", p.loop->counts().lost);
+  p.limiter.disarm();
+  return p.recorder->stop();
+}
+
+std::optional<trial::Answer> TrialRun::simulated_answer() const {
+  if (!parts_->made.trainee) return std::nullopt;
+  const devices::Answer said = parts_->made.trainee->answer();
+  trial::Answer out{.breach = said.breach, .wall = std::nullopt, .confidence = said.confidence};
+  if (said.breach) out.wall = said.wall;
+  return out;
+}
+
+core::Result<void> TrialRun::Parts::append_end(const TrialReport& report) {
+  if (!fault.empty()) return recorder->append({report.duration_s, "fault", {{"what", fault}}});
+  if (report.answer) {
+    const trial::Event answered{report.duration_s, "answer", report.answer->to_json()};
+    if (auto said = recorder->append(answered); !said) return said;
+  }
+  return recorder->append({elapsed_s(), "end", json_of(report.counts)});
+}
+
+core::Result<TrialReport> TrialRun::finish(const std::optional<trial::Answer>& answer) {
+  Parts& p = *parts_;
+  TrialReport report{.trial_id = p.header.id,
+                     .file = p.folder.trial_file(p.header.id),
+                     .complete = p.fault.empty(),
+                     .fault = p.fault,
+                     .duration_s = p.elapsed_s(),
+                     .counts = p.loop->counts(),
+                     .wake_p50_us = p.loop->wake().quantile_us(0.5),
+                     .wake_p99_us = p.loop->wake().quantile_us(0.99),
+                     .work_p50_us = p.loop->work().quantile_us(0.5),
+                     .work_p99_us = p.loop->work().quantile_us(0.99),
+                     .grant = p.grant,
+                     .answer = answer,
+                     .simulated = p.header.simulated};
+  if (auto ended = p.append_end(report); !ended) return ended.error();
+  if (auto sealed = p.recorder->finish(); !sealed) return sealed.error();
+  auto queued = p.folder.outbox().queue(p.header.id, p.header.case_id, report.file);
+  if (!queued) return queued.error();
+  return report;
+}
+
+}  // namespace session

@@ -1,0 +1,80 @@
+/// One attempt at one case.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "station/devices/catalogue.hpp"
+#include "station/loop/haptic_loop.hpp"
+#include "station/loop/realtime.hpp"
+#include "station/session/prepared_case.hpp"
+
+namespace session {
+
+enum class Speed {
+  real,  ///< the monotonic clock
+  fast,  ///< a manual clock, as fast as it goes: simulated devices alone, and the trial says so
+};
+
+struct TrialSetup {
+  std::string device = "sim-lambda6";
+  std::uint64_t seed = 1;
+  double duration_s = 30.0;
+  Speed speed = Speed::real;
+  double rate_Hz = 4000.0;
+};
+
+/// What a trial came to.
+struct TrialReport {
+  std::string trial_id;
+  std::filesystem::path file;
+  bool complete = false;
+  std::string fault;  ///< one line; empty when there was none
+  double duration_s = 0.0;
+  loop::Counts counts;
+  double wake_p50_us = 0.0, wake_p99_us = 0.0, work_p50_us = 0.0, work_p99_us = 0.0;
+  loop::RealtimeGrant grant;
+  std::optional<trial::Answer> answer;
+  bool simulated = false;
+
+  core::Json to_json() const;
+};
+
+/// What is told while a trial runs.
+struct Glimpse {
+  const std::string& trial_id;
+  loop::Live live;
+  double progress = 0.0;           ///< 0 … 1
+  std::uint64_t samples_safe = 0;  ///< on the disk for good
+};
+/// Called from the thread that called `run`, about thirty times a second; false stops the trial.
+using Watch = std::function<bool(const Glimpse&)>;
+
+class TrialRun {
+ public:
+  /// Makes and opens the device, checks the disk, makes the trial file. `prepared` and `folder`
+  /// must outlive this. Errors: not_found (no such device), bad_input, io, and the device's.
+  static core::Result<std::unique_ptr<TrialRun>> make(const StationFolder& folder,
+                                                      const PreparedCase& prepared,
+                                                      const TrialSetup& setup);
+  ~TrialRun();
+
+  /// The loop in a thread of its own until the hand is done, the time is up, a fault, or `watch`
+  /// says so. Errors: io of the recorder. A fault of the loop is no Error: `faulted`.
+  core::Result<void> run(const Watch& watch = {});
+  bool faulted() const;
+  /// What the simulated trainee answers; nothing for a device that a person holds.
+  std::optional<trial::Answer> simulated_answer() const;
+  /// Writes the answer (if any) and the end, seals the file and queues it for upload.
+  core::Result<TrialReport> finish(const std::optional<trial::Answer>& answer);
+  /// Readable from any thread at any time, without a lock.
+  const loop::LiveState& live() const;
+
+ private:
+  struct Parts;
+  explicit TrialRun(std::unique_ptr<Parts> parts);
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace session

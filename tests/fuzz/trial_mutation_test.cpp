@@ -1,0 +1,73 @@
+/// The fuzzer's promises on the same mutations each time.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "core/file.hpp"
+#include "trial_bytes.hpp"
+
+namespace fuzz {
+namespace {
+
+core::Bytes golden(const char* name) {
+  return core::read_file(std::string(TRACTUS_SOURCE_DIR) + "/tests/golden/trial-format-1/" + name)
+      .value();
+}
+
+/// One to four times: a byte changed, a stretch removed, doubled or zeroed, a 32-bit number made
+/// extreme.
+core::Bytes mutated(core::Bytes bytes, std::mt19937& random) {
+  const auto below = [&](std::size_t limit) {
+    return std::uniform_int_distribution<std::size_t>(0, limit - 1)(random);
+  };
+  for (std::size_t turn = 1 + below(4); turn > 0 && !bytes.empty(); --turn) {
+    const std::size_t at = below(bytes.size());
+    const std::size_t length = 1 + below(std::min<std::size_t>(bytes.size() - at, 200));
+    const auto begin = bytes.begin() + std::ptrdiff_t(at), end = begin + std::ptrdiff_t(length);
+    switch (below(5)) {
+      case 0:
+        *begin = std::byte(below(256));
+        break;
+      case 1:
+        bytes.erase(begin, end);
+        break;
+      case 2: {
+        const core::Bytes part(begin, end);
+        bytes.insert(end, part.begin(), part.end());
+        break;
+      }
+      case 3:
+        std::fill(begin, end, std::byte{});
+        break;
+      default:
+        std::fill(begin, begin + std::ptrdiff_t(std::min<std::size_t>(length, 4)), std::byte{0xff});
+    }
+  }
+  return bytes;
+}
+
+TEST(TrialMutation, TheWholeFilesAreRead) {
+  EXPECT_TRUE(try_trial(golden("small.trial")));
+  EXPECT_TRUE(try_trial(golden("torn.trial")));
+  EXPECT_TRUE(try_trial(repaired(golden("small.trial"))));
+  EXPECT_EQ(repaired(golden("small.trial")), golden("small.trial"));
+}
+
+TEST(TrialMutation, NoMutationBreaksAPromise) {
+  std::mt19937 random(1);
+  const auto whole = golden("small.trial");
+  for (int i = 0; i < 4000; ++i) try_trial(mutated(whole, random));
+}
+
+TEST(TrialMutation, NoMutationWithTrueChecksumsBreaksAPromise) {
+  std::mt19937 random(2);
+  const auto whole = golden("small.trial");
+  int read = 0;
+  constexpr int kTries = 8000;
+  for (int i = 0; i < kTries; ++i) read += try_trial(repaired(mutated(whole, random)));
+  EXPECT_GT(read, kTries / 20) << "the repair reaches nothing";
+  EXPECT_LT(read, kTries * 19 / 20) << "nothing is refused";
+}
+
+}  // namespace
+}  // namespace fuzz

@@ -1,0 +1,105 @@
+/// The real server as a child process, and a client that speaks to it.
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/json.hpp"
+
+namespace world {
+
+struct Ended {
+  int code;         ///< exit code; -1 when a signal ended it
+  std::string out;  ///< standard output and error together
+};
+/// Runs a program of ours to its end.
+Ended run_program(const std::string& name, const std::vector<std::string>& arguments);
+
+struct Answer {
+  int status = 0;                              ///< 0: no answer, the connection broke
+  std::map<std::string, std::string> headers;  ///< names in lower case
+  std::string body;
+  core::Json json() const { return core::Json::parse(body, nullptr, false); }
+};
+
+using Headers = std::map<std::string, std::string>;
+
+/// One keep-alive connection, reopened when it breaks.
+class Client {
+ public:
+  Client();
+  ~Client();
+  Client(const Client&) = delete;
+  Client& operator=(const Client&) = delete;
+  void speak_to(int port) { port_ = port; }
+  /// The path is sent as it is, "/../x" too.
+  Answer ask(const std::string& method, const std::string& path, const Headers& headers = {},
+             const std::string& body = "");
+
+ private:
+  void* curl_;
+  int port_ = 0;
+};
+
+/// `tractus-server serve` on a free port. Killed when it goes.
+class ServerProcess {
+ public:
+  /// Waits for its line "listening on"; fails the test when it does not come.
+  explicit ServerProcess(const std::filesystem::path& data, std::vector<std::string> more = {});
+  ~ServerProcess();
+  ServerProcess(const ServerProcess&) = delete;
+  ServerProcess& operator=(const ServerProcess&) = delete;
+  int port() const { return port_; }
+  pid_t pid() const { return pid_; }
+  void kill_now();
+  /// SIGTERM, then waits; its exit code.
+  int stop();
+  /// Largest resident memory so far, bytes.
+  std::size_t peak_memory_bytes() const;
+
+ private:
+  pid_t pid_ = -1;
+  int port_ = 0;
+  int output_ = -1;
+};
+
+/// What an open socket sends back until it is closed, or nothing more comes for `patience_ms`.
+struct RawAnswer {
+  std::string text;
+  bool closed = false;
+};
+/// Sends bytes as they are over a connection of their own.
+RawAnswer send_raw(int port, const std::string& bytes, int patience_ms);
+
+/// A data folder with account "admin" (kPassword), stations "station-1" and "station-2", and one
+/// published case.
+struct ServedWorld {
+  ServedWorld();
+  ~ServedWorld();
+  ServedWorld(const ServedWorld&) = delete;
+  ServedWorld& operator=(const ServedWorld&) = delete;
+
+  static constexpr const char* kPassword = "a password of a test";
+  std::filesystem::path folder, data;
+  std::string case_id;
+  Headers station_1, station_2;  ///< their credentials
+
+  /// Signs in and returns the cookie with the header that changes need.
+  Headers admin(Client& client) const;
+};
+
+/// The server's answers to a station that hands over a trial.
+std::string upload_path(const std::string& trial_id);
+Answer announce(Client& client, const Headers& station, const std::string& trial_id,
+                const std::string& case_id, const std::string& bytes);
+Answer send_piece(Client& client, const Headers& station, const std::string& trial_id,
+                  std::uint64_t offset, const std::string& piece);
+Answer commit(Client& client, const Headers& station, const std::string& trial_id);
+
+}  // namespace world

@@ -1,0 +1,24 @@
+/** Addresses of the server's own description: a path, a parameter or a query that it does not name does not compile. */
+import type { paths } from './generated/schema';
+
+/** Paths with a GET that takes these parameters. */
+type Parameters<P extends keyof paths> = paths[P] extends { get: { parameters: infer Found } } ? Found : never;
+type PathPart<P extends keyof paths> = Parameters<P> extends { path: infer Found } ? Found : Record<string, never>;
+type QueryPart<P extends keyof paths> = Parameters<P> extends { query?: infer Found } ? NonNullable<Found> : Record<string, never>;
+
+const kRoot = '/api/v1';
+
+/** The address below /api/v1, with every part escaped. */
+export function address<P extends keyof paths & `${typeof kRoot}${string}`>(
+  path: P, parts: PathPart<P>, query?: QueryPart<P>,
+): string {
+  let filled: string = path.slice(kRoot.length);
+  for (const [name, value] of Object.entries(parts as Record<string, unknown>)) {
+    filled = filled.replace(`{${name}}`, encodeURIComponent(String(value)));
+  }
+  const said = new URLSearchParams();
+  for (const [name, value] of Object.entries((query ?? {}) as Record<string, unknown>)) {
+    if (value !== undefined) said.set(name, String(value));
+  }
+  return said.size > 0 ? `${filled}?${said}` : filled;
+}

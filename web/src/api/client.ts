@@ -1,0 +1,79 @@
+/** One way to the server: same origin, cookie, time-out, and every failure as an ApiError with a sentence for a person. */
+import * as v from 'valibot';
+
+const kRoot = '/api/v1';
+const kTimeout_ms = 20_000;
+
+export type ApiErrorCode =
+  | 'unauthorised' | 'forbidden' | 'not_found' | 'too_many' | 'unavailable' | 'unreachable' | 'unreadable' | 'refused';
+
+export class ApiError extends Error {
+  constructor(readonly code: ApiErrorCode, message: string, readonly status = 0) {
+    super(message);
+    this.name = 'ApiError';
+  }
+}
+
+const errorSchema = v.object({ error: v.string(), code: v.string() });
+
+function codeOf(status: number): ApiErrorCode {
+  switch (status) {
+    case 401: return 'unauthorised';
+    case 403: return 'forbidden';
+    case 404: return 'not_found';
+    case 429: return 'too_many';
+    case 502: case 503: case 504: return 'unavailable';
+    default: return 'refused';
+  }
+}
+
+interface Request {
+  readonly method?: 'GET' | 'POST' | 'DELETE';
+  readonly body?: unknown;
+  readonly signal?: AbortSignal | undefined;
+}
+
+async function send(path: string, { method = 'GET', body, signal }: Request): Promise<Response> {
+  const headers = new Headers({ Accept: 'application/json' });
+  if (method !== 'GET') headers.set('X-Tractus', '1'); // refuses requests forged by another site
+  if (body !== undefined) headers.set('Content-Type', 'application/json');
+  const timeout = AbortSignal.timeout(kTimeout_ms);
+  let response: Response;
+  try {
+    response = await fetch(kRoot + path, {
+      method, headers, credentials: 'same-origin',
+      ...(body === undefined ? {} : { body: JSON.stringify(body) }),
+      signal: signal ? AbortSignal.any([signal, timeout]) : timeout,
+    });
+  } catch (reason) {
+    if (signal?.aborted) throw reason;
+    throw new ApiError('unreachable', 'The server does not answer. Check that it runs and that the network is there.');
+  }
+  if (response.ok) return response;
+  const said = v.safeParse(errorSchema, await response.json().catch(() => undefined));
+  const text = said.success ? said.output.error : `The server answered with status ${response.status}.`;
+  throw new ApiError(codeOf(response.status), text, response.status);
+}
+
+/** Asks for JSON and checks it against `schema`; an answer of another shape is an error, never a half-filled page. */
+export async function ask<Schema extends v.GenericSchema>(
+  path: string, schema: Schema, request: Request = {},
+): Promise<v.InferOutput<Schema>> {
+  const response = await send(path, request);
+  const json: unknown = await response.json().catch(() => undefined);
+  const parsed = v.safeParse(schema, json);
+  if (parsed.success) return parsed.output;
+  const [issue] = parsed.issues;
+  const where = v.getDotPath(issue) ?? 'answer';
+  throw new ApiError('unreadable', `The server's answer cannot be read: ${where}: ${issue.message}`);
+}
+
+export async function tell(path: string, request: Request): Promise<void> {
+  await send(path, request);
+}
+
+/** Bytes with the headers that describe them. */
+export async function bytes(path: string, request: Request = {}): Promise<{ headers: Headers; data: Uint8Array<ArrayBuffer> }> {
+  const response = await send(path, request);
+  return { headers: response.headers, data: new Uint8Array(await response.arrayBuffer()) };
+}

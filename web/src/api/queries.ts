@@ -1,0 +1,93 @@
+/** What can be asked, as queries: one key each, so that pages share answers. */
+import { infiniteQueryOptions, queryOptions, type QueryClient } from '@tanstack/react-query';
+import { address } from './address';
+import { ApiError, ask, bytes, tell } from './client';
+import { parsePreview } from './preview';
+import { pathSchema, sessionSchema, signalsSchema, trialPageSchema, trialSchema, type Session } from './schemas';
+
+const kAssessing_ms = 2_000;
+const kIdle_ms = 15_000;
+const kPage = 50;
+/** Voxels along the longest side; the box round a tract is slender, so that it stays small. */
+const kPreview = 128;
+
+export const kChannels = [
+  'force_xy_N', 'force_z_N', 'torque_xy_Nm', 'torque_z_Nm', 'depth_m', 'offset_m', 'angle_rad',
+] as const;
+export type Channel = (typeof kChannels)[number];
+
+/** null: nobody is signed in. */
+export const sessionQuery = queryOptions({
+  queryKey: ['session'],
+  queryFn: async ({ signal }): Promise<Session | null> => {
+    try {
+      return await ask(address('/api/v1/session', {}), sessionSchema, { signal });
+    } catch (reason) {
+      if (reason instanceof ApiError && reason.code === 'unauthorised') return null;
+      throw reason;
+    }
+  },
+  staleTime: 5 * 60_000,
+});
+
+export const signIn = (name: string, password: string) =>
+  ask(address('/api/v1/session', {}), sessionSchema, { method: 'POST', body: { name, password } });
+
+export const signOut = () => tell(address('/api/v1/session', {}), { method: 'DELETE' });
+
+/** Newest first; asked again while anything is being assessed, and now and then for trials that have arrived. */
+export const trialsQuery = infiniteQueryOptions({
+  queryKey: ['trials'],
+  queryFn: ({ pageParam, signal }) => {
+    const before = pageParam === null ? {} : { before_utc_us: pageParam };
+    return ask(address('/api/v1/trials', {}, { limit: kPage, ...before }), trialPageSchema, { signal });
+  },
+  initialPageParam: null as number | null,
+  getNextPageParam: (last) => (last.more ? (last.trials.at(-1)?.started_utc_us ?? null) : null),
+  refetchInterval: (query) => {
+    const assessing = query.state.data?.pages.some((page) => page.trials.some((trial) => trial.state === 'assessing'));
+    return assessing ? kAssessing_ms : kIdle_ms;
+  },
+});
+
+export const trialQuery = (id: string) =>
+  queryOptions({
+    queryKey: ['trial', id],
+    queryFn: ({ signal }) => ask(address('/api/v1/trials/{id}', { id }), trialSchema, { signal }),
+    refetchInterval: (query) => (query.state.data?.state === 'assessing' ? kAssessing_ms : false),
+  });
+
+export interface SignalWindow { from_s: number; to_s: number; points: number }
+
+/** Signals of a trial never change, so a window once fetched is kept. */
+export const signalsQuery = (id: string, window: SignalWindow) =>
+  queryOptions({
+    queryKey: ['signals', id, window],
+    queryFn: ({ signal }) => {
+      const query = { channels: kChannels.join(','), ...window };
+      return ask(address('/api/v1/trials/{id}/signals', { id }, query), signalsSchema, { signal });
+    },
+    staleTime: Infinity,
+  });
+
+export const pathQuery = (id: string) =>
+  queryOptions({
+    queryKey: ['path', id],
+    queryFn: ({ signal }) => ask(address('/api/v1/trials/{id}/path', { id }, { points: 2000 }), pathSchema, { signal }),
+    staleTime: Infinity,
+  });
+
+export const previewQuery = (caseId: string) =>
+  queryOptions({
+    queryKey: ['preview', caseId],
+    queryFn: async ({ signal }) => {
+      const { headers, data } = await bytes(address('/api/v1/cases/{id}/preview', { id: caseId }, { max_side: kPreview }), { signal });
+      return parsePreview(headers, data);
+    },
+    staleTime: Infinity,
+  });
+
+/** A 401 anywhere means that the session has ended: the pages give way to the sign-in, at the same address. */
+export function endSession(client: QueryClient): void {
+  client.setQueryData(sessionQuery.queryKey, null);
+}

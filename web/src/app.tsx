@@ -1,0 +1,84 @@
+/** The whole: which address shows which page, and what an ended session does to all of them. */
+import { QueryCache, QueryClient, QueryClientProvider } from '@tanstack/react-query';
+import { lazy, Suspense, useState, type ReactNode } from 'react';
+import { Link, Redirect, Route, Switch } from 'wouter';
+import { ApiError, endSession } from '@/api';
+import { Account, SessionGate } from '@/features/session';
+import { TrialsPage } from '@/features/trials';
+import { Notice, Shell, Skeleton, useTitle } from '@/ui';
+import styles from './app.module.css';
+import { Fault } from './fault';
+
+const TrialPage = lazy(() => import('@/features/trial'));
+
+function makeClient(): QueryClient {
+  const onError = (reason: Error) => {
+    if (reason instanceof ApiError && reason.code === 'unauthorised') endSession(client);
+  };
+  const client = new QueryClient({
+    queryCache: new QueryCache({ onError }),
+    defaultOptions: {
+      queries: {
+        staleTime: 5_000,
+        retry: (failures, reason) =>
+          failures < 2 && reason instanceof ApiError && (reason.code === 'unreachable' || reason.code === 'unavailable'),
+        retryDelay: (failures) => 500 * 2 ** failures,
+      },
+    },
+  });
+  return client;
+}
+
+function Brand() {
+  return (
+    <Link href="/trials" className={styles.brand}>
+      <img src="/icon.svg" alt="" width="24" height="24" />
+      Tractus
+    </Link>
+  );
+}
+
+function NotFound() {
+  useTitle('Not found');
+  return (
+    <div className={styles.narrow}>
+      <h1>There is no such page</h1>
+      <p>The address may be mistyped, or what it named is gone.</p>
+      <p><Link href="/trials">To the list of trials</Link></p>
+    </div>
+  );
+}
+
+function Loading() {
+  return <div className={styles.loading} role="status"><span className="hidden-visually">Loading</span><Skeleton height="40px" width="320px" /></div>;
+}
+
+function Pages() {
+  return (
+    <Suspense fallback={<Loading />}>
+      <Switch>
+        <Route path="/"><Redirect to="/trials" replace /></Route>
+        <Route path="/trials"><TrialsPage /></Route>
+        <Route path="/trials/:id">{({ id }) => <TrialPage key={id} id={id} />}</Route>
+        <Route><NotFound /></Route>
+      </Switch>
+    </Suspense>
+  );
+}
+
+function Framed({ children }: { readonly children: ReactNode }) {
+  return <Shell home={<Brand />} account={<Account />}>{children}</Shell>;
+}
+
+export function App() {
+  const [client] = useState(makeClient);
+  return (
+    <QueryClientProvider client={client}>
+      <Framed>
+        <Fault fallback={<Notice tone="bad" title="This page has failed.">Reload it. If it fails again, tell who runs the server what you did.</Notice>}>
+          <SessionGate waiting={<Loading />}><Pages /></SessionGate>
+        </Fault>
+      </Framed>
+    </QueryClientProvider>
+  );
+}

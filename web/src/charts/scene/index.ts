@@ -1,0 +1,145 @@
+/** The tract in three dimensions. A chunk of its own: loaded when it is first shown. */
+import '@kitware/vtk.js/Rendering/OpenGL/Profiles/Geometry';
+import vtkInteractorStyleTrackballCamera from '@kitware/vtk.js/Interaction/Style/InteractorStyleTrackballCamera';
+import vtkRenderer from '@kitware/vtk.js/Rendering/Core/Renderer';
+import vtkRenderWindow from '@kitware/vtk.js/Rendering/Core/RenderWindow';
+import vtkRenderWindowInteractor from '@kitware/vtk.js/Rendering/Core/RenderWindowInteractor';
+import vtkOpenGLRenderWindow from '@kitware/vtk.js/Rendering/OpenGL/RenderWindow';
+import { makeBone } from './bone';
+import { makeLabels } from './labels';
+import { makeMoment, makePath } from './path';
+import { makeTract } from './tract';
+import { kPerMetre, scaled, sum, type SceneBone, type SceneColours, type ScenePath, type SceneTract, type Vec3, type ViewName } from './types';
+
+export interface Scene {
+  look(view: ViewName): void;
+  /** Turns the camera by degrees about the tract. */
+  turn(azimuth: number, elevation: number): void;
+  zoom(factor: number): void;
+  bone(visible: boolean, cut: boolean): void;
+  colour(colours: SceneColours): void;
+  moment(t_s: number | null): void;
+  resize(): void;
+  destroy(): void;
+}
+
+interface Content {
+  readonly tract: SceneTract;
+  readonly path: ScenePath;
+  readonly bone: SceneBone | null;
+  /** Force at the top of the colour scale. */
+  readonly most_N: number;
+}
+
+/** Where the camera stands (from the middle of the tract) and what is up. */
+function stand(view: ViewName, { axis, medial, superior }: SceneTract): { from: Vec3; up: Vec3 } {
+  switch (view) {
+    case 'medial': return { from: medial, up: superior };
+    case 'superior': return { from: superior, up: axis };
+    case 'along': return { from: scaled(axis, -1), up: superior };
+    case 'start': return { from: sum(scaled(superior, 0.8), scaled(axis, -0.42), scaled(medial, 0.42)), up: superior };
+  }
+}
+
+function makeWindow(container: HTMLElement) {
+  const window = vtkRenderWindow.newInstance();
+  const renderer = vtkRenderer.newInstance();
+  renderer.setBackground([0, 0, 0, 0]); // clear: the page's own colour shows
+  window.addRenderer(renderer);
+  const view = vtkOpenGLRenderWindow.newInstance();
+  view.setContainer(container);
+  window.addView(view);
+  const interactor = vtkRenderWindowInteractor.newInstance();
+  interactor.setView(view);
+  interactor.initialize();
+  interactor.bindEvents(container);
+  interactor.setInteractorStyle(vtkInteractorStyleTrackballCamera.newInstance());
+  return { window, renderer, view, interactor };
+}
+
+/** Throws where the browser cannot draw; the caller says so on the page. */
+export function makeScene(container: HTMLElement, labelHolder: HTMLElement, content: Content): Scene {
+  const { window: drawing, renderer, view, interactor } = makeWindow(container);
+  const { tract } = content;
+  const tube = makeTract(tract);
+  const ball = makeMoment(content.path);
+  const bone = content.bone ? makeBone(content.bone, tract) : null;
+  renderer.addActor(tube);
+  if (content.path.tip_m.length > 1) renderer.addActor(makePath(content.path, content.most_N));
+  renderer.addActor(ball.actor);
+  for (const actor of bone?.actors ?? []) renderer.addActor(actor);
+
+  const placeLabels = makeLabels(labelHolder, tract, renderer);
+  const camera = renderer.getActiveCamera();
+  camera.setParallelProjection(false);
+  let asked = false;
+  const render = () => {
+    if (asked) return;
+    asked = true;
+    requestAnimationFrame(() => {
+      asked = false;
+      if (container.isConnected) drawing.render();
+    });
+  };
+  const watching = camera.onModified(placeLabels);
+
+  const look = (name: ViewName) => {
+    const middle = sum(scaled(tract.entry_m), scaled(tract.axis, (tract.length_m * kPerMetre) / 2));
+    const { from, up } = stand(name, tract);
+    const size = Math.sqrt(from[0] ** 2 + from[1] ** 2 + from[2] ** 2);
+    const distance = tract.length_m * kPerMetre * 2.2;
+    camera.setFocalPoint(...middle);
+    camera.setPosition(...sum(middle, scaled(from, distance / size)));
+    camera.setViewUp(up[0], up[1], up[2]);
+    renderer.resetCameraClippingRange();
+    render();
+  };
+
+  const scene: Scene = {
+    look,
+    turn(azimuth, elevation) {
+      camera.azimuth(azimuth);
+      camera.elevation(elevation);
+      camera.orthogonalizeViewUp();
+      renderer.resetCameraClippingRange();
+      render();
+    },
+    zoom(factor) {
+      camera.dolly(factor);
+      renderer.resetCameraClippingRange();
+      render();
+    },
+    bone(visible, cut) {
+      bone?.show(visible, cut);
+      render();
+    },
+    colour(colours) {
+      bone?.colour(colours.bone);
+      tube.getProperty().setColor(...colours.tract);
+      ball.actor.getProperty().setColor(...colours.moment);
+      render();
+    },
+    moment(t_s) { if (ball.put(t_s)) render(); },
+    resize() {
+      const { width, height } = container.getBoundingClientRect();
+      const ratio = Math.min(window.devicePixelRatio || 1, 2);
+      view.setSize(Math.max(1, Math.floor(width * ratio)), Math.max(1, Math.floor(height * ratio)));
+      placeLabels();
+      render();
+    },
+    destroy() {
+      watching.unsubscribe();
+      interactor.unbindEvents();
+      labelHolder.replaceChildren();
+      // A browser holds few contexts: this one is given back now, not when memory is next swept.
+      const context = container.querySelector('canvas')?.getContext('webgl2');
+      drawing.removeView(view);
+      view.delete();
+      drawing.delete();
+      context?.getExtension('WEBGL_lose_context')?.loseContext();
+    },
+  };
+  scene.resize();
+  look('start');
+  return scene;
+}

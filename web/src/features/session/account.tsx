@@ -1,0 +1,28 @@
+import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
+import { ApiError, sessionQuery, signOut } from '@/api';
+import { Button } from '@/ui';
+import styles from './account.module.css';
+import { noteSignOut } from './ended';
+
+export function Account() {
+  const client = useQueryClient();
+  const session = useQuery({ ...sessionQuery, enabled: false });
+  const leave = useMutation({
+    // A session that the server has ended already is as good as one that it ends now.
+    mutationFn: () => signOut().catch((reason: unknown) => {
+      if (!(reason instanceof ApiError && reason.code === 'unauthorised')) throw reason;
+    }),
+    onSuccess: () => {
+      noteSignOut();
+      client.setQueryData(sessionQuery.queryKey, null);
+    },
+  });
+  if (!session.data) return null;
+  return (
+    <>
+      {leave.isError ? <span role="alert" className={styles.failed}>Signing out failed: {leave.error.message}</span> : null}
+      <span className={styles.who}>{session.data.name} <span className={styles.role}>{session.data.role}</span></span>
+      <Button onClick={() => leave.mutate()} disabled={leave.isPending}>Sign out</Button>
+    </>
+  );
+}

@@ -1,0 +1,62 @@
+// @vitest-environment jsdom
+import { QueryClient, QueryClientProvider } from '@tanstack/react-query';
+import { cleanup, render, screen, waitFor } from '@testing-library/react';
+import userEvent from '@testing-library/user-event';
+import { afterEach, describe, expect, it, vi } from 'vitest';
+import { SessionGate } from './session-gate';
+
+afterEach(cleanup);
+
+const json = (body: unknown, status: number) => Promise.resolve(new Response(JSON.stringify(body), { status }));
+
+/** GET /session answers that nobody is there; POST as given. */
+function open(post: () => Promise<Response>) {
+  vi.spyOn(globalThis, 'fetch').mockImplementation((_, init) =>
+    init?.method === 'POST' ? post() : json({ error: 'nobody', code: 'unauthorised' }, 401));
+  render(
+    <QueryClientProvider client={new QueryClient({ defaultOptions: { queries: { retry: false } } })}>
+      <SessionGate waiting="waiting">the page</SessionGate>
+    </QueryClientProvider>,
+  );
+}
+
+async function attempt(name = 'faculty', password = 'secret') {
+  const nameField = await screen.findByLabelText('Name');
+  await userEvent.type(nameField, name);
+  await userEvent.type(screen.getByLabelText('Password'), `${password}{Enter}`);
+}
+
+describe('signing in', () => {
+  it('puts the cursor into the name, shows the page after the right password, by keyboard alone', async () => {
+    open(() => json({ name: 'faculty', role: 'admin' }, 200));
+    await waitFor(() => expect(document.activeElement).toBe(screen.getByLabelText('Name')));
+    await attempt();
+    expect(await screen.findByText('the page')).toBeTruthy();
+  });
+
+  it.each([
+    [401, 'Name or password is wrong.'],
+    [429, 'Too many failed attempts. Wait 15 minutes and try again.'],
+    [503, 'the database is away'],
+  ])('says after status %d: %s', async (status, sentence) => {
+    open(() => json({ error: 'the database is away', code: 'x' }, status));
+    await attempt();
+    await waitFor(() => expect(screen.getByRole('alert').textContent).toBe(sentence));
+    expect((screen.getByLabelText('Password') as HTMLInputElement).value, 'the wrong password is gone').toBe('');
+    expect(document.activeElement).toBe(screen.getByLabelText('Password'));
+  });
+
+  it('says that the server is away when it is', async () => {
+    open(() => Promise.reject(new TypeError('Failed to fetch')));
+    await attempt();
+    await waitFor(() => expect(screen.getByRole('alert').textContent).toContain('does not answer'));
+  });
+
+  it('asks nothing of the server while a field is empty', async () => {
+    const post = vi.fn(() => json({}, 200));
+    open(post);
+    await screen.findByLabelText('Name');
+    await userEvent.click(screen.getByRole('button', { name: 'Sign in' }));
+    expect(post).not.toHaveBeenCalled();
+  });
+});

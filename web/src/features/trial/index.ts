@@ -1,0 +1,1 @@
+export { TrialPage as default } from './trial-page';

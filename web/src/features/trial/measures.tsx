@@ -1,0 +1,78 @@
+import type { Metric, TrialState } from '@/api';
+import { Card, Skeleton, Term } from '@/ui';
+import { kNone, measureDigits, shownUnit } from '@/units';
+import { arranged, kStatistics, shown, type TableRow } from './measure-rows';
+import styles from './measures.module.css';
+
+function Definition({ metric }: { readonly metric: Metric }) {
+  return <>{metric.definition} <span className={styles.source}>Source: {metric.source}.</span>{metric.note === '' ? null : <> <em>{metric.note}</em></>}</>;
+}
+
+function Cell({ metric }: { readonly metric: Metric | undefined }) {
+  if (!metric) return <td className={styles.number}>{kNone}</td>;
+  return (
+    <td className={styles.number} data-metric={metric.id}>
+      <Term align="end" definition={<Definition metric={metric} />}>{measureDigits(metric.value, metric.unit)}</Term>
+    </td>
+  );
+}
+
+function PublishedTable({ rows }: { readonly rows: readonly TableRow[] }) {
+  return (
+    <table className={styles.table}>
+      <caption>Forces and torques on the probe</caption>
+      <thead>
+        <tr>
+          <th scope="col">Part</th>
+          <th scope="col">Unit</th>
+          {kStatistics.map(({ id, label }) => <th key={id} scope="col" className={styles.number}>{label}</th>)}
+        </tr>
+      </thead>
+      <tbody>
+        {rows.map(({ kind, cells }) => (
+          <tr key={kind.id}>
+            <th scope="row">{kind.label} <span className={styles.symbol}>{kind.symbol}<sub>{kind.index}</sub></span></th>
+            <td>{shownUnit(cells.find(Boolean)?.unit ?? '')}</td>
+            {cells.map((metric, index) => <Cell key={kStatistics[index]?.id} metric={metric} />)}
+          </tr>
+        ))}
+      </tbody>
+    </table>
+  );
+}
+
+function Others({ metrics }: { readonly metrics: readonly Metric[] }) {
+  return (
+    <table className={styles.table}>
+      <caption>Further measures</caption>
+      <thead><tr><th scope="col">Measure</th><th scope="col" className={styles.number}>Value</th><th scope="col">Remark</th></tr></thead>
+      <tbody>
+        {metrics.map((metric) => (
+          <tr key={metric.id}>
+            <th scope="row"><Term definition={<Definition metric={metric} />}>{metric.label}</Term></th>
+            <td className={styles.number} data-metric={metric.id}>{shown(metric)}</td>
+            <td className={styles.note}>{metric.note}</td>
+          </tr>
+        ))}
+      </tbody>
+    </table>
+  );
+}
+
+/** The measures as the server made them, laid out as in the paper: mean, SD and maximum by part of the wrench. */
+export function Measures({ metrics, state }: { readonly metrics: readonly Metric[]; readonly state: TrialState }) {
+  const { table, others } = arranged(metrics);
+  return (
+    <Card title="Measures">
+      {metrics.length > 0 ? (
+        <div className={styles.tables}>
+          <div>
+            <PublishedTable rows={table} />
+            <p className={styles.foot}>Over the samples above 0.01 N and 0.001 N·m, as in the published tables. Point at a number for its definition.</p>
+          </div>
+          <Others metrics={others} />
+        </div>
+      ) : state === 'assessing' ? <Skeleton height="220px" /> : <p>There are no measures of this trial.</p>}
+    </Card>
+  );
+}

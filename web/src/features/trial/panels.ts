@@ -1,0 +1,61 @@
+/** What is drawn against time, and in what words it is told. */
+import type { Trial } from '@/api';
+import type { Detail, Mark, Panel } from '@/charts';
+import { formatDuration, formatTime, kAngle, kForce, kLength, kTorque, second, withUnit } from '@/units';
+
+export const kPanels: readonly Panel[] = [
+  {
+    id: 'force', title: 'Force on the probe', quantity: kForce, height_px: 170, fromZero: true,
+    traces: [
+      { channel: 'force_xy_N', label: 'across', symbol: ['F', 'xy'], colour: '--series-across' },
+      { channel: 'force_z_N', label: 'along', symbol: ['F', 'z'], colour: '--series-along' },
+    ],
+  },
+  {
+    id: 'torque', title: 'Torque on the probe', quantity: kTorque, height_px: 130, fromZero: true,
+    traces: [
+      { channel: 'torque_xy_Nm', label: 'bending', symbol: ['T', 'xy'], colour: '--series-across' },
+      { channel: 'torque_z_Nm', label: 'twisting', symbol: ['T', 'z'], colour: '--series-along' },
+    ],
+  },
+  {
+    id: 'place', title: 'Tip in the tract', quantity: kLength, height_px: 130, fromZero: true,
+    traces: [
+      { channel: 'depth_m', label: 'depth', colour: '--series-third' },
+      { channel: 'offset_m', label: 'offset from the axis', colour: '--series-across' },
+    ],
+  },
+  {
+    id: 'tilt', title: 'Shank against the axis', quantity: kAngle, height_px: 90, fromZero: true,
+    traces: [{ channel: 'angle_rad', label: 'angle', colour: '--series-along' }],
+  },
+];
+
+export const kNote =
+  'Forces and torques are what the bone does to the probe, in the frame of its handle: a negative axial force pushes it out of the tract.';
+
+/** Start and end are the ends of the axis and need no mark. */
+export function marksOf(trial: Trial): Mark[] {
+  return trial.events.filter(({ kind }) => kind !== 'start' && kind !== 'end').map(({ t_s, kind }) => ({ t_s, label: kind }));
+}
+
+function strongest(detail: Detail, channel: string): { value: number; t: number } | null {
+  const envelope = detail.channels[channel];
+  let found: { value: number; t: number } | null = null;
+  envelope?.max.forEach((greatest, i) => {
+    for (const value of [greatest, envelope.min[i] ?? null]) {
+      if (value !== null && Math.abs(value) > Math.abs(found?.value ?? 0)) found = { value, t: detail.t[i] ?? 0 };
+    }
+  });
+  return found;
+}
+
+/** The chart for who does not see it: the peaks, when they were, and the events. */
+export function summaryOf(trial: Trial, overview: Detail): string {
+  const peaks = kPanels.flatMap((panel) => panel.traces.map((trace) => {
+    const peak = strongest(overview, trace.channel);
+    return peak ? `${panel.title}, ${trace.label}: up to ${withUnit(peak.value, panel.quantity)} at ${formatTime(second(peak.t), 1)}` : '';
+  })).filter(Boolean);
+  const events = trial.events.map((event) => `${event.kind} at ${formatTime(event.t_s, 1)}`);
+  return `Signals over ${formatDuration(trial.duration_s)}. ${peaks.join('. ')}. Events: ${events.join(', ') || 'none'}. The numbers are in the table of measures.`;
+}

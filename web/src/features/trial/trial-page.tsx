@@ -1,0 +1,95 @@
+import { useQuery } from '@tanstack/react-query';
+import { useState, type ReactNode } from 'react';
+import { Link } from 'wouter';
+import { ApiError, trialQuery, type Trial } from '@/api';
+import { makeCursor } from '@/charts';
+import { Badge, Card, Facts, Notice, Skeleton, useTitle } from '@/ui';
+import { formatCount, formatDateTime, formatDateTimeLong, formatDuration, formatRate, isoDateTime } from '@/units';
+import { Measures } from './measures';
+import { Recording } from './recording';
+import { SignalsPanel } from './signals-panel';
+import { TractPanel } from './tract-panel';
+import styles from './trial-page.module.css';
+import { Verdict } from './verdict';
+import { WallsPanel } from './walls-panel';
+
+function Header({ trial }: { readonly trial: Trial }) {
+  return (
+    <>
+      <p className={styles.back}><Link href="/trials">← Trials</Link></p>
+      <div className={styles.title}>
+        <h1>{trial.case_title}</h1>
+        {trial.simulated ? <Badge tone="warn">simulated</Badge> : null}
+        {trial.complete ? null : <Badge tone="bad">incomplete recording</Badge>}
+      </div>
+      <div className={styles.facts}><Facts
+        facts={[
+          { name: 'Operator', value: trial.operator_name },
+          { name: 'Started', value: <time dateTime={isoDateTime(trial.started_utc_us)} title={formatDateTimeLong(trial.started_utc_us)}>{formatDateTime(trial.started_utc_us)}</time> },
+          { name: 'Duration', value: formatDuration(trial.duration_s) },
+          { name: 'Station', value: trial.station },
+          { name: 'Device', value: trial.device },
+          { name: 'Recorded', value: `${formatCount(trial.samples)} samples at ${formatRate(trial.rate_Hz)}` },
+        ]}
+      /></div>
+    </>
+  );
+}
+
+function Frame({ children }: { readonly children: ReactNode }) {
+  return <div className={styles.page}>{children}</div>;
+}
+
+function Waiting() {
+  return (
+    <Frame>
+      <p className={styles.back}><Link href="/trials">← Trials</Link></p>
+      <div role="status" className={styles.waiting}>
+        <span className="hidden-visually">Loading the trial</span>
+        <Skeleton width="360px" height="32px" />
+        <Skeleton height="40px" />
+        <Skeleton height="132px" />
+        <Skeleton height="640px" />
+      </div>
+    </Frame>
+  );
+}
+
+function Failed({ reason, retry }: { readonly reason: Error; readonly retry: () => void }) {
+  const missing = reason instanceof ApiError && reason.code === 'not_found';
+  return (
+    <Frame>
+      <p className={styles.back}><Link href="/trials">← Trials</Link></p>
+      {missing
+        ? <Notice tone="warn" title="There is no such trial.">The address may be mistyped, or the trial is not on this server.</Notice>
+        : <Notice tone="bad" title="The trial could not be loaded." onRetry={retry}>{reason.message}</Notice>}
+    </Frame>
+  );
+}
+
+/** One trial: what was found, what was felt, where the tip was, and how well it was recorded. */
+export function TrialPage({ id }: { readonly id: string }) {
+  const query = useQuery(trialQuery(id));
+  const [cursor] = useState(makeCursor);
+  const trial = query.data;
+  useTitle(trial ? `${trial.case_title}, ${trial.operator_name}` : 'Trial');
+  if (query.isPending) return <Waiting />;
+  if (!trial) return <Failed reason={query.error ?? new Error('No answer')} retry={() => void query.refetch()} />;
+  return (
+    <Frame>
+      <Header trial={trial} />
+      {trial.state === 'assessing' ? <Notice title="This trial is being assessed.">Measures, walls and the verdict appear here when that is done.</Notice> : null}
+      {trial.state === 'failed' ? <Notice tone="warn" title="The assessment of this trial failed.">{trial.failure ?? 'Its measures could not be made.'} What was recorded is shown below.</Notice> : null}
+      <div className={styles.pair}>
+        <Verdict answer={trial.answer} truth={trial.truth} />
+        <Recording trial={trial} />
+      </div>
+      <Card title="Signals"><SignalsPanel trial={trial} cursor={cursor} /></Card>
+      <div className={styles.views}>
+        <TractPanel trial={trial} cursor={cursor} />
+        <WallsPanel trial={trial} cursor={cursor} />
+      </div>
+      <Measures metrics={trial.metrics} state={trial.state} />
+    </Frame>
+  );
+}

@@ -1,0 +1,73 @@
+// @vitest-environment jsdom
+import { cleanup, render, screen, within } from '@testing-library/react';
+import { afterEach, describe, expect, it } from 'vitest';
+import type { Answer, Metric } from '@/api';
+import { share } from '@/units';
+import { judge } from './judgement';
+import { arranged, shown } from './measure-rows';
+import { Measures } from './measures';
+
+afterEach(cleanup);
+
+const answer = (changes: Partial<Answer>): Answer => ({ breach: true, wall: 'medial', confidence: share(0.8), ...changes });
+const metric = (id: string, value: number | null, unit = 'N', note = ''): Metric =>
+  ({ id, label: `label of ${id}`, unit, value, note, definition: `definition of ${id}`, source: 'paper' });
+
+describe('the judgement', () => {
+  it.each([
+    ['both name the wall', answer({}), { breached: 'medial' }, 'right', 'Right'],
+    ['both say intact', answer({ breach: false, wall: null }), { breached: null }, 'right', 'Right'],
+    ['another wall was named', answer({ wall: 'lateral' }), { breached: 'medial' }, 'wrong', 'in another wall'],
+    ['no wall was named', answer({ wall: null }), { breached: 'medial' }, 'wrong', 'no wall was named'],
+    ['the breach was missed', answer({ breach: false, wall: null }), { breached: 'inferior' }, 'wrong', 'missed'],
+    ['there is no breach', answer({}), { breached: null }, 'wrong', 'where there is none'],
+  ] as const)('when %s', (_, said, truth, outcome, words) => {
+    const judged = judge(said, truth);
+    expect(judged.outcome).toBe(outcome);
+    expect(judged.headline).toContain(words);
+  });
+
+  it('stays open without an answer or without the truth', () => {
+    expect(judge(null, { breached: null }).headline).toBe('No answer');
+    expect(judge(answer({}), null)).toMatchObject({ outcome: 'open', truth: 'Not released for this trial.' });
+  });
+});
+
+describe('the measures', () => {
+  const metrics = [metric('force_xy_mean', 0.28), metric('force_xy_sd', 0.24), metric('force_xy_max', 1.12), metric('path_length', 0.863, 'm'), metric('torque_z_sd', 0.0004, 'N·m')];
+
+  it('stand in the published layout, and what is not in it follows in order', () => {
+    const { table, others } = arranged(metrics);
+    expect(table[0]?.cells.map((cell) => cell?.value)).toEqual([0.28, 0.24, 1.12]);
+    expect(table[1]?.cells).toEqual([undefined, undefined, undefined]);
+    expect(others.map(({ id }) => id)).toEqual(['path_length']);
+  });
+
+  it('read in the table as the paper prints them', () => {
+    render(<Measures metrics={metrics} state="assessed" />);
+    const row = screen.getByRole('row', { name: /Transverse force/ });
+    // Basel paper, Table 1, surgeon 1.
+    expect(within(row).getAllByRole('cell').map((cell) => within(cell).queryByRole('button')?.textContent ?? cell.textContent)).toEqual(['N', '0.28', '0.24', '1.12']);
+    expect(screen.getByRole('row', { name: /Twisting torque/ }).textContent).toContain('0.001');
+  });
+
+  it('give their definition to a screen reader', () => {
+    render(<Measures metrics={metrics} state="assessed" />);
+    const term = screen.getByRole('button', { name: '0.28' });
+    const described = document.getElementById(term.getAttribute('aria-describedby') ?? '');
+    expect(described?.textContent).toContain('definition of force_xy_mean');
+  });
+
+  it('that are shares read in per cent, a judgement as a word, a missing one as a dash', () => {
+    expect(shown(metric('contact_share', 0.44, '1')).replace('\u202f', ' ')).toBe('44 %');
+    expect(shown(metric('wall_coverage_medial', 0.4667, '1')).replace('\u202f', ' ')).toBe('47 %');
+    expect(shown(metric('answer_right', 0, '1'))).toBe('wrong');
+    expect(shown(metric('answer_right', null, '1'))).toBe('–');
+    expect(shown(metric('late_ticks', 3, '1'))).toBe('3');
+  });
+
+  it('are said to be missing where there are none', () => {
+    render(<Measures metrics={[]} state="failed" />);
+    expect(screen.getByText('There are no measures of this trial.')).toBeTruthy();
+  });
+});

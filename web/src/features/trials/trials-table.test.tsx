@@ -1,0 +1,49 @@
+// @vitest-environment jsdom
+import { cleanup, render, screen, within } from '@testing-library/react';
+import { afterEach, describe, expect, it } from 'vitest';
+import type { TrialSummary } from '@/api';
+import { second, utcMicroseconds } from '@/units';
+import { TrialsTable } from './trials-table';
+
+afterEach(cleanup);
+
+const trial = (changes: Partial<TrialSummary>): TrialSummary => ({
+  id: 'a', case_id: 'c', case_title: 'L3 left pedicle', station: 'lab', operator_name: 'A. Resident', simulated: false,
+  started_utc_us: utcMicroseconds(1.7e15), duration_s: second(61.2), samples: 244800, state: 'assessed', correct: true, ...changes,
+});
+
+const cellsOf = (row: HTMLElement) => within(row).getAllByRole('cell').map((cell) => cell.textContent);
+
+describe('the table of trials', () => {
+  it('holds the place of rows while they come, and says that it is busy', () => {
+    render(<TrialsTable trials={undefined} />);
+    expect(screen.getByRole('table').getAttribute('aria-busy')).toBe('true');
+    expect(screen.getAllByRole('row').length).toBeGreaterThan(5);
+  });
+
+  it('links every trial by its case and escapes its id', () => {
+    render(<TrialsTable trials={[trial({ id: 'a/b' })]} />);
+    expect(screen.getByRole('link', { name: 'L3 left pedicle' }).getAttribute('href')).toBe('/trials/a%2Fb');
+  });
+
+  it.each([
+    [{ correct: true }, '✓ right', 'assessed'],
+    [{ correct: false }, '✗ wrong', 'assessed'],
+    [{ correct: null }, 'none', 'assessed'],
+    [{ correct: null, state: 'assessing' }, '–', 'assessing…'],
+    [{ correct: null, state: 'failed' }, '–', 'failed'],
+  ] satisfies [Partial<TrialSummary>, string, string][])('says of %o: %s, %s', (changes, answer, state) => {
+    render(<TrialsTable trials={[trial(changes)]} />);
+    const [, row] = screen.getAllByRole('row');
+    if (!row) throw new Error('no row');
+    expect(cellsOf(row).slice(-2)).toEqual([answer, state]);
+  });
+
+  it('marks a simulated operator, and only such a one', () => {
+    render(<TrialsTable trials={[trial({}), trial({ id: 'b', operator_name: 'hand', simulated: true })]} />);
+    const [, human, simulated] = screen.getAllByRole('row');
+    if (!human || !simulated) throw new Error('two rows expected');
+    expect(within(human).queryByText('simulated')).toBeNull();
+    expect(within(simulated).getByText('simulated')).toBeTruthy();
+  });
+});

@@ -1,0 +1,11 @@
+export { Badge, type Tone } from './badge';
+export { Button } from './button';
+export { Card } from './card';
+export { Facts, type Fact } from './facts';
+export { Field } from './field';
+export { Notice } from './notice';
+export { Shell } from './shell';
+export { Skeleton } from './skeleton';
+export { Term } from './term';
+export { setTheme, theme, usePalette, useTheme, type Theme } from './theme';
+export { useTitle } from './title';

@@ -1,0 +1,44 @@
+import type { MouseEvent, ReactNode } from 'react';
+import { Button } from './button';
+import styles from './shell.module.css';
+import { setTheme, useTheme, type Theme } from './theme';
+
+interface Props {
+  /** Right of the name: who is signed in, sign out. */
+  readonly account?: ReactNode;
+  readonly home: ReactNode;
+  readonly children: ReactNode;
+}
+
+const kNext: Record<Theme, Theme> = { system: 'light', light: 'dark', dark: 'system' };
+const kThemeName: Record<Theme, string> = { system: 'As system', light: 'Light', dark: 'Dark' };
+const kThemeSign: Record<Theme, string> = { system: '◐', light: '○', dark: '●' };
+
+function toContent(event: MouseEvent): void {
+  event.preventDefault();
+  document.getElementById('content')?.focus();
+}
+
+/** What stands round every page. */
+export function Shell({ account, home, children }: Props) {
+  const theme = useTheme();
+  return (
+    <>
+      <a className={styles.skip} href="#content" onClick={toContent}>Skip to content</a>
+      <header className={styles.header}>
+        <div className={styles.bar}>
+          {home}
+          <div className={styles.account}>
+            {account}
+            <Button look="quiet" title={`Colours. Next: ${kThemeName[kNext[theme]]}`} onClick={() => setTheme(kNext[theme])}>
+              <span aria-hidden="true">{kThemeSign[theme]}</span>
+              <span className="hidden-visually">Colours: </span>
+              <span className={styles.themeName}>{kThemeName[theme]}</span>
+            </Button>
+          </div>
+        </div>
+      </header>
+      <main id="content" tabIndex={-1} className={styles.main}>{children}</main>
+    </>
+  );
+}

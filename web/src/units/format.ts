@@ -1,0 +1,124 @@
+/** The only place where a number becomes text. SI in; millimetres, degrees and per cent out. */
+import {
+  kAngle, kForce, kLength, kTime, kTorque,
+  type Metre, type Newton, type NewtonMetre, type Quantity, type Radian, type Second, type Share, type UtcMicroseconds,
+} from './quantity';
+
+const kNarrowSpace = '\u202f';  // no line break between a number and its unit
+const kMinus = '−';
+export const kNone = '–';
+
+/** Digits only, in the display unit. What is not zero but would print as zero reads "< 0.01". */
+export function digits(si: number, quantity: Quantity, decimals = quantity.decimals): string {
+  if (!Number.isFinite(si)) return kNone;
+  const shown = si * quantity.perSi;
+  const least = 10 ** -decimals;
+  if (shown !== 0 && Math.abs(shown) < least / 2) {
+    return shown > 0 ? `<${kNarrowSpace}${least.toFixed(decimals)}` : `>${kNarrowSpace}${kMinus}${least.toFixed(decimals)}`;
+  }
+  return grouped(Math.abs(shown).toFixed(decimals), shown < 0 ? kMinus : '');
+}
+
+/** Digits rounded as they come: for a reading that moves, where a bound would only flicker. */
+export function rounded(si: number, quantity: Quantity): string {
+  if (!Number.isFinite(si)) return kNone;
+  const text = Math.abs(si * quantity.perSi).toFixed(quantity.decimals);
+  return grouped(text, si < 0 && Number(text) !== 0 ? kMinus : '');
+}
+
+function grouped(text: string, sign: string): string {
+  const [whole = '', fraction] = text.split('.');
+  const spaced = whole.length > 4 ? whole.replace(/\B(?=(\d{3})+$)/g, kNarrowSpace) : whole;
+  return sign + spaced + (fraction === undefined ? '' : `.${fraction}`);
+}
+
+/** "1.23 N": digits and unit. The degree sign stands without a space. */
+export function withUnit(si: number, quantity: Quantity, decimals = quantity.decimals): string {
+  return united(digits(si, quantity, decimals), quantity);
+}
+
+/** Puts the unit behind digits. */
+export function united(text: string, quantity: Quantity): string {
+  if (text === kNone) return text;
+  return quantity.unit === '°' ? `${text}°` : text + kNarrowSpace + quantity.unit;
+}
+
+export const formatForce = (value: Newton) => withUnit(value, kForce);
+export const formatTorque = (value: NewtonMetre) => withUnit(value, kTorque);
+export const formatLength = (value: Metre, decimals = kLength.decimals) => withUnit(value, kLength, decimals);
+export const formatAngle = (value: Radian) => withUnit(value, kAngle);
+export const formatTime = (value: Second, decimals = kTime.decimals) => withUnit(value, kTime, decimals);
+
+/** "42.5 s", "3 min 05 s", "1 h 02 min". */
+export function formatDuration(value: Second): string {
+  if (!Number.isFinite(value)) return kNone;
+  if (value < 119.95) return withUnit(value, kTime, 1);
+  const whole = Math.round(value);
+  const two = (n: number) => String(n).padStart(2, '0');
+  if (whole < 3600) return `${Math.floor(whole / 60)}${kNarrowSpace}min ${two(whole % 60)}${kNarrowSpace}s`;
+  return `${Math.floor(whole / 3600)}${kNarrowSpace}h ${two(Math.floor((whole % 3600) / 60))}${kNarrowSpace}min`;
+}
+
+export function formatCount(value: number): string {
+  return Number.isFinite(value) ? grouped(Math.abs(Math.round(value)).toFixed(0), value < 0 ? kMinus : '') : kNone;
+}
+
+/** "4 of 12 steps" needs a share that is honest near 0 and 1: never "0 %" for some, never "100 %" for not all. */
+export function formatShare(value: Share, decimals = 0): string {
+  if (!Number.isFinite(value)) return kNone;
+  const percent = value * 100;
+  const least = 10 ** -decimals;
+  if (percent > 0 && percent < least / 2) return `<${kNarrowSpace}${least.toFixed(decimals)}${kNarrowSpace}%`;
+  if (percent < 100 && percent > 100 - least / 2) return `>${kNarrowSpace}${(100 - least).toFixed(decimals)}${kNarrowSpace}%`;
+  return `${percent.toFixed(decimals)}${kNarrowSpace}%`;
+}
+
+export function formatRate(hertz: number): string {
+  if (!Number.isFinite(hertz)) return kNone;
+  return hertz >= 1000 ? `${Number((hertz / 1000).toFixed(3))}${kNarrowSpace}kHz` : `${Number(hertz.toFixed(1))}${kNarrowSpace}Hz`;
+}
+
+const kDateTime = new Intl.DateTimeFormat('en-GB', { dateStyle: 'medium', timeStyle: 'short' });
+const kSeconds = new Intl.DateTimeFormat('en-GB', { dateStyle: 'full', timeStyle: 'long' });
+
+/** In the reader's own time zone: "21 Nov 2025, 05:35". */
+export const formatDateTime = (value: UtcMicroseconds) => kDateTime.format(new Date(value / 1000));
+export const formatDateTimeLong = (value: UtcMicroseconds) => kSeconds.format(new Date(value / 1000));
+export const isoDateTime = (value: UtcMicroseconds) => new Date(value / 1000).toISOString();
+
+/** A number of the server's with the unit that it names itself, as metrics have: converted to what is read at a table. */
+export function formatMeasure(value: number | null, unit: string): string {
+  if (value === null || !Number.isFinite(value)) return kNone;
+  const known = kMeasures[unit];
+  if (known) return withUnit(value, known);
+  const text = plain(value);
+  return unit === '1' || unit === '' ? text : `${text}${kNarrowSpace}${unit}`;
+}
+
+/** Digits of a measure without its unit, for a column whose head names the unit. */
+export function measureDigits(value: number | null, unit: string): string {
+  if (value === null || !Number.isFinite(value)) return kNone;
+  const known = kMeasures[unit];
+  return known ? digits(value, known) : plain(value);
+}
+
+/** The unit that `formatMeasure` shows for a unit of the server's. */
+export const shownUnit = (unit: string) => kMeasures[unit]?.unit ?? (unit === '1' ? '' : unit);
+
+const kMeasures: Record<string, Quantity | undefined> = {
+  N: kForce,
+  'N·m': kTorque,
+  Nm: kTorque,
+  m: kLength,
+  s: kTime,
+  rad: kAngle,
+  '%': { name: 'Share', unit: '%', perSi: 1, decimals: 0 },
+  'm/s': { name: 'Speed', unit: 'mm/s', perSi: 1000, decimals: 1 },
+};
+
+function plain(value: number): string {
+  if (Number.isInteger(value)) return formatCount(value);
+  const magnitude = Math.abs(value);
+  const decimals = magnitude >= 100 ? 0 : magnitude >= 10 ? 1 : magnitude >= 1 ? 2 : 3;
+  return digits(value, { name: '', unit: '', perSi: 1, decimals });
+}

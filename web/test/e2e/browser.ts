@@ -1,0 +1,59 @@
+/** Debian's Chromium as the tests use it: no network of its own, 3-D drawn by Mesa on the processor. */
+import { mkdirSync } from 'node:fs';
+import { fileURLToPath } from 'node:url';
+import { chromium, type Browser, type BrowserContext, type Page } from 'playwright-core';
+import { inject } from 'vitest';
+
+export const kShots = fileURLToPath(new URL('../screenshots/', import.meta.url));
+mkdirSync(kShots, { recursive: true });
+
+/** `drawing` says how pictures are made: by default so that 3-D is as fast as it gets without a graphics processor. */
+export function launch(drawing: readonly string[] = ['--use-gl=angle', '--use-angle=gl-egl', '--ignore-gpu-blocklist']): Promise<Browser> {
+  return chromium.launch({
+    executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
+    args: [
+      '--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync',
+      ...drawing,
+    ],
+  });
+}
+
+export interface Visit { readonly context: BrowserContext; readonly page: Page; readonly faults: string[] }
+
+interface Look { readonly width?: number; readonly height?: number; readonly dark?: boolean }
+
+/** A fresh person at a fresh screen. `faults` gathers what the page complains about: errors and refusals of the policy. */
+export async function visit(browser: Browser, { width = 1440, height = 900, dark = false }: Look = {}): Promise<Visit> {
+  const context = await browser.newContext({ viewport: { width, height }, colorScheme: dark ? 'dark' : 'light', baseURL: inject('url') });
+  const page = await context.newPage();
+  page.setDefaultTimeout(30_000);
+  const faults: string[] = [];
+  page.on('pageerror', (error) => faults.push(String(error)));
+  page.on('console', (message) => {
+    const text = message.text();
+    // The browser writes every 4xx to the console; the pages expect a 401 before the sign-in.
+    if (message.type() === 'error' && !/status of 4\d\d/.test(text)) faults.push(text);
+  });
+  return { context, page, faults };
+}
+
+export async function signIn(page: Page, path = '/'): Promise<void> {
+  const account = inject('account');
+  await page.goto(path);
+  await page.getByLabel('Name').fill(account.name);
+  await page.getByLabel('Password').fill(account.password);
+  await page.getByRole('button', { name: 'Sign in' }).click();
+  await page.getByRole('button', { name: 'Sign out' }).waitFor();
+}
+
+/** What the server answers to who is signed in on this page. */
+export const asked = <Answer>(page: Page, path: string): Promise<Answer> =>
+  page.evaluate(async (address) => (await fetch(address)).json() as Promise<Answer>, `/api/v1${path}`);
+
+/** The id of the newest trial that has been assessed. */
+export async function assessedTrial(page: Page): Promise<string> {
+  const { trials } = await asked<{ trials: { id: string; state: string }[] }>(page, '/trials?limit=50');
+  const found = trials.find((trial) => trial.state === 'assessed');
+  if (!found) throw new Error('the server has no assessed trial');
+  return found.id;
+}
