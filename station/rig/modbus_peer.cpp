@@ -8,6 +8,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <list>
@@ -48,6 +49,45 @@ Mapping mapping_of(int unit) {
   return mapping;
 }
 
+/// Requests as they arrive on a TCP connection, one system call each: libmodbus takes six.
+class Incoming {
+ public:
+  enum class Got { request, nothing, gone, garbage };
+
+  /// Waits for the next request, at most the socket's own time-out; `adu` stays valid until the
+  /// next call.
+  Got take(int socket, std::span<const std::uint8_t>& adu) {
+    std::memmove(bytes_.data(), bytes_.data() + taken_, held_ - taken_);
+    held_ -= taken_;
+    taken_ = 0;
+    while (true) {
+      if (held_ >= kHeader && !is_header()) return Got::garbage;
+      if (held_ >= kHeader && held_ >= size()) break;
+      const ssize_t came = ::recv(socket, bytes_.data() + held_, bytes_.size() - held_, 0);
+      if (came > 0) {
+        held_ += std::size_t(came);
+        continue;
+      }
+      if (held_ > 0) return Got::garbage;  // and no more of it
+      const bool idle = came < 0 && (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR);
+      return idle ? Got::nothing : Got::gone;
+    }
+    taken_ = size();
+    adu = {bytes_.data(), taken_};
+    return Got::request;
+  }
+
+ private:
+  static constexpr std::size_t kHeader = 6;  // up to and with the length
+  std::size_t size() const { return kHeader + std::size_t(bytes_[4] << 8 | bytes_[5]); }
+  /// Protocol number 0, and a length that the standard allows [Modbus TCP, 3.1.3].
+  bool is_header() const {
+    return bytes_[2] == 0 && bytes_[3] == 0 && size() > kHeader + 1 && size() <= bytes_.size();
+  }
+  std::array<std::uint8_t, MODBUS_TCP_MAX_ADU_LENGTH> bytes_{};
+  std::size_t held_ = 0, taken_ = 0;
+};
+
 /// One connection: takes requests apart, has them carried out, replies.
 class Exchange {
  public:
@@ -58,7 +98,7 @@ class Exchange {
   bool answer(std::span<const std::uint8_t> adu) {
     const int header = modbus_get_header_length(context_);
     const int tail = tcp_ ? 0 : 2;  // the checksum, which libmodbus has judged
-    if (int(adu.size()) <= header + tail || (tcp_ && !is_framed(adu))) return false;
+    if (int(adu.size()) <= header + tail) return false;
     const int unit = adu[std::size_t(header - 1)];
     const auto pdu = adu.subspan(std::size_t(header), adu.size() - std::size_t(header + tail));
     if (!tcp_ && unit == MODBUS_BROADCAST_ADDRESS) return true;  // heard, never obeyed
@@ -74,11 +114,6 @@ class Exchange {
   }
 
  private:
-  /// Protocol number 0, and as many bytes as the header says [Modbus TCP, 3.1.3].
-  static bool is_framed(std::span<const std::uint8_t> adu) {
-    return adu[2] == 0 && adu[3] == 0 && std::size_t(adu[4] << 8 | adu[5]) == adu.size() - 6;
-  }
-
   bool refuse(std::span<const std::uint8_t> adu, unsigned exception) {
     traffic_.refused += 1;
     return modbus_reply_exception(context_, adu.data(), exception) >= 0;
@@ -102,15 +137,16 @@ void serve_client(std::stop_token stop, int socket, Electronics& electronics, Tr
   Context context(modbus_new_tcp("127.0.0.1", 1));  // an address is asked for and not used
   core::require(context != nullptr, "memory for a connection");
   modbus_set_socket(context.get(), socket);
-  modbus_set_indication_timeout(context.get(), 0, kIdle_us);
-  modbus_set_byte_timeout(context.get(), 0, kByte_us);
+  const timeval idle{0, kIdle_us};
+  ::setsockopt(socket, SOL_SOCKET, SO_RCVTIMEO, &idle, sizeof idle);
   Exchange exchange(electronics, traffic, context.get(), true);
-  std::uint8_t query[MODBUS_TCP_MAX_ADU_LENGTH];
+  Incoming incoming;
+  std::span<const std::uint8_t> adu;
   while (!stop.stop_requested()) {
-    const int length = modbus_receive(context.get(), query);
-    if (length < 0 && errno == ETIMEDOUT) continue;
-    if (length < 0 && errno == ECONNRESET) break;
-    if (length > 0 && exchange.answer({query, std::size_t(length)})) continue;
+    const Incoming::Got got = incoming.take(socket, adu);
+    if (got == Incoming::Got::nothing) continue;
+    if (got == Incoming::Got::gone) break;
+    if (got == Incoming::Got::request && exchange.answer(adu)) continue;
     traffic.garbage += 1;
     break;
   }
