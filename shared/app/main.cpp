@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "app/command.hpp"
+#include "core/progress.hpp"
 
 int main(int argc, char** argv) {
   CLI::App app("Tractus: pedicle-screw training and its physics, on files", "tractus");
@@ -21,6 +22,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "tractus: %s (see --help)\n", failure.what());
     return 2;
   }
+  core::stop_on_signals();
   for (auto& [sub, run] : made) {
     if (!sub->parsed()) continue;
     const auto outcome = run();

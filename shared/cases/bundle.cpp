@@ -167,6 +167,7 @@ Result<OpenedCase> write_case(const fs::path& folder, NewCase made, const core::
       !signed_)
     return signed_.error();
   if (auto opened = open_case(scratch->path()); !opened) return opened.error();
+  if (progress && !progress(1.0)) return Error{Errc::cancelled, "writing the case was stopped"};
   if (auto kept = scratch->keep_as(folder); !kept) return kept.error();
   return OpenedCase{core::sha256(core::bytes_of(manifest)), std::move(made.definition),
                     key.public_hex, folder};

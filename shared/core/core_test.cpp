@@ -3,12 +3,15 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <csignal>
+#include <cstdlib>
 #include <fstream>
 
 #include "core/bytes.hpp"
 #include "core/clock.hpp"
 #include "core/file.hpp"
 #include "core/json.hpp"
+#include "core/progress.hpp"
 #include "core/quantity.hpp"
 #include "core/signing.hpp"
 
@@ -72,6 +75,16 @@ TEST_F(FileTest, WritesWholeAndLeavesNothingBeside) {
   ASSERT_TRUE(write_file(folder_ / "a", bytes_of("two")));
   EXPECT_EQ(text_of(*read_file(folder_ / "a")), "two");
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);
+}
+
+TEST(Progress, AsksToStopOnceASignalWasCaught) {
+  EXPECT_TRUE(terminal_progress("x")(0.5));
+  const auto stopped = [] {
+    stop_on_signals();
+    std::raise(SIGINT);
+    return !terminal_progress("x")(0.5);
+  };
+  EXPECT_EXIT(std::_Exit(stopped() ? 7 : 1), testing::ExitedWithCode(7), "");
 }
 
 TEST_F(FileTest, LeavesWhatIsNoRegularFileInItsPlace) {

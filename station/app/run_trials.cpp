@@ -67,7 +67,7 @@ core::Result<TrialReport> one_trial(const Options& options, session::Station& st
   if (auto left = onlooker->leave_picture(); !left)
     std::fprintf(stderr, "warning: no picture: %s\n", left.error().what.c_str());
   std::optional<trial::Answer> said;
-  if (station.state() == session::State::answering) {
+  if (station.state() == session::State::answering && !asked_to_stop()) {
     auto answer = answer_of(options, station);
     if (!answer) return answer.error();
     said = *answer;

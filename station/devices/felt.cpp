@@ -91,7 +91,8 @@ Answer FeltResistance::answer(std::uint64_t seed) const noexcept {
   const double beyond_m = tap_lean_m_ * (1.0 + kWeber * noise(random)) - side_give_m();
   if (beyond_m > kEndThreshold_m)
     return {true, "anterior", confidence_of((beyond_m - kEndThreshold_m) / kEndThreshold_m)};
-  return {false, "", confidence_of(std::min(side.share, 1.0) - kSideThreshold)};
+  if (side.share > 1.0) return {false, "", confidence_of(0.0)};  // no place was felt all round
+  return {false, "", confidence_of(side.share - kSideThreshold)};
 }
 
 }  // namespace devices

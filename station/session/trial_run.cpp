@@ -240,7 +240,7 @@ core::Result<void> TrialRun::run(const Watch& watch) {
 }
 
 std::optional<trial::Answer> TrialRun::simulated_answer() const {
-  if (!parts_->made.trainee) return std::nullopt;
+  if (!parts_->made.trainee || !parts_->made.trainee->done()) return std::nullopt;
   const devices::Answer said = parts_->made.trainee->answer();
   trial::Answer out{.breach = said.breach, .wall = std::nullopt, .confidence = said.confidence};
   if (said.breach) out.wall = said.wall;
