@@ -18,10 +18,10 @@ using math::Vec3;
 
 constexpr double kTolerance_N = 1e-3;  // [Zoller2020, "Iterative pedicle probe bending"]
 // Newton goes on to here when it can, so that the answer depends neither on where it started nor on
-// how it came: a residual is up to k⁻¹ times as much deflection, and that many walls' stiffness more
-// in force.
+// how it came: a residual is up to k⁻¹ times as much deflection, and that many walls' stiffness
+// more in force.
 constexpr double kPolished_N = 1e-7;
-constexpr int kPolishing = 3;  // iterations at most spent between the two
+constexpr double kRounding_N = 2e-6;  // what misses less and falls no more is the field's rounding
 constexpr int kMostIterations = 60;
 
 /// One trial bending and what follows from it.
@@ -45,10 +45,15 @@ class Solver {
   Equilibrium solve(const Vec2& start_m, std::span<Vec3> force_H_N) {
     bend(start_m, *now_);
     keep_best();
-    double radius = 0.5 * voxel_m_;
+    // Short first, so that where a rest has ceased to be, the shank slides to the next one down and
+    // is not thrown over it.
+    double radius = 0.1 * voxel_m_;
     while (iterations_ < kMostIterations && now_->miss_N() >= kTolerance_N) step(radius);
-    for (int k = 0; k < kPolishing && now_->miss_N() > kPolished_N; ++k)
-      if (!polish()) break;
+    while (iterations_ < kMostIterations && now_->miss_N() > kPolished_N) {
+      if (polish()) continue;
+      if (now_->miss_N() < kRounding_N) break;
+      step(radius);  // a shelf: little force over a long way, and the rest at its end
+    }
     std::copy_n(best_force_.begin(), force_H_N.size(), force_H_N.begin());
     return {best_deflection_m_, iterations_, best_miss_N_ < kTolerance_N};
   }
@@ -88,19 +93,20 @@ class Solver {
       radius = 0.25 * s.norm();
     else if (truth > 0.75)
       radius = std::max(radius, 2.5 * s.norm());
-    if (truth > 1e-3) {
+    if (truth > 0.25) {
       std::swap(now_, next_);
       keep_best();
     }
   }
 
-  /// A Newton step with all of A, taken if |r| falls. Near rest the symmetric part alone, which the
-  /// search needs, would let the published field's curl hold r up at a hundredth a step.
+  /// A Newton step with all of A, taken if |r| falls as it must near a rest. There the symmetric
+  /// part alone, which the search needs, would let the published field's curl hold r up at a
+  /// hundredth a step. Where a rest has just ceased to be, |r| is small too, but does not fall so.
   bool polish() {
     const Vec2 s = -now_->stiffness_N_per_m.inverse() * now_->residual_N;
     if (!(s.norm() < 0.5 * voxel_m_)) return false;
     bend(now_->deflection_m + s, *next_);
-    if (!(next_->miss_N() < now_->miss_N())) return false;
+    if (!(next_->miss_N() < 0.5 * now_->miss_N())) return false;
     std::swap(now_, next_);
     keep_best();
     return true;

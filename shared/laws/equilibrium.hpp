@@ -28,11 +28,10 @@ struct Equilibrium {
 ///
 /// Newton on r with a trust region. r is the gradient of ½ k δ² + c_f Σ (ω∗α)(p_i) where the field
 /// is a potential; the fall of that energy over a step s is had from r and its derivative A at both
-/// ends, −½ (r₀ + r₁)·s − sᵀ(A₀ − A₁)s/12, and a step is taken when enough of what was promised
-/// comes true. So the rest found is one the shank can stay in. The published field is no gradient,
-/// but nearly: the same work along the step is asked of it first; where that goes in circles, |r|
-/// itself must fall. At most 60 iterations; then the δ of least |r| met, with `converged` false.
-/// Never allocates.
+/// ends, −½ (r₀ + r₁)·s − sᵀ(A₀ − A₁)s/12, and a step is taken when some of what was promised comes
+/// true. So the rest found is one the shank can stay in. The published field is no gradient, but
+/// nearly; there the same expression is the work along the step.
+/// At most 60 iterations; then the δ of least |r| met, with `converged` false. Never allocates.
 Equilibrium equilibrium(const Beam& beam, const math::Pose& X_VH, const math::Vec2& start_m,
                         std::span<math::Vec3> force_H_N) noexcept;
 

@@ -29,15 +29,34 @@ struct Weights {
   }
 };
 
-/// Along a row: out[0 … n) from in[−6 … n+6); n a multiple of 8.
+/// Eight floats that begin `kBy` floats into `low`, `high` following it by four.
+template <int kBy>
+inline __m256 shifted(__m256 high, __m256 low) {
+  return _mm256_castsi256_ps(
+      _mm256_alignr_epi8(_mm256_castps_si256(high), _mm256_castps_si256(low), 4 * kBy));
+}
+
+/// Along a row: out[0 … n) from in[−8 … n + 8); n a multiple of 8. Neighbours up to four away are
+/// shifted in from what is loaded already, as loads straddle cache lines; two sums, so that neither
+/// waits for the other.
 inline void along_row(Weights weights, const float* in, int n, float* out) {
+  __m256 here = _mm256_loadu_ps(in), entering = _mm256_loadu_ps(in - 4);
   for (int x = 0; x < n; x += 8) {
-    __m256 sum = _mm256_mul_ps(weights.w[0], _mm256_loadu_ps(in + x));
-    for (int k = 1; k <= kTaps; ++k) {
-      const __m256 pair = _mm256_add_ps(_mm256_loadu_ps(in + x - k), _mm256_loadu_ps(in + x + k));
-      sum = _mm256_fmadd_ps(weights.w[k], pair, sum);
-    }
-    _mm256_storeu_ps(out + x, sum);
+    const __m256 after = _mm256_loadu_ps(in + x + 8);
+    const __m256 leaving = _mm256_permute2f128_ps(here, after, 0x21);  // from in + x + 4
+    const auto add = [&](__m256 sum, int k, __m256 left, __m256 right) {
+      return _mm256_fmadd_ps(weights.w[k], _mm256_add_ps(left, right), sum);
+    };
+    __m256 even = _mm256_mul_ps(weights.w[0], here);
+    __m256 odd = _mm256_mul_ps(
+        weights.w[1], _mm256_add_ps(shifted<3>(here, entering), shifted<1>(leaving, here)));
+    even = add(even, 2, shifted<2>(here, entering), shifted<2>(leaving, here));
+    odd = add(odd, 3, shifted<1>(here, entering), shifted<3>(leaving, here));
+    even = add(even, 4, entering, leaving);
+    odd = add(odd, 5, _mm256_loadu_ps(in + x - 5), _mm256_loadu_ps(in + x + 5));
+    even = add(even, 6, _mm256_loadu_ps(in + x - 6), _mm256_loadu_ps(in + x + 6));
+    _mm256_storeu_ps(out + x, _mm256_add_ps(even, odd));
+    here = after, entering = leaving;
   }
 }
 

@@ -17,6 +17,9 @@ constexpr const char* kExamples = R"(Examples:
 const std::map<std::string, session::Speed> kSpeeds{{"real", session::Speed::real},
                                                     {"fast", session::Speed::fast}};
 
+const std::map<std::string, Show> kShows{
+    {"none", Show::none}, {"window", Show::window}, {"offscreen", Show::offscreen}};
+
 void add_data(CLI::App& app, Options& options, bool needed) {
   auto* data = app.add_option("--data", options.data, "the station's folder; made when missing");
   if (needed) data->required();
@@ -37,6 +40,7 @@ void add_run(CLI::App& app, Options& options) {
                  "a case's folder, or 8 or more characters of the id of one in the data folder");
   app.add_option("--model", options.model_file, "feel the case by this model instead of its own");
   app.add_option("--seed", options.setup.seed, "of the simulated hand; +1 for each further trial")
+      ->check(CLI::Range(0.0, 9e15))
       ->capture_default_str();
   app.add_option("--duration", options.setup.duration_s, "s, of the trial")
       ->check(CLI::Range(1.0, 3600.0))
@@ -49,6 +53,11 @@ void add_run(CLI::App& app, Options& options) {
   app.add_option("--trials", options.trials, "how many, one after the other")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
+  app.add_option("--view", options.show, "window, offscreen (drawn, not shown) or none")
+      ->transform(CLI::CheckedTransformer(kShows))
+      ->default_str("none");
+  app.add_option("--picture", options.picture,
+                 "PNG of the (last) trial: bone cut open, probe, the tip's way");
   app.add_flag("--follow", options.follow,
                "a JSON line on standard error whenever samples have reached the disk");
 }
@@ -98,9 +107,8 @@ Parsed parse(int argc, char** argv) {
   if (trust->parsed()) options.deed = Deed::trust;
   if (options.deed == Deed::trust && options.signer_hex.empty() && options.signer_of_case.empty())
     out.leave = refuse("trust: --signer or --case is expected");
-  if (options.deed == Deed::run && options.data.empty()) out.leave = refuse("--data is required");
-  if (options.deed == Deed::run && options.case_name.empty())
-    out.leave = refuse("--case is required");
+  if (options.deed == Deed::run && (options.data.empty() || options.case_name.empty()))
+    out.leave = refuse(options.data.empty() ? "--data is required" : "--case is required");
   return out;
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "station/app/onlooker.hpp"
 #include "station/session/trial_run.hpp"
 
 namespace app {
@@ -24,6 +25,8 @@ struct Options {
   std::filesystem::path model_file;
   std::string answer;  ///< empty: the simulated hand's own, or asked at the terminal
   int trials = 1;
+  Show show = Show::none;
+  std::filesystem::path picture;  ///< empty: none
   // upload
   double wait_s = 0.0;
   // trust

@@ -7,6 +7,7 @@
 
 #include "station/app/deeds.hpp"
 #include "station/app/exchange.hpp"
+#include "station/session/scores.hpp"
 #include "station/session/station.hpp"
 
 namespace app {
@@ -41,24 +42,30 @@ core::Result<std::optional<trial::Answer>> answer_of(const Options& options,
   return core::Error{core::Errc::bad_input, fmt::format("{}: no such wall", wall)};
 }
 
-session::Watch watch_of(const Options& options, const core::Progress& shown) {
-  return [&options, &shown, said = std::uint64_t{0}](const session::Glimpse& seen) mutable {
-    if (options.follow && seen.samples_safe != said) {
-      said = seen.samples_safe;
-      fmt::print(stderr, "{}\n",
-                 core::Json{{"trial_id", seen.trial_id}, {"samples_safe", said}}.dump());
-    }
-    shown(seen.progress);
-    return !asked_to_stop();
-  };
+session::Watch watch_of(const Options& options, const core::Progress& shown, Onlooker& onlooker) {
+  return
+      [&options, &shown, &onlooker, said = std::uint64_t{0}](const session::Glimpse& seen) mutable {
+        if (options.follow && seen.samples_safe != said) {
+          said = seen.samples_safe;
+          fmt::print(stderr, "{}\n",
+                     core::Json{{"trial_id", seen.trial_id}, {"samples_safe", said}}.dump());
+        }
+        shown(seen.progress);
+        const bool looking = onlooker.look(seen);
+        return looking && !asked_to_stop();
+      };
 }
 
 core::Result<TrialReport> one_trial(const Options& options, session::Station& station,
                                     const std::shared_ptr<const session::PreparedCase>& prepared,
                                     std::uint64_t seed) {
   if (auto ready = station.prepare(prepared, seed); !ready) return ready.error();
+  auto onlooker = Onlooker::make(*prepared, options.show, options.picture);
+  if (!onlooker) return onlooker.error();
   const core::Progress shown = core::terminal_progress(fmt::format("Trial, seed {}", seed));
-  if (auto ran = station.run(watch_of(options, shown)); !ran) return ran.error();
+  if (auto ran = station.run(watch_of(options, shown, *onlooker)); !ran) return ran.error();
+  if (auto left = onlooker->leave_picture(); !left)
+    std::fprintf(stderr, "warning: no picture: %s\n", left.error().what.c_str());
   std::optional<trial::Answer> said;
   if (station.state() == session::State::answering) {
     auto answer = answer_of(options, station);
@@ -93,6 +100,18 @@ void print_report(const TrialReport& report, bool fast) {
   for (const auto& warning : report.grant.warnings) fmt::print("  warning: {}\n", warning);
   if (!report.fault.empty()) fmt::print("  FAULT: {}\n", report.fault);
   fmt::print("  answer: {}\n  {}\n", answer_text(report), report.file.string());
+}
+
+void print_scores(const session::Scores& scores) {
+  for (const auto& [info, score] : scores)
+    if (score.value) fmt::print("  {:<34} {:>10.4g} {}\n", info.label, *score.value, info.unit);
+}
+
+core::Json json_of(const TrialReport& report, const session::Scores& scores) {
+  core::Json out = report.to_json();
+  out["metrics"] = core::Json::array();
+  for (const auto& [info, score] : scores) out["metrics"].push_back(metrics::to_json(info, score));
+  return out;
 }
 
 void say_recovered(const session::Recovered& recovered) {
@@ -134,8 +153,12 @@ core::Result<int> run_trials(const Options& options) {
     auto report = one_trial(options, station, *prepared, options.setup.seed + std::uint64_t(i));
     if (!report) return report.error();
     faulted = faulted || !report->complete;
-    trials.push_back(report->to_json());
-    if (!options.json) print_report(*report, options.setup.speed == session::Speed::fast);
+    auto scores = session::scores_of(report->file, (*prepared)->opened.definition.tract);
+    if (!scores) return scores.error();
+    trials.push_back(json_of(*report, *scores));
+    if (options.json) continue;
+    print_report(*report, options.setup.speed == session::Speed::fast);
+    print_scores(*scores);
   }
   const core::Json uploads = hand_over_after(options, *folder);
   if (options.json)

@@ -6,9 +6,10 @@
 namespace devices {
 namespace {
 constexpr double kWeber = 0.1;
-constexpr double kSideThreshold = 0.35;      // of the other walls' push: below, "nothing there"
+constexpr double kSideThreshold = 0.25;      // of the other walls' push: below, "nothing there"
 constexpr double kEndThreshold_m = 0.0022;   // a tap that goes farther than sides gave way
 constexpr double kShankFeel_N_per_m = 15.0;  // a bent probe's push per millimetre, from practice
+constexpr double kFirm_N_per_m = 5.0;        // softer all round: nobody can tell
 constexpr std::uint32_t kMinCount = 20;
 constexpr std::size_t kWindow = 3;  // bins that are felt as one place
 constexpr std::array<const char*, 4> kWallNames{"medial", "superior", "lateral", "inferior"};
@@ -64,7 +65,7 @@ FeltResistance::Weakest FeltResistance::weakest(std::uint64_t& random) const noe
           here.resistance_N / std::max(here.lean_m, kMinLean_m) * (1.0 + kWeber * noise(random));
     }
     const double usual = usual_of(push);
-    if (!felt || usual <= 0.0) continue;
+    if (!felt || usual < kFirm_N_per_m) continue;
     for (std::size_t wall = 0; wall < 4; ++wall)
       if (push[wall] / usual < out.share) out = {push[wall] / usual, wall};
   }

@@ -11,7 +11,7 @@ namespace devices {
 /// Bins of felt resistance. `note` runs in the tick: fixed size, no allocation.
 ///
 /// In a stroke the hand leans on a wall: whole walls give back about the same push per millimetre
-/// of lean at a given depth, a hole gives back little: where one wall's push is under about a third
+/// of lean at a given depth, a hole gives back little: where one wall's push is under a quarter
 /// of what the four give at that depth, the answer is a breach there. Else, if a tap goes farther
 /// beyond the planned end than the sides gave way before they held (soft bone yields everywhere),
 /// it is one in front. Each push and the tap carry a Weber noise of a tenth, seeded. It sees

@@ -24,7 +24,7 @@ PalpationPlan::PalpationPlan(const DeviceOptions& options)
     : channel_(options.channel),
       probe_length_m_(options.probe_length_m),
       deepest_m_(0.9 * options.channel.length_m),
-      shallowest_m_(0.3 * options.channel.length_m),
+      shallowest_m_(0.4 * options.channel.length_m),
       random_(options.seed) {
   keys_.push_back({0.0, -kOutside_m, 0.0, Act::rest, -1});
   add(0.6, -kOutside_m, 0.0, Act::rest);
@@ -33,10 +33,12 @@ PalpationPlan::PalpationPlan(const DeviceOptions& options)
   const double tilt = std::min(kMaxTilt_rad, std::atan2(channel_.radius_m + kPress_m, deepest_m_));
   for (int wall = 0; wall < 4; ++wall) {
     const double pressed = tilt * (0.97 + 0.06 * uniform());
-    add(0.8, deepest_m_, pressed, Act::approach, wall);
-    add(2.2, shallowest_m_ * (0.9 + 0.2 * uniform()), pressed, Act::stroke, wall);
-    add(2.2, deepest_m_, pressed, Act::stroke, wall);
-    add(0.6, deepest_m_, 0.0, Act::approach, wall);
+    for (int stroke = 0; stroke < 2; ++stroke) {
+      add(0.6, deepest_m_, pressed, Act::approach, wall);
+      add(1.8, shallowest_m_ * (0.97 + 0.06 * uniform()), pressed, Act::stroke, wall);
+      add(0.4, shallowest_m_, 0.0, Act::approach, wall);
+      add(0.6, deepest_m_, 0.0, Act::approach, wall);
+    }
   }
   for (int tap = 0; tap < 3; ++tap) {
     add(0.7, channel_.length_m + kTapBeyond_m, 0.0, Act::tap);
@@ -74,7 +76,7 @@ double PalpationPlan::tremor(int axis, double t_s) const noexcept {
   return sum;
 }
 
-math::Pose PalpationPlan::pose_at(double t_s, Intent& intent) const noexcept {
+math::Pose PalpationPlan::pose_at(double t_s, double lean, Intent& intent) const noexcept {
   const double t = std::clamp(t_s, 0.0, duration_s());
   std::size_t next = 1;
   while (next + 1 < keys_.size() && keys_[next].t_s < t) ++next;
@@ -83,7 +85,7 @@ math::Pose PalpationPlan::pose_at(double t_s, Intent& intent) const noexcept {
   intent.act = to.act;
   intent.wall = to.act == Act::stroke ? to.wall : -1;
   intent.depth_m = from.depth_m + s * (to.depth_m - from.depth_m);
-  const double tilt = from.tilt_rad + s * (to.tilt_rad - from.tilt_rad);
+  const double tilt = lean * (from.tilt_rad + s * (to.tilt_rad - from.tilt_rad));
   const double angle = std::max(to.wall, 0) * kPi / 2.0 +
                        kSweep_rad * std::sin(2.0 * kPi * kSweep_Hz * t + sweep_phase_rad_);
   const math::Vec3 press = std::cos(angle) * channel_.medial + std::sin(angle) * channel_.superior;
@@ -102,12 +104,13 @@ math::Pose PalpationPlan::pose_at(double t_s, Intent& intent) const noexcept {
   return {tip - probe_length_m_ * z, math::Quat(rotation)};
 }
 
-Intent PalpationPlan::at(double t_s) const noexcept {
+Intent PalpationPlan::at(double t_s, double lean) const noexcept {
   Intent intent;
-  const math::Vec3 before = pose_at(t_s - kDifference_s, intent).p;
-  intent.X_DH = pose_at(t_s, intent);
+  const math::Vec3 before = pose_at(t_s - kDifference_s, lean, intent).p;
+  intent.X_DH = pose_at(t_s, lean, intent);
   Intent ignored;
-  intent.velocity_m_s = (pose_at(t_s + kDifference_s, ignored).p - before) / (2.0 * kDifference_s);
+  intent.velocity_m_s =
+      (pose_at(t_s + kDifference_s, lean, ignored).p - before) / (2.0 * kDifference_s);
   return intent;
 }
 

@@ -20,16 +20,17 @@ struct Intent {
   math::Vec3 press = math::Vec3::Zero();  ///< unit vector towards the wall of a stroke, in D
 };
 
-/// Approach to the entry, strokes along the four side walls in turn (out and back, the direction
-/// sweeping a little to both sides), taps at the end, withdrawal; between key points by minimum
-/// jerk [Flash1985, eq. (A8)]: s = 10τ³ − 15τ⁴ + 6τ⁵. The shank turns about the channel's mouth, as
-/// a real one must. Physiological tremor of 8–12 Hz rides on all of it. Amplitudes, speeds and
-/// tilts are plausible choices of ours, not measurements.
+/// Approach to the entry, strokes along the four side walls in turn (outward, twice each, the
+/// direction sweeping a little to both sides), taps at the end, withdrawal; between key points by
+/// minimum jerk [Flash1985]: s = 10τ³ − 15τ⁴ + 6τ⁵. The shank turns about the channel's
+/// mouth, as a real one must. Physiological tremor of 8–12 Hz rides on all of it. Amplitudes,
+/// speeds and tilts are plausible choices of ours, not measurements.
 class PalpationPlan {
  public:
   PalpationPlan(const DeviceOptions& options);
   /// At `t_s` since the start; beyond the end, the last point.
-  Intent at(double t_s) const noexcept;
+  /// @param lean  0 … 1: how much of the plan's tilt the hand dares
+  Intent at(double t_s, double lean) const noexcept;
   double duration_s() const noexcept { return keys_.back().t_s; }
   /// How far beyond the channel's end the hand aims in a tap, m.
   static constexpr double kTapBeyond_m = 0.003;
@@ -50,7 +51,7 @@ class PalpationPlan {
   };
   void add(double weight_s, double depth_m, double tilt_rad, Act act, int wall = -1);
   double uniform() noexcept;
-  math::Pose pose_at(double t_s, Intent& intent) const noexcept;
+  math::Pose pose_at(double t_s, double lean, Intent& intent) const noexcept;
   double tremor(int axis, double t_s) const noexcept;
 
   Channel channel_;

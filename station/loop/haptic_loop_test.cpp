@@ -6,6 +6,7 @@
 #include <numbers>
 #include <thread>
 
+#include "station/devices/catalogue.hpp"
 #include "station/loop/allocation_guard.hpp"
 #include "station/loop/placement.hpp"
 
@@ -194,6 +195,22 @@ TEST(HapticLoop, AllocatesNothingInTheTick) {
   const AllocationGuard guard;
   for (std::uint32_t i = 0; i < 2000; ++i) rig.loop.tick(i * kPeriod, i, false);
   EXPECT_EQ(guard.allocations(), 0u);
+}
+
+TEST(HapticLoop, AllocatesNothingInTheTickWithAnySimulatedDevice) {
+  for (const devices::DeviceInfo& info : devices::all()) {
+    if (!info.simulated) continue;
+    auto made = info.make({});
+    ASSERT_TRUE(made) << info.id;
+    ASSERT_TRUE(made->device->open()) << info.id;
+    Rig<core::ManualClock> rig;
+    HapticLoop loop({rig.clock, *made->device, rig.contact, rig.limiter, rig.ring, rig.live}, {},
+                    Vec3::Zero(), 4000.0);
+    rig.limiter.arm();
+    const AllocationGuard guard;
+    for (std::uint32_t i = 0; i < 80'000; ++i) loop.tick(i * kPeriod, i, false);  // 20 s
+    EXPECT_EQ(guard.allocations(), 0u) << info.id;
+  }
 }
 
 TEST(TimeHistogram, GivesTheUpperEdgeOfTheQuantilesBin) {

@@ -11,9 +11,8 @@
 
 namespace loop {
 
-/// One value written by one thread and read by any number, without a lock: a seqlock [Boehm2012,
-/// section 6]. The writer is wait-free and never sees its readers; a reader that met a write tries
-/// again.
+/// One value written by one thread and read by any number, without a lock: a seqlock [Boehm2012].
+/// The writer is wait-free and never sees its readers; a reader that met a write tries again.
 template <class T>
 class Seqlock {
  public:

@@ -93,6 +93,10 @@ struct TrialRun::Parts {
 
   bool fast() const { return setup.speed == Speed::fast; }
   core::Clock& clock() { return fast() ? static_cast<core::Clock&>(manual_clock) : real_clock; }
+  /// Of the recorded ticks.
+  double recorded_s() const {
+    return static_cast<double>(loop->counts().ticks + loop->counts().skipped) / setup.rate_Hz;
+  }
   double elapsed_s() { return static_cast<double>(clock().now() - loop->started()) * 1e-9; }
   Glimpse glimpse() const;
   core::Result<void> open_device(const devices::DeviceInfo& info, const PreparedCase& prepared,
@@ -164,6 +168,9 @@ core::Result<std::unique_ptr<TrialRun>> TrialRun::make(const StationFolder& fold
   if (setup.speed == Speed::fast && !info->simulated)
     return core::Error{core::Errc::bad_input,
                        fmt::format("--speed fast: {} is held by a person", info->id)};
+  if (!(setup.duration_s >= 1.0 && setup.duration_s <= 3600.0))
+    return core::Error{core::Errc::out_of_range,
+                       fmt::format("--duration {}: 1 … 3600 s are possible", setup.duration_s)};
   const double bytes = setup.duration_s * setup.rate_Hz * 1.1 * double(sizeof(trial::Sample));
   if (auto checked = folder.check_room(static_cast<std::uint64_t>(bytes)); !checked)
     return checked.error();
@@ -241,9 +248,9 @@ std::optional<trial::Answer> TrialRun::simulated_answer() const {
 }
 
 core::Result<void> TrialRun::Parts::append_end(const TrialReport& report) {
-  if (!fault.empty()) return recorder->append({report.duration_s, "fault", {{"what", fault}}});
+  if (!fault.empty()) return recorder->append({elapsed_s(), "fault", {{"what", fault}}});
   if (report.answer) {
-    const trial::Event answered{report.duration_s, "answer", report.answer->to_json()};
+    const trial::Event answered{elapsed_s(), "answer", report.answer->to_json()};
     if (auto said = recorder->append(answered); !said) return said;
   }
   return recorder->append({elapsed_s(), "end", json_of(report.counts)});
@@ -255,7 +262,7 @@ core::Result<TrialReport> TrialRun::finish(const std::optional<trial::Answer>& a
                      .file = p.folder.trial_file(p.header.id),
                      .complete = p.fault.empty(),
                      .fault = p.fault,
-                     .duration_s = p.elapsed_s(),
+                     .duration_s = p.recorded_s(),
                      .counts = p.loop->counts(),
                      .wake_p50_us = p.loop->wake().quantile_us(0.5),
                      .wake_p99_us = p.loop->wake().quantile_us(0.99),

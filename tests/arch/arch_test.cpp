@@ -22,6 +22,7 @@ const fs::path kRoot = TRACTUS_SOURCE_DIR;
 const std::map<std::string, Names> kAllowed = {
     {"shared/core", {}},
     {"shared/math", {"shared/core"}},
+    {"shared/statistics", {"shared/core", "shared/math"}},
     {"shared/volume", {"shared/core", "shared/math"}},
     {"shared/volume/io", {"shared/core", "shared/math", "shared/volume"}},
     {"shared/laws", {"shared/core", "shared/math", "shared/volume"}},

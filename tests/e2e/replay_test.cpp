@@ -79,7 +79,7 @@ class Replay : public testing::Test {
       EXPECT_EQ(entry.path().filename(), "set");
   }
   /// Runs replay and oracle on a set, and holds one against the other.
-  void expect_agreement(const std::string& options) {
+  void expect_agreement(const std::string& options, double least_smooth) {
     make_set(options);
     const auto answer = replay();
     ASSERT_EQ(answer.code, 0) << answer.out;
@@ -93,8 +93,8 @@ class Replay : public testing::Test {
     // Enough was compared, and most of it was fit to be.
     EXPECT_GE(number("in_contact"), 0.3 * number("samples"));
     EXPECT_GE(number("largest_force_N"), 0.5);
-    EXPECT_GE(number("smooth"), 0.7 * number("samples"));
-    EXPECT_GE(number("smooth_in_contact"), 0.5 * number("in_contact"));
+    EXPECT_GE(number("smooth"), least_smooth * number("samples"));
+    EXPECT_GE(number("smooth_in_contact"), least_smooth * number("in_contact"));
     EXPECT_GE(number("converged"), 0.99 * number("samples"));
     // On smooth samples the answers are the same; everywhere the law is the same and the shank at
     // rest.
@@ -108,11 +108,13 @@ class Replay : public testing::Test {
 };
 
 TEST_F(Replay, AgreesWithTheOracleOnThePublishedField) {
-  expect_agreement("--trials 6 --seconds 0.6 --field paper");
+  expect_agreement("--trials 4 --seconds 0.5 --field paper", 0.9);
 }
 
+// The potential's valleys are finer than the averaged vectors of the published field: more places
+// to rest.
 TEST_F(Replay, AgreesWithTheOracleOnThePotentialField) {
-  expect_agreement("--trials 6 --seconds 0.6 --seed 8 --field potential");
+  expect_agreement("--trials 4 --seconds 0.5 --field potential", 0.25);
 }
 
 TEST_F(Replay, WritesAllItPromisesAndTheSameTwice) {
@@ -121,6 +123,7 @@ TEST_F(Replay, WritesAllItPromisesAndTheSameTwice) {
   ASSERT_EQ(answer.code, 0) << answer.out;
   EXPECT_THAT(answer.out, HasSubstr("F_xy [N]"));
   EXPECT_THAT(answer.out, HasSubstr("did not reach the equilibrium"));
+  EXPECT_THAT(answer.out, HasSubstr("its measurements are simulated"));
   ASSERT_EQ(replay("again").code, 0);
   for (const char* name : {"trials/t00.csv", "trials/t00.svg", "trials/t01.csv", "trials/t01.svg",
                            "distributions.svg", "table.csv", "summary.json"}) {

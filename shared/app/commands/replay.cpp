@@ -128,10 +128,20 @@ std::string csv_of(const trial::PalpationMeasurement& recording, const replay::R
   return out;
 }
 
+/// Does the set say that what it calls measured was itself simulated?
+bool is_simulated(const trial::PalpationSet& set) {
+  const auto it = set.stated.find("simulated");
+  return it != set.stated.end() && it->is_boolean() && it->get<bool>();
+}
+
+constexpr const char* kSimulatedNote =
+    "The set says that its measurements are simulated themselves.";
+
 Json summary_of(const Work& work) {
   Json json{{"format", "tractus-replay/1"},
             {"model", work.model.name},
             {"volume", work.volume.filename().string()}};
+  json["measurements_are_simulated"] = is_simulated(work.set);
   std::uint64_t steps = 0, not_converged = 0;
   for (std::size_t k = 0; k < work.set.trials.size(); ++k) {
     const auto& replayed = work.replayed[k];
@@ -162,7 +172,8 @@ Result<void> write_trials(const Work& work, const fs::path& folder) {
   const replay::ProbePlace probe{work.model.base.length_m, work.model.base.pose_offset_m};
   for (std::size_t k = 0; k < work.set.trials.size(); ++k) {
     const auto& recording = work.set.trials[k];
-    const auto figure = replay::trial_figure(recording, work.replayed[k], work.set.tract, probe);
+    auto figure = replay::trial_figure(recording, work.replayed[k], work.set.tract, probe);
+    if (is_simulated(work.set)) figure.note += std::string(" ") + kSimulatedNote;
     for (const auto& [suffix, text] : {std::pair{".csv", csv_of(recording, work.replayed[k])},
                                        std::pair{".svg", plot::svg(figure)}})
       if (auto written = core::write_file(folder / (recording.id + suffix), core::bytes_of(text));
@@ -183,7 +194,9 @@ Result<void> write(const Work& work, const Options& options) {
     measured.insert(measured.end(), m.begin(), m.end());
     simulated.insert(simulated.end(), s.begin(), s.end());
   }
-  const auto distributions = plot::svg(replay::distribution_figure(measured, simulated));
+  auto figure = replay::distribution_figure(measured, simulated);
+  if (is_simulated(work.set)) figure.note = kSimulatedNote;
+  const auto distributions = plot::svg(figure);
   for (const auto& [name, text] : {std::pair{"distributions.svg", distributions},
                                    std::pair{"table.csv", replay::csv(work.rows)}})
     if (auto written = core::write_file(scratch->path() / name, core::bytes_of(text)); !written)
@@ -212,6 +225,7 @@ void say(const Work& work, const Options& options) {
       fmt::print(
           "Trial {}: the tip never enters the volume; are both in the same frame, in metres?\n",
           work.set.trials[k].id);
+  if (is_simulated(work.set)) fmt::print("{}\n", kSimulatedNote);
   fmt::print("Written to {}\n", options.out.string());
 }
 

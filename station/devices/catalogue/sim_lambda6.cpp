@@ -33,6 +33,11 @@ constexpr double kHand_Ns_per_m = 14.0;
 constexpr double kHand_Nm_per_rad = 4.0;
 constexpr double kHand_Nms_per_rad = 0.04;
 
+// It follows a surface with a light touch: leans less where it feels more than this, more where
+// less.
+constexpr double kTouch_N = 0.05;
+constexpr double kEase_per_s = 1.5;
+
 Vec3 clamped(const Vec3& v, double most) {
   const double length = v.norm();
   return length > most ? Vec3(v * (most / length)) : v;
@@ -49,9 +54,9 @@ class SimLambda6 final : public Device, public SimulatedTrainee {
   explicit SimLambda6(const DeviceOptions& options) : options_(options), plan_(options) {}
 
   core::Result<Limits> open() override {
-    X_DH_ = plan_.at(0.0).X_DH;
+    X_DH_ = plan_.at(0.0, lean_).X_DH;
     velocity_.setZero(), turn_.setZero(), wrench_ = {};
-    elapsed_s_ = 0.0, last_ = -1, felt_ = {}, done_ = false, progress_ = 0.0;
+    elapsed_s_ = 0.0, lean_ = 1.0, last_ = -1, felt_ = {}, done_ = false, progress_ = 0.0;
     open_ = true;
     return kLimits;
   }
@@ -97,10 +102,11 @@ class SimLambda6 final : public Device, public SimulatedTrainee {
     Intent intent;
     for (int i = 0; i < steps; ++i) {
       elapsed_s_ += h;
-      intent = plan_.at(elapsed_s_);
+      intent = plan_.at(elapsed_s_, lean_);
       integrate(intent, h);
     }
     feel(intent);
+    ease(intent, gap_s);
     progress_ = std::min(1.0, elapsed_s_ / plan_.duration_s());
     done_ = elapsed_s_ >= plan_.duration_s();
   }
@@ -120,6 +126,12 @@ class SimLambda6 final : public Device, public SimulatedTrainee {
     const double angle = h * turn_.norm();
     if (angle > 0.0)
       X_DH_.q = (Quat(Eigen::AngleAxisd(angle, turn_.normalized())) * X_DH_.q).normalized();
+  }
+
+  void ease(const Intent& intent, double gap_s) noexcept {
+    const double felt_N = -wrench_.force_N.dot(intent.press);
+    const double want = std::clamp(1.0 - felt_N / kTouch_N, -3.0, 1.0);
+    lean_ = std::clamp(lean_ + gap_s * kEase_per_s * want, 0.0, 1.0);
   }
 
   void feel(const Intent& intent) noexcept {
@@ -143,6 +155,7 @@ class SimLambda6 final : public Device, public SimulatedTrainee {
   Vec3 velocity_ = Vec3::Zero(), turn_ = Vec3::Zero();
   math::Wrench wrench_;
   double elapsed_s_ = 0.0;
+  double lean_ = 1.0;  ///< share of the plan's tilt
   core::Instant_ns last_ = -1;
   bool open_ = false, saturated_ = false;
   std::atomic<bool> done_ = false;

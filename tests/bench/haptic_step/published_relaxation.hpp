@@ -17,7 +17,6 @@ class PublishedRelaxation {
   PublishedRelaxation(const volume::Volume& volume, const volume::ForceField& field,
                       const laws::PalpationParameters& parameters, double gain_m_per_N);
   laws::PalpationStep step(const math::Pose& X_VH, laws::PalpationState& state) const;
-  const laws::PalpationParameters& parameters() const { return parameters_; }
   math::Vec3 gradient_per_m(const math::Vec3& p_V_m) const;
 
  private:

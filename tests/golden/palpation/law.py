@@ -118,6 +118,7 @@ class Probe:
 
         The pseudo-time of the first step moves a shank under 1 N by `step_m`."""
         delta, inverse_time = start.copy(), np.full(len(start), 1.0 / step_m)
+        tolerance_N = np.broadcast_to(tolerance_N, len(start))
         r = self.residual(field, p, R, delta)
         norm = np.linalg.norm(r, axis=-1)
         open_ = np.flatnonzero(norm > tolerance_N)
@@ -136,7 +137,7 @@ class Probe:
             taken = open_[good]
             delta[taken] += step[good]
             r[taken], norm[taken] = new[good], new_norm[good]
-            open_ = open_[norm[open_] > tolerance_N]
+            open_ = open_[norm[open_] > tolerance_N[open_]]
         return delta, norm
 
 

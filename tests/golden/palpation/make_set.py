@@ -16,7 +16,7 @@ import law
 
 DIMS, SPACING = (44, 48, 60), np.array([0.40e-3, 0.42e-3, 0.45e-3])
 RADIUS, LENGTH = 1.6e-3, 16e-3
-RATES = (100, 100, 100, 250, 1000, 4000)
+RATES = (100, 4000, 100, 1000, 250, 100)
 TRANSFER = [[150, 0], [700, 1]]
 
 

@@ -1,0 +1,196 @@
+#include "statistics/glmm.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "statistics/distributions.hpp"
+
+namespace statistics {
+namespace {
+
+using Array = Eigen::ArrayXd;
+constexpr int kNodes = 50;
+
+/// Nodes x and weights w e^{x²} for ∫ f(x) dx, f falling like e^{−x²} (Golub & Welsch 1969).
+struct Quadrature {
+  Array nodes, log_weights;
+  Quadrature() {
+    Matrix jacobi = Matrix::Zero(kNodes, kNodes);
+    for (int i = 1; i < kNodes; ++i) jacobi(i, i - 1) = jacobi(i - 1, i) = std::sqrt(0.5 * i);
+    const Eigen::SelfAdjointEigenSolver<Matrix> solver(jacobi);
+    nodes = solver.eigenvalues();
+    log_weights = 0.5 * std::log(M_PI) +
+                  solver.eigenvectors().row(0).transpose().array().square().log() + nodes.square();
+  }
+};
+
+struct Group {
+  Matrix x;
+  Array y, m;
+
+  Array eta(const Vector& beta) const { return (x * beta).array(); }
+  double kernel(const Array& eta_at) const {
+    return (y * eta_at - m * (eta_at.cwiseMax(0.0) + (-eta_at.abs()).exp().log1p())).sum();
+  }
+};
+
+/// Log-likelihood with its first and second derivatives in (β, σ_u).
+struct Value {
+  double log_likelihood = 0.0;
+  Vector gradient;
+  Matrix hessian;
+};
+
+Array probability(const Array& eta) { return 1.0 / (1.0 + (-eta).exp()); }
+
+/// The z where a group's integrand is highest, and the width of the peak: Newton on a concave
+/// function, halved where it overshoots.
+std::pair<double, double> mode(const Group& group, const Array& base, double sigma) {
+  const auto height = [&](double z) { return group.kernel(base + sigma * z) - 0.5 * z * z; };
+  double z = 0.0, curvature = 1.0;
+  for (int i = 0; i < 100; ++i) {
+    const Array pi = probability(base + sigma * z);
+    const double slope = sigma * (group.y - group.m * pi).sum() - z;
+    curvature = 1.0 + sigma * sigma * (group.m * pi * (1.0 - pi)).sum();
+    double step = slope / curvature;
+    while (height(z + step) < height(z) && std::abs(step) > 1e-9) step *= 0.5;
+    z += step;
+    if (std::abs(step) < 1e-9) break;
+  }
+  return {z, 1.0 / std::sqrt(curvature)};
+}
+
+void add_group(const Group& group, const Quadrature& rule, const Vector& beta, double sigma,
+               Value& out) {
+  const Eigen::Index p = beta.size();
+  const Array base = group.eta(beta);
+  const auto [centre, width] = mode(group, base, sigma);
+  const Array z = centre + std::sqrt(2.0) * width * rule.nodes;
+  Array log_terms(kNodes);
+  for (Eigen::Index k = 0; k < kNodes; ++k)
+    log_terms[k] = rule.log_weights[k] + group.kernel(base + sigma * z[k]) - 0.5 * z[k] * z[k];
+  const double top = log_terms.maxCoeff();
+  Array share = (log_terms - top).exp();
+  // √2 width dx, over the √(2π) of the normal density.
+  out.log_likelihood += top + std::log(share.sum() * width / std::sqrt(M_PI));
+  share /= share.sum();
+  Vector mean = Vector::Zero(p + 1);
+  Matrix second = Matrix::Zero(p + 1, p + 1);
+  Matrix d(group.x.rows(), p + 1);
+  d.leftCols(p) = group.x;
+  for (Eigen::Index k = 0; k < kNodes; ++k) {
+    d.col(p).setConstant(z[k]);
+    const Array pi = probability(base + sigma * z[k]);
+    const Vector g = d.transpose() * (group.y - group.m * pi).matrix();
+    const Vector w = group.m * pi * (1.0 - pi);
+    mean += share[k] * g;
+    second += share[k] * (g * g.transpose() - d.transpose() * w.asDiagonal() * d);
+  }
+  out.gradient += mean;
+  out.hessian += second - mean * mean.transpose();
+}
+
+Value value_at(const std::vector<Group>& groups, const Quadrature& rule, const Vector& theta) {
+  const Eigen::Index p = theta.size() - 1;
+  Value out{0.0, Vector::Zero(p + 1), Matrix::Zero(p + 1, p + 1)};
+  for (const auto& group : groups) add_group(group, rule, theta.head(p), theta[p], out);
+  return out;
+}
+
+/// Newton with damping until steps are rounding. False: it ran away or stuck.
+bool maximise(const std::vector<Group>& groups, const Quadrature& rule, Vector& theta,
+              Value& value) {
+  value = value_at(groups, rule, theta);
+  double damping = 0.0;
+  for (int i = 0; i < 200; ++i) {
+    const Eigen::Index size = theta.size();
+    const Eigen::LLT<Matrix> llt(damping * Matrix::Identity(size, size) - value.hessian);
+    const Vector step = llt.solve(value.gradient);
+    const Value next = value_at(groups, rule, theta + step);
+    const bool better =
+        llt.info() == Eigen::Success && next.log_likelihood >= value.log_likelihood - 1e-12;
+    if (!better) {
+      damping = std::max(1e-3, 4.0 * damping);
+      if (damping > 1e8) return false;
+      continue;
+    }
+    theta += step;
+    value = next;
+    damping *= damping > 1e-3 ? 0.25 : 0.0;
+    if (theta.cwiseAbs().maxCoeff() > 1e3) return false;
+    if (damping == 0.0 && step.cwiseAbs().maxCoeff() < 1e-11) return true;
+  }
+  return false;
+}
+
+std::vector<Group> groups_of(const Design& design, const Counts& counts,
+                             const std::vector<std::string>& labels,
+                             std::vector<std::string>& names) {
+  std::map<std::string, std::vector<Eigen::Index>> rows;
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    auto& own = rows[labels[i]];
+    if (own.empty()) names.push_back(labels[i]);
+    own.push_back(static_cast<Eigen::Index>(i));
+  }
+  std::vector<Group> out;
+  for (const auto& name : names) {
+    const auto& own = rows.at(name);
+    out.push_back({design.columns(own, Eigen::all), counts.successes(own), counts.trials(own)});
+  }
+  return out;
+}
+
+void add_tests(const Matrix& covariance, Glmm& out) {
+  out.standard_errors = covariance.diagonal().head(out.coefficients.size()).cwiseSqrt();
+  out.z = out.coefficients.cwiseQuotient(out.standard_errors);
+  out.p = out.z.unaryExpr([](double z) { return 2.0 * normal_upper(std::abs(z)); });
+}
+
+}  // namespace
+
+core::Result<Glmm> logistic_mixed(const Design& design, const Counts& counts,
+                                  const std::vector<std::string>& labels) {
+  core::require(labels.size() == static_cast<std::size_t>(counts.successes.size()),
+                "every row has a group");
+  const auto plain = logistic(design, counts);
+  if (!plain) return plain.error();
+  Glmm out;
+  out.names = design.names;
+  const auto groups = groups_of(design, counts, labels, out.groups);
+  if (groups.size() < 2)
+    return core::Error{core::Errc::bad_input,
+                       "one group: the spread between groups cannot be estimated"};
+  const Quadrature rule;
+  const Eigen::Index p = plain->coefficients.size();
+  Vector theta(p + 1);
+  theta << plain->coefficients, 0.5;
+  Value value;
+  const bool found = maximise(groups, rule, theta, value);
+  const double binomial =
+      plain->log_likelihood -
+      value_at(groups, rule, (Vector(p + 1) << plain->coefficients, 0.0).finished()).log_likelihood;
+  // σ_u = 0 is always stationary; the estimate is there when nothing beyond it is higher.
+  const bool at_zero = value.log_likelihood + binomial <= plain->log_likelihood + 1e-10;
+  if (!found && !at_zero)
+    return core::Error{core::Errc::out_of_range,
+                       "the likelihood has no maximum: the outcomes may be separated by group"};
+  if (at_zero) {
+    out.coefficients = plain->coefficients;
+    out.log_likelihood = plain->log_likelihood;
+    out.sigma_u_se = std::numeric_limits<double>::quiet_NaN();
+    add_tests(plain->covariance, out);
+    return out;
+  }
+  out.coefficients = theta.head(p);
+  out.sigma_u = std::abs(theta[p]);
+  out.log_likelihood = value.log_likelihood + binomial;
+  const Matrix covariance = (-value.hessian).ldlt().solve(Matrix::Identity(p + 1, p + 1));
+  out.sigma_u_se = std::sqrt(covariance(p, p));
+  add_tests(covariance, out);
+  return out;
+}
+
+}  // namespace statistics

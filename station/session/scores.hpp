@@ -1,0 +1,18 @@
+/// What a finished trial is worth, as far as a station may know.
+#pragma once
+
+#include <filesystem>
+#include <utility>
+#include <vector>
+
+#include "metrics/metric.hpp"
+
+namespace session {
+
+using Scores = std::vector<std::pair<metrics::MetricInfo, metrics::Score>>;
+
+/// Every metric of a trial file; those that need the truth are empty: a station has none.
+/// Errors: those of reading the file.
+core::Result<Scores> scores_of(const std::filesystem::path& trial_file, const volume::Tract& tract);
+
+}  // namespace session

@@ -1,0 +1,128 @@
+#include "station/uplink/sync.hpp"
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include "cases/case.hpp"
+#include "core/file.hpp"
+#include "station/uplink/double_server.hpp"
+
+namespace uplink {
+namespace {
+namespace fs = std::filesystem;
+
+/// A server with one signed case, made by the product's own writer, and a station without any.
+class Syncing : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = fs::temp_directory_path() / "sync-XXXXXX";
+    root_ = ::mkdtemp(name.data());
+    fs::create_directories(cases());
+    volume::Volume volume;
+    volume.geometry.dims = {8, 8, 8};
+    volume.geometry.spacing_m = {0.001, 0.001, 0.001};
+    volume.counts.assign(512, 7);
+    key_ = core::KeyPair::generate();
+    cases::NewCase made{.definition = {}, .truth = {}, .volume = volume, .meta = {}, .draw = {}};
+    made.definition.title = "a cube";
+    made.definition.source = "made by this test";
+    made.definition.tract.length_m = 0.005;
+    made.definition.tract.radius_m = 0.001;
+    auto opened = cases::write_case(root_ / "made", made, key_);
+    ASSERT_TRUE(opened) << opened.error().what;
+    id_ = opened->id;
+    const std::string at = "/api/v1/cases/" + id_;
+    put("/api/v1/cases", core::Json{{"cases", {{{"id", id_}, {"title", "a cube"}}}}}.dump());
+    server_.files[at] = file("case.json");
+    server_.files[at + "/parts/case.sig"] = file("case.sig");
+    for (const auto& part : opened->definition.parts)
+      server_.files[at + "/parts/" + part.name] = file(part.name);
+  }
+  void TearDown() override { fs::remove_all(root_); }
+  void put(const std::string& path, const std::string& text) {
+    const auto bytes = core::bytes_of(text);
+    server_.files[path] = core::Bytes(bytes.begin(), bytes.end());
+  }
+  core::Bytes file(const std::string& name) { return *core::read_file(root_ / "made" / name); }
+  fs::path cases() const { return root_ / "cases"; }
+  core::Result<SyncReport> sync() { return sync_cases(server_, cases(), {key_.public_hex}); }
+  bool nothing_left() const { return fs::directory_iterator(cases()) == fs::directory_iterator(); }
+
+  fs::path root_;
+  core::KeyPair key_;
+  DoubleServer server_;
+  std::string id_;
+};
+
+TEST_F(Syncing, FetchesAVerifiedCaseWithoutItsTruth) {
+  const auto report = sync();
+  ASSERT_TRUE(report) << report.error().what;
+  EXPECT_EQ(report->fetched, std::vector<std::string>{id_});
+  EXPECT_TRUE(fs::exists(cases() / id_ / "volume.tvol"));
+  EXPECT_FALSE(fs::exists(cases() / id_ / "truth.json"));
+  for (const auto& line : server_.log)
+    EXPECT_EQ(line.find("truth"), std::string::npos) << "the truth was asked for";
+  const auto opened = cases::open_case(cases() / id_);
+  ASSERT_TRUE(opened);
+  EXPECT_EQ(opened->id, id_);
+}
+
+TEST_F(Syncing, FetchesNothingTwice) {
+  ASSERT_TRUE(sync());
+  server_.log.clear();
+  const auto again = sync();
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->present.size(), 1u);
+  EXPECT_EQ(server_.log.size(), 1u);
+}
+
+TEST_F(Syncing, RefusesASignerThatIsNotTrusted) {
+  const auto report = sync_cases(server_, cases(), {core::KeyPair::generate().public_hex});
+  ASSERT_TRUE(report);
+  ASSERT_EQ(report->refused.size(), 1u);
+  EXPECT_NE(report->refused[0].find("does not trust"), std::string::npos);
+  EXPECT_TRUE(nothing_left());
+}
+
+TEST_F(Syncing, RefusesAChangedPartAndLeavesNothing) {
+  auto& part = server_.files["/api/v1/cases/" + id_ + "/parts/volume.tvol"];
+  part[part.size() / 2] ^= std::byte{1};
+  const auto report = sync();
+  ASSERT_TRUE(report);
+  ASSERT_EQ(report->refused.size(), 1u);
+  EXPECT_NE(report->refused[0].find("volume.tvol"), std::string::npos);
+  EXPECT_TRUE(nothing_left());
+}
+
+TEST_F(Syncing, RefusesAManifestOfAnotherName) {
+  auto& manifest = server_.files["/api/v1/cases/" + id_];
+  manifest.push_back(std::byte{' '});
+  const auto report = sync();
+  ASSERT_TRUE(report);
+  EXPECT_EQ(report->refused.size(), 1u);
+  EXPECT_TRUE(nothing_left());
+}
+
+TEST_F(Syncing, IsWholeOrAbsentWhicheverRequestIsCut) {
+  bool cut = true;
+  for (int n = 1; cut; ++n) {
+    ASSERT_LT(n, 50);
+    fs::remove_all(cases() / id_);
+    server_.fail_at = n;
+    const auto report = sync();
+    cut = !report;
+    EXPECT_TRUE(!cut || nothing_left()) << "after request " << n;
+  }
+  EXPECT_TRUE(cases::open_case(cases() / id_));
+}
+
+TEST_F(Syncing, RefusesAListThatIsNoList) {
+  for (const char* text :
+       {"[]", "{}", R"({"cases":[{"id":"../../etc"}]})", R"({"cases":[1]})", "<html>"}) {
+    put("/api/v1/cases", text);
+    EXPECT_FALSE(sync()) << text;
+  }
+}
+
+}  // namespace
+}  // namespace uplink

@@ -1,0 +1,179 @@
+/// `tractus stats` from the outside.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+
+#include "core/bytes.hpp"
+#include "core/file.hpp"
+#include "core/json.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+const std::string kReference =
+    std::string(TRACTUS_SOURCE_DIR) + "/tests/golden/statistics-reference/";
+
+struct Ran {
+  int exit = -1;
+  std::string out, err;
+};
+
+class Stats : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() /
+              ("tractus_stats_" + std::to_string(::getpid()) + "_" + core::new_id());
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  fs::path file(const std::string& text) {
+    const fs::path path = folder_ / "data.csv";
+    EXPECT_TRUE(core::write_file(path, core::bytes_of(text)));
+    return path;
+  }
+  std::string text_of(const fs::path& path) {
+    const auto bytes = core::read_file(path);
+    return bytes ? std::string(core::text_of(*bytes)) : "";
+  }
+  Ran run(const std::string& method, const std::string& data, const std::string& formula,
+          const std::string& more = "") {
+    const fs::path out = folder_ / "out", err = folder_ / "err";
+    const std::string command = std::string(TRACTUS_BIN_DIR) + "/tractus stats " + method +
+                                " --data '" + data + "' --formula '" + formula + "' " + more +
+                                " >'" + out.string() + "' 2>'" + err.string() + "'";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(out), text_of(err)};
+  }
+  core::Json json(const std::string& method, const std::string& data, const std::string& formula,
+                  const std::string& more = "") {
+    const Ran ran = run(method, kReference + "data/" + data, formula, "--json " + more);
+    EXPECT_EQ(ran.exit, 0) << ran.err;
+    const auto parsed = core::parse_json(ran.out, "stdout");
+    EXPECT_TRUE(parsed) << ran.out;
+    return parsed ? *parsed : core::Json();
+  }
+  /// One line on standard error, exit 2, nothing on standard output.
+  std::string refusal(const std::string& method, const std::string& data,
+                      const std::string& formula) {
+    const Ran ran = run(method, data, formula);
+    EXPECT_EQ(ran.exit, 2) << ran.out;
+    EXPECT_EQ(ran.out, "");
+    EXPECT_EQ(std::ranges::count(ran.err, '\n'), 1) << ran.err;
+    return ran.err;
+  }
+  core::Json expected(const std::string& name) {
+    return *core::read_json(kReference + "expected/" + name + ".json");
+  }
+
+  fs::path folder_;
+};
+
+void expect_near(const core::Json& got, const core::Json& want, double relative) {
+  ASSERT_TRUE(got.is_number()) << got.dump();
+  EXPECT_NEAR(got.get<double>(), want.get<double>(), relative * std::abs(want.get<double>()));
+}
+
+TEST_F(Stats, PrintsThePublishedTable3AndSaysWhoSteersIt) {
+  const Ran ran =
+      run("ols", kReference + "data/paper_table2_table4.csv", "wrong_breach ~ experience_years");
+  EXPECT_EQ(ran.exit, 0) << ran.err;
+  EXPECT_THAT(ran.out, HasSubstr("0.158828"));
+  EXPECT_THAT(ran.out, HasSubstr("row 1 steers the fit (leverage 0.797, Cook's distance 1.09)"));
+  const auto got = json("ols", "paper_table2_table4.csv", "wrong_breach ~ experience_years");
+  const auto reference = expected("ols_paper_tables3_5");
+  const auto& want = reference["table3"];
+  for (const std::size_t j : {0u, 1u}) {
+    expect_near(got["coefficients"][j]["estimate"], want["coef"][j], 1e-12);
+    expect_near(got["coefficients"][j]["p"], want["p_value"][j], 1e-12);
+  }
+}
+
+TEST_F(Stats, GivesTheReferenceValuesByEveryMethod) {
+  const auto robust = json("robust", "paper_table2_table4.csv", "wrong_breach ~ experience_years");
+  // statistics of the tool the paper used, 50-digit recomputation: slope, SE.
+  expect_near(robust["coefficients"][1]["estimate"], 0.22252899, 1e-5);
+  expect_near(robust["coefficients"][1]["standard_error"], 0.14965, 1e-4);
+
+  const auto anova = json("anova", "PlantGrowth.csv", "weight ~ group");
+  expect_near(anova["analysis"]["p"], expected("anova_oneway")["PlantGrowth"]["p_value"], 1e-11);
+
+  const auto rm = json("rm-anova", "sim_lateral_breach_velocity.csv",
+                       "breach_velocity_mm_s ~ repetition + (1|surgeon)");
+  const auto want_rm = expected("rm_anova")["cases"]["breach_velocity_mm_s"];
+  expect_near(rm["analysis"]["p_greenhouse_geisser"], want_rm["p_GG"], 1e-10);
+
+  const auto lmm = json("lmm", "lmm_sleepstudy.csv", "y ~ days + (1|group)");
+  const auto want_lmm = expected("lmm_random_intercept")["fits"]["lmm_sleepstudy"]["REML"];
+  expect_near(lmm["model"]["variance_between"], want_lmm["tau2"], 1e-9);
+  expect_near(lmm["coefficients"][0]["df"], want_lmm["satterthwaite_df"][0], 1e-9);
+
+  const auto logistic =
+      json("logistic", "paper_table2_table4.csv", "wrong_breach/breach_trials ~ experience_years");
+  const auto want = expected("logistic")["paper_table2"];
+  expect_near(logistic["coefficients"][1]["estimate"], want["coef"][1], 1e-11);
+  expect_near(logistic["model"]["likelihood_ratio_p"], want["LR_p"], 1e-11);
+
+  const auto mixed = json("logistic", "glmm_paper_total.csv", "y/m ~ experience_years + (1|group)");
+  const auto want_mixed = expected("glmm_random_intercept")["fits"]["glmm_paper_total"]["exact_ML"];
+  expect_near(mixed["model"]["sd_between_groups"], want_mixed["sigma_u"], 1e-8);
+}
+
+TEST_F(Stats, MakesFactorsOfTextAndOfNumbersOnRequest) {
+  const auto got = json("lmm", "sim_cohort_trials.csv",
+                        "breach_velocity_mm_s ~ factor(repetition) + scenario + experience_years "
+                        "+ (1|surgeon)",
+                        "--drop-missing");
+  EXPECT_EQ(got["rows"], 60);
+  EXPECT_EQ(got["rows_left_out"], 60);
+  const auto reference = expected("lmm_random_intercept");
+  const auto& want = reference["fits"]["lmm_sim_balanced"]["REML"];
+  EXPECT_EQ(got["coefficients"][1]["name"], "repetition[2]");
+  expect_near(got["coefficients"][1]["estimate"], want["fixef"][1], 1e-9);
+  expect_near(got["coefficients"][4]["p"], want["p_satterthwaite"][4], 1e-8);
+}
+
+TEST_F(Stats, SaysInOneLineWhatIsWrongWithTheData) {
+  const auto data = file("y,x,z,g\n1,2,4,a\n2,3,6,b\n3,5,10,a\n5,4,8,b\n4,9,18,a\n").string();
+  EXPECT_THAT(refusal("ols", data, "y ~ w"),
+              HasSubstr("there is no column 'w'; the columns are y, x, z, g"));
+  EXPECT_THAT(refusal("ols", data, "y ~ x + z"), HasSubstr("'z' is a linear combination of x"));
+  EXPECT_THAT(refusal("ols", data, "g ~ x"),
+              HasSubstr(":2: column 'g' should be a number and is 'a'"));
+  EXPECT_THAT(refusal("ols", data, "y ~ x + (1|g)"), HasSubstr("needs 'lmm'"));
+  EXPECT_THAT(refusal("lmm", data, "y ~ x"), HasSubstr("add (1|COLUMN)"));
+  EXPECT_THAT(refusal("rm-anova", data, "y ~ x + (1|g)"), HasSubstr("has no row for"));
+  EXPECT_THAT(refusal("ols", data, "y ~ x +"), HasSubstr("at character 8"));
+  EXPECT_THAT(refusal("ols", folder_ / "none.csv", "y ~ x"), HasSubstr("No such file"));
+}
+
+TEST_F(Stats, RefusesFilesThatAreNoTable) {
+  EXPECT_THAT(refusal("ols", file("y,x\n1,2\n2\n"), "y ~ x"),
+              HasSubstr(":3: 1 cells, the header has 2"));
+  EXPECT_THAT(refusal("ols", file("y,x\n1,2\n2,\n3,1\n4,4\n"), "y ~ x"),
+              HasSubstr(":3: column 'x' has no value"));
+  EXPECT_THAT(refusal("ols", file("y,x\n1,2\n2,3\n"), "y ~ x"), HasSubstr("at least 3 are needed"));
+  EXPECT_THAT(refusal("ols", file("y,x\n"), "y ~ x"), HasSubstr("no row to analyse"));
+  EXPECT_THAT(refusal("ols", file(""), "y ~ x"), HasSubstr("header line is empty"));
+  EXPECT_THAT(refusal("ols", file("y\x01,x\n1,2\n"), "y ~ x"), HasSubstr("no text file"));
+  EXPECT_THAT(refusal("ols", file("y,x\n5,1\n5,2\n5,4\n"), "y ~ x"),
+              HasSubstr("there is nothing to explain"));
+  EXPECT_THAT(refusal("ols", file("y,x\n1e300,1\n2e300,2\n3.5e300,3\n-9e300,1.5\n"), "y ~ x"),
+              HasSubstr("rescale them"));
+}
+
+TEST_F(Stats, FallsBackToFirthWhereOutcomesAreSeparatedAndSaysSo) {
+  const Ran ran = run("logistic", file("y,x\n0,1\n0,2\n1,3\n1,4\n"), "y ~ x");
+  EXPECT_EQ(ran.exit, 0) << ran.err;
+  EXPECT_THAT(ran.out, HasSubstr("Firth"));
+  EXPECT_THAT(ran.out, HasSubstr("the columns separate the outcomes"));
+}
+
+}  // namespace
