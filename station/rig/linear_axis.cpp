@@ -29,7 +29,8 @@ void LinearAxis::drive(double speed_command_m_s, double load_N, double dt_s) noe
   const double wanted = std::clamp(speed_command_m_s, -p_.top_speed_m_s, p_.top_speed_m_s);
   const double thrust = thrust_N(v_m_s_);
   overloaded_s_ = std::abs(load_N) > thrust ? overloaded_s_ + dt_s : 0.0;
-  const double lagged = (wanted - v_m_s_) * -std::expm1(-dt_s / p_.lag_s);
+  if (dt_s != last_dt_s_) caught_up_ = -std::expm1(-(last_dt_s_ = dt_s) / p_.lag_s);
+  const double lagged = (wanted - v_m_s_) * caught_up_;
   const double up = std::max(0.0, (load_N + thrust) / p_.mass_kg * dt_s);
   const double down = std::min(0.0, (load_N - thrust) / p_.mass_kg * dt_s);
   move(v_m_s_ + std::clamp(lagged, down, up), dt_s);

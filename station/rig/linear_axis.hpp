@@ -47,6 +47,7 @@ class LinearAxis {
   void move(double new_speed_m_s, double dt_s) noexcept;
   LinearParameters p_;
   double x_m_ = 0.0, v_m_s_ = 0.0, overloaded_s_ = 0.0;
+  double last_dt_s_ = 0.0, caught_up_ = 0.0;  // 1 − exp(−dt/τ), kept while dt stays the same
 };
 
 }  // namespace rig

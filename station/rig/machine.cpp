@@ -26,7 +26,7 @@ void Machine::step() {
   else
     linear_.brake(kStep_s);
   rotary_.step(drive_.rotary_on() ? command_.torque_Nm : 0.0, turn_Nm, kStep_s);
-  sensor_.step(push_N, turn_Nm);
+  if (steps_ % kSensorSteps == 0) sensor_.sample(push_N, turn_Nm);
   ++steps_;
 }
 

@@ -12,6 +12,7 @@
 namespace rig {
 
 inline constexpr double kStep_s = 1e-4;  ///< 10 kHz
+inline constexpr int kSensorSteps = 5;   ///< the sensor samples at 2 kHz
 
 struct MachineParameters {
   LinearParameters linear;

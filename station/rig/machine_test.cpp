@@ -154,7 +154,7 @@ TEST(Sensor, HasTheNoiseAndABiasOfItsParameters) {
   Sensor sensor({.force_bias_sd_N = 0.5, .force_noise_N = 0.05}, 7);
   double sum = 0.0, squares = 0.0;
   for (int k = 0; k < 10000; ++k) {
-    sensor.step(80.0, 0.0);
+    sensor.sample(80.0, 0.0);
     const double off = sensor.force_N() - 80.0 - sensor.force_bias_N();
     sum += off;
     squares += off * off;

@@ -23,6 +23,7 @@ class RotaryAxis {
  private:
   RotaryParameters p_;
   double theta_rad_ = 0.0, omega_rad_s_ = 0.0, motor_Nm_ = 0.0;
+  double last_dt_s_ = 0.0, caught_up_ = 0.0;  // 1 − exp(−dt/T), kept while dt stays the same
 };
 
 }  // namespace rig

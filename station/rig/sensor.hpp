@@ -9,7 +9,7 @@ namespace rig {
 /// Plausible for a sensor of this range, and ours.
 struct SensorParameters {
   double force_bias_sd_N = 0.5;  ///< the bias is drawn once
-  double force_noise_N = 0.05;   ///< standard deviation, white, every step anew
+  double force_noise_N = 0.05;   ///< standard deviation, white, every sample anew
   double torque_bias_sd_Nm = 0.002;
   double torque_noise_Nm = 0.0005;
   double force_range_N = 1000.0;
@@ -18,7 +18,7 @@ struct SensorParameters {
 class Sensor {
  public:
   Sensor(const SensorParameters& parameters, std::uint64_t seed);
-  void step(double force_N, double torque_Nm);
+  void sample(double force_N, double torque_Nm);
   double force_N() const noexcept { return force_N_; }
   double torque_Nm() const noexcept { return torque_Nm_; }
   bool overloaded() const noexcept { return overloaded_; }

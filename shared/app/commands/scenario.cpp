@@ -11,13 +11,13 @@
 #include "core/file.hpp"
 #include "plot/figure.hpp"
 #include "scenarios/demand.hpp"
+#include "scenarios/version.hpp"
 
 namespace commands {
 namespace {
 using core::Errc;
 using core::Error;
 using core::Json;
-using core::Result;
 using scenarios::Scenario;
 
 struct Options {
@@ -27,54 +27,23 @@ struct Options {
   bool json = false;
 };
 
-/// What the new version is made from: its parent.
-Result<Scenario> start_of(const Options& o) {
-  auto parent =
-      o.from.empty() ? scenarios::tuned(*scenarios::kind_of(o.kind)) : Scenario::read(o.from);
-  if (parent) parent->origin.parent = parent->id();
-  return parent;
-}
-
-/// "bone/stiffness_N_per_m=9000": a field that the scenario's file has, and its new JSON value.
-Result<void> change(Json& json, const std::string& text) {
-  const auto bad = [&](const std::string& why) {
-    return Error{Errc::bad_input, fmt::format("--set {}: {}", text, why)};
-  };
-  const auto equals = text.find('=');
-  if (equals == std::string::npos)
-    return bad("FIELD=VALUE is expected, as bone/stiffness_N_per_m=9000");
-  const std::string field = text.substr(0, equals);
-  if (field.starts_with("origin")) return bad("who, when and parent are written by this command");
-  auto value = core::parse_json(text.substr(equals + 1), "value");
-  if (!value) return bad("the value must be JSON: a number, or a list as [0.02]");
-  // nlohmann throws on a pointer with a bad escape, and on one that leads nowhere.
-  try {
-    json.at(Json::json_pointer("/" + field)) = *value;
-  } catch (const Json::exception&) {
-    return bad("names no field of the scenario's file");
-  }
-  return {};
-}
-
-Result<Scenario> changed(const Scenario& scenario, const Options& o) {
-  Json json = scenario.to_json();
-  for (const std::string& text : o.changes)
-    if (auto ok = change(json, text); !ok) return ok.error();
-  if (!o.name.empty()) json["name"] = o.name;
-  json["origin"]["who"] = o.who;
-  json["origin"]["when"] = core::utc_text(core::utc_us());
-  return Scenario::from_json(json, o.out + ": ");
-}
-
 Outcome make_new(const Options& o) {
   std::error_code ignored;
   if (std::filesystem::exists(o.out, ignored))
     return Error{Errc::conflict,
                  fmt::format("{}: exists already; a version is never overwritten", o.out)};
-  auto start = start_of(o);
-  if (!start) return start.error();
-  auto made = changed(*start, o);
-  if (!made) return made.error();
+  const auto parent =
+      o.from.empty() ? scenarios::tuned(*scenarios::kind_of(o.kind)) : Scenario::read(o.from);
+  if (!parent) return parent.error();
+  std::vector<scenarios::Change> changes;
+  if (!o.name.empty()) changes.push_back({"name", o.name});
+  for (const std::string& text : o.changes) {
+    auto change = scenarios::parse_change(text);
+    if (!change) return Error{change.error().code, "--set " + change.error().what};
+    changes.push_back(std::move(*change));
+  }
+  const auto made = scenarios::next_version(*parent, changes, o.who, core::utc_us());
+  if (!made) return Error{made.error().code, fmt::format("{}: {}", o.out, made.error().what)};
   if (auto written = core::write_json(o.out, made->to_json()); !written) return written.error();
   if (o.json)
     fmt::print("{}\n",
