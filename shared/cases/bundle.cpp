@@ -23,6 +23,8 @@ constexpr const char* kSignatureFormat = "tractus-signature/1";
 constexpr const char* kManifest = "case.json";
 constexpr const char* kSignature = "case.sig";
 constexpr std::uint64_t kMaxManifest_bytes = 1u << 20;
+constexpr std::size_t kTruth_bytes = 1024;
+constexpr std::size_t kPictureStep_bytes = 1u << 19;
 constexpr std::size_t kRead_bytes = 1u << 20;
 
 Error corrupt(const fs::path& path, const std::string& why) {
@@ -104,12 +106,24 @@ Result<void> check_nothing_else(const fs::path& folder, const std::vector<Part>&
   return {};
 }
 
+/// Writes a truth padded with blanks to one length for all, since the open manifest states it.
+Result<void> write_truth(const fs::path& folder, const Truth& truth) {
+  std::string text = truth.to_json().dump(2);
+  core::require(text.size() < kTruth_bytes, "a truth fits its length");
+  text.resize(kTruth_bytes - 1, ' ');
+  return core::write_file(folder / kTruthPart, core::bytes_of(text + "\n"));
+}
+
+/// Zeros after the salt bring pictures of much the same size to the same.
 Result<void> write_picture(const fs::path& folder, const NewCase& made) {
   const fs::path path = folder / kPicturePart;
   if (auto drawn = made.draw(path); !drawn) return drawn.error();
   const auto bytes = core::read_file(path);
   if (!bytes) return bytes.error();
-  const auto salted = salted_png(*bytes, core::hex(core::random_bytes(32)));
+  std::string salt = core::hex(core::random_bytes(32));
+  const std::size_t least = bytes->size() + kSaltChunk_bytes + salt.size();
+  salt.append((kPictureStep_bytes - least % kPictureStep_bytes) % kPictureStep_bytes, '0');
+  const auto salted = salted_png(*bytes, salt);
   if (!salted) return salted.error();
   return core::write_file(path, *salted);
 }
@@ -118,8 +132,7 @@ Result<std::vector<Part>> write_parts(const fs::path& folder, const NewCase& mad
                                       const core::Progress& progress) {
   if (auto id = volume::write_volume(folder / kVolumePart, made.volume, made.meta, progress); !id)
     return id.error();
-  if (auto written = core::write_json(folder / kTruthPart, made.truth.to_json()); !written)
-    return written.error();
+  if (auto written = write_truth(folder, made.truth); !written) return written.error();
   if (made.draw)
     if (auto drawn = write_picture(folder, made); !drawn) return drawn.error();
   std::vector<Part> parts;

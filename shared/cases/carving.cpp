@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "volume/resample.hpp"
 
 namespace cases {
@@ -13,7 +15,8 @@ using math::Vec3;
 
 constexpr double kLongest_m = 0.2, kWidest_m = 0.01, kThinnest_m = 0.0002;
 constexpr double kSurroundings_m = 0.040, kSurroundingsSpacing_m = 0.0005;
-constexpr double kOpenAir_m = 0.002;  // the channel goes on for so much behind the bone
+constexpr double kFarthestMidline_m = 0.1;  // a pedicle is some 10 to 30 mm from it
+constexpr double kOpenAir_m = 0.002;        // the channel goes on for so much behind the bone
 
 std::string mm(const Vec3& p_m) {
   return fmt::format("({:.1f}, {:.1f}, {:.1f}) mm", p_m.x() * 1e3, p_m.y() * 1e3, p_m.z() * 1e3);
@@ -55,7 +58,12 @@ core::Result<void> check(const CarvingPlan& plan, double length_m,
 core::Result<volume::Midline> midline_of(const volume::Volume& ct,
                                          const volume::TransferFunction& transfer,
                                          const CarvingPlan& plan) {
-  if (plan.midline_x_m) return volume::stated_midline(*plan.midline_x_m, plan.entry_m);
+  if (plan.midline_x_m) {
+    const double aside_m = std::abs(plan.entry_m.x() - *plan.midline_x_m);
+    if (auto ok = within("a distance from entry to midline", aside_m, 0.0, kFarthestMidline_m); !ok)
+      return ok.error();
+    return volume::stated_midline(*plan.midline_x_m, plan.entry_m);
+  }
   return volume::midline_about(ct, transfer, plan.entry_m, plan.target_m);
 }
 

@@ -127,6 +127,21 @@ TEST_F(ACase, HidesATruthThatCouldBeGuessedBehindItsSalt) {
     EXPECT_EQ(a[k].sha256 == b[k].sha256, !a[k].secret) << a[k].name;
 }
 
+TEST_F(ACase, HidesWhetherThereIsABreachFromTheSizesInTheManifest) {
+  NewCase whole = made();
+  whole.truth = {};
+  whole.draw = [](const fs::path& path) {  // another picture: the pixel, a chunk more
+    return core::write_file(path, *salted_png(std::as_bytes(std::span(kPixel)), "0123"));
+  };
+  ASSERT_TRUE(write_case(top_ / "whole", std::move(whole), key_));
+  const auto broken = open_case(folder_)->definition.parts,
+             intact = open_case(top_ / "whole")->definition.parts;
+  ASSERT_EQ(broken.size(), intact.size());
+  for (std::size_t k = 0; k < broken.size(); ++k)
+    EXPECT_EQ(broken[k].size_bytes, intact[k].size_bytes) << broken[k].name;
+  EXPECT_FALSE(read_truth(*open_case(top_ / "whole"))->breached);
+}
+
 TEST_F(ACase, OpensWithoutItsSecretParts) {
   fs::remove(folder_ / "truth.json");
   fs::remove(folder_ / "picture.png");

@@ -6,7 +6,10 @@
 
 namespace cases {
 
-/// The picture with a text chunk "salt" of 64 hexadecimal characters before its end (PNG
+/// What the chunk adds beside the salt itself: length, type, keyword and its end, checksum.
+constexpr std::size_t kSaltChunk_bytes = 4 + 4 + 5 + 4;
+
+/// The picture with a text chunk "salt" of hexadecimal characters before its end (PNG
 /// specification, 11.3.4.3 tEXt); it looks the same. Errors: corrupt if `png` does not begin and
 /// end as a PNG.
 core::Result<core::Bytes> salted_png(core::ByteView png, std::string_view salt_hex);

@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <fstream>
@@ -70,6 +71,16 @@ TEST_F(FileTest, WritesWholeAndLeavesNothingBeside) {
   ASSERT_TRUE(write_file(folder_ / "a", bytes_of("one")));
   ASSERT_TRUE(write_file(folder_ / "a", bytes_of("two")));
   EXPECT_EQ(text_of(*read_file(folder_ / "a")), "two");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);
+}
+
+TEST_F(FileTest, LeavesWhatIsNoRegularFileInItsPlace) {
+  const auto pipe = folder_ / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const auto written = write_file(pipe, bytes_of("one"));
+  ASSERT_FALSE(written);
+  EXPECT_EQ(written.error().code, Errc::conflict);
+  EXPECT_TRUE(std::filesystem::is_fifo(pipe));
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);
 }
 

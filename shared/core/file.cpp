@@ -72,7 +72,14 @@ Result<Bytes> read_file(const fs::path& path, std::uint64_t limit_bytes) {
   return out;
 }
 
+Result<void> may_be_replaced(const fs::path& path) {
+  struct stat info {};
+  if (::stat(path.c_str(), &info) != 0 || S_ISREG(info.st_mode)) return {};
+  return Error{Errc::conflict, fmt::format("{}: exists and is not a regular file", path.string())};
+}
+
 Result<void> write_file(const fs::path& path, ByteView bytes) {
+  if (auto free = may_be_replaced(path); !free) return free;
   const fs::path beside = path.string() + fmt::format(".{}.part", hex(random_bytes(4)));
   {
     const Descriptor file(::open(beside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644));

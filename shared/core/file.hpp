@@ -13,8 +13,12 @@ namespace core {
 /// before reading).
 Result<Bytes> read_file(const std::filesystem::path& path, std::uint64_t limit_bytes = 1ull << 30);
 
+/// Whether a new file may take this name: nothing is there, or a regular file (or a link to one).
+/// Errors: conflict on a folder, a device or a pipe, which a rename would put out of the way.
+Result<void> may_be_replaced(const std::filesystem::path& path);
+
 /// Writes beside, flushes to the disk, renames, flushes the folder. Nothing is left behind on
-/// failure.
+/// failure. Errors: io, those of `may_be_replaced`.
 Result<void> write_file(const std::filesystem::path& path, ByteView bytes);
 
 /// The errno of the last call as an Error: "PATH: cannot open: Permission denied".

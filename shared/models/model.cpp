@@ -7,6 +7,8 @@
 #include <string_view>
 #include <utility>
 
+#include "models/parts.hpp"
+
 namespace models {
 namespace {
 
@@ -17,11 +19,9 @@ using core::Json;
 using core::Result;
 using Parameters = laws::PalpationParameters;
 
-constexpr std::string_view kFormat = "tractus-model/1";
 constexpr std::array<std::pair<volume::FieldKind, std::string_view>, 2> kFields{
     {{volume::FieldKind::paper, "paper"}, {volume::FieldKind::potential, "potential"}}};
 constexpr std::size_t kMaxTransferPoints = 4096;
-constexpr std::size_t kMaxFixed = 256;
 
 /// A number of /base: its name, where it is held, and what it may be.
 struct BaseNumber {
@@ -41,25 +41,8 @@ constexpr std::array<BaseNumber, 7> kNumbers{{
     {"radius_m", &Parameters::radius_m, 1e-5, 0.05},
 }};
 
-/// The first thing wrong with a part, or nothing.
-using Fault = std::optional<Error>;
-
-Error bad(const std::string& where, std::string_view key, const std::string& why) {
-  return {Errc::bad_input, fmt::format("{}/{}: {}", where, key, why)};
-}
-
-Fault read_identity(Fields& fields, PalpationModel& model) {
-  const std::string& where = fields.where();
-  if (const auto format = fields.text_or("format", ""); format != kFormat)
-    return bad(where, "format",
-               fmt::format("'{}' is not a format of models; '{}' is expected", format, kFormat));
-  if (const auto rig = fields.text_or("rig", ""); rig != "palpation") {
-    if (rig == "probing")
-      return bad(where, "rig",
-                 "'probing': this version runs palpation models only; 'palpation' is expected");
-    return bad(where, "rig", fmt::format("'{}' is not a rig; 'palpation' is expected", rig));
-  }
-  model.name = fields.text("name");
+Fault read_own_identity(Fields& fields, PalpationModel& model) {
+  if (auto fault = read_identity(fields, "palpation", model.name)) return fault;
   model.volume = fields.text_or("volume", "");
   return std::nullopt;
 }
@@ -118,70 +101,16 @@ Fault read_base(Fields& fields, PalpationModel& model) {
   return std::nullopt;
 }
 
-/// Does a pointer ("/base/pose_offset_m/*") lead to something in `json`? `*` stands for every
-/// element of an array.
-bool leads_somewhere(const Json& json, std::string_view pointer) {
-  if (pointer.empty()) return true;
-  if (pointer.front() != '/') return false;
-  pointer.remove_prefix(1);
-  const auto end = std::min(pointer.find('/'), pointer.size());
-  const std::string_view step = pointer.substr(0, end), rest = pointer.substr(end);
-  if (json.is_object()) {
-    const auto it = json.find(std::string(step));
-    return it != json.end() && leads_somewhere(*it, rest);
-  }
-  if (!json.is_array() || json.empty() || step.empty()) return false;
-  if (step == "*")
-    return std::ranges::all_of(json, [&](const Json& each) { return leads_somewhere(each, rest); });
-  const bool digits =
-      step.size() < 6 && std::ranges::all_of(step, [](char c) { return c >= '0' && c <= '9'; });
-  if (!digits || (step.size() > 1 && step.front() == '0')) return false;
-  const auto index = std::size_t(std::stoul(std::string(step)));
-  return index < json.size() && leads_somewhere(json[index], rest);
-}
-
-Fault read_fixed(Fields& fields, PalpationModel& model) {
-  if (!fields.has("fixed")) return std::nullopt;
-  const std::string& where = fields.where();
-  const Json& list = *fields.member("fixed");
-  if (!list.is_array() || list.size() > kMaxFixed)
-    return bad(where, "fixed", "an array of JSON pointers is expected, as [\"/base/length_m\"]");
-  const Json whole = model.to_json();
-  for (std::size_t k = 0; k < list.size(); ++k) {
-    const std::string key = fmt::format("fixed/{}", k);
-    if (!list[k].is_string())
-      return bad(where, key, "a JSON pointer is expected, as \"/base/length_m\"");
-    const auto pointer = list[k].get<std::string>();
-    if (!pointer.starts_with("/base/") || !leads_somewhere(whole, pointer))
-      return bad(where, key, fmt::format("'{}' names no parameter of this model's base", pointer));
-    model.fixed.push_back(pointer);
-  }
-  return std::nullopt;
-}
-
-Fault read_effects(Fields& fields) {
-  const Json* list = fields.member("effects", false);
-  if (!list || (list->is_array() && list->empty())) return std::nullopt;
-  const std::string& where = fields.where();
-  if (!list->is_array()) return bad(where, "effects", "an array is expected");
-  const Json& first = (*list)[0];
-  if (!first.is_object() || !first.contains("id") || !first["id"].is_string())
-    return bad(where, "effects/0", "an object with a text \"id\" is expected");
-  return bad(where, "effects/0/id",
-             fmt::format("'{}' is an effect that this version does not know",
-                         first["id"].get<std::string>()));
-}
-
 }  // namespace
 
 core::Result<PalpationModel> PalpationModel::from_json(const Json& json, const std::string& where) {
   Fields fields(json, where);
   if (!json.is_object()) return fields.done().error();
   PalpationModel model;
-  if (auto fault = read_identity(fields, model)) return *fault;
+  if (auto fault = read_own_identity(fields, model)) return *fault;
   if (auto fault = read_transfer(fields, model)) return *fault;
   if (auto fault = read_base(fields, model)) return *fault;
-  if (auto fault = read_fixed(fields, model)) return *fault;
+  if (auto fault = read_fixed(fields, model.to_json(), model.fixed)) return *fault;
   if (auto fault = read_effects(fields)) return *fault;
   if (auto done = fields.done(); !done) return done.error();
   return model;
@@ -194,7 +123,7 @@ core::Result<PalpationModel> PalpationModel::read(const std::filesystem::path& p
 }
 
 Json PalpationModel::to_json() const {
-  Json json = {{"format", kFormat}, {"rig", "palpation"}, {"name", name}};
+  Json json = {{"format", kModelFormat}, {"rig", "palpation"}, {"name", name}};
   if (!volume.empty()) json["volume"] = volume;
   json["transfer"] = Json::array();
   for (const auto& point : transfer.points())

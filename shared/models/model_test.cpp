@@ -62,7 +62,7 @@ TEST(PalpationModel, TakesThePapersNumbersForWhatIsNotSaid) {
 
 TEST(PalpationModel, RefusesAnotherRigByName) {
   EXPECT_THAT(refusal("/rig", "probing"),
-              HasSubstr("m.json: /rig: 'probing': this version runs palpation models only"));
+              HasSubstr("m.json: /rig: 'probing' is a model of the other rig; 'palpation' is"));
   EXPECT_THAT(refusal("/rig", "driving"), HasSubstr("'driving' is not a rig"));
   EXPECT_THAT(refusal("/format", "tractus-model/9"), HasSubstr("/format: 'tractus-model/9'"));
 }

@@ -36,6 +36,7 @@ class FileBeside {
   FileBeside& operator=(const FileBeside&) = delete;
 
   core::Result<void> opened() const {
+    if (auto free = core::may_be_replaced(path_); !free) return free;
     if (fd_ < 0) return core::system_error(path_, "cannot create");
     return {};
   }

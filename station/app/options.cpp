@@ -107,9 +107,8 @@ Parsed parse(int argc, char** argv) {
   if (trust->parsed()) options.deed = Deed::trust;
   if (options.deed == Deed::trust && options.signer_hex.empty() && options.signer_of_case.empty())
     out.leave = refuse("trust: --signer or --case is expected");
-  if (options.deed == Deed::run && options.data.empty()) out.leave = refuse("--data is required");
-  if (options.deed == Deed::run && options.case_name.empty())
-    out.leave = refuse("--case is required");
+  if (options.deed == Deed::run && (options.data.empty() || options.case_name.empty()))
+    out.leave = refuse(options.data.empty() ? "--data is required" : "--case is required");
   return out;
 }
 

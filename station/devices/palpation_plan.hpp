@@ -22,7 +22,7 @@ struct Intent {
 
 /// Approach to the entry, strokes along the four side walls in turn (outward, twice each, the
 /// direction sweeping a little to both sides), taps at the end, withdrawal; between key points by
-/// minimum jerk [Flash1985, eq. ?]: s = 10τ³ − 15τ⁴ + 6τ⁵. The shank turns about the channel's
+/// minimum jerk [Flash1985]: s = 10τ³ − 15τ⁴ + 6τ⁵. The shank turns about the channel's
 /// mouth, as a real one must. Physiological tremor of 8–12 Hz rides on all of it. Amplitudes,
 /// speeds and tilts are plausible choices of ours, not measurements.
 class PalpationPlan {

@@ -27,6 +27,9 @@ const std::map<std::string, Names> kAllowed = {
     {"shared/volume/io", {"shared/core", "shared/math", "shared/volume"}},
     {"shared/laws", {"shared/core", "shared/math", "shared/volume"}},
     {"shared/models", {"shared/core", "shared/math", "shared/volume", "shared/laws"}},
+    // A scenario is the probing law's numbers as an expert tunes them; its bone is a model's.
+    {"shared/scenarios",
+     {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/models"}},
     {"shared/cases",
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/models"}},
     {"shared/trial", {"shared/core", "shared/math"}},
@@ -37,6 +40,8 @@ const std::map<std::string, Names> kAllowed = {
     {"shared/replay", {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/models", "shared/trial", "shared/plot"}},
     {"db/store", {"shared/core", "shared/trial"}},
     {"station/devices", {"shared/core", "shared/math"}},
+    // The rig's electronics and mechanics, played by a process: the register map, and no law.
+    {"station/rig", {"shared/core", "station/devices"}},
     {"station/loop",
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/models", "shared/trial",
       "station/devices"}},

@@ -150,6 +150,7 @@ TEST_F(Carve, RefusesWithOneLineAndLeavesNothingBehind) {
       {left + "--breach anterior --breach-at 6", "no other place"},
       {left + "--breach anterior --length 12 --breach-depth 24", "anterior"},
       {left + "--midline-x 22", "from the midline"},
+      {left + "--midline-x 900", "a distance from entry to midline of"},
       {"--entry 40,25,19 --target 40,10,19 --midline-x 5", "meets no bone"},
       {left + "--model none.json", "none.json"},
       {left + "--png none/picture.png", "none/picture.png"},

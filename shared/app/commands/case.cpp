@@ -87,6 +87,7 @@ Command case_command() {
             for (CLI::App* each : {check, look}) {
               each->add_option("DIR", options->folder, "folder of the case")->required();
               each->add_flag("--json", options->json, "print as JSON");
+              each->footer("Example:\n  tractus case " + each->get_name() + " l3-left-medial");
             }
             return [options, check] { return check->parsed() ? verify(*options) : show(*options); };
           }};

@@ -166,7 +166,7 @@ Outcome recover(const Options& o) {
 
 Command trial_command() {
   return {"trial", "Shows a recorded trial, scores it, or ends one that a crash left open",
-          "tractus trial metrics 018f.trial --case l3-left-medial", [](CLI::App& app) {
+          "tractus trial metrics 018f.ttrial --case l3-left-medial", [](CLI::App& app) {
             auto options = std::make_shared<Options>();
             app.require_subcommand(1);
             CLI::App* look = app.add_subcommand("show", "who, when, samples, events, how it ended");
@@ -177,6 +177,9 @@ Command trial_command() {
               each->add_option("FILE", options->file, "a tractus-trial/1 file")->required();
               each->add_flag("--json", options->json, "print as JSON");
             }
+            look->footer("Example:\n  tractus trial show 018f.ttrial --csv 018f.csv");
+            rate->footer("Example:\n  tractus trial metrics 018f.ttrial --case l3-left-medial");
+            end->footer("Example:\n  tractus trial recover 018f.ttrial");
             look->add_option("--csv", options->csv, "write every sample to this table, SI units");
             rate->add_option("--case", options->case_folder, "folder of the case it was made on")
                 ->required();

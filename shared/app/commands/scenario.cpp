@@ -1,0 +1,191 @@
+/// `tractus scenario`: makes, checks and draws what the probing rig renders.
+#include "scenarios/scenario.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "app/command.hpp"
+#include "app/scenario_picture.hpp"
+#include "core/clock.hpp"
+#include "core/file.hpp"
+#include "plot/figure.hpp"
+#include "scenarios/demand.hpp"
+
+namespace commands {
+namespace {
+using core::Errc;
+using core::Error;
+using core::Json;
+using core::Result;
+using scenarios::Scenario;
+
+struct Options {
+  std::string kind = "hard", from, name, who, file, out;
+  std::vector<std::string> changes;
+  std::vector<double> speeds_mm_s{2.0, 5.0, 10.0};
+  bool json = false;
+};
+
+/// What the new version is made from: its parent.
+Result<Scenario> start_of(const Options& o) {
+  auto parent =
+      o.from.empty() ? scenarios::tuned(*scenarios::kind_of(o.kind)) : Scenario::read(o.from);
+  if (parent) parent->origin.parent = parent->id();
+  return parent;
+}
+
+/// "bone/stiffness_N_per_m=9000": a field that the scenario's file has, and its new JSON value.
+Result<void> change(Json& json, const std::string& text) {
+  const auto bad = [&](const std::string& why) {
+    return Error{Errc::bad_input, fmt::format("--set {}: {}", text, why)};
+  };
+  const auto equals = text.find('=');
+  if (equals == std::string::npos)
+    return bad("FIELD=VALUE is expected, as bone/stiffness_N_per_m=9000");
+  const std::string field = text.substr(0, equals);
+  if (field.starts_with("origin")) return bad("who, when and parent are written by this command");
+  auto value = core::parse_json(text.substr(equals + 1), "value");
+  if (!value) return bad("the value must be JSON: a number, or a list as [0.02]");
+  // nlohmann throws on a pointer with a bad escape, and on one that leads nowhere.
+  try {
+    json.at(Json::json_pointer("/" + field)) = *value;
+  } catch (const Json::exception&) {
+    return bad("names no field of the scenario's file");
+  }
+  return {};
+}
+
+Result<Scenario> changed(const Scenario& scenario, const Options& o) {
+  Json json = scenario.to_json();
+  for (const std::string& text : o.changes)
+    if (auto ok = change(json, text); !ok) return ok.error();
+  if (!o.name.empty()) json["name"] = o.name;
+  json["origin"]["who"] = o.who;
+  json["origin"]["when"] = core::utc_text(core::utc_us());
+  return Scenario::from_json(json, o.out + ": ");
+}
+
+Outcome make_new(const Options& o) {
+  std::error_code ignored;
+  if (std::filesystem::exists(o.out, ignored))
+    return Error{Errc::conflict,
+                 fmt::format("{}: exists already; a version is never overwritten", o.out)};
+  auto start = start_of(o);
+  if (!start) return start.error();
+  auto made = changed(*start, o);
+  if (!made) return made.error();
+  if (auto written = core::write_json(o.out, made->to_json()); !written) return written.error();
+  if (o.json)
+    fmt::print("{}\n",
+               Json{{"file", o.out}, {"id", made->id()}, {"parent", made->origin.parent}}.dump(2));
+  else
+    fmt::print("{}: {} ({}), version {:.12}\n", o.out, made->name, scenarios::name(made->kind),
+               made->id());
+  return 0;
+}
+
+Json json_of(const Scenario& scenario, const scenarios::Demand& demand) {
+  Json pushes = Json::array(), walls = Json::array();
+  for (const auto& push : demand.pushes)
+    pushes.push_back(
+        {{"speed_m_s", push.speed_m_s}, {"mean_N", push.mean_N}, {"peak_N", push.peak_N}});
+  for (const auto& wall : demand.walls)
+    walls.push_back({{"position_m", wall.position_m},
+                     {"threshold_N", wall.threshold_N},
+                     {"behind_N", wall.behind_N},
+                     {"speed_behind_m_s", wall.speed_m_s},
+                     {"thrust_there_N", wall.thrust_N}});
+  return {{"name", scenario.name},        {"kind", scenarios::name(scenario.kind)},
+          {"id", scenario.id()},          {"parent", scenario.origin.parent},
+          {"who", scenario.origin.who},   {"when", scenario.origin.when},
+          {"pushes", std::move(pushes)},  {"walls", std::move(walls)},
+          {"excessive", demand.excessive}};
+}
+
+void print(const Scenario& scenario, const scenarios::Demand& demand) {
+  fmt::print("{} ({}), version {:.12}, {} {}\n", scenario.name, scenarios::name(scenario.kind),
+             scenario.id(), scenario.origin.who, scenario.origin.when);
+  for (const auto& push : demand.pushes)
+    fmt::print("at {:4.0f} mm/s   {:5.1f} N in the mean, {:5.1f} N at most\n", 1e3 * push.speed_m_s,
+               push.mean_N, push.peak_N);
+  for (const auto& wall : demand.walls)
+    fmt::print(
+        "wall at {:4.1f} mm  gives way at {:.1f} N, {:.1f} N behind it; {:.3f} m/s if the push "
+        "stays, where the actuator has {:.0f} N\n",
+        1e3 * wall.position_m, wall.threshold_N, wall.behind_N, wall.speed_m_s, wall.thrust_N);
+  for (const auto& sentence : demand.excessive) fmt::print("too much: {}\n", sentence);
+}
+
+Outcome check(const Options& o) {
+  const auto scenario = Scenario::read(o.file);
+  if (!scenario) return scenario.error();
+  const auto demand = scenarios::demand(*scenario);
+  if (!demand) return demand.error();
+  if (o.json)
+    fmt::print("{}\n",
+               json_of(*scenario, *demand).dump(2, ' ', false, Json::error_handler_t::replace));
+  else
+    print(*scenario, *demand);
+  return demand->excessive.empty() ? 0 : 1;
+}
+
+Outcome draw(const Options& o) {
+  const auto scenario = Scenario::read(o.file);
+  if (!scenario) return scenario.error();
+  std::vector<double> speeds_m_s;
+  for (const double speed : o.speeds_mm_s) speeds_m_s.push_back(1e-3 * speed);
+  const auto figure = scenario_picture(*scenario, speeds_m_s);
+  if (!figure) return figure.error();
+  if (auto ok = core::write_file(o.out, core::bytes_of(plot::svg(*figure))); !ok) return ok.error();
+  if (o.json)
+    fmt::print("{}\n", Json{{"file", o.out}, {"id", scenario->id()}}.dump(2));
+  else
+    fmt::print("Written to {}\n", o.out);
+  return 0;
+}
+
+void add_new(CLI::App& app, Options& o) {
+  auto* kind = app.add_option("--kind", o.kind, "start from the tuned one of this kind")
+                   ->check(CLI::IsMember({"hard", "soft", "lateral_breach", "in_out_in"}))
+                   ->capture_default_str();
+  app.add_option("--from", o.from, "start from this version; it becomes the parent")
+      ->excludes(kind);
+  app.add_option("--name", o.name, "another name");
+  app.add_option("--set", o.changes,
+                 "FIELD=VALUE in SI units, may be repeated: bone/stiffness_N_per_m=9000");
+  app.add_option("--who", o.who, "who tunes it; written into the version")->required();
+  app.add_option("--out", o.out, "new file")->required();
+}
+
+}  // namespace
+
+Command scenario_command() {
+  return {"scenario", "Makes, checks and draws a scenario of the probing rig",
+          "tractus scenario new --kind lateral_breach --set density=0.8 --who 'R. Zeller' --out "
+          "mine.json\n  tractus scenario check mine.json\n  tractus scenario plot mine.json --out "
+          "mine.svg",
+          [](CLI::App& app) {
+            auto options = std::make_shared<Options>();
+            app.require_subcommand(1);
+            CLI::App* make = app.add_subcommand("new", "a new version, with who, when and parent");
+            CLI::App* look = app.add_subcommand(
+                "check", "exit 0 if a surgeon and the actuator can do it, 1 if not, 2 if invalid");
+            CLI::App* plot = app.add_subcommand("plot", "resistance against depth, as SVG");
+            add_new(*make, *options);
+            for (CLI::App* each : {look, plot})
+              each->add_option("FILE", options->file, "a tractus-scenario/1 file")->required();
+            plot->add_option("--speed", options->speeds_mm_s, "mm/s, may be repeated")
+                ->check(CLI::Range(0.0, 230.0))
+                ->capture_default_str();
+            plot->add_option("--out", options->out, "SVG file")->required();
+            for (CLI::App* each : {make, look, plot})
+              each->add_flag("--json", options->json, "print as JSON");
+            return [options, make, look]() -> Outcome {
+              if (make->parsed()) return make_new(*options);
+              return look->parsed() ? check(*options) : draw(*options);
+            };
+          }};
+}
+
+}  // namespace commands

@@ -1,0 +1,111 @@
+/// The channelling of a pedicle with a probe on the rotary and linear rig: layered bone, walls,
+/// breaches.
+#pragma once
+
+#include <numbers>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/result.hpp"
+
+namespace laws {
+
+/// One layer of bone [Probing, Fig. 4]: spring and damper of its own between two depths.
+struct Layer {
+  double start_m = 0.0;            ///< depth at which it begins, >= 0
+  double thickness_m = 0.0;        ///< > 0
+  double stiffness_N_per_m = 0.0;  ///< K, >= 0
+  double damping_Ns_per_m = 0.0;   ///< D, > 0
+  double equilibrium_m = 0.0;      ///< x0, depth at which its spring is at rest
+};
+
+/// A cortical wall and what lies behind it [Probing, section 4].
+struct CorticalWall {
+  double position_m = 0.0;               ///< breach threshold: depth at which the bone gives way
+  double resistance_interval_m = 0.0;    ///< R_i: K and D grow over this length before the wall
+  double resistance_factor_per_m = 0.0;  ///< R_f: share by which they grow per metre
+  double breach_interval_m = 0.0;        ///< L_b: length of soft tissue behind
+  double breach_damping_Ns_per_m = 0.0;  ///< D_b, > 0
+};
+
+/// The rotary stage's rendered torque: viscous friction and detents.
+struct RotaryStage {
+  double viscous_Nms_per_rad = 0.02;
+  double detent_Nm = 0.01;
+  double detent_pitch_rad = 0.35;
+};
+
+struct ProbingParameters {
+  std::vector<Layer> layers;        ///< by depth, without overlap; may be empty
+  std::vector<CorticalWall> walls;  ///< by depth; breach stretches without overlap
+  RotaryStage rotary;
+  double travel_m = 0.1;  ///< the probe stop
+  double min_turning_rad_s =
+      10.0 * std::numbers::pi / 180.0;  ///< the stage holds below this [Probing: 10 °/s]
+  double max_speed_m_s = 0.23;          ///< of the actuator
+};
+
+enum class ProbingMode : unsigned char {
+  holding,     ///< turning too slowly: the stage does not move
+  bone,        ///< eq. (2) in a layer
+  resistance,  ///< eq. (2) within R_i of a wall, K and D grown
+  breach,      ///< eq. (3): K = 0, D_b, rotary motor off
+  stopped,     ///< at the probe stop
+};
+std::string_view name(ProbingMode mode);
+
+/// What changes from tick to tick.
+struct ProbingState {
+  double x_m = 0.0;  ///< depth of the tip, positive into the bone
+  ProbingMode mode = ProbingMode::holding;
+};
+
+/// The admittance law of the linear stage and the rendered torque of the rotary stage [Probing, eqs
+/// (1)–(3)]:
+///
+///     M(ẍ − ẍ0) + D(ẋ − ẋ0) + K(x − x0) = F,  M = 0, ẋ0 = 0                 (1)
+///     ẋ = (F − K(x − x0)) / D                        in a layer               (2)
+///     ẋ = F / D_b                                    behind a wall, over L_b  (3)
+///     K, D → K, D · (1 + R_f (x − x_w + R_i))        for x_w − R_i <= x < x_w
+///
+/// The stage moves only while the probe turns faster than 10 °/s. Between layers, and past the
+/// last, the resistance is 0 and the stage moves at the actuator's speed. Runs both ways: motion
+/// from force (`advance`, the live rig) and force from motion (`force_N`, the lab). Departs from
+/// the source: R_f is per metre, so that a slope over R_i is unambiguous; speed is held within the
+/// actuator's.
+class ProbingLaw {
+ public:
+  /// Errors: out_of_range or bad_input naming the layer or wall and the number outside its range.
+  static core::Result<ProbingLaw> make(ProbingParameters parameters);
+
+  /// One tick of length `dt_s` under the push `force_N` while the probe turns at `turning_rad_s`:
+  /// midpoint rule, cut at the borders of layers, walls and travel. Returns the mean speed, m/s.
+  /// Never fails, never allocates.
+  double advance(double force_N, double turning_rad_s, double dt_s,
+                 ProbingState& state) const noexcept;
+
+  /// Push needed at depth `x_m` to move at `speed_m_s`, eqs (2), (3) solved for F.
+  double force_N(double x_m, double speed_m_s) const noexcept;
+  /// Torque of the hand on the probe needed at angle θ and speed ω: viscous and detent parts; 0
+  /// behind a wall.
+  double torque_Nm(double x_m, double theta_rad, double turning_rad_s) const noexcept;
+
+  /// The mode at a depth for a probe that turns.
+  ProbingMode mode_at(double x_m) const noexcept;
+  const ProbingParameters& parameters() const noexcept { return parameters_; }
+
+ private:
+  /// K, D and x0 in force at a depth.
+  struct Local {
+    double stiffness_N_per_m, damping_Ns_per_m, equilibrium_m;
+  };
+  explicit ProbingLaw(ProbingParameters parameters) : parameters_(std::move(parameters)) {}
+  Local local(double x_m) const noexcept;
+  double speed_m_s(double force_N, double x_m) const noexcept;
+  double next_border_m(double x_m, bool inward) const noexcept;
+  ProbingParameters parameters_;
+  std::vector<double> borders_m_;  // all depths at which the law changes, sorted
+};
+
+}  // namespace laws

@@ -1,0 +1,131 @@
+#include "models/probing_model.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "models/parts.hpp"
+
+namespace models {
+namespace {
+
+using core::Fields;
+using core::Json;
+using core::Result;
+
+constexpr std::size_t kMaxLayers = 4096;
+/// The longest travel that the law takes: a model is checked against it, a rig against its own.
+constexpr double kLongestTravel_m = 1.0;
+
+/// The law checks ranges; here a number has only to be one.
+double number(Fields& fields, const char* key) {
+  constexpr double kAny = std::numeric_limits<double>::max();
+  return fields.number(key, -kAny, kAny);
+}
+
+Fault read_layers(Fields& base, ProbingModel& model) {
+  const Json* list = base.member("layers");
+  if (!list) return bad(base.where(), "layers", "is missing");
+  if (!list->is_array() || list->size() > kMaxLayers)
+    return bad(base.where(), "layers",
+               fmt::format("an array of at most {} layers is expected", kMaxLayers));
+  for (std::size_t k = 0; k < list->size(); ++k) {
+    Fields fields((*list)[k], fmt::format("{}/layers/{}", base.where(), k));
+    model.layers.push_back({number(fields, "start_m"), number(fields, "thickness_m"),
+                            number(fields, "stiffness_N_per_m"), number(fields, "damping_Ns_per_m"),
+                            number(fields, "equilibrium_m")});
+    if (auto done = fields.done(); !done) return done.error();
+  }
+  return std::nullopt;
+}
+
+Fault read_rotary(Fields& base, ProbingModel& model) {
+  const Json* object = base.member("rotary", false);
+  if (!object) return std::nullopt;
+  Fields fields(*object, base.where() + "/rotary");
+  laws::RotaryStage& r = model.rotary;
+  r.viscous_Nms_per_rad = fields.number_or("viscous_Nms_per_rad", r.viscous_Nms_per_rad, 0.0, 10.0);
+  r.detent_Nm = fields.number_or("detent_Nm", r.detent_Nm, 0.0, 10.0);
+  r.detent_pitch_rad = fields.number_or("detent_pitch_rad", r.detent_pitch_rad, 1e-3, 7.0);
+  if (auto done = fields.done(); !done) return done.error();
+  return std::nullopt;
+}
+
+Fault read_base(Fields& fields, ProbingModel& model) {
+  const Json* object = fields.member("base");
+  if (!object) return bad(fields.where(), "base", "is missing");
+  Fields base(*object, fields.where() + "/base");
+  if (!object->is_object()) return base.done().error();
+  if (auto fault = read_layers(base, model)) return fault;
+  if (auto fault = read_rotary(base, model)) return fault;
+  if (auto done = base.done(); !done) return done.error();
+  if (auto law = model.law(kLongestTravel_m); !law)
+    return core::Error{core::Errc::bad_input, base.where() + "/" + law.error().what};
+  return std::nullopt;
+}
+
+}  // namespace
+
+Result<laws::ProbingLaw> ProbingModel::law(double travel_m) const {
+  return laws::ProbingLaw::make(
+      {.layers = layers, .walls = {}, .rotary = rotary, .travel_m = travel_m});
+}
+
+Result<ProbingModel> ProbingModel::from_json(const Json& json, const std::string& where) {
+  Fields fields(json, where);
+  if (!json.is_object()) return fields.done().error();
+  ProbingModel model;
+  if (auto fault = read_identity(fields, "probing", model.name)) return *fault;
+  if (auto fault = read_base(fields, model)) return *fault;
+  if (auto fault = read_fixed(fields, model.to_json(), model.fixed)) return *fault;
+  if (auto fault = read_effects(fields)) return *fault;
+  if (auto done = fields.done(); !done) return done.error();
+  return model;
+}
+
+Result<ProbingModel> ProbingModel::read(const std::filesystem::path& path) {
+  auto json = core::read_json(path);
+  if (!json) return json.error();
+  return from_json(*json, path.string() + ": ");
+}
+
+Json ProbingModel::to_json() const {
+  Json list = Json::array();
+  for (const laws::Layer& layer : layers)
+    list.push_back({{"start_m", layer.start_m},
+                    {"thickness_m", layer.thickness_m},
+                    {"stiffness_N_per_m", layer.stiffness_N_per_m},
+                    {"damping_Ns_per_m", layer.damping_Ns_per_m},
+                    {"equilibrium_m", layer.equilibrium_m}});
+  return {{"format", kModelFormat},
+          {"rig", "probing"},
+          {"name", name},
+          {"base",
+           {{"layers", std::move(list)},
+            {"rotary",
+             {{"viscous_Nms_per_rad", rotary.viscous_Nms_per_rad},
+              {"detent_Nm", rotary.detent_Nm},
+              {"detent_pitch_rad", rotary.detent_pitch_rad}}}}},
+          {"fixed", fixed},
+          {"effects", Json::array()}};
+}
+
+Result<Model> model_from_json(const Json& json, const std::string& where) {
+  const bool probing = json.is_object() && json.contains("rig") && json["rig"] == "probing";
+  if (probing) {
+    auto model = ProbingModel::from_json(json, where);
+    if (!model) return model.error();
+    return Model(std::move(*model));
+  }
+  auto model = PalpationModel::from_json(json, where);
+  if (!model) return model.error();
+  return Model(std::move(*model));
+}
+
+Result<Model> read_model(const std::filesystem::path& path) {
+  auto json = core::read_json(path);
+  if (!json) return json.error();
+  return model_from_json(*json, path.string() + ": ");
+}
+
+}  // namespace models

@@ -1,0 +1,129 @@
+/// `tractus-rig`: the probing rig's electronics and mechanics, played by a process.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+
+#include "core/json.hpp"
+#include "station/rig/modbus_peer.hpp"
+
+namespace {
+
+constexpr const char* kExamples = R"(Examples:
+  tractus-rig                                   Modbus TCP on 127.0.0.1:1502
+  tractus-rig --port 0 --surgeon --seed 7       a free port, printed; a SIMULATED surgeon pushes
+  tractus-rig --rtu /dev/ttyUSB0 --baud 115200  on a serial line as well
+Registers: station/devices/rig-registers.md. Nothing here is a machine: all it says is simulated.)";
+
+struct Options {
+  std::string address = "127.0.0.1", rtu;
+  int port = 1502, baud = 115200;
+  std::uint64_t seed = 1;
+  double travel_m = 0.1, skill = 0.5, duration_s = 0.0;
+  bool surgeon = false, json = false;
+};
+
+std::atomic<bool> asked_to_stop = false;
+
+void add(CLI::App& app, Options& o) {
+  app.add_option("--address", o.address, "IPv4 address to listen on")->capture_default_str();
+  app.add_option("--port", o.port, "TCP port; 0 takes a free one")
+      ->check(CLI::Range(0, 65535))
+      ->capture_default_str();
+  app.add_option("--rtu", o.rtu, "serial device to answer on as well");
+  app.add_option("--baud", o.baud, "of the serial line, 8E1")
+      ->check(CLI::IsMember({9600, 19200, 38400, 57600, 115200}))
+      ->capture_default_str();
+  app.add_option("--seed", o.seed, "of sensor noise, bias and the simulated surgeon")
+      ->capture_default_str();
+  app.add_option("--travel", o.travel_m, "m")->check(CLI::Range(0.01, 0.3))->capture_default_str();
+  app.add_flag("--surgeon", o.surgeon, "a SIMULATED surgeon pushes and turns once enabled");
+  app.add_option("--skill", o.skill, "of the simulated surgeon, 0 … 1")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  app.add_option("--duration", o.duration_s, "s until it ends by itself; 0: until it is stopped")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str();
+  app.add_flag("--json", o.json, "one JSON document a line on standard output");
+}
+
+void say_ready(const Options& o, int port) {
+  if (o.json)
+    fmt::print(
+        "{}\n",
+        core::Json{{"address", o.address}, {"port", port}, {"rtu", o.rtu}, {"simulated", true}}
+            .dump());
+  else
+    fmt::print("tractus-rig: Modbus TCP on {}:{}{}{}, SIMULATED\n", o.address, port,
+               o.rtu.empty() ? "" : ", RTU on ", o.rtu);
+  std::fflush(stdout);
+}
+
+void say_end(const Options& o, const rig::Traffic& t, std::uint64_t stalls) {
+  if (o.json)
+    fmt::print("{}\n", core::Json{{"answered", t.answered.load()},
+                                  {"refused", t.refused.load()},
+                                  {"garbage", t.garbage.load()},
+                                  {"stalls", stalls}}
+                           .dump());
+  else
+    fmt::print("{} requests answered, {} refused, {} times garbage; held up {} times\n",
+               t.answered.load(), t.refused.load(), t.garbage.load(), stalls);
+}
+
+core::Result<int> run(const Options& o) {
+  core::MonotonicClock clock;
+  rig::MachineParameters machine;
+  machine.seed = o.seed;
+  machine.linear.travel_m = o.travel_m;
+  machine.surgeon = rig::SurgeonParameters::of_skill(o.skill);
+  rig::World world;
+  world.surgeon = o.surgeon;
+  rig::Electronics electronics(machine, world, clock);
+  rig::Traffic traffic;
+  auto tcp = rig::listen_tcp(electronics, traffic, o.address, o.port);
+  if (!tcp) return tcp.error();
+  std::unique_ptr<rig::ModbusPeer> serial;
+  if (!o.rtu.empty()) {
+    auto rtu = rig::open_rtu(electronics, traffic, o.rtu, o.baud);
+    if (!rtu) return rtu.error();
+    serial = std::move(*rtu);
+  }
+  say_ready(o, (*tcp)->port());
+  const core::Instant_ns start = clock.now();
+  core::Instant_ns next = start;
+  while (!asked_to_stop && (o.duration_s <= 0.0 || 1e-9 * double(next - start) < o.duration_s)) {
+    electronics.advance();
+    next = std::max(next + 1'000'000, clock.now());
+    clock.sleep_until(next);
+  }
+  say_end(o, traffic, electronics.stalls());
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app("The probing rig's electronics as a real Modbus peer, with physics of its own",
+               "tractus-rig");
+  app.set_version_flag("--version", TRACTUS_VERSION);
+  app.footer(kExamples);
+  add(app, options);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& failure) {
+    if (failure.get_exit_code() == 0) return app.exit(failure);
+    std::fprintf(stderr, "tractus-rig: %s (see --help)\n", failure.what());
+    return 2;
+  }
+  std::signal(SIGINT, [](int) { asked_to_stop = true; });
+  std::signal(SIGTERM, [](int) { asked_to_stop = true; });
+  std::signal(SIGPIPE, SIG_IGN);
+  const auto outcome = run(options);
+  if (outcome) return *outcome;
+  std::fprintf(stderr, "tractus-rig: %s\n", outcome.error().what.c_str());
+  return 2;
+}
