@@ -94,7 +94,7 @@ int main(int argc, char** argv) {
       const auto law = laws::PalpationLaw::make(with_points(limit.points), *field);
       if (!law) return 2;
       const Run run =
-          palpate(*law, limit.steps, 3, limit.points > 3 ? bench::thread_s : bench::wall_s);
+          palpate(*law, limit.steps, 1, limit.points > 3 ? bench::thread_s : bench::wall_s);
       const std::string name =
           fmt::format("{} field, n = {}", published ? "published" : "potential", limit.points);
       print(report, name, run);
