@@ -1,0 +1,54 @@
+/// What an effect of the catalogue says of itself. One file each in probing/ and palpation/; the
+/// file's name is the id.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace effects {
+
+/// Kept apart: what a hand may feel, and what only belongs to how a measurement was made.
+enum class Kind {
+  force,        ///< adds to the law
+  structure,    ///< changes what the law sees or how it answers
+  measurement,  ///< corrects the comparison; never rendered to a hand
+};
+std::string_view name(Kind kind);
+
+/// One number (or several of one name, as the three of a vector) of an effect.
+struct Param {
+  std::string name;     ///< as in model files; ends in its unit: "friction_N"
+  std::string meaning;  ///< one sentence
+  double initial;       ///< where a fit begins, each component
+  double low, high;     ///< plausible range, each component; what lies outside is refused
+  int components = 1;
+  /// Where the effect vanishes exactly if this parameter takes it, whatever the others are; NaN
+  /// for a parameter of shape (a velocity, a period), which has no such value.
+  double off = 0.0;
+  bool logarithmic = false;  ///< spans decades: search and step in its logarithm
+};
+
+/// What is common to the effects of both rigs.
+struct EffectFacts {
+  std::string id;  ///< "coulomb_friction"
+  Kind kind = Kind::force;
+  std::string summary;   ///< one line for a person
+  std::string equation;  ///< as in the design, plain text
+  std::string source;    ///< key of the bibliography with equation, or "own"
+  std::vector<Param> params;
+  /// States of the recording it needs beyond depth or pose: "omega_rad_s", "tz_Nm"; a set without
+  /// them cannot show it.
+  std::vector<std::string> needs;
+  std::vector<std::string> parents;  ///< simpler effects it contains as a limit
+  bool free_per_trial = false;       ///< its course differs from trial to trial (sensor_drift)
+  bool passive = true;               ///< gives back no more work than it got
+};
+
+/// An effect in a model: which, and its numbers in the order of the params, components flattened.
+struct Use {
+  std::string id;
+  std::vector<double> values;
+};
+
+}  // namespace effects
