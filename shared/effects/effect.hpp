@@ -39,10 +39,10 @@ struct EffectFacts {
   std::vector<Param> params;
   /// States of the recording it needs beyond depth or pose: "omega_rad_s", "tz_Nm"; a set without
   /// them cannot show it.
-  std::vector<std::string> needs;
-  std::vector<std::string> parents;  ///< simpler effects it contains as a limit
-  bool free_per_trial = false;       ///< its course differs from trial to trial (sensor_drift)
-  bool passive = true;               ///< gives back no more work than it got
+  std::vector<std::string> needs = {};
+  std::vector<std::string> parents = {};  ///< simpler effects it contains as a limit
+  bool free_per_trial = false;            ///< its course differs from trial to trial (sensor_drift)
+  bool passive = true;                    ///< gives back no more work than it got
 };
 
 /// An effect in a model: which, and its numbers in the order of the params, components flattened.
