@@ -138,14 +138,11 @@ struct PalpationEffectInfo {
   PalpationEffect (*make)(std::span<const double> values);
 };
 
-namespace palpation {
-std::vector<PalpationEffectInfo> all();  // generated from the folder
-}
-/// The catalogue of palpation, by id.
-std::vector<PalpationEffectInfo> palpation_effects();
+/// The catalogue of palpation, in the order of the ids; made from the files of palpation/.
+const std::vector<PalpationEffectInfo>& palpation_effects();
 
-/// Ranges checked, then made. Errors: not_found for an id that is not in the catalogue, bad_input
-/// for a wrong count of values, out_of_range naming the parameter.
+/// The effect of an id with its numbers. Errors: not_found naming the id; bad_input or out_of_range
+/// naming the parameter, its value and its range.
 core::Result<PalpationEffect> make_palpation_effect(const Use& use);
 
 }  // namespace effects
