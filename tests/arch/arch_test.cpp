@@ -32,6 +32,11 @@ const std::map<std::string, Names> kAllowed = {
     {"shared/lab",
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/effects",
       "shared/models", "shared/trial", "shared/statistics", "shared/plot"}},
+    // The lab's edge: files and zips in, a problem ready to judge out.
+    {"shared/lab/io",
+     {"shared/core", "shared/math", "shared/volume", "shared/volume/io", "shared/laws",
+      "shared/effects", "shared/models", "shared/trial", "shared/statistics", "shared/plot",
+      "shared/lab"}},
     // A scenario is the probing law's numbers as an expert tunes them; its bone is a model's.
     {"shared/scenarios",
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/effects",
