@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -20,6 +21,9 @@ enum class Kind {
 };
 std::string_view name(Kind kind);
 
+/// Of a parameter of shape, at which nothing vanishes.
+inline constexpr double kNoOff = std::numeric_limits<double>::quiet_NaN();
+
 /// One number (or several of one name, as the three of a vector) of an effect.
 struct Param {
   std::string name;     ///< as in model files; ends in its unit: "friction_N"
@@ -28,7 +32,7 @@ struct Param {
   double low, high;     ///< plausible range, each component; what lies outside is refused
   int components = 1;
   /// The effect vanishes exactly when every parameter that has an off value takes it, whatever the
-  /// others are; NaN for a parameter of shape (a velocity, a period), which has no such value.
+  /// others are; kNoOff for a parameter of shape (a velocity, a period), which has no such value.
   double off = 0.0;
   bool logarithmic = false;  ///< spans decades: search and step in its logarithm
 };

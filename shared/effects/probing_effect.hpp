@@ -86,6 +86,12 @@ class ProbingEffect {
                          const double* /*state*/) const noexcept {
     return 0.0;
   }
+  /// force_N and commit in one: what a replay calls, sample after sample.
+  virtual double replay_N(const ProbingTick& tick, double base_N, double* state) const noexcept {
+    const double out_N = force_N(tick, base_N, state);
+    commit(tick, state);
+    return out_N;
+  }
   /// Stages delay and recording: turns the law's force over a whole trial, N, into what the sensor
   /// says.
   virtual void record(const ProbingMotion& /*motion*/, std::span<double> /*fz_N*/) const {}
