@@ -41,6 +41,8 @@ const std::map<std::string, Names> kAllowed = {
     {"shared/scenarios",
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/effects",
       "shared/models"}},
+    // What server and station share of a blind study: its orders, and a law sealed for a station.
+    {"shared/study", {"shared/core", "shared/math", "shared/volume", "shared/laws"}},
     {"shared/cases",
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/effects",
       "shared/models"}},
@@ -71,11 +73,12 @@ const std::map<std::string, Names> kAllowed = {
       "station/uplink"}},
     {"server/http", {"shared/core"}},
     {"server/jobs",
-     {"shared/core", "shared/trial", "shared/metrics", "shared/cases", "shared/volume",
-      "db/store"}},
+     {"shared/core", "shared/trial", "shared/metrics", "shared/cases", "shared/scenarios",
+      "shared/volume", "db/store"}},
     {"server/api",
      {"shared/core", "shared/math", "shared/trial", "shared/metrics", "shared/cases",
-      "shared/volume", "shared/wire", "db/store", "server/http", "server/jobs"}},
+      "shared/scenarios", "shared/study", "shared/volume", "shared/wire", "db/store", "server/http",
+      "server/jobs"}},
 };
 
 bool is_source(const fs::path& path) {
