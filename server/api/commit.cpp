@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "db/store/accounts.hpp"
 #include "db/store/cases.hpp"
 #include "db/store/jobs.hpp"
+#include "db/store/study_slots.hpp"
 #include "server/api/uploads.hpp"
 #include "trial/trial_file.hpp"
 
@@ -53,18 +55,19 @@ core::Result<void> check_bytes(const store::Upload& upload, const std::filesyste
   return {};
 }
 
-core::Result<void> check_identity(const store::Upload& upload, const trial::Trial& trial,
-                                  const Tally& tally) {
+/// @param case_id  what the station knows the case by
+core::Result<void> check_identity(const store::Upload& upload, const std::string& case_id,
+                                  const trial::Trial& trial, const Tally& tally) {
   if (!trial.sealed)
     return core::Error{core::Errc::bad_input, "trial file: it has no end; recover it first"};
   if (trial.header.id != upload.trial_id)
     return core::Error{core::Errc::bad_input,
                        fmt::format("trial file: its id is {}, announced was {}", trial.header.id,
                                    upload.trial_id)};
-  if (trial.header.case_id != upload.case_id)
-    return core::Error{core::Errc::bad_input,
-                       fmt::format("trial file: its case is {}, announced was {}",
-                                   trial.header.case_id, upload.case_id)};
+  if (trial.header.case_id != case_id)
+    return core::Error{
+        core::Errc::bad_input,
+        fmt::format("trial file: its case is {}, announced was {}", trial.header.case_id, case_id)};
   if (tally.samples == 0)
     return core::Error{core::Errc::bad_input, "trial file: it has no samples"};
   return {};
@@ -107,7 +110,11 @@ core::Result<store::TrialRecord> checked_trial(Backend& backend, const store::Up
   auto trial = trial::scan_trial(path, [&](const trial::Block& part) { tally.add(part); },
                                  {.max_samples = kMaxTrialSamples, .max_bytes = kMaxTrial_bytes});
   if (!trial) return without_path(trial.error(), path);
-  if (auto fine = check_identity(upload, *trial, tally); !fine) return fine.error();
+  auto slot = backend.store.read(
+      [&](store::Reading& tx) { return store::slot_of_trial(tx, upload.trial_id); });
+  if (!slot) return slot.error();
+  const std::string& case_id = *slot ? (*slot)->id : upload.case_id;
+  if (auto fine = check_identity(upload, case_id, *trial, tally); !fine) return fine.error();
   return record_of(upload, *trial, tally);
 }
 
@@ -123,6 +130,11 @@ core::Result<void> store_trial(Backend& backend, const store::Upload& upload,
       return done;
     if (auto done = store::add_trial(tx, trial, now); !done) return done;
     if (auto done = store::complete_upload(tx, upload.trial_id); !done) return done;
+    auto station = store::station_name(tx, upload.station_id);
+    if (!station) return station.error();
+    if (auto done = store::record_for_slot(tx, upload.trial_id, trial.complete, {*station, now});
+        !done)
+      return done;
     return store::queue_job(tx, "metrics", upload.trial_id, now);
   });
 }

@@ -32,13 +32,22 @@ const std::map<std::string, Names> kAllowed = {
     {"shared/lab",
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/effects",
       "shared/models", "shared/trial", "shared/statistics", "shared/plot"}},
+    // The lab's edge: files and zips in, a problem ready to judge out.
+    {"shared/lab/io",
+     {"shared/core", "shared/math", "shared/volume", "shared/volume/io", "shared/laws",
+      "shared/effects", "shared/models", "shared/trial", "shared/statistics", "shared/plot",
+      "shared/lab"}},
     // A scenario is the probing law's numbers as an expert tunes them; its bone is a model's.
     {"shared/scenarios",
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/effects",
       "shared/models"}},
+    // What server and station share of a blind study: its orders, and a law sealed for a station.
+    {"shared/study", {"shared/core", "shared/math", "shared/volume", "shared/laws"}},
     {"shared/cases",
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/effects",
       "shared/models"}},
+    // A study's order and what a station is given of one slot, sealed.
+    {"shared/study", {"shared/core", "shared/laws", "shared/models", "shared/scenarios"}},
     {"shared/trial", {"shared/core", "shared/math"}},
     {"shared/metrics", {"shared/core", "shared/math", "shared/volume", "shared/trial"}},
     {"shared/wire", {"shared/core", "shared/math", "shared/trial"}},
@@ -64,11 +73,12 @@ const std::map<std::string, Names> kAllowed = {
       "station/uplink"}},
     {"server/http", {"shared/core"}},
     {"server/jobs",
-     {"shared/core", "shared/trial", "shared/metrics", "shared/cases", "shared/volume",
-      "db/store"}},
+     {"shared/core", "shared/trial", "shared/metrics", "shared/cases", "shared/scenarios",
+      "shared/volume", "db/store"}},
     {"server/api",
      {"shared/core", "shared/math", "shared/trial", "shared/metrics", "shared/cases",
-      "shared/volume", "shared/wire", "db/store", "server/http", "server/jobs"}},
+      "shared/scenarios", "shared/study", "shared/volume", "shared/wire", "db/store", "server/http",
+      "server/jobs"}},
 };
 
 bool is_source(const fs::path& path) {
