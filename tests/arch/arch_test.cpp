@@ -46,8 +46,6 @@ const std::map<std::string, Names> kAllowed = {
     {"shared/cases",
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/effects",
       "shared/models"}},
-    // A study's order and what a station is given of one slot, sealed.
-    {"shared/study", {"shared/core", "shared/laws", "shared/models", "shared/scenarios"}},
     {"shared/trial", {"shared/core", "shared/math"}},
     {"shared/metrics", {"shared/core", "shared/math", "shared/volume", "shared/trial"}},
     {"shared/wire", {"shared/core", "shared/math", "shared/trial"}},
