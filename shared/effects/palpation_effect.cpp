@@ -1,8 +1,8 @@
+#include "effects/palpation_effect.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
-
-#include "effects/palpation_effect.hpp"
 
 namespace effects {
 namespace palpation {

@@ -1,4 +1,4 @@
-#include "app/stats_table.hpp"
+#include "assessment/table.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -6,10 +6,11 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <optional>
 
 #include "core/file.hpp"
 
-namespace commands {
+namespace assessment {
 namespace {
 
 constexpr std::uint64_t kLargest = 512ull << 20;
@@ -39,16 +40,6 @@ bool split(std::string_view line, std::vector<std::string_view>& cells) {
   return !quoted;
 }
 
-bool missing(std::string_view cell) {
-  return cell.empty() || cell == "NA" || cell == "NaN" || cell == "nan";
-}
-
-bool parse(std::string_view cell, double& value) {
-  if (!cell.empty() && cell.front() == '+') cell.remove_prefix(1);
-  const auto end = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  return end.ec == std::errc() && end.ptr == cell.data() + cell.size() && std::isfinite(value);
-}
-
 /// Takes the next line off the front.
 std::string_view next_line(std::string_view& rest) {
   const auto end = rest.find('\n');
@@ -61,13 +52,33 @@ std::string shown(std::string_view text, std::size_t most = 40) {
   return std::string(text.substr(0, most)) + (text.size() > most ? "…" : "");
 }
 
+std::string no_column(const std::string& file, const std::string& column,
+                      const std::vector<std::string_view>& header) {
+  const auto listed = header.size() > 20 ? fmt::format("{} others", header.size())
+                                         : shown(fmt::format("{}", fmt::join(header, ", ")), 400);
+  return fmt::format("{}: there is no column '{}'; the columns are {}", file, column, listed);
+}
+
 }  // namespace
 
-std::string Table::add_row(std::size_t line, const std::vector<std::string_view>& cells,
-                           bool drop_missing) {
-  for (std::size_t j = 0; j < wanted_.size(); ++j) {
-    if (!missing(cells[places_[j]])) continue;
-    if (drop_missing) {
+bool is_missing(std::string_view cell) {
+  return cell.empty() || cell == "NA" || cell == "NaN" || cell == "nan";
+}
+
+std::optional<double> number_in(std::string_view cell) {
+  if (!cell.empty() && cell.front() == '+') cell.remove_prefix(1);
+  double value = 0.0;
+  const auto end = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  if (end.ec != std::errc() || end.ptr != cell.data() + cell.size() || !std::isfinite(value))
+    return std::nullopt;
+  return value;
+}
+
+std::string Table::add_row(std::size_t line, std::span<const std::string_view> cells,
+                           Missing missing) {
+  for (std::size_t j = 0; j < wanted_.size() && missing != Missing::keep; ++j) {
+    if (!is_missing(cells[places_[j]])) continue;
+    if (missing == Missing::drop) {
       ++dropped_;
       return "";
     }
@@ -87,15 +98,10 @@ core::Result<void> Table::read_header(std::string_view line,
     return wrong(name_ + ":1: this is no text file");
   if (!split(line, header) || (header.size() == 1 && header[0].empty()))
     return wrong(name_ + ":1: the header line is empty or leaves a quote open");
+  if (wanted_.empty()) wanted_.assign(header.begin(), header.end());
   for (const auto& column : wanted_) {
     const auto at = std::ranges::find(header, column);
-    if (at == header.end()) {
-      const auto listed = header.size() > 20
-                              ? fmt::format("{} others", header.size())
-                              : shown(fmt::format("{}", fmt::join(header, ", ")), 400);
-      return wrong(
-          fmt::format("{}: there is no column '{}'; the columns are {}", name_, column, listed));
-    }
+    if (at == header.end()) return wrong(no_column(name_, column, header));
     if (std::ranges::count(header, column) > 1)
       return wrong(fmt::format("{}: column '{}' stands there twice", name_, column));
     places_.push_back(static_cast<std::size_t>(at - header.begin()));
@@ -104,18 +110,23 @@ core::Result<void> Table::read_header(std::string_view line,
 }
 
 core::Result<Table> Table::read(const std::filesystem::path& path,
-                                std::span<const std::string> columns, bool drop_missing) {
+                                std::span<const std::string> columns, Missing missing) {
   auto bytes = core::read_file(path, kLargest);
   if (!bytes) return bytes.error();
+  return parse(std::move(*bytes), path.string(), columns, missing);
+}
+
+core::Result<Table> Table::parse(core::Bytes bytes, const std::string& name,
+                                 std::span<const std::string> columns, Missing missing) {
   Table out;
-  out.name_ = path.string();
-  out.bytes_ = std::move(*bytes);
+  out.name_ = name;
+  out.bytes_ = std::make_shared<const core::Bytes>(std::move(bytes));
   out.wanted_.assign(columns.begin(), columns.end());
-  out.cells_.resize(columns.size());
-  std::string_view rest = core::text_of(out.bytes_);
+  std::string_view rest = core::text_of(*out.bytes_);
   if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
   std::vector<std::string_view> header, cells;
   if (auto fine = out.read_header(next_line(rest), header); !fine) return fine.error();
+  out.cells_.resize(out.wanted_.size());
   for (std::size_t line = 2; !rest.empty(); ++line) {
     const auto text = next_line(rest);
     if (trimmed(text).empty()) continue;
@@ -124,10 +135,14 @@ core::Result<Table> Table::read(const std::filesystem::path& path,
     if (cells.size() != header.size())
       return wrong(fmt::format("{}:{}: {} cells, the header has {}", out.name_, line, cells.size(),
                                header.size()));
-    if (const auto why = out.add_row(line, cells, drop_missing); !why.empty()) return wrong(why);
+    if (const auto why = out.add_row(line, cells, missing); !why.empty()) return wrong(why);
   }
   if (out.lines_.empty()) return wrong(out.name_ + ": there is no row to analyse");
   return out;
+}
+
+bool Table::has(const std::string& column) const {
+  return std::ranges::find(wanted_, column) != wanted_.end();
 }
 
 const std::vector<std::string_view>& Table::texts(const std::string& column) const {
@@ -137,18 +152,53 @@ const std::vector<std::string_view>& Table::texts(const std::string& column) con
 }
 
 bool Table::is_numeric(const std::string& column) const {
-  double value = 0.0;
-  return std::ranges::all_of(texts(column), [&](auto cell) { return parse(cell, value); });
+  return std::ranges::all_of(texts(column), [&](auto cell) { return number_in(cell).has_value(); });
 }
 
 core::Result<statistics::Vector> Table::numbers(const std::string& column) const {
   const auto& cells = texts(column);
   statistics::Vector out(static_cast<Eigen::Index>(cells.size()));
-  for (std::size_t i = 0; i < cells.size(); ++i)
-    if (!parse(cells[i], out[static_cast<Eigen::Index>(i)]))
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const auto value = number_in(cells[i]);
+    if (!value)
       return wrong(fmt::format("{}:{}: column '{}' should be a number and is '{}'", name_,
                                lines_[i], column, shown(cells[i])));
+    out[static_cast<Eigen::Index>(i)] = *value;
+  }
   return out;
 }
 
-}  // namespace commands
+Table Table::filtered(const std::function<bool(std::size_t row)>& keeps) const {
+  Table out = *this;
+  for (auto& column : out.cells_) column.clear();
+  out.lines_.clear();
+  for (std::size_t i = 0; i < rows(); ++i) {
+    if (!keeps(i)) continue;
+    for (std::size_t j = 0; j < cells_.size(); ++j) out.cells_[j].push_back(cells_[j][i]);
+    out.lines_.push_back(lines_[i]);
+  }
+  return out;
+}
+
+core::Result<Table> Table::selected(std::span<const std::string> columns, Missing missing) const {
+  Table out;
+  out.name_ = name_;
+  out.bytes_ = bytes_;
+  out.wanted_.assign(columns.begin(), columns.end());
+  for (const auto& column : columns) {
+    const auto at = std::ranges::find(wanted_, column);
+    if (at == wanted_.end())
+      return wrong(no_column(name_, column, {wanted_.begin(), wanted_.end()}));
+    out.places_.push_back(static_cast<std::size_t>(at - wanted_.begin()));
+  }
+  out.cells_.resize(columns.size());
+  std::vector<std::string_view> row(wanted_.size());
+  for (std::size_t i = 0; i < rows(); ++i) {
+    for (const std::size_t j : out.places_) row[j] = cells_[j][i];
+    if (const auto why = out.add_row(lines_[i], row, missing); !why.empty()) return wrong(why);
+  }
+  if (out.lines_.empty()) return wrong(name_ + ": there is no row to analyse");
+  return out;
+}
+
+}  // namespace assessment
