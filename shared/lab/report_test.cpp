@@ -74,7 +74,8 @@ TEST(Report, SaysTheVerdictFirstInPlainWords) {
   const auto verdict = html.find("Coulomb friction is missing.");
   ASSERT_NE(verdict, std::string::npos);
   EXPECT_LT(verdict, html.find("step by step"));
-  EXPECT_THAT(html, HasSubstr("falls from 2.02 N to 0.06 N; the noise floor is 0.05 N"));
+  EXPECT_THAT(html,
+              HasSubstr("falls from 2.02&nbsp;N to 0.06&nbsp;N; the noise floor is 0.05&nbsp;N"));
 }
 
 TEST(Report, HoldsAllItPromises) {
