@@ -14,6 +14,14 @@ Account account_from(const Row& row) {
   return {row.text(0), row.text(1), row.text(2), row.text(3)};
 }
 
+core::Result<std::string> station_text(Reading& tx, const std::string& column,
+                                       const std::string& station_id) {
+  auto rows = tx.query("select " + column + " from stations where id = ?", {station_id});
+  if (!rows) return rows.error();
+  if (rows->empty()) return core::Error{core::Errc::not_found, "no such station"};
+  return rows->front().text(0);
+}
+
 }  // namespace
 
 core::Result<void> add_account(Writing& tx, const Account& account, std::int64_t now_utc_us) {
@@ -90,6 +98,14 @@ core::Result<std::optional<Station>> station_of(Reading& tx, const std::string& 
   if (!rows) return rows.error();
   if (rows->empty()) return std::optional<Station>();
   return std::optional(Station{rows->front().text(0), rows->front().text(1)});
+}
+
+core::Result<std::string> station_token_hash(Reading& tx, const std::string& station_id) {
+  return station_text(tx, "token_hash", station_id);
+}
+
+core::Result<std::string> station_name(Reading& tx, const std::string& station_id) {
+  return station_text(tx, "name", station_id);
 }
 
 core::Result<Failures> login_failures(Reading& tx, const std::string& name, const std::string& peer,

@@ -45,6 +45,11 @@ core::Result<void> add_station(Writing& tx, const Station& station, const std::s
                                std::int64_t now_utc_us);
 core::Result<std::optional<Station>> station_of(Reading& tx, const std::string& token_hash);
 
+/// What is kept of a station's token. Errors: not_found.
+core::Result<std::string> station_token_hash(Reading& tx, const std::string& station_id);
+/// Errors: not_found.
+core::Result<std::string> station_name(Reading& tx, const std::string& station_id);
+
 /// How often signing in failed since a time.
 struct Failures {
   std::uint64_t from_peer = 0;  ///< for this name from this address

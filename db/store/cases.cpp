@@ -5,10 +5,10 @@ namespace {
 
 constexpr const char* kSummary =
     "select c.id, c.title, c.source, c.made_utc_us, "
-    "(select count(*) from trials t where t.case_id = c.id) from cases c ";
+    "(select count(*) from trials t where t.case_id = c.id), c.kind from cases c ";
 
 CaseSummary summary_from(const Row& row) {
-  return {row.text(0), row.text(1), row.text(2), row.integer(3), row.count(4)};
+  return {row.text(0), row.text(1), row.text(2), row.integer(3), row.count(4), row.text(5)};
 }
 
 }  // namespace
@@ -26,9 +26,9 @@ core::Result<void> add_object(Writing& tx, const std::string& sha256, std::uint6
 core::Result<void> add_case(Writing& tx, const CaseSummary& summary,
                             const std::vector<CasePart>& parts, std::int64_t now_utc_us) {
   auto done = tx.query(
-      "insert into cases (id, title, source, made_utc_us, published_utc_us) "
-      "values (?, ?, ?, ?, ?) on conflict (id) do nothing",
-      {summary.id, summary.title, summary.source, summary.made_utc_us, now_utc_us});
+      "insert into cases (id, title, source, made_utc_us, published_utc_us, kind) "
+      "values (?, ?, ?, ?, ?, ?) on conflict (id) do nothing",
+      {summary.id, summary.title, summary.source, summary.made_utc_us, now_utc_us, summary.kind});
   if (!done) return done.error();
   for (const CasePart& part : parts) {
     if (auto noted = add_object(tx, part.sha256, part.size_bytes, now_utc_us); !noted) return noted;
@@ -43,7 +43,9 @@ core::Result<void> add_case(Writing& tx, const CaseSummary& summary,
 }
 
 core::Result<std::vector<CaseSummary>> all_cases(Reading& tx) {
-  auto rows = tx.query(std::string(kSummary) + "order by c.published_utc_us desc, c.id");
+  auto rows =
+      tx.query(std::string(kSummary) + "where c.kind = ? order by c.published_utc_us desc, c.id",
+               {std::string(kPalpation)});
   if (!rows) return rows.error();
   std::vector<CaseSummary> out;
   for (const Row& row : *rows) out.push_back(summary_from(row));

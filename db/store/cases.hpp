@@ -7,12 +7,18 @@
 
 namespace store {
 
+/// What a case is: a volume with a tract, or a probing scenario (its one part, scenario.json, is
+/// secret).
+inline constexpr const char* kPalpation = "palpation";
+inline constexpr const char* kProbing = "probing";
+
 struct CaseSummary {
-  std::string id;  ///< SHA-256 of case.json
+  std::string id;  ///< SHA-256 of case.json; of a scenario, its version's id
   std::string title;
   std::string source;
   std::int64_t made_utc_us = 0;
   std::uint64_t trials = 0;  ///< counted on reading
+  std::string kind = kPalpation;
 };
 
 /// A file of the bundle, case.json and case.sig among them.
@@ -26,7 +32,7 @@ struct CasePart {
 /// Notes the case, its parts and their objects. Publishing the same case again changes nothing.
 core::Result<void> add_case(Writing& tx, const CaseSummary& summary,
                             const std::vector<CasePart>& parts, std::int64_t now_utc_us);
-/// Newest first.
+/// Those for palpation, newest first: scenarios are nobody's to list.
 core::Result<std::vector<CaseSummary>> all_cases(Reading& tx);
 core::Result<std::optional<CaseSummary>> case_of(Reading& tx, const std::string& id);
 core::Result<std::optional<CasePart>> case_part(Reading& tx, const std::string& case_id,

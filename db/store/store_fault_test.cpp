@@ -9,6 +9,7 @@
 #include "db/store/jobs.hpp"
 #include "db/store/migrations.hpp"
 #include "db/store/store_test_support.hpp"
+#include "db/store/study_slots.hpp"
 #include "db/store/trials.hpp"
 #include "db/store/uploads.hpp"
 
@@ -49,7 +50,8 @@ std::string contents(Store& store) {
   auto read = store.read([&](Reading& tx) -> core::Result<void> {
     for (const char* table :
          {"accounts", "sessions", "login_failures", "stations", "objects", "cases", "case_parts",
-          "uploads", "trials", "trial_metrics", "jobs"}) {
+          "uploads", "trials", "trial_metrics", "jobs", "studies", "study_scenarios",
+          "study_participants", "study_slots", "study_trials", "study_events"}) {
       auto rows = tx.query(std::string("select * from ") + table);
       if (!rows) return rows.error();
       out += std::string(table) + ":" + std::to_string(rows->size()) + "\n";
@@ -107,6 +109,29 @@ TEST(StoreFaults, APublishedCaseIsWholeOrAbsent) {
                               {{"case.json", id, 9, false}, {"truth.json", kSha, 4, true}}, 2);
             }),
             7);
+}
+
+/// A study of which a station has a trial, all of whose bytes are here.
+core::Result<void> furnish_study(Writing& tx) {
+  const Study study{.id = "study", .title = "", .ordering = "random"};
+  if (auto done = add_study(tx, study, {kCase}, {"ada", 1}); !done) return done;
+  if (auto done = add_participant(tx, "study", {.name = "P1"}, {kCase, kCase}, {"ada", 1}); !done)
+    return done;
+  auto slots = study_slots(tx, "study");
+  if (!slots) return slots.error();
+  return announce_for_slot(tx, kTrial, slots->front().id, 1);
+}
+
+TEST(StoreFaults, ATrialOfAStudyAndItsPlaceInTheStudyAreThereTogetherOrNot) {
+  for (const bool complete : {true, false}) {
+    const int steps = fails_cleanly_at_every_step([&](Writing& tx) -> core::Result<void> {
+      if (auto done = furnish_study(tx); !done) return done;
+      if (auto done = add_object(tx, kSha, 10, 2); !done) return done;
+      if (auto done = add_trial(tx, trial(), 2); !done) return done;
+      return record_for_slot(tx, kTrial, complete, {"station-1", 2});
+    });
+    EXPECT_GE(steps, 17);  // begin, 15 statements, commit; more when it is repeated
+  }
 }
 
 TEST(StoreFaults, AnAssessmentIsWholeOrAbsent) {

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "db/store/accounts.hpp"
 #include "db/store/cases.hpp"
 #include "db/store/jobs.hpp"
+#include "db/store/study_slots.hpp"
 #include "server/api/uploads.hpp"
 #include "trial/trial_file.hpp"
 
@@ -16,8 +18,8 @@ struct Tally {
   double first_s = 0.0, last_s = 0.0;
   std::uint32_t first_tick = 0, last_tick = 0;
 
-  void add(std::span<const trial::Sample> part) {
-    for (const trial::Sample& sample : part) {
+  void add(const trial::Block& part) {
+    part.each([this](const auto& sample) {
       if (samples++ == 0) {
         first_s = sample.t_s;
         first_tick = sample.tick;
@@ -26,7 +28,7 @@ struct Tally {
       not_converged += (sample.flags & trial::kNotConverged) ? 1 : 0;
       last_s = sample.t_s;
       last_tick = sample.tick;
-    }
+    });
   }
 };
 
@@ -53,18 +55,19 @@ core::Result<void> check_bytes(const store::Upload& upload, const std::filesyste
   return {};
 }
 
-core::Result<void> check_identity(const store::Upload& upload, const trial::Trial& trial,
-                                  const Tally& tally) {
+/// @param case_id  what the station knows the case by
+core::Result<void> check_identity(const store::Upload& upload, const std::string& case_id,
+                                  const trial::Trial& trial, const Tally& tally) {
   if (!trial.sealed)
     return core::Error{core::Errc::bad_input, "trial file: it has no end; recover it first"};
   if (trial.header.id != upload.trial_id)
     return core::Error{core::Errc::bad_input,
                        fmt::format("trial file: its id is {}, announced was {}", trial.header.id,
                                    upload.trial_id)};
-  if (trial.header.case_id != upload.case_id)
-    return core::Error{core::Errc::bad_input,
-                       fmt::format("trial file: its case is {}, announced was {}",
-                                   trial.header.case_id, upload.case_id)};
+  if (trial.header.case_id != case_id)
+    return core::Error{
+        core::Errc::bad_input,
+        fmt::format("trial file: its case is {}, announced was {}", trial.header.case_id, case_id)};
   if (tally.samples == 0)
     return core::Error{core::Errc::bad_input, "trial file: it has no samples"};
   return {};
@@ -104,11 +107,14 @@ core::Result<store::TrialRecord> checked_trial(Backend& backend, const store::Up
   const auto path = backend.partials.path_of(upload.trial_id);
   if (auto fine = check_bytes(upload, path); !fine) return without_path(fine.error(), path);
   Tally tally;
-  auto trial =
-      trial::scan_trial(path, [&](std::span<const trial::Sample> part) { tally.add(part); },
-                        {.max_samples = kMaxTrialSamples, .max_bytes = kMaxTrial_bytes});
+  auto trial = trial::scan_trial(path, [&](const trial::Block& part) { tally.add(part); },
+                                 {.max_samples = kMaxTrialSamples, .max_bytes = kMaxTrial_bytes});
   if (!trial) return without_path(trial.error(), path);
-  if (auto fine = check_identity(upload, *trial, tally); !fine) return fine.error();
+  auto slot = backend.store.read(
+      [&](store::Reading& tx) { return store::slot_of_trial(tx, upload.trial_id); });
+  if (!slot) return slot.error();
+  const std::string& case_id = *slot ? (*slot)->id : upload.case_id;
+  if (auto fine = check_identity(upload, case_id, *trial, tally); !fine) return fine.error();
   return record_of(upload, *trial, tally);
 }
 
@@ -124,6 +130,11 @@ core::Result<void> store_trial(Backend& backend, const store::Upload& upload,
       return done;
     if (auto done = store::add_trial(tx, trial, now); !done) return done;
     if (auto done = store::complete_upload(tx, upload.trial_id); !done) return done;
+    auto station = store::station_name(tx, upload.station_id);
+    if (!station) return station.error();
+    if (auto done = store::record_for_slot(tx, upload.trial_id, trial.complete, {*station, now});
+        !done)
+      return done;
     return store::queue_job(tx, "metrics", upload.trial_id, now);
   });
 }

@@ -59,7 +59,7 @@ core::Json responses(const RouteInfo& route) {
   out["401"] = error_answer("credentials are missing or wrong");
   if (!route.open) out["403"] = error_answer("known, and not allowed");
   if (route.path.find('{') != std::string::npos) out["404"] = error_answer("nothing by that name");
-  if (route.method == "PUT" || route.method == "PATCH" || route.path.ends_with("/commit"))
+  if (route.method == "PUT" || route.method == "PATCH" || (route.method == "POST" && !route.open))
     out["409"] = error_answer("it contradicts what is already there");
   if (!route.body.empty()) out["413"] = error_answer("the body is over the limit");
   if (route.open) out["429"] = error_answer("too many failures: wait");

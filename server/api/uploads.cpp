@@ -5,6 +5,7 @@
 #include <set>
 
 #include "db/store/cases.hpp"
+#include "db/store/study_slots.hpp"
 #include "db/store/uploads.hpp"
 #include "server/api/backend.hpp"
 #include "server/api/commit.hpp"
@@ -43,25 +44,39 @@ core::Result<void> check_room(Backend& backend, std::uint64_t size_bytes) {
       fmt::format("the server's disk has {} bytes left: too few for this trial", space.available)};
 }
 
+/// The case that an announcement means: one by its id, or that of a study's slot, which is all that
+/// a station knows of it.
+core::Result<std::string> case_meant(store::Reading& tx, const std::string& announced,
+                                     std::optional<store::Slot>& slot) {
+  auto found = store::slot_of(tx, announced);
+  if (!found) return found.error();
+  slot = std::move(*found);
+  if (slot) return slot->case_id;
+  auto known = store::case_of(tx, announced);
+  if (!known) return known.error();
+  if (*known) return announced;
+  return core::Error{core::Errc::not_found, "case_id: no case " + announced + " on this server"};
+}
+
 core::Result<wire::UploadState> insert(store::Writing& tx, const Caller& station,
                                        const std::string& trial_id,
                                        const wire::UploadAnnouncement& announced,
                                        std::int64_t now_utc_us) {
-  auto known = store::case_of(tx, announced.case_id);
-  if (!known) return known.error();
-  if (!*known)
-    return core::Error{core::Errc::not_found,
-                       "case_id: no case " + announced.case_id + " on this server"};
+  std::optional<store::Slot> slot;
+  auto case_id = case_meant(tx, announced.case_id, slot);
+  if (!case_id) return case_id.error();
   auto open = store::open_upload_count(tx, station.id);
   if (!open) return open.error();
   if (*open >= kMaxOpenUploads)
     return core::Error{
         core::Errc::unavailable,
         fmt::format("{} uploads of this station are unfinished: finish some first", *open)};
-  store::Upload upload{
-      trial_id, station.id, announced.case_id, announced.size_bytes, announced.sha256,
-      0,        0,          "receiving"};
+  store::Upload upload{trial_id,         station.id, *case_id, announced.size_bytes,
+                       announced.sha256, 0,          0,        "receiving"};
   if (auto added = store::add_upload(tx, upload, now_utc_us); !added) return added.error();
+  if (slot)
+    if (auto noted = store::announce_for_slot(tx, trial_id, slot->id, now_utc_us); !noted)
+      return noted.error();
   return state_of(upload);
 }
 
@@ -91,7 +106,10 @@ core::Result<wire::UploadState> announce_upload(Backend& backend, const Caller& 
     if (!*upload) return insert(tx, station, trial_id, announced, backend.now_utc_us());
     const store::Upload& known = **upload;
     if (known.station_id != station.id) return unknown(trial_id);
-    if (known.case_id == announced.case_id && known.size_bytes == announced.size_bytes &&
+    auto slot = store::slot_of_trial(tx, trial_id);
+    if (!slot) return slot.error();
+    const std::string& case_id = *slot ? (*slot)->id : known.case_id;
+    if (case_id == announced.case_id && known.size_bytes == announced.size_bytes &&
         known.sha256 == announced.sha256)
       return state_of(known);
     return core::Error{core::Errc::conflict,

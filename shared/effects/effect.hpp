@@ -2,9 +2,14 @@
 /// file's name is the id.
 #pragma once
 
+#include <cstddef>
+#include <limits>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "core/result.hpp"
 
 namespace effects {
 
@@ -16,6 +21,9 @@ enum class Kind {
 };
 std::string_view name(Kind kind);
 
+/// Of a parameter of shape, at which nothing vanishes.
+inline constexpr double kNoOff = std::numeric_limits<double>::quiet_NaN();
+
 /// One number (or several of one name, as the three of a vector) of an effect.
 struct Param {
   std::string name;     ///< as in model files; ends in its unit: "friction_N"
@@ -23,8 +31,8 @@ struct Param {
   double initial;       ///< where a fit begins, each component
   double low, high;     ///< plausible range, each component; what lies outside is refused
   int components = 1;
-  /// Where the effect vanishes exactly if this parameter takes it, whatever the others are; NaN
-  /// for a parameter of shape (a velocity, a period), which has no such value.
+  /// The effect vanishes exactly when every parameter that has an off value takes it, whatever the
+  /// others are; kNoOff for a parameter of shape (a velocity, a period), which has no such value.
   double off = 0.0;
   bool logarithmic = false;  ///< spans decades: search and step in its logarithm
 };
@@ -39,16 +47,24 @@ struct EffectFacts {
   std::vector<Param> params;
   /// States of the recording it needs beyond depth or pose: "omega_rad_s", "tz_Nm"; a set without
   /// them cannot show it.
-  std::vector<std::string> needs;
-  std::vector<std::string> parents;  ///< simpler effects it contains as a limit
-  bool free_per_trial = false;       ///< its course differs from trial to trial (sensor_drift)
-  bool passive = true;               ///< gives back no more work than it got
+  std::vector<std::string> needs = {};
+  std::vector<std::string> parents = {};  ///< simpler effects it contains as a limit
+  bool free_per_trial = false;            ///< its course differs from trial to trial (sensor_drift)
+  bool passive = true;                    ///< gives back no more work than it got
 };
 
 /// An effect in a model: which, and its numbers in the order of the params, components flattened.
 struct Use {
   std::string id;
   std::vector<double> values;
+  /// Of a user's own expression ("expression:NAME"): its file's JSON. Empty for the catalogue's.
+  std::string definition = {};
 };
+
+/// Are the numbers as many as the effect takes, finite and within their ranges? Errors: bad_input
+/// (too few, too many), out_of_range naming the parameter, its value and its range.
+core::Result<void> check(const EffectFacts& facts, std::span<const double> values);
+/// How many numbers an effect takes: its parameters' components together.
+std::size_t value_count(const EffectFacts& facts);
 
 }  // namespace effects

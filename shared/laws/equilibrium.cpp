@@ -5,7 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "laws/palpation_law.hpp"
 #include "laws/trust_region.hpp"
 
 namespace laws {
@@ -63,18 +62,27 @@ class Solver {
   void bend(const Vec2& deflection_m, Bending& out) {
     ++iterations_;
     out.deflection_m = deflection_m;
-    out.residual_N = beam_.stiffness_N_per_m * deflection_m;
-    out.stiffness_N_per_m = beam_.stiffness_N_per_m * Mat2::Identity();
+    const Shank& shank = *beam_.shank;
+    out.residual_N = shank.stiffness_N_per_m * deflection_m;
+    out.stiffness_N_per_m = shank.stiffness_N_per_m * Mat2::Identity();
     const Vec3 sideways = R_VH_.leftCols<2>() * deflection_m;
-    for (std::size_t i = 0; i < beam_.z_m.size(); ++i) {
-      const double shape = beam_.shape[i];
-      const Vec3 p_V = origin_ + beam_.z_m[i] * R_VH_.col(2) + shape * sideways;
-      const volume::FieldSample at = beam_.field->sample(p_V);
-      out.force_H_N[i] = beam_.force_factor_Nm * (R_VH_.transpose() * at.g_per_m);
-      out.residual_N -= shape * out.force_H_N[i].head<2>();
+    for (std::size_t i = 0; i < std::size_t(shank.points); ++i) {
+      const double shape = shank.shape[i];
+      Vec3 p_V = origin_ + shank.z_m[i] * R_VH_.col(2) + shape * sideways;
+      if (!shank.straight) p_V += R_VH_.leftCols<2>() * shank.rest_m[i];
       const Eigen::Matrix<double, 3, 2> lateral = R_VH_.leftCols<2>();
-      out.stiffness_N_per_m -= shape * shape * beam_.force_factor_Nm *
-                               (lateral.transpose() * (at.jacobian_per_m2 * lateral));
+      if (beam_.contact) [[unlikely]] {
+        const ForceSample at = beam_.contact->at(i, p_V);
+        out.force_H_N[i] = R_VH_.transpose() * at.force_N;
+        out.stiffness_N_per_m -=
+            shape * shape * (lateral.transpose() * (at.jacobian_N_per_m * lateral));
+      } else {
+        const volume::FieldSample at = beam_.field->sample(p_V);
+        out.force_H_N[i] = beam_.force_factor_Nm * (R_VH_.transpose() * at.g_per_m);
+        out.stiffness_N_per_m -= shape * shape * beam_.force_factor_Nm *
+                                 (lateral.transpose() * (at.jacobian_per_m2 * lateral));
+      }
+      out.residual_N -= shape * out.force_H_N[i].head<2>();
     }
   }
 

@@ -3,18 +3,32 @@
 
 #include <span>
 
+#include "laws/shank.hpp"
 #include "math/geometry.hpp"
 #include "volume/force_field.hpp"
 
 namespace laws {
 
-/// The shank as a cantilever with contact points, in symbols of PalpationLaw.
+/// A force and how it changes with the point it acts at, both in V.
+struct ForceSample {
+  math::Vec3 force_N;
+  math::Mat3 jacobian_N_per_m;  ///< ∂F_a/∂p_b
+};
+
+/// What pushes on the contact points of a shank, where it is more than c_f g.
+class ContactForces {
+ public:
+  virtual ~ContactForces() = default;
+  /// The force on point i of the bent shank when it is at p. Never fails, never allocates.
+  virtual ForceSample at(std::size_t i, const math::Vec3& p_V_m) const noexcept = 0;
+};
+
+/// A shank in what pushes on it, in symbols of PalpationLaw.
 struct Beam {
   const volume::ForceField* field;
-  double force_factor_Nm;         ///< c_f
-  double stiffness_N_per_m;       ///< k, of the tip
-  std::span<const double> z_m;    ///< z_i, from the tip on
-  std::span<const double> shape;  ///< φ(z_i)
+  const ContactForces* contact;  ///< null: c_f g alone
+  double force_factor_Nm;        ///< c_f
+  const Shank* shank;
 };
 
 struct Equilibrium {

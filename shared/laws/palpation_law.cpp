@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "laws/equilibrium.hpp"
+#include "core/require.hpp"
 
 namespace laws {
 namespace {
@@ -39,27 +39,26 @@ core::Result<PalpationLaw> PalpationLaw::make(const PalpationParameters& p,
 }
 
 PalpationLaw::PalpationLaw(const PalpationParameters& p, const volume::ForceField& field)
-    : parameters_(p), field_(&field), z_m_{}, shape_{} {
-  const double inertia_m4 = M_PI * std::pow(p.radius_m, 4) / 4.0;
-  const double L = p.length_m;
-  stiffness_N_per_m_ = 3.0 * p.youngs_modulus_Pa * inertia_m4 / (L * L * L);
-  for (int i = 0; i < p.points; ++i) {
-    const double z = std::max(L - i * p.point_spacing_m, 0.0);
-    z_m_[std::size_t(i)] = z;
-    shape_[std::size_t(i)] = z * z * (3.0 * L - z) / (2.0 * L * L * L);  // (4), 1 at the tip
-  }
+    : parameters_(p), field_(&field), shank_(Shank::uniform(p)) {}
+
+void PalpationLaw::replace_shank(const Shank& shank) {
+  core::require(shank.points == shank_.points, "a shank keeps its contact points");
+  shank_ = shank;
 }
 
 Vec3 PalpationLaw::point_H_m(int i, const Vec2& deflection_m) const noexcept {
   const auto k = std::size_t(i);
-  return {shape_[k] * deflection_m.x(), shape_[k] * deflection_m.y(), z_m_[k]};
+  const Vec2 across = shank_.shape[k] * deflection_m;
+  if (shank_.straight) return {across.x(), across.y(), shank_.z_m[k]};
+  return {across.x() + shank_.rest_m[k].x(), across.y() + shank_.rest_m[k].y(), shank_.z_m[k]};
 }
 
 Vec3 PalpationLaw::tip_m(const Pose& X_VH, const Vec2& deflection_m) const noexcept {
   return X_VH * point_H_m(0, deflection_m);
 }
 
-PalpationStep PalpationLaw::step(const Pose& X_VH, PalpationState& state) const noexcept {
+PalpationStep PalpationLaw::step(const Pose& X_VH, PalpationState& state,
+                                 const ContactForces* contact) const noexcept {
   PalpationStep out;
   const bool finite = X_VH.p.allFinite() && X_VH.q.coeffs().allFinite();
   if (!finite || !state.deflection_m.allFinite()) state.deflection_m.setZero();
@@ -69,8 +68,7 @@ PalpationStep PalpationLaw::step(const Pose& X_VH, PalpationState& state) const 
     return out;
   }
   const auto n = std::size_t(parameters_.points);
-  const Beam beam{field_, parameters_.force_factor_Nm, stiffness_N_per_m_, std::span(z_m_).first(n),
-                  std::span(shape_).first(n)};
+  const Beam beam{field_, contact, parameters_.force_factor_Nm, &shank_};
   const Equilibrium found = equilibrium(beam, X_VH, state.deflection_m, out.force_H_N);
   state.deflection_m = out.deflection_m = found.deflection_m;
   out.iterations = found.iterations;

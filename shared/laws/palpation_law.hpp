@@ -6,6 +6,8 @@
 #include <span>
 
 #include "core/result.hpp"
+#include "laws/equilibrium.hpp"
+#include "laws/shank.hpp"
 #include "math/geometry.hpp"
 #include "volume/force_field.hpp"
 
@@ -28,8 +30,6 @@ struct PalpationParameters {
   Vec3 pose_offset_m = Vec3::Zero();   ///< added to the recorded position, in V
 };
 
-inline constexpr int kMaxPoints = 64;
-
 /// What changes from tick to tick. A fresh one is the unbent probe.
 struct PalpationState {
   Vec2 deflection_m = Vec2::Zero();  ///< δ of the tip, in H
@@ -50,7 +50,8 @@ struct PalpationStep {
 ///     (4) F_i = c_f g(p_i) (2) k δ = Σ φ(z_i) F_i,⊥,   k = 3EI/L³            (quasi-static
 ///     equilibrium, to < 0.001 N) F* = s_f Σ F_i,   τ* = s_t Σ (p_i − origin) × F_i (3)
 ///
-/// Assumes small deflections, a straight uniform shank, contact at the n points alone.
+/// Assumes small deflections, a straight uniform shank, contact at the n points alone. A model's
+/// effects replace two parts: the Shank (structure), and ContactForces instead of F_i = c_f g(p_i).
 /// Departs from the source: the equilibrium is found by Newton with a trust region instead of
 /// relaxation (which fails to converge where the wall is stiffer than the shank), to the same
 /// tolerance.
@@ -63,22 +64,26 @@ class PalpationLaw {
 
   /// One step from the handle's pose in V. Never fails, never allocates. `state` is the last
   /// step's.
-  PalpationStep step(const math::Pose& X_VH, PalpationState& state) const noexcept;
+  /// @param contact  what pushes on the points; null: F_i = c_f g(p_i)
+  PalpationStep step(const math::Pose& X_VH, PalpationState& state,
+                     const ContactForces* contact = nullptr) const noexcept;
 
   /// Tip of the bent probe in V, m.
   Vec3 tip_m(const math::Pose& X_VH, const Vec2& deflection_m) const noexcept;
   /// Contact point i of the bent probe in H, m.
   Vec3 point_H_m(int i, const Vec2& deflection_m) const noexcept;
   const PalpationParameters& parameters() const noexcept { return parameters_; }
-  /// k = 3EI/L³, N/m.
-  double tip_stiffness_N_per_m() const noexcept { return stiffness_N_per_m_; }
+  /// k, 3EI/L³ where the shank is uniform, N/m.
+  double tip_stiffness_N_per_m() const noexcept { return shank_.stiffness_N_per_m; }
+  const Shank& shank() const noexcept { return shank_; }
+  /// Puts another shank in the place of the uniform one: as many points as before.
+  void replace_shank(const Shank& shank);
 
  private:
   PalpationLaw(const PalpationParameters& parameters, const volume::ForceField& field);
   PalpationParameters parameters_;
   const volume::ForceField* field_;
-  double stiffness_N_per_m_;
-  std::array<double, kMaxPoints> z_m_, shape_;  // z_i and φ(z_i)
+  Shank shank_;
 };
 
 }  // namespace laws

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace laws {
 namespace {
@@ -87,45 +88,79 @@ core::Result<ProbingLaw> ProbingLaw::make(ProbingParameters p) {
   if (auto ok = check(p.layers, p.travel_m); !ok) return ok.error();
   if (auto ok = check(p.walls, p.travel_m); !ok) return ok.error();
   ProbingLaw law(std::move(p));
-  auto& borders = law.borders_m_;
-  for (const Layer& layer : law.parameters_.layers)
-    borders.insert(borders.end(), {layer.start_m, layer.start_m + layer.thickness_m});
-  for (const CorticalWall& wall : law.parameters_.walls)
-    borders.insert(borders.end(), {wall.position_m - wall.resistance_interval_m, wall.position_m,
-                                   wall.position_m + wall.breach_interval_m});
-  borders.push_back(law.parameters_.travel_m);
-  std::ranges::sort(borders);
+  law.lay_out();
   return law;
 }
 
-ProbingMode ProbingLaw::mode_at(double x_m) const noexcept {
-  if (x_m >= parameters_.travel_m) return ProbingMode::stopped;
+void ProbingLaw::lay_out() {
+  borders_m_.reserve(2 * parameters_.layers.size() + 3 * parameters_.walls.size() + 1);
+  for (const Layer& layer : parameters_.layers)
+    borders_m_.insert(borders_m_.end(), {layer.start_m, layer.start_m + layer.thickness_m});
+  for (const CorticalWall& wall : parameters_.walls)
+    borders_m_.insert(borders_m_.end(),
+                      {wall.position_m - wall.resistance_interval_m, wall.position_m,
+                       wall.position_m + wall.breach_interval_m});
+  borders_m_.push_back(parameters_.travel_m);
+  std::ranges::sort(borders_m_);
+  const auto same = std::ranges::unique(borders_m_);
+  borders_m_.erase(same.begin(), same.end());
+  stretches_.reserve(borders_m_.size() + 1);
+  stretches_.push_back({.start_m = -std::numeric_limits<double>::infinity()});
+  for (const double border_m : borders_m_) stretches_.push_back(stretch_from(border_m));
+}
+
+ProbingLaw::Stretch ProbingLaw::stretch_from(double start_m) const {
+  Stretch out{.start_m = start_m};
   for (const CorticalWall& wall : parameters_.walls) {
-    if (x_m >= wall.position_m && x_m < wall.position_m + wall.breach_interval_m)
-      return ProbingMode::breach;
-    if (x_m >= wall.position_m - wall.resistance_interval_m && x_m < wall.position_m)
-      return ProbingMode::resistance;
+    const double grows_from_m = wall.position_m - wall.resistance_interval_m;
+    if (start_m >= wall.position_m && start_m < wall.position_m + wall.breach_interval_m) {
+      out.at_start = {0.0, wall.breach_damping_Ns_per_m, 0.0};  // eq. (3)
+      out.mode = ProbingMode::breach;
+      return out;
+    }
+    if (start_m >= grows_from_m && start_m < wall.position_m) {
+      out.mode = ProbingMode::resistance;
+      out.grows_from_m = grows_from_m;
+      out.growth_per_m = wall.resistance_factor_per_m;
+    }
   }
-  return ProbingMode::bone;
+  for (const Layer& layer : parameters_.layers)
+    if (start_m >= layer.start_m && start_m < layer.start_m + layer.thickness_m) {
+      out.at_start = {layer.stiffness_N_per_m, layer.damping_Ns_per_m, layer.equilibrium_m};
+      break;
+    }
+  return out;
+}
+
+const ProbingLaw::Stretch& ProbingLaw::stretch_at(double x_m) const noexcept {
+  const auto after = std::upper_bound(borders_m_.begin(), borders_m_.end(), x_m);
+  return stretches_[std::size_t(after - borders_m_.begin())];
+}
+
+ProbingMode ProbingLaw::mode_at(double x_m) const noexcept {
+  return x_m >= parameters_.travel_m ? ProbingMode::stopped : stretch_at(x_m).mode;
 }
 
 ProbingLaw::Local ProbingLaw::local(double x_m) const noexcept {
-  double grown = 1.0;
-  for (const CorticalWall& wall : parameters_.walls) {
-    if (x_m >= wall.position_m && x_m < wall.position_m + wall.breach_interval_m)
-      return {0.0, wall.breach_damping_Ns_per_m, 0.0};  // eq. (3)
-    const double into_m = x_m - (wall.position_m - wall.resistance_interval_m);
-    if (into_m >= 0.0 && x_m < wall.position_m) grown = 1.0 + wall.resistance_factor_per_m * into_m;
-  }
-  for (const Layer& layer : parameters_.layers)
-    if (x_m >= layer.start_m && x_m < layer.start_m + layer.thickness_m)
-      return {grown * layer.stiffness_N_per_m, grown * layer.damping_Ns_per_m, layer.equilibrium_m};
-  return {0.0, 0.0, 0.0};
+  const Stretch& s = stretch_at(x_m);
+  const double grown = 1.0 + s.growth_per_m * (x_m - s.grows_from_m);
+  return {grown * s.at_start.stiffness_N_per_m, grown * s.at_start.damping_Ns_per_m,
+          s.at_start.equilibrium_m};
 }
 
 double ProbingLaw::force_N(double x_m, double speed_m_s) const noexcept {
   const Local l = local(x_m);
   return l.damping_Ns_per_m * speed_m_s + l.stiffness_N_per_m * (x_m - l.equilibrium_m);
+}
+
+double ProbingLaw::force_N(double x_m, double speed_m_s, std::size_t& stretch) const noexcept {
+  stretch = std::min(stretch, borders_m_.size());
+  while (stretch < borders_m_.size() && x_m >= borders_m_[stretch]) ++stretch;
+  while (stretch > 0 && x_m < borders_m_[stretch - 1]) --stretch;
+  const Stretch& s = stretches_[stretch];
+  const double grown = 1.0 + s.growth_per_m * (x_m - s.grows_from_m);
+  return grown * (s.at_start.damping_Ns_per_m * speed_m_s +
+                  s.at_start.stiffness_N_per_m * (x_m - s.at_start.equilibrium_m));
 }
 
 double ProbingLaw::torque_Nm(double x_m, double theta_rad, double turning_rad_s) const noexcept {

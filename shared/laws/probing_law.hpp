@@ -2,6 +2,7 @@
 /// breaches.
 #pragma once
 
+#include <cstddef>
 #include <numbers>
 #include <string>
 #include <string_view>
@@ -87,10 +88,16 @@ class ProbingLaw {
 
   /// Push needed at depth `x_m` to move at `speed_m_s`, eqs (2), (3) solved for F.
   double force_N(double x_m, double speed_m_s) const noexcept;
+  /// The same along a path. @param stretch  where the depth before lay, 0 at first: any value is
+  /// right, a near one is fast.
+  double force_N(double x_m, double speed_m_s, std::size_t& stretch) const noexcept;
   /// Torque of the hand on the probe needed at angle θ and speed ω: viscous and detent parts; 0
   /// behind a wall.
   double torque_Nm(double x_m, double theta_rad, double turning_rad_s) const noexcept;
 
+  /// The next depth at which the law changes, in the direction of motion; the travel's ends are
+  /// such.
+  double next_border_m(double x_m, bool inward) const noexcept;
   /// The mode at a depth for a probe that turns.
   ProbingMode mode_at(double x_m) const noexcept;
   const ProbingParameters& parameters() const noexcept { return parameters_; }
@@ -100,12 +107,22 @@ class ProbingLaw {
   struct Local {
     double stiffness_N_per_m, damping_Ns_per_m, equilibrium_m;
   };
+  /// Between two borders: K, D and x0 at its start, and the share by which they grow per metre.
+  struct Stretch {
+    double start_m = 0.0;
+    Local at_start{};
+    ProbingMode mode = ProbingMode::bone;
+    double grows_from_m = 0.0, growth_per_m = 0.0;
+  };
   explicit ProbingLaw(ProbingParameters parameters) : parameters_(std::move(parameters)) {}
+  void lay_out();
+  Stretch stretch_from(double start_m) const;
+  const Stretch& stretch_at(double x_m) const noexcept;
   Local local(double x_m) const noexcept;
   double speed_m_s(double force_N, double x_m) const noexcept;
-  double next_border_m(double x_m, bool inward) const noexcept;
   ProbingParameters parameters_;
-  std::vector<double> borders_m_;  // all depths at which the law changes, sorted
+  std::vector<double> borders_m_;   // all depths at which the law changes, sorted
+  std::vector<Stretch> stretches_;  // the first from −∞ on, then one from each border on
 };
 
 }  // namespace laws

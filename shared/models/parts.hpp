@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/json.hpp"
+#include "effects/effect.hpp"
 
 namespace models {
 
@@ -23,7 +24,12 @@ Fault read_identity(core::Fields& fields, std::string_view rig, std::string& nam
 /// `fixed`: JSON pointers, `*` for every element, each leading to something in the base of
 /// `whole`.
 Fault read_fixed(core::Fields& fields, const core::Json& whole, std::vector<std::string>& fixed);
-/// Refuses every effect by its id: this version knows none.
-Fault read_effects(core::Fields& fields);
+/// What a catalogue says of an effect, or null where it does not know the id.
+using FactsOf = const effects::EffectFacts* (*)(std::string_view id);
+/// `effects`: a list of {"id", "parameters": {name: number, or an array for a parameter of several
+/// components}}, every parameter given and within its range, no id twice.
+Fault read_effects(core::Fields& fields, FactsOf facts_of, std::vector<effects::Use>& uses);
+/// The same list, written. Every id must be known to the catalogue.
+core::Json effects_to_json(const std::vector<effects::Use>& uses, FactsOf facts_of);
 
 }  // namespace models

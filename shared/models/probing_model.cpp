@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "effects/probing_effect.hpp"
 #include "models/parts.hpp"
 
 namespace models {
@@ -64,6 +65,12 @@ Fault read_base(Fields& fields, ProbingModel& model) {
   return std::nullopt;
 }
 
+const effects::EffectFacts* probing_facts(std::string_view id) {
+  for (const auto& info : effects::probing_effects())
+    if (info.facts.id == id) return &info.facts;
+  return nullptr;
+}
+
 }  // namespace
 
 Result<laws::ProbingLaw> ProbingModel::law(double travel_m) const {
@@ -78,7 +85,7 @@ Result<ProbingModel> ProbingModel::from_json(const Json& json, const std::string
   if (auto fault = read_identity(fields, "probing", model.name)) return *fault;
   if (auto fault = read_base(fields, model)) return *fault;
   if (auto fault = read_fixed(fields, model.to_json(), model.fixed)) return *fault;
-  if (auto fault = read_effects(fields)) return *fault;
+  if (auto fault = read_effects(fields, probing_facts, model.effects)) return *fault;
   if (auto done = fields.done(); !done) return done.error();
   return model;
 }
@@ -107,7 +114,7 @@ Json ProbingModel::to_json() const {
               {"detent_Nm", rotary.detent_Nm},
               {"detent_pitch_rad", rotary.detent_pitch_rad}}}}},
           {"fixed", fixed},
-          {"effects", Json::array()}};
+          {"effects", effects_to_json(effects, probing_facts)}};
 }
 
 Result<Model> model_from_json(const Json& json, const std::string& where) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/json.hpp"
+#include "effects/effect.hpp"
 #include "laws/probing_law.hpp"
 #include "models/model.hpp"
 
@@ -19,6 +20,7 @@ struct ProbingModel {
   std::vector<laws::Layer> layers;  ///< by depth, without overlap
   laws::RotaryStage rotary;
   std::vector<std::string> fixed;  ///< JSON pointers of base parameters that a fit leaves alone
+  std::vector<effects::Use> effects = {};  ///< in the file's order
 
   /// @param where  leads every message, as "model.json: ". Errors: bad_input naming the field, the
   /// law's own refusals among them; another rig and every effect are refused by name.

@@ -234,4 +234,20 @@ Result<std::size_t> read_csv(const std::filesystem::path& path,
   return rows;
 }
 
+Result<std::vector<std::string>> csv_header(const std::filesystem::path& path,
+                                            const CsvLimits& limits) {
+  auto lines = Lines::open(path, limits.max_line_bytes);
+  if (!lines) return lines.error();
+  const auto line = lines->next();
+  if (!line) return line.error();
+  if (!*line)
+    return Error{Errc::bad_input,
+                 fmt::format("{}:1: the file is empty, a header is expected", path.string())};
+  std::string_view text = **line;
+  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+  std::vector<std::string_view> names;
+  split(text, names);
+  return std::vector<std::string>(names.begin(), names.end());
+}
+
 }  // namespace trial

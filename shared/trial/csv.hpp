@@ -5,7 +5,9 @@
 #include <filesystem>
 #include <functional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/result.hpp"
 
@@ -35,5 +37,10 @@ using CsvRow = std::function<std::string(std::size_t line, std::span<const doubl
 core::Result<std::size_t> read_csv(const std::filesystem::path& path,
                                    std::span<const std::string_view> columns, const CsvRow& on_row,
                                    const CsvLimits& limits = {});
+
+/// The names in a file's first line, as read_csv would look for them. Errors: as read_csv's for the
+/// header.
+core::Result<std::vector<std::string>> csv_header(const std::filesystem::path& path,
+                                                  const CsvLimits& limits = {});
 
 }  // namespace trial

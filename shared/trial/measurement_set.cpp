@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
-#include <set>
 
 #include "core/file.hpp"
 #include "trial/csv.hpp"
+#include "trial/set_index.hpp"
 
 namespace trial {
 namespace {
@@ -19,39 +18,8 @@ using core::Error;
 using core::Json;
 using core::Result;
 
-constexpr std::size_t kMaxRowsOfSet = 20'000'000;
-constexpr std::size_t kMaxTrials = 10'000;
 constexpr double kMaxPosition_m = 100.0;
 constexpr double kMaxWrench = 1e6;  // N and N·m
-constexpr double kMaxTime_s = 1e9;
-
-/// Letters, digits, '.', '_' and '-', not led by a dot: safe as part of a file's name.
-bool is_trial_id(std::string_view id) {
-  return !id.empty() && id.size() <= 64 && id[0] != '.' &&
-         std::ranges::all_of(id, [](unsigned char c) {
-           return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
-                  c == '.' || c == '_' || c == '-';
-         });
-}
-
-/// What is wrong with a relative path that must stay within `folder`, or nothing.
-std::string leaves(const fs::path& folder, const std::string& relative) {
-  const fs::path path(relative);
-  if (relative.empty() || relative.find('\0') != std::string::npos)
-    return "a relative path is expected";
-  if (path.is_absolute())
-    return fmt::format("'{}' is an absolute path, one relative to the set is expected", relative);
-  std::error_code failure;
-  const fs::path root = fs::weakly_canonical(folder, failure);
-  const fs::path target = failure ? fs::path() : fs::weakly_canonical(folder / path, failure);
-  if (!failure && target == root) return fmt::format("'{}' is not a file", relative);
-  const auto [at_root, at_target] =
-      std::mismatch(root.begin(), root.end(), target.begin(), target.end());
-  if (failure || at_root != root.end() || at_target == target.end() ||
-      std::ranges::find(path, fs::path("..")) != path.end())
-    return fmt::format("'{}' leaves the set's folder", relative);
-  return {};
-}
 
 Result<StatedTract> read_tract(const Json& object, const std::string& where) {
   core::Fields fields(object, where);
@@ -66,68 +34,38 @@ Result<StatedTract> read_tract(const Json& object, const std::string& where) {
   return tract;
 }
 
-Result<PalpationMeasurement> read_entry(const Json& object, const std::string& where,
-                                        const fs::path& folder, std::set<std::string>& ids) {
-  core::Fields fields(object, where);
-  PalpationMeasurement trial;
-  trial.id = fields.text("id", 64);
-  trial.file = fields.text("file");
-  trial.operator_name = fields.text_or("operator", "");
-  trial.notes = fields.text_or("notes", "");
-  if (!is_trial_id(trial.id))
-    fields.wrong("id",
-                 "letters, digits, '.', '_' and '-' are expected, at most 64, not led by '.'");
-  if (!ids.insert(trial.id).second)
-    fields.wrong("id", fmt::format("'{}' is there twice", trial.id));
-  if (auto why = leaves(folder, trial.file); !why.empty()) fields.wrong("file", why);
-  if (auto done = fields.done(); !done) return done.error();
-  return trial;
-}
-
 Result<PalpationSet> read_index(const fs::path& folder) {
-  const fs::path path = folder / "set.json";
-  const auto json = core::read_json(path);
-  if (!json) return json.error();
-  core::Fields fields(*json, path.string() + ": ");
   PalpationSet set;
   set.folder = folder;
-  if (const auto format = fields.text("format", 64); format != "tractus-measurements/1")
-    fields.wrong("format", fmt::format("'{}', \"tractus-measurements/1\" is expected", format));
-  if (const auto rig = fields.text("rig", 64); rig != "palpation")
-    fields.wrong("rig", fmt::format("'{}', \"palpation\" is expected here", rig));
-  if (fields.has("volume")) {
-    set.volume = fields.text("volume");
-    if (auto why = leaves(folder, set.volume); !why.empty()) fields.wrong("volume", why);
-  }
-  if (const Json* object = fields.member("tract", false)) {
-    const auto tract = read_tract(*object, path.string() + ": /tract");
-    if (!tract) return tract.error();
-    set.tract = *tract;
-  }
-  for (const char* key : kStatedFields)
-    if (const Json* value = fields.member(key, false)) set.stated[key] = *value;
-  const Json* trials = fields.member("trials");
-  if (trials && (!trials->is_array() || trials->empty() || trials->size() > kMaxTrials))
-    fields.wrong("trials", fmt::format("an array of 1 to {} trials is expected", kMaxTrials));
-  if (auto done = fields.done(); !done) return done.error();
-  std::set<std::string> ids;
-  for (std::size_t k = 0; k < trials->size(); ++k) {
-    auto trial =
-        read_entry((*trials)[k], fmt::format("{}: /trials/{}", path.string(), k), folder, ids);
-    if (!trial) return trial.error();
-    set.trials.push_back(std::move(*trial));
-  }
+  auto index = read_set_index(folder, "palpation", [&](core::Fields& fields) -> Result<void> {
+    if (fields.has("volume")) {
+      set.volume = fields.text("volume");
+      if (auto why = leaves_folder(folder, set.volume); !why.empty()) fields.wrong("volume", why);
+    }
+    if (const Json* object = fields.member("tract", false)) {
+      const auto tract = read_tract(*object, fields.where() + "/tract");
+      if (!tract) return tract.error();
+      set.tract = *tract;
+    }
+    return {};
+  });
+  if (!index) return index.error();
+  set.stated = std::move(index->stated);
+  for (SetEntry& entry : index->entries)
+    set.trials.push_back({std::move(entry.id),
+                          std::move(entry.file),
+                          std::move(entry.operator_name),
+                          std::move(entry.notes),
+                          {},
+                          {},
+                          {}});
   return set;
 }
 
 /// Takes a row in; says what is wrong with it, if anything.
 std::string take(std::span<const double> v, PalpationMeasurement& trial) {
   const double t = v[0];
-  if (!trial.t_s.empty() && t == trial.t_s.back())
-    return fmt::format("column t_s: {} is there twice", t);
-  if (!trial.t_s.empty() && t < trial.t_s.back())
-    return fmt::format("column t_s: time runs backwards, {} after {}", t, trial.t_s.back());
-  if (std::abs(t) > kMaxTime_s) return fmt::format("column t_s: {} is over {} s", t, kMaxTime_s);
+  if (auto why = wrong_time(trial.t_s, t); !why.empty()) return why;
   for (std::size_t c = 1; c < 4; ++c)
     if (std::abs(v[c]) > kMaxPosition_m)
       return fmt::format("column {}: {} is over {} m; metres are expected", kPalpationColumns[c],
@@ -164,7 +102,10 @@ std::string csv_of(const PalpationMeasurement& trial) {
 }
 
 Json index_of(const PalpationSet& set) {
-  Json json{{"format", "tractus-measurements/1"}, {"rig", "palpation"}};
+  std::vector<SetEntry> entries;
+  for (const auto& trial : set.trials)
+    entries.push_back({trial.id, trial.file, trial.operator_name, trial.notes});
+  Json json = set_json("palpation", set.stated, entries);
   if (!set.volume.empty()) json["volume"] = set.volume;
   if (set.tract) {
     const auto list = [](const math::Vec3& v) { return Json{v.x(), v.y(), v.z()}; };
@@ -172,12 +113,6 @@ Json index_of(const PalpationSet& set) {
                          {"axis", list(set.tract->axis)},
                          {"length_m", set.tract->length_m}};
   }
-  for (const auto& [key, value] : set.stated.items()) json[key] = value;
-  for (const auto& trial : set.trials)
-    json["trials"].push_back({{"id", trial.id},
-                              {"file", trial.file},
-                              {"operator", trial.operator_name},
-                              {"notes", trial.notes}});
   return json;
 }
 
@@ -191,10 +126,6 @@ std::string palpation_row(double t_s, const math::Pose& X_VH, const math::Wrench
 }
 
 Result<PalpationSet> read_palpation_set(const fs::path& folder) {
-  std::error_code ignored;
-  if (!fs::is_directory(folder, ignored))
-    return Error{Errc::not_found,
-                 fmt::format("{}: a folder with set.json is expected", folder.string())};
   auto set = read_index(folder);
   if (!set) return set;
   std::size_t total = 0;
@@ -213,12 +144,7 @@ Result<void> write_palpation_set(const fs::path& folder, const PalpationSet& set
   auto scratch = core::ScratchFolder::make(folder);
   if (!scratch) return scratch.error();
   for (const auto& trial : set.trials) {
-    const fs::path path = scratch->path() / trial.file;
-    std::error_code ignored;
-    if (auto why = leaves(scratch->path(), trial.file); !why.empty())
-      return Error{Errc::bad_input, why};
-    fs::create_directories(path.parent_path(), ignored);
-    if (auto written = core::write_file(path, core::bytes_of(csv_of(trial))); !written)
+    if (auto written = write_set_file(scratch->path(), trial.file, csv_of(trial)); !written)
       return written;
   }
   if (auto written = core::write_json(scratch->path() / "set.json", index_of(set)); !written)

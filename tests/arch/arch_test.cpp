@@ -32,10 +32,17 @@ const std::map<std::string, Names> kAllowed = {
     {"shared/lab",
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/effects",
       "shared/models", "shared/trial", "shared/statistics", "shared/plot"}},
+    // The lab's edge: files and zips in, a problem ready to judge out.
+    {"shared/lab/io",
+     {"shared/core", "shared/math", "shared/volume", "shared/volume/io", "shared/laws",
+      "shared/effects", "shared/models", "shared/trial", "shared/statistics", "shared/plot",
+      "shared/lab"}},
     // A scenario is the probing law's numbers as an expert tunes them; its bone is a model's.
     {"shared/scenarios",
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/effects",
       "shared/models"}},
+    // What server and station share of a blind study: its orders, and a law sealed for a station.
+    {"shared/study", {"shared/core", "shared/math", "shared/volume", "shared/laws"}},
     {"shared/cases",
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/effects",
       "shared/models"}},
@@ -63,16 +70,17 @@ const std::map<std::string, Names> kAllowed = {
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/models", "shared/cases",
       "shared/trial"}},
     {"station/session",
-     {"shared/core", "shared/math", "shared/volume", "shared/models", "shared/cases",
-      "shared/trial", "shared/metrics", "shared/wire", "station/devices", "station/loop",
-      "station/uplink"}},
+     {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/effects",
+      "shared/models", "shared/scenarios", "shared/cases", "shared/trial", "shared/metrics",
+      "shared/wire", "station/devices", "station/loop", "station/uplink"}},
     {"server/http", {"shared/core"}},
     {"server/jobs",
-     {"shared/core", "shared/trial", "shared/metrics", "shared/cases", "shared/volume",
-      "db/store"}},
+     {"shared/core", "shared/trial", "shared/metrics", "shared/cases", "shared/scenarios",
+      "shared/volume", "db/store"}},
     {"server/api",
      {"shared/core", "shared/math", "shared/trial", "shared/metrics", "shared/cases",
-      "shared/volume", "shared/wire", "db/store", "server/http", "server/jobs"}},
+      "shared/scenarios", "shared/study", "shared/volume", "shared/wire", "db/store", "server/http",
+      "server/jobs"}},
 };
 
 bool is_source(const fs::path& path) {

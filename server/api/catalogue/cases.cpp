@@ -31,12 +31,18 @@ core::Result<http::Response> part_named(const Call& call, const std::string& par
   auto part = call.backend.store.read(
       [&](store::Reading& tx) { return store::case_part(tx, id, part_name); });
   if (!part) return part.error();
-  if (!*part)
-    return core::Error{
-        core::Errc::not_found,
-        fmt::format("case {} has no part {} here", id.substr(0, 64), part_name.substr(0, 64))};
-  if ((*part)->secret && call.caller.role == Role::station)
+  const core::Error absent{
+      core::Errc::not_found,
+      fmt::format("case {} has no part {} here", id.substr(0, 64), part_name.substr(0, 64))};
+  if (!*part) return absent;
+  if ((*part)->secret && call.caller.role == Role::station) {
+    auto known =
+        call.backend.store.read([&](store::Reading& tx) { return store::case_of(tx, id); });
+    if (!known) return known.error();
+    // Of a scenario not even that it is here: versions of scenarios are no secret.
+    if (*known && (*known)->kind == store::kProbing) return absent;
     return core::Error{core::Errc::forbidden, "this part never goes to a station"};
+  }
   const bool json = part_name.ends_with(".json");
   auto response = http::file_response(call.backend.objects.path_of((*part)->sha256), call.request,
                                       json ? "application/json" : "application/octet-stream");

@@ -1,0 +1,203 @@
+/// The rules of a study's trials: what is handed out to whom, what counts, what is repeated.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "db/store/accounts.hpp"
+#include "db/store/cases.hpp"
+#include "db/store/store_test_support.hpp"
+#include "db/store/study_slots.hpp"
+#include "db/store/trials.hpp"
+#include "db/store/uploads.hpp"
+
+namespace store {
+namespace {
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+const std::string kA(64, 'a'), kB(64, 'b');
+const Deed kAda{"ada", 7, "said so"};
+
+class Studies : public ::testing::Test {
+ protected:
+  Studies() {
+    write([](Writing& tx) -> core::Result<void> {
+      for (const char* id : {"s1", "s2"})
+        if (auto done = add_station(tx, {id, std::string("station-") + id}, id, 1); !done)
+          return done;
+      for (const std::string& id : {kA, kB})
+        if (auto done = add_case(tx, {id, "scenario", "", 1, 0, kProbing}, {}, 1); !done)
+          return done;
+      return {};
+    });
+  }
+  template <class Work>
+  void write(Work work) {
+    auto done = store_.write(work);
+    ASSERT_TRUE(done) << done.error().what;
+  }
+  void make(const std::string& on_invalid) {
+    write([&](Writing& tx) -> core::Result<void> {
+      const Study study{.id = "study",
+                        .title = "A study",
+                        .ordering = "random",
+                        .repeats = 2,
+                        .seed = 3,
+                        .on_invalid = on_invalid};
+      if (auto done = add_study(tx, study, {kA, kB}, kAda); !done) return done;
+      return add_participant(tx, "study", {.name = "P1"}, {kA, kB, kB}, kAda);
+    });
+  }
+  core::Result<Taken> take(const std::string& station, std::int64_t ahead) {
+    return store_.write([&](Writing& tx) -> core::Result<Taken> {
+      return take_slots(tx, **study_of(tx, "study"), **participant_of(tx, "study", "P1"), station,
+                        ahead, {"station-" + station, 8});
+    });
+  }
+  /// A whole trial for a slot, as the station's upload brings it.
+  void bring(const std::string& trial_id, const Slot& slot, bool complete = true) {
+    write([&](Writing& tx) -> core::Result<void> {
+      if (auto done = add_upload(tx, {trial_id, "s1", slot.case_id, 1, kA, 1, 0, "receiving"}, 9);
+          !done)
+        return done;
+      if (auto done = announce_for_slot(tx, trial_id, slot.id, 9); !done) return done;
+      return record_for_slot(tx, trial_id, complete, {"station-s1", 10});
+    });
+  }
+  /// State of each slot in the participant's order and its case, a letter each.
+  std::string states() {
+    std::string out;
+    const auto found = store_.read([](Reading& tx) { return study_slots(tx, "study"); });
+    for (const Slot& slot : found.value()) {
+      out += slot.state.front();
+      out += slot.case_id.front();
+      out += ' ';
+    }
+    return out;
+  }
+  std::vector<std::string> happened() {
+    std::vector<std::string> out;
+    const auto found = store_.read([](Reading& tx) { return study_events(tx, "study", 100); });
+    for (const auto& event : found.value()) out.insert(out.begin(), event.who + " " + event.what);
+    return out;
+  }
+  std::string state_of(const std::string& trial_id) {
+    const auto found = store_.read([](Reading& tx) { return study_trials(tx, "study"); });
+    for (const auto& trial : found.value())
+      if (trial.trial_id == trial_id) return trial.state;
+    return "absent";
+  }
+
+  testing::TestFolder folder_;
+  Store store_ = std::move(Store::open(folder_.path() / "tractus.db").value());
+};
+
+TEST_F(Studies, HandOutTheNextTrialAndTheSameOneWhenAskedAgain) {
+  make("at_end");
+  const auto first = take("s1", 1), again = take("s1", 1);
+  ASSERT_TRUE(first && again);
+  ASSERT_EQ(first->slots.size(), 1u);
+  EXPECT_EQ(first->slots[0].id, again->slots[0].id);
+  EXPECT_EQ(first->unfinished, 3u);
+  EXPECT_EQ(states(), "ta wb wb ");
+  bring("t1", first->slots[0]);
+  const auto next = take("s1", 1);
+  EXPECT_EQ(next->slots[0].position, 1);
+  EXPECT_EQ(next->unfinished, 2u);
+}
+
+TEST_F(Studies, GiveOneParticipantToOneStationAtATime) {
+  make("at_end");
+  ASSERT_TRUE(take("s1", 2));
+  const auto refused = take("s2", 1);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, core::Errc::conflict);
+  EXPECT_THAT(refused.error().what, HasSubstr("another station"));
+  write([](Writing& tx) -> core::Result<void> {
+    auto freed = release_slots(tx, "study", "P1", kAda);
+    if (!freed) return freed.error();
+    EXPECT_EQ(*freed, 2u);
+    return {};
+  });
+  EXPECT_TRUE(take("s2", 1));
+}
+
+TEST_F(Studies, HandOutNothingWhilePaused) {
+  make("at_end");
+  const auto set = [&](bool whole, const char* state) {
+    write([&](Writing& tx) {
+      return whole ? set_study_state(tx, "study", state, kAda)
+                   : set_participant_state(tx, "study", "P1", state, kAda);
+    });
+  };
+  for (const bool whole : {true, false}) {
+    set(whole, "paused");
+    const auto refused = take("s1", 1);
+    ASSERT_FALSE(refused);
+    EXPECT_THAT(refused.error().what, HasSubstr("paused"));
+    set(whole, "running");
+    EXPECT_TRUE(take("s1", 1));
+  }
+}
+
+TEST_F(Studies, KeepAnInvalidTrialAndRepeatItsSlotAtTheEnd) {
+  make("at_end");
+  bring("t1", take("s1", 1)->slots[0]);
+  write([](Writing& tx) { return set_trial_invalid(tx, "study", "t1", kAda); });
+  EXPECT_EQ(state_of("t1"), "invalid");
+  EXPECT_EQ(states(), "ia wb wb wa ");
+}
+
+TEST_F(Studies, RepeatAnInvalidTrialAtOnceOrNeverWhenTheStudySaysSo) {
+  make("at_once");
+  bring("t1", take("s1", 1)->slots[0]);
+  write([](Writing& tx) { return set_trial_invalid(tx, "study", "t1", kAda); });
+  EXPECT_EQ(states(), "ia wa wb wb ");
+  write([](Writing& tx) {
+    return tx.query("update studies set on_invalid = 'never'").value(), core::Result<void>();
+  });
+  bring("t2", take("s1", 1)->slots[0]);
+  write([](Writing& tx) { return set_trial_invalid(tx, "study", "t2", kAda); });
+  EXPECT_EQ(states(), "ia ia wb wb ");
+}
+
+TEST_F(Studies, ATrialCutShortDoesNotCountAndIsRepeated) {
+  make("at_end");
+  bring("t1", take("s1", 1)->slots[0], false);
+  EXPECT_EQ(state_of("t1"), "invalid");
+  EXPECT_EQ(states(), "ia wb wb wa ");
+}
+
+TEST_F(Studies, ASecondTrialForASlotIsKeptAndDoesNotCount) {
+  make("at_end");
+  const auto slot = take("s1", 1)->slots[0];
+  bring("t1", slot);
+  bring("t2", slot);
+  EXPECT_EQ(state_of("t1"), "counts");
+  EXPECT_EQ(state_of("t2"), "surplus");
+  EXPECT_EQ(states(), "ra wb wb ");
+}
+
+TEST_F(Studies, OnlyATrialThatCountsOfThisStudyCanBeMarkedInvalid) {
+  make("at_end");
+  bring("t1", take("s1", 1)->slots[0]);
+  const auto mark = [&](const char* study, const char* trial) {
+    return store_.write([&](Writing& tx) { return set_trial_invalid(tx, study, trial, kAda); });
+  };
+  EXPECT_EQ(mark("other", "t1").error().code, core::Errc::not_found);
+  EXPECT_EQ(mark("study", "t9").error().code, core::Errc::not_found);
+  ASSERT_TRUE(mark("study", "t1"));
+  EXPECT_EQ(mark("study", "t1").error().code, core::Errc::conflict);
+}
+
+TEST_F(Studies, NoteEveryChangeWithWhoDidIt) {
+  make("at_end");
+  bring("t1", take("s1", 1)->slots[0]);
+  write([](Writing& tx) { return set_trial_invalid(tx, "study", "t1", kAda); });
+  write([](Writing& tx) { return set_study_state(tx, "study", "paused", kAda); });
+  EXPECT_THAT(happened(),
+              ElementsAre("ada made", "ada enrolled", "station-s1 taken", "station-s1 recorded",
+                          "ada invalid", "ada repeated", "ada paused"));
+}
+
+}  // namespace
+}  // namespace store

@@ -1,0 +1,60 @@
+/// A study's trials on their way: handed out to stations, recorded, judged.
+#pragma once
+
+#include "db/store/studies.hpp"
+
+namespace store {
+
+/// What became of a trial of a study.
+struct StudyTrial {
+  std::string trial_id, slot_id;
+  std::string state;  ///< "arriving", "counts", "invalid", "surplus" (its slot had one already)
+  std::string reason;
+  std::int64_t changed_utc_us = 0;
+  std::string station = {};  ///< that announced it
+  // Once it has arrived:
+  std::optional<double> duration_s = {};
+  std::optional<std::int64_t> samples = {}, started_utc_us = {};
+  std::optional<std::string> sha256 = {};  ///< of the file
+  std::optional<bool> correct = {};
+  std::optional<std::string> assessment = {};  ///< "assessing", "assessed", "failed"
+};
+
+/// By participant as enrolled, then in their order.
+core::Result<std::vector<Slot>> study_slots(Reading& tx, const std::string& study_id);
+
+/// What a station has of a participant's trials.
+struct Taken {
+  std::vector<Slot> slots;       ///< in the order to be done
+  std::uint64_t unfinished = 0;  ///< of the participant, these included
+  std::uint64_t planned = 0;     ///< that count or are still to be done
+};
+
+/// The next slots of a participant, at most `ahead`, given to this station: repeating it gives the
+/// same. Errors: conflict when another station has some, or when study or participant is paused.
+core::Result<Taken> take_slots(Writing& tx, const Study& study, const Participant& participant,
+                               const std::string& station_id, std::int64_t ahead, const Deed& deed);
+/// What stations had of a participant waits again: the number of slots.
+core::Result<std::uint64_t> release_slots(Writing& tx, const std::string& study_id,
+                                          const std::string& participant, const Deed& deed);
+
+core::Result<std::optional<Slot>> slot_of(Reading& tx, const std::string& slot_id);
+/// The slot that a trial was announced for; none for a trial of no study.
+core::Result<std::optional<Slot>> slot_of_trial(Reading& tx, const std::string& trial_id);
+/// Notes that a trial is on its way, in the transaction that announces it.
+core::Result<void> announce_for_slot(Writing& tx, const std::string& trial_id,
+                                     const std::string& slot_id, std::int64_t now_utc_us);
+
+/// A trial has arrived: it counts, unless its slot has one already (then it is surplus) or it was
+/// cut short (then it does not count, and the slot is repeated as the study says).
+core::Result<void> record_for_slot(Writing& tx, const std::string& trial_id, bool complete,
+                                   const Deed& deed);
+/// A person says that a trial does not count; the reason is the deed's. It stays, and its slot is
+/// repeated as the study says. Errors: not_found (no trial of this study), conflict (it does not
+/// count as it is).
+core::Result<void> set_trial_invalid(Writing& tx, const std::string& study_id,
+                                     const std::string& trial_id, const Deed& deed);
+
+core::Result<std::vector<StudyTrial>> study_trials(Reading& tx, const std::string& study_id);
+
+}  // namespace store

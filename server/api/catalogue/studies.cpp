@@ -1,0 +1,119 @@
+/// Studies: their list, one whole, what happened; making one and enrolling participants.
+#include "server/api/backend.hpp"
+#include "server/api/study_json.hpp"
+#include "server/api/study_plan.hpp"
+
+namespace api {
+namespace {
+
+constexpr std::uint64_t kMaxPlan_bytes = 4u << 20, kMaxParticipant_bytes = 4096;
+
+core::Result<http::Response> list_studies(const Call& call) {
+  auto found = call.backend.store.read([](store::Reading& tx) { return store::all_studies(tx); });
+  if (!found) return found.error();
+  core::Json list = core::Json::array();
+  for (const auto& study : *found) list.push_back(summary_json(study));
+  return json_response({{"studies", list}});
+}
+
+core::Result<http::Response> study_response(Backend& backend, const std::string& id) {
+  auto facts = backend.store.read([&](store::Reading& tx) { return study_facts(tx, id); });
+  if (!facts) return facts.error();
+  return json_response(study_json(*facts));
+}
+
+core::Result<http::Response> one_study(const Call& call) {
+  return study_response(call.backend, call.text("id"));
+}
+
+core::Result<http::Response> new_study(const Call& call) {
+  auto json = core::parse_json(call.request.body, "body");
+  if (!json) return json.error();
+  auto plan = StudyPlan::from_json(*json);
+  if (!plan) return plan.error();
+  if (auto made = make_study(call.backend, *plan, call.caller.name); !made) return made.error();
+  return study_response(call.backend, plan->study.id);
+}
+
+core::Result<http::Response> new_participant(const Call& call) {
+  auto json = core::parse_json(call.request.body, "body");
+  if (!json) return json.error();
+  auto participant = participant_from(*json, "");
+  if (!participant) return participant.error();
+  const std::string& id = call.text("id");
+  if (auto done = enrol(call.backend, id, *participant, call.caller.name); !done)
+    return done.error();
+  return study_response(call.backend, id);
+}
+
+core::Result<http::Response> events_of(const Call& call) {
+  const std::string& id = call.text("id");
+  auto found = call.backend.store.read(
+      [&](store::Reading& tx) -> core::Result<std::vector<store::StudyEvent>> {
+        auto study = store::study_of(tx, id);
+        if (!study) return study.error();
+        if (!*study) return core::Error{core::Errc::not_found, "no study " + id.substr(0, 32)};
+        return store::study_events(tx, id, call.integer("limit"));
+      });
+  if (!found) return found.error();
+  core::Json list = core::Json::array();
+  for (const auto& event : *found) list.push_back(event_json(event));
+  return json_response({{"events", list}});
+}
+
+RouteInfo route(std::string method, std::string tail, std::string id, std::string summary,
+                std::string answer) {
+  return {.method = std::move(method),
+          .path = "/api/v1/studies" + tail,
+          .id = std::move(id),
+          .summary = std::move(summary),
+          .who = {Role::admin},
+          .parameters = {},
+          .body = "",
+          .answer = std::move(answer),
+          .schemas = {},
+          .handle = nullptr};
+}
+
+}  // namespace
+
+std::vector<RouteInfo> studies_routes() {
+  const Parameter id = path_text("id", "the study's");
+  RouteInfo list = route("GET", "", "studies", "Studies, newest first", "StudyList");
+  list.schemas = study_schemas();
+  list.handle = list_studies;
+
+  RouteInfo make = route("POST", "", "makeStudy",
+                         "Make a study: scenarios, repeats, order, participants", "Study");
+  make.body = "NewStudy";
+  make.body_limit_bytes = kMaxPlan_bytes;
+  make.schemas = study_deed_schemas();
+  make.handle = new_study;
+
+  RouteInfo one = route("GET", "/{id}", "study", "Who has done what", "Study");
+  one.parameters = {id};
+  one.handle = one_study;
+
+  RouteInfo events =
+      route("GET", "/{id}/events", "studyEvents", "Every change, who and when", "StudyEvents");
+  events.parameters = {id,
+                       {.in = Parameter::In::query,
+                        .name = "limit",
+                        .kind = Parameter::Kind::integer,
+                        .unit = "1",
+                        .meaning = "at most so many",
+                        .low = 1,
+                        .high = 10000,
+                        .fallback = "200"}};
+  events.handle = events_of;
+
+  RouteInfo add = route("POST", "/{id}/participants", "enrolParticipant",
+                        "Enrol one more participant", "Study");
+  add.parameters = {id};
+  add.body = "NewParticipant";
+  add.body_limit_bytes = kMaxParticipant_bytes;
+  add.handle = new_participant;
+  return {list, make, one, events, add};
+}
+
+}  // namespace api

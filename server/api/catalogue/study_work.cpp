@@ -1,0 +1,113 @@
+/// A station's part of a study: the next trials of a participant, sealed.
+#include <fmt/format.h>
+
+#include "db/store/accounts.hpp"
+#include "db/store/study_slots.hpp"
+#include "server/api/backend.hpp"
+#include "server/api/route.hpp"
+#include "server/api/schema.hpp"
+#include "server/jobs/scenario_facts.hpp"
+#include "study/sealed_law.hpp"
+
+namespace api {
+namespace {
+
+constexpr int kMaxAhead = 400;
+
+/// What one transaction of a station's question yields.
+struct Given {
+  store::Participant participant;
+  store::Taken taken;
+  std::string token_hash;
+};
+
+core::Result<Given> take(store::Writing& tx, const Call& call) {
+  const std::string &id = call.text("id"), &name = call.text("name");
+  auto study = store::study_of(tx, id);
+  if (!study) return study.error();
+  if (!*study) return core::Error{core::Errc::not_found, "no study " + id.substr(0, 32)};
+  auto participant = store::participant_of(tx, id, name);
+  if (!participant) return participant.error();
+  if (!*participant)
+    return core::Error{core::Errc::not_found,
+                       "no participant " + name.substr(0, 32) + " in this study"};
+  auto token = store::station_token_hash(tx, call.caller.id);
+  if (!token) return token.error();
+  auto taken = store::take_slots(tx, **study, **participant, call.caller.id, call.integer("ahead"),
+                                 {call.caller.name, call.backend.now_utc_us()});
+  if (!taken) return taken.error();
+  return Given{std::move(**participant), std::move(*taken), std::move(*token)};
+}
+
+core::Result<core::Json> sealed_trials(Backend& backend, const Given& given) {
+  const study::StationKey key(given.token_hash);
+  core::Json out = core::Json::array();
+  std::uint64_t number = given.taken.planned - given.taken.unfinished;
+  for (const store::Slot& slot : given.taken.slots) {
+    auto scenario = jobs::scenario_of(backend.store, backend.objects, slot.case_id);
+    if (!scenario) return scenario.error();
+    auto law = scenario->expanded();
+    if (!law) return law.error();
+    auto sealed = study::sealed_law(*law, slot.id, key);
+    if (!sealed) return sealed.error();
+    out.push_back({{"slot", slot.id}, {"number", ++number}, {"sealed", *sealed}});
+  }
+  return out;
+}
+
+core::Result<http::Response> take_trials(const Call& call) {
+  auto given = call.backend.store.write(
+      [&](store::Writing& tx) -> core::Result<Given> { return take(tx, call); });
+  if (!given) return given.error();
+  auto trials = sealed_trials(call.backend, *given);
+  if (!trials) return trials.error();
+  const auto& who = given->participant;
+  return json_response({{"study", call.text("id")},
+                        {"participant", who.name},
+                        {"simulated", who.simulated},
+                        {"experience_years",
+                         who.experience_years ? core::Json(*who.experience_years) : core::Json()},
+                        {"unfinished", given->taken.unfinished},
+                        {"planned", given->taken.planned},
+                        {"trials", *trials}});
+}
+
+}  // namespace
+
+std::vector<RouteInfo> study_work_routes() {
+  using namespace schema;
+  const core::Json trial = object(
+      {{"slot", text("64 hexadecimal characters: the trial's case_id in its file and upload")},
+       {"number", integer("1", "of the participant's trials, from 1")},
+       {"sealed", text("the law's numbers, for this station alone")}});
+  const core::Json answer =
+      object({{"study", text("its id")},
+              {"participant", text("a pseudonym")},
+              {"simulated", truth("a simulated surgeon")},
+              {"experience_years", nullable(number("a", "in years"))},
+              {"unfinished", integer("1", "still to be done; 0: the participant is through")},
+              {"planned", integer("1", "in all")},
+              {"trials", array(ref("SealedTrial"), "in the order to be done")}});
+  RouteInfo take{.method = "POST",
+                 .path = "/api/v1/studies/{id}/participants/{name}/take",
+                 .id = "takeTrials",
+                 .summary = "The next trials of a participant; the same when asked again",
+                 .who = {Role::station},
+                 .parameters = {path_text("id", "the study's"),
+                                path_text("name", "the participant's pseudonym"),
+                                {.in = Parameter::In::query,
+                                 .name = "ahead",
+                                 .kind = Parameter::Kind::integer,
+                                 .unit = "1",
+                                 .meaning = "at most so many; more than 1 to work without a server",
+                                 .low = 1,
+                                 .high = kMaxAhead,
+                                 .fallback = "1"}},
+                 .body = "",
+                 .answer = "TakenTrials",
+                 .schemas = {{"SealedTrial", trial}, {"TakenTrials", answer}},
+                 .handle = take_trials};
+  return {take};
+}
+
+}  // namespace api

@@ -1,0 +1,31 @@
+/// A study as a person asks for it, and its way into the store.
+#pragma once
+
+#include "db/store/studies.hpp"
+#include "scenarios/scenario.hpp"
+#include "server/api/backend.hpp"
+
+namespace api {
+
+/// What POST /studies carries, checked.
+struct StudyPlan {
+  store::Study study;
+  std::vector<scenarios::Scenario> scenarios;
+  std::vector<store::Participant> participants;
+
+  /// Errors: bad_input naming the field: an id that is no name, a scenario twice, one too large to
+  /// be handed out blind, a participant twice, …
+  static core::Result<StudyPlan> from_json(const core::Json& json);
+};
+
+core::Result<store::Participant> participant_from(const core::Json& json, const std::string& where);
+
+/// Scenarios among the objects, then all of it in one transaction: cases, study, participants with
+/// their orders. Errors: conflict when the study's id is taken.
+core::Result<void> make_study(Backend& backend, const StudyPlan& plan, const std::string& who);
+/// One more participant: with the order that follows from the study's seed and their number.
+/// Errors: not_found, conflict (the name is taken).
+core::Result<void> enrol(Backend& backend, const std::string& study_id,
+                         const store::Participant& participant, const std::string& who);
+
+}  // namespace api

@@ -1,0 +1,35 @@
+/// Dry friction of constant size: F = F_c sgn v.
+#include "effects/probing_effect.hpp"
+
+namespace effects::probing {
+namespace {
+
+class CoulombFriction final : public ProbingEffect {
+ public:
+  explicit CoulombFriction(std::span<const double> values) : friction_N_(values[0]) {}
+  ProbingStage stage() const noexcept override { return ProbingStage::force; }
+  double force_N(const ProbingTick& tick, double, const double*) const noexcept override {
+    return friction_N_ * direction(tick.v_m_s, tick.rest_m_s);
+  }
+
+ private:
+  double friction_N_;
+};
+
+}  // namespace
+
+ProbingEffectInfo coulomb_friction() {
+  return {{.id = "coulomb_friction",
+           .kind = Kind::force,
+           .summary = "Dry friction of constant size against the motion",
+           .equation = "F_c sgn v",
+           .source = "Olsson1998, eq. ?",
+           .params = {{.name = "friction_N",
+                       .meaning = "F_c, size of the friction",
+                       .initial = 1.0,
+                       .low = 0.0,
+                       .high = 200.0}}},
+          made<CoulombFriction>};
+}
+
+}  // namespace effects::probing

@@ -1,0 +1,54 @@
+/// Dry friction that falls with speed: F = (F_c + (F_s − F_c) exp(−(v/v_s)²)) sgn v.
+#include <cmath>
+
+#include "effects/probing_effect.hpp"
+
+namespace effects::probing {
+namespace {
+
+class StribeckFriction final : public ProbingEffect {
+ public:
+  explicit StribeckFriction(std::span<const double> values)
+      : friction_N_(values[0]), breakaway_N_(values[1]), velocity_m_s_(values[2]) {}
+  ProbingStage stage() const noexcept override { return ProbingStage::force; }
+  double force_N(const ProbingTick& tick, double, const double*) const noexcept override {
+    const double u = tick.v_m_s / velocity_m_s_;
+    const double size_N = friction_N_ + (breakaway_N_ - friction_N_) * std::exp(-u * u);
+    return size_N * direction(tick.v_m_s, tick.rest_m_s);
+  }
+
+ private:
+  double friction_N_, breakaway_N_, velocity_m_s_;
+};
+
+}  // namespace
+
+ProbingEffectInfo stribeck_friction() {
+  return {
+      {.id = "stribeck_friction",
+       .kind = Kind::force,
+       .summary = "Dry friction that is greater at low speed, so that the probe sticks and slips",
+       .equation = "(F_c + (F_s − F_c) exp(−(v/v_s)²)) sgn v",
+       .source = "Olsson1998, eq. ?",
+       .params = {{.name = "friction_N",
+                   .meaning = "F_c, friction at speed",
+                   .initial = 1.0,
+                   .low = 0.0,
+                   .high = 200.0},
+                  {.name = "breakaway_N",
+                   .meaning = "F_s, friction as the motion begins",
+                   .initial = 2.0,
+                   .low = 0.0,
+                   .high = 400.0},
+                  {.name = "stribeck_velocity_m_s",
+                   .meaning = "v_s, speed at which the surplus has fallen to 1/e",
+                   .initial = 4e-3,
+                   .low = 1e-4,
+                   .high = 0.2,
+                   .off = kNoOff,
+                   .logarithmic = true}},
+       .parents = {"coulomb_friction"}},
+      made<StribeckFriction>};
+}
+
+}  // namespace effects::probing

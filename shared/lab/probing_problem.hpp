@@ -1,0 +1,24 @@
+/// Measurements of the probing rig against a probing model, ready for the lab's engine.
+#pragma once
+
+#include <memory>
+
+#include "lab/problem.hpp"
+#include "models/probing_model.hpp"
+#include "trial/probing_set.hpp"
+
+namespace lab {
+
+struct ProbingOptions {
+  int threads = 2;
+};
+
+/// Smooths and differentiates the motion, estimates the noise, and makes the problem. The set is
+/// taken over. Errors: bad_input naming the trial and what is wrong with it: too short, too few
+/// samples per second, no motion at all, a depth outside what the model's rig can reach.
+core::Result<std::unique_ptr<Problem>> make_probing_problem(const models::ProbingModel& model,
+                                                            trial::ProbingSet set,
+                                                            const ProbingOptions& options = {},
+                                                            const core::Progress& progress = {});
+
+}  // namespace lab

@@ -1,0 +1,86 @@
+/// The probing law and its effects made ready to run: replay, fit and the live loop step this one
+/// object.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "effects/probing_effect.hpp"
+#include "laws/probing_law.hpp"
+#include "models/probing_model.hpp"
+
+namespace models {
+
+using effects::ProbingMotion;
+
+/// What a sensor would have said, one entry per sample.
+struct ProbingForces {
+  std::vector<double> fz_N;   ///< push of the hand along x
+  std::vector<double> tz_Nm;  ///< empty when the motion has no angle
+};
+
+inline constexpr std::size_t kMaxProbingEffects = 32;
+
+/// What changes from tick to tick of the live loop.
+struct ProbingLive {
+  laws::ProbingState at;   ///< depth of the tip and mode
+  double v_m_s = 0.0;      ///< mean speed of the last tick
+  double t_s = 0.0;        ///< since the start
+  double theta_rad = 0.0;  ///< turned since the start
+  bool started = false;    ///< set by the first tick, which starts the effects where `at` is
+  std::array<double, kMaxProbingEffects * effects::kMaxProbingStates> effects{};
+};
+
+/// The law with effects at their stages. With x̃ the depth that the bone sees and s the factor of
+/// the couplings:
+///
+///     fz = s · (D v + K (x̃ − x0)) + Σ f_e,   then late by the delay, plus bias, drift, crosstalk
+///     tz = viscous and detent torque of the law
+///
+/// Runs both ways, as the law does. Immutable: safe to use from several threads at once, but for a
+/// user's expression, whose runtime belongs to one thread at a time. Making one costs microseconds,
+/// so a fit makes one for each set of numbers.
+class ProbingRuntime {
+ public:
+  /// @param travel_m  the probe stop. Errors: out_of_range, bad_input or not_found naming the layer
+  /// or the effect and its parameter.
+  static core::Result<ProbingRuntime> make(const ProbingModel& model, double travel_m);
+  /// The same for a law that has walls (a scenario's).
+  static core::Result<ProbingRuntime> make(laws::ProbingParameters parameters,
+                                           std::span<const effects::Use> uses);
+
+  /// Force from motion, measurement effects included. The motion's arrays have one size; the last
+  /// three may be empty. A sample's dt is that since the sample before.
+  void predict(const ProbingMotion& motion, ProbingForces& out) const;
+
+  /// Motion from force, the live rig: one tick of length `dt_s` under the push `force_N` while the
+  /// probe turns at `turning_rad_s`. Sought is the speed v at which the resistance at the tick's
+  /// end equals the push (implicit Euler: stiff branches, mass and dry friction need no smaller
+  /// step),
+  ///
+  ///     force_N = s (D v + K (x̃(x + v dt) − x0)) + Σ f_e(x + v dt, v, (v − v_before)/dt),
+  ///
+  /// so that `predict` over the recorded ticks gives the push back. Where dry friction can hold the
+  /// probe it rests; of several speeds (friction that falls with speed) it takes the one nearest to
+  /// the present motion. Measurement effects are left out. Without effects it is the law's own
+  /// `advance`. Returns the mean speed, m/s. Never fails, allocates or locks; at most some hundred
+  /// evaluations of the law.
+  double advance(double force_N, double turning_rad_s, double dt_s,
+                 ProbingLive& live) const noexcept;
+
+  const laws::ProbingLaw& law() const noexcept { return law_; }
+
+ private:
+  using Effects = std::vector<std::unique_ptr<effects::ProbingEffect>>;
+  ProbingRuntime(laws::ProbingLaw law, Effects effects);
+  void predict_law(const ProbingMotion& motion, std::span<double> fz_N) const;
+
+  laws::ProbingLaw law_;
+  Effects effects_;       // by stage
+  std::size_t live_ = 0;  // so many of them, from the first, are the law's, not the recording's
+};
+
+}  // namespace models

@@ -1,0 +1,28 @@
+#pragma once
+/// A set made from its plan: trials moved, effects brought to their strength, records taken.
+#include <vector>
+
+#include "probing/draw.hpp"
+#include "probing/record.hpp"
+
+namespace blind {
+
+/// What became of one hidden effect.
+struct Outcome {
+  double rms_N = 0;     ///< of the force with it minus the force without it, on the same motion
+  double strength = 0;  ///< that over the RMS of the force
+  double projected_N =
+      0;  ///< what is left of it once the free base parameters have moved to hide it
+};
+
+struct GeneratedSet {
+  SetPlan plan;
+  std::vector<Samples> trials;
+  std::vector<Outcome> outcomes;
+  double force_rms_N = 0, floor_N = 0, stuck_share = 0;
+  double hidden_projected_N = 0;  ///< all effects together
+};
+
+GeneratedSet generate(const Request& request);
+
+}  // namespace blind
