@@ -53,8 +53,10 @@ std::string table_text(const std::string& title, const Json& rows) {
 
 std::string block_text(const std::string& title, const Json& block) {
   std::string out = "\n" + title + "\n";
+  std::size_t width = 28;
+  for (const auto& [key, value] : block.items()) width = std::max(width, key.size() + 2);
   for (const auto& [key, value] : block.items())
-    out += fmt::format("  {:<28}{}\n", key, cell(value));
+    out += fmt::format("  {:<{}}{}\n", key, width, cell(value));
   return out;
 }
 
@@ -229,6 +231,8 @@ std::string printed(const Json& report) {
     std::string title = key;
     std::ranges::replace(title, '_', ' ');
     if (key == "notes" || key == "tests") continue;
+    const bool head = key == "method" || key == "file" || key == "formula";
+    if (value.is_string() && !head) out += fmt::format("\n{}: {}\n", title, cell(value));
     if (value.is_object()) out += block_text(title, value);
     if (value.is_array() && !value.empty()) out += table_text(title, value);
   }

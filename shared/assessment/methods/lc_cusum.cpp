@@ -29,6 +29,7 @@ core::Result<std::vector<Person>> persons_of(const Analysis& of, const std::stri
     for (std::size_t i = 0; i < failed->size(); ++i) parts.rows[0].push_back(i);
   else
     parts = parts_of(of.table, of.formula.group);
+  const bool success = of.text("response") == "success";
   std::vector<Person> out;
   for (std::size_t j = 0; j < parts.names.size(); ++j) {
     auto rows = parts.rows[j];
@@ -41,7 +42,7 @@ core::Result<std::vector<Person>> persons_of(const Analysis& of, const std::stri
             "{}:{}: '{}' is {} twice for '{}': the order of trials is not "
             "known",
             of.table.name(), of.table.line(rows[k]), order, time(rows[k]), person.name));
-      person.failures.push_back((*failed)[rows[k]]);
+      person.failures.push_back((*failed)[rows[k]] != success);
     }
     out.push_back(std::move(person));
   }
@@ -127,7 +128,8 @@ Method lc_cusum_method() {
           "failed ~ trial_order + (1|surgeon)",
           "the learning-curve cumulative sum of Biau and Porcher 2010, with exact operating "
           "characteristics, and Page's cumulative sum for relapse after it",
-          {{"adequate", "failure rate of adequate performance", "0.10", {}, 1e-6, 0.999999},
+          {{"response", "what 1 means", "failure", {"failure", "success"}},
+           {"adequate", "failure rate of adequate performance", "0.10", {}, 1e-6, 0.999999},
            {"inadequate", "failure rate of inadequate performance", "0.25", {}, 1e-6, 0.999999},
            {"threshold", "h at which competence is signalled", "1.25", {}, 1e-3, 100},
            {"relapse", "sum at which relapse is signalled", "1.25", {}, 1e-3, 100}},
