@@ -18,8 +18,8 @@ struct Tally {
   double first_s = 0.0, last_s = 0.0;
   std::uint32_t first_tick = 0, last_tick = 0;
 
-  void add(std::span<const trial::Sample> part) {
-    for (const trial::Sample& sample : part) {
+  void add(const trial::Block& part) {
+    part.each([this](const auto& sample) {
       if (samples++ == 0) {
         first_s = sample.t_s;
         first_tick = sample.tick;
@@ -28,7 +28,7 @@ struct Tally {
       not_converged += (sample.flags & trial::kNotConverged) ? 1 : 0;
       last_s = sample.t_s;
       last_tick = sample.tick;
-    }
+    });
   }
 };
 
@@ -107,9 +107,8 @@ core::Result<store::TrialRecord> checked_trial(Backend& backend, const store::Up
   const auto path = backend.partials.path_of(upload.trial_id);
   if (auto fine = check_bytes(upload, path); !fine) return without_path(fine.error(), path);
   Tally tally;
-  auto trial =
-      trial::scan_trial(path, [&](std::span<const trial::Sample> part) { tally.add(part); },
-                        {.max_samples = kMaxTrialSamples, .max_bytes = kMaxTrial_bytes});
+  auto trial = trial::scan_trial(path, [&](const trial::Block& part) { tally.add(part); },
+                                 {.max_samples = kMaxTrialSamples, .max_bytes = kMaxTrial_bytes});
   if (!trial) return without_path(trial.error(), path);
   auto slot = backend.store.read(
       [&](store::Reading& tx) { return store::slot_of_trial(tx, upload.trial_id); });

@@ -71,6 +71,7 @@ core::Json trial_json(const store::TrialRecord& trial,
       core::Json::parse(trial.header);  // written by us, as the events and the coverage
   const core::Json events = core::Json::parse(trial.events);
   core::Json out = summary_json(trial.summary);
+  out["rig"] = header.value("rig", "palpation");
   out["device"] = header.value("device", "");
   out["rate_Hz"] = header.value("rate_Hz", 0.0);
   out["complete"] = trial.complete;

@@ -28,7 +28,8 @@ std::vector<Field> summary_fields() {
 core::Json trial_schema() {
   std::vector<Field> fields = summary_fields();
   const std::vector<Field> more{
-      {"device", text("sim-lambda6, lambda6, …")},
+      {"rig", one_of({"palpation", "probing"}, "which simulator")},
+      {"device", text("sim-lambda6, lambda6, sim-rig, rig, …")},
       {"rate_Hz", number("Hz", "of the loop")},
       {"complete", truth("the trial was ended, not interrupted")},
       {"failure", nullable(text("why the scores failed"))},
@@ -100,19 +101,26 @@ std::vector<NamedSchema> trial_schemas() {
 
 std::vector<NamedSchema> curve_schemas() {
   const core::Json seconds = array(number("s", ""), "since the trial's start");
-  return {{"Envelope",
-           object({{"min", array(number("the channel's", ""), "of the samples behind each point")},
-                   {"max", array(number("the channel's", ""), "likewise")}})},
-          {"TrialSignals",
-           object({{"t_s", seconds},
-                   {"channels", map(ref("Envelope"), "by name, which ends in the unit")},
-                   {"from_s", number("s", "of the first sample shown")},
-                   {"to_s", number("s", "of the last sample shown")},
-                   {"samples_per_point", integer("1", "1: every sample; min equals max")}})},
-          {"TrialPath",
-           object({{"t_s", seconds},
-                   {"tip_m", array(point(""), "tip of the bent probe, in V")},
-                   {"force_N", array(number("N", ""), "magnitude of the model's force")}})}};
+  return {
+      {"Envelope",
+       object({{"min", array(number("the channel's", ""), "of the samples behind each point")},
+               {"max", array(number("the channel's", ""), "likewise")}})},
+      {"TrialSignals",
+       object({{"t_s", seconds},
+               {"channels", map(ref("Envelope"), "by name, which ends in the unit")},
+               {"from_s", number("s", "of the first sample shown")},
+               {"to_s", number("s", "of the last sample shown")},
+               {"samples_per_point", integer("1", "1: every sample; min equals max")}})},
+      {"TrialPath",
+       object({{"t_s", seconds},
+               {"tip_m", array(point(""), "tip of the bent probe, in V")},
+               {"force_N", array(number("N", ""), "magnitude of the model's force")}})},
+      {"TrialForceDepth",
+       object({{"t_s", seconds},
+               {"depth_m", array(number("m", ""), "of the tip, from the entry")},
+               {"force_N", array(number("N", ""), "push of the hand, positive into the bone")},
+               {"mode", array(one_of({"holding", "bone", "resistance", "breach", "stopped"}, ""),
+                              "what the controller was doing")}})}};
 }
 
 }  // namespace api
