@@ -25,7 +25,9 @@ def truth_label(truth):
 
 
 def hidden_from_all(truth):
-    """Why nobody could find it, or None: what is left after the base has moved to hide it, against the noise."""
+    """Why a set is scored apart, or None. Mostly: what is left after the base has moved to hide it, against the noise."""
+    if truth.get("accepted") is False:
+        return "the generator could not bring it to 4-10 % at a plausible size"
     for effect in truth["effects"]:
         if effect["projected_rms"] < UNSEEN * truth["floor"]:
             return "%s leaves %.3g after the base is refitted, noise %.3g" % (

@@ -63,9 +63,9 @@ void draw_volume(PalpationPlan& plan, Random& r) {
 
 void draw_probe(PalpationPlan& plan, Random& r) {
   Probe& p = plan.truth;
-  p.force_factor_Nm = 0.005 * r.uniform(0.8, 1.6);
-  p.force_scale = p.torque_scale = r.chance(0.4) ? 0.3 : r.uniform(0.3, 1.0);
-  p.radius_m = r.chance(0.4) ? 0.0007 : r.uniform(0.0007, 0.0012);
+  p.force_factor_Nm = 0.005 * r.uniform(1.0, 3.0);
+  p.force_scale = p.torque_scale = r.chance(0.25) ? 0.3 : r.uniform(0.5, 1.0);
+  p.radius_m = r.chance(0.2) ? 0.0007 : r.uniform(0.0008, 0.0013);
   if (r.chance(0.3))
     p.offset_m = Vec3(r.uniform(-2e-3, 2e-3), r.uniform(-2e-3, 2e-3), r.uniform(-2e-3, 2e-3));
 }
@@ -132,6 +132,8 @@ PalpationPlan draw_palpation(const PalpationRequest& request) {
   draw_handed(plan, of_handed);
   for (int i = 0; i < request.trials; ++i)
     plan.trial_seeds.push_back(static_cast<std::uint64_t>(of_trials.unit() * 1e15));
+  const bool brisk = hides(plan, "contact_damping") || hides(plan, "probe_inertia");
+  plan.tempo = of_trials.log_uniform(0.8, 2.2) * (brisk ? 1.6 : 1.0);
   plan.jumps_allowed = of_trials.chance(0.15);
   return plan;
 }
