@@ -119,12 +119,12 @@ PalpationPlan draw_palpation(const PalpationRequest& request) {
   plan.request = request;
   const std::string drawn = draw_kind(r);
   plan.kind = request.kind.empty() ? drawn : request.kind;
-  Random of_effects = r.split(), of_volume = r.split(), of_probe = r.split(), of_handed = r.split(),
-         of_trials = r.split();
+  Random of_ids = r.split(), of_effects = r.split(), of_volume = r.split(), of_probe = r.split(),
+         of_handed = r.split(), of_trials = r.split();
   draw_volume(plan, of_volume);
   draw_probe(plan, of_probe);
   plan.field = of_probe.chance(0.75) ? FieldKind::kPaper : FieldKind::kPotential;
-  const auto ids = request.ids.empty() ? draw_ids(of_effects, plan.kind) : request.ids;
+  const auto ids = request.ids.empty() ? draw_ids(of_ids, plan.kind) : request.ids;
   for (const std::string& id : ids) {
     plan.effects.push_back(draw_hidden(of_effects, id, plan.truth, plan.tract));
     plan.strengths.push_back(of_effects.uniform(0.045, 0.095));
