@@ -46,10 +46,12 @@ const std::map<std::string, Names> kAllowed = {
     {"shared/cases",
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/effects",
       "shared/models"}},
-    // A study's order and what a station is given of one slot, sealed.
-    {"shared/study", {"shared/core", "shared/laws", "shared/models", "shared/scenarios"}},
     {"shared/trial", {"shared/core", "shared/math"}},
     {"shared/metrics", {"shared/core", "shared/math", "shared/volume", "shared/trial"}},
+    // Analyses of a cohort: tables in, findings and pictures out.
+    {"shared/assessment",
+     {"shared/core", "shared/math", "shared/statistics", "shared/trial", "shared/metrics",
+      "shared/plot"}},
     {"shared/wire", {"shared/core", "shared/math", "shared/trial"}},
     {"shared/plot", {"shared/core"}},
     // The replay's pictures and tables are of a recording and a model together.
