@@ -122,6 +122,10 @@ std::vector<Parameter> PalpationNumbers::of_effect(const std::string& id) const 
       p.start = std::clamp(field_per_m_, p.low, p.high);
       p.prior_sd = kReferenceSd;
     }
+    if (id == "shank_taper") {  // equal radii are the base's shank
+      p.shape = false;
+      p.start = p.off = model_.base.radius_m;
+    }
   }
   return out;
 }
@@ -144,7 +148,7 @@ std::vector<Parameter> PalpationNumbers::parameters(const Structure& structure) 
 
 std::vector<std::vector<double>> PalpationNumbers::starts(std::string_view effect) const {
   const double r = model_.base.radius_m;
-  if (effect == "shank_taper") return {{1.05 * r, 0.95 * r}, {0.95 * r, 1.05 * r}};
+  if (effect == "shank_taper") return {{1.02 * r, 1.02 * r}};
   if (effect == "shank_curvature")
     return {{3e-4, 0.0}, {3e-4, M_PI_2}, {3e-4, -M_PI_2}, {3e-4, M_PI}};
   if (effect == "contact_nonlinearity") return {{1.05, field_per_m_}};

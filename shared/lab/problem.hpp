@@ -30,6 +30,7 @@ struct Parameter {
                 ///< finite differences
   bool logarithmic = false;  ///< searched in its logarithm; start and low are then > 0
   bool shape = false;  ///< has no value at which its effect vanishes: tried from several starts
+  double off = 0.0;    ///< if it is no shape: where its effect vanishes
   /// Standard deviation (of the logarithm, if logarithmic) with which the start is believed before
   /// the data speak; infinite for a parameter of an added effect.
   double prior_sd = std::numeric_limits<double>::infinity();
