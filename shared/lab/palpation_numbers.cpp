@@ -85,6 +85,11 @@ double step_of(std::string_view pointer, double fallback) {
 
 PalpationNumbers::PalpationNumbers(models::PalpationModel model, double field_per_m)
     : model_(std::move(model)), field_per_m_(field_per_m) {
+  for (const effects::Use& use : model_.effects) {
+    auto facts = effects::palpation_facts(use);
+    core::require(bool(facts), "a model's effects are known");
+    own_.push_back(std::move(*facts));
+  }
   const PalpationParameters& p = model_.base;
   const auto add = [this](const char* name, double PalpationParameters::*held,
                           Parameter parameter) {
@@ -114,8 +119,9 @@ bool PalpationNumbers::fixed(const std::string& pointer) const {
   return std::ranges::any_of(model_.fixed, [&](const auto& p) { return covers(p, pointer); });
 }
 
-std::vector<Parameter> PalpationNumbers::of_effect(const std::string& id) const {
-  auto out = parameters_of(facts_of(id));
+std::vector<Parameter> PalpationNumbers::of_effect(const effects::EffectFacts& facts) const {
+  const std::string& id = facts.id;
+  auto out = parameters_of(facts);
   for (Parameter& p : out) {
     p.step = p.logarithmic ? 5e-3 : step_of(p.pointer, p.step);
     if (p.pointer == "contact_nonlinearity/reference_gradient_per_m") {
@@ -133,16 +139,16 @@ std::vector<Parameter> PalpationNumbers::of_effect(const std::string& id) const 
 std::vector<Parameter> PalpationNumbers::parameters(const Structure& structure) const {
   std::vector<Parameter> out;
   for (const Slot& slot : slots_) out.push_back(slot.parameter);
-  for (const effects::Use& use : model_.effects) {
-    auto own = of_effect(use.id);
+  for (std::size_t e = 0; e < own_.size(); ++e) {
+    auto own = of_effect(own_[e]);
     for (std::size_t k = 0; k < own.size(); ++k) {
-      own[k].start = use.values[k];
+      own[k].start = model_.effects[e].values[k];
       own[k].shape = false;
       out.push_back(own[k]);
     }
   }
   for (const std::string& id : structure.effects)
-    for (auto& p : of_effect(id)) out.push_back(p);
+    for (auto& p : of_effect(facts_of(id))) out.push_back(p);
   return out;
 }
 
@@ -164,9 +170,9 @@ models::PalpationModel PalpationNumbers::with(const Structure& structure,
   models::PalpationModel out = model_;
   std::size_t at = 0;
   for (const Slot& slot : slots_) out.base.*slot.held = values[at++];
-  for (effects::Use& use : out.effects)
-    if (!facts_of(use.id).free_per_trial)
-      for (double& value : use.values) value = values[at++];
+  for (std::size_t e = 0; e < own_.size(); ++e)
+    if (!own_[e].free_per_trial)
+      for (double& value : out.effects[e].values) value = values[at++];
   for (const std::string& id : structure.effects) {
     const effects::EffectFacts& facts = facts_of(id);
     if (facts.free_per_trial) continue;
