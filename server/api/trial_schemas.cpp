@@ -28,7 +28,8 @@ std::vector<Field> summary_fields() {
 core::Json trial_schema() {
   std::vector<Field> fields = summary_fields();
   const std::vector<Field> more{
-      {"device", text("sim-lambda6, lambda6, …")},
+      {"rig", one_of({"palpation", "probing"}, "which simulator")},
+      {"device", text("sim-lambda6, lambda6, sim-rig, rig, …")},
       {"rate_Hz", number("Hz", "of the loop")},
       {"complete", truth("the trial was ended, not interrupted")},
       {"failure", nullable(text("why the scores failed"))},
@@ -40,6 +41,8 @@ core::Json trial_schema() {
       {"truth", nullable(ref("Truth"))},
       {"metrics", array(ref("Score"), "empty until assessed")},
       {"tract", nullable(ref("Tract"))},
+      {"scenario", nullable(ref("ProbingScenario"))},
+      {"study", nullable(ref("StudyPlace"))},
       {"coverage", nullable(ref("Coverage"))},
       {"probe",
        anything(
@@ -62,6 +65,22 @@ core::Json tract_schema() {
                  {"radius_m", number("m", "")},
                  {"medial", direction("unit vector, in V")},
                  {"superior", direction("unit vector, in V")}});
+}
+
+core::Json scenario_schema() {
+  const core::Json layer = object({{"start_m", number("m", "depth from the entry")},
+                                   {"thickness_m", number("m", "")},
+                                   {"stiffness_N_per_m", number("N/m", "K")},
+                                   {"damping_Ns_per_m", number("N·s/m", "D")}});
+  const core::Json wall =
+      object({{"position_m", number("m", "where it gives way, from the entry")},
+              {"resistance_interval_m", number("m", "before it, resistance grows over this")},
+              {"breach_interval_m", number("m", "soft tissue behind it")}});
+  return object({{"id", text("of the scenario's version")},
+                 {"name", text("for people")},
+                 {"travel_m", number("m", "depth of the probe stop")},
+                 {"layers", array(layer, "of bone, by depth")},
+                 {"walls", array(wall, "by depth; none: nothing is breached")}});
 }
 
 core::Json score_schema() {
@@ -87,7 +106,17 @@ std::vector<NamedSchema> trial_schemas() {
                              {"detail", anything("by kind")}})},
       {"Answer", object({{"breach", truth("was one felt?")},
                          {"wall", nullable(one_of(kWalls, "where"))},
-                         {"confidence", nullable(number("1", "0 … 1"))}})},
+                         {"confidence", nullable(number("1", "0 … 1"))},
+                         {"depth_m", nullable(number("m", "probing: where it was felt"))}})},
+      {"ProbingScenario", scenario_schema()},
+      {"StudyPlace",
+       object({{"id", text("the study's")},
+               {"title", text("for people")},
+               {"participant", text("a pseudonym")},
+               {"number", integer("1", "of the place in their order, from 1")},
+               {"state", one_of({"arriving", "counts", "invalid", "surplus"},
+                                "surplus: its place in the order had a trial already")},
+               {"reason", text("of not counting")}})},
       {"Truth", truth_schema()},
       {"Score", score_schema()},
       {"Tract", tract_schema()},
@@ -100,19 +129,26 @@ std::vector<NamedSchema> trial_schemas() {
 
 std::vector<NamedSchema> curve_schemas() {
   const core::Json seconds = array(number("s", ""), "since the trial's start");
-  return {{"Envelope",
-           object({{"min", array(number("the channel's", ""), "of the samples behind each point")},
-                   {"max", array(number("the channel's", ""), "likewise")}})},
-          {"TrialSignals",
-           object({{"t_s", seconds},
-                   {"channels", map(ref("Envelope"), "by name, which ends in the unit")},
-                   {"from_s", number("s", "of the first sample shown")},
-                   {"to_s", number("s", "of the last sample shown")},
-                   {"samples_per_point", integer("1", "1: every sample; min equals max")}})},
-          {"TrialPath",
-           object({{"t_s", seconds},
-                   {"tip_m", array(point(""), "tip of the bent probe, in V")},
-                   {"force_N", array(number("N", ""), "magnitude of the model's force")}})}};
+  return {
+      {"Envelope",
+       object({{"min", array(number("the channel's", ""), "of the samples behind each point")},
+               {"max", array(number("the channel's", ""), "likewise")}})},
+      {"TrialSignals",
+       object({{"t_s", seconds},
+               {"channels", map(ref("Envelope"), "by name, which ends in the unit")},
+               {"from_s", number("s", "of the first sample shown")},
+               {"to_s", number("s", "of the last sample shown")},
+               {"samples_per_point", integer("1", "1: every sample; min equals max")}})},
+      {"TrialPath",
+       object({{"t_s", seconds},
+               {"tip_m", array(point(""), "tip of the bent probe, in V")},
+               {"force_N", array(number("N", ""), "magnitude of the model's force")}})},
+      {"TrialForceDepth",
+       object({{"t_s", seconds},
+               {"depth_m", array(number("m", ""), "of the tip, from the entry")},
+               {"force_N", array(number("N", ""), "push of the hand, positive into the bone")},
+               {"mode", array(one_of({"holding", "bone", "resistance", "breach", "stopped"}, ""),
+                              "what the controller was doing")}})}};
 }
 
 }  // namespace api

@@ -3,9 +3,6 @@
 #include <algorithm>
 
 namespace api {
-namespace {
-constexpr std::size_t kBytesPerSample = 52;  // trial::Signals
-}
 
 std::shared_ptr<const trial::Signals> TrialViews::known(const std::string& trial_id) {
   const std::lock_guard held(mutex_);
@@ -37,7 +34,7 @@ core::Result<std::shared_ptr<const trial::Signals>> TrialViews::of(const std::st
   if (auto there = known(trial_id)) return there;
   auto decoded = decode();
   if (!decoded) return decoded.error();
-  const std::size_t bytes = decoded->size() * kBytesPerSample;
+  const std::size_t bytes = decoded->size() * trial::Signals::kBytesPerSample;
   auto signals = std::make_shared<const trial::Signals>(std::move(*decoded));
   keep({trial_id, signals, bytes});
   return signals;

@@ -11,7 +11,7 @@ namespace {
 /// 100 samples: 5200 bytes.
 core::Result<trial::Signals> hundred() {
   trial::Signals signals(trial::Header{}, std::nullopt);
-  signals.add(std::vector<trial::Sample>(100));
+  signals.add({std::vector<trial::Sample>(100), {}});
   return signals;
 }
 

@@ -4,6 +4,7 @@
 #include "db/store/trials.hpp"
 #include "metrics/metric.hpp"
 #include "server/jobs/case_facts.hpp"
+#include "server/jobs/scenario_facts.hpp"
 #include "trial/trial_file.hpp"
 
 namespace jobs {
@@ -41,12 +42,22 @@ core::Result<void> assess_trial(store::Store& store, const store::Objects& objec
   auto record = store.read([&](store::Reading& tx) { return store::trial_of(tx, trial_id); });
   if (!record) return record.error();
   if (!*record) return core::Error{core::Errc::not_found, "no trial " + trial_id};
-  auto facts = case_facts(store, objects, (*record)->summary.case_id);
-  if (!facts) return facts.error();
   auto trial = trial::read_trial(objects.path_of((*record)->sha256));
   if (!trial) return trial.error();
-  metrics::Subject subject{.trial = *trial, .tract = facts->definition.tract, .truth = {}};
-  if (facts->truth) subject.truth = metrics::Truth{facts->truth->breached};
+  metrics::Subject subject{.trial = *trial};
+  std::optional<CaseFacts> facts;
+  if (trial->header.rig == trial::Rig::palpation) {
+    auto known = case_facts(store, objects, (*record)->summary.case_id);
+    if (!known) return known.error();
+    facts = std::move(*known);
+    subject.tract = &facts->definition.tract;
+    if (facts->truth) subject.truth = metrics::Truth{.breached = facts->truth->breached};
+  } else {
+    auto scenario = scenario_of(store, objects, (*record)->summary.case_id);
+    if (!scenario) return scenario.error();
+    subject.truth =
+        metrics::Truth{.breached = {}, .walls = static_cast<int>(scenario->walls_m.size())};
+  }
   const Assessment done = assessment(subject);
   return store.write([&](store::Writing& tx) {
     return store::set_assessment(tx, trial_id, done.scores, done.correct, done.coverage);

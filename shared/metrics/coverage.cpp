@@ -49,8 +49,8 @@ double Coverage::share(std::optional<volume::Wall> side) const {
 
 std::optional<Coverage> coverage(const Subject& subject) {
   const auto probe = trial::probe_shape(subject.trial.header);
-  if (!probe) return std::nullopt;
-  const volume::Tract& tract = subject.tract;
+  if (!probe || !subject.tract) return std::nullopt;
+  const volume::Tract& tract = *subject.tract;
   Coverage out{kDepthBins, kAngleBins, std::vector<std::uint32_t>(kDepthBins * kAngleBins)};
   for (const auto& sample : subject.trial.samples) {
     const math::Vec3 force_V =

@@ -13,16 +13,17 @@
 
 namespace metrics {
 
-/// What the case's maker knows: which wall is breached, if any.
+/// What the case's maker knows.
 struct Truth {
-  std::optional<volume::Wall> breached;
+  std::optional<volume::Wall> breached;  ///< palpation: which wall is breached, if any
+  int walls = 0;                         ///< probing: how many walls the scenario lets give way
 };
 
 /// What a score may be made from. The same for station, server and tool.
 struct Subject {
   const trial::Trial& trial;
-  const volume::Tract& tract;
-  std::optional<Truth> truth;  ///< absent where the scorer must not know
+  const volume::Tract* tract = nullptr;  ///< of palpation; what needs it has no value without
+  std::optional<Truth> truth = {};       ///< absent where the scorer must not know
 };
 
 /// `value` is empty where the score does not exist for this trial (no contact, no answer, truth
@@ -39,6 +40,7 @@ struct MetricInfo {
   std::string definition;  ///< one sentence with the rule
   std::string source;      ///< paper, table or "own definition"
   Score (*compute)(const Subject& subject);
+  std::optional<trial::Rig> rig = trial::Rig::palpation;  ///< whose trials it is of; nothing: both
 };
 
 /// Every metric, in file-name order.
@@ -68,10 +70,10 @@ struct Coverage {
 inline constexpr double kContact_N = 0.01;
 inline constexpr int kDepthBins = 10, kAngleBins = 12;
 
-/// Nothing when the trial's header does not place the tip.
+/// Nothing when there is no tract or the trial's header does not place the tip.
 std::optional<Coverage> coverage(const Subject& subject);
 
-/// All scores of one trial, in the order of all().
+/// All scores that apply to the trial's rig, in the order of all().
 std::vector<std::pair<MetricInfo, Score>> score_all(const Subject& subject);
 
 /// {"id","label","unit","value"|null,"note","definition","source"}: as files, tool and server say

@@ -57,7 +57,7 @@ struct Bench {
     s.force_N = {float(f_H.x()), float(f_H.y()), float(f_H.z())};
     trial.samples.push_back(s);
   }
-  Subject subject() const { return {trial, tract, truth}; }
+  Subject subject() const { return {trial, &tract, truth}; }
   Score score(const std::string& id) const {
     for (const auto& info : all())
       if (info.id == id) return info.compute(subject());

@@ -168,7 +168,7 @@ Result<laws::ProbingParameters> Scenario::expanded() const {
 Result<models::ProbingModel> Scenario::model() const {
   auto parameters = expanded();
   if (!parameters) return parameters.error();
-  return models::ProbingModel{name, std::move(parameters->layers), rotary, {}};
+  return models::ProbingModel{name, std::move(parameters->layers), rotary, {}, {}};
 }
 
 }  // namespace scenarios

@@ -18,7 +18,7 @@ inline constexpr std::string_view kMagic = "tractus-trial/1\n";
 /// Four ASCII letters, as they stand in the file.
 enum class FrameType : std::uint32_t {
   header = 0x44414548,   ///< "HEAD": JSON, exactly one, the first
-  samples = 0x504D4153,  ///< "SAMP": u32 count, then count × 136 bytes
+  samples = 0x504D4153,  ///< "SAMP": u32 count, then count × 136 bytes (probing: 64)
   event = 0x544E5645,    ///< "EVNT": JSON
   end = 0x4C414553,  ///< "SEAL": u64 sample count, SHA-256 of all bytes before the frame; exactly
                      ///< one, the last
@@ -29,8 +29,10 @@ inline constexpr std::size_t kMaxPayload_bytes = 1u << 20;
 inline constexpr std::size_t kMaxJson_bytes = 256u << 10;  ///< of one header or event
 inline constexpr std::size_t kMaxEvents_bytes = 8u << 20;  ///< of all events of a file together
 inline constexpr std::size_t kEndPayload_bytes = 8 + 32;
-/// Samples that fit one frame.
-inline constexpr std::size_t kMaxFrameSamples = (kMaxPayload_bytes - 4) / 136;
+/// Samples that fit one frame, by the size of one.
+constexpr std::size_t max_frame_samples(std::size_t sample_bytes) {
+  return (kMaxPayload_bytes - 4) / sample_bytes;
+}
 
 /// A frame with its header: type, length, sequence, CRC-32C of the payload, CRC-32C of those
 /// sixteen bytes; payload.

@@ -1,5 +1,5 @@
-/// A trial as curves for people: channels over time with level of detail, and the tip's path
-/// thinned.
+/// A trial as curves for people: channels over time with level of detail, the tip's path thinned,
+/// and, of a probing trial, force against depth.
 #pragma once
 
 #include <array>
@@ -30,12 +30,17 @@ struct TractLine {
   math::Vec3 axis = math::Vec3::UnitZ();  ///< unit vector
 };
 
-/// Forces and torques are those of the model, what the bone does to the probe, in H: xy transverse
-/// (magnitude), z along the shank (signed). depth_m: of the tip along the tract's axis. offset_m:
-/// the tip's distance from that axis. angle_rad: between the unbent shank and that axis. The last
-/// three need probe and tract.
+/// Of palpation. Forces and torques are those of the model, what the bone does to the probe, in H:
+/// xy transverse (magnitude), z along the shank (signed). depth_m: of the tip along the tract's
+/// axis. offset_m: the tip's distance from that axis. angle_rad: between the unbent shank and that
+/// axis. The last three need probe and tract.
 inline constexpr std::array<std::string_view, 7> kChannels{
     "force_xy_N", "force_z_N", "torque_xy_Nm", "torque_z_Nm", "depth_m", "offset_m", "angle_rad"};
+
+/// Of probing. force_N and torque_Nm: of the hand on the probe. depth_m, speed_m_s, angle_rad: of
+/// the probe. mode: ProbingMode as a number. round_trip_s: of the exchange over the bus.
+inline constexpr std::array<std::string_view, 7> kProbingChannels{
+    "force_N", "depth_m", "speed_m_s", "angle_rad", "torque_Nm", "mode", "round_trip_s"};
 
 /// Smallest and largest of the samples behind each point.
 struct Envelope {
@@ -56,15 +61,27 @@ struct Path {
   std::vector<float> force_N;     ///< magnitude of the model's force
 };
 
+/// Force against depth, in order of time.
+struct DepthCurve {
+  std::vector<double> t_s;
+  std::vector<float> depth_m, force_N;
+  std::vector<ProbingMode> mode;
+};
+
 /// Fed with samples in order (by scan_trial, frame by frame, or all at once), asked as often as one
-/// likes. Holds 52 bytes a sample. A question reads the range once: 10⁶ samples, all channels, take
+/// likes. Holds kBytesPerSample. A question reads the range once: 10⁶ samples, all channels, take
 /// some milliseconds.
 class Signals {
  public:
   Signals(const Header& header, std::optional<TractLine> tract);
-  void add(std::span<const Sample> samples);
+  /// Of the header's rig.
+  void add(const Block& block);
 
+  static constexpr std::size_t kBytesPerSample = 52;
   std::size_t size() const { return t_s_.size(); }
+  Rig rig() const { return rig_; }
+  /// The channels of this trial that have all they need.
+  std::vector<std::string> channels() const;
   /// Is this a channel, and is all there that it needs?
   bool has(std::string_view channel) const;
   /// The channels asked for within [from_s, to_s] in at most `points` points (≥ 1) of equally many
@@ -75,8 +92,15 @@ class Signals {
   /// At most `points` (≥ 1) samples of the path, one of each of as many equal stretches of time:
   /// that of the largest force, so that no contact is lost. Empty without a probe.
   Path path(std::size_t points) const;
+  /// At most `points` (≥ 2) samples: of as many equal stretches as there are pairs the one of the
+  /// least and the one of the greatest force, in their order. Empty for palpation.
+  DepthCurve force_against_depth(std::size_t points) const;
 
  private:
+  void add(const Sample& sample);
+  void add(const ProbingSample& sample);
+  std::optional<std::size_t> index_of(std::string_view channel) const;
+  Rig rig_;
   std::optional<ProbeShape> probe_;
   std::optional<TractLine> tract_;
   std::vector<double> t_s_;

@@ -55,7 +55,7 @@ TEST(Signals, DerivesDepthOffsetAndAngleByHand) {
   s.force_N = {3, 4, -12};
   s.torque_Nm = {0.3f, -0.4f, 0.5f};
   Signals signals(with_probe(), TractLine{{1, 1.93, 3}, {0, -1, 0}});
-  signals.add(std::vector{s});
+  signals.add({std::vector{s}, {}});
   const std::vector<std::string> all(kChannels.begin(), kChannels.end());
   const auto view = signals.view(all, 0, 1, 10);
   ASSERT_TRUE(view) << view.error().what;
@@ -70,7 +70,7 @@ TEST(Signals, DerivesDepthOffsetAndAngleByHand) {
 
 TEST(Signals, EveryPointHoldsTheExtremesOfItsSamples) {
   Signals signals(Header{}, {});
-  signals.add(ramp(10));
+  signals.add({ramp(10), {}});
   const auto view = signals.view(kForce, 0, 1, 4);  // 3 + 3 + 3 + 1
   ASSERT_TRUE(view);
   EXPECT_EQ(view->samples_per_point, 3u);
@@ -82,7 +82,7 @@ TEST(Signals, EveryPointHoldsTheExtremesOfItsSamples) {
 
 TEST(Signals, ARangeShowsTheSamplesInItAndNoOthers) {
   Signals signals(Header{}, {});
-  signals.add(ramp(100));
+  signals.add({ramp(100), {}});
   const auto view = signals.view(kForce, 0.0105, 0.013, 1000);
   ASSERT_TRUE(view);
   EXPECT_EQ(view->samples_per_point, 1u);
@@ -100,7 +100,7 @@ TEST(Signals, TheExtremesAreThoseOfASlowSearch) {
   for (std::size_t i = 0; i < samples.size(); ++i)
     samples[i].force_N = {0, 0, float(int(i * 7919 % 1009) - 500)};  // scattered, both signs
   Signals signals(Header{}, {});
-  signals.add(samples);
+  signals.add({samples, {}});
   for (const std::size_t points : {1, 3, 7, 60, 130, 999, 1000}) {
     const auto view = signals.view(std::vector<std::string>{"force_z_N"}, 0, 1, points);
     ASSERT_TRUE(view);
@@ -120,7 +120,7 @@ TEST(Signals, TheExtremesAreThoseOfASlowSearch) {
 
 TEST(Signals, NeverGivesMorePointsThanAskedFor) {
   Signals signals(Header{}, {});
-  signals.add(ramp(1237));
+  signals.add({ramp(1237), {}});
   for (std::size_t points = 1; points < 1500; points += 7) {
     const auto view = signals.view(kForce, 0, 10, points);
     ASSERT_TRUE(view);
@@ -131,7 +131,7 @@ TEST(Signals, NeverGivesMorePointsThanAskedFor) {
 
 TEST(Signals, RefusesWhatItDoesNotHave) {
   Signals signals(Header{}, {});
-  signals.add(ramp(3));
+  signals.add({ramp(3), {}});
   EXPECT_FALSE(signals.has("depth_m"));
   const auto depth = signals.view(std::vector<std::string>{"depth_m"}, 0, 1, 10);
   ASSERT_FALSE(depth);
@@ -156,7 +156,7 @@ TEST(Signals, ThePathKeepsTheStrongestContactOfEveryStretch) {
   samples[777].force_N = {0, 0, 2.5f};
   samples[123].force_N = {1.5f, 0, 0};
   Signals signals(with_probe(), {});
-  signals.add(samples);
+  signals.add({samples, {}});
   const auto path = signals.path(20);
   EXPECT_EQ(path.t_s.size(), 20u);
   EXPECT_EQ(path.t_s[0], 0.0);

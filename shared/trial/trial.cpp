@@ -11,11 +11,32 @@ namespace trial {
 namespace {
 constexpr std::size_t kMaxName = 200;  // characters of a station, a device, a person
 constexpr double kMaxRate_Hz = 1e5;
+constexpr double kDeepest_m = 0.2;                  // of a breach that somebody felt
 constexpr long kMaxUtc_us = 4'102'444'800'000'000;  // the year 2100
+
+constexpr std::array<std::string_view, 2> kRigs{"palpation", "probing"};
+constexpr std::array<std::string_view, kProbingModes> kModes{"holding", "bone", "resistance",
+                                                             "breach", "stopped"};
 
 template <class T, std::size_t N>
 bool plausible(const std::array<T, N>& values) {
   return std::ranges::all_of(values, [](T v) { return std::abs(v) <= T(kMaxMagnitude); });
+}
+
+/// What both kinds of samples must keep to.
+template <class S>
+std::string order_fault(const S& s, const S* before) {
+  if (!std::isfinite(s.t_s) || s.t_s < 0.0 || s.t_s > kMaxTime_s)
+    return fmt::format("time {} s, expected 0 … {}", s.t_s, kMaxTime_s);
+  if (before && s.t_s < before->t_s)
+    return fmt::format("time runs backwards from {} s to {} s", before->t_s, s.t_s);
+  if (before && s.tick <= before->tick)
+    return fmt::format("tick {} after tick {}, expected a later one", s.tick, before->tick);
+  return {};
+}
+
+std::string number_fault(std::uint32_t tick) {
+  return fmt::format("tick {} holds a number that is not finite or beyond {}", tick, kMaxMagnitude);
 }
 
 bool truth_of(core::Fields& fields, const char* key) {
@@ -33,24 +54,38 @@ core::Json object_of(core::Fields& fields, const char* key) {
 }
 }  // namespace
 
+std::string_view name(Rig rig) { return kRigs[std::size_t(rig)]; }
+
+std::optional<Rig> rig_named(std::string_view name) {
+  const auto found = std::ranges::find(kRigs, name);
+  if (found == kRigs.end()) return std::nullopt;
+  return Rig(found - kRigs.begin());
+}
+
+std::string_view name(ProbingMode mode) { return kModes[std::size_t(mode)]; }
+
 std::string fault_of(const Sample& s, const Sample* before) {
-  if (!std::isfinite(s.t_s) || s.t_s < 0.0 || s.t_s > kMaxTime_s)
-    return fmt::format("time {} s, expected 0 … {}", s.t_s, kMaxTime_s);
-  if (before && s.t_s < before->t_s)
-    return fmt::format("time runs backwards from {} s to {} s", before->t_s, s.t_s);
-  if (before && s.tick <= before->tick)
-    return fmt::format("tick {} after tick {}, expected a later one", s.tick, before->tick);
+  if (auto fault = order_fault(s, before); !fault.empty()) return fault;
   const bool numbers = plausible(s.p_VH_m) && plausible(s.q_VH) && plausible(s.force_N) &&
                        plausible(s.torque_Nm) && plausible(s.rendered_force_N) &&
                        plausible(s.rendered_torque_Nm) && plausible(s.deflection_m);
-  if (!numbers)
-    return fmt::format("tick {} holds a number that is not finite or beyond {}", s.tick,
-                       kMaxMagnitude);
+  if (!numbers) return number_fault(s.tick);
   const auto& q = s.q_VH;
   const double norm2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
   if (std::abs(norm2 - 1.0) > 0.02)
     return fmt::format("tick {}: quaternion of length {:.6g}, expected 1", s.tick,
                        std::sqrt(norm2));
+  return {};
+}
+
+std::string fault_of(const ProbingSample& s, const ProbingSample* before) {
+  if (auto fault = order_fault(s, before); !fault.empty()) return fault;
+  if (!plausible(std::array{s.x_m, s.theta_rad}) ||
+      !plausible(std::array{s.speed_m_s, s.turning_rad_s, s.fz_N, s.tz_Nm, s.command_m_s,
+                            s.command_Nm, s.law_m_s, s.round_trip_s}))
+    return number_fault(s.tick);
+  if (int(s.mode) >= kProbingModes)
+    return fmt::format("tick {}: mode {}, expected 0 … {}", s.tick, int(s.mode), kProbingModes - 1);
   return {};
 }
 
@@ -71,6 +106,7 @@ core::Json Answer::to_json() const {
   core::Json json{{"breach", breach}, {"wall", nullptr}};
   if (wall) json["wall"] = *wall;
   if (confidence) json["confidence"] = *confidence;
+  if (depth_m) json["depth_m"] = *depth_m;
   return json;
 }
 
@@ -86,6 +122,11 @@ core::Result<Answer> Answer::from_json(const core::Json& json, const std::string
   const core::Json* confidence = fields.member("confidence", false);
   if (confidence && !confidence->is_null())
     answer.confidence = fields.number("confidence", 0.0, 1.0);
+  const core::Json* depth = fields.member("depth_m", false);
+  if (depth && !depth->is_null()) {
+    answer.depth_m = fields.number("depth_m", 0.0, kDeepest_m);
+    if (!answer.breach) fields.wrong("depth_m", "a depth is named without a breach");
+  }
   if (auto done = fields.done(); !done) return done.error();
   return answer;
 }
@@ -100,31 +141,42 @@ std::optional<Answer> Trial::answer() const {
   return std::nullopt;
 }
 
-TickCounts count_ticks(std::span<const Sample> samples) {
+void TickCounts::add(const Block& block) {
+  std::uint32_t last = 0;
+  block.each([&](const auto& s) {
+    not_converged += (s.flags & kNotConverged) != 0;
+    limited += (s.flags & kLimited) != 0;
+    late += (s.flags & kLate) != 0;
+    stale += (s.flags & kStale) != 0;
+    saturated += (s.flags & kSaturated) != 0;
+    missed += (s.flags & kMissed) != 0;
+    bus_lost += (s.flags & kBusLost) != 0;
+    last = s.tick;
+  });
+  samples += block.size();
+  if (block.size() > 0) skipped = std::uint64_t{last} + 1 - samples;
+}
+
+TickCounts count_ticks(const Block& block) {
   TickCounts out;
-  for (const Sample& s : samples) {
-    out.not_converged += (s.flags & kNotConverged) != 0;
-    out.limited += (s.flags & kLimited) != 0;
-    out.late += (s.flags & kLate) != 0;
-    out.stale += (s.flags & kStale) != 0;
-    out.saturated += (s.flags & kSaturated) != 0;
-  }
-  if (!samples.empty()) out.skipped = std::uint64_t{samples.back().tick} + 1 - samples.size();
+  out.add(block);
   return out;
 }
 
 core::Json Header::to_json() const {
-  return {{"format", "tractus-trial/1"},
-          {"id", id},
-          {"case_id", case_id},
-          {"station", station},
-          {"operator", operator_name},
-          {"simulated", simulated},
-          {"device", device},
-          {"started_utc_us", started_utc_us},
-          {"rate_Hz", rate_Hz},
-          {"probe", probe},
-          {"extra", extra}};
+  core::Json json{{"format", "tractus-trial/1"},
+                  {"id", id},
+                  {"case_id", case_id},
+                  {"station", station},
+                  {"operator", operator_name},
+                  {"simulated", simulated},
+                  {"device", device},
+                  {"started_utc_us", started_utc_us},
+                  {"rate_Hz", rate_Hz},
+                  {"probe", probe},
+                  {"extra", extra}};
+  if (rig != Rig::palpation) json["rig"] = name(rig);
+  return json;
 }
 
 core::Result<Header> Header::from_json(const core::Json& json, const std::string& where) {
@@ -144,6 +196,10 @@ core::Result<Header> Header::from_json(const core::Json& json, const std::string
   header.device = fields.text("device", kMaxName);
   header.started_utc_us = fields.integer("started_utc_us", 0, kMaxUtc_us);
   header.rate_Hz = fields.number("rate_Hz", 1e-3, kMaxRate_Hz);
+  if (const auto text = fields.text_or("rig", "palpation", 64); const auto rig = rig_named(text))
+    header.rig = *rig;
+  else
+    fields.wrong("rig", "\"palpation\" or \"probing\" is expected");
   header.probe = object_of(fields, "probe");
   header.extra = object_of(fields, "extra");
   if (auto done = fields.done(); !done) return done.error();

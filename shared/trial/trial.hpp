@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/json.hpp"
@@ -36,12 +37,65 @@ struct Sample {
 };
 static_assert(sizeof(Sample) == 136);
 
+/// The two simulators. A trial is of one of them and holds its kind of samples alone.
+enum class Rig : std::uint8_t { palpation, probing };
+std::string_view name(Rig rig);
+std::optional<Rig> rig_named(std::string_view name);
+
+/// What the probing rig's controller was doing.
+enum class ProbingMode : std::uint8_t {
+  holding,     ///< the probe turns too slowly: the stage does not move
+  bone,        ///< in a layer
+  resistance,  ///< before a wall, resistance growing
+  breach,      ///< behind a wall: no stiffness, the breach's damping, rotary motor off
+  stopped,     ///< at the probe stop
+};
+inline constexpr int kProbingModes = 5;
+std::string_view name(ProbingMode mode);
+
+/// One tick of a probing trial: what was read in one exchange with the rig, and what was commanded
+/// for the next period. 64 bytes, little-endian, no padding: also the layout on disk.
+struct ProbingSample {
+  double t_s = 0.0;            ///< since the trial's start, one monotonic clock
+  double x_m = 0.0;            ///< depth of the tip from the entry, positive into the bone
+  double theta_rad = 0.0;      ///< angle about x, unwrapped
+  float speed_m_s = 0.0f;      ///< of the depth, the actuator's own
+  float turning_rad_s = 0.0f;  ///< of the angle
+  float fz_N = 0.0f;           ///< push of the hand on the probe along x, positive into the bone
+  float tz_Nm = 0.0f;          ///< torque of the hand on the probe about x
+  float command_m_s = 0.0f;    ///< speed that was commanded, within the safety's limits
+  float command_Nm = 0.0f;     ///< torque of the rotary motor that was commanded
+  float law_m_s = 0.0f;        ///< speed that the law asked for
+  float round_trip_s = 0.0f;   ///< of this tick's exchange over the bus; 0 when there was none
+  std::uint32_t tick = 0;      ///< counts from 0; a gap is a period that was missed altogether
+  std::uint16_t flags = 0;     ///< Flag bits
+  ProbingMode mode = ProbingMode::holding;
+  std::uint8_t fault = 0;  ///< the rig's own fault code (station/devices/rig-registers.md)
+};
+static_assert(sizeof(ProbingSample) == 64);
+
 enum Flag : std::uint16_t {
-  kNotConverged = 1,  ///< the equilibrium was not reached
-  kLimited = 2,       ///< the limiter changed the wrench
+  kNotConverged = 1,  ///< palpation: the equilibrium was not reached
+  kLimited = 2,       ///< the limiter changed the wrench, or the commanded speed or torque
   kLate = 4,          ///< this tick woke more than a quarter period late
-  kStale = 8,         ///< the device had no fresh sample: zero was rendered
+  kStale = 8,         ///< no fresh sample of the device: the last one stands, nothing was rendered
   kSaturated = 16,    ///< the device reports that it could not give what was asked
+  kMissed = 32,       ///< probing: the exchange ended after the next period had begun
+  kBusLost = 64,      ///< probing: the exchange failed
+};
+
+/// Samples in order, of one rig: the other's span is empty.
+struct Block {
+  std::span<const Sample> palpation;
+  std::span<const ProbingSample> probing;
+
+  std::size_t size() const { return palpation.size() + probing.size(); }
+  /// What both kinds have (t_s, tick, flags), in order: `take` is called with each sample.
+  template <class Take>
+  void each(Take&& take) const {
+    for (const Sample& sample : palpation) take(sample);
+    for (const ProbingSample& sample : probing) take(sample);
+  }
 };
 
 /// Something that happened at a time: "start", "answer", "end", "fault", "interrupted".
@@ -55,12 +109,13 @@ struct Event {
   static core::Result<Event> from_json(const core::Json& json, const std::string& where);
 };
 
-/// What the trainee said: {"breach": bool, "wall": "medial"|…|null, "confidence": 0…1}; wall and
-/// confidence may be missing.
+/// What the trainee said: {"breach": bool, "wall": "medial"|…|null, "confidence": 0…1,
+/// "depth_m": 0…0.2}; all but the first may be missing.
 struct Answer {
   bool breach = false;
-  std::optional<std::string> wall;   ///< name of a volume::Wall; only with a breach
-  std::optional<double> confidence;  ///< 0 … 1
+  std::optional<std::string> wall;     ///< palpation: name of a volume::Wall; only with a breach
+  std::optional<double> confidence;    ///< 0 … 1
+  std::optional<double> depth_m = {};  ///< probing: where it was felt; only with a breach
 
   core::Json to_json() const;
   static core::Result<Answer> from_json(const core::Json& json, const std::string& where);
@@ -69,15 +124,17 @@ struct Answer {
 /// What is known before the first sample.
 struct Header {
   std::string id;             ///< core::new_id()
-  std::string case_id;        ///< content id of the case, SHA-256
+  std::string case_id;        ///< content id of the case or of the scenario, SHA-256
   std::string station;        ///< its name
   std::string operator_name;  ///< who; "simulated hand, seed 7" for a simulated one
   bool simulated = false;     ///< true when a simulated device stood in for hand and machine
   std::string device;         ///< "sim-lambda6", …
   std::int64_t started_utc_us = 0;
   double rate_Hz = 4000.0;
-  core::Json probe = core::Json::object();  ///< length_m, radius_m, points, point_spacing_m,
-                                            ///< pose_offset_m of the model that ran
+  Rig rig = Rig::palpation;
+  core::Json probe = core::Json::object();  ///< palpation: length_m, radius_m, points,
+                                            ///< point_spacing_m, pose_offset_m of the model that
+                                            ///< ran; probing: travel_m of the scenario
   core::Json extra = core::Json::object();  ///< anything further a later version knows
 
   core::Json to_json() const;
@@ -89,11 +146,13 @@ struct Header {
 /// Everything, in memory.
 struct Trial {
   Header header;
-  std::vector<Sample> samples;  ///< in order of tick
-  std::vector<Event> events;    ///< in order of time
+  std::vector<Sample> samples;         ///< of palpation, in order of tick
+  std::vector<ProbingSample> probing;  ///< of probing, in order of tick
+  std::vector<Event> events;           ///< in order of time
   bool complete = false;  ///< an "end" event was recorded and the file sealed; false after a crash
   bool sealed = false;    ///< the end frame is there and its hash holds: nothing can follow
 
+  Block block() const { return {samples, probing}; }
   /// The last answer that was given; nothing when there was none, or when it cannot be understood.
   std::optional<Answer> answer() const;
 };
@@ -107,12 +166,19 @@ inline constexpr double kMaxMagnitude = 1e6;
 /// time outside 0 … kMaxTime_s or running backwards, a tick that does not increase, a quaternion
 /// that is no rotation. Empty if nothing.
 std::string fault_of(const Sample& sample, const Sample* before);
+/// Likewise; also a mode that is none.
+std::string fault_of(const ProbingSample& sample, const ProbingSample* before);
 
-/// How the loop that recorded `samples` fared.
+/// How the loop that recorded the samples fared.
 struct TickCounts {
+  std::uint64_t samples = 0;
   std::uint64_t not_converged = 0, limited = 0, late = 0, stale = 0, saturated = 0;
+  std::uint64_t missed = 0, bus_lost = 0;
   std::uint64_t skipped = 0;  ///< ticks from 0 to the last one that left no sample
+
+  /// Blocks of one trial, in order.
+  void add(const Block& block);
 };
-TickCounts count_ticks(std::span<const Sample> samples);
+TickCounts count_ticks(const Block& block);
 
 }  // namespace trial

@@ -10,7 +10,7 @@
 
 namespace trial {
 namespace {
-using OnSamples = std::function<void(std::span<const Sample>)>;
+using OnSamples = std::function<void(const Block&)>;
 
 /// Takes the frames of one file in order and holds them against the rules of the format.
 class Scanner {
@@ -25,7 +25,7 @@ class Scanner {
   const Trial& trial() const { return trial_; }
   std::uint64_t samples() const { return samples_; }
   double last_s() const {
-    const double sample_s = last_ ? last_->t_s : 0.0;
+    const double sample_s = last_ ? last_->t_s : last_probing_ ? last_probing_->t_s : 0.0;
     return trial_.events.empty() ? sample_s : std::max(sample_s, trial_.events.back().t_s);
   }
 
@@ -37,6 +37,8 @@ class Scanner {
   core::Result<void> take_frame();
   core::Result<void> take_header();
   core::Result<void> take_samples();
+  template <class S>
+  core::Result<void> take_samples_of(std::vector<S>& block, std::optional<S>& last);
   core::Result<void> take_event();
   core::Result<void> take_end();
 
@@ -45,7 +47,9 @@ class Scanner {
   ReadLimits limits_;
   Trial trial_;
   std::vector<Sample> block_;
+  std::vector<ProbingSample> probing_;
   std::optional<Sample> last_;
+  std::optional<ProbingSample> last_probing_;
   std::uint64_t samples_ = 0;
   std::size_t events_bytes_ = 0;
   bool has_header_ = false;
@@ -104,25 +108,36 @@ core::Result<void> Scanner::take_header() {
 }
 
 core::Result<void> Scanner::take_samples() {
+  if (trial_.header.rig == Rig::palpation) {
+    if (auto taken = take_samples_of(block_, last_); !taken) return taken;
+    on_samples_({block_, {}});
+  } else {
+    if (auto taken = take_samples_of(probing_, last_probing_); !taken) return taken;
+    on_samples_({{}, probing_});
+  }
+  return {};
+}
+
+template <class S>
+core::Result<void> Scanner::take_samples_of(std::vector<S>& block, std::optional<S>& last) {
   const auto payload = reader_.payload();
   std::uint32_t count = 0;
   if (payload.size() >= sizeof count) std::memcpy(&count, payload.data(), sizeof count);
-  if (count == 0 || payload.size() != sizeof count + std::uint64_t{count} * sizeof(Sample))
+  if (count == 0 || payload.size() != sizeof count + std::uint64_t{count} * sizeof(S))
     return wrong(core::Errc::corrupt,
                  fmt::format("{} samples said, {} bytes given", count, payload.size()));
   if (samples_ + count > limits_.max_samples)
     return wrong(core::Errc::too_large, fmt::format("more than {} samples", limits_.max_samples));
-  block_.resize(count);
-  std::memcpy(block_.data(), payload.data() + sizeof count, count * sizeof(Sample));
-  const Sample* before = last_ ? &*last_ : nullptr;
-  for (std::size_t i = 0; i < block_.size(); ++i) {
-    if (const auto fault = fault_of(block_[i], before); !fault.empty())
+  block.resize(count);
+  std::memcpy(block.data(), payload.data() + sizeof count, count * sizeof(S));
+  const S* before = last ? &*last : nullptr;
+  for (std::size_t i = 0; i < block.size(); ++i) {
+    if (const auto fault = fault_of(block[i], before); !fault.empty())
       return wrong(core::Errc::bad_input, fmt::format("sample {}: {}", samples_ + i, fault));
-    before = &block_[i];
+    before = &block[i];
   }
-  last_ = block_.back();
+  last = block.back();
   samples_ += count;
-  on_samples_(block_);
   return {};
 }
 
@@ -177,13 +192,17 @@ core::Result<Trial> scan(const std::filesystem::path& path, const OnSamples& on_
 
 core::Result<Trial> read_trial(const std::filesystem::path& path, const ReadLimits& limits) {
   std::vector<Sample> samples;
+  std::vector<ProbingSample> probing;
   auto trial = scan(
       path,
-      [&samples](std::span<const Sample> block) {
-        samples.insert(samples.end(), block.begin(), block.end());
+      [&](const Block& block) {
+        samples.insert(samples.end(), block.palpation.begin(), block.palpation.end());
+        probing.insert(probing.end(), block.probing.begin(), block.probing.end());
       },
       limits);
-  if (trial) trial->samples = std::move(samples);
+  if (!trial) return trial;
+  trial->samples = std::move(samples);
+  trial->probing = std::move(probing);
   return trial;
 }
 
@@ -198,7 +217,7 @@ core::Result<std::uint64_t> recover_trial(const std::filesystem::path& path) {
   if (!locked) return locked.error();
   auto reader = FrameReader::open(path, limits.max_bytes);
   if (!reader) return reader.error();
-  const OnSamples ignore = [](std::span<const Sample>) {};
+  const OnSamples ignore = [](const Block&) {};
   Scanner scanner(*reader, ignore, limits);
   auto step = scanner.run();
   if (!step) return step.error();

@@ -13,7 +13,7 @@
 namespace trial {
 
 /// Writes one file. Not for the tick: called by the recorder's thread. Every append is one frame
-/// and one write() (more only beyond 7710 samples). What a reader would refuse (fault_of, events
+/// and one write() (more only beyond 1 MiB). What a reader would refuse (fault_of, events
 /// out of order) is refused here as bad_input, and nothing of that append is written. Gone without
 /// finish(), the file is as after a crash: recover_trial() ends it.
 class TrialWriter {
@@ -24,7 +24,9 @@ class TrialWriter {
   ~TrialWriter();
   TrialWriter(TrialWriter&&) noexcept;
   TrialWriter& operator=(TrialWriter&&) noexcept;
+  /// Errors: also bad_input when the header's rig is not that of the samples.
   core::Result<void> append(std::span<const Sample> samples);
+  core::Result<void> append(std::span<const ProbingSample> samples);
   core::Result<void> append(const Event& event);
   /// Forces all appended frames to the disk (fdatasync).
   core::Result<void> flush();
@@ -54,7 +56,7 @@ core::Result<Trial> read_trial(const std::filesystem::path& path, const ReadLimi
 /// holds header and events only. An Error may come after samples were handed out: they then count
 /// for nothing.
 core::Result<Trial> scan_trial(const std::filesystem::path& path,
-                               const std::function<void(std::span<const Sample>)>& on_samples,
+                               const std::function<void(const Block&)>& on_samples,
                                const ReadLimits& limits = {});
 /// Cuts a file that a crash left open after its last whole frame and ends it with an "interrupted"
 /// event and an end frame, so that it can be handed over. Returns the samples kept. Does nothing to

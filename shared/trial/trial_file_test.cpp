@@ -138,9 +138,9 @@ TEST_F(TrialFile, ScanHandsOutTheSameSamplesFrameByFrame) {
   write(3, 7, true);
   std::vector<Sample> seen;
   std::vector<std::size_t> sizes;
-  const auto trial = scan_trial(path_, [&](std::span<const Sample> block) {
+  const auto trial = scan_trial(path_, [&](const Block& block) {
     sizes.push_back(block.size());
-    seen.insert(seen.end(), block.begin(), block.end());
+    seen.insert(seen.end(), block.palpation.begin(), block.palpation.end());
   });
   ASSERT_TRUE(trial);
   EXPECT_TRUE(trial->samples.empty());
@@ -149,7 +149,7 @@ TEST_F(TrialFile, ScanHandsOutTheSameSamplesFrameByFrame) {
 }
 
 TEST_F(TrialFile, AnAppendLargerThanAFrameIsSplit) {
-  const auto many = std::uint32_t(kMaxFrameSamples) + 5;
+  const auto many = std::uint32_t(max_frame_samples(sizeof(Sample))) + 5;
   write(1, many, true);
   const auto trial = read_trial(path_);
   ASSERT_TRUE(trial) << trial.error().what;
@@ -460,7 +460,7 @@ TEST_F(TrialFile, OfTheReleasedFormatIsReadForEver) {
   EXPECT_TRUE(trial->sealed);
   EXPECT_EQ(trial->answer()->wall, "medial");
   EXPECT_EQ(trial->answer()->confidence, 0.8);
-  const auto ticks = count_ticks(trial->samples);
+  const auto ticks = count_ticks(trial->block());
   EXPECT_EQ(ticks.late, 1u);
   EXPECT_EQ(ticks.skipped, 1u);
 

@@ -9,7 +9,8 @@
 
 namespace trial {
 namespace {
-core::Bytes samples_payload(std::span<const Sample> samples) {
+template <class S>
+core::Bytes samples_payload(std::span<const S> samples) {
   const auto count = static_cast<std::uint32_t>(samples.size());
   core::Bytes out(sizeof count + samples.size_bytes());
   std::memcpy(out.data(), &count, sizeof count);
@@ -21,7 +22,9 @@ core::Bytes samples_payload(std::span<const Sample> samples) {
 struct TrialWriter::State {
   std::string name;
   FrameWriter frames;
+  Rig rig;
   std::optional<Sample> last_sample;
+  std::optional<ProbingSample> last_probing;
   double last_event_s = 0.0;
   std::uint64_t samples = 0;
   std::size_t events_bytes = 0;
@@ -29,6 +32,8 @@ struct TrialWriter::State {
   core::Error refused(const std::string& what) const {
     return {core::Errc::bad_input, fmt::format("{}: {}", name, what)};
   }
+  template <class S>
+  core::Result<void> append(std::span<const S> block, Rig kind, std::optional<S>& last);
 };
 
 TrialWriter::TrialWriter(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -49,25 +54,38 @@ core::Result<TrialWriter> TrialWriter::create(const std::filesystem::path& path,
     return readable.error();
   auto frames = FrameWriter::create(path, payload);
   if (!frames) return frames.error();
-  return TrialWriter(
-      std::unique_ptr<State>(new State{path.string(), std::move(frames).value(), {}, 0.0, 0, 0}));
+  return TrialWriter(std::unique_ptr<State>(
+      new State{path.string(), std::move(frames).value(), header.rig, {}, {}, 0.0, 0, 0}));
+}
+
+template <class S>
+core::Result<void> TrialWriter::State::append(std::span<const S> block, Rig kind,
+                                              std::optional<S>& last) {
+  if (kind != rig)
+    return refused(
+        fmt::format("samples of {} in a trial of {}", trial::name(kind), trial::name(rig)));
+  const S* before = last ? &*last : nullptr;
+  for (const S& sample : block) {
+    if (const auto fault = fault_of(sample, before); !fault.empty()) return refused(fault);
+    before = &sample;
+  }
+  while (!block.empty()) {
+    const auto part = block.first(std::min(block.size(), max_frame_samples(sizeof(S))));
+    if (auto written = frames.append(FrameType::samples, samples_payload(part)); !written)
+      return written;
+    last = part.back();
+    samples += part.size();
+    block = block.subspan(part.size());
+  }
+  return {};
 }
 
 core::Result<void> TrialWriter::append(std::span<const Sample> samples) {
-  const Sample* before = state_->last_sample ? &*state_->last_sample : nullptr;
-  for (const Sample& sample : samples) {
-    if (const auto fault = fault_of(sample, before); !fault.empty()) return state_->refused(fault);
-    before = &sample;
-  }
-  while (!samples.empty()) {
-    const auto part = samples.first(std::min(samples.size(), kMaxFrameSamples));
-    auto written = state_->frames.append(FrameType::samples, samples_payload(part));
-    if (!written) return written;
-    state_->last_sample = part.back();
-    state_->samples += part.size();
-    samples = samples.subspan(part.size());
-  }
-  return {};
+  return state_->append(samples, Rig::palpation, state_->last_sample);
+}
+
+core::Result<void> TrialWriter::append(std::span<const ProbingSample> samples) {
+  return state_->append(samples, Rig::probing, state_->last_probing);
 }
 
 core::Result<void> TrialWriter::append(const Event& event) {

@@ -126,7 +126,7 @@ core::Result<void> StationFolder::recover_file(const fs::path& file, Recovered& 
     if (!failure) return {};
     return core::Error{core::Errc::io, fmt::format("{}: {}", file.string(), failure.message())};
   }
-  const auto read = trial::scan_trial(file, [](std::span<const trial::Sample>) {});
+  const auto read = trial::scan_trial(file, [](const trial::Block&) {});
   if (!read) {
     out.damaged.push_back(read.error().what);
     return {};

@@ -46,10 +46,12 @@ const std::map<std::string, Names> kAllowed = {
     {"shared/cases",
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/effects",
       "shared/models"}},
-    // A study's order and what a station is given of one slot, sealed.
-    {"shared/study", {"shared/core", "shared/laws", "shared/models", "shared/scenarios"}},
     {"shared/trial", {"shared/core", "shared/math"}},
     {"shared/metrics", {"shared/core", "shared/math", "shared/volume", "shared/trial"}},
+    // Analyses of a cohort: tables in, findings and pictures out.
+    {"shared/assessment",
+     {"shared/core", "shared/math", "shared/statistics", "shared/trial", "shared/metrics",
+      "shared/plot"}},
     {"shared/wire", {"shared/core", "shared/math", "shared/trial"}},
     {"shared/plot", {"shared/core"}},
     // The replay's pictures and tables are of a recording and a model together.
@@ -68,9 +70,9 @@ const std::map<std::string, Names> kAllowed = {
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/models", "shared/cases",
       "shared/trial"}},
     {"station/session",
-     {"shared/core", "shared/math", "shared/volume", "shared/models", "shared/cases",
-      "shared/trial", "shared/metrics", "shared/wire", "station/devices", "station/loop",
-      "station/uplink"}},
+     {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/effects",
+      "shared/models", "shared/scenarios", "shared/cases", "shared/trial", "shared/metrics",
+      "shared/wire", "station/devices", "station/loop", "station/uplink"}},
     {"server/http", {"shared/core"}},
     {"server/jobs",
      {"shared/core", "shared/trial", "shared/metrics", "shared/cases", "shared/scenarios",
@@ -131,6 +133,28 @@ TEST(Architecture, IncludesFollowTheTable) {
           << relative << " must not include " << (*it)[1];
     }
   }
+}
+
+/// The blind generators are a second implementation: what they include must not exist in the
+/// product, and no target of it may be linked.
+TEST(Architecture, BlindGeneratorsShareNothingWithTheProduct) {
+  const std::regex include("#include [\"<]([^\">]+)[\">]");
+  const fs::path blind = kRoot / "tests/blind";
+  int read = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(blind)) {
+    if (!entry.is_regular_file() || !is_source(entry.path())) continue;
+    const std::string text = text_of(entry.path());
+    ++read;
+    for (std::sregex_iterator it(text.begin(), text.end(), include), end; it != end; ++it) {
+      const std::string name = (*it)[1];
+      if (fs::exists(blind / name)) continue;
+      for (const char* top : {".", "shared", "tests", "db", "server", "station"})
+        EXPECT_FALSE(fs::exists(kRoot / top / name)) << entry.path() << " includes " << name;
+      EXPECT_EQ(name.find(".."), std::string::npos) << entry.path() << " includes " << name;
+    }
+  }
+  EXPECT_GT(read, 10);
+  EXPECT_EQ(text_of(blind / "CMakeLists.txt").find("tractus::"), std::string::npos);
 }
 
 TEST(Architecture, EveryFolderOfTheTableSaysWhatItIs) {

@@ -102,7 +102,7 @@ class KilledStation {
     for (const auto& entry : fs::directory_iterator(data() / "trials")) {
       EXPECT_NE(entry.path().extension(), ".part");
       if (entry.path().extension() != ".ttrial") continue;
-      const auto trial = trial::scan_trial(entry.path(), [&](std::span<const trial::Sample> part) {
+      const auto trial = trial::scan_trial(entry.path(), [&](const trial::Block& part) {
         here[entry.path().stem()] += part.size();
       });
       ASSERT_TRUE(trial) << trial.error().what;

@@ -19,18 +19,30 @@ void require_one_line(const core::Error& error) {
   require(error.what.find('\n') == std::string::npos, "a message is one line");
 }
 
-bool same(const std::vector<trial::Sample>& a, const std::vector<trial::Sample>& b) {
+template <class S>
+bool same(const std::vector<S>& a, const std::vector<S>& b) {
   return a.size() == b.size() &&
          (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0);
 }
 
-void require_sound(const trial::Trial& read, std::size_t file_bytes) {
-  require(read.samples.size() * sizeof(trial::Sample) <= file_bytes, "samples come from the file");
-  const trial::Sample* before = nullptr;
-  for (const auto& sample : read.samples) {
+bool same(const trial::Trial& a, const trial::Trial& b) {
+  return same(a.samples, b.samples) && same(a.probing, b.probing);
+}
+
+template <class S>
+void require_sound(const std::vector<S>& samples, std::size_t file_bytes) {
+  require(samples.size() * sizeof(S) <= file_bytes, "samples come from the file");
+  const S* before = nullptr;
+  for (const auto& sample : samples) {
     require(trial::fault_of(sample, before).empty(), "every sample that is handed out is sound");
     before = &sample;
   }
+}
+
+void require_sound(const trial::Trial& read, std::size_t file_bytes) {
+  require_sound(read.samples, file_bytes);
+  require_sound(read.probing, file_bytes);
+  require(read.samples.empty() || read.probing.empty(), "a trial holds samples of one rig");
   require(read.sealed || !read.complete, "only a sealed trial is complete");
 }
 
@@ -39,7 +51,7 @@ void require_recoverable(const std::string& path, const trial::Trial& read) {
   require(bool(kept), "what can be read can be recovered");
   const auto again = trial::read_trial(path);
   require(bool(again) && again->sealed, "a recovered trial is sealed");
-  require(*kept == read.samples.size() && same(again->samples, read.samples),
+  require(*kept == read.block().size() && same(*again, read),
           "recovery keeps exactly the samples that could be read");
 }
 }  // namespace
@@ -60,8 +72,10 @@ core::Bytes repaired(core::Bytes bytes) {
     if (trial::FrameType(type) == trial::FrameType::end && length == trial::kEndPayload_bytes)
       std::ranges::copy(trial::end_payload(samples, core::sha256(core::ByteView(bytes).first(at))),
                         payload);
-    if (trial::FrameType(type) == trial::FrameType::samples)
-      samples += length / sizeof(trial::Sample);
+    std::uint32_t count = 0;  // of a frame of samples: what it says of itself
+    if (trial::FrameType(type) == trial::FrameType::samples && length >= sizeof count)
+      std::memcpy(&count, payload, sizeof count);
+    samples += count;
     const auto frame =
         trial::frame_bytes(trial::FrameType(type), sequence,
                            {payload, std::min<std::size_t>(length, trial::kMaxPayload_bytes)});
@@ -77,13 +91,14 @@ bool try_trial(core::ByteView bytes) {
   require(trial::write_all(fd, bytes), "there is memory for a file");
   const std::string path = "/proc/self/fd/" + std::to_string(fd);
   const auto read = trial::read_trial(path);
-  std::vector<trial::Sample> seen;
-  const auto scanned = trial::scan_trial(path, [&seen](std::span<const trial::Sample> block) {
-    seen.insert(seen.end(), block.begin(), block.end());
+  trial::Trial seen;
+  const auto scanned = trial::scan_trial(path, [&seen](const trial::Block& block) {
+    seen.samples.insert(seen.samples.end(), block.palpation.begin(), block.palpation.end());
+    seen.probing.insert(seen.probing.end(), block.probing.begin(), block.probing.end());
   });
   require(bool(read) == bool(scanned), "reading and scanning agree");
   if (read) {
-    require(same(seen, read->samples), "reading and scanning agree");
+    require(same(seen, *read), "reading and scanning agree");
     require_sound(*read, bytes.size());
     require_recoverable(path, *read);
   } else {

@@ -9,9 +9,8 @@
 namespace fuzz {
 namespace {
 
-core::Bytes golden(const char* name) {
-  return core::read_file(std::string(TRACTUS_SOURCE_DIR) + "/tests/golden/trial-format-1/" + name)
-      .value();
+core::Bytes golden(const std::string& name) {
+  return core::read_file(std::string(TRACTUS_SOURCE_DIR) + "/tests/golden/" + name).value();
 }
 
 /// One to four times: a byte changed, a stretch removed, doubled or zeroed, a 32-bit number made
@@ -46,22 +45,34 @@ core::Bytes mutated(core::Bytes bytes, std::mt19937& random) {
   return bytes;
 }
 
-TEST(TrialMutation, TheWholeFilesAreRead) {
-  EXPECT_TRUE(try_trial(golden("small.trial")));
-  EXPECT_TRUE(try_trial(golden("torn.trial")));
-  EXPECT_TRUE(try_trial(repaired(golden("small.trial"))));
-  EXPECT_EQ(repaired(golden("small.trial")), golden("small.trial"));
+/// Of each rig.
+class TrialMutation : public testing::TestWithParam<const char*> {
+ protected:
+  core::Bytes small() const { return golden(GetParam() + std::string("/small.trial")); }
+  core::Bytes torn() const { return golden(GetParam() + std::string("/torn.trial")); }
+};
+INSTANTIATE_TEST_SUITE_P(Rigs, TrialMutation,
+                         testing::Values("trial-format-1", "trial-format-1-probing"),
+                         [](const auto& rig) {
+                           return rig.index == 0 ? "palpation" : "probing";
+                         });
+
+TEST_P(TrialMutation, TheWholeFilesAreRead) {
+  EXPECT_TRUE(try_trial(small()));
+  EXPECT_TRUE(try_trial(torn()));
+  EXPECT_TRUE(try_trial(repaired(small())));
+  EXPECT_EQ(repaired(small()), small());
 }
 
-TEST(TrialMutation, NoMutationBreaksAPromise) {
+TEST_P(TrialMutation, NoMutationBreaksAPromise) {
   std::mt19937 random(1);
-  const auto whole = golden("small.trial");
+  const auto whole = small();
   for (int i = 0; i < 4000; ++i) try_trial(mutated(whole, random));
 }
 
-TEST(TrialMutation, NoMutationWithTrueChecksumsBreaksAPromise) {
+TEST_P(TrialMutation, NoMutationWithTrueChecksumsBreaksAPromise) {
   std::mt19937 random(2);
-  const auto whole = golden("small.trial");
+  const auto whole = small();
   int read = 0;
   constexpr int kTries = 8000;
   for (int i = 0; i < kTries; ++i) read += try_trial(repaired(mutated(whole, random)));

@@ -13,18 +13,22 @@ core::Result<http::Response> list_metrics(const Call&) {
                     {"label", metric.label},
                     {"unit", metric.unit},
                     {"definition", metric.definition},
-                    {"source", metric.source}});
+                    {"source", metric.source},
+                    {"rig", metric.rig ? core::Json(trial::name(*metric.rig)) : core::Json()}});
   return json_response({{"metrics", list}});
 }
 
 }  // namespace
 
 std::vector<RouteInfo> metrics_routes() {
-  const core::Json info = schema::object({{"id", schema::text("never changes")},
-                                          {"label", schema::text("for people")},
-                                          {"unit", schema::text("as printed: N, s, 1")},
-                                          {"definition", schema::text("one sentence")},
-                                          {"source", schema::text("where it is from")}});
+  const core::Json info = schema::object(
+      {{"id", schema::text("never changes")},
+       {"label", schema::text("for people")},
+       {"unit", schema::text("as printed: N, s, 1")},
+       {"definition", schema::text("one sentence")},
+       {"source", schema::text("where it is from")},
+       {"rig", schema::nullable(schema::one_of({"palpation", "probing"},
+                                               "whose trials it is of; null: of both"))}});
   return {{.method = "GET",
            .path = "/api/v1/metrics",
            .id = "metrics",

@@ -8,6 +8,7 @@
 #include "server/api/trial_json.hpp"
 #include "server/api/uploads.hpp"
 #include "server/jobs/case_facts.hpp"
+#include "server/jobs/scenario_facts.hpp"
 #include "trial/trial_file.hpp"
 
 namespace api {
@@ -55,29 +56,70 @@ core::Json truth_json(const std::optional<cases::Truth>& truth) {
   return shown;
 }
 
+core::Result<trial::Header> header_of(const store::TrialRecord& trial) {
+  auto json = core::parse_json(trial.header, "trial " + trial.summary.id);
+  if (!json) return json.error();
+  return trial::Header::from_json(*json, "trial " + trial.summary.id);
+}
+
+/// Where the trial stands in a study, if it is of one.
+core::Result<std::optional<StudyPlace>> study_place(Backend& backend, const std::string& trial_id) {
+  using Place = std::optional<StudyPlace>;
+  return backend.store.read([&](store::Reading& tx) -> core::Result<Place> {
+    auto slot = store::slot_of_trial(tx, trial_id);
+    if (!slot) return slot.error();
+    if (!*slot) return Place();
+    auto study = store::study_of(tx, (*slot)->study_id);
+    if (!study) return study.error();
+    auto trial = store::study_trial_of(tx, trial_id);
+    if (!trial) return trial.error();
+    return Place(StudyPlace{std::move(study->value()), std::move(**slot), (*trial)->state,
+                            (*trial)->reason});
+  });
+}
+
+core::Result<TrialFacts> trial_facts(Backend& backend, const store::TrialRecord& trial) {
+  auto header = header_of(trial);
+  if (!header) return header.error();
+  const std::string& case_id = trial.summary.case_id;
+  TrialFacts out;
+  auto study = study_place(backend, trial.summary.id);
+  if (!study) return study.error();
+  out.study = std::move(*study);
+  if (header->rig == trial::Rig::probing) {
+    auto scenario = jobs::scenario_of(backend.store, backend.objects, case_id);
+    if (!scenario) return scenario.error();
+    out.scenario = std::move(*scenario);
+    return out;
+  }
+  auto facts = jobs::case_facts(backend.store, backend.objects, case_id);
+  if (!facts) return facts.error();
+  out.tract = facts->definition.tract;
+  out.truth = truth_json(facts->truth);
+  return out;
+}
+
 core::Result<http::Response> one_trial(const Call& call) {
   auto found = find_trial(call);
   if (!found) return found.error();
-  auto facts =
-      jobs::case_facts(call.backend.store, call.backend.objects, found->trial.summary.case_id);
+  auto facts = trial_facts(call.backend, found->trial);
   if (!facts) return facts.error();
-  return json_response(
-      trial_json(found->trial, found->scores, &facts->definition.tract, truth_json(facts->truth)));
+  return json_response(trial_json(found->trial, found->scores, *facts));
 }
 
 core::Result<trial::Signals> decode(Backend& backend, const store::TrialRecord& trial) {
-  auto facts = jobs::case_facts(backend.store, backend.objects, trial.summary.case_id);
-  if (!facts) return facts.error();
-  auto header_json = core::parse_json(trial.header, "trial " + trial.summary.id);
-  if (!header_json) return header_json.error();
-  auto header = trial::Header::from_json(*header_json, "trial " + trial.summary.id);
+  auto header = header_of(trial);
   if (!header) return header.error();
-  const volume::Tract& tract = facts->definition.tract;
-  trial::Signals signals(*header, trial::TractLine{tract.entry_m, tract.axis});
-  auto read =
-      trial::scan_trial(backend.objects.path_of(trial.sha256),
-                        [&](std::span<const trial::Sample> samples) { signals.add(samples); },
-                        {.max_samples = kMaxTrialSamples, .max_bytes = kMaxTrial_bytes});
+  std::optional<trial::TractLine> line;
+  if (header->rig == trial::Rig::palpation) {
+    auto facts = jobs::case_facts(backend.store, backend.objects, trial.summary.case_id);
+    if (!facts) return facts.error();
+    line = trial::TractLine{facts->definition.tract.entry_m, facts->definition.tract.axis};
+  }
+  trial::Signals signals(*header, line);
+  auto read = trial::scan_trial(backend.objects.path_of(trial.sha256),
+                                [&](const trial::Block& block) { signals.add(block); },
+                                {.max_samples = kMaxTrialSamples, .max_bytes = kMaxTrial_bytes});
   if (!read) return read.error();
   return signals;
 }
@@ -89,7 +131,8 @@ core::Result<std::shared_ptr<const trial::Signals>> signals_of(const Call& call)
                                      [&] { return decode(call.backend, found->trial); });
 }
 
-std::vector<std::string> channels_of(const Call& call) {
+std::vector<std::string> channels_of(const Call& call, const trial::Signals& signals) {
+  if (call.text("channels") == "all") return signals.channels();
   std::vector<std::string> out;
   std::string_view rest = call.text("channels");
   while (!rest.empty()) {
@@ -103,7 +146,7 @@ std::vector<std::string> channels_of(const Call& call) {
 core::Result<http::Response> trial_signals(const Call& call) {
   auto signals = signals_of(call);
   if (!signals) return signals.error();
-  const auto channels = channels_of(call);
+  const auto channels = channels_of(call, **signals);
   if (channels.size() > trial::kChannels.size())
     return core::Error{core::Errc::bad_input, "channels: each may be asked for once"};
   auto view = (*signals)->view(channels, call.number("from_s"), call.number("to_s"),
@@ -126,6 +169,21 @@ core::Result<http::Response> trial_path(const Call& call) {
   core::Json tips = core::Json::array();
   for (const math::Vec3& tip : path.tip_m) tips.push_back({tip.x(), tip.y(), tip.z()});
   return json_response({{"t_s", path.t_s}, {"tip_m", tips}, {"force_N", path.force_N}});
+}
+
+core::Result<http::Response> trial_force_depth(const Call& call) {
+  auto signals = signals_of(call);
+  if (!signals) return signals.error();
+  if ((*signals)->rig() != trial::Rig::probing)
+    return core::Error{core::Errc::not_found, "force against depth: not a probing trial"};
+  const auto curve =
+      (*signals)->force_against_depth(static_cast<std::size_t>(call.integer("points")));
+  core::Json modes = core::Json::array();
+  for (const trial::ProbingMode mode : curve.mode) modes.push_back(trial::name(mode));
+  return json_response({{"t_s", curve.t_s},
+                        {"depth_m", curve.depth_m},
+                        {"force_N", curve.force_N},
+                        {"mode", modes}});
 }
 
 Parameter query(std::string name, Parameter::Kind kind, std::string unit, std::string meaning,
@@ -153,8 +211,6 @@ RouteInfo trial_route(std::string tail, std::string id, std::string summary, std
           .handle = nullptr};
 }
 
-std::string all_channels() { return fmt::format("{}", fmt::join(trial::kChannels, ",")); }
-
 }  // namespace
 
 std::vector<RouteInfo> trials_routes() {
@@ -175,7 +231,9 @@ std::vector<RouteInfo> trials_routes() {
       "/{id}/signals", "trialSignals",
       "Channels over time, least and greatest of the samples behind each point", "TrialSignals");
   curves.parameters = {
-      id, query("channels", Kind::text, "", "names, separated by commas", 0, 0, all_channels()),
+      id,
+      query("channels", Kind::text, "",
+            "names, separated by commas; all: every one that this trial has", 0, 0, "all"),
       query("from_s", Kind::number, "s", "from this time", 0, kLongest_s, "0"),
       query("to_s", Kind::number, "s", "to this time", 0, kLongest_s, "1000000"),
       query("points", Kind::integer, "1", "at most so many", 1, 20000, "1000")};
@@ -186,7 +244,14 @@ std::vector<RouteInfo> trials_routes() {
       trial_route("/{id}/path", "trialPath", "The path of the probe's tip", "TrialPath");
   path.parameters = {id, query("points", Kind::integer, "1", "at most so many", 1, 20000, "2000")};
   path.handle = trial_path;
-  return {list, one, curves, path};
+
+  RouteInfo depths =
+      trial_route("/{id}/force-depth", "trialForceDepth",
+                  "Force against depth of a probing trial, in order of time", "TrialForceDepth");
+  depths.parameters = {id,
+                       query("points", Kind::integer, "1", "at most so many", 2, 20000, "2000")};
+  depths.handle = trial_force_depth;
+  return {list, one, curves, path, depths};
 }
 
 }  // namespace api

@@ -14,6 +14,7 @@
 #include "core/clock.hpp"
 #include "core/progress.hpp"
 #include "metrics/metric.hpp"
+#include "scenarios/scenario.hpp"
 #include "trial/trial_file.hpp"
 
 namespace commands {
@@ -21,28 +22,23 @@ namespace {
 using core::Json;
 
 struct Options {
-  std::string file, csv, case_folder;
+  std::string file, csv, case_folder, scenario;
   bool json = false;
 };
 
 /// What is gathered while the samples pass by.
 struct Passed {
-  std::uint64_t samples = 0;
-  double from_s = 0.0, to_s = 0.0;
+  double from_s = -1.0, to_s = 0.0;
   trial::TickCounts ticks;
 
-  void add(std::span<const trial::Sample> block) {
-    const auto counts = trial::count_ticks(block);
-    if (samples == 0) from_s = block.front().t_s;
-    to_s = block.back().t_s;
-    samples += block.size();
-    ticks.not_converged += counts.not_converged;
-    ticks.limited += counts.limited;
-    ticks.late += counts.late;
-    ticks.stale += counts.stale;
-    ticks.saturated += counts.saturated;
-    ticks.skipped = std::uint64_t{block.back().tick} + 1 - samples;
+  void add(const trial::Block& block) {
+    block.each([this](const auto& sample) {
+      if (from_s < 0.0) from_s = sample.t_s;
+      to_s = sample.t_s;
+    });
+    ticks.add(block);
   }
+  double duration_s() const { return from_s < 0.0 ? 0.0 : to_s - from_s; }
 };
 
 /// Text of a file on a terminal: no control characters.
@@ -53,8 +49,9 @@ std::string plain(std::string text) {
 }
 
 Json ticks_json(const trial::TickCounts& t) {
-  return {{"skipped", t.skipped}, {"late", t.late},   {"not_converged", t.not_converged},
-          {"limited", t.limited}, {"stale", t.stale}, {"saturated", t.saturated}};
+  return {{"skipped", t.skipped}, {"late", t.late},        {"not_converged", t.not_converged},
+          {"limited", t.limited}, {"stale", t.stale},      {"saturated", t.saturated},
+          {"missed", t.missed},   {"bus_lost", t.bus_lost}};
 }
 
 const char* state_of(const trial::Trial& trial) {
@@ -64,14 +61,20 @@ const char* state_of(const trial::Trial& trial) {
 
 void print_text(const trial::Trial& trial, const Passed& passed) {
   const auto& h = trial.header;
-  fmt::print("trial    {}\ncase     {}\nstation  {}, {}\noperator {}{}\nstarted  {}\n", h.id,
-             h.case_id, plain(h.station), plain(h.device), plain(h.operator_name),
+  fmt::print("trial    {}, {}\n{} {}\nstation  {}, {}\noperator {}{}\nstarted  {}\n", h.id,
+             trial::name(h.rig), h.rig == trial::Rig::probing ? "scenario" : "case    ", h.case_id,
+             plain(h.station), plain(h.device), plain(h.operator_name),
              h.simulated ? " (simulated)" : "", core::utc_text(h.started_utc_us));
-  fmt::print("state    {}\nsamples  {} in {:.3f} s at {} Hz\n", state_of(trial), passed.samples,
-             passed.to_s - passed.from_s, h.rate_Hz);
+  fmt::print("state    {}\nsamples  {} in {:.3f} s at {} Hz\n", state_of(trial),
+             passed.ticks.samples, passed.duration_s(), h.rate_Hz);
   const auto& t = passed.ticks;
-  fmt::print("ticks    {} skipped, {} late, {} not converged, {} limited, {} stale, {} saturated\n",
-             t.skipped, t.late, t.not_converged, t.limited, t.stale, t.saturated);
+  if (h.rig == trial::Rig::probing)
+    fmt::print("periods  {} skipped, {} missed, {} late, {} limited, {} without an answer\n",
+               t.skipped, t.missed, t.late, t.limited, t.bus_lost);
+  else
+    fmt::print(
+        "ticks    {} skipped, {} late, {} not converged, {} limited, {} stale, {} saturated\n",
+        t.skipped, t.late, t.not_converged, t.limited, t.stale, t.saturated);
   for (const auto& event : trial.events)
     fmt::print("event    {:10.4f} s  {} {}\n", event.t_s, plain(event.kind),
                event.detail.empty()
@@ -86,8 +89,8 @@ void print_json(const trial::Trial& trial, const Passed& passed) {
   const Json out{{"header", trial.header.to_json()},
                  {"complete", trial.complete},
                  {"sealed", trial.sealed},
-                 {"samples", passed.samples},
-                 {"duration_s", passed.to_s - passed.from_s},
+                 {"samples", passed.ticks.samples},
+                 {"duration_s", passed.duration_s()},
                  {"ticks", ticks_json(passed.ticks)},
                  {"answer", answer ? answer->to_json() : Json(nullptr)},
                  {"events", events}};
@@ -102,43 +105,73 @@ Outcome show(const Options& o) {
     csv.emplace(std::move(made).value());
   }
   std::error_code unknown;
-  const double expected =
-      double(std::filesystem::file_size(o.file, unknown)) / sizeof(trial::Sample);
+  const double bytes = double(std::filesystem::file_size(o.file, unknown));
   const auto progress = core::terminal_progress("reading");
   Passed passed;
-  const auto trial = trial::scan_trial(o.file, [&](std::span<const trial::Sample> block) {
+  const auto trial = trial::scan_trial(o.file, [&](const trial::Block& block) {
     passed.add(block);
     if (csv) csv->add(block);
-    progress(double(passed.samples) / expected);
+    const auto each = block.probing.empty() ? sizeof(trial::Sample) : sizeof(trial::ProbingSample);
+    progress(double(passed.ticks.samples * each) / bytes);
   });
   if (!trial) return trial.error();
   progress(1.0);
   if (csv)
-    if (auto done = csv->finish(); !done) return done.error();
+    if (auto done = csv->finish(trial->header.rig); !done) return done.error();
   o.json ? print_json(*trial, passed) : print_text(*trial, passed);
   return 0;
 }
 
-Outcome score(const Options& o) {
-  const auto opened = cases::open_case(o.case_folder);
-  if (!opened) return opened.error();
-  const auto trial = trial::read_trial(o.file);
-  if (!trial) return trial.error();
-  if (trial->header.case_id != opened->id)
+core::Error of_another(const Options& o, const trial::Trial& trial, const std::string& id) {
+  return {core::Errc::bad_input,
+          fmt::format("{}: is a trial of {:.12}…, {} holds {:.12}…", o.file, trial.header.case_id,
+                      o.case_folder.empty() ? o.scenario : o.case_folder, id)};
+}
+
+/// The case of a palpation trial into `subject`. Errors: those of the case, bad_input.
+core::Result<cases::OpenedCase> add_case(const Options& o, metrics::Subject& subject) {
+  if (o.case_folder.empty())
     return core::Error{core::Errc::bad_input,
-                       fmt::format("{}: is a trial of case {:.12}…, {} holds case {:.12}…", o.file,
-                                   trial->header.case_id, o.case_folder, opened->id)};
-  metrics::Subject subject{*trial, opened->definition.tract, {}};
+                       o.file + ": is a trial of palpation, --case FOLDER is expected"};
+  auto opened = cases::open_case(o.case_folder);
+  if (!opened) return opened;
+  if (subject.trial.header.case_id != opened->id) return of_another(o, subject.trial, opened->id);
   if (std::filesystem::exists(opened->folder / cases::kTruthPart)) {
     const auto truth = cases::read_truth(*opened);
     if (!truth) return truth.error();
-    subject.truth = metrics::Truth{truth->breached};
+    subject.truth = metrics::Truth{.breached = truth->breached};
+  }
+  return opened;
+}
+
+core::Result<void> add_scenario(const Options& o, metrics::Subject& subject) {
+  if (o.scenario.empty()) return {};
+  const auto scenario = scenarios::Scenario::read(o.scenario);
+  if (!scenario) return scenario.error();
+  if (subject.trial.header.case_id != scenario->id())
+    return of_another(o, subject.trial, scenario->id());
+  subject.truth = metrics::Truth{.breached = {}, .walls = int(scenario->walls_m.size())};
+  return {};
+}
+
+Outcome score(const Options& o) {
+  const auto trial = trial::read_trial(o.file);
+  if (!trial) return trial.error();
+  metrics::Subject subject{*trial};
+  std::optional<cases::OpenedCase> opened;
+  if (trial->header.rig == trial::Rig::probing) {
+    if (auto added = add_scenario(o, subject); !added) return added.error();
+  } else {
+    auto added = add_case(o, subject);
+    if (!added) return added.error();
+    opened = std::move(*added);
+    subject.tract = &opened->definition.tract;
   }
   const auto scores = metrics::score_all(subject);
   if (o.json) {
     Json list = Json::array();
     for (const auto& [info, score] : scores) list.push_back(metrics::to_json(info, score));
-    Json out{{"trial", trial->header.id}, {"case", opened->id}, {"metrics", list}};
+    Json out{{"trial", trial->header.id}, {"case", trial->header.case_id}, {"metrics", list}};
     if (const auto covered = metrics::coverage(subject))
       out["coverage"] = {{"depth_bins", covered->depth_bins},
                          {"angle_bins", covered->angle_bins},
@@ -181,8 +214,10 @@ Command trial_command() {
             rate->footer("Example:\n  tractus trial metrics 018f.ttrial --case l3-left-medial");
             end->footer("Example:\n  tractus trial recover 018f.ttrial");
             look->add_option("--csv", options->csv, "write every sample to this table, SI units");
-            rate->add_option("--case", options->case_folder, "folder of the case it was made on")
-                ->required();
+            rate->add_option("--case", options->case_folder,
+                             "palpation: folder of the case it was made on");
+            rate->add_option("--scenario", options->scenario,
+                             "probing: file of the scenario it was made on, for the truth");
             return [options, look, rate]() -> Outcome {
               if (look->parsed()) return show(*options);
               return rate->parsed() ? score(*options) : recover(*options);

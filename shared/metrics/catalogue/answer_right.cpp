@@ -2,10 +2,17 @@
 
 namespace metrics {
 namespace {
+Score judged_probing(const trial::Answer& answer, int walls) {
+  if (answer.breach == (walls > 0)) return {1.0, ""};
+  return {0.0, walls > 0 ? "a breach was missed" : "a breach was felt where there is none"};
+}
+
 Score judged(const Subject& subject) {
   const auto answer = subject.trial.answer();
   if (!answer) return {{}, "no answer was given"};
   if (!subject.truth) return {{}, "the truth is not known here"};
+  if (subject.trial.header.rig == trial::Rig::probing)
+    return judged_probing(*answer, subject.truth->walls);
   const auto& breached = subject.truth->breached;
   if (answer->breach != breached.has_value())
     return {0.0, breached ? "a breach was missed" : "a breach was seen where there is none"};
@@ -19,10 +26,11 @@ MetricInfo answer_right() {
   return {"answer_right",
           "Answer right",
           "1",
-          "1 if the last answer says whether there is a breach and, if there is, in which wall; "
-          "else 0.",
+          "1 if the last answer says whether there is a breach and, in palpation if there is, in "
+          "which wall; else 0.",
           "own definition",
-          judged};
+          judged,
+          {}};
 }
 
 }  // namespace metrics

@@ -11,9 +11,10 @@ MetricInfo late_ticks() {
           "Number of ticks of the station's loop that woke more than a quarter period late.",
           "own definition",
           [](const Subject& subject) -> Score {
-            const auto ticks = trial::count_ticks(subject.trial.samples);
+            const auto ticks = trial::count_ticks(subject.trial.block());
             return {double(ticks.late), fmt::format("and {} skipped", ticks.skipped)};
-          }};
+          },
+          {}};
 }
 
 }  // namespace metrics

@@ -11,7 +11,7 @@ MetricInfo not_converged_share() {
           [](const Subject& subject) -> Score {
             const auto& samples = subject.trial.samples;
             if (samples.empty()) return {{}, "no sample was recorded"};
-            const auto count = trial::count_ticks(samples).not_converged;
+            const auto count = trial::count_ticks(subject.trial.block()).not_converged;
             return {double(count) / double(samples.size()), ""};
           }};
 }

@@ -80,13 +80,12 @@ std::string token_in(const fs::path& file) {
 
 Ended run_program(const std::string& name, const std::vector<std::string>& arguments) {
   const Started started = start(name, arguments);
-  std::string out(65536, '\0');
-  std::size_t size = 0;
-  for (ssize_t n = 1; n > 0 && size < out.size();
-       size += static_cast<std::size_t>(std::max<ssize_t>(n, 0)))
-    n = ::read(started.output, out.data() + size, out.size() - size);
+  std::string out, piece(65536, '\0');
+  for (ssize_t n = 1; n > 0;) {
+    n = ::read(started.output, piece.data(), piece.size());
+    out.append(piece, 0, static_cast<std::size_t>(std::max<ssize_t>(n, 0)));
+  }
   ::close(started.output);
-  out.resize(size);
   return {exit_code(started.pid), out};
 }
 

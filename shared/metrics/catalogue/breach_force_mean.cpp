@@ -1,0 +1,21 @@
+#include "metrics/probing_sections.hpp"
+
+namespace metrics {
+
+MetricInfo breach_force_mean() {
+  return {"breach_force_mean",
+          "Breach force, mean",
+          "N",
+          "Mean push of the hand on the probe "
+          "over the first breach: the samples from the first to the last in which the controller "
+          "is in breach.",
+          "[Probing, Table 7], definition our own",
+          [](const Subject& subject) {
+            return score_of_breach(subject, 1, [](std::span<const trial::ProbingSample> s) {
+              return spread_of(s, push_N).mean;
+            });
+          },
+          trial::Rig::probing};
+}
+
+}  // namespace metrics

@@ -1,0 +1,21 @@
+#include "metrics/probing_sections.hpp"
+
+namespace metrics {
+
+MetricInfo breach_velocity_mean() {
+  return {"breach_velocity_mean",
+          "Breach velocity, mean",
+          "m/s",
+          "Mean speed of the actuator "
+          "over the first breach: the samples from the first to the last in which the controller "
+          "is in breach.",
+          "own definition",
+          [](const Subject& subject) {
+            return score_of_breach(subject, 1, [](std::span<const trial::ProbingSample> s) {
+              return spread_of(s, speed_m_s).mean;
+            });
+          },
+          trial::Rig::probing};
+}
+
+}  // namespace metrics

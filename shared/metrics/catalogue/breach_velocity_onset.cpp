@@ -1,0 +1,20 @@
+#include "metrics/probing_sections.hpp"
+
+namespace metrics {
+
+MetricInfo breach_velocity_onset() {
+  return {
+      "breach_velocity_onset",
+      "Breach velocity, onset",
+      "m/s",
+      "Speed of the actuator in the first sample of the first breach, by the controller's mode.",
+      "own definition",
+      [](const Subject& subject) {
+        return score_of_breach(subject, 1, [](std::span<const trial::ProbingSample> s) {
+          return speed_m_s(s.front());
+        });
+      },
+      trial::Rig::probing};
+}
+
+}  // namespace metrics

@@ -1,0 +1,18 @@
+#include "metrics/probing_sections.hpp"
+
+namespace metrics {
+
+MetricInfo breaches() {
+  return {"breaches",
+          "Breaches",
+          "1",
+          "Number of times the controller's mode became breach while the probe went inward.",
+          "own definition",
+          [](const Subject& subject) -> Score {
+            if (subject.trial.probing.empty()) return {{}, "no sample was recorded"};
+            return {double(breach_count(subject.trial)), ""};
+          },
+          trial::Rig::probing};
+}
+
+}  // namespace metrics

@@ -1,0 +1,20 @@
+#include "metrics/probing_sections.hpp"
+
+namespace metrics {
+
+MetricInfo probing_force_mean() {
+  return {"probing_force_mean",
+          "Mean force",
+          "N",
+          "Mean push of the hand on the probe, "
+          "from the first motion that is let through to the probe stop.",
+          "[Probing, section 6.3], definition our own",
+          [](const Subject& subject) {
+            return score_of_motion(subject, 1, [](std::span<const trial::ProbingSample> s) {
+              return spread_of(s, push_N).mean;
+            });
+          },
+          trial::Rig::probing};
+}
+
+}  // namespace metrics
