@@ -123,6 +123,22 @@ void prepare_sliding(trial::ProbingMeasurement& trial, const trial::StatedNoise&
   motion.rest_m_s = kRestErrors * middle_of(out.v_sd_m_s);
 }
 
+/// The samples at rest with the least speed that would be told from it.
+void find_rest(ProbingRecording& r) {
+  const effects::ProbingMotion& m = r.motion;
+  effects::ProbingMotion& out = r.at_rest;
+  out.rest_m_s = 0.0;
+  for (std::size_t k = 0; k < r.size(); ++k) {
+    const double told_m_s = std::max(2.0 * m.rest_m_s, kRestErrors * r.v_sd_m_s[k]);
+    if (std::abs(m.v_m_s[k]) >= told_m_s) continue;
+    r.rest.push_back(k);
+    out.t_s.push_back(m.t_s[k]);
+    out.x_m.push_back(m.x_m[k]);
+    out.v_m_s.push_back(told_m_s);
+    out.a_m_s2.push_back(0.0);
+  }
+}
+
 /// Where the force jumps between neighbouring samples because a border lies between them: the
 /// second of the two, and by how much.
 struct Jump {
@@ -173,6 +189,7 @@ Result<ProbingRecording> prepare(trial::ProbingMeasurement&& trial,
                  noise.correlated);
   if (!out.other.empty()) out.other_noise_sd = noise_of(out.other, stated.tz_Nm).sd;
   prepare_sliding(trial, stated, out);
+  if (!turns) find_rest(out);
   prepare_turning(trial, stated, out);
   out.measured_thin.resize(out.decimator.size(n));
   out.decimator.apply(out.measured, out.measured_thin);
