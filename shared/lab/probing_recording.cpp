@@ -23,6 +23,8 @@ constexpr double kRestErrors = 3.0;
 /// Round a border so much is not trusted at the full rate.
 constexpr double kBorder_s = 0.005;
 constexpr std::size_t kBorderSamples = 3;
+/// The motion is well known where its noise makes less than this share of the sensor's.
+constexpr double kWellKnown = 0.5, kLeastTrusted = 0.3;
 
 /// The smallest difference of two neighbours that are not equal, if all others are multiples of it;
 /// else 0: how coarsely a channel was written down.
@@ -215,6 +217,14 @@ void weigh(const laws::ProbingLaw& law, ProbingRecording& r) {
   r.trusted.assign(n, 1.0);
   const auto reach =
       std::max(kBorderSamples, std::size_t(kBorder_s / (r.seconds() / double(n - 1))));
+  // What the motion's noise makes of the force must stay well under the sensor's own noise, at the
+  // least in the better half of the samples.
+  std::vector<double> ordered = motion_variance;
+  const auto half_way = ordered.begin() + std::ptrdiff_t(kLeastTrusted * double(n));
+  std::ranges::nth_element(ordered, half_way);
+  const double most = std::max(*half_way, kWellKnown * kWellKnown * r.noise_sd * r.noise_sd);
+  for (std::size_t k = 0; k < n; ++k)
+    if (motion_variance[k] > most) r.trusted[k] = 0.0;
   for (const Jump& jump : found)
     for (std::size_t k = jump.sample < reach ? 0 : jump.sample - reach;
          k < std::min(n, jump.sample + reach); ++k)
