@@ -51,7 +51,7 @@ void expect_own_derivative(const std::function<ForceSample(const ForceSample&)>&
 
 TEST(ContactFriction, OpposesSlidingByItsShareOfTheNormalForce) {
   // n = −z; of v = (0.03, 0, 0.04) only 0.03 along x slides: −0.2 · 3 N · x̂ = (−0.6, 0, 0).
-  const auto friction = made<PointForce>("contact_friction", {0.2});
+  const auto friction = made<PointForce>("contact_friction", {0.2, 1.0});
   const PointContact point{Vec3::Zero(), Vec3(0.03, 0, 0.04), nullptr};
   const ForceSample elastic{Vec3(0, 0, -3), Mat3::Zero()};
   ForceSample total = elastic;
@@ -60,7 +60,7 @@ TEST(ContactFriction, OpposesSlidingByItsShareOfTheNormalForce) {
 }
 
 TEST(ContactFriction, IsNothingWithoutSlidingOrContact) {
-  const auto friction = made<PointForce>("contact_friction", {0.2});
+  const auto friction = made<PointForce>("contact_friction", {0.2, 1.0});
   for (const ForceSample& elastic :
        {ForceSample{Vec3(0, 0, -3), kSlope}, ForceSample{Vec3::Zero(), kSlope}}) {
     ForceSample total = elastic;
@@ -70,7 +70,7 @@ TEST(ContactFriction, IsNothingWithoutSlidingOrContact) {
 }
 
 TEST(ContactFriction, KnowsItsDerivative) {
-  const auto friction = made<PointForce>("contact_friction", {0.4});
+  const auto friction = made<PointForce>("contact_friction", {0.4, 1.0});
   const PointContact point{Vec3::Zero(), Vec3(0.02, -0.01, 0.03), nullptr};
   expect_own_derivative(
       [&](const ForceSample& elastic) {
@@ -84,7 +84,7 @@ TEST(ContactFriction, KnowsItsDerivative) {
 TEST(ContactDamping, IsInProportionToSpeedAndToTheBone) {
   // At x = 20 mm i = 40: opacity 0.8 − 0.2727… = 0.52727…; −10 · 0.52727 · 0.02 = −0.105455 N.
   const auto field = ramp();
-  const auto damping = made<PointForce>("contact_damping", {10.0});
+  const auto damping = made<PointForce>("contact_damping", {10.0, 1.0});
   ForceSample total{Vec3::Zero(), Mat3::Zero()};
   damping->add({Vec3(0.02, 0.02, 0.02), Vec3(0, 0.02, 0), &field}, total, total);
   EXPECT_NEAR((total.force_N - Vec3(0, -0.10545455, 0)).norm(), 0.0, 1e-6);
@@ -238,9 +238,9 @@ TEST(PalpationEffects, RefuseWhatLiesOutsideTheirRange) {
     const auto effect = make_palpation_effect(use);
     return effect ? "taken" : effect.error().what;
   };
-  EXPECT_EQ(refusal({"contact_friction", {-0.1}}).find("contact_friction/coefficient: -0.1 is"),
+  EXPECT_EQ(refusal({"contact_friction", {-0.1, 1.0}}).find("contact_friction/coefficient: -0.1 is"),
             0u);
-  EXPECT_NE(refusal({"contact_friction", {NAN}}), "taken");
+  EXPECT_NE(refusal({"contact_friction", {NAN, 1.0}}), "taken");
   EXPECT_NE(refusal({"contact_friction", {}}), "taken");
   EXPECT_NE(refusal({"coulomb_friction", {1.0}}), "taken");
 }

@@ -74,7 +74,8 @@ double step_of(std::string_view pointer, double fallback) {
       {"contact_nonlinearity/exponent", 1e-2},
       {"coefficient", 1e-2},
       {"loss", 1e-2},
-      {"contact_damping/", 1e-1},
+      {"contact_damping/damping", 1e-1},
+      {"/bends_shank", 2e-2},
   };
   for (const Step& each : kSteps)
     if (pointer.find(each.in) != std::string_view::npos) return each.step;
@@ -158,7 +159,9 @@ std::vector<std::vector<double>> PalpationNumbers::starts(std::string_view effec
   if (effect == "shank_curvature")
     return {{3e-4, 0.0}, {3e-4, M_PI_2}, {3e-4, -M_PI_2}, {3e-4, M_PI}};
   if (effect == "contact_nonlinearity") return {{1.05, field_per_m_}};
-  if (effect == "tip_ball") return {{3e-4}, {8e-4}};
+  if (effect == "tip_ball") return {{5e-4}};
+  if (effect == "contact_friction") return {{0.1, 1.0}, {0.1, 0.0}};
+  if (effect == "contact_damping") return {{10.0, 1.0}, {10.0, 0.0}};
   if (effect == "pose_offset") return {{1e-5, 1e-5, 1e-5}};
   if (effect == "sensor_bias") return {{1e-2, 1e-2, 1e-2, 1e-3, 1e-3, 1e-3}};
   if (effect == "probe_weight" || effect == "probe_inertia") return {{0.01, 0.05}};

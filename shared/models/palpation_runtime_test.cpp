@@ -135,7 +135,7 @@ TEST(PalpationRuntime, LetsFrictionBendTheShank) {
   // Equilibrium with all of F_i: k δ = Σ φ F. With one point at the tip, δ = F_⊥/k.
   laws::PalpationParameters one;
   one.points = 1;
-  const auto rough = with({{"contact_friction", {0.3}}}, one);
+  const auto rough = with({{"contact_friction", {0.3, 1.0}}}, one);
   laws::PalpationState state;
   effects::HandleMotion handle{.X_VH = beside_the_surface(-0.001)};
   handle.v_m_s = Vec3(0.02, 0, 0);

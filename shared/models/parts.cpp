@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/require.hpp"
 #include "effects/expression.hpp"
@@ -86,7 +87,9 @@ namespace {
 void read_parameter(Fields& fields, const effects::Param& param, std::vector<double>& values) {
   const char* name = param.name.c_str();
   if (param.components == 1) {
-    values.push_back(fields.number(name, param.low, param.high));
+    values.push_back(std::isnan(param.if_missing)
+                         ? fields.number(name, param.low, param.high)
+                         : fields.number_or(name, param.if_missing, param.low, param.high));
     return;
   }
   for (const double value : fields.numbers(name, std::size_t(param.components))) {
