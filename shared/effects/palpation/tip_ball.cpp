@@ -4,7 +4,7 @@
 ///
 /// by the product of Gauss' rule in the radius (weight r²; the mean over a sphere is even in r) and
 /// a Lebedev rule on the sphere: three radii of 50 points, exact where the field is a polynomial of
-/// degree 11 in x, or for a ball of little more than a voxel of a clinical CT two radii of 26
+/// degree 11 in x, or for a ball of a few voxels of a clinical CT two radii of 26
 /// points, exact to degree 7.
 #include <array>
 #include <cmath>
@@ -21,7 +21,7 @@ constexpr std::array<std::array<double, 2>, 3> kSeven{{{0.9491079123427585, 0.12
                                                        {0.4058451513773972, 0.3818300505051189}}};
 constexpr std::array<std::array<double, 2>, 2> kFive{
     {{0.9061798459386640, 0.2369268850561891}, {0.5384693101056831, 0.4786286704993665}}};
-constexpr double kSmall_m = 6e-4;
+constexpr double kSmall_m = 1e-3;
 
 /// Weights of a rule on the sphere with the symmetry of the cube: of its faces, edges and corners,
 /// and of the 24 points (l, l, m), l = 1/√11, m = 3/√11.
