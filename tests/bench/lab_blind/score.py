@@ -110,6 +110,7 @@ def score(truth, answer, wall_s):
     row |= judged(truth, ids, verdict)
     row |= {"answer": answered_label(answer), "verdict": verdict, "ids": sorted(ids)}
     wanted = {e["id"] for e in truth["effects"]}
+    row["stated"] = answer.get("probability")
     row["claims"] = [[e.get("probability"), e["id"] in wanted] for e in answer.get("effects", [])]
     row["ranked"] = [[e.get("probability"), e["id"] in wanted] for e in answer.get("ranking", [])]
     row["first"] = answer["ranking"][0]["id"] if answer.get("ranking") else None
