@@ -134,7 +134,7 @@ TEST(ProbingRuntime, GoesThroughABreachAndToTheStopAsTheLawDoes) {
 
 TEST(ProbingRuntime, RefusesAnEffectByItsParameter) {
   ProbingModel model = one_layer();
-  model.effects = {{"backlash", {1.0}}};
+  model.effects = {{"backlash", {1.0, 0.0}}};
   const auto wide = ProbingRuntime::make(model, 0.05);
   ASSERT_FALSE(wide);
   EXPECT_EQ(wide.error().what, "backlash/gap_m: 1 is outside 0 … 0.005");
