@@ -15,6 +15,7 @@ using core::Result;
 using lab::figure;
 
 std::string percent(double share) {
+  if (share > 0.0 && share < 0.0005) return "< 0.1 %";
   return std::isfinite(share) ? fmt::format("{:.3g} %", 100.0 * share) : "–";
 }
 
@@ -96,7 +97,7 @@ Result<void> write_files(const lab_io::Answer& answer, const std::filesystem::pa
 }
 
 std::string printed_comparison(const lab_io::Answer& answer) {
-  const lab::Comparison& c = answer.content.given.comparison;
+  const lab::Comparison& c = answer.content.before.comparison;
   std::string out = fmt::format(
       "The model is off by {} in {}; the noise floor is {}; it explains {} of what could be "
       "explained.\n\n  {}{}{}{}{}\n",
@@ -147,7 +148,7 @@ std::string printed_diagnosis(const lab_io::Answer& answer) {
 
 std::string printed_fit(const lab_io::Answer& answer) {
   const lab::Fit& fit = *answer.content.fit;
-  const lab::Comparison& given = answer.content.given.comparison;
+  const lab::Comparison& given = answer.content.before.comparison;
   std::string out = fmt::format(
       "Fitted: the error falls from {} to {}, on held-out measurements {}; the noise floor is "
       "{}.\n\n",
