@@ -7,6 +7,7 @@
 
 #include "core/require.hpp"
 #include "lab/drift.hpp"
+#include "lab/fit_report.hpp"
 #include "lab/least_squares.hpp"
 #include "lab/parallel.hpp"
 #include "lab/probing_advice.hpp"
@@ -279,7 +280,7 @@ Result<std::unique_ptr<Problem>> make_probing_problem(const models::ProbingModel
   problem->focus(values);
   if (!values.empty()) {
     const Residual residual(*problem, options.threads);
-    problem->focus(search(residual, {}, values).values);
+    problem->focus(fit_base(residual).values);
   }
   return std::unique_ptr<Problem>(std::move(problem));
 }
