@@ -106,6 +106,7 @@ class Search {
       const double gained = at_.loss - next.loss;
       const bool poor = gained < 0.3 * promised;
       next.jacobian = std::move(at_.jacobian);
+      if (!options_.fresh_jacobian) secant(next);
       const double before = at_.loss;
       at_ = std::move(next);
       if (tries == 1) damping = std::max(damping * 0.2, 1e-9);
@@ -128,6 +129,24 @@ class Search {
   void refresh() {
     lab::differentiate(residual_, at_);
     stale_ = false;
+  }
+
+  /// Broyden's update: the jacobian that would have told of the last step.
+  void secant(Solution& next) const {
+    Eigen::VectorXd step(Eigen::Index(at_.values.size()));
+    for (Eigen::Index k = 0; k < step.size(); ++k) {
+      const auto i = std::size_t(k);
+      step(k) = (coordinate(at_.parameters[i], next.values[i]) -
+                 coordinate(at_.parameters[i], at_.values[i])) /
+                at_.parameters[i].step;  // in comparable units
+    }
+    const double length = step.squaredNorm();
+    if (!(length > 0.0)) return;
+    Eigen::VectorXd scaled = step;
+    for (Eigen::Index k = 0; k < step.size(); ++k) scaled(k) *= at_.parameters[std::size_t(k)].step;
+    const Eigen::VectorXd missed = next.residual - at_.residual - next.jacobian * scaled;
+    for (Eigen::Index k = 0; k < step.size(); ++k)
+      next.jacobian.col(k) += missed * (step(k) / length / at_.parameters[std::size_t(k)].step);
   }
 
   Gram all() const {
