@@ -57,6 +57,8 @@ struct EffectFacts {
 struct Use {
   std::string id;
   std::vector<double> values;
+  /// Of a user's own expression ("expression:NAME"): its file's JSON. Empty for the catalogue's.
+  std::string definition = {};
 };
 
 /// Are the numbers as many as the effect takes, finite and within their ranges? Errors: bad_input

@@ -3,24 +3,85 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+
+#include "effects/expression.hpp"
 
 namespace effects {
 namespace probing {
 std::vector<ProbingEffectInfo> all();  // made by the build from the files of probing/
 }
 
+namespace {
+
+/// A user's formula, added to the resistance. A speed that counts as rest is 0 in it, so that sgn
+/// v_m_s does not chatter.
+class ExpressionForce final : public ProbingEffect {
+ public:
+  ExpressionForce(FormulaProgram program, std::span<const double> values)
+      : program_(std::move(program)) {
+    std::ranges::copy(values, program_.inputs().last(values.size()).begin());
+  }
+  ProbingStage stage() const noexcept override { return ProbingStage::force; }
+  double force_N(const ProbingTick& tick, double base_N, const double*) const noexcept override {
+    const auto in = program_.inputs();
+    in[0] = tick.x_m;
+    in[1] = std::abs(tick.v_m_s) <= tick.rest_m_s ? 0.0 : tick.v_m_s;
+    in[2] = tick.a_m_s2;
+    in[3] = tick.theta_rad;
+    in[4] = tick.omega_rad_s;
+    in[5] = tick.t_s;
+    in[6] = tick.tz_Nm;
+    in[7] = base_N;
+    return program_.value();
+  }
+
+ private:
+  FormulaProgram program_;
+};
+
+core::Result<std::unique_ptr<ProbingEffect>> make_expression(const Use& use) {
+  auto expression = Expression::of(use, probing_expressions());
+  if (!expression) return expression.error();
+  if (auto ok = check(expression->facts(), use.values); !ok) return ok.error();
+  auto program = expression->program();
+  if (!program) return program.error();
+  return std::unique_ptr<ProbingEffect>(
+      std::make_unique<ExpressionForce>(std::move(*program), use.values));
+}
+
+const ProbingEffectInfo* entry_of(std::string_view id) {
+  for (const ProbingEffectInfo& info : probing_effects())
+    if (info.facts.id == id) return &info;
+  return nullptr;
+}
+
+core::Error unknown(std::string_view id) {
+  return {core::Errc::not_found, fmt::format("'{}' is not an effect of the probing rig", id)};
+}
+
+}  // namespace
+
 const std::vector<ProbingEffectInfo>& probing_effects() {
   static const std::vector<ProbingEffectInfo> kAll = probing::all();
   return kAll;
 }
 
+core::Result<EffectFacts> probing_facts(const Use& use) {
+  if (is_expression(use.id)) {
+    const auto expression = Expression::of(use, probing_expressions());
+    if (!expression) return expression.error();
+    return expression->facts();
+  }
+  const auto* found = entry_of(use.id);
+  if (!found) return unknown(use.id);
+  return found->facts;
+}
+
 core::Result<std::unique_ptr<ProbingEffect>> make_probing_effect(const Use& use) {
-  const auto& all = probing_effects();
-  const auto found =
-      std::ranges::find_if(all, [&](const auto& info) { return info.facts.id == use.id; });
-  if (found == all.end())
-    return core::Error{core::Errc::not_found,
-                       fmt::format("'{}' is not an effect of the probing rig", use.id)};
+  if (is_expression(use.id)) return make_expression(use);
+  const auto* found = entry_of(use.id);
+  if (!found) return unknown(use.id);
   if (auto ok = check(found->facts, use.values); !ok) return ok.error();
   return found->make(use.values);
 }

@@ -26,7 +26,8 @@ struct Parameter {
   std::string pointer;  ///< "/base/layers/0/stiffness_N_per_m", "coulomb_friction/friction_N"; a
                         ///< component of several ends in its index, "pose_offset/offset_m/0"
   double start, low, high;
-  double step;               ///< a change that is felt but small; the unit of finite differences
+  double step;  ///< a change that is felt but small, of the logarithm if logarithmic: the unit of
+                ///< finite differences
   bool logarithmic = false;  ///< searched in its logarithm; start and low are then > 0
   bool shape = false;  ///< has no value at which its effect vanishes: tried from several starts
   /// Standard deviation (of the logarithm, if logarithmic) with which the start is believed before
@@ -48,8 +49,8 @@ struct Candidate {
   std::string why_not;  ///< if not possible: "theta_rad was not recorded"
 };
 
-/// One trial's error, measured − predicted at the full rate, [channel][sample]; the primary is made
-/// of them by the problem's `primary_rmse`.
+/// One trial's error, measured − predicted at the full rate, [channel][sample] in the order of
+/// Problem::channels; of a primary that is a norm (force_N) the norm of the error.
 struct Residuals {
   std::vector<double> t_s;
   std::vector<std::vector<double>> channels;
@@ -83,6 +84,13 @@ class Problem {
   /// model's own effects', then the added effects'. Same order for the same structure.
   virtual std::vector<Parameter> parameters(const Structure& structure) const = 0;
 
+  /// Where to begin the search for an effect that is added: one vector per start, its numbers in
+  /// the order of its parameters here (those free per trial have none). Of a strength only the
+  /// scale counts, the engine estimates it. By default a grid over the numbers of shape.
+  /// @param residual  whitened, of all trials one under another, before the effect is added.
+  virtual std::vector<std::vector<double>> starts(std::string_view effect,
+                                                  const Eigen::VectorXd& residual) const;
+
   virtual Eigen::Index residual_size(int trial) const = 0;
   /// Residuals of one trial (measured − predicted) as the fit sees them: both sides through the
   /// same filter, decimated so that neighbours are nearly independent, divided by the noise that is
@@ -112,5 +120,8 @@ class Problem {
   /// The given model with these values and the structure's effects added, as a model file.
   virtual core::Json model(const Structure& structure, std::span<const double> values) const = 0;
 };
+
+/// Parameters of an effect of the catalogue as a fit moves them: none if it is free per trial.
+std::vector<Parameter> parameters_of(const effects::EffectFacts& facts);
 
 }  // namespace lab

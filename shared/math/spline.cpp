@@ -97,4 +97,15 @@ Vec3 PoseSpline::angular_velocity_rad_s(double t) const noexcept {
   return 2.0 * (dq * q.conjugate()).vec() / q.squaredNorm();
 }
 
+Vec3 PoseSpline::angular_acceleration_rad_s2(double t) const noexcept {
+  // d/dt of 2 vec(q̇ q*)/n²:  2 vec(q̈ q*)/n² (q̇ q̇* has no vector part) less ω d(n²)/dt / n².
+  const Quat q(q_[0].value(t), q_[1].value(t), q_[2].value(t), q_[3].value(t));
+  const Quat dq(q_[0].derivative(t), q_[1].derivative(t), q_[2].derivative(t), q_[3].derivative(t));
+  const Quat ddq(q_[0].second_derivative(t), q_[1].second_derivative(t), q_[2].second_derivative(t),
+                 q_[3].second_derivative(t));
+  const double n2 = q.squaredNorm();
+  const Vec3 omega = 2.0 * (dq * q.conjugate()).vec() / n2;
+  return 2.0 * (ddq * q.conjugate()).vec() / n2 - omega * (2.0 * q.dot(dq) / n2);
+}
+
 }  // namespace math

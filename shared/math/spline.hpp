@@ -38,6 +38,8 @@ class PoseSpline {
   Vec3 acceleration_m_s2(double t) const noexcept;
   /// Angular velocity in the frame the poses are seen from, rad/s.
   Vec3 angular_velocity_rad_s(double t) const noexcept;
+  /// Its derivative, in the same frame, rad/s².
+  Vec3 angular_acceleration_rad_s2(double t) const noexcept;
 
  private:
   std::vector<CubicSpline> p_, q_;  // x y z; w x y z

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "effects/palpation_effect.hpp"
 #include "models/parts.hpp"
 
 namespace models {
@@ -111,7 +112,7 @@ core::Result<PalpationModel> PalpationModel::from_json(const Json& json, const s
   if (auto fault = read_transfer(fields, model)) return *fault;
   if (auto fault = read_base(fields, model)) return *fault;
   if (auto fault = read_fixed(fields, model.to_json(), model.fixed)) return *fault;
-  if (auto fault = read_effects(fields)) return *fault;
+  if (auto fault = read_effects(fields, effects::palpation_facts, model.effects)) return *fault;
   if (auto done = fields.done(); !done) return done.error();
   return model;
 }
@@ -140,7 +141,7 @@ Json PalpationModel::to_json() const {
       {"pose_offset_m", {base.pose_offset_m.x(), base.pose_offset_m.y(), base.pose_offset_m.z()}},
       {"field", field == volume::FieldKind::paper ? "paper" : "potential"}};
   json["fixed"] = fixed;
-  json["effects"] = Json::array();
+  json["effects"] = effects_to_json(effects, effects::palpation_facts);
   return json;
 }
 

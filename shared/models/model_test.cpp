@@ -67,11 +67,35 @@ TEST(PalpationModel, RefusesAnotherRigByName) {
   EXPECT_THAT(refusal("/format", "tractus-model/9"), HasSubstr("/format: 'tractus-model/9'"));
 }
 
-TEST(PalpationModel, RefusesAnEffectItDoesNotKnowByItsId) {
-  EXPECT_EQ(
-      refusal("/effects", Json::parse(R"([{"id":"tip_ball","parameters":{"radius_m":0.001}}])")),
-      "m.json: /effects/0/id: 'tip_ball' is an effect that this version does not know");
-  EXPECT_THAT(refusal("/effects", Json::parse("[3]")), HasSubstr("/effects/0: an object"));
+TEST(PalpationModel, KeepsItsEffectsThroughAFile) {
+  Json json = example();
+  json["effects"] = Json::parse(R"([{"id":"tip_ball","parameters":{"radius_m":0.001}},
+    {"id":"sensor_bias","parameters":{"force_N":[0.1,-0.2,0],"torque_Nm":[0,0,0.003]}}])");
+  const auto model = PalpationModel::from_json(json, "");
+  ASSERT_TRUE(model) << model.error().what;
+  ASSERT_EQ(model->effects.size(), 2u);
+  EXPECT_EQ(model->effects[1].id, "sensor_bias");
+  EXPECT_THAT(model->effects[1].values, testing::ElementsAre(0.1, -0.2, 0, 0, 0, 0.003));
+  EXPECT_EQ(model->to_json(), json);
+}
+
+TEST(PalpationModel, RefusesByNameAnEffectThatCannotBe) {
+  const auto of = [](const char* text) { return refusal("/effects", Json::parse(text)); };
+  EXPECT_EQ(of(R"([{"id":"tissue_flap","parameters":{"radius_m":0.001}}])"),
+            "m.json: /effects/0/id: 'tissue_flap' is an effect that this version does not know");
+  EXPECT_THAT(of(R"([{"id":"tip_ball","parameters":{"radius_m":1}}])"),
+              HasSubstr("m.json: /effects/0/parameters/radius_m: 1 is outside"));
+  EXPECT_THAT(of(R"([{"id":"tip_ball"}])"), HasSubstr("m.json: /effects/0/parameters: is missing"));
+  EXPECT_THAT(of(R"([{"id":"tip_ball","parameters":{"radius_mm":1}}])"),
+              HasSubstr("m.json: /effects/0/parameters/radius_m: is missing"));
+  EXPECT_THAT(of(R"([{"id":"pose_offset","parameters":{"offset_m":[0,1,0]}}])"),
+              HasSubstr("m.json: /effects/0/parameters/offset_m: 1 is outside"));
+  EXPECT_THAT(of(R"([{"id":"pose_offset","parameters":{"offset_m":[0,0]}}])"),
+              HasSubstr("m.json: /effects/0/parameters/offset_m"));
+  EXPECT_THAT(of(R"([{"id":"tip_ball","parameters":{"radius_m":0.001}},
+                    {"id":"tip_ball","parameters":{"radius_m":0.001}}])"),
+              HasSubstr("m.json: /effects/1/id: 'tip_ball' is in the list already"));
+  EXPECT_THAT(of("[3]"), HasSubstr("/effects/0: an object"));
   EXPECT_THAT(refusal("/effects", "none"), HasSubstr("/effects: an array is expected"));
 }
 

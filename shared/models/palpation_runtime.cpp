@@ -1,12 +1,107 @@
-#include "models/model.hpp"
+#include "models/palpation_runtime.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "math/spline.hpp"
 
 namespace models {
 namespace {
-math::Pose shifted(math::Pose X_VH, const math::Vec3& by_V_m) noexcept {
-  X_VH.p += by_V_m;
-  return X_VH;
+
+using effects::HandleMotion;
+using math::Vec3;
+
+constexpr double kFollowed_voxels = 1.0 / 3.0;  // most that the tip moves in a step
+constexpr double kMostSubsteps = 64;
+
+/// Small rotations as a vector, left of q.
+math::Quat turned(const math::Quat& q, const Vec3& by_V_rad) {
+  const double angle = by_V_rad.norm();
+  if (!(angle > 1e-15)) return q;
+  return (math::Quat(Eigen::AngleAxisd(angle, by_V_rad / angle)) * q).normalized();
 }
+
+HandleMotion later(const HandleMotion& from, double dt_s) {
+  HandleMotion out = from;
+  const double half = 0.5 * dt_s * dt_s;
+  out.X_VH.p += dt_s * from.v_m_s + half * from.a_m_s2;
+  out.X_VH.q = turned(from.X_VH.q, dt_s * from.omega_rad_s + half * from.alpha_rad_s2);
+  out.v_m_s += dt_s * from.a_m_s2;
+  out.omega_rad_s += dt_s * from.alpha_rad_s2;
+  return out;
+}
+
 }  // namespace
+
+core::Result<PalpationMotion> PalpationMotion::through(std::span<const double> t_s,
+                                                       std::span<const math::Pose> X_VH,
+                                                       const Vec3& down) {
+  const auto spline = math::PoseSpline::make(t_s, X_VH);
+  if (!spline) return spline.error();
+  PalpationMotion out;
+  out.t_s.assign(t_s.begin(), t_s.end());
+  out.handle.reserve(t_s.size());
+  for (std::size_t k = 0; k < t_s.size(); ++k)
+    out.handle.push_back({X_VH[k], spline->velocity_m_s(t_s[k]),
+                          spline->angular_velocity_rad_s(t_s[k]), spline->acceleration_m_s2(t_s[k]),
+                          spline->angular_acceleration_rad_s2(t_s[k]), down});
+  return out;
+}
+
+HandleMotion PalpationMotion::at(double t) const noexcept {
+  t = std::clamp(t, t_s.front(), t_s.back());
+  const auto after = std::ranges::lower_bound(t_s, t);
+  auto k = std::size_t(after - t_s.begin());
+  if (k == t_s.size() || (k > 0 && t - t_s[k - 1] < t_s[k] - t)) --k;
+  return later(handle[k], t - t_s[k]);
+}
+
+/// The forces on the contact points of a moving handle, through the stages from spread to point.
+class PalpationRuntime::Contacts final : public laws::ContactForces {
+ public:
+  Contacts(const PalpationRuntime& runtime, const HandleMotion& handle)
+      : runtime_(runtime), force_factor_Nm_(runtime.law_.parameters().force_factor_Nm) {
+    const laws::Shank& shank = runtime.law_.shank();
+    for (std::size_t i = 0; i < std::size_t(shank.points); ++i) {
+      const Vec3 unbent_H(shank.rest_m[i].x(), shank.rest_m[i].y(), shank.z_m[i]);
+      v_m_s_[i] = handle.v_m_s + handle.omega_rad_s.cross(handle.X_VH.q * unbent_H);
+    }
+  }
+
+  laws::ForceSample at(std::size_t i, const Vec3& p_V_m) const noexcept override {
+    const Stages& stages = runtime_.stages_;
+    volume::FieldSample field;
+    if (i == 0 && !stages.spreads.empty()) {
+      field = {Vec3::Zero(), math::Mat3::Zero()};
+      for (const auto& node : stages.spreads.front()->nodes()) {
+        const volume::FieldSample there = changed(p_V_m + node.offset_m);
+        field.g_per_m += node.weight * there.g_per_m;
+        field.jacobian_per_m2 += node.weight * there.jacobian_per_m2;
+      }
+    } else {
+      field = changed(p_V_m);
+    }
+    laws::ForceSample elastic{force_factor_Nm_ * field.g_per_m,
+                              force_factor_Nm_ * field.jacobian_per_m2};
+    const effects::PointContact point{p_V_m, v_m_s_[i], runtime_.field_};
+    for (const auto& loss : stages.losses) loss->change(point, elastic);
+    laws::ForceSample total = elastic;
+    for (const auto& force : stages.forces) force->add(point, elastic, total);
+    return total;
+  }
+
+ private:
+  volume::FieldSample changed(const Vec3& p_V_m) const noexcept {
+    volume::FieldSample field = runtime_.field_->sample(p_V_m);
+    for (const auto& change : runtime_.stages_.fields) change->change(field);
+    return field;
+  }
+
+  const PalpationRuntime& runtime_;
+  double force_factor_Nm_;
+  std::array<Vec3, laws::kMaxPoints> v_m_s_;
+};
 
 core::Result<PalpationRuntime> PalpationRuntime::make(const PalpationModel& model,
                                                       const volume::Volume& volume,
@@ -14,19 +109,132 @@ core::Result<PalpationRuntime> PalpationRuntime::make(const PalpationModel& mode
   auto made = volume::ForceField::make(volume, model.transfer, model.field, progress);
   if (!made) return made.error();
   auto field = std::make_unique<volume::ForceField>(std::move(*made));
-  auto law = laws::PalpationLaw::make(model.base, *field);
+  auto runtime = make(model, *field);
+  if (runtime) runtime->owned_ = std::move(field);
+  return runtime;
+}
+
+core::Result<PalpationRuntime> PalpationRuntime::make(const PalpationModel& model,
+                                                      const volume::ForceField& field) {
+  auto law = laws::PalpationLaw::make(model.base, field);
   if (!law) return law.error();
-  return PalpationRuntime(std::move(field), std::move(*law));
+  PalpationRuntime runtime(field, std::move(*law));
+  std::vector<effects::Use> uses = model.effects;
+  std::ranges::sort(uses, {}, &effects::Use::id);  // the catalogue's order
+  for (const effects::Use& use : uses)
+    if (auto added = runtime.add(use); !added) return added.error();
+  return runtime;
+}
+
+core::Result<void> PalpationRuntime::add(const effects::Use& use) {
+  auto effect = effects::make_palpation_effect(use);
+  if (!effect) return effect.error();
+  const auto keep = [this]<class Stage>(Stage stage) {
+    using effects::PalpationEffect;
+    if constexpr (std::is_same_v<Stage, std::unique_ptr<effects::MotionDelay>>) {
+      delay_s_ += stage->delay_s();
+    } else if constexpr (std::is_same_v<Stage, std::unique_ptr<effects::ShankForm>>) {
+      laws::Shank shank = law_.shank();
+      stage->form(shank);
+      law_.replace_shank(shank);
+    } else if constexpr (std::is_same_v<Stage, std::unique_ptr<effects::PosePlacement>>) {
+      stages_.placements.push_back(std::move(stage));
+    } else if constexpr (std::is_same_v<Stage, std::unique_ptr<effects::TipSpread>>) {
+      stages_.spreads.push_back(std::move(stage));
+    } else if constexpr (std::is_same_v<Stage, std::unique_ptr<effects::ContactField>>) {
+      stages_.fields.push_back(std::move(stage));
+    } else if constexpr (std::is_same_v<Stage, std::unique_ptr<effects::ContactLoss>>) {
+      stages_.losses.push_back(std::move(stage));
+    } else if constexpr (std::is_same_v<Stage, std::unique_ptr<effects::PointForce>>) {
+      stages_.forces.push_back(std::move(stage));
+    } else if constexpr (std::is_same_v<Stage, std::unique_ptr<effects::HandleWrench>>) {
+      stages_.wrenches.push_back(std::move(stage));
+    } else if constexpr (std::is_same_v<Stage, std::unique_ptr<effects::SensorOffset>>) {
+      stages_.offsets.push_back(std::move(stage));
+    } else {
+      static_assert(std::is_same_v<Stage, effects::FreePerTrial>);
+    }
+  };
+  std::visit([&](auto& stage) { keep(std::move(stage)); }, *effect);
+  return {};
+}
+
+laws::PalpationStep PalpationRuntime::placed_step(HandleMotion handle,
+                                                  laws::PalpationState& state) const noexcept {
+  handle.X_VH.p += law_.parameters().pose_offset_m;
+  laws::PalpationStep out;
+  if (stages_.touch_contact()) {
+    const Contacts contacts(*this, handle);
+    out = law_.step(handle.X_VH, state, &contacts);
+  } else {
+    out = law_.step(handle.X_VH, state);
+  }
+  for (const auto& wrench : stages_.wrenches) wrench->add(handle, out.wrench_H);
+  return out;
+}
+
+laws::PalpationStep PalpationRuntime::step(const HandleMotion& handle,
+                                           laws::PalpationState& state) const noexcept {
+  return placed_step(handle, state);
 }
 
 laws::PalpationStep PalpationRuntime::step(const math::Pose& X_VH,
                                            laws::PalpationState& state) const noexcept {
-  return law_.step(shifted(X_VH, law_.parameters().pose_offset_m), state);
+  return placed_step({.X_VH = X_VH}, state);
+}
+
+laws::PalpationStep PalpationRuntime::recorded(const HandleMotion& handle,
+                                               laws::PalpationState& state) const noexcept {
+  HandleMotion placed = handle;
+  for (const auto& placement : stages_.placements) placement->place(placed.X_VH);
+  laws::PalpationStep out = placed_step(placed, state);
+  for (const auto& offset : stages_.offsets) offset->add(out.wrench_H);
+  return out;
+}
+
+void PalpationRuntime::follow(const HandleMotion& from, const HandleMotion& to,
+                              laws::PalpationState& state) const noexcept {
+  const double step_m = kFollowed_voxels * field_->geometry().spacing_m.minCoeff();
+  const double way_m =
+      (law_.tip_m(to.X_VH, state.deflection_m) - law_.tip_m(from.X_VH, state.deflection_m)).norm();
+  const double substeps = std::min(std::ceil(way_m / step_m), kMostSubsteps);
+  for (double s = 1.0; s < substeps; ++s) {
+    HandleMotion between = to;
+    const double share = s / substeps;
+    between.X_VH.p = from.X_VH.p + share * (to.X_VH.p - from.X_VH.p);
+    between.X_VH.q = from.X_VH.q.slerp(share, to.X_VH.q);
+    recorded(between, state);
+  }
+}
+
+void PalpationRuntime::predict(const PalpationMotion& motion, PalpationAnswer& out,
+                               std::span<const math::Vec2> near_m) const {
+  const std::size_t n = motion.t_s.size();
+  out.wrench_H.resize(n);
+  out.deflection_m.resize(n);
+  out.converged.resize(n);
+  laws::PalpationState state;
+  HandleMotion last;
+  for (std::size_t k = 0; k < n; ++k) {
+    const HandleMotion now =
+        delay_s_ != 0.0 ? motion.at(motion.t_s[k] - delay_s_) : motion.handle[k];
+    if (!near_m.empty())
+      state.deflection_m = k > 0 ? state.deflection_m + near_m[k] - near_m[k - 1] : near_m[0];
+    else if (k > 0)
+      follow(last, now, state);
+    const laws::PalpationStep step = recorded(now, state);
+    out.wrench_H[k] = step.wrench_H;
+    out.deflection_m[k] = step.deflection_m;
+    out.converged[k] = step.converged;
+    last = now;
+  }
 }
 
 math::Vec3 PalpationRuntime::tip_m(const math::Pose& X_VH,
                                    const math::Vec2& deflection_m) const noexcept {
-  return law_.tip_m(shifted(X_VH, law_.parameters().pose_offset_m), deflection_m);
+  math::Pose placed = X_VH;
+  placed.p += law_.parameters().pose_offset_m;
+  return law_.tip_m(placed, deflection_m);
 }
 
 }  // namespace models

@@ -1,6 +1,6 @@
-#include <gtest/gtest.h>
+#include "models/palpation_runtime.hpp"
 
-#include "models/model.hpp"
+#include <gtest/gtest.h>
 
 namespace models {
 namespace {

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 
+#include "core/require.hpp"
+#include "effects/expression.hpp"
+
 namespace models {
 
 using core::Errc;
@@ -77,17 +80,86 @@ Fault read_fixed(Fields& fields, const Json& whole, std::vector<std::string>& fi
   return std::nullopt;
 }
 
-Fault read_effects(Fields& fields) {
+namespace {
+
+/// One parameter's numbers, appended to `values`.
+void read_parameter(Fields& fields, const effects::Param& param, std::vector<double>& values) {
+  const char* name = param.name.c_str();
+  if (param.components == 1) {
+    values.push_back(fields.number(name, param.low, param.high));
+    return;
+  }
+  for (const double value : fields.numbers(name, std::size_t(param.components))) {
+    if (!(value >= param.low && value <= param.high))
+      fields.wrong(name, fmt::format("{} is outside {} … {}", value, param.low, param.high));
+    values.push_back(value);
+  }
+}
+
+core::Result<effects::Use> read_use(const Json& json, const std::string& where, FactsOf facts_of) {
+  if (!json.is_object() || !json.contains("id") || !json["id"].is_string())
+    return Error{Errc::bad_input, where + ": an object with a text \"id\" is expected"};
+  Fields fields(json, where);
+  effects::Use use{fields.text("id"), {}};
+  if (effects::is_expression(use.id)) {
+    const Json* file = fields.member("expression");
+    if (!file) return fields.done().error();
+    use.definition = file->dump();
+  }
+  const auto facts = facts_of(use);
+  if (!facts && facts.error().code == Errc::not_found)
+    return bad(where, "id",
+               fmt::format("'{}' is an effect that this version does not know", use.id));
+  if (!facts)
+    return Error{Errc::bad_input, fmt::format("{}/expression: {}", where, facts.error().what)};
+  const Json none = Json::object();
+  const Json* given = fields.member("parameters", !facts->params.empty());
+  Fields numbers(given ? *given : none, where + "/parameters");
+  if (given)
+    for (const effects::Param& param : facts->params) read_parameter(numbers, param, use.values);
+  if (auto done = fields.done(); !done) return done.error();
+  if (auto done = numbers.done(); !done) return done.error();
+  return use;
+}
+
+}  // namespace
+
+Fault read_effects(Fields& fields, FactsOf facts_of, std::vector<effects::Use>& uses) {
   const Json* list = fields.member("effects", false);
-  if (!list || (list->is_array() && list->empty())) return std::nullopt;
+  if (!list) return std::nullopt;
   const std::string& where = fields.where();
   if (!list->is_array()) return bad(where, "effects", "an array is expected");
-  const Json& first = (*list)[0];
-  if (!first.is_object() || !first.contains("id") || !first["id"].is_string())
-    return bad(where, "effects/0", "an object with a text \"id\" is expected");
-  return bad(where, "effects/0/id",
-             fmt::format("'{}' is an effect that this version does not know",
-                         first["id"].get<std::string>()));
+  for (std::size_t k = 0; k < list->size(); ++k) {
+    auto use = read_use((*list)[k], fmt::format("{}/effects/{}", where, k), facts_of);
+    if (!use) return use.error();
+    if (std::ranges::find(uses, use->id, &effects::Use::id) != uses.end())
+      return bad(where, fmt::format("effects/{}/id", k),
+                 fmt::format("'{}' is in the list already", use->id));
+    uses.push_back(std::move(*use));
+  }
+  return std::nullopt;
+}
+
+Json effects_to_json(const std::vector<effects::Use>& uses, FactsOf facts_of) {
+  Json list = Json::array();
+  for (const effects::Use& use : uses) {
+    const auto facts = facts_of(use);
+    core::require(facts && use.values.size() == effects::value_count(*facts),
+                  "a model's effects are known, with all their numbers");
+    Json parameters = Json::object();
+    auto next = use.values.begin();
+    for (const effects::Param& param : facts->params) {
+      if (param.components == 1)
+        parameters[param.name] = *next;
+      else
+        parameters[param.name] = std::vector<double>(next, next + param.components);
+      next += param.components;
+    }
+    Json one = {{"id", use.id}, {"parameters", std::move(parameters)}};
+    if (!use.definition.empty()) one["expression"] = Json::parse(use.definition);
+    list.push_back(std::move(one));
+  }
+  return list;
 }
 
 }  // namespace models

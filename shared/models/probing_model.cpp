@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "effects/probing_effect.hpp"
 #include "models/parts.hpp"
 
 namespace models {
@@ -78,7 +79,7 @@ Result<ProbingModel> ProbingModel::from_json(const Json& json, const std::string
   if (auto fault = read_identity(fields, "probing", model.name)) return *fault;
   if (auto fault = read_base(fields, model)) return *fault;
   if (auto fault = read_fixed(fields, model.to_json(), model.fixed)) return *fault;
-  if (auto fault = read_effects(fields)) return *fault;
+  if (auto fault = read_effects(fields, effects::probing_facts, model.effects)) return *fault;
   if (auto done = fields.done(); !done) return done.error();
   return model;
 }
@@ -107,7 +108,7 @@ Json ProbingModel::to_json() const {
               {"detent_Nm", rotary.detent_Nm},
               {"detent_pitch_rad", rotary.detent_pitch_rad}}}}},
           {"fixed", fixed},
-          {"effects", Json::array()}};
+          {"effects", effects_to_json(effects, effects::probing_facts)}};
 }
 
 Result<Model> model_from_json(const Json& json, const std::string& where) {

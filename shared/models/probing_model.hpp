@@ -19,8 +19,8 @@ struct ProbingModel {
   std::string name;
   std::vector<laws::Layer> layers;  ///< by depth, without overlap
   laws::RotaryStage rotary;
-  std::vector<std::string> fixed;     ///< JSON pointers of base parameters that a fit leaves alone
-  std::vector<effects::Use> effects;  ///< in the file's order
+  std::vector<std::string> fixed;  ///< JSON pointers of base parameters that a fit leaves alone
+  std::vector<effects::Use> effects = {};  ///< in the file's order
 
   /// @param where  leads every message, as "model.json: ". Errors: bad_input naming the field, the
   /// law's own refusals among them; another rig and every effect are refused by name.

@@ -87,8 +87,8 @@ TEST(ProbingModel, RefusesByNameWhatCannotBe) {
   EXPECT_THAT(refusal("/base", "[]"), HasSubstr("m.json: /base: a JSON object"));
   EXPECT_THAT(refusal("/fixed", R"(["/base/layers/*/mass_kg"])"),
               HasSubstr("m.json: /fixed/0: '/base/layers/*/mass_kg' names no parameter"));
-  EXPECT_THAT(refusal("/effects", R"([{"id":"coulomb_friction","parameters":{"friction_N":3.1}}])"),
-              HasSubstr("m.json: /effects/0/id: 'coulomb_friction' is an effect"));
+  EXPECT_THAT(refusal("/effects", R"([{"id":"tip_ball","parameters":{"radius_m":0.001}}])"),
+              HasSubstr("m.json: /effects/0/id: 'tip_ball' is an effect"));
 }
 
 TEST(AModelFile, SaysWhichRigItIsOf) {

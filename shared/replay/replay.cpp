@@ -46,20 +46,20 @@ class Run {
  public:
   explicit Run(const models::PalpationRuntime& runtime) : runtime_(runtime) {}
 
-  laws::PalpationStep step(const math::Pose& X_VH) {
-    const auto answer = runtime_.step(X_VH, state_);
+  laws::PalpationStep step(const effects::HandleMotion& handle) {
+    const auto answer = runtime_.recorded(handle, state_);
     ++out_.steps;
     out_.not_converged += !answer.converged;
     return answer;
   }
 
-  void keep(const math::Pose& X_VH) {
-    const auto answer = step(X_VH);
+  void keep(const effects::HandleMotion& handle) {
+    const auto answer = step(handle);
     out_.wrench_H.push_back(answer.wrench_H);
     out_.deflection_m.push_back(answer.deflection_m);
     out_.converged.push_back(answer.converged);
     out_.samples_in_volume +=
-        runtime_.field().geometry().contains(runtime_.tip_m(X_VH, answer.deflection_m));
+        runtime_.field().geometry().contains(runtime_.tip_m(handle.X_VH, answer.deflection_m));
   }
 
   Replayed result() && { return std::move(out_); }
@@ -70,22 +70,52 @@ class Run {
   Replayed out_;
 };
 
+/// The recorded motion: poses through a spline, the recorded ones exactly, derivatives from it.
+class Motion {
+ public:
+  Motion(const trial::PalpationMeasurement& recording, const math::PoseSpline& spline,
+         const math::Vec3& down, double delay_s)
+      : recording_(recording), spline_(spline), down_(down), delay_s_(delay_s) {}
+
+  effects::HandleMotion at(double t_s) const {
+    const double t = std::clamp(t_s - delay_s_, recording_.t_s.front(), recording_.t_s.back());
+    return {spline_.pose(t),
+            spline_.velocity_m_s(t),
+            spline_.angular_velocity_rad_s(t),
+            spline_.acceleration_m_s2(t),
+            spline_.angular_acceleration_rad_s2(t),
+            down_};
+  }
+  effects::HandleMotion at_sample(std::size_t k) const {
+    effects::HandleMotion out = at(recording_.t_s[k]);
+    if (delay_s_ == 0.0) out.X_VH = recording_.X_VH[k];
+    return out;
+  }
+
+ private:
+  const trial::PalpationMeasurement& recording_;
+  const math::PoseSpline& spline_;
+  math::Vec3 down_;
+  double delay_s_;
+};
+
 }  // namespace
 
 core::Result<Replayed> replay(const models::PalpationRuntime& runtime,
-                              const trial::PalpationMeasurement& recording,
+                              const trial::PalpationMeasurement& recording, const math::Vec3& down,
                               const core::Progress& progress) {
   if (const auto steps = steps_of(recording); !steps) return steps.error();
-  const auto motion = math::PoseSpline::make(recording.t_s, recording.X_VH);
-  if (!motion) return Error{motion.error().code, recording.file + ": " + motion.error().what};
+  const auto spline = math::PoseSpline::make(recording.t_s, recording.X_VH);
+  if (!spline) return Error{spline.error().code, recording.file + ": " + spline.error().what};
+  const Motion motion(recording, *spline, down, runtime.delay_s());
   Run run(runtime);
-  run.keep(recording.X_VH.front());
+  run.keep(motion.at_sample(0));
   for (std::size_t k = 1; k < recording.t_s.size(); ++k) {
     const double from = recording.t_s[k - 1], width = recording.t_s[k] - from;
     const std::uint64_t steps = steps_between(from, recording.t_s[k]);
     for (std::uint64_t s = 1; s < steps; ++s)
-      run.step(motion->pose(from + width * double(s) / double(steps)));
-    run.keep(recording.X_VH[k]);
+      run.step(motion.at(from + width * double(s) / double(steps)));
+    run.keep(motion.at_sample(k));
     if (progress && k % kSamplesPerWord == 0 && !progress(double(k) / double(recording.t_s.size())))
       return Error{Errc::cancelled, "the replay was stopped"};
   }

@@ -6,7 +6,7 @@
 
 #include "core/progress.hpp"
 #include "core/result.hpp"
-#include "models/model.hpp"
+#include "models/palpation_runtime.hpp"
 #include "trial/measurement_set.hpp"
 
 namespace replay {
@@ -33,10 +33,14 @@ struct Replayed {
 /// step. Each step starts from the deflection of the last, the first from the unbent probe.
 ///
 /// Assumes that the hand moved as recorded whatever the model answers [Zoller2020, "Discussion"].
+/// The model's effects act, measurement effects too: the answer is what a sensor would have said.
+/// Velocities and accelerations are the spline's; a delay takes the motion that much earlier.
+/// @param down  unit vector along gravity, in V (trial::stated_down)
 /// Errors: bad_input for a gap of more than a second (the motion in it is not known) or more than
 /// 10⁹ steps, naming the file; cancelled.
 core::Result<Replayed> replay(const models::PalpationRuntime& runtime,
                               const trial::PalpationMeasurement& recording,
+                              const math::Vec3& down = -math::Vec3::UnitZ(),
                               const core::Progress& progress = {});
 
 }  // namespace replay

@@ -138,7 +138,7 @@ TEST(Replay, RefusesAGapInWhichTheMotionIsNotKnown) {
 }
 
 TEST(Replay, StopsWhenAskedTo) {
-  const auto answer = replay(runtime(), tap(4000.0), [](double) { return false; });
+  const auto answer = replay(runtime(), tap(4000.0), -Vec3::UnitZ(), [](double) { return false; });
   ASSERT_FALSE(answer);
   EXPECT_EQ(answer.error().code, core::Errc::cancelled);
 }

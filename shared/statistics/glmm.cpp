@@ -144,7 +144,8 @@ std::vector<Group> groups_of(const Design& design, const Counts& counts,
 }
 
 void add_tests(const Matrix& covariance, Glmm& out) {
-  out.standard_errors = covariance.diagonal().head(out.coefficients.size()).cwiseSqrt();
+  out.covariance = covariance.topLeftCorner(out.coefficients.size(), out.coefficients.size());
+  out.standard_errors = out.covariance.diagonal().cwiseSqrt();
   out.z = out.coefficients.cwiseQuotient(out.standard_errors);
   out.p = out.z.unaryExpr([](double z) { return 2.0 * normal_upper(std::abs(z)); });
 }

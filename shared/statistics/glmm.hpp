@@ -14,6 +14,7 @@ namespace statistics {
 struct Glmm {
   std::vector<std::string> names;
   Vector coefficients, standard_errors, z, p;
+  Matrix covariance;        ///< of the coefficients
   double sigma_u = 0.0;     ///< standard deviation between groups, on the logit scale; may be 0
   double sigma_u_se = 0.0;  ///< NaN where sigma_u is 0
   double log_likelihood = 0.0;

@@ -9,6 +9,7 @@ enum class Adjustment {
   bonferroni,          ///< p m
   holm,                ///< step-down; controls the chance of any false positive (Holm 1979)
   hochberg,            ///< step-up; the same, for independent or positively dependent tests
+  hommel,              ///< closed Simes tests; the same, never weaker than Hochberg (Hommel 1988)
   benjamini_hochberg,  ///< controls the expected share of false positives
   benjamini_yekutieli  ///< the same under any dependence
 };

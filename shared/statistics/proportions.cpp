@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "statistics/distributions.hpp"
 
@@ -74,6 +75,20 @@ double fisher_exact(const Proportion& a, const Proportion& b) {
   const double limit = log_probability(a.successes) + 1e-7;
   double p = 0.0;
   for (double x = std::max(0.0, total - b.trials); x <= std::min(total, a.trials); x += 1.0)
+    if (const double here = log_probability(x); here <= limit) p += std::exp(here);
+  return std::min(1.0, p);
+}
+
+double binomial_test(const Proportion& of, double chance) {
+  const auto log_probability = [&](double x) {
+    const double failures = of.trials - x;
+    return log_choose(of.trials, x) + (x > 0.0 ? x * std::log(chance) : 0.0) +
+           (failures > 0.0 ? failures * std::log1p(-chance) : 0.0);
+  };
+  const double observed = log_probability(of.successes), limit = observed + 1e-7;
+  if (!(observed > -std::numeric_limits<double>::infinity())) return 0.0;
+  double p = 0.0;
+  for (double x = 0.0; x <= of.trials; x += 1.0)
     if (const double here = log_probability(x); here <= limit) p += std::exp(here);
   return std::min(1.0, p);
 }

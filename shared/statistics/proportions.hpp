@@ -32,5 +32,8 @@ Interval jeffreys(const Proportion& of, double level = 0.95);
 Interval newcombe_difference(const Proportion& a, const Proportion& b, double level = 0.95);
 /// Fisher's exact test that both proportions are equal: two-sided, by the probability of the table.
 double fisher_exact(const Proportion& a, const Proportion& b);
+/// Exact test that the chance of a success is `chance` (0 … 1), two-sided: the probability of all
+/// counts that are no likelier than the observed one.
+double binomial_test(const Proportion& of, double chance);
 
 }  // namespace statistics

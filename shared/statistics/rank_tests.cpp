@@ -145,6 +145,60 @@ core::Result<KruskalWallis> kruskal_wallis(const Groups& groups) {
   return out;
 }
 
+namespace {
+
+/// Deals ranks to groups in every way, the first rank left always to each group with room in turn.
+struct Dealing {
+  const Vector& ranks;
+  std::vector<double> room, sizes, sums;
+  double limit = 0.0, as_extreme = 0.0, arrangements = 0.0;
+
+  void deal(Eigen::Index next) {
+    if (next == ranks.size()) {
+      double h = 0.0;
+      for (std::size_t j = 0; j < sums.size(); ++j) h += sums[j] * sums[j] / sizes[j];
+      arrangements += 1.0;
+      as_extreme += h >= limit ? 1.0 : 0.0;
+      return;
+    }
+    for (std::size_t j = 0; j < sums.size(); ++j) {
+      if (room[j] == 0.0) continue;
+      room[j] -= 1.0;
+      sums[j] += ranks[next];
+      deal(next + 1);
+      sums[j] -= ranks[next];
+      room[j] += 1.0;
+    }
+  }
+};
+
+}  // namespace
+
+core::Result<ExactKruskal> kruskal_wallis_exact(const Groups& groups) {
+  const auto all = pooled(groups);
+  if (!all) return all.error();
+  double log_ways = std::lgamma(static_cast<double>(all->values.size()) + 1.0);
+  const Vector ranked = ranks(all->values);
+  Dealing dealing{ranked, {}, {}, {}};
+  double observed = 0.0;
+  const auto sums = sums_by_group(ranked, *all, groups.values.size());
+  for (std::size_t j = 0; j < groups.values.size(); ++j) {
+    const double size = static_cast<double>(groups.values[j].size());
+    log_ways -= std::lgamma(size + 1.0);
+    dealing.sizes.push_back(size);
+    observed += sums[j] * sums[j] / size;
+  }
+  if (log_ways > std::log(2e7))
+    return core::Error{core::Errc::too_large,
+                       "over 20 million ways to deal the values: the exact test is for fewer"};
+  dealing.room = dealing.sizes;
+  dealing.sums.assign(dealing.sizes.size(), 0.0);
+  dealing.limit = observed * (1.0 - 1e-12);  // ties with the observed count
+  dealing.deal(0);
+  return ExactKruskal{dealing.as_extreme, dealing.arrangements,
+                      dealing.as_extreme / dealing.arrangements};
+}
+
 core::Result<SpreadTest> fligner_killeen(const Groups& groups) {
   Groups deviations = groups;
   for (auto& values : deviations.values)

@@ -14,6 +14,13 @@ struct KruskalWallis {
 };
 /// Errors: as one_way(), and all values equal.
 core::Result<KruskalWallis> kruskal_wallis(const Groups& groups);
+struct ExactKruskal {
+  double as_extreme = 0.0, arrangements = 0.0;  ///< counts, whole
+  double p = 0.0;
+};
+/// The same test by counting every way to deal the values to groups of these sizes. Errors: as
+/// kruskal_wallis(); too_large over 20 million ways.
+core::Result<ExactKruskal> kruskal_wallis_exact(const Groups& groups);
 /// Fligner & Killeen: equality of spread by normal scores of the ranks of |y − median|.
 core::Result<SpreadTest> fligner_killeen(const Groups& groups);
 

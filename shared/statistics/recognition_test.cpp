@@ -119,11 +119,23 @@ TEST(ConfusionMatrix, GivesAClassNeverSaidAPrecisionOfZero) {
   EXPECT_FALSE(confusion(Matrix::Zero(2, 2)));
 }
 
+TEST(BinomialTest, CountsOutcomesNoLikelierThanTheObserved) {
+  // By hand, 9 of 10 at one half: P(0, 1, 9, 10) = (1 + 10 + 10 + 1)/1024.
+  EXPECT_NEAR(binomial_test(*Proportion::make(9, 10), 0.5), 22.0 / 1024.0, 1e-15);
+  // 0 of 3 at 1/4: 27/64 is the likeliest but one; 1 of 3 has 27/64 as well, so all but it: 1.
+  EXPECT_NEAR(binomial_test(*Proportion::make(0, 3), 0.25), 1.0, 1e-12);
+  // 3 of 3 at 1/4: only 1/64.
+  EXPECT_NEAR(binomial_test(*Proportion::make(3, 3), 0.25), 1.0 / 64.0, 1e-15);
+  EXPECT_EQ(binomial_test(*Proportion::make(3, 3), 1.0), 1.0);
+  EXPECT_EQ(binomial_test(*Proportion::make(2, 3), 1.0), 0.0);
+}
+
 TEST(Adjustments, AgreeWithRInEveryCase) {
   const auto reference = golden::expected("p_adjust");
   const std::vector<std::pair<const char*, Adjustment>> all = {
       {"holm", Adjustment::holm},
       {"hochberg", Adjustment::hochberg},
+      {"hommel", Adjustment::hommel},
       {"bonferroni", Adjustment::bonferroni},
       {"BH", Adjustment::benjamini_hochberg},
       {"BY", Adjustment::benjamini_yekutieli}};

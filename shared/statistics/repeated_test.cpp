@@ -2,6 +2,7 @@
 #include "statistics/golden_test.hpp"
 #include "statistics/lmm.hpp"
 #include "statistics/rm_anova.hpp"
+#include "statistics/rm_factorial.hpp"
 
 namespace statistics {
 namespace {
@@ -57,6 +58,67 @@ TEST(RmAnova, RefusesOneSubjectMissingValuesAndNoError) {
   EXPECT_FALSE(rm_anova(values));
   values(0, 0) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(rm_anova(values));
+}
+
+/// One effect against row `at` of a table by R's car (sum contrasts, type III).
+void expect_effect(const RmEffect& got, const core::Json& want, std::size_t at) {
+  const std::string name = want["terms"][at];
+  expect_near(got.ss, want["ss"][at], 1e-10, name + " ss");
+  expect_near(got.ss_error, want["error_ss"][at], 1e-10, name + " error");
+  EXPECT_EQ(got.df1, want["num_df"][at].get<double>());
+  EXPECT_EQ(got.df2, want["den_df"][at].get<double>());
+  expect_near(got.f, want["F"][at], 1e-10, name + " F");
+  expect_near(got.p, want["p"][at], 1e-9, name + " p");
+}
+
+void expect_corrections(const RmEffect& got, const core::Json& want, std::size_t at) {
+  const std::string name = want["eps_terms"][at];
+  expect_near(got.epsilon_gg, want["eps_GG"][at], 1e-10, name + " gg");
+  expect_near(got.p_gg, want["p_GG"][at], 1e-10, name + " p gg");
+  expect_near(got.epsilon_hf, want["eps_HF"][at], 1e-10, name + " hf");
+  expect_near(got.p_hf, want["p_HF"][at], 1e-10, name + " p hf");
+}
+
+TEST(RmFactorial, TwoWithinFactorsAgreeWithCar) {
+  const auto reference = golden::expected("rm_anova");
+  const auto& want = reference["cases"]["two_within_2x3"];
+  const auto got = rm_factorial({golden::Csv(want["data"]).numeric_from(1), {2, 3}, {}});
+  ASSERT_TRUE(got) << got.error().what;
+  ASSERT_EQ(got->size(), 3u);  // scenario, repetition, both
+  for (std::size_t i = 0; i < 3; ++i) {
+    expect_effect((*got)[i], want, i + 1);
+    expect_near((*got)[i].partial_eta_squared, want["partial_eta2"][i + 1], 1e-10, "partial");
+    expect_near((*got)[i].generalized_eta_squared, want["generalized_eta2_all_within"][i + 1],
+                1e-10, "generalised");
+  }
+  expect_corrections((*got)[1], want, 0);
+  expect_corrections((*got)[2], want, 1);
+}
+
+TEST(RmFactorial, AGroupBetweenSubjectsAgreesWithCarsTypeThree) {
+  const auto reference = golden::expected("rm_anova");
+  const auto& want = reference["cases"]["mixed_group_x_rep"]["typeIII_sum_contrasts"];
+  const golden::Csv csv("data/sim_rm_lateral_breach_velocity_mm_s.csv");
+  // senior S01-S02, fellow S03-S06, resident S07-S10: unequal groups
+  const auto got = rm_factorial({csv.numeric_from(1), {3}, {0, 0, 1, 1, 1, 1, 2, 2, 2, 2}});
+  ASSERT_TRUE(got) << got.error().what;
+  ASSERT_EQ(got->size(), 3u);  // group, repetition, both
+  for (std::size_t i = 0; i < 3; ++i) expect_effect((*got)[i], want, i + 1);
+  for (std::size_t i = 0; i < 2; ++i) {
+    expect_corrections((*got)[i + 1], want, i);
+    expect_near((*got)[i + 1].mauchly.w, want["mauchly_W"][i], 1e-10, "W");
+  }
+}
+
+TEST(RmFactorial, WithOneFactorIsTheSimpleAnalysisAndRefusesGroupsOfOne) {
+  const auto reference = golden::expected("rm_anova");
+  const Matrix values = golden::Csv(reference["cases"]["force_var_N2"]["data"]).numeric_from(1);
+  const auto simple = rm_anova(values);
+  const auto got = rm_factorial({values, {3}, {}});
+  ASSERT_TRUE(got);
+  EXPECT_NEAR((*got)[0].f, simple->f, 1e-12 * simple->f);
+  EXPECT_NEAR((*got)[0].p_gg, simple->p_gg, 1e-12);
+  EXPECT_FALSE(rm_factorial({values, {3}, {0, 0, 0, 0, 0, 0, 0, 0, 0, 1}}));
 }
 
 struct Fitted {

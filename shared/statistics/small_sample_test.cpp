@@ -110,6 +110,19 @@ TEST(Ranks, KruskalWallisAndFlignerAgreeWithR) {
   expect_near(spread->p, want["fligner"]["p_value"], 1e-11, "fligner p");
 }
 
+TEST(Ranks, ExactKruskalWallisCountsEveryDealing) {
+  const auto reference = golden::expected("nonparametric");
+  const auto& want = reference["kruskal_ties"];
+  const auto got = kruskal_wallis_exact(groups_of(want["groups"]));
+  ASSERT_TRUE(got);
+  EXPECT_EQ(got->arrangements, want["exact_perm_total"].get<double>());
+  EXPECT_EQ(got->as_extreme, want["exact_perm_count"].get<double>());
+  Groups large{{"a", "b"}, {Vector::LinSpaced(20, 0, 1), Vector::LinSpaced(20, 2, 3)}};
+  const auto refused = kruskal_wallis_exact(large);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, core::Errc::too_large);
+}
+
 TEST(Ranks, FriedmanAndPageAgreeWithR) {
   const auto reference = golden::expected("rm_anova");
   for (const auto& [name, want] : reference["cases"].items()) {

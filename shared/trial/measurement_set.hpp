@@ -55,6 +55,10 @@ inline constexpr std::array<std::string_view, 14> kPalpationColumns{
 /// Memory: 120 bytes a row.
 core::Result<PalpationSet> read_palpation_set(const std::filesystem::path& folder);
 
+/// Where gravity pulls in V: the set's "down", three numbers of any length; −z if it does not say.
+/// Errors: bad_input naming the field.
+core::Result<math::Vec3> stated_down(const PalpationSet& set);
+
 /// Writes set.json and the CSVs into a new folder, whole or not at all. Numbers are written so that
 /// they are read back to the same bits.
 core::Result<void> write_palpation_set(const std::filesystem::path& folder,

@@ -74,7 +74,11 @@ void HapticLoop::tick(core::Instant_ns now, std::uint32_t number, bool late) noe
   if (usable) X_DH_ = sample.X_DH;  // else the last good pose stands, flagged
   const math::Pose X_VH = X_VD_ * X_DH_;
   laws::PalpationStep step;
-  if (usable) step = parts_.contact.step(X_VH);
+  if (usable)
+    step = parts_.contact.step({.X_VH = X_VH,
+                                .v_m_s = X_VD_.q * sample.velocity_m_s,
+                                .omega_rad_s = X_VD_.q * sample.angular_velocity_rad_s},
+                               static_cast<double>(now) * 1e-9);
 
   const math::Quat& q_DH = X_DH_.q;
   const math::Wrench wanted_D{q_DH * step.wrench_H.force_N, q_DH * step.wrench_H.torque_Nm};

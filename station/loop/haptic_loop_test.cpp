@@ -54,8 +54,8 @@ class StillDevice final : public devices::Device {
 /// Pushes along H's x with a set force once `after` ticks have gone.
 class Pusher final : public Contact {
  public:
-  laws::PalpationStep step(const math::Pose& X_VH) noexcept override {
-    seen = X_VH;
+  laws::PalpationStep step(const effects::HandleMotion& handle, double) noexcept override {
+    seen = handle.X_VH;
     laws::PalpationStep out;
     out.wrench_H.force_N = {++ticks > after ? push_N : 0.0, 0, 0};
     out.converged = converged;

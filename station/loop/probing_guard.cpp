@@ -123,7 +123,11 @@ double ProbingGuard::within_travel(double speed_m_s) const noexcept {
 }
 
 ProbingGuard::Passed ProbingGuard::pass(double speed_m_s, double torque_Nm) noexcept {
-  if (latched() || !fresh_ || phase_ == Phase::taring) return {};
+  if (latched() || phase_ == Phase::taring) return {};
+  if (!fresh_) {  // stand still; the drive stays on if its own watchdog lets it
+    const bool on = phase_ == Phase::enabled;
+    return {.command = {.enable = on, .rotary_on = on}, .limited = speed_m_s != 0.0};
+  }
   if (phase_ == Phase::resetting) {
     reset_edge_ = !reset_edge_;  // acts on its rising edge; one may be lost
     return {.command = {.reset_fault = reset_edge_}};

@@ -6,7 +6,7 @@
 
 #include "cases/case.hpp"
 #include "core/progress.hpp"
-#include "models/model.hpp"
+#include "models/palpation_runtime.hpp"
 #include "station/session/station_folder.hpp"
 
 namespace session {

@@ -48,6 +48,10 @@ const std::map<std::string, Names> kAllowed = {
       "shared/models"}},
     {"shared/trial", {"shared/core", "shared/math"}},
     {"shared/metrics", {"shared/core", "shared/math", "shared/volume", "shared/trial"}},
+    // Analyses of a cohort: tables in, findings and pictures out.
+    {"shared/assessment",
+     {"shared/core", "shared/math", "shared/statistics", "shared/trial", "shared/metrics",
+      "shared/plot"}},
     {"shared/wire", {"shared/core", "shared/math", "shared/trial"}},
     {"shared/plot", {"shared/core"}},
     // The replay's pictures and tables are of a recording and a model together.

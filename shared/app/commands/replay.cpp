@@ -96,6 +96,8 @@ Result<Work> compute(const Options& options) {
   if (!set) return set.error();
   work.model = std::move(*model);
   work.set = std::move(*set);
+  const auto down = trial::stated_down(work.set);
+  if (!down) return Error{down.error().code, (options.measurements / down.error().what).string()};
   auto volume = volume_path(options, work);
   if (!volume) return volume.error();
   work.volume = *volume;
@@ -106,7 +108,7 @@ Result<Work> compute(const Options& options) {
   for (std::size_t k = 0; k < work.set.trials.size(); ++k) {
     const double width = 1.0 / double(work.set.trials.size());
     auto replayed =
-        replay::replay(*runtime, work.set.trials[k], part_of(bar, width * double(k), width));
+        replay::replay(*runtime, work.set.trials[k], *down, part_of(bar, width * double(k), width));
     if (!replayed)
       return Error{replayed.error().code, (options.measurements / replayed.error().what).string()};
     work.replayed.push_back(std::move(*replayed));

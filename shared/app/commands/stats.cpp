@@ -1,37 +1,89 @@
-/// `tractus stats`: the study's analyses on a CSV file.
+/// `tractus stats`: the study's analyses on a CSV file, one method per file of
+/// assessment/methods.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <cstdio>
-#include <map>
 #include <memory>
 
 #include "app/command.hpp"
-#include "app/stats_report.hpp"
+#include "assessment/report.hpp"
+#include "core/file.hpp"
 
 namespace commands {
 namespace {
 
 struct Options {
-  std::string method, data, formula;
+  std::string data, formula, svg;
   bool json = false, drop_missing = false;
+  std::map<std::string, std::string> more;
 };
 
-using Report = core::Result<core::Json> (*)(const Analysis&);
-
-const std::map<std::string, Report> kMethods = {
-    {"ols", ols_report},           {"robust", robust_report}, {"anova", anova_report},
-    {"rm-anova", rm_anova_report}, {"lmm", lmm_report},       {"logistic", logistic_report}};
-
-Outcome run(const Options& o) {
-  const auto formula = parse_formula(o.formula);
-  if (!formula) return formula.error();
-  const auto table = Table::read(o.data, formula->columns(), o.drop_missing);
-  if (!table) return table.error();
-  const auto report = kMethods.at(o.method)({*formula, *table, o.formula});
-  if (!report) return report.error();
+Outcome run(const assessment::Method& method, const Options& o) {
+  core::Result<assessment::Findings> found = core::Error{core::Errc::bad_input, ""};
+  std::map<std::string, std::string> given;
+  for (const auto& [name, value] : o.more)
+    if (!value.empty()) given.emplace(name, value);
+  if (method.formula.empty()) {
+    found = assessment::run(method, given);
+  } else {
+    const auto formula = assessment::parse_formula(o.formula);
+    if (!formula) return formula.error();
+    const auto missing = o.drop_missing ? assessment::Missing::drop : assessment::Missing::refuse;
+    const auto table = assessment::Table::read(o.data, formula->columns(), missing);
+    if (!table) return table.error();
+    const auto options = assessment::complete(method, given);
+    if (!options) return options.error();
+    found = method.run({*formula, *table, o.formula, *options});
+  }
+  if (!found) return found.error();
+  if (!o.svg.empty()) {
+    if (found->figures.empty())
+      return core::Error{core::Errc::bad_input, "--svg: " + method.id + " draws no picture"};
+    plot::Figure figure = found->figures[0];
+    figure.title = o.formula;
+    if (auto fine = core::write_file(o.svg, core::bytes_of(plot::svg(figure))); !fine)
+      return fine.error();
+  }
   if (o.json)
-    std::puts(report->dump(2, ' ', false, core::Json::error_handler_t::replace).c_str());
+    std::puts(found->report.dump(2, ' ', false, core::Json::error_handler_t::replace).c_str());
   else
-    std::fputs(printed(*report).c_str(), stdout);
+    std::fputs(assessment::printed(found->report).c_str(), stdout);
   return 0;
+}
+
+std::string example_of(const assessment::Method& method) {
+  if (method.formula.empty())
+    return "tractus stats power --test repeated --effect 0.25 --levels 3 --power 0.8\n"
+           "  28 people\n"
+           "  tractus stats power --test correlation --effect 0.3065 --n 10";
+  return fmt::format("tractus stats {} --data trials.csv --formula \"{}\" --json", method.id,
+                     method.formula);
+}
+
+void add_method(CLI::App& app, const assessment::Method& method,
+                const std::shared_ptr<Options>& options, std::string& chosen) {
+  CLI::App* sub = app.add_subcommand(method.id, method.summary);
+  sub->footer("Example:\n  " + example_of(method));
+  if (!method.formula.empty()) {
+    sub->add_option("--data", options->data, "CSV file with a header line")->required();
+    sub->add_option("--formula", options->formula,
+                    "y ~ x + C(number) + a*b + a:b + I(x^2) + log(x) + (1|subject); 0 for no "
+                    "intercept; successes/trials on the left for counts. Here: " +
+                        method.formula)
+        ->required();
+    sub->add_flag("--drop-missing", options->drop_missing,
+                  "leave out rows with an empty cell in a column used, and say how many");
+    sub->add_option("--svg", options->svg, "write the analysis' first picture");
+  }
+  for (const auto& option : method.options) {
+    std::string meaning = option.meaning;
+    if (!option.choices.empty()) meaning += fmt::format(": {}", fmt::join(option.choices, ", "));
+    if (!option.fallback.empty()) meaning += " [" + option.fallback + "]";
+    sub->add_option("--" + option.name, options->more[option.name], meaning);
+  }
+  sub->add_flag("--json", options->json, "print as JSON, every digit");
+  sub->callback([&chosen, id = method.id] { chosen = id; });
 }
 
 /// The published worked example: wrong breach answers of ten surgeons against years of experience.
@@ -43,32 +95,26 @@ constexpr const char* kExample =
     "    6,0.33,0\n    7,0.1,0\n    8,0,3\n    9,0,1\n    10,0,1\n"
     "  It prints the published Table 3: years 0.1588, SE 0.1744, t 0.9106, p 0.3891 - and says\n"
     "  that surgeon 1 alone steers the fit.\n"
-    "  tractus stats robust   --data surgeons.csv --formula \"wrong_breach ~ experience_years\"\n"
-    "  tractus stats logistic --data surgeons.csv --formula \"wrong_breach/6 ~ experience_years\"\n"
-    "  tractus stats rm-anova --data trials.csv --formula \"velocity ~ repetition + (1|surgeon)\"\n"
-    "  tractus stats lmm      --data trials.csv --formula \"velocity ~ factor(repetition) + years "
-    "+ (1|surgeon)\"";
+    "  tractus stats rm-anova --data trials.csv --formula \"velocity ~ scenario*repetition + "
+    "(1|surgeon)\"\n"
+    "  tractus stats METHOD --help   says what METHOD takes";
 
 }  // namespace
 
 Command stats_command() {
-  return {
-      "stats", "Analyses a CSV file: regression, robust, ANOVA, mixed and logistic models",
-      kExample, [](CLI::App& app) {
-        auto options = std::make_shared<Options>();
-        app.add_option("METHOD", options->method, "ols, robust, anova, rm-anova, lmm or logistic")
-            ->required()
-            ->check(CLI::IsMember({"ols", "robust", "anova", "rm-anova", "lmm", "logistic"}));
-        app.add_option("--data", options->data, "CSV file with a header line")->required();
-        app.add_option("--formula", options->formula,
-                       "y ~ x + text_column + factor(number) + (1|subject); 0 for no intercept; "
-                       "successes/trials on the left for logistic (with (1|subject): mixed)")
-            ->required();
-        app.add_flag("--drop-missing", options->drop_missing,
-                     "leave out rows with an empty cell in a column used, and say how many");
-        app.add_flag("--json", options->json, "print as JSON, every digit");
-        return [options] { return run(*options); };
-      }};
+  return {"stats", "Analyses a CSV file: regression, ANOVA, mixed models, recognition, learning",
+          kExample, [](CLI::App& app) {
+            auto options = std::make_shared<Options>();
+            auto chosen = std::make_shared<std::string>();
+            app.require_subcommand(1);
+            for (const auto& method : assessment::methods::all())
+              add_method(app, method, options, *chosen);
+            return [options, chosen]() -> Outcome {
+              const auto method = assessment::method_named(*chosen);
+              if (!method) return method.error();
+              return run(*method, *options);
+            };
+          }};
 }
 
 }  // namespace commands

@@ -1,6 +1,7 @@
 /// `tractus-rig`: the probing rig's electronics and mechanics, played by a process.
 #include <fmt/format.h>
 #include <poll.h>
+#include <pthread.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -31,6 +32,13 @@ struct Options {
 
 constexpr core::Instant_ns kIdle_ns = 20'000'000;
 std::atomic<bool> asked_to_stop = false;
+
+/// Real time for this thread and those it starts, where the system grants it: electronics do not
+/// wait for other programs.
+void become_urgent() {
+  const sched_param priority{.sched_priority = 70};
+  static_cast<void>(pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority));
+}
 
 /// Has who started it closed the other end (or died)?
 bool input_ended() {
@@ -97,6 +105,7 @@ core::Result<int> run(const Options& o) {
   machine.surgeon = rig::SurgeonParameters::of_skill(o.skill);
   rig::World world;
   world.surgeon = o.surgeon;
+  if (!o.bus_clock) become_urgent();
   auto made = o.bus_clock ? std::make_unique<rig::Electronics>(machine, world)
                           : std::make_unique<rig::Electronics>(machine, world, clock);
   rig::Electronics& electronics = *made;

@@ -1,0 +1,85 @@
+#include "assessment/method.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace assessment {
+namespace {
+
+core::Error wrong(std::string what) { return {core::Errc::bad_input, std::move(what)}; }
+
+/// What is wrong with a value of an option; empty if nothing.
+std::string fault_of(const Option& option, const std::string& value) {
+  if (option.text || value.empty()) return "";
+  if (!option.choices.empty()) {
+    if (std::ranges::find(option.choices, value) != option.choices.end()) return "";
+    return fmt::format("option '{}' is '{}'; it can be {}", option.name, value,
+                       fmt::join(option.choices, ", "));
+  }
+  const auto number = number_in(value);
+  if (number && *number >= option.low && *number <= option.high) return "";
+  return fmt::format("option '{}' is '{}'; it takes a number from {} to {}", option.name, value,
+                     option.low, option.high);
+}
+
+}  // namespace
+
+double Analysis::number(const std::string& option) const {
+  const auto value = number_in(text(option));
+  core::require(value.has_value(), "a numeric option has a checked value");
+  return *value;
+}
+
+const std::string& Analysis::text(const std::string& option) const {
+  const auto at = options.find(option);
+  core::require(at != options.end(), "a method asks for its own options alone");
+  return at->second;
+}
+
+core::Result<Method> method_named(const std::string& id) {
+  std::vector<std::string> ids;
+  for (auto& method : methods::all()) {
+    if (method.id == id) return method;
+    ids.push_back(method.id);
+  }
+  return core::Error{core::Errc::not_found, fmt::format("there is no method '{}'; there are {}", id,
+                                                        fmt::join(ids, ", "))};
+}
+
+core::Result<std::map<std::string, std::string>> complete(
+    const Method& method, const std::map<std::string, std::string>& given) {
+  std::map<std::string, std::string> out;
+  for (const auto& option : method.options) {
+    const auto at = given.find(option.name);
+    const std::string& value = at == given.end() ? option.fallback : at->second;
+    if (const auto why = fault_of(option, value); !why.empty())
+      return wrong(fmt::format("{}: {}", method.id, why));
+    out.emplace(option.name, value.empty() ? option.fallback : value);
+  }
+  for (const auto& [name, _] : given)
+    if (!out.contains(name))
+      return wrong(fmt::format("{}: there is no option '{}'", method.id, name));
+  return out;
+}
+
+core::Result<Findings> run(const Method& method, const Table& table, const std::string& formula,
+                           const std::map<std::string, std::string>& options, Missing missing) {
+  const auto parsed = parse_formula(formula);
+  if (!parsed) return parsed.error();
+  const auto completed = complete(method, options);
+  if (!completed) return completed.error();
+  const auto selected = table.selected(parsed->columns(), missing);
+  if (!selected) return selected.error();
+  return method.run({*parsed, *selected, formula, *completed});
+}
+
+core::Result<Findings> run(const Method& method,
+                           const std::map<std::string, std::string>& options) {
+  const auto completed = complete(method, options);
+  if (!completed) return completed.error();
+  return method.run({Formula{}, Table{}, "", *completed});
+}
+
+}  // namespace assessment

@@ -1,0 +1,77 @@
+/// Linear mixed model with a random intercept.
+#include "statistics/lmm.hpp"
+
+#include <fmt/format.h>
+
+#include "assessment/pictures.hpp"
+#include "assessment/report.hpp"
+#include "assessment/terms.hpp"
+
+namespace assessment {
+namespace {
+
+using core::Json;
+using statistics::Vector;
+
+void add_model(const statistics::Lmm& fit, Json& out) {
+  out["model"] = {{"groups", fit.groups.size()},
+                  {"variance_between", fit.tau_squared},
+                  {"variance_within", fit.sigma_squared},
+                  {"icc", fit.icc},
+                  {"reml_criterion", fit.criterion},
+                  {"likelihood_ratio_of_groups", fit.rlrt},
+                  {"p_of_groups", fit.rlrt_p}};
+  out["group_effects"] = coefficient_table(fit.groups, {{"effect", &fit.group_effects}});
+}
+
+core::Result<Findings> run_lmm(const Analysis& of) {
+  if (of.formula.group.empty())
+    return bad_input("lmm needs a random intercept: add (1|COLUMN) to the formula");
+  const auto problem = problem_of(of, true);
+  if (!problem) return problem.error();
+  const auto labels = group_labels(of);
+  const auto fit = statistics::lmm(problem->design(), problem->y, labels);
+  if (!fit) return located(of, fit.error());
+  Json out = report_head(of, "linear mixed model, random intercept, REML, Satterthwaite");
+  out["coefficients"] = coefficient_table(fit->names, {{"estimate", &fit->coefficients},
+                                                       {"standard_error", &fit->standard_errors},
+                                                       {"df", &fit->df},
+                                                       {"t", &fit->t},
+                                                       {"p", &fit->p}});
+  add_term_tests(of.formula, problem->model, {fit->coefficients, fit->covariance, fit->df, "t"},
+                 out);
+  add_model(*fit, out);
+  const Vector fixed = problem->design().columns * fit->coefficients;
+  Vector fitted = fixed;
+  const auto places = places_of(of.table, of.formula.group, fit->groups);
+  for (std::size_t i = 0; i < places.size(); ++i)
+    fitted[static_cast<Eigen::Index>(i)] +=
+        fit->group_effects[static_cast<Eigen::Index>(places[i])];
+  const Vector residuals = problem->y - fitted;
+  out["checks"] = Json::array({normality_check(residuals)});
+  auto effects = normality_check(fit->group_effects);
+  effects["assumption"] = "effects of " + of.formula.group + " are normal";
+  out["checks"].push_back(effects);
+  out["notes"] = Json::array();
+  if (fit->tau_squared == 0.0)
+    out["notes"].push_back("the spread between groups is estimated as 0: this is least squares");
+  if (fit->groups.size() < 6)
+    out["notes"].push_back(
+        fmt::format("{} groups say little about the spread between groups", fit->groups.size()));
+  return Findings{std::move(out), {residual_picture(fitted, residuals)}};
+}
+
+}  // namespace
+
+namespace methods {
+Method lmm_method() {
+  return {"lmm",
+          "Linear mixed model: rows of the same person go together",
+          "velocity_m_s ~ C(repetition) + experience_years + (1|surgeon)",
+          "a linear mixed model with a random intercept, fitted by restricted maximum likelihood, "
+          "with Satterthwaite's degrees of freedom",
+          {},
+          run_lmm};
+}
+}  // namespace methods
+}  // namespace assessment

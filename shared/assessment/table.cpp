@@ -1,0 +1,204 @@
+#include "assessment/table.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+#include "core/file.hpp"
+
+namespace assessment {
+namespace {
+
+constexpr std::uint64_t kLargest = 512ull << 20;
+
+core::Error wrong(std::string what) { return {core::Errc::bad_input, std::move(what)}; }
+
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t\r");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+/// Cuts at commas outside quotes; quotes round a cell go. False: a quote is left open.
+bool split(std::string_view line, std::vector<std::string_view>& cells) {
+  cells.clear();
+  bool quoted = false;
+  std::size_t start = 0;
+  for (std::size_t i = 0; i <= line.size(); ++i) {
+    if (i < line.size() && line[i] == '"') quoted = !quoted;
+    if (i < line.size() && (line[i] != ',' || quoted)) continue;
+    auto cell = trimmed(line.substr(start, i - start));
+    if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"')
+      cell = trimmed(cell.substr(1, cell.size() - 2));
+    cells.push_back(cell);
+    start = i + 1;
+  }
+  return !quoted;
+}
+
+/// Takes the next line off the front.
+std::string_view next_line(std::string_view& rest) {
+  const auto end = rest.find('\n');
+  const auto line = rest.substr(0, end);
+  rest = end == std::string_view::npos ? std::string_view() : rest.substr(end + 1);
+  return line;
+}
+
+std::string shown(std::string_view text, std::size_t most = 40) {
+  return std::string(text.substr(0, most)) + (text.size() > most ? "…" : "");
+}
+
+std::string no_column(const std::string& file, const std::string& column,
+                      const std::vector<std::string_view>& header) {
+  const auto listed = header.size() > 20 ? fmt::format("{} others", header.size())
+                                         : shown(fmt::format("{}", fmt::join(header, ", ")), 400);
+  return fmt::format("{}: there is no column '{}'; the columns are {}", file, column, listed);
+}
+
+}  // namespace
+
+bool is_missing(std::string_view cell) {
+  return cell.empty() || cell == "NA" || cell == "NaN" || cell == "nan";
+}
+
+std::optional<double> number_in(std::string_view cell) {
+  if (!cell.empty() && cell.front() == '+') cell.remove_prefix(1);
+  double value = 0.0;
+  const auto end = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  if (end.ec != std::errc() || end.ptr != cell.data() + cell.size() || !std::isfinite(value))
+    return std::nullopt;
+  return value;
+}
+
+std::string Table::add_row(std::size_t line, std::span<const std::string_view> cells,
+                           Missing missing) {
+  for (std::size_t j = 0; j < wanted_.size() && missing != Missing::keep; ++j) {
+    if (!is_missing(cells[places_[j]])) continue;
+    if (missing == Missing::drop) {
+      ++dropped_;
+      return "";
+    }
+    return fmt::format("{}:{}: column '{}' has no value (--drop-missing leaves such rows out)",
+                       name_, line, wanted_[j]);
+  }
+  for (std::size_t j = 0; j < wanted_.size(); ++j) cells_[j].push_back(cells[places_[j]]);
+  lines_.push_back(line);
+  return "";
+}
+
+core::Result<void> Table::read_header(std::string_view line,
+                                      std::vector<std::string_view>& header) {
+  if (std::ranges::any_of(line, [](char c) {
+        return (static_cast<unsigned char>(c) < 32 && c != '\t' && c != '\r') || c == 127;
+      }))
+    return wrong(name_ + ":1: this is no text file");
+  if (!split(line, header) || (header.size() == 1 && header[0].empty()))
+    return wrong(name_ + ":1: the header line is empty or leaves a quote open");
+  if (wanted_.empty()) wanted_.assign(header.begin(), header.end());
+  for (const auto& column : wanted_) {
+    const auto at = std::ranges::find(header, column);
+    if (at == header.end()) return wrong(no_column(name_, column, header));
+    if (std::ranges::count(header, column) > 1)
+      return wrong(fmt::format("{}: column '{}' stands there twice", name_, column));
+    places_.push_back(static_cast<std::size_t>(at - header.begin()));
+  }
+  return {};
+}
+
+core::Result<Table> Table::read(const std::filesystem::path& path,
+                                std::span<const std::string> columns, Missing missing) {
+  auto bytes = core::read_file(path, kLargest);
+  if (!bytes) return bytes.error();
+  return parse(std::move(*bytes), path.string(), columns, missing);
+}
+
+core::Result<Table> Table::parse(core::Bytes bytes, const std::string& name,
+                                 std::span<const std::string> columns, Missing missing) {
+  Table out;
+  out.name_ = name;
+  out.bytes_ = std::make_shared<const core::Bytes>(std::move(bytes));
+  out.wanted_.assign(columns.begin(), columns.end());
+  std::string_view rest = core::text_of(*out.bytes_);
+  if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
+  std::vector<std::string_view> header, cells;
+  if (auto fine = out.read_header(next_line(rest), header); !fine) return fine.error();
+  out.cells_.resize(out.wanted_.size());
+  for (std::size_t line = 2; !rest.empty(); ++line) {
+    const auto text = next_line(rest);
+    if (trimmed(text).empty()) continue;
+    if (!split(text, cells))
+      return wrong(fmt::format("{}:{}: a quote stays open", out.name_, line));
+    if (cells.size() != header.size())
+      return wrong(fmt::format("{}:{}: {} cells, the header has {}", out.name_, line, cells.size(),
+                               header.size()));
+    if (const auto why = out.add_row(line, cells, missing); !why.empty()) return wrong(why);
+  }
+  if (out.lines_.empty()) return wrong(out.name_ + ": there is no row to analyse");
+  return out;
+}
+
+bool Table::has(const std::string& column) const {
+  return std::ranges::find(wanted_, column) != wanted_.end();
+}
+
+const std::vector<std::string_view>& Table::texts(const std::string& column) const {
+  const auto at = std::ranges::find(wanted_, column);
+  core::require(at != wanted_.end(), "only columns that were asked for are read");
+  return cells_[static_cast<std::size_t>(at - wanted_.begin())];
+}
+
+bool Table::is_numeric(const std::string& column) const {
+  return std::ranges::all_of(texts(column), [&](auto cell) { return number_in(cell).has_value(); });
+}
+
+core::Result<statistics::Vector> Table::numbers(const std::string& column) const {
+  const auto& cells = texts(column);
+  statistics::Vector out(static_cast<Eigen::Index>(cells.size()));
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const auto value = number_in(cells[i]);
+    if (!value)
+      return wrong(fmt::format("{}:{}: column '{}' should be a number and is '{}'", name_,
+                               lines_[i], column, shown(cells[i])));
+    out[static_cast<Eigen::Index>(i)] = *value;
+  }
+  return out;
+}
+
+Table Table::filtered(const std::function<bool(std::size_t row)>& keeps) const {
+  Table out = *this;
+  for (auto& column : out.cells_) column.clear();
+  out.lines_.clear();
+  for (std::size_t i = 0; i < rows(); ++i) {
+    if (!keeps(i)) continue;
+    for (std::size_t j = 0; j < cells_.size(); ++j) out.cells_[j].push_back(cells_[j][i]);
+    out.lines_.push_back(lines_[i]);
+  }
+  return out;
+}
+
+core::Result<Table> Table::selected(std::span<const std::string> columns, Missing missing) const {
+  Table out;
+  out.name_ = name_;
+  out.bytes_ = bytes_;
+  out.wanted_.assign(columns.begin(), columns.end());
+  for (const auto& column : columns) {
+    const auto at = std::ranges::find(wanted_, column);
+    if (at == wanted_.end())
+      return wrong(no_column(name_, column, {wanted_.begin(), wanted_.end()}));
+    out.places_.push_back(static_cast<std::size_t>(at - wanted_.begin()));
+  }
+  out.cells_.resize(columns.size());
+  std::vector<std::string_view> row(wanted_.size());
+  for (std::size_t i = 0; i < rows(); ++i) {
+    for (const std::size_t j : out.places_) row[j] = cells_[j][i];
+    if (const auto why = out.add_row(lines_[i], row, missing); !why.empty()) return wrong(why);
+  }
+  if (out.lines_.empty()) return wrong(name_ + ": there is no row to analyse");
+  return out;
+}
+
+}  // namespace assessment

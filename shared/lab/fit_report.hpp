@@ -1,0 +1,15 @@
+/// The insides that fit and diagnose share.
+#pragma once
+
+#include "lab/fit.hpp"
+#include "lab/least_squares.hpp"
+
+namespace lab {
+
+/// The given model's own numbers fitted; with a jacobian of its point.
+Solution fit_base(const Residual& residual);
+
+/// What is told of a solution; differentiates it anew.
+Fit report(const Residual& residual, Solution& solution, bool held_out);
+
+}  // namespace lab

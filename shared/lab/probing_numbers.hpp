@@ -1,0 +1,49 @@
+/// The numbers of a probing model that a fit may move, and the model that a set of them makes.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "lab/problem.hpp"
+#include "models/probing_model.hpp"
+
+namespace lab {
+
+/// How far recordings of a set reached, for what they can inform.
+struct Reach {
+  double least_m = 0.0, most_m = 0.0;
+  bool slides = true;  ///< else only the rotary stage's numbers move
+};
+
+/// Which numbers of the base are free: those not fixed, of layers that the recordings entered,
+/// borders that they came near.
+class ProbingNumbers {
+ public:
+  ProbingNumbers(models::ProbingModel model, const Reach& reach);
+
+  /// Base, then the model's own effects, then those added.
+  std::vector<Parameter> parameters(const Structure& structure) const;
+  /// The model with these values. `sensor_drift`, free per trial, is left out of it.
+  models::ProbingModel with(const Structure& structure, std::span<const double> values) const;
+  const models::ProbingModel& model() const { return model_; }
+  /// Layers that no recording entered, in words.
+  const std::vector<std::string>& notes() const { return notes_; }
+
+ private:
+  enum class Kind { stiffness, damping, equilibrium, start, end, viscous, detent, pitch };
+  struct Slot {
+    Kind kind;
+    std::size_t layer;
+  };
+  void add(Kind kind, std::size_t layer, const char* name, const Parameter& parameter);
+  void add_layer(std::size_t layer, const Reach& reach);
+  bool fixed(const std::string& pointer) const;
+
+  models::ProbingModel model_;
+  std::vector<Slot> slots_;
+  std::vector<Parameter> base_;
+  std::vector<std::string> notes_;
+};
+
+}  // namespace lab

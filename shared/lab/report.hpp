@@ -1,0 +1,41 @@
+/// The lab's report: one page that stands alone.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lab/comparison.hpp"
+#include "lab/diagnosis.hpp"
+#include "lab/fit.hpp"
+#include "lab/samples.hpp"
+#include "lab/tract_map.hpp"
+
+namespace lab {
+
+/// A model beside the measurements, and what came of the comparison.
+struct Side {
+  Samples samples;
+  Comparison comparison;
+};
+
+/// What a report may hold; what is absent is left out of the page.
+struct ReportContent {
+  std::string model_name, set_name;
+  bool simulated = false;      ///< the measurements are simulated themselves
+  Side given;                  ///< the model as it was given
+  std::optional<Side> better;  ///< refitted, with the effects that were found or added
+  std::optional<Diagnosis> diagnosis;
+  std::optional<Fit> fit;            ///< of the better model, when nothing was diagnosed
+  std::vector<Parameter> start;      ///< the better model's parameters as they were before the fit
+  std::vector<Candidate> catalogue;  ///< for equations and units
+  std::vector<std::string> notes;    ///< on the recording
+  std::optional<TractMap> map;       ///< of the given model's error, for palpation
+};
+
+/// A complete HTML document: no script, nothing fetched; light and dark by the reader's setting,
+/// light on paper. Verdict first, then the figures behind it. Texts of the model and the set are
+/// escaped.
+std::string report(const ReportContent& content);
+
+}  // namespace lab
