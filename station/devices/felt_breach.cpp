@@ -7,8 +7,9 @@
 namespace devices {
 namespace {
 constexpr double kQuick_s = 0.05, kSlow_s = 1.0;
-constexpr double kLeast_m_s = 0.001, kLeast_N = 5.0;         // below that nothing is compared
-constexpr double kThreshold = 1.1;                           // e.g. three times as fast: ln 3
+constexpr double kLeast_m_s = 0.001, kLeast_N = 5.0;  // below that nothing is compared
+// Five times as fast: ln 5. The tuned walls make a hand feel some 2.1, borders of layers 1.1.
+constexpr double kThreshold = 1.6;
 constexpr double kUnskilled_m = 0.004, kSkilled_m = 0.0015;  // of the remembered depth
 constexpr double kDeepest_m = 0.1;
 constexpr double kUnskilled = 0.6, kSkilled = 0.25;  // noise of the perceived strength

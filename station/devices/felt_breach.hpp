@@ -11,7 +11,7 @@ namespace devices {
 /// Fed with what a hand feels on the probe and nothing else: push and speed, never the controller's
 /// mode. A breach is felt as a jump while it pushes: the speed over 50 ms against that of the last
 /// second. The logarithm of the largest ratio is perceived with a seeded noise that falls with
-/// skill (Weber's law); above ln 3 the answer is a breach, and the distance to it is the
+/// skill (Weber's law); above ln 5 the answer is a breach, and the distance to it is the
 /// confidence. All numbers are plausible choices of ours.
 class FeltBreach {
  public:

@@ -9,7 +9,7 @@ import { Measures } from './measures';
 
 afterEach(cleanup);
 
-const answer = (changes: Partial<Answer>): Answer => ({ breach: true, wall: 'medial', confidence: share(0.8), ...changes });
+const answer = (changes: Partial<Answer>): Answer => ({ breach: true, wall: 'medial', confidence: share(0.8), depth_m: null, ...changes });
 const metric = (id: string, value: number | null, unit = 'N', note = ''): Metric =>
   ({ id, label: `label of ${id}`, unit, value, note, definition: `definition of ${id}`, source: 'paper' });
 
