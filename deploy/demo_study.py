@@ -25,6 +25,7 @@ SCENARIOS = ["hard", "soft", "lateral_breach", "in_out_in"]
 BREACHES = {"Lateral breach", "In, out and in again"}
 REPEATS = 3
 STATIONS = 3
+KILL_SERVER_AFTER = 50  # trials of all
 KILLED_AFTER_TRIALS = 3  # of station 2, then in the middle of the next
 
 
@@ -45,14 +46,24 @@ class Server:
     def run(self, *arguments):
         subprocess.run([self.programs / "tractus-server", *map(str, arguments)], check=True, stdout=subprocess.DEVNULL)
 
-    def start(self):
-        command = [self.programs / "tractus-server", "serve", "--data", self.home / "server", "--listen", "127.0.0.1:0", "--json"]
+    def start(self, port=0):
+        command = [self.programs / "tractus-server", "serve", "--data", self.home / "server", "--listen", f"127.0.0.1:{port}", "--json"]
         if (self.web / "index.html").exists():
             command += ["--web", self.web]
-        self.log = open(self.home / "server.log", "w")
+        self.log = open(self.home / "server.log", "a")
         self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=self.log, text=True, start_new_session=True)
         self.url = json.loads(self.process.stdout.readline())["listening"].rstrip("/")
-        self.ask("POST", "/session", {"name": "admin", "password": self.password})
+        if not self.cookie:
+            self.ask("POST", "/session", {"name": "admin", "password": self.password})
+
+    def die_for(self, seconds):
+        """Killed as by a power cut, and started again at the same address."""
+        self.process.kill()
+        self.process.wait()
+        say(f"the server is killed, for {seconds} s")
+        time.sleep(seconds)
+        self.start(int(self.url.rsplit(":", 1)[1]))
+        say("the server is back")
 
     def ask(self, method, path, body=None):
         headers = {"X-Tractus": "1", "Content-Type": "application/json"}
@@ -95,12 +106,12 @@ class Station(threading.Thread):
                 except queue.Empty:
                     return
                 while not self.trials_of(participant):
-                    say(f"{self.name} starts again")
+                    pass
         except BaseException as reason:  # shown by the main thread
             self.wrong = reason
 
     def trials_of(self, participant):
-        """All of a participant's trials; False when the station was killed meanwhile."""
+        """A participant's trials; False when it must be asked for again: the station was killed, or the server was away."""
         command = [self.server.programs / "tractus-station", "study", "--study", STUDY, "--participant", participant,
                    "--device", "sim-rig", "--speed", "fast", "--data", self.home, "--server", self.server.url,
                    "--token-file", self.token, "--seed", "2026", "--follow"]
@@ -112,10 +123,15 @@ class Station(threading.Thread):
                     self.on_disk(json.loads(line), process)
             status = process.wait()
         if status == -signal.SIGKILL:
+            say(f"{self.name} starts again")
+            return False
+        if self.server.process.poll() is not None:  # nothing on the disk of this participant: wait for the server
+            time.sleep(1)
             return False
         if status != 0:
             fail(f"{self.name}: {participant}: exit {status}; see {self.name}.out")
-        return True
+        study = self.server.ask("GET", f"/studies/{STUDY}")
+        return any(person["name"] == participant and person["done"] == person["planned"] for person in study["participants"])
 
     def on_disk(self, said, process):
         self.safe[said["trial_id"]] = said["samples_safe"]
@@ -189,6 +205,43 @@ def compare(server, stations, study):
     return samples, len(at_stations), wrong
 
 
+def leaks(stations, study):
+    """What at a station would tell which scenario a trial was: names, kinds and ids in any file, log or file name, sealed trials
+    of different sizes, headers that differ from trial to trial by more than they must."""
+    telling = [name.encode() for scenario in study["scenarios"] for name in (scenario["case_id"], scenario["title"])]
+    telling += [name.encode() for name in SCENARIOS if name not in ("hard", "soft")] + [b'"hard"', b'"soft"', b"walls", b"layers", b"scenario"]
+    found, sizes, headers = [], set(), set()
+    for station in stations:
+        files = [file for file in station.home.rglob("*") if file.is_file()] + [station.home.parent / f"{station.name}.out"]
+        for file in files:
+            content = file.read_bytes()
+            if file.parent.parent.name == "studies":
+                kept = json.loads(content)
+                sizes |= {len(trial.pop("sealed")) for trial in kept["trials"]}  # random characters spell anything
+                content = json.dumps(kept).encode()
+            if file.suffix == ".ttrial":
+                header = json.loads(content[36:36 + struct.unpack_from("<I", content, 20)[0]])
+                headers.add(json.dumps([sorted(header), header["probe"], sorted(header["extra"]), header["extra"]["limits"]]))
+                content = texts_of(content)
+            found += [f"{file.name}: {word.decode()}" for word in telling if word in content or word in file.name.encode()]
+    if len(sizes) != 1:
+        found.append(f"sealed trials have sizes {sorted(sizes)}")
+    if len(headers) != 1:
+        found.append(f"the headers differ: {sorted(headers)}")
+    return found
+
+
+def texts_of(content):
+    """Header and events of a trial file: all of it that is text."""
+    at, out = content.index(b"\n") + 1, b""
+    while at < len(content):
+        kind, length = struct.unpack_from("<4sI", content, at)
+        if kind in (b"HEAD", b"EVNT"):
+            out += content[at + 20:at + 20 + length] + b"\n"
+        at += 20 + length
+    return out
+
+
 def table(study):
     say(f"\n{'':4} {'level':9} {'years':>5}  {'done':>8}  {'recognised':>11}  {'breaches recognised':>19}   all SIMULATED")
     for person in study["participants"]:
@@ -212,7 +265,19 @@ def check_complete(study):
         fail(f"{len(failed)} trials could not be assessed: {failed[0]}")
 
 
-def conduct(programs, home, web, kill):
+def done_so_far(server):
+    return sum(person["done"] for person in server.ask("GET", f"/studies/{STUDY}")["participants"])
+
+
+def kill_server_in_the_middle(server, stations):
+    while any(station.is_alive() for station in stations):
+        if done_so_far(server) >= KILL_SERVER_AFTER:
+            return server.die_for(5)
+        time.sleep(0.5)
+    fail("the study was through before the server could be killed: the demo shows nothing")
+
+
+def conduct(programs, home, web, kill, kill_server):
     server = Server(programs, home, web)
     server.start()
     waiting = queue.Queue()
@@ -223,6 +288,8 @@ def conduct(programs, home, web, kill):
     say(f"{len(YEARS)} simulated surgeons, {REPEATS * len(SCENARIOS)} trials each, {STATIONS} stations, at {server.url}")
     for station in stations:
         station.start()
+    if kill_server:
+        kill_server_in_the_middle(server, stations)
     for station in stations:
         station.join()
         if station.wrong:
@@ -233,12 +300,14 @@ def conduct(programs, home, web, kill):
     if kill and not stations[1].killed:
         fail("station-2 was never killed: the demo shows nothing")
     samples, files, wrong = compare(server, stations, study)
+    told = leaks(stations, study)
     table(study)
     say(f"\n{files} trial files, {samples} samples at the stations; on the server, by count and SHA-256: "
         f"{'the same' if not wrong else 'NOT the same'}. {took:.0f} s.")
-    for line in wrong:
+    say(f"Files, names and logs of the stations that tell which scenario a trial was: {len(told) or 'none'}.")
+    for line in wrong + told:
         say(f"  {line}")
-    return server, not wrong
+    return server, not wrong and not told
 
 
 def main():
@@ -246,6 +315,7 @@ def main():
     parser.add_argument("--bin", type=Path, required=True)
     parser.add_argument("--web", type=Path, required=True)
     parser.add_argument("--keep", type=Path, metavar="DIR", help="keep the folder and leave the server running")
+    parser.add_argument("--kill-server", action="store_true", help="kill the server too, for five seconds in the middle")
     parser.add_argument("--no-kill", action="store_true", help="leave every station alone")
     options = parser.parse_args()
     if options.keep and options.keep.exists():
@@ -254,7 +324,7 @@ def main():
     home.mkdir(parents=True, exist_ok=True)
     server, same = None, False
     try:
-        server, same = conduct(options.bin.resolve(), home.resolve(), options.web.resolve(), not options.no_kill)
+        server, same = conduct(options.bin.resolve(), home.resolve(), options.web.resolve(), not options.no_kill, options.kill_server)
     finally:
         if server and not options.keep:
             server.stop()

@@ -44,7 +44,7 @@ describe('the sign of a place', () => {
 });
 
 it('an event reads as a sentence with its reason', () => {
-  expect(sentenceOf({ at_utc_us: utcMicroseconds(0), who: 'ada', what: 'invalid', participant: 'P01', trial_id: 't', reason: 'cable' })).toBe('ada a trial does not count: P01 (cable)');
+  expect(sentenceOf({ at_utc_us: utcMicroseconds(0), who: 'ada', what: 'invalid', participant: 'P01', trial_id: 't', reason: 'cable' })).toBe('ada: a trial of P01 does not count (cable)');
   expect(sentenceOf({ at_utc_us: utcMicroseconds(0), who: 'ada', what: 'paused', participant: null, trial_id: null, reason: '' })).toBe('ada paused the study');
 });
 
