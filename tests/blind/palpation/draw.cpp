@@ -63,9 +63,9 @@ void draw_volume(PalpationPlan& plan, Random& r) {
 
 void draw_probe(PalpationPlan& plan, Random& r) {
   Probe& p = plan.truth;
-  p.force_factor_Nm = 0.005 * r.uniform(0.8, 1.6);
-  p.force_scale = p.torque_scale = r.chance(0.4) ? 0.3 : r.uniform(0.3, 1.0);
-  p.radius_m = r.chance(0.4) ? 0.0007 : r.uniform(0.0007, 0.0012);
+  p.force_factor_Nm = 0.005 * r.uniform(1.0, 3.0);
+  p.force_scale = p.torque_scale = r.chance(0.25) ? 0.3 : r.uniform(0.5, 1.0);
+  p.radius_m = r.chance(0.2) ? 0.0007 : r.uniform(0.0008, 0.0013);
   if (r.chance(0.3))
     p.offset_m = Vec3(r.uniform(-2e-3, 2e-3), r.uniform(-2e-3, 2e-3), r.uniform(-2e-3, 2e-3));
 }
@@ -119,12 +119,12 @@ PalpationPlan draw_palpation(const PalpationRequest& request) {
   plan.request = request;
   const std::string drawn = draw_kind(r);
   plan.kind = request.kind.empty() ? drawn : request.kind;
-  Random of_effects = r.split(), of_volume = r.split(), of_probe = r.split(), of_handed = r.split(),
-         of_trials = r.split();
+  Random of_ids = r.split(), of_effects = r.split(), of_volume = r.split(), of_probe = r.split(),
+         of_handed = r.split(), of_trials = r.split();
   draw_volume(plan, of_volume);
   draw_probe(plan, of_probe);
   plan.field = of_probe.chance(0.75) ? FieldKind::kPaper : FieldKind::kPotential;
-  const auto ids = request.ids.empty() ? draw_ids(of_effects, plan.kind) : request.ids;
+  const auto ids = request.ids.empty() ? draw_ids(of_ids, plan.kind) : request.ids;
   for (const std::string& id : ids) {
     plan.effects.push_back(draw_hidden(of_effects, id, plan.truth, plan.tract));
     plan.strengths.push_back(of_effects.uniform(0.045, 0.095));
@@ -132,6 +132,8 @@ PalpationPlan draw_palpation(const PalpationRequest& request) {
   draw_handed(plan, of_handed);
   for (int i = 0; i < request.trials; ++i)
     plan.trial_seeds.push_back(static_cast<std::uint64_t>(of_trials.unit() * 1e15));
+  const bool brisk = hides(plan, "contact_damping") || hides(plan, "probe_inertia");
+  plan.tempo = of_trials.log_uniform(0.8, 2.2) * (brisk ? 1.6 : 1.0);
   plan.jumps_allowed = of_trials.chance(0.15);
   return plan;
 }

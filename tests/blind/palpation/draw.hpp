@@ -29,6 +29,7 @@ struct PalpationPlan {
   std::vector<Hidden> effects;
   std::vector<double> strengths;
   std::vector<std::uint64_t> trial_seeds;
+  double tempo = 1;  ///< how much faster than usual the hands work
   bool jumps_allowed = false;
 };
 
@@ -36,8 +37,9 @@ const std::vector<std::string>& palpation_catalogue();
 const std::vector<std::string>& palpation_outside();
 PalpationPlan draw_palpation(const PalpationRequest& request);
 
-/// Makes an effect about `factor` times as strong; returns false once its size has left what is
-/// plausible.
-bool enlarge(Hidden& effect, double factor, const Probe& probe);
+/// Makes an effect about `factor` times as strong.
+void enlarge(Hidden& effect, double factor, const Probe& probe);
+/// Whether its size is one that a probe and a bone can have.
+bool plausible(const Hidden& effect, const Probe& probe);
 
 }  // namespace blind

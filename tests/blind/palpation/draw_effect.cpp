@@ -64,11 +64,11 @@ struct Size {
 
 Size size_of(const std::string& id) {
   if (id == "contact_friction") return {"coefficient", 0.01, 0.9, 1};
-  if (id == "contact_damping") return {"damping_Ns_per_m", 0.02, 200, 1};
+  if (id == "contact_damping") return {"damping_Ns_per_m", 0.02, 80, 1};
   if (id == "contact_hysteresis") return {"loss", 0.01, 0.7, 1};
   if (id == "shank_curvature") return {"bow_m", 2e-5, 4e-3, 1};
   if (id == "tip_ball") return {"radius_m", 1e-4, 3e-3, 2};
-  if (id.starts_with("probe_")) return {"mass_kg", 5e-4, 1.0, 1};
+  if (id.starts_with("probe_")) return {"mass_kg", 5e-4, 0.35, 1};
   if (id == "sensor_drift") return {"range_N", 0.003, 3, 1};
   if (id == "time_delay") return {"delay_s", 0.0005, 0.1, 1};
   if (id == "bone_compliance") return {"compliance_m_per_N", 1e-6, 1e-3, 1};
@@ -85,26 +85,35 @@ Hidden draw_hidden(Random& random, const std::string& id, const Probe& probe, co
   return {id, values(random, id, probe, tract)};
 }
 
-bool enlarge(Hidden& effect, double factor, const Probe& probe) {
+void enlarge(Hidden& effect, double factor, const Probe& probe) {
   auto& p = effect.parameters;
   if (effect.id == "contact_nonlinearity") {
     double& exponent = p["exponent"][0];
     exponent = 1.0 + factor * (exponent - 1.0);
-    return exponent > 0.35 && exponent < 3.0;
+    return;
   }
   if (effect.id == "shank_taper") {
-    double &handle = p["handle_radius_m"][0], &tip = p["tip_radius_m"][0];
-    handle = probe.radius_m + factor * (handle - probe.radius_m);
-    tip = probe.radius_m + factor * (tip - probe.radius_m);
-    return tip > 0.3 * probe.radius_m && handle < 2.0 * probe.radius_m;
+    for (const char* end : {"handle_radius_m", "tip_radius_m"})
+      p[end][0] = probe.radius_m + factor * (p[end][0] - probe.radius_m);
+    return;
   }
   const Size size = size_of(effect.id);
   const double step = std::pow(factor, 1.0 / size.order);
-  double norm = 0;
-  for (double& v : p[size.name]) v *= step, norm += v * v;
+  for (double& v : p[size.name]) v *= step;
   if (effect.id == "sensor_bias")
     for (double& v : p["torque_Nm"]) v *= step;
-  return std::sqrt(norm) > size.low && std::sqrt(norm) < size.high;
+}
+
+bool plausible(const Hidden& effect, const Probe& probe) {
+  if (effect.id == "contact_nonlinearity")
+    return effect.of("exponent") > 0.35 && effect.of("exponent") < 3.0;
+  if (effect.id == "shank_taper")
+    return effect.of("tip_radius_m") > 0.3 * probe.radius_m &&
+           effect.of("handle_radius_m") < 2.0 * probe.radius_m;
+  const Size size = size_of(effect.id);
+  double sum = 0;
+  for (const double v : effect.parameters.at(size.name)) sum += v * v;
+  return std::sqrt(sum) > size.low && std::sqrt(sum) < size.high;
 }
 
 }  // namespace blind

@@ -19,6 +19,8 @@ struct PalpationOutcome {
 
 struct PalpationSet {
   PalpationPlan plan;
+  bool accepted =
+      false;  ///< strengths and sizes are as wanted; else the last of many tries was not
   std::vector<std::vector<PalpationSample>> trials;
   std::vector<PalpationOutcome> outcomes;
   double hidden_projected_N = 0, force_rms_N = 0, peak_N = 0;

@@ -5,9 +5,11 @@
 
 namespace blind {
 
-Palpation::Palpation(Random random, const Tract& tract, const Probe& probe, double duration_s)
+Palpation::Palpation(Random random, const Tract& tract, const Probe& probe, double duration_s,
+                     double tempo)
     : tract_(tract),
       length_m_(probe.length_m),
+      tempo_(tempo),
       goal_{random.uniform(0.009, 0.014), 2e-4, random.uniform(-3, 3), 0, 0,
             random.uniform(-0.4, 0.4)},
       depth_(goal_.depth_m),
@@ -16,14 +18,15 @@ Palpation::Palpation(Random random, const Tract& tract, const Probe& probe, doub
       tilt_a_(0),
       tilt_b_(0),
       roll_(goal_.roll_rad) {
-  const double size = random.log_uniform(1.5e-5, 6e-5);
+  const double size = random.log_uniform(1.5e-5, 9e-5);
   for (MultiSine& s : shake_) s = tremor(random, size);
   for (MultiSine& s : sway_) s = tremor(random, 2e-4);
   hold(random.uniform(0.1, 0.4));
   while (depth_.end_s() < duration_s + 0.1) act(random);
 }
 
-void Palpation::go(double duration_s) {
+void Palpation::go(double usual_s) {
+  const double duration_s = usual_s / tempo_;
   const auto one = [&](Path& path, double to) {
     if (to == path.last())
       path.hold(duration_s);

@@ -58,7 +58,7 @@ std::vector<Palpation> hands_of(const PalpationPlan& plan) {
       plan.truth.offset_m;  // the hand finds the hole where the probe's own offset puts it
   std::vector<Palpation> out;
   for (const std::uint64_t seed : plan.trial_seeds)
-    out.emplace_back(Random(seed), tract, plan.truth, plan.request.duration_s);
+    out.emplace_back(Random(seed), tract, plan.truth, plan.request.duration_s, plan.tempo);
   return out;
 }
 

@@ -100,6 +100,7 @@ bool write_truth(const PalpationSet& set, const fs::path& file) {
   return put(file, {{"format", "blind-truth/1"},
                     {"rig", "palpation"},
                     {"seed", plan.request.seed},
+                    {"accepted", set.accepted},
                     {"kind", plan.kind},
                     {"effects", effects_json(set)},
                     {"projected_rms", set.hidden_projected_N},

@@ -1,0 +1,241 @@
+/// `tractus analyse`: a plan locked before the data are seen, run on a frozen snapshot.
+#include "assessment/analyse.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+
+#include "app/command.hpp"
+#include "assessment/plan_page.hpp"
+#include "assessment/snapshot.hpp"
+#include "core/clock.hpp"
+#include "core/file.hpp"
+
+namespace commands {
+namespace {
+
+namespace fs = std::filesystem;
+using assessment::Plan;
+using core::Json;
+
+struct Options {
+  std::string plan, data, out, who, name, source, against;
+  std::vector<std::string> meanings;
+  bool data_seen = false, simulated = false, json = false;
+};
+
+core::Error wrong(std::string what) { return {core::Errc::bad_input, std::move(what)}; }
+
+void print(const Json& json) {
+  std::puts(json.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+}
+
+core::Result<void> refuse_existing(const fs::path& path) {
+  if (!fs::exists(path)) return {};
+  return core::Error{core::Errc::conflict, path.string() + ": is there already"};
+}
+
+Outcome make_new(const Options& o) {
+  if (auto fine = refuse_existing(o.plan); !fine) return fine.error();
+  if (auto fine = core::write_json(o.plan, assessment::example_plan()); !fine) return fine.error();
+  std::printf("%s: a plan to edit; then: tractus analyse lock %s --who NAME\n", o.plan.c_str(),
+              o.plan.c_str());
+  return 0;
+}
+
+Outcome lock(const Options& o) {
+  const auto json = core::read_json(o.plan);
+  if (!json) return json.error();
+  const assessment::Lock by{o.who, core::utc_text(core::utc_us()), o.data_seen, ""};
+  const auto locked = assessment::locked(*json, o.plan, by);
+  if (!locked) return locked.error();
+  if (auto fine = core::write_json(o.plan, *locked); !fine) return fine.error();
+  if (o.json)
+    print((*locked)["lock"]);
+  else
+    std::printf("%s: locked by %s on %s, SHA-256 %s\n", o.plan.c_str(), by.who.c_str(),
+                by.utc.c_str(), (*locked)["lock"]["sha256"].get<std::string>().c_str());
+  return 0;
+}
+
+Outcome freeze(const Options& o) {
+  if (auto fine = refuse_existing(o.out); !fine) return fine.error();
+  auto data = core::read_file(o.data, 512ull << 20);
+  if (!data) return data.error();
+  assessment::Freezing by{o.name.empty() ? fs::path(o.data).filename().string() : o.name,
+                          core::utc_text(core::utc_us()),
+                          o.source,
+                          o.simulated,
+                          {}};
+  for (const auto& meaning : o.meanings) {
+    const auto at = meaning.find('=');
+    if (at == std::string::npos)
+      return wrong(fmt::format("--meaning '{}': COLUMN=TEXT is expected", meaning));
+    by.meanings[meaning.substr(0, at)] = meaning.substr(at + 1);
+  }
+  const auto snapshot = assessment::frozen(std::move(*data), by);
+  if (!snapshot) return snapshot.error();
+  if (auto fine = assessment::write(*snapshot, o.out); !fine) return fine.error();
+  if (o.json)
+    print(snapshot->description);
+  else
+    std::printf("%s: %zu rows, %zu columns, SHA-256 %s\n", o.out.c_str(), snapshot->table.rows(),
+                snapshot->table.columns().size(), snapshot->sha256().c_str());
+  return 0;
+}
+
+struct Ran {
+  assessment::Snapshot snapshot;
+  assessment::Analysed analysed;
+};
+
+core::Result<Ran> ran(const Options& o) {
+  const auto json = core::read_json(o.plan);
+  if (!json) return json.error();
+  const auto plan = Plan::from_json(*json, o.plan);
+  if (!plan) return plan.error();
+  if (auto fine = assessment::check_lock(*plan, o.plan); !fine) return fine.error();
+  auto snapshot = assessment::Snapshot::read(o.data);
+  if (!snapshot) return snapshot.error();
+  const auto& d = snapshot->description;
+  auto analysed = assessment::analyse(*plan, snapshot->table,
+                                      {d["name"], snapshot->sha256(), d["frozen_utc"],
+                                       d.value("source", ""), d.value("simulated", false)});
+  if (!analysed) return analysed.error();
+  return Ran{std::move(*snapshot), std::move(*analysed)};
+}
+
+std::string text_of(const Json& result) {
+  return result.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void print_results(const Json& result) {
+  std::printf("%s\n", result["plan"]["title"].get<std::string>().c_str());
+  for (const auto& one : result["results"]) std::printf("  %s\n", one.get<std::string>().c_str());
+  for (const auto& one : result["published"])
+    if (one.contains("agrees") && one["agrees"] == false)
+      std::printf("  published, %s: %s; computed %s\n", one["where"].get<std::string>().c_str(),
+                  one["printed"].dump().c_str(), one["computed"].dump().c_str());
+}
+
+Outcome run(const Options& o) {
+  const auto done = ran(o);
+  if (!done) return done.error();
+  const std::string text = text_of(done->analysed.result);
+  if (!o.out.empty())
+    if (auto fine = core::write_file(o.out, core::bytes_of(text)); !fine) return fine.error();
+  if (o.json)
+    std::fputs(text.c_str(), stdout);
+  else
+    print_results(done->analysed.result);
+  if (o.against.empty()) return 0;
+  const auto before = core::read_file(o.against, 512ull << 20);
+  if (!before) return before.error();
+  const bool same = core::text_of(*before) == text;
+  std::fprintf(stderr, "%s: %s\n", o.against.c_str(),
+               same ? "the same to the last digit" : "NOT the same");
+  return same ? 0 : 1;
+}
+
+/// The data with a last column that says why a row was left out.
+std::string marked(const Ran& done) {
+  const auto& table = done.snapshot.table;
+  std::string out;
+  const auto add = [&](std::string_view cell, bool last) {
+    const bool quoted = cell.find(',') != std::string_view::npos;
+    out += quoted ? "\"" + std::string(cell) + "\"" : std::string(cell);
+    out += last ? "\n" : ",";
+  };
+  for (const auto& column : table.columns()) add(column, false);
+  add("excluded_because", true);
+  for (std::size_t i = 0; i < table.rows(); ++i) {
+    for (const auto& column : table.columns()) add(table.texts(column)[i], false);
+    add(done.analysed.excluded_because[i], true);
+  }
+  return out;
+}
+
+Outcome report(const Options& o) {
+  if (auto fine = refuse_existing(o.out); !fine) return fine.error();
+  const auto done = ran(o);
+  if (!done) return done.error();
+  auto scratch = core::ScratchFolder::make(o.out);
+  if (!scratch) return scratch.error();
+  Json dictionary = done->snapshot.description["dictionary"];
+  dictionary.push_back({{"name", "excluded_because"},
+                        {"kind", "text"},
+                        {"meaning", "why the plan leaves the row out; empty for rows used"}});
+  const std::pair<const char*, std::string> files[] = {
+      {"report.html", assessment::report_page(done->analysed)},
+      {"result.json", text_of(done->analysed.result)},
+      {"data.csv", marked(*done)},
+      {"dictionary.json", text_of(dictionary)}};
+  for (const auto& [name, text] : files)
+    if (auto fine = core::write_file(scratch->path() / name, core::bytes_of(text)); !fine)
+      return fine.error();
+  if (auto fine = scratch->keep_as(o.out); !fine) return fine.error();
+  if (o.json)
+    print({{"folder", o.out},
+           {"files", {"report.html", "result.json", "data.csv", "dictionary.json"}}});
+  else
+    std::printf("%s: report.html, result.json, data.csv, dictionary.json\n", o.out.c_str());
+  return 0;
+}
+
+using Action = Outcome (*)(const Options&);
+
+CLI::App* add(CLI::App& app, const char* name, const char* summary, Action action,
+              const std::shared_ptr<Action>& chosen) {
+  CLI::App* sub = app.add_subcommand(name, summary);
+  sub->callback([=] { *chosen = action; });
+  return sub;
+}
+
+void add_actions(CLI::App& app, const std::shared_ptr<Options>& o,
+                 const std::shared_ptr<Action>& chosen) {
+  auto* fresh = add(app, "new", "Writes a plan to start from", make_new, chosen);
+  auto* locking =
+      add(app, "lock", "Locks a plan: who, when, and the hash of every word", lock, chosen);
+  auto* freezing = add(app, "freeze", "Freezes a CSV with its dictionary and hash", freeze, chosen);
+  auto* running = add(app, "run", "Runs a locked plan on a frozen snapshot", run, chosen);
+  auto* reporting =
+      add(app, "report", "Runs it and writes page, data and dictionary", report, chosen);
+  for (CLI::App* sub : {fresh, locking, running, reporting})
+    sub->add_option("PLAN", o->plan, "plan file (tractus-plan/1)")->required();
+  locking->add_option("--who", o->who, "who locks it")->required();
+  locking->add_flag("--data-seen", o->data_seen, "the data are known already: a reanalysis");
+  freezing->add_option("DATA", o->data, "CSV file, one row per trial")->required();
+  freezing->add_option("FOLDER", o->out, "the snapshot's folder, new")->required();
+  freezing->add_option("--name", o->name, "what the data are called");
+  freezing->add_option("--source", o->source, "where they come from, licence");
+  freezing->add_option("--meaning", o->meanings, "COLUMN=what it means; may be given again");
+  freezing->add_flag("--simulated", o->simulated, "the data are simulated");
+  for (CLI::App* sub : {running, reporting})
+    sub->add_option("SNAPSHOT", o->data, "folder that 'freeze' made")->required();
+  running->add_option("--out", o->out, "write the result (JSON)");
+  running->add_option("--against", o->against, "an earlier result: exit 1 if a digit differs");
+  reporting->add_option("FOLDER", o->out, "the report's folder, new")->required();
+  for (CLI::App* sub : {locking, freezing, running, reporting})
+    sub->add_flag("--json", o->json, "print as JSON");
+}
+
+}  // namespace
+
+Command analyse_command() {
+  return {"analyse", "Locks an analysis plan, runs it on a frozen cohort, writes the report",
+          "tractus analyse new plan.json                     # edit it, then\n"
+          "  tractus analyse lock plan.json --who \"A. Author\"\n"
+          "  tractus analyse freeze trials.csv cohort/\n"
+          "  tractus analyse run plan.json cohort/ --out result.json\n"
+          "  tractus analyse report plan.json cohort/ report/",
+          [](CLI::App& app) {
+            auto options = std::make_shared<Options>();
+            auto chosen = std::make_shared<Action>(nullptr);
+            app.require_subcommand(1);
+            add_actions(app, options, chosen);
+            return [options, chosen]() -> Outcome { return (*chosen)(*options); };
+          }};
+}
+
+}  // namespace commands
