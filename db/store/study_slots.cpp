@@ -178,6 +178,18 @@ core::Result<std::optional<Slot>> slot_of_trial(Reading& tx, const std::string& 
       slots_where(tx, "join study_trials t on t.slot_id = k.id where t.trial_id = ?", {trial_id}));
 }
 
+core::Result<std::optional<StudyTrial>> study_trial_of(Reading& tx, const std::string& trial_id) {
+  auto rows = tx.query(
+      "select trial_id, slot_id, state, reason, changed_utc_us from study_trials where trial_id = "
+      "?",
+      {trial_id});
+  if (!rows) return rows.error();
+  if (rows->empty()) return std::optional<StudyTrial>();
+  const Row& row = rows->front();
+  return std::optional(
+      StudyTrial{row.text(0), row.text(1), row.text(2), row.text(3), row.integer(4)});
+}
+
 core::Result<void> announce_for_slot(Writing& tx, const std::string& trial_id,
                                      const std::string& slot_id, std::int64_t now_utc_us) {
   return done(

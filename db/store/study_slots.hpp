@@ -41,6 +41,8 @@ core::Result<std::uint64_t> release_slots(Writing& tx, const std::string& study_
 core::Result<std::optional<Slot>> slot_of(Reading& tx, const std::string& slot_id);
 /// The slot that a trial was announced for; none for a trial of no study.
 core::Result<std::optional<Slot>> slot_of_trial(Reading& tx, const std::string& trial_id);
+/// What became of a trial of a study, without what it holds; none for a trial of no study.
+core::Result<std::optional<StudyTrial>> study_trial_of(Reading& tx, const std::string& trial_id);
 /// Notes that a trial is on its way, in the transaction that announces it.
 core::Result<void> announce_for_slot(Writing& tx, const std::string& trial_id,
                                      const std::string& slot_id, std::int64_t now_utc_us);

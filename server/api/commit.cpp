@@ -55,8 +55,22 @@ core::Result<void> check_bytes(const store::Upload& upload, const std::filesyste
   return {};
 }
 
-/// @param case_id  what the station knows the case by
-core::Result<void> check_identity(const store::Upload& upload, const std::string& case_id,
+/// What the announcement promised of the file.
+struct Promised {
+  std::string case_id;  ///< what the station knows the case by
+  std::string kind;     ///< of the case: the rig
+};
+
+core::Result<Promised> promised(store::Reading& tx, const store::Upload& upload) {
+  auto slot = store::slot_of_trial(tx, upload.trial_id);
+  if (!slot) return slot.error();
+  auto known = store::case_of(tx, upload.case_id);
+  if (!known) return known.error();
+  core::require(known->has_value(), "an upload has its case");
+  return Promised{*slot ? (*slot)->id : upload.case_id, (*known)->kind};
+}
+
+core::Result<void> check_identity(const store::Upload& upload, const Promised& promised,
                                   const trial::Trial& trial, const Tally& tally) {
   if (!trial.sealed)
     return core::Error{core::Errc::bad_input, "trial file: it has no end; recover it first"};
@@ -64,10 +78,14 @@ core::Result<void> check_identity(const store::Upload& upload, const std::string
     return core::Error{core::Errc::bad_input,
                        fmt::format("trial file: its id is {}, announced was {}", trial.header.id,
                                    upload.trial_id)};
-  if (trial.header.case_id != case_id)
-    return core::Error{
-        core::Errc::bad_input,
-        fmt::format("trial file: its case is {}, announced was {}", trial.header.case_id, case_id)};
+  if (trial.header.case_id != promised.case_id)
+    return core::Error{core::Errc::bad_input,
+                       fmt::format("trial file: its case is {}, announced was {}",
+                                   trial.header.case_id, promised.case_id)};
+  if (trial::name(trial.header.rig) != promised.kind)
+    return core::Error{core::Errc::bad_input,
+                       fmt::format("trial file: it is of {}, its case is for {}",
+                                   trial::name(trial.header.rig), promised.kind)};
   if (tally.samples == 0)
     return core::Error{core::Errc::bad_input, "trial file: it has no samples"};
   return {};
@@ -110,11 +128,9 @@ core::Result<store::TrialRecord> checked_trial(Backend& backend, const store::Up
   auto trial = trial::scan_trial(path, [&](const trial::Block& part) { tally.add(part); },
                                  {.max_samples = kMaxTrialSamples, .max_bytes = kMaxTrial_bytes});
   if (!trial) return without_path(trial.error(), path);
-  auto slot = backend.store.read(
-      [&](store::Reading& tx) { return store::slot_of_trial(tx, upload.trial_id); });
-  if (!slot) return slot.error();
-  const std::string& case_id = *slot ? (*slot)->id : upload.case_id;
-  if (auto fine = check_identity(upload, case_id, *trial, tally); !fine) return fine.error();
+  auto expected = backend.store.read([&](store::Reading& tx) { return promised(tx, upload); });
+  if (!expected) return expected.error();
+  if (auto fine = check_identity(upload, *expected, *trial, tally); !fine) return fine.error();
   return record_of(upload, *trial, tally);
 }
 

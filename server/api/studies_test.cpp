@@ -48,9 +48,9 @@ class StudyRoutes : public ApiTest {
   }
   /// A whole trial of a slot, uploaded by station 1.
   void bring(const std::string& trial_id, const std::string& slot,
-             world::Ending ending = world::Ending::sealed) {
+             world::Cut cut = world::Cut::no) {
     const Caller one{Role::station, "s1", "station-1", ""};
-    const std::string bytes = world::trial_bytes(folder_.path(), trial_id, slot, 250, ending);
+    const std::string bytes = world::probing_bytes(folder_.path(), trial_id, slot, 250, cut);
     ASSERT_TRUE(announce_upload(backend_, one, trial_id,
                                 {slot, bytes.size(), core::sha256(core::bytes_of(bytes))}));
     const auto view = core::bytes_of(bytes);
@@ -179,10 +179,6 @@ TEST_F(StudyRoutes, AreClosedToAStationButForTakingTrials) {
   for (const char* path : {"/studies", "/studies/probing-1", "/studies/probing-1/events"})
     EXPECT_EQ(status("GET", path), 403) << path;
   const std::string hard = scenarios::tuned(scenarios::Kind::hard)->id();
-  for (const std::string& part : {std::string("scenario.json"), std::string("case.json")})
-    EXPECT_EQ(
-        text(ask(request("GET", "/api/v1/cases/" + hard + "/parts/" + part, station("token-1")))),
-        text(ask(request("GET", "/api/v1/cases/" + hard + "/parts/" + part, station("token-1")))));
   const auto unknown = ask(request(
       "GET", "/api/v1/cases/" + std::string(64, 'e') + "/parts/scenario.json", station("token-1")));
   const auto known =
@@ -233,7 +229,31 @@ TEST_F(StudyRoutes, ATrialComesBackUnderItsSlotsNameAndIsOneOfItsScenario) {
   EXPECT_EQ(study["participants"][0]["done"], 1);
   const auto kept = store_.read([&](store::Reading& tx) { return store::trial_of(tx, trial); });
   EXPECT_NE((*kept)->summary.case_id, slot);
-  EXPECT_FALSE((*kept)->summary.case_title.empty());
+  const auto page = json(ask(request("GET", "/api/v1/trials/" + trial, own_)));
+  EXPECT_EQ(page["scenario"]["name"], (*kept)->summary.case_title);
+  EXPECT_EQ(page["answer"]["depth_m"], 0.021);
+}
+
+TEST_F(StudyRoutes, ATrialCutShortByACrashIsKeptAndItsPlaceRepeated) {
+  ASSERT_EQ(post("", plan()).status, 200);
+  bring(std::string(32, 'a'), next_slot(), world::Cut::yes);
+  const auto who = read("/probing-1")["participants"][0];
+  EXPECT_EQ(who["slots"][0]["trials"][0]["state"], "invalid");
+  EXPECT_THAT(who["slots"][0]["trials"][0]["reason"], HasSubstr("cut short"));
+  EXPECT_EQ(who["slots"].size(), 13u);
+}
+
+TEST_F(StudyRoutes, ATrialOfTheOtherRigIsRefused) {
+  ASSERT_EQ(post("", plan()).status, 200);
+  const std::string trial(32, 'a'), slot = next_slot();
+  const Caller one{Role::station, "s1", "station-1", ""};
+  const std::string bytes = world::trial_bytes(folder_.path(), trial, slot, 250);
+  const auto view = core::bytes_of(bytes);
+  ASSERT_TRUE(announce_upload(backend_, one, trial, {slot, bytes.size(), core::sha256(view)}));
+  ASSERT_TRUE(append_upload(backend_, one, trial, 0, core::crc32c(view), view));
+  const auto refused = commit_upload(backend_, one, trial);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().what, HasSubstr("palpation"));
 }
 
 TEST_F(StudyRoutes, ATrialOfAnotherPlaceIsRefused) {
@@ -242,7 +262,7 @@ TEST_F(StudyRoutes, ATrialOfAnotherPlaceIsRefused) {
   const std::string trial(32, 'a'), first = taken["trials"][0]["slot"],
                                     second = taken["trials"][1]["slot"];
   const Caller one{Role::station, "s1", "station-1", ""};
-  const std::string bytes = world::trial_bytes(folder_.path(), trial, second, 250);
+  const std::string bytes = world::probing_bytes(folder_.path(), trial, second, 250);
   const auto view = core::bytes_of(bytes);
   ASSERT_TRUE(announce_upload(backend_, one, trial, {first, bytes.size(), core::sha256(view)}));
   ASSERT_TRUE(append_upload(backend_, one, trial, 0, core::crc32c(view), view));
@@ -287,8 +307,10 @@ TEST_F(StudyRoutes, AnInvalidTrialNeedsAReasonStaysAndIsRepeated) {
   EXPECT_EQ(
       post("/probing-1/trials/" + std::string(32, 'b') + "/invalid", {{"reason", "x"}}).status,
       404);
-  EXPECT_EQ(ask(request("GET", "/api/v1/trials/" + trial, own_)).status == 404, false)
-      << "nothing is deleted";
+  const auto kept = ask(request("GET", "/api/v1/trials/" + trial, own_));
+  EXPECT_EQ(kept.status, 200) << "nothing is deleted: " << text(kept);
+  EXPECT_EQ(json(kept)["study"]["state"], "invalid");
+  EXPECT_EQ(json(kept)["study"]["participant"], "P1");
 }
 
 TEST_F(StudyRoutes, WhatAStationHoldsIsReleasedToAnother) {

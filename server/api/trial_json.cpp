@@ -45,7 +45,37 @@ core::Json answer_json(const core::Json& events) {
   if (!answer) return {};
   return {{"breach", answer->breach},
           {"wall", answer->wall ? core::Json(*answer->wall) : core::Json()},
-          {"confidence", answer->confidence ? core::Json(*answer->confidence) : core::Json()}};
+          {"confidence", answer->confidence ? core::Json(*answer->confidence) : core::Json()},
+          {"depth_m", answer->depth_m ? core::Json(*answer->depth_m) : core::Json()}};
+}
+
+core::Json scenario_json(const scenarios::Scenario& scenario) {
+  const auto law = scenario.expanded();
+  core::require(bool(law), "a scenario that was read can be expanded");
+  core::Json layers = core::Json::array(), walls = core::Json::array();
+  for (const auto& layer : law->layers)
+    layers.push_back({{"start_m", layer.start_m},
+                      {"thickness_m", layer.thickness_m},
+                      {"stiffness_N_per_m", layer.stiffness_N_per_m},
+                      {"damping_Ns_per_m", layer.damping_Ns_per_m}});
+  for (const auto& wall : law->walls)
+    walls.push_back({{"position_m", wall.position_m},
+                     {"resistance_interval_m", wall.resistance_interval_m},
+                     {"breach_interval_m", wall.breach_interval_m}});
+  return {{"id", scenario.id()},
+          {"name", scenario.name},
+          {"travel_m", scenario.travel_m},
+          {"layers", layers},
+          {"walls", walls}};
+}
+
+core::Json study_json(const StudyPlace& place) {
+  return {{"id", place.study.id},
+          {"title", place.study.title},
+          {"participant", place.slot.participant},
+          {"number", place.slot.position + 1},
+          {"state", place.state},
+          {"reason", place.reason}};
 }
 
 }  // namespace
@@ -65,8 +95,7 @@ core::Json summary_json(const store::TrialSummary& trial) {
 }
 
 core::Json trial_json(const store::TrialRecord& trial,
-                      const std::vector<store::ScoreRecord>& scores, const volume::Tract* tract,
-                      const core::Json& truth) {
+                      const std::vector<store::ScoreRecord>& scores, const TrialFacts& facts) {
   const core::Json header =
       core::Json::parse(trial.header);  // written by us, as the events and the coverage
   const core::Json events = core::Json::parse(trial.events);
@@ -81,9 +110,11 @@ core::Json trial_json(const store::TrialRecord& trial,
   out["skipped_ticks"] = trial.skipped_ticks;
   out["answer"] = answer_json(events);
   out["events"] = events;
-  out["truth"] = truth;
+  out["truth"] = facts.truth;
   out["metrics"] = scores_json(scores);
-  out["tract"] = tract ? tract_json(*tract) : core::Json();
+  out["tract"] = facts.tract ? tract_json(*facts.tract) : core::Json();
+  out["scenario"] = facts.scenario ? scenario_json(*facts.scenario) : core::Json();
+  out["study"] = facts.study ? study_json(*facts.study) : core::Json();
   out["coverage"] = trial.coverage ? core::Json::parse(*trial.coverage) : core::Json();
   out["probe"] = header.value("probe", core::Json::object());
   return out;

@@ -1,19 +1,35 @@
 /// Trials as the pages get them.
 #pragma once
 
+#include "db/store/study_slots.hpp"
 #include "db/store/trials.hpp"
+#include "scenarios/scenario.hpp"
 #include "server/api/route.hpp"
 #include "volume/tract.hpp"
 
 namespace api {
 
+/// Where a trial stands in a study.
+struct StudyPlace {
+  store::Study study;
+  store::Slot slot;
+  std::string state, reason;  ///< as store::StudyTrial
+};
+
+/// What the server knows beside the recording.
+struct TrialFacts {
+  std::optional<volume::Tract> tract = {};           ///< palpation
+  core::Json truth = {};                             ///< palpation: null where it is not known
+  std::optional<scenarios::Scenario> scenario = {};  ///< probing: the truth, too
+  std::optional<StudyPlace> study = {};
+};
+
 core::Json summary_json(const store::TrialSummary& trial);
 core::Json trial_json(const store::TrialRecord& trial,
-                      const std::vector<store::ScoreRecord>& scores, const volume::Tract* tract,
-                      const core::Json& truth);
+                      const std::vector<store::ScoreRecord>& scores, const TrialFacts& facts);
 
 /// Their schemas: TrialSummary, TrialList, Trial, Score, TrialEvent, Tract, Coverage, Truth,
-/// Answer.
+/// Answer, ProbingScenario, StudyPlace.
 std::vector<NamedSchema> trial_schemas();
 /// TrialSignals, Envelope, TrialPath.
 std::vector<NamedSchema> curve_schemas();

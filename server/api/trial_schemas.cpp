@@ -41,6 +41,8 @@ core::Json trial_schema() {
       {"truth", nullable(ref("Truth"))},
       {"metrics", array(ref("Score"), "empty until assessed")},
       {"tract", nullable(ref("Tract"))},
+      {"scenario", nullable(ref("ProbingScenario"))},
+      {"study", nullable(ref("StudyPlace"))},
       {"coverage", nullable(ref("Coverage"))},
       {"probe",
        anything(
@@ -63,6 +65,22 @@ core::Json tract_schema() {
                  {"radius_m", number("m", "")},
                  {"medial", direction("unit vector, in V")},
                  {"superior", direction("unit vector, in V")}});
+}
+
+core::Json scenario_schema() {
+  const core::Json layer = object({{"start_m", number("m", "depth from the entry")},
+                                   {"thickness_m", number("m", "")},
+                                   {"stiffness_N_per_m", number("N/m", "K")},
+                                   {"damping_Ns_per_m", number("N·s/m", "D")}});
+  const core::Json wall =
+      object({{"position_m", number("m", "where it gives way, from the entry")},
+              {"resistance_interval_m", number("m", "before it, resistance grows over this")},
+              {"breach_interval_m", number("m", "soft tissue behind it")}});
+  return object({{"id", text("of the scenario's version")},
+                 {"name", text("for people")},
+                 {"travel_m", number("m", "depth of the probe stop")},
+                 {"layers", array(layer, "of bone, by depth")},
+                 {"walls", array(wall, "by depth; none: nothing is breached")}});
 }
 
 core::Json score_schema() {
@@ -88,7 +106,17 @@ std::vector<NamedSchema> trial_schemas() {
                              {"detail", anything("by kind")}})},
       {"Answer", object({{"breach", truth("was one felt?")},
                          {"wall", nullable(one_of(kWalls, "where"))},
-                         {"confidence", nullable(number("1", "0 … 1"))}})},
+                         {"confidence", nullable(number("1", "0 … 1"))},
+                         {"depth_m", nullable(number("m", "probing: where it was felt"))}})},
+      {"ProbingScenario", scenario_schema()},
+      {"StudyPlace",
+       object({{"id", text("the study's")},
+               {"title", text("for people")},
+               {"participant", text("a pseudonym")},
+               {"number", integer("1", "of the place in their order, from 1")},
+               {"state", one_of({"arriving", "counts", "invalid", "surplus"},
+                                "surplus: its place in the order had a trial already")},
+               {"reason", text("of not counting")}})},
       {"Truth", truth_schema()},
       {"Score", score_schema()},
       {"Tract", tract_schema()},

@@ -4,6 +4,7 @@
 #include "db/store/trials.hpp"
 #include "metrics/metric.hpp"
 #include "server/jobs/case_facts.hpp"
+#include "server/jobs/scenario_facts.hpp"
 #include "trial/trial_file.hpp"
 
 namespace jobs {
@@ -51,6 +52,11 @@ core::Result<void> assess_trial(store::Store& store, const store::Objects& objec
     facts = std::move(*known);
     subject.tract = &facts->definition.tract;
     if (facts->truth) subject.truth = metrics::Truth{.breached = facts->truth->breached};
+  } else {
+    auto scenario = scenario_of(store, objects, (*record)->summary.case_id);
+    if (!scenario) return scenario.error();
+    subject.truth =
+        metrics::Truth{.breached = {}, .walls = static_cast<int>(scenario->walls_m.size())};
   }
   const Assessment done = assessment(subject);
   return store.write([&](store::Writing& tx) {

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 namespace effects {
 
@@ -16,6 +19,29 @@ std::string_view name(Kind kind) {
       return "measurement";
   }
   return "";
+}
+
+std::string unit_of(const Param& param) {
+  using Ending = std::pair<std::string_view, std::string_view>;
+  static constexpr std::array<Ending, 15> kEndings{{{"_Ns2_per_m2", "N·s²/m²"},
+                                                    {"_Ns_per_m", "N·s/m"},
+                                                    {"_N_per_m", "N/m"},
+                                                    {"_s_per_rad", "s/rad"},
+                                                    {"_per_m", "1/m"},
+                                                    {"_rad_s", "rad/s"},
+                                                    {"_m_s", "m/s"},
+                                                    {"_rad", "rad"},
+                                                    {"_Nm", "N·m"},
+                                                    {"_Pa", "Pa"},
+                                                    {"_kg", "kg"},
+                                                    {"_Hz", "Hz"},
+                                                    {"_N", "N"},
+                                                    {"_m", "m"},
+                                                    {"_s", "s"}}};
+  if (!param.unit.empty()) return param.unit;
+  const auto found = std::ranges::find_if(
+      kEndings, [&](const Ending& ending) { return param.name.ends_with(ending.first); });
+  return found == kEndings.end() ? "1" : std::string(found->second);
 }
 
 std::size_t value_count(const EffectFacts& facts) {

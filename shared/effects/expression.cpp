@@ -108,6 +108,7 @@ core::Result<Expression> Expression::from_json(const Json& json, const std::stri
     out.units_.push_back(own.text("unit", 64));
     auto unit = Dimension::parse(out.units_.back());
     if (!unit) own.wrong("unit", unit.error().what);
+    facts.params.back().unit = out.units_.back();
     if (auto done = own.done(); !done) return done.error();
     out.quantities_.push_back({name, *unit});
   }

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include "effects/palpation_expression.hpp"
 
 namespace effects {
 namespace palpation {
@@ -14,13 +14,35 @@ const std::vector<PalpationEffectInfo>& palpation_effects() {
   return kAll;
 }
 
+namespace {
+
+const PalpationEffectInfo* entry_of(std::string_view id) {
+  for (const PalpationEffectInfo& info : palpation_effects())
+    if (info.facts.id == id) return &info;
+  return nullptr;
+}
+
+core::Error unknown(std::string_view id) {
+  return {core::Errc::not_found, fmt::format("'{}' is not an effect of palpation", id)};
+}
+
+}  // namespace
+
+core::Result<EffectFacts> palpation_facts(const Use& use) {
+  if (is_expression(use.id)) {
+    const auto expression = Expression::of(use, palpation_expressions());
+    if (!expression) return expression.error();
+    return expression->facts();
+  }
+  const auto* found = entry_of(use.id);
+  if (!found) return unknown(use.id);
+  return found->facts;
+}
+
 core::Result<PalpationEffect> make_palpation_effect(const Use& use) {
-  const auto& all = palpation_effects();
-  const auto found =
-      std::ranges::find_if(all, [&](const auto& info) { return info.facts.id == use.id; });
-  if (found == all.end())
-    return core::Error{core::Errc::not_found,
-                       fmt::format("'{}' is not an effect of palpation", use.id)};
+  if (is_expression(use.id)) return make_palpation_expression(use);
+  const auto* found = entry_of(use.id);
+  if (!found) return unknown(use.id);
   if (auto ok = check(found->facts, use.values); !ok) return ok.error();
   return found->make(use.values);
 }

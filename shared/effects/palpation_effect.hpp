@@ -141,6 +141,10 @@ struct PalpationEffectInfo {
 /// The catalogue of palpation, in the order of the ids; made from the files of palpation/.
 const std::vector<PalpationEffectInfo>& palpation_effects();
 
+/// What is known of an effect in a model, of the catalogue or a user's own; its numbers do not
+/// matter. Errors: not_found naming the id; bad_input naming what is wrong in a definition.
+core::Result<EffectFacts> palpation_facts(const Use& use);
+
 /// The effect of an id with its numbers. Errors: not_found naming the id; bad_input or out_of_range
 /// naming the parameter, its value and its range.
 core::Result<PalpationEffect> make_palpation_effect(const Use& use);

@@ -50,6 +50,16 @@ core::Result<std::unique_ptr<ProbingEffect>> make_expression(const Use& use) {
       std::make_unique<ExpressionForce>(std::move(*program), use.values));
 }
 
+const ProbingEffectInfo* entry_of(std::string_view id) {
+  for (const ProbingEffectInfo& info : probing_effects())
+    if (info.facts.id == id) return &info;
+  return nullptr;
+}
+
+core::Error unknown(std::string_view id) {
+  return {core::Errc::not_found, fmt::format("'{}' is not an effect of the probing rig", id)};
+}
+
 }  // namespace
 
 const std::vector<ProbingEffectInfo>& probing_effects() {
@@ -57,14 +67,21 @@ const std::vector<ProbingEffectInfo>& probing_effects() {
   return kAll;
 }
 
+core::Result<EffectFacts> probing_facts(const Use& use) {
+  if (is_expression(use.id)) {
+    const auto expression = Expression::of(use, probing_expressions());
+    if (!expression) return expression.error();
+    return expression->facts();
+  }
+  const auto* found = entry_of(use.id);
+  if (!found) return unknown(use.id);
+  return found->facts;
+}
+
 core::Result<std::unique_ptr<ProbingEffect>> make_probing_effect(const Use& use) {
   if (is_expression(use.id)) return make_expression(use);
-  const auto& all = probing_effects();
-  const auto found =
-      std::ranges::find_if(all, [&](const auto& info) { return info.facts.id == use.id; });
-  if (found == all.end())
-    return core::Error{core::Errc::not_found,
-                       fmt::format("'{}' is not an effect of the probing rig", use.id)};
+  const auto* found = entry_of(use.id);
+  if (!found) return unknown(use.id);
   if (auto ok = check(found->facts, use.values); !ok) return ok.error();
   return found->make(use.values);
 }

@@ -113,6 +113,10 @@ std::unique_ptr<ProbingEffect> made(std::span<const double> values) {
 /// The catalogue, in the order of the ids; made from the files of probing/.
 const std::vector<ProbingEffectInfo>& probing_effects();
 
+/// What is known of an effect in a model, of the catalogue or a user's own; its numbers do not
+/// matter. Errors: not_found naming the id; bad_input naming what is wrong in a definition.
+core::Result<EffectFacts> probing_facts(const Use& use);
+
 /// The effect of an id with its numbers. Errors: not_found naming the id; bad_input or out_of_range
 /// naming the parameter, its value and its range.
 core::Result<std::unique_ptr<ProbingEffect>> make_probing_effect(const Use& use);

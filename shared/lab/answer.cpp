@@ -102,23 +102,26 @@ Json strong_correlations(const Fit& fit) {
   return out;
 }
 
-/// The fitted numbers of the added effects, from pointers "id/name" and "id/name/component".
+/// The fitted numbers of all effects, the model's own too, from pointers "id/name" and
+/// "id/name/component".
 Json fitted_effects(const Fit& fit) {
+  std::vector<FoundEffect> found;
+  for (const Estimate& e : fit.estimates) {
+    const std::size_t slash = e.pointer.find('/');
+    if (slash == 0 || slash == std::string::npos) continue;
+    const std::string id = e.pointer.substr(0, slash), rest = e.pointer.substr(slash + 1);
+    const std::string parameter = rest.substr(0, rest.find('/'));
+    if (found.empty() || found.back().id != id) found.push_back({id, std::nan(""), {}});
+    auto& parameters = found.back().parameters;
+    if (parameters.empty() || parameters.back().name != parameter)
+      parameters.push_back({parameter, {}, {}});
+    parameters.back().value.push_back(e.value);
+    parameters.back().sd.push_back(e.sd);
+  }
   Json out = Json::array();
-  for (const std::string& id : fit.structure.effects) {
-    FoundEffect found{id, std::nan(""), {}};
-    for (const Estimate& e : fit.estimates) {
-      if (!e.pointer.starts_with(id + "/")) continue;
-      std::string name = e.pointer.substr(id.size() + 1);
-      name = name.substr(0, name.find('/'));
-      if (found.parameters.empty() || found.parameters.back().name != name)
-        found.parameters.push_back({name, {}, {}});
-      found.parameters.back().value.push_back(e.value);
-      found.parameters.back().sd.push_back(e.sd);
-    }
-    Json json = effect(found);
-    json.erase("probability");
-    out.push_back(std::move(json));
+  for (const FoundEffect& one : found) {
+    out.push_back(effect(one));
+    out.back().erase("probability");
   }
   return out;
 }

@@ -12,6 +12,7 @@ namespace lab {
 namespace {
 
 constexpr std::size_t kMostRows = 400'000;
+constexpr double kSensorNoise_N = 0.01;  // a palpation sensor's [Zoller2020, its floor]
 /// Units that a state's name may end in, longest first.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kUnits{{{"_rad_s", "rad/s"},
                                                                                {"_m_s2", "m/s²"},
@@ -69,7 +70,22 @@ Column at_times(const Recorded::Trial& trial, std::size_t channel, std::span<con
   return out;
 }
 
-bool is_speed(const std::string& unit) { return unit == "m/s" || unit == "rad/s"; }
+/// Direction, phase and time since a reversal of a motion along or about the probe's axis.
+template <class Add>
+void add_courses(const States& states, const Residuals& residuals, const TrialSamples& trial,
+                 const Add& add) {
+  const bool slides = state(states, "depth_m") != nullptr;
+  const Column* velocity = state(states, slides ? "velocity_m_s" : "omega_rad_s");
+  if (!velocity) return;
+  Column crossing;
+  if (slides)
+    for (const double trusted : residuals.trusted) crossing.push_back(trusted > 0.0 ? 0.0 : 1.0);
+  const Courses course = courses(trial.t_s, *velocity, crossing);
+  add({"direction", "", slides ? kDirections : kTurningDirections},
+      every(course.direction, trial.stride));
+  add({"phase", "", slides ? kProbingPhases : kTurningPhases}, every(course.phase, trial.stride));
+  add({"time since reversal", "s", {}}, every(course.since_reversal_s, trial.stride));
+}
 
 void add_features(const States& states, const Residuals& residuals, bool probing, Samples& samples,
                   TrialSamples& trial) {
@@ -78,21 +94,19 @@ void add_features(const States& states, const Residuals& residuals, bool probing
     if (first) samples.features.push_back(std::move(feature));
     trial.features.push_back(std::move(values));
   };
-  const Column *speed = state(states, "velocity_m_s"), *depth = state(states, "depth_m");
-  if (probing && speed && depth) {
-    Column crossing;
-    for (const double trusted : residuals.trusted) crossing.push_back(trusted > 0.0 ? 0.0 : 1.0);
-    const Courses course = courses(trial.t_s, *speed, crossing);
-    add({"direction", "", kDirections}, every(course.direction, trial.stride));
-    add({"phase", "", kProbingPhases}, every(course.phase, trial.stride));
-    add({"time since reversal", "s", {}}, every(course.since_reversal_s, trial.stride));
-  }
+  if (probing) add_courses(states, residuals, trial, add);
+  const Column *force = state(states, "force_N"), *speed = state(states, "velocity_m_s"),
+               *along = state(states, "speed_along_force_m_s");
+  if (!probing && force && speed && along)
+    add({"phase", "", kPalpationPhases},
+        every(palpation_phases(*force, *speed, *along, kSensorNoise_N), trial.stride));
   for (std::size_t s = 0; s < states.names.size(); ++s) {
     Feature feature = feature_named(states.names[s]);
-    if (feature.unit == "m/s²" || feature.name == "time") continue;
-    const bool velocity = is_speed(feature.unit);
+    if (feature.unit == "m/s²" || feature.name == "time" || states.names[s] == "theta_rad")
+      continue;
+    const bool velocity = feature.unit == "m/s" || feature.unit == "rad/s";
     if (feature.name == "velocity") feature.name = "speed";
-    if (feature.name == "omega" || feature.name == "turning") feature.name = "rotation";
+    if (feature.name == "omega") feature.name = probing ? "rotation" : "turning of the handle";
     add(std::move(feature), every(states.values[s], trial.stride, velocity));
   }
 }

@@ -30,8 +30,8 @@ Recorded recorded(const trial::PalpationSet& set);
 ///
 /// What is judged is the problem's primary channel; where that is the norm of a vector's error
 /// ("force_N"), its three components. Features are the states by their names without the unit, and
-/// from a state "depth_m" (probing): "direction" (in, out, still), "phase" (see phases.hpp) and
-/// "time since reversal". Speeds are without sign.
+/// for probing "direction" (in, out, still), "phase" (see phases.hpp) and "time since reversal",
+/// for palpation "phase". Speeds are without sign.
 Samples samples_of(const Problem& problem, const Structure& structure,
                    std::span<const double> values, const Recorded& recorded);
 

@@ -191,6 +191,16 @@ Fit report(const Residual& residual, Solution& at, bool held_out) {
   return fit;
 }
 
+double held_out_rmse(const Residual& residual, const Solution& at) {
+  const Eigen::VectorXd weights = robust_weights(at.residual, at.scale);
+  Gram whole = gram(at, weights, 0, residual.size());
+  add_prior(at, whole);
+  Fit fit;
+  fit.trials.resize(std::size_t(residual.trials()));
+  hold_out(residual, at, whole, weights, fit);
+  return fit.held_out_rmse;
+}
+
 Solution fit_base(const Residual& residual) {
   std::vector<double> start;
   for (const Parameter& p : residual.problem().parameters({})) start.push_back(p.start);

@@ -12,4 +12,7 @@ Solution fit_base(const Residual& residual);
 /// What is told of a solution; differentiates it anew.
 Fit report(const Residual& residual, Solution& solution, bool held_out);
 
+/// The held-out rmse alone, by the jacobian that the solution has.
+double held_out_rmse(const Residual& residual, const Solution& solution);
+
 }  // namespace lab

@@ -46,5 +46,14 @@ TEST(Phases, ARestIsNoReversal) {
   EXPECT_EQ(phase(out, 205), "advance");
 }
 
+TEST(Phases, NameWhatAPalpatingHandDoes) {
+  const std::vector<double> force{0.01, 1.0, 1.0, 1.0}, speed{0.02, 0.001, 0.02, 0.02},
+      along{0.0, 0.0, 0.002, -0.019};
+  const auto out = palpation_phases(force, speed, along, 0.01);
+  const std::vector<std::string> expected{"free", "contact", "sliding", "pressing"};
+  for (std::size_t k = 0; k < out.size(); ++k)
+    EXPECT_EQ(kPalpationPhases[std::size_t(out[k])], expected[k]);
+}
+
 }  // namespace
 }  // namespace lab

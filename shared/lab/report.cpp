@@ -31,9 +31,18 @@ std::string percent(double share) {
                                         : fmt::format("{:.0f} %", hundred);
 }
 
+std::string unbroken(std::string text, const std::string& unit) {
+  const std::string loose = " " + unit;
+  for (auto at = text.find(loose); at != std::string::npos; at = text.find(loose, at + 1))
+    if (at > 0 && text[at - 1] >= '0' && text[at - 1] <= '9') text.replace(at, 1, "&nbsp;");
+  return text;
+}
+
 std::string better_name(const ReportContent& content) {
   if (!content.diagnosis) return "fitted";
-  return content.diagnosis->effects.empty() ? "refitted" : "with what was found";
+  const auto& effects = content.diagnosis->effects;
+  if (effects.empty()) return "refitted";
+  return effects.size() == 1 ? "with " + effect_in_words(effects[0].id) : "with what was found";
 }
 
 }  // namespace page

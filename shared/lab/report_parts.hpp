@@ -34,7 +34,9 @@ std::string bar(double share, const std::string& kind);
 std::string tract_picture(const TractMap& map, const std::string& unit);
 /// "12 %", "0.4 %".
 std::string percent(double share);
-/// What the better model is called.
+/// Figures kept on one line with their unit.
+std::string unbroken(std::string text, const std::string& unit);
+/// What the better model is called; not escaped.
 std::string better_name(const ReportContent& content);
 
 }  // namespace lab::page

@@ -37,6 +37,10 @@ std::string regions(const Side& side) {
   return out + "</table>\n";
 }
 
+bool at_floor(const Side& side) {
+  return side.comparison.rmse <= 1.1 * side.comparison.noise_floor;
+}
+
 std::string phase_table(const ReportContent& content) {
   const Comparison& given = content.given.comparison;
   if (given.phases.empty()) return {};
@@ -44,7 +48,7 @@ std::string phase_table(const ReportContent& content) {
       "<h3>By phase</h3>\n<table>\n<tr><th>phase</th><th>share of the error</th>"
       "<th class=\"n\"></th><th class=\"n\">of the time</th><th class=\"n\">error as given</th>{}"
       "</tr>\n",
-      content.better ? "<th class=\"n\">" + better_name(content) + "</th>" : "");
+      content.better ? "<th class=\"n\">" + escaped(better_name(content)) + "</th>" : "");
   for (std::size_t k = 0; k < given.phases.size(); ++k) {
     const PhaseComparison& p = given.phases[k];
     out += fmt::format(
@@ -116,7 +120,9 @@ std::string places(const ReportContent& content) {
             tract_picture(*content.map, content.given.comparison.judged_unit);
   body += phase_table(content);
   if (content.better)
-    body += "<h3>What is left, " + better_name(content) + "</h3>\n" + regions(*content.better);
+    body += "<h3>What is left, " + escaped(better_name(content)) + "</h3>\n" +
+            (at_floor(*content.better) ? "<p>At the noise floor: nothing stands out.</p>\n"
+                                       : regions(*content.better));
   return section("Where the model fails",
                  "Moments of the recordings that hold more of the error than their time alone "
                  "would; " +
@@ -153,7 +159,7 @@ std::string trials(const ReportContent& content) {
       "<table>\n<tr><th>trial</th><th class=\"n\">length</th><th class=\"n\">error as "
       "given</th>{}{}"
       "</tr>\n",
-      content.better ? "<th class=\"n\">" + better_name(content) + "</th>" : "",
+      content.better ? "<th class=\"n\">" + escaped(better_name(content)) + "</th>" : "",
       fit ? "<th class=\"n\">held out</th>" : "");
   for (std::size_t k = 0; k < given.trials.size(); ++k) {
     const auto& t = given.trials[k];

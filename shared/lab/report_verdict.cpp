@@ -100,7 +100,7 @@ std::string verdict(const ReportContent& content) {
       "<section class=\"verdict {}\">\n<h2>{}</h2>\n<p>{}</p>\n"
       "<dl class=\"figures\">\n{}</dl>\n</section>\n",
       content.diagnosis ? word(content.diagnosis->verdict) : "", escaped(said.headline),
-      escaped(said.detail), figures);
+      unbroken(escaped(said.detail), unit), figures);
 }
 
 std::string falling_error(const ReportContent& content) {

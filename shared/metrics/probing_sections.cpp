@@ -17,14 +17,6 @@ bool ends_breach(const ProbingSample& s) {
   return s.mode != ProbingMode::breach && s.mode != ProbingMode::holding;
 }
 
-/// The stretch of breach at or after `from`; empty at the end when there is none.
-Samples breach_after(Samples all, std::size_t from) {
-  const auto begin = std::find_if(all.begin() + std::ptrdiff_t(from), all.end(), is_breach);
-  const auto beyond = std::find_if(begin, all.end(), ends_breach);
-  auto last = beyond;
-  while (last != begin && !is_breach(*(last - 1))) --last;
-  return {begin, last};
-}
 }  // namespace
 
 Samples probing_motion(const trial::Trial& trial) {
@@ -36,15 +28,22 @@ Samples probing_motion(const trial::Trial& trial) {
   return {first, stop};
 }
 
-Samples first_breach(const trial::Trial& trial) { return breach_after(trial.probing, 0); }
+Samples first_breach(const trial::Trial& trial) {
+  const Samples all = trial.probing;
+  const auto begin = std::ranges::find_if(all, is_breach);
+  auto last = std::find_if(begin, all.end(), ends_breach);
+  while (last != begin && !is_breach(*(last - 1))) --last;
+  return {begin, last};
+}
 
 std::size_t breach_count(const trial::Trial& trial) {
-  const Samples all = trial.probing;
+  const ProbingSample* before = nullptr;
   std::size_t count = 0;
-  for (std::size_t from = 0; from < all.size(); ++count) {
-    const Samples one = breach_after(all, from);
-    if (one.empty()) break;
-    from = std::size_t(one.data() - all.data()) + one.size();
+  for (const ProbingSample& s : trial.probing) {
+    if (s.mode == ProbingMode::holding) continue;
+    const bool inward = !before || s.x_m >= before->x_m;
+    count += is_breach(s) && inward && !(before && is_breach(*before));
+    before = &s;
   }
   return count;
 }

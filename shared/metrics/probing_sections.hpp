@@ -17,7 +17,9 @@ std::span<const trial::ProbingSample> probing_motion(const trial::Trial& trial);
 /// still in soft tissue is part of it, as long as the bone behind has not begun. Empty when there
 /// was none.
 std::span<const trial::ProbingSample> first_breach(const trial::Trial& trial);
-/// How many such stretches there are.
+/// How many times the probe went through a wall: the mode became `breach` while it went inward.
+/// (Resting against the bone behind a breach, the stage goes to and fro across that border by
+/// single steps of its motor: that is no new breach.)
 std::size_t breach_count(const trial::Trial& trial);
 
 /// Mean and variance (n − 1) in two passes, and extremes.

@@ -130,6 +130,9 @@ TEST(ProbingMetrics, OnlyTheFirstBreachIsScoredAndTheOthersAreCounted) {
   add(trial, 300, ProbingMode::bone, 0.005, 80.0);
   add(trial, 30, ProbingMode::breach, 0.05, 10.0);
   EXPECT_EQ(score(trial, "breaches").value, 2.0);
+  add(trial, 1, ProbingMode::bone, 0.001);
+  add(trial, 1, ProbingMode::breach, -0.001);  // back across the far border: no new breach
+  EXPECT_EQ(score(trial, "breaches").value, 2.0);
   EXPECT_NEAR(*score(trial, "breach_time").value, 0.055, 1e-12);
   EXPECT_NEAR(*score(trial, "breach_force").value, 140.0, 1e-12);
   EXPECT_NEAR(*score(trial, "breach_force_mean").value, 20.0, 1e-12);

@@ -102,12 +102,6 @@ Fault read_base(Fields& fields, PalpationModel& model) {
   return std::nullopt;
 }
 
-const effects::EffectFacts* palpation_facts(std::string_view id) {
-  for (const auto& info : effects::palpation_effects())
-    if (info.facts.id == id) return &info.facts;
-  return nullptr;
-}
-
 }  // namespace
 
 core::Result<PalpationModel> PalpationModel::from_json(const Json& json, const std::string& where) {
@@ -118,7 +112,7 @@ core::Result<PalpationModel> PalpationModel::from_json(const Json& json, const s
   if (auto fault = read_transfer(fields, model)) return *fault;
   if (auto fault = read_base(fields, model)) return *fault;
   if (auto fault = read_fixed(fields, model.to_json(), model.fixed)) return *fault;
-  if (auto fault = read_effects(fields, palpation_facts, model.effects)) return *fault;
+  if (auto fault = read_effects(fields, effects::palpation_facts, model.effects)) return *fault;
   if (auto done = fields.done(); !done) return done.error();
   return model;
 }
@@ -147,7 +141,7 @@ Json PalpationModel::to_json() const {
       {"pose_offset_m", {base.pose_offset_m.x(), base.pose_offset_m.y(), base.pose_offset_m.z()}},
       {"field", field == volume::FieldKind::paper ? "paper" : "potential"}};
   json["fixed"] = fixed;
-  json["effects"] = effects_to_json(effects, palpation_facts);
+  json["effects"] = effects_to_json(effects, effects::palpation_facts);
   return json;
 }
 

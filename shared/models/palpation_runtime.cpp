@@ -208,7 +208,7 @@ void PalpationRuntime::follow(const HandleMotion& from, const HandleMotion& to,
 }
 
 void PalpationRuntime::predict(const PalpationMotion& motion, PalpationAnswer& out,
-                               std::span<const math::Vec2> start_m) const {
+                               std::span<const math::Vec2> near_m) const {
   const std::size_t n = motion.t_s.size();
   out.wrench_H.resize(n);
   out.deflection_m.resize(n);
@@ -218,8 +218,8 @@ void PalpationRuntime::predict(const PalpationMotion& motion, PalpationAnswer& o
   for (std::size_t k = 0; k < n; ++k) {
     const HandleMotion now =
         delay_s_ != 0.0 ? motion.at(motion.t_s[k] - delay_s_) : motion.handle[k];
-    if (!start_m.empty())
-      state.deflection_m = start_m[k];
+    if (!near_m.empty())
+      state.deflection_m = k > 0 ? state.deflection_m + near_m[k] - near_m[k - 1] : near_m[0];
     else if (k > 0)
       follow(last, now, state);
     const laws::PalpationStep step = recorded(now, state);

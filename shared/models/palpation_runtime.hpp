@@ -67,10 +67,11 @@ class PalpationRuntime {
   /// A whole recording, delay included. Between two samples the rest of the shank is followed in
   /// steps that move the tip by at most a third of a voxel; the first sample starts from the unbent
   /// shank.
-  /// @param start_m  if not empty: deflections to start each sample from instead, one per sample,
-  /// near the rest that is sought (a fit follows the rests of its last numbers so)
+  /// @param near_m  if not empty: deflections of a model near this one, one per sample. Each sample
+  /// then starts from its last plus what that model's changed by, without steps between: a fit
+  /// follows the rests of its first numbers so.
   void predict(const PalpationMotion& motion, PalpationAnswer& out,
-               std::span<const math::Vec2> start_m = {}) const;
+               std::span<const math::Vec2> near_m = {}) const;
 
   /// Tip of the bent probe in V for that pose, offset applied, m.
   math::Vec3 tip_m(const math::Pose& X_VH, const math::Vec2& deflection_m) const noexcept;

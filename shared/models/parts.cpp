@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/require.hpp"
+#include "effects/expression.hpp"
 
 namespace models {
 
@@ -100,10 +101,17 @@ core::Result<effects::Use> read_use(const Json& json, const std::string& where, 
     return Error{Errc::bad_input, where + ": an object with a text \"id\" is expected"};
   Fields fields(json, where);
   effects::Use use{fields.text("id"), {}};
-  const effects::EffectFacts* facts = facts_of(use.id);
-  if (!facts)
+  if (effects::is_expression(use.id)) {
+    const Json* file = fields.member("expression");
+    if (!file) return fields.done().error();
+    use.definition = file->dump();
+  }
+  const auto facts = facts_of(use);
+  if (!facts && facts.error().code == Errc::not_found)
     return bad(where, "id",
                fmt::format("'{}' is an effect that this version does not know", use.id));
+  if (!facts)
+    return Error{Errc::bad_input, fmt::format("{}/expression: {}", where, facts.error().what)};
   const Json none = Json::object();
   const Json* given = fields.member("parameters", !facts->params.empty());
   Fields numbers(given ? *given : none, where + "/parameters");
@@ -135,9 +143,9 @@ Fault read_effects(Fields& fields, FactsOf facts_of, std::vector<effects::Use>& 
 Json effects_to_json(const std::vector<effects::Use>& uses, FactsOf facts_of) {
   Json list = Json::array();
   for (const effects::Use& use : uses) {
-    const effects::EffectFacts* facts = facts_of(use.id);
+    const auto facts = facts_of(use);
     core::require(facts && use.values.size() == effects::value_count(*facts),
-                  "a model's effects are of the catalogue");
+                  "a model's effects are known, with all their numbers");
     Json parameters = Json::object();
     auto next = use.values.begin();
     for (const effects::Param& param : facts->params) {
@@ -147,7 +155,9 @@ Json effects_to_json(const std::vector<effects::Use>& uses, FactsOf facts_of) {
         parameters[param.name] = std::vector<double>(next, next + param.components);
       next += param.components;
     }
-    list.push_back({{"id", use.id}, {"parameters", std::move(parameters)}});
+    Json one = {{"id", use.id}, {"parameters", std::move(parameters)}};
+    if (!use.definition.empty()) one["expression"] = Json::parse(use.definition);
+    list.push_back(std::move(one));
   }
   return list;
 }

@@ -24,12 +24,14 @@ Fault read_identity(core::Fields& fields, std::string_view rig, std::string& nam
 /// `fixed`: JSON pointers, `*` for every element, each leading to something in the base of
 /// `whole`.
 Fault read_fixed(core::Fields& fields, const core::Json& whole, std::vector<std::string>& fixed);
-/// What a catalogue says of an effect, or null where it does not know the id.
-using FactsOf = const effects::EffectFacts* (*)(std::string_view id);
+/// What is known of an effect of one rig, of the catalogue or a user's own; not_found naming the
+/// id.
+using FactsOf = core::Result<effects::EffectFacts> (*)(const effects::Use& use);
 /// `effects`: a list of {"id", "parameters": {name: number, or an array for a parameter of several
-/// components}}, every parameter given and within its range, no id twice.
+/// components}}, every parameter given and within its range, no id twice. A user's own effect has
+/// its whole file beside them as "expression".
 Fault read_effects(core::Fields& fields, FactsOf facts_of, std::vector<effects::Use>& uses);
-/// The same list, written. Every id must be known to the catalogue.
+/// The same list, written. Every effect must be known.
 core::Json effects_to_json(const std::vector<effects::Use>& uses, FactsOf facts_of);
 
 }  // namespace models

@@ -65,12 +65,6 @@ Fault read_base(Fields& fields, ProbingModel& model) {
   return std::nullopt;
 }
 
-const effects::EffectFacts* probing_facts(std::string_view id) {
-  for (const auto& info : effects::probing_effects())
-    if (info.facts.id == id) return &info.facts;
-  return nullptr;
-}
-
 }  // namespace
 
 Result<laws::ProbingLaw> ProbingModel::law(double travel_m) const {
@@ -85,7 +79,7 @@ Result<ProbingModel> ProbingModel::from_json(const Json& json, const std::string
   if (auto fault = read_identity(fields, "probing", model.name)) return *fault;
   if (auto fault = read_base(fields, model)) return *fault;
   if (auto fault = read_fixed(fields, model.to_json(), model.fixed)) return *fault;
-  if (auto fault = read_effects(fields, probing_facts, model.effects)) return *fault;
+  if (auto fault = read_effects(fields, effects::probing_facts, model.effects)) return *fault;
   if (auto done = fields.done(); !done) return done.error();
   return model;
 }
@@ -114,7 +108,7 @@ Json ProbingModel::to_json() const {
               {"detent_Nm", rotary.detent_Nm},
               {"detent_pitch_rad", rotary.detent_pitch_rad}}}}},
           {"fixed", fixed},
-          {"effects", effects_to_json(effects, probing_facts)}};
+          {"effects", effects_to_json(effects, effects::probing_facts)}};
 }
 
 Result<Model> model_from_json(const Json& json, const std::string& where) {

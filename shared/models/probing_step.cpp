@@ -59,13 +59,19 @@ double moving_speed(const Excess& excess, double near, double top) {
 
 ProbingStep::ProbingStep(const laws::ProbingLaw& law, Effects effects, double turning_rad_s,
                          double dt_s, ProbingLive& live) noexcept
-    : law_(law), effects_(effects), turning_rad_s_(turning_rad_s), dt_s_(dt_s), live_(live) {
+    : law_(law),
+      effects_(effects),
+      turning_rad_s_(turning_rad_s),
+      dt_s_(dt_s),
+      torque_Nm_(law.torque_Nm(live.at.x_m, live.theta_rad, turning_rad_s)),
+      live_(live) {
   if (live_.started) return;
   live_.started = true;
   const ProbingTick first{.t_s = live_.t_s,
                           .x_m = live_.at.x_m,
                           .theta_rad = live_.theta_rad,
-                          .omega_rad_s = turning_rad_s};
+                          .omega_rad_s = turning_rad_s,
+                          .tz_Nm = torque_Nm_};
   for (std::size_t e = 0; e < effects_.size(); ++e) effects_[e]->start(first, state_of(e));
 }
 
@@ -80,7 +86,8 @@ ProbingTick ProbingStep::candidate(double v_m_s, double over_s) const noexcept {
           .v_m_s = v_m_s,
           .a_m_s2 = (v_m_s - live_.v_m_s) / over_s,
           .theta_rad = live_.theta_rad + turning_rad_s_ * over_s,
-          .omega_rad_s = turning_rad_s_};
+          .omega_rad_s = turning_rad_s_,
+          .tz_Nm = torque_Nm_};
 }
 
 double ProbingStep::seen_m(const ProbingTick& tick) const noexcept {

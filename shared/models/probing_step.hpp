@@ -36,6 +36,7 @@ class ProbingStep {
   const laws::ProbingLaw& law_;
   Effects effects_;
   double turning_rad_s_, dt_s_;
+  double torque_Nm_;  // the rotary stage's at the tick's start
   ProbingLive& live_;
 };
 

@@ -11,6 +11,7 @@ namespace trial {
 namespace {
 constexpr std::size_t kMaxName = 200;  // characters of a station, a device, a person
 constexpr double kMaxRate_Hz = 1e5;
+constexpr double kDeepest_m = 0.2;                  // of a breach that somebody felt
 constexpr long kMaxUtc_us = 4'102'444'800'000'000;  // the year 2100
 
 constexpr std::array<std::string_view, 2> kRigs{"palpation", "probing"};
@@ -105,6 +106,7 @@ core::Json Answer::to_json() const {
   core::Json json{{"breach", breach}, {"wall", nullptr}};
   if (wall) json["wall"] = *wall;
   if (confidence) json["confidence"] = *confidence;
+  if (depth_m) json["depth_m"] = *depth_m;
   return json;
 }
 
@@ -120,6 +122,11 @@ core::Result<Answer> Answer::from_json(const core::Json& json, const std::string
   const core::Json* confidence = fields.member("confidence", false);
   if (confidence && !confidence->is_null())
     answer.confidence = fields.number("confidence", 0.0, 1.0);
+  const core::Json* depth = fields.member("depth_m", false);
+  if (depth && !depth->is_null()) {
+    answer.depth_m = fields.number("depth_m", 0.0, kDeepest_m);
+    if (!answer.breach) fields.wrong("depth_m", "a depth is named without a breach");
+  }
   if (auto done = fields.done(); !done) return done.error();
   return answer;
 }

@@ -109,12 +109,13 @@ struct Event {
   static core::Result<Event> from_json(const core::Json& json, const std::string& where);
 };
 
-/// What the trainee said: {"breach": bool, "wall": "medial"|…|null, "confidence": 0…1}; wall and
-/// confidence may be missing. For both rigs.
+/// What the trainee said: {"breach": bool, "wall": "medial"|…|null, "confidence": 0…1,
+/// "depth_m": 0…0.2}; all but the first may be missing.
 struct Answer {
   bool breach = false;
-  std::optional<std::string> wall;   ///< name of a volume::Wall; only with a breach
-  std::optional<double> confidence;  ///< 0 … 1
+  std::optional<std::string> wall;     ///< palpation: name of a volume::Wall; only with a breach
+  std::optional<double> confidence;    ///< 0 … 1
+  std::optional<double> depth_m = {};  ///< probing: where it was felt; only with a breach
 
   core::Json to_json() const;
   static core::Result<Answer> from_json(const core::Json& json, const std::string& where);

@@ -9,6 +9,8 @@ core::Result<int> done(const app::Options& options) {
   switch (options.deed) {
     case app::Deed::run:
       return app::run_trials(options);
+    case app::Deed::probe:
+      return app::run_probing_trials(options);
     case app::Deed::sync:
       return app::sync_cases(options);
     case app::Deed::upload:

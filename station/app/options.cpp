@@ -11,6 +11,8 @@ constexpr const char* kExamples = R"(Examples:
   tractus-station --device sim-lambda6 --case case/ --data st   a trial in real time, SIMULATED hand
   tractus-station --case 3f9ac2d1 --data st --speed fast --seed 7 --trials 5 --json
   tractus-station --case 3f9ac2d1 --data st --server http://127.0.0.1:8480 --token-file st.token
+  tractus-station --device sim-rig --scenario lateral_breach --data st --speed fast   SIMULATED rig
+  tractus-station --device rig --address 192.168.1.40:1502 --scenario mine.json --data st
   tractus-station sync   --data st --server URL --token-file st.token
   tractus-station upload --data st --server URL --token-file st.token --wait 600)";
 
@@ -34,15 +36,28 @@ void add_server(CLI::App& app, Options& options, bool needed) {
 }
 
 void add_run(CLI::App& app, Options& options) {
-  app.add_option("--device", options.setup.device, "which device: sim-lambda6")
+  app.add_option("--device", options.setup.device, "sim-lambda6; rig or sim-rig for a scenario")
       ->capture_default_str();
   app.add_option("--case", options.case_name,
                  "a case's folder, or 8 or more characters of the id of one in the data folder");
-  app.add_option("--model", options.model_file, "feel the case by this model instead of its own");
+  app.add_option("--model", options.model_file,
+                 "feel the case, or the scenario's bone, by this model");
+  app.add_option("--scenario", options.scenario,
+                 "a scenario's file, or hard, soft, lateral_breach, in_out_in: those that ship");
+  app.add_option("--address", options.rig.address,
+                 "of the rig: HOST:PORT, or a serial line /dev/…[@BAUD]")
+      ->capture_default_str();
+  app.add_option("--rate", options.rig.rate_Hz, "Hz, of the rig's loop")
+      ->check(CLI::Range(100.0, 1000.0))
+      ->capture_default_str();
+  app.add_option("--skill", options.rig.skill, "of sim-rig's simulated surgeon, 0 … 1")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  app.add_flag("!--no-surgeon", options.rig.surgeon, "sim-rig: nobody pushes but who writes to it");
   app.add_option("--seed", options.setup.seed, "of the simulated hand; +1 for each further trial")
       ->check(CLI::Range(0.0, 9e15))
       ->capture_default_str();
-  app.add_option("--duration", options.setup.duration_s, "s, of the trial")
+  app.add_option("--duration", options.setup.duration_s, "s, of the trial; on the rig at most")
       ->check(CLI::Range(1.0, 3600.0))
       ->capture_default_str();
   app.add_option("--speed", options.setup.speed,
@@ -65,6 +80,27 @@ void add_run(CLI::App& app, Options& options) {
 int refuse(const std::string& why) {
   std::fprintf(stderr, "tractus-station: %s (see --help)\n", why.c_str());
   return 2;
+}
+
+/// Palpation or probing? What does not fit is refused.
+std::optional<int> check_run(const CLI::App& app, Options& options) {
+  session::RigSetup& rig = options.rig;
+  rig.device = options.setup.device;
+  if (rig.device == "rig" || rig.device == "sim-rig") options.deed = Deed::probe;
+  if (options.data.empty()) return refuse("--data is required");
+  if (options.deed == Deed::run) {
+    if (!options.scenario.empty()) return refuse("--scenario: --device rig or sim-rig is expected");
+    return options.case_name.empty() ? std::optional(refuse("--case is required")) : std::nullopt;
+  }
+  if (!options.case_name.empty()) return refuse("--case: is felt with sim-lambda6, not on the rig");
+  if (options.scenario.empty() && options.model_file.empty())
+    return refuse("--scenario is required (or --model alone, without walls)");
+  if (options.show != Show::none || !options.picture.empty())
+    return refuse("--view, --picture: the rig has none; its person feels alone");
+  rig.seed = options.setup.seed;
+  rig.speed = options.setup.speed;
+  if (app.count("--duration") > 0) rig.duration_s = options.setup.duration_s;
+  return std::nullopt;
 }
 }  // namespace
 
@@ -107,8 +143,7 @@ Parsed parse(int argc, char** argv) {
   if (trust->parsed()) options.deed = Deed::trust;
   if (options.deed == Deed::trust && options.signer_hex.empty() && options.signer_of_case.empty())
     out.leave = refuse("trust: --signer or --case is expected");
-  if (options.deed == Deed::run && (options.data.empty() || options.case_name.empty()))
-    out.leave = refuse(options.data.empty() ? "--data is required" : "--case is required");
+  if (options.deed == Deed::run) out.leave = check_run(app, options);
   return out;
 }
 

@@ -6,11 +6,11 @@
 #include <string>
 
 #include "station/app/onlooker.hpp"
-#include "station/session/trial_run.hpp"
+#include "station/session/probing_trial.hpp"
 
 namespace app {
 
-enum class Deed { run, sync, upload, trust };
+enum class Deed { run, probe, sync, upload, trust };
 
 struct Options {
   Deed deed = Deed::run;
@@ -21,6 +21,8 @@ struct Options {
   bool follow = false;
   // run
   session::TrialSetup setup;
+  session::RigSetup rig;
+  std::string scenario;  ///< a file, or a tuned one's name
   std::string case_name;
   std::filesystem::path model_file;
   std::string answer;  ///< empty: the simulated hand's own, or asked at the terminal

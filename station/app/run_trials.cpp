@@ -1,13 +1,11 @@
 /// The trials themselves: prepare, run, answer, hand over.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cstdio>
-#include <iostream>
 
+#include "station/app/aftermath.hpp"
 #include "station/app/deeds.hpp"
 #include "station/app/exchange.hpp"
-#include "station/session/scores.hpp"
 #include "station/session/station.hpp"
 
 namespace app {
@@ -24,22 +22,6 @@ core::Result<std::shared_ptr<const session::PreparedCase>> prepare(
                                     core::terminal_progress("Preparing the case"));
   if (!made) return made.error();
   return std::shared_ptr<const session::PreparedCase>(std::move(*made));
-}
-
-/// The trainee's answer: what was given on the command line, the simulated hand's, or typed.
-core::Result<std::optional<trial::Answer>> answer_of(const Options& options,
-                                                     const session::Station& station) {
-  std::string wall = options.answer;
-  if (wall.empty()) {
-    if (auto simulated = station.simulated_answer()) return simulated;
-    if (!::isatty(STDIN_FILENO)) return std::optional<trial::Answer>();
-    fmt::print(stderr, "Breach? none, medial, lateral, superior, inferior, anterior: ");
-    if (!(std::cin >> wall)) return std::optional<trial::Answer>();
-  }
-  if (wall == "none") return std::optional(trial::Answer{});
-  if (volume::wall_named(wall))
-    return std::optional(trial::Answer{.breach = true, .wall = wall, .confidence = std::nullopt});
-  return core::Error{core::Errc::bad_input, fmt::format("{}: no such wall", wall)};
 }
 
 session::Watch watch_of(const Options& options, const core::Progress& shown, Onlooker& onlooker) {
@@ -68,19 +50,11 @@ core::Result<TrialReport> one_trial(const Options& options, session::Station& st
     std::fprintf(stderr, "warning: no picture: %s\n", left.error().what.c_str());
   std::optional<trial::Answer> said;
   if (station.state() == session::State::answering && !asked_to_stop()) {
-    auto answer = answer_of(options, station);
+    auto answer = answer_of(options, station.simulated_answer());
     if (!answer) return answer.error();
     said = *answer;
   }
   return station.answer(said);
-}
-
-std::string answer_text(const TrialReport& report) {
-  if (!report.answer) return "no answer";
-  const std::string wall =
-      report.answer->breach ? report.answer->wall.value_or("breach") : "no breach";
-  if (!report.answer->confidence) return wall;
-  return fmt::format("{}, confidence {:.2f}", wall, *report.answer->confidence);
 }
 
 void print_report(const TrialReport& report, bool fast) {
@@ -102,37 +76,6 @@ void print_report(const TrialReport& report, bool fast) {
   fmt::print("  answer: {}\n  {}\n", answer_text(report), report.file.string());
 }
 
-void print_scores(const session::Scores& scores) {
-  for (const auto& [info, score] : scores)
-    if (score.value) fmt::print("  {:<34} {:>10.4g} {}\n", info.label, *score.value, info.unit);
-}
-
-core::Json json_of(const TrialReport& report, const session::Scores& scores) {
-  core::Json out = report.to_json();
-  out["metrics"] = core::Json::array();
-  for (const auto& [info, score] : scores) out["metrics"].push_back(metrics::to_json(info, score));
-  return out;
-}
-
-void say_recovered(const session::Recovered& recovered) {
-  for (const auto& one : recovered.trials)
-    std::fprintf(stderr, "an interrupted trial was kept: %s, %llu samples\n", one.trial_id.c_str(),
-                 static_cast<unsigned long long>(one.samples));
-  for (const auto& line : recovered.damaged)
-    std::fprintf(stderr, "warning: a trial cannot be read and stays as it is: %s\n", line.c_str());
-}
-
-/// After the trials, never during one. That the server is away is no failure of the station.
-core::Json hand_over_after(const Options& options, const session::StationFolder& folder) {
-  if (options.server_url.empty()) return nullptr;
-  auto report = hand_over(options, folder);
-  if (!report) {
-    std::fprintf(stderr, "warning: nothing was handed over: %s\n", report.error().what.c_str());
-    return {{"why", report.error().what}};
-  }
-  if (!options.json) fmt::print("{}\n", text_of(*report));
-  return report->to_json();
-}
 }  // namespace
 
 core::Result<int> run_trials(const Options& options) {
@@ -153,7 +96,7 @@ core::Result<int> run_trials(const Options& options) {
     auto report = one_trial(options, station, *prepared, options.setup.seed + std::uint64_t(i));
     if (!report) return report.error();
     faulted = faulted || !report->complete;
-    auto scores = session::scores_of(report->file, (*prepared)->opened.definition.tract);
+    auto scores = session::scores_of(report->file, &(*prepared)->opened.definition.tract);
     if (!scores) return scores.error();
     trials.push_back(json_of(*report, *scores));
     if (options.json) continue;

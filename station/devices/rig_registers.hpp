@@ -66,8 +66,14 @@ enum IdentityRegister : int {
   kTravel_um = 34,      ///< uint32
   kTopSpeed_um_s = 36,  ///< uint32
   kStepLength_um = 38,
-  kSimulatedPeer = 39,  ///< 1: nothing behind these registers is a machine
+  kSimulatedPeer = 39,  ///< one of Peer
 };
+enum Peer : std::uint16_t {
+  kRealMachine = 0,
+  kSimulatedRealTime = 1,  ///< nothing behind these registers is a machine
+  kSimulatedBusClock = 2,  ///< likewise, and its time moves by kBusPeriod_us with every command
+};
+inline constexpr int kBusPeriod_us = 1000;
 inline constexpr int kRegisterCount = 40;
 
 inline constexpr int kWatchdog_ms = 6;  ///< with the brake, motion has stopped within 10 ms

@@ -5,23 +5,27 @@ namespace {
 constexpr std::size_t kBlock = 1024;
 }
 
-Recorder::Recorder(SampleRing& ring, trial::TrialWriter writer, core::Clock& clock)
+template <class S>
+RecorderOf<S>::RecorderOf(Ring<S>& ring, trial::TrialWriter writer, core::Clock& clock)
     : ring_(ring),
       writer_(std::move(writer)),
       clock_(clock),
       last_flush_(clock.now()),
       block_(kBlock) {}
 
-Recorder::~Recorder() {
+template <class S>
+RecorderOf<S>::~RecorderOf() {
   static_cast<void>(stop());
 }  // the error, if any, was kept for whoever asked
 
-void Recorder::start() {
+template <class S>
+void RecorderOf<S>::start() {
   core::require(!thread_.joinable(), "a recorder is started once");
   thread_ = std::thread([this] { loop(); });
 }
 
-void Recorder::loop() {
+template <class S>
+void RecorderOf<S>::loop() {
   core::Instant_ns next = clock_.now();
   while (!stop_.load(std::memory_order_relaxed)) {
     drain();
@@ -30,17 +34,19 @@ void Recorder::loop() {
   }
 }
 
-void Recorder::drain() {
+template <class S>
+void RecorderOf<S>::drain() {
   for (;;) {
     const std::size_t taken = ring_.pop(block_);
     if (taken == 0) break;
-    if (!failed()) keep(writer_.append(std::span(block_).first(taken)));
+    if (!failed()) keep(writer_.append(std::span<const S>(block_).first(taken)));
   }
   const core::Instant_ns now = clock_.now();
   if (now - last_flush_ >= kFlush_ns) flush(now);
 }
 
-void Recorder::flush(core::Instant_ns now) {
+template <class S>
+void RecorderOf<S>::flush(core::Instant_ns now) {
   last_flush_ = now;
   const std::uint64_t written = writer_.samples_written();
   if (failed() || written == samples_safe()) return;
@@ -48,13 +54,15 @@ void Recorder::flush(core::Instant_ns now) {
   if (!failed()) safe_.store(written, std::memory_order_relaxed);
 }
 
-void Recorder::keep(const core::Result<void>& outcome) {
+template <class S>
+void RecorderOf<S>::keep(const core::Result<void>& outcome) {
   if (outcome || failed()) return;
   first_error_ = outcome;
   failed_.store(true, std::memory_order_relaxed);
 }
 
-core::Result<void> Recorder::stop() {
+template <class S>
+core::Result<void> RecorderOf<S>::stop() {
   if (thread_.joinable()) {
     stop_.store(true, std::memory_order_relaxed);
     thread_.join();
@@ -64,14 +72,19 @@ core::Result<void> Recorder::stop() {
   return first_error_;
 }
 
-core::Result<void> Recorder::append(const trial::Event& event) {
+template <class S>
+core::Result<void> RecorderOf<S>::append(const trial::Event& event) {
   keep(writer_.append(event));
   return first_error_;
 }
 
-core::Result<void> Recorder::finish() {
+template <class S>
+core::Result<void> RecorderOf<S>::finish() {
   if (!failed()) keep(writer_.finish());
   return first_error_;
 }
+
+template class RecorderOf<trial::Sample>;
+template class RecorderOf<trial::ProbingSample>;
 
 }  // namespace loop

@@ -16,16 +16,17 @@ namespace loop {
 /// loss of power costs 20 ms at most if the disk answers within 10. Without, whoever calls `drain`
 /// is the consumer (a loop under a manual clock). The first error stops recording for good and is
 /// kept; `failed` tells so at once.
-class Recorder {
+template <class S>
+class RecorderOf {
  public:
   static constexpr core::Instant_ns kPoll_ns = 5'000'000;
   static constexpr core::Instant_ns kFlush_ns = 10'000'000;
 
   /// `clock` paces polling and flushing; ring and clock must outlive this.
-  Recorder(SampleRing& ring, trial::TrialWriter writer, core::Clock& clock);
-  ~Recorder();
-  Recorder(const Recorder&) = delete;
-  Recorder& operator=(const Recorder&) = delete;
+  RecorderOf(Ring<S>& ring, trial::TrialWriter writer, core::Clock& clock);
+  ~RecorderOf();
+  RecorderOf(const RecorderOf&) = delete;
+  RecorderOf& operator=(const RecorderOf&) = delete;
 
   void start();
   /// Ends the thread if there is one, takes out the rest and flushes. Errors: the first of
@@ -47,15 +48,18 @@ class Recorder {
   void flush(core::Instant_ns now);
   void loop();
 
-  SampleRing& ring_;
+  Ring<S>& ring_;
   trial::TrialWriter writer_;
   core::Clock& clock_;
   core::Instant_ns last_flush_;
-  std::vector<trial::Sample> block_;
+  std::vector<S> block_;
   core::Result<void> first_error_;
   std::atomic<bool> failed_ = false, stop_ = false;
   std::atomic<std::uint64_t> safe_ = 0;
   std::thread thread_;
 };
+
+using Recorder = RecorderOf<trial::Sample>;
+using ProbingRecorder = RecorderOf<trial::ProbingSample>;
 
 }  // namespace loop

@@ -12,6 +12,7 @@ namespace registers = devices::rig;
 
 constexpr core::Instant_ns kStep_ns = 100'000;
 constexpr core::Instant_ns kLongestCatchUp_ns = 4'000'000;  // below the watchdog's time
+constexpr int kBusSteps = int(registers::kBusPeriod_us * 1000 / kStep_ns);
 static_assert(kLongestCatchUp_ns < registers::kWatchdog_ms * 1'000'000);
 
 /// A number in units of 1e-3 or 1e-6, held to 32 bits.
@@ -59,24 +60,31 @@ void put_reading(const Reading& r, std::uint16_t* image) {
   registers::put_wide(image + registers::kHandTorque_uNm, whole(1e6 * r.torque_Nm));
 }
 
-void put_identity(const LinearParameters& p, std::uint16_t* at) {
+void put_identity(const LinearParameters& p, registers::Peer who, std::uint16_t* at) {
   const auto place = [&](int address) { return at + (address - registers::kIdentityStart); };
   *place(registers::kVersion) = registers::kMapVersion;
   *place(registers::kWatchdogTime_ms) = registers::kWatchdog_ms;
   registers::put_wide(place(registers::kTravel_um), whole(1e6 * p.travel_m));
   registers::put_wide(place(registers::kTopSpeed_um_s), whole(1e6 * p.top_speed_m_s));
   *place(registers::kStepLength_um) = registers::kResolution_um;
-  *place(registers::kSimulatedPeer) = 1;
+  *place(registers::kSimulatedPeer) = who;
 }
 
 }  // namespace
 
 Electronics::Electronics(const MachineParameters& parameters, const World& world,
                          core::Clock& clock)
-    : machine_(parameters), clock_(clock), reached_(clock.now()) {
+    : machine_(parameters), clock_(&clock), reached_(clock.now()) {
   machine_.set_world(world);
   put_world(world, world_.data());
-  put_identity(parameters.linear, identity_.data());
+  put_identity(parameters.linear, registers::kSimulatedRealTime, identity_.data());
+}
+
+Electronics::Electronics(const MachineParameters& parameters, const World& world)
+    : machine_(parameters), clock_(nullptr) {
+  machine_.set_world(world);
+  put_world(world, world_.data());
+  put_identity(parameters.linear, registers::kSimulatedBusClock, identity_.data());
 }
 
 void Electronics::advance() {
@@ -85,7 +93,8 @@ void Electronics::advance() {
 }
 
 void Electronics::advance_locked() {
-  const core::Instant_ns now = clock_.now();
+  if (!clock_) return;
+  const core::Instant_ns now = clock_->now();
   if (now - reached_ > kLongestCatchUp_ns) {
     ++stalls_;
     reached_ = now - kLongestCatchUp_ns;
@@ -108,6 +117,7 @@ bool Electronics::write(int unit, int start, std::span<const std::uint16_t> valu
   if (unit == registers::kUnit) {
     if (start != registers::kCommandStart || values.size() != command_.size()) return false;
     advance_locked();
+    for (int k = 0; !clock_ && k < kBusSteps; ++k) machine_.step();
     std::ranges::copy(values, command_.begin());
     machine_.command(command_of(command_.data()));
     return true;

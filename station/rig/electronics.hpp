@@ -1,4 +1,5 @@
-/// The machine in real time behind its registers. Safe to use from several threads.
+/// The machine behind its registers, in real time or with its clock on the bus. Safe to use from
+/// several threads.
 #pragma once
 
 #include <array>
@@ -15,6 +16,9 @@ class Electronics {
  public:
   /// The machine's time starts now. Borrows the clock. `world` is how things are at the start.
   Electronics(const MachineParameters& parameters, const World& world, core::Clock& clock);
+  /// Without a clock: every command block moves the machine's time by kBusPeriod_us before it acts,
+  /// as if the bus were cycled in time, and nothing else moves it.
+  Electronics(const MachineParameters& parameters, const World& world);
 
   /// Steps the machine up to now. When this process was held up for more than 4 ms, what is more
   /// is left out and counted: the machine stood still for that long, it did not miss its commands.
@@ -34,8 +38,8 @@ class Electronics {
   void advance_locked();
   mutable std::mutex mutex_;  // guards all below
   Machine machine_;
-  core::Clock& clock_;
-  core::Instant_ns reached_;
+  core::Clock* clock_;  // null: the bus is the clock
+  core::Instant_ns reached_ = 0;
   std::uint64_t stalls_ = 0;
   std::array<std::uint16_t, devices::rig::kCommandCount> command_{};
   std::array<std::uint16_t, devices::rig::kWorldCount> world_{};

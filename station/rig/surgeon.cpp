@@ -37,8 +37,9 @@ void Surgeon::begin(double x_m) {
 
 void Surgeon::step(double x_m, double v_m_s, double omega_rad_s, bool enabled, double dt_s) {
   if (enabled && !at_work_) begin(x_m);
-  at_work_ = enabled;
-  if (!enabled) {
+  off_s_ = enabled ? 0.0 : off_s_ + dt_s;
+  at_work_ = enabled || (at_work_ && off_s_ < p_.reaction_s);
+  if (!at_work_) {
     push_N_ = turn_Nm_ = 0.0;
     return;
   }

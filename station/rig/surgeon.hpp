@@ -28,7 +28,7 @@ struct SurgeonParameters {
 class Surgeon {
  public:
   Surgeon(const SurgeonParameters& parameters, std::uint64_t seed);
-  /// One step; the drive's state is what a person sees on the panel.
+  /// One step; the drive's state is what a person sees on the panel, its reaction time later.
   void step(double x_m, double v_m_s, double omega_rad_s, bool enabled, double dt_s);
   double push_N() const noexcept { return push_N_; }
   double turn_Nm() const noexcept { return turn_Nm_; }
@@ -38,6 +38,7 @@ class Surgeon {
   SurgeonParameters typical_, p_;
   std::mt19937_64 random_;
   bool at_work_ = false;
+  double off_s_ = 0.0;  // since the drive went off
   double goal_m_ = 0.0, time_s_ = 0.0, phase_rad_ = 0.0;
   double startled_at_s_ = -1.0;  // when it will react; below 0: nothing has startled it
   double resting_until_s_ = -1.0;

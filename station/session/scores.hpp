@@ -11,8 +11,9 @@ namespace session {
 
 using Scores = std::vector<std::pair<metrics::MetricInfo, metrics::Score>>;
 
-/// Every metric of a trial file; those that need the truth are empty: a station has none.
-/// Errors: those of reading the file.
-core::Result<Scores> scores_of(const std::filesystem::path& trial_file, const volume::Tract& tract);
+/// Every metric of a trial file (of palpation: with its tract); those that need the truth are
+/// empty: a station has none. Errors: those of reading the file.
+core::Result<Scores> scores_of(const std::filesystem::path& trial_file,
+                               const volume::Tract* tract = nullptr);
 
 }  // namespace session

@@ -65,6 +65,12 @@ core::Json TrialReport::to_json() const {
                     {"work_p99_us", work_p99_us},
                     {"realtime", grant.to_json()}};
   out.update(json_of(counts));
+  if (bus)
+    out["bus"] = {{"missed_periods", bus->missed},
+                  {"lost_exchanges", bus->lost},
+                  {"restarts", bus->restarts},
+                  {"round_trip_p50_us", bus->p50_us},
+                  {"round_trip_p99_us", bus->p99_us}};
   out["answer"] = answer ? answer->to_json() : core::Json();
   return out;
 }

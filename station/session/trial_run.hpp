@@ -37,6 +37,14 @@ struct TrialReport {
   loop::RealtimeGrant grant;
   std::optional<trial::Answer> answer;
   bool simulated = false;
+  /// Of a probing trial.
+  struct Bus {
+    std::uint64_t missed = 0;           ///< exchanges that ended after the next period had begun
+    std::uint64_t lost = 0;             ///< exchanges that failed
+    int restarts = 0;                   ///< after stops by the machine's own watchdog
+    double p50_us = 0.0, p99_us = 0.0;  ///< round trip
+  };
+  std::optional<Bus> bus = std::nullopt;
 
   core::Json to_json() const;
 };

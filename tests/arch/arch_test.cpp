@@ -135,6 +135,28 @@ TEST(Architecture, IncludesFollowTheTable) {
   }
 }
 
+/// The blind generators are a second implementation: what they include must not exist in the
+/// product, and no target of it may be linked.
+TEST(Architecture, BlindGeneratorsShareNothingWithTheProduct) {
+  const std::regex include("#include [\"<]([^\">]+)[\">]");
+  const fs::path blind = kRoot / "tests/blind";
+  int read = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(blind)) {
+    if (!entry.is_regular_file() || !is_source(entry.path())) continue;
+    const std::string text = text_of(entry.path());
+    ++read;
+    for (std::sregex_iterator it(text.begin(), text.end(), include), end; it != end; ++it) {
+      const std::string name = (*it)[1];
+      if (fs::exists(blind / name)) continue;
+      for (const char* top : {".", "shared", "tests", "db", "server", "station"})
+        EXPECT_FALSE(fs::exists(kRoot / top / name)) << entry.path() << " includes " << name;
+      EXPECT_EQ(name.find(".."), std::string::npos) << entry.path() << " includes " << name;
+    }
+  }
+  EXPECT_GT(read, 10);
+  EXPECT_EQ(text_of(blind / "CMakeLists.txt").find("tractus::"), std::string::npos);
+}
+
 TEST(Architecture, EveryFolderOfTheTableSaysWhatItIs) {
   for (const auto& [folder, _] : kAllowed) {
     if (!fs::exists(kRoot / folder)) continue;

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <set>
+#include <numbers>
 
+#include "effects/expression.hpp"
 #include "models/probing_runtime.hpp"
 #include "station/loop/allocation_guard.hpp"
 
@@ -247,6 +247,51 @@ TEST_P(EveryRenderedEffect, GivesBackNoMoreWorkThanItGotUnlessItSaysSo) {
   }
   EXPECT_GT(work_J, -1e-8);
   EXPECT_GT(work_per_cycle_J(info_, At::high), -1e-4);
+}
+
+/// A user's own formula keeps to what its kind of effect keeps to.
+effects::Use users_own(const char* formula, const char* unit) {
+  const auto own = effects::Expression::from_json(
+      core::Json{
+          {"format", "tractus-effect/1"},
+          {"id", "expression:own"},
+          {"rig", "probing"},
+          {"adds_to", "fz_N"},
+          {"formula", formula},
+          {"parameters", {{"c", {{"unit", unit}, {"initial", 3}, {"low", 0}, {"high", 1e4}}}}}},
+      "", effects::probing_expressions());
+  EXPECT_TRUE(own) << own.error().what;
+  return own->use();
+}
+
+TEST(AUsersOwnEffect, IsTheCataloguesWhereTheFormulaIs) {
+  const auto motion = cycles(1000.0, 4.0);
+  const auto same = [&](const char* formula, const char* unit, const char* id) {
+    const auto own = runtime_of(bone(), {users_own(formula, unit)});
+    const auto known = runtime_of(bone(), {{id, {3.0}}});
+    EXPECT_LT(greatest_difference(predicted(own, motion), predicted(known, motion)), 1e-9) << id;
+    EXPECT_LT(
+        greatest_difference(live(own, 1e-3, 2.0).motion.x_m, live(known, 1e-3, 2.0).motion.x_m),
+        1e-9)
+        << id;
+  };
+  same("c * sgn(v_m_s)", "N", "coulomb_friction");
+  same("c * x_m * sgn(v_m_s)", "N/m", "depth_friction");
+  same("c * v_m_s * abs(v_m_s)", "N*s^2/m^2", "quadratic_drag");
+  same("c * a_m_s2", "kg", "inertia");
+  same("base_N / (1 + c * abs(omega_rad_s)) - base_N", "s", "rotation_coupling");
+}
+
+TEST(AUsersOwnEffect, AllocatesNothingInATick) {
+  const auto runtime = runtime_of(
+      bone(),
+      {users_own("x_m > 0 ? c * min(x_m, 2*x_m) * sgn(v_m_s)^3 * exp(-theta_rad^2) : 0*tz_Nm/x_m",
+                 "N/m")});
+  ProbingLive state{.at = {.x_m = 0.005}};
+  const loop::AllocationGuard guard;
+  for (int k = 0; k < 1000; ++k)
+    runtime.advance(push_N(double(k) * 1e-3), kTurning_rad_s, 1e-3, state);
+  EXPECT_EQ(guard.allocations(), 0u);
 }
 
 std::vector<std::string> ids() {

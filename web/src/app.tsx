@@ -1,9 +1,11 @@
 /** The whole: which address shows which page, and what an ended session does to all of them. */
 import { QueryCache, QueryClient, QueryClientProvider } from '@tanstack/react-query';
 import { lazy, Suspense, useState, type ReactNode } from 'react';
-import { Link, Redirect, Route, Switch } from 'wouter';
+import { Link, Redirect, Route, Switch, useLocation } from 'wouter';
 import { ApiError, endSession } from '@/api';
 import { Account, SessionGate } from '@/features/session';
+import { NewStudyPage, StudiesPage } from '@/features/studies';
+import { StudyPage } from '@/features/study';
 import { TrialsPage } from '@/features/trials';
 import { Notice, Shell, Skeleton, useTitle } from '@/ui';
 import styles from './app.module.css';
@@ -29,12 +31,25 @@ function makeClient(): QueryClient {
   return client;
 }
 
+const kPlaces = [
+  { to: '/trials', name: 'Trials' },
+  { to: '/studies', name: 'Studies' },
+] as const;
+
 function Brand() {
+  const [at] = useLocation();
   return (
-    <Link href="/trials" className={styles.brand}>
-      <img src="/icon.svg" alt="" width="24" height="24" />
-      Tractus
-    </Link>
+    <div className={styles.home}>
+      <Link href="/trials" className={styles.brand}>
+        <img src="/icon.svg" alt="" width="24" height="24" />
+        Tractus
+      </Link>
+      <nav aria-label="Pages" className={styles.places}>
+        {kPlaces.map(({ to, name }) => (
+          <Link key={to} href={to} className={styles.place} aria-current={at === to || at.startsWith(`${to}/`) ? 'page' : undefined}>{name}</Link>
+        ))}
+      </nav>
+    </div>
   );
 }
 
@@ -60,6 +75,9 @@ function Pages() {
         <Route path="/"><Redirect to="/trials" replace /></Route>
         <Route path="/trials"><TrialsPage /></Route>
         <Route path="/trials/:id">{({ id }) => <TrialPage key={id} id={id} />}</Route>
+        <Route path="/studies"><StudiesPage /></Route>
+        <Route path="/studies/new"><NewStudyPage /></Route>
+        <Route path="/studies/:id">{({ id }) => <StudyPage key={id} id={id} />}</Route>
         <Route><NotFound /></Route>
       </Switch>
     </Suspense>

@@ -8,6 +8,7 @@
 #include "server/api/trial_json.hpp"
 #include "server/api/uploads.hpp"
 #include "server/jobs/case_facts.hpp"
+#include "server/jobs/scenario_facts.hpp"
 #include "trial/trial_file.hpp"
 
 namespace api {
@@ -61,18 +62,49 @@ core::Result<trial::Header> header_of(const store::TrialRecord& trial) {
   return trial::Header::from_json(*json, "trial " + trial.summary.id);
 }
 
+/// Where the trial stands in a study, if it is of one.
+core::Result<std::optional<StudyPlace>> study_place(Backend& backend, const std::string& trial_id) {
+  using Place = std::optional<StudyPlace>;
+  return backend.store.read([&](store::Reading& tx) -> core::Result<Place> {
+    auto slot = store::slot_of_trial(tx, trial_id);
+    if (!slot) return slot.error();
+    if (!*slot) return Place();
+    auto study = store::study_of(tx, (*slot)->study_id);
+    if (!study) return study.error();
+    auto trial = store::study_trial_of(tx, trial_id);
+    if (!trial) return trial.error();
+    return Place(StudyPlace{std::move(study->value()), std::move(**slot), (*trial)->state,
+                            (*trial)->reason});
+  });
+}
+
+core::Result<TrialFacts> trial_facts(Backend& backend, const store::TrialRecord& trial) {
+  auto header = header_of(trial);
+  if (!header) return header.error();
+  const std::string& case_id = trial.summary.case_id;
+  TrialFacts out;
+  auto study = study_place(backend, trial.summary.id);
+  if (!study) return study.error();
+  out.study = std::move(*study);
+  if (header->rig == trial::Rig::probing) {
+    auto scenario = jobs::scenario_of(backend.store, backend.objects, case_id);
+    if (!scenario) return scenario.error();
+    out.scenario = std::move(*scenario);
+    return out;
+  }
+  auto facts = jobs::case_facts(backend.store, backend.objects, case_id);
+  if (!facts) return facts.error();
+  out.tract = facts->definition.tract;
+  out.truth = truth_json(facts->truth);
+  return out;
+}
+
 core::Result<http::Response> one_trial(const Call& call) {
   auto found = find_trial(call);
   if (!found) return found.error();
-  auto header = header_of(found->trial);
-  if (!header) return header.error();
-  if (header->rig == trial::Rig::probing)
-    return json_response(trial_json(found->trial, found->scores, nullptr, {}));
-  auto facts =
-      jobs::case_facts(call.backend.store, call.backend.objects, found->trial.summary.case_id);
+  auto facts = trial_facts(call.backend, found->trial);
   if (!facts) return facts.error();
-  return json_response(
-      trial_json(found->trial, found->scores, &facts->definition.tract, truth_json(facts->truth)));
+  return json_response(trial_json(found->trial, found->scores, *facts));
 }
 
 core::Result<trial::Signals> decode(Backend& backend, const store::TrialRecord& trial) {

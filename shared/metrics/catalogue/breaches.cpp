@@ -6,7 +6,7 @@ MetricInfo breaches() {
   return {"breaches",
           "Breaches",
           "1",
-          "Number of stretches in which the controller is in breach.",
+          "Number of times the controller's mode became breach while the probe went inward.",
           "own definition",
           [](const Subject& subject) -> Score {
             if (subject.trial.probing.empty()) return {{}, "no sample was recorded"};

@@ -1,10 +1,14 @@
 /// `tractus-rig`: the probing rig's electronics and mechanics, played by a process.
 #include <fmt/format.h>
+#include <poll.h>
+#include <pthread.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <atomic>
 #include <csignal>
 #include <cstdio>
+#include <memory>
 
 #include "core/json.hpp"
 #include "station/rig/modbus_peer.hpp"
@@ -14,6 +18,7 @@ namespace {
 constexpr const char* kExamples = R"(Examples:
   tractus-rig                                   Modbus TCP on 127.0.0.1:1502
   tractus-rig --port 0 --surgeon --seed 7       a free port, printed; a SIMULATED surgeon pushes
+  tractus-rig --port 0 --surgeon --bus-clock    faster than real time: the bus is the clock
   tractus-rig --rtu /dev/ttyUSB0 --baud 115200  on a serial line as well
 Registers: station/devices/rig-registers.md. Nothing here is a machine: all it says is simulated.)";
 
@@ -22,10 +27,26 @@ struct Options {
   int port = 1502, baud = 115200;
   std::uint64_t seed = 1;
   double travel_m = 0.1, skill = 0.5, duration_s = 0.0;
-  bool surgeon = false, json = false;
+  bool surgeon = false, json = false, bus_clock = false, until_eof = false;
 };
 
+constexpr core::Instant_ns kIdle_ns = 20'000'000;
 std::atomic<bool> asked_to_stop = false;
+
+/// Real time for this thread and those it starts, where the system grants it: electronics do not
+/// wait for other programs.
+void become_urgent() {
+  const sched_param priority{.sched_priority = 70};
+  static_cast<void>(pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority));
+}
+
+/// Has who started it closed the other end (or died)?
+bool input_ended() {
+  pollfd input{STDIN_FILENO, POLLIN, 0};
+  if (::poll(&input, 1, 0) <= 0) return false;
+  char byte = 0;
+  return ::read(STDIN_FILENO, &byte, 1) <= 0;
+}
 
 void add(CLI::App& app, Options& o) {
   app.add_option("--address", o.address, "IPv4 address to listen on")->capture_default_str();
@@ -46,6 +67,9 @@ void add(CLI::App& app, Options& o) {
   app.add_option("--duration", o.duration_s, "s until it ends by itself; 0: until it is stopped")
       ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str();
+  app.add_flag("--bus-clock", o.bus_clock,
+               "its time moves by 1 ms with every command, as fast as the bus goes");
+  app.add_flag("--until-eof", o.until_eof, "ends when standard input does: with who started it");
   app.add_flag("--json", o.json, "one JSON document a line on standard output");
 }
 
@@ -81,7 +105,10 @@ core::Result<int> run(const Options& o) {
   machine.surgeon = rig::SurgeonParameters::of_skill(o.skill);
   rig::World world;
   world.surgeon = o.surgeon;
-  rig::Electronics electronics(machine, world, clock);
+  if (!o.bus_clock) become_urgent();
+  auto made = o.bus_clock ? std::make_unique<rig::Electronics>(machine, world)
+                          : std::make_unique<rig::Electronics>(machine, world, clock);
+  rig::Electronics& electronics = *made;
   rig::Traffic traffic;
   auto tcp = rig::listen_tcp(electronics, traffic, o.address, o.port);
   if (!tcp) return tcp.error();
@@ -94,9 +121,10 @@ core::Result<int> run(const Options& o) {
   say_ready(o, (*tcp)->port());
   const core::Instant_ns start = clock.now();
   core::Instant_ns next = start;
-  while (!asked_to_stop && (o.duration_s <= 0.0 || 1e-9 * double(next - start) < o.duration_s)) {
+  while (!asked_to_stop && !(o.until_eof && input_ended()) &&
+         (o.duration_s <= 0.0 || 1e-9 * double(next - start) < o.duration_s)) {
     electronics.advance();
-    next = std::max(next + 1'000'000, clock.now());
+    next = std::max(next + (o.bus_clock ? kIdle_ns : 1'000'000), clock.now());
     clock.sleep_until(next);
   }
   say_end(o, traffic, electronics.stalls());

@@ -48,6 +48,7 @@ def summary(rows):
         "rates": {name: {"hits": h, "count": n, "interval": wilson(h, n)} for name, (h, n) in rates(rows).items()},
         "rates_without_unseen":
             {name: {"hits": h, "count": n, "interval": wilson(h, n)} for name, (h, n) in rates(seen).items()},
+        "single_by_condition": by_condition(rows),
         "parameter_error": spread([p[2] for p in errors]),
         "parameter_error_by_name": {name: spread(v) for name, v in sorted(per.items())},
         "coverage_90": {"count": len(inside), "rate": sum(inside) / len(inside) if inside else None},
@@ -56,6 +57,16 @@ def summary(rows):
         "reliability_of_answers": reliability(claims), "reliability_of_rankings": reliability(ranked),
         "wall_s": spread([r["wall_s"] for r in rows]) | {"max": max([r["wall_s"] for r in rows], default=None)},
     }
+
+
+def by_condition(rows):
+    """Exact answers among sets of one effect, for each condition that some of them share."""
+    out = {}
+    for r in rows:
+        for condition in r["conditions"] if r["kind"] == "single" else []:
+            hits, count = out.get(condition, (0, 0))
+            out[condition] = hits + bool(r["right"]), count + 1
+    return {name: {"hits": h, "count": n, "interval": wilson(h, n)} for name, (h, n) in sorted(out.items())}
 
 
 def confusion(rows):
@@ -88,9 +99,9 @@ def number(value, form="%.3g"):
 def rate_line(name, entry, goal):
     interval = entry["interval"]
     if interval is None:
-        return "  %-28s none" % name
+        return "  %-38s none" % name
     mark = "" if goal is None else "   goal %.0f %% %s" % (100 * goal, "met" if interval[0] >= goal else "MISSED")
-    return "  %-28s %3d/%-3d = %5.1f %%  (%.1f–%.1f)%s" % (
+    return "  %-38s %3d/%-3d = %5.1f %%  (%.1f–%.1f)%s" % (
         name, entry["hits"], entry["count"], *(100 * x for x in interval), mark)
 
 
@@ -108,6 +119,8 @@ def text(rows, rig):
     lines += [rate_line(n, e, GOALS[rig].get(n)) for n, e in s["rates"].items()]
     lines.append("without the %d whose effect cannot be told from the base:" % s["unseen"])
     lines += [rate_line(n, e, GOALS[rig].get(n)) for n, e in s["rates_without_unseen"].items()]
+    lines.append("single exact, by what the set is like:")
+    lines += [rate_line(n, e, None) for n, e in s["single_by_condition"].items()]
     p, h, c = s["parameter_error"], s["held_out_over_floor"], s["coverage_90"]
     lines += ["", "parameter error, exact answers: median %s, p90 %s (%d values; goal median 0.10)" % (
         number(p["median"]), number(p["p90"]), p["count"])]

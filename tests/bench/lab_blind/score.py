@@ -12,7 +12,9 @@ ALSO_CALLED = {
     "bone_compliance": {"bone_compliance"},
 }
 ANGLES = {"phase_rad", "direction_rad"}
-NOT_PARAMETERS = {"of_hand"}
+NOT_PARAMETERS = {"of_hand", "bends_shank"}
+# Free together with the base's force factor, so no data can tell it.
+NOT_SCORED = NOT_PARAMETERS | {"reference_gradient_per_m"}
 # Below this share of the noise floor an effect, with the base refitted, moves the RMSE by less than 2 %.
 UNSEEN = 0.2
 
@@ -25,7 +27,9 @@ def truth_label(truth):
 
 
 def hidden_from_all(truth):
-    """Why nobody could find it, or None: what is left after the base has moved to hide it, against the noise."""
+    """Why a set is scored apart, or None. Mostly: what is left after the base has moved to hide it, against the noise."""
+    if truth.get("accepted") is False:
+        return "the generator could not bring it to 4-10 % at a plausible size"
     for effect in truth["effects"]:
         if effect["projected_rms"] < UNSEEN * truth["floor"]:
             return "%s leaves %.3g after the base is refitted, noise %.3g" % (
@@ -38,7 +42,7 @@ def parameter_errors(effect, answer):
     out = []
     for name, true in effect["parameters"].items():
         given = answer.get("parameters", {}).get(name)
-        if name in NOT_PARAMETERS or given is None:
+        if name in NOT_SCORED or given is None:
             continue
         value, sd = (given.get("value"), given.get("sd")) if isinstance(given, dict) else (given, None)
         if value is None:
@@ -79,12 +83,26 @@ def judged(truth, ids, verdict):
     return {"right": ids == wanted, "named": wanted <= ids, "one": bool(wanted & ids), "extra": bool(ids - wanted)}
 
 
+def conditions(truth):
+    """What a set is like, in words, for rates by condition."""
+    out = ["handed base " + str(truth.get("handed"))]
+    if truth.get("stuck_share", 0) > 0.02:
+        out.append("hand stuck by friction")
+    out += [word for key, word in (("air", "begins in air"), ("averaging", "samples averaged")) if truth.get(key)]
+    out += ["%s %s" % (key, truth[key]) for key in ("field", "volume") if key in truth]
+    if truth.get("jumps", 0) > 0.004:
+        out.append("shank snaps")
+    for effect in truth["effects"]:
+        for variant in sorted(NOT_PARAMETERS & set(effect["parameters"])):
+            out.append("%s, %s %g" % (effect["id"], variant, effect["parameters"][variant]))
+    return out
+
+
 def score(truth, answer, wall_s):
     """A row of the table. `answer` is the program's JSON, or {"error": text}."""
     row = {"seed": truth["seed"], "kind": truth["kind"], "truth": truth_label(truth), "wall_s": wall_s,
            "unseen": hidden_from_all(truth), "strengths": [e["strength"] for e in truth["effects"]],
-           "stuck_share": truth.get("stuck_share", 0), "handed": truth.get("handed"),
-           "details": {k: truth[k] for k in ("fixed", "air", "averaging", "field", "volume", "jumps") if k in truth}}
+           "conditions": conditions(truth), "fixed": truth.get("fixed", [])}
     if "error" in answer:
         return row | {"answer": "failed", "error": answer["error"], "right": False}
     ids = {e["id"] for e in answer.get("effects", [])}

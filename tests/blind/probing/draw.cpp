@@ -142,9 +142,10 @@ SetPlan draw_plan(const Request& request) {
   plan.request = request;
   const std::string drawn = draw_kind(r);
   plan.kind = request.kind.empty() ? drawn : request.kind;
-  Random of_effects = r.split(), of_base = r.split(), of_trials = r.split(), of_record = r.split();
+  Random of_ids = r.split(), of_effects = r.split(), of_base = r.split(), of_trials = r.split(),
+         of_record = r.split();
   plan.truth = draw_base(of_base);
-  const auto ids = request.ids.empty() ? draw_ids(of_effects, plan.kind) : request.ids;
+  const auto ids = request.ids.empty() ? draw_ids(of_ids, plan.kind) : request.ids;
   for (const std::string& id : ids) {
     plan.effects.push_back(draw_effect(of_effects, id, plan.truth));
     plan.strengths.push_back(of_effects.uniform(0.045, 0.095));

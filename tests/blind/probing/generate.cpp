@@ -181,7 +181,8 @@ GeneratedSet generate(const Request& request) {
     tune(plan);
     draw_handed(plan);
     set = record(std::move(plan));
-    if (acceptable(set)) break;
+    set.accepted = acceptable(set);
+    if (set.accepted) break;
   }
   set.plan.request.seed = request.seed;
   return set;

@@ -17,6 +17,8 @@ struct Outcome {
 
 struct GeneratedSet {
   SetPlan plan;
+  bool accepted =
+      false;  ///< strengths and sizes are as wanted; else the last of many tries was not
   std::vector<Samples> trials;
   std::vector<Outcome> outcomes;
   double force_rms_N = 0, floor_N = 0, stuck_share = 0;

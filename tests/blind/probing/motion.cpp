@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "probing/path.hpp"
+#include "support/path.hpp"
 
 namespace blind {
 namespace {

@@ -99,6 +99,7 @@ bool write_truth(const GeneratedSet& set, const fs::path& file) {
       {{"format", "blind-truth/1"},
        {"rig", "probing"},
        {"seed", plan.request.seed},
+       {"accepted", set.accepted},
        {"kind", plan.kind},
        {"effects", effects_json(set)},
        {"projected_rms", set.hidden_projected_N},

@@ -87,6 +87,51 @@ inline std::string bytes_of(const std::filesystem::path& path) {
 }
 
 /// The bytes of such a file, made in `folder`.
+/// How a probing trial made here ends.
+enum class Cut { no, yes };
+
+/// The bytes of a probing trial of so many samples at 1 kHz: 5 mm/s into the bone at 100 N, a
+/// breach from 20 to 28 mm, the answer "a breach at 21 mm" (none when it was cut short).
+inline std::string probing_bytes(const std::filesystem::path& folder, const std::string& id,
+                                 const std::string& case_id, std::uint32_t samples,
+                                 Cut cut = Cut::no) {
+  const auto path = folder / (id + ".trial");
+  trial::Header header = header_of(id, case_id);
+  header.rig = trial::Rig::probing;
+  header.device = "sim-rig";
+  header.probe = {{"travel_m", 0.028}};
+  {
+    auto writer = trial::TrialWriter::create(path, header);
+    EXPECT_TRUE(writer && writer->append(trial::Event{0.0, "start"}));
+    std::vector<trial::ProbingSample> part;
+    for (std::uint32_t tick = 0; tick < samples; ++tick) {
+      trial::ProbingSample sample;
+      sample.t_s = tick * 1e-3;
+      sample.x_m = 5e-6 * tick;
+      sample.theta_rad = 1e-3 * tick;
+      sample.speed_m_s = 5e-3F;
+      sample.turning_rad_s = 1.0F;
+      sample.fz_N = sample.x_m < 0.020 ? 100.0F : 6.0F;
+      sample.mode = sample.x_m < 0.020 ? trial::ProbingMode::bone : trial::ProbingMode::breach;
+      sample.tick = tick;
+      part.push_back(sample);
+    }
+    EXPECT_TRUE(writer->append(part));
+    const double end_s = samples * 1e-3;
+    const trial::Answer said{.breach = true, .wall = {}, .confidence = 0.75, .depth_m = 0.021};
+    if (cut == Cut::yes) {
+      EXPECT_TRUE(writer->append(trial::Event{end_s, "interrupted"}));
+    } else {
+      EXPECT_TRUE(writer->append(trial::Event{end_s, "answer", said.to_json()}));
+      EXPECT_TRUE(writer->append(trial::Event{end_s, "end"}));
+    }
+    EXPECT_TRUE(writer->finish());
+  }
+  std::string bytes = bytes_of(path);
+  std::filesystem::remove(path);
+  return bytes;
+}
+
 inline std::string trial_bytes(const std::filesystem::path& folder, const std::string& id,
                                const std::string& case_id, std::uint32_t samples,
                                Ending ending = Ending::sealed,

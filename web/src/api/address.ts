@@ -1,8 +1,10 @@
 /** Addresses of the server's own description: a path, a parameter or a query that it does not name does not compile. */
 import type { paths } from './generated/schema';
 
-/** Paths with a GET that takes these parameters. */
-type Parameters<P extends keyof paths> = paths[P] extends { get: { parameters: infer Found } } ? Found : never;
+/** What a path takes: by its GET, or by its POST where it has no GET. */
+type Parameters<P extends keyof paths> =
+  paths[P] extends { get: { parameters: infer Found } } ? Found
+  : paths[P] extends { post: { parameters: infer Found } } ? Found : never;
 type PathPart<P extends keyof paths> = Parameters<P> extends { path: infer Found } ? Found : Record<string, never>;
 type QueryPart<P extends keyof paths> = Parameters<P> extends { query?: infer Found } ? NonNullable<Found> : Record<string, never>;
 

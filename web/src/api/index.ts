@@ -2,3 +2,5 @@ export { ApiError, type ApiErrorCode } from './client';
 export type { Preview } from './preview';
 export * from './queries';
 export type * from './schemas';
+export * from './study-queries';
+export type * from './study-schemas';

@@ -3,7 +3,7 @@ import { infiniteQueryOptions, queryOptions, type QueryClient } from '@tanstack/
 import { address } from './address';
 import { ApiError, ask, bytes, tell } from './client';
 import { parsePreview } from './preview';
-import { pathSchema, sessionSchema, signalsSchema, trialPageSchema, trialSchema, type Session } from './schemas';
+import { forceDepthSchema, pathSchema, sessionSchema, signalsSchema, trialPageSchema, trialSchema, type Session } from './schemas';
 
 const kAssessing_ms = 2_000;
 const kIdle_ms = 15_000;
@@ -14,7 +14,8 @@ const kPreview = 128;
 export const kChannels = [
   'force_xy_N', 'force_z_N', 'torque_xy_Nm', 'torque_z_Nm', 'depth_m', 'offset_m', 'angle_rad',
 ] as const;
-export type Channel = (typeof kChannels)[number];
+export const kProbingChannels = ['force_N', 'depth_m', 'speed_m_s', 'angle_rad'] as const;
+export type Channel = (typeof kChannels)[number] | (typeof kProbingChannels)[number];
 
 /** null: nobody is signed in. */
 export const sessionQuery = queryOptions({
@@ -60,11 +61,11 @@ export const trialQuery = (id: string) =>
 export interface SignalWindow { from_s: number; to_s: number; points: number }
 
 /** Signals of a trial never change, so a window once fetched is kept. */
-export const signalsQuery = (id: string, window: SignalWindow) =>
+export const signalsQuery = (id: string, channels: readonly Channel[], window: SignalWindow) =>
   queryOptions({
-    queryKey: ['signals', id, window],
+    queryKey: ['signals', id, channels, window],
     queryFn: ({ signal }) => {
-      const query = { channels: kChannels.join(','), ...window };
+      const query = { channels: channels.join(','), ...window };
       return ask(address('/api/v1/trials/{id}/signals', { id }, query), signalsSchema, { signal });
     },
     staleTime: Infinity,
@@ -74,6 +75,14 @@ export const pathQuery = (id: string) =>
   queryOptions({
     queryKey: ['path', id],
     queryFn: ({ signal }) => ask(address('/api/v1/trials/{id}/path', { id }, { points: 2000 }), pathSchema, { signal }),
+    staleTime: Infinity,
+  });
+
+/** Force against depth of a probing trial, thinned so that no peak is lost. */
+export const forceDepthQuery = (id: string) =>
+  queryOptions({
+    queryKey: ['force-depth', id],
+    queryFn: ({ signal }) => ask(address('/api/v1/trials/{id}/force-depth', { id }, { points: 2000 }), forceDepthSchema, { signal }),
     staleTime: Infinity,
   });
 

@@ -1,13 +1,8 @@
 /** What the server may say, checked once as it comes in. Everything behind this file is typed and trusted. */
 import * as v from 'valibot';
-import { metre, newton, second, share, utcMicroseconds } from '@/units';
+import { share } from '@/units';
+import { count, finite, inMetres, inNewtons, inSeconds, inUtc } from './quantities';
 
-const finite = v.pipe(v.number(), v.finite());
-const count = v.pipe(finite, v.integer(), v.minValue(0));
-const inSeconds = v.pipe(finite, v.transform(second));
-const inMetres = v.pipe(finite, v.transform(metre));
-const inNewtons = v.pipe(finite, v.transform(newton));
-const inUtc = v.pipe(finite, v.transform(utcMicroseconds));
 /** Three numbers of the patient's frame. */
 const point = v.tuple([finite, finite, finite]);
 const wall = v.picklist(['medial', 'lateral', 'superior', 'inferior', 'anterior']);
@@ -58,6 +53,23 @@ export const answerSchema = v.object({
   breach: v.boolean(),
   wall: v.nullish(wall, null),
   confidence: v.nullish(v.pipe(finite, v.transform(share)), null),
+  /** Probing: where it was felt. */
+  depth_m: v.nullish(inMetres, null),
+});
+
+/** The bone of a probing trial: what was to be felt. */
+export const scenarioSchema = v.object({
+  id: v.string(),
+  name: v.string(),
+  travel_m: inMetres,
+  layers: v.array(v.object({ start_m: inMetres, thickness_m: inMetres, stiffness_N_per_m: finite, damping_Ns_per_m: finite })),
+  walls: v.array(v.object({ position_m: inMetres, resistance_interval_m: inMetres, breach_interval_m: inMetres })),
+});
+
+/** Where a trial stands in a study. */
+export const placeSchema = v.object({
+  id: v.string(), title: v.string(), participant: v.string(), number: count,
+  state: v.picklist(['arriving', 'counts', 'invalid', 'surplus']), reason: v.string(),
 });
 
 export const truthSchema = v.object({ breached: v.nullish(wall, null) });
@@ -69,6 +81,7 @@ export const trialSchema = v.object({
   station: v.string(),
   operator_name: v.string(),
   simulated: v.boolean(),
+  rig: v.picklist(['palpation', 'probing']),
   device: v.string(),
   started_utc_us: inUtc,
   duration_s: inSeconds,
@@ -86,6 +99,8 @@ export const trialSchema = v.object({
   truth: v.nullish(truthSchema, null),
   metrics: v.array(metricSchema),
   tract: v.nullable(tractSchema),
+  scenario: v.nullish(scenarioSchema, null),
+  study: v.nullish(placeSchema, null),
   coverage: v.nullish(coverageSchema, null),
 });
 
@@ -113,6 +128,16 @@ export const pathSchema = v.pipe(
   v.check((p) => p.tip_m.length === p.t_s.length && p.force_N.length === p.t_s.length, 'path: columns must be as long as one another'),
 );
 
+export const kModes = ['holding', 'bone', 'resistance', 'breach', 'stopped'] as const;
+
+export const forceDepthSchema = v.pipe(
+  v.object({ t_s: v.array(finite), depth_m: v.array(finite), force_N: v.array(finite), mode: v.array(v.picklist(kModes)) }),
+  v.check(
+    (c) => [c.depth_m, c.force_N, c.mode].every((column) => column.length === c.t_s.length),
+    'force against depth: columns must be as long as one another',
+  ),
+);
+
 export type Session = v.InferOutput<typeof sessionSchema>;
 export type TrialState = v.InferOutput<typeof trialStateSchema>;
 export type TrialSummary = v.InferOutput<typeof trialSummarySchema>;
@@ -126,4 +151,7 @@ export type Truth = v.InferOutput<typeof truthSchema>;
 export type Wall = v.InferOutput<typeof wall>;
 export type Trial = v.InferOutput<typeof trialSchema>;
 export type Signals = v.InferOutput<typeof signalsSchema>;
+export type Scenario = v.InferOutput<typeof scenarioSchema>;
+export type StudyPlace = v.InferOutput<typeof placeSchema>;
+export type ForceDepth = v.InferOutput<typeof forceDepthSchema>;
 export type Path = v.InferOutput<typeof pathSchema>;

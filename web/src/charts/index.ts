@@ -1,4 +1,6 @@
 export { kSides, type Side, type WallBins } from './coverage';
+export { type Bone } from './depth-bone';
+export { DepthChart, kDepthHeight_px } from './depth-chart';
 export { makeCursor, type Cursor } from './cursor';
 export { whole, type Range } from './range';
 export { SignalChart } from './signal-chart';

@@ -1,9 +1,11 @@
 export { Badge, type Tone } from './badge';
 export { Button } from './button';
 export { Card } from './card';
+export { ReasonDialog } from './dialog';
 export { Facts, type Fact } from './facts';
 export { Field } from './field';
 export { Notice } from './notice';
+export { Progress } from './progress';
 export { Shell } from './shell';
 export { Skeleton } from './skeleton';
 export { Term } from './term';

@@ -1,6 +1,6 @@
 /** The only place where a number becomes text. SI in; millimetres, degrees and per cent out. */
 import {
-  kAngle, kForce, kLength, kTime, kTorque,
+  kAngle, kForce, kLength, kSpeed, kTime, kTorque,
   type Metre, type Newton, type NewtonMetre, type Quantity, type Radian, type Second, type Share, type UtcMicroseconds,
 } from './quantity';
 
@@ -86,6 +86,16 @@ export const formatDateTime = (value: UtcMicroseconds) => kDateTime.format(new D
 export const formatDateTimeLong = (value: UtcMicroseconds) => kSeconds.format(new Date(value / 1000));
 export const isoDateTime = (value: UtcMicroseconds) => new Date(value / 1000).toISOString();
 
+const kClock = new Intl.DateTimeFormat('en-GB', { day: '2-digit', month: 'short', hour: '2-digit', minute: '2-digit', second: '2-digit' });
+/** "21 Nov, 05:35:07": for a list of what happened. */
+export const formatClock = (value: UtcMicroseconds) => kClock.format(new Date(value / 1000));
+
+/** "6 years", "0.33 years", "1 year". */
+export function formatYears(value: number): string {
+  if (!Number.isFinite(value)) return kNone;
+  return `${Number(value.toFixed(2))}${kNarrowSpace}${value === 1 ? 'year' : 'years'}`;
+}
+
 /** A number of the server's with the unit that it names itself, as metrics have: converted to what is read at a table. */
 export function formatMeasure(value: number | null, unit: string): string {
   if (value === null || !Number.isFinite(value)) return kNone;
@@ -113,7 +123,7 @@ const kMeasures: Record<string, Quantity | undefined> = {
   s: kTime,
   rad: kAngle,
   '%': { name: 'Share', unit: '%', perSi: 1, decimals: 0 },
-  'm/s': { name: 'Speed', unit: 'mm/s', perSi: 1000, decimals: 1 },
+  'm/s': kSpeed,
 };
 
 function plain(value: number): string {

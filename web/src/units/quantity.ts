@@ -32,4 +32,5 @@ export const kForce: Quantity = { name: 'Force', unit: 'N', perSi: 1, decimals: 
 export const kTorque: Quantity = { name: 'Torque', unit: 'N·m', perSi: 1, decimals: 3 };
 export const kLength: Quantity = { name: 'Length', unit: 'mm', perSi: 1000, decimals: 1 };
 export const kAngle: Quantity = { name: 'Angle', unit: '°', perSi: 180 / Math.PI, decimals: 1 };
+export const kSpeed: Quantity = { name: 'Speed', unit: 'mm/s', perSi: 1000, decimals: 1 };
 export const kTime: Quantity = { name: 'Time', unit: 's', perSi: 1, decimals: 2 };

@@ -1,6 +1,6 @@
 /** Answer against truth, in plain words. The rule is that of the metric answer_right. */
-import type { Answer, Truth } from '@/api';
-import { formatShare } from '@/units';
+import type { Answer, Scenario, Truth } from '@/api';
+import { formatLength, formatShare } from '@/units';
 
 export interface Judgement {
   readonly outcome: 'right' | 'wrong' | 'open';
@@ -32,4 +32,28 @@ export function judge(answer: Answer | null, truth: Truth | null): Judgement {
     return { outcome: 'wrong', headline: answer.wall === null ? 'Wrong: a breach was felt, but no wall was named' : 'Wrong: a breach was felt, but in another wall', ...words };
   }
   return { outcome: 'right', headline: 'Right', ...words };
+}
+
+function feltOf(answer: Answer | null): string {
+  if (!answer) return 'No answer was given.';
+  const sure = answer.confidence === null ? '' : ` Confidence ${formatShare(answer.confidence)}.`;
+  if (!answer.breach) return `No breach.${sure}`;
+  return `A breach${answer.depth_m === null ? ', no depth named' : ` at ${formatLength(answer.depth_m)}`}.${sure}`;
+}
+
+function bonesOf(scenario: Scenario | null): string {
+  if (!scenario) return 'Not released for this trial.';
+  const [wall] = scenario.walls;
+  if (!wall) return `${scenario.name}: nothing is breached.`;
+  return `${scenario.name}: the wall gives way at ${scenario.walls.map(({ position_m }) => formatLength(position_m)).join(' and ')}.`;
+}
+
+/** Probing: was a breach felt where there is one? Where it was felt is told beside, and not judged. */
+export function judgeProbing(answer: Answer | null, scenario: Scenario | null): Judgement {
+  const words = { said: feltOf(answer), truth: bonesOf(scenario) };
+  if (!answer) return { outcome: 'open', headline: 'No answer', ...words };
+  if (!scenario) return { outcome: 'open', headline: 'Not judged yet', ...words };
+  const there = scenario.walls.length > 0;
+  if (answer.breach === there) return { outcome: 'right', headline: 'Right', ...words };
+  return { outcome: 'wrong', headline: there ? 'Wrong: the breach was missed' : 'Wrong: a breach was felt where there is none', ...words };
 }

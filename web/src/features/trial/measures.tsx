@@ -41,10 +41,10 @@ function PublishedTable({ rows }: { readonly rows: readonly TableRow[] }) {
   );
 }
 
-function Others({ metrics }: { readonly metrics: readonly Metric[] }) {
+function Others({ metrics, caption }: { readonly metrics: readonly Metric[]; readonly caption: string }) {
   return (
     <table className={styles.table}>
-      <caption>Further measures</caption>
+      <caption>{caption}</caption>
       <thead><tr><th scope="col">Measure</th><th scope="col" className={styles.number}>Value</th><th scope="col">Remark</th></tr></thead>
       <tbody>
         {metrics.map((metric) => (
@@ -62,15 +62,18 @@ function Others({ metrics }: { readonly metrics: readonly Metric[] }) {
 /** The measures as the server made them, laid out as in the paper: mean, SD and maximum by part of the wrench. */
 export function Measures({ metrics, state }: { readonly metrics: readonly Metric[]; readonly state: TrialState }) {
   const { table, others } = arranged(metrics);
+  const published = table.some(({ cells }) => cells.some(Boolean));
   return (
     <Card title="Measures">
       {metrics.length > 0 ? (
-        <div className={styles.tables}>
-          <div>
-            <PublishedTable rows={table} />
-            <p className={styles.foot}>Over the samples above 0.01 N and 0.001 N·m, as in the published tables. Point at a number for its definition.</p>
-          </div>
-          <Others metrics={others} />
+        <div className={published ? styles.tables : undefined}>
+          {published ? (
+            <div>
+              <PublishedTable rows={table} />
+              <p className={styles.foot}>Over the samples above 0.01 N and 0.001 N·m, as in the published tables. Point at a number for its definition.</p>
+            </div>
+          ) : null}
+          <Others metrics={others} caption={published ? 'Further measures' : 'Point at a name for its definition.'} />
         </div>
       ) : state === 'assessing' ? <Skeleton height="220px" /> : <p>There are no measures of this trial.</p>}
     </Card>

@@ -1,9 +1,9 @@
 /** What is drawn against time, and in what words it is told. */
-import type { Trial } from '@/api';
+import { kChannels, kProbingChannels, type Channel, type Trial } from '@/api';
 import type { Detail, Mark, Panel } from '@/charts';
-import { formatDuration, formatTime, kAngle, kForce, kLength, kTorque, second, withUnit } from '@/units';
+import { formatDuration, formatTime, kAngle, kForce, kLength, kSpeed, kTorque, second, withUnit } from '@/units';
 
-export const kPanels: readonly Panel[] = [
+const kPalpation: readonly Panel[] = [
   {
     id: 'force', title: 'Force on the probe', quantity: kForce, height_px: 170, fromZero: true,
     traces: [
@@ -31,8 +31,39 @@ export const kPanels: readonly Panel[] = [
   },
 ];
 
-export const kNote =
-  'Forces and torques are what the bone does to the probe, in the frame of its handle: a negative axial force pushes it out of the tract.';
+const kProbing: readonly Panel[] = [
+  {
+    id: 'force', title: 'Push of the hand', quantity: kForce, height_px: 170, fromZero: true,
+    traces: [{ channel: 'force_N', label: 'force', symbol: ['F', 'z'], colour: '--series-along' }],
+  },
+  {
+    id: 'depth', title: 'Depth of the tip', quantity: kLength, height_px: 130, fromZero: true,
+    traces: [{ channel: 'depth_m', label: 'depth', colour: '--series-third' }],
+  },
+  {
+    id: 'speed', title: 'Velocity into the bone', quantity: kSpeed, height_px: 130, fromZero: true,
+    traces: [{ channel: 'speed_m_s', label: 'velocity', colour: '--series-across' }],
+  },
+  {
+    id: 'turn', title: 'Rotation of the probe', quantity: kAngle, height_px: 90, fromZero: true,
+    traces: [{ channel: 'angle_rad', label: 'angle', colour: '--series-along' }],
+  },
+];
+
+interface SignalSet { readonly panels: readonly Panel[]; readonly channels: readonly Channel[]; readonly note: string }
+
+const kSets: Record<Trial['rig'], SignalSet> = {
+  palpation: {
+    panels: kPalpation, channels: kChannels,
+    note: 'Forces and torques are what the bone does to the probe, in the frame of its handle: a negative axial force pushes it out of the tract.',
+  },
+  probing: {
+    panels: kProbing, channels: kProbingChannels,
+    note: 'The force is the push of the hand on the probe, the depth that of the tip from the entry; both are positive into the bone.',
+  },
+};
+
+export const setOf = (rig: Trial['rig']): SignalSet => kSets[rig];
 
 /** Start and end are the ends of the axis and need no mark. */
 export function marksOf(trial: Trial): Mark[] {
@@ -52,7 +83,7 @@ function strongest(detail: Detail, channel: string): { value: number; t: number 
 
 /** The chart for who does not see it: the peaks, when they were, and the events. */
 export function summaryOf(trial: Trial, overview: Detail): string {
-  const peaks = kPanels.flatMap((panel) => panel.traces.map((trace) => {
+  const peaks = setOf(trial.rig).panels.flatMap((panel) => panel.traces.map((trace) => {
     const peak = strongest(overview, trace.channel);
     return peak ? `${panel.title}, ${trace.label}: up to ${withUnit(peak.value, panel.quantity)} at ${formatTime(second(peak.t), 1)}` : '';
   })).filter(Boolean);

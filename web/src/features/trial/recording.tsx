@@ -34,7 +34,7 @@ export function Recording({ trial }: { readonly trial: Trial }) {
         facts={[
           { name: 'Late ticks', value: <Term definition="Ticks of the station's loop that woke more than a quarter of a period late. The force came late; the sample is there.">{counted(trial.late_ticks, samples)}</Term> },
           { name: 'Skipped ticks', value: <Term definition="Ticks that never ran: their samples are missing.">{counted(trial.skipped_ticks, samples + trial.skipped_ticks)}</Term> },
-          { name: 'Steps not converged', value: <Term definition="Samples in which the bending of the shank was not found to the published tolerance of 0.001 N. The best found was rendered.">{counted(trial.not_converged, samples)}</Term> },
+          ...(trial.rig === 'probing' ? [] : [{ name: 'Steps not converged', value: <Term definition="Samples in which the bending of the shank was not found to the published tolerance of 0.001 N. The best found was rendered.">{counted(trial.not_converged, samples)}</Term> }]),
         ]}
       />
     </Card>

@@ -1,11 +1,14 @@
 import { useQuery } from '@tanstack/react-query';
-import { useState, type ReactNode } from 'react';
+import { useMemo, useState, type ReactNode } from 'react';
 import { Link } from 'wouter';
-import { ApiError, trialQuery, type Trial } from '@/api';
-import { makeCursor } from '@/charts';
+import { ApiError, forceDepthQuery, trialQuery, type Trial } from '@/api';
+import { makeCursor, type Cursor } from '@/charts';
 import { Badge, Card, Facts, Notice, Skeleton, useTitle } from '@/ui';
 import { formatCount, formatDateTime, formatDateTimeLong, formatDuration, formatRate, isoDateTime } from '@/units';
+import { breachMarks } from './breaches';
+import { DepthPanel } from './depth-panel';
 import { Measures } from './measures';
+import { Place } from './place';
 import { Recording } from './recording';
 import { SignalsPanel } from './signals-panel';
 import { TractPanel } from './tract-panel';
@@ -22,6 +25,7 @@ function Header({ trial }: { readonly trial: Trial }) {
         {trial.simulated ? <Badge tone="warn">simulated</Badge> : null}
         {trial.complete ? null : <Badge tone="bad">incomplete recording</Badge>}
       </div>
+      {trial.study ? <Place place={trial.study} /> : null}
       <div className={styles.facts}><Facts
         facts={[
           { name: 'Operator', value: trial.operator_name },
@@ -67,6 +71,31 @@ function Failed({ reason, retry }: { readonly reason: Error; readonly retry: () 
   );
 }
 
+interface Views { readonly trial: Trial; readonly cursor: Cursor }
+
+function Palpation({ trial, cursor }: Views) {
+  return (
+    <>
+      <Card title="Signals"><SignalsPanel trial={trial} cursor={cursor} /></Card>
+      <div className={styles.views}>
+        <TractPanel trial={trial} cursor={cursor} />
+        <WallsPanel trial={trial} cursor={cursor} />
+      </div>
+    </>
+  );
+}
+
+function Probing({ trial, cursor }: Views) {
+  const curve = useQuery(forceDepthQuery(trial.id));
+  const breaches = useMemo(() => breachMarks(curve.data), [curve.data]);
+  return (
+    <>
+      <Card title="Signals"><SignalsPanel trial={trial} cursor={cursor} further={breaches} /></Card>
+      <DepthPanel trial={trial} cursor={cursor} />
+    </>
+  );
+}
+
 /** One trial: what was found, what was felt, where the tip was, and how well it was recorded. */
 export function TrialPage({ id }: { readonly id: string }) {
   const query = useQuery(trialQuery(id));
@@ -81,14 +110,10 @@ export function TrialPage({ id }: { readonly id: string }) {
       {trial.state === 'assessing' ? <Notice title="This trial is being assessed.">Measures, walls and the verdict appear here when that is done.</Notice> : null}
       {trial.state === 'failed' ? <Notice tone="warn" title="The assessment of this trial failed.">{trial.failure ?? 'Its measures could not be made.'} What was recorded is shown below.</Notice> : null}
       <div className={styles.pair}>
-        <Verdict answer={trial.answer} truth={trial.truth} />
+        <Verdict trial={trial} />
         <Recording trial={trial} />
       </div>
-      <Card title="Signals"><SignalsPanel trial={trial} cursor={cursor} /></Card>
-      <div className={styles.views}>
-        <TractPanel trial={trial} cursor={cursor} />
-        <WallsPanel trial={trial} cursor={cursor} />
-      </div>
+      {trial.rig === 'probing' ? <Probing trial={trial} cursor={cursor} /> : <Palpation trial={trial} cursor={cursor} />}
       <Measures metrics={trial.metrics} state={trial.state} />
     </Frame>
   );

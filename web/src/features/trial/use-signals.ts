@@ -1,7 +1,7 @@
 /** The detail that a view needs, fetched tile by tile and put together from the best at hand. */
 import { useQueries, useQueryClient } from '@tanstack/react-query';
 import { useEffect, useMemo, useRef, useState } from 'react';
-import { signalsQuery, type Signals, type Trial } from '@/api';
+import { signalsQuery, type Channel, type Signals, type Trial } from '@/api';
 import { assemble, kNoDetail, kTilePoints, tileRange, tilesFor, type Detail, type Range, type Tile } from '@/charts';
 
 const kPace_ms = 80;
@@ -31,14 +31,14 @@ export interface SignalsView {
 
 const kWhole: Tile = { level: 0, index: 0 };
 
-export function useSignals(trial: Trial, range: Range, width_px: number): SignalsView {
+export function useSignals(trial: Trial, channels: readonly Channel[], range: Range, width_px: number): SignalsView {
   const client = useQueryClient();
   const { id, duration_s, samples } = trial;
   const paced = usePaced(range);
   const tiles = useMemo(() => tilesFor(paced, width_px, duration_s, samples), [paced, width_px, duration_s, samples]);
   const queryOf = (tile: Tile) => {
     const { from, to } = tileRange(tile, duration_s);
-    return signalsQuery(id, { from_s: from, to_s: to, points: kTilePoints });
+    return signalsQuery(id, channels, { from_s: from, to_s: to, points: kTilePoints });
   };
   const asked = [kWhole, ...tiles.filter((tile) => tile.level > 0)];
   const answers = useQueries({ queries: asked.map(queryOf) });

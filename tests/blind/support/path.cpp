@@ -1,4 +1,4 @@
-#include "probing/path.hpp"
+#include "support/path.hpp"
 
 #include <algorithm>
 #include <cmath>

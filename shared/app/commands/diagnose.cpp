@@ -1,0 +1,51 @@
+/// `tractus diagnose`: which effect is missing from a model.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "app/command.hpp"
+#include "app/lab_report.hpp"
+#include "core/progress.hpp"
+
+namespace commands {
+namespace {
+
+struct Options : LabOptions {
+  std::filesystem::path out_model;
+};
+
+Outcome run(const Options& options) {
+  for (const auto& file : {options.report, options.out_model})
+    if (auto ready = writable(file); !ready) return ready.error();
+  const auto opened_case = opened(options);
+  if (!opened_case) return opened_case.error();
+  lab_io::DiagnoseWish wish{.options = {}, .report = !options.report.empty()};
+  wish.options.threads = options.sources.threads;
+  const auto bar = core::terminal_progress("trying effects");
+  const auto answer = lab_io::diagnosed(*opened_case, wish, bar);
+  if (!answer) return answer.error();
+  if (bar) bar(1.0);
+  if (auto written = write_files(*answer, options.out_model, options.report); !written)
+    return written.error();
+  fmt::print("{}", options.json ? answer->json.dump(2) + "\n" : printed_diagnosis(*answer));
+  return 0;
+}
+
+}  // namespace
+
+Command diagnose_command() {
+  return {.name = "diagnose",
+          .summary = "Find which physical effect a model is missing",
+          .example =
+              "tractus diagnose --model bone.model.json --measurements recordings/ "
+              "--out-model better.model.json --report found.html",
+          .make = [](CLI::App& app) -> std::function<Outcome()> {
+            auto options = std::make_shared<Options>();
+            add_lab_options(app, *options);
+            app.add_option("--out-model", options->out_model,
+                           "write the model, refitted and with the effects found");
+            return [options] { return run(*options); };
+          }};
+}
+
+}  // namespace commands

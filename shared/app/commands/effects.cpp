@@ -1,0 +1,155 @@
+/// `tractus effects`: the catalogue of physical effects; checks a user's own.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+
+#include "app/command.hpp"
+#include "core/json.hpp"
+#include "effects/effect.hpp"
+#include "effects/palpation_effect.hpp"
+#include "effects/palpation_expression.hpp"
+#include "effects/probing_effect.hpp"
+
+namespace commands {
+namespace {
+using core::Json;
+using ::effects::EffectFacts;
+using ::effects::Expression;
+using ::effects::ExpressionRig;
+using ::effects::Param;
+
+struct Options {
+  std::string id, rig, file;
+  bool json = false;
+};
+
+struct Entry {
+  std::string rig;
+  EffectFacts facts;
+};
+
+const ExpressionRig& formulas_of(std::string_view rig) {
+  return rig == "probing" ? ::effects::probing_expressions() : ::effects::palpation_expressions();
+}
+
+core::Result<std::vector<Entry>> from_file(const std::string& file) {
+  const auto json = core::read_json(file);
+  if (!json) return json.error();
+  const bool palpation =
+      json->is_object() && json->contains("rig") && (*json)["rig"] == "palpation";
+  const std::string rig = palpation ? "palpation" : "probing";
+  const auto own = Expression::from_json(*json, file + ": ", formulas_of(rig));
+  if (!own) return own.error();
+  return std::vector<Entry>{{rig, own->facts()}};
+}
+
+core::Result<std::vector<Entry>> chosen(const Options& o) {
+  if (!o.file.empty()) return from_file(o.file);
+  std::vector<Entry> out;
+  for (const auto& info : ::effects::probing_effects()) out.push_back({"probing", info.facts});
+  for (const auto& info : ::effects::palpation_effects()) out.push_back({"palpation", info.facts});
+  std::erase_if(out, [&](const Entry& entry) {
+    return (!o.rig.empty() && entry.rig != o.rig) || (!o.id.empty() && entry.facts.id != o.id);
+  });
+  if (out.empty())
+    return core::Error{core::Errc::not_found,
+                       fmt::format("'{}' is not an effect{}; `tractus effects` lists them", o.id,
+                                   o.rig.empty() ? "" : " of " + o.rig)};
+  return out;
+}
+
+Json json_of(const Entry& entry) {
+  const EffectFacts& f = entry.facts;
+  Json parameters = Json::array();
+  for (const Param& p : f.params)
+    parameters.push_back({{"name", p.name},
+                          {"unit", ::effects::unit_of(p)},
+                          {"meaning", p.meaning},
+                          {"components", p.components},
+                          {"initial", p.initial},
+                          {"low", p.low},
+                          {"high", p.high},
+                          {"off", std::isnan(p.off) ? Json() : Json(p.off)},
+                          {"logarithmic", p.logarithmic}});
+  return {{"id", f.id},
+          {"rig", entry.rig},
+          {"kind", ::effects::name(f.kind)},
+          {"summary", f.summary},
+          {"equation", f.equation},
+          {"source", f.source},
+          {"needs", f.needs},
+          {"contains", f.parents},
+          {"free_per_trial", f.free_per_trial},
+          {"passive", f.passive},
+          {"parameters", std::move(parameters)}};
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string out;
+  for (const std::string& word : words) out += (out.empty() ? "" : ", ") + word;
+  return out;
+}
+
+void print(const Entry& entry) {
+  const EffectFacts& f = entry.facts;
+  fmt::print("{} ({}, {})\n  {}\n  law     {}\n", f.id, entry.rig, ::effects::name(f.kind),
+             f.summary, f.equation);
+  for (const Param& p : f.params)
+    fmt::print("  {}{}  {}: {:g} … {:g}, from {:g}{}\n", p.name,
+               p.components > 1 ? fmt::format(" ({})", p.components) : "",
+               fmt::format("[{}] {}", ::effects::unit_of(p), p.meaning), p.low, p.high, p.initial,
+               p.logarithmic ? ", by its logarithm" : "");
+  if (!f.needs.empty()) fmt::print("  needs   {}\n", joined(f.needs));
+  if (!f.parents.empty()) fmt::print("  holds   {} as a limit\n", joined(f.parents));
+  if (f.free_per_trial) fmt::print("  course  free in each trial\n");
+  fmt::print("  source  {}\n\n", f.source);
+}
+
+void print_states() {
+  fmt::print("expression:NAME, a formula of your own; it may name\n");
+  for (const char* rig : {"probing", "palpation"}) {
+    const ExpressionRig& r = formulas_of(rig);
+    fmt::print("  {} ({} in {}):\n", rig, r.adds_to, r.unit);
+    for (const auto& state : r.states)
+      fmt::print("    {:12} {:6} {}\n", state.name, state.unit, state.meaning);
+  }
+}
+
+Outcome run(const Options& o) {
+  const auto entries = chosen(o);
+  if (!entries) return entries.error();
+  if (!o.json) {
+    for (const Entry& entry : *entries) print(entry);
+    if (o.id.empty() && o.file.empty()) print_states();
+    return 0;
+  }
+  Json list = Json::array();
+  for (const Entry& entry : *entries) list.push_back(json_of(entry));
+  fmt::print("{}\n", Json{{"effects", std::move(list)}}.dump(2));
+  return 0;
+}
+
+}  // namespace
+
+Command effects_command() {
+  return {"effects", "Lists the physical effects that a model may carry; checks one of your own",
+          "tractus effects --rig probing\n  tractus effects hysteresis\n  tractus effects --check "
+          "my_drag.json",
+          [](CLI::App& app) {
+            auto options = std::make_shared<Options>();
+            auto* id = app.add_option("ID", options->id, "only this one");
+            auto* rig = app.add_option("--rig", options->rig, "only this rig's")
+                            ->check(CLI::IsMember({"probing", "palpation"}));
+            app.add_option(
+                   "--check", options->file,
+                   "a tractus-effect/1 file of your own: exit 0 and what is known of it, or "
+                   "2 and what is wrong")
+                ->excludes(id)
+                ->excludes(rig);
+            app.add_flag("--json", options->json, "print as JSON");
+            return [options] { return run(*options); };
+          }};
+}
+
+}  // namespace commands

@@ -1,0 +1,65 @@
+/// `tractus fit`: a model's parameters fitted to measurements, with effects added by hand.
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+
+#include "app/command.hpp"
+#include "app/lab_report.hpp"
+#include "core/progress.hpp"
+
+namespace commands {
+namespace {
+
+struct Options : LabOptions {
+  std::filesystem::path out;
+  std::vector<std::string> add;
+};
+
+Outcome run(const Options& options) {
+  for (const auto& file : {options.report, options.out})
+    if (auto ready = writable(file); !ready) return ready.error();
+  const auto opened_case = opened(options);
+  if (!opened_case) return opened_case.error();
+  LabOptions plain = options;
+  plain.sources.effects.clear();
+  std::optional<lab_io::Case> before;
+  if (!options.sources.effects.empty()) {
+    auto made = opened(plain);
+    if (!made) return made.error();
+    before = std::move(*made);
+  }
+  const auto bar = core::terminal_progress("fitting");
+  const auto answer = lab_io::fitted(*opened_case, before ? &*before : nullptr, options.add,
+                                     options.sources.threads, bar);
+  if (!answer) return answer.error();
+  if (bar) bar(1.0);
+  if (auto written = write_files(*answer, options.out, options.report); !written)
+    return written.error();
+  fmt::print("{}", options.json ? answer->json.dump(2) + "\n" : printed_fit(*answer));
+  return 0;
+}
+
+}  // namespace
+
+Command fit_command() {
+  return {.name = "fit",
+          .summary = "Fit a model to measurements, with effects added by hand",
+          .example =
+              "tractus fit --model bone.model.json --measurements recordings/ "
+              "--add coulomb_friction --add inertia --out better.model.json",
+          .make = [](CLI::App& app) -> std::function<Outcome()> {
+            auto options = std::make_shared<Options>();
+            add_lab_options(app, *options);
+            app.add_option("--add", options->add,
+                           "id of an effect to add (see tractus effects); may be given again")
+                ->expected(1);
+            app.add_option("--effect", options->sources.effects,
+                           "file with an effect of your own, tractus-effect/1; may be given again")
+                ->expected(1);
+            app.add_option("--out", options->out, "write the fitted model")->required();
+            return [options] { return run(*options); };
+          }};
+}
+
+}  // namespace commands

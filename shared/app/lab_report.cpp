@@ -1,0 +1,161 @@
+#include "app/lab_report.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/file.hpp"
+#include "core/progress.hpp"
+#include "lab/words.hpp"
+
+namespace commands {
+namespace {
+
+using core::Result;
+using lab::figure;
+
+std::string percent(double share) {
+  return std::isfinite(share) ? fmt::format("{:.3g} %", 100.0 * share) : "–";
+}
+
+/// `text` in a column of `width` characters; fmt counts bytes where it should count characters.
+std::string left(std::string_view text, std::size_t width) {
+  std::size_t seen = 0;
+  for (const char c : text) seen += (static_cast<unsigned char>(c) & 0xc0) != 0x80;
+  return std::string(text) + std::string(seen < width ? width - seen : 1, ' ');
+}
+
+std::string right(std::string_view text, std::size_t width) {
+  std::size_t seen = 0;
+  for (const char c : text) seen += (static_cast<unsigned char>(c) & 0xc0) != 0x80;
+  return std::string(seen < width ? width - seen : 1, ' ') + std::string(text);
+}
+
+std::string estimate(const lab::Estimate& e) {
+  const auto [name, unit] = lab::name_and_unit(e.pointer);
+  std::string out = "  " + left(e.pointer, 44) + right(figure(e.value), 10);
+  out += e.informed ? fmt::format(" ± {}", figure(e.sd)) : "  (not informed by these recordings)";
+  if (!unit.empty() && e.informed) out += " " + unit;
+  return out + (e.at_bound ? "  (at the edge of its range)" : "") + "\n";
+}
+
+std::string notes(const std::vector<std::string>& said) {
+  std::string out;
+  for (const std::string& note : said) out += "- " + note + "\n";
+  return out.empty() ? "" : "\n" + out;
+}
+
+std::string ranking(const lab::Diagnosis& d, const std::string& unit) {
+  std::string out =
+      "\n  " + left("effect", 30) + right("probability", 12) + right("held out", 13) + "\n";
+  std::size_t n = 0;
+  for (const lab::Ranked& r : d.ranking) {
+    if (++n > 8 && r.probability < 0.005) continue;
+    out += "  " + left(lab::effect_in_words(r.id), 30) + right(percent(r.probability), 12) +
+           right(r.held_out_rmse ? figure(*r.held_out_rmse, unit) : "–", 13) +
+           (r.note.empty() ? "" : "  " + r.note) + "\n";
+  }
+  return out;
+}
+
+}  // namespace
+
+void add_lab_options(CLI::App& app, LabOptions& options) {
+  app.add_option("--model", options.sources.model, "model file, tractus-model/1")->required();
+  app.add_option("--measurements", options.sources.measurements,
+                 "folder with set.json, or a zip of one, tractus-measurements/1")
+      ->required();
+  app.add_option("--report", options.report, "also write a page that stands alone, FILE.html");
+  app.add_option("--threads", options.sources.threads, "threads to work with")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+  app.add_flag("--json", options.json, "print the answer as JSON");
+}
+
+Result<lab_io::Case> opened(const LabOptions& options) {
+  return lab_io::open_case(options.sources, core::terminal_progress("reading"));
+}
+
+Result<void> writable(const std::filesystem::path& file) {
+  if (file.empty()) return {};
+  std::error_code ignored;
+  const auto folder = file.has_parent_path() ? file.parent_path() : ".";
+  if (!std::filesystem::is_directory(folder, ignored))
+    return core::Error{core::Errc::bad_input,
+                       fmt::format("{}: there is no folder {}", file.string(), folder.string())};
+  return core::may_be_replaced(file);
+}
+
+Result<void> write_files(const lab_io::Answer& answer, const std::filesystem::path& model,
+                         const std::filesystem::path& report) {
+  if (!report.empty())
+    if (auto done = core::write_file(report, core::bytes_of(lab::report(answer.content))); !done)
+      return done;
+  if (!model.empty() && answer.model) return core::write_json(model, *answer.model);
+  return {};
+}
+
+std::string printed_comparison(const lab_io::Answer& answer) {
+  const lab::Comparison& c = answer.content.given.comparison;
+  std::string out = fmt::format(
+      "The model is off by {} in {}; the noise floor is {}; it explains {} of what could be "
+      "explained.\n\n  {}{}{}{}{}\n",
+      figure(c.rmse, c.judged_unit), c.judged_name, figure(c.noise_floor, c.judged_unit),
+      percent(c.explained), left("channel", 12), right("error", 10), right("R²", 9),
+      right("noise", 10), right("explained", 11));
+  for (const auto& channel : c.channels)
+    out += "  " + left(channel.name, 12) + right(figure(channel.rmse), 10) +
+           right(fmt::format("{:.4f}", channel.r2), 9) + right(figure(channel.noise_floor), 10) +
+           right(percent(channel.explained), 11) + "\n";
+  out += "\n  " + left("where it fails", 44) + right("of error", 9) + right("of time", 9) +
+         right("error", 12) + "\n";
+  for (const lab::Region& r : c.where.regions)
+    out += "  " + left(r.words, 44) + right(percent(r.share_of_error), 9) +
+           right(percent(r.share_of_time), 9) + right(figure(r.rmse, c.judged_unit), 12) + "\n";
+  out += "\n  " + left("phase", 44) + right("of error", 9) + right("of time", 9) +
+         right("error", 12) + "\n";
+  for (const auto& p : c.phases)
+    out += "  " + left(p.phase, 44) + right(percent(p.share_of_error), 9) +
+           right(percent(p.share_of_time), 9) + right(figure(p.rmse, c.judged_unit), 12) + "\n";
+  return out + notes(answer.content.notes);
+}
+
+std::string printed_diagnosis(const lab_io::Answer& answer) {
+  const lab::Diagnosis& d = *answer.content.diagnosis;
+  const std::string unit = lab::name_and_unit(answer.json.value("primary", std::string())).unit;
+  const auto [headline, detail] = lab::sentences(d, unit);
+  std::string out = fmt::format("{}\n{}\nProbability that this is right: {}.\n\n  {}{}{}\n",
+                                headline, detail, percent(d.probability), left("model", 30),
+                                right("error", 12), right("held out", 13));
+  for (const lab::Step& step : d.steps)
+    out += "  " +
+           left(step.model.starts_with("+ ") ? "+ " + lab::effect_in_words(step.model.substr(2))
+                                             : step.model,
+                30) +
+           right(figure(step.rmse, unit), 12) + right(figure(step.held_out_rmse, unit), 13) + "\n";
+  out += ranking(d, unit);
+  if (!d.effects.empty()) out += "\n";
+  for (const lab::Estimate& e : d.final_fit.estimates)
+    if (!e.pointer.starts_with("/")) out += estimate(e);
+  for (const auto& [a, b] : d.confounded)
+    out += fmt::format("\nHardly told apart here: {} and {}.", lab::effect_in_words(a),
+                       lab::effect_in_words(b));
+  if (!d.confounded.empty()) out += "\n";
+  if (d.settle) out += fmt::format("\nRecord next: {}.\n", d.settle->recording);
+  return out + notes(d.notes);
+}
+
+std::string printed_fit(const lab_io::Answer& answer) {
+  const lab::Fit& fit = *answer.content.fit;
+  const lab::Comparison& given = answer.content.given.comparison;
+  std::string out = fmt::format(
+      "Fitted: the error falls from {} to {}, on held-out measurements {}; the noise floor is "
+      "{}.\n\n",
+      figure(given.rmse, given.judged_unit), figure(fit.rmse, given.judged_unit),
+      figure(fit.held_out_rmse, given.judged_unit), figure(fit.noise_floor, given.judged_unit));
+  for (const lab::Estimate& e : fit.estimates) out += estimate(e);
+  if (!fit.converged) out += "\nThe fit did not converge; take its figures with care.\n";
+  return out + notes(fit.remarks);
+}
+
+}  // namespace commands

@@ -1,0 +1,105 @@
+#include "lab/belief.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lab {
+namespace {
+
+/// At the floor: mean square of the whitened residual below this, …
+constexpr double kAtFloor = 1.6;
+/// … or less than this share of what the given model left.
+constexpr double kShareLeft = 0.006;
+/// Named at all: at most this share is left.
+constexpr double kMostLeft = 0.5;
+/// Observations that a trial is worth, and the price of a number, in nats.
+constexpr double kPerTrial = 12.0, kPrice = 2.0;
+/// As good as the one chosen, for all purposes: within this factor of its excess.
+constexpr double kAsGood = 1.5;
+constexpr double kSettled = 0.95;
+
+std::vector<std::string> only_in(const Structure& a, const Structure& b) {
+  std::vector<std::string> out;
+  for (const auto& id : a.effects)
+    if (!contains(b, id)) out.push_back(id);
+  return out;
+}
+
+}  // namespace
+
+bool at_floor(double mean_square, double before) {
+  return mean_square < kAtFloor || excess(mean_square) < kShareLeft * excess(before);
+}
+
+bool explains(double mean_square, double before) {
+  return excess(mean_square) < kMostLeft * excess(before);
+}
+
+Belief::Belief(const Residual& residual, const Selection& selection, const Solution& chosen)
+    : chosen_(chosen.structure) {
+  const double observations = kPerTrial * double(residual.trials());
+  const double base = selection.base().mean_square();
+  std::vector<double> scores;
+  for (const auto& [key, s] : selection.tried()) {
+    entries_.push_back({s.structure, 0.0, s.mean_square()});
+    const double numbers = double(s.values.size()) - double(selection.base().values.size()) +
+                           residual.problem().free_per_trial(s.structure);
+    scores.push_back(-0.5 * observations * std::log(std::max(1.0, s.mean_square())) -
+                     0.5 * (s.prior - selection.base().prior) - kPrice * numbers);
+  }
+  const double best = *std::ranges::max_element(scores);
+  // What is in no catalogue: the more is left over the floor, the likelier.
+  const double left = excess(chosen.mean_square()) / (excess(base) + 1.0);
+  const double outside = at_floor(chosen.mean_square(), base) ? 0.02 : std::min(0.9, 0.2 + left);
+  double sum = 0.0;
+  for (const double s : scores) sum += std::exp(s - best);
+  for (std::size_t k = 0; k < scores.size(); ++k)
+    entries_[k].probability = (1.0 - outside) * std::exp(scores[k] - best) / sum;
+  std::ranges::stable_sort(entries_, std::greater<>(), &Entry::probability);
+}
+
+double Belief::of_structure(const Structure& structure) const {
+  for (const Entry& e : entries_)
+    if (e.structure == structure) return e.probability;
+  return 0.0;
+}
+
+double Belief::of_effect(const std::string& id) const {
+  double sum = 0.0;
+  for (const Entry& e : entries_)
+    if (contains(e.structure, id)) sum += e.probability;
+  return sum;
+}
+
+std::vector<std::pair<std::string, std::string>> Belief::confounded() const {
+  std::vector<std::pair<std::string, std::string>> out;
+  double chosen = 1.0;
+  for (const Entry& e : entries_)
+    if (e.structure == chosen_) chosen = e.mean_square;
+  for (const Entry& e : entries_) {
+    if (e.structure.effects.size() != chosen_.effects.size()) continue;
+    const auto ours = only_in(chosen_, e.structure), theirs = only_in(e.structure, chosen_);
+    if (ours.size() == 1 && theirs.size() == 1 &&
+        (e.mean_square < 1.15 * chosen || excess(e.mean_square) < kAsGood * excess(chosen)))
+      out.emplace_back(theirs[0], ours[0]);
+  }
+  return out;
+}
+
+std::optional<Settle> Belief::settle(const Problem& problem) const {
+  const double now = of_structure(chosen_);
+  if (now > kSettled) return {};
+  for (const Entry& e : entries_) {
+    if (e.structure == chosen_) continue;
+    const auto ours = only_in(chosen_, e.structure), theirs = only_in(e.structure, chosen_);
+    const std::string a = ours.empty() ? "" : ours[0], b = theirs.empty() ? "" : theirs[0];
+    Settle out;
+    out.between = {a.empty() ? "nothing" : a, b.empty() ? "nothing" : b};
+    out.recording = problem.recording(a.empty() ? b : a, a.empty() ? "" : b);
+    out.expected_gain = std::clamp(kSettled - now, 0.0, 1.0);
+    return out;
+  }
+  return {};
+}
+
+}  // namespace lab

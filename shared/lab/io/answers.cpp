@@ -1,0 +1,106 @@
+#include "lab/io/answers.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "lab/answer.hpp"
+
+namespace lab_io {
+namespace {
+
+using core::Errc;
+using core::Error;
+using core::Result;
+
+lab::Side side(lab::Samples samples) {
+  lab::Side out{std::move(samples), {}};
+  out.comparison = lab::compare(out.samples);
+  return out;
+}
+
+Answer begun(const Case& opened) {
+  Answer out;
+  out.content.model_name = opened.model_name;
+  out.content.set_name = opened.set_name;
+  out.content.simulated = opened.simulated;
+  out.content.catalogue = opened.problem->candidates();
+  out.content.notes = opened.problem->notes();
+  return out;
+}
+
+void compare_given(const Case& opened, Answer& answer) {
+  answer.content.given = side(lab::samples_as_given(*opened.problem, opened.recorded));
+  answer.content.map = lab::tract_map(answer.content.given.samples);
+}
+
+void compare_better(const Case& opened, const lab::Fit& fit, Answer& answer) {
+  answer.content.better =
+      side(lab::samples_of(*opened.problem, fit.structure, fit.values, opened.recorded));
+  answer.content.start = opened.problem->parameters(fit.structure);
+}
+
+/// An id that this recording can show, or why not.
+Result<void> known(const lab::Problem& problem, const std::string& id) {
+  const auto& all = problem.candidates();
+  const auto it =
+      std::ranges::find_if(all, [&](const lab::Candidate& c) { return c.facts.id == id; });
+  if (it == all.end())
+    return Error{Errc::not_found,
+                 fmt::format("'{}': no such effect on the {} rig, or the model has it already; "
+                             "see tractus effects",
+                             id, problem.rig())};
+  if (!it->possible)
+    return Error{Errc::bad_input, fmt::format("'{}' cannot be fitted: {}", id, it->why_not)};
+  return {};
+}
+
+}  // namespace
+
+Answer compared(const Case& opened) {
+  Answer out = begun(opened);
+  compare_given(opened, out);
+  out.json = lab::to_json(out.content.given.comparison);
+  out.json["model"] = opened.model_name;
+  out.json["notes"] = opened.problem->notes();
+  return out;
+}
+
+Result<Answer> diagnosed(const Case& opened, const DiagnoseWish& wish,
+                         const core::Progress& progress) {
+  auto diagnosis =
+      lab::diagnose(*opened.problem, wish.options, part_of(progress, 0.0, wish.report ? 0.9 : 1.0));
+  if (!diagnosis) return diagnosis.error();
+  Answer out = begun(opened);
+  out.json = lab::to_json(*diagnosis);
+  out.json["primary"] = opened.problem->channels().front().name;
+  out.model = opened.problem->model(diagnosis->final_fit.structure, diagnosis->final_fit.values);
+  if (wish.report) {
+    compare_given(opened, out);
+    compare_better(opened, diagnosis->final_fit, out);
+    out.json["where"] = lab::to_json(out.content.given.comparison)["where"];
+  }
+  out.content.diagnosis = std::move(*diagnosis);
+  return out;
+}
+
+Result<Answer> fitted(const Case& opened, const Case* before, std::vector<std::string> effects,
+                      int threads, const core::Progress& progress) {
+  for (const std::string& id : effects)
+    if (auto found = known(*opened.problem, id); !found) return found.error();
+  std::ranges::sort(effects);
+  effects.erase(std::unique(effects.begin(), effects.end()), effects.end());
+  auto fit =
+      lab::fit(*opened.problem, {effects}, {.threads = threads}, part_of(progress, 0.0, 0.9));
+  if (!fit) return fit.error();
+  Answer out = begun(opened);
+  compare_given(before ? *before : opened, out);
+  compare_better(opened, *fit, out);
+  out.json = lab::to_json(*fit, out.content.given.comparison);
+  out.json["primary"] = opened.problem->channels().front().name;
+  out.model = opened.problem->model(fit->structure, fit->values);
+  out.content.fit = std::move(*fit);
+  return out;
+}
+
+}  // namespace lab_io

@@ -1,0 +1,39 @@
+/// The lab's three questions asked of a case, each answered whole: figures, JSON, report, model.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/json.hpp"
+#include "lab/diagnosis.hpp"
+#include "lab/io/case.hpp"
+#include "lab/report.hpp"
+
+namespace lab_io {
+
+struct Answer {
+  core::Json json;                  ///< as design and formats say
+  lab::ReportContent content;       ///< filled as far as it was asked for
+  std::optional<core::Json> model;  ///< the better model, as a model file
+};
+
+/// The model as it is given, beside the measurements.
+Answer compared(const Case& opened);
+
+struct DiagnoseWish {
+  lab::DiagnoseOptions options;
+  bool report = false;  ///< also compare before and after, for the page
+};
+/// Which effect is missing. Errors: those of lab::diagnose.
+core::Result<Answer> diagnosed(const Case& opened, const DiagnoseWish& wish,
+                               const core::Progress& progress = {});
+
+/// Refits with effects added by hand; the user's own are in the case's model already, and `before`
+/// is then the case without them (else null). Errors: those of lab::fit; not_found for an id that
+/// is not in this rig's catalogue, with its reason if the recording cannot show it.
+core::Result<Answer> fitted(const Case& opened, const Case* before,
+                            std::vector<std::string> effects, int threads,
+                            const core::Progress& progress = {});
+
+}  // namespace lab_io

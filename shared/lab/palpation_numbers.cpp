@@ -1,0 +1,178 @@
+#include "lab/palpation_numbers.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/require.hpp"
+#include "effects/palpation_effect.hpp"
+
+namespace lab {
+namespace {
+
+using laws::PalpationParameters;
+
+// How well the numbers of a model file are believed before the data speak. They decide only what a
+// recording leaves open: force_factor_Nm and the scales are felt in two products, modulus and
+// radius in one.
+constexpr double kFactorSd = 0.25;    // of the logarithm
+constexpr double kRadiusSd = 0.1;     // of the logarithm; it counts four times
+constexpr double kLengthSd_m = 5e-4;  // of what a ruler measures
+constexpr double kReferenceSd = 3.0;  // of the logarithm of the reference of an exponent
+constexpr double kMostFactor = 20.0;  // a factor is found within this factor
+
+Parameter factor(double start, double prior_sd) {
+  Parameter p{};
+  p.start = start;
+  p.low = start / kMostFactor;
+  p.high = start * kMostFactor;
+  p.step = 2e-3;
+  p.logarithmic = true;
+  p.prior_sd = prior_sd;
+  return p;
+}
+
+Parameter length(double start, double low, double high) {
+  Parameter p{};
+  p.start = start;
+  p.low = low;
+  p.high = high;
+  p.step = 5e-6;
+  p.prior_sd = kLengthSd_m;
+  return p;
+}
+
+/// One JSON pointer with `*` for every element against another without.
+bool covers(std::string_view pattern, std::string_view pointer) {
+  return pointer == pattern || (pointer.starts_with(pattern) && pointer[pattern.size()] == '/');
+}
+
+const effects::EffectFacts& facts_of(std::string_view id) {
+  for (const auto& info : effects::palpation_effects())
+    if (info.facts.id == id) return info.facts;
+  core::require(false, "an effect of a structure is in the catalogue");
+  std::abort();
+}
+
+/// Steps that are felt but small, by the parameters' names.
+double step_of(std::string_view pointer, double fallback) {
+  struct Step {
+    std::string_view in;
+    double step;
+  };
+  static constexpr Step kSteps[] = {
+      {"pose_offset/offset_m", 5e-6},
+      {"tip_ball/radius_m", 1e-5},
+      {"shank_curvature/bow_m", 5e-6},
+      {"shank_curvature/direction_rad", 1e-2},
+      {"sensor_bias/force_N", 1e-2},
+      {"sensor_bias/torque_Nm", 1e-3},
+      {"/mass_kg", 1e-3},
+      {"/centre_m", 1e-3},
+      {"time_delay/delay_s", 1e-4},
+      {"contact_nonlinearity/exponent", 1e-2},
+      {"coefficient", 1e-2},
+      {"loss", 1e-2},
+      {"contact_damping/", 1e-1},
+  };
+  for (const Step& each : kSteps)
+    if (pointer.find(each.in) != std::string_view::npos) return each.step;
+  return fallback;
+}
+
+}  // namespace
+
+PalpationNumbers::PalpationNumbers(models::PalpationModel model, double field_per_m)
+    : model_(std::move(model)), field_per_m_(field_per_m) {
+  const PalpationParameters& p = model_.base;
+  const auto add = [this](const char* name, double PalpationParameters::*held,
+                          Parameter parameter) {
+    parameter.pointer = fmt::format("/base/{}", name);
+    if (fixed(parameter.pointer) || !(parameter.start > 0.0)) return;
+    slots_.push_back({name, held, std::move(parameter)});
+  };
+  add("force_factor_Nm", &PalpationParameters::force_factor_Nm,
+      factor(p.force_factor_Nm, kFactorSd));
+  add("force_scale", &PalpationParameters::force_scale, factor(p.force_scale, kFactorSd));
+  add("torque_scale", &PalpationParameters::torque_scale, factor(p.torque_scale, kFactorSd));
+  if (p.points > 1)
+    add("point_spacing_m", &PalpationParameters::point_spacing_m,
+        length(p.point_spacing_m, 0.3 * p.point_spacing_m,
+               std::min(3.0 * p.point_spacing_m, 0.95 * p.length_m / (p.points - 1))));
+  const bool tapers =
+      std::ranges::any_of(model_.effects, [](const auto& use) { return use.id == "shank_taper"; });
+  add("youngs_modulus_Pa", &PalpationParameters::youngs_modulus_Pa,
+      factor(p.youngs_modulus_Pa, kFactorSd));
+  add("length_m", &PalpationParameters::length_m,
+      length(p.length_m, std::max(0.8 * p.length_m, 1.01 * (p.points - 1) * p.point_spacing_m),
+             1.2 * p.length_m));
+  if (!tapers) add("radius_m", &PalpationParameters::radius_m, factor(p.radius_m, kRadiusSd));
+}
+
+bool PalpationNumbers::fixed(const std::string& pointer) const {
+  return std::ranges::any_of(model_.fixed, [&](const auto& p) { return covers(p, pointer); });
+}
+
+std::vector<Parameter> PalpationNumbers::of_effect(const std::string& id) const {
+  auto out = parameters_of(facts_of(id));
+  for (Parameter& p : out) {
+    p.step = p.logarithmic ? 5e-3 : step_of(p.pointer, p.step);
+    if (p.pointer == "contact_nonlinearity/reference_gradient_per_m") {
+      p.start = std::clamp(field_per_m_, p.low, p.high);
+      p.prior_sd = kReferenceSd;
+    }
+  }
+  return out;
+}
+
+std::vector<Parameter> PalpationNumbers::parameters(const Structure& structure) const {
+  std::vector<Parameter> out;
+  for (const Slot& slot : slots_) out.push_back(slot.parameter);
+  for (const effects::Use& use : model_.effects) {
+    auto own = of_effect(use.id);
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      own[k].start = use.values[k];
+      own[k].shape = false;
+      out.push_back(own[k]);
+    }
+  }
+  for (const std::string& id : structure.effects)
+    for (auto& p : of_effect(id)) out.push_back(p);
+  return out;
+}
+
+std::vector<std::vector<double>> PalpationNumbers::starts(std::string_view effect) const {
+  const double r = model_.base.radius_m;
+  if (effect == "shank_taper") return {{1.05 * r, 0.95 * r}, {0.95 * r, 1.05 * r}};
+  if (effect == "shank_curvature")
+    return {{3e-4, 0.0}, {3e-4, M_PI_2}, {3e-4, -M_PI_2}, {3e-4, M_PI}};
+  if (effect == "contact_nonlinearity") return {{1.05, field_per_m_}};
+  if (effect == "tip_ball") return {{3e-4}, {8e-4}};
+  if (effect == "pose_offset") return {{1e-5, 1e-5, 1e-5}};
+  if (effect == "sensor_bias") return {{1e-2, 1e-2, 1e-2, 1e-3, 1e-3, 1e-3}};
+  if (effect == "probe_weight" || effect == "probe_inertia") return {{0.01, 0.05}};
+  return {};
+}
+
+models::PalpationModel PalpationNumbers::with(const Structure& structure,
+                                              std::span<const double> values) const {
+  models::PalpationModel out = model_;
+  std::size_t at = 0;
+  for (const Slot& slot : slots_) out.base.*slot.held = values[at++];
+  for (effects::Use& use : out.effects)
+    if (!facts_of(use.id).free_per_trial)
+      for (double& value : use.values) value = values[at++];
+  for (const std::string& id : structure.effects) {
+    const effects::EffectFacts& facts = facts_of(id);
+    if (facts.free_per_trial) continue;
+    effects::Use use{id, {}};
+    for (std::size_t k = 0; k < effects::value_count(facts); ++k)
+      use.values.push_back(values[at++]);
+    out.effects.push_back(std::move(use));
+  }
+  core::require(at == values.size(), "a structure has as many values as parameters");
+  return out;
+}
+
+}  // namespace lab

@@ -1,0 +1,43 @@
+/// The numbers of a palpation model that a fit may move, and the model that a set of them makes.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "lab/problem.hpp"
+#include "models/model.hpp"
+
+namespace lab {
+
+/// Which numbers of the base are free: those not fixed. The pose offset of the base is never
+/// fitted: the effect pose_offset is.
+class PalpationNumbers {
+ public:
+  /// @param field_per_m  a usual |g| where the recordings touch bone: where the search for an
+  /// exponent has its reference
+  PalpationNumbers(models::PalpationModel model, double field_per_m);
+
+  /// Base, then the model's own effects, then those added.
+  std::vector<Parameter> parameters(const Structure& structure) const;
+  /// Numbers to begin an effect's search with, each in the order of its parameters.
+  std::vector<std::vector<double>> starts(std::string_view effect) const;
+  /// The model with these values. `sensor_drift`, free per trial, is left out of it.
+  models::PalpationModel with(const Structure& structure, std::span<const double> values) const;
+  const models::PalpationModel& model() const { return model_; }
+
+ private:
+  struct Slot {
+    const char* name;
+    double laws::PalpationParameters::*held;
+    Parameter parameter;
+  };
+  bool fixed(const std::string& pointer) const;
+  std::vector<Parameter> of_effect(const std::string& id) const;
+
+  models::PalpationModel model_;
+  double field_per_m_;
+  std::vector<Slot> slots_;
+};
+
+}  // namespace lab

@@ -1,0 +1,204 @@
+#include "lab/selection.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "lab/fit_report.hpp"
+
+namespace lab {
+namespace {
+
+/// A further effect must lower the whitened mean square by this share …
+constexpr double kClearShare = 0.12;
+/// … and take away this share of what the given model left over the floor.
+constexpr double kClearOfExcess = 0.004;
+/// And, in units of chance: 2·nats per number added.
+constexpr double kClearLoss = 30.0;
+/// Singles that are grown into pairs, pairs into triples; effects tried on each.
+constexpr std::size_t kGrown = 4, kTriedOnEach = 6;
+constexpr int kTries = 2;
+/// At the floor for all purposes: no more effects are looked for.
+constexpr double kFloor = 1.25;
+/// An effect's numbers must be known better than this share of their size.
+constexpr double kKnown = 0.5;
+
+}  // namespace
+
+std::string name(const Structure& structure) {
+  return fmt::format("{}", fmt::join(structure.effects, " + "));
+}
+
+double excess(double mean_square) { return std::max(mean_square - 1.0, 1e-3); }
+
+Selection::Selection(const Residual& residual, const DiagnoseOptions& options,
+                     const core::Progress& progress)
+    : residual_(residual), options_(options), progress_(progress) {}
+
+bool Selection::go_on(double share) {
+  if (progress_ && !progress_(share)) stopped_ = true;
+  return !stopped_;
+}
+
+Solution& Selection::fitted(const Solution& from, const std::string& effect, int tries) {
+  const std::string key = name(plus(from.structure, effect));
+  const auto known = tried_.find(key);
+  Solution found = extend(residual_, from, look(residual_, from, effect), effect, tries);
+  if (known != tried_.end() && known->second.mean_square() <= found.mean_square())
+    return known->second;
+  return tried_[key] = std::move(found);
+}
+
+bool Selection::clearly_better(const Solution& larger, const Solution& smaller) const {
+  const double before = smaller.mean_square(), after = larger.mean_square();
+  const double numbers =
+      std::max(1.0, double(larger.values.size()) - double(smaller.values.size()));
+  const double gained = double(residual_.size()) * (before - after) / std::max(1.0, after) +
+                        smaller.prior - larger.prior;
+  return gained > kClearLoss * numbers && before - after > kClearShare * before &&
+         before - after > kClearOfExcess * excess(base().mean_square());
+}
+
+bool Selection::nameable(Solution& at) const {
+  Fit words = report(residual_, at, false);
+  for (const Estimate& e : words.estimates) {
+    if (e.pointer.starts_with('/')) continue;
+    const auto& p = at.parameters[std::size_t(&e - words.estimates.data())];
+    if (!e.informed) return false;
+    if (!p.shape && std::abs(e.value) < e.sd / kKnown * 0.5) return false;
+  }
+  return true;
+}
+
+std::vector<const Solution*> Selection::best_of(std::size_t effects, std::size_t most) const {
+  std::vector<const Solution*> out;
+  for (const auto& [key, solution] : tried_)
+    if (solution.structure.effects.size() == effects) out.push_back(&solution);
+  std::ranges::stable_sort(out, {}, [](const Solution* s) { return s->mean_square(); });
+  if (out.size() > most) out.resize(most);
+  return out;
+}
+
+void Selection::singles() {
+  const auto& candidates = residual_.problem().candidates();
+  double done = 0.0;
+  for (const Candidate& candidate : candidates) {
+    if (!go_on(0.1 + 0.4 * done++ / double(candidates.size()))) return;
+    const std::string& id = candidate.facts.id;
+    if (!candidate.possible) continue;
+    if (!options_.only.empty() && std::ranges::find(options_.only, id) == options_.only.end())
+      continue;
+    Look seen = look(residual_, base(), id);
+    if (seen.excited) tried_[id] = extend(residual_, base(), seen, id, kTries);
+    looks_[id] = std::move(seen);
+  }
+}
+
+void Selection::grow() {
+  for (int size = 1; size < options_.max_effects; ++size) {
+    const auto best = best_of(std::size_t(size), kGrown);
+    if (best.empty() || best.front()->mean_square() < kFloor) return;
+    std::vector<std::pair<const Solution*, std::string>> todo;
+    for (const Solution* from : best) {
+      std::vector<std::pair<double, std::string>> gains;
+      Solution at = *from;
+      differentiate(residual_, at);
+      tried_[name(at.structure)] = at;
+      for (const auto& [id, seen] : looks_) {
+        if (!seen.excited || contains(at.structure, id)) continue;
+        if (!go_on(0.5 + 0.15 * size)) return;
+        const Look now = look(residual_, at, id);
+        gains.emplace_back(now.starts.front().gain, id);
+      }
+      std::ranges::sort(gains, std::greater<>());
+      if (gains.size() > kTriedOnEach) gains.resize(kTriedOnEach);
+      for (const auto& [gain, id] : gains)
+        if (gain > kClearLoss) todo.emplace_back(&tried_[name(at.structure)], id);
+    }
+    for (const auto& [from, id] : todo) {
+      if (!go_on(0.6 + 0.15 * size)) return;
+      fitted(*from, id, 1);
+    }
+    const auto larger = best_of(std::size_t(size + 1), 1);
+    if (larger.empty() || !clearly_better(*larger.front(), *best_of(std::size_t(size), 1).front()))
+      return;
+  }
+}
+
+void Selection::prune() {
+  for (bool dropped = true; dropped && !chosen_.empty();) {
+    dropped = false;
+    const Structure now = chosen().structure;
+    for (const std::string& id : now.effects) {
+      const Structure less = minus(now, id);
+      const std::string key = name(less);
+      if (!tried_.contains(key)) {
+        Solution at = chosen();
+        const auto parameters = residual_.problem().parameters(less);
+        tried_[key] = search(residual_, less, carried(parameters, at), &at);
+      }
+      if (clearly_better(chosen(), tried_.at(key))) continue;
+      chosen_ = key;
+      dropped = true;
+      break;
+    }
+  }
+}
+
+void Selection::prefer_parents() {
+  for (const Candidate& candidate : residual_.problem().candidates()) {
+    const std::string& id = candidate.facts.id;
+    if (chosen_.empty() || !contains(chosen().structure, id)) continue;
+    for (const std::string& parent : candidate.facts.parents) {
+      if (contains(chosen().structure, parent) || !looks_.contains(parent) ||
+          !looks_.at(parent).excited)
+        continue;
+      const Structure less = minus(chosen().structure, id);
+      if (!tried_.contains(name(less))) continue;
+      Solution from = tried_.at(name(less));
+      differentiate(residual_, from);
+      const Solution& simpler = fitted(from, parent, kTries);
+      if (!clearly_better(chosen(), simpler)) chosen_ = name(simpler.structure);
+    }
+  }
+}
+
+bool Selection::run() {
+  if (!go_on(0.0)) return false;
+  tried_[""] = fit_base(residual_);
+  singles();
+  if (stopped_) return false;
+  grow();
+  if (stopped_) return false;
+  for (int size = 1; size <= options_.max_effects; ++size)
+    for (const Solution* larger : best_of(std::size_t(size), 1))
+      if (clearly_better(*larger, chosen())) chosen_ = name(larger->structure);
+  prune();
+  prefer_parents();
+  prune();
+  // In which order they brought most: the best single of them first.
+  Structure sum;
+  for (std::size_t k = 0; k < chosen().structure.effects.size(); ++k) {
+    std::string best;
+    for (const std::string& id : chosen().structure.effects) {
+      if (contains(sum, id)) continue;
+      const std::string key = name(plus(sum, id));
+      if (!tried_.contains(key)) {
+        const Solution& at = chosen();
+        const Structure part = plus(sum, id);
+        tried_[key] =
+            search(residual_, part, carried(residual_.problem().parameters(part), at), &at);
+      }
+      if (best.empty() ||
+          tried_.at(key).mean_square() < tried_.at(name(plus(sum, best))).mean_square())
+        best = id;
+    }
+    order_.push_back(best);
+    sum = plus(sum, best);
+  }
+  return go_on(0.95);
+}
+
+}  // namespace lab

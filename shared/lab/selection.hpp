@@ -1,0 +1,62 @@
+/// The search over structures: which effects together bring the residual down to the floor.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/progress.hpp"
+#include "lab/candidates.hpp"
+#include "lab/diagnosis.hpp"
+
+namespace lab {
+
+/// Every structure that was fitted, kept by its name.
+class Selection {
+ public:
+  Selection(const Residual& residual, const DiagnoseOptions& options,
+            const core::Progress& progress);
+
+  /// Fits the base, every single effect, and more together as long as they bring the residual
+  /// clearly nearer to the floor. False when asked to stop.
+  bool run();
+
+  const Solution& base() const { return tried_.at(""); }
+  const Solution& chosen() const { return tried_.at(chosen_); }
+  Solution& chosen() { return tried_.at(chosen_); }
+  const std::map<std::string, Solution>& tried() const { return tried_; }
+  std::map<std::string, Solution>& tried() { return tried_; }
+  const std::map<std::string, Look>& looks() const { return looks_; }  ///< on the base, by effect
+  /// Ids in the order in which they brought most.
+  const std::vector<std::string>& order() const { return order_; }
+  /// Does the larger bring the residual clearly nearer to the floor than the smaller?
+  bool clearly_better(const Solution& larger, const Solution& smaller) const;
+  /// No effect ends where it may not be named: at a bound, or smaller than its standard error.
+  bool nameable(Solution& at) const;
+
+ private:
+  Solution& fitted(const Solution& from, const std::string& effect, int tries);
+  void singles();
+  void grow();
+  void prune();
+  void prefer_parents();
+  std::vector<const Solution*> best_of(std::size_t effects, std::size_t most) const;
+  bool go_on(double share);
+
+  const Residual& residual_;
+  DiagnoseOptions options_;
+  const core::Progress& progress_;
+  std::map<std::string, Solution> tried_;
+  std::map<std::string, Look> looks_;
+  std::vector<std::string> order_;
+  std::string chosen_;
+  bool stopped_ = false;
+};
+
+/// "" for the base, "a + b" else.
+std::string name(const Structure& structure);
+
+/// What a whitened mean square is above the floor, at least a little.
+double excess(double mean_square);
+
+}  // namespace lab

@@ -1,0 +1,111 @@
+/// Trials on the probing rig: a scenario, or a model alone.
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "core/progress.hpp"
+#include "station/app/aftermath.hpp"
+#include "station/app/deeds.hpp"
+#include "station/app/exchange.hpp"
+
+namespace app {
+namespace {
+using session::ProbingTask;
+using session::TrialReport;
+
+constexpr double kModelTravel_m = 0.05;  // of a model that is felt without a scenario
+
+core::Result<scenarios::Scenario> scenario_named(const std::string& name) {
+  if (const auto kind = scenarios::kind_of(name); kind && !std::filesystem::exists(name))
+    return scenarios::tuned(*kind);
+  return scenarios::Scenario::read(name);
+}
+
+core::Result<ProbingTask> task_of(const Options& options) {
+  std::optional<models::ProbingModel> model;
+  if (!options.model_file.empty()) {
+    auto read = models::ProbingModel::read(options.model_file);
+    if (!read) return read.error();
+    model = std::move(*read);
+  }
+  if (options.scenario.empty()) return session::task_of(*model, kModelTravel_m);
+  auto scenario = scenario_named(options.scenario);
+  if (!scenario) return scenario.error();
+  return session::task_of(*scenario, model);
+}
+
+void print_report(const TrialReport& report, bool fast) {
+  const auto& bus = *report.bus;
+  fmt::print("trial {}{}\n", report.trial_id,
+             report.simulated ? "  (SIMULATED rig and surgeon)" : "");
+  fmt::print(
+      "  {:.1f} s, {} samples, {} periods missed, {} skipped, {} without an answer, {} restarts\n",
+      report.duration_s, report.counts.ticks, bus.missed, report.counts.skipped, bus.lost,
+      bus.restarts);
+  fmt::print("  round trip p50 {:.0f} us, p99 {:.0f} us{}\n", bus.p50_us, bus.p99_us,
+             fast ? "; simulated time, run as fast as the bus goes" : "");
+  for (const auto& warning : report.grant.warnings) fmt::print("  warning: {}\n", warning);
+  if (!report.fault.empty()) fmt::print("  FAULT: {}\n", report.fault);
+  fmt::print("  answer: {}\n  {}\n", answer_text(report), report.file.string());
+}
+
+session::ProbingWatch watch_of(const Options& options, const ProbingTask& task) {
+  const double travel_m = task.law.travel_m;
+  return [&options, travel_m, blind = task.blind, said = std::uint64_t{0},
+          shown = core::terminal_progress("Trial")](const session::ProbingGlimpse& seen) mutable {
+    if (options.follow && seen.samples_safe != said) {
+      said = seen.samples_safe;
+      fmt::print(stderr, "{}\n",
+                 core::Json{{"trial_id", seen.trial_id}, {"samples_safe", said}}.dump());
+    }
+    if (!blind) shown(std::min(1.0, seen.x_m / travel_m));
+    return !asked_to_stop();
+  };
+}
+
+core::Result<TrialReport> one_trial(const Options& options, const session::StationFolder& folder,
+                                    const ProbingTask& task, std::uint64_t seed) {
+  session::RigSetup setup = options.rig;
+  setup.seed = seed;
+  return session::run_probing_trial(folder, task, setup, watch_of(options, task),
+                                    [&options](const session::ProbingTrialRun& trial)
+                                        -> core::Result<std::optional<trial::Answer>> {
+                                      if (asked_to_stop()) return std::optional<trial::Answer>();
+                                      return answer_of(options, trial.simulated_answer());
+                                    });
+}
+}  // namespace
+
+core::Result<int> run_probing_trials(const Options& options) {
+  auto folder = session::StationFolder::open(options.data);
+  if (!folder) return folder.error();
+  auto lock = folder->lock();
+  if (!lock) return lock.error();
+  auto recovered = folder->recover();
+  if (!recovered) return recovered.error();
+  say_recovered(*recovered);
+  auto task = task_of(options);
+  if (!task) return task.error();
+
+  core::Json trials = core::Json::array();
+  bool faulted = false;
+  for (int i = 0; i < options.trials && !asked_to_stop(); ++i) {
+    auto report = one_trial(options, *folder, *task, options.rig.seed + std::uint64_t(i));
+    if (!report) return report.error();
+    faulted = faulted || !report->complete;
+    auto scores = session::scores_of(report->file);
+    if (!scores) return scores.error();
+    trials.push_back(json_of(*report, *scores));
+    if (options.json) continue;
+    print_report(*report, options.rig.speed == session::Speed::fast);
+    print_scores(*scores);
+  }
+  const core::Json uploads = hand_over_after(options, *folder);
+  if (options.json)
+    fmt::print(
+        "{}\n",
+        core::Json{{"case_id", task->case_id}, {"trials", trials}, {"upload", uploads}}.dump(2));
+  return faulted ? 1 : 0;
+}
+
+}  // namespace app

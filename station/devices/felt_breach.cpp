@@ -1,0 +1,44 @@
+#include "station/devices/felt_breach.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace devices {
+namespace {
+constexpr double kQuick_s = 0.05, kSlow_s = 1.0;
+constexpr double kLeast_m_s = 0.001, kLeast_N = 5.0;  // below that nothing is compared
+constexpr double kThreshold = 1.1;                    // e.g. three times as fast: ln 3
+constexpr double kUnskilled = 0.6, kSkilled = 0.25;   // noise of the perceived strength
+}  // namespace
+
+FeltBreach::FeltBreach(std::uint64_t seed, double skill, double period_s)
+    : seed_(seed),
+      skill_(std::clamp(skill, 0.0, 1.0)),
+      quick_(-std::expm1(-period_s / kQuick_s)),
+      slow_(-std::expm1(-period_s / kSlow_s)) {}
+
+void FeltBreach::feel(double speed_m_s, double push_N) noexcept {
+  speed_m_s_ += quick_ * (speed_m_s - speed_m_s_);
+  push_N_ += quick_ * (push_N - push_N_);
+  settled_ += slow_ * (1.0 - settled_);
+  usual_m_s_ += slow_ * (speed_m_s - usual_m_s_);
+  usual_N_ += slow_ * (push_N - usual_N_);
+  if (settled_ < 0.6 || usual_N_ < kLeast_N * settled_) return;
+  const double faster =
+      std::log(std::max(speed_m_s_, kLeast_m_s) / std::max(usual_m_s_ / settled_, kLeast_m_s));
+  strongest_ = std::max(strongest_, faster);
+}
+
+Answer FeltBreach::answer() const noexcept {
+  std::mt19937_64 random(seed_ ^ 0x9e3779b97f4a7c15ull);
+  std::normal_distribution<double> normal;
+  const double perceived = strongest_ + std::lerp(kUnskilled, kSkilled, skill_) * normal(random);
+  Answer out;
+  out.breach = perceived > kThreshold;
+  if (out.breach) out.wall = "lateral";
+  out.confidence = 1.0 - 0.5 * std::exp(-2.0 * std::abs(perceived - kThreshold));
+  return out;
+}
+
+}  // namespace devices

@@ -1,0 +1,101 @@
+/// What stands between the law and the probing rig's drives: safety.
+#pragma once
+
+#include <cstdint>
+
+#include "core/json.hpp"
+#include "station/devices/rig_device.hpp"
+
+namespace loop {
+
+/// How much a hand on the probing rig may meet. Nothing raises above the defaults.
+struct RigLimits {
+  double max_push_N = 180.0;    ///< of the hand: above it the stage stands still
+  double max_speed_m_s = 0.23;  ///< of the stage, by command
+  double max_torque_Nm = 0.5;   ///< of the rotary motor, by command
+
+  core::Json to_json() const;
+};
+
+enum class RigFault : std::uint8_t {
+  none,
+  silent,     ///< the rig did not answer for kSilent_s
+  garbage,    ///< what came back was not an answer
+  gone,       ///< the line was closed
+  emergency,  ///< the e-stop
+  stalled,    ///< the drive's load was above its thrust
+  drive,      ///< the drive's own error
+  sensor,     ///< the sensor was beyond its range
+  watchdog,   ///< it stopped by itself more often than kMostRestarts times, for want of commands
+  pushed,     ///< the push stayed above the limit for kPushed_s
+  hand_on,    ///< somebody pushed while the sensor was tared
+};
+/// "the rig did not answer", … one line for a person, and what to do.
+const char* text_of(RigFault fault) noexcept;
+
+/// Gives every tick's command. Guarantees, whatever comes in:
+///
+/// - nothing moves before it was enabled: a fresh answer without fault or e-stop, the sensor tared
+///   over kTare_s with no hand on the probe;
+/// - a speed within the limit, within the travel (slower towards either end: v <= left /
+/// kApproach_s)
+///   and 0 while |push| is above its limit, while there is no fresh answer, and after a fault;
+/// - a fault latches: the command is "off" from that tick on. The e-stop is one; the machine
+/// latches
+///   it too, and only a person at its panel resets it.
+///
+/// When the bus is silent no command arrives either, and the machine stops by its own watchdog
+/// within 10 ms. Such a stop (the machine's watchdog fault) is cleared and the drive enabled anew
+/// when the bus is back, at most kMostRestarts times: a held-up computer is no danger, only a
+/// flaw in the trial, which says so.
+class ProbingGuard {
+ public:
+  static constexpr double kTare_s = 0.2, kTareMost_N = 10.0;
+  static constexpr double kSilent_s = 0.05, kPushed_s = 0.5, kApproach_s = 0.01;
+  static constexpr int kMostRestarts = 100;
+
+  /// What the law is given to see, and what it wanted with it.
+  struct Seen {
+    double fz_N = 0.0, tz_Nm = 0.0;  ///< tared
+    bool fresh = false;              ///< the law may be stepped
+  };
+  struct Passed {
+    devices::RigCommand command;
+    bool limited = false;
+  };
+
+  /// @param travel_m  the probe stop of the scenario
+  ProbingGuard(const RigLimits& limits, double travel_m, double period_s);
+
+  /// First in the tick: judges what the exchange gave.
+  Seen see(devices::Exchange how, const devices::RigReading& reading) noexcept;
+  /// Last in the tick: what goes out with the next exchange.
+  Passed pass(double speed_m_s, double torque_Nm) noexcept;
+
+  bool latched() const noexcept { return fault_ != RigFault::none; }
+  RigFault fault() const noexcept { return fault_; }
+  bool enabled() const noexcept { return phase_ == Phase::enabled; }
+  int restarts() const noexcept { return restarts_; }  ///< after stops by the machine's watchdog
+  double tare_N() const noexcept { return tare_N_; }
+  double tare_Nm() const noexcept { return tare_Nm_; }
+
+ private:
+  enum class Phase : std::uint8_t { taring, resetting, enabling, enabled };
+  void judge_fault(const devices::RigReading& reading) noexcept;
+  void tare(const devices::RigReading& reading) noexcept;
+  void fail(RigFault fault) noexcept;
+  bool held_by_push() noexcept;
+  double within_travel(double speed_m_s) const noexcept;
+
+  RigLimits limits_;
+  double travel_m_, period_s_;
+  Phase phase_ = Phase::taring;
+  RigFault fault_ = RigFault::none;
+  devices::RigReading last_;
+  bool fresh_ = false, reset_edge_ = false;
+  double silent_s_ = 0.0, pushed_s_ = 0.0;
+  double tare_N_ = 0.0, tare_Nm_ = 0.0;
+  int tared_ = 0, restarts_ = 0;
+};
+
+}  // namespace loop

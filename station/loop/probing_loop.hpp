@@ -1,0 +1,89 @@
+/// The probing rig's loop: exchange → guard → law → guard, and a sample to the recorder.
+#pragma once
+
+#include <atomic>
+
+#include "models/probing_runtime.hpp"
+#include "station/devices/rig_device.hpp"
+#include "station/loop/haptic_loop.hpp"
+#include "station/loop/probing_guard.hpp"
+
+namespace loop {
+
+using ProbingRing = Ring<trial::ProbingSample>;
+
+/// The latest of a running trial.
+struct ProbingSeen {
+  double t_s = 0.0, x_m = 0.0, speed_m_s = 0.0, fz_N = 0.0, turning_rad_s = 0.0;
+  std::uint64_t missed = 0;
+  std::uint32_t tick = 0;
+  trial::ProbingMode mode = trial::ProbingMode::holding;
+};
+
+/// What a loop counted beyond Counts.
+struct ProbingCounts {
+  Counts ticks;
+  std::uint64_t missed = 0;    ///< exchanges that ended after the next period had begun
+  std::uint64_t bus_lost = 0;  ///< exchanges that failed
+};
+
+/// One exchange a period, absolute deadlines. In each tick goes out what the last one decided, and
+/// what comes back is judged, the law is stepped at the depth where the stage is, and the guard
+/// lets through what may be. Owns nothing but its counters. In the tick: no throw, no allocation,
+/// no lock; the exchange may block for RigDevice::kAnswer_ms.
+class ProbingLoop {
+ public:
+  struct Parts {
+    core::Clock& clock;  ///< paces the ticks: the monotonic one, or a manual one
+    core::Clock& wall;   ///< times the exchange
+    devices::RigDevice& device;
+    ProbingGuard& guard;
+    ProbingRing& ring;
+    Seqlock<ProbingSeen>& live;
+  };
+  /// @param law       may be exchanged while running
+  /// @param travel_m  the probe stop
+  ProbingLoop(Parts parts, const models::ProbingRuntime& law, double travel_m, double rate_Hz);
+
+  /// Until `stop()`, or the guard latches, or the probe has stood at its stop for kStopped_s.
+  /// `each_tick` (may be empty) runs after each tick under the tick's rules. The drive is left off.
+  void run(const std::function<void(const trial::ProbingSample&)>& each_tick = {}) noexcept;
+  /// From any thread.
+  void stop() noexcept { stop_.store(true, std::memory_order_relaxed); }
+  /// From any thread: another law from the next tick on; it and the one before must outlive the
+  /// run.
+  void exchange_law(const models::ProbingRuntime& law) noexcept {
+    law_.store(&law, std::memory_order_release);
+  }
+
+  static constexpr double kStopped_s = 0.5;
+
+  const ProbingCounts& counts() const noexcept { return counts_; }
+  const TimeHistogram& wake() const noexcept { return wake_; }
+  const TimeHistogram& work() const noexcept { return work_; }
+  const TimeHistogram& round_trip() const noexcept { return round_trip_; }
+  core::Instant_ns started() const noexcept { return start_; }
+
+ private:
+  trial::ProbingSample tick(core::Instant_ns now, std::uint32_t number, bool late) noexcept;
+  void step_law(const ProbingGuard::Seen& seen, trial::ProbingSample& out,
+                double& torque_Nm) noexcept;
+  void follow_angle(std::int32_t angle_urad) noexcept;
+  void record(trial::ProbingSample& sample, core::Instant_ns deadline) noexcept;
+
+  Parts parts_;
+  std::atomic<const models::ProbingRuntime*> law_;
+  double travel_m_, period_s_;
+  core::Instant_ns period_, start_ = 0;
+  models::ProbingLive at_;
+  devices::RigReading reading_;
+  devices::RigCommand command_;
+  std::int32_t last_urad_ = 0;
+  double theta_rad_ = 0.0, stopped_s_ = 0.0;
+  bool angle_known_ = false;
+  ProbingCounts counts_;
+  TimeHistogram wake_, work_, round_trip_;
+  std::atomic<bool> stop_ = false;
+};
+
+}  // namespace loop

@@ -1,0 +1,2 @@
+export { NewStudyPage } from './new-study-page';
+export { StudiesPage } from './studies-page';

@@ -1,0 +1,105 @@
+import { useQuery, useQueryClient } from '@tanstack/react-query';
+import { useState } from 'react';
+import { Link } from 'wouter';
+import { ApiError, studyEventsQuery, studyQuery, type Study } from '@/api';
+import { Badge, Button, Card, Facts, Notice, Progress, Skeleton, useTitle } from '@/ui';
+import { formatCount, formatDateTime, formatShare, isoDateTime, kNone, share } from '@/units';
+import { DeedDialog, type Deed } from './deeds';
+import { Happened } from './happened';
+import { People } from './people';
+import styles from './study-page.module.css';
+import { progressOf } from './words';
+
+const kOrder = { random: 'random', balanced: 'balanced, Williams squares' } as const;
+const kRepeat = { at_end: 'at the end', at_once: 'at once', never: 'never' } as const;
+
+const sum = (study: Study, what: 'done' | 'planned' | 'judged' | 'recognised') => study.participants.reduce((total, one) => total + one[what], 0);
+
+function Back() { return <p className={styles.back}><Link href="/studies">← Studies</Link></p>; }
+
+function Head({ study, ask }: { readonly study: Study; readonly ask: (deed: Deed) => void }) {
+  const done = sum(study, 'done'), planned = sum(study, 'planned'), judged = sum(study, 'judged'), recognised = sum(study, 'recognised');
+  const complete = planned > 0 && done === planned;
+  return (
+    <>
+      <div className={styles.title}>
+        <h1>{study.title}</h1>
+        {complete ? <Badge tone="good">complete</Badge> : study.state === 'paused' ? <Badge tone="warn">paused</Badge> : <Badge tone="accent">running</Badge>}
+        {study.participants.some(({ simulated }) => simulated) ? <Badge tone="warn">simulated surgeons</Badge> : null}
+        <span className={styles.deed}>
+          {study.state === 'paused'
+            ? <Button look="solid" onClick={() => ask({ kind: 'resume-study' })}>Go on</Button>
+            : <Button disabled={complete} onClick={() => ask({ kind: 'pause-study' })}>Pause the study</Button>}
+        </span>
+      </div>
+      <div className={styles.progress}>
+        <Progress done={done} of={planned} label={`${progressOf({ done, planned })} trials done`} />
+        <span role="status">{progressOf({ done, planned })} trials done</span>
+      </div>
+      <Facts
+        facts={[
+          { name: 'Short name', value: study.id },
+          { name: 'Participants', value: formatCount(study.participants.length) },
+          { name: 'Scenarios × repeats', value: `${formatCount(study.scenarios.length)} × ${formatCount(study.repeats)}` },
+          { name: 'Order', value: kOrder[study.ordering] },
+          { name: 'What does not count is repeated', value: kRepeat[study.on_invalid] },
+          { name: 'Recognised', value: judged === 0 ? kNone : `${formatCount(recognised)} of ${formatCount(judged)} (${formatShare(share(recognised / judged))})` },
+          { name: 'Made', value: <><time dateTime={isoDateTime(study.made_utc_us)}>{formatDateTime(study.made_utc_us)}</time> by {study.made_by}</> },
+        ]}
+      />
+    </>
+  );
+}
+
+function Waiting() {
+  return (
+    <div className={styles.page} role="status">
+      <Back />
+      <span className="hidden-visually">Loading the study</span>
+      <Skeleton width="360px" height="32px" />
+      <Skeleton height="20px" />
+      <Skeleton height="44px" />
+      <Skeleton height="480px" />
+    </div>
+  );
+}
+
+function Failed({ reason, retry }: { readonly reason: Error; readonly retry: () => void }) {
+  const missing = reason instanceof ApiError && reason.code === 'not_found';
+  return (
+    <div className={styles.page}>
+      <Back />
+      {missing
+        ? <Notice tone="warn" title="There is no such study.">The address may be mistyped, or the study is on another server.</Notice>
+        : <Notice tone="bad" title="The study could not be loaded." onRetry={retry}>{reason.message}</Notice>}
+    </div>
+  );
+}
+
+/** Who has done what, live. Which scenarios come next is told to nobody. */
+export function StudyPage({ id }: { readonly id: string }) {
+  const query = useQuery(studyQuery(id));
+  const events = useQuery(studyEventsQuery(id));
+  const client = useQueryClient();
+  const [deed, setDeed] = useState<Deed | null>(null);
+  const study = query.data;
+  useTitle(study?.title ?? 'Study');
+  if (query.isPending) return <Waiting />;
+  if (!study) return <Failed reason={query.error ?? new Error('No answer')} retry={() => void query.refetch()} />;
+  const changed = (next: Study) => {
+    client.setQueryData(studyQuery(id).queryKey, next);
+    void client.invalidateQueries({ queryKey: studyEventsQuery(id).queryKey });
+  };
+  return (
+    <div className={styles.page}>
+      <Back />
+      <Head study={study} ask={setDeed} />
+      {query.isError ? <Notice tone="bad" title="The study could not be brought up to date." onRetry={() => void query.refetch()}>{query.error.message}</Notice> : null}
+      {study.participants.length === 0
+        ? <Notice title="Nobody is enrolled yet.">Participants appear here as soon as they are.</Notice>
+        : <Card title="Participants"><People study={study} ask={setDeed} /></Card>}
+      <Happened events={events.data?.events} error={events.isError ? events.error : null} retry={() => void events.refetch()} />
+      {deed ? <DeedDialog study={study.id} deed={deed} onChanged={changed} onClose={() => setDeed(null)} /> : null}
+    </div>
+  );
+}
