@@ -71,8 +71,12 @@ TEST(ProbingProblem, AModelThatIsRightIsAtTheFloorAndItsNumbersAreFound) {
   const auto f = fit(*problem, {});
   ASSERT_TRUE(f) << f.error().what;
   for (const Estimate& e : f->estimates) {
-    if (e.pointer.ends_with("stiffness_N_per_m")) EXPECT_NEAR(e.value, kStiffness, 3.0);
-    if (e.pointer.ends_with("damping_Ns_per_m")) EXPECT_NEAR(e.value, kDamping, 2.0);
+    if (e.pointer.ends_with("stiffness_N_per_m")) {
+      EXPECT_NEAR(e.value, kStiffness, 3.0);
+    }
+    if (e.pointer.ends_with("damping_Ns_per_m")) {
+      EXPECT_NEAR(e.value, kDamping, 2.0);
+    }
   }
   EXPECT_NEAR(f->rmse, kNoise_N, 0.1 * kNoise_N);
   EXPECT_NEAR(f->noise_floor, kNoise_N, 0.15 * kNoise_N);
@@ -97,7 +101,9 @@ TEST(ProbingProblem, WhatNeedsAChannelThatWasNotRecordedIsLeftOutAndSaidSo) {
       EXPECT_FALSE(c.possible);
       EXPECT_THAT(c.why_not, HasSubstr("theta_rad"));
     }
-    if (c.facts.id == "torque_crosstalk") EXPECT_THAT(c.why_not, HasSubstr("tz_Nm"));
+    if (c.facts.id == "torque_crosstalk") {
+      EXPECT_THAT(c.why_not, HasSubstr("tz_Nm"));
+    }
   }
 }
 

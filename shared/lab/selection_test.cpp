@@ -197,8 +197,12 @@ TEST(Diagnose, SaysOfEachEffectWhyItWasNotTried) {
   const auto d = diagnose(toy);
   ASSERT_TRUE(d);
   for (const auto& r : d->ranking) {
-    if (r.id == "silent") EXPECT_EQ(r.note.substr(0, 11), "not excited");
-    if (r.id == "deaf") EXPECT_EQ(r.note, "its channel was not recorded");
+    if (r.id == "silent") {
+      EXPECT_EQ(r.note.substr(0, 11), "not excited");
+    }
+    if (r.id == "deaf") {
+      EXPECT_EQ(r.note, "its channel was not recorded");
+    }
   }
 }
 
