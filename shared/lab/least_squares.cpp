@@ -288,6 +288,7 @@ void add_prior(const Solution& at, Gram& g) {
 }
 
 Eigen::VectorXd solve(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
+  if (b.size() == 0) return b;
   Eigen::VectorXd unit = a.diagonal().cwiseMax(0.0).cwiseSqrt();
   for (double& v : unit) v = v > 0.0 ? 1.0 / v : 0.0;
   const Eigen::MatrixXd scaled = unit.asDiagonal() * a * unit.asDiagonal();
@@ -354,6 +355,11 @@ Solution search(const Residual& residual, const Structure& structure, std::vecto
       fresh.push_back(k);
     else
       at.jacobian.col(Eigen::Index(k)) = warm->jacobian.col(found->second);
+  }
+  if (at.parameters.empty()) {  // nothing to move
+    judge(at, robust_scale(at.residual));
+    at.converged = true;
+    return at;
   }
   const bool stale = fresh.size() < at.parameters.size();
   return Search(residual, std::move(at), options).run(fresh, stale);
