@@ -59,9 +59,9 @@ const volume::Volume& block() {
 }
 
 const volume::ForceField& field() {
-  static const volume::ForceField kField = std::move(
-      *volume::ForceField::make(block(), PalpationModel{}.transfer, volume::FieldKind::potential));
-  return kField;
+  static const auto kMade =
+      volume::ForceField::make(block(), PalpationModel{}.transfer, volume::FieldKind::potential);
+  return *kMade;
 }
 
 PalpationRuntime runtime_of(std::vector<effects::Use> uses) {
