@@ -13,7 +13,7 @@ constexpr double kShareLeft = 0.006;
 /// Named at all: at most this share is left.
 constexpr double kMostLeft = 0.5;
 /// Observations that a trial is worth, and the price of a number, in nats.
-constexpr double kPerTrial = 12.0, kPrice = 2.0;
+constexpr double kPerTrial = 12.0, kPrice = 5.0;
 /// As good as the one chosen, for all purposes: within this factor of its excess.
 constexpr double kAsGood = 1.5;
 constexpr double kSettled = 0.95;

@@ -16,7 +16,8 @@ namespace {
 constexpr double kFactorSd = 0.5;  // of the logarithm of a stiffness or damping
 constexpr double kPlaceSd_m = 5e-4;
 constexpr double kPlaceStep_m = 2e-5;
-constexpr double kNear_m = 1e-3;  // a border this near to the recording may be moved by it
+constexpr double kRough_m = 4e-4;  // within which a border is also sought by trial
+constexpr double kNear_m = 1e-3;   // a border this near to the recording may be moved by it
 constexpr double kSameBorder_m = 1e-9;
 constexpr double kLeastLayer_m = 1e-4;
 constexpr double kMostFactor = 50.0;  // a stiffness or damping is found within this factor
@@ -117,6 +118,7 @@ void ProbingNumbers::add_layer(std::size_t k, const Reach& reach) {
     place.high = layer.equilibrium_m + 0.1;
     add(Kind::equilibrium, k, "equilibrium_m", place);
   }
+  place.rough = kRough_m;
   const auto near = [&](double border_m) {
     return border_m > reach.least_m - kNear_m && border_m < reach.most_m + kNear_m;
   };

@@ -20,6 +20,8 @@ constexpr double kClearLoss = 30.0;
 /// Singles that are grown into pairs, pairs into triples; effects tried on each.
 constexpr std::size_t kGrown = 4, kTriedOnEach = 6;
 constexpr int kTries = 2;
+/// So many of the best of a size are fitted to the end before they are compared.
+constexpr std::size_t kRefined = 3;
 /// At the floor for all purposes: no more effects are looked for.
 constexpr double kFloor = 1.25;
 /// An effect's numbers must be known better than this share of their size.
@@ -96,7 +98,16 @@ void Selection::singles() {
   }
 }
 
+void Selection::refine(std::size_t effects) {
+  for (const Solution* s : best_of(effects, kRefined)) {
+    Solution& at = tried_[name(s->structure)];
+    at = polish(residual_, search(residual_, at.structure, at.values, nullptr,
+                                  {.max_iterations = 8, .tolerance = 1e-5}));
+  }
+}
+
 void Selection::grow() {
+  refine(1);
   for (int size = 1; size < options_.max_effects; ++size) {
     const auto best = best_of(std::size_t(size), kGrown);
     if (best.empty() || best.front()->mean_square() < kFloor) return;
@@ -121,6 +132,7 @@ void Selection::grow() {
       if (!go_on(0.6 + 0.15 * size)) return;
       fitted(*from, id, 1);
     }
+    refine(std::size_t(size + 1));
     const auto larger = best_of(std::size_t(size + 1), 1);
     if (larger.empty() || !clearly_better(*larger.front(), *best_of(std::size_t(size), 1).front()))
       return;

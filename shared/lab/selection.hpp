@@ -37,6 +37,7 @@ class Selection {
  private:
   Solution& fitted(const Solution& from, const std::string& effect, int tries);
   void singles();
+  void refine(std::size_t effects);
   void grow();
   void prune();
   void prefer_parents();
