@@ -121,8 +121,8 @@ inline Param bends_shank() {
           .low = 0.0,
           .high = 1.0,
           .off = kNoOff,
-          .unit = "1",
-          .if_missing = 1.0};
+          .if_missing = 1.0,
+          .unit = "1"};
 }
 
 class HandleWrench {

@@ -32,10 +32,6 @@ bool is_dry(std::string_view effect) {
          effect == "depth_friction" || effect.starts_with("expression:");
 }
 
-bool has_drift(const Structure& structure) {
-  return std::ranges::find(structure.effects, kDrift) != structure.effects.end();
-}
-
 class ProbingProblem final : public Problem {
  public:
   ProbingProblem(ProbingNumbers numbers, std::vector<ProbingRecording> trials, bool turns)
@@ -95,6 +91,10 @@ class ProbingProblem final : public Problem {
   }
 
  private:
+  bool has_drift(const Structure& structure) const {
+    return numbers_.has(kDrift) ||
+           std::ranges::find(structure.effects, kDrift) != structure.effects.end();
+  }
   const ProbingRecording& trial(int k) const { return trials_[std::size_t(k)]; }
   static Drift drift_of(const ProbingRecording& r);
   void set_candidates();
@@ -157,10 +157,14 @@ std::vector<double> ProbingProblem::dry_at_rest(const models::ProbingModel& mode
   if (dry.effects.empty() || r.rest.empty()) return {};
   const auto runtime = models::ProbingRuntime::make(dry, kTravel_m);
   core::require(bool(runtime), "values within their bounds make a model that runs");
-  models::ProbingForces out;
-  runtime->predict(r.at_rest, out);
-  for (double& f : out.fz_N) f = std::abs(f);
-  return out.fz_N;
+  effects::ProbingMotion back = r.at_rest;
+  for (double& v : back.v_m_s) v = -v;
+  models::ProbingForces in, out;
+  runtime->predict(r.at_rest, in);
+  runtime->predict(back, out);
+  for (std::size_t k = 0; k < in.fz_N.size(); ++k)
+    in.fz_N[k] = 0.5 * std::abs(in.fz_N[k] - out.fz_N[k]);
+  return in.fz_N;
 }
 
 Drift ProbingProblem::drift_of(const ProbingRecording& r) {
@@ -177,9 +181,7 @@ void ProbingProblem::set_candidates() {
   const bool angle = every(&effects::ProbingMotion::omega_rad_s),
              torque = every(&effects::ProbingMotion::tz_Nm);
   for (const auto& info : effects::probing_effects()) {
-    if (std::ranges::any_of(numbers_.model().effects,
-                            [&](const auto& use) { return use.id == info.facts.id; }))
-      continue;
+    if (numbers_.has(info.facts.id)) continue;
     Candidate candidate{info.facts, true, ""};
     const auto lacks = [&](const std::string& why) {
       candidate.possible = false;

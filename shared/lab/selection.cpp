@@ -27,7 +27,24 @@ constexpr double kFloor = 1.25;
 /// An effect's numbers must be known better than this share of their size.
 constexpr double kKnown = 0.5;
 
+/// Observations that a trial is worth, and the price of a number, in nats.
+constexpr double kPerTrial = 12.0, kPrice = 5.0;
+/// Below this a mean square says nothing more: the noise is known no better.
+constexpr double kLeastSquare = 0.02;
+
+double numbers_beyond(const Residual& residual, const Solution& larger, const Solution& smaller) {
+  const Problem& problem = residual.problem();
+  return double(larger.values.size()) - double(smaller.values.size()) +
+         problem.free_per_trial(larger.structure) - problem.free_per_trial(smaller.structure);
+}
+
 }  // namespace
+
+double cost(const Residual& residual, const Solution& s, const Solution& base) {
+  return 0.5 * kPerTrial * double(residual.trials()) *
+             std::log(std::max(kLeastSquare, s.mean_square())) +
+         0.5 * (s.prior - base.prior) + kPrice * numbers_beyond(residual, s, base);
+}
 
 std::string name(const Structure& structure) {
   return fmt::format("{}", fmt::join(structure.effects, " + "));
@@ -55,8 +72,7 @@ Solution& Selection::fitted(const Solution& from, const std::string& effect, int
 
 bool Selection::clearly_better(const Solution& larger, const Solution& smaller) const {
   const double before = smaller.mean_square(), after = larger.mean_square();
-  const double numbers =
-      std::max(1.0, double(larger.values.size()) - double(smaller.values.size()));
+  const double numbers = std::max(1.0, numbers_beyond(residual_, larger, smaller));
   const double gained = double(residual_.size()) * (before - after) / std::max(1.0, after) +
                         smaller.prior - larger.prior;
   return gained > kClearLoss * numbers && before - after > kClearShare * before &&
@@ -78,7 +94,7 @@ std::vector<const Solution*> Selection::best_of(std::size_t effects, std::size_t
   std::vector<const Solution*> out;
   for (const auto& [key, solution] : tried_)
     if (solution.structure.effects.size() == effects) out.push_back(&solution);
-  std::ranges::stable_sort(out, {}, [](const Solution* s) { return s->mean_square(); });
+  std::ranges::stable_sort(out, {}, [&](const Solution* s) { return cost(residual_, *s, base()); });
   if (out.size() > most) out.resize(most);
   return out;
 }

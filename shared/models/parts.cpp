@@ -86,10 +86,13 @@ namespace {
 /// One parameter's numbers, appended to `values`.
 void read_parameter(Fields& fields, const effects::Param& param, std::vector<double>& values) {
   const char* name = param.name.c_str();
+  if (!std::isnan(param.if_missing) && !fields.has(name)) {
+    fields.skip(name);
+    values.insert(values.end(), std::size_t(param.components), param.if_missing);
+    return;
+  }
   if (param.components == 1) {
-    values.push_back(std::isnan(param.if_missing)
-                         ? fields.number(name, param.low, param.high)
-                         : fields.number_or(name, param.if_missing, param.low, param.high));
+    values.push_back(fields.number(name, param.low, param.high));
     return;
   }
   for (const double value : fields.numbers(name, std::size_t(param.components))) {
