@@ -95,6 +95,7 @@ struct ProbingTrialRun::Parts {
   std::optional<loop::ProbingLoop> loop;
   loop::RealtimeGrant grant;
   std::string fault;
+  std::vector<trial::Event> retuned;
 
   Parts(const StationFolder& where, const ProbingTask& what, const RigSetup& how)
       : folder(where), task(what), setup(how) {}
@@ -269,16 +270,20 @@ std::optional<trial::Answer> ProbingTrialRun::simulated_answer() const {
   return out;
 }
 
-core::Result<void> ProbingTrialRun::retune(const laws::ProbingParameters& law) {
+core::Result<void> ProbingTrialRun::retune(const laws::ProbingParameters& law, core::Json what) {
   Parts& p = *parts_;
   if (law.travel_m != p.task.law.travel_m)
     return wrong("the probe stop cannot be moved while a trial runs");
   if (auto made = p.add_law(law); !made) return made;
   p.loop->exchange_law(*p.laws.back());
+  const auto seen = p.live.read().value_or(loop::ProbingSeen{});
+  p.retuned.push_back({seen.t_s, "retuned", std::move(what)});
   return {};
 }
 
 core::Result<void> ProbingTrialRun::Parts::append_end(const std::optional<trial::Answer>& answer) {
+  for (const trial::Event& event : retuned)
+    if (auto said = recorder->append(event); !said) return said;
   const core::Json tare = {{"fz_N", guard->tare_N()}, {"tz_Nm", guard->tare_Nm()}};
   if (auto said = recorder->append({elapsed_s(), "tare", tare}); !said) return said;
   if (!fault.empty()) return recorder->append({elapsed_s(), "fault", {{"what", fault}}});
