@@ -236,19 +236,20 @@ std::vector<NamedSchema> model_schemas() {
 
 std::vector<NamedSchema> diagnosis_schemas() {
   using namespace schema;
-  return {{"DiagnosisWanted",
-           object({{"model", text("a version's id")}, {"measurements", text("a set's id")}})},
-          {"Diagnosis",
-           object({{"id", text("of this run")},
-                   {"model", text("the version that is judged")},
-                   {"measurements", text("the set that judges")},
-                   {"state", one_of({"queued", "running", "done", "failed", "cancelled"}, "")},
-                   {"share", number("1", "of the work done")},
-                   {"error", text("why it failed; else empty")},
-                   {"made_utc_us", integer("us", "since 1970, UTC")},
-                   {"made_by", text("who")},
-                   {"better_model", nullable(text("the version it made"))},
-                   {"result", nullable(anything("tractus-diagnosis/1"))}})}};
+  return {
+      {"DiagnosisWanted",
+       object({{"model", text("a version's id")}, {"measurements", text("a set's id")}})},
+      {"Diagnosis", object({{"id", text("of this run")},
+                            {"model", text("the version that is judged")},
+                            {"measurements", text("the set that judges")},
+                            {"state", one_of({"queued", "running", "done", "failed", "cancelled"},
+                                             "how it stands")},
+                            {"share", number("1", "of the work done")},
+                            {"error", text("why it failed; else empty")},
+                            {"made_utc_us", integer("us", "since 1970, UTC")},
+                            {"made_by", text("who")},
+                            {"better_model", nullable(text("the version it made"))},
+                            {"result", nullable(anything("tractus-diagnosis/1"))}})}};
 }
 
 }  // namespace
