@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <limits>
 #include <map>
 
 namespace app {
@@ -13,6 +14,7 @@ constexpr const char* kExamples = R"(Examples:
   tractus-station --case 3f9ac2d1 --data st --server http://127.0.0.1:8480 --token-file st.token
   tractus-station --device sim-rig --scenario lateral_breach --data st --speed fast   SIMULATED rig
   tractus-station --device rig --address 192.168.1.40:1502 --scenario mine.json --data st
+  tractus-station study  --study spine-1 --participant P01 --device rig --data st --server URL --token-file st.token
   tractus-station sync   --data st --server URL --token-file st.token
   tractus-station upload --data st --server URL --token-file st.token --wait 600)";
 
@@ -107,6 +109,35 @@ void add_run(CLI::App& app, Options& options) {
                "a JSON line on standard error whenever samples have reached the disk");
 }
 
+void add_study(CLI::App& app, Options& options) {
+  app.add_option("--study", options.study, "the study's short name")->required();
+  app.add_option("--participant", options.participant, "a pseudonym")->required();
+  app.add_option("--device", options.rig.device, "rig, or sim-rig for a simulated participant")
+      ->check(CLI::IsMember({"rig", "sim-rig"}))
+      ->capture_default_str();
+  app.add_option("--address", options.rig.address,
+                 "of the rig: HOST:PORT, or a serial line /dev/…[@BAUD]")
+      ->capture_default_str();
+  app.add_option("--skill", options.rig.skill,
+                 "of the simulated surgeon, 0 … 1; without, it follows from their experience")
+      ->check(CLI::Range(0.0, 1.0));
+  app.add_option("--seed", options.rig.seed, "of the simulated surgeons")
+      ->check(CLI::Range(0.0, 9e15))
+      ->capture_default_str();
+  app.add_option("--speed", options.rig.speed, "real, or fast: simulated time, sim-rig alone")
+      ->transform(CLI::CheckedTransformer(kSpeeds));
+  app.add_option("--trials", options.trials, "at most so many now; all that are left if not given")
+      ->check(CLI::Range(1, 1000));
+  app.add_flag("--follow", options.follow,
+               "a JSON line on standard error whenever samples have reached the disk");
+}
+
+void set_study(const CLI::App& app, Options& options) {
+  options.deed = Deed::study;
+  options.skill_given = app.count("--skill") > 0;
+  if (app.count("--trials") == 0) options.trials = std::numeric_limits<int>::max();
+}
+
 int refuse(const std::string& why) {
   std::fprintf(stderr, "tractus-station: %s (see --help)\n", why.c_str());
   return 2;
@@ -149,6 +180,10 @@ Parsed parse(int argc, char** argv) {
   CLI::App* sync = app.add_subcommand("sync", "fetch the cases that the server has");
   add_data(*sync, options, true);
   add_server(*sync, options, true);
+  CLI::App* study = app.add_subcommand("study", "a participant's trials of a blind study");
+  add_data(*study, options, true);
+  add_server(*study, options, true);
+  add_study(*study, options);
   CLI::App* upload = app.add_subcommand("upload", "hand over the trials that wait");
   add_data(*upload, options, true);
   add_server(*upload, options, true);
@@ -171,6 +206,7 @@ Parsed parse(int argc, char** argv) {
     out.leave = failure.get_exit_code() == 0 ? app.exit(failure) : refuse(failure.what());
     return out;
   }
+  if (study->parsed()) set_study(*study, options);
   if (sync->parsed()) options.deed = Deed::sync;
   if (upload->parsed()) options.deed = Deed::upload;
   if (trust->parsed()) options.deed = Deed::trust;

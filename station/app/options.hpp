@@ -10,7 +10,7 @@
 
 namespace app {
 
-enum class Deed { run, probe, tune, sync, upload, trust };
+enum class Deed { run, probe, tune, study, sync, upload, trust };
 
 struct Options {
   Deed deed = Deed::run;
@@ -31,6 +31,9 @@ struct Options {
   int trials = 1;
   Show show = Show::none;
   std::filesystem::path picture;  ///< empty: none
+  // study
+  std::string study, participant;
+  bool skill_given = false;  ///< else the simulated surgeon's skill follows from their experience
   // upload
   double wait_s = 0.0;
   // trust

@@ -206,7 +206,8 @@ const std::string& ProbingTrialRun::fault() const { return parts_->fault; }
 
 // In real time this is under the tick's rules: only atomics are read.
 void ProbingTrialRun::Parts::after_tick(const trial::ProbingSample& sample) {
-  if (felt && guard->enabled()) felt->feel(double(sample.speed_m_s), double(sample.fz_N));
+  if (felt && guard->enabled())
+    felt->feel(double(sample.speed_m_s), double(sample.fz_N), sample.x_m);
   if (sample.t_s >= setup.duration_s || recorder->failed()) loop->stop();
   if (fast() && sample.tick % kDrainEveryTicks == 0) recorder->drain();
 }
@@ -263,7 +264,9 @@ std::optional<trial::Answer> ProbingTrialRun::simulated_answer() const {
   if (!parts_->felt) return std::nullopt;
   const devices::Answer said = parts_->felt->answer();
   trial::Answer out{.breach = said.breach, .wall = std::nullopt, .confidence = said.confidence};
-  if (said.breach) out.wall = said.wall;
+  if (!said.breach) return out;
+  out.wall = said.wall;
+  out.depth_m = parts_->felt->depth_m();
   return out;
 }
 
