@@ -3,10 +3,15 @@
 #include <fmt/format.h>
 
 #include "core/clock.hpp"
+#include "db/store/lab.hpp"
 #include "db/store/trials.hpp"
 #include "server/jobs/assess.hpp"
+#include "server/jobs/diagnose.hpp"
 
 namespace jobs {
+namespace {
+constexpr std::uint64_t kMostAttempts = 3;  // of a run of the lab
+}
 
 core::Result<std::unique_ptr<Runner>> Runner::start(store::Store& store,
                                                     const store::Objects& objects, Log log) {
@@ -59,6 +64,8 @@ bool Runner::do_one() {
   }
   if (!*job) return false;
   core::Result<void> done = work_on(**job);
+  if (!done && done.error().code == core::Errc::cancelled && ending())
+    return false;  // still claimed: it waits again after the next start
   if (!done) {
     log_(fmt::format("job {} of {} failed: {}", (*job)->kind, (*job)->subject, done.error().what));
     done = note_failure(**job, done.error());
@@ -70,16 +77,28 @@ bool Runner::do_one() {
   return true;
 }
 
+bool Runner::ending() {
+  const std::lock_guard held(mutex_);
+  return ending_;
+}
+
 core::Result<void> Runner::work_on(const store::Job& job) {
-  if (job.kind != "metrics")
+  if (job.kind == "metrics") return assess_trial(store_, objects_, job.subject);
+  if (job.kind != "diagnosis")
     return core::Error{core::Errc::bad_input, "no work of the kind " + job.kind + " is known"};
-  return assess_trial(store_, objects_, job.subject);
+  if (job.attempts > kMostAttempts)
+    return core::Error{core::Errc::unavailable, "it ended the server before it was done"};
+  return diagnose(store_, objects_, job.subject, [this] { return ending(); });
 }
 
 core::Result<void> Runner::note_failure(const store::Job& job, const core::Error& error) {
   return store_.write([&](store::Writing& tx) -> core::Result<void> {
-    if (auto shown = store::set_assessment_failed(tx, job.subject, error.what); !shown)
-      return shown;
+    const bool cancelled = error.code == core::Errc::cancelled;
+    auto shown = job.kind == "diagnosis"
+                     ? store::end_diagnosis(tx, job.subject, cancelled ? "cancelled" : "failed",
+                                            error.what, core::utc_us())
+                     : store::set_assessment_failed(tx, job.subject, error.what);
+    if (!shown) return shown;
     return store::fail_job(tx, job.id, error.what, core::utc_us());
   });
 }

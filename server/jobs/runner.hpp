@@ -13,7 +13,8 @@
 namespace jobs {
 
 /// Claims and does one job after the other until nothing waits, then waits to be woken. Ends with
-/// its object, after the job in hand.
+/// its object, after the job in hand; a run of the lab is left off and begins again after the next
+/// start, three times at most.
 class Runner {
  public:
   /// Called with one line when something is to be known: a job that failed, a database that
@@ -36,6 +37,7 @@ class Runner {
   bool do_one();
   core::Result<void> work_on(const store::Job& job);
   core::Result<void> note_failure(const store::Job& job, const core::Error& error);
+  bool ending();
 
   store::Store& store_;
   const store::Objects& objects_;

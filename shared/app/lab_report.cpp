@@ -15,6 +15,7 @@ using core::Result;
 using lab::figure;
 
 std::string percent(double share) {
+  if (share > 0.0 && share < 0.0005) return "< 0.1 %";
   return std::isfinite(share) ? fmt::format("{:.3g} %", 100.0 * share) : "–";
 }
 
@@ -37,6 +38,11 @@ std::string estimate(const lab::Estimate& e) {
   out += e.informed ? fmt::format(" ± {}", figure(e.sd)) : "  (not informed by these recordings)";
   if (!unit.empty() && e.informed) out += " " + unit;
   return out + (e.at_bound ? "  (at the edge of its range)" : "") + "\n";
+}
+
+/// "83 %", or how little it is.
+std::string explained(double share) {
+  return share < 0.0 ? "less than its mean does" : percent(share);
 }
 
 std::string notes(const std::vector<std::string>& said) {
@@ -96,17 +102,17 @@ Result<void> write_files(const lab_io::Answer& answer, const std::filesystem::pa
 }
 
 std::string printed_comparison(const lab_io::Answer& answer) {
-  const lab::Comparison& c = answer.content.given.comparison;
+  const lab::Comparison& c = answer.content.before.comparison;
   std::string out = fmt::format(
-      "The model is off by {} in {}; the noise floor is {}; it explains {} of what could be "
-      "explained.\n\n  {}{}{}{}{}\n",
+      "The model is off by {} in {}; the noise floor is {}. Of what could be explained it explains "
+      "{}.\n\n  {}{}{}{}{}\n",
       figure(c.rmse, c.judged_unit), c.judged_name, figure(c.noise_floor, c.judged_unit),
-      percent(c.explained), left("channel", 12), right("error", 10), right("R²", 9),
+      explained(c.explained), left("channel", 12), right("error", 10), right("R²", 9),
       right("noise", 10), right("explained", 11));
   for (const auto& channel : c.channels)
     out += "  " + left(channel.name, 12) + right(figure(channel.rmse), 10) +
            right(fmt::format("{:.4f}", channel.r2), 9) + right(figure(channel.noise_floor), 10) +
-           right(percent(channel.explained), 11) + "\n";
+           right(channel.explained < 0.0 ? "< 0 %" : percent(channel.explained), 11) + "\n";
   out += "\n  " + left("where it fails", 44) + right("of error", 9) + right("of time", 9) +
          right("error", 12) + "\n";
   for (const lab::Region& r : c.where.regions)
@@ -147,7 +153,7 @@ std::string printed_diagnosis(const lab_io::Answer& answer) {
 
 std::string printed_fit(const lab_io::Answer& answer) {
   const lab::Fit& fit = *answer.content.fit;
-  const lab::Comparison& given = answer.content.given.comparison;
+  const lab::Comparison& given = answer.content.before.comparison;
   std::string out = fmt::format(
       "Fitted: the error falls from {} to {}, on held-out measurements {}; the noise floor is "
       "{}.\n\n",

@@ -46,7 +46,7 @@ inline double direction(double v_m_s, double rest_m_s) noexcept {
 /// Where in the law an effect acts, in the order in which they act. Several of one stage add (the
 /// factors of `scale` multiply, the depths of `depth` follow one another as in the model).
 enum class ProbingStage {
-  depth,      ///< the depth that the bone sees
+  depth,      ///< the depth and speed that the bone sees
   scale,      ///< a factor on the bone's resistance K(x − x0) + D v
   force,      ///< added to the resistance
   delay,      ///< moves the recorded force in time (measurement)
@@ -72,13 +72,12 @@ class ProbingEffect {
   virtual std::size_t states() const noexcept { return 0; }
   /// The state before the first moment.
   virtual void start(const ProbingTick& /*first*/, double* /*state*/) const noexcept {}
-  /// Moves the state over the moment that has been. At `depth`, tick.x_m is what came into it.
+  /// Moves the state over the moment that has been. At `depth`, depth and speed are those that came
+  /// into it.
   virtual void commit(const ProbingTick& /*tick*/, double* /*state*/) const noexcept {}
 
-  /// Stage depth: the depth seen, m, given tick.x_m.
-  virtual double depth_m(const ProbingTick& tick, const double* /*state*/) const noexcept {
-    return tick.x_m;
-  }
+  /// Stage depth: turns depth and speed of the tick into those that the bone sees.
+  virtual void see(ProbingTick& /*tick*/, const double* /*state*/) const noexcept {}
   /// Stage scale: a factor.
   virtual double scale(const ProbingTick& /*tick*/) const noexcept { return 1.0; }
   /// Stage force: N. @param base_N  the bone's resistance after depth and scale.

@@ -12,8 +12,6 @@ constexpr double kAtFloor = 1.6;
 constexpr double kShareLeft = 0.006;
 /// Named at all: at most this share is left.
 constexpr double kMostLeft = 0.5;
-/// Observations that a trial is worth, and the price of a number, in nats.
-constexpr double kPerTrial = 12.0, kPrice = 2.0;
 /// As good as the one chosen, for all purposes: within this factor of its excess.
 constexpr double kAsGood = 1.5;
 constexpr double kSettled = 0.95;
@@ -37,15 +35,11 @@ bool explains(double mean_square, double before) {
 
 Belief::Belief(const Residual& residual, const Selection& selection, const Solution& chosen)
     : chosen_(chosen.structure) {
-  const double observations = kPerTrial * double(residual.trials());
   const double base = selection.base().mean_square();
   std::vector<double> scores;
   for (const auto& [key, s] : selection.tried()) {
     entries_.push_back({s.structure, 0.0, s.mean_square()});
-    const double numbers = double(s.values.size()) - double(selection.base().values.size()) +
-                           residual.problem().free_per_trial(s.structure);
-    scores.push_back(-0.5 * observations * std::log(std::max(1.0, s.mean_square())) -
-                     0.5 * (s.prior - selection.base().prior) - kPrice * numbers);
+    scores.push_back(-cost(residual, s, selection.base()));
   }
   const double best = *std::ranges::max_element(scores);
   // What is in no catalogue: the more is left over the floor, the likelier.

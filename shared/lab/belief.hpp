@@ -17,11 +17,8 @@ bool at_floor(double mean_square, double before);
 /// Is enough of what the given model left explained to name effects at all?
 bool explains(double mean_square, double before);
 
-/// Probabilities over the structures that were fitted: e^(−score), where the score is half an
-/// effective number of observations times the logarithm of the mean square, and a price per number
-/// added. The effective number is far below that of the samples: what separates structures is not
-/// noise but small flaws of any model, shared by all samples of a trial. Some mass is kept for what
-/// is in no catalogue: all that is left over the floor.
+/// Probabilities over the structures that were fitted: e^(−cost). Some mass is kept for what is in
+/// no catalogue: the more is left over the floor, the more.
 class Belief {
  public:
   Belief(const Residual& residual, const Selection& selection, const Solution& chosen);

@@ -1,5 +1,6 @@
 #include "lab/decimator.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -52,6 +53,17 @@ void Decimator::apply(std::span<const double> in, std::span<double> out) const {
     double sum = 0.0;
     for (std::size_t k = 0; k < taps_.size(); ++k) sum += taps_[k] * at[k];
     out[j] = sum;
+  }
+}
+
+void Decimator::apply_sizes(std::span<const std::size_t> samples, std::span<const double> values,
+                            std::span<double> out) const {
+  std::ranges::fill(out, 0.0);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const std::size_t k = samples[i], width = taps_.size();
+    const std::size_t first = k + 1 < width ? 0 : (k + 1 - width + stride_ - 1) / stride_;
+    for (std::size_t j = first; j < out.size() && j * stride_ <= k; ++j)
+      out[j] += std::abs(taps_[k - j * stride_]) * values[i];
   }
 }
 

@@ -24,6 +24,10 @@ class Decimator {
   std::size_t middle(std::size_t output) const { return half() + output * stride_; }
   void apply(std::span<const double> in, std::span<double> out) const;
 
+  /// Sum of |tap| · value over the samples that are given alone, all others 0.
+  void apply_sizes(std::span<const std::size_t> samples, std::span<const double> values,
+                   std::span<double> out) const;
+
   /// Variance of the output for white noise of variance 1.
   double noise_gain() const { return noise_gain_; }
   double largest_tap() const { return taps_[half()]; }

@@ -8,6 +8,7 @@
 
 #include "lab/belief.hpp"
 #include "lab/fit_report.hpp"
+#include "lab/rest.hpp"
 #include "lab/selection.hpp"
 
 namespace lab {
@@ -140,6 +141,11 @@ Result<Diagnosis> diagnose(const Problem& problem, const DiagnoseOptions& option
   }
   out.steps = named ? steps(residual, selection, out)
                     : std::vector<Step>{{"base", out.base.rmse, out.base.held_out_rmse}};
+  if (out.verdict == Verdict::partly || out.verdict == Verdict::unexplained) {
+    const Rest rest = rest_of(residual, final);
+    out.depends_on = rest.words;
+    out.rest_explained = rest.explained;
+  }
   out.ranking = ranking(residual, selection, belief);
   out.confounded = belief.confounded();
   out.settle = belief.settle(problem);

@@ -20,6 +20,7 @@ using core::Result;
 constexpr int kFewestTrials = 4;  // fewer: stretches of time are held out
 constexpr int kStretches = 8;     // over all trials
 constexpr double kKnownTogether = 0.98;
+constexpr double kMostOfOneFold = 0.9;
 constexpr double kUninformed = 0.95;  // of what was believed beforehand is left
 
 /// Which residuals a fold holds out.
@@ -44,10 +45,23 @@ std::vector<Fold> folds_of(const Residual& residual) {
   return out;
 }
 
-/// Values without a fold: one step of Newton's from the whole's.
+/// Values without a fold: one step of Newton's from the whole's, in the directions that the rest
+/// informs too. (A number that one trial alone informs, as a layer that only it entered, cannot be
+/// predicted from the others; it stays.)
 std::vector<double> without(const Solution& at, const Gram& whole, const Gram& fold) {
-  const Eigen::VectorXd step = solve(whole.a - fold.a, fold.b);
   std::vector<double> values = at.values;
+  if (values.empty()) return values;
+  Eigen::VectorXd unit = whole.a.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  Eigen::MatrixXd a = unit.asDiagonal() * whole.a * unit.asDiagonal();
+  a.diagonal().array() += 1e-12;
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
+      unit.asDiagonal() * fold.a * unit.asDiagonal(), a);
+  Eigen::VectorXd along = eigen.eigenvectors().transpose() * (unit.asDiagonal() * fold.b);
+  for (Eigen::Index k = 0; k < along.size(); ++k) {
+    const double share = eigen.eigenvalues()(k);  // of what is known of this direction
+    along(k) = share > kMostOfOneFold ? 0.0 : along(k) / (1.0 - share);
+  }
+  const Eigen::VectorXd step = unit.asDiagonal() * (eigen.eigenvectors() * along);
   for (std::size_t k = 0; k < values.size(); ++k) {
     const Parameter& p = at.parameters[k];
     values[k] =
@@ -206,7 +220,7 @@ Solution fit_base(const Residual& residual) {
   for (const Parameter& p : residual.problem().parameters({})) start.push_back(p.start);
   Solution at = search(residual, {}, std::move(start), nullptr, {.max_iterations = 40});
   differentiate(residual, at);
-  return at;
+  return polish(residual, std::move(at));
 }
 
 Result<Fit> fit(const Problem& problem, const Structure& structure, const FitOptions& options,

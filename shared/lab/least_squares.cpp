@@ -12,9 +12,15 @@ namespace lab {
 namespace {
 
 constexpr double kHuber = 4.0;
+/// The scale is taken where only single samples lie beyond, not whole stretches that a model does
+/// not explain: this quantile of |r|, which for a normal distribution is so many standard
+/// deviations.
+constexpr double kScaleQuantile = 0.97, kScaleOfNormal = 2.17;
 /// Directions with less than this share of the greatest eigenvalue (columns scaled to one) count as
 /// unknown.
 constexpr double kRank = 1e-11;
+constexpr int kRoughRounds = 3;
+constexpr double kFinestRough = 0.005;
 
 double step_inside(const Parameter& p, double u) {
   return u + p.step <= coordinate(p, p.high) ? p.step : -p.step;
@@ -100,6 +106,7 @@ class Search {
       const double gained = at_.loss - next.loss;
       const bool poor = gained < 0.3 * promised;
       next.jacobian = std::move(at_.jacobian);
+      if (!options_.fresh_jacobian) secant(next);
       const double before = at_.loss;
       at_ = std::move(next);
       if (tries == 1) damping = std::max(damping * 0.2, 1e-9);
@@ -122,6 +129,24 @@ class Search {
   void refresh() {
     lab::differentiate(residual_, at_);
     stale_ = false;
+  }
+
+  /// Broyden's update: the jacobian that would have told of the last step.
+  void secant(Solution& next) const {
+    Eigen::VectorXd step(Eigen::Index(at_.values.size()));
+    for (Eigen::Index k = 0; k < step.size(); ++k) {
+      const auto i = std::size_t(k);
+      step(k) = (coordinate(at_.parameters[i], next.values[i]) -
+                 coordinate(at_.parameters[i], at_.values[i])) /
+                at_.parameters[i].step;  // in comparable units
+    }
+    const double length = step.squaredNorm();
+    if (!(length > 0.0)) return;
+    Eigen::VectorXd scaled = step;
+    for (Eigen::Index k = 0; k < step.size(); ++k) scaled(k) *= at_.parameters[std::size_t(k)].step;
+    const Eigen::VectorXd missed = next.residual - at_.residual - next.jacobian * scaled;
+    for (Eigen::Index k = 0; k < step.size(); ++k)
+      next.jacobian.col(k) += missed * (step(k) / length / at_.parameters[std::size_t(k)].step);
   }
 
   Gram all() const {
@@ -224,9 +249,9 @@ double robust_scale(const Eigen::VectorXd& residual) {
   if (residual.size() == 0) return 1.0;
   std::vector<double> all(residual.data(), residual.data() + residual.size());
   for (double& v : all) v = std::abs(v);
-  const auto middle = all.begin() + std::ptrdiff_t(all.size() / 2);
-  std::ranges::nth_element(all, middle);
-  return std::max(1.0, *middle / 0.6745);
+  const auto at = all.begin() + std::ptrdiff_t(kScaleQuantile * double(all.size() - 1));
+  std::ranges::nth_element(all, at);
+  return std::max(1.0, *at / kScaleOfNormal);
 }
 
 Eigen::VectorXd robust_weights(const Eigen::VectorXd& residual, double scale) {
@@ -263,6 +288,7 @@ void add_prior(const Solution& at, Gram& g) {
 }
 
 Eigen::VectorXd solve(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
+  if (b.size() == 0) return b;
   Eigen::VectorXd unit = a.diagonal().cwiseMax(0.0).cwiseSqrt();
   for (double& v : unit) v = v > 0.0 ? 1.0 / v : 0.0;
   const Eigen::MatrixXd scaled = unit.asDiagonal() * a * unit.asDiagonal();
@@ -278,6 +304,34 @@ void differentiate(const Residual& residual, Solution& solution) {
   std::vector<std::size_t> all(solution.parameters.size());
   for (std::size_t k = 0; k < all.size(); ++k) all[k] = k;
   differentiate(residual, solution, all);
+}
+
+Solution polish(const Residual& residual, Solution at, const SearchOptions& options) {
+  bool any = false;
+  for (int round = 0; round < kRoughRounds; ++round) {
+    std::vector<double> values = at.values;
+    double least = at.loss;
+    bool moved_any = false;
+    for (std::size_t c = 0; c < at.parameters.size(); ++c) {
+      const Parameter& p = at.parameters[c];
+      for (double step = p.rough; p.rough > 0.0 && step > kFinestRough * p.rough; step *= 0.5) {
+        std::vector<std::vector<double>> points(2, values);
+        points[0][c] = std::clamp(values[c] - step, p.low, p.high);
+        points[1][c] = std::clamp(values[c] + step, p.low, p.high);
+        const Eigen::MatrixXd there = residual(at.structure, points);
+        for (int side = 0; side < 2; ++side) {
+          const auto& point = points[std::size_t(side)];
+          const double loss =
+              robust_loss(there.col(side), at.scale) + prior_of(at.parameters, point);
+          if (loss < least) least = loss, values = point, moved_any = any = true;
+        }
+      }
+    }
+    if (!moved_any) break;
+    at = search(residual, at.structure, values, &at, options);
+  }
+  if (any) differentiate(residual, at);
+  return at;
 }
 
 Solution search(const Residual& residual, const Structure& structure, std::vector<double> start,
@@ -301,6 +355,11 @@ Solution search(const Residual& residual, const Structure& structure, std::vecto
       fresh.push_back(k);
     else
       at.jacobian.col(Eigen::Index(k)) = warm->jacobian.col(found->second);
+  }
+  if (at.parameters.empty()) {  // nothing to move
+    judge(at, robust_scale(at.residual));
+    at.converged = true;
+    return at;
   }
   const bool stale = fresh.size() < at.parameters.size();
   return Search(residual, std::move(at), options).run(fresh, stale);

@@ -63,12 +63,16 @@ double value_at(const Parameter& parameter, double coordinate);
 Solution search(const Residual& residual, const Structure& structure, std::vector<double> start,
                 const Solution* warm = nullptr, const SearchOptions& options = {});
 
+/// Moves the rough parameters one by one, by ever smaller steps, as long as that lowers the loss;
+/// then searches on. The solution keeps a jacobian of near by.
+Solution polish(const Residual& residual, Solution at, const SearchOptions& options = {});
+
 /// Recomputes all columns of the jacobian at the solution.
 void differentiate(const Residual& residual, Solution& solution);
 
 /// Huber's weights at kHuber times the scale.
 Eigen::VectorXd robust_weights(const Eigen::VectorXd& residual, double scale);
-/// Median of absolute values by 0.6745, at least 1.
+/// From a high quantile of |r|, at least 1.
 double robust_scale(const Eigen::VectorXd& residual);
 /// Sum of ρ over a stretch: r² within, linear beyond.
 double robust_loss(const Eigen::Ref<const Eigen::VectorXd>& residual, double scale);

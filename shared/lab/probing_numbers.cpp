@@ -16,7 +16,8 @@ namespace {
 constexpr double kFactorSd = 0.5;  // of the logarithm of a stiffness or damping
 constexpr double kPlaceSd_m = 5e-4;
 constexpr double kPlaceStep_m = 2e-5;
-constexpr double kNear_m = 1e-3;  // a border this near to the recording may be moved by it
+constexpr double kRough_m = 4e-4;  // within which a border is also sought by trial
+constexpr double kNear_m = 1e-3;   // a border this near to the recording may be moved by it
 constexpr double kSameBorder_m = 1e-9;
 constexpr double kLeastLayer_m = 1e-4;
 constexpr double kMostFactor = 50.0;  // a stiffness or damping is found within this factor
@@ -55,6 +56,11 @@ const effects::EffectFacts& facts_of(std::string_view id) {
 
 ProbingNumbers::ProbingNumbers(models::ProbingModel model, const Reach& reach)
     : model_(std::move(model)) {
+  for (const effects::Use& use : model_.effects) {
+    const auto facts = effects::probing_facts(use);
+    core::require(bool(facts), "a model's effects were checked as it was read");
+    own_.push_back(*facts);
+  }
   if (reach.slides) {
     for (std::size_t k = 0; k < model_.layers.size(); ++k) add_layer(k, reach);
     return;
@@ -117,6 +123,7 @@ void ProbingNumbers::add_layer(std::size_t k, const Reach& reach) {
     place.high = layer.equilibrium_m + 0.1;
     add(Kind::equilibrium, k, "equilibrium_m", place);
   }
+  place.rough = kRough_m;
   const auto near = [&](double border_m) {
     return border_m > reach.least_m - kNear_m && border_m < reach.most_m + kNear_m;
   };
@@ -143,13 +150,17 @@ void ProbingNumbers::add_layer(std::size_t k, const Reach& reach) {
   }
 }
 
+bool ProbingNumbers::has(std::string_view effect) const {
+  return std::ranges::any_of(model_.effects, [&](const auto& use) { return use.id == effect; });
+}
+
 std::vector<Parameter> ProbingNumbers::parameters(const Structure& structure) const {
   std::vector<Parameter> out = base_;
-  for (const effects::Use& use : model_.effects) {
-    auto own = parameters_of(facts_of(use.id));
+  for (std::size_t e = 0; e < own_.size(); ++e) {
+    auto own = parameters_of(own_[e]);
     for (std::size_t k = 0; k < own.size(); ++k) {
       if (fixed("/effects/" + own[k].pointer)) continue;
-      own[k].start = use.values[k];
+      own[k].start = std::clamp(model_.effects[e].values[k], own[k].low, own[k].high);
       own[k].shape = false;
       out.push_back(own[k]);
     }
@@ -197,11 +208,13 @@ models::ProbingModel ProbingNumbers::with(const Structure& structure,
         layer.thickness_m = v;
     }
   }
-  for (effects::Use& use : out.effects) {
-    const auto& facts = facts_of(use.id);
-    const auto own = parameters_of(facts);
+  out.effects.clear();
+  for (std::size_t e = 0; e < own_.size(); ++e) {
+    effects::Use use = model_.effects[e];
+    const auto own = parameters_of(own_[e]);
     for (std::size_t k = 0; k < own.size(); ++k)
       if (!fixed("/effects/" + own[k].pointer)) use.values[k] = values[at++];
+    if (!own_[e].free_per_trial) out.effects.push_back(std::move(use));
   }
   for (const std::string& id : structure.effects) {
     const auto& facts = facts_of(id);

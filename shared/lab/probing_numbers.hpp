@@ -24,9 +24,11 @@ class ProbingNumbers {
 
   /// Base, then the model's own effects, then those added.
   std::vector<Parameter> parameters(const Structure& structure) const;
-  /// The model with these values. `sensor_drift`, free per trial, is left out of it.
+  /// The model with these values. What is free per trial (`sensor_drift`) is left out of it.
   models::ProbingModel with(const Structure& structure, std::span<const double> values) const;
   const models::ProbingModel& model() const { return model_; }
+  /// Does the given model have an effect of that id already?
+  bool has(std::string_view effect) const;
   /// Layers that no recording entered, in words.
   const std::vector<std::string>& notes() const { return notes_; }
 
@@ -41,6 +43,7 @@ class ProbingNumbers {
   bool fixed(const std::string& pointer) const;
 
   models::ProbingModel model_;
+  std::vector<effects::EffectFacts> own_;  // of the model's effects, a user's formulas among them
   std::vector<Slot> slots_;
   std::vector<Parameter> base_;
   std::vector<std::string> notes_;

@@ -7,6 +7,7 @@
 
 #include "core/require.hpp"
 #include "lab/drift.hpp"
+#include "lab/fit_report.hpp"
 #include "lab/least_squares.hpp"
 #include "lab/parallel.hpp"
 #include "lab/probing_advice.hpp"
@@ -24,8 +25,11 @@ using core::Result;
 constexpr double kTravel_m = 1.0;  // the longest a model may have: a recording says how far it went
 constexpr std::string_view kDrift = "sensor_drift";
 
-bool has_drift(const Structure& structure) {
-  return std::ranges::find(structure.effects, kDrift) != structure.effects.end();
+/// Friction whose direction is that of the motion. At rest it takes whatever value within its size
+/// holds the probe (Coulomb's law is set-valued there), so a residual counts from there on.
+bool is_dry(std::string_view effect) {
+  return effect == "coulomb_friction" || effect == "stribeck_friction" ||
+         effect == "depth_friction" || effect.starts_with("expression:");
 }
 
 class ProbingProblem final : public Problem {
@@ -87,17 +91,33 @@ class ProbingProblem final : public Problem {
   }
 
  private:
+  bool has_drift(const Structure& structure) const {
+    return numbers_.has(kDrift) ||
+           std::ranges::find(structure.effects, kDrift) != structure.effects.end();
+  }
   const ProbingRecording& trial(int k) const { return trials_[std::size_t(k)]; }
   static Drift drift_of(const ProbingRecording& r);
   void set_candidates();
   void set_channels();
 
-  models::ProbingForces forces(const Structure& structure, std::span<const double> values,
-                               const ProbingRecording& r) const {
-    const auto runtime = models::ProbingRuntime::make(numbers_.with(structure, values), kTravel_m);
+  /// What the law says, and by how much dry friction at rest may differ from it.
+  struct Predicted {
+    models::ProbingForces forces;
+    std::vector<double> at_rest_N;  // one per sample of `rest`; empty without dry friction
+  };
+  static std::vector<double> dry_at_rest(const models::ProbingModel& model,
+                                         const ProbingRecording& r);
+  Predicted forces(const Structure& structure, std::span<const double> values,
+                   const ProbingRecording& r) const {
+    const models::ProbingModel model = numbers_.with(structure, values);
+    const auto runtime = models::ProbingRuntime::make(model, kTravel_m);
     core::require(bool(runtime), "values within their bounds make a model that runs");
-    models::ProbingForces out;
-    runtime->predict(r.motion, out);
+    Predicted out;
+    runtime->predict(r.motion, out.forces);
+    out.at_rest_N = dry_at_rest(model, r);
+    for (std::size_t i = 0; i < out.at_rest_N.size(); ++i)  // the middle of what it may be
+      out.forces.fz_N[r.rest[i]] -=
+          out.at_rest_N[i] * effects::direction(r.motion.v_m_s[r.rest[i]], r.motion.rest_m_s);
     return out;
   }
   void raw_residuals(const Structure& structure, std::span<const double> values, int k,
@@ -105,9 +125,12 @@ class ProbingProblem final : public Problem {
     const ProbingRecording& r = trial(k);
     const auto predicted = forces(structure, values, r);
     std::vector<double> thin(r.measured_thin.size());
-    r.decimator.apply(turns_ ? predicted.tz_Nm : predicted.fz_N, thin);
+    r.decimator.apply(turns_ ? predicted.forces.tz_Nm : predicted.forces.fz_N, thin);
+    std::vector<double> either_way(thin.size(), 0.0);
+    if (!predicted.at_rest_N.empty())
+      r.decimator.apply_sizes(r.rest, predicted.at_rest_N, either_way);
     for (std::size_t j = 0; j < thin.size(); ++j)
-      out(Eigen::Index(j)) = (r.measured_thin[j] - thin[j]) / r.sd_thin[j];
+      out(Eigen::Index(j)) = beyond(r.measured_thin[j] - thin[j], either_way[j]) / r.sd_thin[j];
   }
   /// The fitted trend of a trial at its full rate, N.
   Eigen::VectorXd drift(const Structure& structure, std::span<const double> values, int k) const {
@@ -126,6 +149,24 @@ class ProbingProblem final : public Problem {
   bool turns_;
 };
 
+std::vector<double> ProbingProblem::dry_at_rest(const models::ProbingModel& model,
+                                                const ProbingRecording& r) {
+  models::ProbingModel dry;
+  for (const effects::Use& use : model.effects)
+    if (is_dry(use.id)) dry.effects.push_back(use);
+  if (dry.effects.empty() || r.rest.empty()) return {};
+  const auto runtime = models::ProbingRuntime::make(dry, kTravel_m);
+  core::require(bool(runtime), "values within their bounds make a model that runs");
+  effects::ProbingMotion back = r.at_rest;
+  for (double& v : back.v_m_s) v = -v;
+  models::ProbingForces in, out;
+  runtime->predict(r.at_rest, in);
+  runtime->predict(back, out);
+  for (std::size_t k = 0; k < in.fz_N.size(); ++k)
+    in.fz_N[k] = 0.5 * std::abs(in.fz_N[k] - out.fz_N[k]);
+  return in.fz_N;
+}
+
 Drift ProbingProblem::drift_of(const ProbingRecording& r) {
   std::vector<double> t_s;
   for (std::size_t j = 0; j < r.measured_thin.size(); ++j)
@@ -140,9 +181,7 @@ void ProbingProblem::set_candidates() {
   const bool angle = every(&effects::ProbingMotion::omega_rad_s),
              torque = every(&effects::ProbingMotion::tz_Nm);
   for (const auto& info : effects::probing_effects()) {
-    if (std::ranges::any_of(numbers_.model().effects,
-                            [&](const auto& use) { return use.id == info.facts.id; }))
-      continue;
+    if (numbers_.has(info.facts.id)) continue;
     Candidate candidate{info.facts, true, ""};
     const auto lacks = [&](const std::string& why) {
       candidate.possible = false;
@@ -186,13 +225,18 @@ Residuals ProbingProblem::full_rate(const Structure& structure, std::span<const 
     for (std::size_t i = 0; i < a.size(); ++i) out[i] = a[i] - b[i];
     return out;
   };
-  Residuals out{
-      r.motion.t_s, {minus(r.measured, turns_ ? predicted.tz_Nm : predicted.fz_N)}, r.trusted};
+  Residuals out{r.motion.t_s,
+                {minus(r.measured, turns_ ? predicted.forces.tz_Nm : predicted.forces.fz_N)},
+                r.trusted};
   if (has_drift(structure)) {
     const Eigen::VectorXd trend = drift(structure, values, k);
     for (std::size_t i = 0; i < r.size(); ++i) out.channels[0][i] -= trend(Eigen::Index(i));
   }
-  if (channels_.size() > 1) out.channels.push_back(minus(r.other, predicted.tz_Nm));
+  for (std::size_t i = 0; i < predicted.at_rest_N.size(); ++i) {
+    double& residual = out.channels[0][r.rest[i]];
+    residual = beyond(residual, predicted.at_rest_N[i]);
+  }
+  if (channels_.size() > 1) out.channels.push_back(minus(r.other, predicted.forces.tz_Nm));
   return out;
 }
 
@@ -279,7 +323,7 @@ Result<std::unique_ptr<Problem>> make_probing_problem(const models::ProbingModel
   problem->focus(values);
   if (!values.empty()) {
     const Residual residual(*problem, options.threads);
-    problem->focus(search(residual, {}, values).values);
+    problem->focus(fit_base(residual).values);
   }
   return std::unique_ptr<Problem>(std::move(problem));
 }

@@ -23,6 +23,8 @@ constexpr double kRestErrors = 3.0;
 /// Round a border so much is not trusted at the full rate.
 constexpr double kBorder_s = 0.005;
 constexpr std::size_t kBorderSamples = 3;
+/// The motion is well known where its noise makes less than this share of the sensor's.
+constexpr double kWellKnown = 0.5, kLeastTrusted = 0.3;
 
 /// The smallest difference of two neighbours that are not equal, if all others are multiples of it;
 /// else 0: how coarsely a channel was written down.
@@ -123,6 +125,22 @@ void prepare_sliding(trial::ProbingMeasurement& trial, const trial::StatedNoise&
   motion.rest_m_s = kRestErrors * middle_of(out.v_sd_m_s);
 }
 
+/// The samples at rest with the least speed that would be told from it.
+void find_rest(ProbingRecording& r) {
+  const effects::ProbingMotion& m = r.motion;
+  effects::ProbingMotion& out = r.at_rest;
+  out.rest_m_s = 0.0;
+  for (std::size_t k = 0; k < r.size(); ++k) {
+    const double told_m_s = std::max(2.0 * m.rest_m_s, kRestErrors * r.v_sd_m_s[k]);
+    if (std::abs(m.v_m_s[k]) >= told_m_s) continue;
+    r.rest.push_back(k);
+    out.t_s.push_back(m.t_s[k]);
+    out.x_m.push_back(m.x_m[k]);
+    out.v_m_s.push_back(told_m_s);
+    out.a_m_s2.push_back(0.0);
+  }
+}
+
 /// Where the force jumps between neighbouring samples because a border lies between them: the
 /// second of the two, and by how much.
 struct Jump {
@@ -173,6 +191,7 @@ Result<ProbingRecording> prepare(trial::ProbingMeasurement&& trial,
                  noise.correlated);
   if (!out.other.empty()) out.other_noise_sd = noise_of(out.other, stated.tz_Nm).sd;
   prepare_sliding(trial, stated, out);
+  if (!turns) find_rest(out);
   prepare_turning(trial, stated, out);
   out.measured_thin.resize(out.decimator.size(n));
   out.decimator.apply(out.measured, out.measured_thin);
@@ -198,6 +217,14 @@ void weigh(const laws::ProbingLaw& law, ProbingRecording& r) {
   r.trusted.assign(n, 1.0);
   const auto reach =
       std::max(kBorderSamples, std::size_t(kBorder_s / (r.seconds() / double(n - 1))));
+  // What the motion's noise makes of the force must stay well under the sensor's own noise, at the
+  // least in the better half of the samples.
+  std::vector<double> ordered = motion_variance;
+  const auto half_way = ordered.begin() + std::ptrdiff_t(kLeastTrusted * double(n));
+  std::ranges::nth_element(ordered, half_way);
+  const double most = std::max(*half_way, kWellKnown * kWellKnown * r.noise_sd * r.noise_sd);
+  for (std::size_t k = 0; k < n; ++k)
+    if (motion_variance[k] > most) r.trusted[k] = 0.0;
   for (const Jump& jump : found)
     for (std::size_t k = jump.sample < reach ? 0 : jump.sample - reach;
          k < std::min(n, jump.sample + reach); ++k)

@@ -2,6 +2,7 @@
 /// noise estimated, force filtered and thinned.
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
@@ -25,6 +26,10 @@ struct ProbingRecording {
   double other_noise_sd = 0.0;
   Decimator decimator{1.0, 1.0};
   std::vector<double> measured_thin;  ///< filtered and thinned
+  /// Where the speed is too small to tell its direction: the samples, and the motion there with the
+  /// least speed that would be told. Dry friction may then push either way, or not at all.
+  std::vector<std::size_t> rest;
+  effects::ProbingMotion at_rest;
   // What a border or a poorly known motion makes of an output; set by weigh().
   std::vector<double> sd_thin;  ///< expected of each output under a true model
   std::vector<double> trusted;  ///< 0 or 1, full rate
@@ -39,6 +44,12 @@ struct ProbingRecording {
 core::Result<ProbingRecording> prepare(trial::ProbingMeasurement&& trial,
                                        const trial::StatedNoise& stated, bool turns,
                                        const std::string& where);
+
+/// What lies outside ± of what dry friction at rest may do.
+inline double beyond(double residual, double half_width) {
+  const double size = std::abs(residual) - half_width;
+  return size <= 0.0 ? 0.0 : residual < 0.0 ? -size : size;
+}
 
 /// What is expected of each output if `law` were true: the sensor's noise, the motion's noise as
 /// the law passes it on, and near a border of layers the error of a sample that is taken on the

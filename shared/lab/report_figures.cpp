@@ -27,15 +27,16 @@ std::vector<std::size_t> representative(const Comparison& comparison) {
 }
 
 plot::Panel signal_panel(const ReportContent& content, std::size_t trial, std::size_t channel) {
-  const TrialSamples& given = content.given.samples.trials[trial];
-  const auto [what, unit] = name_and_unit(content.given.samples.channels[channel].name);
+  const TrialSamples& before = content.before.samples.trials[trial];
+  const auto [what, unit] = name_and_unit(content.before.samples.channels[channel].name);
   plot::Panel panel;
   panel.x_label = "";
   panel.y_label = fmt::format("{}, {}", what, unit);
 
   panel.height_px = 190;
-  panel.lines.push_back({"measured", given.t_s, given.measured[channel], kMeasuredColour, 1.6});
-  panel.lines.push_back({"model as given", given.t_s, given.simulated[channel], kGivenColour, 1.2});
+  panel.lines.push_back({"measured", before.t_s, before.measured[channel], kMeasuredColour, 1.6});
+  panel.lines.push_back(
+      {"model " + content.before_name, before.t_s, before.simulated[channel], kBeforeColour, 1.2});
   if (content.better) {
     const TrialSamples& better = content.better->samples.trials[trial];
     panel.lines.push_back(
@@ -51,13 +52,13 @@ std::vector<double> residuals(const TrialSamples& trial, std::size_t channel) {
 }
 
 plot::Panel residual_panel(const ReportContent& content, std::size_t trial, std::size_t channel) {
-  const TrialSamples& given = content.given.samples.trials[trial];
-  const auto& facts = content.given.samples.channels[channel];
+  const TrialSamples& before = content.before.samples.trials[trial];
+  const auto& facts = content.before.samples.channels[channel];
   plot::Panel panel;
   panel.x_label = "t, s";
   panel.y_label = "residual, " + name_and_unit(facts.name).unit;
   panel.height_px = 120;
-  panel.lines.push_back({"", given.t_s, residuals(given, channel), kGivenColour, 1.0});
+  panel.lines.push_back({"", before.t_s, residuals(before, channel), kBeforeColour, 1.0});
   if (content.better) {
     const TrialSamples& better = content.better->samples.trials[trial];
     panel.lines.push_back({"", better.t_s, residuals(better, channel), kBetterColour, 1.0});
@@ -67,8 +68,8 @@ plot::Panel residual_panel(const ReportContent& content, std::size_t trial, std:
 }
 
 plot::Panel histogram_panel(const ReportContent& content, std::size_t c) {
-  const ChannelComparison& given = content.given.comparison.channels[c];
-  const auto [what, unit] = name_and_unit(given.name);
+  const ChannelComparison& before = content.before.comparison.channels[c];
+  const auto [what, unit] = name_and_unit(before.name);
   plot::Panel panel;
   panel.title = fmt::format("Residual of {}", what);
   panel.x_label = unit;
@@ -79,15 +80,15 @@ plot::Panel histogram_panel(const ReportContent& content, std::size_t c) {
     panel.steps.push_back(
         {label, of.residual.histogram.edges, of.residual.histogram.shares, colour, true});
   };
-  add(given, "as given", kGivenColour);
+  add(before, content.before_name, kBeforeColour);
   if (content.better)
     add(content.better->comparison.channels[c], better_name(content), kBetterColour);
   return panel;
 }
 
 plot::Panel value_panel(const ReportContent& content, std::size_t c) {
-  const ChannelComparison& given = content.given.comparison.channels[c];
-  const auto [what, unit] = name_and_unit(given.name);
+  const ChannelComparison& before = content.before.comparison.channels[c];
+  const auto [what, unit] = name_and_unit(before.name);
   plot::Panel panel;
   panel.title = fmt::format("Values of {}", what);
   panel.x_label = unit;
@@ -97,8 +98,8 @@ plot::Panel value_panel(const ReportContent& content, std::size_t c) {
   const auto add = [&](const Distribution& of, const std::string& label, const char* colour) {
     panel.steps.push_back({label, of.histogram.edges, of.histogram.shares, colour});
   };
-  add(given.measured, "measured", kMeasuredColour);
-  add(given.simulated, "as given", kGivenColour);
+  add(before.measured, "measured", kMeasuredColour);
+  add(before.simulated, content.before_name, kBeforeColour);
   if (content.better)
     add(content.better->comparison.channels[c].simulated, better_name(content), kBetterColour);
   return panel;
@@ -111,8 +112,8 @@ std::vector<double> decades_of(const std::vector<double>& frequency_Hz) {
 }
 
 plot::Panel spectrum_panel(const ReportContent& content, std::size_t c) {
-  const ChannelComparison& given = content.given.comparison.channels[c];
-  const auto [what, unit] = name_and_unit(given.name);
+  const ChannelComparison& before = content.before.comparison.channels[c];
+  const auto [what, unit] = name_and_unit(before.name);
   plot::Panel panel;
   panel.title = fmt::format("Spectrum of {}", what);
   panel.x_label = "log10 of the frequency in Hz";
@@ -120,9 +121,10 @@ plot::Panel spectrum_panel(const ReportContent& content, std::size_t c) {
 
   panel.height_px = 150;
   panel.log_y = true;
-  const auto x = decades_of(given.spectrum.frequency_Hz);
-  panel.lines.push_back({"measured", x, given.spectrum.measured, kMeasuredColour, 1.6});
-  panel.lines.push_back({"residual as given", x, given.spectrum.residual, kGivenColour, 1.4});
+  const auto x = decades_of(before.spectrum.frequency_Hz);
+  panel.lines.push_back({"measured", x, before.spectrum.measured, kMeasuredColour, 1.6});
+  panel.lines.push_back(
+      {"residual " + content.before_name, x, before.spectrum.residual, kBeforeColour, 1.4});
   if (content.better)
     panel.lines.push_back({"residual " + better_name(content), x,
                            content.better->comparison.channels[c].spectrum.residual, kBetterColour,
@@ -133,31 +135,31 @@ plot::Panel spectrum_panel(const ReportContent& content, std::size_t c) {
 std::string cell(double x, double y, double w, double h, double share) {
   return fmt::format(
       R"(<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="{:.1f}" fill="{}" fill-opacity="{:.3f}"/>)",
-      x, y, w, h, kGivenColour, share);
+      x, y, w, h, kBeforeColour, share);
 }
 
 }  // namespace
 
 std::string overlays(const ReportContent& content) {
   std::string body;
-  const auto chosen = representative(content.given.comparison);
+  const auto chosen = representative(content.before.comparison);
   const std::array<const char*, 3> ranks{"largest error", "middle", "smallest error"};
   for (std::size_t k = 0; k < chosen.size(); ++k) {
-    const auto& trial = content.given.comparison.trials[chosen[k]];
+    const auto& trial = content.before.comparison.trials[chosen[k]];
     plot::Figure figure;
     figure.width_px = 960;
-    for (const std::size_t channel : content.given.samples.judged) {
+    for (const std::size_t channel : content.before.samples.judged) {
       figure.panels.push_back(signal_panel(content, chosen[k], channel));
       figure.panels.push_back(residual_panel(content, chosen[k], channel));
     }
     const std::string rank =
-        content.given.comparison.trials.size() > 2 ? fmt::format(" · {}", ranks[k]) : "";
+        content.before.comparison.trials.size() > 2 ? fmt::format(" · {}", ranks[k]) : "";
     body += fmt::format(
         "<h3>{}{} · {}{}</h3>\n{}", escaped(trial.id), rank,
-        lab::figure(trial.rmse, content.given.comparison.judged_unit),
+        lab::figure(trial.rmse, content.before.comparison.judged_unit),
         content.better
             ? fmt::format(" → {}", lab::figure(content.better->comparison.trials[chosen[k]].rmse,
-                                               content.given.comparison.judged_unit))
+                                               content.before.comparison.judged_unit))
             : "",
         plot::svg(figure));
   }
@@ -169,7 +171,7 @@ std::string distributions(const ReportContent& content) {
   plot::Figure figure;
   figure.width_px = 960;
   figure.columns = 3;
-  for (std::size_t c = 0; c < content.given.comparison.channels.size(); ++c) {
+  for (std::size_t c = 0; c < content.before.comparison.channels.size(); ++c) {
     figure.panels.push_back(value_panel(content, c));
     figure.panels.push_back(histogram_panel(content, c));
     figure.panels.push_back(spectrum_panel(content, c));

@@ -7,7 +7,7 @@
 
 namespace lab::page {
 
-inline constexpr const char* kGivenColour = "#d9731a";   ///< the model as given
+inline constexpr const char* kBeforeColour = "#d9731a";  ///< the model to improve
 inline constexpr const char* kBetterColour = "#1b4f8f";  ///< refitted and extended
 inline constexpr const char* kMeasuredColour = "#22272e";
 

@@ -42,12 +42,13 @@ bool at_floor(const Side& side) {
 }
 
 std::string phase_table(const ReportContent& content) {
-  const Comparison& given = content.given.comparison;
+  const Comparison& given = content.before.comparison;
   if (given.phases.empty()) return {};
   std::string out = fmt::format(
       "<h3>By phase</h3>\n<table>\n<tr><th>phase</th><th>share of the error</th>"
-      "<th class=\"n\"></th><th class=\"n\">of the time</th><th class=\"n\">error as given</th>{}"
+      "<th class=\"n\"></th><th class=\"n\">of the time</th><th class=\"n\">error {}</th>{}"
       "</tr>\n",
+      content.before_name,
       content.better ? "<th class=\"n\">" + escaped(better_name(content)) + "</th>" : "");
   for (std::size_t k = 0; k < given.phases.size(); ++k) {
     const PhaseComparison& p = given.phases[k];
@@ -104,9 +105,10 @@ std::string parameter_row(const ReportContent& content, const Estimate& e) {
       "<tr><td>{}{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td>"
       "<td class=\"n\">{}</td></tr>\n",
       escaped(name), remark(e).empty() ? "" : "<small>" + remark(e) + "</small>",
-      given ? figure(start->start, unit) : "–", figure(e.value, unit),
+      given ? figure(start->start, unit) : "–", figure_within(e.value, interval) + " " + unit,
       std::isfinite(interval) && e.informed
-          ? fmt::format("{} … {}", figure(e.value - interval), figure(e.value + interval))
+          ? fmt::format("{} … {}", figure_within(e.value - interval, interval),
+                        figure_within(e.value + interval, interval))
           : "–",
       std::isfinite(change) ? fmt::format("{:+.1f} %", 100.0 * change) : "–");
 }
@@ -114,10 +116,10 @@ std::string parameter_row(const ReportContent& content, const Estimate& e) {
 }  // namespace
 
 std::string places(const ReportContent& content) {
-  std::string body = regions(content.given);
+  std::string body = regions(content.before);
   if (content.map)
     body += "<h3>On the wall of the tract</h3>\n" +
-            tract_picture(*content.map, content.given.comparison.judged_unit);
+            tract_picture(*content.map, content.before.comparison.judged_unit);
   body += phase_table(content);
   if (content.better)
     body += "<h3>What is left, " + escaped(better_name(content)) + "</h3>\n" +
@@ -126,7 +128,7 @@ std::string places(const ReportContent& content) {
   return section("Where the model fails",
                  "Moments of the recordings that hold more of the error than their time alone "
                  "would; " +
-                     escaped(content.given.comparison.where.honest) + ".",
+                     escaped(content.before.comparison.where.honest) + ".",
                  body);
 }
 
@@ -153,12 +155,12 @@ std::string parameters(const ReportContent& content) {
 }
 
 std::string trials(const ReportContent& content) {
-  const Comparison& given = content.given.comparison;
+  const Comparison& given = content.before.comparison;
   const Fit* fit = fit_of(content);
   std::string body = fmt::format(
-      "<table>\n<tr><th>trial</th><th class=\"n\">length</th><th class=\"n\">error as "
-      "given</th>{}{}"
-      "</tr>\n",
+      "<table>\n<tr><th>trial</th><th class=\"n\">length</th><th class=\"n\">error "
+      "{}</th>{}{}</tr>\n",
+      content.before_name,
       content.better ? "<th class=\"n\">" + escaped(better_name(content)) + "</th>" : "",
       fit ? "<th class=\"n\">held out</th>" : "");
   for (std::size_t k = 0; k < given.trials.size(); ++k) {

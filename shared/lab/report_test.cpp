@@ -50,7 +50,8 @@ ReportContent content() {
   ReportContent out;
   out.model_name = "layered <bone>";
   out.set_name = "set & more";
-  out.given = side(2.31);
+  out.before = side(2.31);
+  out.given_rmse = 2.31;
   out.better = side(0.04);
   Diagnosis d;
   d.verdict = Verdict::missing;
@@ -89,7 +90,7 @@ TEST(Report, HoldsAllItPromises) {
         "How the error is distributed", "Trial by trial", "What was taken for granted"})
     EXPECT_HOLDS(html, heading);
   for (const char* held :
-       {"direction = out", "layer 1 · stiffness", "+2.5 %", "2.27 … 2.35",
+       {"direction = out", "layer 1 · stiffness", "+2.5 %", "2.271 … 2.349",
         "not informed by these recordings", "three small reversals at 12 mm",
         "not excited: the speed hardly changes", "98 %", "prefers-color-scheme:dark", "trial4"})
     EXPECT_HOLDS(html, held);
@@ -130,6 +131,8 @@ TEST(Words, NameEffectsAndUnits) {
   EXPECT_EQ(figure(0.0123456, "N"), "0.0123 N");
   EXPECT_EQ(figure(4123.6), "4124");
   EXPECT_EQ(figure(2.5e-5), "2.5e-5");
+  EXPECT_EQ(figure_within(4000.0123, 0.21), "4000.01");
+  EXPECT_EQ(figure_within(2.29993, 0.06), "2.300");
 }
 
 TEST(Words, SayEachVerdict) {

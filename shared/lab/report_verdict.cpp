@@ -24,7 +24,7 @@ std::string against_floor(double rmse, double floor) {
 
 /// The sentences when nothing was diagnosed: a comparison or a fit alone.
 Sentences plain(const ReportContent& content) {
-  const Comparison& given = content.given.comparison;
+  const Comparison& given = content.before.comparison;
   const std::string& unit = given.judged_unit;
   if (content.better)
     return {fmt::format("Fitted: the error falls from {} to {}.", figure(given.rmse, unit),
@@ -45,7 +45,7 @@ const effects::EffectFacts* facts(const ReportContent& content, const std::strin
 }
 
 std::string ranked_row(const ReportContent& content, const Ranked& ranked) {
-  const std::string& unit = content.given.comparison.judged_unit;
+  const std::string& unit = content.before.comparison.judged_unit;
   const auto* known = facts(content, ranked.id);
   const bool found = std::ranges::any_of(content.diagnosis->effects,
                                          [&](const auto& e) { return e.id == ranked.id; });
@@ -78,11 +78,14 @@ std::string bars(const Step& step, const std::string& unit, double largest, doub
 }  // namespace
 
 std::string verdict(const ReportContent& content) {
-  const Comparison& given = content.given.comparison;
+  const Comparison& given = content.before.comparison;
   const std::string& unit = given.judged_unit;
   const Sentences said = content.diagnosis ? sentences(*content.diagnosis, unit) : plain(content);
-  std::string figures = key_figure("Error as given", figure(given.rmse, unit),
-                                   against_floor(given.rmse, given.noise_floor));
+  std::string figures = key_figure("Error as given", figure(content.given_rmse, unit),
+                                   against_floor(content.given_rmse, given.noise_floor));
+  if (content.before_name != "as given" && content.better)
+    figures += key_figure("Refitted", figure(given.rmse, unit),
+                          against_floor(given.rmse, given.noise_floor));
   if (content.diagnosis && !content.diagnosis->steps.empty()) {
     const Step& last = content.diagnosis->steps.back();
     figures += key_figure(
@@ -105,7 +108,7 @@ std::string verdict(const ReportContent& content) {
 
 std::string falling_error(const ReportContent& content) {
   if (!content.diagnosis || content.diagnosis->steps.empty()) return {};
-  const std::string& unit = content.given.comparison.judged_unit;
+  const std::string& unit = content.before.comparison.judged_unit;
   const double floor = content.diagnosis->base.noise_floor;
   double largest = floor;
   for (const Step& step : content.diagnosis->steps)

@@ -20,12 +20,34 @@ constexpr double kClearLoss = 30.0;
 /// Singles that are grown into pairs, pairs into triples; effects tried on each.
 constexpr std::size_t kGrown = 4, kTriedOnEach = 6;
 constexpr int kTries = 2;
+/// So many of the best of a size are fitted to the end before they are compared.
+constexpr std::size_t kRefined = 3;
+/// Above this the best of a size is begun anew from other shapes, so many of each effect.
+constexpr double kReshaped = 0.9;
+constexpr int kReshapeTries = 8;
 /// At the floor for all purposes: no more effects are looked for.
 constexpr double kFloor = 1.25;
 /// An effect's numbers must be known better than this share of their size.
 constexpr double kKnown = 0.5;
 
+/// Observations that a trial is worth, and the price of a number, in nats.
+constexpr double kPerTrial = 12.0, kPrice = 5.0;
+/// Below this a mean square says nothing more: the noise is known no better.
+constexpr double kLeastSquare = 0.02;
+
+double numbers_beyond(const Residual& residual, const Solution& larger, const Solution& smaller) {
+  const Problem& problem = residual.problem();
+  return double(larger.values.size()) - double(smaller.values.size()) +
+         problem.free_per_trial(larger.structure) - problem.free_per_trial(smaller.structure);
+}
+
 }  // namespace
+
+double cost(const Residual& residual, const Solution& s, const Solution& base) {
+  return 0.5 * kPerTrial * double(residual.trials()) *
+             std::log(std::max(kLeastSquare, s.mean_square())) +
+         0.5 * (s.prior - base.prior) + kPrice * numbers_beyond(residual, s, base);
+}
 
 std::string name(const Structure& structure) {
   return fmt::format("{}", fmt::join(structure.effects, " + "));
@@ -53,8 +75,7 @@ Solution& Selection::fitted(const Solution& from, const std::string& effect, int
 
 bool Selection::clearly_better(const Solution& larger, const Solution& smaller) const {
   const double before = smaller.mean_square(), after = larger.mean_square();
-  const double numbers =
-      std::max(1.0, double(larger.values.size()) - double(smaller.values.size()));
+  const double numbers = std::max(1.0, numbers_beyond(residual_, larger, smaller));
   const double gained = double(residual_.size()) * (before - after) / std::max(1.0, after) +
                         smaller.prior - larger.prior;
   return gained > kClearLoss * numbers && before - after > kClearShare * before &&
@@ -76,7 +97,7 @@ std::vector<const Solution*> Selection::best_of(std::size_t effects, std::size_t
   std::vector<const Solution*> out;
   for (const auto& [key, solution] : tried_)
     if (solution.structure.effects.size() == effects) out.push_back(&solution);
-  std::ranges::stable_sort(out, {}, [](const Solution* s) { return s->mean_square(); });
+  std::ranges::stable_sort(out, {}, [&](const Solution* s) { return cost(residual_, *s, base()); });
   if (out.size() > most) out.resize(most);
   return out;
 }
@@ -96,7 +117,33 @@ void Selection::singles() {
   }
 }
 
+void Selection::refine(std::size_t effects) {
+  for (const Solution* s : best_of(effects, kRefined)) {
+    Solution& at = tried_[name(s->structure)];
+    at = polish(residual_, search(residual_, at.structure, at.values, nullptr,
+                                  {.max_iterations = 8, .tolerance = 1e-5}));
+  }
+}
+
+/// A pair was fitted from the shapes that suited its effects alone: the best of a size is begun
+/// anew from all shapes of each of its effects, if it is not at the floor.
+void Selection::reshape(std::size_t effects) {
+  const auto best = best_of(effects, 1);
+  if (best.empty() || effects < 2 || best.front()->mean_square() < kReshaped) return;
+  const Structure structure = best.front()->structure;
+  for (const std::string& id : structure.effects) {
+    const auto part = tried_.find(name(minus(structure, id)));
+    if (part == tried_.end()) continue;
+    Solution from = part->second;
+    from = polish(residual_, search(residual_, from.structure, from.values, nullptr,
+                                    {.max_iterations = 8, .tolerance = 1e-4}));
+    differentiate(residual_, from);
+    fitted(from, id, kReshapeTries);
+  }
+}
+
 void Selection::grow() {
+  refine(1);
   for (int size = 1; size < options_.max_effects; ++size) {
     const auto best = best_of(std::size_t(size), kGrown);
     if (best.empty() || best.front()->mean_square() < kFloor) return;
@@ -121,6 +168,8 @@ void Selection::grow() {
       if (!go_on(0.6 + 0.15 * size)) return;
       fitted(*from, id, 1);
     }
+    refine(std::size_t(size + 1));
+    reshape(std::size_t(size + 1));
     const auto larger = best_of(std::size_t(size + 1), 1);
     if (larger.empty() || !clearly_better(*larger.front(), *best_of(std::size_t(size), 1).front()))
       return;

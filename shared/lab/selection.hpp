@@ -37,9 +37,12 @@ class Selection {
  private:
   Solution& fitted(const Solution& from, const std::string& effect, int tries);
   void singles();
+  void refine(std::size_t effects);
   void grow();
+  void reshape(std::size_t effects);
   void prune();
   void prefer_parents();
+  /// The cheapest of a size, most probable first.
   std::vector<const Solution*> best_of(std::size_t effects, std::size_t most) const;
   bool go_on(double share);
 
@@ -52,6 +55,12 @@ class Selection {
   std::string chosen_;
   bool stopped_ = false;
 };
+
+/// What a structure costs, in nats: half an effective number of observations times the logarithm of
+/// its mean square, how far it moves what was believed, and a price per number added. The effective
+/// number is far below that of the samples: what separates structures is not noise but small flaws
+/// of any model, which all samples of a trial share.
+double cost(const Residual& residual, const Solution& solution, const Solution& base);
 
 /// "" for the base, "a + b" else.
 std::string name(const Structure& structure);

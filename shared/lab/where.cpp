@@ -131,6 +131,15 @@ void simplify(const Samples& samples, const Rows& rows, const Node& leaf, Region
     if (*most >= 0.95 * std::accumulate(seen.begin(), seen.end(), 0.0))
       c.is = Condition::Is::word, c.word = std::size_t(most - seen.begin());
   }
+  const auto same = [](const Condition& a, const Condition& b) {
+    return a.feature == b.feature && a.is == b.is && a.bound == b.bound && a.word == b.word;
+  };
+  for (std::size_t k = region.conditions.size(); k-- > 1;)
+    for (std::size_t i = 0; i < k; ++i)
+      if (same(region.conditions[i], region.conditions[k])) {
+        region.conditions.erase(region.conditions.begin() + std::ptrdiff_t(k));
+        break;
+      }
   std::ranges::stable_sort(region.conditions, {}, [&](const Condition& c) {
     return std::tuple(samples.features[c.feature].words.empty(), c.feature, c.is);
   });

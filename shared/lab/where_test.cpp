@@ -97,6 +97,16 @@ TEST(Where, LeavesOutWhatOnlyOneTrialShows) {
   EXPECT_EQ(found.regions[0].text, "everywhere");
 }
 
+// Slow and fast in each direction: no region names its direction twice.
+TEST(Where, SaysEachConditionOnce) {
+  const Where found = where(made(
+      10, [](double depth, bool out) { return (out ? 1.0 : -1.0) * (depth > 0.02 ? 2.0 : 0.4); }));
+  for (const Region& region : found.regions) {
+    const auto first = region.text.find("direction");
+    EXPECT_EQ(region.text.find("direction", first + 1), std::string::npos) << region.text;
+  }
+}
+
 TEST(Where, BoundsFromBothSidesStandTogether) {
   const Where found =
       where(made(10, [](double depth, bool) { return depth > 0.01 && depth < 0.015 ? 2.0 : 0.0; }));

@@ -89,6 +89,13 @@ std::string figure(double value) {
   return fmt::format("{:.3g}", value);
 }
 
+std::string figure_within(double value, double within) {
+  if (!(within > 0.0) || !std::isfinite(within) || !std::isfinite(value)) return figure(value);
+  const int decimals = 1 - int(std::floor(std::log10(within)));
+  const bool plain = decimals <= 6 && std::abs(value) < 1e9 && std::abs(value) >= 1e-3;
+  return plain ? fmt::format("{:.{}f}", value, std::max(0, decimals)) : figure(value);
+}
+
 std::string figure(double value, std::string_view unit) {
   return unit.empty() ? figure(value) : fmt::format("{} {}", figure(value), unit);
 }

@@ -19,8 +19,11 @@ struct NameAndUnit {
 };
 NameAndUnit name_and_unit(std::string_view name);
 
-/// Three significant digits, or more where `sd` says that they are known: "2.31".
+/// Three significant digits: "2.31".
 std::string figure(double value);
+/// As many digits as an uncertainty of `within` leaves of meaning, two of it: 2.29993 within 0.0006
+/// is "2.29993", within 0.06 "2.300".
+std::string figure_within(double value, double within);
 /// With its unit: "1.07 N".
 std::string figure(double value, std::string_view unit);
 

@@ -84,6 +84,14 @@ TEST(EffectsInFiles, AreRefusedByNameWithTheirRange) {
             "m.json: /effects/1/id: 'inertia' is in the list already");
 }
 
+TEST(EffectsInFiles, MayLeaveOutWhatHasAValueOtherwise) {
+  const auto model = ProbingModel::from_json(
+      probing(Json::parse(R"([{"id":"backlash","parameters":{"gap_m":4e-4}}])")), "");
+  ASSERT_TRUE(model) << model.error().what;
+  EXPECT_EQ(model->effects[0].values, (std::vector<double>{4e-4, 0.0}));
+  EXPECT_EQ(model->to_json()["effects"][0]["parameters"]["damping_share"], 0.0);
+}
+
 TEST(UsersOwnEffects, TravelWholeInTheModelFile) {
   const auto model = ProbingModel::from_json(probing(Json::array({drag_use(5000.0)})), "");
   ASSERT_TRUE(model) << model.error().what;

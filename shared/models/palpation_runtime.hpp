@@ -67,9 +67,8 @@ class PalpationRuntime {
   /// A whole recording, delay included. Between two samples the rest of the shank is followed in
   /// steps that move the tip by at most a third of a voxel; the first sample starts from the unbent
   /// shank.
-  /// @param near_m  if not empty: deflections of a model near this one, one per sample. Each sample
-  /// then starts from its last plus what that model's changed by, without steps between: a fit
-  /// follows the rests of its first numbers so.
+  /// @param near_m  if not empty: deflections of a model near this one, one per sample, to start
+  /// each sample from: so a small change of numbers changes no sample's rest for another.
   void predict(const PalpationMotion& motion, PalpationAnswer& out,
                std::span<const math::Vec2> near_m = {}) const;
 
@@ -97,6 +96,9 @@ class PalpationRuntime {
   PalpationRuntime(const volume::ForceField& field, laws::PalpationLaw law)
       : field_(&field), law_(std::move(law)) {}
   core::Result<void> add(const effects::Use& use);
+  /// What is felt and does not bend the shank, on top of a step.
+  void add_unbending(const Contacts& contacts, const math::Pose& X_VH,
+                     laws::PalpationStep& step) const noexcept;
   laws::PalpationStep placed_step(effects::HandleMotion handle,
                                   laws::PalpationState& state) const noexcept;
   void follow(const effects::HandleMotion& from, const effects::HandleMotion& to,
@@ -107,6 +109,7 @@ class PalpationRuntime {
   laws::PalpationLaw law_;
   Stages stages_;
   double delay_s_ = 0.0;
+  bool felt_without_bending_ = false;
 };
 
 }  // namespace models

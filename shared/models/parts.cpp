@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/require.hpp"
 #include "effects/expression.hpp"
@@ -85,6 +86,11 @@ namespace {
 /// One parameter's numbers, appended to `values`.
 void read_parameter(Fields& fields, const effects::Param& param, std::vector<double>& values) {
   const char* name = param.name.c_str();
+  if (!std::isnan(param.if_missing) && !fields.has(name)) {
+    fields.skip(name);
+    values.insert(values.end(), std::size_t(param.components), param.if_missing);
+    return;
+  }
   if (param.components == 1) {
     values.push_back(fields.number(name, param.low, param.high));
     return;

@@ -118,10 +118,22 @@ TEST(Backlash, LetsTheBoneSeeTheDepthThroughTheDeadZone) {
   // back by 0.3 mm: still 43.2; back by 0.6 mm (10.4): seen 10.6 → 42.4. Damping acts all along.
   const auto x = [](double t) { return t < 1.0 ? 0.010 + 0.001 * t : 0.011 - 0.001 * (t - 1.0); };
   const auto m = path(1600, 1.6, x, [](double t) { return t < 1.0 ? 0.001 : -0.001; });
-  const auto f = force_N({{"backlash", {4e-4}}}, m, {{0.0, 0.05, 4000.0, 1000.0, 0.0}});
+  const auto f = force_N({{"backlash", {4e-4, 0.0}}}, m, {{0.0, 0.05, 4000.0, 1000.0, 0.0}});
   EXPECT_NEAR(f[100], 4000.0 * 0.010 + 1.0, 1e-9);  // 0.1 mm in: within the half gap of the start
   EXPECT_NEAR(f[999], 4000.0 * (0.010999 - 0.0002) + 1.0, 1e-9);
   EXPECT_NEAR(f[1300], 43.2 - 1.0, 1e-9);
+  EXPECT_NEAR(f[1600], 42.4 - 1.0, 1e-9);
+}
+
+TEST(Backlash, InterruptsTheDampingWhereItIsTheBones) {
+  // 0.4 mm of play from 10 mm, in at 1 mm/s: nothing pushes on the damper for 0.2 mm; after turning
+  // back at 11 mm, none for 0.4 mm. D v = 1 N.
+  const auto x = [](double t) { return t < 1.0 ? 0.010 + 0.001 * t : 0.011 - 0.001 * (t - 1.0); };
+  const auto m = path(1600, 1.6, x, [](double t) { return t < 1.0 ? 0.001 : -0.001; });
+  const auto f = force_N({{"backlash", {4e-4, 1.0}}}, m, {{0.0, 0.05, 4000.0, 1000.0, 0.0}});
+  EXPECT_NEAR(f[199], 40.0, 1e-9);
+  EXPECT_NEAR(f[202], 4000.0 * 0.010002 + 1.0, 1e-9);
+  EXPECT_NEAR(f[1398], 43.2, 1e-9);
   EXPECT_NEAR(f[1600], 42.4 - 1.0, 1e-9);
 }
 

@@ -33,16 +33,20 @@ ProbingTick tick_of(const ProbingMotion& motion, std::size_t k) {
 /// A block on its way through the stages.
 struct Block {
   std::array<ProbingTick, kBlock> ticks;
-  std::array<double, kBlock> depth_m, base_N, added_N;
+  std::array<double, kBlock> depth_m, speed_m_s, base_N, added_N;
   std::size_t size = 0;
 };
 
-void see_depth(const ProbingEffect& effect, double* state, Block& b) {
+void see(const ProbingEffect& effect, double* state, Block& b) {
   for (std::size_t k = 0; k < b.size; ++k) {
     ProbingTick tick = b.ticks[k];
     tick.x_m = b.depth_m[k];
-    b.depth_m[k] = effect.depth_m(tick, state);
+    tick.v_m_s = b.speed_m_s[k];
+    ProbingTick seen = tick;
+    effect.see(seen, state);
     effect.commit(tick, state);
+    b.depth_m[k] = seen.x_m;
+    b.speed_m_s[k] = seen.v_m_s;
   }
 }
 
@@ -105,12 +109,13 @@ void ProbingRuntime::predict_law(const ProbingMotion& motion, std::span<double> 
     for (std::size_t k = 0; k < b.size; ++k) {
       b.ticks[k] = tick_of(motion, from + k);
       b.depth_m[k] = b.ticks[k].x_m;
+      b.speed_m_s[k] = b.ticks[k].v_m_s;
     }
     if (from == 0)
       for (std::size_t e = 0; e < live_; ++e) effects_[e]->start(b.ticks[0], state_of(e));
-    for (std::size_t e = 0; e < seen; ++e) see_depth(*effects_[e], state_of(e), b);
+    for (std::size_t e = 0; e < seen; ++e) see(*effects_[e], state_of(e), b);
     for (std::size_t k = 0; k < b.size; ++k)
-      b.base_N[k] = law_.force_N(b.depth_m[k], b.ticks[k].v_m_s, stretch);
+      b.base_N[k] = law_.force_N(b.depth_m[k], b.speed_m_s[k], stretch);
     b.added_N.fill(0.0);
     for (std::size_t e = seen; e < live_; ++e)
       effects_[e]->stage() == ProbingStage::scale ? scale(*effects_[e], b)

@@ -90,18 +90,19 @@ ProbingTick ProbingStep::candidate(double v_m_s, double over_s) const noexcept {
           .tz_Nm = torque_Nm_};
 }
 
-double ProbingStep::seen_m(const ProbingTick& tick) const noexcept {
-  ProbingTick seen = tick;
+/// As the bone sees it.
+ProbingTick ProbingStep::seen(ProbingTick tick) const noexcept {
   for (std::size_t e = 0; e < effects_.size(); ++e) {
     if (effects_[e]->stage() != ProbingStage::depth) break;
-    seen.x_m = effects_[e]->depth_m(seen, state_of(e));
+    effects_[e]->see(tick, state_of(e));
   }
-  return seen.x_m;
+  return tick;
 }
 
 double ProbingStep::resistance_N(double v_m_s, const Piece& piece) const noexcept {
   const ProbingTick tick = candidate(v_m_s, piece.left_s);
-  double base_N = law_.force_N(std::min(std::max(seen_m(tick), piece.low_m), piece.high_m), v_m_s);
+  const ProbingTick bone = seen(tick);
+  double base_N = law_.force_N(std::min(std::max(bone.x_m, piece.low_m), piece.high_m), bone.v_m_s);
   double added_N = 0.0;
   for (std::size_t e = 0; e < effects_.size(); ++e) {
     const ProbingEffect& effect = *effects_[e];
@@ -126,11 +127,10 @@ double ProbingStep::speed_m_s(double force_N, const Piece& piece) const noexcept
 }
 
 void ProbingStep::commit(const ProbingTick& tick) noexcept {
-  ProbingTick seen = tick;
+  ProbingTick bone = tick;
   for (std::size_t e = 0; e < effects_.size(); ++e) {
-    const bool sees = effects_[e]->stage() == ProbingStage::depth;
-    const ProbingTick before = sees ? seen : tick;
-    if (sees) seen.x_m = effects_[e]->depth_m(before, state_of(e));
+    const ProbingTick before = effects_[e]->stage() == ProbingStage::depth ? bone : tick;
+    effects_[e]->see(bone, state_of(e));
     effects_[e]->commit(before, state_of(e));
   }
   live_.at.x_m = tick.x_m;
@@ -144,11 +144,11 @@ void ProbingStep::commit(const ProbingTick& tick) noexcept {
 double ProbingStep::move(double v_m_s, const Piece& piece) noexcept {
   const double from_m = live_.at.x_m;
   ProbingTick tick = candidate(v_m_s, piece.left_s);
-  const double seen = seen_m(tick);
+  const double bone_m = seen(tick).x_m;
   // Past a border, the depths seen and real move together: what is too far is too far for both.
-  const double over_m = v_m_s > 0.0   ? std::max(seen - piece.high_m - kNearlyZero_m,
+  const double over_m = v_m_s > 0.0   ? std::max(bone_m - piece.high_m - kNearlyZero_m,
                                                  tick.x_m - law_.parameters().travel_m)
-                        : v_m_s < 0.0 ? std::max(piece.low_m - seen - kNearlyZero_m, -tick.x_m)
+                        : v_m_s < 0.0 ? std::max(piece.low_m - bone_m - kNearlyZero_m, -tick.x_m)
                                       : 0.0;
   if (over_m > 0.0) {
     const double way_m = std::max(0.0, std::abs(tick.x_m - from_m) - over_m);
@@ -165,16 +165,16 @@ double ProbingStep::take(double force_N) noexcept {
   const bool holds = std::abs(turning_rad_s_) <= law_.parameters().min_turning_rad_s;
   double left_s = dt_s_;
   for (int i = 0; i < kPieces && left_s > kNothing * dt_s_ && !holds; ++i) {
-    const double seen = seen_m(candidate(0.0, left_s));
-    const Piece piece{left_s, law_.next_border_m(seen, false) + kNearlyZero_m,
-                      law_.next_border_m(seen, true) - kNearlyZero_m};
+    const double bone_m = seen(candidate(0.0, left_s)).x_m;
+    const Piece piece{left_s, law_.next_border_m(bone_m, false) + kNearlyZero_m,
+                      law_.next_border_m(bone_m, true) - kNearlyZero_m};
     const double v = speed_m_s(force_N, piece);
     if ((v > 0.0 && live_.at.x_m >= travel_m) || (v < 0.0 && live_.at.x_m <= 0.0)) break;
     left_s -= move(v, piece);
     if (v == 0.0) break;
   }
   if (left_s > 0.0) commit(candidate(0.0, left_s));  // held, at an end, or at rest
-  live_.at.mode = holds ? laws::ProbingMode::holding : law_.mode_at(seen_m(candidate(0.0, 1.0)));
+  live_.at.mode = holds ? laws::ProbingMode::holding : law_.mode_at(seen(candidate(0.0, 1.0)).x_m);
   live_.v_m_s = (live_.at.x_m - start_m) / dt_s_;
   return live_.v_m_s;
 }

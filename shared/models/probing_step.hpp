@@ -26,7 +26,7 @@ class ProbingStep {
     double left_s, low_m, high_m;
   };
   effects::ProbingTick candidate(double v_m_s, double over_s) const noexcept;
-  double seen_m(const effects::ProbingTick& tick) const noexcept;
+  effects::ProbingTick seen(effects::ProbingTick tick) const noexcept;
   double resistance_N(double v_m_s, const Piece& piece) const noexcept;
   double speed_m_s(double force_N, const Piece& piece) const noexcept;
   double move(double v_m_s, const Piece& piece) noexcept;

@@ -76,11 +76,11 @@ const std::map<std::string, Names> kAllowed = {
     {"server/http", {"shared/core"}},
     {"server/jobs",
      {"shared/core", "shared/trial", "shared/metrics", "shared/cases", "shared/scenarios",
-      "shared/volume", "db/store"}},
+      "shared/volume", "shared/lab", "shared/lab/io", "db/store"}},
     {"server/api",
      {"shared/core", "shared/math", "shared/trial", "shared/metrics", "shared/cases",
-      "shared/scenarios", "shared/study", "shared/volume", "shared/wire", "db/store", "server/http",
-      "server/jobs"}},
+      "shared/scenarios", "shared/study", "shared/volume", "shared/wire", "shared/models",
+      "shared/lab/io", "db/store", "server/http", "server/jobs"}},
 };
 
 bool is_source(const fs::path& path) {

@@ -166,6 +166,20 @@ TEST_F(Lab, NamesTheFrictionAndWritesAModelThatIsAtTheFloor) {
   EXPECT_LT(again["channels"][0]["rmse"].get<double>(), 0.15);
 }
 
+TEST_F(Lab, FitsAPersonsOwnEffect) {
+  std::ofstream(at("own.json")) << R"({"format":"tractus-effect/1","id":"expression:rub",
+"rig":"probing","adds_to":"fz_N","formula":"c * sign(v_m_s)","summary":"rubbing",
+"parameters":{"c":{"unit":"N","initial":1,"low":0,"high":100,"meaning":"size"}}})";
+  const auto answer = json(lab("fit", "rubbing",
+                               "--effect " + at("own.json") + " --out " + at("own_model.json") +
+                                   " --json"));
+ASSERT_EQ(answer["effects"].size(), 1u);
+EXPECT_EQ(answer["effects"][0]["id"], "expression:rub");
+EXPECT_NEAR(answer["effects"][0]["parameters"]["c"]["value"].get<double>(), kFriction, 0.05);
+// The error before is that of the model without it.
+EXPECT_NEAR(answer["base"]["rmse"].get<double>(), kFriction, 0.05 * kFriction);
+}
+
 TEST_F(Lab, AddsNothingWhereNothingIsMissing) {
   const auto answer = json(lab("diagnose", "smooth", "--json"));
   EXPECT_EQ(answer["verdict"], "complete");
@@ -197,6 +211,28 @@ TEST_F(Lab, WritesAReportThatABrowserOpensWithoutComplaint) {
   ASSERT_EQ(browser.code, 0);
   EXPECT_NE(browser.out.find("Where the model fails"), std::string::npos);
   EXPECT_EQ(browser.out.find("CONSOLE"), std::string::npos);
+}
+
+// Fitted to a real tool turning at 0.2 Hz, tried at 0.4 and 0.5 Hz. No figure of ours is expected:
+// only that what was found at one speed is worth something at others.
+TEST_F(Lab, WhatIsFoundOnARealToolHoldsAtSpeedsItNeverSaw) {
+  const std::string data = TRACTUS_SOURCE_DIR "/tests/data/force/cable_tool_odbl";
+  const auto run = [&](const std::string& command, const std::string& model, const std::string& set,
+                       const std::string& more) {
+    return json(ran(fmt::format("{} {} --model {} --measurements {}/drum/{} {} --json", kTractus,
+                                command, model, data, set, more)));
+  };
+  const auto error = [](const core::Json& compared) {
+    return compared["channels"][0]["rmse"].get<double>();
+  };
+  const std::string given = data + "/model.json";
+  run("fit", given, "light_slow", "--out " + at("refitted.json"));
+  const auto found = run("diagnose", given, "light_slow", "--out-model " + at("found.json"));
+  EXPECT_FALSE(found["effects"].empty());
+  const double before = error(run("compare", at("refitted.json"), "light_fast", "")),
+               after = error(run("compare", at("found.json"), "light_fast", ""));
+  EXPECT_LT(after, 0.5 * before);
+  std::printf("real tool: %.3f N with base alone, %.3f N with what was found\n", before, after);
 }
 
 TEST_F(Lab, TellsAPersonInASentenceFirst) {

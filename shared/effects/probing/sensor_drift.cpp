@@ -38,6 +38,7 @@ ProbingEffectInfo sensor_drift() {
                    .initial = 0.5,
                    .low = -100.0,
                    .high = 100.0}},
+       .parents = {"sensor_bias"},
        .free_per_trial = true},
       made<SensorDrift>};
 }

@@ -30,14 +30,23 @@ Answer begun(const Case& opened) {
 }
 
 void compare_given(const Case& opened, Answer& answer) {
-  answer.content.given = side(lab::samples_as_given(*opened.problem, opened.recorded));
-  answer.content.map = lab::tract_map(answer.content.given.samples);
+  answer.content.before = side(lab::samples_as_given(*opened.problem, opened.recorded));
+  answer.content.given_rmse = answer.content.before.comparison.rmse;
+  answer.content.map = lab::tract_map(answer.content.before.samples);
 }
 
 void compare_better(const Case& opened, const lab::Fit& fit, Answer& answer) {
   answer.content.better =
       side(lab::samples_of(*opened.problem, fit.structure, fit.values, opened.recorded));
   answer.content.start = opened.problem->parameters(fit.structure);
+}
+
+/// What is then held against the better model: its own numbers fitted, and still wrong.
+void compare_refitted(const Case& opened, const lab::Fit& fit, Answer& answer) {
+  answer.content.before =
+      side(lab::samples_of(*opened.problem, fit.structure, fit.values, opened.recorded));
+  answer.content.before_name = "refitted";
+  answer.content.map = lab::tract_map(answer.content.before.samples);
 }
 
 /// An id that this recording can show, or why not.
@@ -60,7 +69,7 @@ Result<void> known(const lab::Problem& problem, const std::string& id) {
 Answer compared(const Case& opened) {
   Answer out = begun(opened);
   compare_given(opened, out);
-  out.json = lab::to_json(out.content.given.comparison);
+  out.json = lab::to_json(out.content.before.comparison);
   out.json["model"] = opened.model_name;
   out.json["notes"] = opened.problem->notes();
   return out;
@@ -78,7 +87,8 @@ Result<Answer> diagnosed(const Case& opened, const DiagnoseWish& wish,
   if (wish.report) {
     compare_given(opened, out);
     compare_better(opened, diagnosis->final_fit, out);
-    out.json["where"] = lab::to_json(out.content.given.comparison)["where"];
+    if (!diagnosis->effects.empty()) compare_refitted(opened, diagnosis->base_fit, out);
+    out.json["where"] = lab::to_json(out.content.before.comparison)["where"];
   }
   out.content.diagnosis = std::move(*diagnosis);
   return out;
@@ -96,7 +106,7 @@ Result<Answer> fitted(const Case& opened, const Case* before, std::vector<std::s
   Answer out = begun(opened);
   compare_given(before ? *before : opened, out);
   compare_better(opened, *fit, out);
-  out.json = lab::to_json(*fit, out.content.given.comparison);
+  out.json = lab::to_json(*fit, out.content.before.comparison);
   out.json["primary"] = opened.problem->channels().front().name;
   out.model = opened.problem->model(fit->structure, fit->values);
   out.content.fit = std::move(*fit);

@@ -50,12 +50,14 @@ export async function signIn(page: Page, path = '/'): Promise<void> {
 export const asked = <Answer>(page: Page, path: string): Promise<Answer> =>
   page.evaluate(async (address) => (await fetch(address)).json() as Promise<Answer>, `/api/v1${path}`);
 
-/** The id of the newest trial that has been assessed. */
+/** The id of the newest palpation trial that has been assessed. */
 export async function assessedTrial(page: Page): Promise<string> {
   const { trials } = await asked<{ trials: { id: string; state: string }[] }>(page, '/trials?limit=50');
-  const found = trials.find((trial) => trial.state === 'assessed');
-  if (!found) throw new Error('the server has no assessed trial');
-  return found.id;
+  for (const { id } of trials.filter(({ state }) => state === 'assessed')) {
+    const { rig } = await asked<{ rig: string }>(page, `/trials/${id}`);
+    if (rig === 'palpation') return id;
+  }
+  throw new Error('the server has no assessed palpation trial');
 }
 
 interface Told { participants: { name: string; slots: { state: string; trials: { id: string; state: string }[] }[] }[] }

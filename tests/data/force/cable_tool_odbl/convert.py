@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Makes probing sets that only turn from runs of the MRD Lab's tool characterisation.
 
-    convert.py FOLDER_WITH_TXT OUT_FOLDER
+    convert.py [--drum R] FOLDER_WITH_TXT OUT_FOLDER
 
 A run's .TXT: lines that begin with % are its header; then 1 kHz rows of ten comma-separated columns
 (the source's README). Taken are
@@ -12,12 +12,16 @@ A run's .TXT: lines that begin with % are its header; then 1 kHz rows of ten com
     front_theta_rad, front_tz_Nm  columns 5 and 6, the other end; kept for people, ignored by the lab
 Five rows are averaged into one (200 Hz): the motion is a sine of at most 0.5 Hz.
 
+--drum R (metres) writes the same as a cable on a drum of that radius: x_m = R (theta + 0.6 rad), so that
+it is never negative, and fz_N = tz / R, for the effects of the catalogue that act along x. The physics is
+the same, seen along the cable: 1 N of friction there is R newton-metres of it on the axis.
+
 A run XY turns at 0.1 (X + 1) Hz, by 30 degrees, against a reaction torque of 10 % (Y = 0) or 100 %
 (Y = 9). Sets: slow and fast at each of the two loads.
 """
+import argparse
 import json
 import math
-import sys
 from pathlib import Path
 
 AVERAGED = 5
@@ -50,25 +54,41 @@ def converted(path):
     return out
 
 
-def main(source, target):
+def csv_of(rows, drum_m):
+    if drum_m is None:
+        yield "t_s,theta_rad,tz_Nm,front_theta_rad,front_tz_Nm"
+        for row in rows:
+            yield "%.4f,%.6f,%.6f,%.6f,%.6f" % row
+    else:
+        yield "t_s,x_m,fz_N"
+        for row in rows:
+            yield "%.4f,%.8f,%.5f" % (row[0], drum_m * (row[1] + 0.6), row[2] / drum_m)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--drum", type=float)
+    parser.add_argument("source", type=Path)
+    parser.add_argument("target", type=Path)
+    asked = parser.parse_args()
     for name, runs in SETS.items():
-        folder = Path(target) / name
+        folder = asked.target / name
         folder.mkdir(parents=True, exist_ok=True)
         trials = []
         for run in runs:
-            with open(folder / f"run{run}.csv", "w", encoding="ascii") as csv:
-                csv.write("t_s,theta_rad,tz_Nm,front_theta_rad,front_tz_Nm\n")
-                for row in converted(Path(source) / f"{PREFIX}{run}.TXT"):
-                    csv.write("%.4f,%.6f,%.6f,%.6f,%.6f\n" % row)
+            rows = converted(asked.source / f"{PREFIX}{run}.TXT")
+            text = "\n".join(csv_of(rows, asked.drum)) + "\n"
+            (folder / f"run{run}.csv").write_text(text, encoding="ascii")
             speed, load = 0.1 * (int(run[0]) + 1), {"0": 10, "9": 100}[run[1]]
             trials.append({"id": f"run{run}", "file": f"run{run}.csv", "operator": "",
                            "notes": f"sine of {speed:.1f} Hz, reaction torque {load} %"})
+        seen = "" if asked.drum is None else f", along a cable on a drum of {1e3 * asked.drum:g} mm"
         (folder / "set.json").write_text(json.dumps({
             "format": "tractus-measurements/1", "rig": "probing",
-            "name": f"cable-driven tool, {name.replace('_', ', ')}",
+            "name": f"cable-driven tool, {name.replace('_', ', ')}{seen}",
             "source": "github.com/MRDLab/mis-tool-characterization, ODbL 1.0",
-            "trials": trials}, indent=1) + "\n")
+            "trials": trials}, indent=1) + "\n", encoding="ascii")
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:3])
+    main()

@@ -57,9 +57,10 @@ describe('the judgement of a probing trial', () => {
   });
 });
 
-it('the moments of a breach are the entries into soft tissue', () => {
-  const mode = ['bone', 'breach', 'breach', 'bone', 'breach'] as const;
-  expect(breachMarks({ t_s: [0, 1, 2, 3, 4], depth_m: [], force_N: [], mode: [...mode] }).map(({ t_s }) => t_s)).toEqual([1, 4]);
+it('the moments of a breach are the entries into soft tissue from before it, not those back into it from behind', () => {
+  const mode = ['bone', 'breach', 'bone', 'breach', 'bone', 'breach'] as const;
+  const depth_m = [0.019, 0.021, 0.0281, 0.0279, 0.035, 0.036];
+  expect(breachMarks({ t_s: [0, 1, 2, 3, 4, 5], depth_m, force_N: [], mode: [...mode] }).map(({ t_s }) => t_s)).toEqual([1, 5]);
   expect(breachMarks(undefined)).toEqual([]);
 });
 
