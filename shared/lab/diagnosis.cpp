@@ -134,7 +134,8 @@ Result<Diagnosis> diagnose(const Problem& problem, const DiagnoseOptions& option
   Solution& final = named ? selection.chosen() : selection.tried().at("");
   out.final_fit = report(residual, final, true);
   const Belief belief(residual, selection, final);
-  out.probability = belief.of_structure(final.structure);
+  out.probability =
+      out.verdict == Verdict::unexplained ? belief.outside() : belief.of_structure(final.structure);
   for (const std::string& id : named ? selection.order() : std::vector<std::string>{}) {
     out.effects.push_back(found(problem, out.final_fit, id));
     out.effects.back().probability = belief.of_effect(id);

@@ -20,6 +20,7 @@ constexpr double kScaleQuantile = 0.97, kScaleOfNormal = 2.17;
 /// unknown.
 constexpr double kRank = 1e-11;
 constexpr int kRoughRounds = 3;
+constexpr int kMostTries = 12;  // ever shorter steps from one point
 constexpr double kFinestRough = 0.005;
 
 double step_inside(const Parameter& p, double u) {
@@ -85,9 +86,13 @@ class Search {
       double promised = 0.0;
       int tries = 0;
       bool better = false;
-      for (; tries < 6 && !better; ++tries) {
+      for (; tries < kMostTries && !better; ++tries) {
         next = stepped(equations, damping, promised);
-        if (!(promised > 0.1 * options_.tolerance * at_.loss)) break;
+        if (!(promised > 0.0)) {  // the step was cut at a bound and leads nowhere: a shorter one
+          damping = std::max(damping * 10.0, 1e-4);
+          continue;
+        }
+        if (promised < 0.1 * options_.tolerance * at_.loss) break;
         judge(next, at_.scale);
         better = next.loss < at_.loss;
         if (!better) {

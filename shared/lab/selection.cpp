@@ -13,9 +13,7 @@ namespace {
 
 /// A further effect must lower the whitened mean square by this share …
 constexpr double kClearShare = 0.12;
-/// … and take away this share of what the given model left over the floor.
-constexpr double kClearOfExcess = 0.004;
-/// And, in units of chance: 2·nats per number added.
+/// … and, in units of chance: 2·nats per number added.
 constexpr double kClearLoss = 30.0;
 /// Singles that are grown into pairs, pairs into triples; effects tried on each.
 constexpr std::size_t kGrown = 4, kTriedOnEach = 6;
@@ -73,13 +71,14 @@ Solution& Selection::fitted(const Solution& from, const std::string& effect, int
   return tried_[key] = std::move(found);
 }
 
-bool Selection::clearly_better(const Solution& larger, const Solution& smaller) const {
+bool Selection::clearly_better(const Solution& larger, const Solution& smaller,
+                               double share) const {
   const double before = smaller.mean_square(), after = larger.mean_square();
   const double numbers = std::max(1.0, numbers_beyond(residual_, larger, smaller));
   const double gained = double(residual_.size()) * (before - after) / std::max(1.0, after) +
                         smaller.prior - larger.prior;
   return gained > kClearLoss * numbers && before - after > kClearShare * before &&
-         before - after > kClearOfExcess * excess(base().mean_square());
+         before - after > share * excess(base().mean_square());
 }
 
 bool Selection::nameable(Solution& at) const {
@@ -209,7 +208,7 @@ void Selection::prefer_parents() {
       Solution from = tried_.at(name(less));
       differentiate(residual_, from);
       const Solution& simpler = fitted(from, parent, kTries);
-      if (!clearly_better(chosen(), simpler)) chosen_ = name(simpler.structure);
+      if (!clearly_better(chosen(), simpler, kClearOfParent)) chosen_ = name(simpler.structure);
     }
   }
 }

@@ -11,6 +11,11 @@
 
 namespace lab {
 
+/// A further effect must take away this share of what the given model left over the floor: less is
+/// a small flaw of the law of the first, not a second effect. A child that refines its parent's
+/// law need bring less.
+inline constexpr double kClearOfExcess = 0.004, kClearOfParent = 2e-4;
+
 /// Every structure that was fitted, kept by its name.
 class Selection {
  public:
@@ -29,8 +34,10 @@ class Selection {
   const std::map<std::string, Look>& looks() const { return looks_; }  ///< on the base, by effect
   /// Ids in the order in which they brought most.
   const std::vector<std::string>& order() const { return order_; }
-  /// Does the larger bring the residual clearly nearer to the floor than the smaller?
-  bool clearly_better(const Solution& larger, const Solution& smaller) const;
+  /// Does the larger bring the residual clearly nearer to the floor than the smaller? @param share
+  /// of what the given model left over the floor that it must take away besides.
+  bool clearly_better(const Solution& larger, const Solution& smaller,
+                      double share = kClearOfExcess) const;
   /// No effect ends where it may not be named: at a bound, or smaller than its standard error.
   bool nameable(Solution& at) const;
 

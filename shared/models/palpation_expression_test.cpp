@@ -57,7 +57,7 @@ const Vec3 kSpeed(0.03, -0.04, 0.0);  // 50 mm/s: rounded by (0.1/50)² / 2 = 2e
 
 TEST(APalpationFormula, IsContactDampingWhereItSaysSo) {
   const auto own = added(formula("c * opacity * v_m_s", "N*s/m"), kPoint, kSpeed);
-  const auto known = added({"contact_damping", {7.0}}, kPoint, kSpeed);
+  const auto known = added({"contact_damping", {7.0, 1.0}}, kPoint, kSpeed);
   EXPECT_GT(known.force_N.norm(), 0.1);
   EXPECT_LT((own.force_N - known.force_N).norm(), 1e-5 * known.force_N.norm());
   EXPECT_LT((own.jacobian_N_per_m - known.jacobian_N_per_m).norm(),

@@ -28,7 +28,7 @@ Fault read_fixed(core::Fields& fields, const core::Json& whole, std::vector<std:
 /// id.
 using FactsOf = core::Result<effects::EffectFacts> (*)(const effects::Use& use);
 /// `effects`: a list of {"id", "parameters": {name: number, or an array for a parameter of several
-/// components}}, every parameter given (but for those with an `otherwise`) and
+/// components}}, every parameter given (but for those with an `if_missing`) and
 /// within its range, no id twice. A user's own effect has
 /// its whole file beside them as "expression".
 Fault read_effects(core::Fields& fields, FactsOf facts_of, std::vector<effects::Use>& uses);

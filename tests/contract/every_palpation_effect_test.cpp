@@ -59,9 +59,9 @@ const volume::Volume& block() {
 }
 
 const volume::ForceField& field() {
-  static const auto kMade =
+  static const auto kField =
       volume::ForceField::make(block(), PalpationModel{}.transfer, volume::FieldKind::potential);
-  return *kMade;
+  return *kField;
 }
 
 PalpationRuntime runtime_of(std::vector<effects::Use> uses) {
@@ -73,9 +73,10 @@ PalpationRuntime runtime_of(std::vector<effects::Use> uses) {
   return std::move(*runtime);
 }
 
-/// Down into the floor, along it and up again, twice, tip first and tilted.
+/// Down into the floor, along it and up again, twice, tip first and tilted both ways.
 PalpationMotion strokes() {
-  const math::Quat down(Eigen::AngleAxisd(M_PI - 0.15, Vec3::UnitX()));
+  const math::Quat down(Eigen::AngleAxisd(M_PI - 0.15, Vec3::UnitX()) *
+                        Eigen::AngleAxisd(0.1, Vec3::UnitY()));
   std::vector<double> t_s;
   std::vector<math::Pose> poses;
   for (int k = 0; k <= 800; ++k) {
@@ -133,7 +134,7 @@ TEST_P(EveryPalpationEffect, IsNothingWhenOff) {
   const auto motion = strokes();
   EXPECT_LT(greatest_difference(predicted(runtime_of({}), motion),
                                 predicted(runtime_of({use_of(info_, At::off)}), motion)),
-            1e-9);  // N; rounding of two ways to the same numbers
+            1e-6);  // N: the shank's rest is sought to 1e-3 N, so two ways to it part a little
 }
 
 TEST_P(EveryPalpationEffect, IsSomethingElsewhereUnlessItsCourseIsFree) {
