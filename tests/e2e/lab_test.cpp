@@ -167,9 +167,9 @@ TEST_F(Lab, NamesTheFrictionAndWritesAModelThatIsAtTheFloor) {
 }
 
 TEST_F(Lab, FitsAPersonsOwnEffect) {
-  std::ofstream(at("own.json")) << R"({"format":"tractus-effect/1","id":"expression:rub",
+  std::ofstream(at("own.json")) << R"json({"format":"tractus-effect/1","id":"expression:rub",
 "rig":"probing","adds_to":"fz_N","formula":"c * sign(v_m_s)","summary":"rubbing",
-"parameters":{"c":{"unit":"N","initial":1,"low":0,"high":100,"meaning":"size"}}})";
+"parameters":{"c":{"unit":"N","initial":1,"low":0,"high":100,"meaning":"size"}}})json";
   const auto answer = json(lab("fit", "rubbing",
                                "--effect " + at("own.json") + " --out " + at("own_model.json") +
                                    " --json"));
