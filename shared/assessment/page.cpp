@@ -22,7 +22,8 @@ constexpr const char* kStyle =
     ".4rem 0 1rem;font-variant-numeric:tabular-nums;font-size:13px}th,td{padding:.15rem .6rem;"
     "text-align:right;border-bottom:1px solid "
     "#e5e9ed}th:first-child,td:first-child{text-align:left}"
-    "th{color:#5b6470;font-weight:600}.w{border:1px solid #b3261e;background:#fdf3f2;padding:.5rem "
+    "td.l{text-align:left}th{color:#5b6470;font-weight:600}.w{border:1px solid "
+    "#b3261e;background:#fdf3f2;padding:.5rem "
     ".8rem;border-radius:4px}.s{color:#5b6470;font-size:12px;overflow-wrap:anywhere}"
     "svg{max-width:100%;height:auto}.t{overflow-x:auto}@media print{body{margin:0;max-width:none}"
     "h2,h3{break-after:avoid}tr,svg{break-inside:avoid}}";
@@ -37,7 +38,7 @@ std::string title_of(const std::string& key) {
 std::string cell(const Json& value) {
   if (value.is_number_float() && std::isfinite(value.get<double>()))
     return fmt::format("<td title=\"{}\">{}</td>", value.dump(), readable(value));
-  return "<td>" + escaped(readable(value)) + "</td>";
+  return (value.is_string() ? "<td class=\"l\">" : "<td>") + escaped(readable(value)) + "</td>";
 }
 
 }  // namespace

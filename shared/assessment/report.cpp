@@ -154,15 +154,9 @@ Parts parts_of(const Table& table, const std::string& column) {
 
 statistics::Groups groups_in_order(const Table& table, const std::string& column,
                                    const statistics::Vector& y) {
-  const Parts parts = parts_of(table, column);
-  statistics::Groups out{parts.names, {}};
-  for (const auto& rows : parts.rows) {
-    statistics::Vector values(static_cast<Eigen::Index>(rows.size()));
-    for (std::size_t i = 0; i < rows.size(); ++i)
-      values[static_cast<Eigen::Index>(i)] = y[static_cast<Eigen::Index>(rows[i])];
-    out.values.push_back(std::move(values));
-  }
-  return out;
+  auto names = levels_of(table, column);
+  const auto places = places_of(table, column, names);
+  return statistics::grouped(places, std::move(names), y);
 }
 
 namespace {

@@ -9,6 +9,11 @@
 
 namespace effects {
 
+namespace {
+/// exp(log(high)) may lie a bit beyond high; that is still the range's end.
+constexpr double kRounding = 1e-12;
+}  // namespace
+
 std::string_view name(Kind kind) {
   switch (kind) {
     case Kind::force:
@@ -59,7 +64,8 @@ core::Result<void> check(const EffectFacts& facts, std::span<const double> value
   for (const Param& param : facts.params)
     for (int k = 0; k < param.components; ++k) {
       const double value = values[next++];
-      if (!(std::isfinite(value) && value >= param.low && value <= param.high))
+      const double rounding = kRounding * std::max(std::abs(param.low), std::abs(param.high));
+      if (!(value >= param.low - rounding && value <= param.high + rounding))
         return core::Error{core::Errc::out_of_range,
                            fmt::format("{}/{}: {} is outside {} … {}", facts.id, param.name, value,
                                        param.low, param.high)};

@@ -34,9 +34,10 @@ struct Param {
   /// The effect vanishes exactly when every parameter that has an off value takes it, whatever the
   /// others are; kNoOff for a parameter of shape (a velocity, a period), which has no such value.
   double off = 0.0;
-  bool logarithmic = false;   ///< spans decades: search and step in its logarithm
-  double otherwise = kNoOff;  ///< what it is where a file leaves it out; kNoOff: it may not
-  std::string unit = {};      ///< where the name does not say it, see unit_of
+  bool logarithmic = false;  ///< spans decades: search and step in its logarithm
+  /// What a model file means that does not give it; kNoOff: it must.
+  double if_missing = kNoOff;
+  std::string unit = {};  ///< where the name does not say it, see unit_of
 };
 /// "N/m" of stiffness_N_per_m, "1" of coefficient: what the name ends in, or what is stated.
 std::string unit_of(const Param& param);

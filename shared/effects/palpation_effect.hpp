@@ -97,6 +97,8 @@ class PointForce {
   /// Adds to `total`, a point's force and its derivative with p, given the elastic part of it.
   virtual void add(const PointContact& point, const laws::ForceSample& elastic,
                    laws::ForceSample& total) const noexcept = 0;
+  /// How much of it takes part in the rest of the shank, 0 … 1; all of it is felt at the handle.
+  virtual double bending_share() const noexcept { return 1.0; }
 };
 
 /// How the handle moves.
@@ -108,6 +110,20 @@ struct HandleMotion {
   Vec3 alpha_rad_s2 = Vec3::Zero();  ///< of the handle
   Vec3 down = -Vec3::UnitZ();        ///< unit vector along gravity
 };
+
+/// Of the forces that act at points besides the elastic one: the law's sums let them bend the shank
+/// (1, which is meant where a file does not say), a force that was added to a finished simulation
+/// does not (0).
+inline Param bends_shank() {
+  return {.name = "bends_shank",
+          .meaning = "how much of the force takes part in the rest of the shank",
+          .initial = 1.0,
+          .low = 0.0,
+          .high = 1.0,
+          .off = kNoOff,
+          .if_missing = 1.0,
+          .unit = "1"};
+}
 
 class HandleWrench {
  public:

@@ -96,10 +96,13 @@ void look_at(const Residual& residual, const Solution& at, const Base& base,
              const std::vector<double>& start, Look& out) {
   std::vector<double> off = carried_values;
   std::vector<std::size_t> strengths;
+  bool elsewhere = false;
   for (std::size_t k = 0; k < block.count; ++k) {
     const Parameter& p = parameters[block.first + k];
-    off[block.first + k] = std::clamp(p.shape ? start[k] : 0.0, p.low, p.high);
+    off[block.first + k] = std::clamp(p.shape ? start[k] : p.off, p.low, p.high);
     if (!p.shape) strengths.push_back(k);
+    // What is searched in its logarithm takes the place of a number of the base: off is not here.
+    elsewhere = elsewhere || (!p.shape && p.logarithmic);
   }
   std::vector<std::vector<double>> points;
   std::vector<bool> positive;
@@ -110,7 +113,7 @@ void look_at(const Residual& residual, const Solution& at, const Base& base,
     positive.push_back(p.low >= off[block.first + k]);
   }
   Eigen::MatrixXd columns = residual(structure, points);
-  columns.colwise() -= at.residual;
+  columns.colwise() -= elsewhere ? residual(structure, off) : at.residual;
   Eigen::VectorXd norms, coefficients;
   const Gram rest = base.rest(columns, norms);
   Look::Start found{off, best(rest, positive, coefficients)};

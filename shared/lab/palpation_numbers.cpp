@@ -74,7 +74,8 @@ double step_of(std::string_view pointer, double fallback) {
       {"contact_nonlinearity/exponent", 1e-2},
       {"coefficient", 1e-2},
       {"loss", 1e-2},
-      {"contact_damping/", 1e-1},
+      {"contact_damping/damping", 1e-1},
+      {"/bends_shank", 2e-2},
   };
   for (const Step& each : kSteps)
     if (pointer.find(each.in) != std::string_view::npos) return each.step;
@@ -85,6 +86,11 @@ double step_of(std::string_view pointer, double fallback) {
 
 PalpationNumbers::PalpationNumbers(models::PalpationModel model, double field_per_m)
     : model_(std::move(model)), field_per_m_(field_per_m) {
+  for (const effects::Use& use : model_.effects) {
+    auto facts = effects::palpation_facts(use);
+    core::require(bool(facts), "a model's effects are known");
+    own_.push_back(std::move(*facts));
+  }
   const PalpationParameters& p = model_.base;
   const auto add = [this](const char* name, double PalpationParameters::*held,
                           Parameter parameter) {
@@ -114,13 +120,18 @@ bool PalpationNumbers::fixed(const std::string& pointer) const {
   return std::ranges::any_of(model_.fixed, [&](const auto& p) { return covers(p, pointer); });
 }
 
-std::vector<Parameter> PalpationNumbers::of_effect(const std::string& id) const {
-  auto out = parameters_of(facts_of(id));
+std::vector<Parameter> PalpationNumbers::of_effect(const effects::EffectFacts& facts) const {
+  const std::string& id = facts.id;
+  auto out = parameters_of(facts);
   for (Parameter& p : out) {
     p.step = p.logarithmic ? 5e-3 : step_of(p.pointer, p.step);
     if (p.pointer == "contact_nonlinearity/reference_gradient_per_m") {
       p.start = std::clamp(field_per_m_, p.low, p.high);
       p.prior_sd = kReferenceSd;
+    }
+    if (id == "shank_taper") {  // equal radii are the base's shank
+      p.shape = false;
+      p.start = p.off = model_.base.radius_m;
     }
   }
   return out;
@@ -129,26 +140,28 @@ std::vector<Parameter> PalpationNumbers::of_effect(const std::string& id) const 
 std::vector<Parameter> PalpationNumbers::parameters(const Structure& structure) const {
   std::vector<Parameter> out;
   for (const Slot& slot : slots_) out.push_back(slot.parameter);
-  for (const effects::Use& use : model_.effects) {
-    auto own = of_effect(use.id);
+  for (std::size_t e = 0; e < own_.size(); ++e) {
+    auto own = of_effect(own_[e]);
     for (std::size_t k = 0; k < own.size(); ++k) {
-      own[k].start = use.values[k];
+      own[k].start = model_.effects[e].values[k];
       own[k].shape = false;
       out.push_back(own[k]);
     }
   }
   for (const std::string& id : structure.effects)
-    for (auto& p : of_effect(id)) out.push_back(p);
+    for (auto& p : of_effect(facts_of(id))) out.push_back(p);
   return out;
 }
 
 std::vector<std::vector<double>> PalpationNumbers::starts(std::string_view effect) const {
   const double r = model_.base.radius_m;
-  if (effect == "shank_taper") return {{1.05 * r, 0.95 * r}, {0.95 * r, 1.05 * r}};
+  if (effect == "shank_taper") return {{1.02 * r, 1.02 * r}};
   if (effect == "shank_curvature")
     return {{3e-4, 0.0}, {3e-4, M_PI_2}, {3e-4, -M_PI_2}, {3e-4, M_PI}};
   if (effect == "contact_nonlinearity") return {{1.05, field_per_m_}};
-  if (effect == "tip_ball") return {{3e-4}, {8e-4}};
+  if (effect == "tip_ball") return {{5e-4}};
+  if (effect == "contact_friction") return {{0.1, 1.0}, {0.1, 0.0}};
+  if (effect == "contact_damping") return {{10.0, 1.0}, {10.0, 0.0}};
   if (effect == "pose_offset") return {{1e-5, 1e-5, 1e-5}};
   if (effect == "sensor_bias") return {{1e-2, 1e-2, 1e-2, 1e-3, 1e-3, 1e-3}};
   if (effect == "probe_weight" || effect == "probe_inertia") return {{0.01, 0.05}};
@@ -160,9 +173,9 @@ models::PalpationModel PalpationNumbers::with(const Structure& structure,
   models::PalpationModel out = model_;
   std::size_t at = 0;
   for (const Slot& slot : slots_) out.base.*slot.held = values[at++];
-  for (effects::Use& use : out.effects)
-    if (!facts_of(use.id).free_per_trial)
-      for (double& value : use.values) value = values[at++];
+  for (std::size_t e = 0; e < own_.size(); ++e)
+    if (!own_[e].free_per_trial)
+      for (double& value : out.effects[e].values) value = values[at++];
   for (const std::string& id : structure.effects) {
     const effects::EffectFacts& facts = facts_of(id);
     if (facts.free_per_trial) continue;

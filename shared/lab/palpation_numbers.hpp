@@ -33,9 +33,10 @@ class PalpationNumbers {
     Parameter parameter;
   };
   bool fixed(const std::string& pointer) const;
-  std::vector<Parameter> of_effect(const std::string& id) const;
+  std::vector<Parameter> of_effect(const effects::EffectFacts& facts) const;
 
   models::PalpationModel model_;
+  std::vector<effects::EffectFacts> own_;  // of the model's effects
   double field_per_m_;
   std::vector<Slot> slots_;
 };

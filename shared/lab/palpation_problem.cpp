@@ -239,14 +239,13 @@ States PalpationProblem::states(int k) const {
 std::vector<std::pair<std::string, double>> PalpationProblem::derived(
     const Structure& structure, std::span<const double> values, std::string_view effect) const {
   if (effect != kDrift || !has_drift(structure)) return {};
-  // The greatest of the axes' ranges, mean over the trials.
+  // Mean over the trials, and over the axes that drift: by half as much as the one that does most.
   double sum = 0.0;
   for (int k = 0; k < trials(); ++k) {
-    const Eigen::MatrixXd slow = trend(structure, values, k);
-    double range = 0.0;
-    for (int c = 0; c < 3; ++c)
-      range = std::max(range, slow.row(c).maxCoeff() - slow.row(c).minCoeff());
-    sum += range;
+    const Eigen::Matrix3Xd slow = trend(structure, values, k).topRows<3>();
+    const Vec3 range = slow.rowwise().maxCoeff() - slow.rowwise().minCoeff();
+    const auto drifts = (range.array() >= 0.5 * range.maxCoeff()).cast<double>();
+    sum += (range.array() * drifts).sum() / drifts.sum();
   }
   return {{"range_N", sum / double(trials())}};
 }

@@ -22,14 +22,23 @@ constexpr double kThinRate_Hz = 100.0;
 /// rate.
 constexpr double kPoorlyKnown = 10.0;
 constexpr double kContact_N = 0.05;
+/// A pressed point, and how many standard errors of its speed have a sign.
+constexpr double kPressed_N = 0.3, kSignErrors = 3.0;
+/// The shank has snapped when the tip went by more than this beyond what the hand explains; the
+/// moment is known to so many samples.
+constexpr double kSnapRatio = 2.0, kSnap_m = 3e-5;
+constexpr std::size_t kSnapSamples = 4;
 constexpr double kPlaceStep_m = 2e-6, kTurnStep_rad = 2e-5;
 
 /// Standard deviation of the white noise on a smooth signal: from sixth differences, median over
 /// short stretches, so that impacts do not count; at least what rounding to even steps makes.
+/// Neighbouring differences share samples, which leaves a stretch's mean square as many degrees of
+/// freedom as it has samples by Σρ² = 3.17; its median lies below its mean by (1 − 2/9ν)³
+/// [Wilson and Hilferty].
 double noise_of(const std::vector<double>& y) {
-  constexpr std::size_t kWindow = 32, kOrder = 6;
+  constexpr std::size_t kWindow = 48, kOrder = 6;
   constexpr double kCoefficients[kOrder + 1] = {1, -6, 15, -20, 15, -6, 1};
-  constexpr double kSquares = 924.0;
+  constexpr double kSquares = 924.0, kFreedom = double(kWindow) / 3.17;
   std::vector<double> squares;
   double least = HUGE_VAL;
   for (std::size_t k = 1; k < y.size(); ++k)
@@ -48,7 +57,9 @@ double noise_of(const std::vector<double>& y) {
   double most = 0.0;
   for (const double v : y) most = std::max(most, std::abs(v));
   const double rounding = std::isfinite(least) ? least / std::sqrt(12.0) : 0.0;
-  return std::max({std::sqrt(*middle), std::min(rounding, 1e-4 * most), 1e-9 * most, 1e-12});
+  const double below = std::pow(1.0 - 2.0 / (9.0 * kFreedom), 3);
+  return std::max(
+      {std::sqrt(*middle / below), std::min(rounding, 1e-4 * most), 1e-9 * most, 1e-12});
 }
 
 /// Position and orientation through the smoother, channel by channel; the quaternion's four
@@ -71,6 +82,8 @@ void smooth_poses(const trial::PalpationMeasurement& trial, const Vec3& down,
   out.motion.handle.resize(n);
   out.p_sd_m.resize(n);
   out.turn_sd_rad.resize(n);
+  out.v_sd_m_s.resize(n);
+  out.omega_sd_rad_s.resize(n);
   for (std::size_t k = 0; k < n; ++k) {
     const auto three = [&](auto member) -> Vec3 {
       return {(s[0].*member)[k], (s[1].*member)[k], (s[2].*member)[k]};
@@ -90,9 +103,14 @@ void smooth_poses(const trial::PalpationMeasurement& trial, const Vec3& down,
         2.0 * (ddq * q.conjugate()).vec() / n2 - handle.omega_rad_s * (2.0 * q.dot(dq) / n2);
     handle.down = down;
     out.p_sd_m[k] = three(&Smoothed::value_sd);
-    double squares = 0.0;
-    for (std::size_t c = 3; c < 7; ++c) squares += s[c].value_sd[k] * s[c].value_sd[k];
-    out.turn_sd_rad[k] = 2.0 * std::sqrt(squares / 4.0);
+    const auto typical = [&](auto member, std::size_t from, std::size_t end) {
+      double squares = 0.0;
+      for (std::size_t c = from; c < end; ++c) squares += (s[c].*member)[k] * (s[c].*member)[k];
+      return std::sqrt(squares / double(end - from));
+    };
+    out.turn_sd_rad[k] = 2.0 * typical(&Smoothed::value_sd, 3, 7);
+    out.v_sd_m_s[k] = typical(&Smoothed::rate_sd, 0, 3);
+    out.omega_sd_rad_s[k] = 2.0 * typical(&Smoothed::rate_sd, 3, 7);
   }
 }
 
@@ -127,6 +145,72 @@ std::vector<Mat6> motion_covariance(const models::PalpationRuntime& runtime,
     }
   }
   return out;
+}
+
+/// Where the unbent tip is, and how fast.
+struct Tip {
+  Vec3 p_m, v_m_s;
+};
+Tip unbent_tip(const models::PalpationRuntime& runtime, const effects::HandleMotion& handle) {
+  const Vec3 lever = runtime.law().parameters().length_m * (handle.X_VH.q * Vec3::UnitZ());
+  return {handle.X_VH.p + lever, handle.v_m_s + handle.omega_rad_s.cross(lever)};
+}
+
+/// Samples at which the shank has gone to another rest: it moved by far more than the hand.
+std::vector<std::size_t> snaps(const models::PalpationRuntime& runtime, const PalpationRecording& r,
+                               const models::PalpationAnswer& at) {
+  std::vector<std::size_t> out;
+  for (std::size_t k = 1; k < r.size(); ++k) {
+    const double by_hand = (unbent_tip(runtime, r.motion.handle[k]).p_m -
+                            unbent_tip(runtime, r.motion.handle[k - 1]).p_m)
+                               .norm();
+    if ((at.deflection_m[k] - at.deflection_m[k - 1]).norm() > kSnapRatio * by_hand + kSnap_m)
+      out.push_back(k);
+  }
+  return out;
+}
+
+/// Does a pressed point move so slowly along or across its force that the sign is not known?
+bool sign_unknown(const models::PalpationRuntime& runtime, const PalpationRecording& r,
+                  const models::PalpationAnswer& at, std::size_t k) {
+  const double force_N = at.wrench_H[k].force_N.norm();
+  if (force_N < kPressed_N) return false;
+  const Vec3 n = r.motion.handle[k].X_VH.q * at.wrench_H[k].force_N / force_N;
+  const Vec3 v = unbent_tip(runtime, r.motion.handle[k]).v_m_s;
+  const double along = std::abs(v.dot(n)), across = (v - v.dot(n) * n).norm();
+  const double sd =
+      std::hypot(r.v_sd_m_s[k], runtime.law().parameters().length_m * r.omega_sd_rad_s[k]);
+  return std::min(along, across) < kSignErrors * sd;
+}
+
+/// Trusted samples, the floor over them, and |g| where the tip touches.
+void set_trust(const models::PalpationRuntime& runtime, PalpationRecording& r,
+               const models::PalpationAnswer& at, const std::vector<Mat6>& by_motion,
+               const std::vector<std::size_t>& snapped) {
+  const Vec6 sensor = r.noise_sd.cwiseAbs2();
+  const double most = kPoorlyKnown * kPoorlyKnown * sensor.head<3>().sum();
+  for (std::size_t k = 0; k < r.size(); ++k)
+    r.trusted[k] = at.converged[k] && by_motion[k].topLeftCorner<3, 3>().trace() <= most &&
+                           !sign_unknown(runtime, r, at, k)
+                       ? 1.0
+                       : 0.0;
+  for (const std::size_t k : snapped)
+    for (std::size_t i = k - std::min(k, kSnapSamples); i < std::min(r.size(), k + kSnapSamples);
+         ++i)
+      r.trusted[i] = 0.0;
+  r.floor.setZero();
+  r.field_per_m.clear();
+  double trusted = 0.0;
+  for (std::size_t k = 0; k < r.size(); ++k) {
+    if (r.trusted[k] > 0.0) {
+      r.floor += sensor + Vec6(by_motion[k].diagonal());
+      trusted += 1.0;
+    }
+    if (at.wrench_H[k].force_N.norm() < kContact_N) continue;
+    const Vec3 tip = runtime.tip_m(r.motion.handle[k].X_VH, at.deflection_m[k]);
+    r.field_per_m.push_back(runtime.field().gradient_per_m(tip).norm());
+  }
+  r.floor = trusted > 0.0 ? Vec6((r.floor / trusted).cwiseSqrt()) : r.noise_sd;
 }
 
 Error wrong(const std::string& where, const std::string& why) {
@@ -184,29 +268,19 @@ void weigh(const models::PalpationRuntime& runtime, PalpationRecording& r) {
   runtime.predict(r.motion, at);
   r.deflection_m = at.deflection_m;
   const auto by_motion = motion_covariance(runtime, r, at);
-  const Vec6 sensor = r.noise_sd.cwiseAbs2();
-  r.floor.setZero();
-  r.field_per_m.clear();
-  double trusted = 0.0;
-  for (std::size_t k = 0; k < r.size(); ++k) {
-    const double force_variance = by_motion[k].topLeftCorner<3, 3>().trace();
-    const bool known =
-        at.converged[k] && force_variance <= kPoorlyKnown * kPoorlyKnown * sensor.head<3>().sum();
-    r.trusted[k] = known ? 1.0 : 0.0;
-    if (known) {
-      r.floor += sensor + Vec6(by_motion[k].diagonal());
-      trusted += 1.0;
-    }
-    if (at.wrench_H[k].force_N.norm() < kContact_N) continue;
-    const auto& handle = r.motion.handle[k];
-    const Vec3 tip = runtime.tip_m(handle.X_VH, at.deflection_m[k]);
-    r.field_per_m.push_back(runtime.field().gradient_per_m(tip).norm());
-  }
-  r.floor = trusted > 0.0 ? Vec6((r.floor / trusted).cwiseSqrt()) : r.noise_sd;
+  const auto snapped = snaps(runtime, r, at);
+  set_trust(runtime, r, at, by_motion, snapped);
   const Vec6 slow = r.slow_noise_sd.cwiseAbs2();
+  const std::size_t reach = r.decimator.half() + kSnapSamples;
   for (std::size_t j = 0; j < r.whitener.size(); ++j) {
-    Mat6 expected = by_motion[r.decimator.middle(j)];
+    const std::size_t middle = r.decimator.middle(j);
+    Mat6 expected = by_motion[middle];
     expected.diagonal() += slow;
+    for (const std::size_t k : snapped)
+      if (k + reach >= middle && k <= middle + reach) {
+        const Vec6 jump = stacked(at.wrench_H[k]) - stacked(at.wrench_H[k - 1]);
+        expected += jump * jump.transpose();
+      }
     const Eigen::LLT<Mat6> root(expected);
     r.whitener[j] = root.matrixL().solve(Mat6::Identity());
   }

@@ -25,11 +25,13 @@ inline Vec6 stacked(const math::Wrench& wrench) {
 struct PalpationRecording {
   std::string id;
   models::PalpationMotion motion;
-  std::vector<math::Vec3> p_sd_m;     ///< standard error of the smoothed position, V
-  std::vector<double> turn_sd_rad;    ///< of the smoothed orientation, about any axis
-  std::vector<Vec6> measured;         ///< full rate
-  Vec6 noise_sd = Vec6::Zero();       ///< of one sample
-  Vec6 slow_noise_sd = Vec6::Zero();  ///< of one output of the decimator
+  std::vector<math::Vec3> p_sd_m;      ///< standard error of the smoothed position, V
+  std::vector<double> turn_sd_rad;     ///< of the smoothed orientation, about any axis
+  std::vector<double> v_sd_m_s;        ///< of the smoothed velocity, along any axis
+  std::vector<double> omega_sd_rad_s;  ///< of the smoothed turning, about any axis
+  std::vector<Vec6> measured;          ///< full rate
+  Vec6 noise_sd = Vec6::Zero();        ///< of one sample
+  Vec6 slow_noise_sd = Vec6::Zero();   ///< of one output of the decimator
   Decimator decimator{1.0, 1.0};
   Eigen::Matrix<double, 6, Eigen::Dynamic> measured_thin;  // [channel][output]
   // Set by weigh().
@@ -51,8 +53,12 @@ struct PalpationRecording {
 core::Result<PalpationRecording> prepare(trial::PalpationMeasurement&& trial,
                                          const math::Vec3& down, const std::string& where);
 
-/// What is expected of each output if `runtime` were true: the sensor's noise, and the pose's error
-/// as the model passes it on. Follows the shank's rests anew and keeps them.
+/// What is expected of each output if `runtime` were true: the sensor's noise, the pose's error as
+/// the model passes it on, and where the shank snaps from one rest to another the size of the jump,
+/// whose moment is known to a few samples only. At the full rate samples are not trusted that lie
+/// at such a snap, or where a pressed point moves so slowly along or across its force that the sign
+/// is not known (what friction and losses do there is not known either).
+/// Follows the shank's rests anew and keeps them.
 void weigh(const models::PalpationRuntime& runtime, PalpationRecording& recording);
 
 /// The model's answer to a motion near the recording's, its rests followed from those kept.

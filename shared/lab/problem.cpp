@@ -35,6 +35,7 @@ std::vector<Parameter> parameters_of(const effects::EffectFacts& facts) {
                        : p.initial != 0.0    ? kStep * std::abs(p.initial)
                                              : 0.1 * kStep * (p.high - p.low);
       parameter.shape = std::isnan(p.off);
+      if (!parameter.shape) parameter.off = p.off;
       out.push_back(std::move(parameter));
     }
   return out;

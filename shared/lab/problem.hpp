@@ -30,6 +30,7 @@ struct Parameter {
                 ///< finite differences
   bool logarithmic = false;  ///< searched in its logarithm; start and low are then > 0
   bool shape = false;  ///< has no value at which its effect vanishes: tried from several starts
+  double off = 0.0;    ///< if it is no shape: where its effect vanishes
   /// If above 0: the loss is rough in it (the place of a border, which samples cross one by one),
   /// so it is also sought by trial within this of where it is.
   double rough = 0.0;

@@ -163,11 +163,29 @@ double ProbingLaw::force_N(double x_m, double speed_m_s, std::size_t& stretch) c
                   s.at_start.stiffness_N_per_m * (x_m - s.at_start.equilibrium_m));
 }
 
-double ProbingLaw::torque_Nm(double x_m, double theta_rad, double turning_rad_s) const noexcept {
-  if (mode_at(x_m) == ProbingMode::breach) return 0.0;  // the rotary motor is off
+RotaryGains ProbingLaw::rotary_gains(double x_m, double theta_rad) const noexcept {
   const RotaryStage& r = parameters_.rotary;
-  return r.viscous_Nms_per_rad * turning_rad_s +
-         r.detent_Nm * std::sin(2.0 * std::numbers::pi * theta_rad / r.detent_pitch_rad);
+  RotaryGains out;
+  out.from_detent_rad = std::remainder(theta_rad, r.detent_pitch_rad);
+  if (mode_at(x_m) == ProbingMode::breach) return out;  // the rotary motor is off
+  const double stiffest = 2.0 * std::numbers::pi * r.detent_Nm / r.detent_pitch_rad;
+  const double u = 2.0 * std::numbers::pi * out.from_detent_rad / r.detent_pitch_rad;
+  out.proportional_Nm_per_rad = std::abs(u) < 1e-6 ? stiffest : stiffest * std::sin(u) / u;
+  out.derivative_Nms_per_rad = r.viscous_Nms_per_rad;
+  return out;
+}
+
+double ProbingLaw::torque_Nm(double x_m, double theta_rad, double turning_rad_s) const noexcept {
+  const RotaryGains g = rotary_gains(x_m, theta_rad);
+  return g.proportional_Nm_per_rad * g.from_detent_rad + g.derivative_Nms_per_rad * turning_rad_s;
+}
+
+double ProbingLaw::turning_rad_s(double x_m, double theta_rad, double torque_Nm) const noexcept {
+  const RotaryGains g = rotary_gains(x_m, theta_rad);
+  const double left_Nm = torque_Nm - g.proportional_Nm_per_rad * g.from_detent_rad;
+  const double most_Nm = kFreeTurning_rad_s * g.derivative_Nms_per_rad;
+  if (std::abs(left_Nm) > most_Nm) return std::copysign(kFreeTurning_rad_s, left_Nm);
+  return left_Nm == 0.0 ? 0.0 : left_Nm / g.derivative_Nms_per_rad;
 }
 
 double ProbingLaw::speed_m_s(double force_N, double x_m) const noexcept {

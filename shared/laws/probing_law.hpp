@@ -30,11 +30,19 @@ struct CorticalWall {
   double breach_damping_Ns_per_m = 0.0;  ///< D_b, > 0
 };
 
-/// The rotary stage's rendered torque: viscous friction and detents.
+/// The rotary stage: viscous friction and detents, rendered by a gain-scheduled PD controller
+/// [Probing, section 4].
 struct RotaryStage {
-  double viscous_Nms_per_rad = 0.02;
-  double detent_Nm = 0.01;
-  double detent_pitch_rad = 0.35;
+  double viscous_Nms_per_rad = 0.02;  ///< V, the D gain
+  double detent_Nm = 0.01;            ///< T, the most that a detent holds
+  double detent_pitch_rad = 0.35;     ///< p
+};
+
+/// The rotary controller's gains in force at a place.
+struct RotaryGains {
+  double proportional_Nm_per_rad = 0.0;  ///< P, on the angle from the nearest detent
+  double derivative_Nms_per_rad = 0.0;   ///< V, on the speed
+  double from_detent_rad = 0.0;          ///< e, of the angle, within half a pitch
 };
 
 struct ProbingParameters {
@@ -91,9 +99,20 @@ class ProbingLaw {
   /// The same along a path. @param stretch  where the depth before lay, 0 at first: any value is
   /// right, a near one is fast.
   double force_N(double x_m, double speed_m_s, std::size_t& stretch) const noexcept;
-  /// Torque of the hand on the probe needed at angle θ and speed ω: viscous and detent parts; 0
-  /// behind a wall.
+  /// The rotary PD's gains at a depth and an angle θ, e = θ − p · round(θ / p):
+  ///
+  ///     τ = P(e) e + V ω,   P(e) = T sin(2π e / p) / e
+  ///
+  /// P is scheduled on the distance from the detent: 2πT/p at its bottom, 0 midway, so that the way
+  /// to the next one is smooth. Behind a wall both are 0: the motor is off. The source names the
+  /// controller and prints no gains; the schedule is our own.
+  RotaryGains rotary_gains(double x_m, double theta_rad) const noexcept;
+  /// Torque of the hand on the probe needed at angle θ and speed ω.
   double torque_Nm(double x_m, double theta_rad, double turning_rad_s) const noexcept;
+  /// The other way: the speed at which the stage's resistance balances the hand's torque, within
+  /// ±kFreeTurning_rad_s, which a hand reaches where nothing resists; 0 for no torque at rest.
+  double turning_rad_s(double x_m, double theta_rad, double torque_Nm) const noexcept;
+  static constexpr double kFreeTurning_rad_s = 40.0;
 
   /// The next depth at which the law changes, in the direction of motion; the travel's ends are
   /// such.

@@ -45,5 +45,22 @@ TEST(PoseSpline, GivesTheAngularVelocityOfASteadyTurn) {
   EXPECT_NEAR(s->velocity_m_s(0.3).z(), 0.1, 1e-12);
 }
 
+TEST(PoseSpline, KnowsTheAngularAcceleration) {
+  // Turning about z by ½ α t² with α = 0.8 rad/s²: ω = α t, its derivative α, along z of V whatever
+  // the handle's tilt. Away from the natural ends.
+  const Quat tilt(Eigen::AngleAxisd(0.4, Vec3::UnitX()));
+  std::vector<double> t;
+  std::vector<Pose> X;
+  for (int k = 0; k <= 200; ++k) {
+    t.push_back(0.01 * k);
+    X.push_back(
+        {Vec3::Zero(), Quat(Eigen::AngleAxisd(0.4 * t.back() * t.back(), Vec3::UnitZ())) * tilt});
+  }
+  const auto spline = PoseSpline::make(t, X);
+  ASSERT_TRUE(spline);
+  EXPECT_NEAR((spline->angular_velocity_rad_s(1.0) - Vec3(0, 0, 0.8)).norm(), 0.0, 1e-6);
+  EXPECT_NEAR((spline->angular_acceleration_rad_s2(1.003) - Vec3(0, 0, 0.8)).norm(), 0.0, 1e-3);
+}
+
 }  // namespace
 }  // namespace math

@@ -70,6 +70,42 @@ class PalpationRuntime::Contacts final : public laws::ContactForces {
   }
 
   laws::ForceSample at(std::size_t i, const Vec3& p_V_m) const noexcept override {
+    const laws::ForceSample elastic = elastic_at(i, p_V_m);
+    laws::ForceSample total = elastic;
+    for (const auto& force : runtime_.stages_.forces) {
+      const double share = force->bending_share();
+      if (share == 1.0)
+        force->add(point(i, p_V_m), elastic, total);
+      else if (share > 0.0)
+        add(share, *force, i, p_V_m, elastic, total);
+    }
+    return total;
+  }
+
+  /// What of the force on point i is felt and does not bend the shank, in V.
+  Vec3 unbending_N(std::size_t i, const Vec3& p_V_m) const noexcept {
+    const laws::ForceSample elastic = elastic_at(i, p_V_m);
+    laws::ForceSample total{Vec3::Zero(), math::Mat3::Zero()};
+    for (const auto& force : runtime_.stages_.forces)
+      if (const double share = force->bending_share(); share < 1.0)
+        add(1.0 - share, *force, i, p_V_m, elastic, total);
+    return total.force_N;
+  }
+
+ private:
+  effects::PointContact point(std::size_t i, const Vec3& p_V_m) const noexcept {
+    return {p_V_m, v_m_s_[i], runtime_.field_};
+  }
+  void add(double share, const effects::PointForce& force, std::size_t i, const Vec3& p_V_m,
+           const laws::ForceSample& elastic, laws::ForceSample& total) const noexcept {
+    laws::ForceSample own{Vec3::Zero(), math::Mat3::Zero()};
+    force.add(point(i, p_V_m), elastic, own);
+    total.force_N += share * own.force_N;
+    total.jacobian_N_per_m += share * own.jacobian_N_per_m;
+  }
+
+  /// c_f g through the stages spread, field and loss.
+  laws::ForceSample elastic_at(std::size_t i, const Vec3& p_V_m) const noexcept {
     const Stages& stages = runtime_.stages_;
     volume::FieldSample field;
     if (i == 0 && !stages.spreads.empty()) {
@@ -84,14 +120,10 @@ class PalpationRuntime::Contacts final : public laws::ContactForces {
     }
     laws::ForceSample elastic{force_factor_Nm_ * field.g_per_m,
                               force_factor_Nm_ * field.jacobian_per_m2};
-    const effects::PointContact point{p_V_m, v_m_s_[i], runtime_.field_};
-    for (const auto& loss : stages.losses) loss->change(point, elastic);
-    laws::ForceSample total = elastic;
-    for (const auto& force : stages.forces) force->add(point, elastic, total);
-    return total;
+    for (const auto& loss : stages.losses) loss->change(point(i, p_V_m), elastic);
+    return elastic;
   }
 
- private:
   volume::FieldSample changed(const Vec3& p_V_m) const noexcept {
     volume::FieldSample field = runtime_.field_->sample(p_V_m);
     for (const auto& change : runtime_.stages_.fields) change->change(field);
@@ -146,6 +178,7 @@ core::Result<void> PalpationRuntime::add(const effects::Use& use) {
     } else if constexpr (std::is_same_v<Stage, std::unique_ptr<effects::ContactLoss>>) {
       stages_.losses.push_back(std::move(stage));
     } else if constexpr (std::is_same_v<Stage, std::unique_ptr<effects::PointForce>>) {
+      felt_without_bending_ = felt_without_bending_ || stage->bending_share() < 1.0;
       stages_.forces.push_back(std::move(stage));
     } else if constexpr (std::is_same_v<Stage, std::unique_ptr<effects::HandleWrench>>) {
       stages_.wrenches.push_back(std::move(stage));
@@ -159,6 +192,18 @@ core::Result<void> PalpationRuntime::add(const effects::Use& use) {
   return {};
 }
 
+void PalpationRuntime::add_unbending(const Contacts& contacts, const math::Pose& X_VH,
+                                     laws::PalpationStep& step) const noexcept {
+  const laws::PalpationParameters& base = law_.parameters();
+  for (std::size_t i = 0; i < std::size_t(base.points); ++i) {
+    const Vec3 p_H = law_.point_H_m(int(i), step.deflection_m);
+    const Vec3 F = X_VH.q.conjugate() * contacts.unbending_N(i, X_VH * p_H);
+    step.force_H_N[i] += F;
+    step.wrench_H.force_N += base.force_scale * F;
+    step.wrench_H.torque_Nm += base.torque_scale * p_H.cross(F);
+  }
+}
+
 laws::PalpationStep PalpationRuntime::placed_step(HandleMotion handle,
                                                   laws::PalpationState& state) const noexcept {
   handle.X_VH.p += law_.parameters().pose_offset_m;
@@ -166,6 +211,7 @@ laws::PalpationStep PalpationRuntime::placed_step(HandleMotion handle,
   if (stages_.touch_contact()) {
     const Contacts contacts(*this, handle);
     out = law_.step(handle.X_VH, state, &contacts);
+    if (felt_without_bending_) add_unbending(contacts, handle.X_VH, out);
   } else {
     out = law_.step(handle.X_VH, state);
   }

@@ -97,6 +97,9 @@ class PalpationRuntime {
   PalpationRuntime(const volume::ForceField& field, laws::PalpationLaw law)
       : field_(&field), law_(std::move(law)) {}
   core::Result<void> add(const effects::Use& use);
+  /// What is felt and does not bend the shank, on top of a step.
+  void add_unbending(const Contacts& contacts, const math::Pose& X_VH,
+                     laws::PalpationStep& step) const noexcept;
   laws::PalpationStep placed_step(effects::HandleMotion handle,
                                   laws::PalpationState& state) const noexcept;
   void follow(const effects::HandleMotion& from, const effects::HandleMotion& to,
@@ -107,6 +110,7 @@ class PalpationRuntime {
   laws::PalpationLaw law_;
   Stages stages_;
   double delay_s_ = 0.0;
+  bool felt_without_bending_ = false;
 };
 
 }  // namespace models

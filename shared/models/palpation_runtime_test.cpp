@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace models {
 namespace {
 
@@ -53,6 +55,106 @@ TEST(PalpationRuntime, AddsThePoseOffsetToThePositionInV) {
   EXPECT_EQ(by_model.wrench_H.force_N, by_hand.wrench_H.force_N);
   EXPECT_EQ(by_model.wrench_H.torque_Nm, by_hand.wrench_H.torque_Nm);
   EXPECT_EQ(tip, plain->tip_m(pose, by_hand.deflection_m));
+}
+
+PalpationRuntime with(std::vector<effects::Use> uses, laws::PalpationParameters base = {}) {
+  PalpationModel model;
+  model.base = base;
+  model.effects = std::move(uses);
+  auto runtime = PalpationRuntime::make(model, half_space());
+  EXPECT_TRUE(runtime) << runtime.error().what;
+  return std::move(*runtime);
+}
+
+/// Down into the surface and along it, 200 samples a second.
+PalpationMotion stroke() {
+  std::vector<double> t_s;
+  std::vector<math::Pose> poses;
+  for (int k = 0; k < 400; ++k) {
+    const double t = k / 200.0;
+    t_s.push_back(t);
+    poses.push_back(beside_the_surface(0.002 - 0.004 * std::sin(M_PI * t)));
+    poses.back().p.x() = 0.004 * std::sin(3.0 * t);
+  }
+  auto motion = PalpationMotion::through(t_s, poses);
+  EXPECT_TRUE(motion);
+  return std::move(*motion);
+}
+
+PalpationAnswer answer(const PalpationRuntime& runtime, const PalpationMotion& motion) {
+  PalpationAnswer out;
+  runtime.predict(motion, out);
+  return out;
+}
+
+TEST(PalpationRuntime, TakesTheMotionADelayEarlier) {
+  const auto motion = stroke();
+  const auto now = answer(with({}), motion);
+  const auto late = answer(with({{"time_delay", {0.02}}}), motion);  // four samples
+  for (std::size_t k = 4; k < motion.t_s.size(); ++k)
+    EXPECT_NEAR((late.wrench_H[k].force_N - now.wrench_H[k - 4].force_N).norm(), 0.0, 1e-6) << k;
+}
+
+TEST(PalpationRuntime, LeavesMeasurementEffectsOutOfAHand) {
+  const auto measured = with({{"pose_offset", {1e-3, -1e-3, 0}},
+                              {"sensor_bias", {1, 1, 1, 0.1, 0.1, 0.1}},
+                              {"time_delay", {0.05}}});
+  const auto plain = with({});
+  laws::PalpationState a, b, c;
+  const auto pose = beside_the_surface(-0.001);
+  EXPECT_EQ(measured.step(pose, a).wrench_H.force_N, plain.step(pose, b).wrench_H.force_N);
+  EXPECT_GT(
+      (measured.recorded({.X_VH = pose}, c).wrench_H.force_N - plain.step(pose, b).wrench_H.force_N)
+          .norm(),
+      1.0);
+}
+
+TEST(PalpationRuntime, TurnsAboutTheHandleWithTheLeverOfABow) {
+  // One point on a shank that hardly bends, bowed by 2 mm along y of H; H is turned by half a turn
+  // about x, so y of H is −y of V, and the bone at y < 0 pushes along −y of H where it reaches.
+  // A force F ŷ at (0, b, L) has τ = (−L F, 0, 0); the bow adds nothing along y but moves the point
+  // deeper: the force is that of a straight shank 2 mm lower.
+  laws::PalpationParameters stiff;
+  stiff.points = 1;
+  stiff.youngs_modulus_Pa = 1e13;
+  stiff.radius_m = 0.02;
+  const auto bowed = with({{"shank_curvature", {2e-3, M_PI / 2}}}, stiff), plain = with({}, stiff);
+  laws::PalpationState a, b;
+  const auto one = bowed.step(beside_the_surface(0.0), a);
+  const auto other = plain.step(beside_the_surface(-0.002), b);
+  EXPECT_NEAR((one.wrench_H.force_N - other.wrench_H.force_N).norm(), 0.0, 1e-5);
+  // Across: bowed along x of H by 2 mm at the surface, τ_z = x F_y − y F_x = 0.002 · F_y.
+  const auto across = with({{"shank_curvature", {2e-3, 0.0}}}, stiff);
+  laws::PalpationState c;
+  const auto third = across.step(beside_the_surface(0.0), c);
+  EXPECT_GT(std::abs(third.wrench_H.force_N.y()), 0.1);
+  EXPECT_NEAR(third.wrench_H.torque_Nm.z(), 0.002 * third.wrench_H.force_N.y(), 1e-9);
+}
+
+TEST(PalpationRuntime, LetsFrictionBendTheShank) {
+  // Equilibrium with all of F_i: k δ = Σ φ F. With one point at the tip, δ = F_⊥/k.
+  laws::PalpationParameters one;
+  one.points = 1;
+  const auto rough = with({{"contact_friction", {0.3, 1.0}}}, one);
+  laws::PalpationState state;
+  effects::HandleMotion handle{.X_VH = beside_the_surface(-0.001)};
+  handle.v_m_s = Vec3(0.02, 0, 0);
+  const auto step = rough.step(handle, state);
+  ASSERT_TRUE(step.converged);
+  const math::Vec2 across = step.force_H_N[0].head<2>();
+  EXPECT_NEAR((step.deflection_m * rough.law().tip_stiffness_N_per_m() - across).norm(), 0.0, 1e-3);
+  EXPECT_NEAR(std::abs(across.x()), 0.3 * std::abs(across.y()), 0.02 * std::abs(across.y()));
+  EXPECT_LT(across.x() * 0.02, 0.0);  // x of H is x of V: against the motion
+}
+
+TEST(PalpationRuntime, FollowsAGivenCourseToTheSameRests) {
+  const auto motion = stroke();
+  const auto runtime = with({});
+  const auto first = answer(runtime, motion);
+  PalpationAnswer again;
+  runtime.predict(motion, again, first.deflection_m);
+  for (std::size_t k = 0; k < motion.t_s.size(); ++k)
+    EXPECT_NEAR((again.wrench_H[k].force_N - first.wrench_H[k].force_N).norm(), 0.0, 1e-5) << k;
 }
 
 TEST(PalpationRuntime, RefusesWhatTheLawRefuses) {

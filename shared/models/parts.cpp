@@ -86,9 +86,9 @@ namespace {
 /// One parameter's numbers, appended to `values`.
 void read_parameter(Fields& fields, const effects::Param& param, std::vector<double>& values) {
   const char* name = param.name.c_str();
-  if (!std::isnan(param.otherwise) && !fields.has(name)) {
+  if (!std::isnan(param.if_missing) && !fields.has(name)) {
     fields.skip(name);
-    values.insert(values.end(), std::size_t(param.components), param.otherwise);
+    values.insert(values.end(), std::size_t(param.components), param.if_missing);
     return;
   }
   if (param.components == 1) {

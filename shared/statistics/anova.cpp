@@ -105,6 +105,20 @@ Groups grouped(const std::vector<std::string>& labels, const Vector& values) {
   return out;
 }
 
+Groups grouped(const std::vector<std::size_t>& places, std::vector<std::string> names,
+               const Vector& values) {
+  core::require(places.size() == static_cast<std::size_t>(values.size()), "one place per value");
+  Groups out{std::move(names), {}};
+  std::vector<Eigen::Index> sizes(out.names.size(), 0);
+  for (const std::size_t place : places) ++sizes[place];
+  std::vector<double*> ends;
+  for (const Eigen::Index size : sizes) out.values.emplace_back(size);
+  for (auto& values_of : out.values) ends.push_back(values_of.data());
+  for (std::size_t i = 0; i < places.size(); ++i)
+    *ends[places[i]]++ = values[static_cast<Eigen::Index>(i)];
+  return out;
+}
+
 core::Result<OneWay> one_way(const Groups& groups) {
   if (auto fine = check(groups); !fine) return fine.error();
   const double shift = groups.values[0][0];

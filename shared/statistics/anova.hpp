@@ -22,6 +22,10 @@ struct Groups {
 /// Sorts observations by their label. Names keep the order in which they first appear.
 Groups grouped(const std::vector<std::string>& labels, const Vector& values);
 
+/// The same from places: value i belongs to names[places[i]].
+Groups grouped(const std::vector<std::size_t>& places, std::vector<std::string> names,
+               const Vector& values);
+
 struct OneWay {
   std::vector<double> means, deviations;  ///< per group; deviation with n − 1, NaN for one value
   double grand_mean = 0.0;

@@ -15,7 +15,16 @@
 
 namespace statistics {
 
+/// Two programs' reading of the same estimator.
+enum class BisquareConvention {
+  matlab,  ///< as above
+  mass  ///< R's MASS::rlm: no leverage factor, s = median |r| / 0.6745 of all, at most 20 solves,
+        ///< ends when ‖r − r_before‖ ≤ 1e-4 ‖r_before‖; standard errors after Huber 1981, without
+        ///< shrinking
+};
+
 struct BisquareOptions {
+  BisquareConvention convention = BisquareConvention::matlab;
   double tuning = 4.685;
   int solves = 50;
   /// Floor of √ε = 1.49e-8 under every standard error, as the tool has it. Then t and p depend on

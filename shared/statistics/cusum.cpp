@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace statistics {
 namespace {
@@ -23,9 +22,22 @@ std::vector<double> path(const std::vector<bool>& failures, const Steps& steps) 
   return out;
 }
 
-/// Successes and failures since the sum was last 0: the sum follows from them without rounding
-/// piling up, so that equal sums are equal states.
-using State = std::pair<int, int>;
+/// Probabilities by successes and failures since the sum was last 0: the sum follows from them
+/// without rounding piling up, so that equal sums are equal states. Failures that would bring the
+/// sum to 0 are no state of their own.
+struct States {
+  int successes, failures;  // the largest that can be
+  std::vector<double> chance;
+  States(int trials, const Steps& steps)
+      : successes(trials),
+        failures(
+            static_cast<int>(std::min<double>(trials, -trials * steps.success / steps.failure))),
+        chance(static_cast<std::size_t>(successes + 1) * static_cast<std::size_t>(failures + 1)) {}
+  double& at(int s, int f) {
+    return chance[static_cast<std::size_t>(s) * static_cast<std::size_t>(failures + 1) +
+                  static_cast<std::size_t>(f)];
+  }
+};
 
 }  // namespace
 
@@ -51,23 +63,28 @@ OperatingCharacteristic lc_cusum_characteristic(const Rates& rates, double thres
       threshold > 0.0 && failure >= 0.0 && failure <= 1.0 && trials >= 1 && trials <= 1000,
       "an operating characteristic has h > 0, a probability and 1 to 1000 trials");
   const Steps steps = lc_steps(rates);
-  std::map<State, double> now{{{0, 0}, 1.0}};
+  States now(trials, steps), next(trials, steps);
+  now.at(0, 0) = 1.0;
   OperatingCharacteristic out;
   double signalled = 0.0;
   for (int t = 0; t < trials; ++t) {
     out.mean_run_length += 1.0 - signalled;
-    std::map<State, double> next;
-    for (const auto& [state, chance] : now)
-      for (const bool failed : {false, true}) {
-        const State to{state.first + (failed ? 0 : 1), state.second + (failed ? 1 : 0)};
-        const double sum = to.first * steps.success + to.second * steps.failure;
-        const double share = chance * (failed ? failure : 1.0 - failure);
-        if (sum >= threshold)
-          signalled += share;
-        else
-          next[sum <= 0.0 ? State{0, 0} : to] += share;
+    for (int s = 0; s <= t; ++s)
+      for (int f = 0; f <= std::min(t - s, now.failures); ++f) {
+        double& chance = now.at(s, f);
+        if (chance == 0.0) continue;
+        for (const bool failed : {false, true}) {
+          const int to_s = s + (failed ? 0 : 1), to_f = f + (failed ? 1 : 0);
+          const double sum = to_s * steps.success + to_f * steps.failure;
+          const double share = chance * (failed ? failure : 1.0 - failure);
+          if (sum >= threshold)
+            signalled += share;
+          else
+            (sum <= 0.0 ? next.at(0, 0) : next.at(to_s, to_f)) += share;
+        }
+        chance = 0.0;
       }
-    now = std::move(next);
+    std::swap(now, next);
     out.signalled_by.push_back(signalled);
   }
   return out;

@@ -54,7 +54,8 @@ core::Result<void> check(const Design& design, const Vector& response) {
         fmt::format("{} row{} cannot determine {} coefficients and an error: at least {} "
                     "are needed",
                     rows, rows == 1 ? "" : "s", columns, columns + 1));
-  for (Eigen::Index i = 0; i < rows; ++i) {
+  const bool fine = response.allFinite() && design.columns.allFinite();
+  for (Eigen::Index i = 0; i < rows && !fine; ++i) {
     if (!std::isfinite(response[i]))
       return wrong(fmt::format("the response in row {} is not a finite number", i + 1));
     for (Eigen::Index j = 0; j < columns; ++j)

@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -126,6 +127,31 @@ bool maximise(const std::vector<Group>& groups, const Quadrature& rule, Vector& 
   return false;
 }
 
+/// A group's rows, those with equal columns added up: the likelihood keeps its shape.
+Group merged(const Design& design, const Counts& counts, std::vector<Eigen::Index> rows) {
+  const auto compare = [&](Eigen::Index a, Eigen::Index b) {
+    for (Eigen::Index j = 0; j < design.columns.cols(); ++j)
+      if (design.columns(a, j) != design.columns(b, j))
+        return design.columns(a, j) < design.columns(b, j) ? -1 : 1;
+    return 0;
+  };
+  std::ranges::stable_sort(rows, [&](auto a, auto b) { return compare(a, b) < 0; });
+  std::vector<Eigen::Index> kept;
+  std::vector<double> successes, trials;
+  for (const auto row : rows) {
+    if (kept.empty() || compare(kept.back(), row) != 0) {
+      kept.push_back(row);
+      successes.push_back(0.0);
+      trials.push_back(0.0);
+    }
+    successes.back() += counts.successes[row];
+    trials.back() += counts.trials[row];
+  }
+  const auto size = static_cast<Eigen::Index>(kept.size());
+  return {design.columns(kept, Eigen::all), Eigen::Map<Array>(successes.data(), size),
+          Eigen::Map<Array>(trials.data(), size)};
+}
+
 std::vector<Group> groups_of(const Design& design, const Counts& counts,
                              const std::vector<std::string>& labels,
                              std::vector<std::string>& names) {
@@ -136,10 +162,7 @@ std::vector<Group> groups_of(const Design& design, const Counts& counts,
     own.push_back(static_cast<Eigen::Index>(i));
   }
   std::vector<Group> out;
-  for (const auto& name : names) {
-    const auto& own = rows.at(name);
-    out.push_back({design.columns(own, Eigen::all), counts.successes(own), counts.trials(own)});
-  }
+  for (const auto& name : names) out.push_back(merged(design, counts, rows.at(name)));
   return out;
 }
 

@@ -9,7 +9,7 @@ namespace statistics {
 namespace {
 
 constexpr double kLeastRate = 1e-4, kMostRate = 20.0;
-constexpr int kRates = 400;
+constexpr int kRates = 120;
 
 struct Data {
   Eigen::ArrayXd n;
@@ -17,29 +17,18 @@ struct Data {
   CurveShape shape;
 
   bool has_plateau() const { return shape != CurveShape::power; }
+  /// What b multiplies in the exponent of the falling part: −ln n, or 1 − n.
+  Eigen::ArrayXd exponent =
+      shape == CurveShape::exponential_plateau ? Eigen::ArrayXd(1.0 - n) : Eigen::ArrayXd(-n.log());
   /// The falling part at rate b, 1 at the first trial.
-  Eigen::ArrayXd falling(double b) const {
-    if (shape == CurveShape::exponential_plateau) return (-b * (n - 1.0)).exp();
-    return n.pow(-b);
-  }
-  /// d falling / db over falling.
-  Eigen::ArrayXd rate_slope() const {
-    return shape == CurveShape::exponential_plateau ? Eigen::ArrayXd(1.0 - n)
-                                                    : Eigen::ArrayXd(-n.log());
-  }
-  Matrix linear_part(double b) const {
-    Matrix out(n.size(), has_plateau() ? 2 : 1);
-    out.col(0) = falling(b);
-    if (has_plateau()) out.col(1).setOnes();
-    return out;
-  }
+  Eigen::ArrayXd falling(double b) const { return (b * exponent).exp(); }
   Vector residuals(const Vector& abc) const {
     return y.array() - abc[0] * falling(abc[1]) - (has_plateau() ? abc[2] : 0.0);
   }
   Matrix jacobian(const Vector& abc) const {
     Matrix out(n.size(), has_plateau() ? 3 : 2);
     out.col(0) = falling(abc[1]);
-    out.col(1) = abc[0] * falling(abc[1]) * rate_slope();
+    out.col(1) = abc[0] * falling(abc[1]) * exponent;
     if (has_plateau()) out.col(2).setOnes();
     return out;
   }
@@ -49,18 +38,21 @@ struct Data {
 bool search(const Data& data, Vector& best) {
   double least = std::numeric_limits<double>::infinity();
   int at = 0;
+  const double centre = data.has_plateau() ? data.y.mean() : 0.0;
+  const Eigen::ArrayXd y = data.y.array() - centre;
   for (int i = 0; i <= kRates; ++i) {
     const double b = kLeastRate * std::pow(kMostRate / kLeastRate, i / double(kRates));
-    const Matrix x = data.linear_part(b);
-    const Vector linear = x.colPivHouseholderQr().solve(data.y);
-    const double rss = (data.y - x * linear).squaredNorm();
+    Eigen::ArrayXd f = data.falling(b);
+    const double middle = data.has_plateau() ? f.mean() : 0.0;
+    f -= middle;
+    const double a = (f * y).sum() / f.square().sum(), rss = (y - a * f).square().sum();
     if (!(rss < least)) continue;
     least = rss;
     at = i;
     best.resize(data.has_plateau() ? 3 : 2);
-    best[0] = linear[0];
+    best[0] = a;
     best[1] = b;
-    if (data.has_plateau()) best[2] = linear[1];
+    if (data.has_plateau()) best[2] = centre - a * middle;
   }
   return at > 0 && at < kRates;
 }

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "statistics/block_least_squares.hpp"
 #include "statistics/distributions.hpp"
 
 namespace statistics {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr Eigen::Index kExtendedLimit = 200'000;
 constexpr double kConstantShare = 1e-15;
 
 /// Below this share of its length a column is a combination of the others.
@@ -124,6 +124,23 @@ bool solve(const Design& design, const Vector& response, Ols& out) {
   return true;
 }
 
+/// The same for very many rows. False: too near to collinear for it, or not of full rank.
+bool solve_in_blocks(const Design& design, const Vector& response, Ols& out) {
+  const auto blocks = BlockLeastSquares::make(design, response);
+  if (!blocks) return false;
+  const auto fit = blocks->solve(nullptr);
+  if (!fit) return false;
+  out.coefficients = fit->coefficients;
+  out.unscaled_covariance = fit->unscaled_covariance;
+  blocks->residuals(fit->coefficients, out.residuals);
+  blocks->leverage(*fit, out.leverage);
+  out.fitted = response - out.residuals;
+  const Eigen::Index k = design.columns.cols() - (design.intercept ? 1 : 0);
+  add_model<double>(out.residuals.squaredNorm(), blocks->total_sum_of_squares(), k,
+                    response.size() - design.columns.cols(), out);
+  return true;
+}
+
 void add_tests(Ols& fit) {
   const Eigen::Index p = fit.coefficients.size();
   fit.standard_errors = fit.sigma * fit.unscaled_covariance.diagonal().cwiseSqrt();
@@ -148,9 +165,9 @@ core::Result<Ols> ols(const Design& design, const Vector& response) {
   Ols fit;
   fit.names = design.names;
   fit.df_residual = static_cast<double>(response.size() - design.columns.cols());
-  const bool full_rank = design.columns.size() <= kExtendedLimit
-                             ? solve<long double>(design, response, fit)
-                             : solve<double>(design, response, fit);
+  const bool full_rank = is_large(design) ? solve_in_blocks(design, response, fit) ||
+                                                solve<double>(design, response, fit)
+                                          : solve<long double>(design, response, fit);
   if (!full_rank) return collinear_error(design);
   if (!fit.coefficients.allFinite() || !fit.unscaled_covariance.allFinite() ||
       !std::isfinite(fit.rss) || !(fit.unscaled_covariance.diagonal().minCoeff() > 0.0))

@@ -4,7 +4,8 @@
 ///     cov b = s² (XᵀX)⁻¹,   t_j = b_j / se_j on n − p degrees of freedom
 ///
 /// Column-pivoted Householder QR of the centred, scaled columns (of X itself without an intercept).
-/// Up to 200 000 numbers in X it is computed in 80-bit arithmetic, beyond that in double.
+/// Up to 200 000 numbers in X it is computed in 80-bit arithmetic, beyond that in double, by
+/// normal equations in blocks where the columns are far enough from collinear for them.
 /// Known limit: a design whose scaled columns depend on each other to 1e-13 is refused.
 #pragma once
 

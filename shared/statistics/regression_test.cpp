@@ -189,6 +189,73 @@ TEST(Bisquare, ReproducesAllFifteenCasesOfTheToolThePaperUsed) {
   EXPECT_EQ(compared, 15u);
 }
 
+/// Table 2 of the study, laid end to end `times` times.
+std::pair<Design, Vector> repeated(Eigen::Index times) {
+  const golden::Csv csv("data/paper_table2_table4.csv");
+  const Vector x = csv.numbers("experience_years"), y = csv.numbers("wrong_breach");
+  return {with_intercept(x.replicate(times, 1), {"x"}), y.replicate(times, 1)};
+}
+
+TEST(Ols, InBlocksGivesTheCoefficientsOfTheRowsItRepeats) {
+  // k copies of a table have its coefficients and k times its residual sum of squares.
+  const core::Json want = golden::expected("ols_paper_tables3_5")["table3"];
+  constexpr Eigen::Index kTimes = 20'001;  // 400 020 numbers
+  const auto [design, y] = repeated(kTimes);
+  const auto fit = ols(design, y);
+  ASSERT_TRUE(fit);
+  expect_near(fit->coefficients, want["coef"], 1e-12, "coefficients");
+  const auto [few, y_few] = repeated(1);
+  const auto small = ols(few, y_few);
+  const double n = 10.0 * double(kTimes);
+  EXPECT_NEAR(fit->rss, small->rss * double(kTimes), 1e-10 * fit->rss);
+  const double shrink = std::sqrt(8.0 / (n - 2.0));
+  EXPECT_NEAR(fit->standard_errors[1], small->standard_errors[1] * shrink,
+              1e-11 * fit->standard_errors[1]);
+  EXPECT_NEAR(fit->leverage[0] * double(kTimes), small->leverage[0], 1e-11);
+  EXPECT_NEAR(fit->residuals[10], small->residuals[0], 1e-11);
+}
+
+TEST(Ols, InBlocksStillNamesCollinearColumnsAndTakesNoIntercept) {
+  auto [design, y] = repeated(20'001);
+  Design twice = design;
+  twice.columns.conservativeResize(Eigen::NoChange, 3);
+  twice.columns.col(2) = 2.0 * design.columns.col(1);
+  twice.names.push_back("double");
+  const auto refused = ols(twice, y);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().what.find("linear combination"), std::string::npos);
+  const Vector x = design.columns.col(1);
+  Design wide{Matrix(x.size(), 2), {"x", "x2"}, false};
+  wide.columns << x, x.cwiseAbs2();
+  const auto fit = ols(wide, y);
+  ASSERT_TRUE(fit);
+  const Vector residual = y - wide.columns * fit->coefficients;
+  EXPECT_LT((wide.columns.transpose() * residual).cwiseAbs().maxCoeff(), 1e-6);  // normal equations
+}
+
+TEST(Bisquare, FollowsRsMassWhereAsked) {
+  const core::Json reference = golden::expected("robustfit_bisquare");
+  int compared = 0;
+  for (const auto& one : reference["cases"]) {
+    const std::string id = one["id"];
+    if (id.starts_with("exact_") || !one["contrast"].contains("MASS_rlm_default")) continue;
+    const auto& want = one["contrast"]["MASS_rlm_default"];
+    if (!want.contains("coef") || want["coef"].is_null()) continue;
+    const Matrix x = golden::matrix_of(one["X_including_constant"]);
+    Design design{x, {}, true};
+    for (Eigen::Index j = 0; j < x.cols(); ++j) design.names.push_back("x" + std::to_string(j));
+    const auto fit =
+        bisquare(design, vector_of(one["y"]),
+                 {.convention = BisquareConvention::mass, .tuning = one["tune"].get<double>()});
+    ASSERT_TRUE(fit) << id;
+    ++compared;
+    expect_near(fit->coefficients, want["coef"], 1e-9, id + " b");
+    expect_near(fit->standard_errors, want["se"], 1e-9, id + " se");
+    expect_near(fit->mad_sigma, want["scale"], 1e-9, id + " scale");
+  }
+  EXPECT_GE(compared, 5);
+}
+
 TEST(ModifiedZ, MatchesTheReferenceIncludingItsFallback) {
   const core::Json reference = golden::expected("modified_z");
   for (const auto& [name, want] : reference["cases"].items()) {

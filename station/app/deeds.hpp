@@ -8,6 +8,8 @@ namespace app {
 /// 0: done. 1: the answer is "no" (a trial ended in a fault; trials still wait for the server).
 core::Result<int> run_trials(const Options& options);
 core::Result<int> run_probing_trials(const Options& options);
+core::Result<int> tune_scenario(const Options& options);
+core::Result<int> run_study(const Options& options);
 core::Result<int> sync_cases(const Options& options);
 core::Result<int> upload_trials(const Options& options);
 core::Result<int> trust_signer(const Options& options);

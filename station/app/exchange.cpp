@@ -19,16 +19,6 @@ core::Progress stoppable(core::Progress shown) {
   return [shown = std::move(shown)](double share) { return shown(share) && !stop_asked; };
 }
 
-core::Result<std::unique_ptr<uplink::HttpServer>> connect(const Options& options) {
-  auto bytes = core::read_file(options.token_file, 64 * 1024);
-  if (!bytes) return bytes.error();
-  std::string token(core::text_of(*bytes));
-  while (!token.empty() && (token.back() == '\n' || token.back() == '\r')) token.pop_back();
-  auto server = uplink::HttpServer::make(options.server_url, token);
-  if (!server) return core::Error{server.error().code, server.error().what};
-  return server;
-}
-
 /// Waits in small steps, so that a person can stop it.
 class PatientClock final : public core::Clock {
  public:
@@ -43,6 +33,22 @@ class PatientClock final : public core::Clock {
   core::MonotonicClock clock_;
 };
 }  // namespace
+
+core::Result<std::string> token_of(const Options& options) {
+  auto bytes = core::read_file(options.token_file, 64 * 1024);
+  if (!bytes) return bytes.error();
+  std::string token(core::text_of(*bytes));
+  while (!token.empty() && (token.back() == '\n' || token.back() == '\r')) token.pop_back();
+  return token;
+}
+
+core::Result<std::unique_ptr<uplink::Server>> connect(const Options& options) {
+  auto token = token_of(options);
+  if (!token) return token.error();
+  auto server = uplink::HttpServer::make(options.server_url, *token);
+  if (!server) return server.error();
+  return std::unique_ptr<uplink::Server>(std::move(*server));
+}
 
 void ask_to_stop() noexcept { stop_asked = true; }
 bool asked_to_stop() noexcept { return stop_asked; }

@@ -1,13 +1,19 @@
 /// Parts of an exchange with the server that a run of trials shares.
 #pragma once
 
+#include <memory>
+
 #include "core/json.hpp"
 #include "station/app/options.hpp"
 #include "station/session/station_folder.hpp"
+#include "station/uplink/server.hpp"
 #include "station/uplink/upload.hpp"
 
 namespace app {
 
+/// The token file's one line. Errors: io, not_found.
+core::Result<std::string> token_of(const Options& options);
+core::Result<std::unique_ptr<uplink::Server>> connect(const Options& options);
 core::Result<core::Json> fetch_cases(const Options& options, const session::StationFolder& folder);
 core::Result<uplink::UploadReport> hand_over(const Options& options,
                                              const session::StationFolder& folder);

@@ -11,6 +11,10 @@ core::Result<int> done(const app::Options& options) {
       return app::run_trials(options);
     case app::Deed::probe:
       return app::run_probing_trials(options);
+    case app::Deed::tune:
+      return app::tune_scenario(options);
+    case app::Deed::study:
+      return app::run_study(options);
     case app::Deed::sync:
       return app::sync_cases(options);
     case app::Deed::upload:

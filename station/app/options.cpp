@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <limits>
 #include <map>
 
 namespace app {
@@ -13,6 +14,7 @@ constexpr const char* kExamples = R"(Examples:
   tractus-station --case 3f9ac2d1 --data st --server http://127.0.0.1:8480 --token-file st.token
   tractus-station --device sim-rig --scenario lateral_breach --data st --speed fast   SIMULATED rig
   tractus-station --device rig --address 192.168.1.40:1502 --scenario mine.json --data st
+  tractus-station study  --study spine-1 --participant P01 --device rig --data st --server URL --token-file st.token
   tractus-station sync   --data st --server URL --token-file st.token
   tractus-station upload --data st --server URL --token-file st.token --wait 600)";
 
@@ -35,15 +37,7 @@ void add_server(CLI::App& app, Options& options, bool needed) {
   if (needed) url->required();
 }
 
-void add_run(CLI::App& app, Options& options) {
-  app.add_option("--device", options.setup.device, "sim-lambda6; rig or sim-rig for a scenario")
-      ->capture_default_str();
-  app.add_option("--case", options.case_name,
-                 "a case's folder, or 8 or more characters of the id of one in the data folder");
-  app.add_option("--model", options.model_file,
-                 "feel the case, or the scenario's bone, by this model");
-  app.add_option("--scenario", options.scenario,
-                 "a scenario's file, or hard, soft, lateral_breach, in_out_in: those that ship");
+void add_rig(CLI::App& app, Options& options) {
   app.add_option("--address", options.rig.address,
                  "of the rig: HOST:PORT, or a serial line /dev/…[@BAUD]")
       ->capture_default_str();
@@ -54,6 +48,44 @@ void add_run(CLI::App& app, Options& options) {
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
   app.add_flag("!--no-surgeon", options.rig.surgeon, "sim-rig: nobody pushes but who writes to it");
+}
+
+void add_tune(CLI::App& app, Options& options) {
+  add_data(app, options, true);
+  add_rig(app, options);
+  app.add_option("--scenario", options.scenario, "to begin with: a file, or one that ships")
+      ->required();
+  app.add_option("--who", options.who, "the expert, as new versions name him")->required();
+  app.add_option("--out", options.tuned_folder, "folder for new versions, named by their id")
+      ->required();
+  app.add_option("--device", options.rig.device, "rig or sim-rig")
+      ->check(CLI::IsMember({"rig", "sim-rig"}))
+      ->capture_default_str();
+  app.add_option("--seed", options.rig.seed, "of sim-rig's simulated surgeon")
+      ->capture_default_str();
+  app.add_option("--speed", options.rig.speed, "real or fast")
+      ->transform(CLI::CheckedTransformer(kSpeeds));
+  app.add_option("--duration", options.rig.duration_s, "s, of a trial at most")
+      ->check(CLI::Range(1.0, 3600.0))
+      ->capture_default_str();
+  app.add_option("--trials", options.trials, "how many, one after the other")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  app.footer(
+      "Example:\n  tractus-station tune --data st --device rig --address 192.168.1.40:1502 "
+      "--scenario hard --who \"Dr. A\" --out scenarios/");
+}
+
+void add_run(CLI::App& app, Options& options) {
+  app.add_option("--device", options.setup.device, "sim-lambda6; rig or sim-rig for a scenario")
+      ->capture_default_str();
+  app.add_option("--case", options.case_name,
+                 "a case's folder, or 8 or more characters of the id of one in the data folder");
+  app.add_option("--model", options.model_file,
+                 "feel the case, or the scenario's bone, by this model");
+  app.add_option("--scenario", options.scenario,
+                 "a scenario's file, or hard, soft, lateral_breach, in_out_in: those that ship");
+  add_rig(app, options);
   app.add_option("--seed", options.setup.seed, "of the simulated hand; +1 for each further trial")
       ->check(CLI::Range(0.0, 9e15))
       ->capture_default_str();
@@ -75,6 +107,35 @@ void add_run(CLI::App& app, Options& options) {
                  "PNG of the (last) trial: bone cut open, probe, the tip's way");
   app.add_flag("--follow", options.follow,
                "a JSON line on standard error whenever samples have reached the disk");
+}
+
+void add_study(CLI::App& app, Options& options) {
+  app.add_option("--study", options.study, "the study's short name")->required();
+  app.add_option("--participant", options.participant, "a pseudonym")->required();
+  app.add_option("--device", options.rig.device, "rig, or sim-rig for a simulated participant")
+      ->check(CLI::IsMember({"rig", "sim-rig"}))
+      ->capture_default_str();
+  app.add_option("--address", options.rig.address,
+                 "of the rig: HOST:PORT, or a serial line /dev/…[@BAUD]")
+      ->capture_default_str();
+  app.add_option("--skill", options.rig.skill,
+                 "of the simulated surgeon, 0 … 1; without, it follows from their experience")
+      ->check(CLI::Range(0.0, 1.0));
+  app.add_option("--seed", options.rig.seed, "of the simulated surgeons")
+      ->check(CLI::Range(0.0, 9e15))
+      ->capture_default_str();
+  app.add_option("--speed", options.rig.speed, "real, or fast: simulated time, sim-rig alone")
+      ->transform(CLI::CheckedTransformer(kSpeeds));
+  app.add_option("--trials", options.trials, "at most so many now; all that are left if not given")
+      ->check(CLI::Range(1, 1000));
+  app.add_flag("--follow", options.follow,
+               "a JSON line on standard error whenever samples have reached the disk");
+}
+
+void set_study(const CLI::App& app, Options& options) {
+  options.deed = Deed::study;
+  options.skill_given = app.count("--skill") > 0;
+  if (app.count("--trials") == 0) options.trials = std::numeric_limits<int>::max();
 }
 
 int refuse(const std::string& why) {
@@ -119,11 +180,18 @@ Parsed parse(int argc, char** argv) {
   CLI::App* sync = app.add_subcommand("sync", "fetch the cases that the server has");
   add_data(*sync, options, true);
   add_server(*sync, options, true);
+  CLI::App* study = app.add_subcommand("study", "a participant's trials of a blind study");
+  add_data(*study, options, true);
+  add_server(*study, options, true);
+  add_study(*study, options);
   CLI::App* upload = app.add_subcommand("upload", "hand over the trials that wait");
   add_data(*upload, options, true);
   add_server(*upload, options, true);
   upload->add_option("--wait", options.wait_s, "s to go on trying when the server does not answer")
       ->check(CLI::Range(0.0, 1e7));
+  CLI::App* tune = app.add_subcommand(
+      "tune", "feel a scenario and nudge its eight parameters by keys; save new versions");
+  add_tune(*tune, options);
   CLI::App* trust =
       app.add_subcommand("trust", "take cases that are signed by this key from now on");
   add_data(*trust, options, true);
@@ -138,9 +206,11 @@ Parsed parse(int argc, char** argv) {
     out.leave = failure.get_exit_code() == 0 ? app.exit(failure) : refuse(failure.what());
     return out;
   }
+  if (study->parsed()) set_study(*study, options);
   if (sync->parsed()) options.deed = Deed::sync;
   if (upload->parsed()) options.deed = Deed::upload;
   if (trust->parsed()) options.deed = Deed::trust;
+  if (tune->parsed()) options.deed = Deed::tune;
   if (options.deed == Deed::trust && options.signer_hex.empty() && options.signer_of_case.empty())
     out.leave = refuse("trust: --signer or --case is expected");
   if (options.deed == Deed::run) out.leave = check_run(app, options);

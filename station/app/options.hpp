@@ -10,7 +10,7 @@
 
 namespace app {
 
-enum class Deed { run, probe, sync, upload, trust };
+enum class Deed { run, probe, tune, study, sync, upload, trust };
 
 struct Options {
   Deed deed = Deed::run;
@@ -22,13 +22,18 @@ struct Options {
   // run
   session::TrialSetup setup;
   session::RigSetup rig;
-  std::string scenario;  ///< a file, or a tuned one's name
+  std::string scenario;                ///< a file, or a tuned one's name
+  std::string who;                     ///< tune: the expert
+  std::filesystem::path tuned_folder;  ///< tune: where new versions go
   std::string case_name;
   std::filesystem::path model_file;
   std::string answer;  ///< empty: the simulated hand's own, or asked at the terminal
   int trials = 1;
   Show show = Show::none;
   std::filesystem::path picture;  ///< empty: none
+  // study
+  std::string study, participant;
+  bool skill_given = false;  ///< else the simulated surgeon's skill follows from their experience
   // upload
   double wait_s = 0.0;
   // trust

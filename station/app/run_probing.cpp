@@ -7,6 +7,7 @@
 #include "station/app/aftermath.hpp"
 #include "station/app/deeds.hpp"
 #include "station/app/exchange.hpp"
+#include "station/app/probing.hpp"
 
 namespace app {
 namespace {
@@ -14,12 +15,6 @@ using session::ProbingTask;
 using session::TrialReport;
 
 constexpr double kModelTravel_m = 0.05;  // of a model that is felt without a scenario
-
-core::Result<scenarios::Scenario> scenario_named(const std::string& name) {
-  if (const auto kind = scenarios::kind_of(name); kind && !std::filesystem::exists(name))
-    return scenarios::tuned(*kind);
-  return scenarios::Scenario::read(name);
-}
 
 core::Result<ProbingTask> task_of(const Options& options) {
   std::optional<models::ProbingModel> model;
@@ -34,7 +29,15 @@ core::Result<ProbingTask> task_of(const Options& options) {
   return session::task_of(*scenario, model);
 }
 
-void print_report(const TrialReport& report, bool fast) {
+}  // namespace
+
+core::Result<scenarios::Scenario> scenario_named(const std::string& name) {
+  if (const auto kind = scenarios::kind_of(name); kind && !std::filesystem::exists(name))
+    return scenarios::tuned(*kind);
+  return scenarios::Scenario::read(name);
+}
+
+void print_probing_report(const TrialReport& report, bool fast) {
   const auto& bus = *report.bus;
   fmt::print("trial {}{}\n", report.trial_id,
              report.simulated ? "  (SIMULATED rig and surgeon)" : "");
@@ -49,6 +52,7 @@ void print_report(const TrialReport& report, bool fast) {
   fmt::print("  answer: {}\n  {}\n", answer_text(report), report.file.string());
 }
 
+namespace {
 session::ProbingWatch watch_of(const Options& options, const ProbingTask& task) {
   const double travel_m = task.law.travel_m;
   return [&options, travel_m, blind = task.blind, said = std::uint64_t{0},
@@ -97,7 +101,7 @@ core::Result<int> run_probing_trials(const Options& options) {
     if (!scores) return scores.error();
     trials.push_back(json_of(*report, *scores));
     if (options.json) continue;
-    print_report(*report, options.rig.speed == session::Speed::fast);
+    print_probing_report(*report, options.rig.speed == session::Speed::fast);
     print_scores(*scores);
   }
   const core::Json uploads = hand_over_after(options, *folder);

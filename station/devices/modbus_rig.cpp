@@ -65,7 +65,7 @@ class ModbusRig : public RigDevice {
       return refused(fmt::format("register map version {}, {} is expected", *at(rig::kVersion),
                                  rig::kMapVersion));
     const auto who = *at(rig::kSimulatedPeer);
-    prepare();
+    prepare(who == rig::kSimulatedBusClock ? kPatient_ms : kAnswer_ms);
     return RigIdentity{.travel_m = 1e-6 * rig::wide(at(rig::kTravel_um)),
                        .top_speed_m_s = 1e-6 * rig::wide(at(rig::kTopSpeed_um_s)),
                        .simulated = who != rig::kRealMachine,
@@ -76,7 +76,7 @@ class ModbusRig : public RigDevice {
 
  protected:
   /// Once connected: time-outs.
-  virtual void prepare() = 0;
+  virtual void prepare(int answer_ms) = 0;
 
   Error refused(const std::string& why) const {
     return {Errc::unavailable, fmt::format("rig at {}: {}", address_, why)};
@@ -149,12 +149,13 @@ class TcpRig final : public ModbusRig {
   }
 
  private:
-  void prepare() override {
+  void prepare(int answer_ms) override {
     const int socket = modbus_get_socket(context_.get());
-    const timeval longest{0, kAnswer_ms * 1000};
+    const timeval longest{answer_ms / 1000, answer_ms % 1000 * 1000};
     ::fcntl(socket, F_SETFL, ::fcntl(socket, F_GETFL) & ~O_NONBLOCK);  // libmodbus would select()
     ::setsockopt(socket, SOL_SOCKET, SO_RCVTIMEO, &longest, sizeof longest);
-    modbus_set_response_timeout(context_.get(), 0, kAnswer_ms * 1000);
+    modbus_set_response_timeout(context_.get(), std::uint32_t(answer_ms / 1000),
+                                std::uint32_t(answer_ms % 1000 * 1000));
   }
 
   /// One recv() where the answer comes whole, as it does. What is left of an answer that came too
@@ -213,7 +214,7 @@ class SerialRig final : public ModbusRig {
   }
 
  private:
-  void prepare() override {
+  void prepare(int) override {
     modbus_set_response_timeout(context_.get(), 0, kSerialAnswer_us);
     modbus_set_byte_timeout(context_.get(), 0, kSerialAnswer_us);
   }

@@ -49,13 +49,15 @@ class RigDevice {
   virtual ~RigDevice() = default;
   /// May block, a second at most. Errors: unavailable naming the address and what is wrong.
   virtual core::Result<RigIdentity> open() = 0;
-  /// Commands and reads in one request. Blocks for kAnswer_ms at most; no throw, no allocation.
+  /// Commands and reads in one request. Blocks for kAnswer_ms (kPatient_ms) at most; no throw, no allocation.
   virtual Exchange exchange(const RigCommand& command, RigReading& reading) noexcept = 0;
   /// Commands standstill first; may be called twice.
   virtual void close() noexcept = 0;
 
   /// An answer that takes longer is none: below the machine's watchdog.
   static constexpr int kAnswer_ms = 4;
+  /// A machine whose clock is on the bus waits for us, and we for it.
+  static constexpr int kPatient_ms = 5000;
 };
 
 }  // namespace devices

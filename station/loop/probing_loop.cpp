@@ -63,7 +63,11 @@ void ProbingLoop::step_law(const ProbingGuard::Seen& seen, ProbingSample& out,
   const double x_m = std::clamp(reading_.x_m, 0.0, travel_m_);
   at_.at.x_m = x_m;
   out.law_m_s = float(law.advance(seen.fz_N, reading_.turning_rad_s, period_s_, at_));
-  out.mode = x_m >= travel_m_ - kAtStop_m ? ProbingMode::stopped : ProbingMode(int(at_.at.mode));
+  // Of the depth that was read, not of the one a period ahead.
+  const bool holds = at_.at.mode == laws::ProbingMode::holding;
+  out.mode = x_m >= travel_m_ - kAtStop_m ? ProbingMode::stopped
+             : holds                      ? ProbingMode::holding
+                                          : ProbingMode(int(law.law().mode_at(x_m)));
   torque_Nm = -law.law().torque_Nm(x_m, theta_rad_, reading_.turning_rad_s);
 }
 

@@ -9,6 +9,7 @@ namespace rig {
 namespace {
 constexpr double kTremor_Hz = 9.0;
 constexpr double kMostTurn_Nm = 1.0;
+constexpr double kNovice = 0.25, kMaster = 0.95, kHalfway_years = 2.0;
 }  // namespace
 
 SurgeonParameters SurgeonParameters::of_skill(double skill) {
@@ -18,6 +19,10 @@ SurgeonParameters SurgeonParameters::of_skill(double skill) {
   p.tremor_N = std::lerp(2.0, 0.5, s);
   p.speed_goal_m_s = std::lerp(0.008, 0.005, s);
   return p;
+}
+
+double SurgeonParameters::skill_of_experience(double years) {
+  return std::lerp(kNovice, kMaster, 1.0 - std::exp2(-std::max(years, 0.0) / kHalfway_years));
 }
 
 Surgeon::Surgeon(const SurgeonParameters& parameters, std::uint64_t seed)

@@ -95,6 +95,7 @@ struct ProbingTrialRun::Parts {
   std::optional<loop::ProbingLoop> loop;
   loop::RealtimeGrant grant;
   std::string fault;
+  std::vector<trial::Event> retuned;
 
   Parts(const StationFolder& where, const ProbingTask& what, const RigSetup& how)
       : folder(where), task(what), setup(how) {}
@@ -205,7 +206,8 @@ const std::string& ProbingTrialRun::fault() const { return parts_->fault; }
 
 // In real time this is under the tick's rules: only atomics are read.
 void ProbingTrialRun::Parts::after_tick(const trial::ProbingSample& sample) {
-  if (felt && guard->enabled()) felt->feel(double(sample.speed_m_s), double(sample.fz_N));
+  if (felt && guard->enabled())
+    felt->feel(double(sample.speed_m_s), double(sample.fz_N), sample.x_m);
   if (sample.t_s >= setup.duration_s || recorder->failed()) loop->stop();
   if (fast() && sample.tick % kDrainEveryTicks == 0) recorder->drain();
 }
@@ -262,20 +264,26 @@ std::optional<trial::Answer> ProbingTrialRun::simulated_answer() const {
   if (!parts_->felt) return std::nullopt;
   const devices::Answer said = parts_->felt->answer();
   trial::Answer out{.breach = said.breach, .wall = std::nullopt, .confidence = said.confidence};
-  if (said.breach) out.wall = said.wall;
+  if (!said.breach) return out;
+  out.wall = said.wall;
+  out.depth_m = parts_->felt->depth_m();
   return out;
 }
 
-core::Result<void> ProbingTrialRun::retune(const laws::ProbingParameters& law) {
+core::Result<void> ProbingTrialRun::retune(const laws::ProbingParameters& law, core::Json what) {
   Parts& p = *parts_;
   if (law.travel_m != p.task.law.travel_m)
     return wrong("the probe stop cannot be moved while a trial runs");
   if (auto made = p.add_law(law); !made) return made;
   p.loop->exchange_law(*p.laws.back());
+  const auto seen = p.live.read().value_or(loop::ProbingSeen{});
+  p.retuned.push_back({seen.t_s, "retuned", std::move(what)});
   return {};
 }
 
 core::Result<void> ProbingTrialRun::Parts::append_end(const std::optional<trial::Answer>& answer) {
+  for (const trial::Event& event : retuned)
+    if (auto said = recorder->append(event); !said) return said;
   const core::Json tare = {{"fz_N", guard->tare_N()}, {"tz_Nm", guard->tare_Nm()}};
   if (auto said = recorder->append({elapsed_s(), "tare", tare}); !said) return said;
   if (!fault.empty()) return recorder->append({elapsed_s(), "fault", {{"what", fault}}});

@@ -86,7 +86,8 @@ class ProbingTrialRun {
 
   /// Feels another law from the next tick on: an expert tunes. Same travel; effects stay. From the
   /// thread that calls `run`'s watch. Errors: those of making the law.
-  core::Result<void> retune(const laws::ProbingParameters& law);
+  /// @param what  what a reader of the trial is to know of it: the detail of a "retuned" event
+  core::Result<void> retune(const laws::ProbingParameters& law, core::Json what);
 
  private:
   struct Parts;

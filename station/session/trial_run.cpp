@@ -160,6 +160,8 @@ core::Result<void> TrialRun::Parts::make_file(const PreparedCase& prepared,
       {"model", prepared.model.name},
       {"limits", limiter.limits().to_json()}};
   if (info.simulated) header.extra["seed"] = setup.seed;
+  if (!prepared.model.effects.empty())
+    header.extra["effects"] = prepared.model.to_json()["effects"];
   auto writer = trial::TrialWriter::create(folder.trial_file(header.id), header);
   if (!writer) return writer.error();
   recorder.emplace(ring, std::move(*writer), real_clock);

@@ -60,6 +60,14 @@ class Stats : public testing::Test {
     EXPECT_TRUE(parsed) << ran.out;
     return parsed ? *parsed : core::Json();
   }
+  /// A method with the options as they stand.
+  Ran plain(const std::string& options) {
+    const fs::path out = folder_ / "out", err = folder_ / "err";
+    const std::string command = std::string(TRACTUS_BIN_DIR) + "/tractus stats " + options + " >'" +
+                                out.string() + "' 2>'" + err.string() + "'";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(out), text_of(err)};
+  }
   /// One line on standard error, exit 2, nothing on standard output.
   std::string refusal(const std::string& method, const std::string& data,
                       const std::string& formula) {
@@ -174,6 +182,84 @@ TEST_F(Stats, FallsBackToFirthWhereOutcomesAreSeparatedAndSaysSo) {
   EXPECT_EQ(ran.exit, 0) << ran.err;
   EXPECT_THAT(ran.out, HasSubstr("Firth"));
   EXPECT_THAT(ran.out, HasSubstr("the columns separate the outcomes"));
+}
+
+TEST_F(Stats, GivesTheReferenceValuesByEveryFurtherMethod) {
+  const auto power = core::parse_json(plain("power --json --test repeated").out, "stdout");
+  EXPECT_EQ((*power)["answer"]["n"], 28);  // R: f = .25, rho = .5, eps = 1
+
+  const auto p = json("p-adjust", "paper_table6_table7_p.csv", "p ~ table + scenario + measure");
+  const auto want_p = expected("p_adjust")["paper_tables6_7"];
+  for (std::size_t i = 0; i < 16; ++i) {
+    expect_near(p["adjusted"][i]["hommel"], want_p["hommel"][i], 1e-14);
+    expect_near(p["adjusted"][i]["holm"], want_p["holm"][i], 1e-14);
+  }
+  const auto exact =
+      json("permutation", "paper_table2_table4.csv", "wrong_breach ~ experience_years");
+  EXPECT_EQ(exact["analysis"]["as_extreme"], 2505);
+  EXPECT_EQ(exact["analysis"]["arrangements"], 6300);
+
+  const auto rank = json("rank", "sim_lateral_breach_velocity.csv",
+                         "breach_velocity_mm_s ~ C(repetition) + (1|surgeon)");
+  const auto want_rm = expected("rm_anova")["cases"]["breach_velocity_mm_s"];
+  expect_near(rank["analysis"]["chi_squared"], want_rm["friedman"]["chi2"], 1e-12);
+
+  const auto curve = json("learning-curve", "sim_learning_curve.csv", "time_s ~ trial");
+  EXPECT_EQ(curve["best"], "power with plateau");
+
+  const auto share = json("proportions", "paper_table2_table4.csv", "wrong_breach/6 ~ 1");
+  // 9 of 60: Wilson 1 − (0.739, 0.919) of the 51 right ones, to their three digits.
+  EXPECT_NEAR(share["proportions"][0]["wilson_low"].get<double>(), 1.0 - 0.919, 5e-4);
+  EXPECT_NEAR(share["proportions"][0]["wilson_high"].get<double>(), 1.0 - 0.739, 5e-4);
+}
+
+TEST_F(Stats, AnalysesTwoWithinFactorsAndAGroupTogether) {
+  const auto got =
+      json("rm-anova", "sim_cohort_trials.csv",
+           "breach_velocity_mm_s ~ scenario*repetition + (1|surgeon)", "--drop-missing");
+  const auto want = expected("rm_anova")["cases"]["two_within_2x3"];
+  for (std::size_t i = 0; i < 3; ++i) {
+    expect_near(got["effects"][i]["F"], want["F"][i + 1], 1e-9);
+    EXPECT_EQ(got["effects"][i]["df2"], want["den_df"][i + 1]);
+  }
+  EXPECT_EQ(got["effects"][2]["effect"], "scenario:repetition");
+}
+
+TEST_F(Stats, AnInteractionIsTestedByTheTermThatHoldsIt) {
+  const auto got =
+      json("ols", "sim_cohort_trials.csv", "operation_time_s ~ scenario*C(repetition)");
+  ASSERT_EQ(got["tests"].size(), 1u);  // the margins are contained in it
+  EXPECT_EQ(got["tests"][0]["term"], "scenario:repetition");
+  EXPECT_EQ(got["tests"][0]["df1"], 6.0);
+  EXPECT_EQ(got["coefficients"].size(), 12u);  // 4 × 3 cells
+}
+
+TEST_F(Stats, RefusesByNameWhatEachMethodCannotTake) {
+  const auto data = file("y,g,s,t\n1,a,p,1\n0,a,q,2\n1,b,p,3\n2,b,q,4\n").string();
+  EXPECT_THAT(refusal("recognition", data, "y ~ g"), HasSubstr(":5: column 'y' should be 0 or 1"));
+  EXPECT_THAT(refusal("proportions", data, "y ~ g"), HasSubstr(":5: 2 of 1 is no count"));
+  EXPECT_THAT(refusal("p-adjust", data, "y ~ 1"), HasSubstr(":5: 2 is no p-value"));
+  EXPECT_THAT(refusal("icc", data, "y ~ g"), HasSubstr("icc needs the subject"));
+  EXPECT_THAT(refusal("effect-size", data, "y ~ t"), HasSubstr("has 4 values"));
+  EXPECT_THAT(refusal("learning-curve", data, "y ~ t"), HasSubstr("at least 5 trials"));
+  EXPECT_THAT(refusal("rm-anova", data, "y ~ s + t + (1|g)"),
+              HasSubstr("join the columns with '*'"));
+  EXPECT_THAT(refusal("lmm", data, "y ~ t + (1|nobody)"), HasSubstr("there is no column 'nobody'"));
+  EXPECT_THAT(refusal("lc-cusum", file("f,o\n1,1\n0,1\n").string(), "f ~ o"),
+              HasSubstr("'o' is 1 twice"));
+  EXPECT_THAT(refusal("anova", file("y,g\n1,a\n2,a\n").string(), "y ~ g"), HasSubstr("one group"));
+  EXPECT_THAT(plain("power --test correlation --effect 2").err, HasSubstr("between -1 and 1"));
+  EXPECT_THAT(plain("power --alpha 7").err, HasSubstr("option 'alpha' is '7'"));
+  EXPECT_EQ(plain("magic").exit, 2);
+}
+
+TEST_F(Stats, NumbersAtTheEdgesOfADoubleGetAnAnswerOrAName) {
+  const auto tiny = file("y,g\n1e-300,a\n2e-300,a\n3e-300,b\n5e-300,b\n").string();
+  EXPECT_THAT(refusal("anova", tiny, "y ~ g"), HasSubstr("rescale them"));
+  const auto huge = file("y,g\n1e300,a\n2e300,a\n3e300,b\n5e300,b\n").string();
+  EXPECT_THAT(refusal("anova", huge, "y ~ g"), HasSubstr("rescale them"));
+  // Ranks do not mind.
+  EXPECT_EQ(run("rank", huge, "y ~ g").exit, 0);
 }
 
 }  // namespace

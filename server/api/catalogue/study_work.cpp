@@ -1,4 +1,6 @@
 /// A station's part of a study: the next trials of a participant, sealed.
+#include "wire/study_work.hpp"
+
 #include <fmt/format.h>
 
 #include "db/store/accounts.hpp"
@@ -39,9 +41,9 @@ core::Result<Given> take(store::Writing& tx, const Call& call) {
   return Given{std::move(**participant), std::move(*taken), std::move(*token)};
 }
 
-core::Result<core::Json> sealed_trials(Backend& backend, const Given& given) {
+core::Result<std::vector<wire::SealedTrial>> sealed_trials(Backend& backend, const Given& given) {
   const study::StationKey key(given.token_hash);
-  core::Json out = core::Json::array();
+  std::vector<wire::SealedTrial> out;
   std::uint64_t number = given.taken.planned - given.taken.unfinished;
   for (const store::Slot& slot : given.taken.slots) {
     auto scenario = jobs::scenario_of(backend.store, backend.objects, slot.case_id);
@@ -50,7 +52,7 @@ core::Result<core::Json> sealed_trials(Backend& backend, const Given& given) {
     if (!law) return law.error();
     auto sealed = study::sealed_law(*law, slot.id, key);
     if (!sealed) return sealed.error();
-    out.push_back({{"slot", slot.id}, {"number", ++number}, {"sealed", *sealed}});
+    out.push_back({slot.id, ++number, std::move(*sealed)});
   }
   return out;
 }
@@ -62,14 +64,11 @@ core::Result<http::Response> take_trials(const Call& call) {
   auto trials = sealed_trials(call.backend, *given);
   if (!trials) return trials.error();
   const auto& who = given->participant;
-  return json_response({{"study", call.text("id")},
-                        {"participant", who.name},
-                        {"simulated", who.simulated},
-                        {"experience_years",
-                         who.experience_years ? core::Json(*who.experience_years) : core::Json()},
-                        {"unfinished", given->taken.unfinished},
-                        {"planned", given->taken.planned},
-                        {"trials", *trials}});
+  const wire::StudyWork work{call.text("id"),         who.name,
+                             who.simulated,           who.experience_years,
+                             given->taken.unfinished, given->taken.planned,
+                             std::move(*trials)};
+  return json_response(work.to_json());
 }
 
 }  // namespace

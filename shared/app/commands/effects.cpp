@@ -71,7 +71,7 @@ Json json_of(const Entry& entry) {
                           {"low", p.low},
                           {"high", p.high},
                           {"off", std::isnan(p.off) ? Json() : Json(p.off)},
-                          {"otherwise", std::isnan(p.otherwise) ? Json() : Json(p.otherwise)},
+                          {"if_missing", std::isnan(p.if_missing) ? Json() : Json(p.otherwise)},
                           {"logarithmic", p.logarithmic}});
   return {{"id", f.id},
           {"rig", entry.rig},

@@ -10,6 +10,7 @@
 
 #include "app/command.hpp"
 #include "app/trial_csv.hpp"
+#include "app/trial_set.hpp"
 #include "cases/case.hpp"
 #include "core/clock.hpp"
 #include "core/progress.hpp"
@@ -22,7 +23,8 @@ namespace {
 using core::Json;
 
 struct Options {
-  std::string file, csv, case_folder, scenario;
+  std::string file, csv, case_folder, scenario, out;
+  std::vector<std::string> files;
   bool json = false;
 };
 
@@ -195,34 +197,56 @@ Outcome recover(const Options& o) {
     fmt::print("{} samples, ended\n", *kept);
   return 0;
 }
+
+Outcome measurements(const Options& o) {
+  const auto samples = write_trial_set(o.files, o.out);
+  if (!samples) return samples.error();
+  if (o.json)
+    std::puts(Json({{"trials", o.files.size()}, {"samples", *samples}, {"folder", o.out}})
+                  .dump(2)
+                  .c_str());
+  else
+    fmt::print("{} trials, {} samples in {}\n", o.files.size(), *samples, o.out);
+  return 0;
+}
 }  // namespace
 
 Command trial_command() {
-  return {"trial", "Shows a recorded trial, scores it, or ends one that a crash left open",
-          "tractus trial metrics 018f.ttrial --case l3-left-medial", [](CLI::App& app) {
-            auto options = std::make_shared<Options>();
-            app.require_subcommand(1);
-            CLI::App* look = app.add_subcommand("show", "who, when, samples, events, how it ended");
-            CLI::App* rate = app.add_subcommand("metrics", "every score of the trial on its case");
-            CLI::App* end = app.add_subcommand(
-                "recover", "cut an unfinished last frame and end the file; a finished one stays");
-            for (CLI::App* each : {look, rate, end}) {
-              each->add_option("FILE", options->file, "a tractus-trial/1 file")->required();
-              each->add_flag("--json", options->json, "print as JSON");
-            }
-            look->footer("Example:\n  tractus trial show 018f.ttrial --csv 018f.csv");
-            rate->footer("Example:\n  tractus trial metrics 018f.ttrial --case l3-left-medial");
-            end->footer("Example:\n  tractus trial recover 018f.ttrial");
-            look->add_option("--csv", options->csv, "write every sample to this table, SI units");
-            rate->add_option("--case", options->case_folder,
-                             "palpation: folder of the case it was made on");
-            rate->add_option("--scenario", options->scenario,
-                             "probing: file of the scenario it was made on, for the truth");
-            return [options, look, rate]() -> Outcome {
-              if (look->parsed()) return show(*options);
-              return rate->parsed() ? score(*options) : recover(*options);
-            };
-          }};
+  return {
+      "trial",
+      "Shows a recorded trial, scores it, ends one that a crash left open, writes trials for the "
+      "lab",
+      "tractus trial metrics 018f.ttrial --case l3-left-medial", [](CLI::App& app) {
+        auto options = std::make_shared<Options>();
+        app.require_subcommand(1);
+        CLI::App* look = app.add_subcommand("show", "who, when, samples, events, how it ended");
+        CLI::App* rate = app.add_subcommand("metrics", "every score of the trial on its case");
+        CLI::App* end = app.add_subcommand(
+            "recover", "cut an unfinished last frame and end the file; a finished one stays");
+        CLI::App* set = app.add_subcommand(
+            "measurements", "write trials as a measurement set for compare, fit and diagnose");
+        set->add_option("FILES", options->files, "tractus-trial/1 files of one rig")->required();
+        set->add_option("--out", options->out, "folder to make")->required();
+        set->add_flag("--json", options->json, "print as JSON");
+        set->footer("Example:\n  tractus trial measurements st/trials/*.ttrial --out recorded");
+        for (CLI::App* each : {look, rate, end}) {
+          each->add_option("FILE", options->file, "a tractus-trial/1 file")->required();
+          each->add_flag("--json", options->json, "print as JSON");
+        }
+        look->footer("Example:\n  tractus trial show 018f.ttrial --csv 018f.csv");
+        rate->footer("Example:\n  tractus trial metrics 018f.ttrial --case l3-left-medial");
+        end->footer("Example:\n  tractus trial recover 018f.ttrial");
+        look->add_option("--csv", options->csv, "write every sample to this table, SI units");
+        rate->add_option("--case", options->case_folder,
+                         "palpation: folder of the case it was made on");
+        rate->add_option("--scenario", options->scenario,
+                         "probing: file of the scenario it was made on, for the truth");
+        return [options, look, rate, set]() -> Outcome {
+          if (set->parsed()) return measurements(*options);
+          if (look->parsed()) return show(*options);
+          return rate->parsed() ? score(*options) : recover(*options);
+        };
+      }};
 }
 
 }  // namespace commands

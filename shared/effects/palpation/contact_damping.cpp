@@ -6,7 +6,8 @@ namespace {
 
 class ContactDamping final : public PointForce {
  public:
-  explicit ContactDamping(double damping_Ns_per_m) : damping_Ns_per_m_(damping_Ns_per_m) {}
+  ContactDamping(double damping_Ns_per_m, double bending_share)
+      : damping_Ns_per_m_(damping_Ns_per_m), bending_share_(bending_share) {}
 
   void add(const PointContact& point, const laws::ForceSample&,
            laws::ForceSample& total) const noexcept override {
@@ -15,8 +16,10 @@ class ContactDamping final : public PointForce {
     total.jacobian_N_per_m -= drag_N * point.field->gradient_per_m(point.p_m).transpose();
   }
 
+  double bending_share() const noexcept override { return bending_share_; }
+
  private:
-  double damping_Ns_per_m_;
+  double damping_Ns_per_m_, bending_share_;
 };
 
 }  // namespace
@@ -33,9 +36,10 @@ PalpationEffectInfo contact_damping() {
                             .meaning = "force over speed in solid bone, c",
                             .initial = 5.0,
                             .low = 0.0,
-                            .high = 500.0}}},
+                            .high = 500.0},
+                           bends_shank()}},
       .make = [](std::span<const double> values) -> PalpationEffect {
-        return std::make_unique<ContactDamping>(values[0]);
+        return std::make_unique<ContactDamping>(values[0], values[1]);
       }};
 }
 }  // namespace palpation

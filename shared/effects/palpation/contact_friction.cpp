@@ -1,7 +1,8 @@
 /// Coulomb friction where the probe slides on bone:  F = −μ |F_n| v_t/|v_t|.
 ///
 /// F_n is the point's elastic force, whose direction is the wall's normal; v_t is what of the
-/// point's velocity lies across it. The friction bends the shank like every other force.
+/// point's velocity lies across it. The friction bends the shank like every other force, unless the
+/// model says that it does not (see bends_shank).
 /// Departs from the design by 1/√(1 + (v_ε/v_t)²), v_ε = 0.1 mm/s: without it a hand at rest would
 /// feel the noise of its own velocity as chatter.
 #include <cmath>
@@ -15,7 +16,8 @@ constexpr double kRounded_m_s = 1e-4;  // v_ε
 
 class ContactFriction final : public PointForce {
  public:
-  explicit ContactFriction(double coefficient) : coefficient_(coefficient) {}
+  ContactFriction(double coefficient, double bending_share)
+      : coefficient_(coefficient), bending_share_(bending_share) {}
 
   void add(const PointContact& point, const laws::ForceSample& elastic,
            laws::ForceSample& total) const noexcept override {
@@ -35,8 +37,10 @@ class ContactFriction final : public PointForce {
                                               (dv_t - t * (t.transpose() * dv_t)) / speed);
   }
 
+  double bending_share() const noexcept override { return bending_share_; }
+
  private:
-  double coefficient_;
+  double coefficient_, bending_share_;
 };
 
 }  // namespace
@@ -52,9 +56,10 @@ PalpationEffectInfo contact_friction() {
                                 .meaning = "friction over normal force, μ",
                                 .initial = 0.2,
                                 .low = 0.0,
-                                .high = 1.5}}},
+                                .high = 1.5},
+                               bends_shank()}},
           .make = [](std::span<const double> values) -> PalpationEffect {
-            return std::make_unique<ContactFriction>(values[0]);
+            return std::make_unique<ContactFriction>(values[0], values[1]);
           }};
 }
 }  // namespace palpation

@@ -57,7 +57,7 @@ ProbingEffectInfo backlash() {
                        .low = -0.25,
                        .high = 1.25,
                        .off = kNoOff,
-                       .otherwise = 0.0}},
+                       .if_missing = 0.0}},
            .passive = false},  // the spring returns at a greater depth than it was loaded at
           made<Backlash>};
 }

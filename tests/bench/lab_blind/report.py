@@ -39,6 +39,7 @@ def summary(rows):
     errors = [p for r in found for p in r.get("parameters", [])]
     inside = [p[3] for p in errors if p[3] is not None]
     claims = [c for r in rows for c in r.get("claims", []) if c[0] is not None]
+    answers = [(r["stated"], r["right"]) for r in rows if r.get("stated") is not None]
     ranked = [c for r in rows for c in r.get("ranked", []) if c[0] is not None]
     per = {}
     for p in errors:
@@ -53,8 +54,11 @@ def summary(rows):
         "parameter_error_by_name": {name: spread(v) for name, v in sorted(per.items())},
         "coverage_90": {"count": len(inside), "rate": sum(inside) / len(inside) if inside else None},
         "held_out_over_floor": spread([r["held_out_over_floor"] for r in found if "held_out_over_floor" in r]),
+        "held_out_over_attainable":
+            spread([r["held_out_over_attainable"] for r in found if "held_out_over_attainable" in r]),
         "stated_floor_over_true": spread([r["stated_floor_over_true"] for r in rows if "stated_floor_over_true" in r]),
-        "reliability_of_answers": reliability(claims), "reliability_of_rankings": reliability(ranked),
+        "reliability_of_answers": reliability(answers), "reliability_of_effects": reliability(claims),
+        "reliability_of_rankings": reliability(ranked),
         "wall_s": spread([r["wall_s"] for r in rows]) | {"max": max([r["wall_s"] for r in rows], default=None)},
     }
 
@@ -129,9 +133,13 @@ def text(rows, rig):
     lines.append("90 %% intervals that hold the truth: %s of %d" % (number(c["rate"]), c["count"]))
     lines.append("held-out error over the true floor: median %s, p90 %s (goal 1.10)" % (
         number(h["median"], "%.4g"), number(h["p90"], "%.4g")))
+    h = s["held_out_over_attainable"]
+    lines.append("  over what the true law leaves on the sampled motion: median %s, p90 %s" % (
+        number(h["median"], "%.4g"), number(h["p90"], "%.4g")))
     f = s["stated_floor_over_true"]
     lines.append("stated floor over the true one: median %s, p90 %s" % (number(f["median"]), number(f["p90"])))
-    lines += reliability_lines("probabilities of the effects named", s["reliability_of_answers"])
+    lines += reliability_lines("probabilities of whole answers", s["reliability_of_answers"])
+    lines += reliability_lines("probabilities of the effects named", s["reliability_of_effects"])
     lines += reliability_lines("probabilities of every rank", s["reliability_of_rankings"])
     w = s["wall_s"]
     lines.append("wall time: median %s s, p90 %s s, longest %s s" % tuple(number(w[k]) for k in ("median", "p90", "max")))

@@ -110,6 +110,7 @@ def score(truth, answer, wall_s):
     row |= judged(truth, ids, verdict)
     row |= {"answer": answered_label(answer), "verdict": verdict, "ids": sorted(ids)}
     wanted = {e["id"] for e in truth["effects"]}
+    row["stated"] = answer.get("probability")
     row["claims"] = [[e.get("probability"), e["id"] in wanted] for e in answer.get("effects", [])]
     row["ranked"] = [[e.get("probability"), e["id"] in wanted] for e in answer.get("ranking", [])]
     row["first"] = answer["ranking"][0]["id"] if answer.get("ranking") else None
@@ -121,6 +122,8 @@ def score(truth, answer, wall_s):
     steps = answer.get("steps") or []
     if steps and steps[-1].get("held_out_rmse") is not None:
         row["held_out_over_floor"] = steps[-1]["held_out_rmse"] / truth["floor"]
+        # What the true law leaves on the motion as it was sampled: jumps within a sample are in it.
+        row["held_out_over_attainable"] = steps[-1]["held_out_rmse"] / truth.get("attainable", truth["floor"])
         row["base_over_floor"] = (answer.get("base", {}).get("held_out_rmse") or 0) / truth["floor"]
     stated = answer.get("base", {}).get("noise_floor")
     if stated:

@@ -88,10 +88,8 @@ bool write_set(const PalpationSet& set, const fs::path& folder) {
     trials.push_back({{"id", id}, {"file", id + ".csv"}, {"operator", "simulated"}, {"notes", ""}});
     good = put_trial(folder / "measurements" / (id + ".csv"), set.trials[i]) && good;
   }
-  return put(folder / "measurements" / "set.json", {{"format", "tractus-measurements/1"},
-                                                    {"rig", "palpation"},
-                                                    {"volume", "../volume.nrrd"},
-                                                    {"trials", trials}}) &&
+  return put(folder / "measurements" / "set.json",
+             {{"format", "tractus-measurements/1"}, {"rig", "palpation"}, {"trials", trials}}) &&
          good;
 }
 

@@ -27,14 +27,16 @@ std::vector<HiddenEffect> without(std::vector<HiddenEffect> effects, std::size_t
 /// trials.
 struct Laws {
   explicit Laws(const SetPlan& plan)
-      : full(plan.truth, plan.effects, plan.request.seed), loop(full_copy(plan)) {
+      : full(plan.truth, plan.effects, plan.request.seed),
+        loop(full_copy(plan)),
+        sampled(full_copy(plan)) {
     for (std::size_t i = 0; i <= plan.effects.size() && !plan.effects.empty(); ++i)
       reduced.emplace_back(plan.truth, without(plan.effects, i), plan.request.seed);
   }
   static Physics full_copy(const SetPlan& plan) {
     return {plan.truth, plan.effects, plan.request.seed};
   }
-  Physics full, loop;
+  Physics full, loop, sampled;
   std::vector<Physics> reduced;
 };
 
@@ -106,6 +108,35 @@ void tune(SetPlan& plan) {
   }
 }
 
+/// Squared errors of the true law on the sampled motion: what no reader of the file can beat.
+struct Best {
+  double all = 0, away = 0, count = 0, away_count = 0;
+};
+
+void read_perfectly(const SetPlan& plan, std::size_t index, const Worked& trial,
+                    const Samples& samples, Laws& laws, Best& best) {
+  constexpr std::size_t kNear = 10;  // samples about a change of layer that are counted apart
+  const TrialPlan& how = plan.trials[index];
+  const TrialContext context{static_cast<int>(index), how.duration_s, plan.truth.end_m(), how.seed};
+  const Series motion = sampled_motion(trial.series, plan);
+  const auto force =
+      as_recorded(evaluate(motion, laws.sampled, context), torque(motion, plan.truth.rotary),
+                  plan.effects, how.seed, 1.0 / plan.request.rate_Hz);
+  std::vector<bool> near(force.size(), false);
+  for (std::size_t i = 1; i < force.size(); ++i)
+    if (plan.truth.at(motion.moments[i].x_m) != plan.truth.at(motion.moments[i - 1].x_m))
+      for (std::size_t k = i - std::min(i, kNear); k < std::min(force.size(), i + kNear); ++k)
+        near[k] = true;
+  for (std::size_t i = 1; i + 1 < force.size(); ++i) {
+    const double error = samples.force_N[i] - force[i];
+    best.all += error * error;
+    best.count += 1;
+    if (near[i]) continue;
+    best.away += error * error;
+    best.away_count += 1;
+  }
+}
+
 void judge(GeneratedSet& set, const std::vector<JudgedPoint>& points) {
   if (set.plan.effects.empty()) return;
   const auto left = projected_rms(points, set.plan);
@@ -126,10 +157,12 @@ GeneratedSet record(SetPlan plan) {
   std::vector<JudgedPoint> points;
   double force = 0, floor = 0;
   std::size_t count = 0;
+  Best best;
   for (std::size_t i = 0; i < set.plan.trials.size(); ++i) {
     const Worked trial = work(set.plan, i, laws);
     set.trials.push_back(
         sample(trial.series, trial.recorded_N, trial.torque_Nm, set.plan, set.plan.trials[i].seed));
+    read_perfectly(set.plan, i, trial, set.trials.back(), laws, best);
     const auto trials = static_cast<double>(set.plan.trials.size());
     floor += set.trials.back().floor_N * set.trials.back().floor_N / trials;
     set.stuck_share += trial.series.stuck_share / trials;
@@ -143,6 +176,8 @@ GeneratedSet record(SetPlan plan) {
   }
   set.force_rms_N = std::sqrt(force / static_cast<double>(count));
   set.floor_N = std::sqrt(floor);
+  set.attainable_N = std::sqrt(best.all / best.count);
+  set.attainable_away_N = std::sqrt(best.away / std::max(1.0, best.away_count));
   judge(set, points);
   return set;
 }

@@ -22,6 +22,10 @@ struct GeneratedSet {
   std::vector<Samples> trials;
   std::vector<Outcome> outcomes;
   double force_rms_N = 0, floor_N = 0, stuck_share = 0;
+  /// RMS of the record minus the true law on the motion as sampled, without noise: all samples, and
+  /// those farther than 10 samples from a change of layer (where a jump within one sample is
+  /// nobody's to tell).
+  double attainable_N = 0, attainable_away_N = 0;
   double hidden_projected_N = 0;  ///< all effects together
 };
 

@@ -20,10 +20,10 @@ std::vector<double> trend(Random& random, std::size_t count) {
   return out;
 }
 
-std::vector<double> late(const std::vector<double>& values, double delay_s) {
+std::vector<double> late(const std::vector<double>& values, double steps) {
   std::vector<double> out(values.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const double at = std::max(0.0, static_cast<double>(i) - delay_s / kFineStep_s);
+    const double at = std::max(0.0, static_cast<double>(i) - steps);
     const auto k = std::min(static_cast<std::size_t>(at), values.size() - 2);
     const double share = at - static_cast<double>(k);
     out[i] = (1 - share) * values[k] + share * values[k + 1];
@@ -58,11 +58,11 @@ std::vector<double> torque(const Series& series, const Rotary& rotary) {
 
 std::vector<double> as_recorded(const std::vector<double>& force_N,
                                 const std::vector<double>& torque_Nm,
-                                const std::vector<HiddenEffect>& effects,
-                                std::uint64_t trial_seed) {
+                                const std::vector<HiddenEffect>& effects, std::uint64_t trial_seed,
+                                double step_s) {
   std::vector<double> out = force_N;
   for (const HiddenEffect& effect : effects)
-    if (effect.id == "time_delay") out = late(out, effect.parameters.at("delay_s"));
+    if (effect.id == "time_delay") out = late(out, effect.parameters.at("delay_s") / step_s);
   for (const HiddenEffect& effect : effects) {
     Random random(trial_seed ^ 0xD21F7);
     if (effect.id == "sensor_bias")
@@ -75,6 +75,27 @@ std::vector<double> as_recorded(const std::vector<double>& force_N,
     if (effect.id == "torque_crosstalk")
       for (std::size_t i = 0; i < out.size(); ++i)
         out[i] += effect.parameters.at("coefficient_per_m") * torque_Nm[i];
+  }
+  return out;
+}
+
+Series sampled_motion(const Series& series, const SetPlan& plan) {
+  const double step = 1.0 / plan.request.rate_Hz;
+  const auto stride = static_cast<std::size_t>(std::lround(step / kFineStep_s));
+  const auto& fine = series.moments;
+  Series out;
+  for (std::size_t centre = 0; centre + stride / 2 < fine.size(); centre += stride) {
+    const auto value = [&](double Moment::*member) {
+      return at_sample([&](std::size_t i) { return fine[i].*member; }, centre, stride / 2,
+                       fine.size(), plan.recording.averaging);
+    };
+    out.moments.push_back({static_cast<double>(out.moments.size()) * step, value(&Moment::x_m), 0,
+                           0, value(&Moment::theta_rad), value(&Moment::omega_rad_s)});
+  }
+  auto& m = out.moments;
+  for (std::size_t i = 1; i + 1 < m.size(); ++i) {
+    m[i].v_m_s = (m[i + 1].x_m - m[i - 1].x_m) / (2 * step);
+    m[i].a_m_s2 = (m[i + 1].x_m - 2 * m[i].x_m + m[i - 1].x_m) / (step * step);
   }
   return out;
 }

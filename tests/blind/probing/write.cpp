@@ -105,6 +105,8 @@ bool write_truth(const GeneratedSet& set, const fs::path& file) {
        {"projected_rms", set.hidden_projected_N},
        {"force_rms", set.force_rms_N},
        {"floor", set.floor_N},
+       {"attainable", set.attainable_N},
+       {"attainable_away", set.attainable_away_N},
        {"stuck_share", set.stuck_share},
        {"handed", plan.handed.how},
        {"fixed", plan.handed.fixed},

@@ -1,4 +1,5 @@
 import { describe, expect, it } from 'vitest';
+import { linePath, nearestPoint, placeOf, roundStep, ticksOf, type Scale } from './depth-scale';
 import { columnOf, coveredBySide, heatOf, heatPaths, sideOf } from './coverage';
 import { clamp, panned, whole, zoomed } from './range';
 import { opacityAt } from './scene/slice';
@@ -159,5 +160,29 @@ describe('the CT on the cut', () => {
     expect(opacityAt(bone, [-0.001, 0.001, 0.001])).toBeCloseTo(100, 9);
     expect(opacityAt(bone, [-0.0005, 0.0004, 0.0013])).toBeCloseTo(50, 9);
     expect(opacityAt(bone, [0.001, 0.001, 0.001]), 'outside').toBe(0);
+  });
+});
+
+describe('the scale of force against depth', () => {
+  const across: Scale = { from: 0, to: 0.05, start_px: 50, end_px: 550 };
+  const up: Scale = { from: 0, to: 100, start_px: 300, end_px: 0 };
+
+  it('puts values where they belong and the path through them', () => {
+    expect(placeOf(across, 0.025)).toBe(300);
+    expect(placeOf(up, 100)).toBe(0);
+    expect(linePath([0, 0.05], [0, 100], across, up)).toBe('M50 300L550 0');
+    expect(linePath([0, Number.NaN, 0.05], [0, 5, 100], across, up)).toBe('M50 300L550 0');
+  });
+
+  it('has round ticks, no more than fit', () => {
+    expect(roundStep(48, 6)).toBe(10);
+    expect(roundStep(0.9, 5)).toBeCloseTo(0.2);
+    expect(ticksOf(0, 48, 10)).toEqual([0, 10, 20, 30, 40]);
+    expect(roundStep(0, 5)).toBe(1);
+  });
+
+  it('finds the point under the pointer on the picture, not in the data', () => {
+    expect(nearestPoint([0, 0.025, 0.05], [0, 50, 100], across, up, 310, 160)).toBe(1);
+    expect(nearestPoint([], [], across, up, 0, 0)).toBe(-1);
   });
 });

@@ -119,8 +119,8 @@ export function DepthChart(props: Props) {
         )}
       </div>
       <ul className={styles.key}>
-        <li><i className={styles.curveKey} />push, {axisTitle('force', kForce)}</li>
-        {bone ? <li><i className={styles.layerKey} />layers, darker where stiffer</li> : null}
+        <li><i className={styles.curveKey} />{axisTitle('push of the hand', kForce)}</li>
+        {bone ? <li><i className={styles.layerKey} />layers, stronger where stiffer</li> : null}
         {bone && bone.walls.length > 0 ? <><li><i className={styles.growKey} />resistance grows</li><li><i className={styles.breachKey} />soft tissue behind the wall</li></> : null}
         {felt_m === null ? null : <li><i className={styles.feltKey} />breach felt here</li>}
       </ul>

@@ -14,7 +14,7 @@ export function roundStep(span: number, most: number): number {
 
 export function ticksOf(from: number, to: number, step: number): number[] {
   const ticks: number[] = [];
-  for (let n = Math.ceil(from / step - 1e-9); n * step <= to + 1e-9 * step; ++n) ticks.push(n * step);
+  for (let n = Math.ceil(from / step - 1e-9); n * step <= to + 1e-9 * step; ++n) ticks.push(n * step + 0);
   return ticks;
 }
 

@@ -124,6 +124,8 @@ const kMeasures: Record<string, Quantity | undefined> = {
   rad: kAngle,
   '%': { name: 'Share', unit: '%', perSi: 1, decimals: 0 },
   'm/s': kSpeed,
+  'N^2': { name: 'Variance of force', unit: 'N²', perSi: 1, decimals: 1 },
+  'm^2/s^2': { name: 'Variance of speed', unit: 'mm²/s²', perSi: 1e6, decimals: 1 },
 };
 
 function plain(value: number): string {

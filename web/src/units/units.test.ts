@@ -60,6 +60,8 @@ describe('a measure of the server', () => {
     expect(plain(formatMeasure(0.0123, 'm/s'))).toBe('12.3 mm/s');
     expect(measureDigits(0.28, 'N')).toBe('0.28');
     expect(shownUnit('m')).toBe('mm');
+    expect(plain(formatMeasure(2.5e-5, 'm^2/s^2'))).toBe('25.0 mm²/s²'); // (5 mm/s)²
+    expect(plain(formatMeasure(764.2, 'N^2'))).toBe('764.2 N²');
   });
 
   it('keeps a unit that is not known here', () => {

@@ -50,10 +50,28 @@ export async function signIn(page: Page, path = '/'): Promise<void> {
 export const asked = <Answer>(page: Page, path: string): Promise<Answer> =>
   page.evaluate(async (address) => (await fetch(address)).json() as Promise<Answer>, `/api/v1${path}`);
 
-/** The id of the newest trial that has been assessed. */
+/** The id of the newest palpation trial that has been assessed. */
 export async function assessedTrial(page: Page): Promise<string> {
   const { trials } = await asked<{ trials: { id: string; state: string }[] }>(page, '/trials?limit=50');
-  const found = trials.find((trial) => trial.state === 'assessed');
-  if (!found) throw new Error('the server has no assessed trial');
-  return found.id;
+  for (const { id } of trials.filter(({ state }) => state === 'assessed')) {
+    const { rig } = await asked<{ rig: string }>(page, `/trials/${id}`);
+    if (rig === 'palpation') return id;
+  }
+  throw new Error('the server has no assessed palpation trial');
+}
+
+interface Told { participants: { name: string; slots: { state: string; trials: { id: string; state: string }[] }[] }[] }
+
+/** A study with a trial that counts, if the server has one: the newest of its trials behind a wall, or any. */
+export async function someStudy(page: Page): Promise<{ id: string; trial: string } | null> {
+  const { studies } = await asked<{ studies: { id: string; done: number }[] }>(page, '/studies');
+  const found = studies.find(({ done }) => done > 0);
+  if (!found) return null;
+  const study = await asked<Told>(page, `/studies/${found.id}`);
+  const trials = study.participants.flatMap((one) => one.slots.flatMap((slot) => slot.trials.filter(({ state }) => state === 'counts')));
+  for (const { id } of trials.slice(0, 8)) {
+    const { scenario } = await asked<{ scenario: { walls: unknown[] } | null }>(page, `/trials/${id}`);
+    if (scenario && scenario.walls.length > 0) return { id: found.id, trial: id };
+  }
+  return trials[0] ? { id: found.id, trial: trials[0].id } : null;
 }

@@ -3,7 +3,7 @@ import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import type { Browser, Page } from 'playwright-core';
 import { afterAll, beforeAll, describe, expect, it } from 'vitest';
-import { assessedTrial, kShots, launch, signIn, visit } from './browser';
+import { assessedTrial, kShots, launch, signIn, someStudy, visit } from './browser';
 
 const kAxe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 
@@ -48,6 +48,33 @@ describe.each([
     await page.waitForLoadState('networkidle');
     await page.waitForTimeout(800);
     await check('trial');
+
+    const study = await someStudy(page);
+    if (study) {
+      await page.goto('/studies');
+      await page.locator('tbody a').first().waitFor();
+      await check('studies');
+
+      await page.goto(`/studies/${study.id}`);
+      await page.locator('[data-participant]').first().waitFor();
+      await check('study');
+      await page.locator('[data-participant] button[aria-expanded]').first().click();
+      await page.getByRole('button', { name: /^Mark trial/ }).first().click();
+      await page.getByRole('dialog').waitFor();
+      await check('study-invalid');
+      await page.keyboard.press('Escape');
+
+      await page.goto(`/trials/${study.trial}`);
+      await page.locator('[data-part="depth-curve"]').waitFor();
+      await page.locator('[data-panel="turn"] canvas').waitFor();
+      await page.waitForLoadState('networkidle');
+      await page.waitForTimeout(500);
+      await check('trial-probing');
+    }
+    await page.goto('/studies/new');
+    await page.getByLabel('Title').fill('Spine study');
+    await page.getByLabel(/One a line/).fill('P01, resident, 0.5\nDr Who');
+    await check('study-new');
 
     await page.goto('/nowhere');
     await page.getByRole('heading', { name: 'There is no such page' }).waitFor();

@@ -30,7 +30,7 @@ export const kBlank: Draft = {
 
 /** "Spine study, 2026" → "spine-study-2026" */
 export function idOf(title: string): string {
-  return title.toLowerCase().normalize('NFD').replace(/[^a-z0-9]+/g, '-').replace(/^-+|-+$/g, '').slice(0, 32).replace(/-+$/, '');
+  return title.toLowerCase().normalize('NFD').replace(/\p{M}/gu, '').replace(/[^a-z0-9]+/g, '-').replace(/^-+|-+$/g, '').slice(0, 32).replace(/-+$/, '');
 }
 
 const kPseudonym = /^[A-Za-z0-9_-]{1,32}$/;

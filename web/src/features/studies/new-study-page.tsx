@@ -43,7 +43,7 @@ export function NewStudyPage() {
       <Card title="Name">
         <div className={styles.names}>
           <Field label="Title" value={draft.title} maxLength={200} required onChange={(event) => set({ title: event.target.value })} />
-          <Field label="Short name, typed at stations" value={draft.id} maxLength={32} placeholder={idOf(draft.title) || 'spine-study-1'} pattern="[a-z0-9][a-z0-9\-]*"
+          <Field label="Short name for stations" value={draft.id} maxLength={32} placeholder={idOf(draft.title) || 'spine-study-1'} pattern="[a-z0-9][a-z0-9\-]*"
             spellCheck={false} autoCapitalize="none" onChange={(event) => set({ id: event.target.value })} />
         </div>
       </Card>

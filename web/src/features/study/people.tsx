@@ -10,7 +10,7 @@ import { doingOf, kMarkSign, kMarkWord, levelOf, markOf, progressOf, trialOf } f
 
 interface Props { readonly study: Study; readonly ask: (deed: Deed) => void }
 
-const kColumns = ['Participant', 'Now', 'Station', 'Trials in their order', 'Done', 'Recognised', ''] as const;
+const kColumns = ['Participant', 'Now', 'Trials in their order', 'Done', 'Recognised', ''] as const;
 
 function Cell({ slot }: { readonly slot: Slot }) {
   const mark = markOf(slot), trial = trialOf(slot);
@@ -37,8 +37,7 @@ function Row({ participant, open, toggle, ask }: RowProps) {
           <button type="button" className={styles.name} aria-expanded={open} onClick={toggle}><span aria-hidden="true">{open ? '▾' : '▸'}</span> {name}</button>
           <span className={styles.level}>{levelOf(participant)}{participant.simulated ? <> <Badge tone="warn">simulated</Badge></> : null}</span>
         </th>
-        <td><Badge tone={doing.tone}>{doing.text}</Badge></td>
-        <td className={styles.station}>{participant.last_station ?? kNone}</td>
+        <td><Badge tone={doing.tone}>{doing.text}</Badge><span className={styles.level}>{participant.last_station ?? ''}</span></td>
         <td><ol className={styles.cells}>{participant.slots.map((slot) => <Cell key={slot.number} slot={slot} />)}</ol></td>
         <td className={styles.number} data-part="done">{progressOf(participant)}</td>
         <td className={styles.number} data-part="recognised">{participant.judged === 0 ? kNone : `${formatCount(participant.recognised)} of ${formatCount(participant.judged)}`}</td>

@@ -1,7 +1,7 @@
 import { Link } from 'wouter';
 import type { Participant, Slot, StudyTrial } from '@/api';
 import { Badge, Button, type Tone } from '@/ui';
-import { formatCount, formatDateTime, formatDuration, isoDateTime, kNone } from '@/units';
+import { formatClock, formatCount, formatDuration, isoDateTime, kNone } from '@/units';
 import type { Deed } from './deeds';
 import styles from './places.module.css';
 
@@ -19,11 +19,11 @@ function TrialCells({ trial, slot, participant, ask }: { readonly trial: StudyTr
   return (
     <>
       <td><Badge tone={tone}>{word}</Badge>{trial.reason === '' ? null : <span className={styles.reason}>{trial.reason}</span>}</td>
-      <td>{trial.started_utc_us === null ? kNone : <time dateTime={isoDateTime(trial.started_utc_us)}>{formatDateTime(trial.started_utc_us)}</time>}</td>
+      <td>{trial.started_utc_us === null ? kNone : <time dateTime={isoDateTime(trial.started_utc_us)}>{formatClock(trial.started_utc_us)}</time>}</td>
       <td>{trial.station}</td>
       <td className={styles.number}>{trial.duration_s === null ? kNone : formatDuration(trial.duration_s)}</td>
       <td className={styles.number}>{trial.samples === null ? kNone : formatCount(trial.samples)}</td>
-      <td>{trial.correct === null ? kNone : trial.correct ? '✓ recognised' : '✗ not recognised'}</td>
+      <td>{trial.correct === null ? kNone : trial.correct ? '✓ right' : '✗ wrong'}</td>
       <td className={styles.deeds}>
         {arrived ? <Link href={`/trials/${encodeURIComponent(trial.id)}`}>Open</Link> : null}
         {trial.state === 'counts' ? <Button look="quiet" label={`Mark trial ${slot.number} of ${participant} as invalid`} onClick={() => ask({ kind: 'invalid', participant, trial: trial.id, number: slot.number })}>Invalid…</Button> : null}

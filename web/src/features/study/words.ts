@@ -33,16 +33,23 @@ export const kMarkWord: Record<Mark, string> = {
   waiting: 'to be done', taken: 'at a station', right: 'done, recognised', wrong: 'done, not recognised', recorded: 'done, not judged', invalid: 'does not count',
 };
 
-const kDeeds: Record<string, string> = {
-  made: 'made the study', enrolled: 'enrolled', taken: 'took the next trial of', recorded: 'brought a trial of', invalid: 'a trial does not count:',
-  repeated: 'a place is repeated for', surplus: 'brought a second trial of', released: 'released a trial of', paused: 'paused', running: 'went on with',
+const kSentences: Record<string, (who: string, whom: string) => string> = {
+  made: (who) => `${who} made the study`,
+  enrolled: (who, whom) => `${who} enrolled ${whom}`,
+  taken: (who, whom) => `${who} took the next trial of ${whom}`,
+  recorded: (who, whom) => `${who} brought a trial of ${whom}`,
+  invalid: (who, whom) => `${who}: a trial of ${whom} does not count`,
+  repeated: (who, whom) => `${who}: its place is repeated for ${whom}`,
+  surplus: (who, whom) => `${who} brought a second trial of ${whom} for the same place`,
+  released: (who, whom) => `${who} released a trial of ${whom}`,
+  paused: (who, whom) => `${who} paused ${whom}`,
+  running: (who, whom) => `${who} went on with ${whom}`,
 };
 
 /** "station-1 brought a trial of P03" */
 export function sentenceOf({ who, what, participant, reason }: StudyEvent): string {
-  const deed = kDeeds[what] ?? what;
-  const whom = participant ?? (what === 'paused' || what === 'running' ? 'the study' : '');
-  return `${who} ${deed} ${whom}`.trim() + (reason === '' ? '' : ` (${reason})`);
+  const said = kSentences[what]?.(who, participant ?? 'the study') ?? `${who}: ${what}`;
+  return reason === '' ? said : `${said} (${reason})`;
 }
 
 export const progressOf = ({ done, planned }: { readonly done: number; readonly planned: number }) => `${formatCount(done)} of ${formatCount(planned)}`;

@@ -65,9 +65,11 @@ const kSets: Record<Trial['rig'], SignalSet> = {
 
 export const setOf = (rig: Trial['rig']): SignalSet => kSets[rig];
 
-/** Start and end are the ends of the axis and need no mark. */
+/** Start and end are the ends of the axis and need no mark; the zero that was taken off the sensor is no moment of the hand. */
+const kUnmarked: readonly string[] = ['start', 'end', 'tare'];
+
 export function marksOf(trial: Trial): Mark[] {
-  return trial.events.filter(({ kind }) => kind !== 'start' && kind !== 'end').map(({ t_s, kind }) => ({ t_s, label: kind }));
+  return trial.events.filter(({ kind }) => !kUnmarked.includes(kind)).map(({ t_s, kind }) => ({ t_s, label: kind }));
 }
 
 function strongest(detail: Detail, channel: string): { value: number; t: number } | null {

@@ -1,15 +1,16 @@
 // @vitest-environment jsdom
 import { cleanup, render, screen, within } from '@testing-library/react';
 import { afterEach, describe, expect, it } from 'vitest';
-import type { Answer, Metric } from '@/api';
-import { share } from '@/units';
-import { judge } from './judgement';
+import type { Answer, Metric, Scenario } from '@/api';
+import { metre, share } from '@/units';
+import { breachMarks } from './breaches';
+import { judge, judgeProbing } from './judgement';
 import { arranged, shown } from './measure-rows';
 import { Measures } from './measures';
 
 afterEach(cleanup);
 
-const answer = (changes: Partial<Answer>): Answer => ({ breach: true, wall: 'medial', confidence: share(0.8), ...changes });
+const answer = (changes: Partial<Answer>): Answer => ({ breach: true, wall: 'medial', confidence: share(0.8), depth_m: null, ...changes });
 const metric = (id: string, value: number | null, unit = 'N', note = ''): Metric =>
   ({ id, label: `label of ${id}`, unit, value, note, definition: `definition of ${id}`, source: 'paper' });
 
@@ -31,6 +32,36 @@ describe('the judgement', () => {
     expect(judge(null, { breached: null }).headline).toBe('No answer');
     expect(judge(answer({}), null)).toMatchObject({ outcome: 'open', truth: 'Not released for this trial.' });
   });
+});
+
+const scenario = (walls: number[]): Scenario => ({
+  id: 'x', name: 'bone', travel_m: metre(0.04), layers: [], walls: walls.map((at) => ({ position_m: metre(at), resistance_interval_m: metre(0.006), breach_interval_m: metre(0.008) })),
+});
+
+describe('the judgement of a probing trial', () => {
+  it.each([
+    ['both say breach', answer({ wall: null, depth_m: metre(0.0212) }), scenario([0.02]), 'right', 'Right'],
+    ['both say none', answer({ breach: false, wall: null }), scenario([]), 'right', 'Right'],
+    ['it was missed', answer({ breach: false, wall: null }), scenario([0.02]), 'wrong', 'missed'],
+    ['there is none', answer({ wall: null }), scenario([]), 'wrong', 'where there is none'],
+  ] as const)('when %s', (_, said, truth, outcome, words) => {
+    const judged = judgeProbing(said, truth);
+    expect(judged.outcome).toBe(outcome);
+    expect(judged.headline).toContain(words);
+  });
+
+  it('tells where it was felt and where the wall is', () => {
+    const { said, truth } = judgeProbing(answer({ wall: null, depth_m: metre(0.0212) }), scenario([0.02]));
+    expect(said.replaceAll('\u202f', ' ')).toContain('A breach at 21.2 mm.');
+    expect(truth.replaceAll('\u202f', ' ')).toContain('gives way at 20.0 mm');
+  });
+});
+
+it('the moments of a breach are the entries into soft tissue from before it, not those back into it from behind', () => {
+  const mode = ['bone', 'breach', 'bone', 'breach', 'bone', 'breach'] as const;
+  const depth_m = [0.019, 0.021, 0.0281, 0.0279, 0.035, 0.036];
+  expect(breachMarks({ t_s: [0, 1, 2, 3, 4, 5], depth_m, force_N: [], mode: [...mode] }).map(({ t_s }) => t_s)).toEqual([1, 5]);
+  expect(breachMarks(undefined)).toEqual([]);
 });
 
 describe('the measures', () => {

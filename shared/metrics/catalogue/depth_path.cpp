@@ -1,0 +1,30 @@
+#include <cmath>
+
+#include "math/savitzky_golay.hpp"
+#include "metrics/tip_motion.hpp"
+
+namespace metrics {
+
+MetricInfo depth_path() {
+  return {"depth_path",
+          "Way along the tract",
+          "m",
+          "Length of the tip's way along the tract's axis, to and fro: its speed there by a "
+          "Savitzky–Golay fit (21 samples at 200 Hz, order 3), integrated.",
+          "\"depth perception\" of [Oropesa2013], smoothed",
+          [](const Subject& subject) -> Score {
+            if (!subject.tract) return {{}, "the tract is not known"};
+            return score_of_kinematics(
+                subject, [&](const TipMotion& motion, const Kinematics&) -> std::optional<double> {
+                  std::vector<double> depth;
+                  for (const auto& p : motion.points_m) depth.push_back(p.dot(subject.tract->axis));
+                  double sum = 0.0;
+                  for (const double v :
+                       math::SavitzkyGolay(21, 3, 1).apply(depth, 1.0 / kMotionRate_Hz))
+                    sum += std::abs(v) / kMotionRate_Hz;
+                  return sum;
+                });
+          }};
+}
+
+}  // namespace metrics

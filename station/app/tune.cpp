@@ -1,0 +1,155 @@
+/// Live tuning by an expert: feel a scenario on the rig, nudge its eight parameters by keys, save a
+/// new version.
+#include <fmt/format.h>
+#include <poll.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <optional>
+
+#include "core/clock.hpp"
+#include "core/file.hpp"
+#include "station/app/aftermath.hpp"
+#include "station/app/deeds.hpp"
+#include "station/app/exchange.hpp"
+#include "station/app/probing.hpp"
+#include "station/session/tuning.hpp"
+
+namespace app {
+namespace {
+using session::Tuning;
+
+constexpr const char* kKeys =
+    "keys: 1-8 choose a parameter, + and - nudge it by 5 %, u takes back, s saves a new version, "
+    "q ends the trial\n";
+
+/// The terminal without waiting for a line, as long as this lives.
+class RawTerminal {
+ public:
+  RawTerminal() {
+    if (!::isatty(STDIN_FILENO) || ::tcgetattr(STDIN_FILENO, &before_) != 0) return;
+    termios raw = before_;
+    raw.c_lflag &= ~tcflag_t(ICANON | ECHO);
+    changed_ = ::tcsetattr(STDIN_FILENO, TCSANOW, &raw) == 0;
+  }
+  ~RawTerminal() {
+    if (changed_) ::tcsetattr(STDIN_FILENO, TCSANOW, &before_);
+  }
+  RawTerminal(const RawTerminal&) = delete;
+  RawTerminal& operator=(const RawTerminal&) = delete;
+
+ private:
+  termios before_{};
+  bool changed_ = false;
+};
+
+std::optional<char> key() {
+  pollfd input{STDIN_FILENO, POLLIN, 0};
+  char c = 0;
+  if (::poll(&input, 1, 0) <= 0 || ::read(STDIN_FILENO, &c, 1) != 1) return std::nullopt;
+  return c;
+}
+
+/// Keys into nudges, nudges into the running trial.
+class Expert {
+ public:
+  Expert(const Options& options, scenarios::Scenario scenario)
+      : options_(options), tuning_(std::move(scenario)) {}
+
+  /// False: the trial is to end.
+  bool press(char c, session::ProbingTrialRun& trial) {
+    if (c == 'q') return false;
+    if (c >= '1' && c <= '8') chosen_ = std::size_t(c - '1');
+    if (c == '+' || c == '-') take(tuning_.nudge(chosen_, c == '+' ? 1 : -1));
+    if (c == 'u') tuning_.undo();
+    if (c == 's') take(save());
+    if (c == '+' || c == '-' || c == 'u')
+      if (auto law = tuning_.now().expanded(); law)
+        take(trial.retune(*law, tuning_.now().to_json()));
+    if (c != '\n') show();
+    return true;
+  }
+  void show() const {
+    std::string line;
+    for (std::size_t k = 0; k < Tuning::kParameters; ++k) {
+      const char* symbol = Tuning::parameters()[k].symbol;
+      const std::string shown = fmt::format("{} {:g}", symbol, tuning_.value(k));
+      line += k == chosen_ ? "[" + shown + "] " : " " + shown + "  ";
+    }
+    std::fprintf(stderr, "%s%s\n", line.c_str(), tuning_.changed() ? "(changed)" : "");
+  }
+  const Tuning& tuning() const { return tuning_; }
+  const core::Json& saved() const { return saved_; }
+
+ private:
+  void take(const core::Result<void>& outcome) const {
+    if (!outcome) std::fprintf(stderr, "refused: %s\n", outcome.error().what.c_str());
+  }
+  core::Result<void> save() {
+    auto made = tuning_.save(options_.who, core::utc_us());
+    if (!made) return made.error();
+    const auto path = options_.tuned_folder / (made->id().substr(0, 12) + ".json");
+    std::error_code ignored;
+    std::filesystem::create_directories(options_.tuned_folder, ignored);
+    if (auto written = core::write_json(path, made->to_json()); !written) return written;
+    saved_.push_back(path.string());
+    std::fprintf(stderr, "saved %s\n", path.c_str());
+    return {};
+  }
+  const Options& options_;
+  Tuning tuning_;
+  std::size_t chosen_ = 0;
+  core::Json saved_ = core::Json::array();
+};
+
+core::Result<session::TrialReport> one_trial(const Options& options,
+                                             const session::StationFolder& folder, Expert& expert) {
+  auto task = session::task_of(expert.tuning().now());
+  if (!task) return task.error();
+  task->operator_name = options.who;
+  auto made = session::ProbingTrialRun::make(folder, *task, options.rig);
+  if (!made) return made.error();
+  session::ProbingTrialRun& trial = **made;
+  const auto ran = trial.run([&](const session::ProbingGlimpse&) {
+    for (auto c = key(); c; c = key())
+      if (!expert.press(*c, trial)) return false;
+    return !asked_to_stop();
+  });
+  if (!ran) return ran.error();
+  return trial.finish(std::nullopt);
+}
+}  // namespace
+
+core::Result<int> tune_scenario(const Options& options) {
+  auto scenario = scenario_named(options.scenario);
+  if (!scenario) return scenario.error();
+  auto folder = session::StationFolder::open(options.data);
+  if (!folder) return folder.error();
+  auto lock = folder->lock();
+  if (!lock) return lock.error();
+  auto recovered = folder->recover();
+  if (!recovered) return recovered.error();
+  say_recovered(*recovered);
+  const RawTerminal terminal;
+  Expert expert(options, std::move(*scenario));
+  std::fputs(kKeys, stderr);
+  expert.show();
+  bool faulted = false;
+  core::Json trials = core::Json::array();
+  for (int i = 0; i < options.trials && !asked_to_stop(); ++i) {
+    auto report = one_trial(options, *folder, expert);
+    if (!report) return report.error();
+    faulted = faulted || !report->complete;
+    trials.push_back(report->to_json());
+    if (!options.json) print_probing_report(*report, options.rig.speed == session::Speed::fast);
+  }
+  if (options.json)
+    fmt::print("{}\n", core::Json{{"trials", trials},
+                                  {"saved", expert.saved()},
+                                  {"scenario", expert.tuning().now().to_json()}}
+                           .dump(2));
+  return faulted ? 1 : 0;
+}
+
+}  // namespace app

@@ -1,0 +1,93 @@
+#include "bench/statistics/cohort.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <random>
+
+#include "assessment/analyse.hpp"
+#include "assessment/trainee.hpp"
+#include "bench/support/report.hpp"
+
+namespace bench {
+
+std::string simulated_cohort(int trainees, int trials) {
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform;
+  const char* scenarios[] = {"hard", "soft", "lateral", "inoutin"};
+  std::string out =
+      "participant,experience_years,order,repetition,scenario,breach,said,correct,time_s,force_N\n";
+  for (int i = 0; i < trainees; ++i) {
+    const double own = normal(random), years = std::floor(10.0 * uniform(random)) / 2.0;
+    for (int t = 0; t < trials; ++t) {
+      const int scenario = t % 4;
+      const bool breach = scenario > 1;
+      const double chance = 1.0 / (1.0 + std::exp(-(0.5 + 0.02 * t + 0.5 * own)));
+      const bool right = uniform(random) < chance;
+      out += fmt::format("p{:05},{},{},{},{},{:d},{:d},{:d},{:.3f},{:.3f}\n", i, years, t + 1,
+                         t / 4 + 1, scenarios[scenario], breach, right == breach, right,
+                         12.0 * std::pow(t + 1.0, -0.2) + own + 0.5 * normal(random),
+                         40.0 + 2.0 * own + years + 3.0 * normal(random));
+    }
+  }
+  return out;
+}
+
+namespace {
+
+core::Json plan_json() {
+  const auto one = [](const char* id, const char* method, const char* formula) {
+    return core::Json{{"id", id}, {"family", "all"}, {"method", method}, {"formula", formula}};
+  };
+  return {{"format", "tractus-plan/1"},
+          {"title", "standard analyses"},
+          {"question", "all"},
+          {"subject", "participant"},
+          {"analyses",
+           {one("ols", "ols", "force_N ~ experience_years + order"),
+            one("robust", "robust", "force_N ~ experience_years + order"),
+            one("anova", "anova", "time_s ~ repetition"),
+            one("rm-anova", "rm-anova", "time_s ~ order + (1|participant)"),
+            one("lmm", "lmm", "time_s ~ order + experience_years + (1|participant)"),
+            one("logistic", "logistic", "correct ~ order + experience_years"),
+            one("logistic-mixed", "logistic",
+                "correct ~ scenario + experience_years + (1|participant)"),
+            one("recognition", "recognition", "said ~ breach + (1|participant)"),
+            one("proportions", "proportions", "correct ~ scenario"),
+            one("confusion", "confusion", "said ~ breach"),
+            one("icc", "icc", "time_s ~ order + (1|participant)"),
+            one("describe", "describe", "force_N ~ scenario")}}};
+}
+
+}  // namespace
+
+bool analyse_cohort(const std::string& csv, std::string& failed) {
+  const auto bytes = core::bytes_of(csv);
+  const auto table = assessment::Table::parse({bytes.begin(), bytes.end()}, "cohort", {},
+                                              assessment::Missing::keep);
+  const auto plan = assessment::Plan::from_json(plan_json(), "plan");
+  if (!table || !plan) return failed = "table or plan", false;
+  const double start = wall_s();
+  const auto done = assessment::analyse(*plan, *table);
+  if (!done) return failed = done.error().what, false;
+  for (const auto& one : done->result["analyses"])
+    if (one.contains("error"))
+      return failed = one["id"].get<std::string>() + ": " + one["error"].get<std::string>(), false;
+  const double planned = wall_s();
+  assessment::TraineeColumns columns;
+  columns.scores = {"time_s"};
+  const auto cohort = assessment::cohort_of(*table, columns);
+  if (!cohort) return failed = cohort.error().what, false;
+  const auto rule = assessment::certification({0.10, 0.25});
+  std::size_t certified = 0;
+  for (std::size_t i = 0; i < cohort->trainees.size(); ++i) {
+    const auto report = assessment::trainee_report(*cohort, i, rule, {{0.10, 0.25}, {}, 1.25});
+    certified += report.report["certified"] == true ? 1u : 0u;
+  }
+  fmt::print("  plan {:.2f} s, trainees {:.2f} s, {} certified\n", planned - start,
+             wall_s() - planned, certified);
+  return true;
+}
+
+}  // namespace bench

@@ -1,0 +1,27 @@
+/// The demo study, run as a person runs it: it judges itself, by counts, hashes and what stations
+/// could tell.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <string>
+
+namespace {
+
+int exit_of_demo(const std::string& options) {
+  const std::string command = "TRACTUS_BIN=" TRACTUS_BIN_DIR " " TRACTUS_SOURCE_DIR
+                              "/deploy/demo-study " +
+                              options;
+  const int status = std::system(command.c_str());
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+TEST(DemoStudy, EndsWithEverySampleOnTheServerThoughAStationIsKilledAndTellsNothing) {
+  EXPECT_EQ(exit_of_demo(""), 0);
+}
+
+TEST(DemoStudy, EndsSoThoughTheServerIsKilledTooAndStationsGoOnWithoutIt) {
+  EXPECT_EQ(exit_of_demo("--kill-server"), 0);
+}
+
+}  // namespace

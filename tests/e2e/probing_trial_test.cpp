@@ -1,0 +1,243 @@
+/// The station on the probing rig, program against program: the tuned scenarios, a peer that lies,
+/// the e-stop, the loss of the bus, a kill in the middle. Real time where the bus is at stake.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <map>
+#include <thread>
+
+#include "core/bytes.hpp"
+#include "core/file.hpp"
+#include "core/json.hpp"
+#include "tests/e2e/lying_peer.hpp"
+#include "trial/trial_file.hpp"
+
+namespace {
+namespace fs = std::filesystem;
+namespace registers = devices::rig;
+using lying::Lie;
+using testing::HasSubstr;
+
+struct Ended {
+  int code = -1;
+  std::string said;
+};
+
+Ended ended(const std::string& command) {
+  Ended out;
+  std::FILE* pipe = ::popen((command + " 2>&1").c_str(), "re");
+  std::array<char, 4096> part{};
+  while (const std::size_t n = std::fread(part.data(), 1, part.size(), pipe))
+    out.said.append(part.data(), n);
+  const int status = ::pclose(pipe);
+  out.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return out;
+}
+
+class ProbingTrial : public testing::Test {
+ protected:
+  ~ProbingTrial() override { fs::remove_all(data_); }
+
+  std::string station(const std::string& more) const {
+    return TRACTUS_BIN_DIR "/tractus-station --data " + data_.string() + " " + more;
+  }
+  Ended on_rig(int port, const std::string& duration_s = "20") const {
+    return ended(station("--device rig --scenario soft --address 127.0.0.1:" +
+                         std::to_string(port) + " --duration " + duration_s));
+  }
+  std::vector<trial::Trial> trials() const {
+    std::vector<trial::Trial> out;
+    for (const auto& entry : fs::directory_iterator(data_ / "trials")) {
+      auto read = trial::read_trial(entry.path());
+      EXPECT_TRUE(read) << read.error().what;
+      out.push_back(std::move(*read));
+    }
+    return out;
+  }
+  const fs::path data_ = fs::temp_directory_path() / ("tractus_rig_" + core::new_id());
+};
+
+TEST_F(ProbingTrial, OnTheBusClockIsWholeFastAndTheSameForTheSameSeed) {
+  for (const char* seed : {"5", "5", "6"}) {
+    const Ended run = ended(station(
+        std::string("--device sim-rig --scenario lateral_breach --speed fast --json --seed ") +
+        seed));
+    ASSERT_EQ(run.code, 0) << run.said;
+    const auto json = core::Json::parse(run.said);
+    EXPECT_EQ(json["trials"][0]["simulated"], true);
+    std::optional<double> breaches;
+    for (const auto& metric : json["trials"][0]["metrics"])
+      if (metric["id"] == "breaches") breaches = metric["value"].get<double>();
+    EXPECT_EQ(breaches, 1.0);
+  }
+  auto all = trials();
+  ASSERT_EQ(all.size(), 3u);
+  std::map<std::uint64_t, std::vector<std::vector<trial::ProbingSample>>> by_seed;
+  for (auto& trial : all) {
+    EXPECT_TRUE(trial.complete && trial.sealed);
+    EXPECT_TRUE(trial.header.simulated);
+    const auto counts = trial::count_ticks(trial.block());
+    EXPECT_EQ(counts.skipped + counts.missed + counts.bus_lost, 0u);
+    EXPECT_EQ(counts.samples, trial.events.back().detail["ticks"].get<std::uint64_t>());
+    EXPECT_NEAR(trial.probing.back().x_m, trial.header.probe["travel_m"].get<double>(), 5e-5);
+    for (auto& sample : trial.probing)
+      sample.round_trip_s = 0.0f;  // the computer's, not the trial's
+    by_seed[trial.header.extra["simulated_surgeon"]["seed"].get<std::uint64_t>()].push_back(
+        trial.probing);
+  }
+  const auto& twice = by_seed[5];
+  ASSERT_EQ(twice.size(), 2u);
+  ASSERT_EQ(twice[0].size(), twice[1].size());
+  EXPECT_EQ(std::memcmp(twice[0].data(), twice[1].data(), twice[0].size() * sizeof twice[0][0]), 0);
+  EXPECT_NE(by_seed[6][0].size(), twice[0].size());
+}
+
+/// The samples of a whole trial on the bus' clock and of one in real time are of one kind: the same
+/// layout, the same modes in the same order.
+TEST_F(ProbingTrial, InRealTimeHasTheSameCourseAsOnTheBusClock) {
+  const auto course = [](const trial::Trial& trial) {
+    std::vector<trial::ProbingMode> modes;
+    for (const auto& sample : trial.probing)
+      if (sample.mode != trial::ProbingMode::holding &&
+          (modes.empty() || modes.back() != sample.mode))
+        modes.push_back(sample.mode);
+    return modes;
+  };
+  for (const char* speed : {"fast", "real"}) {
+    const Ended run = ended(station(
+        std::string("--device sim-rig --scenario lateral_breach --seed 2 --speed ") + speed));
+    ASSERT_EQ(run.code, 0) << run.said;
+  }
+  const auto both = trials();
+  ASSERT_EQ(both.size(), 2u);
+  EXPECT_EQ(course(both[0]), course(both[1]));
+  for (const auto& trial : both)
+    EXPECT_NEAR(trial.probing.back().x_m, trial.header.probe["travel_m"].get<double>(), 5e-5);
+}
+
+class ALyingPeer : public ProbingTrial,
+                   public testing::WithParamInterface<std::pair<Lie, const char*>> {};
+
+TEST_P(ALyingPeer, StopsTheTrialWithOneLineAndTheTrialIsKeptAndMarked) {
+  lying::Peer peer(GetParam().first, 700);
+  const Ended run = on_rig(peer.port());
+  EXPECT_EQ(run.code, 1) << run.said;
+  EXPECT_THAT(run.said, HasSubstr(GetParam().second));
+  const auto kept = trials();
+  ASSERT_EQ(kept.size(), 1u);
+  EXPECT_TRUE(kept[0].sealed);
+  EXPECT_FALSE(kept[0].complete);
+  EXPECT_EQ(kept[0].events.back().kind, "fault");
+  EXPECT_THAT(kept[0].events.back().detail["what"].get<std::string>(),
+              HasSubstr(GetParam().second));
+  EXPECT_GT(kept[0].probing.size(), 600u);  // what was honest is there
+}
+INSTANTIATE_TEST_SUITE_P(Peers, ALyingPeer,
+                         testing::Values(std::pair{Lie::rubbish, "is no answer"},
+                                         std::pair{Lie::exception, "is no answer"},
+                                         std::pair{Lie::absurd, "is no answer"},
+                                         std::pair{Lie::silence, "did not answer in time"},
+                                         std::pair{Lie::late, "did not answer in time"},
+                                         std::pair{Lie::hang_up, "was closed"}));
+
+TEST_F(ProbingTrial, APeerThatIsNoRigIsRefusedInOneLineAndNothingIsLeft) {
+  const Ended nobody = on_rig(1);
+  EXPECT_EQ(nobody.code, 2);
+  EXPECT_THAT(nobody.said, HasSubstr("127.0.0.1:1"));
+  lying::Peer peer(Lie::rubbish, 0);
+  const Ended liar = on_rig(peer.port());
+  EXPECT_EQ(liar.code, 2);
+  EXPECT_THAT(liar.said, HasSubstr("does not answer as a rig"));
+  EXPECT_EQ(std::ranges::count(liar.said, '\n'), 1);
+  EXPECT_TRUE(trials().empty());
+}
+
+TEST_F(ProbingTrial, AfterTheLossOfTheBusTheStageStandsWithinTenMilliseconds) {
+  lying::Peer peer(Lie::silence, 3000);
+  std::jthread station([&] { on_rig(peer.port()); });
+  std::array<std::uint16_t, registers::kRegisterCount> image{};
+  const auto wide_at = [&](int address) { return registers::wide(image.data() + address); };
+  double moved_m_s = 0.0, stood_s = 0.0;
+  for (int k = 0; k < 20000 && stood_s == 0.0; ++k) {
+    peer.electronics().read(registers::kUnit, image);
+    const double now_s = 1e-4 * double(static_cast<std::uint32_t>(wide_at(registers::kTime_100us)));
+    const double v = 1e-6 * wide_at(registers::kVelocity_um_s);
+    if (peer.answered() < 3000) moved_m_s = std::max(moved_m_s, v);
+    if (peer.answered() >= 3000 && v == 0.0) stood_s = now_s - peer.last_honest_s();
+    ::usleep(500);
+  }
+  EXPECT_GT(moved_m_s, 0.001);
+  ASSERT_GT(stood_s, 0.0);
+  // By the machine's own clock, from its last honest answer; read every half millisecond.
+  RecordProperty("stood_after_ms", std::to_string(1e3 * stood_s));
+  EXPECT_LE(stood_s, 0.0115);
+}
+
+TEST_F(ProbingTrial, AnEmergencyStopNeedsAPersonAtTheMachine) {
+  lying::Peer peer(Lie::none, 0);
+  const auto button = [&](int which, std::uint16_t pressed) {
+    EXPECT_TRUE(peer.electronics().write(registers::kWorldUnit, which, std::array{pressed}));
+  };
+  std::jthread hand([&] {
+    while (peer.answered() < 1500) ::usleep(1000);
+    button(registers::kStopButton, 1);
+  });
+  const Ended stopped = on_rig(peer.port());
+  hand = {};
+  EXPECT_EQ(stopped.code, 1);
+  EXPECT_THAT(stopped.said, HasSubstr("emergency stop"));
+  button(registers::kStopButton, 0);
+  const Ended refused = on_rig(peer.port());
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.said, HasSubstr("emergency stop"));
+  button(registers::kResetButton, 1);
+  const Ended again = on_rig(peer.port(), "1");
+  EXPECT_EQ(again.code, 0) << again.said;  // the stage was brought back to the entry first
+  EXPECT_EQ(trials().size(), 2u);
+}
+
+/// A station in the background, its output in a file.
+pid_t started(const std::string& command, const fs::path& output) {
+  const pid_t child = ::fork();
+  if (child != 0) return child;
+  ::execl("/bin/sh", "sh", "-c", ("exec " + command + " >" + output.string() + " 2>&1").c_str(),
+          nullptr);
+  ::_exit(127);
+}
+
+TEST_F(ProbingTrial, SurvivesAKillOfTheStationAndSoDoesNotTheSimulatedRig) {
+  const fs::path said = data_.string() + ".said";
+  const pid_t child = started(station("--device sim-rig --scenario hard --follow --seed 4"), said);
+  std::uint64_t safe = 0;
+  for (int k = 0; k < 400 && safe < 1500; ++k) {
+    ::usleep(20'000);
+    const auto bytes = core::read_file(said);
+    const std::string text = bytes ? std::string(core::text_of(*bytes)) : "";
+    const auto at = text.rfind("\"samples_safe\":");
+    if (at != std::string::npos) safe = std::strtoull(text.c_str() + at + 15, nullptr, 10);
+  }
+  ASSERT_GE(safe, 1500u);
+  ::kill(child, SIGKILL);
+  ::waitpid(child, nullptr, 0);
+  fs::remove(said);
+  const Ended next = ended(station("--device sim-rig --scenario hard --speed fast --seed 4"));
+  EXPECT_EQ(next.code, 0) << next.said;
+  EXPECT_THAT(next.said, HasSubstr("an interrupted trial was kept"));
+  int interrupted = 0;
+  for (const auto& trial : trials()) {
+    EXPECT_TRUE(trial.sealed);
+    if (trial.complete) continue;
+    ++interrupted;
+    EXPECT_GE(trial.probing.size(), safe);
+    EXPECT_EQ(trial.events.back().kind, "interrupted");
+  }
+  EXPECT_EQ(interrupted, 1);
+}
+
+}  // namespace
