@@ -7,11 +7,11 @@ namespace lab {
 namespace {
 
 /// At the floor: mean square of the whitened residual below this, …
-constexpr double kAtFloor = 1.6;
+constexpr double kAtFloor = 1.8;
 /// … or less than this share of what the given model left.
-constexpr double kShareLeft = 0.006;
+constexpr double kShareLeft = 0.001;
 /// Named at all: at most this share is left.
-constexpr double kMostLeft = 0.5;
+constexpr double kMostLeft = 0.25;
 /// As good as the one chosen, for all purposes: within this factor of its excess.
 constexpr double kAsGood = 1.5;
 constexpr double kSettled = 0.95;
@@ -44,11 +44,11 @@ Belief::Belief(const Residual& residual, const Selection& selection, const Solut
   const double best = *std::ranges::max_element(scores);
   // What is in no catalogue: the more is left over the floor, the likelier.
   const double left = excess(chosen.mean_square()) / (excess(base) + 1.0);
-  const double outside = at_floor(chosen.mean_square(), base) ? 0.02 : std::min(0.9, 0.2 + left);
+  outside_ = at_floor(chosen.mean_square(), base) ? 0.02 : std::min(0.9, 0.2 + left);
   double sum = 0.0;
   for (const double s : scores) sum += std::exp(s - best);
   for (std::size_t k = 0; k < scores.size(); ++k)
-    entries_[k].probability = (1.0 - outside) * std::exp(scores[k] - best) / sum;
+    entries_[k].probability = (1.0 - outside_) * std::exp(scores[k] - best) / sum;
   std::ranges::stable_sort(entries_, std::greater<>(), &Entry::probability);
 }
 

@@ -23,6 +23,8 @@ class Belief {
  public:
   Belief(const Residual& residual, const Selection& selection, const Solution& chosen);
 
+  /// That what is missing is in no catalogue.
+  double outside() const { return outside_; }
   double of_structure(const Structure& structure) const;
   /// Of all structures with that effect.
   double of_effect(const std::string& id) const;
@@ -37,6 +39,7 @@ class Belief {
   };
   std::vector<Entry> entries_;  // most probable first
   Structure chosen_;
+  double outside_ = 0.0;
 };
 
 }  // namespace lab

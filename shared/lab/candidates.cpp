@@ -42,7 +42,7 @@ class Base {
     weighted_ = weights_.asDiagonal() * at.jacobian;
     for (Eigen::Index k = 0; k < g_.a.rows(); ++k)
       g_.a(k, k) += 1e-12 * std::max(g_.a(k, k), 1e-12);
-    factor_.compute(g_.a);
+    if (g_.a.rows() > 0) factor_.compute(g_.a);
   }
 
   /// Normal equations of more columns with the base projected out.

@@ -8,6 +8,7 @@
 
 #include "lab/belief.hpp"
 #include "lab/fit_report.hpp"
+#include "lab/rest.hpp"
 #include "lab/selection.hpp"
 
 namespace lab {
@@ -133,13 +134,19 @@ Result<Diagnosis> diagnose(const Problem& problem, const DiagnoseOptions& option
   Solution& final = named ? selection.chosen() : selection.tried().at("");
   out.final_fit = report(residual, final, true);
   const Belief belief(residual, selection, final);
-  out.probability = belief.of_structure(final.structure);
+  out.probability =
+      out.verdict == Verdict::unexplained ? belief.outside() : belief.of_structure(final.structure);
   for (const std::string& id : named ? selection.order() : std::vector<std::string>{}) {
     out.effects.push_back(found(problem, out.final_fit, id));
     out.effects.back().probability = belief.of_effect(id);
   }
   out.steps = named ? steps(residual, selection, out)
                     : std::vector<Step>{{"base", out.base.rmse, out.base.held_out_rmse}};
+  if (out.verdict == Verdict::partly || out.verdict == Verdict::unexplained) {
+    const Rest rest = rest_of(residual, final);
+    out.depends_on = rest.words;
+    out.rest_explained = rest.explained;
+  }
   out.ranking = ranking(residual, selection, belief);
   out.confounded = belief.confounded();
   out.settle = belief.settle(problem);

@@ -52,7 +52,9 @@ struct Settle {
 
 struct Diagnosis {
   Verdict verdict = Verdict::complete;
-  double probability = 0.0;  ///< that the set of effects named (or none) is right
+  /// That the set of effects named (or none) is right; of `unexplained`, that it is in no
+  /// catalogue.
+  double probability = 0.0;
   struct {
     double rmse = 0.0, held_out_rmse = 0.0, noise_floor = 0.0;
   } base;

@@ -20,6 +20,7 @@ constexpr double kScaleQuantile = 0.97, kScaleOfNormal = 2.17;
 /// unknown.
 constexpr double kRank = 1e-11;
 constexpr int kRoughRounds = 3;
+constexpr int kMostTries = 12;  // ever shorter steps from one point
 constexpr double kFinestRough = 0.005;
 
 double step_inside(const Parameter& p, double u) {
@@ -85,9 +86,13 @@ class Search {
       double promised = 0.0;
       int tries = 0;
       bool better = false;
-      for (; tries < 6 && !better; ++tries) {
+      for (; tries < kMostTries && !better; ++tries) {
         next = stepped(equations, damping, promised);
-        if (!(promised > 0.1 * options_.tolerance * at_.loss)) break;
+        if (!(promised > 0.0)) {  // the step was cut at a bound and leads nowhere: a shorter one
+          damping = std::max(damping * 10.0, 1e-4);
+          continue;
+        }
+        if (promised < 0.1 * options_.tolerance * at_.loss) break;
         judge(next, at_.scale);
         better = next.loss < at_.loss;
         if (!better) {
@@ -288,6 +293,7 @@ void add_prior(const Solution& at, Gram& g) {
 }
 
 Eigen::VectorXd solve(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
+  if (b.size() == 0) return b;
   Eigen::VectorXd unit = a.diagonal().cwiseMax(0.0).cwiseSqrt();
   for (double& v : unit) v = v > 0.0 ? 1.0 / v : 0.0;
   const Eigen::MatrixXd scaled = unit.asDiagonal() * a * unit.asDiagonal();
@@ -354,6 +360,11 @@ Solution search(const Residual& residual, const Structure& structure, std::vecto
       fresh.push_back(k);
     else
       at.jacobian.col(Eigen::Index(k)) = warm->jacobian.col(found->second);
+  }
+  if (at.parameters.empty()) {  // nothing to move
+    judge(at, robust_scale(at.residual));
+    at.converged = true;
+    return at;
   }
   const bool stale = fresh.size() < at.parameters.size();
   return Search(residual, std::move(at), options).run(fresh, stale);

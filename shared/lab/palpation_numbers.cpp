@@ -27,7 +27,7 @@ Parameter factor(double start, double prior_sd) {
   p.start = start;
   p.low = start / kMostFactor;
   p.high = start * kMostFactor;
-  p.step = 2e-3;
+  p.step = 2e-2;
   p.logarithmic = true;
   p.prior_sd = prior_sd;
   return p;
@@ -38,7 +38,7 @@ Parameter length(double start, double low, double high) {
   p.start = start;
   p.low = low;
   p.high = high;
-  p.step = 5e-6;
+  p.step = 2e-5;
   p.prior_sd = kLengthSd_m;
   return p;
 }
@@ -55,27 +55,28 @@ const effects::EffectFacts& facts_of(std::string_view id) {
   std::abort();
 }
 
-/// Steps that are felt but small, by the parameters' names.
+/// Steps that are felt but small, by the parameters' names. Not too small: where a step takes a
+/// sample's shank from one rest to another, the derivative there is the jump over the step.
 double step_of(std::string_view pointer, double fallback) {
   struct Step {
     std::string_view in;
     double step;
   };
   static constexpr Step kSteps[] = {
-      {"pose_offset/offset_m", 5e-6},
-      {"tip_ball/radius_m", 1e-5},
-      {"shank_curvature/bow_m", 5e-6},
-      {"shank_curvature/direction_rad", 1e-2},
+      {"pose_offset/offset_m", 2e-5},
+      {"tip_ball/radius_m", 3e-5},
+      {"shank_curvature/bow_m", 2e-5},
+      {"shank_curvature/direction_rad", 5e-2},
       {"sensor_bias/force_N", 1e-2},
       {"sensor_bias/torque_Nm", 1e-3},
-      {"/mass_kg", 1e-3},
-      {"/centre_m", 1e-3},
-      {"time_delay/delay_s", 1e-4},
-      {"contact_nonlinearity/exponent", 1e-2},
-      {"coefficient", 1e-2},
-      {"loss", 1e-2},
-      {"contact_damping/damping", 1e-1},
-      {"/bends_shank", 2e-2},
+      {"/mass_kg", 5e-3},
+      {"/centre_m", 5e-3},
+      {"time_delay/delay_s", 5e-4},
+      {"contact_nonlinearity/exponent", 2e-2},
+      {"coefficient", 2e-2},
+      {"loss", 2e-2},
+      {"contact_damping/damping", 1.0},
+      {"/bends_shank", 5e-2},
   };
   for (const Step& each : kSteps)
     if (pointer.find(each.in) != std::string_view::npos) return each.step;
@@ -124,7 +125,7 @@ std::vector<Parameter> PalpationNumbers::of_effect(const effects::EffectFacts& f
   const std::string& id = facts.id;
   auto out = parameters_of(facts);
   for (Parameter& p : out) {
-    p.step = p.logarithmic ? 5e-3 : step_of(p.pointer, p.step);
+    p.step = p.logarithmic ? 2e-2 : step_of(p.pointer, p.step);
     if (p.pointer == "contact_nonlinearity/reference_gradient_per_m") {
       p.start = std::clamp(field_per_m_, p.low, p.high);
       p.prior_sd = kReferenceSd;

@@ -23,6 +23,7 @@ using core::Error;
 using core::Result;
 using math::Vec3;
 
+constexpr int kRounds = 2;
 constexpr std::string_view kDrift = "sensor_drift";
 constexpr const char* kChannelNames[] = {"fx_N", "fy_N", "fz_N", "tx_Nm", "ty_Nm", "tz_Nm"};
 
@@ -285,7 +286,8 @@ Result<std::unique_ptr<Problem>> make_palpation_problem(const models::PalpationM
   if (progress && !progress(0.6)) return Error{Errc::cancelled, "stopped"};
   auto problem = std::make_unique<PalpationProblem>(std::move(*field), model, std::move(recordings),
                                                     set.tract);
-  // Twice: as the file has it first, then as a first fit has it.
+  // As the file has it first, then as a fit has it, and again: which rests the shank finds depends
+  // on the numbers, and the numbers on the rests.
   std::vector<double> values;
   for (const Parameter& p : problem->parameters({})) values.push_back(p.start);
   problem->focus(values, options.threads);
@@ -294,9 +296,12 @@ Result<std::unique_ptr<Problem>> make_palpation_problem(const models::PalpationM
                  fmt::format("{}: in no trial does the model's probe touch bone; are poses and "
                              "volume in the same frame, in metres?",
                              set.folder.string())};
-  if (!values.empty()) {
+  for (int round = 0; round < kRounds && !values.empty(); ++round) {
     const Residual residual(*problem, options.threads);
-    problem->focus(search(residual, {}, values).values, options.threads);
+    values = search(residual, {}, values).values;
+    problem->focus(values, options.threads);
+    if (progress && !progress(0.6 + 0.4 * (round + 1) / kRounds))
+      return Error{Errc::cancelled, "stopped"};
   }
   return std::unique_ptr<Problem>(std::move(problem));
 }

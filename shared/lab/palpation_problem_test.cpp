@@ -43,7 +43,7 @@ trial::PalpationSet recordings(const models::PalpationModel& truth, int trials, 
   EXPECT_TRUE(runtime);
   std::mt19937 random(7);
   std::normal_distribution<double> normal;
-  const auto noise = [&](double sd) {
+  const auto noise = [&](double sd) -> Vec3 {
     return sd * Vec3(normal(random), normal(random), normal(random));
   };
   trial::PalpationSet set;

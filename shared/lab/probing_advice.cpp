@@ -136,6 +136,11 @@ Starts probing_starts(std::string_view effect, std::span<const ProbingRecording>
     for (const double d : between(1e-5, std::min(0.02, 0.5 * depth_range(trials)), kNodes))
       out.push_back({1.0 / d, std::clamp(d, 1e-6, 0.02)});
   if (effect == "force_ripple") out = ripple(trials, residual);
+  if (effect == "backlash")  // the play interrupts the damping, or it does not
+    for (const double gap_m : {1e-4, 1e-3}) {
+      out.push_back({gap_m, 0.0});
+      out.push_back({gap_m, 1.0});
+    }
   return out;
 }
 

@@ -23,6 +23,8 @@ using core::Error;
 using core::Result;
 
 constexpr double kTravel_m = 1.0;  // the longest a model may have: a recording says how far it went
+/// Samples of a set that are looked at: memory and time stay bounded, and more would tell no more.
+constexpr std::size_t kMostSamples = 600'000, kLeastKept = 200;
 constexpr std::string_view kDrift = "sensor_drift";
 
 /// Friction whose direction is that of the motion. At rest it takes whatever value within its size
@@ -77,6 +79,8 @@ class ProbingProblem final : public Problem {
     return probing_recording(a, b);
   }
   core::Json model(const Structure& structure, std::span<const double> values) const override;
+
+  void note(std::string words) { notes_.push_back(std::move(words)); }
 
   /// Weighs the residuals anew with the borders and dampings that these values have.
   void focus(std::span<const double> values) {
@@ -279,6 +283,26 @@ core::Json ProbingProblem::model(const Structure& structure, std::span<const dou
   return model.to_json();
 }
 
+/// Cuts the ends of the trials of a set that is longer than it need be; says so.
+std::string shorten(trial::ProbingSet& set) {
+  std::size_t total = 0;
+  for (const auto& t : set.trials) total += t.t_s.size();
+  if (total <= kMostSamples) return {};
+  const double share = double(kMostSamples) / double(total);
+  for (auto& t : set.trials) {
+    const auto kept =
+        std::min(t.t_s.size(), kLeastKept + std::size_t(share * double(t.t_s.size())));
+    for (auto* all : {&t.t_s, &t.x_m, &t.theta_rad, &t.fz_N, &t.tz_Nm}) {
+      if (all->empty()) continue;
+      all->resize(kept);
+      all->shrink_to_fit();
+    }
+  }
+  return fmt::format(
+      "{} samples are more than are needed: the first {:.3g} % of each trial were used", total,
+      100.0 * share);
+}
+
 }  // namespace
 
 Result<std::unique_ptr<Problem>> make_probing_problem(const models::ProbingModel& model,
@@ -290,6 +314,7 @@ Result<std::unique_ptr<Problem>> make_probing_problem(const models::ProbingModel
     return Error{Errc::bad_input, fmt::format("{}: some trials slide only and others turn only; "
                                               "a set of one kind is expected",
                                               set.folder.string())};
+  const std::string shortened = shorten(set);
   std::vector<ProbingRecording> recordings(set.trials.size());
   std::vector<std::string> wrong(set.trials.size());
   parallel(int(set.trials.size()), options.threads, [&](int k) {
@@ -317,6 +342,7 @@ Result<std::unique_ptr<Problem>> make_probing_problem(const models::ProbingModel
                              set.folder.string(), reach.most_m - reach.least_m)};
   auto problem =
       std::make_unique<ProbingProblem>(ProbingNumbers(model, reach), std::move(recordings), turns);
+  if (!shortened.empty()) problem->note(shortened);
   // Twice: borders and dampings of the file first, then those of a first fit.
   std::vector<double> values;
   for (const Parameter& p : problem->parameters({})) values.push_back(p.start);

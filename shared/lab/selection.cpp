@@ -22,6 +22,9 @@ constexpr std::size_t kGrown = 4, kTriedOnEach = 6;
 constexpr int kTries = 2;
 /// So many of the best of a size are fitted to the end before they are compared.
 constexpr std::size_t kRefined = 3;
+/// Above this the best of a size is begun anew from other shapes, so many of each effect.
+constexpr double kReshaped = 0.9;
+constexpr int kReshapeTries = 8;
 /// At the floor for all purposes: no more effects are looked for.
 constexpr double kFloor = 1.25;
 /// An effect's numbers must be known better than this share of their size.
@@ -122,6 +125,23 @@ void Selection::refine(std::size_t effects) {
   }
 }
 
+/// A pair was fitted from the shapes that suited its effects alone: the best of a size is begun
+/// anew from all shapes of each of its effects, if it is not at the floor.
+void Selection::reshape(std::size_t effects) {
+  const auto best = best_of(effects, 1);
+  if (best.empty() || effects < 2 || best.front()->mean_square() < kReshaped) return;
+  const Structure structure = best.front()->structure;
+  for (const std::string& id : structure.effects) {
+    const auto part = tried_.find(name(minus(structure, id)));
+    if (part == tried_.end()) continue;
+    Solution from = part->second;
+    from = polish(residual_, search(residual_, from.structure, from.values, nullptr,
+                                    {.max_iterations = 8, .tolerance = 1e-4}));
+    differentiate(residual_, from);
+    fitted(from, id, kReshapeTries);
+  }
+}
+
 void Selection::grow() {
   refine(1);
   for (int size = 1; size < options_.max_effects; ++size) {
@@ -149,6 +169,7 @@ void Selection::grow() {
       fitted(*from, id, 1);
     }
     refine(std::size_t(size + 1));
+    reshape(std::size_t(size + 1));
     const auto larger = best_of(std::size_t(size + 1), 1);
     if (larger.empty() || !clearly_better(*larger.front(), *best_of(std::size_t(size), 1).front()))
       return;

@@ -39,6 +39,7 @@ class Selection {
   void singles();
   void refine(std::size_t effects);
   void grow();
+  void reshape(std::size_t effects);
   void prune();
   void prefer_parents();
   /// The cheapest of a size, most probable first.

@@ -121,10 +121,9 @@ std::optional<Kinematics> kinematics(std::span<const math::Vec3> points_m, doubl
   }
   Kinematics out;
   for (const double square : speed2) out.speed_m_s.push_back(std::sqrt(square));
-  for (std::size_t i = 1; i < points_m.size(); ++i) {
+  for (std::size_t i = 1; i < points_m.size(); ++i)
     out.path_m += 0.5 * dt_s * (out.speed_m_s[i - 1] + out.speed_m_s[i]);
-    out.jerk2_m2_s5 += 0.5 * dt_s * (jerk2[i - 1] + jerk2[i]);
-  }
+  for (const double square : jerk2) out.jerk2_m2_s5 += dt_s * square;
   out.straight_m = (points_m.back() - points_m.front()).norm();
   out.duration_s = double(points_m.size() - 1) * dt_s;
   return out;

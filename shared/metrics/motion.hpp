@@ -37,7 +37,7 @@ struct Kinematics {
   std::vector<double> speed_m_s;
   double path_m = 0.0;       ///< trapezoid of the speed
   double straight_m = 0.0;   ///< first to last point
-  double jerk2_m2_s5 = 0.0;  ///< ∫ ‖jerk‖² dt, trapezoid
+  double jerk2_m2_s5 = 0.0;  ///< Σ ‖jerk‖² dt
   double duration_s = 0.0;   ///< (N − 1) dt
   /// √( T⁵ / (2 PL²) ∫ ‖jerk‖² dt ) [Cotin2002]: larger is less smooth.
   double motion_smoothness() const;

@@ -265,7 +265,7 @@ void PalpationRuntime::predict(const PalpationMotion& motion, PalpationAnswer& o
     const HandleMotion now =
         delay_s_ != 0.0 ? motion.at(motion.t_s[k] - delay_s_) : motion.handle[k];
     if (!near_m.empty())
-      state.deflection_m = k > 0 ? state.deflection_m + near_m[k] - near_m[k - 1] : near_m[0];
+      state.deflection_m = near_m[k];
     else if (k > 0)
       follow(last, now, state);
     const laws::PalpationStep step = recorded(now, state);

@@ -67,9 +67,8 @@ class PalpationRuntime {
   /// A whole recording, delay included. Between two samples the rest of the shank is followed in
   /// steps that move the tip by at most a third of a voxel; the first sample starts from the unbent
   /// shank.
-  /// @param near_m  if not empty: deflections of a model near this one, one per sample. Each sample
-  /// then starts from its last plus what that model's changed by, without steps between: a fit
-  /// follows the rests of its first numbers so.
+  /// @param near_m  if not empty: deflections of a model near this one, one per sample, to start
+  /// each sample from: so a small change of numbers changes no sample's rest for another.
   void predict(const PalpationMotion& motion, PalpationAnswer& out,
                std::span<const math::Vec2> near_m = {}) const;
 

@@ -128,12 +128,12 @@ void iterate(const Problem& problem, Bisquare& fit) {
   }
 }
 
-/// The spread of MASS::rlm's summary: Huber's proposal, from the weights and scale of the last
-/// solve.
+/// The spread of MASS::rlm's summary: Huber's proposal, at the last residuals and the scale of the
+/// last solve.
 double huber_sigma(const Problem& problem, const Bisquare& fit) {
   const double n = static_cast<double>(problem.y.size()), p = static_cast<double>(problem.x.cols());
-  const double s = (fit.residuals.array() * fit.weights.array()).square().sum() / (n - p);
-  const Array t = (fit.residuals.array() / (fit.mad_sigma * problem.options.tuning)).square();
+  const Array u = fit.residuals.array() / (fit.mad_sigma * problem.options.tuning), t = u.square();
+  const double s = (fit.residuals.array() * weights_of(u)).square().sum() / (n - p);
   const Array slope = (t < 1.0).select((1.0 - t) * (1.0 - 5.0 * t), 0.0);
   const double mean = slope.mean();
   const double variance = (slope - mean).square().sum() / (n - 1.0);
@@ -186,7 +186,9 @@ core::Result<Bisquare> bisquare(const Design& design, const Vector& response,
   Problem problem{design.columns, response, options, 1e-6 * sample_deviation(response)};
   if (problem.tiny_sigma == 0.0) problem.tiny_sigma = 1.0;
   if (mass) problem.options.solves = std::min(options.solves, 20);
-  if (is_large(design)) problem.blocks = BlockLeastSquares::make(design, response);
+  if (is_large(design))
+    if (auto blocks = BlockLeastSquares::make(design, response))
+      problem.blocks.emplace(std::move(*blocks));
   if (!start(problem, fit)) return collinear_error(design);
   if (!std::isfinite(fit.ols_sigma) || !fit.covariance.allFinite())
     return core::Error{core::Errc::out_of_range,

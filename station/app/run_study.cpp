@@ -195,6 +195,7 @@ core::Result<int> run_study(const Options& options) {
   say_recovered(*recovered);
   auto key = key_of(options);
   if (!key) return key.error();
+  if (auto server = connect(options); !server) return server.error();  // of no shape: said once
   Study study{options, *folder, *key};
   bool faulted = false;
   auto left = rounds(study, faulted);

@@ -82,5 +82,5 @@ describe.each([
 
     expect(faults).toEqual([]);
     await context.close();
-  });
+  }, 180_000);
 });
