@@ -21,7 +21,7 @@ class LabRoutes : public ApiTest {
   http::Response post(const std::string& target, const std::string& body,
                       const std::string& type = "application/json") {
     return ask(request("POST", "/api/v1/lab/" + target,
-                       {{"cookie", cookie_}, {"content-type", type}}, body));
+                       {{"cookie", cookie_}, {"x-tractus", "1"}, {"content-type", type}}, body));
   }
   http::Response get(const std::string& target) {
     return ask(request("GET", "/api/v1/lab/" + target, {{"cookie", cookie_}}));
