@@ -15,7 +15,8 @@ namespace {
 using math::Vec3;
 using testing::HasSubstr;
 
-/// Bone below z = 10 mm and beyond x = 9 mm: a floor and a wall.
+/// Bone below z = 10 mm and beyond 9 mm along x and y: a floor and two walls, so that every way of
+/// the probe meets one.
 volume::Volume corner() {
   volume::Volume v;
   v.geometry.dims = {24, 24, 40};
@@ -24,7 +25,7 @@ volume::Volume corner() {
   for (int k = 0; k < 40; ++k)
     for (int j = 0; j < 24; ++j)
       for (int i = 0; i < 24; ++i)
-        if (k < 20 || i > 18) v.counts[v.offset(i, j, k)] = 1000;
+        if (k < 20 || i > 18 || j > 18) v.counts[v.offset(i, j, k)] = 1000;
   return v;
 }
 
@@ -57,7 +58,7 @@ trial::PalpationSet recordings(const models::PalpationModel& truth, int trials, 
       const double t = k / 200.0, w = (2.0 + 0.3 * n) * t;
       const math::Quat down(
           Eigen::AngleAxisd(M_PI - 0.15 + 0.1 * std::sin(0.7 * w + n), Vec3::UnitX()));
-      const Vec3 tip(6e-3 + 2.6e-3 * std::sin(w), 6e-3 + 1e-3 * std::cos(1.3 * w),
+      const Vec3 tip(6e-3 + 2.6e-3 * std::sin(w), 6e-3 + 2.6e-3 * std::cos(1.3 * w),
                      10.9e-3 + 0.9e-3 * std::cos(2.1 * w));
       m.t_s.push_back(t);
       poses.push_back({tip - 0.13 * (down * Vec3::UnitZ()), down});
@@ -145,7 +146,7 @@ TEST(PalpationProblem, RefusesWhatCannotBeJudged) {
   };
   EXPECT_THAT(refusal(recordings(model(), 1, 20)), HasSubstr("set/t0.csv: 20 samples"));
   auto far = recordings(model(), 1, 300);
-  for (auto& pose : far.trials[0].X_VH) pose.p.z() += 0.2;
+  for (auto& pose : far.trials[0].X_VH) pose.p += Vec3(-0.2, -0.2, 0.2);
   EXPECT_THAT(refusal(std::move(far)), HasSubstr("touch bone"));
   auto slow = recordings(model(), 1, 300);
   for (double& t : slow.trials[0].t_s) t *= 10.0;
