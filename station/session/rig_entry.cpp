@@ -12,6 +12,7 @@ using devices::Exchange;
 
 constexpr double kBack_m_s = 0.02, kAtEntry_m = 2e-5, kHandOn_N = 30.0;
 constexpr double kLongest_s = 10.0;
+constexpr double kLetGo_s = 0.5;  // a hand that went along with the stage lets go of it meanwhile
 constexpr int kMostSilent = 50, kResets = 10;
 
 core::Error not_ready(const std::string& why) {
@@ -65,6 +66,7 @@ core::Result<void> bring_to_entry(devices::RigDevice& device, core::Clock& clock
   auto reading = cleared(way);
   if (!reading) return reading.error();
   const int most = int(kLongest_s * rate_Hz);
+  const bool moved = reading->x_m > kAtEntry_m;
   for (int k = 0; reading->x_m > kAtEntry_m; ++k) {
     if (k == most) return not_ready(fmt::format("the stage stands at {:.4f} m", reading->x_m));
     if (std::abs(reading->fz_N) > kHandOn_N) {
@@ -80,8 +82,9 @@ core::Result<void> bring_to_entry(devices::RigDevice& device, core::Clock& clock
       if (!reading) return reading.error();
     }
   }
-  auto off = way.ask({});
-  if (!off) return off.error();
+  const int still = moved ? int(kLetGo_s * rate_Hz) : 1;
+  for (int k = 0; reading && k < still; ++k) reading = way.ask({});
+  if (!reading) return reading.error();
   return {};
 }
 

@@ -29,6 +29,13 @@ double& value_in(Scenario& s, std::size_t parameter) {
   core::require(parameter < all.size(), "there are eight parameters");
   return *all[parameter];
 }
+/// A probe stop that stood at the end of the last breach stays there when the breach changes.
+void keep_stop_at_breach_end(const Scenario& before, Scenario& next) {
+  if (next.kind != scenarios::Kind::lateral_breach || next.walls_m.empty()) return;
+  const double end_m = before.walls_m.back() + before.breach.breach_interval_m;
+  if (std::abs(before.travel_m - end_m) < 1e-9)
+    next.travel_m = next.walls_m.back() + next.breach.breach_interval_m;
+}
 }  // namespace
 
 std::span<const TunedParameter, Tuning::kParameters> Tuning::parameters() { return kAll; }
@@ -43,6 +50,7 @@ core::Result<void> Tuning::nudge(std::size_t parameter, int direction) {
   double& value = value_in(next, parameter);
   const double step = std::max(kShare * std::abs(value), kAll[parameter].least_step);
   value += direction > 0 ? step : -step;
+  keep_stop_at_breach_end(now_, next);
   if (auto law = next.expanded(); !law) return law.error();
   before_.push_back(std::move(now_));
   now_ = std::move(next);
@@ -64,6 +72,7 @@ core::Result<Scenario> Tuning::save(const std::string& who, std::int64_t when_ut
     Scenario parent = parent_;
     if (value_in(parent, k) != value(k)) changes.push_back({kAll[k].field, value(k)});
   }
+  if (now_.travel_m != parent_.travel_m) changes.push_back({"travel_m", now_.travel_m});
   if (changes.empty()) return core::Error{core::Errc::bad_input, "nothing was changed"};
   auto made = scenarios::next_version(parent_, changes, who, when_utc_us);
   if (!made) return made;
