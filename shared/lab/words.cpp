@@ -50,6 +50,13 @@ std::string capital(std::string text) {
   return text;
 }
 
+/// What the rest varies with: the engine names signals, or says in a sentence that there is none.
+std::string on_what(const std::string& depends) {
+  if (depends.empty()) return "";
+  return depends.starts_with("no ") ? " " + capital(depends) + "."
+                                    : " It varies with " + depends + ".";
+}
+
 std::string times_floor(double rmse, double floor) {
   return floor > 0.0 ? fmt::format("{:.2g} times", rmse / floor) : "";
 }
@@ -125,15 +132,15 @@ Sentences sentences(const Diagnosis& d, std::string_view unit) {
       return {fmt::format("{} {} missing.", these, is), falls};
     case Verdict::partly:
       return {fmt::format("{} {} missing, and something more.", these, is),
-              fmt::format("{} What remains is {} the noise{}.", falls, times_floor(after, floor),
-                          d.depends_on.empty() ? "" : " and varies with " + d.depends_on)};
+              fmt::format("{} What remains is {} the noise.{}", falls, times_floor(after, floor),
+                          on_what(d.depends_on))};
     case Verdict::unexplained:
-      return {"Something is missing that is not in the catalogue.",
-              fmt::format("The error of {} on held-out measurements is {} the noise floor of {}, "
-                          "and no effect of the catalogue explains it.{}",
-                          figure(d.base.held_out_rmse, unit),
-                          times_floor(d.base.held_out_rmse, floor), figure(floor, unit),
-                          d.depends_on.empty() ? "" : " It varies with " + d.depends_on + ".")};
+      return {
+          "Something is missing that is not in the catalogue.",
+          fmt::format("The error of {} on held-out measurements is {} the noise floor of {}, "
+                      "and no effect of the catalogue explains it.{}",
+                      figure(d.base.held_out_rmse, unit), times_floor(d.base.held_out_rmse, floor),
+                      figure(floor, unit), on_what(d.depends_on))};
   }
   return {};
 }
