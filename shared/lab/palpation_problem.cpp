@@ -24,6 +24,9 @@ using core::Result;
 using math::Vec3;
 
 constexpr int kRounds = 2;
+/// What a drift counts when structures are compared: the orders of one course, which the channels
+/// share as a rule, and more than the six numbers of a constant bias, which it contains.
+constexpr int kDriftCounts = Trend::kOrders + 2;
 constexpr std::string_view kDrift = "sensor_drift";
 constexpr const char* kChannelNames[] = {"fx_N", "fy_N", "fz_N", "tx_Nm", "ty_Nm", "tz_Nm"};
 
@@ -64,7 +67,7 @@ class PalpationProblem final : public Problem {
     if (has_drift(structure)) trends_[std::size_t(k)].remove(out);
   }
   int free_per_trial(const Structure& structure) const override {
-    return has_drift(structure) ? Trend::kNumbers : 0;
+    return has_drift(structure) ? kDriftCounts : 0;
   }
   Residuals full_rate(const Structure& structure, std::span<const double> values,
                       int k) const override;
