@@ -130,8 +130,9 @@ void judge(PalpationSet& set, const Bench& bench) {
   const auto solver = base.colPivHouseholderQr();
   for (std::size_t e = 0; e <= plan.effects.size() && !plan.effects.empty(); ++e) {
     const auto less = bench.run(plan.truth, without(plan.effects, e));
-    const Eigen::VectorXd added = column(full, less);
-    const double left = left_N(added - base * solver.solve(added));
+    Eigen::VectorXd rest = column(full, less);
+    if (base.cols() > 0) rest -= base * solver.solve(rest).eval();
+    const double left = left_N(rest);
     const double rms = std::sqrt(mean_square(full, &less));
     if (e < plan.effects.size())
       set.outcomes.push_back({rms, rms / std::sqrt(force), left});

@@ -49,7 +49,8 @@ std::vector<double> projected_rms(const std::vector<JudgedPoint>& points, const 
   }
   for (Eigen::Index c = 0; c < columns; ++c)
     if (const double norm = base.col(c).norm(); norm > 0) base.col(c) /= norm;
-  const Eigen::MatrixXd left = added - base * base.colPivHouseholderQr().solve(added);
+  Eigen::MatrixXd left = added;  // a base that is held whole hides nothing
+  if (columns > 0) left -= base * base.colPivHouseholderQr().solve(added);
   std::vector<double> out;
   for (Eigen::Index e = 0; e < effects; ++e)
     out.push_back(left.col(e).norm() / std::sqrt(static_cast<double>(rows)));

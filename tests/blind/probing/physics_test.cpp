@@ -167,6 +167,9 @@ TEST(BlindProbing, BiasIsAbsorbedUnlessTheEquilibriumIsKnown) {
   EXPECT_LT(projected_rms(points, plan)[0], 1e-9);
   plan.handed.fixed = {"/base/layers/*/equilibrium_m"};
   EXPECT_GT(projected_rms(points, plan)[0], 0.1);
+  plan.handed.fixed = {"/base/layers/*/stiffness_N_per_m", "/base/layers/*/damping_Ns_per_m",
+                       "/base/layers/*/start_m", "/base/layers/*/equilibrium_m"};
+  EXPECT_DOUBLE_EQ(projected_rms(points, plan)[0], 2.0);  // nothing is left to hide it
 }
 
 }  // namespace

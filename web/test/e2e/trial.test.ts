@@ -120,13 +120,12 @@ it('every measure in the tables is the number of the server, to the digits shown
   await openTrial(page);
   const { metrics } = await served(page, id);
   expect(metrics.length).toBeGreaterThan(12);
-  const scale: Record<string, number> = { m: 1000 };
   for (const metric of metrics) {
     const cell = page.locator(`[data-metric="${metric.id}"]`);
     const text = spaced((await cell.locator('button').count()) > 0 ? await cell.locator('button').innerText() : await cell.innerText());
     if (metric.value === null) { expect(text, metric.id).toBe('–'); continue; }
     if (metric.id === 'answer_right') { expect(text).toBe(metric.value === 1 ? 'right' : 'wrong'); continue; }
-    const perSi = text.endsWith('%') ? 100 : (scale[metric.unit] ?? 1);
+    const perSi = text.endsWith('%') ? 100 : /\bmm\b/.test(text) ? 1000 : text.endsWith('°') ? 180 / Math.PI : 1;
     const shown = si(text, perSi);
     const decimals = /\.(\d+)/.exec(text)?.[1]?.length ?? 0;
     const tolerance = 0.5001 * 10 ** -decimals / perSi;
