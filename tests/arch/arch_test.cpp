@@ -77,10 +77,12 @@ const std::map<std::string, Names> kAllowed = {
     {"server/jobs",
      {"shared/core", "shared/trial", "shared/metrics", "shared/cases", "shared/scenarios",
       "shared/volume", "shared/lab", "shared/lab/io", "db/store"}},
+    // A cohort's statistics are the methods of shared/assessment on a table of the store's trials.
     {"server/api",
      {"shared/core", "shared/math", "shared/trial", "shared/metrics", "shared/cases",
       "shared/scenarios", "shared/study", "shared/volume", "shared/wire", "shared/models",
-      "shared/lab/io", "db/store", "server/http", "server/jobs"}},
+      "shared/assessment", "shared/statistics", "shared/lab/io", "db/store", "server/http",
+      "server/jobs"}},
 };
 
 bool is_source(const fs::path& path) {

@@ -1,0 +1,59 @@
+#include "db/store/cohort.hpp"
+
+namespace store {
+namespace {
+
+constexpr const char* kTrials =
+    "select t.id, t.case_id, c.title, s.name, t.operator_name, t.simulated, t.started_utc_us, "
+    "t.duration_s, t.samples, t.state, t.correct, t.complete, c.kind, l.study_id, l.participant, "
+    "p.level, l.position, p.experience_years, m.state from trials t "
+    "join cases c on c.id = t.case_id join stations s on s.id = t.station_id "
+    "left join study_trials m on m.trial_id = t.id left join study_slots l on l.id = m.slot_id "
+    "left join study_participants p on p.study_id = l.study_id and p.name = l.participant "
+    "where ? = '' or l.study_id = ? order by t.started_utc_us, t.id limit ?";
+
+CohortTrial trial_from(const Row& row) {
+  CohortTrial out{.summary = {.id = row.text(0),
+                              .case_id = row.text(1),
+                              .case_title = row.text(2),
+                              .station = row.text(3),
+                              .operator_name = row.text(4),
+                              .simulated = row.truth(5),
+                              .started_utc_us = row.integer(6),
+                              .duration_s = row.number(7),
+                              .samples = row.count(8),
+                              .state = row.text(9),
+                              .correct = row.truth_or_null(10)},
+                  .complete = row.truth(11),
+                  .rig = row.text(12),
+                  .study = row.text_or_null(13).value_or(""),
+                  .participant = row.text_or_null(14).value_or(""),
+                  .level = row.text_or_null(15).value_or(""),
+                  .experience_years = row.number_or_null(17),
+                  .place = row.text_or_null(18).value_or(""),
+                  .metrics = {}};
+  if (!out.study.empty()) out.number = row.integer(16) + 1;
+  return out;
+}
+
+}  // namespace
+
+core::Result<std::vector<CohortTrial>> cohort_trials(Reading& tx, const std::string& study_id,
+                                                     std::int64_t limit) {
+  auto rows = tx.query(kTrials, {study_id, study_id, limit + 1});
+  if (!rows) return rows.error();
+  if (rows->size() > static_cast<std::size_t>(limit))
+    return core::Error{core::Errc::too_large, "the cohort has more than " + std::to_string(limit) +
+                                                  " trials: ask for one study"};
+  std::vector<CohortTrial> out;
+  for (const Row& row : *rows) {
+    out.push_back(trial_from(row));
+    auto scores = scores_of(tx, out.back().summary.id);
+    if (!scores) return scores.error();
+    for (const ScoreRecord& score : *scores)
+      if (score.value) out.back().metrics.emplace(score.metric_id, *score.value);
+  }
+  return out;
+}
+
+}  // namespace store
