@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <future>
 #include <thread>
@@ -41,6 +42,14 @@ core::Result<void> check(const RigSetup& setup) {
     return wrong(fmt::format("--skill {}: 0 … 1 is expected", setup.skill));
   return {};
 }
+
+/// The layers as far as the probe can go: a model may say more of the bone than a rig reaches.
+std::vector<laws::Layer> within_travel(std::vector<laws::Layer> layers, double travel_m) {
+  std::erase_if(layers, [&](const laws::Layer& layer) { return layer.start_m >= travel_m; });
+  for (laws::Layer& layer : layers)
+    layer.thickness_m = std::min(layer.thickness_m, travel_m - layer.start_m);
+  return layers;
+}
 }  // namespace
 
 core::Result<ProbingTask> task_of(const scenarios::Scenario& scenario,
@@ -52,7 +61,7 @@ core::Result<ProbingTask> task_of(const scenarios::Scenario& scenario,
   task.law = std::move(*law);
   task.extra["scenario"] = scenario.to_json();
   if (model) {
-    task.law.layers = model->layers;
+    task.law.layers = within_travel(model->layers, task.law.travel_m);
     task.law.rotary = model->rotary;
     task.effects = model->effects;
     task.extra["model"] = model->to_json();
@@ -66,7 +75,7 @@ core::Result<ProbingTask> task_of(const models::ProbingModel& model, double trav
   const core::Json json = model.to_json();
   task.case_id =
       core::sha256(core::bytes_of(json.dump(-1, ' ', true, core::Json::error_handler_t::replace)));
-  task.law.layers = model.layers;
+  task.law.layers = within_travel(model.layers, travel_m);
   task.law.rotary = model.rotary;
   task.law.travel_m = travel_m;
   task.effects = model.effects;
