@@ -38,6 +38,7 @@ class Server:
 
     def __init__(self, programs, home, web):
         self.programs, self.home, self.web, self.cookie = programs, home, web, None
+        self.up, self.deaths = threading.Event(), 0
         password = secrets.token_urlsafe(12)
         (home / "password").write_text(password + "\n")
         self.run("init", "--data", home / "server", "--password-file", home / "password")
@@ -55,9 +56,12 @@ class Server:
         self.url = json.loads(self.process.stdout.readline())["listening"].rstrip("/")
         if not self.cookie:
             self.ask("POST", "/session", {"name": "admin", "password": self.password})
+        self.up.set()
 
     def die_for(self, seconds):
         """Killed as by a power cut, and started again at the same address."""
+        self.up.clear()
+        self.deaths += 1
         self.process.kill()
         self.process.wait()
         say(f"the server is killed, for {seconds} s")
@@ -66,6 +70,21 @@ class Server:
         say("the server is back")
 
     def ask(self, method, path, body=None):
+        """The server's answer; a question that meets the server's death is asked again when it is back."""
+        deaths = self.deaths
+        try:
+            return self.answer(method, path, body)
+        except OSError:
+            if deaths == self.deaths and self.up.is_set():
+                raise
+        self.back()
+        return self.answer(method, path, body)
+
+    def back(self):
+        if not self.up.wait(60):
+            fail("the server has not come back after a minute")
+
+    def answer(self, method, path, body):
         headers = {"X-Tractus": "1", "Content-Type": "application/json"}
         if self.cookie:
             headers["Cookie"] = self.cookie
@@ -115,6 +134,7 @@ class Station(threading.Thread):
         command = [self.server.programs / "tractus-station", "study", "--study", STUDY, "--participant", participant,
                    "--device", "sim-rig", "--speed", "fast", "--data", self.home, "--server", self.server.url,
                    "--token-file", self.token, "--seed", "2026", "--follow"]
+        deaths = self.server.deaths
         with open(self.server.home / f"{self.name}.out", "a") as out:
             process = subprocess.Popen(command, stdout=out, stderr=subprocess.PIPE, text=True)
             for line in process.stderr:
@@ -125,8 +145,8 @@ class Station(threading.Thread):
         if status == -signal.SIGKILL:
             say(f"{self.name} starts again")
             return False
-        if self.server.process.poll() is not None:  # nothing on the disk of this participant: wait for the server
-            time.sleep(1)
+        if status != 0 and deaths != self.server.deaths:  # nothing on the disk of this participant: it needs the server
+            self.server.back()
             return False
         if status != 0:
             fail(f"{self.name}: {participant}: exit {status}; see {self.name}.out")
