@@ -12,6 +12,10 @@ import styles from './app.module.css';
 import { Fault } from './fault';
 
 const TrialPage = lazy(() => import('@/features/trial'));
+const lab = () => import('@/features/lab');
+const LabPage = lazy(() => lab().then(({ LabPage: page }) => ({ default: page })));
+const WorkPage = lazy(() => lab().then(({ WorkPage: page }) => ({ default: page })));
+const VersionsPage = lazy(() => lab().then(({ VersionsPage: page }) => ({ default: page })));
 
 function makeClient(): QueryClient {
   const onError = (reason: Error) => {
@@ -34,6 +38,7 @@ function makeClient(): QueryClient {
 const kPlaces = [
   { to: '/trials', name: 'Trials' },
   { to: '/studies', name: 'Studies' },
+  { to: '/lab', name: 'Model lab' },
 ] as const;
 
 function Brand() {
@@ -78,6 +83,9 @@ function Pages() {
         <Route path="/studies"><StudiesPage /></Route>
         <Route path="/studies/new"><NewStudyPage /></Route>
         <Route path="/studies/:id">{({ id }) => <StudyPage key={id} id={id} />}</Route>
+        <Route path="/lab"><LabPage /></Route>
+        <Route path="/lab/versions"><VersionsPage /></Route>
+        <Route path="/lab/work/:model/:set/:step?">{({ model, set, step }) => <WorkPage key={`${model} ${set}`} model={model} set={set} step={step ?? 'compare'} />}</Route>
         <Route><NotFound /></Route>
       </Switch>
     </Suspense>

@@ -30,19 +30,32 @@ function codeOf(status: number): ApiErrorCode {
 interface Request {
   readonly method?: 'GET' | 'POST' | 'DELETE';
   readonly body?: unknown;
+  /** JSON that is text already, sent as it is. */
+  readonly text?: string;
+  readonly bytes?: Uint8Array<ArrayBuffer>;
+  readonly timeout_ms?: number;
   readonly signal?: AbortSignal | undefined;
 }
 
-async function send(path: string, { method = 'GET', body, signal }: Request): Promise<Response> {
+/** What is sent, with the name of its kind. */
+function content({ body, text, bytes: raw }: Request): { type: string; sent: string | Uint8Array<ArrayBuffer> } | null {
+  if (raw !== undefined) return { type: 'application/octet-stream', sent: raw };
+  if (text !== undefined) return { type: 'application/json', sent: text };
+  return body === undefined ? null : { type: 'application/json', sent: JSON.stringify(body) };
+}
+
+async function send(path: string, request: Request): Promise<Response> {
+  const { method = 'GET', timeout_ms = kTimeout_ms, signal } = request;
+  const what = content(request);
   const headers = new Headers({ Accept: 'application/json' });
   if (method !== 'GET') headers.set('X-Tractus', '1'); // refuses requests forged by another site
-  if (body !== undefined) headers.set('Content-Type', 'application/json');
-  const timeout = AbortSignal.timeout(kTimeout_ms);
+  if (what) headers.set('Content-Type', what.type);
+  const timeout = AbortSignal.timeout(timeout_ms);
   let response: Response;
   try {
     response = await fetch(kRoot + path, {
       method, headers, credentials: 'same-origin',
-      ...(body === undefined ? {} : { body: JSON.stringify(body) }),
+      ...(what ? { body: what.sent } : {}),
       signal: signal ? AbortSignal.any([signal, timeout]) : timeout,
     });
   } catch (reason) {
