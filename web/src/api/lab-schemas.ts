@@ -86,7 +86,7 @@ export const fitSchema = v.object({
 const point = v.tuple([finite, finite, finite]);
 export const tractMapSchema = v.object({
   depth_m: v.array(finite), angle_rad: v.array(finite), rmse: v.array(v.array(figure)), share: v.array(v.array(figure)),
-  tract: v.nullish(v.object({ entry_m: point, axis: point, length_m: finite, radius_m: finite, medial: point, superior: point }), null),
+  tract: v.nullish(v.object({ entry_m: point, axis: point, length_m: finite }), null),
 });
 
 const runFields = {

@@ -3,6 +3,7 @@ export { type Bone } from './depth-bone';
 export { DepthChart, kDepthHeight_px } from './depth-chart';
 export { makeCursor, type Cursor } from './cursor';
 export { whole, type Range } from './range';
+export { PaintedTract } from './painted-tract';
 export { PaintedWall, type WallCell } from './painted-wall';
 export { curve, Plane, stairs, type Places, type PlaneAxis } from './plane';
 export { SignalChart } from './signal-chart';

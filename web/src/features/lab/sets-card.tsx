@@ -52,7 +52,7 @@ export function SetsCard({ chosen, choose }: Props) {
     <Card title="1 · Measurements">
       <div className={styles.stack}>
         <DropZone onFiles={(files) => sent.mutate(files)} busy={sent.isPending ? 'Packing, sending and checking every line…' : null}>
-          Drop a folder or a zip here: <code>set.json</code> and a CSV per trial (<Term definition="The form that measurements have here: set.json names the rig and the trials; each CSV has a header and SI units in the names of its columns, as t_s, x_m, fz_N.">tractus-measurements/1</Term>).
+          Drop a folder or a zip here: <code>set.json</code> and a CSV per trial, in the form <Term definition="The form that measurements have here: set.json names the rig and the trials; each CSV has a header and SI units in the names of its columns, as t_s, x_m, fz_N.">tractus-measurements/1</Term>.
         </DropZone>
         {sent.isError ? <Problems message={sent.error.message} /> : null}
         {query.isError ? <Notice tone="bad" title="The list could not be loaded." onRetry={() => void query.refetch()}>{query.error.message}</Notice> : null}
