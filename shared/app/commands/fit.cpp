@@ -22,9 +22,9 @@ Outcome run(const Options& options) {
   const auto opened_case = opened(options);
   if (!opened_case) return opened_case.error();
   LabOptions plain = options;
-  plain.sources.effects.clear();
+  plain.own.clear();
   std::optional<lab_io::Case> before;
-  if (!options.sources.effects.empty()) {
+  if (!options.own.empty()) {
     auto made = opened(plain);
     if (!made) return made.error();
     before = std::move(*made);
@@ -54,9 +54,7 @@ Command fit_command() {
             app.add_option("--add", options->add,
                            "id of an effect to add (see tractus effects); may be given again")
                 ->expected(1);
-            app.add_option("--effect", options->sources.effects,
-                           "file with an effect of your own, tractus-effect/1; may be given again")
-                ->expected(1);
+            add_own_option(app, *options);
             app.add_option("--out", options->out, "write the fitted model")->required();
             return [options] { return run(*options); };
           }};
