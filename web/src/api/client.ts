@@ -5,7 +5,7 @@ const kRoot = '/api/v1';
 const kTimeout_ms = 20_000;
 
 export type ApiErrorCode =
-  | 'unauthorised' | 'forbidden' | 'not_found' | 'too_many' | 'unavailable' | 'unreachable' | 'unreadable' | 'refused';
+  | 'unauthorised' | 'code_needed' | 'forbidden' | 'not_found' | 'too_many' | 'unavailable' | 'unreachable' | 'unreadable' | 'refused';
 
 export class ApiError extends Error {
   constructor(readonly code: ApiErrorCode, message: string, readonly status = 0) {
@@ -65,7 +65,8 @@ async function send(path: string, request: Request): Promise<Response> {
   if (response.ok) return response;
   const said = v.safeParse(errorSchema, await response.json().catch(() => undefined));
   const text = said.success ? said.output.error : `The server answered with status ${response.status}.`;
-  throw new ApiError(codeOf(response.status), text, response.status);
+  const needsCode = said.success && said.output.code === 'code_needed';
+  throw new ApiError(needsCode ? 'code_needed' : codeOf(response.status), text, response.status);
 }
 
 /** Asks for JSON and checks it against `schema`; an answer of another shape is an error, never a half-filled page. */

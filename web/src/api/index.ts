@@ -6,3 +6,7 @@ export * from './study-queries';
 export type * from './study-schemas';
 export * from './lab-queries';
 export type * from './lab-schemas';
+export * from './network-queries';
+export { kRoles } from './network-schemas';
+export type * from './network-schemas';
+export * from './trainee-queries';

@@ -1,3 +1,4 @@
+export { AskDialog } from './ask-dialog';
 export { Badge, type Tone } from './badge';
 export { Bar } from './bar';
 export { Button } from './button';
@@ -11,6 +12,7 @@ export { Select } from './select';
 export { Shell } from './shell';
 export { Skeleton } from './skeleton';
 export { Steps, type StepPlace } from './steps';
+export { Table, type Column } from './table';
 export { Term } from './term';
 export { setTheme, theme, usePalette, useTheme, type Theme } from './theme';
 export { useTitle } from './title';
