@@ -32,7 +32,7 @@ function Row({ ranked, effect, worst, unit, addressToTry }: { readonly ranked: R
         {ranked.held_out_rmse === null ? <span className={styles.muted}>{ranked.note === '' ? 'not judged' : ranked.note}</span>
           : <span className={styles.bar}><Bar share={ranked.held_out_rmse / worst} tone="bad" /><span>{formatFigure(ranked.held_out_rmse, unit)}</span></span>}
       </td>
-      <td className={styles.number}><Link href={addressToTry(ranked.id)} aria-label={`Try ${effectName(ranked.id)}`}>Try it</Link></td>
+      <td className={styles.number}><Link href={addressToTry(ranked.id)} aria-label={`Try it: ${effectName(ranked.id)}`}>Try it</Link></td>
     </tr>
   );
 }

@@ -28,7 +28,7 @@ function Node({ model, all, picked, pick }: { readonly model: ModelVersion; read
         <span className={styles.buttons}>
           <Button pressed={model.id === picked.a} label={`Old: ${model.name}, ${formatDateTime(model.made_utc_us)}`} onClick={() => pick({ a: model.id })}>Old</Button>
           <Button pressed={model.id === picked.b} label={`New: ${model.name}, ${formatDateTime(model.made_utc_us)}`} onClick={() => pick({ b: model.id })}>New</Button>
-          <a href={modelAddress(model.id)} download={`${model.name}.model.json`} aria-label={`Save the file of ${model.name}`}>File</a>
+          <a href={modelAddress(model.id)} download={`${model.name}.model.json`} aria-label={`File of ${model.name}`}>File</a>
         </span>
       </div>
       {children.length > 0 ? <ul className={styles.tree}>{children.map((child) => <Node key={child.id} model={child} all={all} picked={picked} pick={pick} />)}</ul> : null}

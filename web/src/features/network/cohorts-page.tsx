@@ -50,7 +50,7 @@ function Members({ id, may }: { readonly id: string; readonly may: boolean }) {
           { name: 'Name', cell: (one) => one.name },
           { name: 'Part', cell: (one) => (one.part === 'faculty' ? <Badge tone="accent">leads</Badge> : 'trainee') },
           { name: 'State', cell: (one) => one.state },
-          { name: <span className="hidden-visually">Decide</span>, cell: (one) => (may ? <span className={styles.buttons}><Button look="quiet" label={`Take ${one.name} out`} disabled={taken.isPending} onClick={() => taken.mutate(one)}>Take out</Button></span> : null) },
+          { name: <span className="hidden-visually">Decide</span>, cell: (one) => (may ? <span className={styles.buttons}><Button look="quiet" label={`Take out: ${one.name}`} disabled={taken.isPending} onClick={() => taken.mutate(one)}>Take out</Button></span> : null) },
         ]} />
       </div>
     </Card>
