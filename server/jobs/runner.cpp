@@ -3,14 +3,16 @@
 #include <fmt/format.h>
 
 #include "core/clock.hpp"
+#include "db/store/analyses.hpp"
 #include "db/store/lab.hpp"
 #include "db/store/trials.hpp"
+#include "server/jobs/analyse.hpp"
 #include "server/jobs/assess.hpp"
 #include "server/jobs/diagnose.hpp"
 
 namespace jobs {
 namespace {
-constexpr std::uint64_t kMostAttempts = 3;  // of a run of the lab
+constexpr std::uint64_t kMostAttempts = 3;  // of a run of the lab or of an analysis
 }
 
 core::Result<std::unique_ptr<Runner>> Runner::start(store::Store& store,
@@ -84,21 +86,18 @@ bool Runner::ending() {
 
 core::Result<void> Runner::work_on(const store::Job& job) {
   if (job.kind == "metrics") return assess_trial(store_, objects_, job.subject);
-  if (job.kind != "diagnosis")
+  if (job.kind != "diagnosis" && job.kind != "analysis")
     return core::Error{core::Errc::bad_input, "no work of the kind " + job.kind + " is known"};
   if (job.attempts > kMostAttempts)
     return core::Error{core::Errc::unavailable, "it ended the server before it was done"};
-  return diagnose(store_, objects_, job.subject, [this] { return ending(); });
+  const auto wants_to_end = [this] { return ending(); };
+  return job.kind == "analysis" ? analyse(store_, objects_, job.subject, wants_to_end)
+                                : diagnose(store_, objects_, job.subject, wants_to_end);
 }
 
 core::Result<void> Runner::note_failure(const store::Job& job, const core::Error& error) {
   return store_.write([&](store::Writing& tx) -> core::Result<void> {
-    const bool cancelled = error.code == core::Errc::cancelled;
-    auto shown = job.kind == "diagnosis"
-                     ? store::end_diagnosis(tx, job.subject, cancelled ? "cancelled" : "failed",
-                                            error.what, core::utc_us())
-                     : store::set_assessment_failed(tx, job.subject, error.what);
-    if (!shown) return shown;
+    if (auto shown = show_failure(tx, job, error); !shown) return shown;
     return store::fail_job(tx, job.id, error.what, core::utc_us());
   });
 }

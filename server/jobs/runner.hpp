@@ -13,7 +13,7 @@
 namespace jobs {
 
 /// Claims and does one job after the other until nothing waits, then waits to be woken. Ends with
-/// its object, after the job in hand; a run of the lab is left off and begins again after the next
+/// its object, after the job in hand; a run of the lab or an analysis is left off and begins again after the next
 /// start, three times at most.
 class Runner {
  public:
