@@ -12,7 +12,8 @@
 
 namespace jobs {
 
-/// Two threads, each for its kinds of jobs: scores, which someone waits for, and the lab, which
+/// Two threads, each for its kinds of jobs: scores, which someone waits for, and the lab with
+/// the analyses, which
 /// takes minutes and runs at low priority, so that it delays neither scores nor requests. Each
 /// claims and does one job after the other until nothing waits, then waits to be woken. They end
 /// with their object, after the job in hand; a run of the lab is left off and begins again after
@@ -53,7 +54,7 @@ class Runner {
   std::mutex mutex_;  ///< guards ending_ and what the lanes were woken for
   bool ending_ = false;
   std::condition_variable changed_;
-  Lane scores_{{"metrics"}}, lab_{{"lab"}};
+  Lane scores_{{"metrics"}}, lab_{{"lab", "analysis"}};
 };
 
 }  // namespace jobs
