@@ -39,6 +39,18 @@ double numbers_beyond(const Residual& residual, const Solution& larger, const So
          problem.free_per_trial(larger.structure) - problem.free_per_trial(smaller.structure);
 }
 
+/// Mean squares of two structures over what both judge.
+std::pair<double, double> mean_squares(const Solution& a, const Solution& b) {
+  double of_a = 0.0, of_b = 0.0, count = 0.0;
+  for (Eigen::Index k = 0; k < a.residual.size(); ++k) {
+    if (a.residual(k) == 0.0 || b.residual(k) == 0.0) continue;
+    of_a += robust_loss(a.residual.segment(k, 1), a.scale);
+    of_b += robust_loss(b.residual.segment(k, 1), b.scale);
+    count += 1.0;
+  }
+  return {of_a / std::max(1.0, count), of_b / std::max(1.0, count)};
+}
+
 }  // namespace
 
 double cost(const Residual& residual, const Solution& s, const Solution& base) {
@@ -73,7 +85,7 @@ Solution& Selection::fitted(const Solution& from, const std::string& effect, int
 
 bool Selection::clearly_better(const Solution& larger, const Solution& smaller,
                                double share) const {
-  const double before = smaller.mean_square(), after = larger.mean_square();
+  const auto [after, before] = mean_squares(larger, smaller);
   const double numbers = std::max(1.0, numbers_beyond(residual_, larger, smaller));
   const double gained = double(residual_.size()) * (before - after) / std::max(1.0, after) +
                         smaller.prior - larger.prior;
