@@ -25,8 +25,6 @@ constexpr double kReshaped = 0.9;
 constexpr int kReshapeTries = 8;
 /// At the floor for all purposes: no more effects are looked for.
 constexpr double kFloor = 1.25;
-/// An effect's numbers must be known better than this share of their size.
-constexpr double kKnown = 0.5;
 
 /// Observations that a trial is worth, and the price of a number, in nats.
 constexpr double kPerTrial = 12.0, kPrice = 5.0;
@@ -93,13 +91,14 @@ bool Selection::clearly_better(const Solution& larger, const Solution& smaller,
          before - after > share * excess(base().mean_square());
 }
 
-bool Selection::nameable(Solution& at) const {
-  Fit words = report(residual_, at, false);
-  for (const Estimate& e : words.estimates) {
-    if (e.pointer.starts_with('/')) continue;
-    const auto& p = at.parameters[std::size_t(&e - words.estimates.data())];
-    if (!e.informed) return false;
-    if (!p.shape && std::abs(e.value) < e.sd / kKnown * 0.5) return false;
+bool Selection::meant(const Solution& at) const {
+  for (const Candidate& candidate : residual_.problem().candidates()) {
+    if (candidate.facts.meant == nullptr || !contains(at.structure, candidate.facts.id)) continue;
+    std::vector<double> own;
+    for (std::size_t k = 0; k < at.parameters.size(); ++k)
+      if (at.parameters[k].pointer.starts_with(candidate.facts.id + "/"))
+        own.push_back(at.values[k]);
+    if (!candidate.facts.meant(own)) return false;
   }
   return true;
 }
@@ -107,7 +106,7 @@ bool Selection::nameable(Solution& at) const {
 std::vector<const Solution*> Selection::best_of(std::size_t effects, std::size_t most) const {
   std::vector<const Solution*> out;
   for (const auto& [key, solution] : tried_)
-    if (solution.structure.effects.size() == effects) out.push_back(&solution);
+    if (solution.structure.effects.size() == effects && meant(solution)) out.push_back(&solution);
   std::ranges::stable_sort(out, {}, [&](const Solution* s) { return cost(residual_, *s, base()); });
   if (out.size() > most) out.resize(most);
   return out;
@@ -187,6 +186,15 @@ void Selection::grow() {
   }
 }
 
+/// A part of a structure fitted from where the whole of it stands, which may be a better place than
+/// where its own search ended.
+void Selection::part(const Solution& at, const Structure& less) {
+  Solution found = search(residual_, less, carried(residual_.problem().parameters(less), at), &at);
+  const auto known = tried_.find(name(less));
+  if (known == tried_.end() || found.mean_square() < known->second.mean_square())
+    tried_[name(less)] = std::move(found);
+}
+
 void Selection::prune() {
   for (bool dropped = true; dropped && !chosen_.empty();) {
     dropped = false;
@@ -194,11 +202,7 @@ void Selection::prune() {
     for (const std::string& id : now.effects) {
       const Structure less = minus(now, id);
       const std::string key = name(less);
-      if (!tried_.contains(key)) {
-        Solution at = chosen();
-        const auto parameters = residual_.problem().parameters(less);
-        tried_[key] = search(residual_, less, carried(parameters, at), &at);
-      }
+      part(Solution(chosen()), less);
       if (clearly_better(chosen(), tried_.at(key))) continue;
       chosen_ = key;
       dropped = true;
@@ -232,6 +236,10 @@ bool Selection::run() {
   if (stopped_) return false;
   grow();
   if (stopped_) return false;
+  for (const Solution* pair : best_of(2, kRefined))
+    for (const std::string& id : pair->structure.effects)
+      part(Solution(*pair), minus(pair->structure, id));
+  refine(1);
   for (int size = 1; size <= options_.max_effects; ++size)
     for (const Solution* larger : best_of(std::size_t(size), 1))
       if (clearly_better(*larger, chosen())) chosen_ = name(larger->structure);

@@ -38,8 +38,8 @@ class Selection {
   /// of what the given model left over the floor that it must take away besides.
   bool clearly_better(const Solution& larger, const Solution& smaller,
                       double share = kClearOfExcess) const;
-  /// No effect ends where it may not be named: at a bound, or smaller than its standard error.
-  bool nameable(Solution& at) const;
+  /// Every effect's numbers stand to each other as its law means them.
+  bool meant(const Solution& at) const;
 
  private:
   Solution& fitted(const Solution& from, const std::string& effect, int tries);
@@ -47,6 +47,7 @@ class Selection {
   void refine(std::size_t effects);
   void grow();
   void reshape(std::size_t effects);
+  void part(const Solution& whole, const Structure& less);
   void prune();
   void prefer_parents();
   /// The cheapest of a size, most probable first.
