@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "lab/fit_report.hpp"
+#include "lab/followed.hpp"
 
 namespace lab {
 namespace {
@@ -23,6 +24,8 @@ constexpr std::size_t kRefined = 3;
 /// Above this the best of a size is begun anew from other shapes, so many of each effect.
 constexpr double kReshaped = 0.9;
 constexpr int kReshapeTries = 8;
+/// A trend of which the motion's memory explains this share is no sensor's.
+constexpr double kFollowed = 0.45;
 /// At the floor for all purposes: no more effects are looked for.
 constexpr double kFloor = 1.25;
 
@@ -229,6 +232,20 @@ void Selection::prefer_parents() {
   }
 }
 
+/// A trend that is free in every trial can stand in for any slow law. Where it follows the motion
+/// it is no sensor's: what it stood in for is left unexplained instead.
+void Selection::refuse_trends() {
+  for (const Candidate& candidate : residual_.problem().candidates()) {
+    const std::string& id = candidate.facts.id;
+    if (!candidate.facts.free_per_trial || !contains(chosen().structure, id)) continue;
+    if (followed_share(residual_, chosen(), id) < kFollowed) continue;
+    const Structure less = minus(chosen().structure, id);
+    part(Solution(chosen()), less);
+    chosen_ = name(less);
+    refused_ = id;
+  }
+}
+
 bool Selection::run() {
   if (!go_on(0.0)) return false;
   tried_[""] = fit_base(residual_);
@@ -246,6 +263,7 @@ bool Selection::run() {
   prune();
   prefer_parents();
   prune();
+  refuse_trends();
   // In which order they brought most: the best single of them first.
   Structure sum;
   for (std::size_t k = 0; k < chosen().structure.effects.size(); ++k) {

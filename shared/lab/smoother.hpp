@@ -14,7 +14,7 @@ struct Smoothed {
 };
 
 /// Standard deviation of the white noise on a smooth signal: from third differences, which a
-/// quadratic does not pass; median over short stretches, so that kinks and impacts do not count,
+/// quadratic does not pass; a low quantile over short stretches, so that kinks and impacts do not count,
 /// not even one every twentieth of a second. Quantisation counts as noise. Fewer than 8 samples: 0.
 double noise_sd(std::span<const double> y);
 
