@@ -64,6 +64,7 @@ double prior_of(const std::vector<Parameter>& parameters, std::span<const double
 void judge(Solution& at, double scale) {
   at.scale = scale;
   at.prior = prior_of(at.parameters, at.values);
+  at.judged = double((at.residual.array() != 0.0).count());
   at.loss = robust_loss(at.residual, scale) + at.prior;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <span>
 #include <string>
 #include <vector>
@@ -47,8 +48,11 @@ struct Solution {
   double scale = 1.0;        ///< robust scale of the residuals, at least 1
   bool converged = false;
 
-  /// Mean of ρ: about 1 when all is explained.
-  double mean_square() const { return (loss - prior) / double(residual.size()); }
+  double judged = 0.0;  ///< residuals that are not exactly 0: of those the structure says
+                        ///< nothing (dry friction at rest)
+
+  /// Mean of ρ over what is judged: about 1 when all is explained.
+  double mean_square() const { return (loss - prior) / std::max(1.0, judged); }
 };
 
 struct SearchOptions {

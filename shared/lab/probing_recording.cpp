@@ -23,6 +23,8 @@ constexpr double kRestErrors = 3.0;
 /// Round a border so much is not trusted at the full rate.
 constexpr double kBorder_s = 0.005;
 constexpr std::size_t kBorderSamples = 3;
+/// Within this a probe stands; after so long it is looked at ever more rarely.
+constexpr double kSamePlace_m = 3e-5, kLongStand_s = 2.0;
 /// The motion is well known where its noise makes less than this share of the sensor's.
 constexpr double kWellKnown = 0.5, kLeastTrusted = 0.3;
 
@@ -125,6 +127,23 @@ void prepare_sliding(trial::ProbingMeasurement& trial, const trial::StatedNoise&
   motion.rest_m_s = kRestErrors * middle_of(out.v_sd_m_s);
 }
 
+/// Outputs that say something new: while the probe stands, the longer it stands the rarer, as what
+/// still changes then (relaxation) does so over ever longer times.
+std::vector<std::size_t> informative(const ProbingRecording& r) {
+  std::vector<std::size_t> out;
+  const effects::ProbingMotion& m = r.motion;
+  double place_m = m.x_m.front(), since_s = m.t_s.front(), next_s = since_s;
+  for (std::size_t j = 0; j < r.decimator.size(r.size()); ++j) {
+    const std::size_t k = r.decimator.middle(j);
+    if (std::abs(m.x_m[k] - place_m) > kSamePlace_m) place_m = m.x_m[k], since_s = m.t_s[k];
+    const double stood_s = m.t_s[k] - since_s;
+    if (stood_s > kLongStand_s && m.t_s[k] < next_s) continue;
+    out.push_back(j);
+    next_s = m.t_s[k] + stood_s / (kLongStand_s * kThinRate_Hz);
+  }
+  return out;
+}
+
 /// The samples at rest with the least speed that would be told from it.
 void find_rest(ProbingRecording& r) {
   const effects::ProbingMotion& m = r.motion;
@@ -193,6 +212,7 @@ Result<ProbingRecording> prepare(trial::ProbingMeasurement&& trial,
   prepare_sliding(trial, stated, out);
   if (!turns) find_rest(out);
   prepare_turning(trial, stated, out);
+  if (!turns) out.decimator.choose(informative(out));
   out.measured_thin.resize(out.decimator.size(n));
   out.decimator.apply(out.measured, out.measured_thin);
   out.trusted.assign(n, 1.0);
@@ -230,13 +250,16 @@ void weigh(const laws::ProbingLaw& law, ProbingRecording& r) {
          k < std::min(n, jump.sample + reach); ++k)
       r.trusted[k] = 0.0;
   std::vector<double> jump_variance(r.sd_thin.size(), 0.0);
-  const std::size_t half = r.decimator.half() + 1, stride = r.decimator.stride();
+  const std::size_t half = r.decimator.half() + 1;
+  std::size_t begin = 0;
   for (const Jump& jump : found) {
     const double error_N = r.decimator.largest_tap() * jump.size_N;
-    const std::size_t first = jump.sample < 2 * half ? 0 : (jump.sample - 2 * half) / stride;
-    for (std::size_t j = first; j < jump_variance.size(); ++j) {
+    for (std::size_t j = begin; j < jump_variance.size(); ++j) {
       const std::size_t middle = r.decimator.middle(j);
-      if (middle + half < jump.sample) continue;
+      if (middle + half < jump.sample) {
+        begin = j;
+        continue;
+      }
       if (middle > jump.sample + half) break;
       jump_variance[j] += error_N * error_N;
     }
