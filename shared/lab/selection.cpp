@@ -26,6 +26,10 @@ constexpr double kReshaped = 0.9;
 constexpr int kReshapeTries = 8;
 /// A trend of which the motion's memory explains this share is no sensor's.
 constexpr double kFollowed = 0.45;
+/// Shifts of all layers that one constant of the sensor explains: so much is left of them, where
+/// there are two and where there are more; what counts as a shift.
+constexpr double kBackOfTwo = 0.05, kBack = 0.15, kShifted_m = 5e-5, kNoWorse = 1.1;
+constexpr std::string_view kBias = "sensor_bias";
 /// At the floor for all purposes: no more effects are looked for.
 constexpr double kFloor = 1.25;
 
@@ -246,6 +250,38 @@ void Selection::refuse_trends() {
   }
 }
 
+/// How far the places of rest of the base's layers have moved from the model's, root mean square.
+/// `count`: of how many.
+double moved(const Solution& at, int& count) {
+  double sum = 0.0;
+  count = 0;
+  for (std::size_t k = 0; k < at.values.size(); ++k) {
+    const Parameter& p = at.parameters[k];
+    if (!p.pointer.starts_with('/') || !p.pointer.ends_with("/equilibrium_m")) continue;
+    sum += (at.values[k] - p.start) * (at.values[k] - p.start);
+    ++count;
+  }
+  return count > 0 ? std::sqrt(sum / count) : 0.0;
+}
+
+/// What a sensor adds looks, in contact alone, as if every layer were shifted: each by the constant
+/// over its stiffness. One constant that brings all of them back to where the model has them is the
+/// simpler reading.
+void Selection::explain_shifts() {
+  const auto seen = looks_.find(std::string(kBias));
+  if (seen == looks_.end() || !seen->second.excited || contains(chosen().structure, kBias)) return;
+  int layers = 0;
+  const double before_m = moved(chosen(), layers);
+  if (layers < 2 || before_m < kShifted_m) return;
+  Solution from = chosen();
+  differentiate(residual_, from);
+  const Solution& with = fitted(from, std::string(kBias), 1);
+  const double after_m = moved(with, layers);
+  if (after_m < (layers == 2 ? kBackOfTwo : kBack) * before_m &&
+      with.mean_square() < kNoWorse * from.mean_square())
+    chosen_ = name(with.structure);
+}
+
 bool Selection::run() {
   if (!go_on(0.0)) return false;
   tried_[""] = fit_base(residual_);
@@ -264,6 +300,7 @@ bool Selection::run() {
   prefer_parents();
   prune();
   refuse_trends();
+  explain_shifts();
   // In which order they brought most: the best single of them first.
   Structure sum;
   for (std::size_t k = 0; k < chosen().structure.effects.size(); ++k) {
