@@ -90,6 +90,12 @@ Error wrong(const std::string& where, const std::string& why) {
   return {Errc::bad_input, fmt::format("{}: {}", where, why)};
 }
 
+double middle_of(std::vector<double> values) {
+  const auto at = values.begin() + std::ptrdiff_t(values.size() / 2);
+  std::ranges::nth_element(values, at);
+  return *at;
+}
+
 /// Angle and torque, where recorded.
 void prepare_turning(trial::ProbingMeasurement& trial, const trial::StatedNoise& stated,
                      ProbingRecording& out) {
@@ -99,14 +105,9 @@ void prepare_turning(trial::ProbingMeasurement& trial, const trial::StatedNoise&
         smooth(trial.t_s, trial.theta_rad, noise_of(trial.theta_rad, stated.theta_rad).sd);
     motion.theta_rad = std::move(theta.value);
     motion.omega_rad_s = std::move(theta.rate);
+    motion.rest_rad_s = kRestErrors * middle_of(std::move(theta.rate_sd));
   }
   motion.tz_Nm = std::move(trial.tz_Nm);
-}
-
-double middle_of(std::vector<double> values) {
-  const auto at = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::ranges::nth_element(values, at);
-  return *at;
 }
 
 void prepare_sliding(trial::ProbingMeasurement& trial, const trial::StatedNoise& stated,

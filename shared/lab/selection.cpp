@@ -282,11 +282,17 @@ void Selection::explain_shifts() {
     chosen_ = name(with.structure);
 }
 
-bool Selection::run() {
+const Solution& Selection::leading() const {
+  const auto price = [&](const auto& entry) { return cost(residual_, entry.second, base()); };
+  return std::ranges::min_element(tried_, {}, price)->second;
+}
+
+bool Selection::run(const std::function<void()>& after_singles) {
   if (!go_on(0.0)) return false;
   tried_[""] = fit_base(residual_);
   singles();
   if (stopped_) return false;
+  if (after_singles) after_singles();
   grow();
   if (stopped_) return false;
   for (const Solution* pair : best_of(2, kRefined))
