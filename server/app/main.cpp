@@ -54,6 +54,7 @@ core::Result<std::string> password_from(const std::string& file) {
 Outcome make_account(app::DataFolder& data, const std::string& name, const std::string& password) {
   auto hash = api::password_hash(password);
   if (!hash) return hash.error();
+  const store::Acting acting(app::command_act("init", {{"name", name}}));
   return data.store.write([&](store::Writing& tx) {
     return store::add_account(tx, {core::new_id(), name, "admin", *hash}, core::utc_us());
   });
@@ -111,6 +112,7 @@ Run enrol_command(CLI::App& command) {
     if (!data) return data.error();
     const std::string token = api::new_token();
     if (auto written = write_secret(*out, token); !written) return written;
+    const store::Acting acting(app::command_act("enrol", {{"name", *name}}));
     auto added = data->store.write([&](store::Writing& tx) {
       return store::add_station(tx, {core::new_id(), *name}, api::token_hash(token),
                                 core::utc_us());

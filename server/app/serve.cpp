@@ -119,7 +119,8 @@ core::Result<void> serve(const ServeOptions& options) {
                        .objects = data->objects,
                        .partials = data->partials,
                        .now_utc_us = core::utc_us,
-                       .work_waits = [&runner] { (*runner)->wake(); }};
+                       .work_waits = [&runner] { (*runner)->wake(); },
+                       .secrets = data->secrets};
   if (auto fine = api::reconcile_uploads(backend); !fine) return fine;
   auto server = http::Server::open(options.http, service_of(backend, options.web));
   if (!server) return server.error();
