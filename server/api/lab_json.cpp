@@ -155,7 +155,8 @@ std::vector<NamedSchema> lab_run_schemas() {
   const Json ranked = object({{"id", text("of the effect")},
                               {"probability", nullable(number("1", "that it is missing"))},
                               {"held_out_rmse", nullable(number("N", "with it added"))},
-                              {"note", optional(text("why it was not tried"))}});
+                              {"note", optional(text("why it was not tried"))},
+                              {"own", optional(truth("the user's own effect"))}});
   return {
       {"LabRun",
        object({{"id", text("of this run")},

@@ -11,6 +11,8 @@
 
 namespace app {
 
+inline constexpr const char* kCertificates = "tls";  ///< http::certificate_files of this folder
+
 struct DataFolder {
   std::filesystem::path path;
   store::Store store;

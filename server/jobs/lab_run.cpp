@@ -82,23 +82,24 @@ class LabRun {
  public:
   LabRun(store::Store& store, const store::Objects& objects, const Asked& of,
          const std::function<bool()>& ending)
-      : store_(store), objects_(objects), of_(of), watch_(store, of.run.id, ending) {}
+      : store_(store),
+        objects_(objects),
+        of_(of),
+        wish_(wish_of(of.run)),
+        watch_(store, of.run.id, ending) {}
 
   Result<Outcome> work() {
     if (!watch_.at("reading the measurements", 0.0, 1.0)(0.0))
       return Error{Errc::cancelled, "stopped"};
     if (of_.run.kind == "comparison") return compare();
-    const Wish wish = wish_of(of_.run);
-    return of_.run.kind == "fit" ? fit(wish) : diagnose(wish);
+    return of_.run.kind == "fit" ? fit() : diagnose();
   }
 
  private:
-  Result<lab_io::Case> opened(const store::ModelVersion& model, std::vector<lab_io::OwnEffect> own,
-                              lab_io::Sources::Own own_are, double from, double width) {
+  Result<lab_io::Case> opened(const store::ModelVersion& model, double from, double width) {
     return lab_io::open_case({.model = objects_.path_of(model.sha256),
                               .measurements = objects_.path_of(of_.set.id),
-                              .own = std::move(own),
-                              .own_are = own_are,
+                              .own = wish_.own,
                               .threads = threads()},
                              watch_.at("reading the measurements", from, width));
   }
@@ -115,11 +116,11 @@ class LabRun {
 
   Result<Outcome> compare() {
     const double half = of_.against ? 0.5 : 1.0;
-    const auto first = opened(of_.model, {}, lab_io::Sources::Own::added, 0.0, 0.9 * half);
+    const auto first = opened(of_.model, 0.0, 0.9 * half);
     if (!first) return first.error();
     auto answer = lab_io::compared(*first);
     if (of_.against) {
-      const auto second = opened(*of_.against, {}, lab_io::Sources::Own::added, half, 0.9 * half);
+      const auto second = opened(*of_.against, half, 0.9 * half);
       if (!second) return second.error();
       answer.content.better = lab_io::compared(*second).content.before;
     }
@@ -128,23 +129,17 @@ class LabRun {
     return out;
   }
 
-  Result<Outcome> fit(const Wish& wish) {
-    const auto with = opened(of_.model, wish.own, lab_io::Sources::Own::added, 0.0, 0.3);
-    if (!with) return with.error();
-    std::optional<lab_io::Case> before;
-    if (!wish.own.empty()) {
-      auto plain = opened(of_.model, {}, lab_io::Sources::Own::added, 0.3, 0.2);
-      if (!plain) return plain.error();
-      before = std::move(*plain);
-    }
-    auto answer = lab_io::fitted(*with, before ? &*before : nullptr, wish.add, threads(),
-                                 watch_.at("fitting", 0.5, 0.45));
+  Result<Outcome> fit() {
+    const auto opened_case = opened(of_.model, 0.0, 0.3);
+    if (!opened_case) return opened_case.error();
+    auto answer =
+        lab_io::fitted(*opened_case, wish_.add, threads(), watch_.at("fitting", 0.3, 0.65));
     if (!answer) return answer.error();
-    return finished("fit", *with, std::move(*answer));
+    return finished("fit", *opened_case, std::move(*answer));
   }
 
-  Result<Outcome> diagnose(const Wish& wish) {
-    const auto opened_case = opened(of_.model, wish.own, lab_io::Sources::Own::offered, 0.0, 0.3);
+  Result<Outcome> diagnose() {
+    const auto opened_case = opened(of_.model, 0.0, 0.3);
     if (!opened_case) return opened_case.error();
     lab_io::DiagnoseWish how{.options = {}, .report = true};
     how.options.threads = threads();
@@ -180,6 +175,7 @@ class LabRun {
   store::Store& store_;
   const store::Objects& objects_;
   const Asked& of_;
+  Wish wish_;
   LabProgress watch_;
 };
 

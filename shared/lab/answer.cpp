@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "effects/expression.hpp"
 #include "lab/words.hpp"
 
 namespace lab {
@@ -174,6 +175,7 @@ Json to_json(const std::vector<Ranked>& ranking) {
               {"probability", number(ranked.probability)},
               {"held_out_rmse", ranked.held_out_rmse ? number(*ranked.held_out_rmse) : Json()}};
     if (!ranked.note.empty()) json["note"] = ranked.note;
+    if (effects::is_expression(ranked.id)) json["own"] = true;
     out.push_back(std::move(json));
   }
   return out;

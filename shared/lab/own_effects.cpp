@@ -121,12 +121,16 @@ class Imitation {
   Eigen::MatrixXd base_directions_;  // orthonormal
 };
 
-double likeness(const std::vector<Response>& a, const std::vector<Response>& b) {
-  double most = 0.0;
-  for (const Response& one : a)
-    for (const Response& other : b)
-      most = std::max(most, std::abs(one.direction.dot(other.direction)));
-  return most;
+/// Of the shape of `mine` that the other imitates worst.
+double likeness(const std::vector<Response>& mine, const std::vector<Response>& other) {
+  double least = mine.empty() ? 0.0 : 1.0;
+  for (const Response& one : mine) {
+    double most = 0.0;
+    for (const Response& imitation : other)
+      most = std::max(most, std::abs(one.direction.dot(imitation.direction)));
+    least = std::min(least, most);
+  }
+  return least;
 }
 
 }  // namespace

@@ -17,10 +17,10 @@ namespace lab {
 core::Result<void> check_own_effect(const Problem& problem, const std::string& id);
 
 /// Which effects of the catalogue, and which other own ones, do nearly the same as each of `own` in
-/// these recordings: the cosine of the angle between their responses, after what the base's own
-/// numbers can imitate is taken from both. One sentence for each likeness above 0.95, one for an
-/// effect that the base imitates, and one that says how many own effects were ranked beside the
-/// catalogue's.
+/// these recordings, whatever its numbers of shape: the cosine of the angle between their
+/// responses, after what the base's own numbers can imitate is taken from both. One sentence for
+/// each likeness above 0.95, one for an effect that the base imitates, and one that says how many
+/// own effects were ranked beside the catalogue's.
 /// @param base  values of the base's parameters, best those of its fit.
 std::vector<std::string> likenesses(const Problem& problem, const std::vector<std::string>& own,
                                     std::span<const double> base, int threads);

@@ -43,7 +43,6 @@ Command diagnose_command() {
             auto options = std::make_shared<Options>();
             add_lab_options(app, *options);
             add_own_option(app, *options);
-            options->sources.own_are = lab_io::Sources::Own::offered;
             app.add_option("--out-model", options->out_model,
                            "write the model, refitted and with the effects found");
             return [options] { return run(*options); };

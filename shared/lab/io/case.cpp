@@ -7,6 +7,7 @@
 #include "effects/expression.hpp"
 #include "effects/palpation_expression.hpp"
 #include "lab/io/unpacked.hpp"
+#include "lab/own_effects.hpp"
 #include "lab/palpation_problem.hpp"
 #include "lab/probing_problem.hpp"
 #include "models/probing_model.hpp"
@@ -20,6 +21,8 @@ namespace fs = std::filesystem;
 using core::Errc;
 using core::Error;
 using core::Result;
+
+constexpr double kFirstStep = 0.01;  // of a parameter's range, from where its effect is off
 
 /// The set's own name, else its folder's or archive's.
 std::string name_of(const core::Json& stated, const fs::path& path) {
@@ -41,9 +44,9 @@ core::Json json_of(const trial::StatedTract& tract) {
           {"length_m", tract.length_m}};
 }
 
-/// The user's own effects: into the model, or beside it to be tried.
+/// The user's own effects, to be tried as the catalogue's are.
 Result<lab::Offered> take_own(const Sources& sources, const effects::ExpressionRig& rig,
-                              std::vector<effects::Use>& in_model) {
+                              const std::vector<effects::Use>& in_model) {
   std::vector<std::pair<effects::Use, effects::EffectFacts>> offered;
   for (const OwnEffect& one : sources.own) {
     const auto expression = effects::Expression::from_json(one.definition, one.where, rig);
@@ -55,12 +58,23 @@ Result<lab::Offered> take_own(const Sources& sources, const effects::ExpressionR
                    fmt::format("{}id: the model has an effect '{}' already", one.where, use.id)};
     if (std::ranges::any_of(offered, [&](const auto& other) { return same(other.first); }))
       return Error{Errc::bad_input, fmt::format("{}id: '{}' is given twice", one.where, use.id)};
-    if (sources.own_are == Sources::Own::added)
-      in_model.push_back(std::move(use));
-    else
-      offered.emplace_back(std::move(use), expression->facts());
+    effects::EffectFacts facts = expression->facts();
+    for (effects::Param& p : facts.params)  // a search cannot begin where the effect is off
+      if (p.initial == p.off)
+        p.initial = p.off + kFirstStep * (p.high > p.off ? p.high - p.off : p.low - p.off);
+    offered.emplace_back(std::move(use), std::move(facts));
   }
   return lab::Offered(std::move(offered));
+}
+
+/// What is wrong with an own effect on these recordings is told before anything is fitted.
+Result<Case> with_own(Case opened, const Sources& sources) {
+  for (const OwnEffect& one : sources.own) {
+    opened.own.push_back(one.definition["id"].get<std::string>());
+    if (auto fine = lab::check_own_effect(*opened.problem, opened.own.back()); !fine)
+      return Error{fine.error().code, one.where + fine.error().what};
+  }
+  return opened;
 }
 
 Error renamed(Error error, const std::string& from, const std::string& to) {
@@ -82,6 +96,7 @@ Case begun(const std::string& model, const Set& set, const Sources& sources) {
           name_of(set.stated, sources.measurements),
           is_simulated(set.stated),
           core::Json(),
+          {},
           nullptr,
           lab::recorded(set)};
 }
@@ -152,7 +167,7 @@ Result<Case> open_case(const Sources& sources, const core::Progress& progress) {
                         : open_palpation(std::get<models::PalpationModel>(*model), sources,
                                          unpacked->folder(), rest);
   if (!opened) return named(opened.error(), *unpacked, sources.measurements);
-  return opened;
+  return with_own(std::move(*opened), sources);
 }
 
 Result<SetFacts> facts_of_set(const fs::path& path) {

@@ -17,17 +17,16 @@ namespace lab_io {
 struct Sources {
   std::filesystem::path model;         ///< tractus-model/1
   std::filesystem::path measurements;  ///< a folder or a zip, tractus-measurements/1
-  std::vector<OwnEffect> own = {};     ///< the user's own effects …
-  enum class Own { added, offered };
-  Own own_are = Own::added;  ///< … in the model from the start, or candidates as the catalogue's
+  std::vector<OwnEffect> own = {};     ///< the user's own effects, candidates as the catalogue's
   int threads = 2;
 };
 
 /// What the lab works on. Holds all that it needs: files may go once it is open.
 struct Case {
   std::string model_name, set_name;
-  bool simulated = false;  ///< the set says that its measurements are simulated themselves
-  core::Json tract;        ///< where the palpated channel is, as the set states it; else null
+  bool simulated = false;        ///< the set says that its measurements are simulated themselves
+  core::Json tract;              ///< where the palpated channel is, as the set states it; else null
+  std::vector<std::string> own;  ///< ids of the user's own effects
   std::unique_ptr<lab::Problem> problem;
   lab::Recorded recorded;
 };
