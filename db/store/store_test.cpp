@@ -179,7 +179,7 @@ TEST(Jobs, AreClaimedOnceInTheOrderTheyWereQueued) {
     if (auto q = queue_job(tx, "metrics", "sooner", 10); !q) return q.error();
     std::vector<std::string> subjects;
     while (true) {
-      auto job = claim_job(tx, 30);
+      auto job = claim_job(tx, {"metrics"}, 30);
       if (!job) return job.error();
       if (!job->has_value()) return subjects;
       subjects.push_back((*job)->subject);
@@ -193,9 +193,9 @@ TEST(Jobs, WhatADeadProcessHadClaimedWaitsAgainAndCountsItsAttempts) {
   Opened db;
   auto again = db.store.write([](Writing& tx) -> core::Result<std::optional<Job>> {
     if (auto q = queue_job(tx, "metrics", "t", 10); !q) return q.error();
-    if (auto first = claim_job(tx, 20); !first) return first.error();
+    if (auto first = claim_job(tx, {"metrics"}, 20); !first) return first.error();
     if (auto back = requeue_claimed_jobs(tx, 30); !back) return back.error();
-    return claim_job(tx, 40);
+    return claim_job(tx, {"metrics"}, 40);
   });
   ASSERT_TRUE(again) << again.error().what;
   ASSERT_TRUE(again->has_value());

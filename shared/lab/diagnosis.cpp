@@ -124,7 +124,11 @@ Result<Diagnosis> diagnose(const Problem& problem, const DiagnoseOptions& option
   if (residual.size() == 0)
     return Error{Errc::bad_input, "the recordings are too short to compare"};
   Selection selection(residual, options, progress);
-  if (!selection.run()) return Error{Errc::cancelled, "stopped"};
+  const auto early = [&] {
+    if (options.early)
+      options.early(ranking(residual, selection, Belief(residual, selection, selection.leading())));
+  };
+  if (!selection.run(early)) return Error{Errc::cancelled, "stopped"};
   Diagnosis out;
   out.notes = problem.notes();
   out.base_fit = report(residual, selection.tried().at(""), true);

@@ -21,7 +21,7 @@ constexpr double kScaleQuantile = 0.97, kScaleOfNormal = 2.17;
 constexpr double kRank = 1e-11;
 constexpr int kRoughRounds = 3;
 constexpr int kMostTries = 12;  // ever shorter steps from one point
-constexpr double kFinestRough = 0.005;
+constexpr double kFinestRough = 0.001;
 
 double step_inside(const Parameter& p, double u) {
   return u + p.step <= coordinate(p, p.high) ? p.step : -p.step;

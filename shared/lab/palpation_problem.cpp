@@ -42,10 +42,10 @@ bool has_drift(const Structure& structure) {
 
 class PalpationProblem final : public Problem {
  public:
-  PalpationProblem(volume::ForceField field, models::PalpationModel model,
+  PalpationProblem(volume::ForceField field, models::PalpationModel model, Offered offered,
                    std::vector<PalpationRecording> trials, std::optional<trial::StatedTract> tract)
       : field_(std::move(field)),
-        numbers_(std::move(model), 500.0),
+        numbers_(std::move(model), 500.0, std::move(offered)),
         trials_(std::move(trials)),
         trends_(trials_.size()),
         rests_(trials_.size()),
@@ -124,7 +124,7 @@ class PalpationProblem final : public Problem {
     if (!touches_) return;
     const auto middle = field.begin() + std::ptrdiff_t(field.size() / 2);
     std::ranges::nth_element(field, middle);
-    numbers_ = PalpationNumbers(numbers_.model(), *middle);
+    numbers_ = PalpationNumbers(numbers_.model(), *middle, numbers_.offered());
   }
   bool touches() const { return touches_; }
 
@@ -221,6 +221,8 @@ void PalpationProblem::set_candidates() {
     if (std::ranges::none_of(numbers_.model().effects,
                              [&](const auto& use) { return use.id == info.facts.id; }))
       candidates_.push_back({info.facts, true, ""});
+  for (const auto& [use, facts] : numbers_.offered().all())
+    candidates_.push_back({facts, true, ""});
 }
 
 void PalpationProblem::set_instants() {
@@ -391,8 +393,8 @@ Result<std::unique_ptr<Problem>> make_palpation_problem(const models::PalpationM
   for (const std::string& what : wrong)
     if (!what.empty()) return Error{Errc::bad_input, what};
   if (progress && !progress(0.6)) return Error{Errc::cancelled, "stopped"};
-  auto problem = std::make_unique<PalpationProblem>(std::move(*field), model, std::move(recordings),
-                                                    set.tract);
+  auto problem = std::make_unique<PalpationProblem>(std::move(*field), model, options.offered,
+                                                    std::move(recordings), set.tract);
   // As the file has it first, then as a fit has it, and again: which rests the shank finds depends
   // on the numbers, and the numbers on the rests.
   std::vector<double> values;

@@ -23,6 +23,8 @@ constexpr double kRestErrors = 3.0;
 /// Round a border so much is not trusted at the full rate.
 constexpr double kBorder_s = 0.005;
 constexpr std::size_t kBorderSamples = 3;
+/// How well the place of a border can be told.
+constexpr double kOnBorder_m = 2e-6;
 /// Within this a probe stands; after so long it is looked at ever more rarely.
 constexpr double kSamePlace_m = 3e-5, kLongStand_s = 2.0;
 /// The motion is well known where its noise makes less than this share of the sensor's.
@@ -88,6 +90,12 @@ Error wrong(const std::string& where, const std::string& why) {
   return {Errc::bad_input, fmt::format("{}: {}", where, why)};
 }
 
+double middle_of(std::vector<double> values) {
+  const auto at = values.begin() + std::ptrdiff_t(values.size() / 2);
+  std::ranges::nth_element(values, at);
+  return *at;
+}
+
 /// Angle and torque, where recorded.
 void prepare_turning(trial::ProbingMeasurement& trial, const trial::StatedNoise& stated,
                      ProbingRecording& out) {
@@ -97,14 +105,9 @@ void prepare_turning(trial::ProbingMeasurement& trial, const trial::StatedNoise&
         smooth(trial.t_s, trial.theta_rad, noise_of(trial.theta_rad, stated.theta_rad).sd);
     motion.theta_rad = std::move(theta.value);
     motion.omega_rad_s = std::move(theta.rate);
+    motion.rest_rad_s = kRestErrors * middle_of(std::move(theta.rate_sd));
   }
   motion.tz_Nm = std::move(trial.tz_Nm);
-}
-
-double middle_of(std::vector<double> values) {
-  const auto at = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::ranges::nth_element(values, at);
-  return *at;
 }
 
 void prepare_sliding(trial::ProbingMeasurement& trial, const trial::StatedNoise& stated,
@@ -167,10 +170,15 @@ struct Jump {
   double size_N;
 };
 
-std::vector<Jump> jumps(const laws::ProbingLaw& law, const ProbingRecording& r) {
-  std::vector<double> borders;
+std::vector<double> borders_of(const laws::ProbingLaw& law) {
+  std::vector<double> out;
   for (const laws::Layer& layer : law.parameters().layers)
-    borders.insert(borders.end(), {layer.start_m, layer.start_m + layer.thickness_m});
+    out.insert(out.end(), {layer.start_m, layer.start_m + layer.thickness_m});
+  return out;
+}
+
+std::vector<Jump> jumps(const laws::ProbingLaw& law, const ProbingRecording& r) {
+  const std::vector<double> borders = borders_of(law);
   std::vector<Jump> out;
   const auto& x = r.motion.x_m;
   for (std::size_t k = 1; k < x.size(); ++k)
@@ -245,6 +253,9 @@ void weigh(const laws::ProbingLaw& law, ProbingRecording& r) {
   const double most = std::max(*half_way, kWellKnown * kWellKnown * r.noise_sd * r.noise_sd);
   for (std::size_t k = 0; k < n; ++k)
     if (motion_variance[k] > most) r.trusted[k] = 0.0;
+  for (const double border : borders_of(law))
+    for (std::size_t k = 0; k < n; ++k)  // on which side is nobody's to tell
+      if (std::abs(m.x_m[k] - border) < kOnBorder_m + 3.0 * r.x_sd_m[k]) r.trusted[k] = 0.0;
   for (const Jump& jump : found)
     for (std::size_t k = jump.sample < reach ? 0 : jump.sample - reach;
          k < std::min(n, jump.sample + reach); ++k)

@@ -23,6 +23,10 @@ constexpr std::size_t kRefined = 3;
 /// Above this the best of a size is begun anew from other shapes, so many of each effect.
 constexpr double kReshaped = 0.9;
 constexpr int kReshapeTries = 8;
+/// Shifts of all layers that one constant of the sensor explains: so much is left of them, where
+/// there are two and where there are more; what counts as a shift.
+constexpr double kBackOfTwo = 0.05, kBack = 0.15, kShifted_m = 5e-5, kNoWorse = 1.1;
+constexpr std::string_view kBias = "sensor_bias";
 
 /// The price of a number, in nats.
 constexpr double kPrice = 5.0;
@@ -252,11 +256,49 @@ void Selection::refuse_trends() {
   }
 }
 
-bool Selection::run() {
+/// How far the places of rest of the base's layers have moved from the model's, root mean square.
+/// `count`: of how many.
+double moved(const Solution& at, int& count) {
+  double sum = 0.0;
+  count = 0;
+  for (std::size_t k = 0; k < at.values.size(); ++k) {
+    const Parameter& p = at.parameters[k];
+    if (!p.pointer.starts_with('/') || !p.pointer.ends_with("/equilibrium_m")) continue;
+    sum += (at.values[k] - p.start) * (at.values[k] - p.start);
+    ++count;
+  }
+  return count > 0 ? std::sqrt(sum / count) : 0.0;
+}
+
+/// What a sensor adds looks, in contact alone, as if every layer were shifted: each by the constant
+/// over its stiffness. One constant that brings all of them back to where the model has them is the
+/// simpler reading.
+void Selection::explain_shifts() {
+  const auto seen = looks_.find(std::string(kBias));
+  if (seen == looks_.end() || !seen->second.excited || contains(chosen().structure, kBias)) return;
+  int layers = 0;
+  const double before_m = moved(chosen(), layers);
+  if (layers < 2 || before_m < kShifted_m) return;
+  Solution from = chosen();
+  differentiate(residual_, from);
+  const Solution& with = fitted(from, std::string(kBias), 1);
+  const double after_m = moved(with, layers);
+  if (after_m < (layers == 2 ? kBackOfTwo : kBack) * before_m &&
+      with.mean_square() < kNoWorse * from.mean_square())
+    chosen_ = name(with.structure);
+}
+
+const Solution& Selection::leading() const {
+  const auto price = [&](const auto& entry) { return cost(residual_, entry.second, base()); };
+  return std::ranges::min_element(tried_, {}, price)->second;
+}
+
+bool Selection::run(const std::function<void()>& after_singles) {
   if (!go_on(0.0)) return false;
   tried_[""] = fit_base(residual_);
   singles();
   if (stopped_) return false;
+  if (after_singles) after_singles();
   grow();
   if (stopped_) return false;
   for (const Solution* pair : best_of(2, kRefined))
@@ -270,6 +312,7 @@ bool Selection::run() {
   prefer_parents();
   prune();
   refuse_trends();
+  explain_shifts();
   // In which order they brought most: the best single of them first.
   Structure sum;
   for (std::size_t k = 0; k < chosen().structure.effects.size(); ++k) {

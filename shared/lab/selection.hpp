@@ -1,6 +1,7 @@
 /// The search over structures: which effects together bring the residual down to the floor.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -22,8 +23,10 @@ class Selection {
             const core::Progress& progress);
 
   /// Fits the base, every single effect, and more together as long as they bring the residual
-  /// clearly nearer to the floor. False when asked to stop.
-  bool run();
+  /// clearly nearer to the floor. False when asked to stop. @param after_singles  called between.
+  bool run(const std::function<void()>& after_singles = {});
+  /// The cheapest of those tried so far.
+  const Solution& leading() const;
 
   const Solution& base() const { return tried_.at(""); }
   const Solution& chosen() const { return tried_.at(chosen_); }
@@ -53,6 +56,7 @@ class Selection {
   void prune();
   void prefer_parents();
   void refuse_trends();
+  void explain_shifts();
   /// The cheapest of a size, most probable first.
   std::vector<const Solution*> best_of(std::size_t effects, std::size_t most) const;
   bool go_on(double share);
