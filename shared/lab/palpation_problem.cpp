@@ -28,11 +28,11 @@ using math::Vec3;
 constexpr int kRounds = 2;
 /// Samples prepared of all trials together, and moments that a fit compares of them, no more than
 /// so many a second.
-constexpr std::size_t kMostSamples = 2'000'000, kMostInstants = 4000;
+constexpr std::size_t kMostSamples = 400'000, kMostInstants = 4000;
 constexpr double kInstants_Hz = 100.0;
 /// What a drift counts when structures are compared: the orders of one course, which the channels
 /// share as a rule, and more than the six numbers of a constant bias, which it contains.
-constexpr int kDriftCounts = Trend::kOrders + 2;
+constexpr int kDriftCounts = 2 * Trend::kOrders;
 constexpr std::string_view kDrift = "sensor_drift";
 constexpr const char* kChannelNames[] = {"fx_N", "fy_N", "fz_N", "tx_Nm", "ty_Nm", "tz_Nm"};
 
@@ -152,7 +152,7 @@ class PalpationProblem final : public Problem {
   static void whiten(const PalpationRecording& r, const models::PalpationAnswer& predicted,
                      Eigen::Ref<Eigen::VectorXd> out) {
     for (std::size_t j = 0; j < r.instants.size(); ++j) {
-      const Vec6 difference = r.measured[r.instants[j]] - stacked(predicted.wrench_H[j]);
+      const Vec6 difference = r.missed(r.instants[j], predicted.wrench_H[j]);
       out.segment<6>(6 * Eigen::Index(j)) =
           r.whitener[j].triangularView<Eigen::Lower>() * difference;
     }
@@ -286,7 +286,7 @@ Residuals PalpationProblem::full_rate(const Structure& structure, std::span<cons
   if (has_drift(structure)) slow = trend(structure, values, k);
   for (auto& channel : out.channels) channel.reserve(r.size());
   for (std::size_t i = 0; i < r.size(); ++i) {
-    Vec6 error = r.measured[i] - stacked(predicted.wrench_H[i]);
+    Vec6 error = r.missed(i, predicted.wrench_H[i]);
     if (slow.size() > 0) error -= slow.col(Eigen::Index(i));
     out.channels[0].push_back(error.head<3>().norm());
     for (int c = 0; c < 6; ++c) out.channels[std::size_t(c) + 1].push_back(error[c]);

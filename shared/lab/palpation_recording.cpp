@@ -15,23 +15,34 @@ using core::Error;
 using core::Result;
 using math::Vec3;
 
+constexpr const char* kChannels[] = {"fx_N", "fy_N", "fz_N", "tx_Nm", "ty_Nm", "tz_Nm"};
 constexpr std::size_t kFewestSamples = 60;
 constexpr double kSlowestRate_Hz = 40.0;
 /// Faster recordings are thinned to no more than this after smoothing.
 constexpr double kFastest_Hz = 250.0;
+/// The step that a channel's values were rounded to, 0 if they were not: all lie on a grid of it.
+double rounding_step(const std::vector<double>& y, double most) {
+  double least = HUGE_VAL;
+  for (std::size_t k = 1; k < y.size(); ++k)
+    if (const double step = std::abs(y[k] - y[k - 1]); step > 1e-9 * most)
+      least = std::min(least, step);
+  if (!std::isfinite(least)) return 0.0;
+  for (const double v : y)
+    if (std::abs(std::remainder(v - y[0], least)) > 0.01 * least) return 0.0;
+  return least;
+}
+
 /// Standard deviation of the white noise on a smooth signal: from sixth differences, median over
-/// short stretches, so that impacts do not count; at least what rounding to even steps makes.
+/// short stretches, so that impacts do not count; at least what rounding to even steps makes of a
+/// sensor whose own noise is less (kRounded: a little of that noise comes on top).
 /// Neighbouring differences share samples, which leaves a stretch's mean square as many degrees of
 /// freedom as it has samples by Σρ² = 3.17; its median lies below its mean by (1 − 2/9ν)³
 /// [Wilson and Hilferty].
 double noise_of(const std::vector<double>& y) {
   constexpr std::size_t kWindow = 48, kOrder = 6;
   constexpr double kCoefficients[kOrder + 1] = {1, -6, 15, -20, 15, -6, 1};
-  constexpr double kSquares = 924.0, kFreedom = double(kWindow) / 3.17;
+  constexpr double kSquares = 924.0, kFreedom = double(kWindow) / 3.17, kRounded = 1.15;
   std::vector<double> squares;
-  double least = HUGE_VAL;
-  for (std::size_t k = 1; k < y.size(); ++k)
-    if (const double step = std::abs(y[k] - y[k - 1]); step > 0.0) least = std::min(least, step);
   for (std::size_t at = 0; at + kWindow + kOrder <= y.size(); at += kWindow) {
     double sum = 0.0;
     for (std::size_t k = at; k < at + kWindow; ++k) {
@@ -45,10 +56,9 @@ double noise_of(const std::vector<double>& y) {
   std::ranges::nth_element(squares, middle);
   double most = 0.0;
   for (const double v : y) most = std::max(most, std::abs(v));
-  const double rounding = std::isfinite(least) ? least / std::sqrt(12.0) : 0.0;
   const double below = std::pow(1.0 - 2.0 / (9.0 * kFreedom), 3);
-  return std::max(
-      {std::sqrt(*middle / below), std::min(rounding, 1e-4 * most), 1e-9 * most, 1e-12});
+  return std::max({std::sqrt(*middle / below), kRounded * rounding_step(y, most) / std::sqrt(12.0),
+                   1e-9 * most, 1e-12});
 }
 
 /// Every so many-th of a smoothed channel.
@@ -192,7 +202,11 @@ Result<PalpationRecording> prepare(trial::PalpationMeasurement&& trial, const Ve
   std::vector<double> column(n);
   for (int c = 0; c < 6; ++c) {
     for (std::size_t k = 0; k < n; ++k) column[k] = stacked(trial.wrench_H[k])[c];
-    out.noise_sd[c] = noise_of(column);
+    const auto [least, most] = std::ranges::minmax(column);
+    out.noise_sd[c] = least < most ? noise_of(column) : PalpationRecording::kDead;
+    if (!(least < most))
+      out.note += fmt::format("{}{}: {} never changes and was not compared",
+                              out.note.empty() ? "" : "; ", trial.id, kChannels[c]);
   }
   for (std::size_t k = 0; k < n; k += stride) out.measured.push_back(stacked(trial.wrench_H[k]));
   out.trusted.assign(out.size(), 1.0);

@@ -27,6 +27,7 @@ constexpr double kSnapKnown_s = 0.015;
 /// Rests nearer than this are one; what a change of rest must save, in squares of the usual error,
 /// of which a sample counts no more than so many.
 constexpr double kSameRest_m = 2e-6, kChange = 4.0, kMostMissed = 5.0;
+constexpr std::size_t kWays = 3;
 constexpr double kPlaceStep_m = 2e-6, kTurnStep_rad = 2e-5;
 
 /// The motion moved as a whole: along axis 0 … 2 of V, or turned about axis 3 … 5 at the handle.
@@ -66,9 +67,9 @@ std::vector<Mat6> motion_covariance(const models::PalpationRuntime& runtime,
 
 /// The rests that the shank may have been in: those it comes to from before and from after, and the
 /// one near the bending that the measured force across the probe would make.
-std::array<models::PalpationAnswer, 3> possible(const models::PalpationRuntime& runtime,
-                                                const PalpationRecording& r) {
-  std::array<models::PalpationAnswer, 3> out;
+std::array<models::PalpationAnswer, kWays> possible(const models::PalpationRuntime& runtime,
+                                                    const PalpationRecording& r) {
+  std::array<models::PalpationAnswer, kWays> out;
   runtime.predict(r.motion, out[0]);
   runtime.predict(r.motion, out[1], true);
   std::vector<math::Vec2> bent;
@@ -83,50 +84,59 @@ std::array<models::PalpationAnswer, 3> possible(const models::PalpationRuntime& 
 /// squared errors (no more than kMostMissed² of their usual size each) and of kChange per change of
 /// rest [Viterbi1967]. Where a bent shank can rest in several places, when it goes from one to
 /// another is decided by less than a model knows.
-models::PalpationAnswer followed(const models::PalpationRuntime& runtime,
-                                 const PalpationRecording& r) {
-  const auto ways = possible(runtime, r);
-  const std::size_t n = r.size(), count = ways.size();
-  const auto missed = [&](std::size_t way, std::size_t k) {
-    const Vec6 error = r.measured[k] - stacked(ways[way].wrench_H[k]);
-    return error.cwiseQuotient(r.noise_sd).squaredNorm();
-  };
-  std::vector<double> usual;
-  for (std::size_t k = 0; k < n; ++k) usual.push_back(missed(0, k));
-  const auto middle = usual.begin() + std::ptrdiff_t(n / 2);
-  std::ranges::nth_element(usual, middle);
-  const double unit = std::max(*middle, 6.0);
-  const auto same = [&](std::size_t a, std::size_t b, std::size_t k) {
-    return (ways[a].deflection_m[k] - ways[b].deflection_m[k]).norm() < kSameRest_m;
-  };
-  std::vector<std::array<std::uint8_t, 3>> from(n);
-  std::array<double, 3> sum{};
-  for (std::size_t k = 0; k < n; ++k) {
-    std::array<double, 3> next{};
-    for (std::size_t b = 0; b < count; ++b) {
-      std::size_t best = b;
-      for (std::size_t a = 0; a < count && k > 0; ++a) {
-        const auto cost = [&](std::size_t w) {
-          return sum[w] + (w == b || same(w, b, k - 1) ? 0.0 : kChange);
-        };
-        if (cost(a) < cost(best)) best = a;
+class Course {
+ public:
+  Course(const models::PalpationRuntime& runtime, const PalpationRecording& r)
+      : r_(r), ways_(possible(runtime, r)) {
+    std::vector<double> all;
+    for (std::size_t k = 0; k < r.size(); ++k) all.push_back(squares(0, k));
+    const auto middle = all.begin() + std::ptrdiff_t(all.size() / 2);
+    std::ranges::nth_element(all, middle);
+    usual_ = std::max(*middle, 6.0);
+  }
+
+  models::PalpationAnswer best() const {
+    std::vector<std::array<std::size_t, kWays>> from(r_.size());
+    std::array<double, kWays> sum{};
+    for (std::size_t k = 0; k < r_.size(); ++k) {
+      std::array<double, kWays> next{};
+      for (std::size_t b = 0; b < kWays; ++b) {
+        from[k][b] = b;
+        for (std::size_t a = 0; a < kWays && k > 0; ++a)
+          if (sum[a] + change(a, b, k - 1) < sum[from[k][b]] + change(from[k][b], b, k - 1))
+            from[k][b] = a;
+        next[b] = sum[from[k][b]] + (k > 0 ? change(from[k][b], b, k - 1) : 0.0) +
+                  std::min(squares(b, k) / usual_, kMostMissed * kMostMissed);
       }
-      from[k][b] = std::uint8_t(best);
-      const double change = best == b || k == 0 || same(best, b, k - 1) ? 0.0 : kChange;
-      next[b] = sum[best] + change + std::min(missed(b, k) / unit, kMostMissed * kMostMissed);
+      sum = next;
     }
-    sum = next;
+    models::PalpationAnswer out = ways_[0];
+    auto way = std::size_t(std::ranges::min_element(sum) - sum.begin());
+    for (std::size_t k = r_.size(); k-- > 0; way = from[k][way]) {
+      out.wrench_H[k] = ways_[way].wrench_H[k];
+      out.deflection_m[k] = ways_[way].deflection_m[k];
+      out.converged[k] = ways_[way].converged[k];
+    }
+    return out;
   }
-  models::PalpationAnswer out = ways[0];
-  auto way = std::size_t(std::ranges::min_element(sum) - sum.begin());
-  for (std::size_t k = n; k-- > 0;) {
-    out.wrench_H[k] = ways[way].wrench_H[k];
-    out.deflection_m[k] = ways[way].deflection_m[k];
-    out.converged[k] = ways[way].converged[k];
-    way = from[k][way];
+
+ private:
+  /// What is missed of a sample on one way, in squares of the sensor's noise.
+  double squares(std::size_t way, std::size_t k) const {
+    const Vec6 error = r_.missed(k, ways_[way].wrench_H[k]);
+    return error.cwiseQuotient(r_.noise_sd).squaredNorm();
   }
-  return out;
-}
+  /// What it costs to go from one way at sample k to another at the next.
+  double change(std::size_t from, std::size_t to, std::size_t k) const {
+    const bool same =
+        (ways_[from].deflection_m[k] - ways_[to].deflection_m[k]).norm() < kSameRest_m;
+    return from == to || same ? 0.0 : kChange;
+  }
+
+  const PalpationRecording& r_;
+  std::array<models::PalpationAnswer, kWays> ways_;
+  double usual_;
+};
 
 /// Where the unbent tip is, and how fast.
 struct Tip {
@@ -254,7 +264,7 @@ double at_the_edge_N(const models::PalpationRuntime& runtime, const PalpationRec
 void set_trust(const models::PalpationRuntime& runtime, PalpationRecording& r,
                const models::PalpationAnswer& at, const std::vector<Mat6>& by_motion,
                const std::vector<std::size_t>& snapped) {
-  const Vec6 sensor = r.noise_sd.cwiseAbs2();
+  const Vec6 sensor = r.sensor_squares();
   const double most_N = std::sqrt(sensor.head<3>().sum());
   const double most = std::pow(kPoorlyKnown * most_N, 2);
   for (std::size_t k = 0; k < r.size(); ++k)
@@ -279,13 +289,13 @@ void set_trust(const models::PalpationRuntime& runtime, PalpationRecording& r,
     const Vec3 tip = runtime.tip_m(r.motion.handle[k].X_VH, at.deflection_m[k]);
     r.field_per_m.push_back(runtime.field().gradient_per_m(tip).norm());
   }
-  r.floor = trusted > 0.0 ? Vec6((r.floor / trusted).cwiseSqrt()) : r.noise_sd;
+  r.floor = trusted > 0.0 ? Vec6((r.floor / trusted).cwiseSqrt()) : Vec6(sensor.cwiseSqrt());
 }
 
 }  // namespace
 
 void weigh(const models::PalpationRuntime& runtime, PalpationRecording& r) {
-  const models::PalpationAnswer at = followed(runtime, r);
+  const models::PalpationAnswer at = Course(runtime, r).best();
   r.deflection_m = at.deflection_m;
   const auto by_motion = motion_covariance(runtime, r, at);
   const auto snapped = snaps(runtime, r, at);
