@@ -13,7 +13,18 @@
 namespace jobs {
 namespace {
 constexpr std::uint64_t kMostAttempts = 3;  // of a run of the lab or of an analysis
+
+/// Where whoever asked for it looks.
+core::Result<void> show_failure(store::Writing& tx, const store::Job& job,
+                                const core::Error& error) {
+  const std::int64_t now = core::utc_us();
+  if (job.kind == "metrics") return store::set_assessment_failed(tx, job.subject, error.what);
+  if (job.kind == "analysis") return store::fail_analysis(tx, job.subject, error.what, now);
+  const bool cancelled = error.code == core::Errc::cancelled;
+  return store::end_diagnosis(tx, job.subject, cancelled ? "cancelled" : "failed", error.what, now);
 }
+
+}  // namespace
 
 core::Result<std::unique_ptr<Runner>> Runner::start(store::Store& store,
                                                     const store::Objects& objects, Log log) {
