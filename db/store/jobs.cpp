@@ -1,6 +1,7 @@
 #include "db/store/jobs.hpp"
 
 #include "core/bytes.hpp"
+#include "core/require.hpp"
 
 namespace store {
 namespace {
@@ -25,12 +26,17 @@ core::Result<void> queue_job(Writing& tx, const std::string& kind, const std::st
   return {};
 }
 
-core::Result<std::optional<Job>> claim_job(Writing& tx, std::int64_t now_utc_us) {
+core::Result<std::optional<Job>> claim_job(Writing& tx, const std::vector<std::string>& kinds,
+                                           std::int64_t now_utc_us) {
+  core::require(!kinds.empty(), "whoever claims a job says of which kinds");
+  std::string listed = ",";
+  for (const std::string& kind : kinds) listed += kind + ",";
   auto rows = tx.query(
       "update jobs set state = 'claimed', attempts = attempts + 1, changed_utc_us = ? "
-      "where id = (select id from jobs where state = 'queued' order by queued_utc_us, id limit 1) "
+      "where id = (select id from jobs where state = 'queued' and ? like '%,' || kind || ',%' "
+      "order by queued_utc_us, id limit 1) "
       "returning id, kind, subject, attempts",
-      {now_utc_us});
+      {now_utc_us, listed});
   if (!rows) return rows.error();
   if (rows->empty()) return std::optional<Job>();
   const Row& row = rows->front();

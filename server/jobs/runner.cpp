@@ -1,6 +1,7 @@
 #include "server/jobs/runner.hpp"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include "core/clock.hpp"
 #include "db/store/analyses.hpp"
@@ -8,22 +9,23 @@
 #include "db/store/trials.hpp"
 #include "server/jobs/analyse.hpp"
 #include "server/jobs/assess.hpp"
-#include "server/jobs/diagnose.hpp"
+#include "server/jobs/lab_run.hpp"
 
 namespace jobs {
 namespace {
 constexpr std::uint64_t kMostAttempts = 3;  // of a run of the lab or of an analysis
+constexpr int kLabNiceness = 10;
 
-/// Where whoever asked for it looks.
+/// What a person sees of a job that failed.
 core::Result<void> show_failure(store::Writing& tx, const store::Job& job,
                                 const core::Error& error) {
-  const std::int64_t now = core::utc_us();
-  if (job.kind == "metrics") return store::set_assessment_failed(tx, job.subject, error.what);
-  if (job.kind == "analysis") return store::fail_analysis(tx, job.subject, error.what, now);
+  if (job.kind == "analysis")
+    return store::fail_analysis(tx, job.subject, error.what, core::utc_us());
+  if (job.kind != "lab") return store::set_assessment_failed(tx, job.subject, error.what);
   const bool cancelled = error.code == core::Errc::cancelled;
-  return store::end_diagnosis(tx, job.subject, cancelled ? "cancelled" : "failed", error.what, now);
+  return store::end_lab_run(tx, job.subject, cancelled ? "cancelled" : "failed", error.what,
+                            core::utc_us());
 }
-
 }  // namespace
 
 core::Result<std::unique_ptr<Runner>> Runner::start(store::Store& store,
@@ -35,42 +37,51 @@ core::Result<std::unique_ptr<Runner>> Runner::start(store::Store& store,
 }
 
 Runner::Runner(store::Store& store, const store::Objects& objects, Log log)
-    : store_(store), objects_(objects), log_(std::move(log)), thread_([this] { run(); }) {}
+    : store_(store), objects_(objects), log_(std::move(log)) {
+  scores_.thread = std::thread([this] { run(scores_); });
+  lab_.thread = std::thread([this] {
+    // Of this thread and those it starts alone. Refused, the lab only runs as fast as the rest.
+    (void)setpriority(PRIO_PROCESS, 0, kLabNiceness);
+    run(lab_);
+  });
+}
 
 Runner::~Runner() {
   {
     const std::lock_guard held(mutex_);
     ending_ = true;
   }
-  changed_.notify_one();
-  thread_.join();
+  changed_.notify_all();
+  scores_.thread.join();
+  lab_.thread.join();
 }
 
 void Runner::wake() {
   {
     const std::lock_guard held(mutex_);
-    woken_ = true;
+    scores_.woken = lab_.woken = true;
   }
-  changed_.notify_one();
+  changed_.notify_all();
 }
 
-void Runner::run() {
+void Runner::run(Lane& lane) {
   std::unique_lock held(mutex_);
   while (!ending_) {
-    if (!woken_) {
+    if (!lane.woken) {
       changed_.wait(held);
       continue;
     }
-    woken_ = false;
+    lane.woken = false;
     held.unlock();
-    const bool did = do_one();
+    const bool did = do_one(lane.kinds);
     held.lock();
-    woken_ = woken_ || did;
+    lane.woken = lane.woken || did;
   }
 }
 
-bool Runner::do_one() {
-  auto job = store_.write([](store::Writing& tx) { return store::claim_job(tx, core::utc_us()); });
+bool Runner::do_one(const std::vector<std::string>& kinds) {
+  auto job =
+      store_.write([&](store::Writing& tx) { return store::claim_job(tx, kinds, core::utc_us()); });
   if (!job) {
     log_("jobs: " + job.error().what);
     return false;
@@ -97,13 +108,11 @@ bool Runner::ending() {
 
 core::Result<void> Runner::work_on(const store::Job& job) {
   if (job.kind == "metrics") return assess_trial(store_, objects_, job.subject);
-  if (job.kind != "diagnosis" && job.kind != "analysis")
-    return core::Error{core::Errc::bad_input, "no work of the kind " + job.kind + " is known"};
   if (job.attempts > kMostAttempts)
     return core::Error{core::Errc::unavailable, "it ended the server before it was done"};
   const auto wants_to_end = [this] { return ending(); };
   return job.kind == "analysis" ? analyse(store_, objects_, job.subject, wants_to_end)
-                                : diagnose(store_, objects_, job.subject, wants_to_end);
+                                : run_lab(store_, objects_, job.subject, wants_to_end);
 }
 
 core::Result<void> Runner::note_failure(const store::Job& job, const core::Error& error) {

@@ -1,4 +1,4 @@
-/// The thread that works on jobs.
+/// The threads that work on jobs.
 #pragma once
 
 #include <condition_variable>
@@ -12,13 +12,15 @@
 
 namespace jobs {
 
-/// Claims and does one job after the other until nothing waits, then waits to be woken. Ends with
-/// its object, after the job in hand; a run of the lab or an analysis is left off and begins again after the next
-/// start, three times at most.
+/// Two threads, each for its kinds of jobs: scores, which someone waits for, and what takes minutes
+/// (the lab, analyses of a cohort) and runs at low priority, so that it delays neither scores nor
+/// requests. Each claims and does one job after the other until nothing waits, then waits to be
+/// woken. They end with their object, after the job in hand; a run of the lab or an analysis is
+/// left off and begins again after the next start, three times at most.
 class Runner {
  public:
   /// Called with one line when something is to be known: a job that failed, a database that
-  /// refuses.
+  /// refuses. From any of the threads.
   using Log = std::function<void(const std::string& line)>;
 
   /// Puts jobs that a dead process had claimed back in the queue, then starts.
@@ -31,10 +33,16 @@ class Runner {
   void wake();
 
  private:
+  struct Lane {
+    std::vector<std::string> kinds;
+    bool woken = true;
+    std::thread thread = {};
+  };
+
   Runner(store::Store& store, const store::Objects& objects, Log log);
-  void run();
+  void run(Lane& lane);
   /// Does one job; false when there is none.
-  bool do_one();
+  bool do_one(const std::vector<std::string>& kinds);
   core::Result<void> work_on(const store::Job& job);
   core::Result<void> note_failure(const store::Job& job, const core::Error& error);
   bool ending();
@@ -42,10 +50,10 @@ class Runner {
   store::Store& store_;
   const store::Objects& objects_;
   Log log_;
-  std::mutex mutex_;  ///< guards the two below
-  bool woken_ = true, ending_ = false;
+  std::mutex mutex_;  ///< guards ending_ and what the lanes were woken for
+  bool ending_ = false;
   std::condition_variable changed_;
-  std::thread thread_;
+  Lane scores_{{"metrics"}}, lab_{{"lab", "analysis"}};
 };
 
 }  // namespace jobs

@@ -78,8 +78,20 @@ void add_lab_options(CLI::App& app, LabOptions& options) {
   app.add_flag("--json", options.json, "print the answer as JSON");
 }
 
+void add_own_option(CLI::App& app, LabOptions& options) {
+  app.add_option("--effect", options.own,
+                 "file with an effect of your own, tractus-effect/1; may be given again")
+      ->expected(1);
+}
+
 Result<lab_io::Case> opened(const LabOptions& options) {
-  return lab_io::open_case(options.sources, core::terminal_progress("reading"));
+  lab_io::Sources sources = options.sources;
+  for (const auto& file : options.own) {
+    auto own = lab_io::read_own(file);
+    if (!own) return own.error();
+    sources.own.push_back(std::move(*own));
+  }
+  return lab_io::open_case(sources, core::terminal_progress("reading"));
 }
 
 Result<void> writable(const std::filesystem::path& file) {

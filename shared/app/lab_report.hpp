@@ -12,14 +12,18 @@ namespace commands {
 
 struct LabOptions {
   lab_io::Sources sources;
-  std::filesystem::path report;  ///< empty: none
+  std::vector<std::filesystem::path> own;  ///< files of the user's own effects
+  std::filesystem::path report;            ///< empty: none
   bool json = false;
 };
 
 /// --model, --measurements, --report, --threads, --json.
 void add_lab_options(CLI::App& app, LabOptions& options);
 
-/// Opens model and measurements with a bar on a terminal.
+/// --effect, for commands that take effects of the user's own.
+void add_own_option(CLI::App& app, LabOptions& options);
+
+/// Opens model, own effects and measurements with a bar on a terminal.
 core::Result<lab_io::Case> opened(const LabOptions& options);
 
 /// Refuses, before any work, a file that may not be written.

@@ -20,6 +20,7 @@ struct ProbingMotion {
   /// Speed below which the motion counts as rest, about three times the error of v_m_s: where
   /// sgn v is asked for, see direction().
   double rest_m_s = 1e-5;
+  double rest_rad_s = 1e-4;  ///< the same of omega_rad_s
 
   std::size_t size() const noexcept { return x_m.size(); }
 };
@@ -30,7 +31,8 @@ struct ProbingTick {
   double dt_s = 0.0;  ///< since the moment before; 0 at the first
   double x_m = 0.0, v_m_s = 0.0, a_m_s2 = 0.0;
   double theta_rad = 0.0, omega_rad_s = 0.0, tz_Nm = 0.0;
-  double rest_m_s = 0.0;  ///< as in ProbingMotion; 0 in the live loop, whose speed is exact
+  double rest_m_s = 0.0;    ///< as in ProbingMotion; 0 in the live loop, whose speed is exact
+  double rest_rad_s = 0.0;  ///< as in ProbingMotion
 };
 
 /// sgn v of a motion known to within `rest_m_s`: 0 below it, ±1 from twice it on, straight between.
@@ -49,6 +51,7 @@ enum class ProbingStage {
   depth,      ///< the depth and speed that the bone sees
   scale,      ///< a factor on the bone's resistance K(x − x0) + D v
   force,      ///< added to the resistance
+  torque,     ///< added to the turning stage's torque
   delay,      ///< moves the recorded force in time (measurement)
   recording,  ///< added to the recorded force (measurement)
 };
@@ -85,6 +88,9 @@ class ProbingEffect {
                          const double* /*state*/) const noexcept {
     return 0.0;
   }
+  /// Stage torque: N·m about x that the hand must add at that moment, from depth, angle and turning
+  /// alone; without state.
+  virtual double torque_Nm(const ProbingTick& /*tick*/) const noexcept { return 0.0; }
   /// force_N and commit in one: what a replay calls, sample after sample.
   virtual double replay_N(const ProbingTick& tick, double base_N, double* state) const noexcept {
     const double out_N = force_N(tick, base_N, state);
@@ -94,6 +100,8 @@ class ProbingEffect {
   /// Stages delay and recording: turns the law's force over a whole trial, N, into what the sensor
   /// says.
   virtual void record(const ProbingMotion& /*motion*/, std::span<double> /*fz_N*/) const {}
+  /// Stage recording: the same of the torque, N·m.
+  virtual void record_torque(const ProbingMotion& /*motion*/, std::span<double> /*tz_Nm*/) const {}
 };
 
 /// An entry of the catalogue.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "effects/expression.hpp"
 #include "lab/words.hpp"
 
 namespace lab {
@@ -46,6 +47,7 @@ Json where_json(const Where& where) {
   Json out = Json::array();
   for (const Region& region : where.regions)
     out.push_back({{"region", region.text},
+                   {"words", region.words},
                    {"share_of_error", number(region.share_of_error)},
                    {"share_of_time", number(region.share_of_time)},
                    {"rmse", number(region.rmse)},
@@ -166,6 +168,34 @@ Json to_json(const Comparison& comparison) {
           {"phases", phases}};
 }
 
+Json to_json(const std::vector<Ranked>& ranking) {
+  Json out = Json::array();
+  for (const Ranked& ranked : ranking) {
+    Json json{{"id", ranked.id},
+              {"probability", number(ranked.probability)},
+              {"held_out_rmse", ranked.held_out_rmse ? number(*ranked.held_out_rmse) : Json()}};
+    if (!ranked.note.empty()) json["note"] = ranked.note;
+    if (effects::is_expression(ranked.id)) json["own"] = true;
+    out.push_back(std::move(json));
+  }
+  return out;
+}
+
+Json to_json(const TractMap& map) {
+  const std::size_t across = map.angle_rad.empty() ? 0 : map.angle_rad.size() - 1;
+  const auto table = [&](const std::vector<double>& cells) {
+    Json out = Json::array();
+    for (std::size_t at = 0; across > 0 && at < cells.size(); at += across)
+      out.push_back(numbers(
+          {cells.begin() + std::ptrdiff_t(at), cells.begin() + std::ptrdiff_t(at + across)}));
+    return out;
+  };
+  return {{"depth_m", numbers(map.depth_m)},
+          {"angle_rad", numbers(map.angle_rad)},
+          {"rmse", table(map.rmse)},
+          {"share", table(map.share)}};
+}
+
 Json to_json(const Diagnosis& d) {
   Json out{{"format", "tractus-diagnosis/1"},
            {"verdict", word(d.verdict)},
@@ -173,15 +203,9 @@ Json to_json(const Diagnosis& d) {
            {"base", Json{{"rmse", number(d.base.rmse)},
                          {"held_out_rmse", number(d.base.held_out_rmse)},
                          {"noise_floor", number(d.base.noise_floor)}}}};
-  for (const char* key : {"effects", "ranking", "steps", "confounded"}) out[key] = Json::array();
+  for (const char* key : {"effects", "steps", "confounded"}) out[key] = Json::array();
   for (const FoundEffect& found : d.effects) out["effects"].push_back(effect(found));
-  for (const Ranked& ranked : d.ranking) {
-    Json json{{"id", ranked.id},
-              {"probability", number(ranked.probability)},
-              {"held_out_rmse", ranked.held_out_rmse ? number(*ranked.held_out_rmse) : Json()}};
-    if (!ranked.note.empty()) json["note"] = ranked.note;
-    out["ranking"].push_back(std::move(json));
-  }
+  out["ranking"] = to_json(d.ranking);
   for (const Step& step : d.steps)
     out["steps"].push_back({{"model", step.model},
                             {"rmse", number(step.rmse)},

@@ -6,6 +6,7 @@
 #include "lab/comparison.hpp"
 #include "lab/diagnosis.hpp"
 #include "lab/fit.hpp"
+#include "lab/tract_map.hpp"
 
 namespace lab {
 
@@ -20,6 +21,12 @@ core::Json to_json(const Comparison& comparison);
 /// "settle":{between, recording, expected_gain} or null, …}. A parameter of several components has
 /// arrays as value and sd.
 core::Json to_json(const Diagnosis& diagnosis);
+
+/// The "ranking" of a diagnosis by itself.
+core::Json to_json(const std::vector<Ranked>& ranking);
+
+/// {"depth_m", "angle_rad": edges, "rmse", "share": [depth][angle], null where nothing touched}.
+core::Json to_json(const TractMap& map);
 
 /// {"base":{rmse, noise_floor}, "rmse", "held_out_rmse", "effects":[…], "parameters":[{name, value,
 /// sd, …}], "trials":[…], "channels":[…], "remarks":[…]}; `given` is the error of the model before.

@@ -124,7 +124,11 @@ Result<Diagnosis> diagnose(const Problem& problem, const DiagnoseOptions& option
   if (residual.size() == 0)
     return Error{Errc::bad_input, "the recordings are too short to compare"};
   Selection selection(residual, options, progress);
-  if (!selection.run()) return Error{Errc::cancelled, "stopped"};
+  const auto early = [&] {
+    if (options.early)
+      options.early(ranking(residual, selection, Belief(residual, selection, selection.leading())));
+  };
+  if (!selection.run(early)) return Error{Errc::cancelled, "stopped"};
   Diagnosis out;
   out.notes = problem.notes();
   out.base_fit = report(residual, selection.tried().at(""), true);
@@ -147,6 +151,12 @@ Result<Diagnosis> diagnose(const Problem& problem, const DiagnoseOptions& option
     out.depends_on = rest.words;
     out.rest_explained = rest.explained;
   }
+  if (!selection.refused().empty())
+    out.notes.push_back(
+        fmt::format("{} would bring the residual to the floor, but what it takes out follows the "
+                    "motion before: "
+                    "something with a slow memory is missing that is in no catalogue",
+                    selection.refused()));
   out.ranking = ranking(residual, selection, belief);
   out.confounded = belief.confounded();
   out.settle = belief.settle(problem);

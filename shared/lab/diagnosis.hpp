@@ -1,6 +1,7 @@
 /// Which effect is missing from a model: the answer of the lab's engine.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -74,6 +75,8 @@ struct DiagnoseOptions {
   int threads = 2;
   int max_effects = 3;
   std::vector<std::string> only;  ///< if not empty: try these effects alone
+  /// Told the ranking once, early: every effect by itself was tried, none together.
+  std::function<void(const std::vector<Ranked>&)> early = {};
 };
 
 /// Errors: bad_input when there is nothing to judge by (no residuals, an unknown effect asked for);

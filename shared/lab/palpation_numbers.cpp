@@ -48,13 +48,6 @@ bool covers(std::string_view pattern, std::string_view pointer) {
   return pointer == pattern || (pointer.starts_with(pattern) && pointer[pattern.size()] == '/');
 }
 
-const effects::EffectFacts& facts_of(std::string_view id) {
-  for (const auto& info : effects::palpation_effects())
-    if (info.facts.id == id) return info.facts;
-  core::require(false, "an effect of a structure is in the catalogue");
-  std::abort();
-}
-
 /// Steps that are felt but small, by the parameters' names. Not too small: where a step takes a
 /// sample's shank from one rest to another, the derivative there is the jump over the step.
 double step_of(std::string_view pointer, double fallback) {
@@ -85,8 +78,17 @@ double step_of(std::string_view pointer, double fallback) {
 
 }  // namespace
 
-PalpationNumbers::PalpationNumbers(models::PalpationModel model, double field_per_m)
-    : model_(std::move(model)), field_per_m_(field_per_m) {
+const effects::EffectFacts& PalpationNumbers::facts_of(std::string_view id) const {
+  if (const auto* facts = offered_.facts(id)) return *facts;
+  for (const auto& info : effects::palpation_effects())
+    if (info.facts.id == id) return info.facts;
+  core::require(false, "an effect of a structure is in the catalogue");
+  std::abort();
+}
+
+PalpationNumbers::PalpationNumbers(models::PalpationModel model, double field_per_m,
+                                   Offered offered)
+    : model_(std::move(model)), offered_(std::move(offered)), field_per_m_(field_per_m) {
   for (const effects::Use& use : model_.effects) {
     auto facts = effects::palpation_facts(use);
     core::require(bool(facts), "a model's effects are known");
@@ -180,7 +182,7 @@ models::PalpationModel PalpationNumbers::with(const Structure& structure,
   for (const std::string& id : structure.effects) {
     const effects::EffectFacts& facts = facts_of(id);
     if (facts.free_per_trial) continue;
-    effects::Use use{id, {}};
+    effects::Use use = offered_.use(id, {});
     for (std::size_t k = 0; k < effects::value_count(facts); ++k)
       use.values.push_back(values[at++]);
     out.effects.push_back(std::move(use));

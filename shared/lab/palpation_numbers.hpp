@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "lab/offered.hpp"
 #include "lab/problem.hpp"
 #include "models/model.hpp"
 
@@ -16,7 +17,7 @@ class PalpationNumbers {
  public:
   /// @param field_per_m  a usual |g| where the recordings touch bone: where the search for an
   /// exponent has its reference
-  PalpationNumbers(models::PalpationModel model, double field_per_m);
+  PalpationNumbers(models::PalpationModel model, double field_per_m, Offered offered = {});
 
   /// Base, then the model's own effects, then those added.
   std::vector<Parameter> parameters(const Structure& structure) const;
@@ -25,6 +26,7 @@ class PalpationNumbers {
   /// The model with these values. `sensor_drift`, free per trial, is left out of it.
   models::PalpationModel with(const Structure& structure, std::span<const double> values) const;
   const models::PalpationModel& model() const { return model_; }
+  const Offered& offered() const { return offered_; }
 
  private:
   struct Slot {
@@ -33,9 +35,11 @@ class PalpationNumbers {
     Parameter parameter;
   };
   bool fixed(const std::string& pointer) const;
+  const effects::EffectFacts& facts_of(std::string_view id) const;
   std::vector<Parameter> of_effect(const effects::EffectFacts& facts) const;
 
   models::PalpationModel model_;
+  Offered offered_;
   std::vector<effects::EffectFacts> own_;  // of the model's effects
   double field_per_m_;
   std::vector<Slot> slots_;

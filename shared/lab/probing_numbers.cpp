@@ -45,17 +45,18 @@ bool covers(std::string_view pattern, std::string_view pointer) {
   return pattern.empty();  // what lies above a number fixes it too
 }
 
-const effects::EffectFacts& facts_of(std::string_view id) {
+}  // namespace
+
+const effects::EffectFacts& ProbingNumbers::facts_of(std::string_view id) const {
+  if (const auto* facts = offered_.facts(id)) return *facts;
   for (const auto& info : effects::probing_effects())
     if (info.facts.id == id) return info.facts;
   core::require(false, "an effect of a structure is in the catalogue");
   std::abort();
 }
 
-}  // namespace
-
-ProbingNumbers::ProbingNumbers(models::ProbingModel model, const Reach& reach)
-    : model_(std::move(model)) {
+ProbingNumbers::ProbingNumbers(models::ProbingModel model, const Reach& reach, Offered offered)
+    : model_(std::move(model)), offered_(std::move(offered)) {
   for (const effects::Use& use : model_.effects) {
     const auto facts = effects::probing_facts(use);
     core::require(bool(facts), "a model's effects were checked as it was read");
@@ -132,8 +133,9 @@ void ProbingNumbers::add_layer(std::size_t k, const Reach& reach) {
   const bool joined = k > 0 && layer.start_m - before_m < kSameBorder_m;
   if (near(layer.start_m) && reach.least_m < layer.start_m) {
     place.start = layer.start_m;
+    // A border stays on its side of the middle of each of its layers, so that none passes another.
     place.low = joined ? model_.layers[k - 1].start_m +
-                             std::max(0.3 * model_.layers[k - 1].thickness_m, kLeastLayer_m)
+                             std::max(0.55 * model_.layers[k - 1].thickness_m, kLeastLayer_m)
                        : before_m;
     place.low = std::min(place.low, layer.start_m);
     place.high = layer.start_m + std::max(0.0, 0.45 * layer.thickness_m - kLeastLayer_m);
@@ -220,8 +222,8 @@ models::ProbingModel ProbingNumbers::with(const Structure& structure,
     const auto& facts = facts_of(id);
     const std::size_t n = parameters_of(facts).size();
     if (!facts.free_per_trial)
-      out.effects.push_back(
-          {id, {values.begin() + std::ptrdiff_t(at), values.begin() + std::ptrdiff_t(at + n)}});
+      out.effects.push_back(offered_.use(
+          id, {values.begin() + std::ptrdiff_t(at), values.begin() + std::ptrdiff_t(at + n)}));
     at += n;
   }
   core::require(at == values.size(), "as many values as the structure has parameters");

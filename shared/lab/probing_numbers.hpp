@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "lab/offered.hpp"
 #include "lab/problem.hpp"
 #include "models/probing_model.hpp"
 
@@ -20,7 +21,7 @@ struct Reach {
 /// borders that they came near.
 class ProbingNumbers {
  public:
-  ProbingNumbers(models::ProbingModel model, const Reach& reach);
+  ProbingNumbers(models::ProbingModel model, const Reach& reach, Offered offered = {});
 
   /// Base, then the model's own effects, then those added.
   std::vector<Parameter> parameters(const Structure& structure) const;
@@ -31,8 +32,10 @@ class ProbingNumbers {
   bool has(std::string_view effect) const;
   /// Layers that no recording entered, in words.
   const std::vector<std::string>& notes() const { return notes_; }
+  const Offered& offered() const { return offered_; }
 
  private:
+  const effects::EffectFacts& facts_of(std::string_view id) const;
   enum class Kind { stiffness, damping, equilibrium, start, end, viscous, detent, pitch };
   struct Slot {
     Kind kind;
@@ -43,6 +46,7 @@ class ProbingNumbers {
   bool fixed(const std::string& pointer) const;
 
   models::ProbingModel model_;
+  Offered offered_;
   std::vector<effects::EffectFacts> own_;  // of the model's effects, a user's formulas among them
   std::vector<Slot> slots_;
   std::vector<Parameter> base_;

@@ -25,7 +25,7 @@ using core::Result;
 constexpr double kTravel_m = 1.0;  // the longest a model may have: a recording says how far it went
 /// Samples of a set that are looked at: memory and time stay bounded, and more would tell no more.
 constexpr std::size_t kMostSamples = 600'000, kLeastKept = 200;
-constexpr std::string_view kDrift = "sensor_drift";
+constexpr std::string_view kDrift = "sensor_drift", kRotary = "rotary_";
 
 /// Friction whose direction is that of the motion. At rest it takes whatever value within its size
 /// holds the probe (Coulomb's law is set-valued there), so a residual counts from there on.
@@ -63,7 +63,10 @@ class ProbingProblem final : public Problem {
   void residuals(const Structure& structure, std::span<const double> values, int k,
                  Eigen::Ref<Eigen::VectorXd> out) const override {
     raw_residuals(structure, values, k, out);
-    if (has_drift(structure)) drifts_[std::size_t(k)].remove(out);
+    if (!has_drift(structure)) return;
+    const Eigen::VectorXd before = out;
+    drifts_[std::size_t(k)].remove(out);
+    out = (before.array() == 0.0).select(0.0, out);
   }
   int free_per_trial(const Structure& structure) const override {
     return has_drift(structure) ? Drift::kOrders : 0;
@@ -184,15 +187,19 @@ void ProbingProblem::set_candidates() {
   };
   const bool angle = every(&effects::ProbingMotion::omega_rad_s),
              torque = every(&effects::ProbingMotion::tz_Nm);
-  for (const auto& info : effects::probing_effects()) {
-    if (numbers_.has(info.facts.id)) continue;
-    Candidate candidate{info.facts, true, ""};
+  std::vector<effects::EffectFacts> all;
+  for (const auto& info : effects::probing_effects()) all.push_back(info.facts);
+  for (const auto& [use, facts] : numbers_.offered().all()) all.push_back(facts);
+  for (const effects::EffectFacts& facts : all) {
+    // What acts about the axis shows in the torque, which is judged where the rig only turns.
+    if (numbers_.has(facts.id) || (!turns_ && facts.id.starts_with(kRotary))) continue;
+    Candidate candidate{facts, true, ""};
     const auto lacks = [&](const std::string& why) {
       candidate.possible = false;
       candidate.why_not = why;
     };
-    if (turns_) lacks("depth and force were not recorded");
-    for (const std::string& need : info.facts.needs) {
+    if (turns_ && !facts.id.starts_with(kRotary)) lacks("depth and force were not recorded");
+    for (const std::string& need : facts.needs) {
       if (!angle && (need == "omega_rad_s" || need == "theta_rad"))
         lacks("theta_rad was not recorded in every trial");
       if (!torque && need == "tz_Nm") lacks("tz_Nm was not recorded in every trial");
@@ -239,6 +246,7 @@ Residuals ProbingProblem::full_rate(const Structure& structure, std::span<const 
   for (std::size_t i = 0; i < predicted.at_rest_N.size(); ++i) {
     double& residual = out.channels[0][r.rest[i]];
     residual = beyond(residual, predicted.at_rest_N[i]);
+    if (residual == 0.0) out.trusted[r.rest[i]] = 0.0;  // says nothing
   }
   if (channels_.size() > 1) out.channels.push_back(minus(r.other, predicted.forces.tz_Nm));
   return out;
@@ -340,8 +348,8 @@ Result<std::unique_ptr<Problem>> make_probing_problem(const models::ProbingModel
                  fmt::format("{}: the probe moves by {:.2g} m in all; nothing can be told from "
                              "that",
                              set.folder.string(), reach.most_m - reach.least_m)};
-  auto problem =
-      std::make_unique<ProbingProblem>(ProbingNumbers(model, reach), std::move(recordings), turns);
+  auto problem = std::make_unique<ProbingProblem>(ProbingNumbers(model, reach, options.offered),
+                                                  std::move(recordings), turns);
   if (!shortened.empty()) problem->note(shortened);
   // Twice: borders and dampings of the file first, then those of a first fit.
   std::vector<double> values;

@@ -190,7 +190,37 @@ std::string number(double value, const std::string& unit, bool for_people) {
   return fmt::format("{:.4g}{}{}", value, shown.empty() || shown[0] == '\xc2' ? "" : " ", shown);
 }
 
+bool holds(const Condition& c, const TrialSamples& trial, std::size_t row) {
+  const double value = double(trial.features[c.feature][row]);
+  switch (c.is) {
+    case Condition::Is::above:
+      return value >= c.bound;
+    case Condition::Is::below:
+      return value < c.bound;
+    case Condition::Is::word:
+      return value == double(c.word);
+    case Condition::Is::not_word:
+      break;
+  }
+  return value != double(c.word);
+}
+
 }  // namespace
+
+std::vector<std::int8_t> region_of(const Samples& samples, const TrialSamples& trial,
+                                   const std::vector<Region>& regions) {
+  std::vector<std::int8_t> out(trial.t_s.size(), -1);
+  if (samples.features.empty()) return out;
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    const auto inside = [&](const Region& region) {
+      return std::ranges::all_of(
+          region.conditions, [&](const Condition& c) { return holds(c, trial, k / trial.stride); });
+    };
+    const auto it = std::ranges::find_if(regions, inside);
+    if (it != regions.end()) out[k] = std::int8_t(it - regions.begin());
+  }
+  return out;
+}
 
 std::string text(const Condition& condition, const Samples& samples, bool for_people) {
   const Feature& feature = samples.features[condition.feature];

@@ -2,6 +2,7 @@
 /// error.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -59,6 +60,10 @@ struct WhereOptions {
 /// the other, and a split that the other does not confirm is taken back. A single trial is cut into
 /// forty stretches of time instead. Which half a trial falls into is fixed by its number.
 Where where(const Samples& samples, const WhereOptions& options = {});
+
+/// The region that each sample of a trial lies in: an index into `regions`, −1 for none.
+std::vector<std::int8_t> region_of(const Samples& samples, const TrialSamples& trial,
+                                   const std::vector<Region>& regions);
 
 /// One condition in SI ("depth > 0.02 m") or as people say it ("depth > 20 mm").
 std::string text(const Condition& condition, const Samples& samples, bool for_people);

@@ -27,7 +27,8 @@ ProbingTick tick_of(const ProbingMotion& motion, std::size_t k) {
           .theta_rad = or_zero(motion.theta_rad),
           .omega_rad_s = or_zero(motion.omega_rad_s),
           .tz_Nm = or_zero(motion.tz_Nm),
-          .rest_m_s = motion.rest_m_s};
+          .rest_m_s = motion.rest_m_s,
+          .rest_rad_s = motion.rest_rad_s};
 }
 
 /// A block on its way through the stages.
@@ -64,8 +65,12 @@ void add(const ProbingEffect& effect, double* state, Block& b) {
 ProbingRuntime::ProbingRuntime(laws::ProbingLaw law, Effects effects)
     : law_(std::move(law)), effects_(std::move(effects)) {
   std::ranges::stable_sort(effects_, {}, [](const auto& effect) { return effect->stage(); });
-  const auto measures = [](const auto& e) { return e->stage() >= ProbingStage::delay; };
-  live_ = std::size_t(std::ranges::find_if(effects_, measures) - effects_.begin());
+  const auto count_before = [this](ProbingStage stage) {
+    const auto from = [&](const auto& e) { return e->stage() >= stage; };
+    return std::size_t(std::ranges::find_if(effects_, from) - effects_.begin());
+  };
+  live_ = count_before(ProbingStage::torque);
+  felt_ = count_before(ProbingStage::delay);
 }
 
 core::Result<ProbingRuntime> ProbingRuntime::make(const ProbingModel& model, double travel_m) {
@@ -130,11 +135,28 @@ void ProbingRuntime::predict(const ProbingMotion& motion, ProbingForces& out) co
                 "a motion has one time, speed and acceleration for each depth");
   out.fz_N.resize(n);
   predict_law(motion, out.fz_N);
-  for (std::size_t e = live_; e < effects_.size(); ++e) effects_[e]->record(motion, out.fz_N);
+  for (std::size_t e = felt_; e < effects_.size(); ++e) effects_[e]->record(motion, out.fz_N);
   const bool turns = motion.theta_rad.size() == n && motion.omega_rad_s.size() == n;
   out.tz_Nm.resize(turns ? n : 0);
-  for (std::size_t k = 0; k < out.tz_Nm.size(); ++k)
+  for (std::size_t k = 0; k < out.tz_Nm.size(); ++k) {
     out.tz_Nm[k] = law_.torque_Nm(motion.x_m[k], motion.theta_rad[k], motion.omega_rad_s[k]);
+    if (felt_ == live_) continue;
+    const ProbingTick tick = tick_of(motion, k);
+    for (std::size_t e = live_; e < felt_; ++e) out.tz_Nm[k] += effects_[e]->torque_Nm(tick);
+  }
+  if (!turns) return;
+  for (std::size_t e = felt_; e < effects_.size(); ++e)
+    effects_[e]->record_torque(motion, out.tz_Nm);
+}
+
+double ProbingRuntime::torque_Nm(double x_m, double theta_rad,
+                                 double turning_rad_s) const noexcept {
+  if (law_.mode_at(x_m) == laws::ProbingMode::breach) return 0.0;
+  double out = law_.torque_Nm(x_m, theta_rad, turning_rad_s);
+  const ProbingTick tick{
+      .x_m = x_m, .theta_rad = theta_rad, .omega_rad_s = turning_rad_s, .rest_rad_s = kSoft_rad_s};
+  for (std::size_t e = live_; e < felt_; ++e) out += effects_[e]->torque_Nm(tick);
+  return out;
 }
 
 double ProbingRuntime::advance(double force_N, double turning_rad_s, double dt_s,

@@ -38,7 +38,7 @@ struct ProbingLive {
 /// the couplings:
 ///
 ///     fz = s · (D v + K (x̃ − x0)) + Σ f_e,   then late by the delay, plus bias, drift, crosstalk
-///     tz = viscous and detent torque of the law
+///     tz = viscous and detent torque of the law + Σ τ_e, plus the sensor's bias
 ///
 /// Runs both ways, as the law does. Immutable: safe to use from several threads at once, but for a
 /// user's expression, whose runtime belongs to one thread at a time. Making one costs microseconds,
@@ -71,6 +71,12 @@ class ProbingRuntime {
   double advance(double force_N, double turning_rad_s, double dt_s,
                  ProbingLive& live) const noexcept;
 
+  /// Torque of the hand on the probe, the live rotary stage: the law's with the effects', which its
+  /// motor renders; nothing behind a wall, where the motor is off. Dry friction begins softly over
+  /// kSoft_rad_s, or the stage would chatter about rest.
+  double torque_Nm(double x_m, double theta_rad, double turning_rad_s) const noexcept;
+  static constexpr double kSoft_rad_s = 0.05;
+
   const laws::ProbingLaw& law() const noexcept { return law_; }
 
  private:
@@ -80,7 +86,9 @@ class ProbingRuntime {
 
   laws::ProbingLaw law_;
   Effects effects_;       // by stage
-  std::size_t live_ = 0;  // so many of them, from the first, are the law's, not the recording's
+  std::size_t live_ = 0;  // so many of them, from the first, act along x
+  std::size_t felt_ = 0;  // so many are the law's, those from live_ on about x; the rest is the
+                          // recording's
 };
 
 }  // namespace models

@@ -68,7 +68,7 @@ void ProbingLoop::step_law(const ProbingGuard::Seen& seen, ProbingSample& out,
   out.mode = x_m >= travel_m_ - kAtStop_m ? ProbingMode::stopped
              : holds                      ? ProbingMode::holding
                                           : ProbingMode(int(law.law().mode_at(x_m)));
-  torque_Nm = -law.law().torque_Nm(x_m, theta_rad_, reading_.turning_rad_s);
+  torque_Nm = -law.torque_Nm(x_m, theta_rad_, reading_.turning_rad_s);
 }
 
 ProbingSample ProbingLoop::tick(core::Instant_ns now, std::uint32_t number, bool late) noexcept {

@@ -54,10 +54,11 @@ const std::map<std::string, Names> kAllowed = {
       "shared/plot"}},
     {"shared/wire", {"shared/core", "shared/math", "shared/trial"}},
     {"shared/plot", {"shared/core"}},
-    // The replay's pictures and tables are of a recording and a model together.
+    // The replay's pictures and tables are of a recording and a model together; recorded depths are
+    // smoothed as the lab smooths them, or the two would disagree on the same files.
     {"shared/replay",
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/models", "shared/trial",
-      "shared/plot"}},
+      "shared/plot", "shared/lab"}},
     {"db/store", {"shared/core", "shared/trial"}},
     {"station/devices", {"shared/core", "shared/math"}},
     // The rig's electronics and mechanics, played by a process: the register map, and no law.

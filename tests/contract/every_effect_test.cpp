@@ -124,8 +124,11 @@ class EveryEffect : public testing::TestWithParam<std::string> {
 /// Those that reach a hand.
 class EveryRenderedEffect : public EveryEffect {};
 
-TEST_P(EveryEffect, SaysWhatItIs) {
-  const auto& f = info_.facts;
+/// Those about the axis too, whose laws every_rotary_effect_test.cpp keeps.
+class EveryEntry : public testing::TestWithParam<std::string> {};
+
+TEST_P(EveryEntry, SaysWhatItIs) {
+  const auto& f = entry(GetParam()).facts;
   EXPECT_FALSE(f.summary.empty() || f.equation.empty() || f.source.empty());
   EXPECT_FALSE(f.params.empty());
   EXPECT_TRUE(std::ranges::any_of(f.params, [](const Param& p) { return !std::isnan(p.off); }));
@@ -294,9 +297,14 @@ TEST(AUsersOwnEffect, AllocatesNothingInATick) {
   EXPECT_EQ(guard.allocations(), 0u);
 }
 
-std::vector<std::string> ids() {
+std::vector<std::string> all_ids() {
   std::vector<std::string> out;
   for (const auto& info : effects::probing_effects()) out.push_back(info.facts.id);
+  return out;
+}
+std::vector<std::string> ids() {
+  auto out = all_ids();
+  std::erase_if(out, [](const auto& id) { return id.starts_with("rotary_"); });
   return out;
 }
 std::vector<std::string> rendered_ids() {
@@ -305,6 +313,7 @@ std::vector<std::string> rendered_ids() {
   return out;
 }
 const auto kName = [](const auto& one) { return one.param; };
+INSTANTIATE_TEST_SUITE_P(Probing, EveryEntry, testing::ValuesIn(all_ids()), kName);
 INSTANTIATE_TEST_SUITE_P(Probing, EveryEffect, testing::ValuesIn(ids()), kName);
 INSTANTIATE_TEST_SUITE_P(Probing, EveryRenderedEffect, testing::ValuesIn(rendered_ids()), kName);
 

@@ -42,6 +42,7 @@ Command diagnose_command() {
           .make = [](CLI::App& app) -> std::function<Outcome()> {
             auto options = std::make_shared<Options>();
             add_lab_options(app, *options);
+            add_own_option(app, *options);
             app.add_option("--out-model", options->out_model,
                            "write the model, refitted and with the effects found");
             return [options] { return run(*options); };

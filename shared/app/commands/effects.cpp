@@ -1,7 +1,6 @@
 /// `tractus effects`: the catalogue of physical effects; checks a user's own.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <memory>
 
 #include "app/command.hpp"
@@ -10,6 +9,7 @@
 #include "effects/palpation_effect.hpp"
 #include "effects/palpation_expression.hpp"
 #include "effects/probing_effect.hpp"
+#include "lab/io/catalogue.hpp"
 
 namespace commands {
 namespace {
@@ -59,33 +59,6 @@ core::Result<std::vector<Entry>> chosen(const Options& o) {
   return out;
 }
 
-Json json_of(const Entry& entry) {
-  const EffectFacts& f = entry.facts;
-  Json parameters = Json::array();
-  for (const Param& p : f.params)
-    parameters.push_back({{"name", p.name},
-                          {"unit", ::effects::unit_of(p)},
-                          {"meaning", p.meaning},
-                          {"components", p.components},
-                          {"initial", p.initial},
-                          {"low", p.low},
-                          {"high", p.high},
-                          {"off", std::isnan(p.off) ? Json() : Json(p.off)},
-                          {"if_missing", std::isnan(p.if_missing) ? Json() : Json(p.if_missing)},
-                          {"logarithmic", p.logarithmic}});
-  return {{"id", f.id},
-          {"rig", entry.rig},
-          {"kind", ::effects::name(f.kind)},
-          {"summary", f.summary},
-          {"equation", f.equation},
-          {"source", f.source},
-          {"needs", f.needs},
-          {"contains", f.parents},
-          {"free_per_trial", f.free_per_trial},
-          {"passive", f.passive},
-          {"parameters", std::move(parameters)}};
-}
-
 std::string joined(const std::vector<std::string>& words) {
   std::string out;
   for (const std::string& word : words) out += (out.empty() ? "" : ", ") + word;
@@ -126,7 +99,7 @@ Outcome run(const Options& o) {
     return 0;
   }
   Json list = Json::array();
-  for (const Entry& entry : *entries) list.push_back(json_of(entry));
+  for (const Entry& entry : *entries) list.push_back(lab_io::effect_json(entry.rig, entry.facts));
   fmt::print("{}\n", Json{{"effects", std::move(list)}}.dump(2));
   return 0;
 }

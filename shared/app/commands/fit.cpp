@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <memory>
-#include <optional>
 
 #include "app/command.hpp"
 #include "app/lab_report.hpp"
@@ -21,17 +20,8 @@ Outcome run(const Options& options) {
     if (auto ready = writable(file); !ready) return ready.error();
   const auto opened_case = opened(options);
   if (!opened_case) return opened_case.error();
-  LabOptions plain = options;
-  plain.sources.effects.clear();
-  std::optional<lab_io::Case> before;
-  if (!options.sources.effects.empty()) {
-    auto made = opened(plain);
-    if (!made) return made.error();
-    before = std::move(*made);
-  }
   const auto bar = core::terminal_progress("fitting");
-  const auto answer = lab_io::fitted(*opened_case, before ? &*before : nullptr, options.add,
-                                     options.sources.threads, bar);
+  const auto answer = lab_io::fitted(*opened_case, options.add, options.sources.threads, bar);
   if (!answer) return answer.error();
   if (bar) bar(1.0);
   if (auto written = write_files(*answer, options.out, options.report); !written)
@@ -54,9 +44,7 @@ Command fit_command() {
             app.add_option("--add", options->add,
                            "id of an effect to add (see tractus effects); may be given again")
                 ->expected(1);
-            app.add_option("--effect", options->sources.effects,
-                           "file with an effect of your own, tractus-effect/1; may be given again")
-                ->expected(1);
+            add_own_option(app, *options);
             app.add_option("--out", options->out, "write the fitted model")->required();
             return [options] { return run(*options); };
           }};

@@ -1,4 +1,4 @@
-/// `tractus replay`: recorded palpations through a model.
+/// `tractus replay`: recorded palpations and probings through a model.
 #include "replay/replay.hpp"
 
 #include <fmt/format.h>
@@ -8,10 +8,13 @@
 #include <memory>
 
 #include "app/command.hpp"
+#include "app/probing_replay.hpp"
 #include "core/file.hpp"
 #include "core/progress.hpp"
+#include "lab/io/unpacked.hpp"
 #include "replay/pictures.hpp"
 #include "replay/table.hpp"
+#include "trial/probing_set.hpp"
 #include "volume/io/read_volume.hpp"
 
 namespace commands {
@@ -23,10 +26,7 @@ using core::Error;
 using core::Json;
 using core::Result;
 
-struct Options {
-  fs::path model, measurements, out;
-  bool json = false;
-};
+using Options = ReplayOptions;
 
 /// All that was read and computed, before anything is written.
 struct Work {
@@ -46,7 +46,7 @@ core::Progress part_of(const core::Progress& whole, double from, double width) {
 /// The model's volume lies beside the model, else the set names it.
 Result<fs::path> volume_path(const Options& options, const Work& work) {
   if (!work.model.volume.empty()) return options.model.parent_path() / work.model.volume;
-  if (!work.set.volume.empty()) return options.measurements / work.set.volume;
+  if (!work.set.volume.empty()) return work.set.folder / work.set.volume;
   return Error{Errc::bad_input, fmt::format("{}: names no \"volume\", and neither does {}/set.json",
                                             options.model.string(), options.measurements.string())};
 }
@@ -88,16 +88,14 @@ void add_rows(Work& work) {
   work.rows.insert(work.rows.end(), trials.begin(), trials.end());
 }
 
-Result<Work> compute(const Options& options) {
+Result<Work> compute(models::PalpationModel model, const fs::path& folder, const Options& options) {
   Work work;
-  auto model = models::PalpationModel::read(options.model);
-  if (!model) return model.error();
-  auto set = trial::read_palpation_set(options.measurements);
+  auto set = trial::read_palpation_set(folder);
   if (!set) return set.error();
-  work.model = std::move(*model);
+  work.model = std::move(model);
   work.set = std::move(*set);
   const auto down = trial::stated_down(work.set);
-  if (!down) return Error{down.error().code, (options.measurements / down.error().what).string()};
+  if (!down) return Error{down.error().code, (folder / down.error().what).string()};
   auto volume = volume_path(options, work);
   if (!volume) return volume.error();
   work.volume = *volume;
@@ -109,8 +107,7 @@ Result<Work> compute(const Options& options) {
     const double width = 1.0 / double(work.set.trials.size());
     auto replayed =
         replay::replay(*runtime, work.set.trials[k], *down, part_of(bar, width * double(k), width));
-    if (!replayed)
-      return Error{replayed.error().code, (options.measurements / replayed.error().what).string()};
+    if (!replayed) return Error{replayed.error().code, (folder / replayed.error().what).string()};
     work.replayed.push_back(std::move(*replayed));
   }
   work.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -236,7 +233,21 @@ Outcome run(const Options& options) {
   if (fs::exists(options.out, ignored))
     return Error{Errc::conflict, fmt::format("{}: exists already; remove it or choose another name",
                                              options.out.string())};
-  auto work = compute(options);
+  auto model = models::read_model(options.model);
+  if (!model) return model.error();
+  const auto unpacked = lab_io::Unpacked::open(options.measurements);
+  if (!unpacked) return unpacked.error();
+  const auto rig = trial::rig_of_set(unpacked->folder());
+  if (!rig) return rig.error();
+  const auto* probing = std::get_if<models::ProbingModel>(&*model);
+  if ((*rig == "probing") != (probing != nullptr))
+    return Error{Errc::bad_input,
+                 fmt::format("{}: a model of the {} rig, but {} holds measurements of the {} rig",
+                             options.model.string(), probing ? "probing" : "palpation",
+                             options.measurements.string(), *rig)};
+  if (probing) return replay_probing(*probing, unpacked->folder(), options);
+  auto work =
+      compute(std::get<models::PalpationModel>(std::move(*model)), unpacked->folder(), options);
   if (!work) return work.error();
   if (auto written = write(*work, options); !written) return written.error();
   say(*work, options);
@@ -248,13 +259,15 @@ Outcome run(const Options& options) {
 Command replay_command() {
   return {
       .name = "replay",
-      .summary = "Replay recorded palpations through a model: simulated forces, pictures, table",
+      .summary =
+          "Replay recorded palpations or probings through a model: simulated forces, pictures, "
+          "table",
       .example = "tractus replay --model l3.model.json --measurements recordings/ --out replayed/",
       .make = [](CLI::App& app) -> std::function<Outcome()> {
         auto options = std::make_shared<Options>();
         app.add_option("--model", options->model, "model file, tractus-model/1")->required();
         app.add_option("--measurements", options->measurements,
-                       "folder with set.json, tractus-measurements/1")
+                       "folder with set.json, or a zip of one, tractus-measurements/1")
             ->required();
         app.add_option("--out", options->out, "new folder for the results")->required();
         app.add_flag("--json", options->json, "print the summary as JSON");

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "lab/answer.hpp"
+#include "lab/own_effects.hpp"
 
 namespace lab_io {
 namespace {
@@ -81,6 +82,10 @@ Result<Answer> diagnosed(const Case& opened, const DiagnoseWish& wish,
       lab::diagnose(*opened.problem, wish.options, part_of(progress, 0.0, wish.report ? 0.9 : 1.0));
   if (!diagnosis) return diagnosis.error();
   Answer out = begun(opened);
+  if (!opened.own.empty())
+    for (std::string& remark : lab::likenesses(*opened.problem, opened.own,
+                                               diagnosis->base_fit.values, wish.options.threads))
+      diagnosis->notes.push_back(std::move(remark));
   out.json = lab::to_json(*diagnosis);
   out.json["primary"] = opened.problem->channels().front().name;
   out.model = opened.problem->model(diagnosis->final_fit.structure, diagnosis->final_fit.values);
@@ -94,8 +99,9 @@ Result<Answer> diagnosed(const Case& opened, const DiagnoseWish& wish,
   return out;
 }
 
-Result<Answer> fitted(const Case& opened, const Case* before, std::vector<std::string> effects,
-                      int threads, const core::Progress& progress) {
+Result<Answer> fitted(const Case& opened, std::vector<std::string> effects, int threads,
+                      const core::Progress& progress) {
+  effects.insert(effects.end(), opened.own.begin(), opened.own.end());
   for (const std::string& id : effects)
     if (auto found = known(*opened.problem, id); !found) return found.error();
   std::ranges::sort(effects);
@@ -104,8 +110,13 @@ Result<Answer> fitted(const Case& opened, const Case* before, std::vector<std::s
       lab::fit(*opened.problem, {effects}, {.threads = threads}, part_of(progress, 0.0, 0.9));
   if (!fit) return fit.error();
   Answer out = begun(opened);
-  compare_given(before ? *before : opened, out);
+  compare_given(opened, out);
   compare_better(opened, *fit, out);
+  if (!opened.own.empty())
+    for (std::string& remark : lab::likenesses(
+             *opened.problem, opened.own,
+             std::span(fit->values).first(opened.problem->parameters({}).size()), threads))
+      fit->remarks.push_back(std::move(remark));
   out.json = lab::to_json(*fit, out.content.before.comparison);
   out.json["primary"] = opened.problem->channels().front().name;
   out.model = opened.problem->model(fit->structure, fit->values);

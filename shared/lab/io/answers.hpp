@@ -29,11 +29,9 @@ struct DiagnoseWish {
 core::Result<Answer> diagnosed(const Case& opened, const DiagnoseWish& wish,
                                const core::Progress& progress = {});
 
-/// Refits with effects added by hand; the user's own are in the case's model already, and `before`
-/// is then the case without them (else null). Errors: those of lab::fit; not_found for an id that
-/// is not in this rig's catalogue, with its reason if the recording cannot show it.
-core::Result<Answer> fitted(const Case& opened, const Case* before,
-                            std::vector<std::string> effects, int threads,
+/// Refits with effects added by hand and the user's own. Errors: those of lab::fit; not_found for
+/// an id that is not in this rig's catalogue, with its reason if the recording cannot show it.
+core::Result<Answer> fitted(const Case& opened, std::vector<std::string> effects, int threads,
                             const core::Progress& progress = {});
 
 }  // namespace lab_io

@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "effects/expression.hpp"
 #include "effects/palpation_expression.hpp"
 #include "lab/io/unpacked.hpp"
+#include "lab/own_effects.hpp"
 #include "lab/palpation_problem.hpp"
 #include "lab/probing_problem.hpp"
 #include "models/probing_model.hpp"
@@ -19,6 +22,8 @@ using core::Errc;
 using core::Error;
 using core::Result;
 
+constexpr double kFirstStep = 0.01;  // of a parameter's range, from where its effect is off
+
 /// The set's own name, else its folder's or archive's.
 std::string name_of(const core::Json& stated, const fs::path& path) {
   const auto it = stated.find("name");
@@ -32,20 +37,67 @@ bool is_simulated(const core::Json& stated) {
   return it != stated.end() && it->is_boolean() && it->get<bool>();
 }
 
-/// The user's own effects, each at its initial numbers.
-Result<void> add_effects(const std::vector<fs::path>& files, const effects::ExpressionRig& rig,
-                         std::vector<effects::Use>& to) {
-  for (const fs::path& file : files) {
-    const auto expression = effects::Expression::read(file, rig);
+core::Json json_of(const trial::StatedTract& tract) {
+  const auto numbers = [](const math::Vec3& v) { return core::Json{v.x(), v.y(), v.z()}; };
+  return {{"entry_m", numbers(tract.entry_m)},
+          {"axis", numbers(tract.axis)},
+          {"length_m", tract.length_m}};
+}
+
+/// The user's own effects, to be tried as the catalogue's are.
+Result<lab::Offered> take_own(const Sources& sources, const effects::ExpressionRig& rig,
+                              const std::vector<effects::Use>& in_model) {
+  std::vector<std::pair<effects::Use, effects::EffectFacts>> offered;
+  for (const OwnEffect& one : sources.own) {
+    const auto expression = effects::Expression::from_json(one.definition, one.where, rig);
     if (!expression) return expression.error();
-    to.push_back(expression->use());
+    effects::Use use = expression->use();
+    const auto same = [&](const auto& other) { return other.id == use.id; };
+    if (std::ranges::any_of(in_model, same))
+      return Error{Errc::bad_input,
+                   fmt::format("{}id: the model has an effect '{}' already", one.where, use.id)};
+    if (std::ranges::any_of(offered, [&](const auto& other) { return same(other.first); }))
+      return Error{Errc::bad_input, fmt::format("{}id: '{}' is given twice", one.where, use.id)};
+    effects::EffectFacts facts = expression->facts();
+    for (effects::Param& p : facts.params)  // a search cannot begin where the effect is off
+      if (p.initial == p.off)
+        p.initial = p.off + kFirstStep * (p.high > p.off ? p.high - p.off : p.low - p.off);
+    offered.emplace_back(std::move(use), std::move(facts));
   }
-  return {};
+  return lab::Offered(std::move(offered));
+}
+
+/// What is wrong with an own effect on these recordings is told before anything is fitted.
+Result<Case> with_own(Case opened, const Sources& sources) {
+  for (const OwnEffect& one : sources.own) {
+    opened.own.push_back(one.definition["id"].get<std::string>());
+    if (auto fine = lab::check_own_effect(*opened.problem, opened.own.back()); !fine)
+      return Error{fine.error().code, one.where + fine.error().what};
+  }
+  return opened;
+}
+
+Error renamed(Error error, const std::string& from, const std::string& to) {
+  if (from == to) return error;
+  for (auto at = error.what.find(from); at != std::string::npos;
+       at = error.what.find(from, at + to.size()))
+    error.what.replace(at, from.size(), to);
+  return error;
+}
+
+/// A message that names the archive rather than the folder that it was unpacked into.
+Error named(Error error, const Unpacked& unpacked, const fs::path& given) {
+  return renamed(std::move(error), unpacked.folder().string(), given.string());
 }
 
 template <class Set>
 Case begun(const std::string& model, const Set& set, const Sources& sources) {
-  return {model, name_of(set.stated, sources.measurements), is_simulated(set.stated), nullptr,
+  return {model,
+          name_of(set.stated, sources.measurements),
+          is_simulated(set.stated),
+          core::Json(),
+          {},
+          nullptr,
           lab::recorded(set)};
 }
 
@@ -57,19 +109,21 @@ Result<Case> with(Case opened, Result<std::unique_ptr<lab::Problem>> problem) {
 
 Result<Case> open_probing(models::ProbingModel model, const Sources& sources,
                           const fs::path& folder, const core::Progress& progress) {
-  auto added = add_effects(sources.effects, effects::probing_expressions(), model.effects);
-  if (!added) return added.error();
+  auto own = take_own(sources, effects::probing_expressions(), model.effects);
+  if (!own) return own.error();
   auto set = trial::read_probing_set(folder);
   if (!set) return set.error();
   Case opened = begun(model.name, *set, sources);
-  return with(std::move(opened), lab::make_probing_problem(model, std::move(*set),
-                                                           {.threads = sources.threads}, progress));
+  return with(std::move(opened),
+              lab::make_probing_problem(model, std::move(*set),
+                                        {.threads = sources.threads, .offered = std::move(*own)},
+                                        progress));
 }
 
 Result<Case> open_palpation(models::PalpationModel model, const Sources& sources,
                             const fs::path& folder, const core::Progress& progress) {
-  auto added = add_effects(sources.effects, effects::palpation_expressions(), model.effects);
-  if (!added) return added.error();
+  auto own = take_own(sources, effects::palpation_expressions(), model.effects);
+  if (!own) return own.error();
   auto set = trial::read_palpation_set(folder);
   if (!set) return set.error();
   if (model.volume.empty() && set->volume.empty())
@@ -81,9 +135,11 @@ Result<Case> open_palpation(models::PalpationModel model, const Sources& sources
   const auto imported = volume_io::read_volume(path, part_of(progress, 0.0, 0.2));
   if (!imported) return imported.error();
   Case opened = begun(model.name, *set, sources);
-  return with(std::move(opened), lab::make_palpation_problem(
-                                     model, std::move(*set), imported->volume,
-                                     {.threads = sources.threads}, part_of(progress, 0.2, 0.8)));
+  if (set->tract) opened.tract = json_of(*set->tract);
+  return with(std::move(opened),
+              lab::make_palpation_problem(model, std::move(*set), imported->volume,
+                                          {.threads = sources.threads, .offered = std::move(*own)},
+                                          part_of(progress, 0.2, 0.8)));
 }
 
 }  // namespace
@@ -99,7 +155,7 @@ Result<Case> open_case(const Sources& sources, const core::Progress& progress) {
   const auto unpacked = Unpacked::open(sources.measurements, {}, part_of(progress, 0.0, 0.2));
   if (!unpacked) return unpacked.error();
   const auto rig = trial::rig_of_set(unpacked->folder());
-  if (!rig) return rig.error();
+  if (!rig) return named(rig.error(), *unpacked, sources.measurements);
   const auto* probing = std::get_if<models::ProbingModel>(&*model);
   if ((*rig == "probing") != (probing != nullptr))
     return Error{Errc::bad_input,
@@ -107,9 +163,28 @@ Result<Case> open_case(const Sources& sources, const core::Progress& progress) {
                              sources.model.string(), probing ? "probing" : "palpation",
                              sources.measurements.string(), *rig)};
   const auto rest = part_of(progress, 0.2, 0.8);
-  if (probing) return open_probing(*probing, sources, unpacked->folder(), rest);
-  return open_palpation(std::get<models::PalpationModel>(*model), sources, unpacked->folder(),
-                        rest);
+  auto opened = probing ? open_probing(*probing, sources, unpacked->folder(), rest)
+                        : open_palpation(std::get<models::PalpationModel>(*model), sources,
+                                         unpacked->folder(), rest);
+  if (!opened) return named(opened.error(), *unpacked, sources.measurements);
+  return with_own(std::move(*opened), sources);
+}
+
+Result<SetFacts> facts_of_set(const fs::path& path) {
+  const auto unpacked = Unpacked::open(path);
+  if (!unpacked) return renamed(unpacked.error(), path.string(), path.filename().string());
+  const auto counted = [&](const auto& set) -> Result<SetFacts> {
+    if (!set) return named(set.error(), *unpacked, path.filename());
+    SetFacts out{"", is_simulated(set->stated), set->trials.size(), 0};
+    for (const auto& trial : set->trials) out.samples += trial.t_s.size();
+    return out;
+  };
+  const auto rig = trial::rig_of_set(unpacked->folder());
+  if (!rig) return named(rig.error(), *unpacked, path.filename());
+  auto facts = *rig == "probing" ? counted(trial::read_probing_set(unpacked->folder()))
+                                 : counted(trial::read_palpation_set(unpacked->folder()));
+  if (facts) facts->rig = *rig;
+  return facts;
 }
 
 }  // namespace lab_io

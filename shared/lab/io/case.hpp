@@ -9,21 +9,24 @@
 #include "core/progress.hpp"
 #include "core/result.hpp"
 #include "lab/describe.hpp"
+#include "lab/io/own_effect.hpp"
 #include "lab/problem.hpp"
 
 namespace lab_io {
 
 struct Sources {
-  std::filesystem::path model;                      ///< tractus-model/1
-  std::filesystem::path measurements;               ///< a folder or a zip, tractus-measurements/1
-  std::vector<std::filesystem::path> effects = {};  ///< the user's own, added to the model
+  std::filesystem::path model;         ///< tractus-model/1
+  std::filesystem::path measurements;  ///< a folder or a zip, tractus-measurements/1
+  std::vector<OwnEffect> own = {};     ///< the user's own effects, candidates as the catalogue's
   int threads = 2;
 };
 
 /// What the lab works on. Holds all that it needs: files may go once it is open.
 struct Case {
   std::string model_name, set_name;
-  bool simulated = false;  ///< the set says that its measurements are simulated themselves
+  bool simulated = false;        ///< the set says that its measurements are simulated themselves
+  core::Json tract;              ///< where the palpated channel is, as the set states it; else null
+  std::vector<std::string> own;  ///< ids of the user's own effects
   std::unique_ptr<lab::Problem> problem;
   lab::Recorded recorded;
 };
@@ -32,6 +35,16 @@ struct Case {
 /// the readers; bad_input naming both rigs when the model is of another rig than the set, or when
 /// nothing names a volume; cancelled.
 core::Result<Case> open_case(const Sources& sources, const core::Progress& progress = {});
+
+/// What a set holds, once all of it was read.
+struct SetFacts {
+  std::string rig;
+  bool simulated = false;
+  std::size_t trials = 0, samples = 0;
+};
+/// Reads a whole set and keeps nothing. Errors: as of open_case, with the file's name within the
+/// set rather than where it was unpacked.
+core::Result<SetFacts> facts_of_set(const std::filesystem::path& path);
 
 /// A bar over several pieces of work, each with its share.
 core::Progress part_of(const core::Progress& whole, double from, double width);

@@ -1,0 +1,219 @@
+#include "server/jobs/lab_run.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+#include "core/bytes.hpp"
+#include "core/clock.hpp"
+#include "db/store/cases.hpp"
+#include "db/store/lab.hpp"
+#include "lab/answer.hpp"
+#include "lab/io/answers.hpp"
+#include "lab/io/kept_samples.hpp"
+#include "server/jobs/lab_progress.hpp"
+
+namespace jobs {
+namespace {
+
+using core::Errc;
+using core::Error;
+using core::Json;
+using core::Result;
+
+struct Asked {
+  store::LabRun run;
+  store::ModelVersion model;
+  std::optional<store::ModelVersion> against;
+  store::MeasurementSet set;
+};
+
+Result<store::ModelVersion> version_of(store::Reading& tx, const std::string& id) {
+  auto model = store::model_of(tx, id);
+  if (!model) return model.error();
+  if (!*model) return Error{Errc::not_found, "the model is gone"};
+  return **model;
+}
+
+Result<Asked> asked(store::Store& store, const std::string& id) {
+  return store.read([&](store::Reading& tx) -> Result<Asked> {
+    const auto run = store::lab_run_of(tx, id);
+    if (!run) return run.error();
+    if (!*run) return Error{Errc::not_found, "no run " + id.substr(0, 64)};
+    const auto model = version_of(tx, (*run)->model_id);
+    if (!model) return model.error();
+    const auto set = store::measurement_set_of(tx, (*run)->set_id);
+    if (!set) return set.error();
+    if (!*set) return Error{Errc::not_found, "the measurements are gone"};
+    Asked out{**run, *model, std::nullopt, **set};
+    if (!out.run.against_id) return out;
+    auto against = version_of(tx, *out.run.against_id);
+    if (!against) return against.error();
+    out.against = std::move(*against);
+    return out;
+  });
+}
+
+/// What the page's processes leave free: half of the processors.
+int threads() { return std::max(1, int(std::thread::hardware_concurrency()) / 2); }
+
+struct Wish {
+  std::vector<std::string> add;
+  std::vector<lab_io::OwnEffect> own;
+};
+
+Wish wish_of(const store::LabRun& run) {
+  Wish out;
+  const Json json = Json::parse(run.wish, nullptr, false);
+  if (!json.is_object()) return out;
+  for (const Json& id : json.value("add", Json::array())) out.add.push_back(id.get<std::string>());
+  for (const Json& own : json.value("own", Json::array())) out.own.push_back({own, "own effect: "});
+  return out;
+}
+
+/// What a run comes to, before it is kept.
+struct Outcome {
+  Json result = {{"diagnosis", nullptr}, {"fit", nullptr}, {"comparisons", nullptr}};
+  std::string report, samples;
+  std::optional<Json> model;
+};
+
+class LabRun {
+ public:
+  LabRun(store::Store& store, const store::Objects& objects, const Asked& of,
+         const std::function<bool()>& ending)
+      : store_(store),
+        objects_(objects),
+        of_(of),
+        wish_(wish_of(of.run)),
+        watch_(store, of.run.id, ending) {}
+
+  Result<Outcome> work() {
+    if (!watch_.at("reading the measurements", 0.0, 1.0)(0.0))
+      return Error{Errc::cancelled, "stopped"};
+    if (of_.run.kind == "comparison") return compare();
+    return of_.run.kind == "fit" ? fit() : diagnose();
+  }
+
+ private:
+  Result<lab_io::Case> opened(const store::ModelVersion& model, double from, double width) {
+    return lab_io::open_case({.model = objects_.path_of(model.sha256),
+                              .measurements = objects_.path_of(of_.set.id),
+                              .own = wish_.own,
+                              .threads = threads()},
+                             watch_.at("reading the measurements", from, width));
+  }
+
+  void keep_sides(const lab_io::Answer& answer, const Json& tract, Outcome& out) const {
+    const auto& content = answer.content;
+    const auto* after = content.better ? &*content.better : nullptr;
+    out.result["comparisons"] = {{"before", lab::to_json(content.before.comparison)},
+                                 {"after", after ? lab::to_json(after->comparison) : Json()}};
+    out.result["tract_map"] = content.map ? lab::to_json(*content.map) : Json();
+    if (content.map) out.result["tract_map"]["tract"] = tract;
+    out.samples = lab_io::kept_samples(content.before, after);
+  }
+
+  Result<Outcome> compare() {
+    const double half = of_.against ? 0.5 : 1.0;
+    const auto first = opened(of_.model, 0.0, 0.9 * half);
+    if (!first) return first.error();
+    auto answer = lab_io::compared(*first);
+    if (of_.against) {
+      const auto second = opened(*of_.against, half, 0.9 * half);
+      if (!second) return second.error();
+      answer.content.better = lab_io::compared(*second).content.before;
+    }
+    Outcome out;
+    keep_sides(answer, first->tract, out);
+    return out;
+  }
+
+  Result<Outcome> fit() {
+    const auto opened_case = opened(of_.model, 0.0, 0.3);
+    if (!opened_case) return opened_case.error();
+    auto answer =
+        lab_io::fitted(*opened_case, wish_.add, threads(), watch_.at("fitting", 0.3, 0.65));
+    if (!answer) return answer.error();
+    return finished("fit", *opened_case, std::move(*answer));
+  }
+
+  Result<Outcome> diagnose() {
+    const auto opened_case = opened(of_.model, 0.0, 0.3);
+    if (!opened_case) return opened_case.error();
+    lab_io::DiagnoseWish how{.options = {}, .report = true};
+    how.options.threads = threads();
+    how.options.early = [this](const std::vector<lab::Ranked>& ranking) {
+      note_ranking(ranking);
+      watch_.say("trying effects together");
+    };
+    auto answer =
+        lab_io::diagnosed(*opened_case, how, watch_.at("trying each effect by itself", 0.3, 0.65));
+    if (!answer) return answer.error();
+    return finished("diagnosis", *opened_case, std::move(*answer));
+  }
+
+  void note_ranking(const std::vector<lab::Ranked>& ranking) {
+    const std::string json = lab::to_json(ranking).dump();
+    // Only a look ahead: a database that is busy for once loses nothing that the result lacks.
+    (void)store_.write(
+        [&](store::Writing& tx) { return store::note_lab_ranking(tx, of_.run.id, json); });
+  }
+
+  Result<Outcome> finished(const char* kind, const lab_io::Case& opened_case,
+                           lab_io::Answer answer) {
+    watch_.say("writing the report");
+    answer.content.set_name = of_.set.name;
+    Outcome out;
+    out.result[kind] = answer.json;
+    keep_sides(answer, opened_case.tract, out);
+    out.report = lab::report(answer.content);
+    out.model = std::move(answer.model);
+    return out;
+  }
+
+  store::Store& store_;
+  const store::Objects& objects_;
+  const Asked& of_;
+  Wish wish_;
+  LabProgress watch_;
+};
+
+Result<void> keep(store::Store& store, const store::Objects& objects, store::LabRun run,
+                  const Outcome& outcome) {
+  std::vector<std::pair<std::string, std::uint64_t>> kept;
+  const auto put = [&](const std::string& text, std::optional<std::string>& as) -> Result<void> {
+    if (text.empty()) return {};
+    auto sha256 = objects.put(core::bytes_of(text));
+    if (!sha256) return sha256.error();
+    kept.emplace_back(*sha256, text.size());
+    as = *sha256;
+    return {};
+  };
+  const std::string model = outcome.model ? outcome.model->dump(2) + "\n" : "";
+  for (const auto& [text, as] :
+       {std::pair{outcome.result.dump() + "\n", &run.result},
+        std::pair{outcome.report, &run.report}, std::pair{outcome.samples, &run.samples},
+        std::pair{model, &run.model}})
+    if (auto done = put(text, *as); !done) return done;
+  return store.write([&](store::Writing& tx) -> Result<void> {
+    const std::int64_t now = core::utc_us();
+    for (const auto& [sha256, size] : kept)
+      if (auto added = store::add_object(tx, sha256, size, now); !added) return added;
+    return store::finish_lab_run(tx, run, now);
+  });
+}
+
+}  // namespace
+
+Result<void> run_lab(store::Store& store, const store::Objects& objects, const std::string& run_id,
+                     const std::function<bool()>& ending) {
+  const auto of = asked(store, run_id);
+  if (!of) return of.error();
+  if (of->run.state != "queued" && of->run.state != "running") return {};
+  const auto outcome = LabRun(store, objects, *of, ending).work();
+  if (!outcome) return outcome.error();
+  return keep(store, objects, of->run, *outcome);
+}
+
+}  // namespace jobs

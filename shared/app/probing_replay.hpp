@@ -1,0 +1,21 @@
+/// `tractus replay` for the probing rig.
+#pragma once
+
+#include <filesystem>
+
+#include "app/command.hpp"
+#include "models/probing_model.hpp"
+
+namespace commands {
+
+struct ReplayOptions {
+  std::filesystem::path model, measurements, out;
+  bool json = false;
+};
+
+/// Replays a set that lies in `folder` (the measurements, or what was unpacked of them) and writes
+/// trials, table and summary into a new folder, whole or not at all.
+Outcome replay_probing(const models::ProbingModel& model, const std::filesystem::path& folder,
+                       const ReplayOptions& options);
+
+}  // namespace commands

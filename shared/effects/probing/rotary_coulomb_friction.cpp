@@ -1,0 +1,36 @@
+/// Dry friction of the turning stage, of constant size: τ = T_c sgn ω.
+#include "effects/probing_effect.hpp"
+
+namespace effects::probing {
+namespace {
+
+class RotaryCoulombFriction final : public ProbingEffect {
+ public:
+  explicit RotaryCoulombFriction(std::span<const double> values) : torque_Nm_(values[0]) {}
+  ProbingStage stage() const noexcept override { return ProbingStage::torque; }
+  double torque_Nm(const ProbingTick& tick) const noexcept override {
+    return torque_Nm_ * direction(tick.omega_rad_s, tick.rest_rad_s);
+  }
+
+ private:
+  double torque_Nm_;
+};
+
+}  // namespace
+
+ProbingEffectInfo rotary_coulomb_friction() {
+  return {{.id = "rotary_coulomb_friction",
+           .kind = Kind::force,
+           .summary = "Dry friction of constant size against the turning",
+           .equation = "T_c sgn ω",
+           .source = "Olsson1998, eq. ?",
+           .params = {{.name = "torque_Nm",
+                       .meaning = "T_c, size of the friction",
+                       .initial = 0.01,
+                       .low = 0.0,
+                       .high = 10.0}},
+           .needs = {"omega_rad_s"}},
+          made<RotaryCoulombFriction>};
+}
+
+}  // namespace effects::probing
