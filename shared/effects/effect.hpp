@@ -56,6 +56,9 @@ struct EffectFacts {
   std::vector<std::string> parents = {};  ///< simpler effects it contains as a limit
   bool free_per_trial = false;            ///< its course differs from trial to trial (sensor_drift)
   bool passive = true;                    ///< gives back no more work than it got
+  /// Do the numbers stand to each other as the law means it (breakaway ≥ friction)? A fit that ends
+  /// elsewhere imitates something else. Null: always.
+  bool (*meant)(std::span<const double> values) = nullptr;
 };
 
 /// An effect in a model: which, and its numbers in the order of the params, components flattened.

@@ -1,6 +1,7 @@
 #include "lab/belief.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace lab {
@@ -15,6 +16,12 @@ constexpr double kMostLeft = 0.25;
 /// As good as the one chosen, for all purposes: within this factor of its excess.
 constexpr double kAsGood = 1.5;
 constexpr double kSettled = 0.95;
+/// That so many effects at the floor only imitate something else together: shares of wrong answers
+/// among those of the development seeds.
+constexpr std::array kImitated{0.02, 0.03, 0.08, 0.6};
+/// Odds (logarithm) of the one chosen against one that costs less but was refused: no clear gain,
+/// or a child that its parent does as well as.
+constexpr double kRefused = 1.4;
 
 std::vector<std::string> only_in(const Structure& a, const Structure& b) {
   std::vector<std::string> out;
@@ -37,14 +44,20 @@ Belief::Belief(const Residual& residual, const Selection& selection, const Solut
     : chosen_(chosen.structure) {
   const double base = selection.base().mean_square();
   std::vector<double> scores;
+  const double of_chosen = -cost(residual, chosen, selection.base());
   for (const auto& [key, s] : selection.tried()) {
+    if (!selection.meant(s)) continue;
     entries_.push_back({s.structure, 0.0, s.mean_square()});
     scores.push_back(-cost(residual, s, selection.base()));
   }
   const double best = *std::ranges::max_element(scores);
+  for (std::size_t k = 0; k < scores.size();
+       ++k)  // its rivals were refused for reasons of their own
+    if (entries_[k].structure == chosen_) scores[k] = std::max(of_chosen, best + kRefused);
   // What is in no catalogue: the more is left over the floor, the likelier.
   const double left = excess(chosen.mean_square()) / (excess(base) + 1.0);
-  outside_ = at_floor(chosen.mean_square(), base) ? 0.02 : std::min(0.9, 0.2 + left);
+  const std::size_t count = std::min(chosen_.effects.size(), kImitated.size() - 1);
+  outside_ = at_floor(chosen.mean_square(), base) ? kImitated[count] : std::min(0.9, 0.2 + left);
   double sum = 0.0;
   for (const double s : scores) sum += std::exp(s - best);
   for (std::size_t k = 0; k < scores.size(); ++k)

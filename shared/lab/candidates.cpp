@@ -112,7 +112,7 @@ void look_at(const Residual& residual, const Solution& at, const Base& base,
     points.back()[block.first + k] = std::clamp(start[k], p.low, p.high);
     positive.push_back(p.low >= off[block.first + k]);
   }
-  Eigen::MatrixXd columns = residual(structure, points);
+  Eigen::MatrixXd columns = residual.near(structure, off, points);
   columns.colwise() -= elsewhere ? residual(structure, off) : at.residual;
   Eigen::VectorXd norms, coefficients;
   const Gram rest = base.rest(columns, norms);

@@ -43,13 +43,14 @@ Decimator::Decimator(double spacing_s, double rate_Hz) {
 }
 
 std::size_t Decimator::size(std::size_t samples) const {
+  if (!chosen_.empty()) return chosen_.size();
   return samples < taps_.size() ? 0 : 1 + (samples - taps_.size()) / stride_;
 }
 
 void Decimator::apply(std::span<const double> in, std::span<double> out) const {
   core::require(out.size() == size(in.size()), "a decimator's output has its own size");
   for (std::size_t j = 0; j < out.size(); ++j) {
-    const double* at = in.data() + j * stride_;
+    const double* at = in.data() + first(j);
     double sum = 0.0;
     for (std::size_t k = 0; k < taps_.size(); ++k) sum += taps_[k] * at[k];
     out[j] = sum;
@@ -59,11 +60,12 @@ void Decimator::apply(std::span<const double> in, std::span<double> out) const {
 void Decimator::apply_sizes(std::span<const std::size_t> samples, std::span<const double> values,
                             std::span<double> out) const {
   std::ranges::fill(out, 0.0);
+  std::size_t begin = 0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const std::size_t k = samples[i], width = taps_.size();
-    const std::size_t first = k + 1 < width ? 0 : (k + 1 - width + stride_ - 1) / stride_;
-    for (std::size_t j = first; j < out.size() && j * stride_ <= k; ++j)
-      out[j] += std::abs(taps_[k - j * stride_]) * values[i];
+    while (begin < out.size() && first(begin) + width <= k) ++begin;
+    for (std::size_t j = begin; j < out.size() && first(j) <= k; ++j)
+      out[j] += std::abs(taps_[k - first(j)]) * values[i];
   }
 }
 

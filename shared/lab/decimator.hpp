@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace lab {
@@ -20,11 +21,13 @@ class Decimator {
   std::size_t half() const { return taps_.size() / 2; }  ///< samples before and after the middle
   /// Outputs for so many samples.
   std::size_t size(std::size_t samples) const;
+  /// Only these outputs from now on, in rising order.
+  void choose(std::vector<std::size_t> outputs) { chosen_ = std::move(outputs); }
   /// The sample in the middle of an output's window.
-  std::size_t middle(std::size_t output) const { return half() + output * stride_; }
+  std::size_t middle(std::size_t output) const { return half() + first(output); }
   void apply(std::span<const double> in, std::span<double> out) const;
 
-  /// Sum of |tap| · value over the samples that are given alone, all others 0.
+  /// Sum of |tap| · value over the samples that are given (in rising order), all others 0.
   void apply_sizes(std::span<const std::size_t> samples, std::span<const double> values,
                    std::span<double> out) const;
 
@@ -33,8 +36,13 @@ class Decimator {
   double largest_tap() const { return taps_[half()]; }
 
  private:
+  std::size_t first(std::size_t output) const {
+    return stride_ * (chosen_.empty() ? output : chosen_[output]);
+  }
+
   std::size_t stride_ = 1;
   std::vector<double> taps_;
+  std::vector<std::size_t> chosen_;  // empty: all
   double noise_gain_ = 1.0;
 };
 

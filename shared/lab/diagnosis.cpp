@@ -151,6 +151,12 @@ Result<Diagnosis> diagnose(const Problem& problem, const DiagnoseOptions& option
     out.depends_on = rest.words;
     out.rest_explained = rest.explained;
   }
+  if (!selection.refused().empty())
+    out.notes.push_back(
+        fmt::format("{} would bring the residual to the floor, but what it takes out follows the "
+                    "motion before: "
+                    "something with a slow memory is missing that is in no catalogue",
+                    selection.refused()));
   out.ranking = ranking(residual, selection, belief);
   out.confounded = belief.confounded();
   out.settle = belief.settle(problem);

@@ -21,6 +21,7 @@ constexpr int kFewestTrials = 4;  // fewer: stretches of time are held out
 constexpr int kStretches = 8;     // over all trials
 constexpr double kKnownTogether = 0.98;
 constexpr double kMostOfOneFold = 0.9;
+constexpr double kFewClusters = 3.0;  // Student's 95 % point over the normal's, squared, to 1/k
 constexpr double kUninformed = 0.95;  // of what was believed beforehand is left
 
 /// Which residuals a fold holds out.
@@ -47,25 +48,31 @@ std::vector<Fold> folds_of(const Residual& residual) {
 
 /// Values without a fold: one step of Newton's from the whole's, in the directions that the rest
 /// informs too. (A number that one trial alone informs, as a layer that only it entered, cannot be
-/// predicted from the others; it stays.)
+/// predicted from the others; it stays. So does the place of a border: the loss has no slope in it,
+/// and every trial that crosses it tells it alike.)
 std::vector<double> without(const Solution& at, const Gram& whole, const Gram& fold) {
   std::vector<double> values = at.values;
-  if (values.empty()) return values;
-  Eigen::VectorXd unit = whole.a.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  Eigen::MatrixXd a = unit.asDiagonal() * whole.a * unit.asDiagonal();
+  std::vector<Eigen::Index> moved;
+  for (std::size_t k = 0; k < values.size(); ++k)
+    if (!(at.parameters[k].rough > 0.0)) moved.push_back(Eigen::Index(k));
+  if (moved.empty()) return values;
+  const Eigen::MatrixXd all = whole.a(moved, moved), part = fold.a(moved, moved);
+  const Eigen::VectorXd unit = all.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  Eigen::MatrixXd a = unit.asDiagonal() * all * unit.asDiagonal();
   a.diagonal().array() += 1e-12;
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
-      unit.asDiagonal() * fold.a * unit.asDiagonal(), a);
-  Eigen::VectorXd along = eigen.eigenvectors().transpose() * (unit.asDiagonal() * fold.b);
+      unit.asDiagonal() * part * unit.asDiagonal(), a);
+  Eigen::VectorXd along = eigen.eigenvectors().transpose() * (unit.asDiagonal() * fold.b(moved));
   for (Eigen::Index k = 0; k < along.size(); ++k) {
     const double share = eigen.eigenvalues()(k);  // of what is known of this direction
     along(k) = share > kMostOfOneFold ? 0.0 : along(k) / (1.0 - share);
   }
   const Eigen::VectorXd step = unit.asDiagonal() * (eigen.eigenvectors() * along);
-  for (std::size_t k = 0; k < values.size(); ++k) {
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    const auto k = std::size_t(moved[i]);
     const Parameter& p = at.parameters[k];
     values[k] =
-        std::clamp(value_at(p, coordinate(p, values[k]) + step(Eigen::Index(k))), p.low, p.high);
+        std::clamp(value_at(p, coordinate(p, values[k]) + step(Eigen::Index(i))), p.low, p.high);
   }
   return values;
 }
@@ -96,12 +103,28 @@ Squares squares(const Problem& problem, const Structure& structure, std::span<co
 
 double root_mean(double sum, double count) { return count > 0.0 ? std::sqrt(sum / count) : 0.0; }
 
+/// Variances of the numbers from how far the trials (or stretches of time) disagree on them, which
+/// counts what neighbouring residuals have in common: the cluster-robust estimate of [Liang1986],
+/// widened for few clusters.
+Eigen::VectorXd disagreement(const Residual& residual, const Solution& at,
+                             const Eigen::VectorXd& weights, const Eigen::MatrixXd& covariance) {
+  const auto folds = folds_of(residual);
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(covariance.rows());
+  if (folds.size() < 2) return out;
+  for (const Fold& fold : folds)
+    out += (covariance * gram(at, weights, fold.first, fold.count).b).cwiseAbs2();
+  const double k = double(folds.size());
+  return out * (k / (k - 1.0)) * (1.0 + kFewClusters / k);
+}
+
 /// Standard errors, correlation and their words.
-void inform(const Solution& at, const Gram& whole, Fit& fit) {
+void inform(const Residual& residual, const Solution& at, const Eigen::VectorXd& weights,
+            const Gram& whole, Fit& fit) {
   const auto n = Eigen::Index(at.values.size());
   Eigen::MatrixXd covariance(n, n);
   for (Eigen::Index k = 0; k < n; ++k)
     covariance.col(k) = solve(whole.a, Eigen::VectorXd::Unit(n, k));
+  const Eigen::VectorXd robust = disagreement(residual, at, weights, covariance);
   const double inflation = std::max(1.0, at.mean_square());
   fit.correlation = Eigen::MatrixXd::Zero(n, n);
   for (Eigen::Index k = 0; k < n; ++k) {
@@ -109,7 +132,7 @@ void inform(const Solution& at, const Gram& whole, Fit& fit) {
     Estimate e{p.pointer, at.values[std::size_t(k)], 0.0, true, false};
     const double own =
         whole.a(k, k) - (std::isfinite(p.prior_sd) ? 1.0 / (p.prior_sd * p.prior_sd) : 0.0);
-    const double sd = std::sqrt(std::max(0.0, covariance(k, k)) * inflation);
+    const double sd = std::sqrt(std::max({0.0, covariance(k, k) * inflation, robust(k)}));
     e.informed = own > 0.0 && covariance(k, k) > 0.0 &&
                  !(std::sqrt(covariance(k, k)) > kUninformed * p.prior_sd);
     e.sd = !e.informed     ? std::numeric_limits<double>::infinity()
@@ -182,7 +205,7 @@ Fit report(const Residual& residual, Solution& at, bool held_out) {
   const Eigen::VectorXd weights = robust_weights(at.residual, at.scale);
   Gram whole = gram(at, weights, 0, residual.size());
   add_prior(at, whole);
-  inform(at, whole, fit);
+  inform(residual, at, weights, whole, fit);
   std::vector<Squares> sums(std::size_t(residual.trials()));
   parallel(residual.trials(), residual.threads(), [&](int k) {
     sums[std::size_t(k)] = squares(problem, at.structure, at.values, k, -1.0, 1e18);

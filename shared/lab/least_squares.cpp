@@ -21,7 +21,7 @@ constexpr double kScaleQuantile = 0.97, kScaleOfNormal = 2.17;
 constexpr double kRank = 1e-11;
 constexpr int kRoughRounds = 3;
 constexpr int kMostTries = 12;  // ever shorter steps from one point
-constexpr double kFinestRough = 0.005;
+constexpr double kFinestRough = 0.001;
 
 double step_inside(const Parameter& p, double u) {
   return u + p.step <= coordinate(p, p.high) ? p.step : -p.step;
@@ -43,7 +43,7 @@ void differentiate(const Residual& residual, Solution& at,
     steps.push_back(step_inside(p, coordinate(p, at.values[c])));
     points.push_back(moved(at, c, steps.back()));
   }
-  const Eigen::MatrixXd there = residual(at.structure, points);
+  const Eigen::MatrixXd there = residual.near(at.structure, at.values, points);
   at.jacobian.resize(residual.size(), Eigen::Index(at.parameters.size()));
   for (std::size_t k = 0; k < columns.size(); ++k)
     at.jacobian.col(Eigen::Index(columns[k])) =
@@ -64,6 +64,7 @@ double prior_of(const std::vector<Parameter>& parameters, std::span<const double
 void judge(Solution& at, double scale) {
   at.scale = scale;
   at.prior = prior_of(at.parameters, at.values);
+  at.judged = double((at.residual.array() != 0.0).count());
   at.loss = robust_loss(at.residual, scale) + at.prior;
 }
 
@@ -71,7 +72,9 @@ void judge(Solution& at, double scale) {
 class Search {
  public:
   Search(const Residual& residual, Solution start, const SearchOptions& options)
-      : residual_(residual), options_(options), at_(std::move(start)) {}
+      : residual_(residual), options_(options), at_(std::move(start)) {
+    options_.fresh_jacobian = options_.fresh_jacobian || residual.problem().differs_cheaply();
+  }
 
   Solution run(const std::vector<std::size_t>& to_differentiate, bool stale) {
     differentiate(residual_, at_, to_differentiate);
@@ -243,6 +246,17 @@ Eigen::MatrixXd Residual::operator()(const Structure& structure,
   return out;
 }
 
+Eigen::MatrixXd Residual::near(const Structure& structure, std::span<const double> values,
+                               const std::vector<std::vector<double>>& points) const {
+  if (!problem_.differs_cheaply()) return (*this)(structure, points);
+  Eigen::MatrixXd out(size(), Eigen::Index(points.size()));
+  parallel(trials(), threads_, [&](int k) {
+    problem_.residuals_near(structure, values, points, k,
+                            out.middleRows(offset(k), offset(k + 1) - offset(k)));
+  });
+  return out;
+}
+
 double coordinate(const Parameter& p, double value) {
   return p.logarithmic ? std::log(value) : value;
 }
@@ -356,7 +370,8 @@ Solution search(const Residual& residual, const Structure& structure, std::vecto
   std::vector<std::size_t> fresh;
   for (std::size_t k = 0; k < at.parameters.size(); ++k) {
     const auto found = known.find(at.parameters[k].pointer);
-    if (found == known.end() || !at.parameters[k].pointer.starts_with('/'))
+    if (found == known.end() || !at.parameters[k].pointer.starts_with('/') ||
+        residual.problem().differs_cheaply())
       fresh.push_back(k);
     else
       at.jacobian.col(Eigen::Index(k)) = warm->jacobian.col(found->second);

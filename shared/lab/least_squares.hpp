@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,6 +23,9 @@ class Residual {
   /// Several points at once, as columns.
   Eigen::MatrixXd operator()(const Structure& structure,
                              const std::vector<std::vector<double>>& points) const;
+  /// The same near `values`, for differences (see Problem::residuals_near).
+  Eigen::MatrixXd near(const Structure& structure, std::span<const double> values,
+                       const std::vector<std::vector<double>>& points) const;
   const Problem& problem() const { return problem_; }
   int threads() const { return threads_; }
 
@@ -44,8 +48,11 @@ struct Solution {
   double scale = 1.0;        ///< robust scale of the residuals, at least 1
   bool converged = false;
 
-  /// Mean of ρ: about 1 when all is explained.
-  double mean_square() const { return (loss - prior) / double(residual.size()); }
+  double judged = 0.0;  ///< residuals that are not exactly 0: of those the structure says
+                        ///< nothing (dry friction at rest)
+
+  /// Mean of ρ over what is judged: about 1 when all is explained.
+  double mean_square() const { return (loss - prior) / std::max(1.0, judged); }
 };
 
 struct SearchOptions {

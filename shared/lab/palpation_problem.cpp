@@ -5,6 +5,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 
 #include "core/require.hpp"
 #include "effects/palpation_effect.hpp"
@@ -24,6 +25,10 @@ using core::Result;
 using math::Vec3;
 
 constexpr int kRounds = 2;
+/// Samples prepared of all trials together, and moments that a fit compares of them, no more than
+/// so many a second.
+constexpr std::size_t kMostSamples = 2'000'000, kMostInstants = 4000;
+constexpr double kInstants_Hz = 100.0;
 /// What a drift counts when structures are compared: the orders of one course, which the channels
 /// share as a rule, and more than the six numbers of a constant bias, which it contains.
 constexpr int kDriftCounts = Trend::kOrders + 2;
@@ -42,8 +47,10 @@ class PalpationProblem final : public Problem {
         numbers_(std::move(model), 500.0, std::move(offered)),
         trials_(std::move(trials)),
         trends_(trials_.size()),
+        rests_(trials_.size()),
         tract_(tract) {
     set_candidates();
+    set_instants();
   }
 
   std::string_view rig() const override { return "palpation"; }
@@ -60,12 +67,18 @@ class PalpationProblem final : public Problem {
     auto own = numbers_.starts(effect);
     return own.empty() ? Problem::starts(effect, residual) : own;
   }
-  Eigen::Index residual_size(int k) const override { return 6 * trial(k).outputs(); }
+  Eigen::Index residual_size(int k) const override {
+    return 6 * Eigen::Index(trial(k).instants.size());
+  }
   void residuals(const Structure& structure, std::span<const double> values, int k,
                  Eigen::Ref<Eigen::VectorXd> out) const override {
     whitened(structure, values, k, out);
     if (has_drift(structure)) trends_[std::size_t(k)].remove(out);
   }
+  bool differs_cheaply() const override { return true; }
+  void residuals_near(const Structure& structure, std::span<const double> values,
+                      const std::vector<std::vector<double>>& points, int k,
+                      Eigen::Ref<Eigen::MatrixXd> out) const override;
   int free_per_trial(const Structure& structure) const override {
     return has_drift(structure) ? kDriftCounts : 0;
   }
@@ -87,8 +100,11 @@ class PalpationProblem final : public Problem {
     parallel(trials(), threads, [&](int k) {
       PalpationRecording& r = trials_[std::size_t(k)];
       weigh(runtime, r);
-      trends_[std::size_t(k)] = trend_of(r);
+      rests_[std::size_t(k)].deflection_m.clear();
     });
+    normalise();
+    parallel(trials(), threads,
+             [&](int k) { trends_[std::size_t(k)] = trend_of(trials_[std::size_t(k)]); });
     set_channels();
     std::vector<double> field;
     for (const auto& r : trials_)
@@ -104,7 +120,9 @@ class PalpationProblem final : public Problem {
  private:
   const PalpationRecording& trial(int k) const { return trials_[std::size_t(k)]; }
   static Trend trend_of(const PalpationRecording& r);
+  void normalise();
   void set_candidates();
+  void set_instants();
   void set_channels();
 
   models::PalpationRuntime runtime_of(const Structure& structure,
@@ -114,20 +132,32 @@ class PalpationProblem final : public Problem {
     return std::move(*runtime);
   }
   models::PalpationAnswer answer(const Structure& structure, std::span<const double> values,
-                                 const PalpationRecording& r) const {
+                                 const PalpationRecording& r,
+                                 std::span<const std::size_t> samples) const {
     models::PalpationAnswer out;
-    predict(runtime_of(structure, values), r, r.motion, out);
+    runtime_of(structure, values).predict_at(r.motion, samples, r.deflection_m, out);
     return out;
+  }
+  static void whiten(const PalpationRecording& r, const models::PalpationAnswer& predicted,
+                     Eigen::Ref<Eigen::VectorXd> out) {
+    for (std::size_t j = 0; j < r.instants.size(); ++j) {
+      const Vec6 difference = r.measured[r.instants[j]] - stacked(predicted.wrench_H[j]);
+      out.segment<6>(6 * Eigen::Index(j)) =
+          r.whitener[j].triangularView<Eigen::Lower>() * difference;
+    }
   }
   void whitened(const Structure& structure, std::span<const double> values, int k,
                 Eigen::Ref<Eigen::VectorXd> out) const {
-    const PalpationRecording& r = trial(k);
-    const auto difference =
-        (r.measured_thin - r.thinned(answer(structure, values, r).wrench_H)).eval();
-    for (Eigen::Index j = 0; j < difference.cols(); ++j)
-      out.segment<6>(6 * j) =
-          r.whitener[std::size_t(j)].triangularView<Eigen::Lower>() * difference.col(j);
+    auto found = answer(structure, values, trial(k), trial(k).instants);
+    whiten(trial(k), found, out);
+    Rests& last = rests_[std::size_t(k)];
+    const std::scoped_lock lock(last.mutex);
+    last.structure = structure;
+    last.values.assign(values.begin(), values.end());
+    last.deflection_m = std::move(found.deflection_m);
   }
+  std::vector<math::Vec2> rests_at(const Structure& structure, std::span<const double> values,
+                                   int k) const;
   /// The fitted trend of a trial at its full rate, [channel][sample].
   Eigen::MatrixXd trend(const Structure& structure, std::span<const double> values, int k) const {
     Eigen::VectorXd residual(residual_size(k));
@@ -135,10 +165,20 @@ class PalpationProblem final : public Problem {
     return trends_[std::size_t(k)].at(trial(k).motion.t_s, residual);
   }
 
+  /// Where the shank of a trial rested when it was last asked, at each instant: a search asks for
+  /// differences where it has just been.
+  struct Rests {
+    mutable std::mutex mutex;
+    Structure structure;
+    std::vector<double> values;
+    std::vector<math::Vec2> deflection_m;
+  };
+
   volume::ForceField field_;
   PalpationNumbers numbers_;
   std::vector<PalpationRecording> trials_;
   std::vector<Trend> trends_;
+  mutable std::vector<Rests> rests_;
   std::optional<trial::StatedTract> tract_;
   std::vector<Candidate> candidates_;
   std::vector<Channel> channels_;
@@ -148,9 +188,21 @@ class PalpationProblem final : public Problem {
 
 Trend PalpationProblem::trend_of(const PalpationRecording& r) {
   std::vector<double> t_s;
-  for (std::size_t j = 0; j < std::size_t(r.outputs()); ++j)
-    t_s.push_back(r.motion.t_s[r.decimator.middle(j)]);
+  for (const std::size_t k : r.instants) t_s.push_back(r.motion.t_s[k]);
   return Trend(t_s, r.whitener);
+}
+
+/// Weighs all alike so that noise alone leaves variance 1: the parts that are poorly known count
+/// less than that.
+void PalpationProblem::normalise() {
+  double sum = 0.0, count = 0.0;
+  for (const auto& r : trials_) {
+    sum += r.usual_square * double(r.whitener.size());
+    count += double(r.whitener.size());
+  }
+  const double scale = std::sqrt(count / sum);
+  for (auto& r : trials_)
+    for (Mat6& w : r.whitener) w *= scale;
 }
 
 void PalpationProblem::set_candidates() {
@@ -160,6 +212,46 @@ void PalpationProblem::set_candidates() {
       candidates_.push_back({info.facts, true, ""});
   for (const auto& [use, facts] : numbers_.offered().all())
     candidates_.push_back({facts, true, ""});
+}
+
+void PalpationProblem::set_instants() {
+  std::size_t samples = 0;
+  double seconds = 0.0;
+  for (auto& r : trials_) {
+    samples += r.size(), seconds += r.seconds();
+    if (!r.note.empty()) notes_.push_back(r.note);
+  }
+  const double wanted = std::min(double(kMostInstants), kInstants_Hz * seconds);
+  for (auto& r : trials_)
+    choose_instants(r, std::max<std::size_t>(1, std::size_t(std::ceil(double(samples) / wanted))));
+}
+
+std::vector<math::Vec2> PalpationProblem::rests_at(const Structure& structure,
+                                                   std::span<const double> values, int k) const {
+  const Rests& last = rests_[std::size_t(k)];
+  {
+    const std::scoped_lock lock(last.mutex);
+    if (!last.deflection_m.empty() && last.structure == structure &&
+        std::ranges::equal(last.values, values))
+      return last.deflection_m;
+  }
+  return answer(structure, values, trial(k), trial(k).instants).deflection_m;
+}
+
+void PalpationProblem::residuals_near(const Structure& structure, std::span<const double> values,
+                                      const std::vector<std::vector<double>>& points, int k,
+                                      Eigen::Ref<Eigen::MatrixXd> out) const {
+  const PalpationRecording& r = trial(k);
+  const auto rests = rests_at(structure, values, k);
+  models::PalpationAnswer there;
+  models::FieldMemo memo;
+  runtime_of(structure, values).respond_at(r.motion, r.instants, rests, there, memo);
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    runtime_of(structure, points[p]).respond_at(r.motion, r.instants, rests, there, memo);
+    auto column = out.col(Eigen::Index(p));
+    whiten(r, there, column);
+    if (has_drift(structure)) trends_[std::size_t(k)].remove(column);
+  }
 }
 
 void PalpationProblem::set_channels() {
@@ -177,7 +269,7 @@ void PalpationProblem::set_channels() {
 Residuals PalpationProblem::full_rate(const Structure& structure, std::span<const double> values,
                                       int k) const {
   const PalpationRecording& r = trial(k);
-  const auto predicted = answer(structure, values, r);
+  const auto predicted = answer(structure, values, r, r.all());
   Residuals out{r.motion.t_s, std::vector<std::vector<double>>(7), r.trusted};
   Eigen::MatrixXd slow;
   if (has_drift(structure)) slow = trend(structure, values, k);
@@ -207,7 +299,7 @@ States PalpationProblem::states(int k) const {
   const auto runtime = runtime_of({}, start);
   std::vector<Vec3> tip, velocity, force;
   models::PalpationAnswer at;
-  predict(runtime, r, r.motion, at);
+  runtime.predict_at(r.motion, r.all(), r.deflection_m, at);
   for (std::size_t i = 0; i < r.size(); ++i) {
     const auto& h = handle(i);
     tip.push_back(runtime.tip_m(h.X_VH, at.deflection_m[i]));
@@ -280,7 +372,8 @@ Result<std::unique_ptr<Problem>> make_palpation_problem(const models::PalpationM
   std::vector<std::string> wrong(set.trials.size());
   parallel(int(set.trials.size()), options.threads, [&](int k) {
     auto& t = set.trials[std::size_t(k)];
-    auto ready = prepare(std::move(t), *down, (set.folder / t.file).string());
+    const std::string where = (set.folder / t.file).string();
+    auto ready = prepare(std::move(t), *down, where, kMostSamples / set.trials.size());
     if (ready)
       recordings[std::size_t(k)] = std::move(*ready);
     else

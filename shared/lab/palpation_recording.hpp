@@ -1,5 +1,5 @@
-/// One palpation made ready to be compared: poses smoothed and differentiated, noise estimated,
-/// wrench filtered and thinned.
+/// One palpation made ready to be compared: poses smoothed and differentiated, noise estimated, the
+/// moments chosen at which a fit looks.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "core/result.hpp"
-#include "lab/decimator.hpp"
 #include "models/palpation_runtime.hpp"
 #include "trial/measurement_set.hpp"
 
@@ -23,46 +22,48 @@ inline Vec6 stacked(const math::Wrench& wrench) {
 }
 
 struct PalpationRecording {
-  std::string id;
-  models::PalpationMotion motion;
+  std::string id, note;
+  models::PalpationMotion motion;      ///< smoothed; every so many-th sample of a fast recording
   std::vector<math::Vec3> p_sd_m;      ///< standard error of the smoothed position, V
   std::vector<double> turn_sd_rad;     ///< of the smoothed orientation, about any axis
   std::vector<double> v_sd_m_s;        ///< of the smoothed velocity, along any axis
   std::vector<double> omega_sd_rad_s;  ///< of the smoothed turning, about any axis
-  std::vector<Vec6> measured;          ///< full rate
+  std::vector<double> a_sd_m_s2;       ///< of the smoothed acceleration, along any axis
+  std::vector<Vec6> measured;          ///< as recorded, at the motion's samples
   Vec6 noise_sd = Vec6::Zero();        ///< of one sample
-  Vec6 slow_noise_sd = Vec6::Zero();   ///< of one output of the decimator
-  Decimator decimator{1.0, 1.0};
-  Eigen::Matrix<double, 6, Eigen::Dynamic> measured_thin;  // [channel][output]
+  std::vector<std::size_t> instants;   ///< the samples that a fit compares
   // Set by weigh().
   std::vector<math::Vec2> deflection_m;  ///< of a model near the truth: where a search begins
-  std::vector<Mat6> whitener;            ///< of each output's residual, lower triangular
-  std::vector<double> trusted;           ///< 0 or 1, full rate
+  std::vector<Mat6> whitener;            ///< of each instant's residual, lower triangular
+  double usual_square = 1.0;             ///< mean of a whitened residual's squares by noise alone
+  std::vector<double> trusted;           ///< 0 or 1, per sample
   Vec6 floor = Vec6::Zero();             ///< rmse of the trusted samples under a true model
   std::vector<double> field_per_m;       ///< |g| at the tip, where it touches
 
   std::size_t size() const { return motion.t_s.size(); }
   double seconds() const { return motion.t_s.back() - motion.t_s.front(); }
-  Eigen::Index outputs() const { return measured_thin.cols(); }
-  /// A prediction filtered and thinned as the measurement was.
-  Eigen::Matrix<double, 6, Eigen::Dynamic> thinned(const std::vector<math::Wrench>& wrench_H) const;
+  /// 0 … size() − 1.
+  std::vector<std::size_t> all() const;
 };
 
-/// Prepares a trial, which is used up. Errors: bad_input naming the trial: too few samples, too
-/// slow.
+/// Prepares a trial, which is used up. Of a recording faster than 250 Hz the motion is smoothed at
+/// its full rate and then every so many-th sample is kept, as it was measured.
+/// @param most_samples  of a longer recording the stretch of so many samples is taken in which the
+/// force changes most; `note` says so.
+/// Errors: bad_input naming the trial: too few samples, too slow.
 core::Result<PalpationRecording> prepare(trial::PalpationMeasurement&& trial,
-                                         const math::Vec3& down, const std::string& where);
+                                         const math::Vec3& down, const std::string& where,
+                                         std::size_t most_samples);
 
-/// What is expected of each output if `runtime` were true: the sensor's noise, the pose's error as
+/// Every `stride`-th sample is an instant.
+void choose_instants(PalpationRecording& recording, std::size_t stride);
+
+/// What is expected of each instant if `runtime` were true: the sensor's noise, the pose's error as
 /// the model passes it on, and where the shank snaps from one rest to another the size of the jump,
-/// whose moment is known to a few samples only. At the full rate samples are not trusted that lie
-/// at such a snap, or where a pressed point moves so slowly along or across its force that the sign
-/// is not known (what friction and losses do there is not known either).
+/// whose moment is known to a few samples only. Samples are not trusted that lie at such a snap, or
+/// where a pressed point moves so slowly along or across its force that the sign is not known (what
+/// friction and losses do there is not known either).
 /// Follows the shank's rests anew and keeps them.
 void weigh(const models::PalpationRuntime& runtime, PalpationRecording& recording);
-
-/// The model's answer to a motion near the recording's, its rests followed from those kept.
-void predict(const models::PalpationRuntime& runtime, const PalpationRecording& recording,
-             const models::PalpationMotion& motion, models::PalpationAnswer& out);
 
 }  // namespace lab

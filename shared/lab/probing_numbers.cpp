@@ -133,8 +133,9 @@ void ProbingNumbers::add_layer(std::size_t k, const Reach& reach) {
   const bool joined = k > 0 && layer.start_m - before_m < kSameBorder_m;
   if (near(layer.start_m) && reach.least_m < layer.start_m) {
     place.start = layer.start_m;
+    // A border stays on its side of the middle of each of its layers, so that none passes another.
     place.low = joined ? model_.layers[k - 1].start_m +
-                             std::max(0.3 * model_.layers[k - 1].thickness_m, kLeastLayer_m)
+                             std::max(0.55 * model_.layers[k - 1].thickness_m, kLeastLayer_m)
                        : before_m;
     place.low = std::min(place.low, layer.start_m);
     place.high = layer.start_m + std::max(0.0, 0.45 * layer.thickness_m - kLeastLayer_m);

@@ -64,7 +64,10 @@ class ProbingProblem final : public Problem {
   void residuals(const Structure& structure, std::span<const double> values, int k,
                  Eigen::Ref<Eigen::VectorXd> out) const override {
     raw_residuals(structure, values, k, out);
-    if (has_drift(structure)) drifts_[std::size_t(k)].remove(out);
+    if (!has_drift(structure)) return;
+    const Eigen::VectorXd before = out;
+    drifts_[std::size_t(k)].remove(out);
+    out = (before.array() == 0.0).select(0.0, out);
   }
   int free_per_trial(const Structure& structure) const override {
     return has_drift(structure) ? Drift::kOrders : 0;
@@ -254,6 +257,7 @@ Residuals ProbingProblem::full_rate(const Structure& structure, std::span<const 
   for (std::size_t i = 0; i < predicted.at_rest_N.size(); ++i) {
     double& residual = out.channels[0][r.rest[i]];
     residual = beyond(residual, predicted.at_rest_N[i]);
+    if (residual == 0.0) out.trusted[r.rest[i]] = 0.0;  // says nothing
   }
   if (channels_.size() > 1) out.channels.push_back(minus(r.other, predicted.forces.tz_Nm));
   return out;

@@ -120,6 +120,29 @@ TEST(ProbingProblem, FixedNumbersAndLayersNeverEnteredStay) {
   EXPECT_THAT(problem->notes()[0], HasSubstr("layer 1"));
 }
 
+TEST(ProbingProblem, NoBorderPassesAnotherWhereverAFitMovesThem) {
+  auto model = model_of();
+  model.layers = {{0.0, 0.006, 3000.0, 1000.0, 0.0},
+                  {0.006, 0.004, 3000.0, 1000.0, 0.0},
+                  {0.010, 0.004, 3000.0, 1000.0, 0.0},
+                  {0.014, 0.02, 3000.0, 1000.0, 0.0}};
+  const auto problem = made(set_of([](const Moment&) { return 0.0; }), model);
+  ASSERT_TRUE(problem);
+  const auto all = problem->parameters({});
+  for (unsigned corner = 0; corner < 8; ++corner) {  // each of three borders at either end
+    std::vector<double> values;
+    unsigned border = 0;
+    for (const Parameter& p : all)
+      values.push_back(!p.pointer.ends_with("start_m") ? p.start
+                       : corner >> border++ & 1u       ? p.high
+                                                       : p.low);
+    ASSERT_EQ(border, 3u);
+    const auto layers = problem->model({}, values).at("base").at("layers");
+    for (std::size_t k = 0; k < layers.size(); ++k)
+      EXPECT_GT(layers[k].at("thickness_m").get<double>(), 0.0) << corner;
+  }
+}
+
 TEST(ProbingProblem, RefusesRecordingsThatTellNothing) {
   const auto still = [] {
     auto set = set_of([](const Moment&) { return 0.0; }, 1);

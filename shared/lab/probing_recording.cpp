@@ -23,6 +23,10 @@ constexpr double kRestErrors = 3.0;
 /// Round a border so much is not trusted at the full rate.
 constexpr double kBorder_s = 0.005;
 constexpr std::size_t kBorderSamples = 3;
+/// How well the place of a border can be told.
+constexpr double kOnBorder_m = 2e-6;
+/// Within this a probe stands; after so long it is looked at ever more rarely.
+constexpr double kSamePlace_m = 3e-5, kLongStand_s = 2.0;
 /// The motion is well known where its noise makes less than this share of the sensor's.
 constexpr double kWellKnown = 0.5, kLeastTrusted = 0.3;
 
@@ -127,6 +131,23 @@ void prepare_sliding(trial::ProbingMeasurement& trial, const trial::StatedNoise&
   motion.rest_m_s = kRestErrors * middle_of(out.v_sd_m_s);
 }
 
+/// Outputs that say something new: while the probe stands, the longer it stands the rarer, as what
+/// still changes then (relaxation) does so over ever longer times.
+std::vector<std::size_t> informative(const ProbingRecording& r) {
+  std::vector<std::size_t> out;
+  const effects::ProbingMotion& m = r.motion;
+  double place_m = m.x_m.front(), since_s = m.t_s.front(), next_s = since_s;
+  for (std::size_t j = 0; j < r.decimator.size(r.size()); ++j) {
+    const std::size_t k = r.decimator.middle(j);
+    if (std::abs(m.x_m[k] - place_m) > kSamePlace_m) place_m = m.x_m[k], since_s = m.t_s[k];
+    const double stood_s = m.t_s[k] - since_s;
+    if (stood_s > kLongStand_s && m.t_s[k] < next_s) continue;
+    out.push_back(j);
+    next_s = m.t_s[k] + stood_s / (kLongStand_s * kThinRate_Hz);
+  }
+  return out;
+}
+
 /// The samples at rest with the least speed that would be told from it.
 void find_rest(ProbingRecording& r) {
   const effects::ProbingMotion& m = r.motion;
@@ -166,10 +187,15 @@ struct Jump {
   double size_N;
 };
 
-std::vector<Jump> jumps(const laws::ProbingLaw& law, const ProbingRecording& r) {
-  std::vector<double> borders;
+std::vector<double> borders_of(const laws::ProbingLaw& law) {
+  std::vector<double> out;
   for (const laws::Layer& layer : law.parameters().layers)
-    borders.insert(borders.end(), {layer.start_m, layer.start_m + layer.thickness_m});
+    out.insert(out.end(), {layer.start_m, layer.start_m + layer.thickness_m});
+  return out;
+}
+
+std::vector<Jump> jumps(const laws::ProbingLaw& law, const ProbingRecording& r) {
+  const std::vector<double> borders = borders_of(law);
   std::vector<Jump> out;
   const auto& x = r.motion.x_m;
   for (std::size_t k = 1; k < x.size(); ++k)
@@ -211,7 +237,10 @@ Result<ProbingRecording> prepare(trial::ProbingMeasurement&& trial,
   prepare_sliding(trial, stated, out);
   if (!turns) find_rest(out);
   prepare_turning(trial, stated, out);
-  if (turns) find_turning_rest(out);
+  if (turns)
+    find_turning_rest(out);
+  else
+    out.decimator.choose(informative(out));
   out.measured_thin.resize(out.decimator.size(n));
   out.decimator.apply(out.measured, out.measured_thin);
   out.trusted.assign(n, 1.0);
@@ -244,18 +273,24 @@ void weigh(const laws::ProbingLaw& law, ProbingRecording& r) {
   const double most = std::max(*half_way, kWellKnown * kWellKnown * r.noise_sd * r.noise_sd);
   for (std::size_t k = 0; k < n; ++k)
     if (motion_variance[k] > most) r.trusted[k] = 0.0;
+  for (const double border : borders_of(law))
+    for (std::size_t k = 0; k < n; ++k)  // on which side is nobody's to tell
+      if (std::abs(m.x_m[k] - border) < kOnBorder_m + 3.0 * r.x_sd_m[k]) r.trusted[k] = 0.0;
   for (const Jump& jump : found)
     for (std::size_t k = jump.sample < reach ? 0 : jump.sample - reach;
          k < std::min(n, jump.sample + reach); ++k)
       r.trusted[k] = 0.0;
   std::vector<double> jump_variance(r.sd_thin.size(), 0.0);
-  const std::size_t half = r.decimator.half() + 1, stride = r.decimator.stride();
+  const std::size_t half = r.decimator.half() + 1;
+  std::size_t begin = 0;
   for (const Jump& jump : found) {
     const double error_N = r.decimator.largest_tap() * jump.size_N;
-    const std::size_t first = jump.sample < 2 * half ? 0 : (jump.sample - 2 * half) / stride;
-    for (std::size_t j = first; j < jump_variance.size(); ++j) {
+    for (std::size_t j = begin; j < jump_variance.size(); ++j) {
       const std::size_t middle = r.decimator.middle(j);
-      if (middle + half < jump.sample) continue;
+      if (middle + half < jump.sample) {
+        begin = j;
+        continue;
+      }
       if (middle > jump.sample + half) break;
       jump_variance[j] += error_N * error_N;
     }

@@ -46,7 +46,7 @@ core::Result<ProbingRecording> prepare(trial::ProbingMeasurement&& trial,
                                        const trial::StatedNoise& stated, bool turns,
                                        const std::string& where);
 
-/// What lies outside ± of what dry friction at rest may do.
+/// What lies outside ± of what dry friction at rest may do: exactly 0 within.
 inline double beyond(double residual, double half_width) {
   const double size = std::abs(residual) - half_width;
   return size <= 0.0 ? 0.0 : residual < 0.0 ? -size : size;

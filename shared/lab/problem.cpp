@@ -41,6 +41,13 @@ std::vector<Parameter> parameters_of(const effects::EffectFacts& facts) {
   return out;
 }
 
+void Problem::residuals_near(const Structure& structure, std::span<const double>,
+                             const std::vector<std::vector<double>>& points, int trial,
+                             Eigen::Ref<Eigen::MatrixXd> out) const {
+  for (std::size_t k = 0; k < points.size(); ++k)
+    residuals(structure, points[k], trial, out.col(Eigen::Index(k)));
+}
+
 std::vector<std::vector<double>> Problem::starts(std::string_view effect,
                                                  const Eigen::VectorXd&) const {
   std::vector<std::vector<double>> out;

@@ -103,6 +103,14 @@ class Problem {
   /// eliminated here. Same size for every structure.
   virtual void residuals(const Structure& structure, std::span<const double> values, int trial,
                          Eigen::Ref<Eigen::VectorXd> out) const = 0;
+  /// Residuals of one trial at points near `values`, as columns, for differences from those at
+  /// `values`. A problem whose law has several answers stays with the one it has at `values`. By
+  /// default `residuals` at each point.
+  virtual void residuals_near(const Structure& structure, std::span<const double> values,
+                              const std::vector<std::vector<double>>& points, int trial,
+                              Eigen::Ref<Eigen::MatrixXd> out) const;
+  /// Are those so cheap that a search should differentiate anew at every step?
+  virtual bool differs_cheaply() const { return false; }
   /// How many numbers per trial `residuals` has eliminated by itself for that structure.
   virtual int free_per_trial(const Structure& structure) const = 0;
 

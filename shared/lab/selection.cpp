@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "lab/fit_report.hpp"
+#include "lab/followed.hpp"
 
 namespace lab {
 namespace {
@@ -23,10 +24,14 @@ constexpr std::size_t kRefined = 3;
 /// Above this the best of a size is begun anew from other shapes, so many of each effect.
 constexpr double kReshaped = 0.9;
 constexpr int kReshapeTries = 8;
+/// A trend of which the motion's memory explains this share is no sensor's.
+constexpr double kFollowed = 0.45;
+/// Shifts of all layers that one constant of the sensor explains: so much is left of them, where
+/// there are two and where there are more; what counts as a shift.
+constexpr double kBackOfTwo = 0.05, kBack = 0.15, kShifted_m = 5e-5, kNoWorse = 1.1;
+constexpr std::string_view kBias = "sensor_bias";
 /// At the floor for all purposes: no more effects are looked for.
 constexpr double kFloor = 1.25;
-/// An effect's numbers must be known better than this share of their size.
-constexpr double kKnown = 0.5;
 
 /// Observations that a trial is worth, and the price of a number, in nats.
 constexpr double kPerTrial = 12.0, kPrice = 5.0;
@@ -37,6 +42,18 @@ double numbers_beyond(const Residual& residual, const Solution& larger, const So
   const Problem& problem = residual.problem();
   return double(larger.values.size()) - double(smaller.values.size()) +
          problem.free_per_trial(larger.structure) - problem.free_per_trial(smaller.structure);
+}
+
+/// Mean squares of two structures over what both judge.
+std::pair<double, double> mean_squares(const Solution& a, const Solution& b) {
+  double of_a = 0.0, of_b = 0.0, count = 0.0;
+  for (Eigen::Index k = 0; k < a.residual.size(); ++k) {
+    if (a.residual(k) == 0.0 || b.residual(k) == 0.0) continue;
+    of_a += robust_loss(a.residual.segment(k, 1), a.scale);
+    of_b += robust_loss(b.residual.segment(k, 1), b.scale);
+    count += 1.0;
+  }
+  return {of_a / std::max(1.0, count), of_b / std::max(1.0, count)};
 }
 
 }  // namespace
@@ -73,7 +90,7 @@ Solution& Selection::fitted(const Solution& from, const std::string& effect, int
 
 bool Selection::clearly_better(const Solution& larger, const Solution& smaller,
                                double share) const {
-  const double before = smaller.mean_square(), after = larger.mean_square();
+  const auto [after, before] = mean_squares(larger, smaller);
   const double numbers = std::max(1.0, numbers_beyond(residual_, larger, smaller));
   const double gained = double(residual_.size()) * (before - after) / std::max(1.0, after) +
                         smaller.prior - larger.prior;
@@ -81,13 +98,14 @@ bool Selection::clearly_better(const Solution& larger, const Solution& smaller,
          before - after > share * excess(base().mean_square());
 }
 
-bool Selection::nameable(Solution& at) const {
-  Fit words = report(residual_, at, false);
-  for (const Estimate& e : words.estimates) {
-    if (e.pointer.starts_with('/')) continue;
-    const auto& p = at.parameters[std::size_t(&e - words.estimates.data())];
-    if (!e.informed) return false;
-    if (!p.shape && std::abs(e.value) < e.sd / kKnown * 0.5) return false;
+bool Selection::meant(const Solution& at) const {
+  for (const Candidate& candidate : residual_.problem().candidates()) {
+    if (candidate.facts.meant == nullptr || !contains(at.structure, candidate.facts.id)) continue;
+    std::vector<double> own;
+    for (std::size_t k = 0; k < at.parameters.size(); ++k)
+      if (at.parameters[k].pointer.starts_with(candidate.facts.id + "/"))
+        own.push_back(at.values[k]);
+    if (!candidate.facts.meant(own)) return false;
   }
   return true;
 }
@@ -95,7 +113,7 @@ bool Selection::nameable(Solution& at) const {
 std::vector<const Solution*> Selection::best_of(std::size_t effects, std::size_t most) const {
   std::vector<const Solution*> out;
   for (const auto& [key, solution] : tried_)
-    if (solution.structure.effects.size() == effects) out.push_back(&solution);
+    if (solution.structure.effects.size() == effects && meant(solution)) out.push_back(&solution);
   std::ranges::stable_sort(out, {}, [&](const Solution* s) { return cost(residual_, *s, base()); });
   if (out.size() > most) out.resize(most);
   return out;
@@ -175,6 +193,15 @@ void Selection::grow() {
   }
 }
 
+/// A part of a structure fitted from where the whole of it stands, which may be a better place than
+/// where its own search ended.
+void Selection::part(const Solution& at, const Structure& less) {
+  Solution found = search(residual_, less, carried(residual_.problem().parameters(less), at), &at);
+  const auto known = tried_.find(name(less));
+  if (known == tried_.end() || found.mean_square() < known->second.mean_square())
+    tried_[name(less)] = std::move(found);
+}
+
 void Selection::prune() {
   for (bool dropped = true; dropped && !chosen_.empty();) {
     dropped = false;
@@ -182,11 +209,7 @@ void Selection::prune() {
     for (const std::string& id : now.effects) {
       const Structure less = minus(now, id);
       const std::string key = name(less);
-      if (!tried_.contains(key)) {
-        Solution at = chosen();
-        const auto parameters = residual_.problem().parameters(less);
-        tried_[key] = search(residual_, less, carried(parameters, at), &at);
-      }
+      part(Solution(chosen()), less);
       if (clearly_better(chosen(), tried_.at(key))) continue;
       chosen_ = key;
       dropped = true;
@@ -213,6 +236,52 @@ void Selection::prefer_parents() {
   }
 }
 
+/// A trend that is free in every trial can stand in for any slow law. Where it follows the motion
+/// it is no sensor's: what it stood in for is left unexplained instead.
+void Selection::refuse_trends() {
+  for (const Candidate& candidate : residual_.problem().candidates()) {
+    const std::string& id = candidate.facts.id;
+    if (!candidate.facts.free_per_trial || !contains(chosen().structure, id)) continue;
+    if (followed_share(residual_, chosen(), id) < kFollowed) continue;
+    const Structure less = minus(chosen().structure, id);
+    part(Solution(chosen()), less);
+    chosen_ = name(less);
+    refused_ = id;
+  }
+}
+
+/// How far the places of rest of the base's layers have moved from the model's, root mean square.
+/// `count`: of how many.
+double moved(const Solution& at, int& count) {
+  double sum = 0.0;
+  count = 0;
+  for (std::size_t k = 0; k < at.values.size(); ++k) {
+    const Parameter& p = at.parameters[k];
+    if (!p.pointer.starts_with('/') || !p.pointer.ends_with("/equilibrium_m")) continue;
+    sum += (at.values[k] - p.start) * (at.values[k] - p.start);
+    ++count;
+  }
+  return count > 0 ? std::sqrt(sum / count) : 0.0;
+}
+
+/// What a sensor adds looks, in contact alone, as if every layer were shifted: each by the constant
+/// over its stiffness. One constant that brings all of them back to where the model has them is the
+/// simpler reading.
+void Selection::explain_shifts() {
+  const auto seen = looks_.find(std::string(kBias));
+  if (seen == looks_.end() || !seen->second.excited || contains(chosen().structure, kBias)) return;
+  int layers = 0;
+  const double before_m = moved(chosen(), layers);
+  if (layers < 2 || before_m < kShifted_m) return;
+  Solution from = chosen();
+  differentiate(residual_, from);
+  const Solution& with = fitted(from, std::string(kBias), 1);
+  const double after_m = moved(with, layers);
+  if (after_m < (layers == 2 ? kBackOfTwo : kBack) * before_m &&
+      with.mean_square() < kNoWorse * from.mean_square())
+    chosen_ = name(with.structure);
+}
+
 const Solution& Selection::leading() const {
   const auto price = [&](const auto& entry) { return cost(residual_, entry.second, base()); };
   return std::ranges::min_element(tried_, {}, price)->second;
@@ -226,12 +295,18 @@ bool Selection::run(const std::function<void()>& after_singles) {
   if (after_singles) after_singles();
   grow();
   if (stopped_) return false;
+  for (const Solution* pair : best_of(2, kRefined))
+    for (const std::string& id : pair->structure.effects)
+      part(Solution(*pair), minus(pair->structure, id));
+  refine(1);
   for (int size = 1; size <= options_.max_effects; ++size)
     for (const Solution* larger : best_of(std::size_t(size), 1))
       if (clearly_better(*larger, chosen())) chosen_ = name(larger->structure);
   prune();
   prefer_parents();
   prune();
+  refuse_trends();
+  explain_shifts();
   // In which order they brought most: the best single of them first.
   Structure sum;
   for (std::size_t k = 0; k < chosen().structure.effects.size(); ++k) {

@@ -37,12 +37,14 @@ class Selection {
   const std::map<std::string, Look>& looks() const { return looks_; }  ///< on the base, by effect
   /// Ids in the order in which they brought most.
   const std::vector<std::string>& order() const { return order_; }
+  /// An effect that reached the floor by imitation and is not named for that; empty for none.
+  const std::string& refused() const { return refused_; }
   /// Does the larger bring the residual clearly nearer to the floor than the smaller? @param share
   /// of what the given model left over the floor that it must take away besides.
   bool clearly_better(const Solution& larger, const Solution& smaller,
                       double share = kClearOfExcess) const;
-  /// No effect ends where it may not be named: at a bound, or smaller than its standard error.
-  bool nameable(Solution& at) const;
+  /// Every effect's numbers stand to each other as its law means them.
+  bool meant(const Solution& at) const;
 
  private:
   Solution& fitted(const Solution& from, const std::string& effect, int tries);
@@ -50,8 +52,11 @@ class Selection {
   void refine(std::size_t effects);
   void grow();
   void reshape(std::size_t effects);
+  void part(const Solution& whole, const Structure& less);
   void prune();
   void prefer_parents();
+  void refuse_trends();
+  void explain_shifts();
   /// The cheapest of a size, most probable first.
   std::vector<const Solution*> best_of(std::size_t effects, std::size_t most) const;
   bool go_on(double share);
@@ -62,7 +67,7 @@ class Selection {
   std::map<std::string, Solution> tried_;
   std::map<std::string, Look> looks_;
   std::vector<std::string> order_;
-  std::string chosen_;
+  std::string chosen_, refused_;
   bool stopped_ = false;
 };
 

@@ -56,6 +56,10 @@ class Toy final : public Problem {
                    {facts("silent", false), true, ""},
                    {facts("deaf", false), false, "its channel was not recorded"}};
   }
+  void mean(std::string_view id, bool (*meant)(std::span<const double>)) {
+    for (auto& c : candidates_)
+      if (c.facts.id == id) c.facts.meant = meant;
+  }
   std::string_view rig() const override { return "toy"; }
   int trials() const override { return trials_; }
   std::string trial_id(int k) const override { return std::to_string(k); }
@@ -183,6 +187,26 @@ TEST(Diagnose, TheChildIsNamedWhereItsShapeShows) {
   EXPECT_NEAR(d->effects[0].parameters[1].value[0], 10.0, 1.0);
 }
 
+TEST(Diagnose, AnEffectWhoseNumbersContradictItsLawIsNotNamed) {
+  Toy toy([](int t, int k) { return 2.0 * std::pow(u_of(t, k), 3); });
+  toy.mean("cube", [](std::span<const double> v) { return v[0] > 5.0; });
+  const auto d = diagnose(toy);
+  ASSERT_TRUE(d);
+  EXPECT_EQ(std::ranges::count(ids(*d), "cube"), 0);
+  EXPECT_NE(d->verdict, Verdict::missing);
+}
+
+TEST(Fit, ATrialThatDisagreesWidensTheStandardErrors) {
+  // Eight trials whose slope is 3, but for one of 3.5: by the noise alone the slope would be known
+  // to 0.05/√(3200/2) = 0.00125; the trials disagree by 0.5/8 = 0.06 with an error of that size.
+  const Toy toy([](int t, int k) { return t == 3 ? 0.5 * u_of(t, k) : 0.0; });
+  const auto f = fit(toy, {});
+  ASSERT_TRUE(f);
+  EXPECT_NEAR(f->values[1], 3.0 + 0.5 / 8.0, 0.02);
+  EXPECT_GT(f->estimates[1].sd, 0.03);
+  EXPECT_LT(f->estimates[1].sd, 0.12);
+}
+
 TEST(Diagnose, WhatIsNotInTheCatalogueIsUnexplainedAndItsSignalNamed) {
   const Toy toy([](int t, int k) { return 0.5 * std::sin(25.0 * w_of(t, k)); });
   const auto d = diagnose(toy);
@@ -239,8 +263,11 @@ TEST(Fit, IsTheLeastSquaresLineOfALinearProblem) {
   ASSERT_TRUE(f) << f.error().what;
   EXPECT_NEAR(f->values[0], a, 2e-3 * kNoise);
   EXPECT_NEAR(f->values[1], b, 2e-3 * kNoise);
-  // Var b = σ²/(Σu² − n ū²)
-  EXPECT_NEAR(f->estimates[1].sd, kNoise / std::sqrt(suu - su * su / n), 1e-4);
+  // Var b = σ²/(Σu² − n ū²) is the least that is stated; four trials that disagree by chance state
+  // more, not twice as much (a χ² of three degrees over its mean is above 4 in less than 1 %).
+  const double textbook = kNoise / std::sqrt(suu - su * su / n);
+  EXPECT_GT(f->estimates[1].sd, 0.95 * textbook);
+  EXPECT_LT(f->estimates[1].sd, 2.0 * 1.33 * textbook);
   EXPECT_NEAR(f->whitened_rms, 1.0, 0.05);
 }
 

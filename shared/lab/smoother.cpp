@@ -25,7 +25,9 @@ struct Before {
 /// The filter in units of one sample's noise and of the mean spacing.
 class Filter {
  public:
-  Filter(std::span<const double> dt, std::span<const double> y) : dt_(dt), y_(y) {
+  /// @param r  variance of each sample's noise.
+  Filter(std::span<const double> dt, std::span<const double> y, std::span<const double> r)
+      : dt_(dt), y_(y), r_(r) {
     before_.resize(y.size());
     double most = 1.0;
     for (std::size_t k = 1; k < y.size(); ++k) most = std::max(most, std::abs(y[k] - y[k - 1]));
@@ -39,16 +41,16 @@ class Filter {
     for (std::size_t k = 0; k < y_.size(); ++k) {
       if (k > 0) predict(dt_[k], q[k], x, p);
       Before& now = before_[k];
-      now = {x, p, y_[k] - x[0], p[0] + 1.0};
+      now = {x, p, y_[k] - x[0], p[0] + r_[k]};
       update(now, x, p);
     }
   }
 
-  /// Mean of squares of what each sample differs by from what the others say of it; squares into
-  /// `left_out`.
+  /// Squares of what each sample differs by from what the others say of it, in units of its noise,
+  /// into `left_out`.
   void leave_out(std::span<double> left_out) const {
     backward([&](std::size_t k, const Three&, const Sym&, double u, double d) {
-      left_out[k] = (u / d) * (u / d);
+      left_out[k] = (u / d) * (u / d) / r_[k];
     });
   }
 
@@ -132,7 +134,7 @@ class Filter {
     }
   }
 
-  std::span<const double> dt_, y_;
+  std::span<const double> dt_, y_, r_;
   Sym first_{};
   std::vector<Before> before_;
 };
@@ -161,7 +163,9 @@ constexpr double kMostMisfit = 1.5;
 /// The bank of cut-offs tried on one stretch of signal.
 class Bank {
  public:
-  Bank(Filter& filter, std::size_t size, double spacing_s) : size_(size), spacing_s_(spacing_s) {
+  Bank(Filter& filter, std::span<const double> variance, double spacing_s)
+      : variance_(variance), size_(variance.size()), spacing_s_(spacing_s) {
+    const std::size_t size = size_;
     const double highest = std::min(kHighestCutoff_Hz, 0.2 / spacing_s);
     std::vector<double> q(size), sums;
     for (double f = std::min(kLowestCutoff_Hz, highest); f <= highest * 1.001; f *= kRatio) {
@@ -211,7 +215,8 @@ class Bank {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t j = 0; j < cutoff_Hz_.size(); ++j) {
       double sum = 0.0;
-      for (const double v : long_[j]) sum += std::min(v, kMostMisfit);
+      for (std::size_t k = 0; k < size_; ++k)
+        sum += std::min(long_[j][k], kMostMisfit) / variance_[k];
       if (sum < least) least = sum, best = j;
     }
     return best;
@@ -243,6 +248,7 @@ class Bank {
     return out;
   }
 
+  std::span<const double> variance_;
   std::size_t size_;
   double spacing_s_;
   std::vector<double> cutoff_Hz_;
@@ -251,14 +257,15 @@ class Bank {
 
 /// One stretch, into `out` from sample `from` on, without its first `skip` samples.
 void smooth_stretch(std::span<const double> t_s, std::span<const double> y, double sd,
-                    std::size_t skip, std::size_t from, Smoothed& out) {
+                    std::span<const double> variance, std::size_t skip, std::size_t from,
+                    Smoothed& out) {
   const std::size_t n = y.size();
   const double spacing_s = (t_s.back() - t_s.front()) / double(n - 1);
   std::vector<double> dt(n, 1.0), scaled(n), q(n);
   for (std::size_t k = 1; k < n; ++k) dt[k] = (t_s[k] - t_s[k - 1]) / spacing_s;
   for (std::size_t k = 0; k < n; ++k) scaled[k] = (y[k] - y[0]) / sd;
-  Filter filter(dt, scaled);
-  q = Bank(filter, n, spacing_s).log_intensity();
+  Filter filter(dt, scaled, variance);
+  q = Bank(filter, variance, spacing_s).log_intensity();
   for (double& v : q) v = std::exp(v);
   filter.forward(q);
   filter.smooth([&](std::size_t k, const Three& x, const Three& var) {
@@ -274,12 +281,14 @@ void smooth_stretch(std::span<const double> t_s, std::span<const double> y, doub
   });
 }
 
-constexpr std::size_t kStretch = 1u << 16, kOverlap = 1u << 11;
+constexpr std::size_t kStretch = 1u << 17, kOverlap = 1u << 11;
 
 }  // namespace
 
 double noise_sd(std::span<const double> y) {
-  constexpr std::size_t kWindow = 64;
+  constexpr std::size_t kWindow = 16;
+  // A low quantile: kinks are in the upper ones. What it is of the mean, by 4e6 simulated samples.
+  constexpr double kQuantile = 0.3, kOfMean = 0.6732;
   if (y.size() < 8) return 0.0;
   std::vector<double> squares;
   const std::size_t window = std::min(kWindow, y.size() - 3);
@@ -291,12 +300,23 @@ double noise_sd(std::span<const double> y) {
     }
     squares.push_back(sum / double(window) / 20.0);  // 1 + 9 + 9 + 1
   }
-  const auto middle = squares.begin() + std::ptrdiff_t(squares.size() / 2);
-  std::ranges::nth_element(squares, middle);
-  return std::sqrt(*middle);
+  const auto low = squares.begin() + std::ptrdiff_t(kQuantile * double(squares.size()));
+  std::ranges::nth_element(squares, low);
+  return std::sqrt(*low / kOfMean);
+}
+
+std::vector<double> rounding_variance(std::span<const double> y) {
+  std::vector<double> out(y.size(), 1.0);
+  for (std::size_t from = 0, end = 0; from < y.size(); from = end) {
+    while (end < y.size() && y[end] == y[from]) ++end;
+    std::fill(out.begin() + std::ptrdiff_t(from), out.begin() + std::ptrdiff_t(end),
+              std::max(1.0, double(end - from) - 1.0));
+  }
+  return out;
 }
 
 Smoothed smooth(std::span<const double> t_s, std::span<const double> y, double noise_sd) {
+  const std::vector<double> variance = rounding_variance(y);
   core::require(t_s.size() == y.size() && y.size() >= 4 && noise_sd > 0.0,
                 "a smoother needs four samples and their noise");
   const std::size_t n = y.size();
@@ -309,7 +329,8 @@ Smoothed smooth(std::span<const double> t_s, std::span<const double> y, double n
     // The overlap is smoothed by both stretches; the middle of it is where one takes over.
     const std::size_t end = n - from <= kStretch + kOverlap ? n : from + kStretch;
     smooth_stretch(t_s.subspan(from, end - from), y.subspan(from, end - from), noise_sd,
-                   from == 0 ? 0 : kOverlap / 2, from, out);
+                   std::span(variance).subspan(from, end - from), from == 0 ? 0 : kOverlap / 2,
+                   from, out);
     if (end == n) break;
     from = end - kOverlap;
   }

@@ -45,6 +45,30 @@ TEST(Smoother, NoiseIsFoundWithinAFewPercent) {
     EXPECT_NEAR(noise_sd(sines(1000.0, 8.0, noise).y), noise, 0.04 * noise);
 }
 
+TEST(Smoother, KinksEveryTwentiethOfASecondAreNoNoise) {
+  auto r = sines(1000.0, 8.0, 5e-7);
+  for (std::size_t k = 0; k < r.y.size(); ++k) r.y[k] += (k / 50) % 2 ? 1e-3 : 0.0;
+  EXPECT_NEAR(noise_sd(r.y), 5e-7, 0.15 * 5e-7);
+}
+
+TEST(Smoother, APositionThatStandsOnItsRoundingIsNotSeenToMove) {
+  // A creep to a rest, 35 mm (1 − e^(−t/2 s)), counted in steps of 5 µm: after 30 s less than a
+  // step is left to go.
+  std::vector<double> t_s, y;
+  for (int k = 0; k < 90'000; ++k) {
+    t_s.push_back(1e-3 * k);
+    y.push_back(5e-6 * std::round(0.035 * (1.0 - std::exp(-0.5 * t_s.back())) / 5e-6));
+  }
+  const Smoothed s = smooth(t_s, y, 5e-6 / std::sqrt(12.0));
+  double moving = 0.0, standing = 0.0;
+  for (std::size_t k = 0; k < 5'000; ++k)
+    moving = std::max(moving, std::abs(s.rate[k] - 0.0175 * std::exp(-0.5 * t_s[k])));
+  for (std::size_t k = 30'000; k < y.size(); ++k)
+    standing = std::max(standing, std::abs(s.rate[k]));
+  EXPECT_LT(moving, 3e-4);
+  EXPECT_LT(standing, 2e-5);
+}
+
 TEST(Smoother, SpeedOfAHandIsKnownToAFewMicrometresPerSecond) {
   // Half a micrometre of noise at 1 kHz under a cut-off of some 5 Hz leaves about
   // 2π √(2 σ² f0³/(3 fs)) = 1 µm/s; plain differences would leave 700.
@@ -110,6 +134,19 @@ TEST(Decimator, LeavesASlowRecordingAsItIs) {
   const Decimator d(1.0 / 120.0, 100.0);
   EXPECT_EQ(d.stride(), 1u);
   EXPECT_EQ(d.size(50), 50u);
+}
+
+TEST(Decimator, GivesTheOutputsThatWereChosenAsItGaveThemAmongAll) {
+  const auto r = sines(1000.0, 1.0, 0.0);
+  Decimator all(1e-3, 100.0);
+  std::vector<double> every(all.size(r.y.size()));
+  all.apply(r.y, every);
+  Decimator some = all;
+  some.choose({0, 7, 31});
+  std::vector<double> chosen(some.size(r.y.size()));
+  some.apply(r.y, chosen);
+  EXPECT_EQ(chosen, (std::vector{every[0], every[7], every[31]}));
+  EXPECT_EQ(some.middle(1), all.middle(7));
 }
 
 TEST(Drift, TakesOutAPolynomialAndGivesItBack) {

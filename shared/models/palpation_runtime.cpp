@@ -14,6 +14,7 @@ using math::Vec3;
 
 constexpr double kFollowed_voxels = 1.0 / 3.0;  // most that the tip moves in a step
 constexpr double kMostSubsteps = 64;
+constexpr double kFarthestResponse_voxels = 0.2;
 
 /// Small rotations as a vector, left of q.
 math::Quat turned(const math::Quat& q, const Vec3& by_V_rad) {
@@ -49,19 +50,32 @@ core::Result<PalpationMotion> PalpationMotion::through(std::span<const double> t
   return out;
 }
 
-HandleMotion PalpationMotion::at(double t) const noexcept {
-  t = std::clamp(t, t_s.front(), t_s.back());
+std::size_t PalpationMotion::nearest(double t) const noexcept {
   const auto after = std::ranges::lower_bound(t_s, t);
   auto k = std::size_t(after - t_s.begin());
   if (k == t_s.size() || (k > 0 && t - t_s[k - 1] < t_s[k] - t)) --k;
+  return k;
+}
+
+HandleMotion PalpationMotion::at(double t) const noexcept {
+  t = std::clamp(t, t_s.front(), t_s.back());
+  const std::size_t k = nearest(t);
   return later(handle[k], t - t_s[k]);
 }
 
 /// The forces on the contact points of a moving handle, through the stages from spread to point.
 class PalpationRuntime::Contacts final : public laws::ContactForces {
  public:
-  Contacts(const PalpationRuntime& runtime, const HandleMotion& handle)
-      : runtime_(runtime), force_factor_Nm_(runtime.law_.parameters().force_factor_Nm) {
+  /// One sample's part of a memo, to be filled or to be read.
+  struct Recall {
+    std::span<FieldMemo::Entry> entries;
+    bool fill = false;
+    std::size_t next = 0;
+  };
+  Contacts(const PalpationRuntime& runtime, const HandleMotion& handle, Recall* recall = nullptr)
+      : runtime_(runtime),
+        force_factor_Nm_(runtime.law_.parameters().force_factor_Nm),
+        recall_(recall) {
     const laws::Shank& shank = runtime.law_.shank();
     for (std::size_t i = 0; i < std::size_t(shank.points); ++i) {
       const Vec3 unbent_H(shank.rest_m[i].x(), shank.rest_m[i].y(), shank.z_m[i]);
@@ -70,7 +84,28 @@ class PalpationRuntime::Contacts final : public laws::ContactForces {
   }
 
   laws::ForceSample at(std::size_t i, const Vec3& p_V_m) const noexcept override {
+    return bending_at(i, p_V_m, elastic_at(i, p_V_m));
+  }
+
+  /// What of the force on point i is felt and does not bend the shank, in V.
+  Vec3 unbending_N(std::size_t i, const Vec3& p_V_m) const noexcept {
+    laws::ForceSample total{Vec3::Zero(), math::Mat3::Zero()};
+    add_unbending(i, p_V_m, elastic_at(i, p_V_m), total);
+    return total.force_N;
+  }
+
+  /// What bends and what does not, of one evaluation.
+  void both_at(std::size_t i, const Vec3& p_V_m, laws::ForceSample& bending,
+               laws::ForceSample& unbending) const noexcept {
     const laws::ForceSample elastic = elastic_at(i, p_V_m);
+    bending = bending_at(i, p_V_m, elastic);
+    unbending = {Vec3::Zero(), math::Mat3::Zero()};
+    add_unbending(i, p_V_m, elastic, unbending);
+  }
+
+ private:
+  laws::ForceSample bending_at(std::size_t i, const Vec3& p_V_m,
+                               const laws::ForceSample& elastic) const noexcept {
     laws::ForceSample total = elastic;
     for (const auto& force : runtime_.stages_.forces) {
       const double share = force->bending_share();
@@ -81,18 +116,12 @@ class PalpationRuntime::Contacts final : public laws::ContactForces {
     }
     return total;
   }
-
-  /// What of the force on point i is felt and does not bend the shank, in V.
-  Vec3 unbending_N(std::size_t i, const Vec3& p_V_m) const noexcept {
-    const laws::ForceSample elastic = elastic_at(i, p_V_m);
-    laws::ForceSample total{Vec3::Zero(), math::Mat3::Zero()};
+  void add_unbending(std::size_t i, const Vec3& p_V_m, const laws::ForceSample& elastic,
+                     laws::ForceSample& total) const noexcept {
     for (const auto& force : runtime_.stages_.forces)
       if (const double share = force->bending_share(); share < 1.0)
         add(1.0 - share, *force, i, p_V_m, elastic, total);
-    return total.force_N;
   }
-
- private:
   effects::PointContact point(std::size_t i, const Vec3& p_V_m) const noexcept {
     return {p_V_m, v_m_s_[i], runtime_.field_};
   }
@@ -125,13 +154,22 @@ class PalpationRuntime::Contacts final : public laws::ContactForces {
   }
 
   volume::FieldSample changed(const Vec3& p_V_m) const noexcept {
-    volume::FieldSample field = runtime_.field_->sample(p_V_m);
+    volume::FieldSample field = sample(p_V_m);
     for (const auto& change : runtime_.stages_.fields) change->change(field);
     return field;
   }
 
+  volume::FieldSample sample(const Vec3& p_V_m) const noexcept {
+    if (!recall_ || recall_->next >= recall_->entries.size()) return runtime_.field_->sample(p_V_m);
+    FieldMemo::Entry& entry = recall_->entries[recall_->next++];
+    if (!recall_->fill) return entry.p_m == p_V_m ? entry.at : runtime_.field_->sample(p_V_m);
+    entry = {p_V_m, runtime_.field_->sample(p_V_m)};
+    return entry.at;
+  }
+
   const PalpationRuntime& runtime_;
   double force_factor_Nm_;
+  Recall* recall_;
   std::array<Vec3, laws::kMaxPoints> v_m_s_;
 };
 
@@ -231,9 +269,9 @@ laws::PalpationStep PalpationRuntime::step(const math::Pose& X_VH,
 
 laws::PalpationStep PalpationRuntime::recorded(const HandleMotion& handle,
                                                laws::PalpationState& state) const noexcept {
-  HandleMotion placed = handle;
-  for (const auto& placement : stages_.placements) placement->place(placed.X_VH);
-  laws::PalpationStep out = placed_step(placed, state);
+  HandleMotion there = handle;
+  for (const auto& placement : stages_.placements) placement->place(there.X_VH);
+  laws::PalpationStep out = placed_step(there, state);
   for (const auto& offset : stages_.offsets) offset->add(out.wrench_H);
   return out;
 }
@@ -253,26 +291,114 @@ void PalpationRuntime::follow(const HandleMotion& from, const HandleMotion& to,
   }
 }
 
+HandleMotion PalpationRuntime::moment(const PalpationMotion& motion,
+                                      std::size_t sample) const noexcept {
+  return delay_s_ != 0.0 ? motion.at(motion.t_s[sample] - delay_s_) : motion.handle[sample];
+}
+
+void PalpationAnswer::resize(std::size_t samples) {
+  wrench_H.resize(samples);
+  deflection_m.resize(samples);
+  converged.resize(samples);
+}
+
+void PalpationAnswer::set(std::size_t k, const laws::PalpationStep& step) noexcept {
+  wrench_H[k] = step.wrench_H;
+  deflection_m[k] = step.deflection_m;
+  converged[k] = step.converged;
+}
+
 void PalpationRuntime::predict(const PalpationMotion& motion, PalpationAnswer& out,
-                               std::span<const math::Vec2> near_m) const {
+                               bool from_the_end) const {
   const std::size_t n = motion.t_s.size();
-  out.wrench_H.resize(n);
-  out.deflection_m.resize(n);
-  out.converged.resize(n);
+  out.resize(n);
   laws::PalpationState state;
   HandleMotion last;
-  for (std::size_t k = 0; k < n; ++k) {
-    const HandleMotion now =
-        delay_s_ != 0.0 ? motion.at(motion.t_s[k] - delay_s_) : motion.handle[k];
-    if (!near_m.empty())
-      state.deflection_m = near_m[k];
-    else if (k > 0)
-      follow(last, now, state);
-    const laws::PalpationStep step = recorded(now, state);
-    out.wrench_H[k] = step.wrench_H;
-    out.deflection_m[k] = step.deflection_m;
-    out.converged[k] = step.converged;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t k = from_the_end ? n - 1 - i : i;
+    const HandleMotion now = moment(motion, k);
+    if (i > 0) follow(last, now, state);
+    out.set(k, recorded(now, state));
     last = now;
+  }
+}
+
+void PalpationRuntime::predict_at(const PalpationMotion& motion,
+                                  std::span<const std::size_t> samples,
+                                  std::span<const math::Vec2> near_m, PalpationAnswer& out) const {
+  out.resize(samples.size());
+  for (std::size_t j = 0; j < samples.size(); ++j) {
+    const std::size_t k = samples[j];
+    const std::size_t then = delay_s_ != 0.0 ? motion.nearest(motion.t_s[k] - delay_s_) : k;
+    laws::PalpationState state{near_m[then]};
+    out.set(j, recorded(moment(motion, k), state));
+  }
+}
+
+std::size_t PalpationRuntime::field_samples() const noexcept {
+  const auto points = std::size_t(law_.parameters().points);
+  return stages_.spreads.empty() ? points : points - 1 + stages_.spreads.front()->nodes().size();
+}
+
+laws::PalpationStep PalpationRuntime::response(const math::Pose& X_VH, const Contacts& contacts,
+                                               const math::Vec2& rest_m) const noexcept {
+  const laws::Shank& shank = law_.shank();
+  const auto n = std::size_t(shank.points);
+  const math::Mat3 R = X_VH.q.toRotationMatrix();
+  const Eigen::Matrix<double, 3, 2> lateral = R.leftCols<2>();
+  math::Vec2 r = shank.stiffness_N_per_m * rest_m;
+  math::Mat2 A = shank.stiffness_N_per_m * math::Mat2::Identity();
+  std::array<Vec3, laws::kMaxPoints> force_N;
+  std::array<Eigen::Matrix<double, 3, 2>, laws::kMaxPoints> slope_N_per_m;
+  for (std::size_t i = 0; i < n; ++i) {
+    laws::ForceSample bending, unbending;
+    contacts.both_at(i, X_VH.p + R * law_.point_H_m(int(i), rest_m), bending, unbending);
+    const double shape = shank.shape[i];
+    const Eigen::Matrix<double, 3, 2> slope = shape * (bending.jacobian_N_per_m * lateral);
+    r -= shape * (lateral.transpose() * bending.force_N);
+    A -= shape * (lateral.transpose() * slope);
+    force_N[i] = bending.force_N + unbending.force_N;
+    slope_N_per_m[i] = slope + shape * (unbending.jacobian_N_per_m * lateral);
+  }
+  math::Vec2 s = -A.inverse() * r;
+  const double most_m = kFarthestResponse_voxels * field_->geometry().spacing_m.minCoeff();
+  if (!s.allFinite())
+    s.setZero();
+  else if (s.norm() > most_m)
+    s *= most_m / s.norm();
+  laws::PalpationStep out;
+  out.deflection_m = rest_m + s;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec3 F = R.transpose() * (force_N[i] + slope_N_per_m[i] * s);
+    out.force_H_N[i] = F;
+    out.wrench_H.force_N += law_.parameters().force_scale * F;
+    out.wrench_H.torque_Nm +=
+        law_.parameters().torque_scale * law_.point_H_m(int(i), out.deflection_m).cross(F);
+  }
+  return out;
+}
+
+void PalpationRuntime::respond_at(const PalpationMotion& motion,
+                                  std::span<const std::size_t> samples,
+                                  std::span<const math::Vec2> rest_m, PalpationAnswer& out,
+                                  FieldMemo& memo) const {
+  out.resize(samples.size());
+  const bool fill = memo.entries.empty();
+  if (fill) {
+    memo.entries_each = field_samples();
+    memo.entries.resize(memo.entries_each * samples.size());
+  }
+  for (std::size_t j = 0; j < samples.size(); ++j) {
+    HandleMotion handle = moment(motion, samples[j]);
+    for (const auto& placement : stages_.placements) placement->place(handle.X_VH);
+    handle.X_VH.p += law_.parameters().pose_offset_m;
+    Contacts::Recall recall{
+        std::span(memo.entries).subspan(j * memo.entries_each, memo.entries_each), fill};
+    const Contacts contacts(*this, handle, &recall);
+    laws::PalpationStep step = response(handle.X_VH, contacts, rest_m[j]);
+    for (const auto& wrench : stages_.wrenches) wrench->add(handle, step.wrench_H);
+    for (const auto& offset : stages_.offsets) offset->add(step.wrench_H);
+    out.set(j, step);
   }
 }
 

@@ -26,6 +26,7 @@ struct PalpationMotion {
   /// How the handle moved at t, from the sample nearest to it on: exact to the third power of the
   /// time between. Before the first and after the last it rests where it was.
   effects::HandleMotion at(double t_s) const noexcept;
+  std::size_t nearest(double t_s) const noexcept;  ///< sample
 };
 
 /// What a sensor would have said over a recording, one entry per sample.
@@ -33,6 +34,20 @@ struct PalpationAnswer {
   std::vector<math::Wrench> wrench_H;
   std::vector<math::Vec2> deflection_m;  ///< δ of the tip, in H
   std::vector<std::uint8_t> converged;   ///< 1 where the equilibrium was reached
+
+  void resize(std::size_t samples);
+  void set(std::size_t k, const laws::PalpationStep& step) noexcept;
+};
+
+/// What the field was at the contact points of a model at rest, so that models near it need not ask
+/// again where their points are the same.
+struct FieldMemo {
+  struct Entry {
+    math::Vec3 p_m;
+    volume::FieldSample at;
+  };
+  std::vector<Entry> entries;    ///< [sample][point of the field asked for], in their order
+  std::size_t entries_each = 0;  ///< per sample
 };
 
 /// A model on a volume. Immutable: safe to use from several threads at once.
@@ -67,10 +82,22 @@ class PalpationRuntime {
   /// A whole recording, delay included. Between two samples the rest of the shank is followed in
   /// steps that move the tip by at most a third of a voxel; the first sample starts from the unbent
   /// shank.
-  /// @param near_m  if not empty: deflections of a model near this one, one per sample, to start
-  /// each sample from: so a small change of numbers changes no sample's rest for another.
+  /// @param from_the_end  as if the motion had run backwards: where the shank can rest in two
+  /// places it comes to the other. The velocities stay those of the motion as it ran.
   void predict(const PalpationMotion& motion, PalpationAnswer& out,
-               std::span<const math::Vec2> near_m = {}) const;
+               bool from_the_end = false) const;
+  /// At some samples alone, one entry of `out` per entry of `samples`.
+  /// @param near_m  deflections of a model near this one, one per sample of the motion: where the
+  /// search for each rest begins, so that a small change of numbers changes no rest for another.
+  void predict_at(const PalpationMotion& motion, std::span<const std::size_t> samples,
+                  std::span<const math::Vec2> near_m, PalpationAnswer& out) const;
+  /// The same to first order, staying with the rests of a model near this one: one Newton step from
+  /// there, at most a fifth of a voxel long, and the forces to first order along it. So a
+  /// derivative by differences sees no jump from rest to rest.
+  /// @param rest_m  that model's rests, one per entry of `samples`. @param memo  if empty it is
+  /// filled with what is asked of the field; else it says what was found near by.
+  void respond_at(const PalpationMotion& motion, std::span<const std::size_t> samples,
+                  std::span<const math::Vec2> rest_m, PalpationAnswer& out, FieldMemo& memo) const;
 
   /// Tip of the bent probe in V for that pose, offset applied, m.
   math::Vec3 tip_m(const math::Pose& X_VH, const math::Vec2& deflection_m) const noexcept;
@@ -101,6 +128,9 @@ class PalpationRuntime {
                      laws::PalpationStep& step) const noexcept;
   laws::PalpationStep placed_step(effects::HandleMotion handle,
                                   laws::PalpationState& state) const noexcept;
+  laws::PalpationStep response(const math::Pose& X_VH, const Contacts& contacts,
+                               const math::Vec2& rest_m) const noexcept;
+  effects::HandleMotion moment(const PalpationMotion& motion, std::size_t sample) const noexcept;
   void follow(const effects::HandleMotion& from, const effects::HandleMotion& to,
               laws::PalpationState& state) const noexcept;
 
@@ -110,6 +140,7 @@ class PalpationRuntime {
   Stages stages_;
   double delay_s_ = 0.0;
   bool felt_without_bending_ = false;
+  std::size_t field_samples() const noexcept;  ///< asked for in one evaluation of all points
 };
 
 }  // namespace models

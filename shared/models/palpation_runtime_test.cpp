@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numeric>
 
 namespace models {
 namespace {
@@ -152,7 +153,9 @@ TEST(PalpationRuntime, FollowsAGivenCourseToTheSameRests) {
   const auto runtime = with({});
   const auto first = answer(runtime, motion);
   PalpationAnswer again;
-  runtime.predict(motion, again, first.deflection_m);
+  std::vector<std::size_t> every(motion.t_s.size());
+  std::iota(every.begin(), every.end(), 0);
+  runtime.predict_at(motion, every, first.deflection_m, again);
   for (std::size_t k = 0; k < motion.t_s.size(); ++k)
     EXPECT_NEAR((again.wrench_H[k].force_N - first.wrench_H[k].force_N).norm(), 0.0, 1e-5) << k;
 }

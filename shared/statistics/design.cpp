@@ -44,7 +44,7 @@ Design with_intercept(const Matrix& columns, std::vector<std::string> names) {
   return out;
 }
 
-core::Result<void> check(const Design& design, const Vector& response) {
+core::Result<void> check_shape(const Design& design, const Vector& response) {
   const auto rows = design.columns.rows(), columns = design.columns.cols();
   core::require(rows == response.size(), "a design has one row per response");
   core::require(static_cast<std::size_t>(columns) == design.names.size(),
@@ -54,6 +54,12 @@ core::Result<void> check(const Design& design, const Vector& response) {
         fmt::format("{} row{} cannot determine {} coefficients and an error: at least {} "
                     "are needed",
                     rows, rows == 1 ? "" : "s", columns, columns + 1));
+  return {};
+}
+
+core::Result<void> check(const Design& design, const Vector& response) {
+  if (auto fine = check_shape(design, response); !fine) return fine;
+  const auto rows = design.columns.rows(), columns = design.columns.cols();
   const bool fine = response.allFinite() && design.columns.allFinite();
   for (Eigen::Index i = 0; i < rows && !fine; ++i) {
     if (!std::isfinite(response[i]))

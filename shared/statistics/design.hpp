@@ -25,6 +25,8 @@ Design with_intercept(const Matrix& columns, std::vector<std::string> names);
 /// Every number finite, more rows than columns, the response not constant. Errors: bad_input naming
 /// the column and the row (1-based), or saying how many rows are needed.
 core::Result<void> check(const Design& design, const Vector& response);
+/// Of that, more rows than columns alone.
+core::Result<void> check_shape(const Design& design, const Vector& response);
 
 /// Names the columns that others already determine, with those others: "x3 is a linear combination
 /// of x1, x2". Nothing wrong: empty.

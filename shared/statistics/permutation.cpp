@@ -9,8 +9,6 @@
 namespace statistics {
 namespace {
 
-constexpr double kMostArrangements = 5e7;
-
 /// n! / Π (multiplicity)!
 double arrangements_of(std::vector<double> sorted) {
   double out = 1.0;
@@ -26,7 +24,7 @@ core::Error wrong(std::string what) { return {core::Errc::bad_input, std::move(w
 
 }  // namespace
 
-core::Result<PermutationSlope> permutation_slope(const Vector& x, const Vector& y) {
+core::Result<PermutationSlope> permutation_slope(const Vector& x, const Vector& y, double most) {
   core::require(x.size() == y.size(), "a slope is of pairs");
   if (x.size() < 2 || !x.allFinite() || !y.allFinite())
     return wrong("a slope needs two pairs of finite numbers");
@@ -34,7 +32,7 @@ core::Result<PermutationSlope> permutation_slope(const Vector& x, const Vector& 
     return wrong("x or y is the same everywhere: there is no slope to test");
   std::vector<double> order(y.begin(), y.end());
   std::ranges::sort(order);
-  if (const double count = arrangements_of(order); count > kMostArrangements)
+  if (const double count = arrangements_of(order); count > most)
     return core::Error{core::Errc::too_large,
                        fmt::format("{:.3g} arrangements are too many to count", count)};
   const Vector centred = x.array() - x.mean();

@@ -23,7 +23,7 @@ ProbingEffectInfo coulomb_friction() {
            .kind = Kind::force,
            .summary = "Dry friction of constant size against the motion",
            .equation = "F_c sgn v",
-           .source = "Olsson1998, eq. ?",
+           .source = "Olsson1998, Coulomb friction",
            .params = {{.name = "friction_N",
                        .meaning = "F_c, size of the friction",
                        .initial = 1.0,

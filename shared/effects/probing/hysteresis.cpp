@@ -47,7 +47,7 @@ ProbingEffectInfo hysteresis() {
            .kind = Kind::force,
            .summary = "Friction that builds up over a displacement, whatever the speed (Dahl)",
            .equation = "k z, dz/dt = v − |v| z/δ, z = 0 at the start",
-           .source = "Olsson1998, eq. ?",
+           .source = "Olsson1998, the Dahl model",
            .params = {{.name = "stiffness_N_per_m",
                        .meaning = "k, stiffness as the motion turns back; k δ is the friction",
                        .initial = 1e4,

@@ -29,7 +29,7 @@ ProbingEffectInfo stribeck_friction() {
        .kind = Kind::force,
        .summary = "Dry friction that is greater at low speed, so that the probe sticks and slips",
        .equation = "(F_c + (F_s − F_c) exp(−(v/v_s)²)) sgn v",
-       .source = "Olsson1998, eq. ?",
+       .source = "Olsson1998, Stribeck friction",
        .params = {{.name = "friction_N",
                    .meaning = "F_c, friction at speed",
                    .initial = 1.0,
@@ -47,7 +47,8 @@ ProbingEffectInfo stribeck_friction() {
                    .high = 0.2,
                    .off = kNoOff,
                    .logarithmic = true}},
-       .parents = {"coulomb_friction"}},
+       .parents = {"coulomb_friction"},
+       .meant = [](std::span<const double> v) { return v[1] >= v[0]; }},
       made<StribeckFriction>};
 }
 
