@@ -229,7 +229,10 @@ std::string tract_picture(const TractMap& map, const std::string& unit) {
                          fmt::format("{}°", 90 * quarter));
   out += plot::written(
       {left + 0.5 * width, top + height + 40, 12.5, "middle"},
-      fmt::format("depth along the tract, mm · darkest: {}", lab::figure(largest, unit)));
+      fmt::format(
+          "depth along the tract, mm; upwards the angle about its axis · darkest: {}; empty: "
+          "not touched",
+          lab::figure(largest, unit)));
   out += fmt::format(R"(<rect x="{}" y="{}" width="{}" height="{}" fill="none" stroke="#b9c0c8"/>)",
                      left, top, width, height);
   return out + "</svg>\n";
