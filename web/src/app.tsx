@@ -20,6 +20,12 @@ const PeoplePage = lazy(() => network().then(({ PeoplePage: page }) => ({ defaul
 const CohortsPage = lazy(() => network().then(({ CohortsPage: page }) => ({ default: page })));
 const StationsPage = lazy(() => network().then(({ StationsPage: page }) => ({ default: page })));
 const AuditPage = lazy(() => network().then(({ AuditPage: page }) => ({ default: page })));
+const analysis = () => import('@/features/analysis');
+const AnalysisPage = lazy(() => analysis().then(({ AnalysisPage: page }) => ({ default: page })));
+const ExamplePage = lazy(() => analysis().then(({ ExamplePage: page }) => ({ default: page })));
+const NewPlanPage = lazy(() => analysis().then(({ NewPlanPage: page }) => ({ default: page })));
+const PlanPage = lazy(() => analysis().then(({ PlanPage: page }) => ({ default: page })));
+const RunPage = lazy(() => analysis().then(({ RunPage: page }) => ({ default: page })));
 const trainees = () => import('@/features/trainees');
 const TraineesPage = lazy(() => trainees().then(({ TraineesPage: page }) => ({ default: page })));
 const TraineePage = lazy(() => trainees().then(({ TraineePage: page }) => ({ default: page })));
@@ -49,6 +55,7 @@ const kPlaces = [
   { to: '/trainees', name: 'Trainees', roles: ['admin', 'director', 'faculty'] },
   { to: '/me', name: 'My curve', roles: ['trainee'] },
   { to: '/studies', name: 'Studies', roles: ['admin', 'researcher'] },
+  { to: '/analysis', name: 'Analysis', roles: ['admin', 'researcher'] },
   { to: '/lab', name: 'Model lab', roles: ['admin', 'researcher'] },
   { to: '/network', name: 'Network', roles: ['admin', 'director', 'faculty', 'technician'] },
 ] as const;
@@ -127,6 +134,11 @@ function Pages() {
         <Route path="/studies"><StudiesPage /></Route>
         <Route path="/studies/new"><NewStudyPage /></Route>
         <Route path="/studies/:id">{({ id }) => <StudyPage key={id} id={id} />}</Route>
+        <Route path="/analysis"><AnalysisPage /></Route>
+        <Route path="/analysis/example"><ExamplePage /></Route>
+        <Route path="/analysis/plans/new"><NewPlanPage /></Route>
+        <Route path="/analysis/plans/:id">{({ id }) => <PlanPage key={id} id={id} />}</Route>
+        <Route path="/analysis/runs/:id">{({ id }) => <RunPage key={id} id={id} />}</Route>
         <Route path="/lab"><LabPage /></Route>
         <Route path="/lab/versions"><VersionsPage /></Route>
         <Route path="/lab/work/:model/:set/:step?">{({ model, set, step }) => <WorkPage key={`${model} ${set}`} model={model} set={set} step={step ?? 'compare'} />}</Route>

@@ -10,3 +10,4 @@ export * from './network-queries';
 export { kRoles } from './network-schemas';
 export type * from './network-schemas';
 export * from './trainee-queries';
+export * from './cohort-queries';

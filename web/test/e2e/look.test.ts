@@ -58,6 +58,30 @@ async function lab(page: Page, check: Check): Promise<void> {
   await check('lab-versions');
 }
 
+/** From the published example over a plan to its result. */
+async function analysis(page: Page, check: Check): Promise<void> {
+  await page.goto('/analysis/example');
+  await page.getByText('Printed and recomputed').waitFor();
+  await check('analysis-example');
+  await page.goto('/analysis');
+  await page.getByLabel('Formula (may be changed)').waitFor();
+  await check('analysis');
+  await page.getByRole('link', { name: 'New plan' }).click();
+  await page.getByLabel('Title').fill('Does experience shorten the operation?');
+  await page.getByLabel('Endpoint').first().selectOption('operation_time');
+  await page.getByRole('button', { name: 'Add to the plan' }).click();
+  await check('analysis-plan-new');
+  await page.getByRole('button', { name: 'Lock the plan…' }).click();
+  await page.getByRole('dialog').waitFor();
+  await check('analysis-lock');
+  await page.getByRole('button', { name: 'Lock it' }).click();
+  await page.getByRole('button', { name: 'Run on the trials of now' }).waitFor();
+  await check('analysis-plan');
+  await page.getByRole('button', { name: 'Run on the trials of now' }).click();
+  await page.getByText('Methods, for a paper').waitFor();
+  await check('analysis-run');
+}
+
 let browser: Browser;
 beforeAll(async () => { browser = await launch(); });
 afterAll(() => browser.close());
@@ -119,6 +143,7 @@ describe.each([
     await check('study-new');
 
     await lab(page, check);
+    await analysis(page, check);
     await page.goto('/trainees');
     await page.locator('tbody a').first().waitFor();
     await check('trainees');

@@ -3,17 +3,8 @@ import type { MetricFacts, Trainee } from '@/api';
 import { curve, Plane } from '@/charts';
 import { Select } from '@/ui';
 import { formatFigure, formatShare, measureDigits, share, shownUnit, type Share } from '@/units';
+import { runningShare } from './standing';
 import styles from './trainees.module.css';
-
-const kWindow = 10;
-
-/** Share of right answers among the last ten, once there are five. */
-export function runningShare(right: readonly boolean[]): (number | null)[] {
-  return right.map((_, i) => {
-    const last = right.slice(Math.max(0, i + 1 - kWindow), i + 1);
-    return last.length < 5 ? null : last.filter(Boolean).length / last.length;
-  });
-}
 
 function RightChart({ trainee }: { readonly trainee: Trainee }) {
   const { attempts, rule } = trainee;

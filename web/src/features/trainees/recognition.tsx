@@ -4,10 +4,10 @@ import { Badge } from '@/ui';
 import { formatCount, formatShare, kNone } from '@/units';
 import styles from './trainees.module.css';
 
-/** A share with its interval on a line from 0 to 100 %. */
-export function Whisker({ value, low, high, label }: { readonly value: number; readonly low: number; readonly high: number; readonly label: string }) {
+/** A share with its interval on a line from 0 to 100 %; the numbers stand beside it. */
+export function Whisker({ value, low, high }: { readonly value: number; readonly low: number; readonly high: number }) {
   return (
-    <svg viewBox="0 0 200 16" preserveAspectRatio="none" className={styles.whisker} role="img" aria-label={label}>
+    <svg viewBox="0 0 200 16" preserveAspectRatio="none" className={styles.whisker} aria-hidden="true">
       <line x1={0} x2={200} y1={8} y2={8} className={styles.rail} />
       <line x1={200 * low} x2={200 * high} y1={8} y2={8} className={styles.reach} />
       <rect x={200 * value - 2} y={2} width={4} height={12} className={styles.here} />
@@ -29,7 +29,7 @@ export function ByScenario({ trainee }: { readonly trainee: Trainee }) {
             <tr key={one.scenario}>
               <th scope="row">{one.scenario}</th>
               <td className={styles.number}>{formatCount(one.right)} of {formatCount(one.trials)}</td>
-              <td>{one.share === undefined ? kNone : <span className={styles.interval}><Whisker value={one.share} low={one.wilson_low ?? 0} high={one.wilson_high ?? 1} label="" /><span>{formatShare(one.share)} ({one.wilson_low === undefined ? '' : formatShare(one.wilson_low)}–{one.wilson_high === undefined ? '' : formatShare(one.wilson_high)})</span></span>}</td>
+              <td>{one.share === undefined ? kNone : <span className={styles.interval}><Whisker value={one.share} low={one.wilson_low ?? 0} high={one.wilson_high ?? 1} /><span>{formatShare(one.share)} ({one.wilson_low === undefined ? '' : formatShare(one.wilson_low)}–{one.wilson_high === undefined ? '' : formatShare(one.wilson_high)})</span></span>}</td>
               <td><Badge tone={kTone[one.verdict] ?? 'neutral'}>{one.verdict}</Badge></td>
             </tr>
           ))}

@@ -5,21 +5,9 @@ import { traineesQuery, type TraineeSummary } from '@/api';
 import { Badge, Card, Field, Notice, Select, Table, Term, useTitle } from '@/ui';
 import { formatCount, formatDateTime, formatShare } from '@/units';
 import { Whisker } from './recognition';
+import { isDue, shownOf, type Show } from './standing';
 import styles from './trainees.module.css';
 import { kCusum, kInterval, kState } from './words';
-
-const kDay_us = 86_400_000_000;
-const kDue_days = 60;
-
-export type Show = 'all' | TraineeSummary['state'] | 'due';
-
-/** Somebody who has not been at a station for two months is due. */
-export const isDue = (one: Pick<TraineeSummary, 'last_utc_us'>, now_utc_us: number) => now_utc_us - one.last_utc_us > kDue_days * kDay_us;
-
-export function shownOf(trainees: readonly TraineeSummary[], show: Show, search: string, now_utc_us: number): TraineeSummary[] {
-  const wanted = search.trim().toLowerCase();
-  return trainees.filter((one) => (show === 'all' || (show === 'due' ? isDue(one, now_utc_us) : one.state === show)) && one.trainee.toLowerCase().includes(wanted));
-}
 
 /** Who is on track, who relapsed, who is due. */
 export function TraineesPage() {
@@ -40,7 +28,7 @@ export function TraineesPage() {
           <Select label={<span className="hidden-visually">Shown</span>} value={show} onChange={(event) => setShow(event.target.value as Show)} options={[
             { value: 'all', text: 'All' }, { value: 'relapsed', text: `Relapsed (${tally('relapsed')})` }, { value: 'learning', text: `Learning (${tally('learning')})` },
             { value: 'competent', text: `Competent (${tally('competent')})` }, { value: 'due', text: `Due (${tally('due')})` }]} />
-          <Field label="" aria-label="Find a name" placeholder="Find a name" type="search" value={search} onChange={(event) => setSearch(event.target.value)} />
+          <Field label={<span className="hidden-visually">Find a name</span>} placeholder="Find a name" type="search" value={search} onChange={(event) => setSearch(event.target.value)} />
         </span>
       }>
         <Table<TraineeSummary> caption="Trainees" minWidth={820} rows={all && shownOf(all, show, search, now)} keyOf={({ trainee }) => trainee}
@@ -48,7 +36,7 @@ export function TraineesPage() {
             { name: 'Trainee', cell: (one) => <><Link href={`/trainees/${encodeURIComponent(one.trainee)}`}>{one.trainee}</Link> {one.simulated ? <Badge tone="warn">simulated</Badge> : null}</> },
             { name: <Term definition={kCusum}>State</Term>, cell: (one) => <Badge tone={kState[one.state].tone}>{kState[one.state].word}</Badge> },
             { name: 'Trials', cell: (one) => formatCount(one.trials), number: true },
-            { name: <Term definition={kInterval}>Right</Term>, cell: (one) => <span className={styles.interval}><Whisker value={one.share} low={one.wilson_low} high={one.wilson_high} label="" /><span>{formatShare(one.share)} ({formatShare(one.wilson_low)}–{formatShare(one.wilson_high)})</span></span> },
+            { name: <Term definition={kInterval}>Right</Term>, cell: (one) => <span className={styles.interval}><Whisker value={one.share} low={one.wilson_low} high={one.wilson_high} /><span>{formatShare(one.share)} ({formatShare(one.wilson_low)}–{formatShare(one.wilson_high)})</span></span> },
             { name: 'Next', cell: (one) => one.next.scenario },
             { name: 'Last trial', cell: (one) => <>{formatDateTime(one.last_utc_us)} {isDue(one, now) ? <Badge tone="warn">due</Badge> : null}</> },
           ]} />
