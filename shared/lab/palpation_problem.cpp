@@ -14,6 +14,7 @@
 #include "lab/palpation_numbers.hpp"
 #include "lab/palpation_recording.hpp"
 #include "lab/palpation_trend.hpp"
+#include "lab/palpation_weights.hpp"
 #include "lab/parallel.hpp"
 
 namespace lab {
@@ -74,6 +75,16 @@ class PalpationProblem final : public Problem {
                  Eigen::Ref<Eigen::VectorXd> out) const override {
     whitened(structure, values, k, out);
     if (has_drift(structure)) trends_[std::size_t(k)].remove(out);
+  }
+  Sharpness sharpness() const override {
+    return {.at_floor = 1.2,
+            .share_left = 0.0,
+            .enough = 0.9,
+            .as_given = 1.1,
+            .clear_share = 0.01,
+            .clear_of_excess = 0.0,
+            .per_trial = 300.0,
+            .followed = 1.01};
   }
   bool differs_cheaply() const override { return true; }
   void residuals_near(const Structure& structure, std::span<const double> values,
