@@ -48,7 +48,7 @@ class Server:
         subprocess.run([self.programs / "tractus-server", *map(str, arguments)], check=True, stdout=subprocess.DEVNULL)
 
     def start(self, port=0):
-        command = [self.programs / "tractus-server", "serve", "--data", self.home / "server", "--listen", f"127.0.0.1:{port}", "--json"]
+        command = [self.programs / "tractus-server", "serve", "--data", self.home / "server", "--listen", f"127.0.0.1:{port}", "--plain", "--json"]
         if (self.web / "index.html").exists():
             command += ["--web", self.web]
         self.log = open(self.home / "server.log", "a")

@@ -1,21 +1,27 @@
 #include <fmt/format.h>
 
+#include <set>
+
 #include "core/clock.hpp"
 #include "db/store/migrations.hpp"
 
 namespace store {
 namespace {
 
-core::Result<std::int64_t> version_of(Connection& connection) {
-  auto rows = connection.query("select coalesce(max(version), 0) from schema_versions", {});
+/// The steps that were applied, each by its own number: branches of the product may add steps in
+/// any order.
+core::Result<std::set<std::int64_t>> applied(Connection& connection) {
+  auto rows = connection.query("select version from schema_versions", {});
   if (!rows) return rows.error();
-  return rows->front().integer(0);
+  std::set<std::int64_t> out;
+  for (const Row& row : *rows) out.insert(row.integer(0));
+  return out;
 }
 
 core::Result<void> apply(Connection& connection, const Migration& step) {
-  auto version = version_of(connection);  // again, inside: another process may have been first
-  if (!version) return version.error();
-  if (*version >= step.version) return {};
+  auto known = applied(connection);  // again, inside: another process may have been first
+  if (!known) return known.error();
+  if (known->contains(step.version)) return {};
   if (auto done = connection.script(step.sql); !done) return done.error();
   const std::vector<Value> values{step.version, step.name, core::utc_us()};
   auto noted = connection.query(
@@ -32,16 +38,16 @@ core::Result<void> migrate(Connection& connection, const std::vector<Migration>&
       "(version bigint primary key, name text not null, applied_utc_us bigint not null)",
       {});
   if (!made) return made.error();
-  auto version = version_of(connection);
-  if (!version) return version.error();
+  auto known = applied(connection);
+  if (!known) return known.error();
   const std::int64_t last = steps.empty() ? 0 : steps.back().version;
-  if (*version > last)
+  if (!known->empty() && *known->rbegin() > last)
     return core::Error{core::Errc::conflict,
                        fmt::format("the database has schema {}, this program knows up to {}: use "
                                    "the newer program that made it",
-                                   *version, last)};
+                                   *known->rbegin(), last)};
   for (const Migration& step : steps) {
-    if (step.version <= *version) continue;
+    if (known->contains(step.version)) continue;
     if (auto begun = connection.begin(Access::write); !begun) return begun.error();
     auto done = apply(connection, step);
     if (done) done = connection.commit();

@@ -1,6 +1,7 @@
 /// Transactions: what reads and what writes are different types.
 #pragma once
 
+#include <array>
 #include <concepts>
 #include <filesystem>
 #include <initializer_list>
@@ -34,6 +35,12 @@ class Writing : public Reading {
   using Reading::Reading;
 };
 
+/// The key of the audit trail's chain (audit.hpp).
+using AuditKey = std::array<std::byte, 32>;
+/// Notes the act of this thread (audit.hpp) that has not been noted yet, if there is one.
+core::Result<void> note_act(Writing& tx, const AuditKey& key);
+void act_was_noted() noexcept;
+
 /// One database. Safe from several threads: one writes at a time, one reads at a time, neither
 /// waits for the other.
 class Store {
@@ -51,12 +58,26 @@ class Store {
   }
 
   /// Runs `work(Writing&)`, which returns a Result; commits when it and the commit succeed,
-  /// otherwise nothing has happened and the Error says why.
+  /// otherwise nothing has happened and the Error says why. What is being done by whom
+  /// (store::Acting) is noted in the audit trail, in the same transaction.
   template <std::invocable<Writing&> Work>
   std::invoke_result_t<Work, Writing&> write(Work&& work) {
     const std::lock_guard held(writer_->mutex);
-    return in_transaction<Writing>(*writer_->connection, Access::write, std::forward<Work>(work));
+    auto answer = in_transaction<Writing>(*writer_->connection, Access::write,
+                                          [&](Writing& tx) -> std::invoke_result_t<Work, Writing&> {
+                                            auto done = work(tx);
+                                            if (!done) return done;
+                                            if (auto noted = note_act(tx, audit_key_); !noted)
+                                              return noted.error();
+                                            return done;
+                                          });
+    if (answer) act_was_noted();
+    return answer;
   }
+
+  /// Before anything is audited.
+  void set_audit_key(const AuditKey& key) { audit_key_ = key; }
+  const AuditKey& audit_key() const { return audit_key_; }
 
  private:
   struct Guarded {
@@ -82,6 +103,7 @@ class Store {
   }
 
   std::unique_ptr<Guarded> reader_, writer_;
+  AuditKey audit_key_{};
 };
 
 }  // namespace store

@@ -75,11 +75,21 @@ core::Result<std::optional<TrialRecord>> trial_of(Reading& tx, const std::string
 }
 
 core::Result<std::vector<TrialSummary>> trials_before(Reading& tx, std::int64_t before_utc_us,
-                                                      std::int64_t limit) {
-  auto rows = tx.query(std::string(kSummaryColumns) + kFrom +
-                           "where t.started_utc_us < ? order by t.started_utc_us desc, t.id desc "
-                           "limit ?",
-                       {before_utc_us, limit});
+                                                      std::int64_t limit, const Whose& whose) {
+  constexpr const char* kAssigned =
+      "exists (select 1 from study_trials st join study_slots sl on sl.id = st.slot_id join "
+      "assignment_people p on p.study_id = sl.study_id and p.participant = sl.participant ";
+  auto rows = tx.query(
+      std::string(kSummaryColumns) + kFrom + "where t.started_utc_us < ? and (? = '' or " +
+          kAssigned +
+          "join cohort_people c on c.account_id = p.account_id and c.part = 'trainee' join "
+          "cohort_people f on f.cohort_id = c.cohort_id and f.part = 'faculty' where st.trial_id = "
+          "t.id and f.account_id = ?)) and (? = '' or " +
+          kAssigned +
+          "join assignments a on a.study_id = sl.study_id where st.trial_id = t.id and "
+          "p.account_id = ? and a.release <> 'held')) order by t.started_utc_us desc, t.id desc "
+          "limit ?",
+      {before_utc_us, whose.taught_by, whose.taught_by, whose.seen_by, whose.seen_by, limit});
   if (!rows) return rows.error();
   std::vector<TrialSummary> out;
   for (const Row& row : *rows) out.push_back(summary_from(row));

@@ -41,9 +41,14 @@ struct ScoreRecord {
 core::Result<void> add_trial(Writing& tx, const TrialRecord& trial, std::int64_t now_utc_us);
 core::Result<std::optional<TrialRecord>> trial_of(Reading& tx, const std::string& id);
 
+/// Whose trials a list is of. Both empty: everybody's.
+struct Whose {
+  std::string taught_by = {};  ///< those of people whom this account teaches
+  std::string seen_by = {};    ///< this account's own, as far as their results are released
+};
 /// Newest first by start, of those started before `before_utc_us`; at most `limit`.
 core::Result<std::vector<TrialSummary>> trials_before(Reading& tx, std::int64_t before_utc_us,
-                                                      std::int64_t limit);
+                                                      std::int64_t limit, const Whose& whose = {});
 
 /// Puts scores, coverage (JSON) and the verdict in place of whatever was there; the trial is then
 /// "assessed".

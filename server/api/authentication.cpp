@@ -2,12 +2,15 @@
 
 #include <sodium.h>
 
+#include "db/store/audit.hpp"
 #include "server/api/backend.hpp"
+#include "server/api/totp.hpp"
 
 namespace api {
 namespace {
 
 constexpr std::int64_t kTouch_us = 60ll * 1'000'000;
+constexpr const char* kCodeNeeded = "a one-time code is asked for";
 constexpr const char* kThrottled = "too many failures to sign in: wait a quarter of an hour";
 
 bool matches(const std::string& hash, const std::string& password) {
@@ -48,22 +51,52 @@ core::Result<Caller> by_cookie(Backend& backend, std::string_view token) {
     if (!touched) return touched.error();
   }
   const store::Account& account = (*session)->account;
-  if (account.role != name(Role::admin))
-    return core::Error{core::Errc::unauthorised, "the account has no role known here"};
-  return Caller{Role::admin, account.id, account.name, hash};
+  const auto role = role_named(account.role);
+  if (!role || *role == Role::station || account.state != "active")
+    return core::Error{core::Errc::unauthorised, "the account is switched off"};
+  return Caller{*role, account.id, account.name, hash, account.must_change};
 }
 
+}  // namespace
+
 core::Result<void> check_throttle(Backend& backend, const std::string& name,
-                                  const std::string& peer, std::int64_t since_utc_us) {
+                                  const std::string& peer, std::uint64_t most_from_peer,
+                                  std::uint64_t most_for_name) {
+  const std::int64_t since = backend.now_utc_us() - kThrottleWindow_us;
   auto failures = backend.store.read(
-      [&](store::Reading& tx) { return store::login_failures(tx, name, peer, since_utc_us); });
+      [&](store::Reading& tx) { return store::login_failures(tx, name, peer, since); });
   if (!failures) return failures.error();
-  if (failures->from_peer >= kThrottleFailures || failures->for_name >= kThrottleNameFailures)
+  if (failures->from_peer >= most_from_peer || failures->for_name >= most_for_name)
     return core::Error{core::Errc::unavailable, kThrottled};
   return {};
 }
 
-}  // namespace
+core::Result<void> note_failure(Backend& backend, const std::string& name,
+                                const std::string& peer) {
+  const std::int64_t now = backend.now_utc_us();
+  return backend.store.write([&](store::Writing& tx) {
+    return store::add_login_failure(tx, name, peer, now, now - kThrottleWindow_us);
+  });
+}
+
+bool password_matches(const std::string& hash, const std::string& password) {
+  const std::string& nobodys = nobodys_hash();  // made now, so that no later check takes longer
+  return matches(hash.empty() ? nobodys : hash, password) && !hash.empty();
+}
+
+core::Result<void> use_code(Backend& backend, store::Account& account, const std::string& code) {
+  auto secret = backend.secrets.opened(account.totp_secret);
+  if (!secret) return secret.error();
+  const auto step =
+      totp_step(core::bytes_of(*secret), code, backend.now_utc_us(), account.totp_step);
+  if (!step) return core::Error{core::Errc::unauthorised, "the one-time code is wrong"};
+  account.totp_step = *step;
+  return {};
+}
+
+bool needs_code(const core::Error& error) {
+  return error.code == core::Errc::unauthorised && error.what == kCodeNeeded;
+}
 
 core::Result<std::string> password_hash(const std::string& password) {
   core::require(sodium_init() >= 0, "libsodium starts");
@@ -84,33 +117,48 @@ bool is_throttled(const core::Error& error) {
   return error.code == core::Errc::unavailable && error.what == kThrottled;
 }
 
-core::Result<SignedIn> sign_in(Backend& backend, const std::string& name,
-                               const std::string& password, const std::string& peer) {
-  const std::int64_t now = backend.now_utc_us();
-  const std::string& nobodys = nobodys_hash();  // made now, so that no later sign-in takes longer
-  if (auto open = check_throttle(backend, name, peer, now - kThrottleWindow_us); !open)
-    return open.error();
+namespace {
+
+/// The account that these credentials open, its one-time code used up.
+core::Result<store::Account> account_opened(Backend& backend, const Credentials& given) {
   auto account =
-      backend.store.read([&](store::Reading& tx) { return store::account_named(tx, name); });
+      backend.store.read([&](store::Reading& tx) { return store::account_named(tx, given.name); });
   if (!account) return account.error();
-  const bool right = matches(*account ? (*account)->password_hash : nobodys, password);
-  if (!*account || !right) {
-    auto noted = backend.store.write([&](store::Writing& tx) {
-      return store::add_login_failure(tx, name, peer, now, now - kThrottleWindow_us);
-    });
-    if (!noted) return noted.error();
+  const bool right = password_matches(*account ? (*account)->password_hash : "", given.password);
+  if (!*account || !right || (*account)->state != "active")
     return core::Error{core::Errc::unauthorised, "name or password is wrong"};
+  if (!(*account)->totp_confirmed) return std::move(**account);
+  if (given.code.empty()) return core::Error{core::Errc::unauthorised, kCodeNeeded};
+  if (auto used = use_code(backend, **account, given.code); !used) return used.error();
+  return std::move(**account);
+}
+
+}  // namespace
+
+core::Result<SignedIn> sign_in(Backend& backend, const Credentials& given,
+                               const std::string& peer) {
+  if (auto open = check_throttle(backend, given.name, peer); !open) return open.error();
+  auto account = account_opened(backend, given);
+  if (!account) {
+    if (account.error().code != core::Errc::unauthorised || needs_code(account.error()))
+      return account.error();
+    if (auto noted = note_failure(backend, given.name, peer); !noted) return noted.error();
+    return account.error();
   }
+  store::Acting::is_by(account->name, account->role);
+  const std::int64_t now = backend.now_utc_us();
   const std::string token = new_token();
   auto made = backend.store.write([&](store::Writing& tx) -> core::Result<void> {
-    if (auto done = store::clear_login_failures(tx, name, peer); !done) return done;
+    if (auto done = store::clear_login_failures(tx, given.name, peer); !done) return done;
     if (auto done = store::remove_old_sessions(tx, now - kSessionIdle_us, now - kSessionAge_us);
         !done)
       return done;
-    return store::add_session(tx, token_hash(token), (*account)->id, now);
+    if (account->totp_confirmed)
+      if (auto done = store::use_totp_step(tx, account->id, account->totp_step); !done) return done;
+    return store::add_session(tx, token_hash(token), account->id, now);
   });
   if (!made) return made.error();
-  return SignedIn{std::move(**account), token};
+  return SignedIn{std::move(*account), token};
 }
 
 core::Result<Caller> authenticate(Backend& backend, const http::RequestHead& head) {

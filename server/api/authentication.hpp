@@ -24,14 +24,31 @@ std::string new_token();
 /// random.
 std::string token_hash(std::string_view token);
 
+struct Credentials {
+  std::string name, password;
+  std::string code = {};  ///< one-time, where the account asks for one
+};
 struct SignedIn {
   store::Account account;
   std::string token;  ///< for the cookie; nobody else keeps it
 };
-/// Checks name and password in the same time whether the name exists or not, counts failures, makes
-/// a session. Errors: unauthorised; Throttled (see is_throttled) after too many failures.
-core::Result<SignedIn> sign_in(Backend& backend, const std::string& name,
-                               const std::string& password, const std::string& peer);
+/// Checks name and password in the same time whether the name exists or not, then the one-time code
+/// where the account has them; counts failures, makes a session. Errors: unauthorised (see
+/// needs_code); Throttled (see is_throttled) after too many failures.
+core::Result<SignedIn> sign_in(Backend& backend, const Credentials& given, const std::string& peer);
+/// Name and password were right, and a one-time code is asked for.
+bool needs_code(const core::Error& error);
+/// Notes a failure of `name` from `peer` for the throttle, in a transaction of its own.
+core::Result<void> note_failure(Backend& backend, const std::string& name, const std::string& peer);
+/// Errors: Throttled when `name` failed too often.
+core::Result<void> check_throttle(Backend& backend, const std::string& name,
+                                  const std::string& peer,
+                                  std::uint64_t most_from_peer = kThrottleFailures,
+                                  std::uint64_t most_for_name = kThrottleNameFailures);
+/// Takes as long for an unknown person as for a known one. @param hash  empty: of nobody
+bool password_matches(const std::string& hash, const std::string& password);
+/// Uses a one-time code up. Errors: unauthorised.
+core::Result<void> use_code(Backend& backend, store::Account& account, const std::string& code);
 /// The throttle's refusal, which HTTP calls 429.
 bool is_throttled(const core::Error& error);
 

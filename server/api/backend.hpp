@@ -7,6 +7,7 @@
 
 #include "db/store/objects.hpp"
 #include "db/store/store.hpp"
+#include "server/api/secrets.hpp"
 #include "server/api/trial_views.hpp"
 
 namespace api {
@@ -28,7 +29,9 @@ struct Backend {
   const store::Objects& objects;
   const store::PartialFiles& partials;
   std::function<std::int64_t()> now_utc_us;
-  std::function<void()> work_waits;  ///< tells the job runner
+  std::function<void()> work_waits;     ///< tells the job runner
+  Secrets secrets = Secrets::random();  ///< a server that lasts brings its own
+  bool secure_cookies = false;          ///< browsers reach it by TLS
   UploadLocks upload_locks{};
   TrialViews trial_views{};
 };

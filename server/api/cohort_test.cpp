@@ -1,12 +1,14 @@
-/// The table of a cohort and a method on it, from trials put into the store.
+/// A cohort's table, locked plans and analyses of it, from trials put into the store.
 #include <gmock/gmock.h>
 
 #include <cmath>
 
+#include "db/store/analyses.hpp"
 #include "db/store/study_slots.hpp"
 #include "db/store/trials.hpp"
 #include "db/store/uploads.hpp"
 #include "server/api/api_test_support.hpp"
+#include "server/jobs/analyse.hpp"
 
 namespace api::testing {
 namespace {
@@ -71,8 +73,47 @@ class Cohort : public ApiTest {
     EXPECT_TRUE(added) << added.error().what;
   }
 
-  http::Response analyse(const core::Json& asked) {
-    return ask(request("POST", "/api/v1/cohort/analyses", own_, asked.dump()));
+  http::Response post(const std::string& what, const core::Json& asked) {
+    return ask(request("POST", "/api/v1/cohort/" + what, own_, asked.dump()));
+  }
+  http::Response get(const std::string& what) {
+    return ask(request("GET", "/api/v1/cohort/" + what, own_));
+  }
+  /// Asks, does the job, and gives what the server then says.
+  core::Json analysed(const core::Json& asked) {
+    ++now_;
+    const auto queued = post("analyses", asked);
+    EXPECT_EQ(queued.status, 201) << text(queued);
+    const std::string id = json(queued).value("id", "");
+    EXPECT_EQ(json(get("analyses/" + id))["state"], "queued");
+    const auto done = jobs::analyse(store_, objects_, id, [] { return false; });
+    if (!done) {
+      const auto failed = store_.write(
+          [&](store::Writing& tx) { return store::fail_analysis(tx, id, done.error().what, 2); });
+      EXPECT_TRUE(failed);
+    }
+    return json(get("analyses/" + id));
+  }
+  /// Two means compared, and a question that these data cannot answer.
+  static core::Json plan() {
+    return {{"format", "tractus-plan/1"},
+            {"title", "Seniors and residents"},
+            {"question", "Do seniors score higher?"},
+            {"endpoint", "score_N"},
+            {"subject", "participant"},
+            {"correction", "holm"},
+            {"exclusions",
+             core::Json::array({{{"where", "number > 3"}, {"reason", "a fourth trial"}}})},
+            {"analyses", core::Json::array({{{"id", "levels"},
+                                             {"question", "Do levels differ?"},
+                                             {"family", "primary"},
+                                             {"method", "anova"},
+                                             {"formula", "score_N ~ level"}},
+                                            {{"id", "nothing"},
+                                             {"question", "Of a column that is not there"},
+                                             {"family", "primary"},
+                                             {"method", "ols"},
+                                             {"formula", "score_N ~ luck"}}})}};
   }
   std::string table(const std::string& query = "") {
     const auto response = ask(request("GET", "/api/v1/cohort/table" + query, own_));
@@ -87,21 +128,98 @@ class Cohort : public ApiTest {
 };
 
 TEST_F(Cohort, ComparesTwoLevelsAsAHandDoes) {
-  const auto response =
-      analyse({{"method", "anova"}, {"formula", "score_N ~ level"}, {"study", "spine"}});
-  ASSERT_EQ(response.status, 200) << text(response);
-  const auto answer = json(response);
+  const auto answer =
+      analysed({{"method", "anova"}, {"formula", "score_N ~ level"}, {"study", "spine"}});
+  ASSERT_EQ(answer["state"], "done") << answer.dump();
   // Means 2 and 6 about 4: between 3·4 + 3·4 = 24 of 1 degree; within 2 + 14 = 16 of 4; F = 24/4.
-  const auto& found = answer["report"]["analysis"];
+  const auto& found = answer["result"]["analyses"][0]["report"]["analysis"];
   EXPECT_NEAR(found["F"].get<double>(), 6.0, 1e-12);
   EXPECT_EQ(found["df_within"], 4.0);
   // Student's t of 4 degrees in closed form (Abramowitz & Stegun 26.7.4), t² = 6:
   // sin² = 6/10, cos² = 4/10, p = 1 − sin(1 + cos²/2).
   EXPECT_NEAR(found["p"].get<double>(), 1.0 - std::sqrt(0.6) * 1.2, 1e-9);
-  EXPECT_EQ(answer["rows"], 6);
-  EXPECT_EQ(answer["rows_simulated"], 3);
-  EXPECT_EQ(answer["left_out"]["invalid"], 1);
-  EXPECT_EQ(answer["left_out"]["unscored"], 1);
+  EXPECT_EQ(answer["plan"], nullptr);
+  EXPECT_FALSE(answer["result"]["plan"].contains("lock"));
+  EXPECT_EQ(answer["data"]["rows"], 6);
+  EXPECT_EQ(answer["data"]["rows_simulated"], 3);
+  EXPECT_EQ(answer["data"]["simulated"], true);
+  EXPECT_EQ(answer["data"]["left_out"]["invalid"], 1);
+  EXPECT_EQ(answer["data"]["left_out"]["unscored"], 1);
+  EXPECT_EQ(woken_, 1);
+}
+
+TEST_F(Cohort, ALockedPlanRunsToAReportWithItsDataAndDictionary) {
+  const auto locked = post("plans", {{"plan", plan()}, {"study", "spine"}});
+  ASSERT_EQ(locked.status, 201) << text(locked);
+  const std::string id = json(locked)["id"];
+  // Six trials were there to be seen, whatever is said.
+  EXPECT_EQ(json(locked)["data_seen"], true);
+  EXPECT_EQ(json(locked)["trials_then"], 6);
+  EXPECT_EQ(json(locked)["made_by"], "ada");
+  const auto answer = analysed({{"plan", id}});
+  ASSERT_EQ(answer["state"], "done") << answer.dump();
+  const auto& result = answer["result"];
+  EXPECT_EQ(result["plan"]["lock"]["who"], "ada");
+  // What cannot be done counts as p = 1; Holm doubles the smaller of two.
+  const auto& tests = result["families"][0]["tests"];
+  ASSERT_EQ(tests.size(), 2u);
+  EXPECT_NEAR(tests[0]["p_adjusted"].get<double>(), 2.0 * (1.0 - std::sqrt(0.6) * 1.2), 1e-9);
+  EXPECT_EQ(tests[1]["p"], 1.0);
+  EXPECT_THAT(result["analyses"][1]["error"].get<std::string>(), HasSubstr("luck"));
+  const std::string run = "analyses/" + answer["id"].get<std::string>() + "/";
+  const auto page = get(run + "report.html");
+  EXPECT_EQ(page.status, 200);
+  EXPECT_THAT(std::string(page.header("Content-Security-Policy")), HasSubstr("sandbox"));
+  const auto csv = get(run + "data.csv");
+  EXPECT_EQ(csv.status, 200);
+  const auto dictionary = json(get(run + "dictionary.json"));
+  ASSERT_EQ(dictionary.size(), 12u);  // eleven columns and why a row is left out
+  EXPECT_EQ(dictionary[11]["name"], "excluded_because");
+  EXPECT_EQ(dictionary[10]["unit"], "N");
+  EXPECT_EQ(get(run + "password.txt").status, 404);
+  const auto listed = json(get("plans/" + id));
+  EXPECT_EQ(listed["plan"]["lock"]["data_seen"], true);
+  EXPECT_EQ(listed["analyses"].size(), 1u);
+  EXPECT_EQ(json(get("plans"))["plans"].size(), 1u);
+}
+
+TEST_F(Cohort, ARunOnTheSameSnapshotGivesTheSameDigitsWhateverCameSince) {
+  const std::string id = json(post("plans", {{"plan", plan()}, {"study", "spine"}}))["id"];
+  const auto first = analysed({{"plan", id}});
+  ASSERT_EQ(first["state"], "done") << first.dump();
+  EXPECT_EQ(first["repeats"], nullptr);
+  const auto judged = store_.write([&](store::Writing& tx) {
+    return store::set_trial_invalid(tx, "spine", id_of(0), {"ada", 4, "wrong probe"});
+  });
+  ASSERT_TRUE(judged);
+  const auto again = analysed({{"plan", id}, {"snapshot", first["snapshot"]}});
+  ASSERT_EQ(again["state"], "done") << again.dump();
+  EXPECT_EQ(again["repeats"], first["id"]);
+  EXPECT_EQ(again["same_digits"], true);
+  EXPECT_EQ(again["result"], first["result"]);
+  const auto fresh = analysed({{"plan", id}});
+  EXPECT_EQ(fresh["data"]["rows"], 5);
+  EXPECT_NE(fresh["snapshot"], first["snapshot"]);
+  EXPECT_EQ(fresh["same_digits"], nullptr);
+}
+
+TEST_F(Cohort, APlanThatIsWrongOrLockedAlreadyIsRefused) {
+  const auto refused = [&](const core::Json& asked) {
+    const auto response = post("plans", asked);
+    EXPECT_GE(response.status, 400) << asked.dump();
+    return json(response).value("error", "");
+  };
+  auto wrong = plan();
+  wrong["analyses"][0]["method"] = "tarot";
+  EXPECT_THAT(refused({{"plan", wrong}}), HasSubstr("tarot"));
+  EXPECT_THAT(refused({{"plan", plan()}, {"study", "knee"}}), HasSubstr("knee"));
+  EXPECT_THAT(refused({{"plan", plan()}, {"data_seen", "no"}}), HasSubstr("data_seen"));
+  EXPECT_THAT(refused({{"plan", 3}}), HasSubstr("object"));
+  EXPECT_THAT(refused(core::Json::object()), HasSubstr("plan"));
+  auto locked = plan();
+  locked["lock"] = {{"who", "eve"}, {"utc", "then"}, {"data_seen", false}, {"sha256", "0"}};
+  EXPECT_THAT(refused({{"plan", locked}}), HasSubstr("eve"));
+  EXPECT_EQ(json(get("plans"))["plans"].size(), 0u);
 }
 
 TEST_F(Cohort, TheTableIsOneRowPerTrialThatCounts) {
@@ -114,8 +232,8 @@ TEST_F(Cohort, TheTableIsOneRowPerTrialThatCounts) {
   EXPECT_THAT(csv, HasSubstr(id_of(4) + ",P2,spine,1,senior,,L3,palpation,1,1,4\n"));
   EXPECT_EQ(std::ranges::count(csv, '\n'), 7);
   EXPECT_EQ(
-      json(analyse(
-          {{"method", "anova"}, {"formula", "score_N ~ level"}, {"study", "spine"}}))["sha256"],
+      analysed(
+          {{"method", "anova"}, {"formula", "score_N ~ level"}, {"study", "spine"}})["snapshot"],
       core::sha256(core::bytes_of(csv)));
 }
 
@@ -123,12 +241,12 @@ TEST_F(Cohort, ANameWithCommasAndLineBreaksStaysOneCell) {
   const std::string csv = table();
   EXPECT_EQ(std::ranges::count(csv, '\n'), 8);
   EXPECT_THAT(csv, HasSubstr(id_of(8) + ",\"'=HYPERLINK('x'),  Eve\",,,,,L3,palpation,0,1,7.5\n"));
-  EXPECT_EQ(json(analyse({{"method", "describe"}, {"formula", "score_N ~ rig"}}))["rows"], 7);
+  EXPECT_EQ(analysed({{"method", "describe"}, {"formula", "score_N ~ rig"}})["data"]["rows"], 7);
 }
 
 TEST_F(Cohort, RefusesWhatIsWrongAndNamesIt) {
   const auto refused = [&](const core::Json& asked) {
-    const auto response = analyse(asked);
+    const auto response = post("analyses", asked);
     EXPECT_EQ(response.status, 400) << asked.dump();
     return json(response).value("error", "");
   };
@@ -136,7 +254,7 @@ TEST_F(Cohort, RefusesWhatIsWrongAndNamesIt) {
   EXPECT_THAT(refused({{"formula", formula}}), HasSubstr("method"));
   EXPECT_THAT(refused({{"method", "tarot"}, {"formula", formula}}), HasSubstr("tarot"));
   EXPECT_THAT(refused({{"method", "anova"}}), HasSubstr("formula"));
-  EXPECT_THAT(refused({{"method", "anova"}, {"formula", "luck ~ level"}}), HasSubstr("luck"));
+  EXPECT_THAT(refused({{"method", "anova"}, {"formula", "score_N ~ "}}), HasSubstr("formula"));
   EXPECT_THAT(refused({{"method", "anova"}, {"formula", formula}, {"study", "knee"}}),
               HasSubstr("knee"));
   EXPECT_THAT(refused({{"method", "anova"}, {"formula", formula}, {"options", {{"hue", 1}}}}),
@@ -145,7 +263,19 @@ TEST_F(Cohort, RefusesWhatIsWrongAndNamesIt) {
               HasSubstr("options"));
   EXPECT_THAT(refused({{"method", "anova"}, {"formula", formula}, {"colour", "red"}}),
               HasSubstr("colour"));
-  EXPECT_EQ(ask(request("GET", "/api/v1/cohort/table?study=knee", own_)).status, 400);
+  EXPECT_THAT(refused({{"plan", "none"}}), HasSubstr("none"));
+  EXPECT_THAT(refused({{"plan", "none"}, {"method", "anova"}}), HasSubstr("method"));
+  EXPECT_EQ(woken_, 0);
+  EXPECT_EQ(get("table?study=knee").status, 400);
+  EXPECT_EQ(get("analyses/none").status, 404);
+  EXPECT_EQ(get("plans/none").status, 404);
+  // A column that is not there is known when the table is: the run fails and says so.
+  const auto failed = analysed({{"method", "anova"}, {"formula", "luck ~ level"}});
+  EXPECT_EQ(failed["state"], "failed");
+  EXPECT_THAT(failed["error"].get<std::string>(), HasSubstr("luck"));
+  const std::string id = failed["id"];
+  EXPECT_EQ(get("analyses/" + id + "/report.html").status, 404);
+  EXPECT_EQ(get("analyses/" + id + "/dictionary.json").status, 404);
 }
 
 }  // namespace

@@ -108,7 +108,7 @@ RouteInfo lab_route(std::string method, std::string tail, std::string id, std::s
                 .path = "/api/v1/lab/" + tail,
                 .id = std::move(id),
                 .summary = std::move(summary),
-                .who = {Role::admin},
+                .who = {Role::admin, Role::researcher},
                 .parameters = {},
                 .body = "",
                 .answer = std::move(answer),

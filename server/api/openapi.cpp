@@ -76,11 +76,16 @@ core::Json operation(const RouteInfo& route) {
   core::Json out{{"operationId", route.id}, {"summary", route.summary}};
   out["tags"] = core::Json::array({resource_of(route.path)});
   core::Json roles = core::Json::array(), security = core::Json::array();
-  for (const Role role : route.who) {
-    roles.push_back(name(role));
-    security.push_back({{role == Role::station ? "station" : "session", core::Json::array()}});
+  core::Json objects = core::Json::object();
+  for (const Grant& grant : route.who) {
+    roles.push_back(name(grant.role));
+    objects[std::string(name(grant.role))] = name(grant.of);
+    const core::Json by = {
+        {grant.role == Role::station ? "station" : "session", core::Json::array()}};
+    if (std::ranges::find(security, by) == security.end()) security.push_back(by);
   }
   out["x-roles"] = roles;
+  out["x-objects"] = objects;
   out["security"] = security;
   core::Json parameters = core::Json::array();
   for (const Parameter& p : route.parameters)

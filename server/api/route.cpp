@@ -1,10 +1,52 @@
 #include "server/api/route.hpp"
 
+#include <algorithm>
 #include <charconv>
 
 namespace api {
 
-std::string_view name(Role role) { return role == Role::admin ? "admin" : "station"; }
+std::string_view name(Role role) {
+  switch (role) {
+    case Role::admin:
+      return "admin";
+    case Role::director:
+      return "director";
+    case Role::faculty:
+      return "faculty";
+    case Role::researcher:
+      return "researcher";
+    case Role::technician:
+      return "technician";
+    case Role::trainee:
+      return "trainee";
+    case Role::station:
+      return "station";
+  }
+  return "station";
+}
+
+std::optional<Role> role_named(std::string_view text) {
+  const auto found = std::ranges::find_if(kRoles, [&](Role role) { return name(role) == text; });
+  return found == kRoles.end() ? std::nullopt : std::optional(*found);
+}
+
+std::vector<Grant> people() {
+  std::vector<Grant> out(kRoles.begin(), kRoles.end());
+  std::erase_if(out, [](const Grant& grant) { return grant.role == Role::station; });
+  return out;
+}
+
+std::string_view name(Of of) {
+  switch (of) {
+    case Of::own:
+      return "own";
+    case Of::cohort:
+      return "cohort";
+    case Of::all:
+      return "all";
+  }
+  return "own";
+}
 
 Parameter path_text(std::string name, std::string meaning) {
   return {.in = Parameter::In::path,

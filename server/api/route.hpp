@@ -1,6 +1,7 @@
 /// A route as data: the server dispatches by it, and the description is made from it.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,14 +15,37 @@ namespace api {
 struct Backend;
 
 /// Who asks, after credentials were checked.
-enum class Role { admin, station };
+enum class Role { admin, director, faculty, researcher, technician, trainee, station };
+inline constexpr std::array kRoles{Role::admin,      Role::director,   Role::faculty,
+                                   Role::researcher, Role::technician, Role::trainee,
+                                   Role::station};
 std::string_view name(Role role);
+std::optional<Role> role_named(std::string_view name);
+
+/// Of which objects a role may ask: its own, those of the people in the cohorts it leads, or all.
+enum class Of { own, cohort, all };
+std::string_view name(Of of);
+
+/// A role that may call a route; a bare Role means: of all objects.
+struct Grant {
+  Role role;
+  Of of;
+  Grant(Role who, Of objects = Of::all) : role(who), of(objects) {}
+};
+
+/// Every role but a station's, of all objects.
+std::vector<Grant> people();
+
+/// What the route's object is, when a grant says less than "all". `none` with such a grant: the
+/// route has no object of its own, and its handler answers by Call::of alone.
+enum class Object { none, trial, published_case, account, cohort, assignment };
 
 struct Caller {
   Role role;
   std::string id;  ///< of the account or the station
   std::string name;
   std::string session_hash;  ///< of the browser's session; empty for a station
+  bool must_change = false;  ///< may do nothing but choose a password
 };
 
 /// Where an argument stands and what it may be. Text in a path: one segment, decoded.
@@ -45,7 +69,8 @@ struct Call {
   const http::Request& request;
   const Caller& caller;  ///< nobody's for an open route
   std::map<std::string, std::string>
-      arguments;  ///< by name; of declared ones alone, fallbacks filled in
+      arguments;    ///< by name; of declared ones alone, fallbacks filled in
+  Of of = Of::own;  ///< the widest that the route grants the caller's role
 
   bool has(const std::string& name) const { return arguments.contains(name); }
   const std::string& text(const std::string& name) const;
@@ -61,13 +86,19 @@ struct NamedSchema {
 /// A whole answer that is not JSON.
 inline constexpr const char* kBytes = "bytes";
 
+/// A route as its file states it. One without `who` is nobody's: it is refused to all, and the
+/// tests of the catalogue fail.
 struct RouteInfo {
-  std::string method;     ///< "GET"
-  std::string path;       ///< "/api/v1/trials/{id}"
-  std::string id;         ///< "trial", unique: the name of the web's function
-  std::string summary;    ///< one line
-  std::vector<Role> who;  ///< may call it; nobody else
-  bool open = false;      ///< no credentials at all: signing in
+  std::string method;      ///< "GET"
+  std::string path;        ///< "/api/v1/trials/{id}"
+  std::string id;          ///< "trial", unique: the name of the web's function
+  std::string summary;     ///< one line
+  std::vector<Grant> who;  ///< may call it; nobody else
+  bool open = false;       ///< no credentials at all: signing in
+  Object object = Object::none;
+  std::string object_parameter = "id";  ///< the argument that names the object
+  bool before_password_change = false;  ///< also for who must choose a password first
+  bool audited = true;                  ///< a change by it is noted in the audit trail
   std::vector<Parameter> parameters;
   std::string body;  ///< name of the body's schema, kBytes, or "" for none
   std::uint64_t body_limit_bytes = 0;

@@ -6,6 +6,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "server/api/access.hpp"
+#include "server/api/acts.hpp"
 #include "server/api/authentication.hpp"
 
 namespace api {
@@ -106,18 +108,37 @@ core::Result<Caller> allowed_caller(Backend& backend, const RouteInfo& route,
     auto known = authenticate(backend, head);
     if (!known) return known.error();
     caller = std::move(*known);
-    if (std::ranges::find(route.who, caller.role) == route.who.end())
+    if (!granted(route, caller.role))
       return core::Error{core::Errc::forbidden,
                          fmt::format("this is not for the role {}", name(caller.role))};
+    if (caller.must_change && !route.before_password_change)
+      return core::Error{core::Errc::forbidden,
+                         "choose a password of your own first: POST /api/v1/session/password"};
   }
   if (auto own = check_not_forged(route, caller, head); !own) return own.error();
   return caller;
+}
+
+/// Runs the handler; what it changes is noted in the audit trail.
+core::Result<http::Response> handled(Backend& backend, const Match& matched, const Caller& caller,
+                                     const http::Request& request,
+                                     std::map<std::string, std::string> arguments) {
+  const RouteInfo& route = *matched.route;
+  const Call call{backend, request, caller, std::move(arguments),
+                  granted(route, caller.role).value_or(Of::own)};
+  if (route.method == "GET" || !route.audited) return route.handle(call);
+  const store::Acting acting(act_of(route, call, matched.segments));
+  return route.handle(call);
 }
 
 http::Response refusal(const core::Error& error, const std::string& allowed) {
   if (error.code == core::Errc::not_found && !allowed.empty()) {
     auto response = http::error_response(405, "bad_input", "this address takes " + allowed);
     return response.with("Allow", allowed), response;
+  }
+  if (is_throttled(error)) {
+    auto response = http::error_response(429, "too_many", error.what);
+    return response.with("Retry-After", std::to_string(kThrottleWindow_us / 1'000'000)), response;
   }
   auto response = error_response(error);
   if (error.code == core::Errc::unauthorised) response.with("WWW-Authenticate", "Bearer");
@@ -174,7 +195,9 @@ http::Response answer(Backend& backend, const std::vector<RouteInfo>& table,
                                        request.body.size(), matched->route->body_limit_bytes)});
   auto checked = arguments(*matched, request);
   if (!checked) return error_response(checked.error());
-  auto response = matched->route->handle(Call{backend, request, *caller, std::move(*checked)});
+  if (auto own = check_object(backend, *matched->route, *caller, *checked); !own)
+    return refusal(own.error(), "");
+  auto response = handled(backend, *matched, *caller, request, std::move(*checked));
   return response ? std::move(*response) : refusal(response.error(), "");
 }
 

@@ -36,19 +36,6 @@ core::Json scores_json(const std::vector<store::ScoreRecord>& scores) {
   return out;
 }
 
-/// The last answer of the events, or null.
-core::Json answer_json(const core::Json& events) {
-  trial::Trial trial;
-  for (const core::Json& event : events)
-    trial.events.push_back({event.at("t_s"), event.at("kind"), event.at("detail")});
-  const auto answer = trial.answer();
-  if (!answer) return {};
-  return {{"breach", answer->breach},
-          {"wall", answer->wall ? core::Json(*answer->wall) : core::Json()},
-          {"confidence", answer->confidence ? core::Json(*answer->confidence) : core::Json()},
-          {"depth_m", answer->depth_m ? core::Json(*answer->depth_m) : core::Json()}};
-}
-
 core::Json scenario_json(const scenarios::Scenario& scenario) {
   const auto law = scenario.expanded();
   core::require(bool(law), "a scenario that was read can be expanded");
@@ -79,6 +66,18 @@ core::Json study_json(const StudyPlace& place) {
 }
 
 }  // namespace
+
+core::Json answer_json(const core::Json& events) {
+  trial::Trial trial;
+  for (const core::Json& event : events)
+    trial.events.push_back({event.at("t_s"), event.at("kind"), event.at("detail")});
+  const auto answer = trial.answer();
+  if (!answer) return {};
+  return {{"breach", answer->breach},
+          {"wall", answer->wall ? core::Json(*answer->wall) : core::Json()},
+          {"confidence", answer->confidence ? core::Json(*answer->confidence) : core::Json()},
+          {"depth_m", answer->depth_m ? core::Json(*answer->depth_m) : core::Json()}};
+}
 
 core::Json summary_json(const store::TrialSummary& trial) {
   return {{"id", trial.id},

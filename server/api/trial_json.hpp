@@ -34,4 +34,7 @@ std::vector<NamedSchema> trial_schemas();
 /// TrialSignals, Envelope, TrialPath.
 std::vector<NamedSchema> curve_schemas();
 
+/// The last answer of a trial's events: {"breach", "wall", "confidence", "depth_m"}, or null.
+core::Json answer_json(const core::Json& events);
+
 }  // namespace api

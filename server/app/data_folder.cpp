@@ -2,16 +2,68 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <pwd.h>
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <charconv>
+
+#include "core/clock.hpp"
 #include "core/file.hpp"
 
 namespace app {
 namespace fs = std::filesystem;
 namespace {
 constexpr const char* kDatabase = "tractus.db";
+constexpr const char* kSecret = "secret.key";
+
+/// Makes the key's file, for its owner's eyes; one that is there stays.
+core::Result<void> make_secret(const fs::path& path) {
+  const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  if (fd < 0)
+    return errno == EEXIST ? core::Result<void>() : core::system_error(path, "cannot make");
+  const std::string text = core::hex(core::random_bytes(32)) + "\n";
+  const bool written = ::write(fd, text.data(), text.size()) == static_cast<ssize_t>(text.size()) &&
+                       ::fsync(fd) == 0;
+  ::close(fd);
+  if (written) return core::sync_folder(path.parent_path());
+  fs::remove(path);
+  return core::system_error(path, "cannot write");
 }
+
+core::Result<api::Secrets> read_secret(const fs::path& path) {
+  auto bytes = core::read_file(path, 4096);
+  if (!bytes) return bytes.error();
+  std::string_view text = core::text_of(*bytes);
+  text = text.substr(0, text.find('\n'));
+  api::Secrets::Key key{};
+  if (!core::is_sha256(text))
+    return core::Error{core::Errc::corrupt,
+                       path.string() + ": 64 hexadecimal characters are expected"};
+  for (std::size_t i = 0; i < key.size(); ++i) {
+    unsigned value = 0;
+    std::from_chars(text.data() + 2 * i, text.data() + 2 * i + 2, value, 16);
+    key[i] = static_cast<std::byte>(value);
+  }
+  return api::Secrets(key);
+}
+
+/// The key, made when the database has nothing yet that needs it.
+core::Result<api::Secrets> secrets_of(const fs::path& folder, store::Store& store) {
+  std::error_code failure;
+  if (!fs::exists(folder / kSecret, failure)) {
+    auto end = store.read([](store::Reading& tx) { return store::chain_end(tx); });
+    if (!end) return end.error();
+    if (end->number > 0)
+      return core::Error{core::Errc::not_found,
+                         (folder / kSecret).string() +
+                             ": is missing; the audit trail was made with it: bring it back from "
+                             "a backup"};
+    if (auto made = make_secret(folder / kSecret); !made) return made.error();
+  }
+  return read_secret(folder / kSecret);
+}
+}  // namespace
 
 core::Result<DataFolder> open_data(const fs::path& path) {
   std::error_code failure;
@@ -36,7 +88,22 @@ core::Result<DataFolder> make_data(const fs::path& path) {
   if (!partials) return partials.error();
   auto opened = store::Store::open(path / kDatabase);
   if (!opened) return opened.error();
-  return DataFolder{path, std::move(*opened), std::move(*objects), std::move(*partials)};
+  auto secrets = secrets_of(path, *opened);
+  if (!secrets) return secrets.error();
+  opened->set_audit_key(secrets->audit_key());
+  return DataFolder{path, std::move(*opened), std::move(*objects), std::move(*partials),
+                    std::move(*secrets)};
+}
+
+store::Act command_act(const std::string& command, const core::Json& detail) {
+  const passwd* user = ::getpwuid(::geteuid());
+  return {.who = fmt::format("command line: {}", user ? user->pw_name : "unknown"),
+          .role = "command line",
+          .peer = "",
+          .what = command,
+          .object = "",
+          .detail = detail.dump(),
+          .at_utc_us = core::utc_us()};
 }
 
 core::Result<ServingLock> ServingLock::take(const fs::path& data) {

@@ -1,24 +1,33 @@
-/// A server's folder: database, objects, partial files.
+/// A server's folder: database, objects, partial files, keys.
 #pragma once
 
 #include <filesystem>
 
+#include "core/json.hpp"
+#include "db/store/audit.hpp"
 #include "db/store/objects.hpp"
 #include "db/store/store.hpp"
+#include "server/api/secrets.hpp"
 
 namespace app {
+
+inline constexpr const char* kCertificates = "tls";  ///< http::certificate_files of this folder
 
 struct DataFolder {
   std::filesystem::path path;
   store::Store store;
   store::Objects objects;
   store::PartialFiles partials;
+  api::Secrets secrets;  ///< of its file secret.key, which no database holds
 };
 
 /// Opens one that `init` made. Errors: not_found, and those of the database.
 core::Result<DataFolder> open_data(const std::filesystem::path& path);
 /// Makes one, or opens what is there (accounts are another matter).
 core::Result<DataFolder> make_data(const std::filesystem::path& path);
+
+/// An act of the command line, by the user of this system who typed it.
+store::Act command_act(const std::string& command, const core::Json& detail);
 
 /// Held while a process serves a folder; the system lets go of it when the process ends, however it
 /// ends.

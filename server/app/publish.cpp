@@ -41,6 +41,7 @@ core::Result<std::string> publish(DataFolder& data, const fs::path& bundle) {
   }
   const store::CaseSummary summary{opened->id, opened->definition.title, opened->definition.source,
                                    opened->definition.made_utc_us, 0};
+  const store::Acting acting(command_act("publish", {{"case", opened->id}}));
   auto noted = data.store.write(
       [&](store::Writing& tx) { return store::add_case(tx, summary, parts, core::utc_us()); });
   if (!noted) return noted.error();

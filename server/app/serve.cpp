@@ -14,6 +14,7 @@
 #include "server/api/service.hpp"
 #include "server/api/uploads.hpp"
 #include "server/app/data_folder.hpp"
+#include "server/http/certificates.hpp"
 #include "server/http/static_files.hpp"
 #include "server/jobs/runner.hpp"
 
@@ -76,7 +77,8 @@ http::Service service_of(api::Backend& backend, const std::optional<std::filesys
 void say_where(const ServeOptions& options, std::uint16_t port) {
   const bool six = options.http.address.find(':') != std::string::npos;
   const std::string address = six ? "[" + options.http.address + "]" : options.http.address;
-  const std::string url = fmt::format("http://{}:{}/", address, port);
+  const std::string url =
+      fmt::format("{}://{}:{}/", options.http.tls ? "https" : "http", address, port);
   if (options.json)
     fmt::print("{}\n", core::Json{{"listening", url}}.dump());
   else
@@ -102,12 +104,47 @@ core::Result<std::pair<std::string, std::uint16_t>> listening_address(const std:
   return std::pair(address, port);
 }
 
-core::Result<void> serve(const ServeOptions& options) {
+namespace {
+
+bool is_loopback(const std::string& address) {
+  return address.starts_with("127.") || address == "::1";
+}
+
+/// With the certificate to serve by, unless it goes plain.
+core::Result<ServeOptions> secured(ServeOptions options) {
+  if (options.http.behind_proxy) return options;
+  if (options.plain) {
+    if (is_loopback(options.http.address)) return options;
+    return core::Error{core::Errc::bad_input,
+                       fmt::format("--plain: {} is reached by others; passwords and trials would "
+                                   "go unprotected. Leave --plain out, or use --behind-proxy",
+                                   options.http.address)};
+  }
+  if (options.certificate) {
+    options.http.tls = options.certificate;
+    return options;
+  }
+  const auto folder = options.data / kCertificates;
+  auto names = http::own_names();
+  names.insert(names.end(), options.hosts.begin(), options.hosts.end());
+  if (auto made = http::ensure_certificates(folder, names, core::utc_us() / 1'000'000); !made)
+    return made.error();
+  const auto files = http::certificate_files(folder);
+  options.http.tls.emplace(files.certificate, files.key);
+  return options;
+}
+
+}  // namespace
+
+core::Result<void> serve(const ServeOptions& given) {
   StopSignals signals;
-  auto data = open_data(options.data);
+  auto data = open_data(given.data);
   if (!data) return data.error();
-  auto lock = ServingLock::take(options.data);
+  auto lock = ServingLock::take(given.data);
   if (!lock) return lock.error();
+  const auto secure = secured(given);
+  if (!secure) return secure.error();
+  const ServeOptions& options = *secure;
   if (options.web && !std::filesystem::is_regular_file(*options.web / "index.html"))
     return core::Error{core::Errc::not_found,
                        options.web->string() + ": no index.html there; build the web pages first"};
@@ -119,7 +156,9 @@ core::Result<void> serve(const ServeOptions& options) {
                        .objects = data->objects,
                        .partials = data->partials,
                        .now_utc_us = core::utc_us,
-                       .work_waits = [&runner] { (*runner)->wake(); }};
+                       .work_waits = [&runner] { (*runner)->wake(); },
+                       .secrets = data->secrets,
+                       .secure_cookies = options.http.tls || options.http.behind_proxy};
   if (auto fine = api::reconcile_uploads(backend); !fine) return fine;
   auto server = http::Server::open(options.http, service_of(backend, options.web));
   if (!server) return server.error();

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/result.hpp"
 #include "server/http/server.hpp"
@@ -14,13 +15,18 @@ struct ServeOptions {
   std::filesystem::path data;
   std::optional<std::filesystem::path> web;  ///< built pages; none: the API alone
   http::ServerOptions http;
+  bool plain = false;              ///< no TLS, on this machine's own addresses alone
+  std::vector<std::string> hosts;  ///< names and addresses the certificate must hold
+  /// PEM files of an own certificate chain and its key, instead of the house's.
+  std::optional<std::pair<std::filesystem::path, std::filesystem::path>> certificate;
   bool json = false;  ///< the line that says where it listens
 };
 
 /// Splits "127.0.0.1:8480" or "[::1]:8480". Errors: bad_input.
 core::Result<std::pair<std::string, std::uint16_t>> listening_address(const std::string& text);
 
-/// Serves until SIGTERM or SIGINT. Prints one line, "listening on http://…", once it answers.
+/// Serves until SIGTERM or SIGINT. Prints one line, "listening on https://…", once it answers.
+/// Errors: bad_input for plain HTTP on an address that others reach.
 core::Result<void> serve(const ServeOptions& options);
 
 }  // namespace app

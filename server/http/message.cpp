@@ -151,4 +151,12 @@ core::Result<Response> file_response(const std::filesystem::path& path, const Re
   return response;
 }
 
+std::string forwarded_peer(const RequestHead& head) {
+  std::string_view named = head.header("x-forwarded-for");
+  if (const auto comma = named.rfind(','); comma != std::string_view::npos)
+    named.remove_prefix(comma + 1);
+  named.remove_prefix(std::min(named.find_first_not_of(' '), named.size()));
+  return named.empty() ? head.peer : std::string(named.substr(0, 64));
+}
+
 }  // namespace http

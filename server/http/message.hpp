@@ -36,6 +36,10 @@ struct RequestHead {
 /// Splits "/path?query" into `head`. Errors: bad_input.
 core::Result<void> read_target(std::string_view target, RequestHead& head);
 
+/// Whom a proxy names last in X-Forwarded-For: what stands before that anybody may have written.
+/// Without the header: the peer itself.
+std::string forwarded_peer(const RequestHead& head);
+
 struct Request : RequestHead {
   std::string body;
 };

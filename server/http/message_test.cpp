@@ -63,5 +63,15 @@ TEST(Errors, AreJsonEvenWhenTheTextIsNotUnicode) {
             "{\"error\":\"a \\\"quote\\\" and \xef\xbf\xbd\",\"code\":\"bad_input\"}");
 }
 
+TEST(Forwarding, TakesWhatTheProxyItselfWroteLast) {
+  RequestHead head;
+  head.peer = "127.0.0.1";
+  EXPECT_EQ(forwarded_peer(head), "127.0.0.1");
+  head.headers["x-forwarded-for"] = "203.0.113.9";
+  EXPECT_EQ(forwarded_peer(head), "203.0.113.9");
+  head.headers["x-forwarded-for"] = "6.6.6.6, 203.0.113.9";
+  EXPECT_EQ(forwarded_peer(head), "203.0.113.9");
+}
+
 }  // namespace
 }  // namespace http

@@ -1,4 +1,4 @@
-/// The one file that includes Asio and Beast.
+/// The one file that includes Asio and Beast (with stream.hpp, which is its own).
 #include <utility>  // before Asio: 1.74 uses std::exchange without it
 //
 #include <fcntl.h>
@@ -18,12 +18,12 @@
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/write.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
-#include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/http.hpp>
 #include <list>
 
 #include "server/http/server.hpp"
 #include "server/http/static_files.hpp"
+#include "server/http/stream.hpp"
 
 namespace http {
 namespace {
@@ -37,6 +37,7 @@ using Parser = beast::http::request_parser<beast::http::string_body>;
 constexpr std::size_t kPiece_bytes = 256 * 1024;
 constexpr std::size_t kLingering_bytes = 16u << 20;
 constexpr std::chrono::seconds kLingering_time{2};
+constexpr std::chrono::milliseconds kFarewell_time{500};
 
 auto into(error_code& failure) { return net::redirect_error(net::use_awaitable, failure); }
 
@@ -124,7 +125,7 @@ std::string lower_case(beast::string_view text) {
   return out;
 }
 
-core::Result<RequestHead> head_of(const Parser& parser, std::string peer) {
+core::Result<RequestHead> head_of(const Parser& parser, std::string peer, bool behind_proxy) {
   const auto& message = parser.get();
   RequestHead head;
   head.method = std::string(message.method_string());
@@ -132,6 +133,7 @@ core::Result<RequestHead> head_of(const Parser& parser, std::string peer) {
   for (const auto& field : message)
     head.headers.emplace(lower_case(field.name_string()), std::string(field.value()));
   if (const auto length = parser.content_length()) head.body_bytes = *length;
+  if (behind_proxy) head.peer = forwarded_peer(head);
   const auto target = message.target();
   if (auto read = read_target({target.data(), target.size()}, head); !read) return read.error();
   return head;
@@ -161,8 +163,8 @@ struct Server::State {
         workers(static_cast<std::size_t>(options.workers)) {}
 
   struct Connection {
-    explicit Connection(tcp::socket socket) : stream(std::move(socket)) {}
-    beast::tcp_stream stream;
+    Connection(tcp::socket socket, net::ssl::context* tls) : stream(std::move(socket), tls) {}
+    Stream stream;
     beast::flat_buffer buffer;
     std::string peer;
     bool idle = true;  ///< between requests: closed at once when told to stop
@@ -179,11 +181,14 @@ struct Server::State {
   net::awaitable<void> refuse(Connection& connection, const RequestHead& head, Response& refusal);
   net::awaitable<bool> write_file(Connection& connection, const FileSlice& slice);
   net::awaitable<void> linger(Connection& connection);
+  net::awaitable<bool> handshake(Connection& connection);
+  net::awaitable<void> farewell(Connection& connection);
   void drain();
   void ended(std::list<Connection>::iterator connection);
 
   ServerOptions options;
   Service service;
+  std::optional<net::ssl::context> tls;
   net::io_context io{1};
   net::executor_work_guard<net::io_context::executor_type> guard{io.get_executor()};
   tcp::acceptor acceptor{io};
@@ -206,7 +211,7 @@ net::awaitable<void> Server::State::accept_all() {
     if (connections.size() >= static_cast<std::size_t>(options.max_connections)) continue;
     const auto endpoint = socket.remote_endpoint(failure);
     socket.set_option(tcp::no_delay(true), failure);
-    connections.emplace_front(std::move(socket));
+    connections.emplace_front(std::move(socket), tls ? &*tls : nullptr);
     connections.front().peer = endpoint.address().to_string(failure);
     net::co_spawn(io, serve(connections.begin()), net::detached);
   }
@@ -214,13 +219,31 @@ net::awaitable<void> Server::State::accept_all() {
 
 net::awaitable<void> Server::State::serve(std::list<Connection>::iterator connection) {
   try {
-    while (!draining && co_await exchange(*connection)) {
+    if (co_await handshake(*connection)) {
+      while (!draining && co_await exchange(*connection)) {
+      }
+      co_await farewell(*connection);
     }
     error_code ignored;
     connection->stream.socket().shutdown(tcp::socket::shutdown_both, ignored);
   } catch (const std::exception&) {  // out of memory: this connection ends, the others go on
   }
   ended(connection);
+}
+
+net::awaitable<bool> Server::State::handshake(Connection& c) {
+  if (!c.stream.is_tls()) co_return true;
+  error_code failure;
+  c.stream.expires_after(options.header_time);
+  co_await c.stream.async_handshake(into(failure));
+  co_return !failure;
+}
+
+net::awaitable<void> Server::State::farewell(Connection& c) {
+  if (!c.stream.is_tls() || draining) co_return;
+  error_code ignored;
+  c.stream.expires_after(kFarewell_time);
+  co_await c.stream.async_shutdown(into(ignored));
 }
 
 void Server::State::ended(std::list<Connection>::iterator connection) {
@@ -249,7 +272,7 @@ net::awaitable<bool> Server::State::exchange(Connection& c) {
     if (refusal) co_await refuse(c, nobody, *refusal);
     co_return false;
   }
-  auto head = head_of(parser, c.peer);
+  auto head = head_of(parser, c.peer, options.behind_proxy);
   if (!head) {
     Response refusal = error_response(400, "bad_input", head.error().what);
     const RequestHead nobody;
@@ -375,6 +398,11 @@ void Server::State::drain() {
 
 core::Result<Server> Server::open(const ServerOptions& options, Service service) {
   auto state = std::make_unique<State>(options, std::move(service));
+  if (options.tls) {
+    auto context = tls_context(options.tls->first, options.tls->second);
+    if (!context) return context.error();
+    state->tls.emplace(std::move(*context));
+  }
   error_code failure;
   const auto address = net::ip::make_address(options.address, failure);
   if (failure)

@@ -3,8 +3,10 @@
 
 #include <atomic>
 #include <chrono>
+#include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "server/http/message.hpp"
@@ -14,6 +16,9 @@ namespace http {
 struct ServerOptions {
   std::string address = "127.0.0.1";
   std::uint16_t port = 8480;  ///< 0: any free one
+  /// PEM files of a certificate chain and its key; none: plain HTTP.
+  std::optional<std::pair<std::filesystem::path, std::filesystem::path>> tls;
+  bool behind_proxy = false;  ///< the peer is whom the proxy names last in X-Forwarded-For
   int workers = 4;            ///< threads on which handlers run
   int max_connections = 256;  ///< one more is closed at once
   std::uint32_t max_header_bytes = 16 * 1024;

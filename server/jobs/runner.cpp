@@ -4,15 +4,28 @@
 #include <sys/resource.h>
 
 #include "core/clock.hpp"
+#include "db/store/analyses.hpp"
 #include "db/store/lab.hpp"
 #include "db/store/trials.hpp"
+#include "server/jobs/analyse.hpp"
 #include "server/jobs/assess.hpp"
 #include "server/jobs/lab_run.hpp"
 
 namespace jobs {
 namespace {
-constexpr std::uint64_t kMostAttempts = 3;  // of a run of the lab
+constexpr std::uint64_t kMostAttempts = 3;  // of a run of the lab or of an analysis
 constexpr int kLabNiceness = 10;
+
+/// What a person sees of a job that failed.
+core::Result<void> show_failure(store::Writing& tx, const store::Job& job,
+                                const core::Error& error) {
+  if (job.kind == "analysis")
+    return store::fail_analysis(tx, job.subject, error.what, core::utc_us());
+  if (job.kind != "lab") return store::set_assessment_failed(tx, job.subject, error.what);
+  const bool cancelled = error.code == core::Errc::cancelled;
+  return store::end_lab_run(tx, job.subject, cancelled ? "cancelled" : "failed", error.what,
+                            core::utc_us());
+}
 }  // namespace
 
 core::Result<std::unique_ptr<Runner>> Runner::start(store::Store& store,
@@ -97,17 +110,14 @@ core::Result<void> Runner::work_on(const store::Job& job) {
   if (job.kind == "metrics") return assess_trial(store_, objects_, job.subject);
   if (job.attempts > kMostAttempts)
     return core::Error{core::Errc::unavailable, "it ended the server before it was done"};
-  return run_lab(store_, objects_, job.subject, [this] { return ending(); });
+  const auto wants_to_end = [this] { return ending(); };
+  return job.kind == "analysis" ? analyse(store_, objects_, job.subject, wants_to_end)
+                                : run_lab(store_, objects_, job.subject, wants_to_end);
 }
 
 core::Result<void> Runner::note_failure(const store::Job& job, const core::Error& error) {
   return store_.write([&](store::Writing& tx) -> core::Result<void> {
-    const bool cancelled = error.code == core::Errc::cancelled;
-    auto shown = job.kind == "lab"
-                     ? store::end_lab_run(tx, job.subject, cancelled ? "cancelled" : "failed",
-                                          error.what, core::utc_us())
-                     : store::set_assessment_failed(tx, job.subject, error.what);
-    if (!shown) return shown;
+    if (auto shown = show_failure(tx, job, error); !shown) return shown;
     return store::fail_job(tx, job.id, error.what, core::utc_us());
   });
 }

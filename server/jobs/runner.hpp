@@ -12,11 +12,11 @@
 
 namespace jobs {
 
-/// Two threads, each for its kinds of jobs: scores, which someone waits for, and the lab, which
-/// takes minutes and runs at low priority, so that it delays neither scores nor requests. Each
-/// claims and does one job after the other until nothing waits, then waits to be woken. They end
-/// with their object, after the job in hand; a run of the lab is left off and begins again after
-/// the next start, three times at most.
+/// Two threads, each for its kinds of jobs: scores, which someone waits for, and what takes minutes
+/// (the lab, analyses of a cohort) and runs at low priority, so that it delays neither scores nor
+/// requests. Each claims and does one job after the other until nothing waits, then waits to be
+/// woken. They end with their object, after the job in hand; a run of the lab or an analysis is
+/// left off and begins again after the next start, three times at most.
 class Runner {
  public:
   /// Called with one line when something is to be known: a job that failed, a database that
@@ -53,7 +53,7 @@ class Runner {
   std::mutex mutex_;  ///< guards ending_ and what the lanes were woken for
   bool ending_ = false;
   std::condition_variable changed_;
-  Lane scores_{{"metrics"}}, lab_{{"lab"}};
+  Lane scores_{{"metrics"}}, lab_{{"lab", "analysis"}};
 };
 
 }  // namespace jobs

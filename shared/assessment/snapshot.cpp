@@ -138,4 +138,28 @@ core::Result<void> write(const Snapshot& snapshot, const std::filesystem::path& 
   return scratch->keep_as(folder);
 }
 
+std::string marked(const Table& table, const std::vector<std::string>& excluded_because) {
+  std::string out;
+  const auto add = [&](std::string_view cell, bool last) {
+    const bool quoted = cell.find(',') != std::string_view::npos;
+    out += quoted ? "\"" + std::string(cell) + "\"" : std::string(cell);
+    out += last ? "\n" : ",";
+  };
+  for (const auto& column : table.columns()) add(column, false);
+  add("excluded_because", true);
+  for (std::size_t i = 0; i < table.rows(); ++i) {
+    for (const auto& column : table.columns()) add(table.texts(column)[i], false);
+    add(excluded_because[i], true);
+  }
+  return out;
+}
+
+Json dictionary_of_marked(const Json& description) {
+  Json out = description["dictionary"];
+  out.push_back({{"name", "excluded_because"},
+                 {"kind", "text"},
+                 {"meaning", "why the plan leaves the row out; empty for rows used"}});
+  return out;
+}
+
 }  // namespace assessment

@@ -11,6 +11,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 
 #include "assessment/table.hpp"
 #include "core/json.hpp"
@@ -39,6 +40,11 @@ struct Freezing {
 core::Result<Snapshot> frozen(core::Bytes data, const Freezing& by);
 /// Writes the folder, whole or not at all. Errors: io, conflict when it is there.
 core::Result<void> write(const Snapshot& snapshot, const std::filesystem::path& folder);
+
+/// The table as CSV with a last column "excluded_because": per row, why a plan leaves it out.
+std::string marked(const Table& table, const std::vector<std::string>& excluded_because);
+/// The dictionary of that, from snapshot.json.
+core::Json dictionary_of_marked(const core::Json& description);
 
 /// The unit that a column's name ends in: "N" of force_N, "m/s" of velocity_m_s; empty if none.
 std::string unit_of(const std::string& column);

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "statistics/distributions.hpp"
-#include "statistics/wald.hpp"
 
 namespace assessment {
 namespace {
@@ -27,7 +26,9 @@ Test single(const Fitted& fit, const std::string& name, Eigen::Index j) {
 Test joint(const Fitted& fit, const std::string& name, const std::vector<Eigen::Index>& columns) {
   double df = fit.df[columns[0]];
   for (const auto j : columns) df = std::min(df, fit.df[j]);
-  const auto test = statistics::joint_test(fit.coefficients, fit.covariance, columns, df);
+  const auto test = fit.joint
+                        ? fit.joint(columns)
+                        : statistics::joint_test(fit.coefficients, fit.covariance, columns, df);
   return {name, df > 0.0 ? "F" : "chi2", test.statistic, test.df1, test.df2, test.p, "", 0, 0, 0};
 }
 

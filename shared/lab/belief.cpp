@@ -14,7 +14,10 @@ constexpr double kAsGood = 1.5;
 constexpr double kSettled = 0.95;
 /// That so many effects at the floor only imitate something else together: shares of wrong answers
 /// among those of the development seeds.
-constexpr std::array kImitated{0.02, 0.03, 0.08, 0.6};
+constexpr std::array kImitated{0.01, 0.01, 0.04, 0.6};
+/// Where more is left than the floor: that what is missing is in no catalogue, and that the effects
+/// found only stand in for it.
+constexpr double kOutside = 0.9, kStandIn = 0.7;
 /// Odds (logarithm) of the one chosen against one that costs less but was refused: no clear gain,
 /// or a child that its parent does as well as.
 constexpr double kRefused = 1.4;
@@ -48,14 +51,13 @@ Belief::Belief(const Residual& residual, const Selection& selection, const Solut
     scores.push_back(-cost(residual, s, selection.base()));
   }
   const double best = *std::ranges::max_element(scores);
-  for (std::size_t k = 0; k < scores.size();
-       ++k)  // its rivals were refused for reasons of their own
+  // Its rivals were refused for reasons of their own.
+  for (std::size_t k = 0; k < scores.size(); ++k)
     if (entries_[k].structure == chosen_) scores[k] = std::max(of_chosen, best + kRefused);
-  // What is in no catalogue: the more is left over the floor, the likelier.
-  const double left = excess(chosen.mean_square()) / (excess(base) + 1.0);
   const std::size_t count = std::min(chosen_.effects.size(), kImitated.size() - 1);
   outside_ = at_floor(residual.problem(), chosen.mean_square(), base) ? kImitated[count]
-                                                                      : std::min(0.9, 0.2 + left);
+             : chosen_.effects.empty()                                ? kOutside
+                                                                      : kStandIn;
   double sum = 0.0;
   for (const double s : scores) sum += std::exp(s - best);
   for (std::size_t k = 0; k < scores.size(); ++k)

@@ -19,6 +19,8 @@ using core::Error;
 using core::Result;
 
 constexpr std::size_t kFewTrials = 4;
+/// That more than the effects named is missing where they leave more than the floor.
+constexpr double kMoreIsMissing = 0.95;
 
 /// Numbers of an effect as a model file has them.
 FoundEffect found(const Problem& problem, const Fit& fit, const std::string& id) {
@@ -138,8 +140,9 @@ Result<Diagnosis> diagnose(const Problem& problem, const DiagnoseOptions& option
   Solution& final = named ? selection.chosen() : selection.tried().at("");
   out.final_fit = report(residual, final, true);
   const Belief belief(residual, selection, final);
-  out.probability =
-      out.verdict == Verdict::unexplained ? belief.outside() : belief.of_structure(final.structure);
+  out.probability = out.verdict == Verdict::unexplained ? belief.outside()
+                    : out.verdict == Verdict::partly    ? kMoreIsMissing
+                                                        : belief.of_structure(final.structure);
   for (const std::string& id : named ? selection.order() : std::vector<std::string>{}) {
     out.effects.push_back(found(problem, out.final_fit, id));
     out.effects.back().probability = belief.of_effect(id);

@@ -11,6 +11,8 @@
 namespace metrics {
 namespace {
 
+constexpr double kSpeedRounding =
+    1e-9;  // of a speed: what differentiating leaves of a constant one
 constexpr double kCutoff_Hz = 10.0, kLeastShare = 0.05;
 constexpr std::size_t kSegment = 256;
 
@@ -72,8 +74,12 @@ std::optional<double> log_dimensionless_jerk(std::span<const double> speed, doub
 
 int speed_peaks(std::span<const double> speed, double floor) {
   int count = 0;
-  for (std::size_t i = 1; i + 1 < speed.size(); ++i)
-    if (speed[i] >= floor && speed[i] > speed[i - 1] && speed[i] >= speed[i + 1]) ++count;
+  for (std::size_t i = 1; i + 1 < speed.size(); ++i) {
+    const double rounding = kSpeedRounding * speed[i];
+    if (speed[i] >= floor && speed[i] > speed[i - 1] + rounding &&
+        speed[i] >= speed[i + 1] - rounding)
+      ++count;
+  }
   return count;
 }
 
@@ -112,7 +118,9 @@ std::optional<Kinematics> kinematics(std::span<const math::Vec3> points_m, doubl
   if (points_m.size() < std::size_t(third.window())) return std::nullopt;
   std::vector<double> speed2(points_m.size(), 0.0), jerk2 = speed2, coordinate = speed2;
   for (int axis = 0; axis < 3; ++axis) {
-    for (std::size_t i = 0; i < points_m.size(); ++i) coordinate[i] = points_m[i][axis];
+    // From the first point: one that rests has a speed of 0, not of rounding.
+    for (std::size_t i = 0; i < points_m.size(); ++i)
+      coordinate[i] = points_m[i][axis] - points_m[0][axis];
     const auto v = slope.apply(coordinate, dt_s), j = third.apply(coordinate, dt_s);
     for (std::size_t i = 0; i < v.size(); ++i) {
       speed2[i] += v[i] * v[i];

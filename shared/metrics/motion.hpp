@@ -22,7 +22,8 @@ std::optional<double> spectral_arc_length(std::span<const double> speed, double 
 /// −ln( T³/v_peak² Σ (Δ²v/dt²)² dt ), T = N dt. A minimum-jerk movement has −5.3.
 std::optional<double> log_dimensionless_jerk(std::span<const double> speed, double rate_Hz);
 
-/// Movement units: strict local maxima of at least `floor` (v_i > v_i−1, v_i ≥ v_i+1).
+/// Movement units: local maxima of at least `floor` (v_i > v_i−1, v_i ≥ v_i+1, beyond rounding of
+/// 1e-9 of the speed).
 int speed_peaks(std::span<const double> speed, double floor);
 
 /// Power of a signal between two frequencies: Welch's density (periodic Hann window of 256 samples,

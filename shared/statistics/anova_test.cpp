@@ -36,6 +36,10 @@ TEST(OneWay, AgreesWithRToElevenDigits) {
     expect_near(fit->f, want["F"], 1e-11, c.name);
     expect_near(fit->p, want["p_value"], 1e-11, c.name);
     expect_near(fit->df_within, want["df_within"], 0.0, c.name);
+    expect_near(fit->df_between, want["df_between"], 0.0, c.name);
+    expect_near(fit->grand_mean, want["grand_mean"], 1e-11, c.name);
+    expect_near(fit->ss_between / fit->df_between, want["ms_between"], 1e-11, c.name);
+    expect_near(fit->ss_within / fit->df_within, want["ms_within"], 1e-11, c.name);
     expect_near(fit->residual_sd, want["residual_sd"], 1e-11, c.name);
     expect_near(fit->eta_squared, want["eta2"], 1e-11, c.name);
     expect_near(fit->omega_squared, want["omega2"], 1e-11, c.name);

@@ -85,7 +85,7 @@ bool start(const Problem& problem, Bisquare& fit) {
   if (const auto solved = problem.blocks ? problem.blocks->solve(nullptr) : std::nullopt) {
     fit.ols_coefficients = solved->coefficients;
     fit.covariance = solved->unscaled_covariance;
-    problem.blocks->leverage(*solved, fit.leverage);
+    problem.blocks->residuals_and_leverage(*solved, fit.residuals, fit.leverage);
     fit.leverage = fit.leverage.cwiseMin(0.9999);
   } else {
     const Qr qr(x);
@@ -99,8 +99,8 @@ bool start(const Problem& problem, Bisquare& fit) {
                                                    .solve(Matrix::Identity(p, p))
                                                    .eval();
     fit.covariance = root * root.transpose();
+    fit.residuals = problem.residuals(fit.ols_coefficients);
   }
-  fit.residuals = problem.residuals(fit.ols_coefficients);
   fit.ols_sigma = fit.residuals.norm() / std::sqrt(static_cast<double>(n - p));
   return true;
 }

@@ -90,4 +90,52 @@ OperatingCharacteristic lc_cusum_characteristic(const Rates& rates, double thres
   return out;
 }
 
+SprtBounds sprt_bounds(double alpha, double beta) {
+  core::require(alpha > 0.0 && beta > 0.0 && alpha + beta < 1.0, "both errors are less than all");
+  return {std::log((1.0 - beta) / alpha), std::log(beta / (1.0 - alpha))};
+}
+
+Sprt sprt(const std::vector<bool>& failures, const Rates& rates, const SprtBounds& bounds) {
+  const Steps steps = lc_steps(rates);
+  Sprt out;
+  int failed = 0, succeeded = 0;
+  for (const bool failure : failures) {
+    (failure ? failed : succeeded) += 1;
+    const double sum = -failed * steps.failure - succeeded * steps.success;
+    out.sums.push_back(sum);
+    if (out.decided_at > 0 || (sum < bounds.upper && sum > bounds.lower)) continue;
+    out.decided_at = out.sums.size();
+    out.verdict = sum >= bounds.upper ? Sprt::Verdict::inadequate : Sprt::Verdict::adequate;
+  }
+  return out;
+}
+
+SprtCharacteristic sprt_characteristic(const Rates& rates, const SprtBounds& bounds, double failure,
+                                       int trials) {
+  core::require(failure >= 0.0 && failure <= 1.0 && trials >= 1 && trials <= 1000,
+                "an operating characteristic has a probability and 1 to 1000 trials");
+  const Steps steps = lc_steps(rates);
+  std::vector<double> now{1.0}, next;  // undecided, by failures so far
+  SprtCharacteristic out;
+  for (int t = 1; t <= trials; ++t) {
+    for (const double chance : now) out.mean_trials += chance;
+    next.assign(static_cast<std::size_t>(t) + 1, 0.0);
+    for (std::size_t f = 0; f < now.size(); ++f)
+      for (const bool failed : {false, true}) {
+        const std::size_t to = f + (failed ? 1 : 0);
+        const double share = now[f] * (failed ? failure : 1.0 - failure);
+        const double sum = -static_cast<double>(to) * steps.failure -
+                           static_cast<double>(static_cast<std::size_t>(t) - to) * steps.success;
+        if (sum >= bounds.upper)
+          out.inadequate += share;
+        else if (sum <= bounds.lower)
+          out.adequate += share;
+        else
+          next[to] += share;
+      }
+    std::swap(now, next);
+  }
+  return out;
+}
+
 }  // namespace statistics

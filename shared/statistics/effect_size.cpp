@@ -1,5 +1,6 @@
 #include "statistics/effect_size.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "statistics/distributions.hpp"
@@ -16,6 +17,9 @@ core::Result<void> check(const Vector& x, const Vector& y) {
     return core::Error{core::Errc::bad_input, "a sample of fewer than two values has no spread"};
   if (!x.allFinite() || !y.allFinite())
     return core::Error{core::Errc::bad_input, "a value is not a finite number"};
+  Vector both(x.size() + y.size());
+  both << x, y;
+  if (auto fine = check_range(both, "the response"); !fine) return fine;
   return {};
 }
 
@@ -90,6 +94,31 @@ core::Result<WelchT> welch_t(const Vector& x, const Vector& y) {
   out.p = student_t_two_sided(out.t, out.df);
   const double reach = student_t_quantile(0.975, out.df) * std::sqrt(a + b);
   out.difference_95 = {difference - reach, difference + reach};
+  return out;
+}
+
+core::Result<Pearson> pearson(const Vector& x, const Vector& y) {
+  core::require(x.size() == y.size(), "a correlation is of pairs");
+  const auto wrong = [](const char* what) { return core::Error{core::Errc::bad_input, what}; };
+  if (x.size() < 3 || !x.allFinite() || !y.allFinite())
+    return wrong("a correlation needs three pairs of finite numbers");
+  const auto about_mean = [](const Vector& v) {
+    const Vector shifted = (v.array() - v[0]).matrix();
+    const Vector centred = (shifted.array() - shifted.mean()).matrix();
+    const double size = centred.cwiseAbs().maxCoeff();
+    return size > 0.0 ? Vector(centred / size) : centred;
+  };
+  const Vector a = about_mean(x), b = about_mean(y);
+  const double spread = a.norm() * b.norm();
+  if (!(spread > 0.0)) return wrong("x or y is the same everywhere: no correlation");
+  const double n = static_cast<double>(x.size());
+  Pearson out;
+  out.r = std::clamp(a.dot(b) / spread, -1.0, 1.0);
+  out.df = n - 2.0;
+  out.t = out.r * std::sqrt(out.df / ((1.0 - out.r) * (1.0 + out.r)));
+  out.p = student_t_two_sided(out.t, out.df);
+  const double reach = n > 3.0 ? normal_quantile(0.975) / std::sqrt(n - 3.0) : std::nan("");
+  out.r_95 = {std::tanh(std::atanh(out.r) - reach), std::tanh(std::atanh(out.r) + reach)};
   return out;
 }
 

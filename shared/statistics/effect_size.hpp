@@ -34,4 +34,11 @@ struct WelchT {
 /// Unequal variances.
 core::Result<WelchT> welch_t(const Vector& x, const Vector& y);
 
+struct Pearson {
+  double r = 0.0, t = 0.0, df = 0.0, p = 0.0;
+  Interval r_95;  ///< by Fisher's z; NaN for three pairs
+};
+/// Errors: bad_input for fewer than three pairs, or no spread.
+core::Result<Pearson> pearson(const Vector& x, const Vector& y);
+
 }  // namespace statistics

@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 
+#include "statistics/binomial.hpp"
 #include "statistics/distributions.hpp"
 
 namespace statistics {
@@ -34,7 +35,9 @@ struct Group {
 
   Array eta(const Vector& beta) const { return (x * beta).array(); }
   double kernel(const Array& eta_at) const {
-    return (y * eta_at - m * (eta_at.cwiseMax(0.0) + (-eta_at.abs()).exp().log1p())).sum();
+    Array pi, softplus;
+    binomial::parts(eta_at, pi, softplus);
+    return (y * eta_at - m * softplus).sum();
   }
 };
 
@@ -46,6 +49,9 @@ struct Value {
 };
 
 Array probability(const Array& eta) { return 1.0 / (1.0 + (-eta).exp()); }
+
+/// The smallest change that a sum of so many terms can show.
+double rounding_of(double log_likelihood) { return 1e-12 * (1.0 + std::abs(log_likelihood)); }
 
 /// The z where a group's integrand is highest, and the width of the peak: Newton on a concave
 /// function, halved where it overshoots.
@@ -64,34 +70,57 @@ std::pair<double, double> mode(const Group& group, const Array& base, double sig
   return {z, 1.0 / std::sqrt(curvature)};
 }
 
+/// At each node the rows' residuals and weights, [row][node], and the share each node has of the
+/// group's integral.
+struct AtNodes {
+  Array z, share;
+  Eigen::ArrayXXd residuals, weights;
+  double log_integral = 0.0;
+};
+
+AtNodes at_nodes(const Group& group, const Quadrature& rule, const Array& base, double sigma) {
+  const auto [centre, width] = mode(group, base, sigma);
+  AtNodes out;
+  out.z = centre + std::sqrt(2.0) * width * rule.nodes;
+  const Eigen::ArrayXXd eta =
+      base.replicate(1, kNodes) + sigma * out.z.transpose().replicate(base.size(), 1);
+  Eigen::ArrayXXd pi, softplus;
+  binomial::parts(eta, pi, softplus);
+  const auto of_rows = [](const Array& column) { return column.replicate(1, kNodes); };
+  const Array kernel =
+      (eta * of_rows(group.y) - softplus * of_rows(group.m)).colwise().sum().transpose();
+  const Array log_terms = rule.log_weights + kernel - 0.5 * out.z.square();
+  const double top = log_terms.maxCoeff();
+  out.share = (log_terms - top).exp();
+  // √2 width dx, over the √(2π) of the normal density.
+  out.log_integral = top + std::log(out.share.sum() * width / std::sqrt(M_PI));
+  out.share /= out.share.sum();
+  out.residuals = of_rows(group.y) - pi * of_rows(group.m);
+  out.weights = pi * (1.0 - pi) * of_rows(group.m);
+  return out;
+}
+
+/// Adds E[g], E[g gᵀ − Dᵀ W D] − E[g] E[g]ᵀ over the nodes, g = Dᵀ r, D = [X, z].
 void add_group(const Group& group, const Quadrature& rule, const Vector& beta, double sigma,
                Value& out) {
   const Eigen::Index p = beta.size();
-  const Array base = group.eta(beta);
-  const auto [centre, width] = mode(group, base, sigma);
-  const Array z = centre + std::sqrt(2.0) * width * rule.nodes;
-  Array log_terms(kNodes);
-  for (Eigen::Index k = 0; k < kNodes; ++k)
-    log_terms[k] = rule.log_weights[k] + group.kernel(base + sigma * z[k]) - 0.5 * z[k] * z[k];
-  const double top = log_terms.maxCoeff();
-  Array share = (log_terms - top).exp();
-  // √2 width dx, over the √(2π) of the normal density.
-  out.log_likelihood += top + std::log(share.sum() * width / std::sqrt(M_PI));
-  share /= share.sum();
-  Vector mean = Vector::Zero(p + 1);
-  Matrix second = Matrix::Zero(p + 1, p + 1);
-  Matrix d(group.x.rows(), p + 1);
-  d.leftCols(p) = group.x;
-  for (Eigen::Index k = 0; k < kNodes; ++k) {
-    d.col(p).setConstant(z[k]);
-    const Array pi = probability(base + sigma * z[k]);
-    const Vector g = d.transpose() * (group.y - group.m * pi).matrix();
-    const Vector w = group.m * pi * (1.0 - pi);
-    mean += share[k] * g;
-    second += share[k] * (g * g.transpose() - d.transpose() * w.asDiagonal() * d);
-  }
+  const AtNodes at = at_nodes(group, rule, group.eta(beta), sigma);
+  out.log_likelihood += at.log_integral;
+  Matrix g(p + 1, kNodes);
+  g.topRows(p) = group.x.transpose() * at.residuals.matrix();
+  g.row(p) = (at.residuals.colwise().sum() * at.z.transpose()).matrix();
+  const Vector mean = g * at.share.matrix();
+  const Vector share_z = at.share * at.z;
+  const Vector w = at.weights.matrix() * at.share.matrix();
+  const Vector w_z = group.x.transpose() * (at.weights.matrix() * share_z);
+  Matrix information(p + 1, p + 1);
+  information.topLeftCorner(p, p) = group.x.transpose() * w.asDiagonal() * group.x;
+  information.col(p).head(p) = w_z;
+  information.row(p).head(p) = w_z.transpose();
+  information(p, p) = (at.weights.colwise().sum().transpose() * at.share * at.z.square()).sum();
   out.gradient += mean;
-  out.hessian += second - mean * mean.transpose();
+  out.hessian +=
+      g * at.share.matrix().asDiagonal() * g.transpose() - information - mean * mean.transpose();
 }
 
 Value value_at(const std::vector<Group>& groups, const Quadrature& rule, const Vector& theta) {
@@ -112,7 +141,8 @@ bool maximise(const std::vector<Group>& groups, const Quadrature& rule, Vector& 
     const Vector step = llt.solve(value.gradient);
     const Value next = value_at(groups, rule, theta + step);
     const bool better =
-        llt.info() == Eigen::Success && next.log_likelihood >= value.log_likelihood - 1e-12;
+        llt.info() == Eigen::Success &&
+        next.log_likelihood >= value.log_likelihood - rounding_of(value.log_likelihood);
     if (!better) {
       damping = std::max(1e-3, 4.0 * damping);
       if (damping > 1e8) return false;
@@ -197,7 +227,8 @@ core::Result<Glmm> logistic_mixed(const Design& design, const Counts& counts,
       plain->log_likelihood -
       value_at(groups, rule, (Vector(p + 1) << plain->coefficients, 0.0).finished()).log_likelihood;
   // σ_u = 0 is always stationary; the estimate is there when nothing beyond it is higher.
-  const bool at_zero = value.log_likelihood + binomial <= plain->log_likelihood + 1e-10;
+  const bool at_zero = value.log_likelihood + binomial <=
+                       plain->log_likelihood + std::max(1e-10, rounding_of(plain->log_likelihood));
   if (!found && !at_zero)
     return core::Error{core::Errc::out_of_range,
                        "the likelihood has no maximum: the outcomes may be separated by group"};

@@ -130,13 +130,7 @@ struct Spectrum {
   }
 };
 
-/// Derivatives of the REML criterion and of cov(β) in (τ², σ²).
-struct Curvature {
-  Eigen::Matrix2d variance_covariance;     // 2 H⁻¹
-  std::array<Matrix, 2> covariance_slope;  // d cov(β) / d(τ², σ²)
-};
-
-Curvature curvature(const Moments& m, const Gls& fit, Real tau2, Real sigma2) {
+LmmCurvature curvature(const Moments& m, const Gls& fit, Real tau2, Real sigma2) {
   const Column ones = Column::Ones(m.sizes.size());
   const Spectrum inverse{1 / sigma2, (sigma2 * ones + tau2 * m.sizes).cwiseInverse()};
   const std::array<Spectrum, 2> v = {Spectrum{0, m.sizes}, Spectrum{1, ones}};
@@ -152,22 +146,32 @@ Curvature curvature(const Moments& m, const Gls& fit, Real tau2, Real sigma2) {
     d[a] = x_part(one);
     toward[a] = (one * fit.contrast).head(m.p);
   }
-  Eigen::Matrix2d hessian;
-  Curvature out;
+  Eigen::Matrix2d observed, expected;
+  std::array<std::array<Square, 2>, 2> q;  // Xᵀ V⁻¹ V_a V⁻¹ V_b V⁻¹ X
+  LmmCurvature out;
   for (std::size_t a = 0; a < 2; ++a) {
     for (std::size_t b = 0; b < 2; ++b) {
-      const Spectrum three = inverse * v[a] * inverse * v[b] * inverse;
-      const Square cross_three = cross(three);
-      const Real squares = trace(inverse * v[a] * inverse * v[b]) -
-                           2 * (c * x_part(cross_three)).trace() + (c * d[a] * c * d[b]).trace();
+      const Square cross_three = cross(inverse * v[a] * inverse * v[b] * inverse);
+      q[a][b] = x_part(cross_three);
+      const Real squares = trace(inverse * v[a] * inverse * v[b]) - 2 * (c * q[a][b]).trace() +
+                           (c * d[a] * c * d[b]).trace();
       const Real quadratic =
           fit.contrast.dot(cross_three * fit.contrast) - toward[a].dot(c * toward[b]);
-      hessian(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b)) =
-          static_cast<double>(2 * quadratic - squares);
+      const auto i = static_cast<Eigen::Index>(a), j = static_cast<Eigen::Index>(b);
+      observed(i, j) = static_cast<double>(2 * quadratic - squares);
+      expected(i, j) = static_cast<double>(squares);
     }
     out.covariance_slope[a] = (c * d[a] * c).cast<double>();
   }
-  out.variance_covariance = 2.0 * hessian.inverse();
+  out.variance_covariance = 2.0 * observed.inverse();
+  out.expected_covariance = 2.0 * expected.inverse();
+  Square bias = Square::Zero(m.p, m.p);
+  for (std::size_t a = 0; a < 2; ++a)
+    for (std::size_t b = 0; b < 2; ++b)
+      bias += static_cast<Real>(out.expected_covariance(static_cast<Eigen::Index>(a),
+                                                        static_cast<Eigen::Index>(b))) *
+              (q[a][b] - d[a] * c * d[b]);
+  out.bias = bias.cast<double>();
   return out;
 }
 
@@ -196,13 +200,13 @@ void add_tests(const Moments& m, const Gls& fit, Lmm& out) {
   out.standard_errors = out.covariance.diagonal().cwiseSqrt();
   out.t = out.coefficients.cwiseQuotient(out.standard_errors);
   out.df = Vector::Constant(p, static_cast<double>(m.n) - static_cast<double>(p));
+  out.curvature = curvature(m, fit, out.tau_squared, out.sigma_squared);
   if (out.tau_squared > 0.0) {
-    const Curvature bend = curvature(m, fit, out.tau_squared, out.sigma_squared);
-    out.variance_covariance = bend.variance_covariance;
     for (Eigen::Index j = 0; j < p; ++j) {
-      const Eigen::Vector2d g(bend.covariance_slope[0](j, j), bend.covariance_slope[1](j, j));
+      const auto& slope_of = out.curvature.covariance_slope;
+      const Eigen::Vector2d g(slope_of[0](j, j), slope_of[1](j, j));
       const double v = out.covariance(j, j);
-      out.df[j] = 2.0 * v * v / g.dot(bend.variance_covariance * g);
+      out.df[j] = 2.0 * v * v / g.dot(out.curvature.variance_covariance * g);
     }
   }
   out.p.resize(p);

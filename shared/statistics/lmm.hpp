@@ -10,9 +10,21 @@
 /// model is least squares on n − p degrees of freedom.
 #pragma once
 
+#include <array>
+
 #include "statistics/design.hpp"
 
 namespace statistics {
+
+/// What small-sample tests need beside the fit (lmm_tests.hpp), of θ = (τ², σ²), V_1 = ZZᵀ, V_2 =
+/// I.
+struct LmmCurvature {
+  Matrix variance_covariance;  ///< of θ, from the observed information; no covariance where
+                               ///< τ² = 0, at the edge
+  std::array<Matrix, 2> covariance_slope;  ///< d cov(β)/dθ_a = Φ D_a Φ, D_a = Xᵀ V⁻¹ V_a V⁻¹ X
+  Matrix expected_covariance;              ///< of θ, from the expected information
+  Matrix bias;                             ///< Σ_ab W_ab (Q_ab − D_a Φ D_b), W the latter
+};
 
 struct Lmm {
   std::vector<std::string> names;
@@ -23,7 +35,7 @@ struct Lmm {
   double icc = 0.0;            ///< τ² / (τ² + σ²)
   double criterion = 0.0;      ///< −2 log REML likelihood
   double log_likelihood = 0.0;
-  Matrix variance_covariance;  ///< 2 × 2, of (τ², σ²); empty where τ² = 0
+  LmmCurvature curvature;  ///< empty where τ² = 0
   std::vector<std::string> groups;
   Vector group_effects;  ///< best linear unbiased predictions, one per group
   double rlrt = 0.0;     ///< restricted likelihood ratio of τ² = 0

@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
+#include "statistics/binomial.hpp"
 #include "statistics/distributions.hpp"
 
 namespace statistics {
@@ -28,23 +29,27 @@ core::Result<void> check_counts(const Design& design, const Counts& counts) {
       return wrong(fmt::format("row {}: a column is not a finite number", i + 1));
   }
   if (design.columns.rows() < design.columns.cols())
-    return wrong(fmt::format("{} rows cannot determine {} coefficients", design.columns.rows(),
+    return wrong(fmt::format("{} row(s) cannot determine {} coefficients", design.columns.rows(),
                              design.columns.cols()));
   const double sum = counts.successes.sum();
   if (sum == 0.0 || sum == counts.trials.sum())
     return wrong("every outcome is the same: there is nothing to explain");
+  for (Eigen::Index j = 0; j < design.columns.cols(); ++j)
+    if (auto in_range = check_range(design.columns.col(j),
+                                    "column '" + design.names[static_cast<std::size_t>(j)] + "'");
+        !in_range)
+      return in_range;
   if (!collinear_columns(design).empty()) return collinear_error(design);
   return {};
 }
 
 Array probability(const Array& eta) { return 1.0 / (1.0 + (-eta).exp()); }
 
-/// ln(1 + e^η) without overflow.
-Array softplus(const Array& eta) { return eta.cwiseMax(0.0) + (-eta.abs()).exp().log1p(); }
-
 /// Σ y η − m ln(1 + e^η): the log-likelihood without binomial coefficients.
 double kernel(const Counts& c, const Array& eta) {
-  return (c.successes.array() * eta - c.trials.array() * softplus(eta)).sum();
+  Array pi, softplus;
+  binomial::parts(eta, pi, softplus);
+  return (c.successes.array() * eta - c.trials.array() * softplus).sum();
 }
 
 double binomial_coefficients(const Counts& c) {
@@ -126,8 +131,11 @@ core::Result<Logistic> logistic(const Design& design, const Counts& counts) {
   Logistic fit;
   fit.names = design.names;
   fit.coefficients = Vector::Zero(x.cols());
-  const Array none = Array::Zero(x.rows());
-  if (!newton(x, counts, none, fit.coefficients, fit.iterations)) return separated();
+  const auto alike = binomial::merged(x, counts);
+  const Matrix& rows = alike ? alike->columns : x;
+  const Counts& sums = alike ? alike->counts : counts;
+  if (!newton(rows, sums, Array::Zero(rows.rows()), fit.coefficients, fit.iterations))
+    return separated();
   const Array eta = x * fit.coefficients, pi = probability(eta);
   fit.fitted = pi;
   fit.covariance = information(x, counts, pi).ldlt().solve(Matrix::Identity(x.cols(), x.cols()));
@@ -153,10 +161,13 @@ core::Result<std::pair<double, double>> profile_interval(const Design& design, c
                                                          const Logistic& fit, Eigen::Index j) {
   const Eigen::Index p = design.columns.cols();
   core::require(j >= 0 && j < p, "a profile is of one of the coefficients");
-  Matrix rest(design.columns.rows(), p - 1);
-  rest << design.columns.leftCols(j), design.columns.rightCols(p - 1 - j);
-  const Vector column = design.columns.col(j);
-  const double top = kernel(counts, design.columns * fit.coefficients);
+  const auto alike = binomial::merged(design.columns, counts);
+  const Matrix& x = alike ? alike->columns : design.columns;
+  const Counts& sums = alike ? alike->counts : counts;
+  Matrix rest(x.rows(), p - 1);
+  rest << x.leftCols(j), x.rightCols(p - 1 - j);
+  const Vector column = x.col(j);
+  const double top = kernel(sums, x * fit.coefficients);
   const double drop = 0.5 * chi_squared_quantile_upper(0.05, 1.0);
   std::array<double, 2> ends{};
   for (const int side : {-1, 1}) {
@@ -167,15 +178,17 @@ core::Result<std::pair<double, double>> profile_interval(const Design& design, c
     for (int i = 0; i < 100 && !done; ++i) {
       const Array offset = b * column;
       int spent = 0;
-      if (p > 1 && !newton(rest, counts, offset, others, spent)) return separated();
+      if (p > 1 && !newton(rest, sums, offset, others, spent)) return separated();
       const Array eta = (rest * others).array() + offset;
       // d(profile)/db is the score of b where the others are at their best.
-      const double slope = column.dot(
-          (counts.successes.array() - counts.trials.array() * probability(eta)).matrix());
-      const double step = (top - kernel(counts, eta) - drop) / slope;
+      const double slope =
+          column.dot((sums.successes.array() - sums.trials.array() * probability(eta)).matrix());
+      const double step = (top - kernel(sums, eta) - drop) / slope;
       if (!std::isfinite(step) || side * slope >= 0.0) return separated();
       b += step;
-      done = std::abs(step) < 1e-13 * (1.0 + std::abs(b));
+      // The likelihood itself is only so sharp: of very many rows its last digits are rounding.
+      done = std::abs(step) < 1e-13 * (1.0 + std::abs(b)) ||
+             std::abs(step * slope) < 1e-14 * std::abs(top);
     }
     ends[side < 0 ? 0 : 1] = b;
   }

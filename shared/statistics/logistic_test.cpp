@@ -50,6 +50,10 @@ void expect_fit(const Fixture& data, const core::Json& want, const std::string& 
   expect_near(fit->lr_p, want["LR_p"], 1e-11, name + " LR p");
   expect_near(fit->dispersion, want["dispersion_pearson"], 1e-11, name + " dispersion");
   expect_near(fit->ci_low, want["wald_ci95_lower"], 1e-11, name + " ci");
+  expect_near(fit->ci_high, want["wald_ci95_upper"], 1e-11, name + " ci");
+  expect_near(fit->coefficients.array().exp().matrix(), want["odds_ratio"], 1e-11, name + " OR");
+  EXPECT_EQ(fit->df_residual, want["df_resid"].get<double>()) << name;
+  EXPECT_EQ(fit->lr_df, want["LR_df"].get<double>()) << name;
   expect_near(fit->fitted, want["fitted"], 1e-11, name + " fitted");
   if (!want.contains("quasibinomial")) return;
   const auto quasi = quasi_binomial(*fit);
@@ -69,6 +73,38 @@ TEST(LogisticRegression, AgreesToElevenDigitsOnPaperCountsAndTrials) {
   expect_fit(paper("wrong_breach", 6.0), want["paper_table2"], "table2");
   expect_fit(paper("wrong_total", 12.0), want["paper_table4"], "table4");
   expect_fit(simulated_trials(), want["sim_trials"], "trials");
+}
+
+TEST(LogisticRegression, OfAnInterceptAloneHasTheHomogeneityOfSurgeonsAsItsDispersion) {
+  const auto want = golden::expected("proportions")["clustered"];
+  for (const auto& [name, column, trials] :
+       {std::tuple{"breach", "wrong_breach", 6.0}, std::tuple{"total", "wrong_total", 12.0}}) {
+    Fixture data = paper(column, trials);
+    data.design = with_intercept(Matrix(data.counts.trials.size(), 0), {});
+    const auto fit = logistic(data.design, data.counts);
+    ASSERT_TRUE(fit) << fit.error().what;
+    expect_near(fit->dispersion, want[name]["dispersion_phi"], 1e-12, name);
+    expect_near(fit->dispersion * fit->df_residual, want[name]["chi2_homogeneity"], 1e-12, name);
+  }
+}
+
+TEST(LogisticRegression, AddingUpRowsThatAreAlikeChangesNothing) {
+  // Every trial ten times over as rows, and as counts: one likelihood, so one maximum.
+  const golden::Csv csv("data/paper_table2_table4.csv");
+  const Vector wrong = csv.numbers("wrong_breach"), years = csv.numbers("experience_years");
+  Vector y(600), x(600);
+  for (Eigen::Index i = 0, row = 0; i < 10; ++i)
+    for (int trial = 0; trial < 60; ++trial, ++row) {
+      x[row] = years[i];
+      y[row] = trial < 10.0 * wrong[i] ? 1.0 : 0.0;
+    }
+  const auto rows = logistic(with_intercept(x, {"x"}), {y, Vector::Ones(600)});
+  const auto counts =
+      logistic(with_intercept(years, {"x"}), {10.0 * wrong, Vector::Constant(10, 60.0)});
+  ASSERT_TRUE(rows && counts);
+  EXPECT_LT((rows->coefficients - counts->coefficients).norm(), 1e-12);
+  EXPECT_LT((rows->covariance - counts->covariance).norm(), 1e-13);
+  EXPECT_EQ(rows->df_residual, 598.0);
 }
 
 TEST(LogisticRegression, SaysSeparationAndFirthStaysFinite) {

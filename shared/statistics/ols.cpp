@@ -80,7 +80,7 @@ void add_model(T rss, T tss, Eigen::Index k, Eigen::Index df_residual, Ols& out)
   out.f = k > 0 ? static_cast<double>(((tss - rss) / T(k)) / (rss / df)) : kNaN;
 }
 
-/// Coefficients, (XᵀX)⁻¹, fitted values, residuals and leverage; the rest follows in double.
+/// Coefficients, (XᵀX)⁻¹, residuals and leverage; the rest follows in double.
 /// False when the columns are collinear.
 template <class T>
 bool solve(const Design& design, const Vector& response, Ols& out) {
@@ -119,7 +119,6 @@ bool solve(const Design& design, const Vector& response, Ols& out) {
   out.unscaled_covariance = unscaled.template cast<double>();
   out.leverage = leverage.template cast<double>();
   out.residuals = residuals.template cast<double>();
-  out.fitted = response - out.residuals;
   add_model<T>(residuals.squaredNorm(), s.y.squaredNorm(), k, n - k - first, out);
   return true;
 }
@@ -132,9 +131,7 @@ bool solve_in_blocks(const Design& design, const Vector& response, Ols& out) {
   if (!fit) return false;
   out.coefficients = fit->coefficients;
   out.unscaled_covariance = fit->unscaled_covariance;
-  blocks->residuals(fit->coefficients, out.residuals);
-  blocks->leverage(*fit, out.leverage);
-  out.fitted = response - out.residuals;
+  blocks->residuals_and_leverage(*fit, out.residuals, out.leverage);
   const Eigen::Index k = design.columns.cols() - (design.intercept ? 1 : 0);
   add_model<double>(out.residuals.squaredNorm(), blocks->total_sum_of_squares(), k,
                     response.size() - design.columns.cols(), out);
@@ -161,14 +158,17 @@ void add_tests(Ols& fit) {
 }  // namespace
 
 core::Result<Ols> ols(const Design& design, const Vector& response) {
-  if (auto fine = check(design, response); !fine) return fine.error();
+  if (auto fine = check_shape(design, response); !fine) return fine.error();
   Ols fit;
   fit.names = design.names;
   fit.df_residual = static_cast<double>(response.size() - design.columns.cols());
-  const bool full_rank = is_large(design) ? solve_in_blocks(design, response, fit) ||
-                                                solve<double>(design, response, fit)
-                                          : solve<long double>(design, response, fit);
-  if (!full_rank) return collinear_error(design);
+  // Blocks need every number finite and a response that varies, and say so themselves.
+  if (!is_large(design) || !solve_in_blocks(design, response, fit)) {
+    if (auto fine = check(design, response); !fine) return fine.error();
+    const bool full_rank = is_large(design) ? solve<double>(design, response, fit)
+                                            : solve<long double>(design, response, fit);
+    if (!full_rank) return collinear_error(design);
+  }
   if (!fit.coefficients.allFinite() || !fit.unscaled_covariance.allFinite() ||
       !std::isfinite(fit.rss) || !(fit.unscaled_covariance.diagonal().minCoeff() > 0.0))
     return core::Error{core::Errc::out_of_range,

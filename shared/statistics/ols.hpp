@@ -24,8 +24,8 @@ struct Ols {
   double r_squared = 0.0, adjusted_r_squared = 0.0;
   double f = 0.0, f_df1 = 0.0, f_p = 0.0;  ///< of the whole model (NaN with an intercept alone)
   double log_likelihood = 0.0, aic = 0.0, bic = 0.0;
-  Vector fitted, residuals;  ///< one per observation
-  Vector leverage;           ///< h_i, diagonal of the hat matrix
+  Vector residuals;  ///< one per observation; fitted values are the response less these
+  Vector leverage;   ///< h_i, diagonal of the hat matrix
 };
 
 /// What one observation does to a fit (Belsley, Kuh & Welsch 1980; Cook 1977). One entry per

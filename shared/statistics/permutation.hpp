@@ -16,9 +16,9 @@ struct PermutationSlope {
 
 /// Is the slope of y on x 0? Counts over all distinct arrangements of y, which is best given as the
 /// one with more ties. Compares n Σxy with a margin of 1e-12 of its size, so ties count.
-/// Errors: bad_input for fewer than two values or no spread; too_large over 50 million
-/// arrangements.
-core::Result<PermutationSlope> permutation_slope(const Vector& x, const Vector& y);
+/// Errors: bad_input for fewer than two values or no spread; too_large over `most` arrangements.
+core::Result<PermutationSlope> permutation_slope(const Vector& x, const Vector& y,
+                                                 double most = 5e7);
 
 struct SignFlip {
   std::uint64_t flips = 0, as_extreme = 0;  ///< of 2ⁿ

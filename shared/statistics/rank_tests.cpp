@@ -7,6 +7,7 @@
 
 #include "statistics/distributions.hpp"
 #include "statistics/modified_z.hpp"
+#include "statistics/permutation.hpp"
 
 namespace statistics {
 namespace {
@@ -108,6 +109,59 @@ core::Result<Matrix> row_ranks(const Matrix& values) {
   for (Eigen::Index i = 0; i < values.rows(); ++i)
     out.row(i) = ranks(values.row(i).transpose()).transpose();
   return out;
+}
+
+constexpr Eigen::Index kMostExactKendall = 50;
+
+/// Pairs that x and y order differently, and pairs tied in both.
+struct Crossings {
+  double discordant = 0.0, tied_in_both = 0.0;
+};
+
+/// By a merge sort of y in the order of x, ties of x in the order of y (Knight 1966).
+Crossings crossings(const Vector& x, const Vector& y) {
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(x.size()));
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::sort(order, {}, [&](Eigen::Index i) { return std::pair(x[i], y[i]); });
+  Crossings out;
+  double run = 0.0;
+  std::vector<double> now;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const bool same = i > 0 && x[order[i]] == x[order[i - 1]] && y[order[i]] == y[order[i - 1]];
+    run = same ? run + 1.0 : 0.0;
+    out.tied_in_both += run;
+    now.push_back(y[order[i]]);
+  }
+  std::vector<double> merged(now.size());
+  for (std::size_t width = 1; width < now.size(); width *= 2) {
+    for (std::size_t from = 0; from < now.size(); from += 2 * width) {
+      const std::size_t middle = std::min(from + width, now.size());
+      const std::size_t end = std::min(from + 2 * width, now.size());
+      for (std::size_t l = from, r = middle, to = from; to < end; ++to) {
+        const bool right = l == middle || (r < end && now[r] < now[l]);
+        if (right && l < middle) out.discordant += static_cast<double>(middle - l);
+        merged[to] = now[right ? r++ : l++];
+      }
+    }
+    std::swap(now, merged);
+  }
+  return out;
+}
+
+/// Two-sided: how many orders of n have so few, or so many, discordant pairs.
+double kendall_exact(Eigen::Index n, double discordant) {
+  std::vector<double> chance{1.0};  // of each number of discordant pairs
+  for (Eigen::Index k = 2; k <= n; ++k) {
+    std::vector<double> next(chance.size() + static_cast<std::size_t>(k) - 1, 0.0);
+    for (std::size_t i = 0; i < chance.size(); ++i)
+      for (std::size_t j = 0; j < static_cast<std::size_t>(k); ++j)
+        next[i + j] += chance[i] / static_cast<double>(k);
+    chance = std::move(next);
+  }
+  const auto tail = std::min(discordant, static_cast<double>(chance.size() - 1) - discordant);
+  double sum = 0.0;
+  for (std::size_t i = 0; i <= static_cast<std::size_t>(tail); ++i) sum += chance[i];
+  return std::min(1.0, 2.0 * sum);
 }
 
 }  // namespace
@@ -295,20 +349,20 @@ core::Result<Correlation> spearman(const Vector& x, const Vector& y) {
   out.r = std::clamp(a.dot(b) / std::sqrt(a.squaredNorm() * b.squaredNorm()), -1.0, 1.0);
   out.statistic = out.r * std::sqrt(df / ((1.0 - out.r) * (1.0 + out.r)));
   out.p = student_t_two_sided(out.statistic, df);
+  if (x.size() > 30) return out;
+  if (const auto exact = permutation_slope(a, b, 4e6)) out.p_exact = exact->p;
   return out;
 }
 
 core::Result<Correlation> kendall(const Vector& x, const Vector& y) {
   if (auto fine = check_pairs(x, y); !fine) return fine.error();
   const double n = static_cast<double>(x.size()), pairs = n * (n - 1.0);
-  double s = 0.0;
-  const auto sign = [](double v) { return static_cast<double>((v > 0.0) - (v < 0.0)); };
-  for (Eigen::Index i = 0; i < x.size(); ++i)
-    for (Eigen::Index j = 0; j < i; ++j) s += sign(x[i] - x[j]) * sign(y[i] - y[j]);
   const auto two = [](double t) { return t * (t - 1.0); };
   const auto three = [](double t) { return t * (t - 1.0) * (t - 2.0); };
   const auto spread = [](double t) { return t * (t - 1.0) * (2.0 * t + 5.0); };
   const double tied_x = over_ties(x, two), tied_y = over_ties(y, two);
+  const Crossings found = crossings(x, y);
+  const double s = 0.5 * (pairs - tied_x - tied_y) + found.tied_in_both - 2.0 * found.discordant;
   const double variance = (spread(n) - over_ties(x, spread) - over_ties(y, spread)) / 18.0 +
                           tied_x * tied_y / (2.0 * pairs) +
                           over_ties(x, three) * over_ties(y, three) / (9.0 * pairs * (n - 2.0));
@@ -316,6 +370,8 @@ core::Result<Correlation> kendall(const Vector& x, const Vector& y) {
   out.r = 2.0 * s / std::sqrt((pairs - tied_x) * (pairs - tied_y));
   out.statistic = s / std::sqrt(variance);
   out.p = 2.0 * normal_upper(std::abs(out.statistic));
+  if (tied_x == 0.0 && tied_y == 0.0 && x.size() <= kMostExactKendall)
+    out.p_exact = kendall_exact(x.size(), found.discordant);
   return out;
 }
 

@@ -1,6 +1,8 @@
 /// Tests on ranks: nothing assumed about distributions. Ties get their mean rank throughout.
 #pragma once
 
+#include <optional>
+
 #include "statistics/anova.hpp"
 
 namespace statistics {
@@ -54,9 +56,12 @@ struct MannWhitney {
 core::Result<MannWhitney> mann_whitney(const Vector& x, const Vector& y);
 
 struct Correlation {
-  double r = 0.0, statistic = 0.0, p = 0.0;
+  double r = 0.0, statistic = 0.0, p = 0.0;  ///< p of the approximation
+  std::optional<double> p_exact;             ///< two-sided, where it can be counted
 };
-/// Spearman's ρ with its t approximation; Kendall's τ_b with z corrected for ties.
+/// Spearman's ρ with its t approximation; exact over every arrangement of the ranks, ties included,
+/// for up to 4 million of them (10 pairs without ties). Kendall's τ_b with z corrected for ties
+/// (counted in n log n, Knight 1966); exact without ties for up to 50 pairs.
 core::Result<Correlation> spearman(const Vector& x, const Vector& y);
 core::Result<Correlation> kendall(const Vector& x, const Vector& y);
 

@@ -53,6 +53,7 @@ void expect_detection(const core::Result<SignalDetection>& got, const core::Json
   EXPECT_NEAR(got->d_prime, want["d_prime"].get<double>(), 1e-12) << what;
   EXPECT_NEAR(got->criterion, want["criterion_c"].get<double>(), 1e-12) << what;
   expect_near(got->beta, want["beta"], 1e-12, what + " beta");
+  EXPECT_NEAR(got->ln_beta, want["ln_beta"].get<double>(), 1e-12) << what;
   expect_near(got->a_prime, want["A_prime"], 1e-12, what + " A'");
   expect_near(got->auc, want["auc_equal_var"], 1e-12, what + " auc");
   expect_near(got->variance, want["var_d_GourevitchGalanter"], 1e-12, what + " var");

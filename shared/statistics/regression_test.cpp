@@ -183,6 +183,15 @@ TEST(Bisquare, ReproducesAllFifteenCasesOfTheToolThePaperUsed) {
     expect_near(fit->robust_sigma, want["robust_s"], 1e-9, id + " robust_s");
     expect_near(fit->sigma, want["s"], 1e-9, id + " s");
     expect_near(fit->leverage, want["h"], 1e-9, id + " h");
+    expect_near(fit->ols_coefficients, want["b_ols"], 1e-9, id + " b_ols");
+    expect_near(fit->studentised, want["rstud"], 1e-9, id + " rstud");
+    EXPECT_EQ(fit->df_residual, want["dfe"].get<double>()) << id;
+    const Matrix covariance = golden::matrix_of(want["covb"]);
+    EXPECT_LT((fit->covariance - covariance).norm(), 1e-9 * covariance.norm()) << id;
+    if (one["matlab_published"].is_object() && one["matlab_published"].contains("brob")) {
+      const Vector printed = vector_of(one["matlab_published"]["brob"]);  // with four decimals
+      EXPECT_LT((fit->coefficients - printed).cwiseAbs().maxCoeff(), 6e-5) << id;
+    }
     const Vector w = vector_of(want["w"]);
     EXPECT_LT((fit->weights - w).cwiseAbs().maxCoeff(), 1e-9) << id;
   }
@@ -231,6 +240,45 @@ TEST(Ols, InBlocksStillNamesCollinearColumnsAndTakesNoIntercept) {
   ASSERT_TRUE(fit);
   const Vector residual = y - wide.columns * fit->coefficients;
   EXPECT_LT((wide.columns.transpose() * residual).cwiseAbs().maxCoeff(), 1e-6);  // normal equations
+}
+
+TEST(Ols, InBlocksDoesNotCareWhichRowsItGuessesTheMeansFrom) {
+  // Means are first guessed from every n/64th row. Here those lie far from all others; turned by
+  // one row, they do not.
+  constexpr Eigen::Index kRows = 128'000;
+  Matrix x(kRows, 2);
+  Vector y(kRows);
+  for (Eigen::Index i = 0; i < kRows; ++i) {
+    const double t = static_cast<double>(i);
+    x(i, 0) = 1e4 + std::sin(12.9898 * t) + (i % (kRows / 64) == 0 ? 1e4 : 0.0);
+    x(i, 1) = 1e-6 * (t + std::sin(78.233 * t));
+    y[i] = 2.0 * x(i, 0) - 3e6 * x(i, 1) + std::sin(43758.5453 * t);
+  }
+  const auto turned = [](const auto& of) {
+    auto out = of;
+    out.topRows(kRows - 1) = of.bottomRows(kRows - 1);
+    out.row(kRows - 1) = of.row(0);
+    return out;
+  };
+  const auto a = ols(with_intercept(x, {"a", "b"}), y);
+  const auto b = ols(with_intercept(turned(x), {"a", "b"}), turned(y));
+  ASSERT_TRUE(a && b);
+  for (Eigen::Index j = 0; j < 3; ++j) {
+    EXPECT_NEAR(a->coefficients[j], b->coefficients[j], 1e-9 * b->standard_errors[j]);
+    EXPECT_NEAR(a->standard_errors[j], b->standard_errors[j], 1e-9 * b->standard_errors[j]);
+  }
+  EXPECT_NEAR(a->coefficients[1], 2.0, 1e-3);
+}
+
+TEST(Ols, InBlocksNamesTheRowThatIsNoNumberAndTheResponseThatIsConstant) {
+  auto [design, y] = repeated(20'001);
+  Vector holed = y;
+  holed[150'000] = std::nan("");
+  EXPECT_EQ(ols(design, holed).error().what, "the response in row 150001 is not a finite number");
+  EXPECT_FALSE(ols(design, Vector::Constant(y.size(), 0.1)));
+  Design hole = design;
+  hole.columns(7, 1) = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(ols(hole, y).error().what, "column 'x', row 8: not a finite number");
 }
 
 TEST(Bisquare, FollowsRsMassWhereAsked) {

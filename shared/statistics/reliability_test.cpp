@@ -124,5 +124,40 @@ TEST(Permutation, SignFlipsAreCountedAndTooManyRefused) {
   EXPECT_FALSE(permutation_slope(Vector::LinSpaced(20, 0.0, 1.0), Vector::LinSpaced(20, 0.0, 1.0)));
 }
 
+TEST(Sprt, FollowsTheReferencesSumsAndBounds) {
+  const auto want = golden::expected("cusum");
+  const auto& test = want["sprt_unrestricted"];
+  std::vector<bool> failures;
+  for (const auto& one : want["failure_sequence"]) failures.push_back(one.get<int>() == 1);
+  const auto rates = Rates::make(want["p_adequate"], want["p_inadequate"]);
+  ASSERT_TRUE(rates);
+  const auto bounds = sprt_bounds(test["alpha"], test["beta"]);
+  EXPECT_NEAR(bounds.upper, test["wald_upper_ln((1-beta)/alpha)"].get<double>(), 1e-12);
+  EXPECT_NEAR(bounds.lower, test["wald_lower_ln(beta/(1-alpha))"].get<double>(), 1e-12);
+  const auto got = sprt(failures, *rates, bounds);
+  for (std::size_t t = 0; t < failures.size(); ++t)
+    EXPECT_NEAR(got.sums[t], test["S"][t].get<double>(), 1e-12);
+  // 3.1182 at trial 7 is the first of the reference's sums beyond 2.7726.
+  EXPECT_EQ(got.verdict, Sprt::Verdict::inadequate);
+  EXPECT_EQ(got.decided_at, 7u);
+}
+
+TEST(Sprt, ItsCharacteristicIsThatOfPathsCountedByHand) {
+  // A failure is worth 0.9163, a success −0.1823; the bounds are 2.7726 and −1.5581. Four failures
+  // in four trials decide; in five, four failures of which one success came among the first four;
+  // nine successes in a row decide the other way.
+  const auto rates = Rates::make(0.10, 0.25);
+  const auto bounds = sprt_bounds(0.05, 0.20);
+  const double p = 0.3, q = 0.7;
+  const auto three = sprt_characteristic(*rates, bounds, p, 3);
+  EXPECT_EQ(three.adequate + three.inadequate, 0.0);
+  EXPECT_NEAR(three.mean_trials, 3.0, 1e-14);
+  const auto five = sprt_characteristic(*rates, bounds, p, 5);
+  EXPECT_NEAR(five.inadequate, std::pow(p, 4) * (1.0 + 4.0 * q), 1e-15);
+  EXPECT_NEAR(five.mean_trials, 5.0 - std::pow(p, 4), 1e-14);
+  EXPECT_EQ(sprt_characteristic(*rates, bounds, p, 8).adequate, 0.0);
+  EXPECT_NEAR(sprt_characteristic(*rates, bounds, p, 9).adequate, std::pow(q, 9), 1e-15);
+}
+
 }  // namespace
 }  // namespace statistics

@@ -1,6 +1,7 @@
 /// Repeated measures and mixed models against R (car, lme4, lmerTest) and 50-digit values.
 #include "statistics/golden_test.hpp"
-#include "statistics/lmm.hpp"
+#include "statistics/lmm_tests.hpp"
+#include "statistics/p_adjust.hpp"
 #include "statistics/rm_anova.hpp"
 #include "statistics/rm_factorial.hpp"
 
@@ -27,6 +28,8 @@ TEST(RmAnova, AgreesWithRToTenDigitsWithBothCorrections) {
     expect_near(fit->epsilon_hf, want["eps_HF_uncapped"], 1e-10, name + " hf");
     expect_near(fit->p_hf, want["p_HF"], 1e-10, name + " p hf");
     expect_near(fit->p_lower, want["p_lower_bound"], 1e-10, name + " p low");
+    expect_near(fit->epsilon_lower, want["eps_lower_bound"], 1e-10, name + " lower");
+    expect_near(fit->mauchly.chi_squared, want["mauchly"]["chi2_z"], 1e-10, name + " z");
     expect_near(fit->mauchly.w, want["mauchly"]["W"], 1e-10, name + " W");
     expect_near(fit->mauchly.p, want["mauchly"]["p_value_correct"], 1e-10, name + " mauchly");
     expect_near(fit->partial_eta_squared, want["partial_eta2"], 1e-10, name);
@@ -44,10 +47,23 @@ TEST(RmAnova, ContrastsAgreeWithPairedT) {
   expect_near(trend.t, want["linear_trend"]["t"], 1e-10, "trend");
   expect_near(trend.p, want["linear_trend"]["p_value"], 1e-10, "trend");
   expect_near(trend.estimate, want["linear_trend"]["mean_contrast"], 1e-10, "trend");
-  const auto pair = contrast(values, Eigen::Vector3d(1.0, -1.0, 0.0));
-  expect_near(pair.t, want["paired_t"]["t"][0], 1e-10, "1-2");
-  expect_near(pair.ci_low, want["paired_t"]["lwr95"][0], 1e-10, "1-2");
-  expect_near(pair.ci_high, want["paired_t"]["upr95"][0], 1e-10, "1-2");
+  std::vector<double> p;
+  std::size_t at = 0;
+  for (const auto& [a, b] : {std::pair{0, 1}, {0, 2}, {1, 2}}) {
+    Vector weights = Vector::Zero(3);
+    weights[a] = 1.0;
+    weights[b] = -1.0;
+    const auto pair = contrast(values, weights);
+    expect_near(pair.t, want["paired_t"]["t"][at], 1e-10, "t");
+    expect_near(pair.p, want["paired_t"]["p_raw"][at], 1e-10, "p");
+    expect_near(pair.estimate, want["paired_t"]["mean_diff"][at], 1e-10, "difference");
+    expect_near(pair.ci_low, want["paired_t"]["lwr95"][at], 1e-10, "low");
+    expect_near(pair.ci_high, want["paired_t"]["upr95"][at++], 1e-10, "high");
+    p.push_back(pair.p);
+  }
+  const auto holm = adjusted(p, Adjustment::holm);
+  for (std::size_t i = 0; i < 3; ++i)
+    expect_near(holm[i], want["paired_t"]["p_holm"][i], 1e-10, "holm");
 }
 
 TEST(RmAnova, RefusesOneSubjectMissingValuesAndNoError) {
@@ -155,7 +171,7 @@ TEST(Lmm, ReachesTheFiftyDigitOptimumToNineDigits) {
     expect_near(fit->df, want["satterthwaite_df"], 1e-9, name + " df");
     expect_near(fit->p, want["p_satterthwaite"], 1e-9, name + " p");
     const Matrix varpar = golden::matrix_of(want["vcov_varpar_tau2_sigma2"]);
-    EXPECT_LT((fit->variance_covariance - varpar).norm(), 1e-9 * varpar.norm()) << name;
+    EXPECT_LT((fit->curvature.variance_covariance - varpar).norm(), 1e-9 * varpar.norm()) << name;
   }
 }
 
@@ -173,6 +189,34 @@ TEST(Lmm, MaximumLikelihoodAgreesToo) {
     expect_near(fit->aic, want["AIC"], 1e-9, name);
     expect_near(fit->bic, want["BIC"], 1e-9, name);
   }
+}
+
+TEST(LmmTests, AgreeWithLmerTestAndPbkrtest) {
+  // R's optimum of τ² is good to 3e-8, which bounds what depends on it.
+  const auto reference = golden::expected("lmm_random_intercept");
+  int joint = 0;
+  for (const auto& [name, fit_of] : reference["fits"].items()) {
+    const auto& want = fit_of["lme4_lmerTest_pbkrtest"];
+    if (!want.contains("KR_df")) continue;
+    const Fitted data = data_of(fit_of);
+    const auto fit = lmm(data.design, data.y, data.labels);
+    ASSERT_TRUE(fit) << name;
+    const auto kr = kenward_roger(*fit);
+    expect_near(kr.df, want["KR_df"], 1e-6, name + " KR df");
+    expect_near(kr.standard_errors, want["KR_se"], 1e-6, name + " KR se");
+    if (!want.contains("anova_repetition")) continue;
+    const auto& f = want["anova_repetition"];
+    const auto satterthwaite = joint_test(*fit, {1, 2}, SmallSample::satterthwaite);
+    expect_near(satterthwaite.statistic, f["F_satt"], 1e-6, name + " F");
+    expect_near(satterthwaite.df2, f["den_satt"], 1e-6, name + " df");
+    expect_near(satterthwaite.p, f["p_satt"], 1e-6, name + " p");
+    const auto kenward = joint_test(*fit, {1, 2}, SmallSample::kenward_roger);
+    expect_near(kenward.statistic, f["F_KR"], 1e-6, name + " KR F");
+    expect_near(kenward.df2, f["den_KR"], 1e-6, name + " KR df2");
+    expect_near(kenward.p, f["p_KR"], 1e-6, name + " KR p");
+    ++joint;
+  }
+  EXPECT_EQ(joint, 2);
 }
 
 TEST(Lmm, IsLeastSquaresWhenGroupsDoNotDiffer) {

@@ -1,4 +1,5 @@
 /// Power, normality, ranks and learning curves against R and 50-digit values.
+#include "statistics/effect_size.hpp"
 #include "statistics/golden_test.hpp"
 #include "statistics/learning_curve.hpp"
 #include "statistics/power.hpp"
@@ -173,6 +174,63 @@ TEST(Ranks, CorrelationsAgreeWithROnThePapersTables) {
     expect_near(tau->statistic, want["kendall_z"], 1e-12, table);
     expect_near(tau->p, want["kendall_p"], 1e-12, table);
   }
+}
+
+TEST(Ranks, ExactCorrelationsAgreeWithR) {
+  const auto want = golden::expected("nonparametric")["spearman_exact_n9"];
+  const Vector x = golden::vector_of(want["x"]), y = golden::vector_of(want["y"]);
+  const auto rho = spearman(x, y), tau = kendall(x, y);
+  ASSERT_TRUE(rho && rho->p_exact && tau && tau->p_exact);
+  expect_near(rho->r, want["rho"], 1e-12, "rho");
+  expect_near(*rho->p_exact, want["p"], 1e-12, "p");
+  // T = 21 concordant of 36 pairs.
+  EXPECT_NEAR(tau->r, (2.0 * want["kendall_T"].get<double>() - 36.0) / 36.0, 1e-12);
+  expect_near(*tau->p_exact, want["kendall_p_exact"], 1e-12, "tau");
+  // Two pairs of ties: 4!/(2! 2!) = 6 arrangements of 1 1 2 2 against 1 2 3 4, of which 1122 and
+  // 2211 are as far from 0.
+  const Vector four = Vector::LinSpaced(4, 1.0, 4.0);
+  EXPECT_NEAR(*spearman(four, Eigen::Vector4d(1, 1, 2, 2))->p_exact, 2.0 / 6.0, 1e-15);
+  EXPECT_FALSE(kendall(four, Eigen::Vector4d(1, 1, 2, 2))->p_exact);
+  EXPECT_FALSE(spearman(Vector::LinSpaced(31, 0.0, 1.0), Vector::LinSpaced(31, 1.0, 0.0))->p_exact);
+}
+
+TEST(Ranks, KendallCountsManyPairsAsTheDefinitionDoes) {
+  // Every value twice, in mixed order; against the definition's double sum.
+  const auto made = [](Eigen::Index n) {
+    Vector y(n);
+    for (Eigen::Index i = 0; i < n; ++i) y[i] = static_cast<double>((i * 7919) % n / 2);
+    return y;
+  };
+  const auto counted = [](const Vector& x, const Vector& y) {
+    double s = 0.0;
+    for (Eigen::Index i = 0; i < x.size(); ++i)
+      for (Eigen::Index j = 0; j < i; ++j)
+        s += double((x[i] > x[j]) - (x[i] < x[j])) * double((y[i] > y[j]) - (y[i] < y[j]));
+    return s;
+  };
+  Vector x = made(400).reverse(), y = made(400);
+  const double pairs = 400.0 * 399.0, tied = 400.0;  // 200 pairs of ties, counted twice
+  EXPECT_NEAR(kendall(x, y)->r, 2.0 * counted(x, y) / (pairs - tied), 1e-12);
+  const Vector large = Vector::LinSpaced(100'000, 0.0, 1.0);
+  EXPECT_EQ(kendall(large, large)->r, 1.0);
+  EXPECT_EQ(kendall(large, -large)->r, -1.0);
+}
+
+TEST(Correlation, PearsonAgreesWithROnThePapersTables) {
+  const auto reference = golden::expected("nonparametric");
+  const golden::Csv csv("data/paper_table2_table4.csv");
+  for (const auto& [table, column] :
+       {std::pair{"table2", "wrong_breach"}, std::pair{"table4", "wrong_total"}}) {
+    const auto& want = reference["correlations_paper"][table];
+    const auto r = pearson(csv.numbers("experience_years"), csv.numbers(column));
+    ASSERT_TRUE(r);
+    expect_near(r->r, want["pearson_r"], 1e-12, table);
+    expect_near(r->t, want["pearson_t"], 1e-12, table);
+    expect_near(r->p, want["pearson_p"], 1e-12, table);
+    expect_near(r->r_95.low, want["pearson_fisher_ci95"][0], 1e-12, table);
+    expect_near(r->r_95.high, want["pearson_fisher_ci95"][1], 1e-12, table);
+  }
+  EXPECT_FALSE(pearson(Vector::Ones(5), Vector::LinSpaced(5, 0.0, 1.0)));
 }
 
 TEST(Learning, CurvesReachTheFiftyDigitOptimum) {

@@ -45,7 +45,7 @@ core::Result<std::string> token_of(const Options& options) {
 core::Result<std::unique_ptr<uplink::Server>> connect(const Options& options) {
   auto token = token_of(options);
   if (!token) return token.error();
-  auto server = uplink::HttpServer::make(options.server_url, *token);
+  auto server = uplink::HttpServer::make(options.server_url, *token, options.authority);
   if (!server) return server.error();
   return std::unique_ptr<uplink::Server>(std::move(*server));
 }

@@ -15,6 +15,7 @@ constexpr const char* kExamples = R"(Examples:
   tractus-station --device sim-rig --scenario lateral_breach --data st --speed fast   SIMULATED rig
   tractus-station --device rig --address 192.168.1.40:1502 --scenario mine.json --data st
   tractus-station study  --study spine-1 --participant P01 --device rig --data st --server URL --token-file st.token
+  tractus-station enrol  --server https://sim.example.org:8480 --authority authority.pem --code C --token-file st.token
   tractus-station sync   --data st --server URL --token-file st.token
   tractus-station upload --data st --server URL --token-file st.token --wait 600)";
 
@@ -34,6 +35,8 @@ void add_server(CLI::App& app, Options& options, bool needed) {
   auto* url = app.add_option("--server", options.server_url, "http(s)://HOST:PORT");
   auto* token = app.add_option("--token-file", options.token_file, "file with the station's token");
   url->needs(token);
+  app.add_option("--authority", options.authority,
+                 "PEM file of the certificate authority to trust (the server's tls/authority.pem)");
   if (needed) url->required();
 }
 
@@ -189,6 +192,12 @@ Parsed parse(int argc, char** argv) {
   add_server(*upload, options, true);
   upload->add_option("--wait", options.wait_s, "s to go on trying when the server does not answer")
       ->check(CLI::Range(0.0, 1e7));
+  CLI::App* enrol = app.add_subcommand(
+      "enrol", "make a key for this station and let the server know it, by a one-time code");
+  enrol->add_flag("--json", options.json, "one JSON document on standard output");
+  add_server(*enrol, options, true);
+  enrol->add_option("--code", options.code, "from the server's administrator; holds an hour")
+      ->required();
   CLI::App* tune = app.add_subcommand(
       "tune", "feel a scenario and nudge its eight parameters by keys; save new versions");
   add_tune(*tune, options);
@@ -209,6 +218,7 @@ Parsed parse(int argc, char** argv) {
   if (study->parsed()) set_study(*study, options);
   if (sync->parsed()) options.deed = Deed::sync;
   if (upload->parsed()) options.deed = Deed::upload;
+  if (enrol->parsed()) options.deed = Deed::enrol;
   if (trust->parsed()) options.deed = Deed::trust;
   if (tune->parsed()) options.deed = Deed::tune;
   if (options.deed == Deed::trust && options.signer_hex.empty() && options.signer_of_case.empty())

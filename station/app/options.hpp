@@ -10,13 +10,15 @@
 
 namespace app {
 
-enum class Deed { run, probe, tune, study, sync, upload, trust };
+enum class Deed { run, probe, tune, study, sync, upload, trust, enrol };
 
 struct Options {
   Deed deed = Deed::run;
   std::filesystem::path data;
   std::string server_url;
   std::filesystem::path token_file;
+  std::filesystem::path authority;  ///< certificate authority to trust; empty: the system's
+  std::string code;                 ///< enrol: from the server's administrator
   bool json = false;
   bool follow = false;
   // run

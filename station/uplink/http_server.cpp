@@ -39,6 +39,7 @@ struct HttpServer::Connection {
   CURL* handle = nullptr;
   curl_slist* headers = nullptr;
   std::string url, bearer;
+  std::filesystem::path authority;
   char failure[CURL_ERROR_SIZE] = {};
 
   ~Connection() {
@@ -55,8 +56,8 @@ HttpServer::HttpServer(std::unique_ptr<Connection> connection)
     : connection_(std::move(connection)) {}
 HttpServer::~HttpServer() = default;
 
-core::Result<std::unique_ptr<HttpServer>> HttpServer::make(const std::string& url,
-                                                           const std::string& token) {
+core::Result<std::unique_ptr<HttpServer>> HttpServer::make_nameless(
+    const std::string& url, const std::filesystem::path& authority) {
   std::string base = url;
   while (base.ends_with('/')) base.pop_back();
   const std::size_t scheme = base.starts_with("http://") ? 7 : base.starts_with("https://") ? 8 : 0;
@@ -65,29 +66,45 @@ core::Result<std::unique_ptr<HttpServer>> HttpServer::make(const std::string& ur
     return core::Error{
         core::Errc::bad_input,
         fmt::format("--server {}: http://HOST:PORT or https://HOST:PORT is expected", url)};
-  if (token.empty() || token.size() > 4096 ||
-      !std::ranges::all_of(token, [](unsigned char c) { return std::isgraph(c); }))
-    return core::Error{core::Errc::bad_input,
-                       "the station's token is empty or holds odd characters"};
+  std::error_code failure;
+  if (!authority.empty() && !std::filesystem::is_regular_file(authority, failure))
+    return core::Error{core::Errc::not_found, authority.string() + ": no such file"};
   auto connection = std::make_unique<Connection>();
   connection->handle = curl_ready() ? curl_easy_init() : nullptr;
   if (!connection->handle) return core::Error{core::Errc::unavailable, "libcurl does not start"};
   connection->url = base;
-  connection->bearer = "Authorization: Bearer " + token;
+  connection->authority = authority;
   return std::unique_ptr<HttpServer>(new HttpServer(std::move(connection)));
+}
+
+core::Result<std::unique_ptr<HttpServer>> HttpServer::make(const std::string& url,
+                                                           const std::string& token,
+                                                           const std::filesystem::path& authority) {
+  if (token.empty() || token.size() > 4096 ||
+      !std::ranges::all_of(token, [](unsigned char c) { return std::isgraph(c); }))
+    return core::Error{core::Errc::bad_input,
+                       "the station's token is empty or holds odd characters"};
+  auto made = make_nameless(url, authority);
+  if (made) (*made)->connection_->bearer = "Authorization: Bearer " + token;
+  return made;
 }
 
 void HttpServer::Connection::prepare(const Request& request, Received& into) {
   curl_easy_reset(handle);
   curl_slist_free_all(headers);
   headers = nullptr;
-  add(bearer);
+  if (!bearer.empty()) add(bearer);
   add("Expect:");
   for (const auto& [name, value] : request.headers) add(name + ": " + value);
   curl_easy_setopt(handle, CURLOPT_URL, (url + request.path).c_str());
   curl_easy_setopt(handle, CURLOPT_CUSTOMREQUEST, request.method.c_str());
   curl_easy_setopt(handle, CURLOPT_PROTOCOLS_STR, "http,https");
   curl_easy_setopt(handle, CURLOPT_FOLLOWLOCATION, 0L);
+  curl_easy_setopt(handle, CURLOPT_SSLVERSION, CURL_SSLVERSION_TLSv1_2);
+  if (!authority.empty()) {
+    curl_easy_setopt(handle, CURLOPT_CAINFO, authority.c_str());
+    curl_easy_setopt(handle, CURLOPT_CAPATH, nullptr);
+  }
   curl_easy_setopt(handle, CURLOPT_NOSIGNAL, 1L);
   curl_easy_setopt(handle, CURLOPT_CONNECTTIMEOUT, kConnect_s);
   curl_easy_setopt(handle, CURLOPT_LOW_SPEED_LIMIT, 1L);

@@ -75,10 +75,10 @@ const std::map<std::string, Names> kAllowed = {
       "shared/models", "shared/scenarios", "shared/cases", "shared/trial", "shared/metrics",
       "shared/wire", "station/devices", "station/loop", "station/uplink"}},
     {"server/http", {"shared/core"}},
+    // A cohort's statistics are the plans of shared/assessment on a table of the store's trials.
     {"server/jobs",
      {"shared/core", "shared/trial", "shared/metrics", "shared/cases", "shared/scenarios",
-      "shared/volume", "shared/lab", "shared/lab/io", "db/store"}},
-    // A cohort's statistics are the methods of shared/assessment on a table of the store's trials.
+      "shared/volume", "shared/lab", "shared/lab/io", "shared/assessment", "db/store"}},
     {"server/api",
      {"shared/core", "shared/math", "shared/trial", "shared/metrics", "shared/cases",
       "shared/scenarios", "shared/study", "shared/volume", "shared/wire", "shared/models",

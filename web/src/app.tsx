@@ -1,9 +1,9 @@
 /** The whole: which address shows which page, and what an ended session does to all of them. */
-import { QueryCache, QueryClient, QueryClientProvider } from '@tanstack/react-query';
+import { QueryCache, QueryClient, QueryClientProvider, useQuery } from '@tanstack/react-query';
 import { lazy, Suspense, useState, type ReactNode } from 'react';
 import { Link, Redirect, Route, Switch, useLocation } from 'wouter';
-import { ApiError, endSession } from '@/api';
-import { Account, SessionGate } from '@/features/session';
+import { ApiError, endSession, sessionQuery } from '@/api';
+import { Account, OwnAccountPage, SessionGate } from '@/features/session';
 import { NewStudyPage, StudiesPage } from '@/features/studies';
 import { StudyPage } from '@/features/study';
 import { TrialsPage } from '@/features/trials';
@@ -12,6 +12,24 @@ import styles from './app.module.css';
 import { Fault } from './fault';
 
 const TrialPage = lazy(() => import('@/features/trial'));
+const lab = () => import('@/features/lab');
+const LabPage = lazy(() => lab().then(({ LabPage: page }) => ({ default: page })));
+const WorkPage = lazy(() => lab().then(({ WorkPage: page }) => ({ default: page })));
+const network = () => import('@/features/network');
+const PeoplePage = lazy(() => network().then(({ PeoplePage: page }) => ({ default: page })));
+const CohortsPage = lazy(() => network().then(({ CohortsPage: page }) => ({ default: page })));
+const StationsPage = lazy(() => network().then(({ StationsPage: page }) => ({ default: page })));
+const AuditPage = lazy(() => network().then(({ AuditPage: page }) => ({ default: page })));
+const analysis = () => import('@/features/analysis');
+const AnalysisPage = lazy(() => analysis().then(({ AnalysisPage: page }) => ({ default: page })));
+const ExamplePage = lazy(() => analysis().then(({ ExamplePage: page }) => ({ default: page })));
+const NewPlanPage = lazy(() => analysis().then(({ NewPlanPage: page }) => ({ default: page })));
+const PlanPage = lazy(() => analysis().then(({ PlanPage: page }) => ({ default: page })));
+const RunPage = lazy(() => analysis().then(({ RunPage: page }) => ({ default: page })));
+const trainees = () => import('@/features/trainees');
+const TraineesPage = lazy(() => trainees().then(({ TraineesPage: page }) => ({ default: page })));
+const TraineePage = lazy(() => trainees().then(({ TraineePage: page }) => ({ default: page })));
+const VersionsPage = lazy(() => lab().then(({ VersionsPage: page }) => ({ default: page })));
 
 function makeClient(): QueryClient {
   const onError = (reason: Error) => {
@@ -31,26 +49,55 @@ function makeClient(): QueryClient {
   return client;
 }
 
+/** Which places a role has; the server decides again on every call. */
 const kPlaces = [
-  { to: '/trials', name: 'Trials' },
-  { to: '/studies', name: 'Studies' },
+  { to: '/trials', name: 'Trials', roles: ['admin', 'director', 'faculty', 'trainee'] },
+  { to: '/trainees', name: 'Trainees', roles: ['admin', 'director', 'faculty'] },
+  { to: '/me', name: 'My curve', roles: ['trainee'] },
+  { to: '/studies', name: 'Studies', roles: ['admin', 'researcher'] },
+  { to: '/analysis', name: 'Analysis', roles: ['admin', 'researcher'] },
+  { to: '/lab', name: 'Model lab', roles: ['admin', 'researcher'] },
+  { to: '/network', name: 'Network', roles: ['admin', 'director', 'faculty', 'technician'] },
 ] as const;
+const kNetwork: Record<string, string> = { admin: 'people', technician: 'stations' };
+
+const open = (role: string) => kPlaces.filter(({ roles }) => (roles as readonly string[]).includes(role));
 
 function Brand() {
   const [at] = useLocation();
+  const role = useQuery({ ...sessionQuery, enabled: false }).data?.role;
   return (
     <div className={styles.home}>
-      <Link href="/trials" className={styles.brand}>
+      <Link href="/" className={styles.brand}>
         <img src="/icon.svg" alt="" width="24" height="24" />
         Tractus
       </Link>
-      <nav aria-label="Pages" className={styles.places}>
-        {kPlaces.map(({ to, name }) => (
-          <Link key={to} href={to} className={styles.place} aria-current={at === to || at.startsWith(`${to}/`) ? 'page' : undefined}>{name}</Link>
-        ))}
-      </nav>
+      {role === undefined ? null : (
+        <nav aria-label="Pages" className={styles.places}>
+          {open(role).map(({ to, name }) => (
+            <Link key={to} href={to} className={styles.place} aria-current={at === to || at.startsWith(`${to}/`) ? 'page' : undefined}>{name}</Link>
+          ))}
+        </nav>
+      )}
     </div>
   );
+}
+
+/** Where a role begins. */
+function Home() {
+  const role = useQuery({ ...sessionQuery, enabled: false }).data?.role ?? '';
+  return <Redirect to={open(role)[0]?.to ?? '/account'} replace />;
+}
+
+/** A trainee's own page. */
+function Me() {
+  const session = useQuery({ ...sessionQuery, enabled: false }).data;
+  return session ? <TraineePage name={session.name} /> : null;
+}
+
+function Network() {
+  const role = useQuery({ ...sessionQuery, enabled: false }).data?.role ?? '';
+  return <Redirect to={`/network/${kNetwork[role] ?? 'cohorts'}`} replace />;
 }
 
 function NotFound() {
@@ -59,7 +106,7 @@ function NotFound() {
     <div className={styles.narrow}>
       <h1>There is no such page</h1>
       <p>The address may be mistyped, or what it named is gone.</p>
-      <p><Link href="/trials">To the list of trials</Link></p>
+      <p><Link href="/">To the beginning</Link></p>
     </div>
   );
 }
@@ -72,12 +119,29 @@ function Pages() {
   return (
     <Suspense fallback={<Loading />}>
       <Switch>
-        <Route path="/"><Redirect to="/trials" replace /></Route>
+        <Route path="/"><Home /></Route>
+        <Route path="/account"><OwnAccountPage /></Route>
+        <Route path="/me"><Me /></Route>
+        <Route path="/trainees"><TraineesPage /></Route>
+        <Route path="/trainees/:name">{({ name }) => <TraineePage key={name} name={decodeURIComponent(name)} />}</Route>
+        <Route path="/network"><Network /></Route>
+        <Route path="/network/people"><PeoplePage /></Route>
+        <Route path="/network/cohorts"><CohortsPage /></Route>
+        <Route path="/network/stations"><StationsPage /></Route>
+        <Route path="/network/audit"><AuditPage /></Route>
         <Route path="/trials"><TrialsPage /></Route>
         <Route path="/trials/:id">{({ id }) => <TrialPage key={id} id={id} />}</Route>
         <Route path="/studies"><StudiesPage /></Route>
         <Route path="/studies/new"><NewStudyPage /></Route>
         <Route path="/studies/:id">{({ id }) => <StudyPage key={id} id={id} />}</Route>
+        <Route path="/analysis"><AnalysisPage /></Route>
+        <Route path="/analysis/example"><ExamplePage /></Route>
+        <Route path="/analysis/plans/new"><NewPlanPage /></Route>
+        <Route path="/analysis/plans/:id">{({ id }) => <PlanPage key={id} id={id} />}</Route>
+        <Route path="/analysis/runs/:id">{({ id }) => <RunPage key={id} id={id} />}</Route>
+        <Route path="/lab"><LabPage /></Route>
+        <Route path="/lab/versions"><VersionsPage /></Route>
+        <Route path="/lab/work/:model/:set/:step?">{({ model, set, step }) => <WorkPage key={`${model} ${set}`} model={model} set={set} step={step ?? 'compare'} />}</Route>
         <Route><NotFound /></Route>
       </Switch>
     </Suspense>

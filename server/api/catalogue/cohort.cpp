@@ -1,24 +1,162 @@
-/// A cohort: its scored trials as a table, and statistical methods on it.
-#include "server/api/cohort_table.hpp"
+/// A cohort: its scored trials as a table, locked plans, and analyses of it as jobs.
+#include <fmt/format.h>
+
+#include "db/store/analyses.hpp"
+#include "server/api/cohort_questions.hpp"
 #include "server/api/route.hpp"
 #include "server/api/schema.hpp"
+#include "server/jobs/cohort_table.hpp"
 
 namespace api {
 namespace {
+
+using core::Errc;
+using core::Error;
+using core::Json;
+using core::Result;
 using namespace schema;
 
-constexpr std::uint64_t kMaxAsk_bytes = 16384;
+constexpr std::uint64_t kMaxAsk_bytes = 16384, kMaxPlan_bytes = 1 << 20;
+constexpr std::int64_t kMostInTable = 20'000;
 
-core::Result<http::Response> analyse_cohort(const Call& call) {
-  const auto asked = core::parse_json(call.request.body, "body");
-  if (!asked) return asked.error();
-  const auto answer = cohort_analysis(call.backend, *asked);
-  if (!answer) return answer.error();
-  return json_response(*answer);
+Json or_null(const std::optional<std::string>& text) { return text ? Json(*text) : Json(); }
+Json or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
+
+Error absent(const char* what, const std::string& id) {
+  return {Errc::not_found, fmt::format("no {} {} here", what, id.substr(0, 64))};
 }
 
-core::Result<http::Response> table_of(const Call& call) {
-  auto table = cohort_table(call.backend, call.has("study") ? call.text("study") : "");
+Json run_summary(const store::AnalysisRun& run) {
+  return {{"id", run.id},
+          {"plan", or_null(run.plan_id)},
+          {"study", or_null(run.study)},
+          {"state", run.state},
+          {"share", run.share},
+          {"error", run.error},
+          {"snapshot", or_null(run.snapshot)},
+          {"made_utc_us", run.made_utc_us},
+          {"made_by", run.made_by}};
+}
+
+/// With the result, the data's description, and whether an earlier run gave the same digits.
+Result<Json> run_json(const Call& call, const store::AnalysisRun& run) {
+  Json out = run_summary(run);
+  for (const auto& [key, object] :
+       {std::pair{"data", &run.description}, std::pair{"result", &run.result}}) {
+    out[key] = nullptr;
+    if (!*object) continue;
+    auto read = core::read_json(call.backend.objects.path_of(**object));
+    if (!read) return read.error();
+    out[key] = std::move(*read);
+  }
+  const auto before = call.backend.store.read(
+      [&](store::Reading& tx) { return store::analysis_repeated_by(tx, run); });
+  if (!before) return before.error();
+  out["repeats"] = *before ? Json((*before)->id) : Json();
+  out["same_digits"] = *before && run.result ? Json((*before)->result == run.result) : Json();
+  return out;
+}
+
+Json plan_json(const store::AnalysisPlan& plan) {
+  return {{"id", plan.id},
+          {"title", plan.title},
+          {"study", or_null(plan.study)},
+          {"data_seen", plan.data_seen},
+          {"trials_then", plan.trials_then},
+          {"made_utc_us", plan.made_utc_us},
+          {"made_by", plan.made_by}};
+}
+
+Result<http::Response> lock_plan(const Call& call) {
+  const auto asked = core::parse_json(call.request.body, "body");
+  if (!asked) return asked.error();
+  const auto plan = locked_plan(call.backend, *asked, call.caller.name);
+  if (!plan) return plan.error();
+  return json_response(plan_json(*plan), 201);
+}
+
+Result<http::Response> list_plans(const Call& call) {
+  const auto plans =
+      call.backend.store.read([](store::Reading& tx) { return store::all_analysis_plans(tx); });
+  if (!plans) return plans.error();
+  Json list = Json::array();
+  for (const auto& plan : *plans) list.push_back(plan_json(plan));
+  return json_response({{"plans", list}});
+}
+
+Result<http::Response> plan_of(const Call& call) {
+  using Runs = std::vector<store::AnalysisRun>;
+  const std::string& id = call.text("id");
+  const auto plan =
+      call.backend.store.read([&](store::Reading& tx) { return store::analysis_plan_of(tx, id); });
+  if (!plan) return plan.error();
+  if (!*plan) return absent("plan", id);
+  const auto runs = call.backend.store.read(
+      [&](store::Reading& tx) -> Result<Runs> { return store::analyses_of_plan(tx, id); });
+  if (!runs) return runs.error();
+  auto file = core::read_json(call.backend.objects.path_of((*plan)->plan));
+  if (!file) return file.error();
+  Json out = plan_json(**plan);
+  out["plan"] = std::move(*file);
+  out["analyses"] = Json::array();
+  for (const auto& run : *runs) out["analyses"].push_back(run_summary(run));
+  return json_response(out);
+}
+
+Result<http::Response> analyse_cohort(const Call& call) {
+  const auto asked = core::parse_json(call.request.body, "body");
+  if (!asked) return asked.error();
+  const auto run = queued_analysis(call.backend, *asked, call.caller.name);
+  if (!run) return run.error();
+  call.backend.work_waits();
+  return json_response(run_summary(*run), 201);
+}
+
+Result<store::AnalysisRun> run_of(const Call& call) {
+  const auto run = call.backend.store.read(
+      [&](store::Reading& tx) { return store::analysis_of(tx, call.text("id")); });
+  if (!run) return run.error();
+  if (!*run) return absent("analysis", call.text("id"));
+  return **run;
+}
+
+Result<http::Response> analysis(const Call& call) {
+  const auto run = run_of(call);
+  if (!run) return run.error();
+  const auto json = run_json(call, *run);
+  if (!json) return json.error();
+  return json_response(*json);
+}
+
+/// One of a finished run's files.
+Result<http::Response> part_of(const Call& call) {
+  const auto run = run_of(call);
+  if (!run) return run.error();
+  const std::string& part = call.text("part");
+  if (part == "dictionary.json") {
+    if (!run->description || !run->data) return absent("dictionary of the analysis", run->id);
+    return dictionary_response(call.backend, *run);
+  }
+  const bool page = part == "report.html", json = part == "result.json";
+  if (!page && !json && part != "data.csv") return absent("part of an analysis", part);
+  const auto& object = page ? run->report : json ? run->result : run->data;
+  if (!object) return absent("finished analysis", run->id);
+  auto response = http::file_response(call.backend.objects.path_of(*object), call.request,
+                                      page   ? "text/html; charset=utf-8"
+                                      : json ? "application/json"
+                                             : "text/csv; charset=utf-8");
+  // A page of its own: it may show itself and do nothing else.
+  if (response && page)
+    response->with("Content-Security-Policy",
+                   "default-src 'none'; style-src 'unsafe-inline'; img-src data:; sandbox");
+  if (response && !page)
+    response->with("Content-Disposition", fmt::format("attachment; filename=\"{}\"", part));
+  return response;
+}
+
+Result<http::Response> table_of(const Call& call) {
+  auto table = jobs::cohort_table(call.backend.store, call.has("study") ? call.text("study") : "",
+                                  kMostInTable);
   if (!table) return table.error();
   http::Response response{.status = 200, .headers = {}, .body = std::move(table->csv)};
   response.with("Content-Type", "text/csv; charset=utf-8")
@@ -27,55 +165,122 @@ core::Result<http::Response> table_of(const Call& call) {
   return response;
 }
 
-std::vector<NamedSchema> cohort_schemas() {
+RouteInfo route(std::string method, std::string tail, std::string id, std::string summary,
+                std::string answer, Result<http::Response> (*handle)(const Call&)) {
+  RouteInfo out{.method = std::move(method),
+                .path = "/api/v1/cohort/" + tail,
+                .id = std::move(id),
+                .summary = std::move(summary),
+                .who = {Role::admin, Role::researcher},
+                .parameters = {},
+                .body = "",
+                .answer = std::move(answer),
+                .schemas = {},
+                .handle = handle};
+  if (out.path.find("{id}") != std::string::npos)
+    out.parameters.push_back(path_text("id", "32 hexadecimal characters"));
+  return out;
+}
+
+RouteInfo taking(RouteInfo out, std::string body, std::uint64_t limit_bytes,
+                 std::vector<NamedSchema> schemas) {
+  out.body = std::move(body);
+  out.body_limit_bytes = limit_bytes;
+  out.schemas = std::move(schemas);
+  return out;
+}
+
+std::vector<NamedSchema> plan_schemas() {
+  return {{"PlanToLock",
+           object({{"plan", anything("tractus-plan/1 without a lock")},
+                   {"study", optional(text("of this study's trials alone"))},
+                   {"data_seen", optional(truth("the data are known already: a reanalysis"))}})},
+          {"LockedPlan",
+           object({{"id", text("of this plan, which never changes")},
+                   {"title", text("the plan's")},
+                   {"study", nullable(text("whose trials it is of; null: all"))},
+                   {"data_seen", truth("it confirms nothing: the data could be seen before")},
+                   {"trials_then", integer("1", "scored trials of it here when it was locked")},
+                   {"made_utc_us", integer("us", "since 1970, UTC")},
+                   {"made_by", text("who locked it")}})}};
+}
+
+std::vector<NamedSchema> run_schemas() {
   return {{"CohortQuestion",
-           object({{"method", text("as of `tractus stats`: anova, ols, lmm, …")},
+           object({{"plan", optional(text("a locked plan's id; then no method"))},
+                   {"snapshot", optional(text("with a plan: of an earlier analysis; none: now's"))},
+                   {"method", optional(text("as of `tractus stats`: anova, ols, lmm, …"))},
                    {"formula", optional(text("of the table's columns: correct ~ level"))},
                    {"options", optional(anything("the method's, by name: texts or numbers"))},
-                   {"study", optional(text("trials of this study alone"))}})},
+                   {"study", optional(text("with a method: trials of this study alone"))}})},
           {"CohortAnalysis",
-           object({{"method", text("as asked")},
-                   {"formula", text("as asked")},
-                   {"study", nullable(text("as asked; null: all trials"))},
-                   {"rows", integer("1", "trials in the table")},
-                   {"rows_simulated", integer("1", "of them by a simulated hand or machine")},
-                   {"left_out",
-                    object({{"invalid", integer("1", "trials that do not count, or cut short")},
-                            {"unscored", integer("1", "trials without scores")}})},
-                   {"sha256", text("of the table as CSV")},
-                   {"report", anything("the method's: blocks, tables, tests, checks, notes")}})}};
+           object({{"id", text("of this run")},
+                   {"plan", nullable(text("null: not planned beforehand"))},
+                   {"study", nullable(text("null: all trials"))},
+                   {"state", one_of({"queued", "running", "done", "failed"}, "how it stands")},
+                   {"share", number("1", "of the work done")},
+                   {"error", text("why it failed; else empty")},
+                   {"snapshot", nullable(text("SHA-256 of the frozen data"))},
+                   {"made_utc_us", integer("us", "since 1970, UTC")},
+                   {"made_by", text("who")}})}};
+}
+
+std::vector<NamedSchema> answer_schemas() {
+  return {
+      {"CohortAnswer",
+       object({{"id", text("of this run")},
+               {"plan", nullable(text("null: not planned beforehand"))},
+               {"study", nullable(text("null: all trials"))},
+               {"state", one_of({"queued", "running", "done", "failed"}, "how it stands")},
+               {"share", number("1", "of the work done")},
+               {"error", text("why it failed; else empty")},
+               {"snapshot", nullable(text("SHA-256 of the frozen data"))},
+               {"made_utc_us", integer("us", "since 1970, UTC")},
+               {"made_by", text("who")},
+               {"data", nullable(anything("tractus-snapshot/1: rows, dictionary, left_out"))},
+               {"result", nullable(anything("tractus-result/1, once done"))},
+               {"repeats", nullable(text("the first analysis of this plan on these data"))},
+               {"same_digits", nullable(truth("its result was the same to the last digit"))}})}};
 }
 
 }  // namespace
 
 std::vector<RouteInfo> cohort_routes() {
-  return {{.method = "POST",
-           .path = "/api/v1/cohort/analyses",
-           .id = "analyseCohort",
-           .summary = "A statistical method on the table of the scored trials",
-           .who = {Role::admin},
-           .parameters = {},
-           .body = "CohortQuestion",
-           .body_limit_bytes = kMaxAsk_bytes,
-           .answer = "CohortAnalysis",
-           .schemas = cohort_schemas(),
-           .handle = analyse_cohort},
-          {.method = "GET",
-           .path = "/api/v1/cohort/table",
-           .id = "cohortTable",
-           .summary = "The scored trials as CSV, one row each",
-           .who = {Role::admin},
-           .parameters = {{.in = Parameter::In::query,
-                           .name = "study",
-                           .kind = Parameter::Kind::text,
-                           .unit = "",
-                           .meaning = "trials of this study alone",
-                           .required = false,
-                           .fallback = std::nullopt}},
-           .body = "",
-           .answer = kBytes,
-           .schemas = {},
-           .handle = table_of}};
+  RouteInfo list =
+      route("GET", "plans", "analysisPlans", "Locked plans, newest first", "PlanList", list_plans);
+  list.schemas = {{"PlanList", object({{"plans", array(ref("LockedPlan"), "newest first")}})}};
+  RouteInfo one = route("GET", "plans/{id}", "analysisPlan",
+                        "A locked plan, every word, and its analyses", "PlanAnswer", plan_of);
+  one.schemas = {{"PlanAnswer", anything("LockedPlan with plan: tractus-plan/1 and analyses: "
+                                         "CohortAnalysis, newest first")}};
+  RouteInfo answered = route("GET", "analyses/{id}", "cohortAnalysis",
+                             "How far it is, and the result once done", "CohortAnswer", analysis);
+  answered.schemas = answer_schemas();
+  RouteInfo part = route("GET", "analyses/{id}/{part}", "cohortAnalysisPart",
+                         "A file of a finished analysis", kBytes, part_of);
+  part.parameters.push_back(
+      path_text("part", "report.html, result.json, data.csv or dictionary.json"));
+  RouteInfo table = route("GET", "table", "cohortTable", "The scored trials as CSV, one row each",
+                          kBytes, table_of);
+  table.parameters = {{.in = Parameter::In::query,
+                       .name = "study",
+                       .kind = Parameter::Kind::text,
+                       .unit = "",
+                       .meaning = "trials of this study alone",
+                       .required = false,
+                       .fallback = std::nullopt}};
+  return {taking(route("POST", "plans", "lockAnalysisPlan",
+                       "Lock an analysis plan before its data are seen", "LockedPlan", lock_plan),
+                 "PlanToLock", kMaxPlan_bytes, plan_schemas()),
+          list,
+          one,
+          taking(route("POST", "analyses", "analyseCohort",
+                       "Run a locked plan, or one method, on the scored trials; done as a job",
+                       "CohortAnalysis", analyse_cohort),
+                 "CohortQuestion", kMaxAsk_bytes, run_schemas()),
+          answered,
+          part,
+          table};
 }
 
 }  // namespace api

@@ -12,7 +12,7 @@ std::vector<RouteInfo> description_routes() {
            .path = "/api/openapi.json",
            .id = "description",
            .summary = "This description, OpenAPI 3.1",
-           .who = {Role::admin, Role::station},
+           .who = {kRoles.begin(), kRoles.end()},
            .parameters = {},
            .body = "",
            .answer = "Description",

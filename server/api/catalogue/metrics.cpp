@@ -33,7 +33,7 @@ std::vector<RouteInfo> metrics_routes() {
            .path = "/api/v1/metrics",
            .id = "metrics",
            .summary = "Every score and its definition",
-           .who = {Role::admin, Role::station},
+           .who = {kRoles.begin(), kRoles.end()},
            .parameters = {},
            .body = "",
            .answer = "MetricList",

@@ -8,40 +8,44 @@
 namespace api {
 namespace {
 
-struct Credentials {
-  std::string name, password;
-};
-
 core::Result<Credentials> credentials(const http::Request& request) {
   auto json = core::parse_json(request.body, "body");
   if (!json) return json.error();
   core::Fields fields(*json, "body");
-  Credentials out{fields.text("name", kMaxName), fields.text("password", kMaxPassword)};
+  Credentials out{fields.text("name", kMaxName), fields.text("password", kMaxPassword),
+                  fields.text_or("code", "", 16)};
   if (auto fine = fields.done(); !fine) return fine.error();
   return out;
 }
 
-std::string cookie(const std::string& token, std::int64_t seconds) {
+core::Json identity_json(const std::string& id, const std::string& name, std::string_view role,
+                         bool must_change) {
+  return {{"name", name}, {"role", role}, {"id", id}, {"must_change", must_change}};
+}
+
+std::string cookie(const Backend& backend, const std::string& token, std::int64_t seconds) {
   return std::string(kSessionCookie) + "=" + token +
-         "; Path=/; HttpOnly; SameSite=Strict; Max-Age=" + std::to_string(seconds);
+         "; Path=/; HttpOnly; SameSite=Strict; Max-Age=" + std::to_string(seconds) +
+         (backend.secure_cookies ? "; Secure" : "");
 }
 
 core::Result<http::Response> sign_in_route(const Call& call) {
   auto given = credentials(call.request);
   if (!given) return given.error();
-  auto in = sign_in(call.backend, given->name, given->password, call.request.peer);
-  if (!in && is_throttled(in.error())) {
-    auto refusal = http::error_response(429, "too_many", in.error().what);
-    return refusal.with("Retry-After", std::to_string(kThrottleWindow_us / 1'000'000)), refusal;
-  }
+  auto in = sign_in(call.backend, *given, call.request.peer);
+  if (!in && needs_code(in.error()))
+    return http::error_response(401, "code_needed", in.error().what);
   if (!in) return in.error();
-  auto response = json_response({{"name", in->account.name}, {"role", in->account.role}});
-  response.with("Set-Cookie", cookie(in->token, kSessionAge_us / 1'000'000));
+  const store::Account& account = in->account;
+  auto response =
+      json_response(identity_json(account.id, account.name, account.role, account.must_change));
+  response.with("Set-Cookie", cookie(call.backend, in->token, kSessionAge_us / 1'000'000));
   return response;
 }
 
 core::Result<http::Response> who_am_i(const Call& call) {
-  return json_response({{"name", call.caller.name}, {"role", name(call.caller.role)}});
+  return json_response(identity_json(call.caller.id, call.caller.name, name(call.caller.role),
+                                     call.caller.must_change));
 }
 
 core::Result<http::Response> sign_out_route(const Call& call) {
@@ -49,18 +53,24 @@ core::Result<http::Response> sign_out_route(const Call& call) {
       [&](store::Writing& tx) { return store::remove_session(tx, call.caller.session_hash); });
   if (!done) return done.error();
   http::Response response{.status = 204, .headers = {}, .body = std::string()};
-  return response.with("Set-Cookie", cookie("", 0)), response;
+  return response.with("Set-Cookie", cookie(call.backend, "", 0)), response;
 }
 
 }  // namespace
 
 std::vector<RouteInfo> session_routes() {
   const std::string path = "/api/v1/session";
-  const core::Json identity =
-      schema::object({{"name", schema::text("of the account or the station")},
-                      {"role", schema::one_of({"admin", "station"}, "what it may do")}});
+  std::vector<std::string> roles;
+  for (const Role role : kRoles) roles.emplace_back(name(role));
+  const core::Json identity = schema::object(
+      {{"name", schema::text("of the account or the station")},
+       {"role", schema::one_of(roles, "what it may do")},
+       {"id", schema::text("of the account or the station")},
+       {"must_change", schema::truth("a password of its own must be chosen first")}});
   const core::Json sent = schema::object(
-      {{"name", schema::text("of the account")}, {"password", schema::text("at most 1024 bytes")}});
+      {{"name", schema::text("of the account")},
+       {"password", schema::text("at most 1024 bytes")},
+       {"code", schema::optional(schema::text("one-time, when the answer was code_needed"))}});
   return {{.method = "POST",
            .path = path,
            .id = "signIn",
@@ -77,7 +87,8 @@ std::vector<RouteInfo> session_routes() {
            .path = path,
            .id = "whoAmI",
            .summary = "Whose credentials these are",
-           .who = {Role::admin, Role::station},
+           .who = {kRoles.begin(), kRoles.end()},
+           .before_password_change = true,
            .parameters = {},
            .body = "",
            .answer = "Identity",
@@ -87,7 +98,8 @@ std::vector<RouteInfo> session_routes() {
            .path = path,
            .id = "signOut",
            .summary = "Sign out; the session is over everywhere",
-           .who = {Role::admin},
+           .who = people(),
+           .before_password_change = true,
            .parameters = {},
            .body = "",
            .answer = "",

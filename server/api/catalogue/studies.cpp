@@ -67,7 +67,7 @@ RouteInfo route(std::string method, std::string tail, std::string id, std::strin
           .path = "/api/v1/studies" + tail,
           .id = std::move(id),
           .summary = std::move(summary),
-          .who = {Role::admin},
+          .who = {Role::admin, Role::researcher},
           .parameters = {},
           .body = "",
           .answer = std::move(answer),

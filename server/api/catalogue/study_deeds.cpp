@@ -105,7 +105,7 @@ RouteInfo route(std::string tail, std::string id, std::string summary, std::stri
           .path = "/api/v1/studies/{id}" + tail,
           .id = std::move(id),
           .summary = std::move(summary),
-          .who = {Role::admin},
+          .who = {Role::admin, Role::researcher},
           .parameters = {path_text("id", "the study's")},
           .body = std::move(body),
           .body_limit_bytes = kMaxDeed_bytes,

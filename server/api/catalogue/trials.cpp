@@ -19,8 +19,11 @@ constexpr double kLongest_s = 1e6;
 
 core::Result<http::Response> list_trials(const Call& call) {
   const std::int64_t limit = call.integer("limit");
+  store::Whose whose;
+  if (call.of == Of::cohort) whose.taught_by = call.caller.id;
+  if (call.of == Of::own) whose.seen_by = call.caller.id;
   auto found = call.backend.store.read([&](store::Reading& tx) {
-    return store::trials_before(tx, call.integer("before_utc_us"), limit + 1);
+    return store::trials_before(tx, call.integer("before_utc_us"), limit + 1, whose);
   });
   if (!found) return found.error();
   const bool more = found->size() > static_cast<std::size_t>(limit);
@@ -199,16 +202,18 @@ Parameter query(std::string name, Parameter::Kind kind, std::string unit, std::s
 }
 
 RouteInfo trial_route(std::string tail, std::string id, std::string summary, std::string answer) {
-  return {.method = "GET",
-          .path = "/api/v1/trials" + tail,
-          .id = std::move(id),
-          .summary = std::move(summary),
-          .who = {Role::admin},
-          .parameters = {},
-          .body = "",
-          .answer = std::move(answer),
-          .schemas = {},
-          .handle = nullptr};
+  return {
+      .method = "GET",
+      .path = "/api/v1/trials" + tail,
+      .id = std::move(id),
+      .summary = std::move(summary),
+      .who = {Role::admin, Role::director, {Role::faculty, Of::cohort}, {Role::trainee, Of::own}},
+      .object = tail.empty() ? Object::none : Object::trial,
+      .parameters = {},
+      .body = "",
+      .answer = std::move(answer),
+      .schemas = {},
+      .handle = nullptr};
 }
 
 }  // namespace

@@ -138,39 +138,17 @@ Outcome run(const Options& o) {
   return same ? 0 : 1;
 }
 
-/// The data with a last column that says why a row was left out.
-std::string marked(const Ran& done) {
-  const auto& table = done.snapshot.table;
-  std::string out;
-  const auto add = [&](std::string_view cell, bool last) {
-    const bool quoted = cell.find(',') != std::string_view::npos;
-    out += quoted ? "\"" + std::string(cell) + "\"" : std::string(cell);
-    out += last ? "\n" : ",";
-  };
-  for (const auto& column : table.columns()) add(column, false);
-  add("excluded_because", true);
-  for (std::size_t i = 0; i < table.rows(); ++i) {
-    for (const auto& column : table.columns()) add(table.texts(column)[i], false);
-    add(done.analysed.excluded_because[i], true);
-  }
-  return out;
-}
-
 Outcome report(const Options& o) {
   if (auto fine = refuse_existing(o.out); !fine) return fine.error();
   const auto done = ran(o);
   if (!done) return done.error();
   auto scratch = core::ScratchFolder::make(o.out);
   if (!scratch) return scratch.error();
-  Json dictionary = done->snapshot.description["dictionary"];
-  dictionary.push_back({{"name", "excluded_because"},
-                        {"kind", "text"},
-                        {"meaning", "why the plan leaves the row out; empty for rows used"}});
   const std::pair<const char*, std::string> files[] = {
       {"report.html", assessment::report_page(done->analysed)},
       {"result.json", text_of(done->analysed.result)},
-      {"data.csv", marked(*done)},
-      {"dictionary.json", text_of(dictionary)}};
+      {"data.csv", assessment::marked(done->snapshot.table, done->analysed.excluded_because)},
+      {"dictionary.json", text_of(assessment::dictionary_of_marked(done->snapshot.description))}};
   for (const auto& [name, text] : files)
     if (auto fine = core::write_file(scratch->path() / name, core::bytes_of(text)); !fine)
       return fine.error();

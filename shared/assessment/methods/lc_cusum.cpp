@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "assessment/counts.hpp"
 #include "assessment/report.hpp"
+#include "assessment/sequences.hpp"
 #include "statistics/cusum.hpp"
 
 namespace assessment {
@@ -14,48 +14,13 @@ namespace {
 using core::Json;
 using statistics::Vector;
 
-struct Person {
-  std::string name;
-  std::vector<bool> failures;  // in order
-};
-
-core::Result<std::vector<Person>> persons_of(const Analysis& of, const std::string& order) {
-  const auto failed = yes_no(of.table, of.formula.response);
-  if (!failed) return failed.error();
-  const auto when = of.table.numbers(order);
-  if (!when) return when.error();
-  Parts parts{{"all"}, {{}}};
-  if (of.formula.group.empty())
-    for (std::size_t i = 0; i < failed->size(); ++i) parts.rows[0].push_back(i);
-  else
-    parts = parts_of(of.table, of.formula.group);
-  const bool success = of.text("response") == "success";
-  std::vector<Person> out;
-  for (std::size_t j = 0; j < parts.names.size(); ++j) {
-    auto rows = parts.rows[j];
-    const auto time = [&](std::size_t i) { return (*when)[static_cast<Eigen::Index>(i)]; };
-    std::ranges::stable_sort(rows, {}, time);
-    Person person{parts.names[j], {}};
-    for (std::size_t k = 0; k < rows.size(); ++k) {
-      if (k > 0 && time(rows[k]) == time(rows[k - 1]))
-        return bad_input(fmt::format(
-            "{}:{}: '{}' is {} twice for '{}': the order of trials is not "
-            "known",
-            of.table.name(), of.table.line(rows[k]), order, time(rows[k]), person.name));
-      person.failures.push_back((*failed)[rows[k]] != success);
-    }
-    out.push_back(std::move(person));
-  }
-  return out;
-}
-
 /// The first trial (1-based) at which `sums` reach `threshold`; 0: none.
 std::size_t first_at(const std::vector<double>& sums, double threshold) {
   const auto at = std::ranges::find_if(sums, [&](double s) { return s >= threshold - 1e-9; });
   return at == sums.end() ? 0 : static_cast<std::size_t>(at - sums.begin()) + 1;
 }
 
-Json person_row(const Person& person, const statistics::Rates& rates, double h, double relapse) {
+Json person_row(const Sequence& person, const statistics::Rates& rates, double h, double relapse) {
   const auto up = statistics::lc_cusum(person.failures, rates);
   const std::size_t signal = first_at(up, h);
   // Watched for relapse from the signal on, from 0.
@@ -71,7 +36,8 @@ Json person_row(const Person& person, const statistics::Rates& rates, double h, 
           {"relapse_at_trial", alarm == 0 ? Json(nullptr) : Json(signal + alarm)}};
 }
 
-plot::Figure picture(const std::vector<Person>& persons, const statistics::Rates& rates, double h) {
+plot::Figure picture(const std::vector<Sequence>& persons, const statistics::Rates& rates,
+                     double h) {
   plot::Panel panel{"",    "trial", "LC-CUSUM", "", {}, {}, {}, {}, {{h, "competent", "#2e7d32"}},
                     false, 300};
   for (std::size_t j = 0; j < std::min<std::size_t>(persons.size(), 12); ++j) {
@@ -90,7 +56,7 @@ core::Result<Findings> run_lc_cusum(const Analysis& of) {
   if (!order) return order.error();
   const auto rates = statistics::Rates::make(of.number("adequate"), of.number("inadequate"));
   if (!rates) return rates.error();
-  const auto persons = persons_of(of, *order);
+  const auto persons = sequences_of(of, *order);
   if (!persons) return persons.error();
   const double h = of.number("threshold"), relapse = of.number("relapse");
   Json out = report_head(of, "learning-curve CUSUM");

@@ -1,11 +1,10 @@
 /// Linear mixed model with a random intercept.
-#include "statistics/lmm.hpp"
-
 #include <fmt/format.h>
 
 #include "assessment/pictures.hpp"
 #include "assessment/report.hpp"
 #include "assessment/terms.hpp"
+#include "statistics/lmm_tests.hpp"
 
 namespace assessment {
 namespace {
@@ -24,6 +23,31 @@ void add_model(const statistics::Lmm& fit, Json& out) {
   out["group_effects"] = coefficient_table(fit.groups, {{"effect", &fit.group_effects}});
 }
 
+/// Coefficients with both small-sample corrections; the tests by the one that was asked for.
+void add_tests(const Analysis& of, const ModelMatrix& model, const statistics::Lmm& fit,
+               Json& out) {
+  const auto kr = statistics::kenward_roger(fit);
+  out["coefficients"] = coefficient_table(fit.names, {{"estimate", &fit.coefficients},
+                                                      {"standard_error", &fit.standard_errors},
+                                                      {"df", &fit.df},
+                                                      {"t", &fit.t},
+                                                      {"p", &fit.p}});
+  out["kenward_roger"] = coefficient_table(
+      fit.names,
+      {{"standard_error", &kr.standard_errors}, {"df", &kr.df}, {"t", &kr.t}, {"p", &kr.p}});
+  const bool by_kr = of.text("df") == "kenward-roger";
+  const auto how =
+      by_kr ? statistics::SmallSample::kenward_roger : statistics::SmallSample::satterthwaite;
+  out["degrees_of_freedom"] = {{"of_the_tests", of.text("df")}};
+  add_term_tests(
+      of.formula, model,
+      {fit.coefficients, by_kr ? kr.covariance : fit.covariance, by_kr ? kr.df : fit.df, "t",
+       [&](const std::vector<Eigen::Index>& columns) {
+         return statistics::joint_test(fit, columns, how);
+       }},
+      out);
+}
+
 core::Result<Findings> run_lmm(const Analysis& of) {
   if (of.formula.group.empty())
     return bad_input("lmm needs a random intercept: add (1|COLUMN) to the formula");
@@ -32,14 +56,8 @@ core::Result<Findings> run_lmm(const Analysis& of) {
   const auto labels = group_labels(of);
   const auto fit = statistics::lmm(problem->design(), problem->y, labels);
   if (!fit) return located(of, fit.error());
-  Json out = report_head(of, "linear mixed model, random intercept, REML, Satterthwaite");
-  out["coefficients"] = coefficient_table(fit->names, {{"estimate", &fit->coefficients},
-                                                       {"standard_error", &fit->standard_errors},
-                                                       {"df", &fit->df},
-                                                       {"t", &fit->t},
-                                                       {"p", &fit->p}});
-  add_term_tests(of.formula, problem->model, {fit->coefficients, fit->covariance, fit->df, "t"},
-                 out);
+  Json out = report_head(of, "linear mixed model, random intercept, REML");
+  add_tests(of, problem->model, *fit, out);
   add_model(*fit, out);
   const Vector fixed = problem->design().columns * fit->coefficients;
   Vector fitted = fixed;
@@ -69,8 +87,11 @@ Method lmm_method() {
           "Linear mixed model: rows of the same person go together",
           "velocity_m_s ~ C(repetition) + experience_years + (1|surgeon)",
           "a linear mixed model with a random intercept, fitted by restricted maximum likelihood, "
-          "with Satterthwaite's degrees of freedom",
-          {},
+          "with small-sample degrees of freedom after Satterthwaite or after Kenward and Roger",
+          {{"df",
+            "degrees of freedom of the tests",
+            "satterthwaite",
+            {"satterthwaite", "kenward-roger"}}},
           run_lmm};
 }
 }  // namespace methods

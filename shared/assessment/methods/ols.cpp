@@ -39,7 +39,7 @@ std::string without_row(const Problem& problem, const statistics::Ols& fit, Eige
 void add_notes_and_checks(const Problem& problem, const statistics::Ols& fit, Json& out) {
   out["checks"] = Json::array({normality_check(fit.residuals)});
   out["notes"] = Json::array();
-  if (!(fit.rss > 1e-24 * fit.fitted.squaredNorm()))
+  if (!(fit.rss > 1e-24 * (problem.y - fit.residuals).squaredNorm()))
     out["notes"].push_back("the columns fit the response to the last digit: t and p mean nothing");
   Eigen::Index most = 0;
   const Vector cook = statistics::influence(fit).cooks_distance;
@@ -86,7 +86,7 @@ core::Result<Findings> run_ols(const Analysis& of) {
     found.figures.push_back(scatter_picture(
         fit->names[1], problem->design().columns.col(1), of.formula.response, problem->y,
         {{"least squares", fit->coefficients[0], fit->coefficients[1]}}));
-  found.figures.push_back(residual_picture(fit->fitted, fit->residuals));
+  found.figures.push_back(residual_picture(problem->y - fit->residuals, fit->residuals));
   return found;
 }
 

@@ -3,6 +3,7 @@
 
 #include "assessment/pictures.hpp"
 #include "assessment/report.hpp"
+#include "statistics/effect_size.hpp"
 #include "statistics/rank_tests.hpp"
 
 namespace assessment {
@@ -21,13 +22,26 @@ core::Result<Findings> correlations(const Analysis& of, const std::string& colum
   if (!rho) return located(of, rho.error());
   const auto tau = statistics::kendall(*x, y);
   if (!tau) return located(of, tau.error());
+  const auto or_null = [](const std::optional<double>& p) { return p ? Json(*p) : Json(nullptr); };
   Json out = report_head(of, "rank correlation");
-  out["spearman"] = {{"rho", rho->r}, {"t", rho->statistic}, {"p", rho->p}};
-  out["kendall"] = {{"tau_b", tau->r}, {"z", tau->statistic}, {"p", tau->p}};
-  out["tests"] =
-      Json::array({Test{column, "t", rho->statistic, 0, static_cast<double>(y.size() - 2), rho->p,
-                        "Spearman's rho", rho->r, kNone, kNone}
-                       .to_json()});
+  out["spearman"] = {
+      {"rho", rho->r}, {"t", rho->statistic}, {"p_t", rho->p}, {"p_exact", or_null(rho->p_exact)}};
+  out["kendall"] = {{"tau_b", tau->r},
+                    {"z", tau->statistic},
+                    {"p_normal", tau->p},
+                    {"p_exact", or_null(tau->p_exact)}};
+  if (const auto r = statistics::pearson(*x, y))
+    out["pearson"] = {{"r", r->r},
+                      {"t", r->t},
+                      {"p", r->p},
+                      {"ci95_low", r->r_95.low},
+                      {"ci95_high", r->r_95.high}};
+  Test test{column, "t", rho->statistic, 0, static_cast<double>(y.size() - 2), rho->p};
+  if (rho->p_exact) test = {column, "exact", rho->r, 0, 0, *rho->p_exact};
+  test.effect = "Spearman's rho";
+  test.size = rho->r;
+  test.low = test.high = kNone;
+  out["tests"] = Json::array({test.to_json()});
   return Findings{std::move(out), {scatter_picture(column, *x, of.formula.response, y, {})}};
 }
 
@@ -104,9 +118,11 @@ core::Result<Findings> run_rank(const Analysis& of) {
   const auto y = of.table.numbers(of.formula.response);
   if (!y) return y.error();
   if (!of.formula.group.empty()) return repeated(of, *column, *y);
-  const bool number =
-      of.formula.terms[0].variables[0].as == Variable::As::itself && of.table.is_numeric(*column);
-  return number ? correlations(of, *column, *y) : independent(of, *column, *y);
+  if (of.formula.terms[0].variables[0].as != Variable::As::itself)
+    return independent(of, *column, *y);
+  const auto number = of.table.holds_numbers(*column);
+  if (!number) return number.error();
+  return *number ? correlations(of, *column, *y) : independent(of, *column, *y);
 }
 
 }  // namespace

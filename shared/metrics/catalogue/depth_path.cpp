@@ -10,7 +10,7 @@ MetricInfo depth_path() {
           "Way along the tract",
           "m",
           "Length of the tip's way along the tract's axis, to and fro: its speed there by a "
-          "Savitzky–Golay fit (21 samples at 200 Hz, order 3), integrated.",
+          "Savitzky–Golay fit (21 samples at 200 Hz, order 3), integrated by the trapezoid rule.",
           "\"depth perception\" of [Oropesa2013], smoothed",
           [](const Subject& subject) -> Score {
             if (!subject.tract) return {{}, "the tract is not known"};
@@ -18,10 +18,10 @@ MetricInfo depth_path() {
                 subject, [&](const TipMotion& motion, const Kinematics&) -> std::optional<double> {
                   std::vector<double> depth;
                   for (const auto& p : motion.points_m) depth.push_back(p.dot(subject.tract->axis));
+                  const auto v = math::SavitzkyGolay(21, 3, 1).apply(depth, 1.0 / kMotionRate_Hz);
                   double sum = 0.0;
-                  for (const double v :
-                       math::SavitzkyGolay(21, 3, 1).apply(depth, 1.0 / kMotionRate_Hz))
-                    sum += std::abs(v) / kMotionRate_Hz;
+                  for (std::size_t i = 1; i < v.size(); ++i)
+                    sum += 0.5 * (std::abs(v[i - 1]) + std::abs(v[i])) / kMotionRate_Hz;
                   return sum;
                 });
           }};

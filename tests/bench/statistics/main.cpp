@@ -6,6 +6,7 @@
 #include <fstream>
 #include <random>
 
+#include "bench/statistics/certified.hpp"
 #include "bench/statistics/cohort.hpp"
 #include "bench/statistics/r_peer.hpp"
 #include "bench/support/report.hpp"
@@ -59,7 +60,7 @@ void store(const Data& data, const std::filesystem::path& folder) {
   store(folder / "g.bin", codes.data(), n);
 }
 
-using Answers = std::map<std::string, std::vector<double>>;
+using bench::Answers;
 
 /// Largest relative difference; infinite when R did not answer.
 double difference(const Answers& r, const std::string& name, const Vector& ours) {
@@ -82,20 +83,20 @@ void million_rows(bench::Report& report, const Data& data, const Answers& r) {
   };
   core::Result<statistics::Ols> ols = core::Error{core::Errc::bad_input, ""};
   against("least squares", "lm_s",
-          bench::seconds(5, bench::wall_s, [&] { ols = statistics::ols(data.design, data.y); }),
+          bench::seconds(15, bench::process_s, [&] { ols = statistics::ols(data.design, data.y); }),
           10.0);
   core::Result<statistics::Bisquare> robust = core::Error{core::Errc::bad_input, ""};
   statistics::BisquareOptions mass;
   mass.convention = statistics::BisquareConvention::mass;
   against(
       "bisquare, as MASS", "rlm_s",
-      bench::seconds(3, bench::wall_s,
+      bench::seconds(5, bench::process_s,
                      [&] { robust = statistics::bisquare(data.design, data.with_outliers, mass); }),
       8.0);
   core::Result<statistics::OneWay> anova = core::Error{core::Errc::bad_input, ""};
   const std::vector<std::string> names = {"0", "1", "2", "3", "4", "5", "6", "7"};
   against("one-way analysis of variance", "aov_s",
-          bench::seconds(5, bench::wall_s,
+          bench::seconds(15, bench::process_s,
                          [&] {
                            anova = statistics::one_way(
                                statistics::grouped(data.group, names, data.grouped));
@@ -103,7 +104,7 @@ void million_rows(bench::Report& report, const Data& data, const Answers& r) {
           20.0);
   report.row(
       "bisquare, as MATLAB",
-      1e3 * bench::seconds(1, bench::wall_s,
+      1e3 * bench::seconds(1, bench::process_s,
                            [&] { (void)statistics::bisquare(data.design, data.with_outliers); }),
       "ms");
   if (r.empty()) return;
@@ -114,90 +115,6 @@ void million_rows(bench::Report& report, const Data& data, const Answers& r) {
   report.at_most("its standard errors", difference(r, "rlm_se", robust->standard_errors), 1e-8, "");
   report.at_most("F and p, difference to R",
                  difference(r, "aov", Eigen::Vector2d(anova->f, anova->p)), 1e-8, "");
-}
-
-struct Problem {
-  const char* name;
-  int powers;  // 0: the columns as they are
-};
-
-double ours_of(const Problem& problem, const std::string& path) {
-  const auto rows = bench::nist_rows(path, 61);
-  const auto n = std::ssize(rows);
-  const auto k = problem.powers > 0 ? Eigen::Index(problem.powers) : std::ssize(rows[0]) - 1;
-  Matrix x(n, k);
-  Vector y(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const auto& row = rows[static_cast<std::size_t>(i)];
-    y[i] = row[0];
-    for (Eigen::Index j = 0; j < k; ++j)
-      x(i, j) = problem.powers > 0 ? std::pow(row[1], double(j + 1))
-                                   : row[static_cast<std::size_t>(j + 1)];
-  }
-  const auto fit = statistics::ols(
-      statistics::with_intercept(x, std::vector<std::string>(static_cast<std::size_t>(k), "x")), y);
-  double least = fit ? 15.0 : 0.0;
-  for (Eigen::Index j = 0; fit && j <= k; ++j)
-    least = std::min(least, bench::digits(fit->coefficients[j],
-                                          bench::nist_line(path, fmt::format(" B{} ", j)).at(0)));
-  return least;
-}
-
-/// Digits of R's coefficients; −1 when it did not answer.
-double theirs_of(const Answers& r, const std::string& name, const std::string& path) {
-  const auto at = r.find("nist_" + name);
-  if (at == r.end()) return -1.0;
-  double least = 15.0;
-  for (std::size_t j = 0; j < at->second.size(); ++j)
-    least = std::min(
-        least, bench::digits(at->second[j], bench::nist_line(path, fmt::format(" B{} ", j)).at(0)));
-  return least;
-}
-
-double anova_digits(const std::string& path) {
-  std::vector<std::string> labels;
-  std::vector<double> values;
-  for (const auto& row : bench::nist_rows(path, 61)) {
-    if (row.size() < 2) continue;
-    labels.push_back(fmt::format("{}", row[0]));
-    values.push_back(row[1]);
-  }
-  const auto fit = statistics::one_way(
-      statistics::grouped(labels, Eigen::Map<Vector>(values.data(), std::ssize(values))));
-  return fit ? bench::digits(fit->f, bench::nist_line(path, "Between ").back()) : 0.0;
-}
-
-void certified(bench::Report& report, const Answers& r) {
-  fmt::print("\ncorrect digits     ours      R\n");
-  double worst = 15.0;
-  const auto line = [&](const std::string& name, double ours, double theirs) {
-    fmt::print("  {:<14}{:7.1f}{:>7}\n", name, ours,
-               theirs < 0 ? "-" : fmt::format("{:.1f}", theirs));
-    if (theirs >= 0) worst = std::min(worst, ours - theirs);
-  };
-  for (const Problem& problem : {Problem{"Norris", 1},
-                                 {"Pontius", 2},
-                                 {"Longley", 0},
-                                 {"Filip", 10},
-                                 {"Wampler1", 5},
-                                 {"Wampler2", 5},
-                                 {"Wampler3", 5},
-                                 {"Wampler4", 5},
-                                 {"Wampler5", 5}}) {
-    const std::string path = fmt::format("linear/{}.dat", problem.name);
-    line(problem.name, ours_of(problem, path), theirs_of(r, problem.name, path));
-  }
-  for (const char* name : {"SiRstv", "AtmWtAg", "SmLs01", "SmLs02", "SmLs03", "SmLs04", "SmLs05",
-                           "SmLs06", "SmLs07", "SmLs08", "SmLs09"}) {
-    const std::string path = fmt::format("anova/{}.dat", name);
-    const auto at = r.find(std::string("nist_") + name);
-    line(name, anova_digits(path),
-         at == r.end()
-             ? -1.0
-             : bench::digits(at->second.at(0), bench::nist_line(path, "Between ").back()));
-  }
-  // Half a digit is the noise of the last bit.
-  if (!r.empty()) report.at_least("digits, ours less R's, worst problem", worst, -0.5, "");
 }
 
 void cohort(bench::Report& report, bool small) {
@@ -213,19 +130,32 @@ void cohort(bench::Report& report, bool small) {
 
 }  // namespace
 
+/// `--small`: a tenth of the rows; `--only rows|digits|cohort`: one part.
 int main(int argc, char** argv) {
   bool small = false;
-  for (int i = 1; i < argc; ++i) small = small || std::string(argv[i]) == "--small";
+  std::string only;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    small = small || word == "--small";
+    if (word == "--only" && i + 1 < argc) only = argv[i + 1];
+  }
+  const auto wanted = [&](const char* part) { return only.empty() || only == part; };
   bench::Report report("statistics");
   auto folder = core::ScratchFolder::make(std::filesystem::temp_directory_path() / "bench");
   if (!folder) return 2;
-  const Eigen::Index n = small ? 100'000 : 1'000'000;
-  const Data data = made(n);
-  store(data, folder->path());
-  const Answers r = bench::r_answers(folder->path(), n);
-  if (r.empty()) fmt::print("R is not here: ours alone\n");
-  million_rows(report, data, r);
-  certified(report, r);
-  cohort(report, small);
+  Eigen::Index n = wanted("rows") ? (small ? 100'000 : 1'000'000) : 0;
+  Data data;
+  if (n > 0) {
+    data = made(n);
+    store(data, folder->path());
+  }
+  Answers r;
+  if (n > 0 || wanted("digits")) {
+    r = bench::r_answers(folder->path(), n);
+    if (r.empty()) fmt::print("R is not here: ours alone\n");
+  }
+  if (n > 0) million_rows(report, data, r);
+  if (wanted("digits")) bench::certified(report, r);
+  if (wanted("cohort")) cohort(report, small);
   return report.finish(argc, argv);
 }

@@ -11,9 +11,8 @@ namespace {
 const std::string kSource = TRACTUS_SOURCE_DIR;
 }
 
-std::map<std::string, std::vector<double>> r_answers(const std::filesystem::path& folder,
-                                                     long rows) {
-  std::map<std::string, std::vector<double>> out;
+Answers r_answers(const std::filesystem::path& folder, long rows) {
+  Answers out;
   const std::string command = "Rscript --vanilla '" + kSource +
                               "/tests/bench/statistics/peer.R' '" + folder.string() + "' " +
                               std::to_string(rows) + " '" + kSource +
@@ -55,7 +54,11 @@ std::vector<double> nist_line(const std::string& path, const std::string& label)
     const auto at = line.find(label);
     if (at == std::string::npos) continue;
     std::istringstream words(line.substr(at + label.size()));
-    for (double value = 0.0; words >> value;) out.push_back(value);
+    for (std::string word; words >> word;) {
+      char* end = nullptr;
+      const double value = std::strtod(word.c_str(), &end);
+      if (end != word.c_str() && *end == '\0') out.push_back(value);
+    }
   }
   return out;
 }

@@ -8,9 +8,10 @@
 
 namespace bench {
 
+using Answers = std::map<std::string, std::vector<double>>;
+
 /// Runs peer.R; its lines as name → numbers. Empty when there is no R.
-std::map<std::string, std::vector<double>> r_answers(const std::filesystem::path& folder,
-                                                     long rows);
+Answers r_answers(const std::filesystem::path& folder, long rows);
 
 /// A NIST file: numbers of the lines from `first` on; the numbers after `label`.
 std::vector<std::vector<double>> nist_rows(const std::string& path, std::size_t first);

@@ -124,7 +124,8 @@ Answer Client::ask(const std::string& method, const std::string& path, const Hea
 }
 
 ServerProcess::ServerProcess(const fs::path& data, std::vector<std::string> more) {
-  std::vector<std::string> arguments{"serve", "--data", data.string(), "--listen", "127.0.0.1:0"};
+  std::vector<std::string> arguments{"serve",    "--data",      data.string(),
+                                     "--listen", "127.0.0.1:0", "--plain"};
   arguments.insert(arguments.end(), more.begin(), more.end());
   const Started started = start("tractus-server", arguments);
   pid_ = started.pid;

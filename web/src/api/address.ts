@@ -6,7 +6,9 @@ type Parameters<P extends keyof paths> =
   paths[P] extends { get: { parameters: infer Found } } ? Found
   : paths[P] extends { post: { parameters: infer Found } } ? Found : never;
 type PathPart<P extends keyof paths> = Parameters<P> extends { path: infer Found } ? Found : Record<string, never>;
-type QueryPart<P extends keyof paths> = Parameters<P> extends { query?: infer Found } ? NonNullable<Found> : Record<string, never>;
+/** What may follow the question mark, by any of the path's methods. */
+type QueryOf<Operation> = Operation extends { parameters: { query?: infer Found } } ? NonNullable<Found> : never;
+type QueryPart<P extends keyof paths> = QueryOf<paths[P]['get']> | QueryOf<paths[P]['post']>;
 
 const kRoot = '/api/v1';
 

@@ -4,6 +4,9 @@
  */
 import type * as v from 'valibot';
 import type { components } from './generated/schema';
+import type { effectCheckSchema, effectListSchema, labRunListSchema, labSignalsSchema, measurementListSchema, modelListSchema } from './lab-schemas';
+import type { accountListSchema, auditCheckSchema, auditSchema, cohortListSchema, cohortSchema, stationListSchema } from './network-schemas';
+import type { traineeListSchema } from './trainee-queries';
 import type { studyEventsSchema, studyListSchema, studySchema } from './study-schemas';
 import type { forceDepthSchema, pathSchema, sessionSchema, signalsSchema, trialPageSchema, trialSchema } from './schemas';
 
@@ -19,7 +22,23 @@ export interface Agreed {
   readonly forceDepth: Takes<typeof forceDepthSchema, Served['TrialForceDepth']>;
   readonly studies: Takes<typeof studyListSchema, Served['StudyList']>;
   readonly study: Takes<typeof studySchema, Served['Study']>;
+  readonly models: Takes<typeof modelListSchema, Served['ModelList']>;
+  readonly measurements: Takes<typeof measurementListSchema, Served['MeasurementsList']>;
+  readonly effects: Takes<typeof effectListSchema, Served['EffectList']>;
+  readonly effectCheck: Takes<typeof effectCheckSchema, Served['EffectCheck']>;
+  readonly labRuns: Takes<typeof labRunListSchema, Served['LabRunList']>;
+  readonly labSignals: Takes<typeof labSignalsSchema, Served['RunSignals']>;
+  readonly accounts: Takes<typeof accountListSchema, Served['Accounts']>;
+  readonly stations: Takes<typeof stationListSchema, Served['Stations']>;
+  readonly cohorts: Takes<typeof cohortListSchema, Served['Cohorts']>;
+  readonly cohort: Takes<typeof cohortSchema, Served['Cohort']>;
+  readonly audit: Takes<typeof auditSchema, Served['AuditRows']>;
+  readonly auditCheck: Takes<typeof auditCheckSchema, Served['AuditCheck']>;
+  readonly trainees: Takes<typeof traineeListSchema, Served['TraineeList']>;
   readonly studyEvents: Takes<typeof studyEventsSchema, Served['StudyEvents']>;
 }
 
-export const kAgreed: Agreed = { session: true, trials: true, trial: true, signals: true, path: true, forceDepth: true, studies: true, study: true, studyEvents: true };
+export const kAgreed: Agreed = {
+  session: true, trials: true, trial: true, signals: true, path: true, forceDepth: true, studies: true, study: true, studyEvents: true,
+  models: true, measurements: true, effects: true, effectCheck: true, labRuns: true, labSignals: true, accounts: true, stations: true, cohorts: true, cohort: true, audit: true, auditCheck: true, trainees: true,
+};

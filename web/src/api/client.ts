@@ -5,7 +5,7 @@ const kRoot = '/api/v1';
 const kTimeout_ms = 20_000;
 
 export type ApiErrorCode =
-  | 'unauthorised' | 'forbidden' | 'not_found' | 'too_many' | 'unavailable' | 'unreachable' | 'unreadable' | 'refused';
+  | 'unauthorised' | 'code_needed' | 'forbidden' | 'not_found' | 'too_many' | 'unavailable' | 'unreachable' | 'unreadable' | 'refused';
 
 export class ApiError extends Error {
   constructor(readonly code: ApiErrorCode, message: string, readonly status = 0) {
@@ -30,19 +30,32 @@ function codeOf(status: number): ApiErrorCode {
 interface Request {
   readonly method?: 'GET' | 'POST' | 'DELETE';
   readonly body?: unknown;
+  /** JSON that is text already, sent as it is. */
+  readonly text?: string;
+  readonly bytes?: Uint8Array<ArrayBuffer>;
+  readonly timeout_ms?: number;
   readonly signal?: AbortSignal | undefined;
 }
 
-async function send(path: string, { method = 'GET', body, signal }: Request): Promise<Response> {
+/** What is sent, with the name of its kind. */
+function content({ body, text, bytes: raw }: Request): { type: string; sent: string | Uint8Array<ArrayBuffer> } | null {
+  if (raw !== undefined) return { type: 'application/octet-stream', sent: raw };
+  if (text !== undefined) return { type: 'application/json', sent: text };
+  return body === undefined ? null : { type: 'application/json', sent: JSON.stringify(body) };
+}
+
+async function send(path: string, request: Request): Promise<Response> {
+  const { method = 'GET', timeout_ms = kTimeout_ms, signal } = request;
+  const what = content(request);
   const headers = new Headers({ Accept: 'application/json' });
   if (method !== 'GET') headers.set('X-Tractus', '1'); // refuses requests forged by another site
-  if (body !== undefined) headers.set('Content-Type', 'application/json');
-  const timeout = AbortSignal.timeout(kTimeout_ms);
+  if (what) headers.set('Content-Type', what.type);
+  const timeout = AbortSignal.timeout(timeout_ms);
   let response: Response;
   try {
     response = await fetch(kRoot + path, {
       method, headers, credentials: 'same-origin',
-      ...(body === undefined ? {} : { body: JSON.stringify(body) }),
+      ...(what ? { body: what.sent } : {}),
       signal: signal ? AbortSignal.any([signal, timeout]) : timeout,
     });
   } catch (reason) {
@@ -52,7 +65,8 @@ async function send(path: string, { method = 'GET', body, signal }: Request): Pr
   if (response.ok) return response;
   const said = v.safeParse(errorSchema, await response.json().catch(() => undefined));
   const text = said.success ? said.output.error : `The server answered with status ${response.status}.`;
-  throw new ApiError(codeOf(response.status), text, response.status);
+  const needsCode = said.success && said.output.code === 'code_needed';
+  throw new ApiError(needsCode ? 'code_needed' : codeOf(response.status), text, response.status);
 }
 
 /** Asks for JSON and checks it against `schema`; an answer of another shape is an error, never a half-filled page. */

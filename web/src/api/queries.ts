@@ -31,8 +31,9 @@ export const sessionQuery = queryOptions({
   staleTime: 5 * 60_000,
 });
 
-export const signIn = (name: string, password: string) =>
-  ask(address('/api/v1/session', {}), sessionSchema, { method: 'POST', body: { name, password } });
+/** `code`: the one-time code of an account that asks for one. */
+export const signIn = (name: string, password: string, code?: string) =>
+  ask(address('/api/v1/session', {}), sessionSchema, { method: 'POST', body: { name, password, ...(code === undefined ? {} : { code }) } });
 
 export const signOut = () => tell(address('/api/v1/session', {}), { method: 'DELETE' });
 

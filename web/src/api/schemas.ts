@@ -7,7 +7,8 @@ import { count, finite, inMetres, inNewtons, inSeconds, inUtc } from './quantiti
 const point = v.tuple([finite, finite, finite]);
 const wall = v.picklist(['medial', 'lateral', 'superior', 'inferior', 'anterior']);
 
-export const sessionSchema = v.object({ name: v.string(), role: v.string() });
+/** `must_change`: the password was made by another, and nothing else is answered until it is changed. */
+export const sessionSchema = v.object({ name: v.string(), role: v.string(), id: v.optional(v.string(), ''), must_change: v.optional(v.boolean(), false) });
 
 export const trialStateSchema = v.picklist(['assessing', 'assessed', 'failed']);
 

@@ -3,13 +3,14 @@ import uPlot from 'uplot';
 import { tickLabels } from '@/units';
 import { resolved } from './colour';
 import type { Range } from './range';
-import type { Mark, Panel } from './signal-types';
+import type { Mark, Panel, Span } from './signal-types';
 
 export interface PlotEvents {
   readonly onRange: (range: Range) => void;
   readonly onReset: () => void;
   readonly onCursor: (t_s: number | null) => void;
   readonly marks: () => readonly Mark[];
+  readonly spans: () => readonly Span[];
 }
 
 const kAxis_px = 54;
@@ -40,6 +41,42 @@ function drawMarks(plot: uPlot, marks: readonly Mark[], named: boolean): void {
   ctx.restore();
 }
 
+function drawSpans(plot: uPlot, spans: readonly Span[]): void {
+  const { ctx, bbox } = plot;
+  const { min = 0, max = 0 } = plot.scales.x ?? {};
+  ctx.save();
+  ctx.fillStyle = resolved('--span');
+  for (const span of spans) {
+    if (span.to_s < min || span.from_s > max) continue;
+    const from = plot.valToPos(Math.max(span.from_s, min), 'x', true), to = plot.valToPos(Math.min(span.to_s, max), 'x', true);
+    ctx.fillRect(from, bbox.top, Math.max(to - from, devicePixelRatio), bbox.height);
+  }
+  ctx.restore();
+}
+
+function drawLevels(plot: uPlot, panel: Panel): void {
+  const { ctx, bbox } = plot;
+  const { min = 0, max = 0 } = plot.scales.y ?? {};
+  ctx.save();
+  ctx.strokeStyle = ctx.fillStyle = resolved('--text-muted');
+  ctx.lineWidth = devicePixelRatio;
+  ctx.setLineDash([2 * devicePixelRatio, 3 * devicePixelRatio]);
+  ctx.font = `${11 * devicePixelRatio}px system-ui, sans-serif`;
+  ctx.textAlign = 'right';
+  ctx.textBaseline = 'bottom';
+  for (const level of panel.levels ?? []) {
+    const value = level.value * panel.quantity.perSi;
+    if (value < min || value > max) continue;
+    const y = Math.round(plot.valToPos(value, 'y', true));
+    ctx.beginPath();
+    ctx.moveTo(bbox.left, y);
+    ctx.lineTo(bbox.left + bbox.width, y);
+    ctx.stroke();
+    ctx.fillText(level.label, bbox.left + bbox.width - 4 * devicePixelRatio, y - 2 * devicePixelRatio);
+  }
+  ctx.restore();
+}
+
 function axes(withTime: boolean): uPlot.Axis[] {
   const common = {
     font: kFont,
@@ -62,7 +99,7 @@ function traces(panel: Panel): { series: uPlot.Series[]; bands: uPlot.Band[] } {
   const series: uPlot.Series[] = [{}];
   const bands: uPlot.Band[] = [];
   for (const trace of panel.traces) {
-    const line = { stroke: () => resolved(trace.colour), width: 1, points: { show: false }, spanGaps: false };
+    const line = { stroke: () => resolved(trace.colour), width: trace.width ?? 1, points: { show: false }, spanGaps: false };
     series.push({ ...line, label: trace.label }, { ...line, label: `${trace.label} least` });
     const top = series.length - 2;
     bands.push({ series: [top, top + 1], fill: () => faded(resolved(trace.colour)) });
@@ -97,7 +134,8 @@ export function plotOptions(panel: Panel, width: number, withTime: boolean, name
       bind: { dblclick: () => () => { on.onReset(); return null; } },
     },
     hooks: {
-      draw: [(plot) => drawMarks(plot, on.marks(), named)],
+      drawClear: [(plot) => drawSpans(plot, on.spans())],
+      draw: [(plot) => { drawLevels(plot, panel); drawMarks(plot, on.marks(), named); }],
       setCursor: [(plot) => {
         const left = plot.cursor.left ?? -1;
         on.onCursor(left < 0 ? null : plot.posToVal(left, 'x'));

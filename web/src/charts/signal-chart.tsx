@@ -7,7 +7,7 @@ import { isWhole, panned, whole, zoomed, type Range } from './range';
 import { Moment, Readout } from './readout';
 import styles from './signal-chart.module.css';
 import { SignalPlot } from './signal-plot';
-import type { Mark, Panel } from './signal-types';
+import type { Mark, Panel, Span } from './signal-types';
 import type { Detail } from './tiles';
 import { onNavigationKey, useWheel } from './use-navigation';
 import { useWidth } from './use-width';
@@ -20,6 +20,9 @@ interface Props {
   readonly duration_s: number;
   readonly range: Range;
   readonly marks: readonly Mark[];
+  readonly spans?: readonly Span[];
+  /** What the strip below shows; without it the first trace. */
+  readonly strip?: { readonly channel: string; readonly colour: string };
   readonly cursor: Cursor;
   readonly palette: number;
   /** What the chart shows, in words, for who cannot see it. */
@@ -32,6 +35,7 @@ interface Props {
   readonly onWidth: (width_px: number) => void;
 }
 
+const kNoSpans: readonly Span[] = [];
 const kAxes_px = 64;  // the ordinate's axis and the right margin: no data there
 
 function resolution(samplesPerPoint: number): string {
@@ -42,7 +46,7 @@ function resolution(samplesPerPoint: number): string {
 
 /** Panels over one another with one time axis, one cursor and one view. */
 export function SignalChart(props: Props) {
-  const { panels, detail, overview, duration_s, range, marks, cursor, palette, summary, note, button, onRange, onWidth } = props;
+  const { panels, detail, overview, duration_s, range, marks, spans = kNoSpans, cursor, palette, summary, note, button, onRange, onWidth } = props;
   const place = useRef<HTMLDivElement>(null);
   const width = useWidth(place);
   const syncKey = useId();
@@ -53,7 +57,7 @@ export function SignalChart(props: Props) {
 
   const middle = (range.from + range.to) / 2;
   const reset = () => onRange(whole(duration_s));
-  const firstTrace = panels[0]?.traces[0];
+  const strip = props.strip ?? panels[0]?.traces[0];
   const decimals = range.to - range.from < 1 ? 3 : 1;
   return (
     <figure className={styles.chart} aria-describedby={summaryId}>
@@ -84,7 +88,7 @@ export function SignalChart(props: Props) {
             <Readout panel={panel} detail={detail} cursor={cursor} />
             <div style={{ minHeight: panel.height_px }}>
               {width === 0 ? null : (
-                <SignalPlot panel={panel} detail={detail} range={range} marks={marks} cursor={cursor} width_px={width}
+                <SignalPlot panel={panel} detail={detail} range={range} marks={marks} spans={spans} cursor={cursor} width_px={width}
                   withTime={index === panels.length - 1} named={index === 0} syncKey={syncKey} palette={palette}
                   onRange={onRange} onReset={reset} />
               )}
@@ -92,8 +96,8 @@ export function SignalChart(props: Props) {
           </div>
         ))}
       </div>
-      {firstTrace && width > 0 ? (
-        <OverviewStrip detail={overview} channel={firstTrace.channel} colour={firstTrace.colour} duration_s={duration_s}
+      {strip && width > 0 ? (
+        <OverviewStrip detail={overview} channel={strip.channel} colour={strip.colour} duration_s={duration_s}
           range={range} width_px={width - kAxes_px} palette={palette} onRange={onRange} />
       ) : null}
       <p className={styles.hint}>

@@ -4,7 +4,7 @@ import { forgetColours } from './colour';
 import type { Cursor } from './cursor';
 import { plotData, plotOptions } from './plot-options';
 import type { Range } from './range';
-import type { Mark, Panel } from './signal-types';
+import type { Mark, Panel, Span } from './signal-types';
 import type { Detail } from './tiles';
 
 interface Props {
@@ -12,6 +12,7 @@ interface Props {
   readonly detail: Detail;
   readonly range: Range;
   readonly marks: readonly Mark[];
+  readonly spans: readonly Span[];
   readonly cursor: Cursor;
   readonly width_px: number;
   /** The lowest panel carries the time axis, the highest the names of the marks. */
@@ -25,11 +26,11 @@ interface Props {
 }
 
 /** One uPlot kept over the life of the panel; only what has changed is told to it. */
-export function SignalPlot({ panel, detail, range, marks, cursor, width_px, withTime, named, syncKey, palette, onRange, onReset }: Props) {
+export function SignalPlot({ panel, detail, range, marks, spans, cursor, width_px, withTime, named, syncKey, palette, onRange, onReset }: Props) {
   const place = useRef<HTMLDivElement>(null);
   const plot = useRef<uPlot | null>(null);
-  const latest = useRef({ detail, range, marks, cursor, onRange, onReset, width_px });
-  useEffect(() => { latest.current = { detail, range, marks, cursor, onRange, onReset, width_px }; });
+  const latest = useRef({ detail, range, marks, spans, cursor, onRange, onReset, width_px });
+  useEffect(() => { latest.current = { detail, range, marks, spans, cursor, onRange, onReset, width_px }; });
 
   useEffect(() => {
     if (!place.current) return;
@@ -39,6 +40,7 @@ export function SignalPlot({ panel, detail, range, marks, cursor, width_px, with
       onReset: () => now().onReset(),
       onCursor: (t_s) => now().cursor.set(t_s),
       marks: () => now().marks,
+      spans: () => now().spans,
     });
     const made = new uPlot(options, plotData(panel, now().detail.t, now().detail.channels), place.current);
     made.setScale('x', { min: now().range.from, max: now().range.to });
@@ -56,7 +58,7 @@ export function SignalPlot({ panel, detail, range, marks, cursor, width_px, with
   }, [panel, detail]);
 
   useEffect(() => { plot.current?.setScale('x', { min: range.from, max: range.to }); }, [range]);
-  useEffect(() => { forgetColours(); plot.current?.redraw(false, true); }, [palette, marks]);
+  useEffect(() => { forgetColours(); plot.current?.redraw(false, true); }, [palette, marks, spans]);
   useEffect(() => {
     plot.current?.setSize({ width: width_px, height: plot.current.height });
   }, [width_px]);

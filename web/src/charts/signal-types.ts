@@ -8,6 +8,8 @@ export interface Trace {
   readonly symbol?: readonly [string, string];
   /** Colour token, "--series-across". */
   readonly colour: string;
+  /** px of the line; 1 where nothing is said. */
+  readonly width?: number;
 }
 
 /** One set of axes: traces of one quantity against time. */
@@ -19,7 +21,14 @@ export interface Panel {
   readonly height_px: number;
   /** Axis that always shows zero. */
   readonly fromZero?: boolean;
+  /** Lines across, in SI: a noise floor. */
+  readonly levels?: readonly Level[];
 }
+
+export interface Level { readonly value: number; readonly label: string }
 
 /** A moment marked in every panel. */
 export interface Mark { readonly t_s: number; readonly label: string }
+
+/** A stretch of time that is shaded in every panel. */
+export interface Span { readonly from_s: number; readonly to_s: number }

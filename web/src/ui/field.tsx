@@ -1,8 +1,8 @@
-import { useId, type InputHTMLAttributes, type Ref } from 'react';
+import { useId, type InputHTMLAttributes, type ReactNode, type Ref } from 'react';
 import styles from './field.module.css';
 
 interface Props extends InputHTMLAttributes<HTMLInputElement> {
-  readonly label: string;
+  readonly label: ReactNode;
   readonly inputRef?: Ref<HTMLInputElement>;
 }
 

@@ -1,4 +1,6 @@
+export { AskDialog } from './ask-dialog';
 export { Badge, type Tone } from './badge';
+export { Bar } from './bar';
 export { Button } from './button';
 export { Card } from './card';
 export { ReasonDialog } from './dialog';
@@ -6,8 +8,11 @@ export { Facts, type Fact } from './facts';
 export { Field } from './field';
 export { Notice } from './notice';
 export { Progress } from './progress';
+export { Select } from './select';
 export { Shell } from './shell';
 export { Skeleton } from './skeleton';
+export { Steps, type StepPlace } from './steps';
+export { Table, type Column } from './table';
 export { Term } from './term';
 export { setTheme, theme, usePalette, useTheme, type Theme } from './theme';
 export { useTitle } from './title';

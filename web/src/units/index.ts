@@ -1,3 +1,4 @@
 export * from './quantity';
 export * from './format';
 export * from './axis';
+export * from './significant';

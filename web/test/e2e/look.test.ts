@@ -16,6 +16,72 @@ async function accessibilityFaults(page: Page): Promise<string[]> {
   return run.violations.flatMap(({ id, help, nodes }) => nodes.map((node) => `${id}: ${help}: ${node.target.join(' ')} ${node.failureSummary}`));
 }
 
+type Check = (name: string) => Promise<void>;
+
+/** The lab's pages, each as soon as it has all that it shows. */
+async function lab(page: Page, check: Check): Promise<void> {
+  await page.goto('/lab');
+  await page.locator('fieldset input[type="radio"]').first().waitFor();
+  await check('lab');
+  await page.getByRole('button', { name: 'Compare' }).click();
+  await page.locator('[data-panel="value"] canvas').waitFor();
+  await page.waitForLoadState('networkidle');
+  await page.waitForTimeout(500);
+  await check('lab-compare');
+  await page.getByRole('link', { name: 'Where it fails' }).click();
+  await page.locator('[data-part="regions"] tbody button').first().click();
+  await page.locator('[data-part="stretches"]').waitFor();
+  await page.waitForTimeout(500);
+  await check('lab-where');
+  await page.getByRole('link', { name: 'What is missing' }).click();
+  const find = page.getByRole('button', { name: 'Find what is missing' });
+  if (await find.isVisible()) {
+    await check('lab-missing-before');
+    await find.click();
+    await page.locator('[data-part="run-state"]').waitFor();
+    await check('lab-missing-running');
+  }
+  await page.locator('[data-part="verdict"]').waitFor();
+  await page.waitForLoadState('networkidle');
+  await page.waitForTimeout(500);
+  await check('lab-missing');
+  await page.getByRole('link', { name: 'Add', exact: true }).click();
+  await page.getByLabel('A formula of my own').check();
+  await page.getByLabel('Formula', { exact: true }).fill('c * (v_m_s + x_m)');
+  await page.locator('[data-part="unit-check"]').filter({ hasText: 'm/s' }).waitFor();
+  await check('lab-add');
+  await page.getByRole('link', { name: 'Publish', exact: true }).click();
+  await page.getByRole('heading', { name: /^Publish/ }).waitFor();
+  await check('lab-publish');
+  await page.goto('/lab/versions');
+  await page.locator('[data-part="tree"]').waitFor();
+  await check('lab-versions');
+}
+
+/** From the published example over a plan to its result. */
+async function analysis(page: Page, check: Check): Promise<void> {
+  await page.goto('/analysis/example');
+  await page.getByText('Printed and recomputed').waitFor();
+  await check('analysis-example');
+  await page.goto('/analysis');
+  await page.getByLabel('Formula (may be changed)').waitFor();
+  await check('analysis');
+  await page.getByRole('link', { name: 'New plan' }).click();
+  await page.getByLabel('Title').fill('Does experience shorten the operation?');
+  await page.getByLabel('Endpoint').first().selectOption('operation_time');
+  await page.getByRole('button', { name: 'Add to the plan' }).click();
+  await check('analysis-plan-new');
+  await page.getByRole('button', { name: 'Lock the plan…' }).click();
+  await page.getByRole('dialog').waitFor();
+  await check('analysis-lock');
+  await page.getByRole('button', { name: 'Lock it' }).click();
+  await page.getByRole('button', { name: 'Run on the trials of now' }).waitFor();
+  await check('analysis-plan');
+  await page.getByRole('button', { name: 'Run on the trials of now' }).click();
+  await page.getByText('Methods, for a paper').waitFor();
+  await check('analysis-run');
+}
+
 let browser: Browser;
 beforeAll(async () => { browser = await launch(); });
 afterAll(() => browser.close());
@@ -26,7 +92,7 @@ describe.each([
   it('every page can be used without sight, fits the screen and breaks no policy', async () => {
     const { context, page, faults } = await visit(browser, { width, dark });
     const suffix = `${width}-${dark ? 'dark' : 'light'}`;
-    const check = async (name: string) => {
+    const check: Check = async (name) => {
       await page.screenshot({ path: `${kShots}${name}-${suffix}.png`, fullPage: true });
       expect(await accessibilityFaults(page), name).toEqual([]);
       const overflow = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
@@ -76,11 +142,30 @@ describe.each([
     await page.getByLabel(/One a line/).fill('P01, resident, 0.5\nDr Who');
     await check('study-new');
 
+    await lab(page, check);
+    await analysis(page, check);
+    await page.goto('/trainees');
+    await page.locator('tbody a').first().waitFor();
+    await check('trainees');
+    await page.locator('tbody a').first().click();
+    await page.getByRole('heading', { name: 'Competence' }).waitFor();
+    await page.waitForLoadState('networkidle');
+    await check('trainee');
+    for (const place of ['people', 'cohorts', 'stations', 'audit']) {
+      await page.goto(`/network/${place}`);
+      await page.locator('tbody tr').first().waitFor();
+      await page.waitForLoadState('networkidle');
+      await check(`network-${place}`);
+    }
+    await page.goto('/account');
+    await page.getByRole('button', { name: 'Change the password' }).waitFor();
+    await check('account');
+
     await page.goto('/nowhere');
     await page.getByRole('heading', { name: 'There is no such page' }).waitFor();
     await check('not-found');
 
     expect(faults).toEqual([]);
     await context.close();
-  }, 180_000);
+  }, 300_000);
 });

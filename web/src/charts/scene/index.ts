@@ -1,15 +1,10 @@
 /** The tract in three dimensions. A chunk of its own: loaded when it is first shown. */
-import '@kitware/vtk.js/Rendering/OpenGL/Profiles/Geometry';
-import vtkInteractorStyleTrackballCamera from '@kitware/vtk.js/Interaction/Style/InteractorStyleTrackballCamera';
-import vtkRenderer from '@kitware/vtk.js/Rendering/Core/Renderer';
-import vtkRenderWindow from '@kitware/vtk.js/Rendering/Core/RenderWindow';
-import vtkRenderWindowInteractor from '@kitware/vtk.js/Rendering/Core/RenderWindowInteractor';
-import vtkOpenGLRenderWindow from '@kitware/vtk.js/Rendering/OpenGL/RenderWindow';
 import { makeBone } from './bone';
 import { makeLabels } from './labels';
 import { makeMoment, makePath } from './path';
 import { makeTract } from './tract';
 import { kPerMetre, scaled, sum, type SceneBone, type SceneColours, type ScenePath, type SceneTract, type Vec3, type ViewName } from './types';
+import { dispose, fit, makeWindow, paced } from './window';
 
 export interface Scene {
   look(view: ViewName): void;
@@ -41,25 +36,10 @@ function stand(view: ViewName, { axis, medial, superior }: SceneTract): { from: 
   }
 }
 
-function makeWindow(container: HTMLElement) {
-  const window = vtkRenderWindow.newInstance();
-  const renderer = vtkRenderer.newInstance();
-  renderer.setBackground([0, 0, 0, 0]); // clear: the page's own colour shows
-  window.addRenderer(renderer);
-  const view = vtkOpenGLRenderWindow.newInstance();
-  view.setContainer(container);
-  window.addView(view);
-  const interactor = vtkRenderWindowInteractor.newInstance();
-  interactor.setView(view);
-  interactor.initialize();
-  interactor.bindEvents(container);
-  interactor.setInteractorStyle(vtkInteractorStyleTrackballCamera.newInstance());
-  return { window, renderer, view, interactor };
-}
-
 /** Throws where the browser cannot draw; the caller says so on the page. */
 export function makeScene(container: HTMLElement, labelHolder: HTMLElement, content: Content): Scene {
-  const { window: drawing, renderer, view, interactor } = makeWindow(container);
+  const drawing = makeWindow(container);
+  const { renderer } = drawing;
   const { tract } = content;
   const tube = makeTract(tract);
   const ball = makeMoment(content.path);
@@ -72,15 +52,7 @@ export function makeScene(container: HTMLElement, labelHolder: HTMLElement, cont
   const placeLabels = makeLabels(labelHolder, tract, renderer);
   const camera = renderer.getActiveCamera();
   camera.setParallelProjection(false);
-  let asked = false;
-  const render = () => {
-    if (asked) return;
-    asked = true;
-    requestAnimationFrame(() => {
-      asked = false;
-      if (container.isConnected) drawing.render();
-    });
-  };
+  const render = paced(container, drawing);
   const watching = camera.onModified(placeLabels);
 
   const look = (name: ViewName) => {
@@ -121,22 +93,14 @@ export function makeScene(container: HTMLElement, labelHolder: HTMLElement, cont
     },
     moment(t_s) { if (ball.put(t_s)) render(); },
     resize() {
-      const { width, height } = container.getBoundingClientRect();
-      const ratio = Math.min(window.devicePixelRatio || 1, 2);
-      view.setSize(Math.max(1, Math.floor(width * ratio)), Math.max(1, Math.floor(height * ratio)));
+      fit(container, drawing);
       placeLabels();
       render();
     },
     destroy() {
       watching.unsubscribe();
-      interactor.unbindEvents();
       labelHolder.replaceChildren();
-      // A browser holds few contexts: this one is given back now, not when memory is next swept.
-      const context = container.querySelector('canvas')?.getContext('webgl2');
-      drawing.removeView(view);
-      view.delete();
-      drawing.delete();
-      context?.getExtension('WEBGL_lose_context')?.loseContext();
+      dispose(container, drawing);
     },
   };
   scene.resize();

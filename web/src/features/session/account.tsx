@@ -1,4 +1,5 @@
 import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
+import { Link } from 'wouter';
 import { ApiError, sessionQuery, signOut } from '@/api';
 import { Button } from '@/ui';
 import styles from './account.module.css';
@@ -21,7 +22,7 @@ export function Account() {
   return (
     <>
       {leave.isError ? <span role="alert" className={styles.failed}>Signing out failed: {leave.error.message}</span> : null}
-      <span className={styles.who}>{session.data.name} <span className={styles.role}>{session.data.role}</span></span>
+      <Link href="/account" className={styles.who}>{session.data.name} <span className={styles.role}>{session.data.role}</span></Link>
       <Button onClick={() => leave.mutate()} disabled={leave.isPending}>Sign out</Button>
     </>
   );

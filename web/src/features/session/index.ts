@@ -1,2 +1,3 @@
 export { Account } from './account';
+export { OwnAccountPage } from './own-account-page';
 export { SessionGate } from './session-gate';

@@ -3,6 +3,7 @@ import { useEffect, type ReactNode } from 'react';
 import { sessionQuery } from '@/api';
 import { Notice } from '@/ui';
 import { noteSession } from './ended';
+import { FirstPassword } from './own-account-page';
 import { SignIn } from './sign-in';
 
 /** Shows the pages to who is signed in and the sign-in to all others, at the address they came for. */
@@ -18,7 +19,7 @@ export function SessionGate({ waiting, children }: { readonly waiting: ReactNode
   }, [client, session.data, signedOut]);
 
   if (session.isPending) return waiting;
-  if (session.data) return children;
+  if (session.data) return session.data.must_change ? <FirstPassword /> : children;
   if (session.isError) {
     return <Notice tone="bad" title="The server cannot be reached." onRetry={() => void session.refetch()}>{session.error.message}</Notice>;
   }

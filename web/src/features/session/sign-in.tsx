@@ -9,6 +9,7 @@ function sentence(reason: Error): string {
   if (!(reason instanceof ApiError)) return 'Signing in failed.';
   switch (reason.code) {
     case 'unauthorised': return 'Name or password is wrong.';
+    case 'code_needed': return 'This account asks for a one-time code too.';
     case 'too_many': return 'Too many failed attempts. Wait 15 minutes and try again.';
     default: return reason.message;
   }
@@ -19,16 +20,25 @@ export function SignIn() {
   const client = useQueryClient();
   const [name, setName] = useState('');
   const [password, setPassword] = useState('');
+  const [code, setCode] = useState('');
+  const [asked, setAsked] = useState(false);
   const [ended] = useState(endedByItself);
   const nameField = useRef<HTMLInputElement>(null);
   const passwordField = useRef<HTMLInputElement>(null);
+  const codeField = useRef<HTMLInputElement>(null);
   const attempt = useMutation({
-    mutationFn: () => signIn(name.trim(), password),
+    mutationFn: () => signIn(name.trim(), password, asked ? code.trim() : undefined),
     onSuccess: (session) => client.setQueryData(sessionQuery.queryKey, session),
-    onError: () => { setPassword(''); passwordField.current?.focus(); },
+    onError: (reason) => {
+      if (reason instanceof ApiError && reason.code === 'code_needed') { setAsked(true); return; }
+      setCode('');
+      setPassword('');
+      passwordField.current?.focus();
+    },
   });
 
   useEffect(() => nameField.current?.focus(), []);
+  useEffect(() => { if (asked) codeField.current?.focus(); }, [asked]);
 
   const submit = (event: FormEvent) => {
     event.preventDefault();
@@ -42,12 +52,13 @@ export function SignIn() {
       <form className={styles.form} onSubmit={submit} noValidate aria-labelledby="sign-in-title">
         <h1 id="sign-in-title">Sign in</h1>
         <p className={styles.lead}>
-          {ended ? 'Your session has ended. Sign in to go on where you were.' : 'Trials of palpating pedicle screw tracts, and their assessment.'}
+          {ended ? 'Your session has ended. Sign in to go on where you were.' : 'Training and assessment in making and checking the channel of a pedicle screw.'}
         </p>
         <Field label="Name" name="username" autoComplete="username" autoCapitalize="none" spellCheck={false} required
           inputRef={nameField} value={name} onChange={(event) => setName(event.target.value)} aria-invalid={attempt.isError} />
         <Field label="Password" name="password" type="password" autoComplete="current-password" required
           inputRef={passwordField} value={password} onChange={(event) => setPassword(event.target.value)} aria-invalid={attempt.isError} />
+        {asked ? <Field label="One-time code" name="code" inputMode="numeric" autoComplete="one-time-code" maxLength={8} inputRef={codeField} value={code} onChange={(event) => setCode(event.target.value)} /> : null}
         <p className={styles.error} role="alert">{attempt.isError ? sentence(attempt.error) : ''}</p>
         <Button type="submit" look="solid" disabled={attempt.isPending}>{attempt.isPending ? 'Signing in…' : 'Sign in'}</Button>
       </form>

@@ -1,9 +1,11 @@
-/// The scored trials of a cohort as one tidy table, and a statistical method run on it.
+/// The scored trials of a cohort as one tidy table, and what its columns mean.
 #pragma once
 
-#include "server/api/backend.hpp"
+#include <map>
 
-namespace api {
+#include "db/store/store.hpp"
+
+namespace jobs {
 
 /// One row per trial that counts and is scored, oldest first. Columns: trial, participant (a
 /// study's pseudonym, else the operator's name), study, number (of the trial among the
@@ -16,15 +18,12 @@ struct CohortTable {
   // Trials left out:
   std::size_t invalid = 0;   ///< a person said so, their place had one already, or cut short
   std::size_t unscored = 0;  ///< not assessed yet, or it failed
+  std::map<std::string, std::string> meanings;  ///< by column, with the unit
 };
 
-/// @param study  its trials alone; empty: all. Errors: bad_input for a study there is not;
-/// too_large
-///   for more than 20 000 trials.
-core::Result<CohortTable> cohort_table(Backend& backend, const std::string& study);
+/// @param study  its trials alone; empty: all.  @param most  more trials are too many.
+/// Errors: bad_input for a study there is not; too_large.
+core::Result<CohortTable> cohort_table(store::Store& store, const std::string& study,
+                                       std::int64_t most);
 
-/// {"method", "formula"?, "options"?, "study"?} → {"method", "formula", "study", "rows",
-/// "rows_simulated", "left_out", "sha256", "report"}. Errors: bad_input naming the field.
-core::Result<core::Json> cohort_analysis(Backend& backend, const core::Json& asked);
-
-}  // namespace api
+}  // namespace jobs

@@ -1,25 +1,20 @@
-#include "server/api/cohort_table.hpp"
+#include "server/jobs/cohort_table.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <set>
 
-#include "assessment/method.hpp"
 #include "core/bytes.hpp"
 #include "db/store/cohort.hpp"
 #include "metrics/metric.hpp"
 
-namespace api {
+namespace jobs {
 namespace {
 
 using core::Errc;
 using core::Error;
-using core::Json;
 using core::Result;
-
-constexpr std::int64_t kMaxTrials = 20'000;
-constexpr std::size_t kMaxFormula_bytes = 4096;
 
 /// Without what would end a cell or a row, or be a formula to a spreadsheet; in quotes where it has
 /// a comma.
@@ -77,56 +72,36 @@ std::vector<store::CohortTrial> counting(std::vector<store::CohortTrial> trials,
   return trials;
 }
 
-Result<std::map<std::string, std::string>> options_of(const Json* json) {
-  std::map<std::string, std::string> out;
-  if (!json) return out;
-  if (!json->is_object()) return Error{Errc::bad_input, "body: /options: should be an object"};
-  for (const auto& [key, value] : json->items()) {
-    if (!value.is_string() && !value.is_number())
-      return Error{Errc::bad_input, "body: /options/" + key + ": should be a text or a number"};
-    out.emplace(key, value.is_string() ? value.get<std::string>() : value.dump());
-  }
-  return out;
-}
-
-struct Asked {
-  assessment::Method method;
-  std::string formula, study;
-  std::map<std::string, std::string> options;
-};
-
-Result<Asked> asked_from(const Json& json) {
-  core::Fields fields(json, "body");
-  const std::string method = fields.text("method", 64);
-  Asked out;
-  out.formula = fields.text_or("formula", "", kMaxFormula_bytes);
-  out.study = fields.text_or("study", "", 64);
-  auto options = options_of(fields.member("options", false));
-  if (auto done = fields.done(); !done) return done.error();
-  if (!options) return options.error();
-  out.options = std::move(*options);
-  auto known = assessment::method_named(method);
-  if (!known) return Error{Errc::bad_input, "body: method: " + known.error().what};
-  out.method = std::move(*known);
-  if (out.method.formula.empty())
-    return Error{Errc::bad_input, "body: method: " + method + " is of no data"};
-  if (out.formula.empty())
-    return Error{Errc::bad_input,
-                 "body: formula: " + method + " needs one, as " + out.method.formula};
+std::map<std::string, std::string> meanings_of(const std::vector<std::string>& metrics) {
+  std::map<std::string, std::string> out = {
+      {"trial", "its id on the server"},
+      {"participant", "the study's pseudonym, else the operator's name"},
+      {"study", "empty: of no study"},
+      {"number", "of the trial among the participant's in the study, from 1"},
+      {"level", "of training, as the study states it"},
+      {"experience_years", "as the study states it"},
+      {"case", "the case's title"},
+      {"rig", "palpation or probing"},
+      {"simulated", "1: by a simulated hand or machine"},
+      {"correct", "1: the answer about the breach was right"}};
+  for (const auto& info : metrics::all())
+    if (std::ranges::find(metrics, info.id) != metrics.end())
+      out[info.id] =
+          fmt::format("{}, {}: {} {}", info.label, info.unit, info.definition, info.source);
   return out;
 }
 
 }  // namespace
 
-Result<CohortTable> cohort_table(Backend& backend, const std::string& study) {
+Result<CohortTable> cohort_table(store::Store& store, const std::string& study, std::int64_t most) {
   using Trials = std::vector<store::CohortTrial>;
-  auto found = backend.store.read([&](store::Reading& tx) -> Result<Trials> {
+  auto found = store.read([&](store::Reading& tx) -> Result<Trials> {
     if (!study.empty()) {
       auto known = store::study_of(tx, study);
       if (!known) return known.error();
       if (!*known) return Error{Errc::bad_input, "study: there is no study " + study.substr(0, 32)};
     }
-    return store::cohort_trials(tx, study, kMaxTrials);
+    return store::cohort_trials(tx, study, most);
   });
   if (!found) return found.error();
   CohortTable out;
@@ -140,29 +115,8 @@ Result<CohortTable> cohort_table(Backend& backend, const std::string& study) {
   out.simulated = static_cast<std::size_t>(
       std::ranges::count_if(trials, [](const auto& trial) { return trial.summary.simulated; }));
   out.sha256 = core::sha256(core::bytes_of(out.csv));
+  out.meanings = meanings_of(metrics);
   return out;
 }
 
-Result<Json> cohort_analysis(Backend& backend, const Json& asked) {
-  const auto wanted = asked_from(asked);
-  if (!wanted) return wanted.error();
-  const auto made = cohort_table(backend, wanted->study);
-  if (!made) return made.error();
-  const auto bytes = core::bytes_of(made->csv);
-  const auto table = assessment::Table::parse(core::Bytes(bytes.begin(), bytes.end()), "cohort", {},
-                                              assessment::Missing::keep);
-  if (!table) return table.error();
-  auto found = assessment::run(wanted->method, *table, wanted->formula, wanted->options,
-                               assessment::Missing::drop);
-  if (!found) return found.error();
-  return Json{{"method", wanted->method.id},
-              {"formula", wanted->formula},
-              {"study", wanted->study.empty() ? Json() : Json(wanted->study)},
-              {"rows", made->rows},
-              {"rows_simulated", made->simulated},
-              {"left_out", {{"invalid", made->invalid}, {"unscored", made->unscored}}},
-              {"sha256", made->sha256},
-              {"report", std::move(found->report)}};
-}
-
-}  // namespace api
+}  // namespace jobs

@@ -1,0 +1,14 @@
+/// A call as the audit trail notes it.
+#pragma once
+
+#include "db/store/audit.hpp"
+#include "server/api/route.hpp"
+
+namespace api {
+
+/// Who, what, of which object, with which words. Of a JSON body of up to 4 KiB every field but
+/// those that hold a secret (password, pin, code, token …); of any other body its size and SHA-256.
+store::Act act_of(const RouteInfo& route, const Call& call,
+                  const std::map<std::string, std::string>& segments);
+
+}  // namespace api

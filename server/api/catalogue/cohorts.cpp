@@ -1,0 +1,169 @@
+/// Cohorts: who learns with whom, and who teaches them.
+#include "core/bytes.hpp"
+#include "server/api/authentication.hpp"
+#include "server/api/backend.hpp"
+#include "server/api/people_json.hpp"
+#include "server/api/schema.hpp"
+
+namespace api {
+namespace {
+
+using core::Errc;
+using core::Error;
+using core::Result;
+
+constexpr std::uint64_t kMaxBody_bytes = 4096;
+
+core::Json summary_json(const store::Cohort& cohort) {
+  return {{"id", cohort.id},
+          {"name", cohort.name},
+          {"trainees", cohort.trainees},
+          {"made_utc_us", cohort.made_utc_us},
+          {"made_by", cohort.made_by}};
+}
+
+Result<http::Response> list_cohorts(const Call& call) {
+  auto found = call.backend.store.read([&](store::Reading& tx) {
+    return store::cohorts_of(tx, call.of == Of::all ? "" : call.caller.id);
+  });
+  if (!found) return found.error();
+  core::Json list = core::Json::array();
+  for (const auto& cohort : *found) list.push_back(summary_json(cohort));
+  return json_response({{"cohorts", list}});
+}
+
+Result<http::Response> cohort_response(store::Store& store, const std::string& id, int status) {
+  auto answer = store.read([&](store::Reading& tx) -> Result<core::Json> {
+    auto cohort = store::cohort_of(tx, id);
+    if (!cohort) return cohort.error();
+    if (!*cohort) return Error{Errc::not_found, "no cohort " + id.substr(0, 32)};
+    auto people = store::people_of(tx, id);
+    if (!people) return people.error();
+    core::Json out = summary_json(**cohort);
+    out["people"] = core::Json::array();
+    for (const auto& person : *people)
+      out["people"].push_back({{"account_id", person.account_id},
+                               {"name", person.name},
+                               {"part", person.part},
+                               {"state", person.state}});
+    return out;
+  });
+  if (!answer) return answer.error();
+  return json_response(*answer, status);
+}
+
+Result<http::Response> one_cohort(const Call& call) {
+  return cohort_response(call.backend.store, call.text("id"), 200);
+}
+
+/// Whoever of the faculty makes a cohort leads it.
+Result<http::Response> add_cohort_route(const Call& call) {
+  auto json = core::parse_json(call.request.body, "body");
+  if (!json) return json.error();
+  core::Fields fields(*json, "body");
+  store::Cohort cohort{core::new_id(), fields.text("name", kMaxName), call.backend.now_utc_us(),
+                       call.caller.name};
+  if (cohort.name.find_first_not_of(" \t\r\n") == std::string::npos)
+    fields.wrong("name", "a name is expected");
+  if (auto done = fields.done(); !done) return done.error();
+  auto added = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
+    if (auto done = store::add_cohort(tx, cohort); !done) return done;
+    if (call.caller.role != Role::faculty) return {};
+    return store::put_into_cohort(tx, cohort.id, call.caller.id, "faculty", cohort.made_utc_us);
+  });
+  if (!added) return added.error();
+  return cohort_response(call.backend.store, cohort.id, 201);
+}
+
+/// A trainee learns, faculty leads; nobody else is in a cohort.
+Result<void> put(store::Writing& tx, const Call& call, const std::string& account_name) {
+  auto cohort = store::cohort_of(tx, call.text("id"));
+  if (!cohort) return cohort.error();
+  if (!*cohort) return Error{Errc::not_found, "no cohort " + call.text("id").substr(0, 32)};
+  auto account = store::account_named(tx, account_name);
+  if (!account) return account.error();
+  const bool fits = *account && ((*account)->role == name(Role::trainee) ||
+                                 (*account)->role == name(Role::faculty));
+  if (!fits)
+    return Error{Errc::bad_input, "body: /name: an account of a trainee or of faculty is expected"};
+  return store::put_into_cohort(tx, call.text("id"), (*account)->id, (*account)->role,
+                                call.backend.now_utc_us());
+}
+
+Result<http::Response> put_person(const Call& call) {
+  auto json = core::parse_json(call.request.body, "body");
+  if (!json) return json.error();
+  core::Fields fields(*json, "body");
+  const std::string name = fields.text("name", kMaxName);
+  if (auto done = fields.done(); !done) return done.error();
+  auto added = call.backend.store.write([&](store::Writing& tx) { return put(tx, call, name); });
+  if (!added) return added.error();
+  return cohort_response(call.backend.store, call.text("id"), 200);
+}
+
+Result<http::Response> take_person(const Call& call) {
+  auto taken = call.backend.store.write([&](store::Writing& tx) {
+    return store::take_from_cohort(tx, call.text("id"), call.text("account_id"));
+  });
+  if (!taken) return taken.error();
+  return cohort_response(call.backend.store, call.text("id"), 200);
+}
+
+RouteInfo route(std::string method, std::string tail, std::string id, std::string summary,
+                Result<http::Response> (*handle)(const Call&)) {
+  RouteInfo out{.method = std::move(method),
+                .path = "/api/v1/cohorts" + tail,
+                .id = std::move(id),
+                .summary = std::move(summary),
+                .who = {Role::admin, {Role::faculty, Of::cohort}},
+                .object = tail.empty() ? Object::none : Object::cohort,
+                .parameters = {},
+                .body = "",
+                .body_limit_bytes = kMaxBody_bytes,
+                .answer = "Cohort",
+                .schemas = {},
+                .handle = handle};
+  if (!tail.empty()) out.parameters.push_back(path_text("id", "the cohort's"));
+  return out;
+}
+
+}  // namespace
+
+std::vector<RouteInfo> cohorts_routes() {
+  using namespace schema;
+  const std::vector<Field> summary{{"id", text("never changes")},
+                                   {"name", text("for people")},
+                                   {"trainees", integer("1", "in it")},
+                                   {"made_utc_us", integer("us", "since 1970, UTC")},
+                                   {"made_by", text("who")}};
+  std::vector<Field> whole = summary;
+  whole.emplace_back("people", array(ref("CohortPerson"), "by name"));
+  RouteInfo list = route("GET", "", "cohorts", "Cohorts by name: all, or those one leads or is in",
+                         list_cohorts);
+  list.answer = "Cohorts";
+  list.who = {Role::admin, Role::director, {Role::faculty, Of::cohort}, {Role::trainee, Of::own}};
+  list.schemas = {
+      {"CohortSummary", object(summary)},
+      {"Cohorts", object({{"cohorts", array(ref("CohortSummary"), "by name")}})},
+      {"CohortPerson", object({{"account_id", text("of the person")},
+                               {"name", text("of the account")},
+                               {"part", one_of({"trainee", "faculty"}, "faculty leads it")},
+                               {"state", one_of({"active", "disabled"}, "of the account")}})},
+      {"Cohort", object(whole)}};
+  RouteInfo one = route("GET", "/{id}", "cohort", "One cohort with its people", one_cohort);
+  one.who.push_back(Role::director);
+  RouteInfo add = route("POST", "", "addCohort", "Make a cohort; faculty who makes it leads it",
+                        add_cohort_route);
+  add.body = "NewCohort";
+  add.schemas = {{"NewCohort", object({{"name", text("nobody else's")}})}};
+  RouteInfo in = route("POST", "/{id}/people", "putIntoCohort",
+                       "A trainee learns in it from now on, faculty leads it", put_person);
+  in.body = "PersonNamed";
+  in.schemas = {{"PersonNamed", object({{"name", text("of the account")}})}};
+  RouteInfo out = route("DELETE", "/{id}/people/{account_id}", "takeFromCohort",
+                        "No longer in it; what was done stays", take_person);
+  out.parameters.push_back(path_text("account_id", "the person's"));
+  return {list, one, add, in, out};
+}
+
+}  // namespace api

@@ -1,0 +1,56 @@
+/// serve (also called run), openapi.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "server/api/openapi.hpp"
+#include "server/app/command.hpp"
+#include "server/app/serve.hpp"
+
+namespace app {
+
+Run serve_command(CLI::App& command) {
+  const auto common = common_options(command);
+  const auto listen = std::make_shared<std::string>("127.0.0.1:8480");
+  const auto web = std::make_shared<std::filesystem::path>();
+  const auto header_s = std::make_shared<double>(10.0);
+  command.add_option("--listen", *listen, "ADDRESS:PORT; port 0 takes a free one")
+      ->capture_default_str();
+  command.add_option("--web", *web, "Folder of the built web pages; without, the API alone");
+  command.add_option("--header-seconds", *header_s, "Patience with a request's head")
+      ->check(CLI::Range(0.1, 600.0))
+      ->capture_default_str();
+  const auto options = std::make_shared<ServeOptions>();
+  command.add_flag("--plain", options->plain,
+                   "HTTP without TLS, on this machine's own addresses alone: for tests and trials");
+  command.add_flag("--behind-proxy", options->http.behind_proxy,
+                   "HTTP without TLS: a proxy before it speaks TLS and sets X-Forwarded-For");
+  command.add_option("--host", options->hosts,
+                     "Name or address that it is reached by, for its certificate; repeat it");
+  const auto certificate = std::make_shared<std::filesystem::path>();
+  const auto key = std::make_shared<std::filesystem::path>();
+  auto* chain = command.add_option("--certificate", *certificate,
+                                   "PEM file of an own certificate chain, instead of the house's");
+  chain->needs(command.add_option("--key", *key, "PEM file of its key"));
+  return [=]() -> Outcome {
+    auto address = listening_address(*listen);
+    if (!address) return address.error();
+    options->data = common->data;
+    options->json = common->json;
+    if (!web->empty()) options->web = *web;
+    if (!certificate->empty()) options->certificate.emplace(*certificate, *key);
+    options->http.address = address->first;
+    options->http.port = address->second;
+    options->http.header_time = std::chrono::milliseconds(std::lround(*header_s * 1000));
+    return serve(*options);
+  };
+}
+
+Run openapi_command(CLI::App&) {
+  return []() -> Outcome {
+    fmt::print("{}\n", api::openapi(api::routes()).dump(2));
+    return {};
+  };
+}
+
+}  // namespace app

@@ -1,0 +1,66 @@
+/// enrol: a key of the station's own, known to the server by its hash alone.
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <cstdio>
+
+#include "core/file.hpp"
+#include "station/app/deeds.hpp"
+#include "station/uplink/http_server.hpp"
+
+namespace app {
+namespace {
+
+/// A new file that only its owner reads.
+core::Result<void> write_key(const std::filesystem::path& path, const std::string& key) {
+  std::error_code failure;
+  if (std::filesystem::exists(path, failure))
+    return core::Error{core::Errc::conflict,
+                       path.string() + ": exists already; a station is enrolled once"};
+  const mode_t before = ::umask(0077);
+  auto written = core::write_file(path, core::bytes_of(key + "\n"));
+  ::umask(before);
+  return written;
+}
+
+core::Result<std::string> enrolled_as(const Options& options, const std::string& key) {
+  auto server = uplink::HttpServer::make_nameless(options.server_url, options.authority);
+  if (!server) return server.error();
+  const std::string body =
+      core::Json{{"code", options.code}, {"token_sha256", core::sha256(core::bytes_of(key))}}
+          .dump();
+  const uplink::Request request{.method = "POST",
+                                .path = "/api/v1/stations/enrol",
+                                .headers = {{"Content-Type", "application/json"}},
+                                .body = core::bytes_of(body)};
+  auto answer = (*server)->send(request);
+  if (!answer) return answer.error();
+  auto json = uplink::json_of(request, *answer);
+  if (!json) return json.error();
+  core::Fields fields(*json, "answer");
+  fields.skip("id");
+  std::string name = fields.text("name", 128);
+  if (auto done = fields.done(); !done) return done.error();
+  return name;
+}
+
+}  // namespace
+
+core::Result<int> enrol_station(const Options& options) {
+  const std::string key = core::hex(core::random_bytes(32));
+  if (auto written = write_key(options.token_file, key); !written) return written.error();
+  auto name = enrolled_as(options, key);
+  if (!name) {
+    std::error_code ignored;
+    std::filesystem::remove(options.token_file, ignored);
+    return name.error();
+  }
+  if (options.json)
+    fmt::print("{}\n",
+               core::Json{{"station", *name}, {"token_file", options.token_file.string()}}.dump(2));
+  else
+    fmt::print("this is station {}; its key is in {}\n", *name, options.token_file.string());
+  return 0;
+}
+
+}  // namespace app

@@ -1,0 +1,99 @@
+/** What can be asked of the model lab, and what can be set to work in it. */
+import { queryOptions } from '@tanstack/react-query';
+import * as v from 'valibot';
+import { address } from './address';
+import { ask } from './client';
+import {
+  effectCheckSchema, effectListSchema, labRunListSchema, labRunSchema, labSignalsSchema, measurementListSchema, measurementSetSchema, modelListSchema, modelVersionSchema,
+  type LabRun, type Rig,
+} from './lab-schemas';
+
+const kWorking_ms = 700;
+const kIdle_ms = 15_000;
+const kRuns = 100;
+
+export const atWork = ({ state }: Pick<LabRun, 'state'>) => state === 'queued' || state === 'running';
+
+export const modelsQuery = queryOptions({
+  queryKey: ['lab', 'models'],
+  queryFn: ({ signal }) => ask(address('/api/v1/lab/models', {}), modelListSchema, { signal }),
+});
+
+/** A version never changes: its file once fetched is kept. */
+export const modelFileQuery = (id: string) =>
+  queryOptions({
+    queryKey: ['lab', 'model', id],
+    queryFn: ({ signal }) => ask(address('/api/v1/lab/models/{id}', { id }), v.record(v.string(), v.unknown()), { signal }),
+    staleTime: Infinity,
+  });
+
+export const measurementsQuery = queryOptions({
+  queryKey: ['lab', 'measurements'],
+  queryFn: ({ signal }) => ask(address('/api/v1/lab/measurements', {}), measurementListSchema, { signal }),
+});
+
+export const effectsQuery = (rig: Rig) =>
+  queryOptions({
+    queryKey: ['lab', 'effects', rig],
+    queryFn: ({ signal }) => ask(address('/api/v1/lab/effects', {}, { rig }), effectListSchema, { signal }),
+    staleTime: Infinity,
+  });
+
+export interface RunsOf { readonly kind?: LabRun['kind']; readonly model?: string; readonly measurements?: string }
+
+/** Newest first; asked again soon while one of them works. */
+export const labRunsQuery = (of: RunsOf = {}) =>
+  queryOptions({
+    queryKey: ['lab', 'runs', of],
+    queryFn: ({ signal }) => ask(address('/api/v1/lab/runs', {}, { ...of, limit: kRuns }), labRunListSchema, { signal }),
+    refetchInterval: (query) => (query.state.data?.runs.some(atWork) ? kWorking_ms : kIdle_ms),
+  });
+
+export const labRunQuery = (id: string) =>
+  queryOptions({
+    queryKey: ['lab', 'run', id],
+    queryFn: ({ signal }) => ask(address('/api/v1/lab/runs/{id}', { id }), labRunSchema, { signal }),
+    refetchInterval: (query) => (query.state.data && atWork(query.state.data) ? kWorking_ms : false),
+  });
+
+export interface LabWindow { readonly trial: string; readonly channel: string; readonly side: 'before' | 'after'; readonly from_s: number; readonly to_s: number; readonly points: number }
+
+/** Of a finished run; never changes. */
+export const labSignalsQuery = (id: string, window: LabWindow) =>
+  queryOptions({
+    queryKey: ['lab', 'signals', id, window],
+    queryFn: ({ signal }) => ask(address('/api/v1/lab/runs/{id}/signals', { id }, { ...window }), labSignalsSchema, { signal }),
+    staleTime: Infinity,
+  });
+
+export const addModel = (file: string, parent?: string) =>
+  ask(address('/api/v1/lab/models', {}, parent === undefined ? {} : { parent }), modelVersionSchema, { method: 'POST', text: file });
+
+const kUpload_ms = 10 * 60_000;
+
+/** A zip of a folder with set.json. */
+export const addMeasurements = (name: string, zip: Uint8Array<ArrayBuffer>) =>
+  ask(address('/api/v1/lab/measurements', {}, { name }), measurementSetSchema, { method: 'POST', bytes: zip, timeout_ms: kUpload_ms });
+
+/** An effect of one's own, as tractus-effect/1. */
+export type OwnEffect = Readonly<Record<string, unknown>>;
+
+export const checkEffect = (own: OwnEffect, signal?: AbortSignal) =>
+  ask(address('/api/v1/lab/effects/check', {}), effectCheckSchema, { method: 'POST', body: own, signal });
+
+const started = (path: string, body?: unknown) => ask(path, labRunSchema, { method: 'POST', body });
+
+export const startComparison = (model: string, measurements: string, against: string | null = null) =>
+  started(address('/api/v1/lab/comparisons', {}), { model, measurements, against });
+export const startDiagnosis = (model: string, measurements: string, own: readonly OwnEffect[] = []) =>
+  started(address('/api/v1/lab/diagnoses', {}), { model, measurements, ...(own.length > 0 ? { own } : {}) });
+export const startFit = (model: string, measurements: string, add: readonly string[], own: readonly OwnEffect[] = []) =>
+  started(address('/api/v1/lab/fits', {}), { model, measurements, ...(add.length > 0 ? { add } : {}), ...(own.length > 0 ? { own } : {}) });
+export const stopLabRun = (id: string) => started(address('/api/v1/lab/runs/{id}/stop', { id }));
+export const publishRun = (id: string, name: string, note: string) =>
+  ask(address('/api/v1/lab/runs/{id}/publish', { id }), modelVersionSchema, { method: 'POST', body: { name, note } });
+
+const link = (path: string) => `/api/v1${path}`;
+export const reportAddress = (id: string) => link(address('/api/v1/lab/runs/{id}/report', { id }));
+export const betterModelAddress = (id: string) => link(address('/api/v1/lab/runs/{id}/model', { id }));
+export const modelAddress = (id: string) => link(address('/api/v1/lab/models/{id}', { id }));

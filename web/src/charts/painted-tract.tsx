@@ -1,0 +1,68 @@
+import { useEffect, useRef, useState, type KeyboardEvent } from 'react';
+import { viridis } from './colour';
+import { largestOf } from './painted-wall';
+import type { PaintedScene } from './scene/painted';
+import styles from './tract-view.module.css';
+
+interface Props {
+  readonly depth_m: readonly number[];
+  readonly angle_rad: readonly number[];
+  readonly values: readonly (readonly (number | null)[])[];
+  readonly radius_m: number;
+  readonly summary: string;
+}
+
+const kUntouched = [150, 156, 166] as const;
+
+/** The wall of a tract with a value painted on it, to be turned about; mouth at the top. */
+export function PaintedTract({ depth_m, angle_rad, values, radius_m, summary }: Props) {
+  const canvas = useRef<HTMLDivElement>(null);
+  const [scene, setScene] = useState<PaintedScene | null>(null);
+  const [failed, setFailed] = useState(false);
+  useEffect(() => {
+    const place = canvas.current;
+    if (!place) return;
+    let gone = false;
+    let made: PaintedScene | null = null;
+    const most = largestOf(values);
+    const colours = values.map((row) => row.map((value) => {
+      if (value === null) return kUntouched;
+      const [r, g, b] = viridis(most > 0 ? value / most : 0);
+      return [255 * r, 255 * g, 255 * b] as const;
+    }));
+    import('./scene/painted').then(({ makePainted }) => {
+      if (gone) return;
+      made = makePainted(place, { depth_m, angle_rad, colours, radius_m });
+      setScene(made);
+    }).catch(() => setFailed(true));
+    return () => { gone = true; made?.destroy(); setScene(null); };
+  }, [depth_m, angle_rad, values, radius_m]);
+  useEffect(() => {
+    if (!scene || !canvas.current) return;
+    const observer = new ResizeObserver(() => scene.resize());
+    observer.observe(canvas.current);
+    return () => observer.disconnect();
+  }, [scene]);
+  const onKeyDown = (event: KeyboardEvent) => {
+    const act: Record<string, (() => void) | undefined> = {
+      ArrowLeft: () => scene?.turn(10, 0), ArrowRight: () => scene?.turn(-10, 0), ArrowUp: () => scene?.turn(0, -10), ArrowDown: () => scene?.turn(0, 10),
+      '+': () => scene?.zoom(1.15), '=': () => scene?.zoom(1.15), '-': () => scene?.zoom(1 / 1.15), '0': () => scene?.reset(),
+    };
+    const done = act[event.key];
+    if (!done || event.ctrlKey || event.metaKey || event.altKey) return;
+    event.preventDefault();
+    done();
+  };
+  return (
+    <figure className={styles.figure}>
+      {/* eslint-disable-next-line jsx-a11y/no-noninteractive-element-interactions -- an application takes keys */}
+      <div className={`${styles.stage} ${styles.small}`} role="application" aria-roledescription="3-D picture" aria-label={summary} data-part="painted" data-ready={scene !== null || undefined}
+        // eslint-disable-next-line jsx-a11y/no-noninteractive-tabindex -- an application takes keys
+        tabIndex={0} onKeyDown={onKeyDown}>
+        <div ref={canvas} className={styles.canvas} hidden={failed} />
+        {failed ? <p className={styles.failure} role="alert">The picture in 3-D could not be drawn. The unrolled wall beside it says the same.</p> : scene === null ? <p className={styles.failure} role="status">Drawing…</p> : null}
+      </div>
+      <figcaption className={styles.caption}><span>mouth at the top</span><span className={styles.hint}>Drag or use the arrow keys to turn.</span></figcaption>
+    </figure>
+  );
+}

@@ -1,0 +1,43 @@
+import { describe, expect, it } from 'vitest';
+import { cellsOf, tableOf } from '@/api';
+import { kMethods } from './methods';
+import { kBlankPlan, planOf } from './plan-draft';
+import { cell } from './report-view';
+
+describe('the cohort’s table', () => {
+  it('keeps a comma that stands in quotes', () => {
+    expect(cellsOf('t1,"In, out and in again",,1')).toEqual(['t1', 'In, out and in again', '', '1']);
+  });
+
+  it('knows which columns are numbers, empty cells aside', () => {
+    const { columns, rows } = tableOf('trial,level,time\na,novice,1.5\nb,senior,\n');
+    expect(rows).toHaveLength(2);
+    expect(columns.map(({ name, numbers }) => [name, numbers])).toEqual([['trial', false], ['level', false], ['time', true]]);
+  });
+});
+
+describe('a plan', () => {
+  const question = { method: 'lmm', formula: 'operation_time ~ level + (1|participant)', question: 'Operation time by level', primary: true };
+
+  it('says what is missing, one thing at a time', () => {
+    expect(planOf(kBlankPlan)).toEqual({ missing: 'The plan needs a title.' });
+    expect(planOf({ ...kBlankPlan, title: 'x', endpoint: 'operation_time' })).toEqual({ missing: 'Add at least one analysis.' });
+    expect(planOf({ ...kBlankPlan, title: 'x', endpoint: 'a', questions: [question], alpha: '2' })).toEqual({ missing: 'α lies between 0 and 0.5.' });
+  });
+
+  it('goes out as tractus-plan/1 with its primary family', () => {
+    const made = planOf({ ...kBlankPlan, title: ' x ', endpoint: 'operation_time', questions: [question, { ...question, primary: false }] });
+    expect(made).toMatchObject({ plan: { format: 'tractus-plan/1', title: 'x', alpha: 0.05, correction: 'holm', exclusions: [], analyses: [{ id: 'analysis-1', family: 'primary', method: 'lmm' }, { id: 'analysis-2' }] } });
+  });
+
+  it('has the person as a random intercept wherever trials repeat', () => {
+    const lmm = kMethods.find(({ id }) => id === 'lmm');
+    expect(lmm?.formula('t', 'level', 'participant')).toBe('t ~ level + (1|participant)');
+  });
+});
+
+describe('a number of a report', () => {
+  it.each([[0.0000231, 'p', 'p < 0.001'], [0.38909, 'p', '0.389'], [8, 'df', '8'], [null, 'p', '–'], [true, 'x', 'yes']])('%s as %s reads %s', (value, key, text) => {
+    expect(cell(value, key)).toBe(text);
+  });
+});

@@ -1,0 +1,3 @@
+export { LabPage } from './lab-page';
+export { VersionsPage } from './versions-page';
+export { WorkPage } from './work-page';

@@ -1,0 +1,104 @@
+import { describe, expect, it } from 'vitest';
+import type { Diagnosis } from '@/api';
+import { differences } from './differences';
+import { kBlankOwn, ownEffect, parametersIn, withFormula } from './own-effect';
+import { parameterName } from './parameters';
+import { verdictOf } from './verdict';
+import { channelQuantity, effectName, joined } from './words';
+import { problemsOf, rootOf } from './zip-files';
+
+const plain = (text: string) => text.replaceAll('\u202f', ' ');
+
+describe('a folder that was dropped', () => {
+  it('is entered where its set.json lies, the highest one', () => {
+    expect(rootOf(['./rec/trial1.csv', './rec/set.json', './rec/old/set.json'])).toBe('rec/');
+    expect(rootOf(['set.json', 'a.csv'])).toBe('');
+    expect(rootOf(['/rec/reset.json'])).toBeNull();
+  });
+
+  it('is refused with its faults by file and line', () => {
+    expect(problemsOf('trial1.csv:17: column fz_N: "abc" is not a number\ntrial3.csv, line 4: t_s does not rise\nset.json: no trials')).toEqual([
+      { file: 'trial1.csv', line: 17, what: 'column fz_N: "abc" is not a number' },
+      { file: 'trial3.csv', line: 4, what: 't_s does not rise' },
+      { file: 'set.json', line: null, what: 'no trials' },
+    ]);
+    expect(problemsOf('The server does not answer.')).toEqual([{ file: '', line: null, what: 'The server does not answer.' }]);
+  });
+});
+
+describe('a formula of one’s own', () => {
+  const states = [{ name: 'v_m_s' }, { name: 'x_m' }];
+
+  it('has as parameters what is neither a state nor a function', () => {
+    expect(parametersIn('c * v_m_s * abs(v_m_s) + k*exp(-x_m/d) + 1e3', states)).toEqual(['c', 'k', 'd']);
+  });
+
+  it('keeps what was written of a parameter while the formula changes', () => {
+    const first = withFormula(kBlankOwn, 'c * v_m_s', states);
+    const second = withFormula({ ...first, parameters: first.parameters.map((one) => ({ ...one, unit: 'N*s/m' })) }, 'c * v_m_s + k', states);
+    expect(second.parameters.map(({ name, unit }) => [name, unit])).toEqual([['c', 'N*s/m'], ['k', '1']]);
+  });
+
+  it('goes to the server as tractus-effect/1, and not before there is one', () => {
+    expect(ownEffect(kBlankOwn, 'probing', { adds_to: 'fz_N' })).toBeNull();
+    const draft = { name: 'drag', formula: ' c * v_m_s ', parameters: [{ name: 'c', unit: 'N*s/m', initial: '2', low: '0', high: '50' }] };
+    expect(ownEffect(draft, 'probing', { adds_to: 'fz_N' })).toEqual({
+      format: 'tractus-effect/1', id: 'expression:drag', rig: 'probing', adds_to: 'fz_N', formula: 'c * v_m_s', parameters: { c: { unit: 'N*s/m', initial: 2, low: 0, high: 50 } },
+    });
+  });
+});
+
+describe('two versions', () => {
+  const old = { base: { layers: [{ stiffness_N_per_m: 4000, damping_Ns_per_m: 2000 }] }, effects: [] };
+
+  it('differ in the numbers that changed and in those that came', () => {
+    const now = { base: { layers: [{ stiffness_N_per_m: 4100, damping_Ns_per_m: 2000 }] }, effects: [{ id: 'coulomb_friction', parameters: { friction_N: 2.3 } }] };
+    expect(differences(old, now)).toEqual([{ name: '/base/layers/0/stiffness_N_per_m', a: 4000, b: 4100 }, { name: 'coulomb_friction/friction_N', a: null, b: 2.3 }]);
+    expect(differences(old, old)).toEqual([]);
+  });
+
+  it('have their numbers named for a person', () => {
+    expect(parameterName('/base/layers/0/stiffness_N_per_m')).toEqual({ name: 'Layer 1, stiffness', unit: 'N/m' });
+    expect(parameterName('/base/rotary/detent_Nm')).toEqual({ name: 'Rotary, detent', unit: 'N·m' });
+    expect(parameterName('pose_offset/offset_m/2')).toEqual({ name: 'Pose offset, offset z', unit: 'm' });
+  });
+});
+
+describe('the verdict', () => {
+  const diagnosis = (changes: Partial<Diagnosis>): Diagnosis => ({
+    verdict: 'missing', probability: 0.98, base: { rmse: 1.78, held_out_rmse: 1.99, noise_floor: 0.0616 },
+    effects: [{ id: 'coulomb_friction', probability: 0.98, parameters: {} }], ranking: [],
+    steps: [{ model: 'base', rmse: 1.78, held_out_rmse: 1.99 }, { model: '+ coulomb_friction', rmse: 0.0501, held_out_rmse: 0.0502 }],
+    confounded: [], settle: null, depends_on: '', held_out: 'trials', parameters: [], trials: [], notes: [], ...changes,
+  });
+
+  it('names what is missing and how far the error falls on trials that were not fitted', () => {
+    const { headline, detail } = verdictOf(diagnosis({}), 'N');
+    expect(headline).toBe('Coulomb friction is missing.');
+    expect(plain(detail)).toContain('from 1.99 N to 0.0502 N; noise alone leaves 0.0616 N');
+  });
+
+  it('adds nothing where nothing is missing', () => {
+    expect(verdictOf(diagnosis({ verdict: 'complete', effects: [] }), 'N')).toMatchObject({ tone: 'good', headline: 'Nothing is missing.' });
+  });
+
+  it('says on what it depends where the catalogue has no name for it', () => {
+    const { headline, detail } = verdictOf(diagnosis({ verdict: 'unexplained', effects: [], depends_on: 'speed' }), 'N');
+    expect(headline).toContain('not in the catalogue');
+    expect(detail).toContain('varies with speed');
+  });
+
+  it('puts two effects into one sentence', () => {
+    const two = ['inertia', 'time_delay'].map((id) => ({ id, probability: 0.9, parameters: {} }));
+    expect(verdictOf(diagnosis({ effects: two }), 'N').headline).toBe('Inertia and Time delay are missing.');
+  });
+});
+
+describe('words of the lab', () => {
+  it('are made from ids', () => {
+    expect(effectName('expression:drag')).toBe('drag (own formula)');
+    expect(joined(['a', 'b', 'c'])).toBe('a, b and c');
+    expect(channelQuantity('tz_Nm').unit).toBe('N·m');
+    expect(channelQuantity('fz_N').unit).toBe('N');
+  });
+});

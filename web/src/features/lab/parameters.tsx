@@ -1,0 +1,41 @@
+import type { Estimate } from '@/api';
+import { Badge, Term } from '@/ui';
+import { formatWithin, nameAndUnit } from '@/units';
+import styles from './lab.module.css';
+import { effectName } from './words';
+
+/** "/base/layers/0/stiffness_N_per_m" → "Layer 1, stiffness"; "coulomb_friction/friction_N" → "Coulomb friction, friction". */
+export function parameterName(pointer: string): { name: string; unit: string } {
+  const parts = pointer.split('/').filter(Boolean);
+  const numbered = parts.at(-1) !== undefined && /^\d+$/.test(parts.at(-1) ?? '');
+  const own = nameAndUnit((numbered ? parts.at(-2) : parts.at(-1)) ?? pointer);
+  const component = numbered ? ` ${['x', 'y', 'z'][Number(parts.at(-1))] ?? parts.at(-1) ?? ''}` : '';
+  const rest = parts.slice(0, numbered ? -2 : -1);
+  const place = rest[0] !== 'base' && rest[0] !== undefined ? effectName(rest[0])
+    : rest[1] === 'layers' ? `Layer ${Number(rest[2] ?? 0) + 1}` : rest.slice(1).join(' ');
+  const words = place === '' ? own.name : `${place}, ${own.name}`;
+  return { name: (words.charAt(0).toUpperCase() + words.slice(1)) + component, unit: own.unit };
+}
+
+export function Parameters({ estimates }: { readonly estimates: readonly Estimate[] }) {
+  return (
+    <div className={styles.frame}>
+      <table className={styles.table}>
+        <caption className="hidden-visually">Fitted numbers</caption>
+        <thead><tr><th scope="col">Number</th><th scope="col" className={styles.number}><Term align="end" definition="The fitted value and its standard error, from the fit’s own curvature.">Value</Term></th><th scope="col">Said of it</th></tr></thead>
+        <tbody>
+          {estimates.map((one) => {
+            const { name, unit } = parameterName(one.name);
+            return (
+              <tr key={one.name}>
+                <th scope="row">{name}</th>
+                <td className={styles.number}>{formatWithin(one.value, one.sd, unit)}</td>
+                <td>{!one.informed ? <Badge tone="warn">these measurements say nothing of it</Badge> : one.at_bound ? <Badge tone="warn">at its bound</Badge> : <span className={styles.muted}>determined</span>}</td>
+              </tr>
+            );
+          })}
+        </tbody>
+      </table>
+    </div>
+  );
+}

@@ -1,0 +1,84 @@
+import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
+import { useState, type FormEvent } from 'react';
+import { useSearch, Link } from 'wouter';
+import { addCohort, addToCohort, cohortQuery, cohortsQuery, sessionQuery, takeFromCohort, type Cohort, type CohortSummary } from '@/api';
+import { Badge, Button, Card, Field, Notice, Skeleton, Table } from '@/ui';
+import { formatCount, formatDateTime } from '@/units';
+import { Frame } from './frame';
+import styles from './network.module.css';
+
+function New() {
+  const client = useQueryClient();
+  const [name, setName] = useState('');
+  const made = useMutation({ mutationFn: addCohort, onSuccess: async () => { setName(''); await client.invalidateQueries({ queryKey: cohortsQuery.queryKey }); } });
+  const submit = (event: FormEvent) => { event.preventDefault(); made.mutate(name.trim()); };
+  return (
+    <form className={styles.form} onSubmit={submit}>
+      <Field label="Name of a new cohort" value={name} required maxLength={100} placeholder="Residents 2027" onChange={(event) => setName(event.target.value)} />
+      <Button type="submit" disabled={made.isPending || name.trim() === ''}>{made.isPending ? 'Making…' : 'Make it'}</Button>
+      {made.isError ? <p role="alert" className={styles.wide}>It was not made: {made.error.message}</p> : null}
+    </form>
+  );
+}
+
+type Person = Cohort['people'][number];
+
+function Members({ id, may }: { readonly id: string; readonly may: boolean }) {
+  const client = useQueryClient();
+  const query = useQuery(cohortQuery(id));
+  const [name, setName] = useState('');
+  const [last, setLast] = useState<Person | null>(null);
+  const keep = async (cohort: Cohort) => { client.setQueryData(cohortQuery(id).queryKey, cohort); await client.invalidateQueries({ queryKey: cohortsQuery.queryKey, exact: true }); };
+  const added = useMutation({ mutationFn: (person: string) => addToCohort(id, person), onSuccess: async (cohort) => { setName(''); setLast(null); await keep(cohort); } });
+  const taken = useMutation({ mutationFn: (person: Person) => takeFromCohort(id, person.account_id), onSuccess: async (cohort, person) => { setLast(person); await keep(cohort); } });
+  const failed = added.error ?? taken.error;
+  if (query.isError) return <Notice tone="bad" title="The cohort could not be loaded." onRetry={() => void query.refetch()}>{query.error.message}</Notice>;
+  if (!query.data) return <Card title="People"><Skeleton height="200px" /></Card>;
+  const submit = (event: FormEvent) => { event.preventDefault(); added.mutate(name.trim()); };
+  return (
+    <Card title={query.data.name}>
+      <div className={styles.stack}>
+        {may ? (
+          <form className={styles.form} onSubmit={submit}>
+            <Field label="Name of an account" value={name} required maxLength={100} onChange={(event) => setName(event.target.value)} />
+            <Button type="submit" disabled={added.isPending || name.trim() === ''}>Add to the cohort</Button>
+          </form>
+        ) : null}
+        {failed ? <Notice tone="bad" title="That was not done.">{failed.message}</Notice> : null}
+        {last ? <p role="status">{last.name} was taken out. <Button look="quiet" onClick={() => added.mutate(last.name)}>Undo</Button></p> : null}
+        <Table<Person> caption="People of the cohort" rows={query.data.people} keyOf={({ account_id }) => account_id} empty="Nobody is in it yet." columns={[
+          { name: 'Name', cell: (one) => one.name },
+          { name: 'Part', cell: (one) => (one.part === 'faculty' ? <Badge tone="accent">leads</Badge> : 'trainee') },
+          { name: 'State', cell: (one) => one.state },
+          { name: <span className="hidden-visually">Decide</span>, cell: (one) => (may ? <span className={styles.buttons}><Button look="quiet" label={`Take out: ${one.name}`} disabled={taken.isPending} onClick={() => taken.mutate(one)}>Take out</Button></span> : null) },
+        ]} />
+      </div>
+    </Card>
+  );
+}
+
+/** Groups of trainees and who leads them. */
+export function CohortsPage() {
+  const query = useQuery(cohortsQuery);
+  const role = useQuery({ ...sessionQuery, enabled: false }).data?.role;
+  const may = role === 'admin' || role === 'faculty';
+  const chosen = new URLSearchParams(useSearch()).get('id') ?? query.data?.cohorts[0]?.id;
+  return (
+    <Frame at="cohorts" lead="Groups of trainees and who leads them. Faculty see the trials of the people in the cohorts that they lead.">
+      {query.isError ? <Notice tone="bad" title="The cohorts could not be loaded." onRetry={() => void query.refetch()}>{query.error.message}</Notice> : null}
+      <div className={styles.two}>
+        <Card title="Cohorts">
+          <div className={styles.stack}>
+            <Table<CohortSummary> caption="Cohorts" rows={query.data?.cohorts} keyOf={({ id }) => id} empty="There are no cohorts yet." columns={[
+              { name: 'Cohort', cell: (one) => <Link href={`/network/cohorts?id=${one.id}`} aria-current={one.id === chosen ? 'true' : undefined}>{one.name}</Link> },
+              { name: 'Trainees', cell: (one) => formatCount(one.trainees), number: true },
+              { name: 'Made', cell: (one) => formatDateTime(one.made_utc_us) },
+            ]} />
+            {may ? <New /> : null}
+          </div>
+        </Card>
+        {chosen ? <Members key={chosen} id={chosen} may={may} /> : null}
+      </div>
+    </Frame>
+  );
+}

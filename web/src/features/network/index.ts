@@ -1,0 +1,4 @@
+export { AuditPage } from './audit-page';
+export { CohortsPage } from './cohorts-page';
+export { PeoplePage } from './people-page';
+export { StationsPage } from './stations-page';

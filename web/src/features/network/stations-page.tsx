@@ -1,0 +1,56 @@
+import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
+import { useState, type FormEvent } from 'react';
+import { enrolStation, revokeStation, sessionQuery, stationsQuery, type Station } from '@/api';
+import { AskDialog, Badge, Button, Card, Field, Notice, Table } from '@/ui';
+import { formatDateTime } from '@/units';
+import { Frame } from './frame';
+import styles from './network.module.css';
+import { Once } from './people-page';
+
+function Enrol() {
+  const client = useQueryClient();
+  const [name, setName] = useState('');
+  const made = useMutation({ mutationFn: enrolStation, onSuccess: () => client.invalidateQueries({ queryKey: stationsQuery.queryKey }) });
+  const submit = (event: FormEvent) => { event.preventDefault(); made.mutate(name.trim()); };
+  return (
+    <Card title="Enrol a station">
+      <div className={styles.stack}>
+        <form className={styles.form} onSubmit={submit}>
+          <Field label="Name of the station" value={name} required maxLength={64} placeholder="skills lab 2" onChange={(event) => setName(event.target.value)} />
+          <Button look="solid" type="submit" disabled={made.isPending || name.trim() === ''}>{made.isPending ? 'Asking…' : 'Make a code'}</Button>
+        </form>
+        {made.isError ? <Notice tone="bad" title="No code was made.">{made.error.message}</Notice> : null}
+        {made.data ? <Once title={`Code for ${made.data.name}, good until ${formatDateTime(made.data.expires_utc_us)}`} secret={made.data.code}>Type it at the station. It is good once; the station makes a key of its own with it.</Once> : null}
+      </div>
+    </Card>
+  );
+}
+
+/** The stations that may bring trials. */
+export function StationsPage() {
+  const client = useQueryClient();
+  const query = useQuery(stationsQuery);
+  const role = useQuery({ ...sessionQuery, enabled: false }).data?.role;
+  const [ending, setEnding] = useState<Station | null>(null);
+  const may = role === 'admin' || role === 'technician';
+  return (
+    <Frame at="stations" lead="The stations that may fetch cases and bring trials. A station that is revoked is refused at once; what it has recorded stays on its disk.">
+      {query.isError ? <Notice tone="bad" title="The stations could not be loaded." onRetry={() => void query.refetch()}>{query.error.message}</Notice> : null}
+      {may ? <Enrol /> : null}
+      <Card title="Stations">
+        <Table<Station> caption="Stations" rows={query.data?.stations} keyOf={({ id }) => id} empty="No station is enrolled yet." columns={[
+          { name: 'Station', cell: (one) => one.name },
+          { name: 'State', cell: (one) => (one.revoked_utc_us === null ? <Badge tone="good">enrolled</Badge> : <Badge tone="warn">revoked</Badge>) },
+          { name: 'Enrolled', cell: (one) => formatDateTime(one.enrolled_utc_us) },
+          { name: 'Revoked', cell: (one) => (one.revoked_utc_us === null ? '–' : formatDateTime(one.revoked_utc_us)) },
+          { name: <span className="hidden-visually">Decide</span>, cell: (one) => (may && one.revoked_utc_us === null ? <span className={styles.buttons}><Button label={`Revoke ${one.name}`} onClick={() => setEnding(one)}>Revoke…</Button></span> : null) },
+        ]} />
+      </Card>
+      {ending ? (
+        <AskDialog title={`Revoke ${ending.name}`} deed="Revoke" onClose={() => setEnding(null)} onDeed={() => revokeStation(ending.id).then(() => client.invalidateQueries({ queryKey: stationsQuery.queryKey }))}>
+          <p>Its key is refused from now on, and cannot be given back. To use the station again, enrol it anew.</p>
+        </AskDialog>
+      ) : null}
+    </Frame>
+  );
+}

@@ -1,0 +1,32 @@
+import { useMutation, useQueryClient } from '@tanstack/react-query';
+import { useState, type FormEvent } from 'react';
+import { changePassword, sessionQuery } from '@/api';
+import { Button, Field, Notice } from '@/ui';
+import styles from './own-account.module.css';
+
+const kLeast = 10;
+
+/** The old password and a new one, twice. */
+export function PasswordForm() {
+  const client = useQueryClient();
+  const [old, setOld] = useState('');
+  const [next, setNext] = useState('');
+  const [again, setAgain] = useState('');
+  const changed = useMutation({
+    mutationFn: () => changePassword(old, next),
+    onSuccess: async () => { setOld(''); setNext(''); setAgain(''); await client.invalidateQueries({ queryKey: sessionQuery.queryKey }); },
+  });
+  const fault = next !== '' && next.length < kLeast ? `At least ${kLeast} characters.` : again !== '' && again !== next ? 'The two are not the same.' : '';
+  const submit = (event: FormEvent) => { event.preventDefault(); changed.mutate(); };
+  return (
+    <form className={styles.form} onSubmit={submit}>
+      <Field label="Password now" type="password" autoComplete="current-password" required value={old} onChange={(event) => setOld(event.target.value)} />
+      <Field label="New password" type="password" autoComplete="new-password" required value={next} onChange={(event) => setNext(event.target.value)} />
+      <Field label="New password again" type="password" autoComplete="new-password" required value={again} onChange={(event) => setAgain(event.target.value)} />
+      <p className={styles.fault} role="status">{fault}</p>
+      {changed.isError ? <Notice tone="bad" title="The password was not changed.">{changed.error.message}</Notice> : null}
+      {changed.isSuccess ? <Notice title="The password was changed.">Other sessions of this account have ended.</Notice> : null}
+      <Button look="solid" type="submit" disabled={changed.isPending || old === '' || next.length < kLeast || again !== next}>{changed.isPending ? 'Changing…' : 'Change the password'}</Button>
+    </form>
+  );
+}

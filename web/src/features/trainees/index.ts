@@ -1,0 +1,2 @@
+export { TraineePage } from './trainee-page';
+export { TraineesPage } from './trainees-page';

@@ -1,0 +1,25 @@
+/** Who is shown, who is due, how the last ten went. Pure. */
+import type { TraineeSummary } from '@/api';
+
+const kDay_us = 86_400_000_000;
+const kDue_days = 60;
+
+export type Show = 'all' | TraineeSummary['state'] | 'due';
+
+/** Somebody who has not been at a station for two months is due. */
+export const isDue = (one: Pick<TraineeSummary, 'last_utc_us'>, now_utc_us: number) => now_utc_us - one.last_utc_us > kDue_days * kDay_us;
+
+export function shownOf(trainees: readonly TraineeSummary[], show: Show, search: string, now_utc_us: number): TraineeSummary[] {
+  const wanted = search.trim().toLowerCase();
+  return trainees.filter((one) => (show === 'all' || (show === 'due' ? isDue(one, now_utc_us) : one.state === show)) && one.trainee.toLowerCase().includes(wanted));
+}
+
+const kWindow = 10;
+
+/** Share of right answers among the last ten, once there are five. */
+export function runningShare(right: readonly boolean[]): (number | null)[] {
+  return right.map((_, i) => {
+    const last = right.slice(Math.max(0, i + 1 - kWindow), i + 1);
+    return last.length < 5 ? null : last.filter(Boolean).length / last.length;
+  });
+}

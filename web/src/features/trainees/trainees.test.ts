@@ -1,0 +1,32 @@
+import { describe, expect, it } from 'vitest';
+import type { TraineeSummary } from '@/api';
+import { share, utcMicroseconds } from '@/units';
+import { isDue, runningShare, shownOf } from './standing';
+
+const one = (changes: Partial<TraineeSummary>): TraineeSummary => ({
+  trainee: 'S01', trials: 12, right: 9, share: share(0.75), wilson_low: share(0.47), wilson_high: share(0.91), state: 'learning', certified: false, why: '',
+  next: { scenario: 'hard', why: '' }, simulated: false, last_utc_us: utcMicroseconds(0), ...changes,
+});
+const kDay_us = 86_400_000_000;
+
+describe('the list of trainees', () => {
+  it('has as due who was not there for more than sixty days', () => {
+    expect(isDue(one({}), 60 * kDay_us)).toBe(false);
+    expect(isDue(one({}), 61 * kDay_us)).toBe(true);
+  });
+
+  it('is narrowed by state and by name', () => {
+    const all = [one({}), one({ trainee: 'S02', state: 'relapsed' }), one({ trainee: 'T03', state: 'relapsed' })];
+    expect(shownOf(all, 'relapsed', 's', 0).map(({ trainee }) => trainee)).toEqual(['S02']);
+    expect(shownOf(all, 'all', '', 0)).toHaveLength(3);
+  });
+});
+
+it('the share of the last ten is not said of fewer than five trials, and forgets what is older than ten', () => {
+  expect(runningShare([true, true, true, true])).toEqual([null, null, null, null]);
+  const right = [...Array<boolean>(10).fill(false), ...Array<boolean>(10).fill(true)];
+  const running = runningShare(right);
+  expect(running[9]).toBe(0);
+  expect(running[14]).toBe(0.5);
+  expect(running[19]).toBe(1);
+});

@@ -1,0 +1,38 @@
+import { useEffect, useId, useRef, useState, type FormEvent, type ReactNode } from 'react';
+import { Button } from './button';
+import styles from './dialog.module.css';
+import { Notice } from './notice';
+
+interface Props {
+  readonly title: string;
+  readonly children: ReactNode;
+  /** What the button says. */
+  readonly deed: string;
+  readonly ready?: boolean;
+  readonly onDeed: () => Promise<unknown>;
+  readonly onClose: () => void;
+}
+
+/** Asks before something is done; closes when it was, and says why when it was not. */
+export function AskDialog({ title, children, deed, ready = true, onDeed, onClose }: Props) {
+  const dialog = useRef<HTMLDialogElement>(null);
+  const [busy, setBusy] = useState(false);
+  const [failure, setFailure] = useState<string | null>(null);
+  const id = useId();
+  useEffect(() => { dialog.current?.showModal(); }, []);
+  const submit = (event: FormEvent) => {
+    event.preventDefault();
+    setBusy(true);
+    onDeed().then(onClose, (wrong: unknown) => { setFailure(wrong instanceof Error ? wrong.message : String(wrong)); setBusy(false); });
+  };
+  return (
+    <dialog ref={dialog} className={styles.dialog} aria-labelledby={id} onClose={onClose}>
+      <form onSubmit={submit}>
+        <h2 id={id}>{title}</h2>
+        {children}
+        {failure === null ? null : <Notice tone="bad" title="That was not done.">{failure}</Notice>}
+        <div className={styles.buttons}><Button onClick={onClose}>Leave it</Button><Button look="solid" type="submit" disabled={busy || !ready}>{deed}</Button></div>
+      </form>
+    </dialog>
+  );
+}

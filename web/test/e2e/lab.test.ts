@@ -1,0 +1,129 @@
+/** The whole way through the model lab on a set with a hidden effect, against a real server. */
+import { execFileSync } from 'node:child_process';
+import { join } from 'node:path';
+import { readFileSync } from 'node:fs';
+import type { Browser, Page } from 'playwright-core';
+import { afterAll, beforeAll, describe, expect, it } from 'vitest';
+import { kShots, launch } from './browser';
+import { programs, serveReal, type Served } from './real-server';
+
+const bin = programs('tractus-server', 'blind-probing');
+const kSeed = '7';
+
+/** "1.99 N" → 1.99 */
+const newtons = (text: string) => Number(/([\d.]+)\s*N/.exec(text.replaceAll('\u202f', ' '))?.[1] ?? Number.NaN);
+
+describe.skipIf(bin === undefined)('a set with a hidden effect', () => {
+  let browser: Browser, served: Served, page: Page;
+  beforeAll(async () => {
+    served = await serveReal(bin ?? '');
+    execFileSync(join(bin ?? '', 'blind-probing'), ['--seed', kSeed, '--out', join(served.folder, 'set'), '--effect', 'coulomb_friction', '--trials', '6', '--duration', '4']);
+    browser = await launch();
+    const context = await browser.newContext({ viewport: { width: 1440, height: 900 }, baseURL: served.url });
+    page = await context.newPage();
+    page.setDefaultTimeout(60_000);
+    await page.goto('/');
+    await page.getByLabel('Name').fill(served.account.name);
+    await page.getByLabel('Password').fill(served.account.password);
+    await page.getByRole('button', { name: 'Sign in' }).click();
+    await page.getByRole('button', { name: 'Sign out' }).waitFor();
+  }, 120_000);
+  afterAll(async () => { await browser.close(); await served.stop(); });
+  const shot = (name: string) => page.screenshot({ path: `${kShots}lab-${name}.png`, fullPage: true });
+
+  it('is refused with file and line while a number in it is none', async () => {
+    await page.goto('/lab');
+    const good = readFileSync(join(served.folder, 'set/measurements/trial1.csv'), 'utf8').split('\n');
+    good[16] = good[16]?.replace(/,[^,]*$/, ',abc') ?? '';
+    const choosing = page.waitForEvent('filechooser');
+    await page.getByRole('button', { name: 'Choose a zip' }).click();
+    await (await choosing).setFiles([
+      { name: 'set.json', mimeType: 'application/json', buffer: Buffer.from('{"format":"tractus-measurements/1","rig":"probing","trials":[{"id":"t1","file":"trial1.csv"}]}') },
+      { name: 'trial1.csv', mimeType: 'text/csv', buffer: Buffer.from(good.join('\n')) },
+    ]);
+    const row = page.getByRole('row', { name: /trial1\.csv/ });
+    await row.waitFor();
+    expect((await row.getByRole('cell').allInnerTexts())[1]).toBe('17');
+    await shot('refused');
+  }, 60_000);
+
+  it('leads from the files to a better model whose error is at the noise floor', async () => {
+    await page.goto('/lab');
+    await page.locator('[data-part="model-file"]').setInputFiles(join(served.folder, 'set/model.json'));
+    await page.getByText('handed base').first().waitFor();
+    const choosing = page.waitForEvent('filechooser');
+    await page.getByRole('button', { name: 'Choose a folder' }).click();
+    await (await choosing).setFiles(join(served.folder, 'set/measurements'));
+    await page.getByText('6 trials').first().waitFor();
+    await shot('start');
+    await page.getByRole('button', { name: 'Compare' }).click();
+    await page.locator('[data-panel="value"] canvas').waitFor();
+    await page.waitForLoadState('networkidle');
+    const before = newtons(await page.locator('[data-part="error-before"]').innerText());
+    expect(before).toBeGreaterThan(0.5);
+    await shot('compare');
+
+    await page.getByRole('link', { name: 'Where it fails' }).click();
+    await page.locator('[data-part="regions"] tbody button').first().click();
+    await page.locator('[data-part="stretches"]').waitFor();
+    await shot('where');
+
+    await page.getByRole('link', { name: 'What is missing' }).click();
+    await page.getByRole('button', { name: 'Find what is missing' }).click();
+    await page.locator('[data-part="run-state"]').waitFor();
+    await page.locator('[data-part="verdict"]').waitFor({ timeout: 240_000 });
+    expect(await page.locator('[data-part="verdict"]').innerText()).toContain('Coulomb friction is missing.');
+    const held = await page.locator('[data-part="held-out"]').allInnerTexts();
+    const floor = newtons(await page.locator('[data-part="falls"] text').filter({ hasText: 'noise floor' }).first().innerHTML());
+    expect(newtons(held.at(-1) ?? '')).toBeLessThanOrEqual(1.1 * floor);
+    await page.waitForLoadState('networkidle');
+    await shot('missing');
+
+    await page.getByRole('link', { name: /^Add Coulomb friction and publish/ }).click();
+    await page.getByRole('button', { name: 'Publish' }).click();
+    await page.locator('[data-part="published"]').waitFor();
+    await shot('published');
+    await page.getByRole('link', { name: 'Old and new side by side' }).click();
+    await page.locator('[data-part="error-after"]').waitFor();
+    expect(newtons(await page.locator('[data-part="error-after"]').innerText())).toBeLessThan(before / 4);
+    expect(await page.locator('[data-part="tree"] li').count()).toBe(2);
+    await page.waitForLoadState('networkidle');
+    await shot('versions');
+  }, 300_000);
+
+  it('takes a formula of one’s own once its units fit, and fits it', async () => {
+    await page.goto('/lab');
+    await page.getByRole('radio', { name: /handed base.*/ }).last().check();
+    await page.getByRole('button', { name: 'Compare' }).click();
+    await page.getByRole('link', { name: 'Add', exact: true }).click();
+    await page.getByLabel('A formula of my own').check();
+    const formula = page.getByLabel('Formula', { exact: true });
+    await formula.fill('c * (v_m_s + x_m)');
+    await page.locator('[data-part="unit-check"]').filter({ hasNotText: 'Checking' }).filter({ hasText: 'm/s' }).waitFor();
+    await shot('formula-wrong');
+    await formula.fill('f * sign(v_m_s)');
+    await page.getByLabel('Unit of f').fill('N');
+    await page.getByText('The units fit').waitFor();
+    await page.getByRole('button', { name: 'Add and fit' }).click();
+    await page.locator('[data-part="falls"]').waitFor({ timeout: 120_000 });
+    const held = await page.locator('[data-part="held-out"]').allInnerTexts();
+    expect(newtons(held.at(-1) ?? '')).toBeLessThan(newtons(held[0] ?? '') / 4);
+    await page.waitForLoadState('networkidle');
+    await shot('formula');
+  }, 240_000);
+
+  it('is searched again and cancelled, and says so', async () => {
+    await page.getByRole('link', { name: 'Publish', exact: true }).click();
+    await page.getByRole('link', { name: 'Compare', exact: true }).click();
+    const [, , , model, set] = new URL(page.url()).pathname.split('/');
+    const id = await page.evaluate(async ([m, s]) => {
+      const answer = await fetch('/api/v1/lab/diagnoses', { method: 'POST', headers: { 'Content-Type': 'application/json', 'X-Tractus': '1' }, body: JSON.stringify({ model: m, measurements: s }) });
+      return ((await answer.json()) as { id: string }).id;
+    }, [model, set]);
+    expect(id).toMatch(/^[0-9a-f]{32}$/);
+    await page.getByRole('link', { name: 'What is missing' }).click();
+    await page.getByRole('button', { name: 'Cancel' }).click();
+    await page.getByText('The search was cancelled.').waitFor();
+    await shot('cancelled');
+  }, 120_000);
+});
