@@ -53,7 +53,8 @@ Result<assessment::Snapshot> kept_snapshot(const store::Objects& objects,
   if (!data) return data.error();
   if (core::sha256(*data) != *run.snapshot)
     return Error{Errc::corrupt, "the frozen data are not what was frozen"};
-  auto table = assessment::Table::parse(*data, "cohort", {}, assessment::Missing::keep);
+  auto table = assessment::Table::parse(*data, (*description)["name"].get<std::string>(), {},
+                                        assessment::Missing::keep);
   if (!table) return table.error();
   return assessment::Snapshot{std::move(*description), std::move(*data), std::move(*table)};
 }

@@ -13,16 +13,16 @@ constexpr std::chrono::milliseconds kBetween{500};
 LabProgress::LabProgress(store::Store& store, std::string run_id, std::function<bool()> ending)
     : store_(store), run_id_(std::move(run_id)), ending_(std::move(ending)) {}
 
-core::Progress LabProgress::at(std::string phase, double from, double width) {
-  say(std::move(phase));
+core::Progress LabProgress::at(const std::string& phase, double from, double width) {
+  say(phase);
   return [this, from, width](double share) {
     return note(from + width * std::clamp(share, 0.0, 1.0));
   };
 }
 
-void LabProgress::say(std::string phase) {
+void LabProgress::say(const std::string& phase) {
   if (phase == phase_) return;
-  phase_ = std::move(phase);
+  phase_ = phase;
   next_ = {};
 }
 

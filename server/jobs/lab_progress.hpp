@@ -18,9 +18,9 @@ class LabProgress {
   LabProgress(store::Store& store, std::string run_id, std::function<bool()> ending);
 
   /// A piece of the work, in words, with its share of the whole.
-  core::Progress at(std::string phase, double from, double width);
+  core::Progress at(const std::string& phase, double from, double width);
   /// The next phase within the same piece.
-  void say(std::string phase);
+  void say(const std::string& phase);
 
  private:
   bool note(double share);

@@ -81,7 +81,8 @@ void add_lab_options(CLI::App& app, LabOptions& options) {
 void add_own_option(CLI::App& app, LabOptions& options) {
   app.add_option("--effect", options.own,
                  "file with an effect of your own, tractus-effect/1; may be given again")
-      ->expected(1);
+      ->expected(1, 64)
+      ->allow_extra_args(false);
 }
 
 Result<lab_io::Case> opened(const LabOptions& options) {

@@ -201,6 +201,8 @@ bool is_factor(const Variable& of, const Table& table) {
 }
 
 core::Result<Columns> columns_of(const Table& table, const Variable& of, bool all_levels) {
+  if (of.as == Variable::As::itself)
+    if (const auto known = table.holds_numbers(of.column); !known) return known.error();
   if (is_factor(of, table)) return factor_columns(table, of, all_levels);
   auto numbers = table.numbers(of.column);
   if (!numbers) return numbers.error();

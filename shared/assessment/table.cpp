@@ -155,6 +155,19 @@ bool Table::is_numeric(const std::string& column) const {
   return std::ranges::all_of(texts(column), [&](auto cell) { return number_in(cell).has_value(); });
 }
 
+core::Result<bool> Table::holds_numbers(const std::string& column) const {
+  const auto& cells = texts(column);
+  const auto is_text = [](auto cell) { return !number_in(cell).has_value(); };
+  const auto text = std::ranges::find_if(cells, is_text);
+  if (text == cells.end()) return true;
+  if (std::ranges::all_of(cells, is_text)) return false;
+  return core::Error{core::Errc::bad_input,
+                     fmt::format("{}:{}: column '{}' holds numbers, and here '{}'; C({}) takes all "
+                                 "of them as labels",
+                                 name_, lines_[static_cast<std::size_t>(text - cells.begin())],
+                                 column, text->substr(0, 40), column)};
+}
+
 core::Result<statistics::Vector> Table::numbers(const std::string& column) const {
   const auto& cells = texts(column);
   statistics::Vector out(static_cast<Eigen::Index>(cells.size()));

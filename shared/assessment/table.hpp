@@ -41,6 +41,9 @@ class Table {
   /// The cells of a column that was asked for.
   const std::vector<std::string_view>& texts(const std::string& column) const;
   bool is_numeric(const std::string& column) const;
+  /// Is the column one of numbers (true), or of labels? Errors: bad_input naming FILE:LINE of the
+  /// text among numbers: a slip of the pen would make a factor of a measure.
+  core::Result<bool> holds_numbers(const std::string& column) const;
   /// Errors: bad_input naming FILE:LINE and the text that is no finite number.
   core::Result<statistics::Vector> numbers(const std::string& column) const;
   const std::string& name() const { return name_; }

@@ -58,6 +58,9 @@ class FormulaProgram {
   /// The value at the present inputs; 0 where it is not finite. Allocates nothing and never throws;
   /// one thread at a time.
   double value() const noexcept;
+  /// How often `value` met what is not finite, on this thread, by any program, since it began: who
+  /// asks before and after a replay learns whether it was sound.
+  static std::uint64_t times_not_finite() noexcept;
 
  private:
   struct Parts;

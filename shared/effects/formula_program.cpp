@@ -10,6 +10,8 @@
 namespace effects {
 
 namespace {
+thread_local std::uint64_t not_finite = 0;
+
 double sign(double value) { return value > 0.0 ? 1.0 : value < 0.0 ? -1.0 : 0.0; }
 }  // namespace
 
@@ -43,10 +45,14 @@ core::Result<FormulaProgram> FormulaProgram::make(const std::string& formula,
 
 std::span<double> FormulaProgram::inputs() const noexcept { return parts_->inputs; }
 
+std::uint64_t FormulaProgram::times_not_finite() noexcept { return not_finite; }
+
 double FormulaProgram::value() const noexcept {
   try {
     const double value = parts_->parser.Eval();
-    return std::isfinite(value) ? value : 0.0;
+    if (std::isfinite(value)) return value;
+    ++not_finite;
+    return 0.0;
   } catch (const mu::Parser::exception_type&) {
     return 0.0;  // nothing that was compiled throws; a law that cannot be told adds nothing
   }

@@ -194,6 +194,23 @@ TEST(TipBall, IsTheMeanOverABall) {
   EXPECT_NEAR(tenth, 3.0 / 143.0, 1e-14);
 }
 
+TEST(TipBall, IsTheMeanOverASmallBallToTheFifthDegree) {
+  for (const double radius_m : {6.9e-4, 9.9e-4}) {
+    const auto ball = made<TipSpread>("tip_ball", {radius_m});
+    double one = 0, square = 0, fourth = 0, mixed = 0, odd = 0;
+    for (const auto& [offset, w] : ball->nodes()) {
+      const Vec3 x = offset / radius_m;
+      one += w, square += w * x.y() * x.y(), fourth += w * std::pow(x.z(), 4);
+      mixed += w * x.x() * x.x() * x.y() * x.y(), odd += w * std::pow(x.x(), 3) * x.y() * x.y();
+    }
+    EXPECT_NEAR(one, 1.0, 1e-14);
+    EXPECT_NEAR(square, 1.0 / 5.0, 1e-14);
+    EXPECT_NEAR(fourth, 3.0 / 35.0, 1e-14);
+    EXPECT_NEAR(mixed, 1.0 / 35.0, 1e-14);
+    EXPECT_NEAR(odd, 0.0, 1e-15);
+  }
+}
+
 TEST(ProbeWeight, PullsDownInATiltedHandle) {
   // Tilted by 30° about x, down = −z of V is (0, −sin 30°, −cos 30°) in H; 0.1 kg · 9.80665 m/s²;
   // τ = 0.06 ẑ × F = 0.06 (−F_y, F_x, 0).
@@ -238,8 +255,8 @@ TEST(PalpationEffects, RefuseWhatLiesOutsideTheirRange) {
     const auto effect = make_palpation_effect(use);
     return effect ? "taken" : effect.error().what;
   };
-  EXPECT_EQ(refusal({"contact_friction", {-0.1, 1.0}}).find("contact_friction/coefficient: -0.1 is"),
-            0u);
+  EXPECT_EQ(
+      refusal({"contact_friction", {-0.1, 1.0}}).find("contact_friction/coefficient: -0.1 is"), 0u);
   EXPECT_NE(refusal({"contact_friction", {NAN, 1.0}}), "taken");
   EXPECT_NE(refusal({"contact_friction", {}}), "taken");
   EXPECT_NE(refusal({"coulomb_friction", {1.0}}), "taken");

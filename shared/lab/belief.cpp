@@ -7,10 +7,6 @@
 namespace lab {
 namespace {
 
-/// At the floor: mean square of the whitened residual below this, …
-constexpr double kAtFloor = 1.8;
-/// … or less than this share of what the given model left.
-constexpr double kShareLeft = 0.001;
 /// Named at all: at most this share is left.
 constexpr double kMostLeft = 0.25;
 /// As good as the one chosen, for all purposes: within this factor of its excess.
@@ -35,8 +31,9 @@ std::vector<std::string> only_in(const Structure& a, const Structure& b) {
 
 }  // namespace
 
-bool at_floor(double mean_square, double before) {
-  return mean_square < kAtFloor || excess(mean_square) < kShareLeft * excess(before);
+bool at_floor(const Problem& problem, double mean_square, double before) {
+  const Sharpness sharp = problem.sharpness();
+  return mean_square < sharp.at_floor || excess(mean_square) < sharp.share_left * excess(before);
 }
 
 bool explains(double mean_square, double before) {
@@ -58,9 +55,9 @@ Belief::Belief(const Residual& residual, const Selection& selection, const Solut
   for (std::size_t k = 0; k < scores.size(); ++k)
     if (entries_[k].structure == chosen_) scores[k] = std::max(of_chosen, best + kRefused);
   const std::size_t count = std::min(chosen_.effects.size(), kImitated.size() - 1);
-  outside_ = at_floor(chosen.mean_square(), base) ? kImitated[count]
-             : chosen_.effects.empty()            ? kOutside
-                                                  : kStandIn;
+  outside_ = at_floor(residual.problem(), chosen.mean_square(), base) ? kImitated[count]
+             : chosen_.effects.empty()                                ? kOutside
+                                                                      : kStandIn;
   double sum = 0.0;
   for (const double s : scores) sum += std::exp(s - best);
   for (std::size_t k = 0; k < scores.size(); ++k)

@@ -13,7 +13,7 @@ namespace lab {
 
 /// Is a whitened mean square so near to 1 that nothing is left to explain? `before`: of the given
 /// model.
-bool at_floor(double mean_square, double before);
+bool at_floor(const Problem& problem, double mean_square, double before);
 /// Is enough of what the given model left explained to name effects at all?
 bool explains(double mean_square, double before);
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "effects/formula.hpp"
 #include "lab/least_squares.hpp"
 #include "lab/words.hpp"
 
@@ -28,27 +29,18 @@ Values starts_of(const std::vector<Parameter>& parameters) {
   return out;
 }
 
-/// The states of a recording at one moment, for a message.
-std::string at_moment(const Problem& problem, int trial, std::size_t sample) {
-  const States states = problem.states(trial);
-  std::string out = fmt::format("trial {}", problem.trial_id(trial));
-  for (std::size_t s = 0; s < states.names.size(); ++s)
-    out += fmt::format(", {} = {:.4g}", states.names[s], states.values[s][sample]);
-  return out;
-}
-
-/// The first moment at which the model with the effect says no number.
+/// The trial in which the formula is no number somewhere, and how often.
 Result<void> finite(const Problem& problem, const Structure& with, const Values& values,
                     const std::string& which) {
   for (int k = 0; k < problem.trials(); ++k) {
+    const auto before = effects::FormulaProgram::times_not_finite();
     const Residuals residuals = problem.full_rate(with, values, k);
-    for (const auto& channel : residuals.channels)
-      for (std::size_t i = 0; i < channel.size(); ++i)
-        if (!std::isfinite(channel[i]))
-          return Error{Errc::bad_input,
-                       fmt::format("formula: not a finite number {} at {}; it must be one "
-                                   "wherever the recordings go",
-                                   which, at_moment(problem, k, i))};
+    const auto times = effects::FormulaProgram::times_not_finite() - before;
+    if (times > 0)
+      return Error{Errc::bad_input,
+                   fmt::format("formula: not a finite number at {} moments of trial {} {}; it must "
+                               "be one wherever the recordings go",
+                               times, problem.trial_id(k), which)};
   }
   return {};
 }

@@ -12,8 +12,8 @@ namespace lab {
 
 /// Is the effect one that a diagnosis can judge on these recordings: does it vanish exactly where
 /// it says that it is off, and is it finite over the whole recorded domain, at its initial numbers
-/// and with each at its lowest and highest? Errors: bad_input, one line with what is wrong, of a
-/// number that is not finite also trial, time and states.
+/// and with each at its lowest and highest? Errors: bad_input, one line with what is wrong and, of
+/// what is not finite, the trial.
 core::Result<void> check_own_effect(const Problem& problem, const std::string& id);
 
 /// Which effects of the catalogue, and which other own ones, do nearly the same as each of `own` in

@@ -14,6 +14,7 @@
 #include "lab/palpation_numbers.hpp"
 #include "lab/palpation_recording.hpp"
 #include "lab/palpation_trend.hpp"
+#include "lab/palpation_weights.hpp"
 #include "lab/parallel.hpp"
 
 namespace lab {
@@ -27,11 +28,11 @@ using math::Vec3;
 constexpr int kRounds = 2;
 /// Samples prepared of all trials together, and moments that a fit compares of them, no more than
 /// so many a second.
-constexpr std::size_t kMostSamples = 2'000'000, kMostInstants = 4000;
+constexpr std::size_t kMostSamples = 400'000, kMostInstants = 4000;
 constexpr double kInstants_Hz = 100.0;
 /// What a drift counts when structures are compared: the orders of one course, which the channels
 /// share as a rule, and more than the six numbers of a constant bias, which it contains.
-constexpr int kDriftCounts = Trend::kOrders + 2;
+constexpr int kDriftCounts = 2 * Trend::kOrders;
 constexpr std::string_view kDrift = "sensor_drift";
 constexpr const char* kChannelNames[] = {"fx_N", "fy_N", "fz_N", "tx_Nm", "ty_Nm", "tz_Nm"};
 
@@ -74,6 +75,16 @@ class PalpationProblem final : public Problem {
                  Eigen::Ref<Eigen::VectorXd> out) const override {
     whitened(structure, values, k, out);
     if (has_drift(structure)) trends_[std::size_t(k)].remove(out);
+  }
+  Sharpness sharpness() const override {
+    return {.at_floor = 1.2,
+            .share_left = 0.0,
+            .enough = 0.9,
+            .as_given = 1.1,
+            .clear_share = 0.01,
+            .clear_of_excess = 0.0,
+            .per_trial = 300.0,
+            .followed = 1.01};
   }
   bool differs_cheaply() const override { return true; }
   void residuals_near(const Structure& structure, std::span<const double> values,
@@ -141,7 +152,7 @@ class PalpationProblem final : public Problem {
   static void whiten(const PalpationRecording& r, const models::PalpationAnswer& predicted,
                      Eigen::Ref<Eigen::VectorXd> out) {
     for (std::size_t j = 0; j < r.instants.size(); ++j) {
-      const Vec6 difference = r.measured[r.instants[j]] - stacked(predicted.wrench_H[j]);
+      const Vec6 difference = r.missed(r.instants[j], predicted.wrench_H[j]);
       out.segment<6>(6 * Eigen::Index(j)) =
           r.whitener[j].triangularView<Eigen::Lower>() * difference;
     }
@@ -275,7 +286,7 @@ Residuals PalpationProblem::full_rate(const Structure& structure, std::span<cons
   if (has_drift(structure)) slow = trend(structure, values, k);
   for (auto& channel : out.channels) channel.reserve(r.size());
   for (std::size_t i = 0; i < r.size(); ++i) {
-    Vec6 error = r.measured[i] - stacked(predicted.wrench_H[i]);
+    Vec6 error = r.missed(i, predicted.wrench_H[i]);
     if (slow.size() > 0) error -= slow.col(Eigen::Index(i));
     out.channels[0].push_back(error.head<3>().norm());
     for (int c = 0; c < 6; ++c) out.channels[std::size_t(c) + 1].push_back(error[c]);

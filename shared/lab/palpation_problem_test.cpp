@@ -136,6 +136,8 @@ INSTANTIATE_TEST_SUITE_P(Palpation, AHiddenEffect,
                          testing::Values(effects::Use{"probe_weight", {0.02, 0.06}},
                                          effects::Use{"pose_offset", {2e-4, -1.5e-4, 1e-4}},
                                          effects::Use{"contact_friction", {0.15, 1.0}},
+                                         effects::Use{"time_delay", {0.012}},
+                                         effects::Use{"tip_ball", {6e-4}},
                                          effects::Use{"shank_curvature", {6e-4, 0.8}}),
                          [](const auto& one) { return one.param.id; });
 

@@ -22,6 +22,7 @@ inline Vec6 stacked(const math::Wrench& wrench) {
 }
 
 struct PalpationRecording {
+  static constexpr double kDead = 1e6;
   std::string id, note;
   models::PalpationMotion motion;      ///< smoothed; every so many-th sample of a fast recording
   std::vector<math::Vec3> p_sd_m;      ///< standard error of the smoothed position, V
@@ -30,7 +31,7 @@ struct PalpationRecording {
   std::vector<double> omega_sd_rad_s;  ///< of the smoothed turning, about any axis
   std::vector<double> a_sd_m_s2;       ///< of the smoothed acceleration, along any axis
   std::vector<Vec6> measured;          ///< as recorded, at the motion's samples
-  Vec6 noise_sd = Vec6::Zero();        ///< of one sample
+  Vec6 noise_sd = Vec6::Zero();        ///< of one sample; kDead of a channel that says nothing
   std::vector<std::size_t> instants;   ///< the samples that a fit compares
   // Set by weigh().
   std::vector<math::Vec2> deflection_m;  ///< of a model near the truth: where a search begins
@@ -42,6 +43,14 @@ struct PalpationRecording {
 
   std::size_t size() const { return motion.t_s.size(); }
   double seconds() const { return motion.t_s.back() - motion.t_s.front(); }
+  /// Squares of the noise, 0 of dead channels.
+  Vec6 sensor_squares() const {
+    return (noise_sd.array() < kDead).select(noise_sd.cwiseAbs2(), Vec6::Zero());
+  }
+  /// Measured − predicted, 0 of dead channels.
+  Vec6 missed(std::size_t sample, const math::Wrench& predicted_H) const {
+    return (noise_sd.array() < kDead).select(measured[sample] - stacked(predicted_H), Vec6::Zero());
+  }
   /// 0 … size() − 1.
   std::vector<std::size_t> all() const;
 };
@@ -57,13 +66,5 @@ core::Result<PalpationRecording> prepare(trial::PalpationMeasurement&& trial,
 
 /// Every `stride`-th sample is an instant.
 void choose_instants(PalpationRecording& recording, std::size_t stride);
-
-/// What is expected of each instant if `runtime` were true: the sensor's noise, the pose's error as
-/// the model passes it on, and where the shank snaps from one rest to another the size of the jump,
-/// whose moment is known to a few samples only. Samples are not trusted that lie at such a snap, or
-/// where a pressed point moves so slowly along or across its force that the sign is not known (what
-/// friction and losses do there is not known either).
-/// Follows the shank's rests anew and keeps them.
-void weigh(const models::PalpationRuntime& runtime, PalpationRecording& recording);
 
 }  // namespace lab

@@ -1,6 +1,8 @@
 #include "lab/palpation_trend.hpp"
 
 #include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
 
 namespace lab {
 
@@ -31,7 +33,10 @@ Trend::Trend(std::span<const double> t_s, std::span<const Mat6> whitener) {
 }
 
 void Trend::remove(Eigen::Ref<Eigen::VectorXd> residual) const {
-  if (basis_.rows() == residual.size()) residual -= basis_ * (basis_.transpose() * residual).eval();
+  if (basis_.rows() != residual.size()) return;
+  residual -= basis_ * (basis_.transpose() * residual).eval();
+  const auto n = double(residual.size());
+  if (n > 2.0 * kNumbers) residual *= std::sqrt(n / (n - kNumbers));
 }
 
 Eigen::MatrixXd Trend::at(std::span<const double> t_s, const Eigen::VectorXd& residual) const {

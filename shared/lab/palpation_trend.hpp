@@ -20,7 +20,8 @@ class Trend {
   /// @param t_s  of each output. @param whitener  of each output.
   Trend(std::span<const double> t_s, std::span<const Mat6> whitener);
 
-  /// Takes out of a whitened residual (six numbers per output) what is trend.
+  /// Takes out of a whitened residual (six numbers per output) what is trend, and scales the rest
+  /// so that noise keeps its variance.
   void remove(Eigen::Ref<Eigen::VectorXd> residual) const;
   /// The trend in a whitened residual at any times, [channel][time], N and N·m.
   Eigen::MatrixXd at(std::span<const double> t_s, const Eigen::VectorXd& residual) const;

@@ -116,6 +116,11 @@ constexpr std::array kAdvice{
     Advice{"time_delay", "quick strokes of 3 mm at 1 to 5 per second, and a tap on something hard"},
     Advice{"torque_crosstalk",
            "turning to and fro in place, without feed, in free air and in the bone"},
+    Advice{"rotary_coulomb_friction",
+           "turning to and fro over the same angle at three speeds, with ten reversals or more"},
+    Advice{"rotary_stiffness",
+           "slow turns to and fro over 10°, 30° and 60°, with holds at each end"},
+    Advice{"rotary_bias", "five seconds with nothing on the shaft, before and after"},
 };
 
 }  // namespace

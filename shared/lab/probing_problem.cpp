@@ -31,7 +31,8 @@ constexpr std::string_view kDrift = "sensor_drift", kRotary = "rotary_";
 /// holds the probe (Coulomb's law is set-valued there), so a residual counts from there on.
 bool is_dry(std::string_view effect) {
   return effect == "coulomb_friction" || effect == "stribeck_friction" ||
-         effect == "depth_friction" || effect.starts_with("expression:");
+         effect == "depth_friction" || effect == "rotary_coulomb_friction" ||
+         effect.starts_with("expression:");
 }
 
 class ProbingProblem final : public Problem {
@@ -110,7 +111,7 @@ class ProbingProblem final : public Problem {
   /// What the law says, and by how much dry friction at rest may differ from it.
   struct Predicted {
     models::ProbingForces forces;
-    std::vector<double> at_rest_N;  // one per sample of `rest`; empty without dry friction
+    std::vector<double> at_rest_N;  // (or N·m) one per sample of `rest`; empty without dry friction
   };
   static std::vector<double> dry_at_rest(const models::ProbingModel& model,
                                          const ProbingRecording& r);
@@ -122,9 +123,15 @@ class ProbingProblem final : public Problem {
     Predicted out;
     runtime->predict(r.motion, out.forces);
     out.at_rest_N = dry_at_rest(model, r);
-    for (std::size_t i = 0; i < out.at_rest_N.size(); ++i)  // the middle of what it may be
-      out.forces.fz_N[r.rest[i]] -=
-          out.at_rest_N[i] * effects::direction(r.motion.v_m_s[r.rest[i]], r.motion.rest_m_s);
+    for (std::size_t i = 0; i < out.at_rest_N.size(); ++i) {  // the middle of what it may be
+      const std::size_t k = r.rest[i];
+      if (turns_)
+        out.forces.tz_Nm[k] -=
+            out.at_rest_N[i] * effects::direction(r.motion.omega_rad_s[k], r.motion.rest_rad_s);
+      else
+        out.forces.fz_N[k] -=
+            out.at_rest_N[i] * effects::direction(r.motion.v_m_s[k], r.motion.rest_m_s);
+    }
     return out;
   }
   void raw_residuals(const Structure& structure, std::span<const double> values, int k,
@@ -159,6 +166,7 @@ class ProbingProblem final : public Problem {
 std::vector<double> ProbingProblem::dry_at_rest(const models::ProbingModel& model,
                                                 const ProbingRecording& r) {
   models::ProbingModel dry;
+  dry.rotary.viscous_Nms_per_rad = dry.rotary.detent_Nm = 0.0;
   for (const effects::Use& use : model.effects)
     if (is_dry(use.id)) dry.effects.push_back(use);
   if (dry.effects.empty() || r.rest.empty()) return {};
@@ -166,12 +174,15 @@ std::vector<double> ProbingProblem::dry_at_rest(const models::ProbingModel& mode
   core::require(bool(runtime), "values within their bounds make a model that runs");
   effects::ProbingMotion back = r.at_rest;
   for (double& v : back.v_m_s) v = -v;
+  for (double& omega : back.omega_rad_s) omega = -omega;
   models::ProbingForces in, out;
   runtime->predict(r.at_rest, in);
   runtime->predict(back, out);
-  for (std::size_t k = 0; k < in.fz_N.size(); ++k)
-    in.fz_N[k] = 0.5 * std::abs(in.fz_N[k] - out.fz_N[k]);
-  return in.fz_N;
+  // A rig that only turns has an angle at rest, one that slides has not.
+  std::vector<double>& size = in.tz_Nm.empty() ? in.fz_N : in.tz_Nm;
+  const std::vector<double>& other = in.tz_Nm.empty() ? out.fz_N : out.tz_Nm;
+  for (std::size_t k = 0; k < size.size(); ++k) size[k] = 0.5 * std::abs(size[k] - other[k]);
+  return size;
 }
 
 Drift ProbingProblem::drift_of(const ProbingRecording& r) {

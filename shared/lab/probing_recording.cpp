@@ -105,7 +105,8 @@ void prepare_turning(trial::ProbingMeasurement& trial, const trial::StatedNoise&
         smooth(trial.t_s, trial.theta_rad, noise_of(trial.theta_rad, stated.theta_rad).sd);
     motion.theta_rad = std::move(theta.value);
     motion.omega_rad_s = std::move(theta.rate);
-    motion.rest_rad_s = kRestErrors * middle_of(std::move(theta.rate_sd));
+    out.omega_sd_rad_s = std::move(theta.rate_sd);
+    motion.rest_rad_s = kRestErrors * middle_of(out.omega_sd_rad_s);
   }
   motion.tz_Nm = std::move(trial.tz_Nm);
 }
@@ -160,6 +161,22 @@ void find_rest(ProbingRecording& r) {
     out.x_m.push_back(m.x_m[k]);
     out.v_m_s.push_back(told_m_s);
     out.a_m_s2.push_back(0.0);
+  }
+}
+
+/// The same of a rig that only turns.
+void find_turning_rest(ProbingRecording& r) {
+  const effects::ProbingMotion& m = r.motion;
+  effects::ProbingMotion& out = r.at_rest;
+  out.rest_rad_s = 0.0;
+  for (std::size_t k = 0; k < r.size(); ++k) {
+    const double told_rad_s = std::max(2.0 * m.rest_rad_s, kRestErrors * r.omega_sd_rad_s[k]);
+    if (std::abs(m.omega_rad_s[k]) >= told_rad_s) continue;
+    r.rest.push_back(k);
+    out.t_s.push_back(m.t_s[k]);
+    for (auto* all : {&out.x_m, &out.v_m_s, &out.a_m_s2}) all->push_back(0.0);
+    out.theta_rad.push_back(m.theta_rad[k]);
+    out.omega_rad_s.push_back(told_rad_s);
   }
 }
 
@@ -220,7 +237,10 @@ Result<ProbingRecording> prepare(trial::ProbingMeasurement&& trial,
   prepare_sliding(trial, stated, out);
   if (!turns) find_rest(out);
   prepare_turning(trial, stated, out);
-  if (!turns) out.decimator.choose(informative(out));
+  if (turns)
+    find_turning_rest(out);
+  else
+    out.decimator.choose(informative(out));
   out.measured_thin.resize(out.decimator.size(n));
   out.decimator.apply(out.measured, out.measured_thin);
   out.trusted.assign(n, 1.0);

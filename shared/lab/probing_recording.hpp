@@ -19,6 +19,7 @@ struct ProbingRecording {
   std::string id;
   effects::ProbingMotion motion;
   std::vector<double> x_sd_m, v_sd_m_s;  ///< standard errors of the smoothed motion
+  std::vector<double> omega_sd_rad_s;    ///< the same of the turning; empty without an angle
   std::vector<double> measured;          ///< of the primary channel (fz_N, or tz_Nm), full rate
   std::vector<double> other;             ///< tz_Nm beside fz_N, or empty
   double noise_sd = 0.0;                 ///< of one sample of `measured`

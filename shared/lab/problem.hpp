@@ -69,6 +69,20 @@ struct States {
   std::vector<std::vector<double>> values;
 };
 
+/// What mean squares of the whitened residual mean on a rig: how near to 1 a true model comes
+/// there.
+struct Sharpness {
+  double at_floor = 1.8;      ///< below this nothing is left to explain
+  double share_left = 0.001;  ///< of the given model's excess: less is as good as nothing
+  double enough = 1.25;       ///< below this no further effect is looked for
+  double as_given = 0.0;      ///< nor if the given model is below this and no effect betters it
+  double clear_share = 0.12;  ///< of the mean square, that a further effect must take away
+  double clear_of_excess = 0.004;  ///< and of the given model's excess
+  double per_trial = 12.0;         ///< observations that a trial is worth
+  double followed =
+      0.45;  ///< a trend of which the motion's memory explains this share is no sensor's
+};
+
 /// Const methods may be called from several threads at once.
 class Problem {
  public:
@@ -111,6 +125,7 @@ class Problem {
                               Eigen::Ref<Eigen::MatrixXd> out) const;
   /// Are those so cheap that a search should differentiate anew at every step?
   virtual bool differs_cheaply() const { return false; }
+  virtual Sharpness sharpness() const { return {}; }
   /// How many numbers per trial `residuals` has eliminated by itself for that structure.
   virtual int free_per_trial(const Structure& structure) const = 0;
 

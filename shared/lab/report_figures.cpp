@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "lab/report_parts.hpp"
@@ -51,6 +52,25 @@ std::vector<double> residuals(const TrialSamples& trial, std::size_t channel) {
   return out;
 }
 
+/// The height at which residuals are cut off, so that the samples at a border of layers do not hide
+/// all others; nothing where none is far out.
+double residual_edge(const ReportContent& content, std::size_t trial, std::size_t channel) {
+  constexpr double kShown = 0.99, kRoom = 1.5, kFar = 2.0;
+  std::vector<double> sizes = residuals(content.before.samples.trials[trial], channel);
+  for (double& r : sizes) r = std::abs(r);
+  const auto at = sizes.begin() + std::ptrdiff_t(kShown * double(sizes.size() - 1));
+  std::ranges::nth_element(sizes, at);
+  const double edge =
+      std::max(kRoom * *at, 4.0 * content.before.samples.channels[channel].noise_floor);
+  return *std::max_element(at, sizes.end()) > kFar * edge ? edge
+                                                          : std::numeric_limits<double>::infinity();
+}
+
+std::vector<double> cut_off(std::vector<double> values, double edge) {
+  for (double& v : values) v = std::clamp(v, -edge, edge);
+  return values;
+}
+
 plot::Panel residual_panel(const ReportContent& content, std::size_t trial, std::size_t channel) {
   const TrialSamples& before = content.before.samples.trials[trial];
   const auto& facts = content.before.samples.channels[channel];
@@ -58,10 +78,13 @@ plot::Panel residual_panel(const ReportContent& content, std::size_t trial, std:
   panel.x_label = "t, s";
   panel.y_label = "residual, " + name_and_unit(facts.name).unit;
   panel.height_px = 120;
-  panel.lines.push_back({"", before.t_s, residuals(before, channel), kBeforeColour, 1.0});
+  const double edge = residual_edge(content, trial, channel);
+  panel.lines.push_back(
+      {"", before.t_s, cut_off(residuals(before, channel), edge), kBeforeColour, 1.0});
   if (content.better) {
     const TrialSamples& better = content.better->samples.trials[trial];
-    panel.lines.push_back({"", better.t_s, residuals(better, channel), kBetterColour, 1.0});
+    panel.lines.push_back(
+        {"", better.t_s, cut_off(residuals(better, channel), edge), kBetterColour, 1.0});
   }
   panel.marks = {{2.0 * facts.noise_floor, "± 2 × noise", ""}, {-2.0 * facts.noise_floor, "", ""}};
   return panel;
@@ -164,7 +187,10 @@ std::string overlays(const ReportContent& content) {
         plot::svg(figure));
   }
   return section("Measured and simulated",
-                 "Residual is measured − simulated; errors are root mean squares.", body);
+                 "Residual is measured − simulated; errors are root mean squares. Where a few "
+                 "residuals are far larger than all others, as at a border of layers, they end at "
+                 "the picture's edge.",
+                 body);
 }
 
 std::string distributions(const ReportContent& content) {
@@ -203,7 +229,10 @@ std::string tract_picture(const TractMap& map, const std::string& unit) {
                          fmt::format("{}°", 90 * quarter));
   out += plot::written(
       {left + 0.5 * width, top + height + 40, 12.5, "middle"},
-      fmt::format("depth along the tract, mm · darkest: {}", lab::figure(largest, unit)));
+      fmt::format(
+          "depth along the tract, mm; upwards the angle about its axis · darkest: {}; empty: "
+          "not touched",
+          lab::figure(largest, unit)));
   out += fmt::format(R"(<rect x="{}" y="{}" width="{}" height="{}" fill="none" stroke="#b9c0c8"/>)",
                      left, top, width, height);
   return out + "</svg>\n";

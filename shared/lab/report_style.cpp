@@ -74,8 +74,10 @@ svg [stroke="#ffffff"]{stroke:var(--card)}
 svg [stroke="#22272e"]{stroke:var(--ink)}svg [fill="#22272e"]{fill:var(--ink)}
 svg [stroke="#d9731a"]{stroke:var(--given)}svg [fill="#d9731a"]{fill:var(--given)}
 svg [stroke="#1b4f8f"]{stroke:var(--better)}svg [fill="#1b4f8f"]{fill:var(--better)}
+@media (max-width:900px){td:first-child{min-width:8.5em}td.wide{min-width:90px;width:20%}td.n{white-space:normal}}
 @media (max-width:700px){main{padding:16px 12px 40px}section{padding:16px}.verdict h2{font-size:1.4rem}}
-@media print{body{font-size:12px}main{max-width:none;padding:0}section{break-inside:avoid;border-color:#ccc}
+@media print{body{font-size:12px}main{max-width:none;padding:0}section{border-color:#ccc}svg,tr,.ask,.verdict,.steps{break-inside:avoid}h2,h3{break-after:avoid}
+td:first-child{min-width:8.5em}td.wide{min-width:90px;width:20%}
 details:not([open])>*{display:block}.bar,.bar i,.steps i,.key i{-webkit-print-color-adjust:exact;print-color-adjust:exact}}
 )css";
 

@@ -31,9 +31,9 @@ std::string regions(const Side& side) {
         "<td class=\"n\">{}</td><td class=\"n\">{}</td></tr>\n",
         escaped(r.words), bar(r.share_of_error, "given"), percent(r.share_of_error),
         percent(r.share_of_time), figure(r.rmse, unit),
-        r.mean.size() == 1 ? figure(r.mean[0], unit)
-                           : fmt::format("({}, {}, {})", figure(r.mean[0]), figure(r.mean[1]),
-                                         figure(r.mean[2], unit)));
+        r.mean.size() == 1
+            ? figure(r.mean[0], unit)
+            : fmt::format("{:.2g}, {:.2g}, {:.2g} {}", r.mean[0], r.mean[1], r.mean[2], unit));
   return out + "</table>\n";
 }
 

@@ -1,8 +1,10 @@
 /// The report's answers: verdict, falling error, ranking, what is undecided.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "lab/report_parts.hpp"
 #include "lab/words.hpp"
@@ -59,6 +61,15 @@ std::string ranked_row(const ReportContent& content, const Ranked& ranked) {
       ranked.held_out_rmse ? figure(*ranked.held_out_rmse, unit) : "not tried");
 }
 
+/// "whether it is a or b", "whether b is missing too".
+std::string what_it_tells(const Settle& settle) {
+  std::vector<std::string> effects;
+  for (const std::string& id : settle.between)
+    if (id != "nothing") effects.push_back(effect_in_words(id));
+  return effects.size() == 1 ? fmt::format("whether {} is there at all", effects[0])
+                             : fmt::format("whether it is {}", fmt::join(effects, " or "));
+}
+
 std::string bars(const Step& step, const std::string& unit, double largest, double floor,
                  bool first) {
   const auto line = [&](double rmse, const char* kind) {
@@ -83,9 +94,9 @@ std::string verdict(const ReportContent& content) {
   const Sentences said = content.diagnosis ? sentences(*content.diagnosis, unit) : plain(content);
   std::string figures = key_figure("Error as given", figure(content.given_rmse, unit),
                                    against_floor(content.given_rmse, given.noise_floor));
-  if (content.before_name != "as given" && content.better)
-    figures += key_figure("Refitted", figure(given.rmse, unit),
-                          against_floor(given.rmse, given.noise_floor));
+  if (content.diagnosis && !content.diagnosis->effects.empty())
+    figures += key_figure("Refitted, held out", figure(content.diagnosis->base.held_out_rmse, unit),
+                          against_floor(content.diagnosis->base.held_out_rmse, given.noise_floor));
   if (content.diagnosis && !content.diagnosis->steps.empty()) {
     const Step& last = content.diagnosis->steps.back();
     figures += key_figure(
@@ -162,13 +173,11 @@ std::string undecided(const ReportContent& content) {
   if (!body.empty())
     body = "<p>These recordings can hardly tell apart:</p><ul>\n" + body + "</ul>\n";
   if (const auto& settle = content.diagnosis->settle) {
-    std::string between;
-    for (const std::string& id : settle->between)
-      between += (between.empty() ? "" : " or ") + effect_in_words(id);
     body += fmt::format(
-        "<div class=\"ask\"><b>Record next: {}</b>It would settle {}; expected gain in the "
+        "<div class=\"ask\"><b>Record next: {}</b>It would tell {}; expected gain in the "
         "probability of the right answer: {}.</div>\n",
-        escaped(settle->recording), escaped(between), percent(settle->expected_gain));
+        escaped(settle->recording), escaped(what_it_tells(*settle)),
+        percent(settle->expected_gain));
   }
   return section("What these recordings cannot tell", "", body);
 }

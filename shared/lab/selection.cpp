@@ -12,9 +12,8 @@
 namespace lab {
 namespace {
 
-/// A further effect must lower the whitened mean square by this share …
-constexpr double kClearShare = 0.12;
-/// … and, in units of chance: 2·nats per number added.
+/// A further effect must lower the whitened mean square by so much, in units of chance: 2·nats per
+/// number added.
 constexpr double kClearLoss = 30.0;
 /// Singles that are grown into pairs, pairs into triples; effects tried on each.
 constexpr std::size_t kGrown = 4, kTriedOnEach = 6;
@@ -24,17 +23,13 @@ constexpr std::size_t kRefined = 3;
 /// Above this the best of a size is begun anew from other shapes, so many of each effect.
 constexpr double kReshaped = 0.9;
 constexpr int kReshapeTries = 8;
-/// A trend of which the motion's memory explains this share is no sensor's.
-constexpr double kFollowed = 0.45;
 /// Shifts of all layers that one constant of the sensor explains: so much is left of them, where
 /// there are two and where there are more; what counts as a shift.
 constexpr double kBackOfTwo = 0.05, kBack = 0.15, kShifted_m = 5e-5, kNoWorse = 1.1;
 constexpr std::string_view kBias = "sensor_bias";
-/// At the floor for all purposes: no more effects are looked for.
-constexpr double kFloor = 1.25;
 
-/// Observations that a trial is worth, and the price of a number, in nats.
-constexpr double kPerTrial = 12.0, kPrice = 5.0;
+/// The price of a number, in nats.
+constexpr double kPrice = 5.0;
 /// Below this a mean square says nothing more: the noise is known no better.
 constexpr double kLeastSquare = 0.02;
 
@@ -59,7 +54,7 @@ std::pair<double, double> mean_squares(const Solution& a, const Solution& b) {
 }  // namespace
 
 double cost(const Residual& residual, const Solution& s, const Solution& base) {
-  return 0.5 * kPerTrial * double(residual.trials()) *
+  return 0.5 * residual.problem().sharpness().per_trial * double(residual.trials()) *
              std::log(std::max(kLeastSquare, s.mean_square())) +
          0.5 * (s.prior - base.prior) + kPrice * numbers_beyond(residual, s, base);
 }
@@ -94,8 +89,13 @@ bool Selection::clearly_better(const Solution& larger, const Solution& smaller,
   const double numbers = std::max(1.0, numbers_beyond(residual_, larger, smaller));
   const double gained = double(residual_.size()) * (before - after) / std::max(1.0, after) +
                         smaller.prior - larger.prior;
-  return gained > kClearLoss * numbers && before - after > kClearShare * before &&
+  return gained > kClearLoss * numbers &&
+         before - after > residual_.problem().sharpness().clear_share * before &&
          before - after > share * excess(base().mean_square());
+}
+
+bool Selection::clearly_better(const Solution& larger, const Solution& smaller) const {
+  return clearly_better(larger, smaller, residual_.problem().sharpness().clear_of_excess);
 }
 
 bool Selection::meant(const Solution& at) const {
@@ -161,9 +161,14 @@ void Selection::reshape(std::size_t effects) {
 
 void Selection::grow() {
   refine(1);
+  const Sharpness sharp = residual_.problem().sharpness();
+  const auto first = best_of(1, 1);
+  if (base().mean_square() < sharp.as_given && !first.empty() &&
+      !clearly_better(*first.front(), base()))
+    return;
   for (int size = 1; size < options_.max_effects; ++size) {
     const auto best = best_of(std::size_t(size), kGrown);
-    if (best.empty() || best.front()->mean_square() < kFloor) return;
+    if (best.empty() || best.front()->mean_square() < sharp.enough) return;
     std::vector<std::pair<const Solution*, std::string>> todo;
     for (const Solution* from : best) {
       std::vector<std::pair<double, std::string>> gains;
@@ -242,7 +247,8 @@ void Selection::refuse_trends() {
   for (const Candidate& candidate : residual_.problem().candidates()) {
     const std::string& id = candidate.facts.id;
     if (!candidate.facts.free_per_trial || !contains(chosen().structure, id)) continue;
-    if (followed_share(residual_, chosen(), id) < kFollowed) continue;
+    if (followed_share(residual_, chosen(), id) < residual_.problem().sharpness().followed)
+      continue;
     const Structure less = minus(chosen().structure, id);
     part(Solution(chosen()), less);
     chosen_ = name(less);

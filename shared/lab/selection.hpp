@@ -12,10 +12,9 @@
 
 namespace lab {
 
-/// A further effect must take away this share of what the given model left over the floor: less is
-/// a small flaw of the law of the first, not a second effect. A child that refines its parent's
-/// law need bring less.
-inline constexpr double kClearOfExcess = 0.004, kClearOfParent = 2e-4;
+/// A child that refines its parent's law need bring less than a further effect (see Sharpness):
+/// this share of what the given model left over the floor.
+inline constexpr double kClearOfParent = 2e-4;
 
 /// Every structure that was fitted, kept by its name.
 class Selection {
@@ -40,9 +39,10 @@ class Selection {
   /// An effect that reached the floor by imitation and is not named for that; empty for none.
   const std::string& refused() const { return refused_; }
   /// Does the larger bring the residual clearly nearer to the floor than the smaller? @param share
-  /// of what the given model left over the floor that it must take away besides.
-  bool clearly_better(const Solution& larger, const Solution& smaller,
-                      double share = kClearOfExcess) const;
+  /// of what the given model left over the floor that it must take away besides; by default that of
+  /// the rig's Sharpness.
+  bool clearly_better(const Solution& larger, const Solution& smaller, double share) const;
+  bool clearly_better(const Solution& larger, const Solution& smaller) const;
   /// Every effect's numbers stand to each other as its law means them.
   bool meant(const Solution& at) const;
 

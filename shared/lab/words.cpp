@@ -85,6 +85,7 @@ NameAndUnit name_and_unit(std::string_view name) {
 }
 
 std::string figure(double value) {
+  if (value < 0.0 && std::isfinite(value)) return "−" + figure(-value);
   if (!std::isfinite(value)) return "–";
   if (value == 0.0) return "0";
   const double size = std::abs(value);

@@ -88,6 +88,12 @@ PalpationAnswer answer(const PalpationRuntime& runtime, const PalpationMotion& m
   return out;
 }
 
+std::vector<std::size_t> every(const PalpationMotion& motion) {
+  std::vector<std::size_t> out(motion.t_s.size());
+  std::iota(out.begin(), out.end(), 0);
+  return out;
+}
+
 TEST(PalpationRuntime, TakesTheMotionADelayEarlier) {
   const auto motion = stroke();
   const auto now = answer(with({}), motion);
@@ -153,11 +159,85 @@ TEST(PalpationRuntime, FollowsAGivenCourseToTheSameRests) {
   const auto runtime = with({});
   const auto first = answer(runtime, motion);
   PalpationAnswer again;
-  std::vector<std::size_t> every(motion.t_s.size());
-  std::iota(every.begin(), every.end(), 0);
-  runtime.predict_at(motion, every, first.deflection_m, again);
+  runtime.predict_at(motion, every(motion), first.deflection_m, again);
   for (std::size_t k = 0; k < motion.t_s.size(); ++k)
     EXPECT_NEAR((again.wrench_H[k].force_N - first.wrench_H[k].force_N).norm(), 0.0, 1e-5) << k;
+}
+
+TEST(PalpationRuntime, RespondsToFirstOrderLikeTheWholeLaw) {
+  const auto motion = stroke();
+  const auto samples = every(motion);
+  laws::PalpationParameters thinner, pressed;
+  thinner.radius_m *= 0.999;
+  pressed.force_factor_Nm *= 1.001;
+  const auto base = with({});
+  const auto at = answer(base, motion);
+  FieldMemo memo;
+  PalpationAnswer same;
+  base.respond_at(motion, samples, at.deflection_m, same, memo);
+  for (const auto& changed :
+       {with({}, thinner), with({}, pressed), with({{"pose_offset", {0, 2e-6, 1e-6}}}),
+        with({{"contact_friction", {0.002, 0.5}}})}) {
+    PalpationAnswer whole, response;
+    changed.predict_at(motion, samples, at.deflection_m, whole);
+    changed.respond_at(motion, samples, at.deflection_m, response, memo);
+    double missed = 0.0, moved = 0.0;
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+      EXPECT_NEAR((same.wrench_H[k].force_N - at.wrench_H[k].force_N).norm(), 0.0, 1e-5);
+      missed += (response.wrench_H[k].force_N - whole.wrench_H[k].force_N).squaredNorm();
+      moved += (whole.wrench_H[k].force_N - at.wrench_H[k].force_N).squaredNorm();
+    }
+    EXPECT_LT(missed, 0.05 * 0.05 * moved);
+  }
+}
+
+/// A ridge of bone 4 mm wide along x and z through the middle of V: a shank cannot be pushed over
+/// it, the handle can be moved over it.
+volume::Volume ridge() {
+  volume::Volume v = half_space();
+  for (int k = 0; k < 40; ++k)
+    for (int j = 0; j < 40; ++j)
+      for (int i = 0; i < 40; ++i)
+        v.counts[v.offset(i, j, k)] = v.count_of(j >= 18 && j < 22 ? 1000 : 0);
+  return v;
+}
+PalpationMotion across_the_ridge() {
+  std::vector<double> t_s;
+  std::vector<math::Pose> poses;
+  for (int k = 0; k < 241; ++k) {
+    t_s.push_back(k / 200.0);
+    poses.push_back(beside_the_surface(-0.006 + 0.012 * k / 240.0));
+  }
+  auto motion = PalpationMotion::through(t_s, poses);
+  EXPECT_TRUE(motion);
+  return std::move(*motion);
+}
+
+TEST(PalpationRuntime, ComesFromTheEndToTheOtherSideOfARidge) {
+  const auto runtime = PalpationRuntime::make(PalpationModel{}, ridge());
+  ASSERT_TRUE(runtime);
+  const auto motion = across_the_ridge();
+  PalpationAnswer there, back;
+  runtime->predict(motion, there);
+  runtime->predict(motion, back, true);
+  const auto& pose = motion.handle[120].X_VH;
+  EXPECT_LT(runtime->tip_m(pose, there.deflection_m[120]).y(), -1e-3);
+  EXPECT_GT(runtime->tip_m(pose, back.deflection_m[120]).y(), 1e-3);
+}
+
+TEST(PalpationRuntime, DoesNotRespondByGoingElsewhere) {
+  PalpationModel moved;
+  moved.effects = {{"pose_offset", {0, 4e-3, 0}}};
+  const auto base = PalpationRuntime::make(PalpationModel{}, ridge());
+  const auto other = PalpationRuntime::make(moved, ridge());
+  ASSERT_TRUE(base && other);
+  const auto motion = across_the_ridge();
+  PalpationAnswer at, response;
+  base->predict(motion, at);
+  FieldMemo memo;
+  other->respond_at(motion, every(motion), at.deflection_m, response, memo);
+  for (std::size_t k = 0; k < motion.t_s.size(); ++k)
+    EXPECT_LE((response.deflection_m[k] - at.deflection_m[k]).norm(), 0.2001e-3);  // of 1 mm
 }
 
 TEST(PalpationRuntime, RefusesWhatTheLawRefuses) {

@@ -14,8 +14,8 @@ namespace {
 constexpr Eigen::Index kBlock = 256;
 constexpr Eigen::Index kLarge = 200'000;
 constexpr double kWorstCondition = 1e5;
-/// Below it, a mean square has lost digits to underflow.
-constexpr double kSmallestSquare = 1e-280;
+/// Mean squares beyond these are for check() to refuse: their products leave a double.
+constexpr double kSmallestSquare = 1e-140, kLargestSquare = 1e140;
 
 using Lanes = Eigen::Array<double, 8, 1>;
 using Segment = Eigen::Map<Eigen::ArrayXd>;
@@ -84,7 +84,7 @@ std::optional<BlockLeastSquares> BlockLeastSquares::make(const Design& design,
   const auto n = static_cast<double>(response.size());
   const Vector mean_square = out.sums_.diagonal().tail(k + 1) / n;
   for (Eigen::Index j = 0; j <= k; ++j)
-    if (!std::isfinite(mean_square[j]) || !(mean_square[j] > kSmallestSquare) ||
+    if (!(mean_square[j] < kLargestSquare) || !(mean_square[j] > kSmallestSquare) ||
         !(std::sqrt(mean_square[j]) > 1e-14 * std::abs(out.means_[j])))
       return std::nullopt;
   out.scales_ = mean_square.head(k).cwiseSqrt();

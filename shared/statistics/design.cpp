@@ -12,6 +12,8 @@ namespace {
 
 using Extended = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
 
+constexpr double kLargest = 1e70;
+
 core::Error wrong(std::string what) { return {core::Errc::bad_input, std::move(what)}; }
 
 /// Columns scaled to length one; with an intercept, centred first (the ones column stays out).
@@ -57,6 +59,17 @@ core::Result<void> check_shape(const Design& design, const Vector& response) {
   return {};
 }
 
+core::Result<void> check_range(const Vector& values, const std::string& what) {
+  const double most = values.cwiseAbs().maxCoeff(), spread = values.maxCoeff() - values.minCoeff();
+  const bool large = !(most <= kLargest);
+  if (!large && !(spread > 0.0 && spread < 1.0 / kLargest)) return {};
+  return core::Error{core::Errc::out_of_range,
+                     fmt::format("{} {} {:.3g}: the numbers are too {} for sums of squares, so "
+                                 "rescale them",
+                                 what, large ? "reaches" : "differs by", large ? most : spread,
+                                 large ? "large" : "small")};
+}
+
 core::Result<void> check(const Design& design, const Vector& response) {
   if (auto fine = check_shape(design, response); !fine) return fine;
   const auto rows = design.columns.rows(), columns = design.columns.cols();
@@ -72,7 +85,12 @@ core::Result<void> check(const Design& design, const Vector& response) {
   if (response.maxCoeff() == response.minCoeff())
     return wrong(
         fmt::format("the response is {} in every row: there is nothing to explain", response[0]));
-  return {};
+  for (Eigen::Index j = 0; j < columns; ++j)
+    if (auto in_range = check_range(design.columns.col(j),
+                                    "column '" + design.names[static_cast<std::size_t>(j)] + "'");
+        !in_range)
+      return in_range;
+  return check_range(response, "the response");
 }
 
 std::string collinear_columns(const Design& design) {

@@ -17,6 +17,9 @@ core::Result<void> check(const Vector& x, const Vector& y) {
     return core::Error{core::Errc::bad_input, "a sample of fewer than two values has no spread"};
   if (!x.allFinite() || !y.allFinite())
     return core::Error{core::Errc::bad_input, "a value is not a finite number"};
+  Vector both(x.size() + y.size());
+  both << x, y;
+  if (auto fine = check_range(both, "the response"); !fine) return fine;
   return {};
 }
 

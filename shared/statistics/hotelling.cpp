@@ -38,6 +38,8 @@ core::Result<double> distance_squared(const Matrix& centred, double df, const Ve
 
 core::Result<void> check_rows(const Matrix& values, Eigen::Index least) {
   if (!values.allFinite()) return wrong("a response is not a finite number");
+  for (Eigen::Index j = 0; j < values.cols(); ++j)
+    if (auto fine = check_range(values.col(j), "a response"); !fine) return fine;
   if (values.rows() >= least) return {};
   return wrong(fmt::format("{} rows of {} responses: at least {} are needed", values.rows(),
                            values.cols(), least));

@@ -97,6 +97,7 @@ core::Result<LearningCurve> learning_curve(const Vector& trial, const Vector& sc
     return wrong("a learning curve needs at least 5 trials, 6 with a plateau");
   if (!trial.allFinite() || !score.allFinite() || !(trial.minCoeff() > 0.0))
     return wrong("trials are numbered from 1, scores are finite");
+  if (auto fine = check_range(score, "the score"); !fine) return fine.error();
   if (score.maxCoeff() == score.minCoeff()) return wrong("every score is the same: no curve");
   LearningCurve fit;
   fit.names = data.has_plateau() ? std::vector<std::string>{"a", "b", "c"}

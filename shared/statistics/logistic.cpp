@@ -29,11 +29,16 @@ core::Result<void> check_counts(const Design& design, const Counts& counts) {
       return wrong(fmt::format("row {}: a column is not a finite number", i + 1));
   }
   if (design.columns.rows() < design.columns.cols())
-    return wrong(fmt::format("{} rows cannot determine {} coefficients", design.columns.rows(),
+    return wrong(fmt::format("{} row(s) cannot determine {} coefficients", design.columns.rows(),
                              design.columns.cols()));
   const double sum = counts.successes.sum();
   if (sum == 0.0 || sum == counts.trials.sum())
     return wrong("every outcome is the same: there is nothing to explain");
+  for (Eigen::Index j = 0; j < design.columns.cols(); ++j)
+    if (auto in_range = check_range(design.columns.col(j),
+                                    "column '" + design.names[static_cast<std::size_t>(j)] + "'");
+        !in_range)
+      return in_range;
   if (!collinear_columns(design).empty()) return collinear_error(design);
   return {};
 }

@@ -46,6 +46,7 @@ core::Result<void> check(const Matrix& values) {
   if (values.rows() < 2 || values.cols() < 2)
     return wrong("repeated measures need at least two subjects and two levels");
   if (!values.allFinite()) return wrong("a value is missing or not a finite number");
+  if (auto fine = check_range(values.reshaped(), "the response"); !fine) return fine;
   return {};
 }
 

@@ -131,6 +131,7 @@ core::Result<std::size_t> checked_groups(const RmDesign& design) {
   if (design.values.rows() < 2 || cells < 2)
     return wrong("repeated measures need at least two subjects and two levels");
   if (!design.values.allFinite()) return wrong("a value is missing or not a finite number");
+  if (auto fine = check_range(design.values.reshaped(), "the response"); !fine) return fine.error();
   std::vector<std::size_t> sizes(1, static_cast<std::size_t>(design.values.rows()));
   if (!design.group.empty()) {
     core::require(std::ssize(design.group) == design.values.rows(), "every subject has a group");

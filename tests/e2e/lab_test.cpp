@@ -170,14 +170,14 @@ TEST_F(Lab, FitsAPersonsOwnEffect) {
   std::ofstream(at("own.json")) << R"json({"format":"tractus-effect/1","id":"expression:rub",
 "rig":"probing","adds_to":"fz_N","formula":"c * sign(v_m_s)","summary":"rubbing",
 "parameters":{"c":{"unit":"N","initial":1,"low":0,"high":100,"meaning":"size"}}})json";
-  const auto answer = json(lab("fit", "rubbing",
-                               "--effect " + at("own.json") + " --out " + at("own_model.json") +
-                                   " --json"));
-ASSERT_EQ(answer["effects"].size(), 1u);
-EXPECT_EQ(answer["effects"][0]["id"], "expression:rub");
-EXPECT_NEAR(answer["effects"][0]["parameters"]["c"]["value"].get<double>(), kFriction, 0.05);
-// The error before is that of the model without it.
-EXPECT_NEAR(answer["base"]["rmse"].get<double>(), kFriction, 0.05 * kFriction);
+  const auto answer =
+      json(lab("fit", "rubbing",
+               "--effect " + at("own.json") + " --out " + at("own_model.json") + " --json"));
+  ASSERT_EQ(answer["effects"].size(), 1u);
+  EXPECT_EQ(answer["effects"][0]["id"], "expression:rub");
+  EXPECT_NEAR(answer["effects"][0]["parameters"]["c"]["value"].get<double>(), kFriction, 0.05);
+  // The error before is that of the model without it.
+  EXPECT_NEAR(answer["base"]["rmse"].get<double>(), kFriction, 0.05 * kFriction);
 }
 
 TEST_F(Lab, AddsNothingWhereNothingIsMissing) {
@@ -233,6 +233,67 @@ TEST_F(Lab, WhatIsFoundOnARealToolHoldsAtSpeedsItNeverSaw) {
                after = error(run("compare", at("found.json"), "light_fast", ""));
   EXPECT_LT(after, 0.5 * before);
   std::printf("real tool: %.3f N with base alone, %.3f N with what was found\n", before, after);
+}
+
+// The same tool as the rotary axis that it is: fitted at 0.2 Hz, tried at 0.4 and 0.5 Hz.
+TEST_F(Lab, WhatIsFoundAboutARealAxisHoldsAtSpeedsItNeverSaw) {
+  const std::string data = TRACTUS_SOURCE_DIR "/tests/data/force/cable_tool_odbl/turning/";
+  std::ofstream(at("axis.json"))
+      << R"({"format":"tractus-model/1","rig":"probing","name":"viscous axis","base":{"layers":[],)"
+      << R"("rotary":{"viscous_Nms_per_rad":0.01,"detent_Nm":0,"detent_pitch_rad":0.35}},)"
+      << R"("fixed":["/base/rotary/detent_Nm","/base/rotary/detent_pitch_rad"]})";
+  const auto run = [&](const std::string& command, const std::string& model, const std::string& set,
+                       const std::string& more) {
+    return json(ran(fmt::format("{} {} --model {} --measurements {}{} {} --json", kTractus, command,
+                                at(model), data, set, more)));
+  };
+  const auto error_Nm = [&](const std::string& model) {
+    const auto compared = run("compare", model, "light_fast", "");
+    EXPECT_EQ(compared["primary"], "tz_Nm");
+    return compared["channels"][0]["rmse"].get<double>();
+  };
+  run("fit", "axis.json", "light_slow", "--out " + at("viscous.json"));
+  const auto found = run("diagnose", "axis.json", "light_slow", "--out-model " + at("axis2.json"));
+  ASSERT_FALSE(found["effects"].empty());
+  for (const auto& effect : found["effects"])
+    EXPECT_EQ(effect["id"].get<std::string>().find("rotary_"), 0u) << effect;
+  const double before_Nm = error_Nm("viscous.json"), after_Nm = error_Nm("axis2.json");
+  EXPECT_LT(after_Nm, 0.5 * before_Nm);
+  std::printf("real axis: %.4f N·m viscous alone, %.4f N·m with what was found\n", before_Nm,
+              after_Nm);
+}
+
+TEST_F(Lab, ASetThatSlidesIsNeverAnsweredWithAnEffectAboutTheAxis) {
+  const auto answer = json(lab("diagnose", "rubbing", "--json"));
+  for (const auto& ranked : answer["ranking"])
+    EXPECT_NE(ranked["id"].get<std::string>().find("rotary_"), 0u) << ranked;
+  expect_refusal(lab("fit", "rubbing", "--add rotary_bias --out " + at("never.json")),
+                 "sets that only turn");
+}
+
+TEST_F(Lab, RefusesRecordingsThatNeverMeetTheModel) {
+  std::ofstream(at("deep.json"))
+      << R"({"format":"tractus-model/1","rig":"probing","name":"deep","base":{"layers":[)"
+      << R"({"start_m":0.5,"thickness_m":0.05,"stiffness_N_per_m":4000,"damping_Ns_per_m":2000,)"
+      << R"("equilibrium_m":0}],"rotary":{"viscous_Nms_per_rad":0.02,"detent_Nm":0.01,)"
+      << R"("detent_pitch_rad":0.35}}})";
+  expect_refusal(ran(fmt::format("{} diagnose --model {} --measurements {}", kTractus,
+                                 at("deep.json"), at("rubbing"))),
+                 "the model's layers from 0.5 to 0.55 m");
+}
+
+TEST_F(Lab, ReplaysWhatWasFoundWithTheErrorThatIsLeft) {
+  ASSERT_EQ(lab("fit", "rubbing", "--add coulomb_friction --out " + at("rubs.json")).code, 0);
+  const auto replayed =
+      json(ran(fmt::format("{} replay --model {} --measurements {} --out {} --json", kTractus,
+                           at("rubs.json"), at("rubbing"), at("replayed"))));
+  EXPECT_EQ(replayed["table"][0]["channel"], "fz_N");
+  // Noise of 0.05 N, and a few samples of the wrong sign at each reversal.
+  EXPECT_LT(replayed["table"][0]["rmse"].get<double>(), 0.15);
+  EXPECT_TRUE(fs::exists(at("replayed/trials/trial1.svg")));
+  expect_refusal(ran(fmt::format("{} replay --model {} --measurements {} --out {}", kTractus,
+                                 at("rubs.json"), at("rubbing"), at("replayed"))),
+                 "exists already");
 }
 
 TEST_F(Lab, TellsAPersonInASentenceFirst) {

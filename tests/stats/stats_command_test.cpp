@@ -262,4 +262,58 @@ TEST_F(Stats, NumbersAtTheEdgesOfADoubleGetAnAnswerOrAName) {
   EXPECT_EQ(run("rank", huge, "y ~ g").exit, 0);
 }
 
+TEST_F(Stats, NoMethodGivesANumberOfScalesThatADoubleCannotSquare) {
+  const auto rows = [&](const std::string& power) {
+    std::string out = "y,x,g,s,k,o,f\n";
+    const double y[] = {1.2, 2.9, 2.2, 4.1, 3.3, 5.2, 2.4, 3.8, 4.9};
+    for (int i = 0; i < 9; ++i)
+      out += std::to_string(y[i]) + power + "," + std::to_string(3.1 * y[8 - i] + i) + power + "," +
+             (i % 2 ? "a" : "b") + ",s" + std::to_string(i / 3) + "," + std::to_string(i % 3) +
+             "," + std::to_string(i + 1) + "," + (i % 4 ? "1" : "0") + "\n";
+    return file(out).string();
+  };
+  const std::pair<const char*, const char*> asked[] = {
+      {"ols", "y ~ x"},         {"ols", "o ~ x"},
+      {"robust", "y ~ x"},      {"robust", "o ~ x"},
+      {"anova", "y ~ g"},       {"rm-anova", "y ~ k + (1|s)"},
+      {"lmm", "y ~ x + (1|s)"}, {"lmm", "o ~ x + (1|s)"},
+      {"logistic", "f ~ x"},    {"effect-size", "y ~ g"},
+      {"icc", "y ~ k + (1|s)"}, {"hotelling", "g ~ y + o"},
+      {"permutation", "y ~ o"}, {"learning-curve", "y ~ o"},
+  };
+  for (const char* power : {"e300", "e-300"}) {
+    const auto data = rows(power);
+    for (const auto& [method, formula] : asked)
+      EXPECT_THAT(refusal(method, data, formula), HasSubstr("rescale"))
+          << method << " " << formula << " " << power;
+  }
+  const auto plain_rows = rows("");
+  for (const auto& [method, formula] : asked)
+    EXPECT_EQ(run(method, plain_rows, formula).exit, 0) << method << " " << formula;
+}
+
+TEST_F(Stats, ASlipAmongNumbersIsNamedAndMakesNoFactor) {
+  const auto data = file("y,x\n1,2\n2,3\n3,o\n4,5\n5,7\n").string();
+  for (const char* method : {"ols", "robust", "rank", "logistic"})
+    EXPECT_THAT(refusal(method, data, "y ~ x"), HasSubstr(":4: column 'x' holds numbers"));
+  EXPECT_EQ(run("rank", data, "y ~ C(x)").exit, 0);
+  EXPECT_THAT(refusal("confusion", file("a,b\n1,x\n0,y\n1,y\n").string(), "a ~ b"),
+              HasSubstr("no label in common"));
+}
+
+TEST_F(Stats, WaldsTestAndHotellingsRunFromFiles) {
+  // Four failures in a row pass ln((1 - 0.2)/0.05) = 2.77 at 0.916 each.
+  const auto got = core::parse_json(
+      run("sprt", file("failed,n\n1,1\n1,2\n1,3\n1,4\n0,5\n").string(), "failed ~ n", "--json").out,
+      "stdout");
+  ASSERT_TRUE(got);
+  EXPECT_EQ((*got)["persons"][0]["verdict"], "inadequate");
+  EXPECT_EQ((*got)["persons"][0]["at_trial"], 4);
+  const auto want = expected("rm_anova")["cases"]["breach_velocity_mm_s"]["hotelling"];
+  const auto t2 = json("hotelling", "sim_lateral_breach_velocity.csv",
+                       "breach_velocity_mm_s ~ C(repetition) + (1|surgeon)");
+  expect_near(t2["analysis"]["T_squared"], want["T2"], 1e-10);
+  expect_near(t2["analysis"]["p"], want["p_value"], 1e-10);
+}
+
 }  // namespace

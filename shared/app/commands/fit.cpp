@@ -43,7 +43,8 @@ Command fit_command() {
             add_lab_options(app, *options);
             app.add_option("--add", options->add,
                            "id of an effect to add (see tractus effects); may be given again")
-                ->expected(1);
+                ->expected(1, 64)
+                ->allow_extra_args(false);
             add_own_option(app, *options);
             app.add_option("--out", options->out, "write the fitted model")->required();
             return [options] { return run(*options); };

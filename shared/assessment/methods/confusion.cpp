@@ -39,6 +39,11 @@ core::Result<Findings> run_confusion(const Analysis& of) {
   const auto truth = single_column(of, "confusion");
   if (!truth) return truth.error();
   const auto classes = classes_of(of.table, *truth, of.formula.response);
+  if (classes.size() ==
+      levels_of(of.table, *truth).size() + levels_of(of.table, of.formula.response).size())
+    return bad_input(fmt::format("{}: '{}' and '{}' have no label in common, as '{}' and '{}'",
+                                 of.table.name(), *truth, of.formula.response, classes.front(),
+                                 classes.back()));
   if (classes.size() > 50)
     return bad_input(fmt::format("{}: {} classes are too many for a table (at most 50)",
                                  of.table.name(), classes.size()));

@@ -118,9 +118,11 @@ core::Result<Findings> run_rank(const Analysis& of) {
   const auto y = of.table.numbers(of.formula.response);
   if (!y) return y.error();
   if (!of.formula.group.empty()) return repeated(of, *column, *y);
-  const bool number =
-      of.formula.terms[0].variables[0].as == Variable::As::itself && of.table.is_numeric(*column);
-  return number ? correlations(of, *column, *y) : independent(of, *column, *y);
+  if (of.formula.terms[0].variables[0].as != Variable::As::itself)
+    return independent(of, *column, *y);
+  const auto number = of.table.holds_numbers(*column);
+  if (!number) return number.error();
+  return *number ? correlations(of, *column, *y) : independent(of, *column, *y);
 }
 
 }  // namespace

@@ -54,6 +54,8 @@ core::Result<Findings> run_robust(const Analysis& of) {
                  fmt::format("largest leverage {:.3f}, row {}", leverage, most + 1), std::nan(""),
                  leverage > kHighLeverage ? "read the note below" : "none does")});
   out["notes"] = Json::array();
+  if (!(fit->sigma > 1e-12 * problem->y.cwiseAbs().maxCoeff()))
+    out["notes"].push_back("the columns fit the response to the last digit: t and p mean nothing");
   if (!fit->converged) out["notes"].push_back("50 iterations were not enough to settle");
   if (leverage > kHighLeverage)
     out["notes"].push_back(

@@ -2,7 +2,7 @@
 /// point enters and F (1 − h) while it leaves.
 ///
 /// It leaves when its velocity has a part along the force. The change from one to the other is
-/// rounded over 0.1 mm/s: half of it at rest, all but 1/400 of it at 1 mm/s. A hand would feel the
+/// rounded over 0.03 mm/s: half of it at rest, all but 1/400 of it at 0.3 mm/s. A hand would feel the
 /// jump as a click.
 #include <cmath>
 
@@ -11,7 +11,7 @@
 namespace effects {
 namespace {
 
-constexpr double kRounded_m_s = 1e-4;
+constexpr double kRounded_m_s = 3e-5;
 
 class ContactHysteresis final : public ContactLoss {
  public:

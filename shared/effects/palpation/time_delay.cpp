@@ -1,5 +1,5 @@
-/// A force that is recorded late against the motion: what is recorded at t is the force of the
-/// motion at t − delay, all of it, weight and inertia too.
+/// A force that is recorded late against the motion (or early, where the poses come late): what is
+/// recorded at t is the force of the motion at t − delay, all of it, weight and inertia too.
 #include "effects/palpation_effect.hpp"
 
 namespace effects {
@@ -24,9 +24,9 @@ PalpationEffectInfo time_delay() {
                     .equation = "recorded F(t) = F of the motion at t − delay",
                     .source = "own",
                     .params = {{.name = "delay_s",
-                                .meaning = "how late",
+                                .meaning = "how late; below 0: how early",
                                 .initial = 0.005,
-                                .low = 0.0,
+                                .low = -0.1,
                                 .high = 0.2}}},
           .make = [](std::span<const double> values) -> PalpationEffect {
             return std::make_unique<TimeDelay>(values[0]);

@@ -1,11 +1,13 @@
 #include "lab/io/answers.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
 #include "lab/answer.hpp"
 #include "lab/own_effects.hpp"
+#include "lab/words.hpp"
 
 namespace lab_io {
 namespace {
@@ -50,16 +52,45 @@ void compare_refitted(const Case& opened, const lab::Fit& fit, Answer& answer) {
   answer.content.map = lab::tract_map(answer.content.before.samples);
 }
 
+/// Numbers of the given model that a fit pushed to the edge of their range: it is far from these
+/// recordings, and what is named beside them is worth little.
+std::string at_their_edge(const lab::Fit& fit) {
+  std::vector<std::string> names;
+  for (const lab::Estimate& e : fit.estimates)
+    if (e.at_bound && e.pointer.starts_with('/')) names.push_back(e.pointer);
+  if (names.empty()) return {};
+  return fmt::format(
+      "{} ended at the edge of {}: the model as given is far from these recordings, and what is "
+      "said of effects is worth little; begin with numbers that are nearer",
+      fmt::join(names, ", "), names.size() == 1 ? "its range" : "their ranges");
+}
+
+/// What these recordings cannot tell of, whatever the verdict: effects that their motion never
+/// calls on.
+std::string not_excited(const lab::Diagnosis& diagnosis) {
+  std::vector<std::string> names;
+  for (const lab::Ranked& ranked : diagnosis.ranking)
+    if (ranked.note.starts_with("not excited")) names.push_back(lab::effect_in_words(ranked.id));
+  if (names.empty()) return {};
+  return fmt::format(
+      "these recordings cannot tell whether there is {}: their motion does not call "
+      "on {}",
+      fmt::join(names, ", "), names.size() == 1 ? "it" : "them");
+}
+
 /// An id that this recording can show, or why not.
 Result<void> known(const lab::Problem& problem, const std::string& id) {
   const auto& all = problem.candidates();
   const auto it =
       std::ranges::find_if(all, [&](const lab::Candidate& c) { return c.facts.id == id; });
   if (it == all.end())
-    return Error{Errc::not_found,
-                 fmt::format("'{}': no such effect on the {} rig, or the model has it already; "
-                             "see tractus effects",
-                             id, problem.rig())};
+    return Error{
+        Errc::not_found,
+        id.starts_with("rotary_") && problem.rig() == "probing"
+            ? fmt::format("'{}' acts about the axis and shows in sets that only turn", id)
+            : fmt::format("'{}': no such effect on the {} rig, or the model has it already; "
+                          "see tractus effects",
+                          id, problem.rig())};
   if (!it->possible)
     return Error{Errc::bad_input, fmt::format("'{}' cannot be fitted: {}", id, it->why_not)};
   return {};
@@ -82,6 +113,10 @@ Result<Answer> diagnosed(const Case& opened, const DiagnoseWish& wish,
       lab::diagnose(*opened.problem, wish.options, part_of(progress, 0.0, wish.report ? 0.9 : 1.0));
   if (!diagnosis) return diagnosis.error();
   Answer out = begun(opened);
+  if (auto edge = at_their_edge(diagnosis->final_fit); !edge.empty())
+    diagnosis->notes.insert(diagnosis->notes.begin(), std::move(edge));
+  if (auto blind = not_excited(*diagnosis); !blind.empty())
+    diagnosis->notes.push_back(std::move(blind));
   if (!opened.own.empty())
     for (std::string& remark : lab::likenesses(*opened.problem, opened.own,
                                                diagnosis->base_fit.values, wish.options.threads))

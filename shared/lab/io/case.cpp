@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "effects/expression.hpp"
 #include "effects/palpation_expression.hpp"
@@ -107,12 +108,49 @@ Result<Case> with(Case opened, Result<std::unique_ptr<lab::Problem>> problem) {
   return opened;
 }
 
+/// A channel that is judged and never changes is a sensor that was off.
+Result<void> check_sensors(const Case& opened) {
+  const auto& channels = opened.recorded.channels;
+  const std::string& primary = opened.problem->channels().front().name;
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    if (channels[c] != primary) continue;
+    for (const auto& trial : opened.recorded.trials) {
+      const auto [least, most] = std::ranges::minmax(trial.values[c]);
+      if (least == most)
+        return Error{Errc::bad_input,
+                     fmt::format("trial {}: {} is {} in every sample; was the sensor off?",
+                                 trial.id, primary, least)};
+    }
+  }
+  return {};
+}
+
+/// Recordings that never enter the model's bone tell nothing of it.
+Result<void> check_reach(const models::ProbingModel& model, const trial::ProbingSet& set) {
+  if (model.layers.empty()) return {};
+  const double first_m = model.layers.front().start_m,
+               last_m = model.layers.back().start_m + model.layers.back().thickness_m;
+  double least_m = std::numeric_limits<double>::infinity(), most_m = -least_m;
+  for (const auto& trial : set.trials)
+    for (const double x_m : trial.x_m)
+      least_m = std::min(least_m, x_m), most_m = std::max(most_m, x_m);
+  if (!(least_m <= most_m)) return {};  // a rig that only turns
+  if (most_m < first_m || least_m > last_m)
+    return Error{
+        Errc::bad_input,
+        fmt::format("{}: depths run from {:.4g} to {:.4g} m, the model's layers from {:.4g} "
+                    "to {:.4g} m; x_m counts from the entry, positive into the bone",
+                    set.folder.string(), least_m, most_m, first_m, last_m)};
+  return {};
+}
+
 Result<Case> open_probing(models::ProbingModel model, const Sources& sources,
                           const fs::path& folder, const core::Progress& progress) {
   auto own = take_own(sources, effects::probing_expressions(), model.effects);
   if (!own) return own.error();
   auto set = trial::read_probing_set(folder);
   if (!set) return set.error();
+  if (auto fits = check_reach(model, *set); !fits) return fits.error();
   Case opened = begun(model.name, *set, sources);
   return with(std::move(opened),
               lab::make_probing_problem(model, std::move(*set),
@@ -167,6 +205,8 @@ Result<Case> open_case(const Sources& sources, const core::Progress& progress) {
                         : open_palpation(std::get<models::PalpationModel>(*model), sources,
                                          unpacked->folder(), rest);
   if (!opened) return named(opened.error(), *unpacked, sources.measurements);
+  if (auto fine = check_sensors(*opened); !fine)
+    return Error{fine.error().code, sources.measurements.string() + ": " + fine.error().what};
   return with_own(std::move(*opened), sources);
 }
 
