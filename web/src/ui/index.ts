@@ -8,6 +8,7 @@ export { Facts, type Fact } from './facts';
 export { Field } from './field';
 export { Notice } from './notice';
 export { Progress } from './progress';
+export { Scroll } from './scroll';
 export { Select } from './select';
 export { Shell } from './shell';
 export { Skeleton } from './skeleton';

@@ -1,4 +1,5 @@
 import type { ReactNode } from 'react';
+import { Scroll } from './scroll';
 import { Skeleton } from './skeleton';
 import styles from './table.module.css';
 
@@ -24,7 +25,7 @@ const kWaiting = 4;
 export function Table<Row>({ caption, columns, rows, keyOf, empty, minWidth }: Props<Row>) {
   if (rows?.length === 0) return <p className={styles.empty}>{empty}</p>;
   return (
-    <div className={styles.frame}>
+    <Scroll label={caption}>
       <table className={styles.table} aria-busy={rows === undefined} style={minWidth === undefined ? undefined : { minWidth }}>
         <caption className="hidden-visually">{caption}</caption>
         <thead><tr>{columns.map(({ name, number }, i) => <th key={i} scope="col" className={number ? styles.number : undefined}>{name}</th>)}</tr></thead>
@@ -38,6 +39,6 @@ export function Table<Row>({ caption, columns, rows, keyOf, empty, minWidth }: P
             ))}
         </tbody>
       </table>
-    </div>
+    </Scroll>
   );
 }

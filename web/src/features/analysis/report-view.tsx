@@ -1,4 +1,4 @@
-import { Notice } from '@/ui';
+import { Notice, Scroll } from '@/ui';
 import { formatCount, formatFigure, kNone } from '@/units';
 import styles from './analysis.module.css';
 
@@ -22,13 +22,13 @@ const isLine = (value: unknown): value is Line => typeof value === 'object' && v
 function Lines({ caption, lines }: { readonly caption: string; readonly lines: readonly Line[] }) {
   const keys = [...new Set(lines.flatMap((line) => Object.keys(line)))].filter((key) => lines.some((line) => !Array.isArray(line[key]) && !isLine(line[key])));
   return (
-    <div className={styles.frame}>
+    <Scroll label={caption}>
       <table className={styles.table}>
         <caption>{caption}</caption>
         <thead><tr>{keys.map((key) => <th key={key} scope="col" className={lines.every((line) => typeof line[key] === 'number' || line[key] === null || line[key] === undefined) ? styles.number : undefined}>{heading(key)}</th>)}</tr></thead>
         <tbody>{lines.map((line, i) => <tr key={i}>{keys.map((key, k) => { const text = cell(line[key], key), number = typeof line[key] === 'number'; return k === 0 ? <th key={key} scope="row">{text}</th> : <td key={key} className={number ? styles.number : undefined}>{text}</td>; })}</tr>)}</tbody>
       </table>
-    </div>
+    </Scroll>
   );
 }
 

@@ -1,5 +1,5 @@
 import type { Comparison } from '@/api';
-import { Bar, Facts, Term } from '@/ui';
+import { Bar, Facts, Scroll, Term } from '@/ui';
 import { formatCount, formatDuration, formatFigure, formatShare, kNone, share } from '@/units';
 import styles from './lab.module.css';
 import type { Names } from './overlay';
@@ -32,7 +32,7 @@ export function Headline({ before, after, names }: { readonly before: Comparison
 /** Error of each channel beside its floor. */
 export function Channels({ before, after, names, rig }: { readonly before: Comparison; readonly after: Comparison | null; readonly names: Names; readonly rig: string | null }) {
   return (
-    <div className={styles.frame}>
+    <Scroll label="Error by channel">
       <table className={styles.table}>
         <caption className="hidden-visually">Error by channel</caption>
         <thead><tr>
@@ -54,7 +54,7 @@ export function Channels({ before, after, names, rig }: { readonly before: Compa
           })}
         </tbody>
       </table>
-    </div>
+    </Scroll>
   );
 }
 
@@ -62,7 +62,7 @@ export function Phases({ comparison }: { readonly comparison: Comparison }) {
   if (comparison.phases.length === 0) return <p className={styles.muted}>The recording names no phases.</p>;
   const unit = channelUnit(comparison.primary);
   return (
-    <div className={styles.frame}>
+    <Scroll label="Error by phase">
       <table className={styles.table}>
         <caption className="hidden-visually">Error by phase</caption>
         <thead><tr><th scope="col">Phase</th><th scope="col" className={styles.number}>Error</th><th scope="col">Share of the error</th><th scope="col">Share of the time</th></tr></thead>
@@ -77,7 +77,7 @@ export function Phases({ comparison }: { readonly comparison: Comparison }) {
           ))}
         </tbody>
       </table>
-    </div>
+    </Scroll>
   );
 }
 

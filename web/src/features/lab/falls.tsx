@@ -1,5 +1,5 @@
 import { curve, Plane } from '@/charts';
-import { Term } from '@/ui';
+import { Scroll, Term } from '@/ui';
 import { formatFigure } from '@/units';
 import styles from './falls.module.css';
 
@@ -34,13 +34,13 @@ export function Falls({ steps, noise_floor, unit }: Props) {
           </g>)}
         </>}
       </Plane>
-      <div className={styles.frame}>
+      <Scroll label="Error by step">
         <table className={styles.table}>
           <caption className="hidden-visually">Error by step</caption>
           <thead><tr><th scope="col">Model</th><th scope="col"><i data-series="fit" />Fitted trials</th><th scope="col"><i data-series="held" /><Term align="end" definition={kHeldOutMeaning}>Held out</Term></th></tr></thead>
           <tbody>{steps.map((step, i) => <tr key={i}><th scope="row">{step.name}</th><td>{formatFigure(step.rmse, unit)}</td><td data-part="held-out">{formatFigure(step.held_out_rmse, unit)}</td></tr>)}</tbody>
         </table>
-      </div>
+      </Scroll>
     </div>
   );
 }

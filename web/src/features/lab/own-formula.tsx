@@ -1,7 +1,7 @@
 import { useQuery } from '@tanstack/react-query';
 import { useEffect, useId, useState } from 'react';
 import { checkEffect, type EffectList, type OwnEffect, type Rig } from '@/api';
-import { Field } from '@/ui';
+import { Field, Scroll } from '@/ui';
 import styles from './lab.module.css';
 import { kBlankOwn, ownEffect, withFormula, type OwnDraft, type OwnParameter } from './own-effect';
 
@@ -47,23 +47,23 @@ export function OwnFormula({ rig, list, onOwn }: Props) {
       </div>
       <p id={id} role="status" className={wrong ? styles.wrong : styles.muted} data-part="unit-check">{said}</p>
       {draft.parameters.length > 0 ? (
-        <div className={styles.frame}>
+        <Scroll label="Parameters of the formula">
           <table className={`${styles.table} ${styles.inputs}`}>
             <caption className="hidden-visually">Parameters of the formula</caption>
             <thead><tr><th scope="col">Parameter</th><th scope="col">Unit</th><th scope="col">Start</th><th scope="col">Least</th><th scope="col">Most</th></tr></thead>
             <tbody>{draft.parameters.map((parameter) => <ParameterRow key={parameter.name} parameter={parameter} set={(changes) => set(parameter.name, changes)} />)}</tbody>
           </table>
-        </div>
+        </Scroll>
       ) : null}
       <details>
         <summary>What a formula may name</summary>
-        <div className={styles.frame}>
+        <Scroll label="States">
           <table className={styles.table}>
             <caption className="hidden-visually">States</caption>
             <thead><tr><th scope="col">Name</th><th scope="col">Unit</th><th scope="col">What it is</th></tr></thead>
             <tbody>{list.states.map((state) => <tr key={state.name}><th scope="row"><code>{state.name}</code></th><td>{state.unit}</td><td>{state.meaning}</td></tr>)}</tbody>
           </table>
-        </div>
+        </Scroll>
         <p className={styles.muted}><code>+ - * / ^</code>, comparisons, <code>a ? b : c</code>, abs sqrt sign min max exp ln sin cos tan tanh pi. Any other name is a parameter, and is fitted.</p>
       </details>
     </div>

@@ -1,5 +1,5 @@
 import type { Estimate } from '@/api';
-import { Badge, Term } from '@/ui';
+import { Badge, Scroll, Term } from '@/ui';
 import { formatWithin, nameAndUnit } from '@/units';
 import styles from './lab.module.css';
 import { effectName } from './words';
@@ -19,7 +19,7 @@ export function parameterName(pointer: string): { name: string; unit: string } {
 
 export function Parameters({ estimates }: { readonly estimates: readonly Estimate[] }) {
   return (
-    <div className={styles.frame}>
+    <Scroll label="Fitted numbers">
       <table className={styles.table}>
         <caption className="hidden-visually">Fitted numbers</caption>
         <thead><tr><th scope="col">Number</th><th scope="col" className={styles.number}><Term align="end" definition="The fitted value and its standard error, from the fit’s own curvature.">Value</Term></th><th scope="col">Said of it</th></tr></thead>
@@ -36,6 +36,6 @@ export function Parameters({ estimates }: { readonly estimates: readonly Estimat
           })}
         </tbody>
       </table>
-    </div>
+    </Scroll>
   );
 }

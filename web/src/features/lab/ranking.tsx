@@ -1,7 +1,7 @@
 import { useState } from 'react';
 import { Link } from 'wouter';
 import type { Effect, Ranked } from '@/api';
-import { Badge, Bar, Button, Term } from '@/ui';
+import { Badge, Bar, Button, Scroll, Term } from '@/ui';
 import { formatFigure, formatShare, share } from '@/units';
 import { kHeldOutMeaning } from './falls';
 import styles from './lab.module.css';
@@ -44,7 +44,7 @@ export function Ranking({ ranking, effects, unit, without, addressToTry }: Props
   const shown = all ? ranking : ranking.slice(0, kFew);
   return (
     <>
-      <div className={styles.frame}>
+      <Scroll label="Effects, the most probable first">
         <table className={`${styles.table} ${styles.ranking}`} data-part="ranking">
           <caption className="hidden-visually">Effects, the most probable first</caption>
           <thead><tr>
@@ -53,7 +53,7 @@ export function Ranking({ ranking, effects, unit, without, addressToTry }: Props
           </tr></thead>
           <tbody>{shown.map((ranked) => <Row key={ranked.id} ranked={ranked} effect={effects.find(({ id }) => id === ranked.id)} worst={worst} unit={unit} addressToTry={addressToTry} />)}</tbody>
         </table>
-      </div>
+      </Scroll>
       {ranking.length > kFew ? <p><Button look="quiet" onClick={() => setAll(!all)}>{all ? 'Show the first six alone' : `Show all ${ranking.length}`}</Button></p> : null}
     </>
   );

@@ -1,7 +1,7 @@
 import { useQuery } from '@tanstack/react-query';
 import { Link } from 'wouter';
 import { labRunsQuery, measurementsQuery, modelsQuery, type LabRunSummary } from '@/api';
-import { Badge, Card, Notice, Progress, Skeleton, type Tone } from '@/ui';
+import { Badge, Card, Notice, Progress, Scroll, Skeleton, type Tone } from '@/ui';
 import { formatDateTime, formatShare, isoDateTime } from '@/units';
 import styles from './lab.module.css';
 import { effectName, joined, kRunWord, stepOfRun, workAddress } from './words';
@@ -36,13 +36,13 @@ export function RunsCard() {
       {runs.isPending ? <Skeleton height="120px" /> : null}
       {runs.data?.runs.length === 0 ? <p className={styles.muted}>Nothing was asked yet. Choose measurements and a model above.</p> : null}
       {runs.data && runs.data.runs.length > 0 ? (
-        <div className={styles.frame}>
+        <Scroll label="Runs, newest first">
           <table className={styles.table}>
             <caption className="hidden-visually">Runs, newest first</caption>
             <thead><tr><th scope="col">Asked</th><th scope="col">Model</th><th scope="col">Measurements</th><th scope="col">State</th><th scope="col">When, by whom</th></tr></thead>
             <tbody>{runs.data.runs.slice(0, 20).map((run) => <Row key={run.id} run={run} model={modelName(run.model)} set={setName(run.measurements)} />)}</tbody>
           </table>
-        </div>
+        </Scroll>
       ) : null}
     </Card>
   );

@@ -2,7 +2,7 @@ import { useQuery } from '@tanstack/react-query';
 import type { ReactNode } from 'react';
 import { Link, useLocation, useSearch } from 'wouter';
 import { measurementsQuery, modelAddress, modelFileQuery, modelsQuery, type MeasurementSet, type ModelVersion } from '@/api';
-import { Badge, Button, Card, Notice, Select, Skeleton, useTitle } from '@/ui';
+import { Badge, Button, Card, Notice, Scroll, Select, Skeleton, useTitle } from '@/ui';
 import { formatDateTime, formatFigure, isoDateTime, kNone } from '@/units';
 import { Channels, Headline } from './comparison-parts';
 import { Series } from './compare-step';
@@ -44,7 +44,7 @@ function Numbers({ a, b }: { readonly a: ModelVersion; readonly b: ModelVersion 
   const rows = differences(old.data, now.data);
   if (rows.length === 0) return <p>The numbers are the same.</p>;
   return (
-    <div className={styles.frame}>
+    <Scroll label="Numbers that differ">
       <table className={styles.table}>
         <caption className="hidden-visually">Numbers that differ</caption>
         <thead><tr><th scope="col">Number</th><th scope="col" className={styles.number}>Old</th><th scope="col" className={styles.number}>New</th></tr></thead>
@@ -54,7 +54,7 @@ function Numbers({ a, b }: { readonly a: ModelVersion; readonly b: ModelVersion 
           return <tr key={row.name}><th scope="row">{name} {row.a === null ? <Badge tone="accent">new</Badge> : row.b === null ? <Badge tone="warn">gone</Badge> : null}</th><td className={styles.number}>{cell(row.a)}</td><td className={styles.number}>{cell(row.b)}</td></tr>;
         })}</tbody>
       </table>
-    </div>
+    </Scroll>
   );
 }
 

@@ -1,5 +1,5 @@
 import type { Comparison } from '@/api';
-import { Bar, Card, Term } from '@/ui';
+import { Bar, Card, Scroll, Term } from '@/ui';
 import { formatFigure, formatShare } from '@/units';
 import type { Drawable } from './compare-step';
 import { Series } from './compare-step';
@@ -13,7 +13,7 @@ function Regions({ comparison, region, setRegion }: { readonly comparison: Compa
   const unit = channelUnit(comparison.primary);
   if (comparison.where.length === 0) return <p>The error is spread evenly: no region holds clearly more of it than its share of the time.</p>;
   return (
-    <div className={styles.frame}>
+    <Scroll label="Regions that hold the error, largest first">
       <table className={styles.table} data-part="regions">
         <caption className="hidden-visually">Regions that hold the error, largest first</caption>
         <thead><tr><th scope="col">Where</th><th scope="col">Share of the error</th><th scope="col">Share of the time</th><th scope="col" className={styles.number}>Error there</th><th scope="col" className={styles.number}><Term align="end" definition="Mean of measured − simulated there: its sign says whether the model pushes too little (+) or too much (−).">Mean left</Term></th></tr></thead>
@@ -29,7 +29,7 @@ function Regions({ comparison, region, setRegion }: { readonly comparison: Compa
           ))}
         </tbody>
       </table>
-    </div>
+    </Scroll>
   );
 }
 

@@ -1,6 +1,6 @@
 import type { CalibrationBin, Trainee } from '@/api';
 import { Plane } from '@/charts';
-import { Badge } from '@/ui';
+import { Badge, Scroll } from '@/ui';
 import { formatCount, formatShare, kNone } from '@/units';
 import styles from './trainees.module.css';
 
@@ -20,7 +20,7 @@ const kTone: Record<string, 'good' | 'bad' | 'neutral'> = { strength: 'good', we
 /** Right answers by scenario, each with its interval. */
 export function ByScenario({ trainee }: { readonly trainee: Trainee }) {
   return (
-    <div className={styles.frame}>
+    <Scroll label="Right answers by scenario">
       <table className={styles.table}>
         <caption className="hidden-visually">Right answers by scenario</caption>
         <thead><tr><th scope="col">Scenario</th><th scope="col" className={styles.number}>Right</th><th scope="col">Share and its 95 % interval</th><th scope="col">Said of it</th></tr></thead>
@@ -35,7 +35,7 @@ export function ByScenario({ trainee }: { readonly trainee: Trainee }) {
           ))}
         </tbody>
       </table>
-    </div>
+    </Scroll>
   );
 }
 
