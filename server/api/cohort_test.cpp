@@ -278,5 +278,39 @@ TEST_F(Cohort, RefusesWhatIsWrongAndNamesIt) {
   EXPECT_EQ(get("analyses/" + id + "/dictionary.json").status, 404);
 }
 
+TEST_F(Cohort, TellsHowFarATraineeIsByTheTrialsThatCountAlone) {
+  // Right, wrong, right. By hand: a right answer adds ln(0.90/0.75), a wrong one ln(0.10/0.25),
+  // never below zero; Wilson's 95 % interval of 2 in 3 is 0.2077 to 0.9385.
+  const auto one = json(get("trainees/P1"));
+  EXPECT_EQ(one["trials"], 3);
+  EXPECT_EQ(one["right"], 2);
+  EXPECT_NEAR(one["wilson_low"].get<double>(), 0.2077, 1e-4);
+  EXPECT_NEAR(one["wilson_high"].get<double>(), 0.9385, 1e-4);
+  EXPECT_EQ(one["state"], "learning");
+  EXPECT_EQ(one["certified"], false);
+  ASSERT_EQ(one["attempts"].size(), 3U);
+  const double up = std::log(0.90 / 0.75);
+  EXPECT_NEAR(one["attempts"][0]["sum"].get<double>(), up, 1e-12);
+  EXPECT_EQ(one["attempts"][1]["sum"], 0.0);
+  EXPECT_NEAR(one["attempts"][2]["sum"].get<double>(), up, 1e-12);
+  EXPECT_TRUE(one["attempts"][0]["confidence"].is_null());
+  EXPECT_EQ(one["calibration"].size(), 0U);
+}
+
+TEST_F(Cohort, ListsTraineesByNameAndSaysWhoIsAMachine) {
+  const auto all = json(get("trainees?study=spine"))["trainees"];
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_EQ(all[0]["trainee"], "P1");
+  EXPECT_EQ(all[0]["simulated"], false);
+  EXPECT_EQ(all[1]["trainee"], "P2");
+  EXPECT_EQ(all[1]["simulated"], true);
+  EXPECT_EQ(json(get("trainees"))["trainees"].size(), 3U);  // the trial of no study too
+}
+
+TEST_F(Cohort, KnowsNoTraineeAndNoStudyThatIsNotThere) {
+  EXPECT_EQ(get("trainees/P9").status, 404);
+  EXPECT_EQ(get("trainees?study=none").status, 400);
+}
+
 }  // namespace
 }  // namespace api::testing

@@ -20,6 +20,7 @@ const PeoplePage = lazy(() => network().then(({ PeoplePage: page }) => ({ defaul
 const CohortsPage = lazy(() => network().then(({ CohortsPage: page }) => ({ default: page })));
 const StationsPage = lazy(() => network().then(({ StationsPage: page }) => ({ default: page })));
 const AuditPage = lazy(() => network().then(({ AuditPage: page }) => ({ default: page })));
+const GuidePage = lazy(() => import('@/features/guide').then(({ GuidePage: page }) => ({ default: page })));
 const analysis = () => import('@/features/analysis');
 const AnalysisPage = lazy(() => analysis().then(({ AnalysisPage: page }) => ({ default: page })));
 const ExamplePage = lazy(() => analysis().then(({ ExamplePage: page }) => ({ default: page })));
@@ -58,6 +59,7 @@ const kPlaces = [
   { to: '/analysis', name: 'Analysis', roles: ['admin', 'researcher'] },
   { to: '/lab', name: 'Model lab', roles: ['admin', 'researcher'] },
   { to: '/network', name: 'Network', roles: ['admin', 'director', 'faculty', 'technician'] },
+  { to: '/guide', name: 'Guide', roles: ['admin', 'director', 'faculty', 'researcher', 'technician', 'trainee'] },
 ] as const;
 const kNetwork: Record<string, string> = { admin: 'people', technician: 'stations' };
 
@@ -121,6 +123,7 @@ function Pages() {
       <Switch>
         <Route path="/"><Home /></Route>
         <Route path="/account"><OwnAccountPage /></Route>
+        <Route path="/guide/:role?">{({ role }) => <GuidePage role={role} />}</Route>
         <Route path="/me"><Me /></Route>
         <Route path="/trainees"><TraineesPage /></Route>
         <Route path="/trainees/:name">{({ name }) => <TraineePage key={name} name={decodeURIComponent(name)} />}</Route>

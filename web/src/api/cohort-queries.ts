@@ -24,7 +24,7 @@ export const lockedPlanSchema = v.object({ ...planSummarySchema.entries, plan: r
 
 /** One test, as a plan corrects it. */
 const testSchema = v.looseObject({
-  analysis: v.optional(v.string()), term: v.string(), statistic: v.string(), value: v.nullable(finite), p: v.nullable(finite), p_adjusted: v.optional(v.nullable(finite)), holds: v.optional(v.boolean()),
+  analysis: v.optional(v.string()), term: v.string(), statistic: v.optional(v.string(), ''), value: v.optional(v.nullable(finite), null), p: v.nullable(finite), note: v.optional(v.string()), p_adjusted: v.optional(v.nullable(finite)), holds: v.optional(v.boolean()),
   effect: v.optional(v.string()), size: v.optional(v.nullable(finite)), ci95_low: v.optional(v.nullable(finite)), ci95_high: v.optional(v.nullable(finite)), df1: v.optional(v.nullable(finite)), df2: v.optional(v.nullable(finite)),
 });
 

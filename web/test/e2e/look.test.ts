@@ -157,6 +157,9 @@ describe.each([
       await page.waitForLoadState('networkidle');
       await check(`network-${place}`);
     }
+    await page.goto('/guide/researcher');
+    await page.getByRole('heading', { name: 'What the words mean' }).waitFor();
+    await check('guide');
     await page.goto('/account');
     await page.getByRole('button', { name: 'Change the password' }).waitFor();
     await check('account');

@@ -40,7 +40,7 @@ export function NewPlanPage() {
       </Card>
       <Card title="Analyses">
         <div className={styles.stack}>
-          {table.data && rows > 0 ? <QuestionForm table={table.data} metrics={metrics} deed="Add to the plan" busy={false} onAsk={(question) => set({ questions: [...draft.questions, question] })} /> : table.isPending ? <Skeleton height="140px" /> : <p className={styles.muted}>The columns are known once a first trial is scored.</p>}
+          {table.data && rows > 0 ? <QuestionForm table={table.data} metrics={metrics} deed="Add to the plan" busy={false} planned onAsk={(question) => set({ questions: [...draft.questions, question] })} /> : table.isPending ? <Skeleton height="140px" /> : <p className={styles.muted}>The columns are known once a first trial is scored.</p>}
           <Table caption="Analyses of the plan" rows={draft.questions} keyOf={(_, i) => String(i)} empty="None yet." columns={[
             { name: 'Question', cell: (one) => one.question }, { name: 'Method', cell: (one) => one.method }, { name: 'Formula', cell: (one) => <code>{one.formula}</code> },
             { name: 'Family', cell: (one) => (one.primary ? <Badge tone="accent">primary</Badge> : 'described') },

@@ -10,6 +10,8 @@ interface Props {
   readonly metrics: readonly MetricFacts[];
   readonly deed: string;
   readonly busy: boolean;
+  /** In a plan: whether it is one of the tests that are corrected together. */
+  readonly planned?: boolean;
   readonly onAsk: (question: Question) => void;
 }
 
@@ -19,7 +21,7 @@ export const columnName = (name: string, metrics: readonly MetricFacts[]) => kFa
 const kFirst: Method = { id: 'describe', name: '', says: '', formula: (endpoint) => `${endpoint} ~ 1`, people: false };
 
 /** One question to the cohort: what is measured, what it may depend on, and by which method. */
-export function QuestionForm({ table, metrics, deed, busy, onAsk }: Props) {
+export function QuestionForm({ table, metrics, deed, busy, planned = false, onAsk }: Props) {
   const endpoints = table.columns.filter(({ name, numbers }) => numbers && !['number', 'experience_years', 'simulated'].includes(name));
   const causes = table.columns.filter(({ name, levels }) => ['experience_years', 'level', 'number', 'case', 'rig'].includes(name) && levels.length > 1);
   const [methodId, setMethod] = useState('lmm');
@@ -41,7 +43,7 @@ export function QuestionForm({ table, metrics, deed, busy, onAsk }: Props) {
       <p className={styles.muted}>{method.says}</p>
       <div className={styles.ask}>
         <Field label="Formula (may be changed)" value={formula} spellCheck={false} onChange={(event) => setOwn(event.target.value)} />
-        <label className={styles.check}><input type="checkbox" checked={primary} onChange={(event) => setPrimary(event.target.checked)} /> primary (corrected with the others)</label>
+        {planned ? <label className={styles.check}><input type="checkbox" checked={primary} onChange={(event) => setPrimary(event.target.checked)} /> primary (corrected with the others)</label> : null}
         <Button look="solid" disabled={busy || endpoint === ''} onClick={() => onAsk({ method: method.id, formula, question, primary })}>{busy ? 'Asking…' : deed}</Button>
       </div>
     </div>

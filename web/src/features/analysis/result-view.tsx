@@ -32,7 +32,7 @@ function Family({ family }: { readonly family: AnalysisResult['families'][number
       <div className={styles.stack}>
         <Table<PlannedTest> caption={`Tests of the family ${family.name}`} rows={family.tests} keyOf={(_, i) => String(i)} empty="No test." minWidth={760} columns={[
           { name: 'Term', cell: (test) => <>{test.term} {test.analysis === undefined ? null : <span className={styles.muted}>{test.analysis}</span>}</> },
-          { name: 'Statistic', cell: (test) => `${test.statistic}${typeof test.df1 === 'number' ? `(${formatFigure(test.df1)}, ${formatFigure(test.df2 ?? null)})` : typeof test.df2 === 'number' ? `(${formatFigure(test.df2)})` : ''} = ${formatFigure(test.value)}` },
+          { name: 'Statistic', cell: (test) => (test.statistic === '' ? test.note ?? '–' : `${test.statistic}${typeof test.df1 === 'number' ? `(${formatFigure(test.df1)}, ${formatFigure(test.df2 ?? null)})` : typeof test.df2 === 'number' ? `(${formatFigure(test.df2)})` : ''} = ${formatFigure(test.value)}`) },
           { name: 'Effect', cell: (test) => (typeof test.size === 'number' ? `${test.effect ?? ''} ${formatFigure(test.size)}${typeof test.ci95_low === 'number' ? ` (${formatFigure(test.ci95_low)} to ${formatFigure(test.ci95_high ?? null)})` : ''}` : '–') },
           { name: 'p', cell: (test) => cell(test.p, 'p'), number: true },
           { name: 'p, corrected', cell: (test) => cell(test.p_adjusted, 'p'), number: true },
@@ -54,10 +54,16 @@ function Published({ rows }: { readonly rows: AnalysisResult['published'] }) {
         { name: 'What', cell: (one) => <>{one.says}{one.remark === '' ? null : <span className={styles.remark}>{one.remark}</span>}</> },
         { name: 'Printed', cell: (one) => cell(one.printed), number: true },
         { name: 'Here', cell: (one) => formatFigure(one.computed, '', 5), number: true },
-        { name: '', cell: (one) => (one.agrees === true ? <Badge tone="good">agrees</Badge> : one.agrees === false ? <Badge tone="bad">differs</Badge> : null) },
+        { name: 'Verdict', cell: (one) => (one.agrees === true ? <Badge tone="good">agrees</Badge> : one.agrees === false ? <Badge tone="bad">differs</Badge> : null) },
       ]} />
     </Card>
   );
+}
+
+/** Two analyses may answer the same question: then each is told by its id too. */
+function titleOf(one: AnalysisResult['analyses'][number], all: AnalysisResult['analyses']): string {
+  if (one.question === '') return one.id;
+  return all.some((other) => other.id !== one.id && other.question === one.question) ? `${one.question} (${one.id})` : one.question;
 }
 
 /** Everything that an analysis gave: sentences first, then tests, then each analysis whole. */
@@ -70,7 +76,7 @@ export function ResultView({ result }: { readonly result: AnalysisResult }) {
       {result.families.map((family) => <Family key={family.name} family={family} />)}
       {result.published.length > 0 ? <Published rows={result.published} /> : null}
       {result.analyses.map((one) => (
-        <Card key={one.id} title={one.question === '' ? one.id : one.question} aside={<span className={styles.muted}><code>{one.formula === '' ? one.method : `${one.method}: ${one.formula}`}</code></span>}>
+        <Card key={one.id} title={titleOf(one, result.analyses)} aside={<span className={styles.muted}><code>{one.formula === '' ? one.method : `${one.method}: ${one.formula}`}</code></span>}>
           {one.error ? <Notice tone="bad" title="This analysis could not be done.">{one.error}</Notice> : one.report ? <ReportView report={one.report} /> : null}
         </Card>
       ))}

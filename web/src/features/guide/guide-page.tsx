@@ -1,0 +1,27 @@
+import { useQuery } from '@tanstack/react-query';
+import { Link } from 'wouter';
+import { sessionQuery } from '@/api';
+import { Card, useTitle } from '@/ui';
+import styles from './guide.module.css';
+import { kPages } from './pages';
+
+/** One page for each role: what it comes for, how that is done, what the words mean. */
+export function GuidePage({ role }: { readonly role: string | undefined }) {
+  const own = useQuery({ ...sessionQuery, enabled: false }).data?.role;
+  const page = kPages.find((one) => one.role === (role ?? own)) ?? kPages[0];
+  useTitle(page ? `Guide: ${page.name}` : 'Guide');
+  if (!page) return null;
+  return (
+    <div className={styles.page}>
+      <div><h1>Guide</h1><p className={styles.lead}>For whom:</p></div>
+      <nav aria-label="Roles" className={styles.tabs}>{kPages.map((one) => <Link key={one.role} href={`/guide/${one.role}`} aria-current={one.role === page.role ? 'page' : undefined}>{one.name}</Link>)}</nav>
+      <p className={styles.for}>{page.for}</p>
+      <Card title="How it is done">
+        <ol className={styles.steps}>
+          {page.steps.map(({ title, text, to }) => <li key={title}><strong>{title}</strong><p>{text} {to ? <Link href={to.href}>{to.name}</Link> : null}</p></li>)}
+        </ol>
+      </Card>
+      <Card title="What the words mean"><dl className={styles.terms}>{page.terms.map(([word, meaning]) => <div key={word}><dt>{word}</dt><dd>{meaning}</dd></div>)}</dl></Card>
+    </div>
+  );
+}
