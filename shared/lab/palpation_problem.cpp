@@ -77,7 +77,7 @@ class PalpationProblem final : public Problem {
     if (has_drift(structure)) trends_[std::size_t(k)].remove(out);
   }
   Sharpness sharpness() const override {
-    return {.at_floor = 1.2,
+    return {.at_floor = 1.1,
             .share_left = 0.0,
             .enough = 0.9,
             .as_given = 1.1,

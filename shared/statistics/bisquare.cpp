@@ -207,6 +207,11 @@ core::Result<Bisquare> bisquare(const Design& design, const Vector& response,
   }
   add_tests(fit, static_cast<double>(response.size()), static_cast<double>(p),
             options.standard_error_floor);
+  if (!fit.covariance.allFinite() ||
+      (fit.sigma > 0.0 && !(fit.covariance.diagonal().minCoeff() > 1e-300)))
+    return core::Error{
+        core::Errc::out_of_range,
+        "the scales of the columns and of the response are too far apart: rescale them"};
   fit.studentised = fit.residuals.array() * problem.leverage_factor / fit.sigma;
   if (!fit.coefficients.allFinite() || !std::isfinite(fit.sigma))
     return core::Error{core::Errc::out_of_range,

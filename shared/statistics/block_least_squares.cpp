@@ -14,8 +14,8 @@ namespace {
 constexpr Eigen::Index kBlock = 256;
 constexpr Eigen::Index kLarge = 200'000;
 constexpr double kWorstCondition = 1e5;
-/// Mean squares beyond these are for check() to refuse: their products leave a double.
-constexpr double kSmallestSquare = 1e-140, kLargestSquare = 1e140;
+/// Mean squares beyond these are for check() to refuse: their sums leave a double.
+constexpr double kSmallestSquare = 1e-280, kLargestSquare = 1e280;
 
 using Lanes = Eigen::Array<double, 8, 1>;
 using Segment = Eigen::Map<Eigen::ArrayXd>;

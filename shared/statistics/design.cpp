@@ -12,7 +12,7 @@ namespace {
 
 using Extended = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
 
-constexpr double kLargest = 1e70;
+constexpr double kLargest = 1e141;
 
 core::Error wrong(std::string what) { return {core::Errc::bad_input, std::move(what)}; }
 

@@ -25,8 +25,8 @@ Design with_intercept(const Matrix& columns, std::vector<std::string> names);
 /// Every number finite, more rows than columns, the response not constant. Errors: bad_input naming
 /// the column and the row (1-based), or saying how many rows are needed.
 core::Result<void> check(const Design& design, const Vector& response);
-/// Squares of these numbers, and products of two such, stay within a double. Errors: out_of_range
-/// naming `what` where one is beyond ±1e70, or they differ by less than 1e-70.
+/// Squares of these numbers stay within a double. Errors: out_of_range naming `what` where one is
+/// beyond ±1e141, or they differ by less than 1e-141.
 core::Result<void> check_range(const Vector& values, const std::string& what);
 /// Of check(), more rows than columns alone.
 core::Result<void> check_shape(const Design& design, const Vector& response);

@@ -238,7 +238,8 @@ core::Result<Lmm> lmm(const Design& design, const Vector& response,
   out.rlrt_p = lambda > 0 ? 0.5 * chi_squared_upper(out.rlrt, 1.0) : 1.0;
   const Column shrink = (lambda * m.sizes.array() / (1 + lambda * m.sizes.array())).matrix();
   out.group_effects = shrink.cwiseProduct(m.means.transpose() * fit.contrast).cast<double>();
-  if (!out.covariance.allFinite() || !std::isfinite(out.criterion) || !(out.sigma_squared > 0.0))
+  if (!out.covariance.allFinite() || !(out.covariance.diagonal().minCoeff() > 1e-300) ||
+      !std::isfinite(out.criterion) || !(out.sigma_squared > 0.0))
     return core::Error{core::Errc::out_of_range,
                        "the numbers are too large or too small for sums of squares: rescale them"};
   add_tests(m, fit, out);

@@ -155,6 +155,13 @@ void add_tests(Ols& fit) {
   fit.bic = -2.0 * fit.log_likelihood + std::log(n) * parameters;
 }
 
+/// Is s² (XᵀX)⁻¹ within a double? Scales of x and y that both are may be too far apart.
+bool covariance_fits(const Ols& fit) {
+  const Eigen::ArrayXd variance =
+      (fit.sigma * fit.sigma) * fit.unscaled_covariance.diagonal().array();
+  return variance.isFinite().all() && (fit.rss == 0.0 || variance.minCoeff() > 1e-300);
+}
+
 }  // namespace
 
 core::Result<Ols> ols(const Design& design, const Vector& response) {
@@ -170,7 +177,8 @@ core::Result<Ols> ols(const Design& design, const Vector& response) {
     if (!full_rank) return collinear_error(design);
   }
   if (!fit.coefficients.allFinite() || !fit.unscaled_covariance.allFinite() ||
-      !std::isfinite(fit.rss) || !(fit.unscaled_covariance.diagonal().minCoeff() > 0.0))
+      !std::isfinite(fit.rss) || !(fit.unscaled_covariance.diagonal().minCoeff() > 0.0) ||
+      !covariance_fits(fit))
     return core::Error{core::Errc::out_of_range,
                        "the numbers are too large or too small for sums of squares: rescale them"};
   add_tests(fit);

@@ -165,7 +165,7 @@ TEST_F(Replay, RefusesBadInputInOneLineAndLeavesNothing) {
   expect_refusal("/volume: '../../etc/passwd' leaves the set's folder");
   replace_in("set.json", "../../etc/passwd", "bone.nrrd");
   replace_in("model.json", "palpation", "probing");
-  expect_refusal("model.json: /rig");
+  expect_refusal("model.json: /base/layers: is missing");
   fs::remove(set() / "model.json");
   expect_refusal("model.json: cannot open: No such file or directory");
 }

@@ -72,7 +72,7 @@ TEST(Program, AnAddressThatIsTakenOrNoneIsRefused) {
 TEST(Program, ASecondAccountStationOrTokenFileOfTheSameNameIsRefused) {
   const ServedWorld world;
   expect_refused(run_program("tractus-server", {"init", "--data", world.data}),
-                 "admin exists already");
+                 "an account named admin, or one with this badge, exists already");
   expect_refused(run_program("tractus-server", {"enrol", "--data", world.data, "--name",
                                                 "station-1", "--out", world.folder / "again"}),
                  "station-1 exists already");
