@@ -140,6 +140,13 @@ Result<Diagnosis> diagnose(const Problem& problem, const DiagnoseOptions& option
   Solution& final = named ? selection.chosen() : selection.tried().at("");
   out.final_fit = report(residual, final, true);
   const Belief belief(residual, selection, final);
+  if (out.verdict == Verdict::missing && belief.outside() > 0.5) {
+    out.verdict = Verdict::partly;
+    out.notes.push_back(fmt::format(
+        "{} effects together bring the residual to the floor; so many at once more likely imitate "
+        "one that is in no catalogue",
+        final.structure.effects.size()));
+  }
   out.probability = out.verdict == Verdict::unexplained ? belief.outside()
                     : out.verdict == Verdict::partly    ? kMoreIsMissing
                                                         : belief.of_structure(final.structure);

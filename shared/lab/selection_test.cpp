@@ -172,6 +172,19 @@ TEST(Diagnose, TwoEffectsAreBothNamedAndOnlyThey) {
   EXPECT_EQ(ids(*d), (Ids{"cube", "sign"}));
 }
 
+TEST(Diagnose, ThreeAtOnceAreSaidToBePerhapsAnImitation) {
+  const Toy toy([](int t, int k) {
+    return 2.0 * std::pow(u_of(t, k), 3) + (w_of(t, k) > 0 ? 1.0 : -1.0) +
+           2.0 * w_of(t, k) * w_of(t, k);
+  });
+  const auto d = diagnose(toy);
+  ASSERT_TRUE(d);
+  EXPECT_EQ(ids(*d), (Ids{"cube", "sign", "wave"}));
+  EXPECT_EQ(d->verdict, Verdict::partly);
+  ASSERT_FALSE(d->notes.empty());
+  EXPECT_EQ(d->notes.back().substr(0, 17), "3 effects togethe");
+}
+
 TEST(Diagnose, TheSimplerParentIsPreferredWhereTheChildDoesNoBetter) {
   const Toy toy([](int t, int k) { return 0.3 * (w_of(t, k) > 0 ? 1.0 : -1.0); });
   const auto d = diagnose(toy);
