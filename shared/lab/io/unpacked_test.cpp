@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <fstream>
 
 namespace lab_io {
@@ -17,9 +18,13 @@ class UnpackedTest : public testing::Test {
  protected:
   void SetUp() override {
     folder_ = fs::temp_directory_path() / ("tractus_unpacked_" + core::new_id());
-    fs::create_directories(folder_);
+    fs::create_directories(folder_ / "tmp");
+    ::setenv("TMPDIR", (folder_ / "tmp").c_str(), 1);  // what others unpack meanwhile is not ours
   }
-  void TearDown() override { fs::remove_all(folder_); }
+  void TearDown() override {
+    ::unsetenv("TMPDIR");
+    fs::remove_all(folder_);
+  }
 
   struct Entry {
     std::string name, text;
