@@ -33,7 +33,7 @@ export async function serveReal(bin: string): Promise<Served> {
   const program = join(bin, 'tractus-server');
   execFileSync(program, ['init', '--data', data, '--admin-name', 'admin', '--password-file', password]);
   const port = await freePort(), url = `http://127.0.0.1:${port}`;
-  const process_ = spawn(program, ['serve', '--data', data, '--listen', `127.0.0.1:${port}`, '--web', `${kRoot}web/dist`], { stdio: 'ignore' });
+  const process_ = spawn(program, ['serve', '--plain', '--data', data, '--listen', `127.0.0.1:${port}`, '--web', `${kRoot}web/dist`], { stdio: 'ignore' });
   for (let i = 0; i < 200; ++i) {
     const answered = await fetch(`${url}/api/v1/session`).then(() => true, () => false);
     if (answered) break;
