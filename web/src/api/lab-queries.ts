@@ -47,6 +47,7 @@ export const labRunsQuery = (of: RunsOf = {}) =>
     queryKey: ['lab', 'runs', of],
     queryFn: ({ signal }) => ask(address('/api/v1/lab/runs', {}, { ...of, limit: kRuns }), labRunListSchema, { signal }),
     refetchInterval: (query) => (query.state.data?.runs.some(atWork) ? kWorking_ms : kIdle_ms),
+    refetchIntervalInBackground: true,
   });
 
 export const labRunQuery = (id: string) =>
@@ -54,6 +55,7 @@ export const labRunQuery = (id: string) =>
     queryKey: ['lab', 'run', id],
     queryFn: ({ signal }) => ask(address('/api/v1/lab/runs/{id}', { id }), labRunSchema, { signal }),
     refetchInterval: (query) => (query.state.data && atWork(query.state.data) ? kWorking_ms : false),
+    refetchIntervalInBackground: true,  // who looks at another window meanwhile finds it done
   });
 
 export interface LabWindow { readonly trial: string; readonly channel: string; readonly side: 'before' | 'after'; readonly from_s: number; readonly to_s: number; readonly points: number }

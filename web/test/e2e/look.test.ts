@@ -41,7 +41,7 @@ async function lab(page: Page, check: Check): Promise<void> {
     await page.locator('[data-part="run-state"]').waitFor();
     await check('lab-missing-running');
   }
-  await page.locator('[data-part="verdict"]').waitFor();
+  await page.locator('[data-part="verdict"]').waitFor({ timeout: 60_000 });
   await page.waitForLoadState('networkidle');
   await page.waitForTimeout(500);
   await check('lab-missing');
