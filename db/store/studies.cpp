@@ -108,7 +108,8 @@ core::Result<std::vector<StudySummary>> all_studies(Reading& tx) {
       ", (select count(*) from study_participants p where p.study_id = s.id), "
       "(select count(*) from study_slots k where k.study_id = s.id and k.state = 'recorded'), "
       "(select count(*) from study_slots k where k.study_id = s.id and k.state <> 'invalid') "
-      "from studies s order by s.made_utc_us desc, s.id");
+      "from studies s where not exists (select 1 from assignments a where a.study_id = s.id) "
+      "order by s.made_utc_us desc, s.id");
   if (!rows) return rows.error();
   std::vector<StudySummary> out;
   for (const Row& row : *rows)

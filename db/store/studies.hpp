@@ -82,7 +82,7 @@ core::Result<void> set_participant_state(Writing& tx, const std::string& study_i
                                          const std::string& name, const std::string& state,
                                          const Deed& deed);
 
-/// Newest first.
+/// Newest first; assignments (assignments.hpp), which are studies too, are not among them.
 core::Result<std::vector<StudySummary>> all_studies(Reading& tx);
 core::Result<std::optional<Study>> study_of(Reading& tx, const std::string& id);
 /// In the order they were named.

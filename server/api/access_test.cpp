@@ -60,6 +60,7 @@ class Access : public PeopleTest {
     const std::map<std::string, std::string> values{{"{" + route.object_parameter + "}", object},
                                                     {"{trial_id}", std::string(32, 'a')},
                                                     {"{account_id}", "nobody"},
+                                                    {"{trial}", "none"},
                                                     {"{name}", "volume.tvol"}};
     for (const auto& [key, value] : values)
       if (const auto at = out.find(key); at != std::string::npos)
@@ -142,20 +143,21 @@ TEST_F(Access, ATraineeAndAStationReachTheseRoutesAlone) {
     for (const Grant& grant : route.who)
       reach[grant.role].insert(route.id +
                                (grant.of == Of::all ? "" : " of " + std::string(name(grant.of))));
-  EXPECT_EQ(
-      reach[Role::trainee],
-      (std::set<std::string>{"whoAmI", "signOut", "changePassword", "beginCodes", "confirmCodes",
-                             "endCodes", "description", "metrics", "trials of own", "trial of own",
-                             "trialSignals of own", "trialPath of own", "trialForceDepth of own",
-                             "casePreview of own", "cohorts of own", "trainee of own"}));
+  EXPECT_EQ(reach[Role::trainee],
+            (std::set<std::string>{
+                "whoAmI", "signOut", "changePassword", "beginCodes", "confirmCodes", "endCodes",
+                "description", "metrics", "trials of own", "trial of own", "trialSignals of own",
+                "trialPath of own", "trialForceDepth of own", "casePreview of own",
+                "cohorts of own", "assignments of own", "assignment of own", "trainee of own"}));
   EXPECT_EQ(reach[Role::station],
             (std::set<std::string>{"whoAmI", "description", "metrics", "cases", "case", "casePart",
                                    "casePreview", "announceUpload", "uploadState", "appendUpload",
-                                   "commitUpload", "takeTrials"}));
+                                   "commitUpload", "takeTrials", "signInAtStation", "nextTrial",
+                                   "signOutAtStation", "serverMetrics"}));
   EXPECT_EQ(reach[Role::technician],
             (std::set<std::string>{"whoAmI", "signOut", "changePassword", "beginCodes",
                                    "confirmCodes", "endCodes", "description", "metrics", "stations",
-                                   "makeEnrolmentCode", "revokeStation"}));
+                                   "makeEnrolmentCode", "revokeStation", "serverMetrics"}));
 }
 
 TEST_F(Access, ARouteThatNamesNobodyIsRefusedToAll) {
@@ -191,8 +193,8 @@ TEST_F(Access, GrantsOfSomeObjectsNameTheObject) {
         return p.name == route.object_parameter;
       })) << route.id;
     }
-  EXPECT_EQ(lists,
-            (std::set<std::string>{"trials", "cohorts", "addCohort", "trainees", "trainee"}));
+  EXPECT_EQ(lists, (std::set<std::string>{"trials", "cohorts", "addCohort", "assignments",
+                                          "addAssignment", "trainees", "trainee"}));
 }
 
 TEST_F(Access, ListsHoldWhatOneMaySee) {
@@ -210,6 +212,8 @@ TEST_F(Access, ListsHoldWhatOneMaySee) {
   EXPECT_EQ(ids(get("dora", "/trials"), "trials", "id"), (Ids{toms, tias}));
   EXPECT_EQ(ids(get("fay", "/cohorts"), "cohorts", "id"), Ids{"c-tom"});
   EXPECT_EQ(ids(get("tia", "/cohorts"), "cohorts", "id"), Ids{"c-tia"});
+  EXPECT_EQ(ids(get("fay", "/assignments"), "assignments", "id"), Ids{"a-tom"});
+  EXPECT_EQ(ids(get("tia", "/assignments"), "assignments", "id"), Ids{"a-tia"});
   EXPECT_EQ(ids(get("dora", "/cohorts"), "cohorts", "id"), (Ids{"c-tia", "c-tom"}));
 }
 

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "core/clock.hpp"
 #include "server/api/access.hpp"
 #include "server/api/acts.hpp"
 #include "server/api/authentication.hpp"
@@ -178,10 +179,10 @@ core::Result<std::map<std::string, std::string>> arguments(const Match& matched,
   return out;
 }
 
-http::Response answer(Backend& backend, const std::vector<RouteInfo>& table,
-                      const http::Request& request) {
-  std::string allowed;
-  auto matched = match(table, request, &allowed);
+namespace {
+
+http::Response answer_to(Backend& backend, const core::Result<Match>& matched,
+                         const std::string& allowed, const http::Request& request) {
   // Who may not come in is not told which addresses there are.
   if (!matched) {
     auto known = authenticate(backend, request);
@@ -199,6 +200,33 @@ http::Response answer(Backend& backend, const std::vector<RouteInfo>& table,
     return refusal(own.error(), "");
   auto response = handled(backend, *matched, *caller, request, std::move(*checked));
   return response ? std::move(*response) : refusal(response.error(), "");
+}
+
+/// Counts it, and says what took long or went wrong.
+void note(Backend& backend, const std::string& route, const http::Request& request,
+          const http::Response& response, double took_s) {
+  constexpr double kLong_s = 5.0;
+  backend.telemetry.count(route, response.status, took_s, request.body.size());
+  if (!backend.log || (response.status < 500 && took_s < kLong_s && !backend.logs_requests)) return;
+  backend.log({{"what", "request"},
+               {"route", route},
+               {"status", response.status},
+               {"took_s", took_s},
+               {"body_bytes", request.body.size()}});
+}
+
+}  // namespace
+
+http::Response answer(Backend& backend, const std::vector<RouteInfo>& table,
+                      const http::Request& request) {
+  const core::MonotonicClock clock;
+  const core::Instant_ns begun = clock.now();
+  std::string allowed;
+  const auto matched = match(table, request, &allowed);
+  http::Response response = answer_to(backend, matched, allowed, request);
+  note(backend, matched ? matched->route->id : "", request, response,
+       double(clock.now() - begun) * 1e-9);
+  return response;
 }
 
 std::variant<std::uint64_t, http::Response> admit(Backend& backend,

@@ -39,8 +39,7 @@ bool flag(core::Fields& fields, const char* key) {
   return found && found->is_boolean() && found->get<bool>();
 }
 
-/// {"tuned": "hard"} or a whole tractus-scenario/1.
-Result<scenarios::Scenario> scenario_from(const Json& json, const std::string& where) {
+Result<scenarios::Scenario> read_scenario(const Json& json, const std::string& where) {
   if (!json.is_object() || !json.contains("tuned"))
     return scenarios::Scenario::from_json(json, where + ": ");
   core::Fields fields(json, where);
@@ -80,7 +79,6 @@ Result<std::vector<scenarios::Scenario>> scenarios_from(const Json& json) {
     const std::string where = fmt::format("/scenarios/{}", out.size());
     auto scenario = scenario_from(one, where);
     if (!scenario) return scenario.error();
-    if (auto fits = check_fits(*scenario, where); !fits) return fits.error();
     if (!ids.insert(scenario->id()).second)
       return Error{Errc::bad_input, where + ": is the same as one before; repeats are for that"};
     out.push_back(std::move(*scenario));
@@ -125,25 +123,36 @@ Result<store::Study> study_from(const Json& json) {
   return out;
 }
 
+}  // namespace
+
+Result<scenarios::Scenario> scenario_from(const Json& json, const std::string& where) {
+  auto scenario = read_scenario(json, where);
+  if (!scenario) return scenario;
+  if (auto fits = check_fits(*scenario, where); !fits) return fits.error();
+  return scenario;
+}
+
 std::vector<std::string> order_for(const store::Study& study,
                                    const std::vector<store::StudyScenario>& scenarios, int n) {
+  std::vector<std::string> out;
+  if (study.ordering == "fixed") {
+    for (std::int64_t round = 0; round < study.repeats; ++round)
+      for (const auto& scenario : scenarios) out.push_back(scenario.case_id);
+    return out;
+  }
   const study::OrderPlan plan{static_cast<int>(scenarios.size()), static_cast<int>(study.repeats),
                               study::ordering_of(study.ordering).value(),
                               static_cast<std::uint64_t>(study.seed)};
-  std::vector<std::string> out;
   for (const int i : study::order_of(plan, n)) out.push_back(scenarios[std::size_t(i)].case_id);
   return out;
 }
 
-/// The scenario's file among the objects.
 Result<store::CasePart> put_scenario(Backend& backend, const scenarios::Scenario& scenario) {
   const std::string text = scenario.to_json().dump();
   auto sha256 = backend.objects.put(core::bytes_of(text));
   if (!sha256) return sha256.error();
   return store::CasePart{"scenario.json", *sha256, text.size(), true};
 }
-
-}  // namespace
 
 Result<store::Participant> participant_from(const Json& json, const std::string& where) {
   core::Fields fields(json, where);

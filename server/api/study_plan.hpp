@@ -1,6 +1,7 @@
 /// A study as a person asks for it, and its way into the store.
 #pragma once
 
+#include "db/store/cases.hpp"
 #include "db/store/studies.hpp"
 #include "scenarios/scenario.hpp"
 #include "server/api/backend.hpp"
@@ -17,6 +18,15 @@ struct StudyPlan {
   /// be handed out blind, a participant twice, …
   static core::Result<StudyPlan> from_json(const core::Json& json);
 };
+
+/// {"tuned": "hard"} or a whole tractus-scenario/1, fit to be handed out blind. Errors: bad_input.
+core::Result<scenarios::Scenario> scenario_from(const core::Json& json, const std::string& where);
+/// The scenario's file among the objects.
+core::Result<store::CasePart> put_scenario(Backend& backend, const scenarios::Scenario& scenario);
+/// The cases in the order of the study's n-th participant (from 0): by its ordering, repeats and
+/// seed; "fixed": as they are named, round after round.
+std::vector<std::string> order_for(const store::Study& study,
+                                   const std::vector<store::StudyScenario>& scenarios, int n);
 
 core::Result<store::Participant> participant_from(const core::Json& json, const std::string& where);
 

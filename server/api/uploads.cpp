@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <limits>
 #include <set>
 
 #include "db/store/cases.hpp"
@@ -33,15 +34,6 @@ core::Result<store::Upload> own_upload(Backend& backend, const Caller& station,
   if (!upload) return upload.error();
   if (!*upload || (*upload)->station_id != station.id) return unknown(trial_id);
   return std::move(**upload);
-}
-
-core::Result<void> check_room(Backend& backend, std::uint64_t size_bytes) {
-  std::error_code failure;
-  const auto space = std::filesystem::space(backend.partials.folder(), failure);
-  if (failure || space.available >= size_bytes + kReserve_bytes) return {};
-  return core::Error{
-      core::Errc::unavailable,
-      fmt::format("the server's disk has {} bytes left: too few for this trial", space.available)};
 }
 
 /// The case that an announcement means: one by its id, or that of a study's slot, which is all that
@@ -81,6 +73,21 @@ core::Result<wire::UploadState> insert(store::Writing& tx, const Caller& station
 }
 
 }  // namespace
+
+std::uint64_t free_bytes(const Backend& backend) {
+  if (backend.free_bytes) return backend.free_bytes();
+  std::error_code failure;
+  const auto space = std::filesystem::space(backend.partials.folder(), failure);
+  return failure ? std::numeric_limits<std::uint64_t>::max() : space.available;
+}
+
+core::Result<void> check_room(const Backend& backend, std::uint64_t size_bytes) {
+  const std::uint64_t free = free_bytes(backend);
+  if (free >= size_bytes && free - size_bytes >= kReserve_bytes) return {};
+  return core::Error{
+      core::Errc::unavailable,
+      fmt::format("the server's disk has {} bytes left: too few for another trial", free)};
+}
 
 core::Result<void> restart_upload(Backend& backend, const std::string& trial_id) {
   auto done = backend.store.write(

@@ -41,6 +41,14 @@ core::Result<Appended> append_upload(Backend& backend, const Caller& station,
 core::Result<wire::UploadState> commit_upload(Backend& backend, const Caller& station,
                                               const std::string& trial_id);
 
+/// Left on the disk that trials go to.
+std::uint64_t free_bytes(const Backend& backend);
+/// Is there room for `size_bytes` more, with the reserve for what is already running? Errors:
+/// unavailable. A trial is refused before it begins rather than lost when it ends.
+core::Result<void> check_room(const Backend& backend, std::uint64_t size_bytes);
+/// What a trial that is about to begin may need: ten minutes at 4 kHz of 160 B.
+inline constexpr std::uint64_t kTrialToCome_bytes = 384ull << 20;
+
 /// For the start: makes partial files and their acknowledged offsets agree again after a crash. A
 /// tail nobody acknowledged is cut; acknowledged bytes that are no longer what they were begin
 /// again at 0; files that belong to no open upload go.

@@ -13,7 +13,8 @@
 namespace app {
 
 using Outcome = core::Result<void>;
-using Run = std::function<Outcome()>;  ///< what a command does once its options are read
+/// What a command does once its options are read. 0: done; 1: the answer is "no".
+using Run = std::function<core::Result<int>()>;
 
 /// One line on standard output: for a person, or JSON.
 void say(bool json, const core::Json& object, const std::string& line);
@@ -31,5 +32,9 @@ Run enrol_command(CLI::App& command);
 Run publish_command(CLI::App& command);
 Run serve_command(CLI::App& command);
 Run openapi_command(CLI::App& command);
+Run backup_command(CLI::App& command);
+Run restore_command(CLI::App& command);
+Run verify_command(CLI::App& command);
+Run migrate_command(CLI::App& command);
 
 }  // namespace app

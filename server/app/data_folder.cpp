@@ -14,7 +14,6 @@
 namespace app {
 namespace fs = std::filesystem;
 namespace {
-constexpr const char* kDatabase = "tractus.db";
 constexpr const char* kSecret = "secret.key";
 
 /// Makes the key's file, for its owner's eyes; one that is there stays.

@@ -11,6 +11,7 @@
 
 namespace app {
 
+inline constexpr const char* kDatabase = "tractus.db";
 inline constexpr const char* kCertificates = "tls";  ///< http::certificate_files of this folder
 
 struct DataFolder {

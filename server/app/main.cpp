@@ -40,6 +40,16 @@ constexpr Command kCommands[] = {
     {"serve", "Serve stations and browsers until stopped",
      "tractus-server serve --data /srv/tractus --listen 127.0.0.1:8480 --web web/dist",
      app::serve_command},
+    {"backup", "Copy a data folder, served or not, to a new folder",
+     "tractus-server backup --data /srv/tractus --out /backup/tractus-monday", app::backup_command},
+    {"restore", "Make a new data folder of a backup, and look it over",
+     "tractus-server restore --from /backup/tractus-monday --data /srv/tractus",
+     app::restore_command},
+    {"verify",
+     "Look a data folder over: database, files, audit trail; exit 1 when something is wrong",
+     "tractus-server verify --data /srv/tractus", app::verify_command},
+    {"migrate", "Bring the database up to this program's schema",
+     "tractus-server migrate --data /srv/tractus", app::migrate_command},
     {"openapi", "Print the description of the API, OpenAPI 3.1",
      "tractus-server openapi > openapi.json", app::openapi_command},
 };
@@ -64,6 +74,7 @@ int main(int argc, char** argv) {
   for (const Command& command : kCommands) {
     CLI::App* sub = commands.add_subcommand(command.name, command.summary);
     sub->footer(std::string("Example: ") + command.example);
+    if (std::string(command.name) == "serve") sub->alias("run");
     sub->callback([&chosen, run = command.make(*sub)] { chosen = run; });
   }
   try {
@@ -71,8 +82,8 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& end) {
     return ended_by(commands, end);
   }
-  const app::Outcome outcome = chosen();
-  if (outcome) return 0;
+  const core::Result<int> outcome = chosen();
+  if (outcome) return *outcome;
   fmt::print(stderr, "tractus-server: {}\n", outcome.error().what);
   return 2;
 }

@@ -5,7 +5,10 @@
 #include <signal.h>
 
 #include <charconv>
+#include <chrono>
+#include <condition_variable>
 #include <cstdio>
+#include <mutex>
 #include <thread>
 
 #include "core/clock.hpp"
@@ -13,7 +16,7 @@
 #include "server/api/backend.hpp"
 #include "server/api/service.hpp"
 #include "server/api/uploads.hpp"
-#include "server/app/data_folder.hpp"
+#include "server/app/upkeep.hpp"
 #include "server/http/certificates.hpp"
 #include "server/http/static_files.hpp"
 #include "server/jobs/runner.hpp"
@@ -106,6 +109,45 @@ core::Result<std::pair<std::string, std::uint16_t>> listening_address(const std:
 
 namespace {
 
+/// One line of JSON on standard error: the time, then what happened.
+void log_line(const core::Json& fields) {
+  core::Json line{{"t", core::utc_text(core::utc_us())}};
+  line.update(fields);
+  fmt::print(stderr, "{}\n", line.dump(-1, ' ', false, core::Json::error_handler_t::replace));
+}
+
+/// Notes the audit trail's end outside the database, every ten seconds and at the end.
+class Anchoring {
+ public:
+  explicit Anchoring(DataFolder& data) : thread_([this, &data] { run(data); }) {}
+  ~Anchoring() {
+    {
+      const std::lock_guard held(mutex_);
+      ending_ = true;
+    }
+    changed_.notify_all();
+    thread_.join();
+  }
+  Anchoring(const Anchoring&) = delete;
+  Anchoring& operator=(const Anchoring&) = delete;
+
+ private:
+  void run(DataFolder& data) {
+    constexpr std::chrono::seconds kBetween{10};
+    std::unique_lock held(mutex_);
+    while (true) {
+      const bool last = changed_.wait_for(held, kBetween, [this] { return ending_; });
+      if (auto noted = note_anchor(data); !noted)
+        log_line({{"what", "audit anchor"}, {"error", noted.error().what}});
+      if (last) return;
+    }
+  }
+  std::mutex mutex_;  ///< guards ending_
+  bool ending_ = false;
+  std::condition_variable changed_;
+  std::thread thread_;
+};
+
 bool is_loopback(const std::string& address) {
   return address.starts_with("127.") || address == "::1";
 }
@@ -149,7 +191,7 @@ core::Result<void> serve(const ServeOptions& given) {
     return core::Error{core::Errc::not_found,
                        options.web->string() + ": no index.html there; build the web pages first"};
   auto runner = jobs::Runner::start(data->store, data->objects, [](const std::string& line) {
-    fmt::print(stderr, "tractus-server: {}\n", line);
+    log_line({{"what", "job"}, {"line", line}});
   });
   if (!runner) return runner.error();
   api::Backend backend{.store = data->store,
@@ -158,13 +200,20 @@ core::Result<void> serve(const ServeOptions& given) {
                        .now_utc_us = core::utc_us,
                        .work_waits = [&runner] { (*runner)->wake(); },
                        .secrets = data->secrets,
-                       .secure_cookies = options.http.tls || options.http.behind_proxy};
+                       .secure_cookies = options.http.tls || options.http.behind_proxy,
+                       .log = log_line,
+                       .logs_requests = options.log_requests};
   if (auto fine = api::reconcile_uploads(backend); !fine) return fine;
   auto server = http::Server::open(options.http, service_of(backend, options.web));
   if (!server) return server.error();
   signals.watch(*server);
   say_where(options, server->port());
-  server->run();
+  {
+    const Anchoring anchoring(*data);
+    log_line({{"what", "serving"}, {"tls", options.http.tls.has_value()}});
+    server->run();
+  }
+  log_line({{"what", "stopped"}});
   return {};
 }
 

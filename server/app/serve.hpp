@@ -19,7 +19,8 @@ struct ServeOptions {
   std::vector<std::string> hosts;  ///< names and addresses the certificate must hold
   /// PEM files of an own certificate chain and its key, instead of the house's.
   std::optional<std::pair<std::filesystem::path, std::filesystem::path>> certificate;
-  bool json = false;  ///< the line that says where it listens
+  bool log_requests = false;  ///< a line for every one, not only for those that fail
+  bool json = false;          ///< the line that says where it listens
 };
 
 /// Splits "127.0.0.1:8480" or "[::1]:8480". Errors: bad_input.

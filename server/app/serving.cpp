@@ -27,12 +27,14 @@ Run serve_command(CLI::App& command) {
                    "HTTP without TLS: a proxy before it speaks TLS and sets X-Forwarded-For");
   command.add_option("--host", options->hosts,
                      "Name or address that it is reached by, for its certificate; repeat it");
+  command.add_flag("--log-requests", options->log_requests,
+                   "A line in the log for every request, not only for those that fail");
   const auto certificate = std::make_shared<std::filesystem::path>();
   const auto key = std::make_shared<std::filesystem::path>();
   auto* chain = command.add_option("--certificate", *certificate,
                                    "PEM file of an own certificate chain, instead of the house's");
   chain->needs(command.add_option("--key", *key, "PEM file of its key"));
-  return [=]() -> Outcome {
+  return [=]() -> core::Result<int> {
     auto address = listening_address(*listen);
     if (!address) return address.error();
     options->data = common->data;
@@ -42,14 +44,15 @@ Run serve_command(CLI::App& command) {
     options->http.address = address->first;
     options->http.port = address->second;
     options->http.header_time = std::chrono::milliseconds(std::lround(*header_s * 1000));
-    return serve(*options);
+    if (auto served = serve(*options); !served) return served.error();
+    return 0;
   };
 }
 
 Run openapi_command(CLI::App&) {
-  return []() -> Outcome {
+  return []() -> core::Result<int> {
     fmt::print("{}\n", api::openapi(api::routes()).dump(2));
-    return {};
+    return 0;
   };
 }
 

@@ -49,7 +49,7 @@ Run init_command(CLI::App& command) {
                      "Name or address that stations and browsers reach the server by; repeat it");
   command.add_option("--password-file", *file,
                      "Its password is the first line; without, one is made and printed once");
-  return [=]() -> Outcome {
+  return [=]() -> core::Result<int> {
     if (name->empty() || name->size() > api::kMaxName)
       return core::Error{
           core::Errc::bad_input,
@@ -58,12 +58,12 @@ Run init_command(CLI::App& command) {
     if (!password) return password.error();
     auto data = make_data(common->data);
     if (!data) return data.error();
-    if (auto made = make_account(*data, *name, *password); !made) return made;
+    if (auto made = make_account(*data, *name, *password); !made) return made.error();
     auto names = http::own_names();
     names.insert(names.end(), hosts->begin(), hosts->end());
     const auto tls = common->data / kCertificates;
     if (auto made = http::ensure_certificates(tls, names, core::utc_us() / 1'000'000); !made)
-      return made;
+      return made.error();
     const auto authority = http::certificate_files(tls).authority;
     auto print = http::fingerprint(authority);
     if (!print) return print.error();
@@ -79,7 +79,7 @@ Run init_command(CLI::App& command) {
       line += fmt::format("; its password, shown only now: {}", *password);
     }
     say(common->json, said, line);
-    return {};
+    return 0;
   };
 }
 
@@ -103,14 +103,14 @@ Run enrol_command(CLI::App& command) {
   const auto out = std::make_shared<std::filesystem::path>();
   command.add_option("--name", *name, "The station's name")->required();
   command.add_option("--out", *out, "File for its token; must not exist")->required();
-  return [=]() -> Outcome {
+  return [=]() -> core::Result<int> {
     if (name->empty() || name->size() > api::kMaxName)
       return core::Error{core::Errc::bad_input,
                          fmt::format("--name: 1 to {} characters are expected", api::kMaxName)};
     auto data = open_data(common->data);
     if (!data) return data.error();
     const std::string token = api::new_token();
-    if (auto written = write_secret(*out, token); !written) return written;
+    if (auto written = write_secret(*out, token); !written) return written.error();
     const store::Acting acting(command_act("enrol", {{"name", *name}}));
     auto added = data->store.write([&](store::Writing& tx) {
       return store::add_station(tx, {core::new_id(), *name}, api::token_hash(token),
@@ -118,11 +118,11 @@ Run enrol_command(CLI::App& command) {
     });
     if (!added) {
       std::filesystem::remove(*out);
-      return added;
+      return added.error();
     }
     say(common->json, {{"station", *name}, {"token_file", out->string()}},
         fmt::format("station {} is enrolled; its token is in {}", *name, out->string()));
-    return {};
+    return 0;
   };
 }
 
@@ -131,13 +131,13 @@ Run publish_command(CLI::App& command) {
   const auto bundle = std::make_shared<std::filesystem::path>();
   command.add_option("bundle", *bundle, "The case's folder, as `tractus carve` made it")
       ->required();
-  return [=]() -> Outcome {
+  return [=]() -> core::Result<int> {
     auto data = open_data(common->data);
     if (!data) return data.error();
     auto id = publish(*data, *bundle);
     if (!id) return id.error();
     say(common->json, {{"case_id", *id}}, "published case " + *id);
-    return {};
+    return 0;
   };
 }
 

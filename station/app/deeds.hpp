@@ -12,6 +12,7 @@ core::Result<int> tune_scenario(const Options& options);
 core::Result<int> run_study(const Options& options);
 core::Result<int> sync_cases(const Options& options);
 core::Result<int> upload_trials(const Options& options);
+core::Result<int> run_assigned(const Options& options);
 core::Result<int> enrol_station(const Options& options);
 core::Result<int> trust_signer(const Options& options);
 

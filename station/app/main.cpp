@@ -19,6 +19,8 @@ core::Result<int> done(const app::Options& options) {
       return app::sync_cases(options);
     case app::Deed::upload:
       return app::upload_trials(options);
+    case app::Deed::assigned:
+      return app::run_assigned(options);
     case app::Deed::enrol:
       return app::enrol_station(options);
     case app::Deed::trust:

@@ -16,6 +16,7 @@ constexpr const char* kExamples = R"(Examples:
   tractus-station --device rig --address 192.168.1.40:1502 --scenario mine.json --data st
   tractus-station study  --study spine-1 --participant P01 --device rig --data st --server URL --token-file st.token
   tractus-station enrol  --server https://sim.example.org:8480 --authority authority.pem --code C --token-file st.token
+  tractus-station assigned --badge 4711 --data st --server URL --token-file st.token
   tractus-station sync   --data st --server URL --token-file st.token
   tractus-station upload --data st --server URL --token-file st.token --wait 600)";
 
@@ -141,6 +142,32 @@ void set_study(const CLI::App& app, Options& options) {
   if (app.count("--trials") == 0) options.trials = std::numeric_limits<int>::max();
 }
 
+void add_assigned(CLI::App& app, Options& options) {
+  add_data(app, options, true);
+  add_server(app, options, true);
+  app.add_option("--badge", options.badge, "the trainee's badge number")->required();
+  app.add_option("--pin-file", options.pin_file, "its first line is the PIN; else asked for");
+  app.add_option("--device", options.setup.device, "sim-lambda6; rig or sim-rig for scenarios")
+      ->capture_default_str();
+  add_rig(app, options);
+  app.add_option("--seed", options.setup.seed, "of the simulated hand")
+      ->check(CLI::Range(0.0, 9e15))
+      ->capture_default_str();
+  app.add_option("--duration", options.setup.duration_s, "s, of a palpation trial")
+      ->check(CLI::Range(1.0, 3600.0))
+      ->capture_default_str();
+  app.add_option("--speed", options.setup.speed, "real or fast")
+      ->transform(CLI::CheckedTransformer(kSpeeds));
+  app.add_option("--answer", options.answer, "what to answer instead of the simulated hand")
+      ->check(CLI::IsMember({"none", "medial", "lateral", "superior", "inferior", "anterior"}));
+  app.add_option("--trials", options.trials, "at most so many now")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  app.add_option("--view", options.show, "window, offscreen or none")
+      ->transform(CLI::CheckedTransformer(kShows))
+      ->default_str("none");
+}
+
 int refuse(const std::string& why) {
   std::fprintf(stderr, "tractus-station: %s (see --help)\n", why.c_str());
   return 2;
@@ -192,6 +219,9 @@ Parsed parse(int argc, char** argv) {
   add_server(*upload, options, true);
   upload->add_option("--wait", options.wait_s, "s to go on trying when the server does not answer")
       ->check(CLI::Range(0.0, 1e7));
+  CLI::App* assigned =
+      app.add_subcommand("assigned", "sign in with badge and PIN; do what is assigned, in order");
+  add_assigned(*assigned, options);
   CLI::App* enrol = app.add_subcommand(
       "enrol", "make a key for this station and let the server know it, by a one-time code");
   enrol->add_flag("--json", options.json, "one JSON document on standard output");
@@ -219,6 +249,7 @@ Parsed parse(int argc, char** argv) {
   if (sync->parsed()) options.deed = Deed::sync;
   if (upload->parsed()) options.deed = Deed::upload;
   if (enrol->parsed()) options.deed = Deed::enrol;
+  if (assigned->parsed()) options.deed = Deed::assigned;
   if (trust->parsed()) options.deed = Deed::trust;
   if (tune->parsed()) options.deed = Deed::tune;
   if (options.deed == Deed::trust && options.signer_hex.empty() && options.signer_of_case.empty())

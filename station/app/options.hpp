@@ -10,7 +10,7 @@
 
 namespace app {
 
-enum class Deed { run, probe, tune, study, sync, upload, trust, enrol };
+enum class Deed { run, probe, tune, study, sync, upload, trust, enrol, assigned };
 
 struct Options {
   Deed deed = Deed::run;
@@ -36,6 +36,9 @@ struct Options {
   // study
   std::string study, participant;
   bool skill_given = false;  ///< else the simulated surgeon's skill follows from their experience
+  // assigned
+  std::string badge;
+  std::filesystem::path pin_file;  ///< empty: asked at the terminal
   // upload
   double wait_s = 0.0;
   // trust

@@ -147,9 +147,10 @@ core::Result<void> TrialRun::Parts::open_device(const devices::DeviceInfo& info,
 core::Result<void> TrialRun::Parts::make_file(const PreparedCase& prepared,
                                               const devices::DeviceInfo& info) {
   header.id = core::new_id();
-  header.case_id = prepared.opened.id;
+  header.case_id = setup.case_known_as.empty() ? prepared.opened.id : setup.case_known_as;
   header.station = folder.config().name;
   header.operator_name = made.trainee ? made.trainee->name() : "not named";
+  if (!setup.operator_name.empty()) header.operator_name = setup.operator_name;
   header.simulated = info.simulated;
   header.device = info.id;
   header.started_utc_us = core::utc_us();

@@ -23,6 +23,9 @@ struct TrialSetup {
   double duration_s = 30.0;
   Speed speed = Speed::real;
   double rate_Hz = 4000.0;
+  /// Of an assigned trial: what its file calls the case and the trainee instead.
+  std::string case_known_as = {};
+  std::string operator_name = {};
 };
 
 /// What a trial came to.

@@ -1,5 +1,6 @@
 /// Cohorts: who learns with whom, and who teaches them.
 #include "core/bytes.hpp"
+#include "server/api/assignment_plan.hpp"
 #include "server/api/authentication.hpp"
 #include "server/api/backend.hpp"
 #include "server/api/people_json.hpp"
@@ -86,8 +87,13 @@ Result<void> put(store::Writing& tx, const Call& call, const std::string& accoun
                                  (*account)->role == name(Role::faculty));
   if (!fits)
     return Error{Errc::bad_input, "body: /name: an account of a trainee or of faculty is expected"};
-  return store::put_into_cohort(tx, call.text("id"), (*account)->id, (*account)->role,
-                                call.backend.now_utc_us());
+  const store::Deed deed{call.caller.name, call.backend.now_utc_us()};
+  if (auto done = store::put_into_cohort(tx, call.text("id"), (*account)->id, (*account)->role,
+                                         deed.at_utc_us);
+      !done)
+    return done;
+  if ((*account)->role != name(Role::trainee)) return {};
+  return assign_what_the_cohort_has(tx, call.text("id"), **account, deed);
 }
 
 Result<http::Response> put_person(const Call& call) {

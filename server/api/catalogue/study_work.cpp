@@ -8,6 +8,7 @@
 #include "server/api/backend.hpp"
 #include "server/api/route.hpp"
 #include "server/api/schema.hpp"
+#include "server/api/uploads.hpp"
 #include "server/jobs/scenario_facts.hpp"
 #include "study/sealed_law.hpp"
 
@@ -58,6 +59,7 @@ core::Result<std::vector<wire::SealedTrial>> sealed_trials(Backend& backend, con
 }
 
 core::Result<http::Response> take_trials(const Call& call) {
+  if (auto room = check_room(call.backend, kTrialToCome_bytes); !room) return room.error();
   auto given = call.backend.store.write(
       [&](store::Writing& tx) -> core::Result<Given> { return take(tx, call); });
   if (!given) return given.error();

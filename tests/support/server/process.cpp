@@ -98,9 +98,11 @@ Answer Client::ask(const std::string& method, const std::string& path, const Hea
   curl_slist* lines = nullptr;
   for (const auto& [name, value] : headers)
     lines = curl_slist_append(lines, (name + ": " + value).c_str());
-  const std::string url = fmt::format("http://127.0.0.1:{}{}", port_, path);
+  const std::string url =
+      fmt::format("{}://127.0.0.1:{}{}", authority_.empty() ? "http" : "https", port_, path);
   curl_easy_reset(curl_);
   curl_easy_setopt(curl_, CURLOPT_URL, url.c_str());
+  if (!authority_.empty()) curl_easy_setopt(curl_, CURLOPT_CAINFO, authority_.c_str());
   curl_easy_setopt(curl_, CURLOPT_PATH_AS_IS, 1L);
   curl_easy_setopt(curl_, CURLOPT_CUSTOMREQUEST, method.c_str());
   curl_easy_setopt(curl_, CURLOPT_HTTPHEADER, lines);
@@ -123,9 +125,10 @@ Answer Client::ask(const std::string& method, const std::string& path, const Hea
   return out;
 }
 
-ServerProcess::ServerProcess(const fs::path& data, std::vector<std::string> more) {
-  std::vector<std::string> arguments{"serve",    "--data",      data.string(),
-                                     "--listen", "127.0.0.1:0", "--plain"};
+ServerProcess::ServerProcess(const fs::path& data, std::vector<std::string> more,
+                             Transport transport) {
+  std::vector<std::string> arguments{"serve", "--data", data.string(), "--listen", "127.0.0.1:0"};
+  if (transport == Transport::plain) arguments.emplace_back("--plain");
   arguments.insert(arguments.end(), more.begin(), more.end());
   const Started started = start("tractus-server", arguments);
   pid_ = started.pid;
@@ -133,7 +136,8 @@ ServerProcess::ServerProcess(const fs::path& data, std::vector<std::string> more
   std::string said;
   char c = 0;
   while (said.find('\n') == std::string::npos && ::read(output_, &c, 1) == 1) said += c;
-  const std::string before = "listening on http://127.0.0.1:";
+  const std::string before = transport == Transport::plain ? "listening on http://127.0.0.1:"
+                                                           : "listening on https://127.0.0.1:";
   if (said.starts_with(before)) port_ = std::stoi(said.substr(before.size()));
   EXPECT_NE(port_, 0) << said;
 }
@@ -150,6 +154,11 @@ void ServerProcess::kill_now() {
 
 int ServerProcess::stop() {
   ::kill(pid_, SIGTERM);
+  std::string piece(65536, '\0');
+  for (ssize_t n = 1; n > 0;) {
+    n = ::read(output_, piece.data(), piece.size());
+    said_.append(piece, 0, static_cast<std::size_t>(std::max<ssize_t>(n, 0)));
+  }
   const int code = exit_code(pid_);
   ::close(output_);
   pid_ = -1;

@@ -38,6 +38,8 @@ class Client {
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
   void speak_to(int port) { port_ = port; }
+  /// By TLS, to a server whose certificate is of this authority.
+  void trust(const std::filesystem::path& authority) { authority_ = authority; }
   /// The path is sent as it is, "/../x" too.
   Answer ask(const std::string& method, const std::string& path, const Headers& headers = {},
              const std::string& body = "");
@@ -45,21 +47,26 @@ class Client {
  private:
   void* curl_;
   int port_ = 0;
+  std::filesystem::path authority_;
 };
+
+enum class Transport { plain, tls };
 
 /// `tractus-server serve` on a free port. Killed when it goes.
 class ServerProcess {
  public:
   /// Waits for its line "listening on"; fails the test when it does not come.
-  explicit ServerProcess(const std::filesystem::path& data, std::vector<std::string> more = {});
+  explicit ServerProcess(const std::filesystem::path& data, std::vector<std::string> more = {},
+                         Transport transport = Transport::plain);
   ~ServerProcess();
   ServerProcess(const ServerProcess&) = delete;
   ServerProcess& operator=(const ServerProcess&) = delete;
   int port() const { return port_; }
   pid_t pid() const { return pid_; }
   void kill_now();
-  /// SIGTERM, then waits; its exit code.
+  /// SIGTERM, then waits; its exit code. What it said meanwhile is then in `output`.
   int stop();
+  const std::string& output() const { return said_; }
   /// Largest resident memory so far, bytes.
   std::size_t peak_memory_bytes() const;
 
@@ -67,6 +74,7 @@ class ServerProcess {
   pid_t pid_ = -1;
   int port_ = 0;
   int output_ = -1;
+  std::string said_;
 };
 
 /// What an open socket sends back until it is closed, or nothing more comes for `patience_ms`.

@@ -1,0 +1,41 @@
+/// An assignment as it is asked for, checked, made; and who is put into it.
+#pragma once
+
+#include "db/store/assignments.hpp"
+#include "scenarios/scenario.hpp"
+#include "server/api/route.hpp"
+
+namespace api {
+
+/// One case of an assignment: published already, or a scenario that comes with it.
+struct AssignedCase {
+  std::string case_id;
+  std::string name;  ///< what the trainee is shown; empty: the trial's number
+  std::optional<scenarios::Scenario> scenario = {};
+};
+
+struct AssignmentPlan {
+  store::Assignment assignment;
+  std::string protocol;             ///< a study whose scenarios, order and repeats are taken
+  std::vector<AssignedCase> cases;  ///< none with a protocol
+  std::vector<std::string> people;  ///< names of accounts, beside the cohort's
+
+  /// Errors: bad_input with the field.
+  static core::Result<AssignmentPlan> from_json(const core::Json& json);
+};
+
+/// Makes it, by the caller: of a cohort that they lead, for people that they teach (an
+/// administrator: for any). Returns its id. Errors: not_found (a case, a cohort, a person, a study
+/// that the caller has none of).
+core::Result<std::string> make_assignment(const Call& call, const AssignmentPlan& plan);
+
+/// Puts an account into it, with an order of its own. Errors: conflict when it is in it already;
+/// bad_input for one that is no trainee's.
+core::Result<void> assign_to(store::Writing& tx, const std::string& id,
+                             const store::Account& account, const store::Deed& deed);
+/// A trainee who joins a cohort later gets what it was assigned.
+core::Result<void> assign_what_the_cohort_has(store::Writing& tx, const std::string& cohort_id,
+                                              const store::Account& account,
+                                              const store::Deed& deed);
+
+}  // namespace api

@@ -1,0 +1,239 @@
+#include "server/api/export.hpp"
+
+#include <fmt/format.h>
+#include <sodium.h>
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include "metrics/metric.hpp"
+#include "server/api/uploads.hpp"
+#include "trial/trial_file.hpp"
+
+namespace api {
+namespace {
+
+using core::Errc;
+using core::Error;
+using core::Result;
+
+constexpr std::int64_t kMaxTrials = 1'000'000;
+constexpr std::size_t kMaxArray_bytes = 512u << 20;
+constexpr double kDay_us = 86'400e6;
+
+/// One cell. What begins like a formula is kept from being one (OWASP, CSV injection).
+std::string cell(std::string text) {
+  if (!text.empty() && std::string_view("=+-@\t\r").find(text.front()) != std::string_view::npos)
+    text.insert(text.begin(), '\'');
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + '"';
+}
+
+std::string cell(const std::optional<double>& number) {
+  return number ? fmt::format("{}", *number) : "";
+}
+
+std::string person_of(const store::CohortTrial& trial, const Pseudonyms& names) {
+  return trial.study.empty() ? names.person(trial.summary.operator_name) : trial.participant;
+}
+
+struct Column {
+  const char *table, *column, *type, *unit, *meaning;
+};
+constexpr std::array kColumns{
+    Column{"trials", "trial", "text", "", "pseudonym of the trial, the same in every export"},
+    Column{"trials", "participant", "text", "", "pseudonym of the person, or of the machine"},
+    Column{"trials", "study", "text", "", "study or assignment; empty: none"},
+    Column{"trials", "number", "integer", "1", "place in the participant's order, from 1"},
+    Column{"trials", "level", "text", "", "of training, as the study states it"},
+    Column{"trials", "experience_years", "number", "a", "as the study states it"},
+    Column{"trials", "case", "text", "", "title of the case or scenario"},
+    Column{"trials", "rig", "text", "", "palpation or probing"},
+    Column{"trials", "simulated", "truth", "", "1: a simulated hand or machine"},
+    Column{"trials", "days", "number", "d", "since the participant's first trial here"},
+    Column{"trials", "duration_s", "number", "s", "first to last sample"},
+    Column{"trials", "samples", "integer", "1", "in the trial's file"},
+    Column{"trials", "complete", "truth", "", "1: it was not cut short"},
+    Column{"trials", "counts", "truth", "", "1: it counts for its study; empty: of none"},
+    Column{"trials", "correct", "truth", "", "1: the answer is the truth; empty: no answer"},
+    Column{"scores", "trial", "text", "", "as in trials"},
+    Column{"scores", "score", "text", "", "id of the score; defined below"},
+    Column{"scores", "value", "number", "by score", "its value"},
+    Column{"scores", "unit", "text", "", "of the value"},
+};
+constexpr std::array kPalpation{
+    Column{"palpation", "t_s", "number", "s", "since the trial's start"},
+    Column{"palpation", "px_m", "number", "m", "handle's origin in the volume's frame (LPS)"},
+    Column{"palpation", "py_m", "number", "m", "likewise"},
+    Column{"palpation", "pz_m", "number", "m", "likewise"},
+    Column{"palpation", "qw", "number", "1", "handle's orientation, quaternion w x y z"},
+    Column{"palpation", "qx", "number", "1", "likewise"},
+    Column{"palpation", "qy", "number", "1", "likewise"},
+    Column{"palpation", "qz", "number", "1", "likewise"},
+    Column{"palpation", "fx_N", "number", "N", "bone on probe at the origin, handle frame"},
+    Column{"palpation", "fy_N", "number", "N", "likewise"},
+    Column{"palpation", "fz_N", "number", "N", "likewise"},
+    Column{"palpation", "tx_Nm", "number", "N m", "likewise"},
+    Column{"palpation", "ty_Nm", "number", "N m", "likewise"},
+    Column{"palpation", "tz_Nm", "number", "N m", "likewise"},
+    Column{"palpation", "flags", "integer", "1", "bits of tractus-trial/1: late, limited, …"},
+};
+constexpr std::array kProbing{
+    Column{"probing", "t_s", "number", "s", "since the trial's start"},
+    Column{"probing", "x_m", "number", "m", "depth of the tip from the entry, into the bone"},
+    Column{"probing", "theta_rad", "number", "rad", "angle about x, unwrapped"},
+    Column{"probing", "fz_N", "number", "N", "push of the hand along x, into the bone"},
+    Column{"probing", "tz_Nm", "number", "N m", "torque of the hand about x"},
+    Column{"probing", "speed_m_s", "number", "m/s", "of the depth, the actuator's own"},
+    Column{"probing", "mode", "integer", "1", "of the controller, by tractus-trial/1"},
+    Column{"probing", "flags", "integer", "1", "bits of tractus-trial/1: late, limited, …"},
+};
+
+void append_row(std::vector<double>& out, const trial::Sample& s) {
+  out.insert(out.end(), {s.t_s, s.p_VH_m[0], s.p_VH_m[1], s.p_VH_m[2], s.q_VH[0], s.q_VH[1],
+                         s.q_VH[2], s.q_VH[3]});
+  for (const float force : s.force_N) out.push_back(double(force));
+  for (const float torque : s.torque_Nm) out.push_back(double(torque));
+  out.push_back(s.flags);
+}
+
+void append_row(std::vector<double>& out, const trial::ProbingSample& s) {
+  out.insert(out.end(), {s.t_s, s.x_m, s.theta_rad, double(s.fz_N), double(s.tz_Nm),
+                         double(s.speed_m_s), double(s.mode), double(s.flags)});
+}
+
+/// The .npy format 1.0: magic, version, length of the header, a Python literal, padded to 64 bytes.
+std::string npy(const std::vector<double>& values, std::size_t columns) {
+  static_assert(std::endian::native == std::endian::little);
+  std::string header =
+      fmt::format("{{'descr': '<f8', 'fortran_order': False, 'shape': ({}, {}), }}",
+                  values.size() / columns, columns);
+  header.append(63 - (10 + header.size()) % 64, ' ');
+  header += '\n';
+  std::string out("\x93NUMPY\x01\x00", 8);
+  out += static_cast<char>(header.size() & 255u);
+  out += static_cast<char>(header.size() >> 8);
+  out += header;
+  const std::size_t before = out.size();
+  out.resize(before + values.size() * sizeof(double));
+  if (!values.empty())
+    std::memcpy(out.data() + before, values.data(), values.size() * sizeof(double));
+  return out;
+}
+
+}  // namespace
+
+Pseudonyms::Pseudonyms(const Secrets& secrets) : key_{} {
+  constexpr std::string_view kPurpose = "pseudonyms of exports";
+  const Secrets::Key root = secrets.audit_key();
+  crypto_generichash(reinterpret_cast<unsigned char*>(key_.data()), key_.size(),
+                     reinterpret_cast<const unsigned char*>(kPurpose.data()), kPurpose.size(),
+                     reinterpret_cast<const unsigned char*>(root.data()), root.size());
+}
+
+std::string Pseudonyms::hashed(char first, const std::string& text) const {
+  std::array<std::byte, 16> hash{};
+  const std::string message = first + text;
+  crypto_generichash(reinterpret_cast<unsigned char*>(hash.data()), hash.size(),
+                     reinterpret_cast<const unsigned char*>(message.data()), message.size(),
+                     reinterpret_cast<const unsigned char*>(key_.data()), key_.size());
+  return first + core::hex(hash).substr(0, 16);
+}
+
+std::string Pseudonyms::trial(const std::string& id) const { return hashed('T', id); }
+std::string Pseudonyms::person(const std::string& id) const { return hashed('P', id); }
+
+Result<std::vector<store::CohortTrial>> trials_to_export(Backend& backend,
+                                                         const std::string& study) {
+  using Trials = std::vector<store::CohortTrial>;
+  return backend.store.read([&](store::Reading& tx) -> Result<Trials> {
+    if (!study.empty()) {
+      auto known = store::study_of(tx, study);
+      if (!known) return known.error();
+      if (!*known) return Error{Errc::not_found, "study: there is no study " + study.substr(0, 32)};
+    }
+    return store::cohort_trials(tx, study, kMaxTrials);
+  });
+}
+
+std::string trials_csv(const std::vector<store::CohortTrial>& trials, const Pseudonyms& names) {
+  std::map<std::string, std::int64_t> first;
+  for (const auto& trial : trials)
+    first.try_emplace(person_of(trial, names), trial.summary.started_utc_us);
+  std::string out;
+  for (const Column& column : kColumns)
+    if (std::string_view(column.table) == "trials")
+      out += (out.empty() ? "" : ",") + std::string(column.column);
+  out += "\r\n";
+  for (const auto& trial : trials) {
+    const auto& s = trial.summary;
+    const std::string person = person_of(trial, names);
+    const bool in_study = !trial.study.empty();
+    const double days = double(s.started_utc_us - first.at(person)) / kDay_us;
+    out +=
+        fmt::format("{},{},{},{},{},{},{},{},{},{:.4f},{},{},{},{},{}\r\n", names.trial(s.id),
+                    cell(person), cell(trial.study), in_study ? std::to_string(trial.number) : "",
+                    cell(trial.level), cell(trial.experience_years), cell(s.case_title),
+                    cell(trial.rig), s.simulated ? 1 : 0, days, s.duration_s, s.samples,
+                    trial.complete ? 1 : 0, in_study ? (trial.place == "counts" ? "1" : "0") : "",
+                    s.correct ? (*s.correct ? "1" : "0") : "");
+  }
+  return out;
+}
+
+std::string scores_csv(const std::vector<store::CohortTrial>& trials, const Pseudonyms& names) {
+  std::map<std::string, std::string> units;
+  for (const auto& metric : metrics::all()) units[metric.id] = metric.unit;
+  std::string out = "trial,score,value,unit\r\n";
+  for (const auto& trial : trials)
+    for (const auto& [id, value] : trial.metrics)
+      out += fmt::format("{},{},{},{}\r\n", names.trial(trial.summary.id), cell(id), value,
+                         cell(units[id]));
+  return out;
+}
+
+std::string dictionary_csv() {
+  std::string out = "table,column,type,unit,meaning\r\n";
+  const auto add = [&](const auto& columns) {
+    for (const Column& c : columns)
+      out += fmt::format("{},{},{},{},{}\r\n", c.table, c.column, c.type, cell(c.unit),
+                         cell(c.meaning));
+  };
+  add(kColumns);
+  for (const auto& metric : metrics::all())
+    out += fmt::format("scores,{},number,{},{}\r\n", cell(metric.id), cell(metric.unit),
+                       cell(metric.definition));
+  add(kPalpation);
+  add(kProbing);
+  return out;
+}
+
+Result<std::string> samples_npy(const std::filesystem::path& trial_file, double rate_Hz) {
+  std::vector<double> values;
+  std::size_t columns = kPalpation.size();
+  double next_s = 0.0;
+  bool full = false;
+  const auto take = [&](const auto& sample) {
+    if (rate_Hz > 0.0 && sample.t_s < next_s) return;
+    // The next row is the first sample of the next interval: no drift over a long trial.
+    if (rate_Hz > 0.0) next_s = (std::floor(sample.t_s * rate_Hz + 1e-9) + 1.0) / rate_Hz;
+    full = full || values.size() * sizeof(double) >= kMaxArray_bytes;
+    if (!full) append_row(values, sample);
+  };
+  auto read = trial::scan_trial(trial_file,
+                                [&](const trial::Block& block) {
+                                  if (!block.probing.empty()) columns = kProbing.size();
+                                  block.each(take);
+                                },
+                                {.max_samples = kMaxTrialSamples, .max_bytes = kMaxTrial_bytes});
+  if (!read) return read.error();
+  if (full)
+    return Error{Errc::too_large, "the array is over 512 MiB: ask for fewer samples a second"};
+  return npy(values, columns);
+}
+
+}  // namespace api

@@ -1,0 +1,27 @@
+/// Backup, restore, looking over: what keeps a data folder through years.
+#pragma once
+
+#include "core/progress.hpp"
+#include "db/store/backup.hpp"
+#include "server/app/data_folder.hpp"
+
+namespace app {
+
+/// Copies a folder, served or not, to a new folder `out`: the database as it stands at one moment,
+/// every object it names (checked on the way), what of unfinished uploads is acknowledged, keys and
+/// certificates, and backup.json with what is in it. `out` appears whole or not at all.
+/// Errors: conflict (`out` exists), corrupt (an object is not what its name says), io, cancelled.
+core::Result<core::Json> back_up(const std::filesystem::path& data,
+                                 const std::filesystem::path& out, const core::Progress& shown);
+
+/// Makes a new data folder of a backup, every file checked against backup.json and its name.
+/// Errors: as above; bad_input when `from` is no backup.
+core::Result<core::Json> restore(const std::filesystem::path& from,
+                                 const std::filesystem::path& data, const core::Progress& shown);
+
+/// Ends of the audit trail noted beside the database (audit.anchor). Errors: corrupt with the line.
+core::Result<store::Anchors> anchors_of(const std::filesystem::path& data);
+/// Notes the present end, when it is a new one.
+core::Result<void> note_anchor(DataFolder& data);
+
+}  // namespace app

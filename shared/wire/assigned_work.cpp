@@ -1,0 +1,62 @@
+#include "wire/assigned_work.hpp"
+
+#include "core/bytes.hpp"
+#include "wire/study_work.hpp"
+
+namespace wire {
+namespace {
+constexpr long kMaxCount = 100'000;
+constexpr std::size_t kMaxName = 200, kMaxSealed = 64 * 1024;
+}  // namespace
+
+core::Json AssignedTrial::to_json() const {
+  return {
+      {"slot", slot},     {"rig", rig},         {"name", name},       {"assignment", assignment},
+      {"number", number}, {"planned", planned}, {"case_id", case_id}, {"sealed", sealed}};
+}
+
+core::Result<AssignedTrial> AssignedTrial::from_json(const core::Json& json,
+                                                     const std::string& where) {
+  core::Fields fields(json, where);
+  AssignedTrial out;
+  out.slot = fields.text("slot", 64);
+  if (!core::is_sha256(out.slot)) fields.wrong("slot", "64 hexadecimal characters are expected");
+  out.rig = fields.text("rig", 16);
+  if (out.rig != "palpation" && out.rig != "probing")
+    fields.wrong("rig", "palpation or probing is expected");
+  out.name = fields.text("name", kMaxName);
+  out.assignment = fields.text("assignment", kMaxName);
+  out.number = static_cast<std::uint64_t>(fields.integer("number", 1, kMaxCount));
+  out.planned = static_cast<std::uint64_t>(fields.integer("planned", 1, kMaxCount));
+  out.case_id = fields.text("case_id", 64);
+  if (out.rig == "palpation" && !core::is_sha256(out.case_id))
+    fields.wrong("case_id", "64 hexadecimal characters are expected");
+  out.sealed = fields.text("sealed", kMaxSealed);
+  if (auto done = fields.done(); !done) return done.error();
+  return out;
+}
+
+core::Json AssignedWork::to_json() const {
+  return {{"participant", participant},
+          {"left", left},
+          {"trial", trial ? trial->to_json() : core::Json()}};
+}
+
+core::Result<AssignedWork> AssignedWork::from_json(const core::Json& json,
+                                                   const std::string& where) {
+  core::Fields fields(json, where);
+  AssignedWork out;
+  out.participant = fields.text("participant", 32);
+  if (!out.participant.empty() && !is_study_name(out.participant))
+    fields.wrong("participant", "a pseudonym is expected");
+  out.left = static_cast<std::uint64_t>(fields.integer("left", 0, kMaxCount));
+  const core::Json* trial = fields.member("trial");
+  if (auto done = fields.done(); !done) return done.error();
+  if (trial->is_null()) return out;
+  auto read = AssignedTrial::from_json(*trial, where + "/trial");
+  if (!read) return read.error();
+  out.trial = std::move(*read);
+  return out;
+}
+
+}  // namespace wire

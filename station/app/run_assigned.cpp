@@ -1,0 +1,173 @@
+/// A trainee signs in with badge and PIN and does the trials assigned, one after the other, each as
+/// the server gives it. Nothing that is shown tells which case it is.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+
+#include "core/file.hpp"
+#include "station/app/aftermath.hpp"
+#include "station/app/deeds.hpp"
+#include "station/app/exchange.hpp"
+#include "station/session/probing_trial.hpp"
+#include "station/session/station.hpp"
+#include "station/uplink/assigned.hpp"
+#include "study/sealed_law.hpp"
+
+namespace app {
+namespace {
+using session::TrialReport;
+using wire::AssignedTrial;
+using wire::AssignedWork;
+
+/// From a file, or typed unseen at the terminal.
+core::Result<std::string> pin_of(const Options& options) {
+  if (!options.pin_file.empty()) {
+    auto bytes = core::read_file(options.pin_file, 4096);
+    if (!bytes) return bytes.error();
+    std::string pin(core::text_of(*bytes));
+    return pin.substr(0, pin.find_first_of("\r\n"));
+  }
+  if (!::isatty(STDIN_FILENO))
+    return core::Error{core::Errc::bad_input, "--pin-file: is needed without a terminal"};
+  const char* typed = ::getpass("PIN: ");
+  return std::string(typed ? typed : "");
+}
+
+bool stopped_by_hand() { return asked_to_stop(); }
+
+core::Result<TrialReport> palpate(const Options& options, const session::StationFolder& folder,
+                                  const AssignedWork& work) {
+  const AssignedTrial& trial = *work.trial;
+  if (!session::find_case(folder, trial.case_id))
+    if (auto fetched = fetch_cases(options, folder); !fetched) return fetched.error();
+  auto made = session::prepare_case(folder, trial.case_id, {},
+                                    core::terminal_progress("Preparing the case"));
+  if (!made) return made.error();
+  const std::shared_ptr<const session::PreparedCase> prepared(std::move(*made));
+  session::TrialSetup setup = options.setup;
+  setup.case_known_as = trial.slot;
+  setup.operator_name = work.participant;
+  session::Station station(folder, setup);
+  if (auto ready = station.prepare(prepared, options.setup.seed + trial.number); !ready)
+    return ready.error();
+  auto onlooker = Onlooker::make(*prepared, options.show, {});
+  if (!onlooker) return onlooker.error();
+  const auto watch = [&](const session::Glimpse& seen) {
+    return onlooker->look(seen) && !stopped_by_hand();
+  };
+  if (auto ran = station.run(watch); !ran) return ran.error();
+  std::optional<trial::Answer> said;
+  if (station.state() == session::State::answering && !stopped_by_hand()) {
+    auto answer = answer_of(options, station.simulated_answer());
+    if (!answer) return answer.error();
+    said = *answer;
+  }
+  return station.answer(said);
+}
+
+core::Result<TrialReport> probe(const Options& options, const session::StationFolder& folder,
+                                const AssignedWork& work) {
+  auto token = token_of(options);
+  if (!token) return token.error();
+  const study::StationKey key(core::sha256(core::bytes_of(*token)));
+  const AssignedTrial& trial = *work.trial;
+  auto law = study::opened_law(trial.sealed, trial.slot, key);
+  if (!law) return law.error();
+  session::ProbingTask task;
+  task.case_id = trial.slot;
+  task.law = std::move(*law);
+  task.operator_name = work.participant;
+  task.extra = {{"number", trial.number}};
+  task.blind = true;
+  session::RigSetup setup = options.rig;
+  setup.device = options.setup.device;
+  setup.speed = options.setup.speed;
+  setup.seed = options.setup.seed + trial.number;
+  return session::run_probing_trial(
+      folder, task, setup, [](const session::ProbingGlimpse&) { return !stopped_by_hand(); },
+      [&](const session::ProbingTrialRun& run) -> core::Result<std::optional<trial::Answer>> {
+        return answer_of(options, run.simulated_answer());
+      });
+}
+
+core::Result<TrialReport> one_trial(const Options& options, const session::StationFolder& folder,
+                                    const AssignedWork& work) {
+  const std::string& device = options.setup.device;
+  const bool is_rig = device == "rig" || device == "sim-rig";
+  const bool probing = work.trial->rig == "probing";
+  if (is_rig != probing)
+    return core::Error{core::Errc::bad_input,
+                       fmt::format("the next trial is for {}: --device {} is not for that",
+                                   work.trial->rig, device)};
+  return probing ? probe(options, folder, work) : palpate(options, folder, work);
+}
+
+/// What was done and what is left.
+struct Tally {
+  core::Json trials = core::Json::array();
+  std::uint64_t left = 0;
+  bool faulted = false;
+};
+
+/// One after the other; the server has each before it gives the next.
+core::Result<Tally> rounds(const Options& options, const session::StationFolder& folder,
+                           uplink::Server& server, const uplink::Ticket& ticket) {
+  Tally tally;
+  for (int i = 0; !stopped_by_hand(); ++i) {
+    auto work = uplink::next_trial(server, ticket);
+    if (!work) return work.error();
+    tally.left = work->left;
+    if (!work->trial || i == options.trials) return tally;
+    const AssignedTrial& trial = *work->trial;
+    if (!options.json)
+      fmt::print("{}: {}, {} of {}\n", trial.assignment, trial.name, trial.number, trial.planned);
+    auto report = one_trial(options, folder, *work);
+    if (!report) return report.error();
+    tally.trials.push_back({{"trial_id", report->trial_id},
+                            {"number", trial.number},
+                            {"name", trial.name},
+                            {"complete", report->complete},
+                            {"fault", report->fault}});
+    tally.faulted = !report->complete;
+    auto handed = hand_over(options, folder);
+    if (!handed) return handed.error();
+    if (tally.faulted) return tally;  // a person looks at the device first
+  }
+  return tally;
+}
+
+}  // namespace
+
+core::Result<int> run_assigned(const Options& options) {
+  auto folder = session::StationFolder::open(options.data);
+  if (!folder) return folder.error();
+  auto lock = folder->lock();
+  if (!lock) return lock.error();
+  auto recovered = folder->recover();
+  if (!recovered) return recovered.error();
+  say_recovered(*recovered);
+  auto pin = pin_of(options);
+  if (!pin) return pin.error();
+  auto server = connect(options);
+  if (!server) return server.error();
+  if (auto before = hand_over(options, *folder); !before) return before.error();
+  auto ticket = uplink::sign_in(**server, options.badge, *pin);
+  if (!ticket) return ticket.error();
+  auto tally = rounds(options, *folder, **server, *ticket);
+  uplink::sign_out(**server, *ticket);
+  if (!tally) return tally.error();
+  if (options.json)
+    fmt::print(
+        "{}\n",
+        core::Json{{"name", ticket->name}, {"trials", tally->trials}, {"left", tally->left}}.dump(
+            2));
+  else
+    fmt::print("{}: {}\n", ticket->name,
+               tally->left == 0 ? "nothing is left to be done"
+                                : fmt::format("{} trials are left", tally->left));
+  return tally->faulted ? 1 : 0;
+}
+
+}  // namespace app

@@ -1,0 +1,21 @@
+/// A trainee's assignments, as a station asks for them.
+#pragma once
+
+#include "station/uplink/server.hpp"
+#include "wire/assigned_work.hpp"
+
+namespace uplink {
+
+struct Ticket {
+  std::string text;  ///< opens the trainee's assignments to this station alone
+  std::string name;  ///< to greet by
+};
+/// Errors: unauthorised (badge or PIN), unavailable (locked out for a while, or no server).
+core::Result<Ticket> sign_in(Server& server, const std::string& badge, const std::string& pin);
+/// Exactly the next trial; the same until it was handed over. Errors: conflict when another station
+/// holds it (the server's own words).
+core::Result<wire::AssignedWork> next_trial(Server& server, const Ticket& ticket);
+/// What cannot be said now ends by itself.
+void sign_out(Server& server, const Ticket& ticket);
+
+}  // namespace uplink
