@@ -72,7 +72,11 @@ class Signals {
 /// Signals within this process, from a thread of their own that starts with the first listener.
 std::unique_ptr<Signals> local_signals();
 
-/// Sent when, and only when, the transaction commits. Errors: too_large.
+/// Signals between all processes on a PostgreSQL database. Its connections are made when needed.
+std::unique_ptr<Signals> postgres_signals(const std::string& address);
+
+/// Sent when, and only when, the transaction commits; the same words twice in one transaction may
+/// be heard once. Errors: too_large.
 /// @pre as Signals::send
 core::Result<void> notify(Writing& tx, const std::string& channel, const std::string& payload);
 

@@ -6,11 +6,10 @@
 #include <condition_variable>
 #include <mutex>
 
-#include "db/store/store_test_support.hpp"
+#include "tests/support/database/database.hpp"
 
 namespace store {
 namespace {
-using testing::TestFolder;
 
 /// What was heard, for a test to wait for.
 class Ear {
@@ -42,12 +41,16 @@ class Ear {
 };
 
 struct Opened {
-  TestFolder folder;
-  Store store = std::move(Store::open(folder.path() / "tractus.db").value());
+  explicit Opened(test_support::DatabaseKind kind) : database(kind), store(database.open()) {}
+  test_support::TestDatabase database;
+  Store store;
 };
 
-TEST(Signals, OneSendersArriveInOrderAndSayWhoSentThem) {
-  Opened db;
+class SignalsContract : public test_support::BothDatabases {};
+TRACTUS_ON_BOTH_DATABASES(SignalsContract);
+
+TEST_P(SignalsContract, OneSendersArriveInOrderAndSayWhoSentThem) {
+  Opened db(GetParam());
   Ear ear;
   auto listening = db.store.signals().listen("live", ear.heard());
   ASSERT_TRUE(listening);
@@ -60,8 +63,8 @@ TEST(Signals, OneSendersArriveInOrderAndSayWhoSentThem) {
   EXPECT_EQ(ear.sender(), db.store.signals().own_id());
 }
 
-TEST(Signals, OfAWriteAreHeardWhenItCommitsAndNotWhenItFails) {
-  Opened db;
+TEST_P(SignalsContract, OfAWriteAreHeardWhenItCommitsAndNotWhenItFails) {
+  Opened db(GetParam());
   Ear ear;
   auto listening = db.store.signals().listen("jobs", ear.heard());
   ASSERT_TRUE(listening);
@@ -74,8 +77,8 @@ TEST(Signals, OfAWriteAreHeardWhenItCommitsAndNotWhenItFails) {
   EXPECT_EQ(ear.first(1), std::vector<std::string>{"committed"});
 }
 
-TEST(Signals, OfAnotherChannelAreNotHeard) {
-  Opened db;
+TEST_P(SignalsContract, OfAnotherChannelAreNotHeard) {
+  Opened db(GetParam());
   Ear ear;
   auto listening = db.store.signals().listen("live", ear.heard());
   ASSERT_TRUE(listening);
@@ -84,8 +87,8 @@ TEST(Signals, OfAnotherChannelAreNotHeard) {
   EXPECT_EQ(ear.first(1), std::vector<std::string>{"here"});
 }
 
-TEST(Signals, AListenerMaySendAndMayEndWhileOthersAreSpoken) {
-  Opened db;
+TEST_P(SignalsContract, AListenerMaySendAndMayEndWhileOthersAreSpoken) {
+  Opened db(GetParam());
   Ear ear, second;
   Signals& signals = db.store.signals();
   auto answering = signals.listen("ask", [&](const Signal& signal) {
@@ -104,8 +107,8 @@ TEST(Signals, AListenerMaySendAndMayEndWhileOthersAreSpoken) {
   EXPECT_EQ(ear.first(1).size(), 1u);
 }
 
-TEST(Signals, OneThatIsTooLongIsRefused) {
-  Opened db;
+TEST_P(SignalsContract, OneThatIsTooLongIsRefused) {
+  Opened db(GetParam());
   const std::string most(Signals::kMostPayload_bytes, 'x');
   EXPECT_TRUE(db.store.signals().send("live", most));
   auto refused = db.store.signals().send("live", most + "x");
