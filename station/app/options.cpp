@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <ctime>
 #include <limits>
 #include <map>
 
@@ -42,6 +43,26 @@ void add_server(CLI::App& app, Options& options, bool needed) {
   app.add_option("--authority", options.authority,
                  "PEM file of the certificate authority to trust (the server's tls/authority.pem)");
   if (needed) url->required();
+}
+
+/// "2026-03-02T09:30Z" → microseconds since 1970.
+std::optional<std::int64_t> utc_from(const std::string& text) {
+  std::tm fields{};
+  const char* end = ::strptime(text.c_str(), "%Y-%m-%dT%H:%MZ", &fields);
+  if (!end || *end != '\0') return std::nullopt;
+  return std::int64_t{::timegm(&fields)} * 1'000'000;
+}
+
+void add_started(CLI::App& app, Options& options) {
+  app.add_option_function<std::string>(
+         "--started",
+         [&options](const std::string& text) { options.started_utc_us = utc_from(text); },
+         "with --speed fast: a SIMULATED date for the first trial, like 2026-03-02T09:30Z; each "
+         "further one ten minutes later")
+      ->check([](const std::string& text) {
+        return utc_from(text) ? std::string()
+                              : text + ": a time like 2026-03-02T09:30Z is expected";
+      });
 }
 
 void add_rig(CLI::App& app, Options& options) {
@@ -136,6 +157,7 @@ void add_study(CLI::App& app, Options& options) {
       ->capture_default_str();
   app.add_option("--speed", options.rig.speed, "real, or fast: simulated time, sim-rig alone")
       ->transform(CLI::CheckedTransformer(kSpeeds));
+  add_started(app, options);
   app.add_option("--trials", options.trials, "at most so many now; all that are left if not given")
       ->check(CLI::Range(1, 1000));
   app.add_flag("--follow", options.follow,
@@ -156,6 +178,7 @@ void add_assigned(CLI::App& app, Options& options) {
   app.add_option("--device", options.setup.device, "sim-lambda6; rig or sim-rig for scenarios")
       ->capture_default_str();
   add_rig(app, options);
+  add_started(app, options);
   app.add_option("--seed", options.setup.seed, "of the simulated hand")
       ->check(CLI::Range(0.0, 9e15))
       ->capture_default_str();

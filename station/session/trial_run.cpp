@@ -154,7 +154,7 @@ core::Result<void> TrialRun::Parts::make_file(const PreparedCase& prepared,
   if (!setup.operator_name.empty()) header.operator_name = setup.operator_name;
   header.simulated = info.simulated;
   header.device = info.id;
-  header.started_utc_us = core::utc_us();
+  header.started_utc_us = setup.started_utc_us.value_or(core::utc_us());
   header.rate_Hz = setup.rate_Hz;
   header.probe = probe_of(prepared.model.base);
   header.extra = {
@@ -163,6 +163,7 @@ core::Result<void> TrialRun::Parts::make_file(const PreparedCase& prepared,
       {"limits", limiter.limits().to_json()},
       {"passivity", setup.passivity == loop::Passivity::controlled ? "controlled" : "observed"}};
   if (info.simulated) header.extra["seed"] = setup.seed;
+  if (setup.started_utc_us) header.extra["date"] = "simulated";
   if (!prepared.model.effects.empty())
     header.extra["effects"] = prepared.model.to_json()["effects"];
   auto writer = trial::TrialWriter::create(folder.trial_file(header.id), header);
@@ -179,6 +180,8 @@ core::Result<std::unique_ptr<TrialRun>> TrialRun::make(const StationFolder& fold
   if (setup.speed == Speed::fast && !info->simulated)
     return core::Error{core::Errc::bad_input,
                        fmt::format("--speed fast: {} is held by a person", info->id)};
+  if (setup.started_utc_us && setup.speed != Speed::fast)
+    return core::Error{core::Errc::bad_input, "--started: is of simulated time, --speed fast"};
   if (!(setup.duration_s >= 1.0 && setup.duration_s <= 3600.0))
     return core::Error{core::Errc::out_of_range,
                        fmt::format("--duration {}: 1 … 3600 s are possible", setup.duration_s)};

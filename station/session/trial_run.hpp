@@ -27,6 +27,7 @@ struct TrialSetup {
   /// Of an assigned trial: what its file calls the case and the trainee instead.
   std::string case_known_as = {};
   std::string operator_name = {};
+  std::optional<std::int64_t> started_utc_us = {};  ///< fast alone: a SIMULATED date; else now
 };
 
 /// What a trial came to.

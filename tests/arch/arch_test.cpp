@@ -75,7 +75,8 @@ const std::map<std::string, Names> kAllowed = {
     {"station/session",
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/effects",
       "shared/models", "shared/scenarios", "shared/cases", "shared/trial", "shared/metrics",
-      "shared/wire", "station/devices", "station/loop", "station/uplink"}},
+      "shared/wire", "station/devices", "station/loop", "station/uplink",
+      "station/rig"}},  // the simulated rig without its bus, for trials in simulated time
     {"server/http", {"shared/core"}},
     // A cohort's statistics are the plans of shared/assessment on a table of the store's trials.
     {"server/jobs",
