@@ -20,4 +20,11 @@ core::Result<Store> Store::open(const std::filesystem::path& path) {
   return Store(std::move(*reader), std::move(*writer));
 }
 
+core::Result<void> Store::finish(Writing& tx, std::vector<Signals::Noted>& said) {
+  if (auto noted = note_act(tx, audit_key_); !noted) return noted;
+  if (tx.noted_.empty()) return {};
+  said = std::move(tx.noted_);
+  return signals_->committing(tx, said);
+}
+
 }  // namespace store

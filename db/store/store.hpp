@@ -10,6 +10,7 @@
 #include <type_traits>
 
 #include "db/store/connection.hpp"
+#include "db/store/signals.hpp"
 
 namespace store {
 
@@ -33,6 +34,12 @@ class Reading {
 class Writing : public Reading {
  public:
   using Reading::Reading;
+
+ private:
+  friend class Store;
+  friend core::Result<void> notify(Writing& tx, const std::string& channel,
+                                   const std::string& payload);
+  std::vector<Signals::Noted> noted_;  ///< said when this commits
 };
 
 /// The key of the audit trail's chain (audit.hpp).
@@ -62,24 +69,33 @@ class Store {
   /// (store::Acting) is noted in the audit trail, in the same transaction.
   template <std::invocable<Writing&> Work>
   std::invoke_result_t<Work, Writing&> write(Work&& work) {
+    using Answer = std::invoke_result_t<Work, Writing&>;
+    std::vector<Signals::Noted> said;
     const std::lock_guard held(writer_->mutex);
-    auto answer = in_transaction<Writing>(*writer_->connection, Access::write,
-                                          [&](Writing& tx) -> std::invoke_result_t<Work, Writing&> {
-                                            auto done = work(tx);
-                                            if (!done) return done;
-                                            if (auto noted = note_act(tx, audit_key_); !noted)
-                                              return noted.error();
-                                            return done;
-                                          });
-    if (answer) act_was_noted();
+    auto answer =
+        in_transaction<Writing>(*writer_->connection, Access::write, [&](Writing& tx) -> Answer {
+          auto done = work(tx);
+          if (!done) return done;
+          if (auto ready = finish(tx, said); !ready) return ready.error();
+          return done;
+        });
+    if (!answer) return answer;
+    act_was_noted();
+    if (!said.empty()) signals_->committed(said);
     return answer;
   }
+
+  /// Words to and from the other processes on this database (signals.hpp).
+  Signals& signals() { return *signals_; }
 
   /// Before anything is audited.
   void set_audit_key(const AuditKey& key) { audit_key_ = key; }
   const AuditKey& audit_key() const { return audit_key_; }
 
  private:
+  /// What goes with every write: its row of the audit trail, and what it wants said.
+  core::Result<void> finish(Writing& tx, std::vector<Signals::Noted>& said);
+
   struct Guarded {
     std::mutex mutex;  ///< guards the connection
     std::unique_ptr<Connection> connection;
@@ -103,6 +119,7 @@ class Store {
   }
 
   std::unique_ptr<Guarded> reader_, writer_;
+  std::unique_ptr<Signals> signals_ = local_signals();
   AuditKey audit_key_{};
 };
 
