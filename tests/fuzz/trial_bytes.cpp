@@ -1,4 +1,4 @@
-#include "trial_bytes.hpp"
+#include "fuzz/trial_bytes.hpp"
 
 #include <sys/mman.h>
 #include <unistd.h>

@@ -4,7 +4,7 @@
 #include <random>
 
 #include "core/file.hpp"
-#include "trial_bytes.hpp"
+#include "fuzz/trial_bytes.hpp"
 
 namespace fuzz {
 namespace {
