@@ -254,6 +254,8 @@ Parsed parse(int argc, char** argv) {
   CLI::App* enrol = app.add_subcommand(
       "enrol", "make a key for this station and let the server know it, by a one-time code");
   enrol->add_flag("--json", options.json, "one JSON document on standard output");
+  enrol->add_option("--data", options.data,
+                    "the station's folder: cases that are made on the server are taken there");
   add_server(*enrol, options, true);
   enrol->add_option("--code", options.code, "from the server's administrator; holds an hour")
       ->required();

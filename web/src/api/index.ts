@@ -11,3 +11,7 @@ export { kRoles } from './network-schemas';
 export type * from './network-schemas';
 export * from './trainee-queries';
 export * from './cohort-queries';
+export * from './teaching-queries';
+export { kKinds, kReleases, kWalls } from './teaching-schemas';
+export type * from './teaching-schemas';
+export type { Slice, SlicePlane, Vec3 } from './slices';
