@@ -9,5 +9,8 @@ export type * from './lab-schemas';
 export * from './network-queries';
 export { kRoles } from './network-schemas';
 export type * from './network-schemas';
+export * from './live';
+export type * from './live-schemas';
+export * from './backup-queries';
 export * from './trainee-queries';
 export * from './cohort-queries';
