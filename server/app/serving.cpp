@@ -29,6 +29,9 @@ Run serve_command(CLI::App& command) {
                      "Name or address that it is reached by, for its certificate; repeat it");
   command.add_flag("--log-requests", options->log_requests,
                    "A line in the log for every request, not only for those that fail");
+  command.add_option(
+      "--backups", options->backups,
+      "Folder for backups made from the pages (default: backups in the data folder)");
   const auto certificate = std::make_shared<std::filesystem::path>();
   const auto key = std::make_shared<std::filesystem::path>();
   auto* chain = command.add_option("--certificate", *certificate,

@@ -110,7 +110,8 @@ void add_run(CLI::App& app, Options& options) {
   app.add_option("--case", options.case_name,
                  "a case's folder, or 8 or more characters of the id of one in the data folder");
   app.add_option("--model", options.model_file,
-                 "feel the case, or the scenario's bone, by this model");
+                 "feel the case, or the scenario's bone, by this model: a file, or the name of one "
+                 "that was sent here");
   app.add_option("--scenario", options.scenario,
                  "a scenario's file, or hard, soft, lateral_breach, in_out_in: those that ship");
   add_rig(app, options);

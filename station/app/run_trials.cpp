@@ -18,7 +18,9 @@ core::Result<std::shared_ptr<const session::PreparedCase>> prepare(
     if (auto fetched = fetch_cases(options, folder); !fetched)
       std::fprintf(stderr, "warning: cases were not fetched: %s\n", fetched.error().what.c_str());
   }
-  auto made = session::prepare_case(folder, options.case_name, options.model_file,
+  const auto model = model_file_of(options, folder);
+  if (!model) return model.error();
+  auto made = session::prepare_case(folder, options.case_name, *model,
                                     core::terminal_progress("Preparing the case"));
   if (!made) return made.error();
   return std::shared_ptr<const session::PreparedCase>(std::move(*made));

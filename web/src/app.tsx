@@ -19,6 +19,9 @@ const network = () => import('@/features/network');
 const PeoplePage = lazy(() => network().then(({ PeoplePage: page }) => ({ default: page })));
 const CohortsPage = lazy(() => network().then(({ CohortsPage: page }) => ({ default: page })));
 const StationsPage = lazy(() => network().then(({ StationsPage: page }) => ({ default: page })));
+const BackupsPage = lazy(() => network().then(({ BackupsPage: page }) => ({ default: page })));
+const StationPage = lazy(() => network().then(({ StationPage: page }) => ({ default: page })));
+const WallPage = lazy(() => import('@/features/wall').then(({ WallPage: page }) => ({ default: page })));
 const AuditPage = lazy(() => network().then(({ AuditPage: page }) => ({ default: page })));
 const GuidePage = lazy(() => import('@/features/guide').then(({ GuidePage: page }) => ({ default: page })));
 const analysis = () => import('@/features/analysis');
@@ -70,6 +73,7 @@ const kPlaces = [
   { to: '/studies', name: 'Studies', roles: ['admin', 'researcher'] },
   { to: '/analysis', name: 'Analysis', roles: ['admin', 'researcher'] },
   { to: '/lab', name: 'Model lab', roles: ['admin', 'researcher'] },
+  { to: '/wall', name: 'Live', roles: ['admin', 'director', 'faculty', 'technician'] },
   { to: '/network', name: 'Network', roles: ['admin', 'director', 'faculty', 'technician'] },
   { to: '/guide', name: 'Guide', roles: ['admin', 'director', 'faculty', 'researcher', 'technician', 'trainee'] },
 ] as const;
@@ -143,6 +147,9 @@ function Pages() {
         <Route path="/network/people"><PeoplePage /></Route>
         <Route path="/network/cohorts"><CohortsPage /></Route>
         <Route path="/network/stations"><StationsPage /></Route>
+        <Route path="/network/stations/:id">{({ id }) => <StationPage key={id} id={id} />}</Route>
+        <Route path="/network/backups"><BackupsPage /></Route>
+        <Route path="/wall"><WallPage /></Route>
         <Route path="/network/audit"><AuditPage /></Route>
         <Route path="/trials"><TrialsPage /></Route>
         <Route path="/cases"><CasesPage /></Route>
