@@ -4,6 +4,7 @@
 //
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/sendfile.h>
 #include <unistd.h>
 
 #include <boost/asio/co_spawn.hpp>
@@ -35,6 +36,7 @@ using Opening = std::variant<Response, std::shared_ptr<Conversation>>;
 using Parser = beast::http::request_parser<beast::http::string_body>;
 
 constexpr std::size_t kPiece_bytes = 256 * 1024;
+constexpr std::size_t kSent_bytes = 4u << 20;  // at once, by the kernel, when it takes them
 constexpr std::size_t kLingering_bytes = 16u << 20;
 constexpr std::chrono::seconds kLingering_time{2};
 constexpr std::chrono::milliseconds kFarewell_time{500};
@@ -43,6 +45,8 @@ class File {
  public:
   explicit File(const std::filesystem::path& path)
       : fd_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {}
+  /// Another name of a socket, so that it stays the same one whoever closes it meanwhile.
+  static File again(int socket) { return File(::fcntl(socket, F_DUPFD_CLOEXEC, 0)); }
   ~File() {
     if (fd_ >= 0) ::close(fd_);
   }
@@ -61,8 +65,19 @@ class File {
     }
     return true;
   }
+  /// Copies to a socket that does not block, within the kernel: how many bytes it took; nothing
+  /// when the file is shorter or the other side is gone.
+  std::optional<std::uint64_t> send_to(const File& socket, std::uint64_t offset,
+                                       std::uint64_t size) const {
+    auto at = static_cast<off_t>(offset);
+    const ssize_t n = ::sendfile(socket.fd_, fd_, &at, size);
+    if (n > 0) return static_cast<std::uint64_t>(n);
+    if (n < 0 && (errno == EAGAIN || errno == EINTR)) return 0;
+    return std::nullopt;
+  }
 
  private:
+  explicit File(int fd) : fd_(fd) {}
   int fd_;
 };
 
@@ -105,6 +120,11 @@ struct ReadingPiece {
   std::string* piece;
   std::uint64_t offset;
   bool operator()() const { return file->read_at(offset, *piece); }
+};
+struct SendingPiece {
+  const File *file, *socket;
+  std::uint64_t offset, size;
+  std::optional<std::uint64_t> operator()() const { return file->send_to(*socket, offset, size); }
 };
 
 std::string lower_case(beast::string_view text) {
@@ -209,6 +229,7 @@ net::awaitable<void> Server::State::accept_all() {
       continue;
     const auto endpoint = socket.remote_endpoint(failure);
     socket.set_option(tcp::no_delay(true), failure);
+    socket.native_non_blocking(true, failure);  // sendfile must not wait
     connections.emplace_front(std::move(socket), tls ? &*tls : nullptr);
     connections.front().peer = endpoint.address().to_string(failure);
     net::co_spawn(io, serve(connections.begin()), net::detached);
@@ -385,8 +406,19 @@ net::awaitable<bool> Server::State::write(Connection& c, const RequestHead& head
 net::awaitable<bool> Server::State::write_file(Connection& c, const FileSlice& slice) {
   const File file(slice.path);
   if (!file) co_return false;
+  const File socket = File::again(c.stream.socket().native_handle());
+  const bool plain = !c.stream.is_tls() && socket;
   std::string piece;
   for (std::uint64_t done = 0; done < slice.size;) {
+    if (plain) {
+      c.stream.expires_never();
+      const auto sent = co_await on_workers(
+          workers, SendingPiece{&file, &socket, slice.offset + done,
+                                std::min<std::uint64_t>(kSent_bytes, slice.size - done)});
+      if (!sent) co_return false;
+      done += *sent;
+      if (*sent > 0) continue;  // else it is full: the piece below waits for it
+    }
     piece.resize(std::min<std::uint64_t>(kPiece_bytes, slice.size - done));
     c.stream.expires_never();
     const bool read =
