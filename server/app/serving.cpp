@@ -29,6 +29,12 @@ Run serve_command(CLI::App& command) {
                      "Name or address that it is reached by, for its certificate; repeat it");
   command.add_flag("--log-requests", options->log_requests,
                    "A line in the log for every request, not only for those that fail");
+  const auto lease_s = std::make_shared<double>(30.0);
+  command
+      .add_option("--job-lease-seconds", *lease_s,
+                  "How long a job of a server that died waits before another takes it over")
+      ->check(CLI::Range(0.3, 3600.0))
+      ->capture_default_str();
   const auto certificate = std::make_shared<std::filesystem::path>();
   const auto key = std::make_shared<std::filesystem::path>();
   auto* chain = command.add_option("--certificate", *certificate,
@@ -44,6 +50,7 @@ Run serve_command(CLI::App& command) {
     options->http.address = address->first;
     options->http.port = address->second;
     options->http.header_time = std::chrono::milliseconds(std::lround(*header_s * 1000));
+    options->job_lease = std::chrono::milliseconds(std::lround(*lease_s * 1000));
     if (auto served = serve(*options); !served) return served.error();
     return 0;
   };
