@@ -20,6 +20,11 @@ namespace store {
 /// waiting for them, where the database can (PostgreSQL); see Store::write_beside.
 enum class Access { read, write, beside };
 
+struct Table {
+  std::string name;
+  std::vector<std::string> columns;
+};
+
 /// One connection, used by one thread at a time.
 class Connection {
  public:
@@ -40,6 +45,12 @@ class Connection {
   /// Runs several statements without values: a migration.
   virtual core::Result<void> script(std::string_view sql) = 0;
   virtual core::Result<void> begin(Access access) = 0;
+  /// What tables there are, and their columns in order; the database's own are not among them.
+  virtual core::Result<std::vector<Table>> tables() = 0;
+  /// Until the transaction ends, rows may refer to rows that come later. Call `check_references`
+  /// before the commit.
+  virtual core::Result<void> defer_references() = 0;
+  virtual core::Result<void> check_references() = 0;
   virtual core::Result<void> commit() = 0;
   /// Gives up the transaction, if there is one. Cannot fail: what was not committed is not there.
   virtual void rollback() noexcept = 0;
@@ -56,5 +67,8 @@ core::Result<std::unique_ptr<Connection>> open_sqlite(const std::filesystem::pat
 /// environment and PGPASSFILE. Reading is one unchanging state, READ ONLY. Errors come from
 /// `begin`: unavailable; bad_input (an address it cannot read, a database that is not UTF-8).
 std::unique_ptr<Connection> postgres_connection(const std::string& address, Access access);
+/// Whether an address holds a password, which must then not be shown. False for one that cannot be
+/// read.
+bool has_password(const std::string& address);
 
 }  // namespace store

@@ -161,9 +161,10 @@ fs::path PartialFiles::path_of(const std::string& trial_id) const {
 }
 
 std::uint64_t PartialFiles::size_of(const std::string& trial_id) const {
-  std::error_code failure;
-  const auto size = fs::file_size(path_of(trial_id), failure);
-  return failure ? 0 : size;
+  // Opened first: a file that another machine writes has its size looked up anew only then (NFS).
+  const Descriptor file(path_of(trial_id), O_RDONLY);
+  struct stat facts {};
+  return file && ::fstat(file.fd(), &facts) == 0 ? static_cast<std::uint64_t>(facts.st_size) : 0;
 }
 
 core::Result<void> PartialFiles::write_at(const std::string& trial_id, std::uint64_t offset,

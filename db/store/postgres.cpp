@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "db/store/connection.hpp"
+#include "db/store/copy.hpp"
 #include "db/store/postgres_link.hpp"
 
 namespace store {
@@ -50,11 +51,42 @@ class Postgres final : public Connection {
     return core::Error{core::Errc::io, "PostgreSQL: a statement of the transaction had failed"};
   }
 
+  core::Result<std::vector<Table>> tables() override {
+    return tables_from(*this,
+                       "select c.table_name::text, c.column_name::text from "
+                       "information_schema.columns c join information_schema.tables t on "
+                       "t.table_schema = c.table_schema and t.table_name = c.table_name where "
+                       "t.table_type = 'BASE TABLE' and c.table_schema = current_schema() "
+                       "order by c.table_name::text collate \"C\", c.ordinal_position");
+  }
+  core::Result<void> defer_references() override {
+    if (auto done = alter_references("deferrable initially deferred"); !done) return done;
+    return script("set constraints all deferred");
+  }
+  core::Result<void> check_references() override {
+    if (auto done = script("set constraints all immediate"); !done) return done;
+    return alter_references("not deferrable");
+  }
+
   void rollback() noexcept override {
     if (link_.in_transaction()) (void)bool(link_.script("rollback"));
   }
 
  private:
+  core::Result<void> alter_references(const std::string& how) {
+    auto rows = link_.query(
+        "select conrelid::regclass::text, conname::text from pg_constraint where contype = 'f' and "
+        "connamespace = current_schema()::regnamespace",
+        {});
+    if (!rows) return rows.error();
+    for (const Row& row : *rows) {
+      auto done = script(
+          fmt::format("alter table {} alter constraint {} {}", row.text(0), row.text(1), how));
+      if (!done) return done;
+    }
+    return {};
+  }
+
   /// A write must not have a snapshot older than its lock, or it would not see what the writer
   /// before it did: READ COMMITTED takes a new one with every statement.
   static std::string beginning(Access access) {

@@ -10,6 +10,7 @@
 #include <cstring>
 
 #include "core/require.hpp"
+#include "db/store/connection.hpp"
 
 namespace store {
 namespace {
@@ -119,7 +120,7 @@ std::string one_line(const char* words) {
   std::string out(words ? words : "");
   while (!out.empty() && (out.back() == '\n' || out.back() == ' ')) out.pop_back();
   for (char& c : out)
-    if (c == '\n') c = ' ';
+    if (c == '\n' || c == '\t') c = ' ';
   return out;
 }
 

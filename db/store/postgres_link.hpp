@@ -71,8 +71,4 @@ class PostgresLink {
 /// `/*pg: … */` is laid open.
 std::string postgres_text(std::string_view sql);
 
-/// Whether an address holds a password, which must then not be shown. False for one that cannot be
-/// read.
-bool has_password(const std::string& address);
-
 }  // namespace store

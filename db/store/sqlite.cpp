@@ -6,6 +6,7 @@
 
 #include "core/require.hpp"
 #include "db/store/connection.hpp"
+#include "db/store/copy.hpp"
 
 namespace store {
 namespace {
@@ -124,6 +125,17 @@ class Sqlite final : public Connection {
     return script(access == Access::read ? "begin" : "begin immediate");
   }
   core::Result<void> commit() override { return script("commit"); }
+  core::Result<std::vector<Table>> tables() override {
+    return tables_from(
+        *this,
+        "select m.name, c.name from sqlite_master m join pragma_table_info(m.name) c "
+        "where m.type = 'table' and m.name not like 'sqlite_%' "
+        "order by m.name, c.cid");
+  }
+  core::Result<void> defer_references() override {
+    return script("pragma defer_foreign_keys = on");
+  }
+  core::Result<void> check_references() override { return {}; }  // at the commit
   void rollback() noexcept override {
     if (sqlite3_get_autocommit(db_.get()) == 0)
       sqlite3_exec(db_.get(), "rollback", nullptr, nullptr, nullptr);

@@ -31,8 +31,9 @@ class Reading {
                           const std::function<core::Result<void>(Row)>& seen) {
     return connection_.each(sql, {}, seen);
   }
+  core::Result<std::vector<Table>> tables() { return connection_.tables(); }
 
- private:
+ protected:
   Connection& connection_;
 };
 
@@ -44,6 +45,7 @@ class Writing : public Reading {
 
  private:
   friend class Store;
+  friend core::Result<std::uint64_t> copy_rows(Reading& from, Writing& to);
   friend core::Result<void> notify(Writing& tx, const std::string& channel,
                                    const std::string& payload);
   std::vector<Signals::Noted> noted_;  ///< said when this commits

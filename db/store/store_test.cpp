@@ -248,6 +248,41 @@ TEST_P(JobQueue, WhatADeadProcessHadClaimedWaitsAgainAndCountsItsAttempts) {
   EXPECT_EQ((*again)->attempts, 2u);
 }
 
+TEST_P(JobQueue, AJobWhoseLeaseIsOverWaitsAgainAndIsItsFormerOwnersNoMore) {
+  Opened db(GetParam());
+  const Worker slow{"slow", 100}, quick{"quick", 100};
+  auto outcome = db.store.write([&](Writing& tx) -> core::Result<void> {
+    if (auto q = queue_job(tx, "metrics", "t", 10); !q) return q;
+    auto first = claim_job(tx, {"metrics"}, 20, slow);
+    if (!first) return first.error();
+    EXPECT_EQ(requeue_lapsed_jobs(tx, 119).value(), 0u) << "the lease holds until 120";
+    EXPECT_EQ(renew_claims(tx, slow, 50).value(), std::vector<std::string>{(*first)->id});
+    EXPECT_EQ(requeue_lapsed_jobs(tx, 150).value(), 0u) << "renewed at 50, until 150";
+    EXPECT_EQ(requeue_lapsed_jobs(tx, 151).value(), 1u);
+    auto second = claim_job(tx, {"metrics"}, 160, quick);
+    if (!second) return second.error();
+    EXPECT_EQ((*second)->attempts, 2u);
+    EXPECT_TRUE(renew_claims(tx, slow, 170).value().empty());
+    auto late = finish_job(tx, **first, 180);
+    EXPECT_TRUE(!late && late.error().code == core::Errc::conflict);
+    return finish_job(tx, **second, 190);
+  });
+  EXPECT_TRUE(outcome) << outcome.error().what;
+}
+
+TEST_P(JobQueue, AJobLeftOffWaitsAgainAndTheAttemptDoesNotCount) {
+  Opened db(GetParam());
+  auto again = db.store.write([](Writing& tx) -> core::Result<std::optional<Job>> {
+    if (auto q = queue_job(tx, "lab", "t", 10); !q) return q.error();
+    auto first = claim_job(tx, {"lab"}, 20);
+    if (!first) return first.error();
+    if (auto back = give_back_job(tx, **first, 30); !back) return back.error();
+    return claim_job(tx, {"lab"}, 40);
+  });
+  ASSERT_TRUE(again && again->has_value());
+  EXPECT_EQ((*again)->attempts, 1u);
+}
+
 TEST_P(Logins, FailuresAreCountedByNameAndAddressSinceATime) {
   Opened db(GetParam());
   auto counted = db.store.write([](Writing& tx) -> core::Result<Failures> {

@@ -47,6 +47,9 @@ class FaultyConnection final : public Connection {
     if (fails()) return broken();
     return inner_->script(sql);
   }
+  core::Result<std::vector<Table>> tables() override { return inner_->tables(); }
+  core::Result<void> defer_references() override { return inner_->defer_references(); }
+  core::Result<void> check_references() override { return inner_->check_references(); }
   core::Result<void> begin(Access access) override {
     if (fails()) return broken();
     return inner_->begin(access);

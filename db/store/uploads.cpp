@@ -56,10 +56,17 @@ core::Result<void> add_upload(Writing& tx, const Upload& upload, std::int64_t no
        now_utc_us}));
 }
 
-core::Result<void> set_upload_offset(Writing& tx, const std::string& trial_id,
+core::Result<void> set_upload_offset(Writing& tx, const std::string& trial_id, std::uint64_t before,
                                      std::uint64_t offset_bytes, std::uint32_t crc32c) {
-  return done(tx.query("update uploads set offset_bytes = ?, crc32c = ? where trial_id = ?",
-                       {count_value(offset_bytes), std::int64_t{crc32c}, trial_id}));
+  auto rows = tx.query(
+      "update uploads set offset_bytes = ?, crc32c = ? where trial_id = ? and offset_bytes = ? and "
+      "state = 'receiving' returning trial_id",
+      {count_value(offset_bytes), std::int64_t{crc32c}, trial_id, count_value(before)});
+  if (!rows) return rows.error();
+  if (rows->empty())
+    return core::Error{core::Errc::conflict,
+                       "trial " + trial_id + ": another server took it over meanwhile; ask again"};
+  return {};
 }
 
 core::Result<void> complete_upload(Writing& tx, const std::string& trial_id) {

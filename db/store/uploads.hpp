@@ -23,7 +23,10 @@ core::Result<std::optional<Upload>> upload_of(Reading& tx, const std::string& tr
 core::Result<std::vector<Upload>> open_uploads(Reading& tx);
 core::Result<std::uint64_t> open_upload_count(Reading& tx, const std::string& station_id);
 core::Result<void> add_upload(Writing& tx, const Upload& upload, std::int64_t now_utc_us);
-core::Result<void> set_upload_offset(Writing& tx, const std::string& trial_id,
+/// So many bytes from the start of the file are on the disk now, `before` of them already then.
+/// Right beside other writes (Store::write_beside). Errors: conflict when `before` is not what is
+/// there: another process took over meanwhile.
+core::Result<void> set_upload_offset(Writing& tx, const std::string& trial_id, std::uint64_t before,
                                      std::uint64_t offset_bytes, std::uint32_t crc32c);
 core::Result<void> complete_upload(Writing& tx, const std::string& trial_id);
 

@@ -69,6 +69,14 @@ function(tractus_add_test name)
     PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}")
 endfunction()
 
+# The whole program once more, as one test, with its servers' records in PostgreSQL (tests/support/database).
+function(tractus_again_on_postgresql name)
+  if(TRACTUS_TESTS)
+    add_test(NAME ${name}_on_postgresql COMMAND ${name})
+    set_tests_properties(${name}_on_postgresql PROPERTIES TIMEOUT 600 LABELS slow ENVIRONMENT TRACTUS_TEST_DATABASE=postgresql)
+  endif()
+endfunction()
+
 function(tractus_library name)
   cmake_parse_arguments(ARG "BOTH_DATABASES" "" "DEPS;PRIVATE_DEPS;TEST_DEPS" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS *.cpp)

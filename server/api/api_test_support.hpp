@@ -8,6 +8,7 @@
 #include "server/api/authentication.hpp"
 #include "server/api/backend.hpp"
 #include "server/api/service.hpp"
+#include "tests/support/database/database.hpp"
 
 namespace api::testing {
 
@@ -69,7 +70,8 @@ class ApiTest : public ::testing::Test {
   }
 
   store::testing::TestFolder folder_;
-  store::Store store_ = std::move(store::Store::open(folder_.path() / "tractus.db").value());
+  test_support::TestDatabase database_;
+  store::Store store_ = database_.open();
   store::Objects objects_ = std::move(store::Objects::open(folder_.path()).value());
   store::PartialFiles partials_ = std::move(store::PartialFiles::open(folder_.path()).value());
   std::int64_t now_ = 1'000'000'000'000'000;

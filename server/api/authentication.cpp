@@ -46,7 +46,7 @@ core::Result<Caller> by_cookie(Backend& backend, std::string_view token) {
                     now - (*session)->made_utc_us > kSessionAge_us;
   if (over) return core::Error{core::Errc::unauthorised, "sign in first: the session is over"};
   if (now - (*session)->seen_utc_us > kTouch_us) {
-    auto touched = backend.store.write(
+    auto touched = backend.store.write_beside(
         [&](store::Writing& tx) { return store::touch_session(tx, hash, now); });
     if (!touched) return touched.error();
   }

@@ -1,9 +1,7 @@
 /// What handlers work with. One per process; safe from several threads.
 #pragma once
 
-#include <array>
 #include <functional>
-#include <mutex>
 
 #include "core/json.hpp"
 #include "db/store/objects.hpp"
@@ -14,18 +12,6 @@
 #include "server/api/trial_views.hpp"
 
 namespace api {
-
-/// One request at a time may touch an upload; uploads that share a slot wait for one another, which
-/// harms nobody.
-class UploadLocks {
- public:
-  std::unique_lock<std::mutex> hold(const std::string& trial_id) {
-    return std::unique_lock(slots_[std::hash<std::string>()(trial_id) % slots_.size()]);
-  }
-
- private:
-  std::array<std::mutex, 64> slots_;
-};
 
 /// What happened, as fields: never a name, an address, or anything that somebody typed.
 using Log = std::function<void(const core::Json& fields)>;
@@ -43,7 +29,6 @@ struct Backend {
   bool logs_requests = false;                      ///< every one, not only those that fail
   Backups* backups = nullptr;                      ///< none: this process makes none
   Telemetry telemetry{};
-  UploadLocks upload_locks{};
   TrialViews trial_views{};
 };
 

@@ -40,10 +40,9 @@ core::Error without_path(core::Error error, const std::filesystem::path& path) {
   return error;
 }
 
-core::Result<void> check_bytes(const store::Upload& upload, const std::filesystem::path& path) {
-  std::error_code failure;
-  const auto size = std::filesystem::file_size(path, failure);
-  if (failure || size != upload.size_bytes)
+core::Result<void> check_bytes(const store::PartialFiles& partials, const store::Upload& upload) {
+  const std::filesystem::path path = partials.path_of(upload.trial_id);
+  if (partials.size_of(upload.trial_id) != upload.size_bytes)
     return core::Error{core::Errc::corrupt,
                        fmt::format("trial file: {} bytes were announced", upload.size_bytes)};
   auto sha256 = store::file_sha256(path);
@@ -123,7 +122,8 @@ store::TrialRecord record_of(const store::Upload& upload, const trial::Trial& tr
 
 core::Result<store::TrialRecord> checked_trial(Backend& backend, const store::Upload& upload) {
   const auto path = backend.partials.path_of(upload.trial_id);
-  if (auto fine = check_bytes(upload, path); !fine) return without_path(fine.error(), path);
+  if (auto fine = check_bytes(backend.partials, upload); !fine)
+    return without_path(fine.error(), path);
   Tally tally;
   auto trial = trial::scan_trial(path, [&](const trial::Block& part) { tally.add(part); },
                                  {.max_samples = kMaxTrialSamples, .max_bytes = kMaxTrial_bytes});

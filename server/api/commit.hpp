@@ -16,7 +16,7 @@ core::Result<store::TrialRecord> checked_trial(Backend& backend, const store::Up
 core::Result<void> store_trial(Backend& backend, const store::Upload& upload,
                                const store::TrialRecord& trial);
 
-/// The upload begins again at 0.
-core::Result<void> restart_upload(Backend& backend, const std::string& trial_id);
+/// The upload begins again at 0. Errors: conflict when it is not as it was read.
+core::Result<void> restart_upload(Backend& backend, const store::Upload& upload);
 
 }  // namespace api

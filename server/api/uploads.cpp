@@ -89,11 +89,17 @@ core::Result<void> check_room(const Backend& backend, std::uint64_t size_bytes) 
       fmt::format("the server's disk has {} bytes left: too few for another trial", free)};
 }
 
-core::Result<void> restart_upload(Backend& backend, const std::string& trial_id) {
-  auto done = backend.store.write(
-      [&](store::Writing& tx) { return store::set_upload_offset(tx, trial_id, 0, 0); });
-  if (done) backend.partials.remove(trial_id);
+core::Result<void> restart_upload(Backend& backend, const store::Upload& upload) {
+  auto done = backend.store.write([&](store::Writing& tx) {
+    return store::set_upload_offset(tx, upload.trial_id, upload.offset_bytes, 0, 0);
+  });
+  if (done) backend.partials.remove(upload.trial_id);
   return done;
+}
+
+core::Result<std::unique_ptr<store::NamedLock>> hold_upload(Backend& backend,
+                                                            const std::string& trial_id) {
+  return backend.store.hold("upload " + trial_id);
 }
 
 core::Result<wire::UploadState> announce_upload(Backend& backend, const Caller& station,
@@ -105,7 +111,8 @@ core::Result<wire::UploadState> announce_upload(Backend& backend, const Caller& 
     return core::Error{core::Errc::too_large,
                        fmt::format("size_bytes: {} bytes, at most {} are taken",
                                    announced.size_bytes, kMaxTrial_bytes)};
-  const auto held = backend.upload_locks.hold(trial_id);
+  const auto held = hold_upload(backend, trial_id);
+  if (!held) return held.error();
   if (auto room = check_room(backend, announced.size_bytes); !room) return room.error();
   return backend.store.write([&](store::Writing& tx) -> core::Result<wire::UploadState> {
     auto upload = store::upload_of(tx, trial_id);
@@ -137,14 +144,15 @@ core::Result<Appended> append_upload(Backend& backend, const Caller& station,
   auto first =
       own_upload(backend, station, trial_id);  // before the lock: others' ids wait for nothing
   if (!first) return first.error();
-  const auto held = backend.upload_locks.hold(trial_id);
+  const auto held = hold_upload(backend, trial_id);
+  if (!held) return held.error();
   auto upload = own_upload(backend, station, trial_id);
   if (!upload) return upload.error();
   if (upload->state != "receiving")
     return core::Error{core::Errc::conflict, fmt::format("trial {} is complete", trial_id)};
   const std::uint64_t there = backend.partials.size_of(trial_id);
   if (there < upload->offset_bytes) {  // acknowledged bytes were lost under us: begin again
-    if (auto again = restart_upload(backend, trial_id); !again) return again.error();
+    if (auto again = restart_upload(backend, *upload); !again) return again.error();
     return Appended{{0, upload->state}, false};
   }
   if (offset_bytes != upload->offset_bytes) return Appended{state_of(*upload), false};
@@ -161,12 +169,13 @@ core::Result<Appended> append_upload(Backend& backend, const Caller& station,
     if (auto cut = backend.partials.cut(trial_id, offset_bytes); !cut) return cut.error();
   if (auto done = backend.partials.write_at(trial_id, offset_bytes, bytes); !done)
     return done.error();
-  upload->offset_bytes += bytes.size();
   const std::uint32_t chained = core::crc32c(bytes, upload->crc32c);
-  auto noted = backend.store.write([&](store::Writing& tx) {
-    return store::set_upload_offset(tx, trial_id, upload->offset_bytes, chained);
+  auto noted = backend.store.write_beside([&](store::Writing& tx) {
+    return store::set_upload_offset(tx, trial_id, offset_bytes, offset_bytes + bytes.size(),
+                                    chained);
   });
   if (!noted) return noted.error();
+  upload->offset_bytes += bytes.size();
   return Appended{state_of(*upload), true};
 }
 
@@ -174,7 +183,8 @@ core::Result<wire::UploadState> commit_upload(Backend& backend, const Caller& st
                                               const std::string& trial_id) {
   auto first = own_upload(backend, station, trial_id);
   if (!first) return first.error();
-  const auto held = backend.upload_locks.hold(trial_id);
+  const auto held = hold_upload(backend, trial_id);
+  if (!held) return held.error();
   auto upload = own_upload(backend, station, trial_id);
   if (!upload) return upload.error();
   if (upload->state == "complete") return state_of(*upload);
@@ -188,7 +198,7 @@ core::Result<wire::UploadState> commit_upload(Backend& backend, const Caller& st
     if (code != core::Errc::corrupt && code != core::Errc::bad_input &&
         code != core::Errc::too_large)
       return trial.error();
-    if (auto again = restart_upload(backend, trial_id); !again) return again.error();
+    if (auto again = restart_upload(backend, *upload); !again) return again.error();
     return trial.error();
   }
   if (auto stored = store_trial(backend, *upload, *trial); !stored) return stored.error();
@@ -211,7 +221,18 @@ core::Result<void> reconcile(Backend& backend, const store::Upload& upload) {
                  ? backend.partials.cut(upload.trial_id, upload.offset_bytes)
                  : core::Result<void>();
   }
-  return restart_upload(backend, upload.trial_id);
+  return restart_upload(backend, upload);
+}
+
+/// Under its lock and by what the database says then: another server may be at it.
+core::Result<void> reconcile_one(Backend& backend, const std::string& trial_id) {
+  const auto held = hold_upload(backend, trial_id);
+  if (!held) return held.error();
+  auto upload =
+      backend.store.read([&](store::Reading& tx) { return store::upload_of(tx, trial_id); });
+  if (!upload) return upload.error();
+  if (*upload && (*upload)->state == "receiving") return reconcile(backend, **upload);
+  return backend.partials.remove(trial_id), core::Result<void>();
 }
 
 }  // namespace
@@ -220,12 +241,10 @@ core::Result<void> reconcile_uploads(Backend& backend) {
   auto open = backend.store.read([](store::Reading& tx) { return store::open_uploads(tx); });
   if (!open) return open.error();
   std::set<std::string> ids;
-  for (const store::Upload& upload : *open) {
-    if (auto done = reconcile(backend, upload); !done) return done;
-    ids.insert(upload.trial_id);
-  }
-  for (const std::string& id : backend.partials.ids())
-    if (!ids.contains(id)) backend.partials.remove(id);
+  for (const store::Upload& upload : *open) ids.insert(upload.trial_id);
+  for (const std::string& id : backend.partials.ids()) ids.insert(id);
+  for (const std::string& id : ids)
+    if (auto done = reconcile_one(backend, id); !done) return done;
   return {};
 }
 

@@ -203,11 +203,9 @@ TEST_F(Uploads, ACommitThatFailsAtAnyStepCanBeDoneAgain) {
     }));
     sent(bytes_);
     int fails_at = n;
-    const auto path = folder_.path() / "tractus.db";
     store::Store faulty(
-        std::move(store::open_sqlite(path, store::Access::read).value()),
-        std::make_unique<FaultyConnection>(
-            std::move(store::open_sqlite(path, store::Access::write).value()), fails_at));
+        database_.connection(store::Access::read),
+        std::make_unique<FaultyConnection>(database_.connection(store::Access::write), fails_at));
     Backend backend{.store = faulty,
                     .objects = objects_,
                     .partials = partials_,

@@ -65,16 +65,15 @@ core::Result<api::Secrets> secrets_of(const fs::path& folder, store::Store& stor
 }  // namespace
 
 core::Result<DataFolder> open_data(const fs::path& path) {
-  std::error_code failure;
-  if (!fs::is_regular_file(path / kDatabase, failure))
-    return core::Error{core::Errc::not_found,
-                       fmt::format("{}: not a server's data folder; make one with: "
-                                   "tractus-server init --data {}",
-                                   path.string(), path.string())};
+  if (auto there = database_of(path); !there) return there.error();
   return make_data(path);
 }
 
 core::Result<DataFolder> make_data(const fs::path& path) {
+  auto database = new_database(path);
+  if (!database) return database.error();
+  if (database->is_shared())  // nothing is made when it cannot be reached
+    if (auto reached = database->open(); !reached) return reached.error();
   std::error_code failure;
   const bool fresh = fs::create_directories(path, failure);
   if (failure)
@@ -85,8 +84,9 @@ core::Result<DataFolder> make_data(const fs::path& path) {
   if (!objects) return objects.error();
   auto partials = store::PartialFiles::open(path);
   if (!partials) return partials.error();
-  auto opened = store::Store::open(path / kDatabase);
+  auto opened = database->open();
   if (!opened) return opened.error();
+  if (auto noted = note_address(path, *database); !noted) return noted.error();
   auto secrets = secrets_of(path, *opened);
   if (!secrets) return secrets.error();
   opened->set_audit_key(secrets->audit_key());
@@ -105,11 +105,11 @@ store::Act command_act(const std::string& command, const core::Json& detail) {
           .at_utc_us = core::utc_us()};
 }
 
-core::Result<ServingLock> ServingLock::take(const fs::path& data) {
+core::Result<ServingLock> ServingLock::take(const fs::path& data, bool shared) {
   const fs::path path = data / "serving.lock";
   const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0640);
   if (fd < 0) return core::system_error(path, "cannot open");
-  if (::flock(fd, LOCK_EX | LOCK_NB) != 0) {
+  if (::flock(fd, (shared ? LOCK_SH : LOCK_EX) | LOCK_NB) != 0) {
     ::close(fd);
     return core::Error{core::Errc::conflict,
                        data.string() + ": another tractus-server serves this folder"};

@@ -8,10 +8,10 @@
 #include "db/store/objects.hpp"
 #include "db/store/store.hpp"
 #include "server/api/secrets.hpp"
+#include "server/app/database.hpp"
 
 namespace app {
 
-inline constexpr const char* kDatabase = "tractus.db";
 inline constexpr const char* kCertificates = "tls";  ///< http::certificate_files of this folder
 
 struct DataFolder {
@@ -34,8 +34,9 @@ store::Act command_act(const std::string& command, const core::Json& detail);
 /// ends.
 class ServingLock {
  public:
-  /// Errors: conflict when another process serves the folder.
-  static core::Result<ServingLock> take(const std::filesystem::path& data);
+  /// One process alone, or, when the folder's records are in a shared database, one of several.
+  /// Errors: conflict when another process serves the folder by itself.
+  static core::Result<ServingLock> take(const std::filesystem::path& data, bool shared);
   ~ServingLock();
   ServingLock(ServingLock&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
   ServingLock& operator=(ServingLock&&) = delete;

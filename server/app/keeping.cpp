@@ -10,10 +10,18 @@ namespace {
 
 constexpr std::size_t kShown = 20;
 
-core::Result<std::int64_t> schema_of(const std::filesystem::path& database) {
-  auto connection = store::open_sqlite(database, store::Access::read);
-  if (!connection) return connection.error();
-  auto rows = (*connection)->query("select coalesce(max(version), 0) from schema_versions", {});
+/// Without bringing it up to date.
+core::Result<std::int64_t> schema_of(const Database& database) {
+  std::unique_ptr<store::Connection> connection;
+  if (database.is_shared()) {
+    connection = store::postgres_connection(database.address, store::Access::read);
+  } else {
+    auto opened = store::open_sqlite(database.file, store::Access::read);
+    if (!opened) return opened.error();
+    connection = std::move(*opened);
+  }
+  if (auto begun = connection->begin(store::Access::read); !begun) return begun.error();
+  auto rows = connection->query("select coalesce(max(version), 0) from schema_versions", {});
   if (!rows) return rows.error();
   return rows->front().integer(0);
 }
@@ -82,16 +90,13 @@ Run verify_command(CLI::App& command) {
 Run migrate_command(CLI::App& command) {
   const auto common = common_options(command);
   return [=]() -> core::Result<int> {
-    std::error_code failure;
-    const auto database = common->data / kDatabase;
-    if (!std::filesystem::is_regular_file(database, failure))
-      return core::Error{core::Errc::not_found,
-                         common->data.string() + ": not a server's data folder"};
-    auto before = schema_of(database);
+    const auto database = database_of(common->data);
+    if (!database) return database.error();
+    auto before = schema_of(*database);
     if (!before) return before.error();
     auto data = open_data(common->data);
     if (!data) return data.error();
-    auto after = schema_of(database);
+    auto after = schema_of(*database);
     if (!after) return after.error();
     say(common->json, {{"before", *before}, {"after", *after}},
         *before == *after ? fmt::format("the database has schema {}: it is up to date", *after)

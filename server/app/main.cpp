@@ -5,6 +5,7 @@
 
 #include "core/words.hpp"
 #include "server/app/command.hpp"
+#include "server/app/database.hpp"
 
 namespace app {
 
@@ -16,6 +17,16 @@ std::shared_ptr<Common> common_options(CLI::App& command) {
   auto common = std::make_shared<Common>();
   command.add_option("--data", common->data, "The server's data folder")->required();
   command.add_flag("--json", common->json, "Answer as JSON");
+  command
+      .add_option_function<std::string>(
+          "--database",
+          [](const std::string& address) {
+            if (auto used = use_address(address); !used)
+              throw CLI::ValidationError(used.error().what);
+          },
+          "postgresql://[USER@]HOST[:PORT]/NAME for the records, instead of a file in the folder; "
+          "init and restore note it there. With a password: in TRACTUS_DATABASE, or PGPASSFILE")
+      ->type_name("ADDRESS");
   return common;
 }
 

@@ -117,6 +117,13 @@ void log_line(const core::Json& fields) {
   fmt::print(stderr, "{}\n", line.dump(-1, ' ', false, core::Json::error_handler_t::replace));
 }
 
+/// Several servers share the file: one at a time adds to it.
+core::Result<void> note_anchor_once(DataFolder& data) {
+  const auto held = data.store.hold("audit anchor");
+  if (!held) return held.error();
+  return note_anchor(data);
+}
+
 /// Notes the audit trail's end outside the database, every ten seconds and at the end.
 class Anchoring {
  public:
@@ -138,7 +145,7 @@ class Anchoring {
     std::unique_lock held(mutex_);
     while (true) {
       const bool last = changed_.wait_for(held, kBetween, [this] { return ending_; });
-      if (auto noted = note_anchor(data); !noted)
+      if (auto noted = note_anchor_once(data); !noted)
         log_line({{"what", "audit anchor"}, {"error", noted.error().what}});
       if (last) return;
     }
@@ -183,7 +190,7 @@ core::Result<void> serve(const ServeOptions& given) {
   StopSignals signals;
   auto data = open_data(given.data);
   if (!data) return data.error();
-  auto lock = ServingLock::take(given.data);
+  auto lock = ServingLock::take(given.data, data->store.shared());
   if (!lock) return lock.error();
   const auto secure = secured(given);
   if (!secure) return secure.error();
@@ -191,10 +198,12 @@ core::Result<void> serve(const ServeOptions& given) {
   if (options.web && !std::filesystem::is_regular_file(*options.web / "index.html"))
     return core::Error{core::Errc::not_found,
                        options.web->string() + ": no index.html there; build the web pages first"};
-  auto runner = jobs::Runner::start(data->store, data->objects, data->secrets.case_key(),
-                                    [](const std::string& line) {
-                                      log_line({{"what", "job"}, {"line", line}});
-                                    });
+  auto runner = jobs::Runner::start(
+      data->store, data->objects, data->secrets.case_key(),
+      [](const std::string& line) {
+        log_line({{"what", "job"}, {"line", line}});
+      },
+      options.job_lease);
   if (!runner) return runner.error();
   BackupFolder backups(given.data, given.backups.value_or(given.data / "backups"));
   api::Backend backend{.store = data->store,

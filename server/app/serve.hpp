@@ -1,6 +1,7 @@
 /// The running server.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -20,6 +21,7 @@ struct ServeOptions {
   std::vector<std::string> hosts;  ///< names and addresses the certificate must hold
   /// PEM files of an own certificate chain and its key, instead of the house's.
   std::optional<std::pair<std::filesystem::path, std::filesystem::path>> certificate;
+  std::chrono::milliseconds job_lease{30'000};  ///< see jobs::Runner
   bool log_requests = false;  ///< a line for every one, not only for those that fail
   bool json = false;          ///< the line that says where it listens
 };

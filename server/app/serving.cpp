@@ -32,6 +32,12 @@ Run serve_command(CLI::App& command) {
   command.add_option(
       "--backups", options->backups,
       "Folder for backups made from the pages (default: backups in the data folder)");
+  const auto lease_s = std::make_shared<double>(30.0);
+  command
+      .add_option("--job-lease-seconds", *lease_s,
+                  "How long a job of a server that died waits before another takes it over")
+      ->check(CLI::Range(0.3, 3600.0))
+      ->capture_default_str();
   const auto certificate = std::make_shared<std::filesystem::path>();
   const auto key = std::make_shared<std::filesystem::path>();
   auto* chain = command.add_option("--certificate", *certificate,
@@ -47,6 +53,7 @@ Run serve_command(CLI::App& command) {
     options->http.address = address->first;
     options->http.port = address->second;
     options->http.header_time = std::chrono::milliseconds(std::lround(*header_s * 1000));
+    options->job_lease = std::chrono::milliseconds(std::lround(*lease_s * 1000));
     if (auto served = serve(*options); !served) return served.error();
     return 0;
   };

@@ -10,6 +10,7 @@
 
 #include "core/clock.hpp"
 #include "core/file.hpp"
+#include "db/store/copy.hpp"
 #include "db/store/uploads.hpp"
 
 namespace app {
@@ -123,6 +124,39 @@ core::Result<std::uint64_t> copy_files(const fs::path& from, const fs::path& to,
   return *bytes;
 }
 
+/// The records as they stand at one moment, in a SQLite file: a backup is read without a server.
+core::Result<void> copy_records(const Database& source, const fs::path& file) {
+  if (!source.is_shared()) return store::copy_database(source.file, file);
+  auto from = source.open();
+  if (!from) return from.error();
+  auto to = store::Store::open(file);
+  if (!to) return to.error();
+  auto copied = from->read([&](store::Reading& reading) {
+    return to->write([&](store::Writing& writing) { return store::copy_rows(reading, writing); });
+  });
+  if (!copied) return core::Error{copied.error().code, "backup: " + copied.error().what};
+  return {};
+}
+
+/// The records of a restored folder into the database it shall have: all of them or none.
+core::Result<void> move_records(const fs::path& folder, const Database& target) {
+  {
+    auto from = store::Store::open(folder / kDatabase);
+    if (!from) return from.error();
+    auto to = target.open();
+    if (!to) return to.error();
+    auto copied = from->read([&](store::Reading& reading) {
+      return to->write([&](store::Writing& writing) { return store::copy_rows(reading, writing); });
+    });
+    if (!copied) return core::Error{copied.error().code, "restore: " + copied.error().what};
+  }
+  for (const char* rest : {"", "-wal", "-shm"}) {
+    std::error_code ignored;
+    fs::remove(folder / (std::string(kDatabase) + rest), ignored);
+  }
+  return note_address(folder, target);
+}
+
 core::Result<core::Json> read_manifest(const fs::path& from) {
   const fs::path path = from / kManifest;
   auto json = core::read_json(path);
@@ -153,14 +187,12 @@ core::Result<core::ScratchFolder> scratch_for(const fs::path& target) {
 
 core::Result<core::Json> back_up(const fs::path& data, const fs::path& out,
                                  const core::Progress& shown) {
-  std::error_code failure;
-  if (!fs::is_regular_file(data / kDatabase, failure))
-    return core::Error{core::Errc::not_found, data.string() + ": not a server's data folder"};
+  auto source = database_of(data);
+  if (!source) return source.error();
   auto scratch = scratch_for(out);
   if (!scratch) return scratch.error();
   const fs::path& to = scratch->path();
-  if (auto copied = store::copy_database(data / kDatabase, to / kDatabase); !copied)
-    return copied.error();
+  if (auto copied = copy_records(*source, to / kDatabase); !copied) return copied.error();
   auto bytes = copy_files(data, to, shown);
   if (!bytes) return bytes.error();
   core::Json manifest;
@@ -192,6 +224,8 @@ core::Result<core::Json> restore(const fs::path& from, const fs::path& data,
       return core::Error{core::Errc::bad_input, (from / kManifest).string() + ": odd name " + name};
     if (auto fine = check_file(from / name, sha256); !fine) return fine.error();
   }
+  auto target = new_database(data);
+  if (!target) return target.error();
   auto scratch = scratch_for(data);
   if (!scratch) return scratch.error();
   std::error_code failure;
@@ -200,6 +234,8 @@ core::Result<core::Json> restore(const fs::path& from, const fs::path& data,
     return core::Error{core::Errc::io, fmt::format("{}: cannot copy: {}",
                                                    (from / kDatabase).string(), failure.message())};
   if (auto copied = copy_files(from, scratch->path(), shown); !copied) return copied.error();
+  if (target->is_shared())
+    if (auto moved = move_records(scratch->path(), *target); !moved) return moved.error();
   if (auto kept = scratch->keep_as(data); !kept) return kept.error();
   return *manifest;
 }

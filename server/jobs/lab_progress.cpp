@@ -32,7 +32,7 @@ bool LabProgress::note(double share) {
   const auto now = std::chrono::steady_clock::now();
   if (now < next_) return true;
   next_ = now + kBetween;
-  const auto stop = store_.write([&](store::Writing& tx) {
+  const auto stop = store_.write_beside([&](store::Writing& tx) {
     return store::note_lab_share(tx, run_id_, share_, phase_, core::utc_us());
   });
   return !stop || !*stop;  // a database that is busy for once stops nothing

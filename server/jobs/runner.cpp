@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <algorithm>
+
+#include "core/bytes.hpp"
 #include "core/clock.hpp"
 #include "db/store/analyses.hpp"
 #include "db/store/case_makings.hpp"
@@ -33,15 +36,29 @@ core::Result<void> show_failure(store::Writing& tx, const store::Job& job,
 
 core::Result<std::unique_ptr<Runner>> Runner::start(store::Store& store,
                                                     const store::Objects& objects,
-                                                    core::KeyPair case_key, Log log) {
-  auto back = store.write(
-      [](store::Writing& tx) { return store::requeue_claimed_jobs(tx, core::utc_us()); });
-  if (!back) return back.error();
-  return std::unique_ptr<Runner>(new Runner(store, objects, std::move(case_key), std::move(log)));
+                                                    core::KeyPair case_key, Log log,
+                                                    std::chrono::milliseconds lease) {
+  if (!store.shared()) {
+    auto back = store.write(
+        [](store::Writing& tx) { return store::requeue_claimed_jobs(tx, core::utc_us()); });
+    if (!back) return back.error();
+  }
+  auto runner = std::unique_ptr<Runner>(
+      new Runner(store, objects, std::move(case_key), std::move(log), lease));
+  auto listening = store.signals().listen(
+      store::kJobsChannel, [own = runner.get()](const store::Signal&) { own->wake(); });
+  if (!listening) return listening.error();
+  runner->listening_ = std::move(*listening);
+  return runner;
 }
 
-Runner::Runner(store::Store& store, const store::Objects& objects, core::KeyPair case_key, Log log)
-    : store_(store), objects_(objects), case_key_(std::move(case_key)), log_(std::move(log)) {
+Runner::Runner(store::Store& store, const store::Objects& objects, core::KeyPair case_key, Log log,
+               std::chrono::milliseconds lease)
+    : store_(store),
+      objects_(objects),
+      case_key_(std::move(case_key)),
+      log_(std::move(log)),
+      worker_{core::new_id(), std::chrono::microseconds(lease).count()} {
   scores_.thread = std::thread([this] { run(scores_); });
   cases_.thread = std::thread([this] { run(cases_); });
   lab_.thread = std::thread([this] {
@@ -49,9 +66,11 @@ Runner::Runner(store::Store& store, const store::Objects& objects, core::KeyPair
     (void)setpriority(PRIO_PROCESS, 0, kLabNiceness);
     run(lab_);
   });
+  keeper_ = std::thread([this] { keep(); });
 }
 
 Runner::~Runner() {
+  listening_.reset();
   {
     const std::lock_guard held(mutex_);
     ending_ = true;
@@ -60,6 +79,7 @@ Runner::~Runner() {
   scores_.thread.join();
   cases_.thread.join();
   lab_.thread.join();
+  keeper_.join();
 }
 
 void Runner::wake() {
@@ -79,32 +99,81 @@ void Runner::run(Lane& lane) {
     }
     lane.woken = false;
     held.unlock();
-    const bool did = do_one(lane.kinds);
+    const bool did = do_one(lane);
     held.lock();
     lane.woken = lane.woken || did;
   }
 }
 
-bool Runner::do_one(const std::vector<std::string>& kinds) {
-  auto job =
-      store_.write([&](store::Writing& tx) { return store::claim_job(tx, kinds, core::utc_us()); });
+/// Three times within every lease, so that two may fail.
+void Runner::keep() {
+  const std::chrono::microseconds between(worker_.lease_us / 3);
+  std::unique_lock held(mutex_);
+  while (!changed_.wait_for(held, between, [this] { return ending_; })) {
+    const std::vector<std::string> in_hand{scores_.job, lab_.job};
+    held.unlock();
+    if (in_hand != std::vector<std::string>{"", ""}) renew(in_hand);
+    if (store_.shared()) {
+      auto back = store_.write(
+          [](store::Writing& tx) { return store::requeue_lapsed_jobs(tx, core::utc_us()); });
+      if (!back) log_("jobs: " + back.error().what);
+      wake();  // a signal may have been missed
+    }
+    held.lock();
+  }
+}
+
+/// @param in_hand  what the lanes had before the database was asked: a job claimed since is no loss
+void Runner::renew(const std::vector<std::string>& in_hand) {
+  auto own = store_.write_beside(
+      [&](store::Writing& tx) { return store::renew_claims(tx, worker_, core::utc_us()); });
+  if (!own) return log_("jobs: " + own.error().what);
+  const std::lock_guard held(mutex_);
+  for (Lane* lane : {&scores_, &cases_, &lab_})
+    if (!lane->job.empty() && std::ranges::find(in_hand, lane->job) != in_hand.end() &&
+        std::ranges::find(*own, lane->job) == own->end())
+      lane->lost = true;
+}
+
+bool Runner::do_one(Lane& lane) {
+  auto job = store_.write_beside([&](store::Writing& tx) {
+    return store::claim_job(tx, lane.kinds, core::utc_us(), worker_);
+  });
   if (!job) {
     log_("jobs: " + job.error().what);
     return false;
   }
   if (!*job) return false;
-  core::Result<void> done = work_on(**job);
-  if (!done && done.error().code == core::Errc::cancelled && ending())
-    return false;  // still claimed: it waits again after the next start
-  if (!done) {
-    log_(fmt::format("job {} of {} failed: {}", (*job)->kind, (*job)->subject, done.error().what));
-    done = note_failure(**job, done.error());
-  } else {
-    done = store_.write(
-        [&](store::Writing& tx) { return store::finish_job(tx, (*job)->id, core::utc_us()); });
-  }
+  take_in_hand(lane, (*job)->id);
+  const auto done = conclude(lane, **job, work_on(lane, **job));
+  take_in_hand(lane, "");
   if (!done) log_("jobs: " + done.error().what);
-  return true;
+  return !ending();
+}
+
+core::Result<void> Runner::conclude(Lane& lane, const store::Job& job,
+                                    const core::Result<void>& done) {
+  if (is_lost(lane)) return {};
+  if (!done && done.error().code == core::Errc::cancelled && ending())
+    return store_.write(
+        [&](store::Writing& tx) { return store::give_back_job(tx, job, core::utc_us()); });
+  if (!done) {
+    log_(fmt::format("job {} of {} failed: {}", job.kind, job.subject, done.error().what));
+    return note_failure(job, done.error());
+  }
+  return store_.write_beside(
+      [&](store::Writing& tx) { return store::finish_job(tx, job, core::utc_us()); });
+}
+
+void Runner::take_in_hand(Lane& lane, const std::string& job) {
+  const std::lock_guard held(mutex_);
+  lane.job = job;
+  lane.lost = false;
+}
+
+bool Runner::is_lost(Lane& lane) {
+  const std::lock_guard held(mutex_);
+  return lane.lost;
 }
 
 bool Runner::ending() {
@@ -112,11 +181,11 @@ bool Runner::ending() {
   return ending_;
 }
 
-core::Result<void> Runner::work_on(const store::Job& job) {
+core::Result<void> Runner::work_on(Lane& lane, const store::Job& job) {
   if (job.kind == "metrics") return assess_trial(store_, objects_, job.subject);
   if (job.attempts > kMostAttempts)
     return core::Error{core::Errc::unavailable, "it ended the server before it was done"};
-  const auto wants_to_end = [this] { return ending(); };
+  const auto wants_to_end = [this, &lane] { return ending() || is_lost(lane); };
   if (job.kind == "case") return make_case(store_, objects_, case_key_, job.subject, wants_to_end);
   return job.kind == "analysis" ? analyse(store_, objects_, job.subject, wants_to_end)
                                 : run_lab(store_, objects_, job.subject, wants_to_end);
@@ -124,8 +193,8 @@ core::Result<void> Runner::work_on(const store::Job& job) {
 
 core::Result<void> Runner::note_failure(const store::Job& job, const core::Error& error) {
   return store_.write([&](store::Writing& tx) -> core::Result<void> {
-    if (auto shown = show_failure(tx, job, error); !shown) return shown;
-    return store::fail_job(tx, job.id, error.what, core::utc_us());
+    if (auto failed = store::fail_job(tx, job, error.what, core::utc_us()); !failed) return failed;
+    return show_failure(tx, job, error);
   });
 }
 

@@ -1,6 +1,7 @@
 /// The threads that work on jobs.
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <functional>
 #include <mutex>
@@ -16,19 +17,22 @@ namespace jobs {
 /// Threads, each for its kinds of jobs: scores and the making of cases, which someone waits for,
 /// and what takes minutes (the lab, analyses of a cohort) and runs at low priority, so that it
 /// delays neither scores nor requests. Each claims and does one job after the other until nothing
-/// waits, then waits to be woken. They end with their object, after the job in hand; a run of the
-/// lab or an analysis is left off and begins again after the next start, three times at most.
+/// waits, then waits to be woken, by this process or by another on the same database. One more
+/// renews the claims while they work, and puts back what processes that died had claimed. They end
+/// with their object, after the job in hand; a run of the lab or an analysis is left off and waits
+/// again; one that ended its process three times is given up.
 class Runner {
  public:
   /// Called with one line when something is to be known: a job that failed, a database that
   /// refuses. From any of the threads.
   using Log = std::function<void(const std::string& line)>;
 
-  /// Puts jobs that a dead process had claimed back in the queue, then starts.
+  /// On a database of this process alone, puts jobs that a dead process had claimed back in the
+  /// queue; on a shared one they wait until their `lease` is over. Then starts.
   /// @param case_key  signs the cases that are made here.
-  static core::Result<std::unique_ptr<Runner>> start(store::Store& store,
-                                                     const store::Objects& objects,
-                                                     core::KeyPair case_key, Log log);
+  static core::Result<std::unique_ptr<Runner>> start(
+      store::Store& store, const store::Objects& objects, core::KeyPair case_key, Log log,
+      std::chrono::milliseconds lease = std::chrono::seconds(30));
   ~Runner();
   Runner(const Runner&) = delete;
   Runner& operator=(const Runner&) = delete;
@@ -39,25 +43,36 @@ class Runner {
   struct Lane {
     std::vector<std::string> kinds;
     bool woken = true;
+    std::string job = {};  ///< the id of the one in hand
+    bool lost = false;     ///< it is another process's by now
     std::thread thread = {};
   };
 
-  Runner(store::Store& store, const store::Objects& objects, core::KeyPair case_key, Log log);
+  Runner(store::Store& store, const store::Objects& objects, core::KeyPair case_key, Log log,
+         std::chrono::milliseconds lease);
   void run(Lane& lane);
+  void keep();
+  void renew(const std::vector<std::string>& in_hand);
   /// Does one job; false when there is none.
-  bool do_one(const std::vector<std::string>& kinds);
-  core::Result<void> work_on(const store::Job& job);
+  bool do_one(Lane& lane);
+  core::Result<void> work_on(Lane& lane, const store::Job& job);
+  core::Result<void> conclude(Lane& lane, const store::Job& job, const core::Result<void>& done);
   core::Result<void> note_failure(const store::Job& job, const core::Error& error);
+  void take_in_hand(Lane& lane, const std::string& job);
+  bool is_lost(Lane& lane);
   bool ending();
 
   store::Store& store_;
   const store::Objects& objects_;
   const core::KeyPair case_key_;
   Log log_;
-  std::mutex mutex_;  ///< guards ending_ and what the lanes were woken for
+  store::Worker worker_;
+  std::mutex mutex_;  ///< guards ending_ and the lanes' woken, job, lost
   bool ending_ = false;
   std::condition_variable changed_;
   Lane scores_{{"metrics"}}, cases_{{"case"}}, lab_{{"lab", "analysis"}};
+  std::thread keeper_;
+  std::unique_ptr<store::Listening> listening_;
 };
 
 }  // namespace jobs

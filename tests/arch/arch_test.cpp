@@ -117,6 +117,11 @@ std::string text_of(const fs::path& path) {
   return text.str();
 }
 
+/// A test, or what the tests of a folder share.
+bool is_of_tests(const std::string& relative) {
+  return relative.ends_with("_test.cpp") || relative.ends_with("_test_support.hpp");
+}
+
 std::string layer_included(const std::string& quoted) {
   for (const auto& candidate : {"shared/" + quoted, quoted})
     if (fs::exists(kRoot / candidate)) return layer_of(candidate);
@@ -127,7 +132,7 @@ TEST(Architecture, IncludesFollowTheTable) {
   const std::regex include("#include \"([^\"]+)\"");
   for (const auto& path : sources()) {
     const std::string relative = fs::relative(path, kRoot).string();
-    if (relative.find("/app/") != std::string::npos || relative.ends_with("_test.cpp")) continue;
+    if (relative.find("/app/") != std::string::npos || is_of_tests(relative)) continue;
     const std::string layer = layer_of(relative);
     ASSERT_FALSE(layer.empty()) << relative << " lies in no folder of the table";
     const std::string text = text_of(path);

@@ -25,9 +25,8 @@ class Network : public ::testing::Test {
   }
   /// Changes the database behind everybody's back.
   void tamper(const std::string& sql) {
-    auto database = store::open_sqlite(world_.data / "tractus.db", store::Access::write);
-    ASSERT_TRUE(database);
-    ASSERT_TRUE((*database)->script(sql));
+    const auto database = world_.connection();
+    ASSERT_TRUE(database && database->script(sql));
   }
   const ServedWorld world_;
 };

@@ -8,7 +8,7 @@ the file as an attachment and is left out, by name, when it is not installed (De
 """
 import argparse, base64, gzip, json, os, shutil, socket, struct, subprocess, sys, tempfile, time, urllib.request
 
-SIDE, FETCHES = 320, 4  # voxels along the cube; times each station fetches it a round
+SIDE, FETCHES = 320, 60  # voxels along the cube; times each station fetches it a round
 
 
 def free_port():

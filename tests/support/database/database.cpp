@@ -3,7 +3,7 @@
 #include <cstdlib>
 
 #include "core/bytes.hpp"
-#include "tests/support/database/postgres_server.hpp"
+#include "tests/support/postgres/postgres_server.hpp"
 
 namespace test_support {
 namespace {

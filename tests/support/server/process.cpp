@@ -194,16 +194,38 @@ RawAnswer send_raw(int port, const std::string& bytes, int patience_ms) {
   return out;
 }
 
-ServedWorld::ServedWorld()
-    : folder(fs::path(::testing::TempDir()) / ("tractus-" + core::new_id())),
-      data(folder / "data") {
+ServedWorld::ServedWorld() {
+  if (test_support::database_kind() == test_support::DatabaseKind::postgresql) {
+    database_ = std::make_unique<test_support::TestDatabase>(test_support::DatabaseKind::postgresql,
+                                                             test_support::Content::nothing);
+    address_ = database_->address();
+  }
+  furnish();
+}
+
+ServedWorld::ServedWorld(const std::string& address) : address_(address) { furnish(); }
+
+std::unique_ptr<store::Connection> ServedWorld::connection() const {
+  if (address_.empty()) {
+    auto opened = store::open_sqlite(data / "tractus.db", store::Access::write);
+    return opened ? std::move(*opened) : nullptr;
+  }
+  auto made = store::postgres_connection(address_, store::Access::write);
+  return made->begin(store::Access::beside) && made->commit() ? std::move(made) : nullptr;
+}
+
+void ServedWorld::furnish() {
+  folder = fs::path(::testing::TempDir()) / ("tractus-" + core::new_id());
+  data = folder / "data";
   fs::create_directories(folder);
   std::ofstream(folder / "password") << kPassword << "\n";
   const auto must = [](const std::vector<std::string>& arguments) {
     const Ended ended = run_program("tractus-server", arguments);
     EXPECT_EQ(ended.code, 0) << ended.out;
   };
-  must({"init", "--data", data, "--password-file", folder / "password"});
+  std::vector<std::string> init{"init", "--data", data, "--password-file", folder / "password"};
+  if (!address_.empty()) init.insert(init.end(), {"--database", address_});
+  must(init);
   for (const char* name : {"station-1", "station-2"})
     must({"enrol", "--data", data, "--name", name, "--out", folder / name});
   case_id = make_case(folder / "case");

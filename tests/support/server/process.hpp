@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "core/json.hpp"
+#include "db/store/connection.hpp"
+#include "tests/support/database/database.hpp"
 
 namespace world {
 
@@ -88,7 +90,11 @@ RawAnswer send_raw(int port, const std::string& bytes, int patience_ms);
 /// A data folder with account "admin" (kPassword), stations "station-1" and "station-2", and one
 /// published case.
 struct ServedWorld {
+  /// Its records in a PostgreSQL database of its own when the environment asks for that
+  /// (test_support::database_kind), else in the folder.
   ServedWorld();
+  /// Its records in this PostgreSQL database, which must be empty.
+  explicit ServedWorld(const std::string& address);
   ~ServedWorld();
   ServedWorld(const ServedWorld&) = delete;
   ServedWorld& operator=(const ServedWorld&) = delete;
@@ -98,6 +104,14 @@ struct ServedWorld {
   std::string case_id;
   Headers station_1, station_2;  ///< their credentials
 
+ private:
+  void furnish();
+  std::unique_ptr<test_support::TestDatabase> database_;
+  std::string address_;  ///< empty: SQLite
+
+ public:
+  /// To its records, behind everybody's back.
+  std::unique_ptr<store::Connection> connection() const;
   /// Signs in and returns the cookie with the header that changes need.
   Headers admin(Client& client) const;
 };

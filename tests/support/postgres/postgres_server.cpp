@@ -1,4 +1,4 @@
-#include "tests/support/database/postgres_server.hpp"
+#include "tests/support/postgres/postgres_server.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

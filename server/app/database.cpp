@@ -1,0 +1,88 @@
+#include "server/app/database.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+
+#include "core/file.hpp"
+
+namespace app {
+namespace fs = std::filesystem;
+namespace {
+
+std::string asked_for() {
+  const char* address = std::getenv(kAddressVariable);
+  return address ? address : "";
+}
+
+bool is_there(const fs::path& path) {
+  std::error_code failure;
+  return fs::is_regular_file(path, failure);
+}
+
+core::Result<std::string> noted_address(const fs::path& folder) {
+  auto bytes = core::read_file(folder / kAddressFile, 4096);
+  if (!bytes) return bytes.error();
+  std::string address(core::text_of(*bytes));
+  address = address.substr(0, address.find_first_of("\r\n"));
+  if (!address.empty()) return address;
+  return core::Error{core::Errc::bad_input,
+                     fmt::format("{}: its address has a password and is not kept here: give it in "
+                                 "{}, or with --database and PGPASSFILE",
+                                 (folder / kAddressFile).string(), kAddressVariable)};
+}
+
+}  // namespace
+
+std::string Database::name() const { return is_shared() ? "PostgreSQL" : file.string(); }
+
+core::Result<store::Store> Database::open() const {
+  return is_shared() ? store::Store::open_postgres(address) : store::Store::open(file);
+}
+
+core::Result<Database> new_database(const fs::path& folder) {
+  Database out{folder / kDatabase, asked_for()};
+  if (out.is_shared() && is_there(out.file))
+    return core::Error{core::Errc::conflict,
+                       fmt::format("{}: the folder's records are in this file, yet a database is "
+                                   "named; to move them: backup, then restore --database",
+                                   out.file.string())};
+  if (!out.is_shared() && is_there(folder / kAddressFile)) {
+    auto noted = noted_address(folder);
+    if (!noted) return noted.error();
+    out.address = std::move(*noted);
+  }
+  return out;
+}
+
+core::Result<Database> database_of(const fs::path& folder) {
+  if (!is_there(folder / kDatabase) && !is_there(folder / kAddressFile))
+    return core::Error{core::Errc::not_found,
+                       fmt::format("{}: not a server's data folder; make one with: "
+                                   "tractus-server init --data {}",
+                                   folder.string(), folder.string())};
+  return new_database(folder);
+}
+
+core::Result<void> note_address(const fs::path& folder, const Database& database) {
+  if (!database.is_shared() || is_there(folder / kAddressFile)) return {};
+  const std::string kept = store::has_password(database.address) ? "" : database.address;
+  return core::write_file(folder / kAddressFile, core::bytes_of(kept + "\n"));
+}
+
+core::Result<void> use_address(const std::string& address) {
+  if (!address.starts_with("postgresql://") && !address.starts_with("postgres://"))
+    return core::Error{core::Errc::bad_input,
+                       fmt::format("--database {}: postgresql://[USER@]HOST[:PORT]/NAME is "
+                                   "expected",
+                                   address.substr(0, 64))};
+  if (store::has_password(address))
+    return core::Error{core::Errc::bad_input,
+                       fmt::format("--database: holds a password, which anybody on this machine "
+                                   "can read there: use PGPASSFILE, or give the address in {}",
+                                   kAddressVariable)};
+  ::setenv(kAddressVariable, address.c_str(), 1);
+  return {};
+}
+
+}  // namespace app
