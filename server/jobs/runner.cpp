@@ -110,9 +110,9 @@ void Runner::keep() {
   const std::chrono::microseconds between(worker_.lease_us / 3);
   std::unique_lock held(mutex_);
   while (!changed_.wait_for(held, between, [this] { return ending_; })) {
-    const std::vector<std::string> in_hand{scores_.job, lab_.job};
+    const std::vector<std::string> in_hand{scores_.job, cases_.job, lab_.job};
     held.unlock();
-    if (in_hand != std::vector<std::string>{"", ""}) renew(in_hand);
+    if (in_hand != std::vector<std::string>(3)) renew(in_hand);
     if (store_.shared()) {
       auto back = store_.write(
           [](store::Writing& tx) { return store::requeue_lapsed_jobs(tx, core::utc_us()); });

@@ -41,6 +41,9 @@ const assignments = () => import('@/features/assignments');
 const AssignmentsPage = lazy(() => assignments().then(({ AssignmentsPage: page }) => ({ default: page })));
 const AssignmentPage = lazy(() => assignments().then(({ AssignmentPage: page }) => ({ default: page })));
 const NewAssignmentPage = lazy(() => assignments().then(({ NewAssignmentPage: page }) => ({ default: page })));
+const scenarios = () => import('@/features/scenarios');
+const ScenariosPage = lazy(() => scenarios().then(({ ScenariosPage: page }) => ({ default: page })));
+const ScenarioPage = lazy(() => scenarios().then(({ ScenarioPage: page }) => ({ default: page })));
 const DebriefPage = lazy(() => import('@/features/debrief').then(({ DebriefPage: page }) => ({ default: page })));
 const VersionsPage = lazy(() => lab().then(({ VersionsPage: page }) => ({ default: page })));
 
@@ -67,6 +70,7 @@ const kPlaces = [
   { to: '/assignments', name: 'My work', roles: ['trainee'] },
   { to: '/trials', name: 'Trials', roles: ['admin', 'director', 'faculty', 'trainee'] },
   { to: '/cases', name: 'Cases', roles: ['admin', 'director', 'faculty', 'researcher'] },
+  { to: '/scenarios', name: 'Scenarios', roles: ['admin', 'faculty'] },
   { to: '/assignments', name: 'Assignments', roles: ['admin', 'director', 'faculty'] },
   { to: '/trainees', name: 'Trainees', roles: ['admin', 'director', 'faculty'] },
   { to: '/me', name: 'My curve', roles: ['trainee'] },
@@ -155,6 +159,8 @@ function Pages() {
         <Route path="/cases"><CasesPage /></Route>
         <Route path="/cases/new/:volume">{({ volume }) => <NewCasePage key={volume} volume={volume} />}</Route>
         <Route path="/cases/:id">{({ id }) => <CasePage key={id} id={id} />}</Route>
+        <Route path="/scenarios"><ScenariosPage /></Route>
+        <Route path="/scenarios/:id">{({ id }) => <ScenarioPage key={id} id={id} />}</Route>
         <Route path="/assignments"><AssignmentsPage /></Route>
         <Route path="/assignments/new"><NewAssignmentPage /></Route>
         <Route path="/assignments/:id">{({ id }) => <AssignmentPage key={id} id={id} />}</Route>

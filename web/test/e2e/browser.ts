@@ -46,7 +46,7 @@ export async function visit(browser: Browser, { width = 1440, height = 900, dark
   const page = await context.newPage();
   page.setDefaultTimeout(30_000);
   const faults: string[] = [];
-  page.on('pageerror', (error) => faults.push(String(error)));
+  page.on('pageerror', (error) => faults.push(String(error.stack)));
   page.on('console', (message) => {
     const text = message.text();
     // The browser writes every 4xx to the console; the pages expect a 401 before the sign-in.

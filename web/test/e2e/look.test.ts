@@ -1,22 +1,10 @@
 /** Pictures of every page, for a person to look at, and axe-core's rules on each. */
-import { readFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
 import type { Browser, Page } from 'playwright-core';
 import { afterAll, beforeAll, describe, expect, it } from 'vitest';
+import { accessibilityFaults } from './axe';
 import { asked, assessedTrial, jumped, kShots, launch, signIn, someStudy, visit } from './browser';
 
 const kNoticed = 0.1;
-
-const kAxe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
-
-interface AxeRun { violations: { id: string; help: string; nodes: { target: string[]; failureSummary: string }[] }[] }
-
-/** Through the debugger, which the page's policy on scripts does not concern. */
-async function accessibilityFaults(page: Page): Promise<string[]> {
-  await page.evaluate(kAxe);
-  const run = await page.evaluate(() => (window as unknown as { axe: { run(): Promise<AxeRun> } }).axe.run());
-  return run.violations.flatMap(({ id, help, nodes }) => nodes.map((node) => `${id}: ${help}: ${node.target.join(' ')} ${node.failureSummary}`));
-}
 
 type Check = (name: string) => Promise<void>;
 

@@ -32,7 +32,7 @@ export function paced(container: HTMLElement, drawing: Drawing): () => void {
     asked = true;
     requestAnimationFrame(() => {
       asked = false;
-      if (container.isConnected) drawing.window.render();
+      if (container.isConnected && !drawing.window.isDeleted()) drawing.window.render();
     });
   };
 }

@@ -82,8 +82,8 @@ function Workbench({ volume, block }: { readonly volume: SourceVolume; readonly 
   };
   const type = (end: End, at: Vec3) => { step({ kind: 'change', to: end === 'entry' ? { entry: at } : { target: at } }); setFocus(at); };
   return (
-    <>
-      <div className={styles.bench}>
+    <div className={styles.bench}>
+      <div className={styles.left}>
         <Card title="Slices" aside={(
           <span className={styles.tools}>
             <Select label={<span className="hidden-visually">Window</span>} value={window_} options={Object.entries(kWindows).map(([value, { text }]) => ({ value, text }))} onChange={(event) => setWindow(event.target.value)} />
@@ -93,28 +93,28 @@ function Workbench({ volume, block }: { readonly volume: SourceVolume; readonly 
         )}>
           <Slices volume={volume.id} block={block} window={kWindows[window_]?.window ?? { low: -200, high: 1100 }} plan={plan} found={found} chosen={chosen} focus={focus} onFocus={setFocus} onPlace={place} />
         </Card>
-        <Card title="Tract">
-          <div className={styles.stack}>
-            <fieldset className={styles.ends}>
-              <legend className="hidden-visually">Which end a click places</legend>
-              {(['entry', 'target'] as const).map((end) => <PointFields key={end} end={end} at={plan[end]} chosen={chosen === end} onChoose={() => { setChosen(end); const at = plan[end]; if (at) setFocus(at); }} onAt={(at) => type(end, at)} />)}
-            </fieldset>
-            <BreachFields plan={plan} length_m={found?.length_m ?? null} onBreach={(breach) => step({ kind: 'change', to: { breach } })} />
-            {answer.isError ? <Notice tone="bad" title="The plan could not be looked at." onRetry={() => void answer.refetch()}>{answer.error.message}</Notice> : <Findings plan={plan} found={found} looking={looking} />}
-            <Make volume={volume.id} plan={plan} ready={found?.tract !== null && found?.problems.length === 0 && !looking} />
-          </div>
-        </Card>
+        <div className={styles.pair}>
+          <Card title="In three dimensions">
+            <PlanView tract={found?.tract ?? null} breach={found?.breach ?? null} bone={block} palette={palette} summary="The bone with the planned tract and its breach."
+              button={(label, text, press, pressed) => <Button label={label} onClick={press} {...(pressed === undefined ? {} : { pressed })}>{text}</Button>} />
+          </Card>
+          <Card title="Walls along the tract">
+            {found?.tract ? <Walls found={found} /> : <p className={`${styles.muted} ${styles.tall}`}>Where the walls are and how thick they are is shown here as soon as both ends of the tract are placed.</p>}
+          </Card>
+        </div>
       </div>
-      <div className={styles.pair}>
-        <Card title="In three dimensions">
-          <PlanView tract={found?.tract ?? null} breach={found?.breach ?? null} bone={block} palette={palette} summary="The bone with the planned tract and its breach."
-            button={(label, text, press, pressed) => <Button label={label} onClick={press} {...(pressed === undefined ? {} : { pressed })}>{text}</Button>} />
-        </Card>
-        <Card title="Walls along the tract">
-          {found?.tract ? <Walls found={found} /> : <p className={`${styles.muted} ${styles.tall}`}>Where the walls are and how thick they are is shown here as soon as both ends of the tract are placed.</p>}
-        </Card>
-      </div>
-    </>
+      <Card title="Tract" className={styles.side ?? ''}>
+        <div className={styles.stack}>
+          <fieldset className={styles.ends}>
+            <legend className="hidden-visually">Which end a click places</legend>
+            {(['entry', 'target'] as const).map((end) => <PointFields key={end} end={end} at={plan[end]} chosen={chosen === end} onChoose={() => { setChosen(end); const at = plan[end]; if (at) setFocus(at); }} onAt={(at) => type(end, at)} />)}
+          </fieldset>
+          <BreachFields plan={plan} length_m={found?.length_m ?? null} onBreach={(breach) => step({ kind: 'change', to: { breach } })} />
+          {answer.isError ? <Notice tone="bad" title="The plan could not be looked at." onRetry={() => void answer.refetch()}>{answer.error.message}</Notice> : <Findings plan={plan} found={found} looking={looking} />}
+          <Make volume={volume.id} plan={plan} ready={found?.tract !== null && found?.problems.length === 0 && !looking} />
+        </div>
+      </Card>
+    </div>
   );
 }
 

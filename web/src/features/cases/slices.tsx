@@ -1,4 +1,4 @@
-import { useQueries } from '@tanstack/react-query';
+import { useQuery } from '@tanstack/react-query';
 import { useMemo } from 'react';
 import { sliceQuery, type PlannedTract, type Preview, type SlicePlane, type Vec3, type Window } from '@/api';
 import { SliceView, type SliceMark } from '@/charts';
@@ -75,25 +75,28 @@ interface Props {
   readonly onPlace: (end: End, at: Vec3, done: boolean) => void;
 }
 
-/** The volume in three planes through one point, with the plan drawn over it. */
-export function Slices({ volume, block, window, plan, found, chosen, focus, onFocus, onPlace }: Props) {
-  const { low, high } = useMemo(() => boundsOf(block), [block]);
-  const marks = useMemo(() => marksOf(plan, found), [plan, found]);
-  const on = (axis: 0 | 1 | 2) => Math.min(Math.max(Math.round(focus[axis] / kPitch_m) * kPitch_m, low[axis]), high[axis]);
-  const answers = useQueries({ queries: kPlanes.map(({ plane, axis }) => sliceQuery(volume, plane, Math.round(on(axis) * 1e6) / 1e6, window)) });
-  const failed = answers.find(({ isError }) => isError);
+type Placed = (typeof kPlanes)[number];
+
+/** One plane; while the next slice is on its way, the one before stays. */
+function OnePlane({ where: { plane, name, axis, ends }, low, high, marks, volume, window, chosen, focus, onFocus, onPlace }: Props & { readonly where: Placed; readonly low: Vec3; readonly high: Vec3; readonly marks: readonly SliceMark[] }) {
+  const at = Math.round(Math.min(Math.max(Math.round(focus[axis] / kPitch_m) * kPitch_m, low[axis]), high[axis]) * 1e6) / 1e6;
+  const query = useQuery(sliceQuery(volume, plane, at, window));
   return (
     <div>
-      {failed ? <Notice tone="bad" title="A slice could not be loaded." onRetry={() => { for (const one of answers) if (one.isError) void one.refetch(); }}>{failed.error?.message}</Notice> : null}
-      <div className={styles.slices}>
-        {kPlanes.map(({ plane, name, axis, ends }, i) => (
-          <SliceView
-            key={plane} name={name} picture={answers[i]?.data ?? null} late={answers[i]?.isPlaceholderData === true} at_m={on(axis)} from_m={low[axis]} to_m={high[axis]} ends={ends}
-            marks={marks} chosen={chosen} onAt={(at) => onFocus([axis === 0 ? at : focus[0], axis === 1 ? at : focus[1], axis === 2 ? at : focus[2]])}
-            onPlace={(id, at, done) => { if (id === 'entry' || id === 'target') onPlace(id, at, done); }}
-          />
-        ))}
-      </div>
+      {query.isError ? <Notice tone="bad" title="This slice could not be loaded." onRetry={() => void query.refetch()}>{query.error.message}</Notice> : null}
+      <SliceView
+        name={name} picture={query.data ?? null} late={query.isPlaceholderData} at_m={at} from_m={low[axis]} to_m={high[axis]} ends={ends} marks={marks} chosen={chosen}
+        onAt={(to) => onFocus([axis === 0 ? to : focus[0], axis === 1 ? to : focus[1], axis === 2 ? to : focus[2]])}
+        onPlace={(id, to, done) => { if (id === 'entry' || id === 'target') onPlace(id, to, done); }}
+      />
     </div>
   );
+}
+
+/** The volume in three planes through one point, with the plan drawn over it. */
+export function Slices(props: Props) {
+  const { block, plan, found } = props;
+  const bounds = useMemo(() => boundsOf(block), [block]);
+  const marks = useMemo(() => marksOf(plan, found), [plan, found]);
+  return <div className={styles.slices}>{kPlanes.map((where) => <OnePlane key={where.plane} where={where} marks={marks} {...bounds} {...props} />)}</div>;
 }

@@ -17,6 +17,9 @@ interface Props {
   readonly scenario: Scenario | null;
 }
 
+/** The ends of the axis need no name. */
+const kEnds: readonly string[] = ['start', 'end'];
+
 function Playhead({ places, cursor }: { readonly places: Places; readonly cursor: Cursor }) {
   const line = useRef<SVGLineElement>(null);
   useEffect(() => {
@@ -81,7 +84,7 @@ function Line(props: Props & { readonly column: 'force_N' | 'depth_m'; readonly 
               {moments.map((one, i) => (
                 <g key={i} className={one.kind === 'comment' ? styles.comment : styles.event} transform={`translate(${places.x(one.t_s)} 0)`}>
                   <line y1={22} y2={22 + places.height_px} />
-                  {named && one.kind === 'event' ? <text y={19} textAnchor={one.t_s > duration_s / 2 ? 'end' : 'start'}>{one.text}</text> : null}
+                  {named && one.kind === 'event' && !kEnds.includes(one.text) ? <text y={19} textAnchor={one.t_s > duration_s / 2 ? 'end' : 'start'}>{one.text}</text> : null}
                   {one.kind === 'comment' ? <circle cy={26} r={4} /> : null}
                 </g>
               ))}

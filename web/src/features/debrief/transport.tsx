@@ -60,8 +60,8 @@ export function Transport({ duration_s, cursor, player, moments }: Props) {
   return (
     <div className={styles.transport} role="group" aria-label="Replay">
       <Button look="solid" label={player.playing ? 'Pause' : 'Play'} className={styles.play} onClick={player.toggle}>{player.playing ? '❚❚' : '▶'}</Button>
-      <Button label="To the moment before" onClick={() => jump(-1)}>⏮</Button>
-      <Button label="To the next moment" onClick={() => jump(1)}>⏭</Button>
+      <Button label="To the moment before" onClick={() => jump(-1)}>|◀</Button>
+      <Button label="To the next moment" onClick={() => jump(1)}>▶|</Button>
       <Scrubber duration_s={duration_s} cursor={cursor} player={player} />
       <Select label={<span className="hidden-visually">Speed</span>} value={String(player.speed)} options={kSpeeds.map((speed) => ({ value: String(speed), text: `${speed} ×` }))} onChange={(event) => player.setSpeed(Number(event.target.value))} />
     </div>

@@ -1,0 +1,32 @@
+import { describe, expect, it } from 'vitest';
+import type { ScenarioFile } from '@/api';
+import { draftOf, fromShown, kBone, shown, valueAt, withLayer, withValue, withWall } from './draft';
+
+const file: ScenarioFile = {
+  format: 'tractus-scenario/1', name: 'hard', kind: 'hard', density: 1, travel_m: 0.05, walls_m: [], layers: [],
+  bone: { stiffness_N_per_m: 8000, damping_Ns_per_m: 5000, equilibrium_m: -0.004, interval_m: 0.004 },
+  breach: { resistance_interval_m: 0.006, resistance_factor_per_m: 105, breach_interval_m: 0.008, breach_damping_Ns_per_m: 1200 },
+  rotary: { viscous_Nms_per_rad: 0.02, detent_Nm: 0.01, detent_pitch_rad: 0.35 }, origin: { who: 'x', when: 'y' },
+};
+
+describe('a scenario being tuned', () => {
+  it('keeps what a person types as SI, to the digit', () => {
+    const knob = kBone[3] ?? { times: 1 };
+    expect(shown(0.004, knob)).toBe('4');
+    expect(fromShown('4.1', knob)).toBe(0.0041);
+  });
+  it('changes one number and leaves the rest', () => {
+    const next = withValue(file, '/bone/stiffness_N_per_m', 9000);
+    expect(next.bone).toEqual({ ...file.bone, stiffness_N_per_m: 9000 });
+    expect(next.rotary).toBe(file.rotary);
+    expect(valueAt(withValue(withLayer(file), '/layers/0/density', 2), '/layers/0/density')).toBe(2);
+  });
+  it('puts walls in order, where there is most room', () => {
+    expect(withWall(file).walls_m).toEqual([0.025]);
+    expect(withWall({ ...file, walls_m: [0.04] }).walls_m).toEqual([0.02, 0.04]);
+  });
+  it('does not lay a stretch beyond the probe stop', () => {
+    expect(withLayer({ ...file, layers: [{ start_m: 0, thickness_m: 0.05, density: 1 }] }).layers).toHaveLength(1);
+  });
+  it('leaves who and when to the server', () => { expect(draftOf(file)).not.toHaveProperty('origin'); });
+});

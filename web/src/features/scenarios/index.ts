@@ -1,0 +1,2 @@
+export { ScenarioPage } from './scenario-page';
+export { ScenariosPage } from './scenarios-page';
