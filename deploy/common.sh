@@ -22,14 +22,35 @@ missing_packages() {
   done
 }
 
+# Debian's PostgreSQL makes a cluster and starts it when it is installed; nginx starts too. The tests start their own, so a
+# machine that had neither is left without a service of ours running.
+quiet_services() {  # quiet_services PACKAGE...   before they are installed
+  local conf=/etc/postgresql-common/createcluster.conf
+  if [[ " $* " == *" postgresql "* ]] && [ ! -e "$conf" ]; then
+    as_root mkdir -p "${conf%/*}"
+    echo "create_main_cluster = false" | as_root tee "$conf" >/dev/null
+  fi
+  if [[ " $* " == *" nginx-light "* ]] && [ ! -e /usr/sbin/policy-rc.d ]; then
+    printf '#!/bin/sh\nexit 101\n' | as_root tee /usr/sbin/policy-rc.d >/dev/null
+    as_root chmod 755 /usr/sbin/policy-rc.d
+    kept_quiet=1
+  fi
+}
+
 install_packages() {
   local missing
   missing=$(missing_packages)
   [ -z "$missing" ] && { say "All Debian packages of deploy/packages.txt are there"; return; }
   say "Installing $(wc -w <<<"$missing") Debian packages:" $missing
   as_root apt-get update -qq
+  local kept_quiet=0 outcome=0
   # shellcheck disable=SC2086  # one word a package
-  as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing >build.apt.log 2>&1 ||
+  quiet_services $missing
+  # shellcheck disable=SC2086  # one word a package
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \
+    -o Dpkg::Options::=--force-confold $missing >build.apt.log 2>&1 || outcome=$?
+  [ "$kept_quiet" = 0 ] || as_root rm -f /usr/sbin/policy-rc.d
+  [ "$outcome" = 0 ] ||
     { tail -20 build.apt.log >&2; die "deploy: apt-get could not install the packages above (build.apt.log)"; }
   rm -f build.apt.log
 }

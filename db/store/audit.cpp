@@ -69,6 +69,8 @@ core::Result<void> note_act(Writing& tx, const AuditKey& key) {
   return add_act(tx, key, t_now->act_);
 }
 
+bool act_waits() noexcept { return t_now && !t_now->noted_; }
+
 void act_was_noted() noexcept {
   if (t_now) t_now->noted_ = true;
 }

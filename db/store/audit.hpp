@@ -39,6 +39,7 @@ class Acting {
  private:
   friend core::Result<void> note_act(Writing& tx, const AuditKey& key);
   friend void act_was_noted() noexcept;
+  friend bool act_waits() noexcept;
   Act act_;
   bool noted_ = false;
 };

@@ -1,11 +1,10 @@
 #include "db/store/audit.hpp"
 
 #include "db/store/cases.hpp"
-#include "db/store/store_test_support.hpp"
+#include "tests/support/database/database.hpp"
 
 namespace store {
 namespace {
-using testing::TestFolder;
 
 AuditKey key_of(unsigned char first) {
   AuditKey key{};
@@ -14,7 +13,7 @@ AuditKey key_of(unsigned char first) {
 }
 
 /// Nine acts, each with a change.
-class AuditTrail : public ::testing::Test {
+class AuditTrail : public test_support::BothDatabases {
  protected:
   AuditTrail() {
     store_.set_audit_key(key_);
@@ -43,18 +42,19 @@ class AuditTrail : public ::testing::Test {
   }
 
   const AuditKey key_ = key_of(7);
-  TestFolder folder_;
-  Store store_ = std::move(Store::open(folder_.path() / "tractus.db").value());
+  test_support::TestDatabase database_{GetParam()};
+  Store store_ = database_.open();
 };
+TRACTUS_ON_BOTH_DATABASES(AuditTrail);
 
-TEST_F(AuditTrail, HoldsAsItWasWritten) {
+TEST_P(AuditTrail, HoldsAsItWasWritten) {
   const auto end = check(key_);
   ASSERT_TRUE(end) << end.error().what;
   EXPECT_EQ(end->number, 9);
   EXPECT_EQ(end->hash.size(), 64u);
 }
 
-TEST_F(AuditTrail, EveryFieldOfEveryRowIsCovered) {
+TEST_P(AuditTrail, EveryFieldOfEveryRowIsCovered) {
   const std::vector<std::string> changes{
       "at_utc_us = at_utc_us + 1", "who = 'eve'", "role = 'trainee'", "peer = ''",
       "what = what || ' '", "object = '='", "detail = '[]'", "hash = lower(hash || '0')",
@@ -73,19 +73,19 @@ TEST_F(AuditTrail, EveryFieldOfEveryRowIsCovered) {
   EXPECT_EQ(failure(), "");
 }
 
-TEST_F(AuditTrail, ARowTakenOutIsSeen) {
+TEST_P(AuditTrail, ARowTakenOutIsSeen) {
   tamper("delete from audit where number = 4");
   EXPECT_NE(failure().find("row 4: is missing"), std::string::npos) << failure();
 }
 
-TEST_F(AuditTrail, ARowTakenOutIsSeenThoughTheOthersMoveUp) {
+TEST_P(AuditTrail, ARowTakenOutIsSeenThoughTheOthersMoveUp) {
   tamper("delete from audit where number = 4");
   tamper("update audit set number = -number where number > 4");
   tamper("update audit set number = -number - 1 where number < 0");
   EXPECT_NE(failure().find("row 4"), std::string::npos) << failure();
 }
 
-TEST_F(AuditTrail, TwoRowsThatChangePlacesAreSeen) {
+TEST_P(AuditTrail, TwoRowsThatChangePlacesAreSeen) {
   tamper("update audit set number = 100 where number = 3");
   tamper("update audit set number = 3 where number = 6");
   tamper("update audit set number = 6 where number = 100");
@@ -93,9 +93,9 @@ TEST_F(AuditTrail, TwoRowsThatChangePlacesAreSeen) {
 }
 
 /// Who can write to the database but has not the key.
-TEST_F(AuditTrail, AChainRewrittenWithAnotherKeyIsSeen) { EXPECT_FALSE(check(key_of(8))); }
+TEST_P(AuditTrail, AChainRewrittenWithAnotherKeyIsSeen) { EXPECT_FALSE(check(key_of(8))); }
 
-TEST_F(AuditTrail, AChangeThatFailsLeavesNoRow) {
+TEST_P(AuditTrail, AChangeThatFailsLeavesNoRow) {
   const Acting acting({.who = "ada", .what = "fails", .detail = "{}"});
   const auto done = store_.write([&](Writing& tx) -> core::Result<void> {
     if (auto added = add_object(tx, std::string(64, 'x'), 1, 1); !added) return added;
@@ -105,7 +105,7 @@ TEST_F(AuditTrail, AChangeThatFailsLeavesNoRow) {
   EXPECT_EQ(check(key_).value().number, 9);
 }
 
-TEST_F(AuditTrail, OneActIsOneRowHoweverManyWritesItTakes) {
+TEST_P(AuditTrail, OneActIsOneRowHoweverManyWritesItTakes) {
   const Acting acting({.who = "ada", .what = "twice", .detail = "{}"});
   for (const char name : {'x', 'y'})
     ASSERT_TRUE(
@@ -113,7 +113,7 @@ TEST_F(AuditTrail, OneActIsOneRowHoweverManyWritesItTakes) {
   EXPECT_EQ(check(key_).value().number, 10);
 }
 
-TEST_F(AuditTrail, WithoutAnActNothingIsNoted) {
+TEST_P(AuditTrail, WithoutAnActNothingIsNoted) {
   ASSERT_TRUE(
       store_.write([&](Writing& tx) { return add_object(tx, std::string(64, 'x'), 1, 1); }));
   EXPECT_EQ(check(key_).value().number, 9);

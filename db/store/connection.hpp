@@ -1,8 +1,11 @@
 /// The driver: one connection to a database, statements and answers. Knows SQL's dialect; nobody
-/// else does.
+/// else does. Two databases, one text: what SQLite and PostgreSQL both understand, with `?` for
+/// values. What PostgreSQL alone needs stands in a comment, as `/*pg: for update skip locked */`,
+/// whose inside only its driver reads.
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -12,9 +15,10 @@
 
 namespace store {
 
-/// What a transaction may do. `write` waits for other writers first, so that it cannot fail
-/// half-way for want of the lock.
-enum class Access { read, write };
+/// What a transaction may do. `write` waits for other writers first, in every process, so that it
+/// sees what they did and cannot fail half-way for want of the lock. `beside` writes without
+/// waiting for them, where the database can (PostgreSQL); see Store::write_beside.
+enum class Access { read, write, beside };
 
 /// One connection, used by one thread at a time.
 class Connection {
@@ -25,9 +29,14 @@ class Connection {
   Connection& operator=(const Connection&) = delete;
 
   /// Runs one statement with `?` placeholders. Errors: conflict (a unique or foreign key does not
-  /// allow it), unavailable (locked by another process for too long), io (anything else, with the
-  /// database's words).
+  /// allow it; the transaction can then only be given up), unavailable (locked by another process
+  /// for too long, or the database cannot be reached), io (anything else, with the database's
+  /// words).
   virtual core::Result<Rows> query(std::string_view sql, std::span<const Value> values) = 0;
+  /// The same, row by row, in bounded memory; `seen` may end it with an Error. Nothing else may be
+  /// asked of the connection meanwhile.
+  virtual core::Result<void> each(std::string_view sql, std::span<const Value> values,
+                                  const std::function<core::Result<void>(Row)>& seen) = 0;
   /// Runs several statements without values: a migration.
   virtual core::Result<void> script(std::string_view sql) = 0;
   virtual core::Result<void> begin(Access access) = 0;
@@ -41,5 +50,11 @@ class Connection {
 /// SQLite itself. Errors: io, corrupt (not a database).
 core::Result<std::unique_ptr<Connection>> open_sqlite(const std::filesystem::path& path,
                                                       Access access);
+
+/// A connection to a PostgreSQL database by its address (postgresql://…, or libpq's words); made at
+/// the first `begin`, and again when it broke. What the address leaves out, libpq takes from the
+/// environment and PGPASSFILE. Reading is one unchanging state, READ ONLY. Errors come from
+/// `begin`: unavailable; bad_input (an address it cannot read, a database that is not UTF-8).
+std::unique_ptr<Connection> postgres_connection(const std::string& address, Access access);
 
 }  // namespace store

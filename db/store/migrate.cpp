@@ -30,14 +30,22 @@ core::Result<void> apply(Connection& connection, const Migration& step) {
   return {};
 }
 
-}  // namespace
-
-core::Result<void> migrate(Connection& connection, const std::vector<Migration>& steps) {
+/// In a transaction of its own: two processes that meet an empty database come one after the other.
+core::Result<void> make_versions(Connection& connection) {
+  if (auto begun = connection.begin(Access::write); !begun) return begun;
   auto made = connection.query(
       "create table if not exists schema_versions "
       "(version bigint primary key, name text not null, applied_utc_us bigint not null)",
       {});
-  if (!made) return made.error();
+  core::Result<void> done = made ? connection.commit() : core::Result<void>(made.error());
+  if (!done) connection.rollback();
+  return done;
+}
+
+}  // namespace
+
+core::Result<void> migrate(Connection& connection, const std::vector<Migration>& steps) {
+  if (auto made = make_versions(connection); !made) return made;
   auto known = applied(connection);
   if (!known) return known.error();
   const std::int64_t last = steps.empty() ? 0 : steps.back().version;

@@ -92,6 +92,17 @@ class Sqlite final : public Connection {
       : db_(std::move(db)), name_(std::move(name)) {}
 
   core::Result<Rows> query(std::string_view sql, std::span<const Value> values) override {
+    Rows rows;
+    auto done = each(sql, values, [&](Row row) {
+      rows.push_back(std::move(row));
+      return core::Result<void>();
+    });
+    if (!done) return done.error();
+    return rows;
+  }
+
+  core::Result<void> each(std::string_view sql, std::span<const Value> values,
+                          const std::function<core::Result<void>(Row)>& seen) override {
     auto prepared = prepare(sql);
     if (!prepared) return prepared.error();
     sqlite3_stmt* statement = *prepared;
@@ -100,7 +111,7 @@ class Sqlite final : public Connection {
                   "a statement gets as many values as it has placeholders");
     for (std::size_t i = 0; i < values.size(); ++i)
       if (bind(statement, static_cast<int>(i + 1), values[i]) != SQLITE_OK) return failure();
-    return rows_of(statement);
+    return each_row(statement, seen);
   }
 
   core::Result<void> script(std::string_view sql) override {
@@ -110,7 +121,7 @@ class Sqlite final : public Connection {
   }
 
   core::Result<void> begin(Access access) override {
-    return script(access == Access::write ? "begin immediate" : "begin");
+    return script(access == Access::read ? "begin" : "begin immediate");
   }
   core::Result<void> commit() override { return script("commit"); }
   void rollback() noexcept override {
@@ -129,17 +140,17 @@ class Sqlite final : public Connection {
     return statement;
   }
 
-  core::Result<Rows> rows_of(sqlite3_stmt* statement) {
-    Rows rows;
+  core::Result<void> each_row(sqlite3_stmt* statement,
+                              const std::function<core::Result<void>(Row)>& seen) {
     while (true) {
       const int code = sqlite3_step(statement);
-      if (code == SQLITE_DONE) return rows;
+      if (code == SQLITE_DONE) return {};
       if (code != SQLITE_ROW) return failure();
       std::vector<Value> values;
       const int columns = sqlite3_column_count(statement);
       values.reserve(static_cast<std::size_t>(columns));
       for (int i = 0; i < columns; ++i) values.push_back(column(statement, i));
-      rows.emplace_back(std::move(values));
+      if (auto on = seen(Row(std::move(values))); !on) return on;
     }
   }
 

@@ -3,12 +3,48 @@
 #include "db/store/migrations.hpp"
 
 namespace store {
+namespace {
+
+std::unique_ptr<Pool> pool_of(std::unique_ptr<Connection> one) {
+  std::vector<std::unique_ptr<Connection>> all;
+  all.push_back(std::move(one));
+  return std::make_unique<Pool>(std::move(all));
+}
+
+std::unique_ptr<Pool> pool_of(const std::string& address, Access access, int count) {
+  std::vector<std::unique_ptr<Connection>> all;
+  for (int i = 0; i < count; ++i) all.push_back(postgres_connection(address, access));
+  return std::make_unique<Pool>(std::move(all));
+}
+
+}  // namespace
+
+Connection* Pool::take() {
+  std::unique_lock held(mutex_);
+  changed_.wait(held, [this] { return !free_.empty(); });
+  Connection* taken = free_.back();
+  free_.pop_back();
+  return taken;
+}
+
+void Pool::give_back(Connection* connection) {
+  {
+    const std::lock_guard held(mutex_);
+    free_.push_back(connection);
+  }
+  changed_.notify_one();
+}
+
+core::Result<Rows> Reading::query(std::string_view sql, std::initializer_list<Value> values) {
+  for (const Value& value : values)
+    if (const auto* text = std::get_if<std::string>(&value); text && !is_text(*text))
+      return core::Error{core::Errc::bad_input,
+                         "a text is not UTF-8, or holds a zero: it cannot be stored"};
+  return connection_.query(sql, std::span(values.begin(), values.size()));
+}
 
 Store::Store(std::unique_ptr<Connection> reader, std::unique_ptr<Connection> writer)
-    : reader_(std::make_unique<Guarded>()), writer_(std::make_unique<Guarded>()) {
-  reader_->connection = std::move(reader);
-  writer_->connection = std::move(writer);
-}
+    : readers_(pool_of(std::move(reader))), writers_(pool_of(std::move(writer))) {}
 
 core::Result<Store> Store::open(const std::filesystem::path& path) {
   auto writer = open_sqlite(path, Access::write);
@@ -18,6 +54,25 @@ core::Result<Store> Store::open(const std::filesystem::path& path) {
   auto reader = open_sqlite(path, Access::read);
   if (!reader) return reader.error();
   return Store(std::move(*reader), std::move(*writer));
+}
+
+core::Result<Store> Store::open_postgres(const std::string& address) {
+  constexpr int kReaders = 4, kBesides = 2;  // the threads that handle requests are four
+  auto writer = postgres_connection(address, Access::write);
+  if (auto done = migrate(*writer, migrations()); !done) return done.error();
+  Store out(postgres_connection(address, Access::read), std::move(writer));
+  out.readers_ = pool_of(address, Access::read, kReaders);
+  out.besides_ = pool_of(address, Access::beside, kBesides);
+  out.locks_ = postgres_locks(address);
+  out.signals_ = postgres_signals(address);
+  return out;
+}
+
+core::Result<void> Store::finish(Writing& tx, std::vector<Signals::Noted>& said) {
+  if (auto noted = note_act(tx, audit_key_); !noted) return noted;
+  if (tx.noted_.empty()) return {};
+  said = std::move(tx.noted_);
+  return signals_->committing(tx, said);
 }
 
 }  // namespace store

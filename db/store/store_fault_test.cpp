@@ -12,11 +12,17 @@
 #include "db/store/study_slots.hpp"
 #include "db/store/trials.hpp"
 #include "db/store/uploads.hpp"
+#include "tests/support/database/database.hpp"
 
 namespace store {
 namespace {
+using test_support::Content;
+using test_support::DatabaseKind;
+using test_support::TestDatabase;
 using testing::FaultyConnection;
-using testing::TestFolder;
+
+class StoreFaults : public test_support::BothDatabases {};
+TRACTUS_ON_BOTH_DATABASES(StoreFaults);
 
 const std::string kTrial(32, 'a');
 const std::string kSha(64, 'b');
@@ -66,18 +72,13 @@ std::string contents(Store& store) {
 }
 
 /// @returns how many steps the work takes when none fails.
-int fails_cleanly_at_every_step(const Work& work) {
+int fails_cleanly_at_every_step(DatabaseKind kind, const Work& work) {
   for (int n = 1; n < 100; ++n) {
-    const TestFolder folder;
-    const auto path = folder.path() / "tractus.db";
-    {
-      auto plain = std::move(Store::open(path).value());
-      EXPECT_TRUE(plain.write(furnish));
-    }
+    const TestDatabase database(kind);
+    EXPECT_TRUE(database.open().write(furnish));
     int fails_at = 0;
-    Store store(std::move(open_sqlite(path, Access::read).value()),
-                std::make_unique<FaultyConnection>(
-                    std::move(open_sqlite(path, Access::write).value()), fails_at));
+    Store store(database.connection(Access::read),
+                std::make_unique<FaultyConnection>(database.connection(Access::write), fails_at));
     const std::string before = contents(store);
     fails_at = n;
     if (store.write(work)) {
@@ -92,8 +93,8 @@ int fails_cleanly_at_every_step(const Work& work) {
   return 0;
 }
 
-TEST(StoreFaults, ACommittedTrialIsWholeOrAbsent) {
-  const int steps = fails_cleanly_at_every_step([](Writing& tx) -> core::Result<void> {
+TEST_P(StoreFaults, ACommittedTrialIsWholeOrAbsent) {
+  const int steps = fails_cleanly_at_every_step(GetParam(), [](Writing& tx) -> core::Result<void> {
     if (auto done = add_object(tx, kSha, 10, 2); !done) return done;
     if (auto done = add_trial(tx, trial(), 2); !done) return done;
     if (auto done = complete_upload(tx, kTrial); !done) return done;
@@ -102,12 +103,14 @@ TEST(StoreFaults, ACommittedTrialIsWholeOrAbsent) {
   EXPECT_EQ(steps, 6);  // begin, four statements, commit
 }
 
-TEST(StoreFaults, APublishedCaseIsWholeOrAbsent) {
+TEST_P(StoreFaults, APublishedCaseIsWholeOrAbsent) {
   const std::string id(64, 'd');
-  EXPECT_GE(fails_cleanly_at_every_step([&](Writing& tx) {
-              return add_case(tx, {id, "L4", "made", 1, 0},
-                              {{"case.json", id, 9, false}, {"truth.json", kSha, 4, true}}, 2);
-            }),
+  EXPECT_GE(fails_cleanly_at_every_step(
+                GetParam(),
+                [&](Writing& tx) {
+                  return add_case(tx, {id, "L4", "made", 1, 0},
+                                  {{"case.json", id, 9, false}, {"truth.json", kSha, 4, true}}, 2);
+                }),
             7);
 }
 
@@ -122,42 +125,47 @@ core::Result<void> furnish_study(Writing& tx) {
   return announce_for_slot(tx, kTrial, slots->front().id, 1);
 }
 
-TEST(StoreFaults, ATrialOfAStudyAndItsPlaceInTheStudyAreThereTogetherOrNot) {
+TEST_P(StoreFaults, ATrialOfAStudyAndItsPlaceInTheStudyAreThereTogetherOrNot) {
   for (const bool complete : {true, false}) {
-    const int steps = fails_cleanly_at_every_step([&](Writing& tx) -> core::Result<void> {
-      if (auto done = furnish_study(tx); !done) return done;
-      if (auto done = add_object(tx, kSha, 10, 2); !done) return done;
-      if (auto done = add_trial(tx, trial(), 2); !done) return done;
-      return record_for_slot(tx, kTrial, complete, {"station-1", 2});
-    });
+    const int steps =
+        fails_cleanly_at_every_step(GetParam(), [&](Writing& tx) -> core::Result<void> {
+          if (auto done = furnish_study(tx); !done) return done;
+          if (auto done = add_object(tx, kSha, 10, 2); !done) return done;
+          if (auto done = add_trial(tx, trial(), 2); !done) return done;
+          return record_for_slot(tx, kTrial, complete, {"station-1", 2});
+        });
     EXPECT_GE(steps, 17);  // begin, 15 statements, commit; more when it is repeated
   }
 }
 
-TEST(StoreFaults, AnAssessmentIsWholeOrAbsent) {
-  EXPECT_GE(fails_cleanly_at_every_step([](Writing& tx) -> core::Result<void> {
-              if (auto done = add_object(tx, kSha, 10, 2); !done) return done;
-              if (auto done = add_trial(tx, trial(), 2); !done) return done;
-              return set_assessment(tx, kTrial, {{"a", 1.5, ""}, {"b", std::nullopt, "no contact"}},
-                                    true, "{}");
-            }),
+TEST_P(StoreFaults, AnAssessmentIsWholeOrAbsent) {
+  EXPECT_GE(fails_cleanly_at_every_step(
+                GetParam(),
+                [](Writing& tx) -> core::Result<void> {
+                  if (auto done = add_object(tx, kSha, 10, 2); !done) return done;
+                  if (auto done = add_trial(tx, trial(), 2); !done) return done;
+                  return set_assessment(
+                      tx, kTrial, {{"a", 1.5, ""}, {"b", std::nullopt, "no contact"}}, true, "{}");
+                }),
             8);
 }
 
-TEST(StoreFaults, ASignInIsWholeOrAbsent) {
-  EXPECT_GE(fails_cleanly_at_every_step([](Writing& tx) -> core::Result<void> {
-              if (auto done = clear_login_failures(tx, "ada", "peer"); !done) return done;
-              return add_session(tx, "token", "1", 2);
-            }),
+TEST_P(StoreFaults, ASignInIsWholeOrAbsent) {
+  EXPECT_GE(fails_cleanly_at_every_step(GetParam(),
+                                        [](Writing& tx) -> core::Result<void> {
+                                          if (auto done = clear_login_failures(tx, "ada", "peer");
+                                              !done)
+                                            return done;
+                                          return add_session(tx, "token", "1", 2);
+                                        }),
             4);
 }
 
-TEST(StoreFaults, MigratingIsDoneAgainFromWhereItFailed) {
+TEST_P(StoreFaults, MigratingIsDoneAgainFromWhereItFailed) {
   for (int n = 1; n < 100; ++n) {
-    const TestFolder folder;
+    const TestDatabase database(GetParam(), Content::nothing);
     int fails_at = n;
-    FaultyConnection faulty(std::move(open_sqlite(folder.path() / "t.db", Access::write).value()),
-                            fails_at);
+    FaultyConnection faulty(database.connection(Access::write), fails_at);
     const bool first = bool(migrate(faulty, migrations()));
     fails_at = 0;
     ASSERT_TRUE(migrate(faulty, migrations())) << "after step " << n << " failed";

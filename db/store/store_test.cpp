@@ -1,6 +1,7 @@
-/// What every driver behind Store must do; run here on SQLite.
+/// What every driver behind Store must do, run on SQLite and on PostgreSQL.
 #include "db/store/store.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -10,19 +11,32 @@
 #include "db/store/jobs.hpp"
 #include "db/store/migrations.hpp"
 #include "db/store/store_test_support.hpp"
+#include "tests/support/database/database.hpp"
 
 namespace store {
 namespace {
-using testing::TestFolder;
+using test_support::Content;
+using test_support::TestDatabase;
+using ::testing::HasSubstr;
 
 static_assert(!std::is_convertible_v<Reading&, Writing&>, "a reading transaction cannot write");
 static_assert(!std::is_invocable_v<decltype(&remove_session), Reading&, const std::string&>,
               "what changes something does not take a reading transaction");
 
 struct Opened {
-  TestFolder folder;
-  Store store = std::move(Store::open(folder.path() / "tractus.db").value());
+  explicit Opened(test_support::DatabaseKind kind) : database(kind), store(database.open()) {}
+  TestDatabase database;
+  Store store;
 };
+
+class StoreContract : public test_support::BothDatabases {};
+class MigrationSteps : public test_support::BothDatabases {};
+class JobQueue : public test_support::BothDatabases {};
+class Logins : public test_support::BothDatabases {};
+TRACTUS_ON_BOTH_DATABASES(StoreContract);
+TRACTUS_ON_BOTH_DATABASES(MigrationSteps);
+TRACTUS_ON_BOTH_DATABASES(JobQueue);
+TRACTUS_ON_BOTH_DATABASES(Logins);
 
 core::Result<std::uint64_t> rows_in(Reading& tx, const std::string& table) {
   auto rows = tx.query("select count(*) from " + table);
@@ -30,11 +44,11 @@ core::Result<std::uint64_t> rows_in(Reading& tx, const std::string& table) {
   return rows->front().count(0);
 }
 
-TEST(Store, KeepsEveryValueToTheBit) {
-  Opened db;
+TEST_P(StoreContract, KeepsEveryValueToTheBit) {
+  Opened db(GetParam());
   const core::Bytes blob{std::byte{0}, std::byte{255}, std::byte{7}};
   const double third = 1.0 / 3.0, tiny = std::numeric_limits<double>::denorm_min();
-  const std::string text("zero \0 inside, \xc3\xa9", 17);
+  const std::string text("quoted ' and ? and \xc3\xa9 \xf0\x9f\xa6\xb4");
   auto kept = db.store.write([&](Writing& tx) -> core::Result<Row> {
     auto made = tx.query(
         "create table v (a bigint, b double precision, c text, d bytea, e text, f double "
@@ -55,8 +69,25 @@ TEST(Store, KeepsEveryValueToTheBit) {
   EXPECT_EQ(kept->number(5), tiny);
 }
 
-TEST(Store, AWholeNumberInADoubleColumnComesBackAsADouble) {
-  Opened db;
+TEST_P(StoreContract, ATextThatIsNotUtf8OrHoldsAZeroIsRefusedAndNothingElse) {
+  // The examples of RFC 3629 and of Unicode's table 3-7: overlong, a surrogate, beyond U+10FFFF,
+  // cut short; and the last character there is.
+  Opened db(GetParam());
+  const auto keep = [&](std::string text) {
+    return db.store.write([&](Writing& tx) { return add_login_failure(tx, text, "p", 1, 0); });
+  };
+  for (const std::string& bad :
+       {std::string("a\0b", 3), std::string("\xc0\xaf"), std::string("\xed\xa0\x80"),
+        std::string("\xf4\x90\x80\x80"), std::string("\xe2\x82"), std::string("\x80")}) {
+    auto refused = keep(bad);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, core::Errc::bad_input);
+  }
+  EXPECT_TRUE(keep("\xf4\x8f\xbf\xbf\xee\x80\x80"));
+}
+
+TEST_P(StoreContract, AWholeNumberInADoubleColumnComesBackAsADouble) {
+  Opened db(GetParam());
   auto kept = db.store.write([](Writing& tx) -> core::Result<Row> {
     if (auto made = tx.query("create table v (b double precision)"); !made) return made.error();
     auto rows = tx.query("insert into v (b) values (?) returning b", {2.0});
@@ -67,8 +98,8 @@ TEST(Store, AWholeNumberInADoubleColumnComesBackAsADouble) {
   EXPECT_EQ(kept->number(0), 2.0);
 }
 
-TEST(Store, AWriteThatFailsLeavesNothing) {
-  Opened db;
+TEST_P(StoreContract, AWriteThatFailsLeavesNothing) {
+  Opened db(GetParam());
   auto outcome = db.store.write([](Writing& tx) -> core::Result<void> {
     if (auto added = add_account(tx, {"1", "ada", "admin", "hash"}, 5); !added) return added;
     return core::Error{core::Errc::cancelled, "changed my mind"};
@@ -78,19 +109,20 @@ TEST(Store, AWriteThatFailsLeavesNothing) {
   EXPECT_EQ(db.store.read([](Reading& tx) { return account_count(tx); }).value(), 0u);
 }
 
-TEST(Store, AReadingConnectionIsRefusedWritesByTheDatabase) {
-  Opened db;
+TEST_P(StoreContract, AReadingConnectionIsRefusedWritesByTheDatabase) {
+  Opened db(GetParam());
   auto outcome = db.store.read([](Reading& tx) -> core::Result<void> {
     auto done = tx.query("delete from accounts");
     if (!done) return done.error();
     return {};
   });
   ASSERT_FALSE(outcome);
-  EXPECT_NE(outcome.error().what.find("readonly"), std::string::npos) << outcome.error().what;
+  EXPECT_THAT(outcome.error().what,
+              ::testing::AnyOf(HasSubstr("readonly"), HasSubstr("read-only")));
 }
 
-TEST(Store, AReaderSeesOneStateWhileAWriterCommits) {
-  Opened db;
+TEST_P(StoreContract, AReaderSeesOneStateWhileAWriterCommits) {
+  Opened db(GetParam());
   auto counts =
       db.store.read([&](Reading& tx) -> core::Result<std::pair<std::uint64_t, std::uint64_t>> {
         const auto before = rows_in(tx, "accounts").value();
@@ -105,15 +137,15 @@ TEST(Store, AReaderSeesOneStateWhileAWriterCommits) {
   EXPECT_EQ(db.store.read([](Reading& tx) { return account_count(tx); }).value(), 1u);
 }
 
-TEST(Store, AForeignKeyThatPointsNowhereIsAConflict) {
-  Opened db;
+TEST_P(StoreContract, AForeignKeyThatPointsNowhereIsAConflict) {
+  Opened db(GetParam());
   auto outcome = db.store.write([](Writing& tx) { return add_session(tx, "token", "nobody", 5); });
   ASSERT_FALSE(outcome);
   EXPECT_EQ(outcome.error().code, core::Errc::conflict);
 }
 
-TEST(Store, ANameIsTakenOnce) {
-  Opened db;
+TEST_P(StoreContract, ANameIsTakenOnce) {
+  Opened db(GetParam());
   const auto add = [&](const char* id) {
     return db.store.write([&](Writing& tx) {
       return add_account(tx, {id, "ada", "admin", "hash"}, 5);
@@ -126,15 +158,15 @@ TEST(Store, ANameIsTakenOnce) {
   EXPECT_NE(again.error().what.find("ada"), std::string::npos);
 }
 
-TEST(Store, WhatWasCommittedIsThereAfterReopening) {
-  const TestFolder folder;
+TEST_P(StoreContract, WhatWasCommittedIsThereAfterReopening) {
+  const TestDatabase database(GetParam());
   {
-    auto store = std::move(Store::open(folder.path() / "tractus.db").value());
+    auto store = database.open();
     ASSERT_TRUE(store.write([](Writing& tx) {
       return add_account(tx, {"1", "ada", "admin", "hash"}, 5);
     }));
   }
-  auto store = std::move(Store::open(folder.path() / "tractus.db").value());
+  auto store = database.open();
   auto account = store.read([](Reading& tx) { return account_named(tx, "ada"); });
   ASSERT_TRUE(account);
   ASSERT_TRUE(account->has_value());
@@ -151,9 +183,9 @@ TEST(Migrations, BeginAtOneAndEachHasANumberOfItsOwn) {
 
 /// Two branches of the product each add a step; whoever ran the later number first still gets the
 /// other.
-TEST(Migrations, AStepIsAppliedThoughALaterOneAlreadyWas) {
-  const TestFolder folder;
-  auto connection = std::move(open_sqlite(folder.path() / "t.db", Access::write).value());
+TEST_P(MigrationSteps, AStepIsAppliedThoughALaterOneAlreadyWas) {
+  const TestDatabase database(GetParam(), Content::nothing);
+  const auto connection = database.connection(Access::write);
   const Migration first{1, "first", "create table a (x bigint)"},
       second{2, "second", "create table b (x bigint)"},
       third{3, "third", "create table c (x bigint)"};
@@ -162,9 +194,9 @@ TEST(Migrations, AStepIsAppliedThoughALaterOneAlreadyWas) {
   EXPECT_TRUE(connection->query("select x from b", {}));
 }
 
-TEST(Migrations, ANewerDatabaseIsRefusedByNumber) {
-  const TestFolder folder;
-  auto connection = std::move(open_sqlite(folder.path() / "t.db", Access::write).value());
+TEST_P(MigrationSteps, ANewerDatabaseIsRefusedByNumber) {
+  const TestDatabase database(GetParam(), Content::nothing);
+  const auto connection = database.connection(Access::write);
   const std::vector<Migration> newer{{1, "first", "create table a (x bigint)"},
                                      {2, "second", "create table b (x bigint)"}};
   ASSERT_TRUE(migrate(*connection, newer));
@@ -174,9 +206,9 @@ TEST(Migrations, ANewerDatabaseIsRefusedByNumber) {
   EXPECT_NE(refused.error().what.find("schema 2"), std::string::npos) << refused.error().what;
 }
 
-TEST(Migrations, AStepThatBreaksLeavesTheDatabaseAtTheStepBefore) {
-  const TestFolder folder;
-  auto connection = std::move(open_sqlite(folder.path() / "t.db", Access::write).value());
+TEST_P(MigrationSteps, AStepThatBreaksLeavesTheDatabaseAtTheStepBefore) {
+  const TestDatabase database(GetParam(), Content::nothing);
+  const auto connection = database.connection(Access::write);
   const Migration first{1, "first", "create table a (x bigint)"};
   auto broken = migrate(
       *connection, {first, {2, "second", "create table b (x bigint); create table a (x bigint)"}});
@@ -186,8 +218,8 @@ TEST(Migrations, AStepThatBreaksLeavesTheDatabaseAtTheStepBefore) {
   EXPECT_TRUE(connection->query("select y from b", {}));
 }
 
-TEST(Jobs, AreClaimedOnceInTheOrderTheyWereQueued) {
-  Opened db;
+TEST_P(JobQueue, AreClaimedOnceInTheOrderTheyWereQueued) {
+  Opened db(GetParam());
   auto claimed = db.store.write([](Writing& tx) -> core::Result<std::vector<std::string>> {
     if (auto q = queue_job(tx, "metrics", "later", 20); !q) return q.error();
     if (auto q = queue_job(tx, "metrics", "sooner", 10); !q) return q.error();
@@ -203,8 +235,8 @@ TEST(Jobs, AreClaimedOnceInTheOrderTheyWereQueued) {
   EXPECT_EQ(*claimed, (std::vector<std::string>{"sooner", "later"}));
 }
 
-TEST(Jobs, WhatADeadProcessHadClaimedWaitsAgainAndCountsItsAttempts) {
-  Opened db;
+TEST_P(JobQueue, WhatADeadProcessHadClaimedWaitsAgainAndCountsItsAttempts) {
+  Opened db(GetParam());
   auto again = db.store.write([](Writing& tx) -> core::Result<std::optional<Job>> {
     if (auto q = queue_job(tx, "metrics", "t", 10); !q) return q.error();
     if (auto first = claim_job(tx, {"metrics"}, 20); !first) return first.error();
@@ -216,8 +248,8 @@ TEST(Jobs, WhatADeadProcessHadClaimedWaitsAgainAndCountsItsAttempts) {
   EXPECT_EQ((*again)->attempts, 2u);
 }
 
-TEST(Logins, FailuresAreCountedByNameAndAddressSinceATime) {
-  Opened db;
+TEST_P(Logins, FailuresAreCountedByNameAndAddressSinceATime) {
+  Opened db(GetParam());
   auto counted = db.store.write([](Writing& tx) -> core::Result<Failures> {
     for (const auto& [name, peer, at] :
          {std::tuple{"ada", "a", 10}, {"ada", "a", 20}, {"ada", "b", 30}, {"bob", "a", 30}})

@@ -38,6 +38,11 @@ class FaultyConnection final : public Connection {
     if (fails()) return broken();
     return inner_->query(sql, values);
   }
+  core::Result<void> each(std::string_view sql, std::span<const Value> values,
+                          const std::function<core::Result<void>(Row)>& seen) override {
+    if (fails()) return broken();
+    return inner_->each(sql, values, seen);
+  }
   core::Result<void> script(std::string_view sql) override {
     if (fails()) return broken();
     return inner_->script(sql);

@@ -4,10 +4,10 @@
 
 #include "db/store/accounts.hpp"
 #include "db/store/cases.hpp"
-#include "db/store/store_test_support.hpp"
 #include "db/store/study_slots.hpp"
 #include "db/store/trials.hpp"
 #include "db/store/uploads.hpp"
+#include "tests/support/database/database.hpp"
 
 namespace store {
 namespace {
@@ -17,7 +17,7 @@ using ::testing::HasSubstr;
 const std::string kA(64, 'a'), kB(64, 'b');
 const Deed kAda{"ada", 7, "said so"};
 
-class Studies : public ::testing::Test {
+class Studies : public test_support::BothDatabases {
  protected:
   Studies() {
     write([](Writing& tx) -> core::Result<void> {
@@ -87,11 +87,12 @@ class Studies : public ::testing::Test {
     return "absent";
   }
 
-  testing::TestFolder folder_;
-  Store store_ = std::move(Store::open(folder_.path() / "tractus.db").value());
+  test_support::TestDatabase database_{GetParam()};
+  Store store_ = database_.open();
 };
+TRACTUS_ON_BOTH_DATABASES(Studies);
 
-TEST_F(Studies, HandOutTheNextTrialAndTheSameOneWhenAskedAgain) {
+TEST_P(Studies, HandOutTheNextTrialAndTheSameOneWhenAskedAgain) {
   make("at_end");
   const auto first = take("s1", 1), again = take("s1", 1);
   ASSERT_TRUE(first && again);
@@ -105,7 +106,7 @@ TEST_F(Studies, HandOutTheNextTrialAndTheSameOneWhenAskedAgain) {
   EXPECT_EQ(next->unfinished, 2u);
 }
 
-TEST_F(Studies, GiveOneParticipantToOneStationAtATime) {
+TEST_P(Studies, GiveOneParticipantToOneStationAtATime) {
   make("at_end");
   ASSERT_TRUE(take("s1", 2));
   const auto refused = take("s2", 1);
@@ -121,7 +122,7 @@ TEST_F(Studies, GiveOneParticipantToOneStationAtATime) {
   EXPECT_TRUE(take("s2", 1));
 }
 
-TEST_F(Studies, HandOutNothingWhilePaused) {
+TEST_P(Studies, HandOutNothingWhilePaused) {
   make("at_end");
   const auto set = [&](bool whole, const char* state) {
     write([&](Writing& tx) {
@@ -139,7 +140,7 @@ TEST_F(Studies, HandOutNothingWhilePaused) {
   }
 }
 
-TEST_F(Studies, KeepAnInvalidTrialAndRepeatItsSlotAtTheEnd) {
+TEST_P(Studies, KeepAnInvalidTrialAndRepeatItsSlotAtTheEnd) {
   make("at_end");
   bring("t1", take("s1", 1)->slots[0]);
   write([](Writing& tx) { return set_trial_invalid(tx, "study", "t1", kAda); });
@@ -147,7 +148,7 @@ TEST_F(Studies, KeepAnInvalidTrialAndRepeatItsSlotAtTheEnd) {
   EXPECT_EQ(states(), "ia wb wb wa ");
 }
 
-TEST_F(Studies, RepeatAnInvalidTrialAtOnceOrNeverWhenTheStudySaysSo) {
+TEST_P(Studies, RepeatAnInvalidTrialAtOnceOrNeverWhenTheStudySaysSo) {
   make("at_once");
   bring("t1", take("s1", 1)->slots[0]);
   write([](Writing& tx) { return set_trial_invalid(tx, "study", "t1", kAda); });
@@ -160,14 +161,14 @@ TEST_F(Studies, RepeatAnInvalidTrialAtOnceOrNeverWhenTheStudySaysSo) {
   EXPECT_EQ(states(), "ia ia wb wb ");
 }
 
-TEST_F(Studies, ATrialCutShortDoesNotCountAndIsRepeated) {
+TEST_P(Studies, ATrialCutShortDoesNotCountAndIsRepeated) {
   make("at_end");
   bring("t1", take("s1", 1)->slots[0], false);
   EXPECT_EQ(state_of("t1"), "invalid");
   EXPECT_EQ(states(), "ia wb wb wa ");
 }
 
-TEST_F(Studies, ASecondTrialForASlotIsKeptAndDoesNotCount) {
+TEST_P(Studies, ASecondTrialForASlotIsKeptAndDoesNotCount) {
   make("at_end");
   const auto slot = take("s1", 1)->slots[0];
   bring("t1", slot);
@@ -177,7 +178,7 @@ TEST_F(Studies, ASecondTrialForASlotIsKeptAndDoesNotCount) {
   EXPECT_EQ(states(), "ra wb wb ");
 }
 
-TEST_F(Studies, OnlyATrialThatCountsOfThisStudyCanBeMarkedInvalid) {
+TEST_P(Studies, OnlyATrialThatCountsOfThisStudyCanBeMarkedInvalid) {
   make("at_end");
   bring("t1", take("s1", 1)->slots[0]);
   const auto mark = [&](const char* study, const char* trial) {
@@ -189,7 +190,7 @@ TEST_F(Studies, OnlyATrialThatCountsOfThisStudyCanBeMarkedInvalid) {
   EXPECT_EQ(mark("study", "t1").error().code, core::Errc::conflict);
 }
 
-TEST_F(Studies, NoteEveryChangeWithWhoDidIt) {
+TEST_P(Studies, NoteEveryChangeWithWhoDidIt) {
   make("at_end");
   bring("t1", take("s1", 1)->slots[0]);
   write([](Writing& tx) { return set_trial_invalid(tx, "study", "t1", kAda); });

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -35,6 +36,9 @@ class Row {
 };
 
 using Rows = std::vector<Row>;
+
+/// Whether every database of ours keeps this text as it is: UTF-8 (RFC 3629) without a zero.
+bool is_text(std::string_view text);
 
 inline Value bool_value(bool truth) { return std::int64_t{truth ? 1 : 0}; }
 inline Value count_value(std::uint64_t count) { return static_cast<std::int64_t>(count); }

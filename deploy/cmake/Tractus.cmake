@@ -24,7 +24,7 @@ pkg_check_modules(muparser REQUIRED IMPORTED_TARGET muparser)
 
 add_library(tractus_options INTERFACE)
 target_compile_options(tractus_options INTERFACE -Wall -Wextra -Wconversion -Wshadow -Werror
-  -Wno-stringop-overflow -Wno-restrict  # gcc 12 at -O3 is wrong about buffers of fmt and std::string
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow$<SEMICOLON>-Wno-restrict>  # gcc 12 at -O3 is wrong about buffers of fmt and std::string
   -march=${TRACTUS_ARCH} -fno-math-errno)
 target_link_libraries(tractus_options INTERFACE Threads::Threads)
 if(TRACTUS_SANITIZE)
@@ -48,8 +48,9 @@ function(tractus_include_roots target)
 endfunction()
 
 # A gtest program of its own, for tests that span folders: tractus_add_test(name SOURCES … DEPS … [LABELS slow] [TIMEOUT s])
+# BOTH_DATABASES: those of its tests that run on PostgreSQL (PostgreSQL/*) are one test of ctest, so that they share one server.
 function(tractus_add_test name)
-  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;DEPS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "BOTH_DATABASES" "TIMEOUT" "SOURCES;DEPS;LABELS" ${ARGN})
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 120)
   endif()
@@ -58,12 +59,18 @@ function(tractus_add_test name)
   target_link_libraries(${name} PRIVATE tractus_options ${ARG_DEPS} GTest::gmock GTest::gtest_main)
   target_compile_definitions(${name} PRIVATE TRACTUS_SOURCE_DIR="${CMAKE_SOURCE_DIR}" TRACTUS_BIN_DIR="${CMAKE_BINARY_DIR}/bin")
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
-  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
+  set(filter "")
+  if(ARG_BOTH_DATABASES)
+    set(filter TEST_FILTER "-PostgreSQL/*")
+    add_test(NAME ${name}_on_postgresql COMMAND ${name} --gtest_filter=PostgreSQL/*)
+    set_tests_properties(${name}_on_postgresql PROPERTIES TIMEOUT 300 LABELS "${ARG_LABELS}")
+  endif()
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60 ${filter}
     PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}")
 endfunction()
 
 function(tractus_library name)
-  cmake_parse_arguments(ARG "" "" "DEPS;PRIVATE_DEPS;TEST_DEPS" ${ARGN})
+  cmake_parse_arguments(ARG "BOTH_DATABASES" "" "DEPS;PRIVATE_DEPS;TEST_DEPS" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS *.cpp)
   file(GLOB tests CONFIGURE_DEPENDS *_test.cpp)
   list(REMOVE_ITEM sources ${tests} "")
@@ -78,7 +85,11 @@ function(tractus_library name)
     add_library(tractus::${name} ALIAS tractus_${name})
   endif()
   if(TRACTUS_TESTS AND tests)
-    tractus_add_test(${name}_test SOURCES ${tests} DEPS tractus::${name} ${ARG_TEST_DEPS})
+    set(both "")
+    if(ARG_BOTH_DATABASES)
+      set(both BOTH_DATABASES)
+    endif()
+    tractus_add_test(${name}_test ${both} SOURCES ${tests} DEPS tractus::${name} ${ARG_TEST_DEPS})
   endif()
 endfunction()
 

@@ -191,9 +191,10 @@ core::Result<void> serve(const ServeOptions& given) {
   if (options.web && !std::filesystem::is_regular_file(*options.web / "index.html"))
     return core::Error{core::Errc::not_found,
                        options.web->string() + ": no index.html there; build the web pages first"};
-  auto runner = jobs::Runner::start(data->store, data->objects, [](const std::string& line) {
-    log_line({{"what", "job"}, {"line", line}});
-  });
+  auto runner = jobs::Runner::start(data->store, data->objects, data->secrets.case_key(),
+                                    [](const std::string& line) {
+                                      log_line({{"what", "job"}, {"line", line}});
+                                    });
   if (!runner) return runner.error();
   BackupFolder backups(given.data, given.backups.value_or(given.data / "backups"));
   api::Backend backend{.store = data->store,

@@ -5,15 +5,17 @@
 
 #include "core/clock.hpp"
 #include "db/store/analyses.hpp"
+#include "db/store/case_makings.hpp"
 #include "db/store/lab.hpp"
 #include "db/store/trials.hpp"
 #include "server/jobs/analyse.hpp"
 #include "server/jobs/assess.hpp"
 #include "server/jobs/lab_run.hpp"
+#include "server/jobs/make_case.hpp"
 
 namespace jobs {
 namespace {
-constexpr std::uint64_t kMostAttempts = 3;  // of a run of the lab or of an analysis
+constexpr std::uint64_t kMostAttempts = 3;  // of what is not a score
 constexpr int kLabNiceness = 10;
 
 /// What a person sees of a job that failed.
@@ -21,6 +23,7 @@ core::Result<void> show_failure(store::Writing& tx, const store::Job& job,
                                 const core::Error& error) {
   if (job.kind == "analysis")
     return store::fail_analysis(tx, job.subject, error.what, core::utc_us());
+  if (job.kind == "case") return store::fail_making(tx, job.subject, error.what, core::utc_us());
   if (job.kind != "lab") return store::set_assessment_failed(tx, job.subject, error.what);
   const bool cancelled = error.code == core::Errc::cancelled;
   return store::end_lab_run(tx, job.subject, cancelled ? "cancelled" : "failed", error.what,
@@ -29,16 +32,18 @@ core::Result<void> show_failure(store::Writing& tx, const store::Job& job,
 }  // namespace
 
 core::Result<std::unique_ptr<Runner>> Runner::start(store::Store& store,
-                                                    const store::Objects& objects, Log log) {
+                                                    const store::Objects& objects,
+                                                    core::KeyPair case_key, Log log) {
   auto back = store.write(
       [](store::Writing& tx) { return store::requeue_claimed_jobs(tx, core::utc_us()); });
   if (!back) return back.error();
-  return std::unique_ptr<Runner>(new Runner(store, objects, std::move(log)));
+  return std::unique_ptr<Runner>(new Runner(store, objects, std::move(case_key), std::move(log)));
 }
 
-Runner::Runner(store::Store& store, const store::Objects& objects, Log log)
-    : store_(store), objects_(objects), log_(std::move(log)) {
+Runner::Runner(store::Store& store, const store::Objects& objects, core::KeyPair case_key, Log log)
+    : store_(store), objects_(objects), case_key_(std::move(case_key)), log_(std::move(log)) {
   scores_.thread = std::thread([this] { run(scores_); });
+  cases_.thread = std::thread([this] { run(cases_); });
   lab_.thread = std::thread([this] {
     // Of this thread and those it starts alone. Refused, the lab only runs as fast as the rest.
     (void)setpriority(PRIO_PROCESS, 0, kLabNiceness);
@@ -53,13 +58,14 @@ Runner::~Runner() {
   }
   changed_.notify_all();
   scores_.thread.join();
+  cases_.thread.join();
   lab_.thread.join();
 }
 
 void Runner::wake() {
   {
     const std::lock_guard held(mutex_);
-    scores_.woken = lab_.woken = true;
+    scores_.woken = cases_.woken = lab_.woken = true;
   }
   changed_.notify_all();
 }
@@ -111,6 +117,7 @@ core::Result<void> Runner::work_on(const store::Job& job) {
   if (job.attempts > kMostAttempts)
     return core::Error{core::Errc::unavailable, "it ended the server before it was done"};
   const auto wants_to_end = [this] { return ending(); };
+  if (job.kind == "case") return make_case(store_, objects_, case_key_, job.subject, wants_to_end);
   return job.kind == "analysis" ? analyse(store_, objects_, job.subject, wants_to_end)
                                 : run_lab(store_, objects_, job.subject, wants_to_end);
 }

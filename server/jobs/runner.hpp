@@ -6,17 +6,18 @@
 #include <mutex>
 #include <thread>
 
+#include "core/signing.hpp"
 #include "db/store/jobs.hpp"
 #include "db/store/objects.hpp"
 #include "db/store/store.hpp"
 
 namespace jobs {
 
-/// Two threads, each for its kinds of jobs: scores, which someone waits for, and what takes minutes
-/// (the lab, analyses of a cohort) and runs at low priority, so that it delays neither scores nor
-/// requests. Each claims and does one job after the other until nothing waits, then waits to be
-/// woken. They end with their object, after the job in hand; a run of the lab or an analysis is
-/// left off and begins again after the next start, three times at most.
+/// Threads, each for its kinds of jobs: scores and the making of cases, which someone waits for,
+/// and what takes minutes (the lab, analyses of a cohort) and runs at low priority, so that it
+/// delays neither scores nor requests. Each claims and does one job after the other until nothing
+/// waits, then waits to be woken. They end with their object, after the job in hand; a run of the
+/// lab or an analysis is left off and begins again after the next start, three times at most.
 class Runner {
  public:
   /// Called with one line when something is to be known: a job that failed, a database that
@@ -24,8 +25,10 @@ class Runner {
   using Log = std::function<void(const std::string& line)>;
 
   /// Puts jobs that a dead process had claimed back in the queue, then starts.
+  /// @param case_key  signs the cases that are made here.
   static core::Result<std::unique_ptr<Runner>> start(store::Store& store,
-                                                     const store::Objects& objects, Log log);
+                                                     const store::Objects& objects,
+                                                     core::KeyPair case_key, Log log);
   ~Runner();
   Runner(const Runner&) = delete;
   Runner& operator=(const Runner&) = delete;
@@ -39,7 +42,7 @@ class Runner {
     std::thread thread = {};
   };
 
-  Runner(store::Store& store, const store::Objects& objects, Log log);
+  Runner(store::Store& store, const store::Objects& objects, core::KeyPair case_key, Log log);
   void run(Lane& lane);
   /// Does one job; false when there is none.
   bool do_one(const std::vector<std::string>& kinds);
@@ -49,11 +52,12 @@ class Runner {
 
   store::Store& store_;
   const store::Objects& objects_;
+  const core::KeyPair case_key_;
   Log log_;
   std::mutex mutex_;  ///< guards ending_ and what the lanes were woken for
   bool ending_ = false;
   std::condition_variable changed_;
-  Lane scores_{{"metrics"}}, lab_{{"lab", "analysis"}};
+  Lane scores_{{"metrics"}}, cases_{{"case"}}, lab_{{"lab", "analysis"}};
 };
 
 }  // namespace jobs

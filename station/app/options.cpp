@@ -24,6 +24,9 @@ constexpr const char* kExamples = R"(Examples:
 const std::map<std::string, session::Speed> kSpeeds{{"real", session::Speed::real},
                                                     {"fast", session::Speed::fast}};
 
+const std::map<std::string, loop::Passivity> kPassivities{
+    {"observed", loop::Passivity::observed}, {"controlled", loop::Passivity::controlled}};
+
 const std::map<std::string, Show> kShows{
     {"none", Show::none}, {"window", Show::window}, {"offscreen", Show::offscreen}};
 
@@ -121,6 +124,9 @@ void add_run(CLI::App& app, Options& options) {
   app.add_option("--speed", options.setup.speed,
                  "real, or fast: simulated time, as fast as it goes")
       ->transform(CLI::CheckedTransformer(kSpeeds));
+  app.add_option("--passivity", options.setup.passivity,
+                 "observed: energy given to the hand is logged; controlled: and damped away")
+      ->transform(CLI::CheckedTransformer(kPassivities));
   app.add_option("--answer", options.answer, "what to answer instead of the simulated hand")
       ->check(CLI::IsMember({"none", "medial", "lateral", "superior", "inferior", "anterior"}));
   app.add_option("--trials", options.trials, "how many, one after the other")
@@ -249,6 +255,8 @@ Parsed parse(int argc, char** argv) {
   CLI::App* enrol = app.add_subcommand(
       "enrol", "make a key for this station and let the server know it, by a one-time code");
   enrol->add_flag("--json", options.json, "one JSON document on standard output");
+  enrol->add_option("--data", options.data,
+                    "the station's folder: cases that are made on the server are taken there");
   add_server(*enrol, options, true);
   enrol->add_option("--code", options.code, "from the server's administrator; holds an hour")
       ->required();

@@ -73,6 +73,8 @@ void print_report(const TrialReport& report, bool fast) {
   else
     fmt::print("  wake-up p50 {:.0f} us, p99 {:.0f} us; tick p50 {:.0f} us, p99 {:.0f} us\n",
                report.wake_p50_us, report.wake_p99_us, report.work_p50_us, report.work_p99_us);
+  fmt::print("  energy given to the hand beyond what it gave: at most {:.2g} mJ\n",
+             1e3 * report.injected_J);
   for (const auto& warning : report.grant.warnings) fmt::print("  warning: {}\n", warning);
   if (!report.fault.empty()) fmt::print("  FAULT: {}\n", report.fault);
   fmt::print("  answer: {}\n  {}\n", answer_text(report), report.file.string());

@@ -323,7 +323,8 @@ core::Result<void> ProbingTrialRun::Parts::append_end(const std::optional<trial:
                             {"missed_periods", n.missed},
                             {"lost_exchanges", n.bus_lost},
                             {"restarts", guard->restarts()},
-                            {"limited", n.ticks.limited}}});
+                            {"limited", n.ticks.limited},
+                            {"injected_J", loop->injected_J()}}});
 }
 
 core::Result<TrialReport> ProbingTrialRun::finish(const std::optional<trial::Answer>& answer) {
@@ -340,6 +341,7 @@ core::Result<TrialReport> ProbingTrialRun::finish(const std::optional<trial::Ans
                      .wake_p99_us = p.loop->wake().quantile_us(0.99),
                      .work_p50_us = p.loop->work().quantile_us(0.5),
                      .work_p99_us = p.loop->work().quantile_us(0.99),
+                     .injected_J = p.loop->injected_J(),
                      .grant = p.grant,
                      .answer = p.fault.empty() ? answer : std::nullopt,
                      .simulated = p.header.simulated,

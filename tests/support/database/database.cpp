@@ -1,0 +1,64 @@
+#include "tests/support/database/database.hpp"
+
+#include <cstdlib>
+
+#include "core/bytes.hpp"
+#include "tests/support/database/postgres_server.hpp"
+
+namespace test_support {
+namespace {
+
+/// The database that others are copied from, its schema up to date.
+const std::string& with_schema() {
+  static const std::string name = [] {
+    std::string made = postgres_server().add_database();
+    auto opened = store::Store::open_postgres(postgres_server().address(made));
+    core::require(bool(opened), opened ? "" : opened.error().what.c_str());
+    return made;
+  }();
+  return name;
+}
+
+}  // namespace
+
+DatabaseKind database_kind() {
+  const char* asked = std::getenv("TRACTUS_TEST_DATABASE");
+  return asked && std::string_view(asked) == "postgresql" ? DatabaseKind::postgresql
+                                                          : DatabaseKind::sqlite;
+}
+
+TestDatabase::TestDatabase(DatabaseKind kind, Content content) : kind_(kind) {
+  if (kind == DatabaseKind::sqlite) {
+    folder_ = std::filesystem::path(::testing::TempDir()) / ("tractus-" + core::new_id());
+    std::filesystem::create_directories(folder_);
+    return;
+  }
+  name_ = postgres_server().add_database(content == Content::schema ? with_schema() : "template0");
+  address_ = postgres_server().address(name_);
+}
+
+TestDatabase::~TestDatabase() {
+  if (kind_ == DatabaseKind::postgresql) postgres_server().drop_database(name_);
+  std::error_code ignored;
+  std::filesystem::remove_all(folder_, ignored);
+}
+
+core::Result<store::Store> TestDatabase::try_open() const {
+  return kind_ == DatabaseKind::sqlite ? store::Store::open(folder_ / "tractus.db")
+                                       : store::Store::open_postgres(address_);
+}
+
+store::Store TestDatabase::open() const {
+  auto opened = try_open();
+  core::require(bool(opened), opened ? "" : opened.error().what.c_str());
+  return std::move(*opened);
+}
+
+std::unique_ptr<store::Connection> TestDatabase::connection(store::Access access) const {
+  if (kind_ == DatabaseKind::postgresql) return store::postgres_connection(address_, access);
+  auto opened = store::open_sqlite(folder_ / "tractus.db", access);
+  core::require(bool(opened), "SQLite opens its file");
+  return std::move(*opened);
+}
+
+}  // namespace test_support

@@ -1,0 +1,51 @@
+/// A PostgreSQL server of a test's own.
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace test_support {
+
+/// Whether what is committed must outlast the server's death: only then does it flush to the disk.
+enum class Durable { no, yes };
+
+/// A cluster made by initdb in a folder of its own under /tmp, listening on a Unix socket there and
+/// nowhere else. When the test runs as root, it runs as `postgres`, or `nobody`, as it must. Ends
+/// with this object, and with the test program however that ends.
+class PostgresServer {
+ public:
+  /// Ends the test program with a line when PostgreSQL is not installed or does not start.
+  explicit PostgresServer(Durable durable);
+  ~PostgresServer();
+  PostgresServer(const PostgresServer&) = delete;
+  PostgresServer& operator=(const PostgresServer&) = delete;
+
+  /// Of one of its databases, as the user that owns it.
+  std::string address(const std::string& database = "postgres") const;
+  /// A new database's name, a copy of `of`.
+  std::string add_database(const std::string& of = "template0");
+  void drop_database(const std::string& name);
+  /// SIGKILL to the server and all its children, then starts it again.
+  void kill_and_restart();
+  const std::filesystem::path& folder() const { return folder_; }
+
+ private:
+  void start();
+  void stop(int signal);
+  /// Statements outside of any transaction.
+  void run(const std::string& sql);
+  std::filesystem::path programs_, folder_;
+  std::vector<std::string> settings_;
+  uid_t user_ = 0;
+  gid_t group_ = 0;
+  pid_t pid_ = -1;
+  int made_ = 0;
+};
+
+/// The one of this test program, made when first asked for; not durable.
+PostgresServer& postgres_server();
+
+}  // namespace test_support
