@@ -219,9 +219,10 @@ class Programme:
                      SEED, "--started", started(200 - day, 14))
 
     def hidden_effects(self):
-        """What the model lab is for; the truth stays in a file beside the data, for who wants to look afterwards."""
-        for rig, seed, effect, more in (("probing", 7, "coulomb_friction", ["--trials", 6, "--duration", 4]),
-                                        ("palpation", 12, "contact_friction", ["--trials", 4, "--duration", 6, "--rate", 200])):
+        """What the model lab is for; the truth stays in a file beside the data, for who wants to look afterwards. Probing last: the
+        lab offers the newest first, and its search takes seconds."""
+        for rig, seed, effect, more in (("palpation", 12, "contact_friction", ["--trials", 4, "--duration", 6, "--rate", 200]),
+                                        ("probing", 7, "coulomb_friction", ["--trials", 6, "--duration", 4])):
             out = self.home / f"hidden-{rig}"
             if not out.exists():
                 self.run(f"blind-{rig}", "--seed", seed, "--out", out, "--effect", effect, *more)

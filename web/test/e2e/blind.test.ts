@@ -23,13 +23,14 @@ const found = (telling: readonly Telling[], places: ReadonlyMap<string, string>)
 describe.skipIf(bin === undefined)('an assignment whose results are held', () => {
   let browser: Browser, served: Served, programme: Programme, page: Page;
   let telling: Telling[] = [];
-  let trials: string[] = [];
+  let trials: string[] = [], assignment = '';
   const answers = new Map<string, string>();
   beforeAll(async () => {
     served = await serveReal(bin ?? '', ['--log-requests']);
     programme = await furnish(served, bin ?? '');
     const { admin, cohort } = programme;
     const { id } = await admin.ask<{ id: string }>('POST', '/assignments', { title: 'Twelve blind trials', cases: tuned, cohort, repeats: 3, ordering: 'random', seed: 5, release: 'held' });
+    assignment = id;
     programme.does(kAda, 5);
     await scored(admin);
     const done = await admin.ask<{ trials: { trial_id: string }[] }>('GET', `/assignments/${id}`);
@@ -83,7 +84,7 @@ describe.skipIf(bin === undefined)('an assignment whose results are held', () =>
   it('leaves nothing in the pages, in what they keep, or in the browser’s caches', async () => {
     const seen = new Map<string, string>();
     answers.clear();  // what the test itself asked above
-    for (const path of ['/', '/trials', '/me', '/guide/trainee', '/account', ...trials.map((one) => `/trials/${one}`), `/trainees/${encodeURIComponent(kAda)}`, '/studies', '/lab', '/wall']) {
+    for (const path of ['/', '/cases', '/trials', '/me', '/assignments', `/assignments/${assignment}`, '/guide/trainee', '/account', ...trials.map((one) => `/trials/${one}`), `/trainees/${encodeURIComponent(kAda)}`, '/studies', '/lab', '/wall']) {
       await page.goto(path);
       await page.waitForLoadState('networkidle');
       seen.set(`page ${path}`, await page.content());

@@ -16,9 +16,8 @@ async function picture(page: Page, name: string): Promise<void> {
   await page.setViewportSize({ width: 1200, height: 750 });
   await page.waitForLoadState('networkidle');
   await page.waitForTimeout(600);
-  const bytes = await page.screenshot({ type: 'jpeg', quality: 82 });
-  writeFileSync(`${kShots}guide-${name}.jpg`, bytes);
-  if (process.env.GUIDE_PICTURES) { mkdirSync(kPictures, { recursive: true }); writeFileSync(`${kPictures}${name}.jpg`, bytes); }
+  await page.screenshot({ path: `${kShots}guide-${name}.png` });
+  if (process.env.GUIDE_PICTURES) { mkdirSync(kPictures, { recursive: true }); await page.screenshot({ path: `${kPictures}${name}.jpg`, type: 'jpeg', quality: 82 }); }
   await page.setViewportSize({ width: 1440, height: 900 });
 }
 
@@ -71,6 +70,9 @@ describe.skipIf(bin === undefined)('on a real server', () => {
     await page.waitForLoadState('networkidle');
     const pdf = await page.pdf({ format: 'A4', printBackground: false });
     writeFileSync(`${kShots}trainee.pdf`, pdf);
+    await page.emulateMedia({ media: 'print' });
+    await page.setViewportSize({ width: 794, height: 1123 });
+    await page.screenshot({ path: `${kShots}trainee-printed.png`, fullPage: true });
     const sheets = pdf.toString('latin1').match(/\/Type\s*\/Page[^s]/g)?.length ?? 0;
     expect(sheets, 'sheets of paper').toBe(1);
     await page.context().close();
@@ -123,7 +125,7 @@ describe.skipIf(bin === undefined)('on a real server', () => {
     await page.getByText('There is no backup yet.').waitFor();
     await page.getByRole('button', { name: 'Make a backup' }).click();
     await page.getByText('whole').waitFor({ timeout: 60_000 });
-    await page.getByRole('button', { name: /^Try the backup/ }).click();
+    await page.getByRole('button', { name: /^Try it/ }).click();
     await page.getByText('holds', { exact: true }).waitFor({ timeout: 90_000 });
     await picture(page, 'technician');
     await page.context().close();

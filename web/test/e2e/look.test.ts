@@ -83,7 +83,7 @@ async function programme(page: Page, check: Check): Promise<void> {
   await check('trainee');
   for (const place of ['people', 'cohorts', 'stations', 'backups', 'audit']) {
     await page.goto(`/network/${place}`);
-    await page.locator('tbody tr').first().waitFor();
+    await page.locator('tbody tr').or(page.getByText('There is no backup yet.')).first().waitFor();
     await page.waitForLoadState('networkidle');
     await check(`network-${place}`);
   }
@@ -93,7 +93,7 @@ async function programme(page: Page, check: Check): Promise<void> {
   await page.waitForLoadState('networkidle');
   await check('network-station');
   await page.goto('/wall');
-  await page.locator('[data-station]').first().waitFor();
+  await page.locator('[data-station]').or(page.getByText('No station is enrolled yet.')).or(page.locator('[data-line="connecting"]')).first().waitFor();
   await page.waitForTimeout(300);
   await check('wall');
 }

@@ -1,4 +1,5 @@
 /** What each role comes for and how it is done, in order; a page a role. */
+
 /** Made by the tests on a real server (GUIDE_PICTURES=1), so that it shows what is there. */
 export interface Picture { readonly name: string; readonly shows: string }
 export interface Step { readonly title: string; readonly text: string; readonly to?: { readonly href: string; readonly name: string }; readonly picture?: Picture }
@@ -13,6 +14,7 @@ export const kPages: readonly GuidePage[] = [
   {
     role: 'trainee', name: 'Trainee', for: 'Do the trials that are assigned to you, blind, and see your own curve.',
     steps: [
+      { title: 'See what waits for you', text: 'What is assigned, how far you are, until when.', to: { href: '/assignments', name: 'My work' } },
       { title: 'Sign in at a station', text: 'With your badge number and PIN. The station gives you exactly the next trial; what kind of bone it is nobody tells you, not even the files on the station’s disk.' },
       { title: 'Palpate or probe, then answer', text: 'Was there a breach, where, and how sure are you? The answer ends the trial.' },
       { title: 'See your curve', text: 'Once results are released: right answers over the trials, what you are strong in, and whether your confidence is worth what it says.', to: { href: '/me', name: 'My curve' }, picture: { name: 'trainee', shows: 'A trainee’s own page: standing, learning, competence, confidence' } },
@@ -20,12 +22,13 @@ export const kPages: readonly GuidePage[] = [
     terms: [['Breach', 'A place where the channel has left the bone.'], kLearning, ['Confidence', 'How sure you said to be. On the diagonal of its picture, of answers given 80 % sure 80 % are right.']],
   },
   {
-    role: 'faculty', name: 'Faculty', for: 'Follow the people of your cohorts and debrief their trials.',
+    role: 'faculty', name: 'Faculty', for: 'Make cases, assign them, watch, debrief, release results.',
     steps: [
       { title: 'Gather a cohort', text: 'Give it a name, add trainees by the names of their accounts. Taking somebody out can be undone.', to: { href: '/network/cohorts', name: 'Cohorts' } },
-      { title: 'Set up a study', text: 'Scenarios, repeats, order and participants. Everybody gets an order of their own, blind.', to: { href: '/studies', name: 'Studies' } },
+      { title: 'Make a case', text: 'Place entry and target of the tract in the slices of a CT, choose which wall gives way and how deep; you see at once where it does and how thin it is there. Or write the layers and walls of a probing scenario.', to: { href: '/cases', name: 'Cases' } },
+      { title: 'Assign it', text: 'To a cohort or to people, with repeats, order and a date. Everybody gets an order of their own, blind. Results stay held until you release them.', to: { href: '/assignments', name: 'Assignments' } },
       { title: 'Watch the stations', text: 'Who is at work, for how long, with which force; where somebody is needed stands first. Stop one that goes wrong, with a reason.', to: { href: '/wall', name: 'Stations live' } },
-      { title: 'Debrief a trial', text: 'Signals, the way of the tip in 3-D, which walls were touched, force against depth. Point at a moment in one picture and all others follow.', to: { href: '/trials', name: 'Trials' }, picture: { name: 'faculty', shows: 'A palpation trial: signals, the way of the tip in 3-D, the walls that were touched' } },
+      { title: 'Debrief a trial', text: 'Play it back: the way of the tip in 3-D, forces, which walls were touched, force against depth, an expert’s trial beside it as a ghost. Point at a moment in one picture and all others follow; leave a comment at it.', to: { href: '/trials', name: 'Trials' }, picture: { name: 'faculty', shows: 'A palpation trial: signals, the way of the tip in 3-D, the walls that were touched' } },
     ],
     terms: [['Walls touched', 'The wall of the tract unrolled, with the share of each side that the tip has felt.'], ['Scenario', 'The bone of a probing trial: its layers, and the walls that give way.'], kSimulated],
   },

@@ -44,7 +44,7 @@ export function BackupsPage() {
             { name: 'Size', cell: (one) => (one.state === 'making' || one.state === 'failed' ? '–' : formatBytes(one.size_bytes)), number: true },
             { name: 'State', cell: (one) => <State backup={one} /> },
             { name: <Term align="end" definition="It is restored to a folder beside, and everything in that is looked over: each object against its name, the references, the audit trail against its key. Then the folder is removed.">Tried</Term>, cell: (one) => <Tried backup={one} /> },
-            { name: <span className="hidden-visually">Decide</span>, cell: (one) => (one.state === 'done' ? <span className={styles.buttons}><Button label={`Try the backup of ${formatDateTime(one.made_utc_us)}`} disabled={busy} onClick={() => tried.mutate(one.id)}>Try it</Button></span> : null) },
+            { name: <span className="hidden-visually">Decide</span>, cell: (one) => (one.state === 'done' ? <span className={styles.buttons}><Button label={`Try it: the backup of ${formatDateTime(one.made_utc_us)}`} disabled={busy} onClick={() => tried.mutate(one.id)}>Try it</Button></span> : null) },
           ]} />
           <p className={styles.muted}>Backups lie on the server’s own disk: copy them to another machine. To put one back: <code>tractus-server restore --from BACKUP --data NEW_FOLDER</code></p>
         </div>
