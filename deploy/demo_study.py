@@ -196,7 +196,7 @@ def recorded_samples(content):
     at, samples = content.index(b"\n") + 1, 0
     while at < len(content):
         kind, length = struct.unpack_from("<4sI", content, at)
-        if kind == b"SAMP":
+        if kind in (b"SAMP", b"PACK"):
             samples += struct.unpack_from("<I", content, at + 20)[0]
         at += 20 + length
     return samples

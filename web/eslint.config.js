@@ -23,7 +23,7 @@ function layer(name, allowed, extra = []) {
   };
 }
 
-const kFeatures = ['session', 'trials', 'trial', 'studies', 'study', 'lab', 'network', 'trainees', 'analysis', 'guide'];
+const kFeatures = ['session', 'trials', 'trial', 'studies', 'study', 'lab', 'network', 'trainees', 'analysis', 'guide', 'cases', 'scenarios', 'assignments', 'debrief'];
 
 export default tseslint.config(
   { ignores: ['dist/', 'node_modules/', 'src/api/generated/', 'test/screenshots/'] },

@@ -5,10 +5,12 @@ namespace {
 
 constexpr const char* kSummary =
     "select c.id, c.title, c.source, c.made_utc_us, "
-    "(select count(*) from trials t where t.case_id = c.id), c.kind from cases c ";
+    "(select count(*) from trials t where t.case_id = c.id), c.kind, "
+    "case when c.retired_utc_us is null then 0 else 1 end from cases c ";
 
 CaseSummary summary_from(const Row& row) {
-  return {row.text(0), row.text(1), row.text(2), row.integer(3), row.count(4), row.text(5)};
+  return {row.text(0),  row.text(1), row.text(2), row.integer(3),
+          row.count(4), row.text(5), row.truth(6)};
 }
 
 }  // namespace
@@ -57,6 +59,15 @@ core::Result<std::optional<CaseSummary>> case_of(Reading& tx, const std::string&
   if (!rows) return rows.error();
   if (rows->empty()) return std::optional<CaseSummary>();
   return std::optional(summary_from(rows->front()));
+}
+
+core::Result<void> set_case_retired(Writing& tx, const std::string& id, bool retired,
+                                    std::int64_t now_utc_us) {
+  auto rows = tx.query("update cases set retired_utc_us = ? where id = ? returning id",
+                       {retired ? Value(now_utc_us) : Value(), id});
+  if (!rows) return rows.error();
+  if (rows->empty()) return core::Error{core::Errc::not_found, "no case " + id.substr(0, 64)};
+  return {};
 }
 
 core::Result<std::optional<CasePart>> case_part(Reading& tx, const std::string& case_id,

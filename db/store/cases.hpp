@@ -19,6 +19,7 @@ struct CaseSummary {
   std::int64_t made_utc_us = 0;
   std::uint64_t trials = 0;  ///< counted on reading
   std::string kind = kPalpation;
+  bool retired = false;  ///< offered no more; what was assigned of it goes on
 };
 
 /// A file of the bundle, case.json and case.sig among them.
@@ -35,6 +36,9 @@ core::Result<void> add_case(Writing& tx, const CaseSummary& summary,
 /// Those for palpation, newest first: scenarios are nobody's to list.
 core::Result<std::vector<CaseSummary>> all_cases(Reading& tx);
 core::Result<std::optional<CaseSummary>> case_of(Reading& tx, const std::string& id);
+/// Offered no more, or again. Errors: not_found.
+core::Result<void> set_case_retired(Writing& tx, const std::string& id, bool retired,
+                                    std::int64_t now_utc_us);
 core::Result<std::optional<CasePart>> case_part(Reading& tx, const std::string& case_id,
                                                 const std::string& name);
 

@@ -6,9 +6,11 @@ namespace {
 constexpr const char* kTrials =
     "select t.id, t.case_id, c.title, s.name, t.operator_name, t.simulated, t.started_utc_us, "
     "t.duration_s, t.samples, t.state, t.correct, t.complete, c.kind, l.study_id, l.participant, "
-    "p.level, l.position, p.experience_years, m.state from trials t "
+    "p.level, l.position, p.experience_years, m.state, u.name from trials t "
     "join cases c on c.id = t.case_id join stations s on s.id = t.station_id "
     "left join study_trials m on m.trial_id = t.id left join study_slots l on l.id = m.slot_id "
+    "left join assignment_people a on a.study_id = l.study_id and a.participant = l.participant "
+    "left join accounts u on u.id = a.account_id "
     "left join study_participants p on p.study_id = l.study_id and p.name = l.participant "
     "where ? = '' or l.study_id = ? order by t.started_utc_us, t.id limit ?";
 
@@ -29,6 +31,7 @@ CohortTrial trial_from(const Row& row) {
                   .study = row.text_or_null(13).value_or(""),
                   .participant = row.text_or_null(14).value_or(""),
                   .level = row.text_or_null(15).value_or(""),
+                  .person = row.text_or_null(19).value_or(""),
                   .experience_years = row.number_or_null(17),
                   .place = row.text_or_null(18).value_or(""),
                   .metrics = {}};

@@ -15,6 +15,7 @@ struct CohortTrial {
   std::string rig;  ///< "palpation", "probing"
   // Of a trial of a study; without one `study` is empty:
   std::string study, participant, level;
+  std::string person;       ///< the account's name, where it was an assignment; never for research
   std::int64_t number = 0;  ///< of its place in the participant's order, from 1
   std::optional<double> experience_years = {};
   std::string place = {};                 ///< "counts", "invalid", "surplus"

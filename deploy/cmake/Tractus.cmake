@@ -24,7 +24,7 @@ pkg_check_modules(muparser REQUIRED IMPORTED_TARGET muparser)
 
 add_library(tractus_options INTERFACE)
 target_compile_options(tractus_options INTERFACE -Wall -Wextra -Wconversion -Wshadow -Werror
-  -Wno-stringop-overflow -Wno-restrict  # gcc 12 at -O3 is wrong about buffers of fmt and std::string
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow$<SEMICOLON>-Wno-restrict>  # gcc 12 at -O3 is wrong about buffers of fmt and std::string
   -march=${TRACTUS_ARCH} -fno-math-errno)
 target_link_libraries(tractus_options INTERFACE Threads::Threads)
 if(TRACTUS_SANITIZE)

@@ -148,7 +148,8 @@ TEST_F(Access, ATraineeAndAStationReachTheseRoutesAlone) {
                 "whoAmI", "signOut", "changePassword", "beginCodes", "confirmCodes", "endCodes",
                 "description", "metrics", "trials of own", "trial of own", "trialSignals of own",
                 "trialPath of own", "trialForceDepth of own", "casePreview of own",
-                "cohorts of own", "assignments of own", "assignment of own", "trainee of own"}));
+                "cohorts of own", "assignments of own", "assignment of own", "trainee of own",
+                "trialComments of own", "trialReferences of own", "referenceWay of own"}));
   EXPECT_EQ(reach[Role::station],
             (std::set<std::string>{"whoAmI", "description", "metrics", "cases", "case", "casePart",
                                    "casePreview", "announceUpload", "uploadState", "appendUpload",

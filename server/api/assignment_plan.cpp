@@ -150,6 +150,8 @@ Result<std::vector<std::string>> note_cases(store::Writing& tx, const Assignment
       auto known = store::case_of(tx, one.case_id);
       if (!known) return known.error();
       if (!*known) return absent("/cases", one.case_id);
+      if ((*known)->retired)
+        return Error{Errc::conflict, "/cases: " + (*known)->title + " is retired"};
     }
     out.push_back(one.case_id);
   }

@@ -6,6 +6,7 @@
 #include "core/json.hpp"
 #include "db/store/objects.hpp"
 #include "db/store/store.hpp"
+#include "server/api/backups.hpp"
 #include "server/api/secrets.hpp"
 #include "server/api/telemetry.hpp"
 #include "server/api/trial_views.hpp"
@@ -26,6 +27,7 @@ struct Backend {
   std::function<std::uint64_t()> free_bytes = {};  ///< on the disk; none: the system is asked
   Log log = {};                                    ///< a line for whoever runs the server
   bool logs_requests = false;                      ///< every one, not only those that fail
+  Backups* backups = nullptr;                      ///< none: this process makes none
   Telemetry telemetry{};
   TrialViews trial_views{};
 };

@@ -80,7 +80,7 @@ constexpr std::array kPalpation{
     Column{"palpation", "tx_Nm", "number", "N m", "likewise"},
     Column{"palpation", "ty_Nm", "number", "N m", "likewise"},
     Column{"palpation", "tz_Nm", "number", "N m", "likewise"},
-    Column{"palpation", "flags", "integer", "1", "bits of tractus-trial/1: late, limited, …"},
+    Column{"palpation", "flags", "integer", "1", "bits of tractus-trial/2: late, limited, …"},
 };
 constexpr std::array kProbing{
     Column{"probing", "t_s", "number", "s", "since the trial's start"},
@@ -89,8 +89,8 @@ constexpr std::array kProbing{
     Column{"probing", "fz_N", "number", "N", "push of the hand along x, into the bone"},
     Column{"probing", "tz_Nm", "number", "N m", "torque of the hand about x"},
     Column{"probing", "speed_m_s", "number", "m/s", "of the depth, the actuator's own"},
-    Column{"probing", "mode", "integer", "1", "of the controller, by tractus-trial/1"},
-    Column{"probing", "flags", "integer", "1", "bits of tractus-trial/1: late, limited, …"},
+    Column{"probing", "mode", "integer", "1", "of the controller, by tractus-trial/2"},
+    Column{"probing", "flags", "integer", "1", "bits of tractus-trial/2: late, limited, …"},
 };
 
 void append_row(std::vector<double>& out, const trial::Sample& s) {

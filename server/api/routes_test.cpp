@@ -63,7 +63,7 @@ TEST_F(Routes, AnUnknownAddressIsToldToNobodyWithoutCredentials) {
 }
 
 TEST_F(Routes, AnotherMethodIsAnsweredWithThoseThereAre) {
-  const auto response = ask(request("POST", "/api/v1/cases", station("token-1")));
+  const auto response = ask(request("POST", "/api/v1/metrics", station("token-1")));
   EXPECT_EQ(response.status, 405);
   EXPECT_EQ(response.header("Allow"), "GET");
 }

@@ -7,6 +7,7 @@
 
 #include "core/bytes.hpp"
 #include "core/result.hpp"
+#include "core/signing.hpp"
 
 namespace api {
 
@@ -20,6 +21,8 @@ class Secrets {
   static Secrets random();
 
   Key audit_key() const;
+  /// What the server signs the cases with that are made on it.
+  core::KeyPair case_key() const;
   /// Authenticated encryption (XSalsa20-Poly1305) as hexadecimal text.
   std::string sealed(std::string_view text) const;
   /// Errors: corrupt when it was not sealed by this key, or was changed.

@@ -29,6 +29,13 @@ bool counts(const store::CohortTrial& trial) {
          (trial.study.empty() || trial.place == "counts");
 }
 
+/// Who may ask for a trainee's page may know the trainee: an assignment's trials go by the
+/// account's name, a study's by its pseudonym.
+const std::string& name_of(const store::CohortTrial& trial) {
+  if (!trial.person.empty()) return trial.person;
+  return trial.study.empty() ? trial.summary.operator_name : trial.participant;
+}
+
 /// Ids of the trials that a grant of less than all reaches.
 Result<std::set<std::string>> reached(store::Reading& tx, const Call& call) {
   store::Whose whose;
@@ -190,7 +197,7 @@ Result<Programme> programme_of(const Call& call) {
                 .backend = &call.backend};
   out.cohort.scores = scores_there(*trials);
   for (store::CohortTrial& trial : *trials) {
-    const auto& who = trial.study.empty() ? trial.summary.operator_name : trial.participant;
+    const std::string& who = name_of(trial);
     const std::size_t at = place_of(out.cohort.trainees, who);
     out.cohort.attempts.resize(out.cohort.trainees.size());
     out.trials.resize(out.cohort.trainees.size());

@@ -18,7 +18,8 @@ struct Programme {
 };
 
 /// Of trials that count and are judged: complete, assessed, with an answer, in their place where
-/// they are of a study. Who did it is the study's pseudonym, else the operator's name. Restricted
+/// they are of a study. Who did it is the account that it was assigned to, else the
+/// study's pseudonym, else the operator's name. Restricted
 /// to what the caller's grant reaches; argument "study" is optional.
 /// Errors: bad_input for a study there is not; too_large for more than 20 000 trials.
 core::Result<Programme> programme_of(const Call& call);

@@ -3,6 +3,7 @@
 
 #include <cstdio>
 
+#include "core/words.hpp"
 #include "server/app/command.hpp"
 #include "server/app/database.hpp"
 
@@ -95,6 +96,6 @@ int main(int argc, char** argv) {
   }
   const core::Result<int> outcome = chosen();
   if (outcome) return *outcome;
-  fmt::print(stderr, "tractus-server: {}\n", outcome.error().what);
+  fmt::print(stderr, "tractus-server: {}\n", core::one_line(outcome.error().what, 4000));
   return 2;
 }

@@ -16,6 +16,7 @@
 #include "server/api/backend.hpp"
 #include "server/api/service.hpp"
 #include "server/api/uploads.hpp"
+#include "server/app/backups.hpp"
 #include "server/app/upkeep.hpp"
 #include "server/http/certificates.hpp"
 #include "server/http/static_files.hpp"
@@ -198,12 +199,13 @@ core::Result<void> serve(const ServeOptions& given) {
     return core::Error{core::Errc::not_found,
                        options.web->string() + ": no index.html there; build the web pages first"};
   auto runner = jobs::Runner::start(
-      data->store, data->objects,
+      data->store, data->objects, data->secrets.case_key(),
       [](const std::string& line) {
         log_line({{"what", "job"}, {"line", line}});
       },
       options.job_lease);
   if (!runner) return runner.error();
+  BackupFolder backups(given.data, given.backups.value_or(given.data / "backups"));
   api::Backend backend{.store = data->store,
                        .objects = data->objects,
                        .partials = data->partials,
@@ -212,7 +214,8 @@ core::Result<void> serve(const ServeOptions& given) {
                        .secrets = data->secrets,
                        .secure_cookies = options.http.tls || options.http.behind_proxy,
                        .log = log_line,
-                       .logs_requests = options.log_requests};
+                       .logs_requests = options.log_requests,
+                       .backups = &backups};
   if (auto fine = api::reconcile_uploads(backend); !fine) return fine;
   auto server = http::Server::open(options.http, service_of(backend, options.web));
   if (!server) return server.error();

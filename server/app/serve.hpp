@@ -16,6 +16,7 @@ struct ServeOptions {
   std::filesystem::path data;
   std::optional<std::filesystem::path> web;  ///< built pages; none: the API alone
   http::ServerOptions http;
+  std::optional<std::filesystem::path> backups = {};  ///< else a folder of the data
   bool plain = false;              ///< no TLS, on this machine's own addresses alone
   std::vector<std::string> hosts;  ///< names and addresses the certificate must hold
   /// PEM files of an own certificate chain and its key, instead of the house's.

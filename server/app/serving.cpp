@@ -35,6 +35,9 @@ Run serve_command(CLI::App& command) {
                   "How long a job of a server that died waits before another takes it over")
       ->check(CLI::Range(0.3, 3600.0))
       ->capture_default_str();
+  command.add_option(
+      "--backups", options->backups,
+      "Folder for backups made from the pages (default: backups in the data folder)");
   const auto certificate = std::make_shared<std::filesystem::path>();
   const auto key = std::make_shared<std::filesystem::path>();
   auto* chain = command.add_option("--certificate", *certificate,

@@ -120,8 +120,11 @@ Run enrol_command(CLI::App& command) {
       std::filesystem::remove(*out);
       return added.error();
     }
-    say(common->json, {{"station", *name}, {"token_file", out->string()}},
-        fmt::format("station {} is enrolled; its token is in {}", *name, out->string()));
+    const std::string signer = data->secrets.case_key().public_hex;
+    say(common->json, {{"station", *name}, {"token_file", out->string()}, {"case_signer", signer}},
+        fmt::format("station {} is enrolled; its token is in {}; to take cases made on this "
+                    "server: tractus-station trust --signer {}",
+                    *name, out->string(), signer));
     return 0;
   };
 }

@@ -6,6 +6,7 @@
 #include <charconv>
 
 #include "core/json.hpp"
+#include "core/words.hpp"
 
 namespace http {
 namespace {
@@ -96,7 +97,7 @@ std::string_view Response::header(std::string_view name) const {
 }
 
 Response error_response(int status, std::string_view code, std::string_view text) {
-  const core::Json json{{"error", text}, {"code", code}};
+  const core::Json json{{"error", core::one_line(text, 4000)}, {"code", code}};
   Response response{.status = status,
                     .headers = {},
                     .body = json.dump(-1, ' ', false, core::Json::error_handler_t::replace)};

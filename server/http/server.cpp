@@ -1,29 +1,28 @@
-/// The one file that includes Asio and Beast (with stream.hpp, which is its own).
+/// The one file that includes Asio and Beast (with stream.hpp, which is its own, and
+/// websocket.cpp).
 #include <utility>  // before Asio: 1.74 uses std::exchange without it
 //
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <boost/asio/awaitable.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
-#include <boost/asio/post.hpp>
-#include <boost/asio/redirect_error.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <boost/asio/thread_pool.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/write.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
 #include <list>
 
+#include "server/http/coroutine.hpp"
 #include "server/http/server.hpp"
 #include "server/http/static_files.hpp"
 #include "server/http/stream.hpp"
+#include "server/http/websocket.hpp"
 
 namespace http {
 namespace {
@@ -32,31 +31,13 @@ namespace beast = boost::beast;
 using boost::system::error_code;
 using net::ip::tcp;
 using Admission = std::variant<std::uint64_t, Response>;
+using Opening = std::variant<Response, std::shared_ptr<Conversation>>;
 using Parser = beast::http::request_parser<beast::http::string_body>;
 
 constexpr std::size_t kPiece_bytes = 256 * 1024;
 constexpr std::size_t kLingering_bytes = 16u << 20;
 constexpr std::chrono::seconds kLingering_time{2};
 constexpr std::chrono::milliseconds kFarewell_time{500};
-
-auto into(error_code& failure) { return net::redirect_error(net::use_awaitable, failure); }
-
-/// Runs `work` on the pool and comes back to the connection's own thread with its answer.
-template <class Work>
-net::awaitable<std::invoke_result_t<Work>> on_workers(net::thread_pool& pool, Work work) {
-  using Answer = std::invoke_result_t<Work>;
-  auto start = [&pool, &work](auto handler) {
-    net::post(pool, [work = std::move(work), handler = std::move(handler)]() mutable {
-      Answer answer = work();
-      const auto home = net::get_associated_executor(handler);
-      net::post(home, [handler = std::move(handler), answer = std::move(answer)]() mutable {
-        std::move(handler)(std::move(answer));
-      });
-    });
-  };
-  co_return co_await net::async_initiate<const net::use_awaitable_t<>&, void(Answer)>(
-      std::move(start), net::use_awaitable);
-}
 
 class File {
  public:
@@ -91,8 +72,7 @@ Response broken(const std::exception& failure) {
   return error_response(500, "io", "the server could not do this; its log says why");
 }
 
-// What workers do, as plain values of pointers into the waiting coroutine's frame: gcc 12 destroys
-// a lambda's captures twice when it is made within a co_await expression.
+// What workers do: see on_workers.
 struct Handling {
   const Service* service;
   const Request* request;
@@ -107,6 +87,15 @@ struct Admitting {
   const RequestHead* head;
   Admission operator()() const try {
     return service->admit(*head);
+  } catch (const std::exception& failure) {
+    return broken(failure);
+  }
+};
+struct OpeningConversation {
+  const Service* service;
+  const RequestHead* head;
+  Opening operator()() const try {
+    return service->converse(*head);
   } catch (const std::exception& failure) {
     return broken(failure);
   }
@@ -167,13 +156,21 @@ struct Server::State {
     Stream stream;
     beast::flat_buffer buffer;
     std::string peer;
-    bool idle = true;  ///< between requests: closed at once when told to stop
+    bool idle = true;     ///< between requests: closed at once when told to stop
+    bool waited = false;  ///< it is we who wait for the other side, since `since`
+    bool talking = false;
+    std::chrono::steady_clock::time_point since{};
+
+    void wait_for_peer() { waited = true, since = std::chrono::steady_clock::now(); }
   };
 
   net::awaitable<void> accept_all();
   net::awaitable<void> serve(std::list<Connection>::iterator connection);
   /// One request and its answer; false when the connection is to be closed.
   net::awaitable<bool> exchange(Connection& connection);
+  net::awaitable<bool> converse(Connection& connection, const Parser& parser,
+                                const RequestHead& head);
+  bool make_room();
   net::awaitable<std::optional<Response>> read_body(Connection& connection, Parser& parser,
                                                     const RequestHead& head);
   net::awaitable<bool> write(Connection& connection, const RequestHead& head, Response& response,
@@ -208,13 +205,27 @@ net::awaitable<void> Server::State::accept_all() {
       co_await pause.async_wait(into(failure));
       continue;
     }
-    if (connections.size() >= static_cast<std::size_t>(options.max_connections)) continue;
+    if (connections.size() >= static_cast<std::size_t>(options.max_connections) && !make_room())
+      continue;
     const auto endpoint = socket.remote_endpoint(failure);
     socket.set_option(tcp::no_delay(true), failure);
     connections.emplace_front(std::move(socket), tls ? &*tls : nullptr);
     connections.front().peer = endpoint.address().to_string(failure);
     net::co_spawn(io, serve(connections.begin()), net::detached);
   }
+}
+
+/// Closes the connection that has kept us waiting longest: whoever holds many open and sends little
+/// shuts out nobody. False when each is being answered or talks.
+bool Server::State::make_room() {
+  Connection* longest = nullptr;
+  for (Connection& c : connections)
+    if (c.waited && !c.talking && (!longest || c.since < longest->since)) longest = &c;
+  if (!longest) return false;
+  longest->waited = false;
+  error_code ignored;
+  longest->stream.socket().close(ignored);
+  return true;
 }
 
 net::awaitable<void> Server::State::serve(std::list<Connection>::iterator connection) {
@@ -234,6 +245,7 @@ net::awaitable<void> Server::State::serve(std::list<Connection>::iterator connec
 net::awaitable<bool> Server::State::handshake(Connection& c) {
   if (!c.stream.is_tls()) co_return true;
   error_code failure;
+  c.wait_for_peer();
   c.stream.expires_after(options.header_time);
   co_await c.stream.async_handshake(into(failure));
   co_return !failure;
@@ -254,6 +266,7 @@ void Server::State::ended(std::list<Connection>::iterator connection) {
 net::awaitable<bool> Server::State::exchange(Connection& c) {
   error_code failure;
   c.idle = true;
+  c.wait_for_peer();
   if (c.buffer.size() == 0) {
     c.stream.expires_after(options.idle_time);
     const auto n = co_await c.stream.async_read_some(c.buffer.prepare(4096), into(failure));
@@ -261,6 +274,7 @@ net::awaitable<bool> Server::State::exchange(Connection& c) {
     c.buffer.commit(n);
   }
   c.idle = false;
+  c.wait_for_peer();
   Parser parser;
   parser.header_limit(options.max_header_bytes);
   parser.body_limit(UINT64_MAX);  // the service says later how much; 1.74 takes "none" for 0
@@ -279,6 +293,9 @@ net::awaitable<bool> Server::State::exchange(Connection& c) {
     co_await refuse(c, nobody, refusal);
     co_return false;
   }
+  c.waited = false;
+  if (service.converse && beast::websocket::is_upgrade(parser.get()))
+    co_return co_await converse(c, parser, *head);
   std::optional<Response> refusal = co_await read_body(c, parser, *head);
   if (refusal) {
     co_await refuse(c, *head, *refusal);
@@ -296,6 +313,22 @@ net::awaitable<bool> Server::State::exchange(Connection& c) {
   co_return written&& stays;
 }
 
+net::awaitable<bool> Server::State::converse(Connection& c, const Parser& parser,
+                                             const RequestHead& head) {
+  c.stream.expires_never();
+  Opening opened = co_await on_workers(workers, OpeningConversation{&service, &head});
+  if (auto* refusal = std::get_if<Response>(&opened)) {
+    co_await refuse(c, head, *refusal);
+    co_return false;
+  }
+  if (c.buffer.size() > 0 || draining) co_return false;  // it spoke before it was let in
+  c.idle = c.talking = true;
+  co_await hold_conversation(c.stream, parser.get(),
+                             std::move(std::get<std::shared_ptr<Conversation>>(opened)), workers,
+                             {options.silence_time, options.talk_write_time});
+  co_return false;
+}
+
 net::awaitable<std::optional<Response>> Server::State::read_body(Connection& c, Parser& parser,
                                                                  const RequestHead& head) {
   if (parser.is_done()) co_return std::nullopt;
@@ -309,12 +342,14 @@ net::awaitable<std::optional<Response>> Server::State::read_body(Connection& c, 
         fmt::format("the body has {} bytes, at most {} are taken", head.body_bytes, limit));
   parser.body_limit(limit);
   error_code failure;
+  c.wait_for_peer();
   c.stream.expires_after(options.body_time);
   if (lower_case(parser.get()[beast::http::field::expect]) == "100-continue") {
     static constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
     co_await net::async_write(c.stream, net::buffer(kContinue), into(failure));
   }
   if (!failure) co_await beast::http::async_read(c.stream, c.buffer, parser, into(failure));
+  c.waited = false;
   if (!failure) co_return std::nullopt;
   auto refusal = answer_to(failure);
   if (!refusal) refusal = error_response(400, "bad_input", "the request ended within its body");

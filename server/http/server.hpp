@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "server/http/conversation.hpp"
 #include "server/http/message.hpp"
 
 namespace http {
@@ -20,21 +21,27 @@ struct ServerOptions {
   std::optional<std::pair<std::filesystem::path, std::filesystem::path>> tls;
   bool behind_proxy = false;  ///< the peer is whom the proxy names last in X-Forwarded-For
   int workers = 4;            ///< threads on which handlers run
-  int max_connections = 256;  ///< one more is closed at once
+  int max_connections = 512;  ///< for one more, that which has kept us waiting longest is closed
   std::uint32_t max_header_bytes = 16 * 1024;
   std::chrono::milliseconds header_time{
       10'000};  ///< from a request's first byte to the end of its head
-  std::chrono::milliseconds idle_time{60'000};   ///< between requests
-  std::chrono::milliseconds body_time{60'000};   ///< for a whole body
-  std::chrono::milliseconds write_time{60'000};  ///< for each piece (256 KiB) of an answer
-  std::chrono::milliseconds drain_time{10'000};  ///< for requests under way once told to stop
+  std::chrono::milliseconds idle_time{60'000};     ///< between requests
+  std::chrono::milliseconds body_time{60'000};     ///< for a whole body
+  std::chrono::milliseconds write_time{60'000};    ///< for each piece (256 KiB) of an answer
+  std::chrono::milliseconds drain_time{10'000};    ///< for requests under way once told to stop
+  std::chrono::milliseconds silence_time{30'000};  ///< of a WebSocket, pings unanswered
+  std::chrono::milliseconds talk_write_time{
+      5'000};  ///< for a WebSocket's listener to take a message
 };
 
-/// What the server does with requests. Both are called on worker threads, several at a time.
+/// What the server does with requests. All are called on worker threads, several at a time.
 struct Service {
   /// Sees the head before the body is read: how many bytes of body to take at most, or a refusal.
   std::function<std::variant<std::uint64_t, Response>(const RequestHead&)> admit;
   std::function<Response(const Request&)> handle;
+  /// A request for a WebSocket: a refusal, or who answers in it. Empty: none are held.
+  std::function<std::variant<Response, std::shared_ptr<Conversation>>(const RequestHead&)>
+      converse = {};
 };
 
 /// One listening socket, HTTP/1.1 with keep-alive. `open` binds; `run` serves in the calling thread

@@ -8,15 +8,17 @@
 #include "core/bytes.hpp"
 #include "core/clock.hpp"
 #include "db/store/analyses.hpp"
+#include "db/store/case_makings.hpp"
 #include "db/store/lab.hpp"
 #include "db/store/trials.hpp"
 #include "server/jobs/analyse.hpp"
 #include "server/jobs/assess.hpp"
 #include "server/jobs/lab_run.hpp"
+#include "server/jobs/make_case.hpp"
 
 namespace jobs {
 namespace {
-constexpr std::uint64_t kMostAttempts = 3;  // of a run of the lab or of an analysis
+constexpr std::uint64_t kMostAttempts = 3;  // of what is not a score
 constexpr int kLabNiceness = 10;
 
 /// What a person sees of a job that failed.
@@ -24,6 +26,7 @@ core::Result<void> show_failure(store::Writing& tx, const store::Job& job,
                                 const core::Error& error) {
   if (job.kind == "analysis")
     return store::fail_analysis(tx, job.subject, error.what, core::utc_us());
+  if (job.kind == "case") return store::fail_making(tx, job.subject, error.what, core::utc_us());
   if (job.kind != "lab") return store::set_assessment_failed(tx, job.subject, error.what);
   const bool cancelled = error.code == core::Errc::cancelled;
   return store::end_lab_run(tx, job.subject, cancelled ? "cancelled" : "failed", error.what,
@@ -32,14 +35,16 @@ core::Result<void> show_failure(store::Writing& tx, const store::Job& job,
 }  // namespace
 
 core::Result<std::unique_ptr<Runner>> Runner::start(store::Store& store,
-                                                    const store::Objects& objects, Log log,
+                                                    const store::Objects& objects,
+                                                    core::KeyPair case_key, Log log,
                                                     std::chrono::milliseconds lease) {
   if (!store.shared()) {
     auto back = store.write(
         [](store::Writing& tx) { return store::requeue_claimed_jobs(tx, core::utc_us()); });
     if (!back) return back.error();
   }
-  auto runner = std::unique_ptr<Runner>(new Runner(store, objects, std::move(log), lease));
+  auto runner = std::unique_ptr<Runner>(
+      new Runner(store, objects, std::move(case_key), std::move(log), lease));
   auto listening = store.signals().listen(
       store::kJobsChannel, [own = runner.get()](const store::Signal&) { own->wake(); });
   if (!listening) return listening.error();
@@ -47,13 +52,15 @@ core::Result<std::unique_ptr<Runner>> Runner::start(store::Store& store,
   return runner;
 }
 
-Runner::Runner(store::Store& store, const store::Objects& objects, Log log,
+Runner::Runner(store::Store& store, const store::Objects& objects, core::KeyPair case_key, Log log,
                std::chrono::milliseconds lease)
     : store_(store),
       objects_(objects),
+      case_key_(std::move(case_key)),
       log_(std::move(log)),
       worker_{core::new_id(), std::chrono::microseconds(lease).count()} {
   scores_.thread = std::thread([this] { run(scores_); });
+  cases_.thread = std::thread([this] { run(cases_); });
   lab_.thread = std::thread([this] {
     // Of this thread and those it starts alone. Refused, the lab only runs as fast as the rest.
     (void)setpriority(PRIO_PROCESS, 0, kLabNiceness);
@@ -70,6 +77,7 @@ Runner::~Runner() {
   }
   changed_.notify_all();
   scores_.thread.join();
+  cases_.thread.join();
   lab_.thread.join();
   keeper_.join();
 }
@@ -77,7 +85,7 @@ Runner::~Runner() {
 void Runner::wake() {
   {
     const std::lock_guard held(mutex_);
-    scores_.woken = lab_.woken = true;
+    scores_.woken = cases_.woken = lab_.woken = true;
   }
   changed_.notify_all();
 }
@@ -102,9 +110,9 @@ void Runner::keep() {
   const std::chrono::microseconds between(worker_.lease_us / 3);
   std::unique_lock held(mutex_);
   while (!changed_.wait_for(held, between, [this] { return ending_; })) {
-    const std::vector<std::string> in_hand{scores_.job, lab_.job};
+    const std::vector<std::string> in_hand{scores_.job, cases_.job, lab_.job};
     held.unlock();
-    if (in_hand != std::vector<std::string>{"", ""}) renew(in_hand);
+    if (in_hand != std::vector<std::string>(in_hand.size())) renew(in_hand);
     if (store_.shared()) {
       auto back = store_.write(
           [](store::Writing& tx) { return store::requeue_lapsed_jobs(tx, core::utc_us()); });
@@ -121,7 +129,7 @@ void Runner::renew(const std::vector<std::string>& in_hand) {
       [&](store::Writing& tx) { return store::renew_claims(tx, worker_, core::utc_us()); });
   if (!own) return log_("jobs: " + own.error().what);
   const std::lock_guard held(mutex_);
-  for (Lane* lane : {&scores_, &lab_})
+  for (Lane* lane : {&scores_, &cases_, &lab_})
     if (!lane->job.empty() && std::ranges::find(in_hand, lane->job) != in_hand.end() &&
         std::ranges::find(*own, lane->job) == own->end())
       lane->lost = true;
@@ -178,6 +186,7 @@ core::Result<void> Runner::work_on(Lane& lane, const store::Job& job) {
   if (job.attempts > kMostAttempts)
     return core::Error{core::Errc::unavailable, "it ended the server before it was done"};
   const auto wants_to_end = [this, &lane] { return ending() || is_lost(lane); };
+  if (job.kind == "case") return make_case(store_, objects_, case_key_, job.subject, wants_to_end);
   return job.kind == "analysis" ? analyse(store_, objects_, job.subject, wants_to_end)
                                 : run_lab(store_, objects_, job.subject, wants_to_end);
 }

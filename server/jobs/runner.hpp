@@ -7,19 +7,20 @@
 #include <mutex>
 #include <thread>
 
+#include "core/signing.hpp"
 #include "db/store/jobs.hpp"
 #include "db/store/objects.hpp"
 #include "db/store/store.hpp"
 
 namespace jobs {
 
-/// Two threads, each for its kinds of jobs: scores, which someone waits for, and what takes minutes
-/// (the lab, analyses of a cohort) and runs at low priority, so that it delays neither scores nor
-/// requests. Each claims and does one job after the other until nothing waits, then waits to be
-/// woken, by this process or by another on the same database. A third renews the claims while they
-/// work, and puts back what processes that died had claimed. They end with their object, after the
-/// job in hand; a run of the lab or an analysis is left off and waits again; one that ended its
-/// process three times is given up.
+/// Threads, each for its kinds of jobs: scores and the making of cases, which someone waits for,
+/// and what takes minutes (the lab, analyses of a cohort) and runs at low priority, so that it
+/// delays neither scores nor requests. Each claims and does one job after the other until nothing
+/// waits, then waits to be woken, by this process or by another on the same database. One more
+/// renews the claims while they work, and puts back what processes that died had claimed. They end
+/// with their object, after the job in hand; what takes minutes is left off and waits again; what
+/// ended its process three times is given up.
 class Runner {
  public:
   /// Called with one line when something is to be known: a job that failed, a database that
@@ -28,8 +29,9 @@ class Runner {
 
   /// On a database of this process alone, puts jobs that a dead process had claimed back in the
   /// queue; on a shared one they wait until their `lease` is over. Then starts.
+  /// @param case_key  signs the cases that are made here.
   static core::Result<std::unique_ptr<Runner>> start(
-      store::Store& store, const store::Objects& objects, Log log,
+      store::Store& store, const store::Objects& objects, core::KeyPair case_key, Log log,
       std::chrono::milliseconds lease = std::chrono::seconds(30));
   ~Runner();
   Runner(const Runner&) = delete;
@@ -46,7 +48,7 @@ class Runner {
     std::thread thread = {};
   };
 
-  Runner(store::Store& store, const store::Objects& objects, Log log,
+  Runner(store::Store& store, const store::Objects& objects, core::KeyPair case_key, Log log,
          std::chrono::milliseconds lease);
   void run(Lane& lane);
   void keep();
@@ -62,12 +64,13 @@ class Runner {
 
   store::Store& store_;
   const store::Objects& objects_;
+  const core::KeyPair case_key_;
   Log log_;
   store::Worker worker_;
   std::mutex mutex_;  ///< guards ending_ and the lanes' woken, job, lost
   bool ending_ = false;
   std::condition_variable changed_;
-  Lane scores_{{"metrics"}}, lab_{{"lab", "analysis"}};
+  Lane scores_{{"metrics"}}, cases_{{"case"}}, lab_{{"lab", "analysis"}};
   std::thread keeper_;
   std::unique_ptr<store::Listening> listening_;
 };

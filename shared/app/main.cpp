@@ -3,6 +3,7 @@
 
 #include "app/command.hpp"
 #include "core/progress.hpp"
+#include "core/words.hpp"
 
 int main(int argc, char** argv) {
   CLI::App app("Tractus: pedicle-screw training and its physics, on files", "tractus");
@@ -27,7 +28,7 @@ int main(int argc, char** argv) {
     if (!sub->parsed()) continue;
     const auto outcome = run();
     if (outcome) return *outcome;
-    std::fprintf(stderr, "%s\n", outcome.error().what.c_str());
+    std::fprintf(stderr, "%s\n", core::one_line(outcome.error().what, 4000).c_str());
     return 2;
   }
   return 2;

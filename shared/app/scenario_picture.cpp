@@ -28,23 +28,18 @@ void shade(const laws::ProbingParameters& p, plot::Panel& panel) {
 
 core::Result<plot::Figure> scenario_picture(const scenarios::Scenario& scenario,
                                             std::span<const double> speeds_m_s) {
-  auto parameters = scenario.expanded();
-  if (!parameters) return parameters.error();
-  auto law = laws::ProbingLaw::make(*parameters);
-  if (!law) return law.error();
+  const auto found = scenarios::resistance(scenario, speeds_m_s);
+  if (!found) return found.error();
   plot::Panel panel;
   panel.x_label = "depth, mm";
   panel.y_label = "push, N";
   panel.height_px = 340;
-  shade(*parameters, panel);
-  const auto depths = scenarios::depths_m(*parameters);
-  for (const double speed_m_s : speeds_m_s) {
+  shade(found->parameters, panel);
+  for (std::size_t k = 0; k < found->speeds_m_s.size(); ++k) {
     plot::Line line;
-    line.label = fmt::format("{:g} mm/s", 1e3 * speed_m_s);
-    for (const double x_m : depths) {
-      line.x.push_back(1e3 * x_m);
-      line.y.push_back(law->force_N(x_m, speed_m_s));
-    }
+    line.label = fmt::format("{:g} mm/s", 1e3 * found->speeds_m_s[k]);
+    for (const double x_m : found->depth_m) line.x.push_back(1e3 * x_m);
+    line.y = found->force_N[k];
     panel.lines.push_back(std::move(line));
   }
   plot::Mark surgeon;

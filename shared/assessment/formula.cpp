@@ -8,6 +8,8 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "core/words.hpp"
+
 namespace assessment {
 namespace {
 
@@ -66,7 +68,8 @@ class Reader {
   }
   void fail(const std::string& why) {
     if (!error_.empty()) return;
-    error_ = fmt::format("--formula '{}', at character {}: {}", text_, at_ + 1, why);
+    error_ =
+        fmt::format("--formula '{}', at character {}: {}", core::one_line(text_), at_ + 1, why);
   }
   const std::string& error() const { return error_; }
 
@@ -301,8 +304,8 @@ core::Result<Formula> parse_formula(const std::string& text) {
   for (const auto& term : out.terms)
     for (const auto& variable : term.variables)
       if (variable.column == out.response || variable.column == out.trials)
-        return wrong(
-            fmt::format("--formula '{}': '{}' stands on both sides", text, variable.column));
+        return wrong(fmt::format("--formula '{}': '{}' stands on both sides", core::one_line(text),
+                                 core::one_line(variable.column)));
   return out;
 }
 

@@ -23,8 +23,8 @@ struct CarvingPlan {
   double margin_m = 0.020;                 ///< of the drilled volume about tract and breach
 };
 
-struct Carved {
-  volume::Volume volume;  ///< the part about the tract, drilled
+/// Where tract, walls and breach come to lie, before anything is drilled.
+struct Placed {
   volume::Tract tract;
   volume::Midline midline;
   double mouth_m = 0.0;      ///< how far behind the entry the channel was opened
@@ -38,10 +38,24 @@ struct Carved {
   bool left_side() const { return midline.left_of_plane_m(tract.entry_m) > 0; }
 };
 
-/// Finds the anatomy, places the breach, cuts the part about the tract out on a finer grid and
-/// drills it. Errors: bad_input and out_of_range with one line for the person who asked (a point or
-/// the tract's end outside the volume, a tract that meets no bone, numbers that are none; those of
-/// midline_about, tract_between and place_breach); too_large; cancelled.
+struct Carved : Placed {
+  volume::Volume volume;  ///< the part about the tract, drilled
+};
+
+/// The voxels that `place` and `carve` look at, at the default margin: whatever lies outside may be
+/// missing from `ct` and the answer is the same. Errors: out_of_range where that is nothing of the
+/// volume, bad_input for numbers that are none.
+core::Result<volume::Box> box_that_matters(const volume::Geometry& geometry,
+                                           const math::Vec3& entry_m, const math::Vec3& target_m);
+
+/// Finds the anatomy and places the breach. Errors: bad_input and out_of_range with one line for
+/// the person who asked (a point or the tract's end outside the volume, a tract that meets no bone,
+/// numbers that are none; those of midline_about, tract_between and place_breach).
+core::Result<Placed> place(const volume::Volume& ct, const volume::TransferFunction& transfer,
+                           const CarvingPlan& plan);
+
+/// Places it, cuts the part about the tract out on a finer grid and drills it. Errors: those of
+/// `place`; too_large; cancelled.
 core::Result<Carved> carve(const volume::Volume& ct, const volume::TransferFunction& transfer,
                            const CarvingPlan& plan, const core::Progress& progress = {});
 

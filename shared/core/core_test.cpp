@@ -14,6 +14,7 @@
 #include "core/progress.hpp"
 #include "core/quantity.hpp"
 #include "core/signing.hpp"
+#include "core/words.hpp"
 
 namespace core {
 namespace {
@@ -137,6 +138,13 @@ TEST(Json, SaysWhereTheTextBreaks) {
 
 TEST(Clock, FormatsUtc) {
   EXPECT_EQ(utc_text(1'700'000'000'123'456), "2023-11-14T22:13:20.123456Z");
+}
+
+TEST(Words, OneLineKeepsCharactersWholeAndNothingThatMovesACursor) {
+  EXPECT_EQ(one_line("a\nb\x1b[2Jc\x7f"), "a?b?[2Jc?");
+  EXPECT_EQ(one_line("ab\u00e9\u00e9", 6), "ab\u00e9\u00e9");
+  EXPECT_EQ(one_line("ab\u00e9\u00e9", 5), "ab\u00e9\u2026");  // the cut falls within the second e
+  EXPECT_EQ(one_line("", 0), "");
 }
 
 }  // namespace

@@ -35,6 +35,17 @@ KeyPair KeyPair::generate() {
   return pair;
 }
 
+KeyPair KeyPair::from_seed(const std::array<std::byte, 32>& seed) {
+  static_assert(crypto_sign_SEEDBYTES == 32);
+  std::array<unsigned char, crypto_sign_PUBLICKEYBYTES> open_key{};
+  KeyPair pair;
+  pair.secret.resize(crypto_sign_SECRETKEYBYTES);
+  crypto_sign_seed_keypair(open_key.data(), reinterpret_cast<unsigned char*>(pair.secret.data()),
+                           raw(seed));
+  pair.public_hex = public_part(pair.secret);
+  return pair;
+}
+
 Result<KeyPair> KeyPair::open_or_make(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path)) {
     KeyPair pair = generate();

@@ -95,4 +95,17 @@ core::Result<Demand> demand(const Scenario& scenario) {
   return out;
 }
 
+core::Result<Resistance> resistance(const Scenario& scenario, std::span<const double> speeds_m_s) {
+  auto parameters = scenario.expanded();
+  if (!parameters) return parameters.error();
+  auto law = laws::ProbingLaw::make(*parameters);
+  if (!law) return law.error();
+  Resistance out{depths_m(*parameters), {speeds_m_s.begin(), speeds_m_s.end()}, {}, *parameters};
+  for (const double speed_m_s : speeds_m_s) {
+    std::vector<double>& line = out.force_N.emplace_back();
+    for (const double x_m : out.depth_m) line.push_back(law->force_N(x_m, speed_m_s));
+  }
+  return out;
+}
+
 }  // namespace scenarios

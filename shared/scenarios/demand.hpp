@@ -1,6 +1,7 @@
 /// What a scenario asks of the surgeon and of the actuator.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -42,5 +43,16 @@ core::Result<Demand> demand(const Scenario& scenario);
 
 /// Depths of a curve of force against depth, ends of layers and walls from both sides included.
 std::vector<double> depths_m(const laws::ProbingParameters& parameters);
+
+/// The push that the law asks for at steady speeds, over depth: what a plot of a scenario shows.
+struct Resistance {
+  std::vector<double> depth_m;
+  std::vector<double> speeds_m_s;
+  std::vector<std::vector<double>> force_N;  ///< [speed][depth]
+  laws::ProbingParameters parameters;        ///< layers and walls that it is of
+};
+
+/// Errors: those of `Scenario::expanded` and of the law.
+core::Result<Resistance> resistance(const Scenario& scenario, std::span<const double> speeds_m_s);
 
 }  // namespace scenarios

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/clock.hpp"
+#include "core/words.hpp"
 
 namespace scenarios {
 namespace {
@@ -13,7 +14,7 @@ using core::Json;
 using core::Result;
 
 Error bad(const std::string& field, const char* why) {
-  return {Errc::bad_input, fmt::format("/{}: {}", field, why)};
+  return {Errc::bad_input, fmt::format("/{}: {}", core::one_line(field), why)};
 }
 
 Result<void> apply(Json& json, const Change& change) {
@@ -33,13 +34,13 @@ Result<void> apply(Json& json, const Change& change) {
 Result<Change> parse_change(const std::string& text) {
   const auto equals = text.find('=');
   if (equals == std::string::npos || equals == 0)
-    return Error{
-        Errc::bad_input,
-        fmt::format("'{}': FIELD=VALUE is expected, as bone/stiffness_N_per_m=9000", text)};
+    return Error{Errc::bad_input,
+                 fmt::format("'{}': FIELD=VALUE is expected, as bone/stiffness_N_per_m=9000",
+                             core::one_line(text))};
   auto value = core::parse_json(text.substr(equals + 1), "value");
   if (!value)
-    return Error{Errc::bad_input,
-                 fmt::format("'{}': the value must be JSON, as 9000 or [0.02]", text)};
+    return Error{Errc::bad_input, fmt::format("'{}': the value must be JSON, as 9000 or [0.02]",
+                                              core::one_line(text))};
   return Change{text.substr(0, equals), std::move(*value)};
 }
 

@@ -31,8 +31,10 @@ T take(const std::byte* at) {
   return value;
 }
 
-bool is_type(std::uint32_t value) {
+bool is_type(std::uint32_t value, bool may_pack) {
   switch (FrameType(value)) {
+    case FrameType::packed:
+      return may_pack;
     case FrameType::header:
     case FrameType::samples:
     case FrameType::event:
@@ -151,8 +153,10 @@ core::Result<FrameReader> FrameReader::open(const std::filesystem::path& path,
     auto read = reader.read(reinterpret_cast<std::byte*>(magic.data()), magic.size());
     if (!read) return read.error();
   }
-  if (!long_enough || magic != kMagic)
-    return frame_error(core::Errc::corrupt, path, 0, "not a tractus-trial/1 file");
+  if (!long_enough || (magic != kMagic && magic != kMagicOne))
+    return frame_error(core::Errc::corrupt, path, 0,
+                       "not a trial file: tractus-trial/1 or /2 is expected");
+  reader.may_pack_ = magic == kMagic;
   reader.hash_.add(core::bytes_of(magic));
   return reader;
 }
@@ -198,7 +202,8 @@ core::Result<FrameReader::Step> FrameReader::next() {
   const auto type = take<std::uint32_t>(&head[0]);
   const auto length = take<std::uint32_t>(&head[4]);
   const auto sequence = take<std::uint32_t>(&head[8]);
-  if (!is_type(type)) return corrupt(fmt::format("frame of unknown type {:#010x}", type));
+  if (!is_type(type, may_pack_))
+    return corrupt(fmt::format("frame of unknown type {:#010x}", type));
   if (length > kMaxPayload_bytes)
     return corrupt(fmt::format("frame of {} bytes, at most {}", length, kMaxPayload_bytes));
   if (sequence != sequence_)

@@ -12,13 +12,16 @@
 
 namespace trial {
 
-/// First bytes of every file.
-inline constexpr std::string_view kMagic = "tractus-trial/1\n";
+/// First bytes of every file that is written.
+inline constexpr std::string_view kMagic = "tractus-trial/2\n";
+/// Of files that are read for ever: samples as they are, no packed ones.
+inline constexpr std::string_view kMagicOne = "tractus-trial/1\n";
 
 /// Four ASCII letters, as they stand in the file.
 enum class FrameType : std::uint32_t {
   header = 0x44414548,   ///< "HEAD": JSON, exactly one, the first
   samples = 0x504D4153,  ///< "SAMP": u32 count, then count × 136 bytes (probing: 64)
+  packed = 0x4B434150,   ///< "PACK": u32 count, then as packing.hpp has it; not in /1
   event = 0x544E5645,    ///< "EVNT": JSON
   end = 0x4C414553,  ///< "SEAL": u64 sample count, SHA-256 of all bytes before the frame; exactly
                      ///< one, the last
@@ -103,6 +106,7 @@ class FrameReader {
   Descriptor file_;
   std::uint64_t size_ = 0, position_ = 0, offset_ = 0;
   std::uint32_t sequence_ = 0;
+  bool may_pack_ = true;
   FrameType type_{};
   core::Bytes payload_;
   core::Sha256 hash_;

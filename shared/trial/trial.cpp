@@ -164,7 +164,7 @@ TickCounts count_ticks(const Block& block) {
 }
 
 core::Json Header::to_json() const {
-  core::Json json{{"format", "tractus-trial/1"},
+  core::Json json{{"format", "tractus-trial/2"},
                   {"id", id},
                   {"case_id", case_id},
                   {"station", station},
@@ -183,8 +183,8 @@ core::Result<Header> Header::from_json(const core::Json& json, const std::string
   core::Fields fields(json, where);
   Header header;
   const auto format = fields.text("format", 64);
-  if (fields.has("format") && format != "tractus-trial/1")
-    fields.wrong("format", "is not \"tractus-trial/1\"");
+  if (fields.has("format") && format != "tractus-trial/1" && format != "tractus-trial/2")
+    fields.wrong("format", "is neither \"tractus-trial/1\" nor \"tractus-trial/2\"");
   header.id = fields.text("id", 64);
   if (!core::is_id(header.id)) fields.wrong("id", "32 hexadecimal characters are expected");
   header.case_id = fields.text("case_id", 128);

@@ -7,6 +7,7 @@
 
 #include "trial/frame_writer.hpp"
 #include "trial/frames.hpp"
+#include "trial/packing.hpp"
 
 namespace trial {
 namespace {
@@ -38,6 +39,8 @@ class Scanner {
   core::Result<void> take_header();
   core::Result<void> take_samples();
   template <class S>
+  core::Result<void> take_plain(std::vector<S>& block) const;
+  template <class S>
   core::Result<void> take_samples_of(std::vector<S>& block, std::optional<S>& last);
   core::Result<void> take_event();
   core::Result<void> take_end();
@@ -52,6 +55,7 @@ class Scanner {
   std::optional<ProbingSample> last_probing_;
   std::uint64_t samples_ = 0;
   std::size_t events_bytes_ = 0;
+  Packer packer_;
   bool has_header_ = false;
 };
 
@@ -78,6 +82,7 @@ core::Result<void> Scanner::take_frame() {
     case FrameType::header:
       return take_header();
     case FrameType::samples:
+    case FrameType::packed:
       return take_samples();
     case FrameType::event:
       return take_event();
@@ -119,25 +124,37 @@ core::Result<void> Scanner::take_samples() {
 }
 
 template <class S>
-core::Result<void> Scanner::take_samples_of(std::vector<S>& block, std::optional<S>& last) {
+core::Result<void> Scanner::take_plain(std::vector<S>& block) const {
   const auto payload = reader_.payload();
   std::uint32_t count = 0;
   if (payload.size() >= sizeof count) std::memcpy(&count, payload.data(), sizeof count);
   if (count == 0 || payload.size() != sizeof count + std::uint64_t{count} * sizeof(S))
     return wrong(core::Errc::corrupt,
                  fmt::format("{} samples said, {} bytes given", count, payload.size()));
-  if (samples_ + count > limits_.max_samples)
-    return wrong(core::Errc::too_large, fmt::format("more than {} samples", limits_.max_samples));
   block.resize(count);
   std::memcpy(block.data(), payload.data() + sizeof count, count * sizeof(S));
+  return {};
+}
+
+template <class S>
+core::Result<void> Scanner::take_samples_of(std::vector<S>& block, std::optional<S>& last) {
+  if (reader_.type() == FrameType::packed) {
+    if (auto taken = packer_.unpack(reader_.payload(), block); !taken)
+      return wrong(taken.error().code, taken.error().what);
+  } else if (auto taken = take_plain(block); !taken) {
+    return taken;
+  }
+  if (samples_ + block.size() > limits_.max_samples)
+    return wrong(core::Errc::too_large, fmt::format("more than {} samples", limits_.max_samples));
   const S* before = last ? &*last : nullptr;
   for (std::size_t i = 0; i < block.size(); ++i) {
     if (const auto fault = fault_of(block[i], before); !fault.empty())
       return wrong(core::Errc::bad_input, fmt::format("sample {}: {}", samples_ + i, fault));
     before = &block[i];
   }
+  packer_.follow(std::span<const S>(block));
   last = block.back();
-  samples_ += count;
+  samples_ += block.size();
   return {};
 }
 

@@ -1,24 +1,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 #include <optional>
 
 #include "trial/frame_writer.hpp"
+#include "trial/packing.hpp"
 #include "trial/trial_file.hpp"
 
 namespace trial {
-namespace {
-template <class S>
-core::Bytes samples_payload(std::span<const S> samples) {
-  const auto count = static_cast<std::uint32_t>(samples.size());
-  core::Bytes out(sizeof count + samples.size_bytes());
-  std::memcpy(out.data(), &count, sizeof count);
-  std::memcpy(out.data() + sizeof count, samples.data(), samples.size_bytes());
-  return out;
-}
-}  // namespace
-
 struct TrialWriter::State {
   std::string name;
   FrameWriter frames;
@@ -28,6 +17,7 @@ struct TrialWriter::State {
   double last_event_s = 0.0;
   std::uint64_t samples = 0;
   std::size_t events_bytes = 0;
+  Packer packer = {};
 
   core::Error refused(const std::string& what) const {
     return {core::Errc::bad_input, fmt::format("{}: {}", name, what)};
@@ -70,9 +60,10 @@ core::Result<void> TrialWriter::State::append(std::span<const S> block, Rig kind
     before = &sample;
   }
   while (!block.empty()) {
-    const auto part = block.first(std::min(block.size(), max_frame_samples(sizeof(S))));
-    if (auto written = frames.append(FrameType::samples, samples_payload(part)); !written)
+    const auto part = block.first(std::min(block.size(), max_packed_samples(sizeof(S))));
+    if (auto written = frames.append(FrameType::packed, packer.pack(part)); !written)
       return written;
+    packer.follow(part);
     last = part.back();
     samples += part.size();
     block = block.subspan(part.size());

@@ -6,6 +6,7 @@
 
 #include "core/file.hpp"
 #include "station/app/deeds.hpp"
+#include "station/session/station_folder.hpp"
 #include "station/uplink/http_server.hpp"
 
 namespace app {
@@ -23,7 +24,13 @@ core::Result<void> write_key(const std::filesystem::path& path, const std::strin
   return written;
 }
 
-core::Result<std::string> enrolled_as(const Options& options, const std::string& key) {
+/// What the server says of a station it has let in.
+struct Enrolled {
+  std::string name;
+  std::string case_signer;  ///< public key; empty from a server that makes no cases
+};
+
+core::Result<Enrolled> enrolled_as(const Options& options, const std::string& key) {
   auto server = uplink::HttpServer::make_nameless(options.server_url, options.authority);
   if (!server) return server.error();
   const std::string body =
@@ -39,9 +46,17 @@ core::Result<std::string> enrolled_as(const Options& options, const std::string&
   if (!json) return json.error();
   core::Fields fields(*json, "answer");
   fields.skip("id");
-  std::string name = fields.text("name", 128);
+  Enrolled out{fields.text("name", 128), fields.text_or("case_signer", "", 64)};
   if (auto done = fields.done(); !done) return done.error();
-  return name;
+  return out;
+}
+
+/// Cases that are made on this server are taken from now on.
+core::Result<void> trust(const std::filesystem::path& data, const std::string& case_signer) {
+  if (data.empty() || case_signer.empty()) return {};
+  auto folder = session::StationFolder::open(data);
+  if (!folder) return folder.error();
+  return folder->trust(case_signer);
 }
 
 }  // namespace
@@ -49,17 +64,22 @@ core::Result<std::string> enrolled_as(const Options& options, const std::string&
 core::Result<int> enrol_station(const Options& options) {
   const std::string key = core::hex(core::random_bytes(32));
   if (auto written = write_key(options.token_file, key); !written) return written.error();
-  auto name = enrolled_as(options, key);
-  if (!name) {
+  auto enrolled = enrolled_as(options, key);
+  if (!enrolled) {
     std::error_code ignored;
     std::filesystem::remove(options.token_file, ignored);
-    return name.error();
+    return enrolled.error();
   }
+  if (auto trusted = trust(options.data, enrolled->case_signer); !trusted) return trusted.error();
+  const std::string file = options.token_file.string();
   if (options.json)
-    fmt::print("{}\n",
-               core::Json{{"station", *name}, {"token_file", options.token_file.string()}}.dump(2));
+    fmt::print("{}\n", core::Json{{"station", enrolled->name},
+                                  {"token_file", file},
+                                  {"case_signer", enrolled->case_signer}}
+                           .dump(2));
   else
-    fmt::print("this is station {}; its key is in {}\n", *name, options.token_file.string());
+    fmt::print("this is station {}; its key is in {}; the server signs its cases by {}\n",
+               enrolled->name, file, enrolled->case_signer);
   return 0;
 }
 

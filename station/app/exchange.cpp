@@ -9,6 +9,7 @@
 #include "core/file.hpp"
 #include "station/app/deeds.hpp"
 #include "station/uplink/http_server.hpp"
+#include "station/uplink/models.hpp"
 #include "station/uplink/sync.hpp"
 
 namespace app {
@@ -62,6 +63,21 @@ core::Result<core::Json> fetch_cases(const Options& options, const session::Stat
   return report->to_json();
 }
 
+core::Result<uplink::ModelReport> fetch_models(const Options& options,
+                                               const session::StationFolder& folder) {
+  auto server = connect(options);
+  if (!server) return server.error();
+  return uplink::sync_models(**server, folder.models());
+}
+
+core::Result<std::filesystem::path> model_file_of(const Options& options,
+                                                  const session::StationFolder& folder) {
+  std::error_code failure;
+  if (options.model_file.empty() || std::filesystem::exists(options.model_file, failure))
+    return options.model_file;
+  return uplink::model_named(folder.models(), options.model_file.string());
+}
+
 core::Result<uplink::UploadReport> hand_over(const Options& options,
                                              const session::StationFolder& folder) {
   auto lock = folder.upload_lock();
@@ -82,7 +98,10 @@ core::Result<int> sync_cases(const Options& options) {
   if (!lock) return lock.error();
   auto report = fetch_cases(options, *folder);
   if (!report) return report.error();
-  const bool refused = !(*report)["refused"].empty();
+  auto models = fetch_models(options, *folder);
+  if (!models) return models.error();
+  (*report)["models"] = models->to_json();
+  const bool refused = !(*report)["refused"].empty() || !models->refused.empty();
   if (options.json) {
     fmt::print("{}\n", report->dump(2));
     return refused ? 1 : 0;
@@ -90,6 +109,10 @@ core::Result<int> sync_cases(const Options& options) {
   fmt::print("{} cases fetched, {} were here, {} refused\n", (*report)["fetched"].size(),
              (*report)["present"].size(), (*report)["refused"].size());
   for (const auto& line : (*report)["refused"]) fmt::print("  {}\n", line.get<std::string>());
+  if (!models->fetched.empty() || !models->present.empty() || !models->refused.empty())
+    fmt::print("{} models fetched, {} were here, {} refused\n", models->fetched.size(),
+               models->present.size(), models->refused.size());
+  for (const auto& line : models->refused) fmt::print("  {}\n", line);
   return refused ? 1 : 0;
 }
 

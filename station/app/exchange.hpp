@@ -6,6 +6,7 @@
 #include "core/json.hpp"
 #include "station/app/options.hpp"
 #include "station/session/station_folder.hpp"
+#include "station/uplink/models.hpp"
 #include "station/uplink/server.hpp"
 #include "station/uplink/upload.hpp"
 
@@ -15,6 +16,13 @@ namespace app {
 core::Result<std::string> token_of(const Options& options);
 core::Result<std::unique_ptr<uplink::Server>> connect(const Options& options);
 core::Result<core::Json> fetch_cases(const Options& options, const session::StationFolder& folder);
+/// Fetches the versions of models that were sent to this station. Errors: the server's, io.
+core::Result<uplink::ModelReport> fetch_models(const Options& options,
+                                               const session::StationFolder& folder);
+/// What --model names: a file, or a version that was sent here, by its name or id; empty without
+/// one. Errors: not_found.
+core::Result<std::filesystem::path> model_file_of(const Options& options,
+                                                  const session::StationFolder& folder);
 core::Result<uplink::UploadReport> hand_over(const Options& options,
                                              const session::StationFolder& folder);
 std::string text_of(const uplink::UploadReport& report);

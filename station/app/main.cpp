@@ -2,6 +2,7 @@
 #include <csignal>
 #include <cstdio>
 
+#include "core/words.hpp"
 #include "station/app/deeds.hpp"
 
 namespace {
@@ -37,6 +38,6 @@ int main(int argc, char** argv) {
   std::signal(SIGTERM, [](int) { app::ask_to_stop(); });
   const auto outcome = done(parsed.options);
   if (outcome) return *outcome;
-  std::fprintf(stderr, "%s\n", outcome.error().what.c_str());
+  std::fprintf(stderr, "%s\n", core::one_line(outcome.error().what, 4000).c_str());
   return 2;
 }

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <ctime>
 #include <limits>
 #include <map>
 
@@ -23,6 +24,9 @@ constexpr const char* kExamples = R"(Examples:
 const std::map<std::string, session::Speed> kSpeeds{{"real", session::Speed::real},
                                                     {"fast", session::Speed::fast}};
 
+const std::map<std::string, loop::Passivity> kPassivities{
+    {"observed", loop::Passivity::observed}, {"controlled", loop::Passivity::controlled}};
+
 const std::map<std::string, Show> kShows{
     {"none", Show::none}, {"window", Show::window}, {"offscreen", Show::offscreen}};
 
@@ -39,6 +43,26 @@ void add_server(CLI::App& app, Options& options, bool needed) {
   app.add_option("--authority", options.authority,
                  "PEM file of the certificate authority to trust (the server's tls/authority.pem)");
   if (needed) url->required();
+}
+
+/// "2026-03-02T09:30Z" → microseconds since 1970.
+std::optional<std::int64_t> utc_from(const std::string& text) {
+  std::tm fields{};
+  const char* end = ::strptime(text.c_str(), "%Y-%m-%dT%H:%MZ", &fields);
+  if (!end || *end != '\0') return std::nullopt;
+  return std::int64_t{::timegm(&fields)} * 1'000'000;
+}
+
+void add_started(CLI::App& app, Options& options) {
+  app.add_option_function<std::string>(
+         "--started",
+         [&options](const std::string& text) { options.started_utc_us = utc_from(text); },
+         "with --speed fast: a SIMULATED date for the first trial, like 2026-03-02T09:30Z; each "
+         "further one ten minutes later")
+      ->check([](const std::string& text) {
+        return utc_from(text) ? std::string()
+                              : text + ": a time like 2026-03-02T09:30Z is expected";
+      });
 }
 
 void add_rig(CLI::App& app, Options& options) {
@@ -86,7 +110,8 @@ void add_run(CLI::App& app, Options& options) {
   app.add_option("--case", options.case_name,
                  "a case's folder, or 8 or more characters of the id of one in the data folder");
   app.add_option("--model", options.model_file,
-                 "feel the case, or the scenario's bone, by this model");
+                 "feel the case, or the scenario's bone, by this model: a file, or the name of one "
+                 "that was sent here");
   app.add_option("--scenario", options.scenario,
                  "a scenario's file, or hard, soft, lateral_breach, in_out_in: those that ship");
   add_rig(app, options);
@@ -99,6 +124,9 @@ void add_run(CLI::App& app, Options& options) {
   app.add_option("--speed", options.setup.speed,
                  "real, or fast: simulated time, as fast as it goes")
       ->transform(CLI::CheckedTransformer(kSpeeds));
+  app.add_option("--passivity", options.setup.passivity,
+                 "observed: energy given to the hand is logged; controlled: and damped away")
+      ->transform(CLI::CheckedTransformer(kPassivities));
   app.add_option("--answer", options.answer, "what to answer instead of the simulated hand")
       ->check(CLI::IsMember({"none", "medial", "lateral", "superior", "inferior", "anterior"}));
   app.add_option("--trials", options.trials, "how many, one after the other")
@@ -130,6 +158,7 @@ void add_study(CLI::App& app, Options& options) {
       ->capture_default_str();
   app.add_option("--speed", options.rig.speed, "real, or fast: simulated time, sim-rig alone")
       ->transform(CLI::CheckedTransformer(kSpeeds));
+  add_started(app, options);
   app.add_option("--trials", options.trials, "at most so many now; all that are left if not given")
       ->check(CLI::Range(1, 1000));
   app.add_flag("--follow", options.follow,
@@ -150,6 +179,7 @@ void add_assigned(CLI::App& app, Options& options) {
   app.add_option("--device", options.setup.device, "sim-lambda6; rig or sim-rig for scenarios")
       ->capture_default_str();
   add_rig(app, options);
+  add_started(app, options);
   app.add_option("--seed", options.setup.seed, "of the simulated hand")
       ->check(CLI::Range(0.0, 9e15))
       ->capture_default_str();
@@ -225,6 +255,8 @@ Parsed parse(int argc, char** argv) {
   CLI::App* enrol = app.add_subcommand(
       "enrol", "make a key for this station and let the server know it, by a one-time code");
   enrol->add_flag("--json", options.json, "one JSON document on standard output");
+  enrol->add_option("--data", options.data,
+                    "the station's folder: cases that are made on the server are taken there");
   add_server(*enrol, options, true);
   enrol->add_option("--code", options.code, "from the server's administrator; holds an hour")
       ->required();

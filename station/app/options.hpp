@@ -10,6 +10,8 @@
 
 namespace app {
 
+inline constexpr std::int64_t kBetweenTrials_us = 600'000'000;  ///< of simulated dates
+
 enum class Deed { run, probe, tune, study, sync, upload, trust, enrol, assigned };
 
 struct Options {
@@ -29,6 +31,7 @@ struct Options {
   std::filesystem::path tuned_folder;  ///< tune: where new versions go
   std::string case_name;
   std::filesystem::path model_file;
+  std::optional<std::int64_t> started_utc_us;  ///< of the first trial; a SIMULATED date
   std::string answer;  ///< empty: the simulated hand's own, or asked at the terminal
   int trials = 1;
   Show show = Show::none;
@@ -45,6 +48,12 @@ struct Options {
   std::string signer_hex;
   std::filesystem::path signer_of_case;
 };
+
+/// Of the n-th trial of this call; nothing when no date was given.
+inline std::optional<std::int64_t> started_of(const Options& options, std::int64_t n) {
+  if (!options.started_utc_us) return std::nullopt;
+  return *options.started_utc_us + n * kBetweenTrials_us;
+}
 
 /// The options, or the exit code with which to leave (help: 0, wrong use: 2, said on standard
 /// error).

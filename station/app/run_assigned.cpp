@@ -38,7 +38,7 @@ core::Result<std::string> pin_of(const Options& options) {
 bool stopped_by_hand() { return asked_to_stop(); }
 
 core::Result<TrialReport> palpate(const Options& options, const session::StationFolder& folder,
-                                  const AssignedWork& work) {
+                                  const AssignedWork& work, int number) {
   const AssignedTrial& trial = *work.trial;
   if (!session::find_case(folder, trial.case_id))
     if (auto fetched = fetch_cases(options, folder); !fetched) return fetched.error();
@@ -49,6 +49,7 @@ core::Result<TrialReport> palpate(const Options& options, const session::Station
   session::TrialSetup setup = options.setup;
   setup.case_known_as = trial.slot;
   setup.operator_name = work.participant;
+  setup.started_utc_us = started_of(options, number);
   session::Station station(folder, setup);
   if (auto ready = station.prepare(prepared, options.setup.seed + trial.number); !ready)
     return ready.error();
@@ -68,7 +69,7 @@ core::Result<TrialReport> palpate(const Options& options, const session::Station
 }
 
 core::Result<TrialReport> probe(const Options& options, const session::StationFolder& folder,
-                                const AssignedWork& work) {
+                                const AssignedWork& work, int number) {
   auto token = token_of(options);
   if (!token) return token.error();
   const study::StationKey key(core::sha256(core::bytes_of(*token)));
@@ -85,6 +86,7 @@ core::Result<TrialReport> probe(const Options& options, const session::StationFo
   setup.device = options.setup.device;
   setup.speed = options.setup.speed;
   setup.seed = options.setup.seed + trial.number;
+  setup.started_utc_us = started_of(options, number);
   return session::run_probing_trial(
       folder, task, setup, [](const session::ProbingGlimpse&) { return !stopped_by_hand(); },
       [&](const session::ProbingTrialRun& run) -> core::Result<std::optional<trial::Answer>> {
@@ -93,7 +95,7 @@ core::Result<TrialReport> probe(const Options& options, const session::StationFo
 }
 
 core::Result<TrialReport> one_trial(const Options& options, const session::StationFolder& folder,
-                                    const AssignedWork& work) {
+                                    const AssignedWork& work, int number) {
   const std::string& device = options.setup.device;
   const bool is_rig = device == "rig" || device == "sim-rig";
   const bool probing = work.trial->rig == "probing";
@@ -101,7 +103,7 @@ core::Result<TrialReport> one_trial(const Options& options, const session::Stati
     return core::Error{core::Errc::bad_input,
                        fmt::format("the next trial is for {}: --device {} is not for that",
                                    work.trial->rig, device)};
-  return probing ? probe(options, folder, work) : palpate(options, folder, work);
+  return probing ? probe(options, folder, work, number) : palpate(options, folder, work, number);
 }
 
 /// What was done and what is left.
@@ -123,7 +125,7 @@ core::Result<Tally> rounds(const Options& options, const session::StationFolder&
     const AssignedTrial& trial = *work->trial;
     if (!options.json)
       fmt::print("{}: {}, {} of {}\n", trial.assignment, trial.name, trial.number, trial.planned);
-    auto report = one_trial(options, folder, *work);
+    auto report = one_trial(options, folder, *work, i);
     if (!report) return report.error();
     tally.trials.push_back({{"trial_id", report->trial_id},
                             {"number", trial.number},

@@ -16,10 +16,12 @@ using session::TrialReport;
 
 constexpr double kModelTravel_m = 0.05;  // of a model that is felt without a scenario
 
-core::Result<ProbingTask> task_of(const Options& options) {
+core::Result<ProbingTask> task_of(const Options& options, const session::StationFolder& folder) {
   std::optional<models::ProbingModel> model;
-  if (!options.model_file.empty()) {
-    auto read = models::ProbingModel::read(options.model_file);
+  const auto file = model_file_of(options, folder);
+  if (!file) return file.error();
+  if (!file->empty()) {
+    auto read = models::ProbingModel::read(*file);
     if (!read) return read.error();
     model = std::move(*read);
   }
@@ -88,7 +90,7 @@ core::Result<int> run_probing_trials(const Options& options) {
   auto recovered = folder->recover();
   if (!recovered) return recovered.error();
   say_recovered(*recovered);
-  auto task = task_of(options);
+  auto task = task_of(options, *folder);
   if (!task) return task.error();
 
   core::Json trials = core::Json::array();

@@ -123,6 +123,7 @@ core::Result<TrialReport> one_trial(const Study& study, const StudyWork& work,
   task.blind = true;
   session::RigSetup setup = study.options.rig;
   setup.seed = seed_of(study.options, work, trial);
+  setup.started_utc_us = started_of(study.options, std::int64_t(study.trials.size()));
   if (work.simulated && !study.options.skill_given)
     setup.skill = rig::SurgeonParameters::skill_of_experience(work.experience_years.value_or(0.0));
   return session::run_probing_trial(

@@ -18,7 +18,9 @@ core::Result<std::shared_ptr<const session::PreparedCase>> prepare(
     if (auto fetched = fetch_cases(options, folder); !fetched)
       std::fprintf(stderr, "warning: cases were not fetched: %s\n", fetched.error().what.c_str());
   }
-  auto made = session::prepare_case(folder, options.case_name, options.model_file,
+  const auto model = model_file_of(options, folder);
+  if (!model) return model.error();
+  auto made = session::prepare_case(folder, options.case_name, *model,
                                     core::terminal_progress("Preparing the case"));
   if (!made) return made.error();
   return std::shared_ptr<const session::PreparedCase>(std::move(*made));
@@ -71,6 +73,8 @@ void print_report(const TrialReport& report, bool fast) {
   else
     fmt::print("  wake-up p50 {:.0f} us, p99 {:.0f} us; tick p50 {:.0f} us, p99 {:.0f} us\n",
                report.wake_p50_us, report.wake_p99_us, report.work_p50_us, report.work_p99_us);
+  fmt::print("  energy given to the hand beyond what it gave: at most {:.2g} mJ\n",
+             1e3 * report.injected_J);
   for (const auto& warning : report.grant.warnings) fmt::print("  warning: {}\n", warning);
   if (!report.fault.empty()) fmt::print("  FAULT: {}\n", report.fault);
   fmt::print("  answer: {}\n  {}\n", answer_text(report), report.file.string());

@@ -13,7 +13,13 @@
 namespace devices {
 
 /// How a call in the tick went; the loop decides what follows.
-enum class Status { ok, stale, fault };
+enum class Status {
+  ok,
+  stale,
+  fault,
+  gone,        ///< not on its bus any more
+  forces_off,  ///< it took its own forces away: button, velocity guard, watchdog
+};
 
 /// One coherent sample: one stamp for everything in it.
 struct Sample {

@@ -10,8 +10,9 @@
 #include <array>
 #include <cerrno>
 #include <charconv>
-#include <cmath>
 #include <optional>
+
+#include "station/devices/rig_image.hpp"
 
 namespace devices {
 namespace {
@@ -34,17 +35,6 @@ struct FreeContext {
 };
 using Context = std::unique_ptr<modbus_t, FreeContext>;
 
-std::int32_t whole(double value) {
-  return static_cast<std::int32_t>(std::llround(1e6 * std::clamp(value, -2000.0, 2000.0)));
-}
-
-/// Is it a machine that speaks, or noise? Far beyond what any rig of this kind does.
-bool plausible(const RigReading& r) {
-  return std::abs(r.x_m) <= 1.0 && std::abs(r.speed_m_s) <= 5.0 &&
-         std::abs(r.turning_rad_s) <= 1000.0 && std::abs(r.fz_N) <= 5000.0 &&
-         std::abs(r.tz_Nm) <= 100.0 && int(r.fault) <= int(rig::Fault::sensor);
-}
-
 class ModbusRig : public RigDevice {
  public:
   ModbusRig(std::string address, Context context)
@@ -64,12 +54,9 @@ class ModbusRig : public RigDevice {
     if (*at(rig::kVersion) != rig::kMapVersion)
       return refused(fmt::format("register map version {}, {} is expected", *at(rig::kVersion),
                                  rig::kMapVersion));
-    const auto who = *at(rig::kSimulatedPeer);
-    prepare(who == rig::kSimulatedBusClock ? kPatient_ms : kAnswer_ms);
-    return RigIdentity{.travel_m = 1e-6 * rig::wide(at(rig::kTravel_um)),
-                       .top_speed_m_s = 1e-6 * rig::wide(at(rig::kTopSpeed_um_s)),
-                       .simulated = who != rig::kRealMachine,
-                       .bus_clock = who == rig::kSimulatedBusClock};
+    const RigIdentity identity = identity_of(found.data());
+    prepare(identity.bus_clock ? kPatient_ms : kAnswer_ms);
+    return identity;
   }
 
   void close() noexcept override { close_line(); }
@@ -83,28 +70,7 @@ class ModbusRig : public RigDevice {
   }
 
   void put(const RigCommand& command, std::uint16_t* at) noexcept {
-    at[rig::kControl] = static_cast<std::uint16_t>((command.enable ? rig::kEnable : 0) |
-                                                   (command.reset_fault ? rig::kResetFault : 0) |
-                                                   (command.rotary_on ? rig::kRotaryOn : 0));
-    at[rig::kSequence] = ++sequence_;
-    rig::put_wide(at + rig::kSpeed_um_s, whole(command.speed_m_s));
-    rig::put_wide(at + rig::kTorque_uNm, whole(command.torque_Nm));
-  }
-
-  static Exchange take(const std::uint16_t* image, RigReading& out) noexcept {
-    const auto at = [&](int address) { return image + (address - rig::kReadingStart); };
-    RigReading r;
-    r.status = *at(rig::kStatus);
-    r.fault = rig::Fault(r.status >> 8);
-    r.x_m = 1e-6 * rig::wide(at(rig::kPosition_um));
-    r.speed_m_s = 1e-6 * rig::wide(at(rig::kVelocity_um_s));
-    r.angle_urad = rig::wide(at(rig::kAngle_urad));
-    r.turning_rad_s = 1e-6 * rig::wide(at(rig::kTurning_urad_s));
-    r.fz_N = 1e-3 * rig::wide(at(rig::kForce_mN));
-    r.tz_Nm = 1e-6 * rig::wide(at(rig::kHandTorque_uNm));
-    if (!plausible(r)) return Exchange::garbage;
-    out = r;
-    return Exchange::ok;
+    put_command(command, ++sequence_, at);
   }
 
   void close_line() noexcept {
@@ -179,7 +145,7 @@ class TcpRig final : public ModbusRig {
       held_ -= kAnswer;
       std::copy_n(bytes_.begin() + kAnswer, held_, bytes_.begin());
       if (image[rig::kSequenceEcho - rig::kReadingStart] == sequence_)
-        return take(image.data(), reading);
+        return take_reading(image.data(), reading);
     }
   }
 
@@ -207,7 +173,7 @@ class SerialRig final : public ModbusRig {
                                         block.data(), rig::kReadingStart, rig::kReadingCount,
                                         image.data()) == rig::kReadingCount)
       return image[rig::kSequenceEcho - rig::kReadingStart] == sequence_
-                 ? take(image.data(), reading)
+                 ? take_reading(image.data(), reading)
                  : Exchange::garbage;
     if (errno == ETIMEDOUT) return Exchange::silent;
     return errno >= MODBUS_ENOBASE ? Exchange::garbage : Exchange::gone;

@@ -81,9 +81,11 @@ void HapticLoop::tick(core::Instant_ns now, std::uint32_t number, bool late) noe
                                static_cast<double>(now) * 1e-9);
 
   const math::Quat& q_DH = X_DH_.q;
-  const math::Wrench wanted_D{q_DH * step.wrench_H.force_N, q_DH * step.wrench_H.torque_Nm};
-  const Limiter::Passed passed = parts_.limiter.pass(now, status, sample, wanted_D);
-  if (parts_.device.write(passed.wrench) == Status::fault) parts_.limiter.fail(Fault::device);
+  const Limiter::Passed passed =
+      parts_.limiter.pass(now, status, sample, wanted_of(step, sample, usable));
+  const Status given = parts_.device.write(passed.wrench);
+  if (const Fault fault = fault_of(given); fault != Fault::none) parts_.limiter.fail(fault);
+  energy_.holds(passed.wrench);
 
   trial::Sample out;
   out.t_s = static_cast<double>(now - start_) * 1e-9;
@@ -113,6 +115,20 @@ void HapticLoop::tick(core::Instant_ns now, std::uint32_t number, bool late) noe
        .rendered_torque_Nm = array_of(Vec3(q_DH.conjugate() * passed.wrench.torque_Nm)),
        .tick = number,
        .late_ticks = static_cast<std::uint32_t>(counts_.late)});
+}
+
+// The model's wrench in D, and the energy of the stretch that ends here.
+math::Wrench HapticLoop::wanted_of(const laws::PalpationStep& step, const devices::Sample& sample,
+                                   bool usable) noexcept {
+  if (usable)
+    energy_.moved_to(X_DH_);
+  else
+    energy_.lost_sight();
+  const math::Wrench wanted_D{X_DH_.q * step.wrench_H.force_N, X_DH_.q * step.wrench_H.torque_Nm};
+  if (parts_.passivity == Passivity::observed || !usable) return wanted_D;
+  return safety::PassivityController::damped(wanted_D, energy_.given_J(), sample.velocity_m_s,
+                                             sample.angular_velocity_rad_s,
+                                             static_cast<double>(period_) * 1e-9);
 }
 
 void HapticLoop::record(const trial::Sample& sample) noexcept {

@@ -10,6 +10,7 @@
 #include "station/loop/limiter.hpp"
 #include "station/loop/live_state.hpp"
 #include "station/loop/ring.hpp"
+#include "station/safety/energy.hpp"
 #include "trial/trial.hpp"
 
 namespace loop {
@@ -45,6 +46,12 @@ class TimeHistogram {
   std::uint64_t count_ = 0;
 };
 
+/// What is done about energy that the device puts into the hand (safety/energy.hpp).
+enum class Passivity : std::uint8_t {
+  observed,    ///< logged alone
+  controlled,  ///< and taken back by damping
+};
+
 /// Owns nothing but its counters. Knows no file, no network, no lock.
 class HapticLoop {
  public:
@@ -55,6 +62,7 @@ class HapticLoop {
     Limiter& limiter;
     SampleRing& ring;
     LiveState& live;
+    Passivity passivity = Passivity::observed;
   };
   /// @param X_VD           the device's frame in the volume's
   /// @param pose_offset_m  of the model: only for what `live` shows
@@ -71,6 +79,7 @@ class HapticLoop {
   void stop() noexcept { stop_.store(true, std::memory_order_relaxed); }
 
   const Counts& counts() const noexcept { return counts_; }
+  const safety::EnergyObserver& energy() const noexcept { return energy_; }
   const TimeHistogram& wake() const noexcept { return wake_; }  ///< wake-up after the deadline
   const TimeHistogram& work() const noexcept { return work_; }  ///< the whole tick
   core::Instant_ns started() const noexcept { return start_; }
@@ -78,6 +87,8 @@ class HapticLoop {
 
  private:
   void record(const trial::Sample& sample) noexcept;
+  math::Wrench wanted_of(const laws::PalpationStep& step, const devices::Sample& sample,
+                         bool usable) noexcept;
   Parts parts_;
   math::Pose X_VD_;
   math::Pose X_DH_;  ///< the last good one
@@ -85,6 +96,7 @@ class HapticLoop {
   core::Instant_ns period_;
   core::Instant_ns start_ = 0;
   Counts counts_;
+  safety::EnergyObserver energy_;
   TimeHistogram wake_, work_;
   std::atomic<bool> stop_ = false;
 };

@@ -89,47 +89,40 @@ core::Json HandLimits::to_json() const {
           {"ramp_s", ramp_s}};
 }
 
-const char* text_of(Fault fault) noexcept {
-  switch (fault) {
-    case Fault::none:
-      return "no fault";
-    case Fault::not_finite:
-      return "a pose or a force was not a finite number";
-    case Fault::jump:
-      return "the device's pose jumped";
-    case Fault::speed:
-      return "the handle moved faster than allowed";
-    case Fault::stale:
-      return "the device gave no fresh sample for 20 ms";
-    case Fault::device:
-      return "the device reported a fault";
+Fault fault_of(Status status) noexcept {
+  switch (status) {
+    case Status::ok:
+    case Status::stale:
+      return Fault::none;
+    case Status::fault:
+      return Fault::device;
+    case Status::gone:
+      return Fault::unplugged;
+    case Status::forces_off:
+      return Fault::forces_off;
   }
-  return "unknown fault";
+  return Fault::device;
 }
 
 Limiter::Limiter(const HandLimits& limits, core::Instant_ns period)
-    : limits_(limits.lowered_by(HandLimits::kCeiling)), period_(period) {}
+    : limits_(limits.lowered_by(HandLimits::kCeiling)),
+      period_(period),
+      machine_({.quiet_ticks = kQuietTicks,
+                .ramp_ns = static_cast<core::Instant_ns>(limits_.ramp_s * 1e9),
+                .stale_latch_ns = kStaleLatch_ns,
+                .when_stale = Fault::stale}) {}
 
 void Limiter::arm() noexcept {
-  guard_ = Guard::waiting;
-  fault_ = Fault::none;
+  machine_.arm();
   last_ = {};
   has_pose_ = ticked_ = false;
-  quiet_ticks_ = 0;
-}
-
-void Limiter::fail(Fault fault) noexcept {
-  if (guard_ == Guard::latched) return;
-  guard_ = Guard::latched;
-  fault_ = fault;
 }
 
 // What is wrong for good in this tick; a stale sample alone is not yet.
 Fault Limiter::inspect(core::Instant_ns now, Status status, const Sample& sample,
-                       const Wrench& wanted) noexcept {
-  if (status == Status::fault) return Fault::device;
-  if (status == Status::stale || now - sample.stamp > kStaleAfter_ns)
-    return now - last_fresh_ > kStaleLatch_ns ? Fault::stale : Fault::none;
+                       const Wrench& wanted) const noexcept {
+  if (const Fault said = fault_of(status); said != Fault::none) return said;
+  if (is_stale(now, status, sample)) return Fault::none;
   if (!finite(sample) || !finite(wanted)) return Fault::not_finite;
   if (sample.velocity_m_s.norm() > limits_.max_speed_m_s ||
       sample.angular_velocity_rad_s.norm() > limits_.max_turn_rad_s)
@@ -141,33 +134,25 @@ Fault Limiter::inspect(core::Instant_ns now, Status status, const Sample& sample
   return Fault::none;
 }
 
-double Limiter::share(core::Instant_ns now, const Wrench& wanted) noexcept {
-  if (guard_ == Guard::waiting) {
-    quiet_ticks_ = wanted.force_N.norm() < kQuiet_N ? quiet_ticks_ + 1 : 0;
-    if (quiet_ticks_ < kQuietTicks) return 0.0;
-    guard_ = Guard::ramping;
-    ramp_from_ = now;
-  }
-  if (guard_ == Guard::ramping) {
-    const double part = static_cast<double>(now - ramp_from_) * 1e-9 / limits_.ramp_s;
-    if (part < 1.0) return std::max(part, 0.0);
-    guard_ = Guard::on;
-  }
-  return guard_ == Guard::on ? 1.0 : 0.0;
+bool Limiter::is_stale(core::Instant_ns now, Status status, const Sample& sample) noexcept {
+  return status != Status::ok || now - sample.stamp > kStaleAfter_ns;
 }
 
 Limiter::Passed Limiter::pass(core::Instant_ns now, Status status, const Sample& sample,
                               const Wrench& wanted) noexcept {
   if (!ticked_) last_fresh_ = last_tick_ = now - period_;
-  const auto dt = std::clamp(now - last_tick_, core::Instant_ns{0}, 2 * period_);
+  const core::Instant_ns elapsed = std::max(now - last_tick_, core::Instant_ns{0});
   last_tick_ = now;
   ticked_ = true;
 
-  if (guard_ != Guard::off)
-    if (const Fault fault = inspect(now, status, sample, wanted); fault != Fault::none) fail(fault);
   Passed out;
-  out.stale = status != Status::ok || now - sample.stamp > kStaleAfter_ns;
-  if (out.stale || guard_ == Guard::off || guard_ == Guard::latched) {
+  out.stale = is_stale(now, status, sample);
+  const bool starts = machine_.state() == Guard::waiting;
+  const double part =
+      machine_.tick(elapsed, {.fault = inspect(now, status, sample, wanted),
+                              .fresh = !out.stale,
+                              .ready = !starts || wanted.force_N.norm() < kQuiet_N});
+  if (out.stale || guard() == Guard::off || guard() == Guard::latched) {
     last_ = {};
     out.limited = !(wanted.force_N.isZero(0.0) && wanted.torque_Nm.isZero(0.0));
     return out;
@@ -176,7 +161,7 @@ Limiter::Passed Limiter::pass(core::Instant_ns now, Status status, const Sample&
   last_p_ = sample.X_DH.p;
   has_pose_ = true;
 
-  const double part = share(now, wanted), dt_s = static_cast<double>(dt) * 1e-9;
+  const double dt_s = static_cast<double>(std::min(elapsed, 2 * period_)) * 1e-9;
   const Vec3 force = clamped(part * wanted.force_N, limits_.max_force_N);
   const Vec3 torque = clamped(part * wanted.torque_Nm, limits_.max_torque_Nm);
   last_.force_N = clamped(towards(last_.force_N, force, limits_.max_force_slew_N_per_s * dt_s),

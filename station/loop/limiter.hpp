@@ -6,6 +6,7 @@
 
 #include "core/json.hpp"
 #include "station/devices/device.hpp"
+#include "station/safety/machine.hpp"
 
 namespace loop {
 
@@ -30,22 +31,18 @@ struct HandLimits {
   core::Json to_json() const;
 };
 
-enum class Guard : std::uint8_t {
-  off,      ///< zero; waits for a person to arm
-  waiting,  ///< zero until the wanted wrench is small for a moment: nothing pushes at the start
-  ramping,  ///< a growing share
-  on,
-  latched,  ///< zero after a fault; only a person arms again
-};
+using Guard = safety::State;
+using safety::Fault;
+using safety::text_of;
 
-enum class Fault : std::uint8_t { none, not_finite, jump, speed, stale, device };
-/// "the device's pose jumped", …
-const char* text_of(Fault fault) noexcept;
+/// Of what a device answered: `none` for one that is fine or only late.
+Fault fault_of(devices::Status status) noexcept;
 
-/// Between model and device, axes of D. Guarantees, whatever comes in: |force| and |torque| never
-/// above the limits; their change per second never above the slew, but for the fall to zero by a
-/// fault, which is at once; zero from the tick in which a fault is seen; no way from `latched` or
-/// `off` but `arm`. A stale sample gives zero in that tick; stale for kStaleLatch_ns latches.
+/// Between model and device, axes of D. What is wrong it finds here; what follows from it, safety::
+/// Machine decides. Guarantees, whatever comes in: |force| and |torque| never above the limits;
+/// their change per second never above the slew, but for the fall to zero by a fault, which is at
+/// once; zero from the tick in which a fault is seen; no way from `latched` or `off` but `arm`. A
+/// stale sample gives zero in that tick; stale for kStaleLatch_ns latches.
 class Limiter {
  public:
   static constexpr core::Instant_ns kStaleAfter_ns = 5'000'000;
@@ -56,11 +53,14 @@ class Limiter {
   Limiter(const HandLimits& limits, core::Instant_ns period);
   /// An operator's deed: clears a fault, starts from zero.
   void arm() noexcept;
-  void disarm() noexcept { guard_ = Guard::off; }
+  void disarm() noexcept { machine_.disarm(); }
   /// Latches for a reason that another part saw (a device that refuses a command).
-  void fail(Fault fault) noexcept;
+  void fail(Fault fault) noexcept { machine_.fail(fault); }
   /// Lowers from now on; cannot raise.
-  void lower(const HandLimits& other) noexcept { limits_ = limits_.lowered_by(other); }
+  void lower(const HandLimits& other) noexcept {
+    limits_ = limits_.lowered_by(other);
+    machine_.lengthen_ramp(static_cast<core::Instant_ns>(limits_.ramp_s * 1e9));
+  }
 
   struct Passed {
     math::Wrench wrench;
@@ -71,25 +71,24 @@ class Limiter {
   Passed pass(core::Instant_ns now, devices::Status status, const devices::Sample& sample,
               const math::Wrench& wanted) noexcept;
 
-  Guard guard() const noexcept { return guard_; }
-  Fault fault() const noexcept { return fault_; }
+  Guard guard() const noexcept { return machine_.state(); }
+  Fault fault() const noexcept { return machine_.fault(); }
   const HandLimits& limits() const noexcept { return limits_; }
 
  private:
   Fault inspect(core::Instant_ns now, devices::Status status, const devices::Sample& sample,
-                const math::Wrench& wanted) noexcept;
-  double share(core::Instant_ns now, const math::Wrench& wanted) noexcept;
+                const math::Wrench& wanted) const noexcept;
+  static bool is_stale(core::Instant_ns now, devices::Status status,
+                       const devices::Sample& sample) noexcept;
 
   HandLimits limits_;
   core::Instant_ns period_;
-  Guard guard_ = Guard::off;
-  Fault fault_ = Fault::none;
+  safety::Machine machine_;
   math::Wrench last_;
   math::Vec3 last_p_ = math::Vec3::Zero();
   bool has_pose_ = false;
-  core::Instant_ns last_tick_ = 0, last_fresh_ = 0, ramp_from_ = 0;
+  core::Instant_ns last_tick_ = 0, last_fresh_ = 0;
   bool ticked_ = false;
-  int quiet_ticks_ = 0;
 };
 
 }  // namespace loop

@@ -14,36 +14,15 @@ core::Json RigLimits::to_json() const {
           {"max_torque_Nm", max_torque_Nm}};
 }
 
-const char* text_of(RigFault fault) noexcept {
-  switch (fault) {
-    case RigFault::none:
-      return "none";
-    case RigFault::silent:
-      return "the rig did not answer in time: it has stopped by itself; look at the cable";
-    case RigFault::garbage:
-      return "the rig answered with something that is no answer: stopped";
-    case RigFault::gone:
-      return "the line to the rig was closed: it has stopped by itself";
-    case RigFault::emergency:
-      return "emergency stop: release the button and press reset at the rig";
-    case RigFault::stalled:
-      return "the push was above what the actuator can hold: stopped";
-    case RigFault::drive:
-      return "the rig's drive reports an error of its own: stopped";
-    case RigFault::sensor:
-      return "the rig's force sensor is beyond its range: stopped";
-    case RigFault::watchdog:
-      return "this computer was held up again and again, and the rig stopped each time";
-    case RigFault::pushed:
-      return "the push stayed above its limit: stopped";
-    case RigFault::hand_on:
-      return "somebody pushed the probe while its sensor was tared: let go of it at the start";
-  }
-  return "an unknown fault";
-}
-
 ProbingGuard::ProbingGuard(const RigLimits& limits, double travel_m, double period_s)
-    : travel_m_(travel_m), period_s_(period_s) {
+    : travel_m_(travel_m),
+      period_s_(period_s),
+      // At once when the drive is ready: the stage starts from standstill by its law. Silence is
+      // counted in whole periods: half a one less than the limit tells the last of them.
+      machine_({.quiet_ticks = 1,
+                .ramp_ns = 0,
+                .stale_latch_ns = core::Instant_ns(1e9 * (kSilent_s - 0.5 * period_s)),
+                .when_stale = RigFault::silent}) {
   const RigLimits ceiling;
   const auto lower = [](double asked, double most) {
     return asked >= 0.0 ? std::min(asked, most) : 0.0;
@@ -51,68 +30,69 @@ ProbingGuard::ProbingGuard(const RigLimits& limits, double travel_m, double peri
   limits_ = {lower(limits.max_push_N, ceiling.max_push_N),
              lower(limits.max_speed_m_s, ceiling.max_speed_m_s),
              lower(limits.max_torque_Nm, ceiling.max_torque_Nm)};
+  machine_.arm();
 }
 
-void ProbingGuard::fail(RigFault fault) noexcept {
-  if (fault_ == RigFault::none) fault_ = fault;
-}
-
-void ProbingGuard::judge_fault(const devices::RigReading& r) noexcept {
-  if (r.status & registers::kEmergency) return fail(RigFault::emergency);
-  if (!(r.status & registers::kFaulted)) {
-    if (phase_ == Phase::resetting) phase_ = Phase::enabling;
-    return;
-  }
+// Of the machine's own. Its watchdog's is none yet: the drive is not ready.
+RigFault ProbingGuard::fault_of(const devices::RigReading& r) noexcept {
+  stopped_itself_ = false;
+  if (r.status & registers::kEmergency) return RigFault::emergency;
+  if (!(r.status & registers::kFaulted)) return RigFault::none;
   switch (r.fault) {
     case registers::Fault::watchdog:
-      if (phase_ == Phase::enabled && ++restarts_ > kMostRestarts) return fail(RigFault::watchdog);
-      if (phase_ == Phase::enabled || phase_ == Phase::enabling) phase_ = Phase::resetting;
-      return;
+      stopped_itself_ = true;
+      if (enabled() && ++restarts_ > kMostRestarts) return RigFault::watchdog;
+      return RigFault::none;
     case registers::Fault::stalled:
-      return fail(RigFault::stalled);
+      return RigFault::stalled;
     case registers::Fault::sensor:
-      return fail(RigFault::sensor);
+      return RigFault::sensor;
     case registers::Fault::emergency:
-      return fail(RigFault::emergency);
+      return RigFault::emergency;
     case registers::Fault::drive:
     case registers::Fault::none:
-      return fail(RigFault::drive);
+      return RigFault::drive;
   }
+  return RigFault::drive;
 }
 
-void ProbingGuard::tare(const devices::RigReading& r) noexcept {
+RigFault ProbingGuard::fault_of(devices::Exchange how) const noexcept {
+  if (how == devices::Exchange::garbage) return RigFault::garbage;
+  return how == devices::Exchange::gone ? RigFault::gone : RigFault::none;
+}
+
+RigFault ProbingGuard::tare(const devices::RigReading& r) noexcept {
   ++tared_;
   tare_N_ += (r.fz_N - tare_N_) / tared_;
   tare_Nm_ += (r.tz_Nm - tare_Nm_) / tared_;
-  if (tared_ * period_s_ < kTare_s) return;
-  if (std::abs(tare_N_) > kTareMost_N) return fail(RigFault::hand_on);
-  phase_ = Phase::enabling;
+  if (tared_ * period_s_ < kTare_s) return RigFault::none;
+  if (std::abs(tare_N_) > kTareMost_N) return RigFault::hand_on;
+  tare_known_ = true;
+  return RigFault::none;
 }
 
 ProbingGuard::Seen ProbingGuard::see(devices::Exchange how,
                                      const devices::RigReading& reading) noexcept {
   fresh_ = how == devices::Exchange::ok;
-  if (!fresh_) {
-    silent_s_ += period_s_;
-    if (how == devices::Exchange::garbage) fail(RigFault::garbage);
-    if (how == devices::Exchange::gone) fail(RigFault::gone);
-    if (silent_s_ >= kSilent_s) fail(RigFault::silent);
-    return {};
+  RigFault fault = fault_of(how);
+  if (fresh_) {
+    last_ = reading;
+    fault = fault_of(reading);
+    if (!tare_known_ && fault == RigFault::none && !latched()) fault = tare(reading);
   }
-  silent_s_ = 0.0;
-  last_ = reading;
-  judge_fault(reading);
-  if (phase_ == Phase::taring && !latched()) tare(reading);
-  const bool tared = phase_ != Phase::taring;
-  return {.fz_N = tared ? reading.fz_N - tare_N_ : 0.0,
-          .tz_Nm = tared ? reading.tz_Nm - tare_Nm_ : 0.0,
+  share_ =
+      machine_.tick(core::Instant_ns(1e9 * period_s_),
+                    {.fault = fault, .fresh = fresh_, .ready = tare_known_ && !stopped_itself_});
+  if (!fresh_) return {};
+  return {.fz_N = tare_known_ ? reading.fz_N - tare_N_ : 0.0,
+          .tz_Nm = tare_known_ ? reading.tz_Nm - tare_Nm_ : 0.0,
           .fresh = true};
 }
 
 bool ProbingGuard::held_by_push() noexcept {
   const bool held = std::abs(last_.fz_N - tare_N_) > limits_.max_push_N;
   pushed_s_ = held ? pushed_s_ + period_s_ : 0.0;
-  if (pushed_s_ >= kPushed_s) fail(RigFault::pushed);
+  if (pushed_s_ >= kPushed_s) machine_.fail(RigFault::pushed);
   return held;
 }
 
@@ -123,24 +103,22 @@ double ProbingGuard::within_travel(double speed_m_s) const noexcept {
 }
 
 ProbingGuard::Passed ProbingGuard::pass(double speed_m_s, double torque_Nm) noexcept {
-  if (latched() || phase_ == Phase::taring) return {};
+  if (latched() || !tare_known_) return {};
   if (!fresh_) {  // stand still; the drive stays on if its own watchdog lets it
-    const bool on = phase_ == Phase::enabled;
+    const bool on = enabled();
     return {.command = {.enable = on, .rotary_on = on}, .limited = speed_m_s != 0.0};
   }
-  if (phase_ == Phase::resetting) {
-    reset_edge_ = !reset_edge_;  // acts on its rising edge; one may be lost
+  if (!enabled()) {
+    reset_edge_ = stopped_itself_ && !reset_edge_;  // acts on its rising edge; one may be lost
     return {.command = {.reset_fault = reset_edge_}};
   }
   reset_edge_ = false;
   devices::RigCommand out{.enable = true, .rotary_on = true};
-  const bool moves = phase_ == Phase::enabled;  // not with the first command, which enables
-  phase_ = Phase::enabled;
-  if (!moves) return {.command = out};
+  if (share_ == 0.0) return {.command = out};  // not with the first command, which enables
   const bool held = held_by_push();
   if (latched()) return {};
-  const double speed = std::isfinite(speed_m_s) && !held ? speed_m_s : 0.0;
-  const double torque = std::isfinite(torque_Nm) ? torque_Nm : 0.0;
+  const double speed = std::isfinite(speed_m_s) && !held ? share_ * speed_m_s : 0.0;
+  const double torque = std::isfinite(torque_Nm) ? share_ * torque_Nm : 0.0;
   out.speed_m_s = within_travel(std::clamp(speed, -limits_.max_speed_m_s, limits_.max_speed_m_s));
   out.torque_Nm = std::clamp(torque, -limits_.max_torque_Nm, limits_.max_torque_Nm);
   const bool limited = out.speed_m_s != speed_m_s || out.torque_Nm != torque_Nm;

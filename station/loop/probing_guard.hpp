@@ -5,6 +5,7 @@
 
 #include "core/json.hpp"
 #include "station/devices/rig_device.hpp"
+#include "station/safety/machine.hpp"
 
 namespace loop {
 
@@ -17,23 +18,12 @@ struct RigLimits {
   core::Json to_json() const;
 };
 
-enum class RigFault : std::uint8_t {
-  none,
-  silent,     ///< the rig did not answer for kSilent_s
-  garbage,    ///< what came back was not an answer
-  gone,       ///< the line was closed
-  emergency,  ///< the e-stop
-  stalled,    ///< the drive's load was above its thrust
-  drive,      ///< the drive's own error
-  sensor,     ///< the sensor was beyond its range
-  watchdog,   ///< it stopped by itself more often than kMostRestarts times, for want of commands
-  pushed,     ///< the push stayed above the limit for kPushed_s
-  hand_on,    ///< somebody pushed while the sensor was tared
-};
-/// "the rig did not answer", … one line for a person, and what to do.
-const char* text_of(RigFault fault) noexcept;
+using RigFault = safety::Fault;
+using safety::text_of;
 
-/// Gives every tick's command. Guarantees, whatever comes in:
+/// Gives every tick's command. It finds what is wrong and speaks the drive's language (enable,
+/// reset); whether anything may move, safety::Machine decides. Armed when it is made: one is made
+/// for each trial, which a person began. Guarantees, whatever comes in:
 ///
 /// - nothing moves before it was enabled: a fresh answer without fault or e-stop, the sensor tared
 ///   over kTare_s with no hand on the probe;
@@ -72,28 +62,30 @@ class ProbingGuard {
   /// Last in the tick: what goes out with the next exchange.
   Passed pass(double speed_m_s, double torque_Nm) noexcept;
 
-  bool latched() const noexcept { return fault_ != RigFault::none; }
-  RigFault fault() const noexcept { return fault_; }
-  bool enabled() const noexcept { return phase_ == Phase::enabled; }
+  safety::State state() const noexcept { return machine_.state(); }
+  bool latched() const noexcept { return state() == safety::State::latched; }
+  RigFault fault() const noexcept { return machine_.fault(); }
+  /// The drive is told to be on.
+  bool enabled() const noexcept {
+    return state() == safety::State::ramping || state() == safety::State::on;
+  }
   int restarts() const noexcept { return restarts_; }  ///< after stops by the machine's watchdog
   double tare_N() const noexcept { return tare_N_; }
   double tare_Nm() const noexcept { return tare_Nm_; }
 
  private:
-  enum class Phase : std::uint8_t { taring, resetting, enabling, enabled };
-  void judge_fault(const devices::RigReading& reading) noexcept;
-  void tare(const devices::RigReading& reading) noexcept;
-  void fail(RigFault fault) noexcept;
+  RigFault fault_of(const devices::RigReading& reading) noexcept;
+  RigFault fault_of(devices::Exchange how) const noexcept;
+  RigFault tare(const devices::RigReading& reading) noexcept;
   bool held_by_push() noexcept;
   double within_travel(double speed_m_s) const noexcept;
 
   RigLimits limits_;
   double travel_m_, period_s_;
-  Phase phase_ = Phase::taring;
-  RigFault fault_ = RigFault::none;
+  safety::Machine machine_;
   devices::RigReading last_;
-  bool fresh_ = false, reset_edge_ = false;
-  double silent_s_ = 0.0, pushed_s_ = 0.0;
+  bool fresh_ = false, tare_known_ = false, stopped_itself_ = false, reset_edge_ = false;
+  double share_ = 0.0, pushed_s_ = 0.0;
   double tare_N_ = 0.0, tare_Nm_ = 0.0;
   int tared_ = 0, restarts_ = 0;
 };

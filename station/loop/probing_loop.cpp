@@ -57,6 +57,14 @@ void ProbingLoop::follow_angle(std::int32_t angle_urad) noexcept {
   angle_known_ = true;
 }
 
+// Trapezoid between two fresh answers: neither force nor motion is held here, both are measured.
+void ProbingLoop::follow_energy(double push_N) noexcept {
+  if (angle_known_) given_J_ -= 0.5 * (push_N + last_push_N_) * (reading_.x_m - last_x_m_);
+  injected_J_ = std::max(injected_J_, given_J_);
+  last_push_N_ = push_N;
+  last_x_m_ = reading_.x_m;
+}
+
 void ProbingLoop::step_law(const ProbingGuard::Seen& seen, ProbingSample& out,
                            double& torque_Nm) noexcept {
   const models::ProbingRuntime& law = *law_.load(std::memory_order_acquire);
@@ -79,6 +87,7 @@ ProbingSample ProbingLoop::tick(core::Instant_ns now, std::uint32_t number, bool
   ProbingSample out;
   double torque_Nm = 0.0;
   if (seen.fresh) {
+    follow_energy(seen.fz_N);
     follow_angle(reading_.angle_urad);
     step_law(seen, out, torque_Nm);
     round_trip_.add(round_trip);

@@ -58,6 +58,8 @@ class ProbingLoop {
 
   static constexpr double kStopped_s = 0.5;
 
+  /// The highest that the stage ever gave the pushing hand beyond what it took, J: −∫ F dx.
+  double injected_J() const noexcept { return injected_J_; }
   const ProbingCounts& counts() const noexcept { return counts_; }
   const TimeHistogram& wake() const noexcept { return wake_; }
   const TimeHistogram& work() const noexcept { return work_; }
@@ -68,6 +70,7 @@ class ProbingLoop {
   trial::ProbingSample tick(core::Instant_ns now, std::uint32_t number, bool late) noexcept;
   void step_law(const ProbingGuard::Seen& seen, trial::ProbingSample& out,
                 double& torque_Nm) noexcept;
+  void follow_energy(double push_N) noexcept;
   void follow_angle(std::int32_t angle_urad) noexcept;
   void record(trial::ProbingSample& sample, core::Instant_ns deadline) noexcept;
 
@@ -80,6 +83,7 @@ class ProbingLoop {
   devices::RigCommand command_;
   std::int32_t last_urad_ = 0;
   double theta_rad_ = 0.0, stopped_s_ = 0.0;
+  double last_push_N_ = 0.0, last_x_m_ = 0.0, given_J_ = 0.0, injected_J_ = 0.0;
   bool angle_known_ = false;
   ProbingCounts counts_;
   TimeHistogram wake_, work_, round_trip_;

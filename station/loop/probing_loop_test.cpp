@@ -141,7 +141,7 @@ TEST(ProbingLoop, CountsWhatWasLateSkippedOrLostAndSaysSoInTheSamples) {
   bench.device.how[380] = Exchange::silent;
   bench.run(397);
   const auto counts = trial::count_ticks({{}, bench.samples});
-  EXPECT_EQ(counts.missed, 3u);  // 300, 350, and 351, which woke 2.6 ms late
+  EXPECT_EQ(counts.missed, 3u);   // 300, 350, and 351, which woke 2.6 ms late
   EXPECT_EQ(counts.skipped, 2u);  // 3.6 ms after tick 350 began: 352 and 353 never did
   EXPECT_EQ(counts.bus_lost, 1u);
   EXPECT_EQ(counts.stale, 1u);

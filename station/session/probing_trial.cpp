@@ -14,6 +14,7 @@
 #include "station/loop/probing_loop.hpp"
 #include "station/loop/realtime.hpp"
 #include "station/loop/recorder.hpp"
+#include "station/session/fast_rig.hpp"
 #include "station/session/rig_entry.hpp"
 
 namespace session {
@@ -34,6 +35,8 @@ core::Result<void> check(const RigSetup& setup) {
                        "--speed fast: a rig runs in real time; sim-rig does not"};
   if (!(setup.rate_Hz >= 100.0 && setup.rate_Hz <= 1000.0))
     return wrong(fmt::format("--rate {}: 100 … 1000 Hz are possible", setup.rate_Hz));
+  if (setup.started_utc_us && setup.speed != Speed::fast)
+    return core::Error{core::Errc::bad_input, "--started: is of simulated time, --speed fast"};
   if (setup.speed == Speed::fast && setup.rate_Hz != 1000.0)
     return wrong("--speed fast: its clock moves by 1 ms a period, --rate 1000 is expected");
   if (!(setup.duration_s >= 1.0 && setup.duration_s <= 3600.0))
@@ -89,6 +92,7 @@ struct ProbingTrialRun::Parts {
   ProbingTask task;
   RigSetup setup;
   std::optional<devices::RigProcess> process;
+  std::string address;  // of a rig behind Modbus
   std::unique_ptr<devices::RigDevice> device;
   devices::RigIdentity identity;
   trial::Header header;
@@ -112,6 +116,7 @@ struct ProbingTrialRun::Parts {
   core::Clock& clock() { return fast() ? static_cast<core::Clock&>(manual_clock) : real_clock; }
   double elapsed_s() { return static_cast<double>(clock().now() - loop->started()) * 1e-9; }
   std::string operator_name() const;
+  core::Result<void> make_device();
   core::Result<void> open_device();
   core::Result<void> make_file();
   core::Result<void> add_law(const laws::ProbingParameters& law);
@@ -122,14 +127,18 @@ struct ProbingTrialRun::Parts {
   core::Result<void> append_end(const std::optional<trial::Answer>& answer);
 };
 
-core::Result<void> ProbingTrialRun::Parts::open_device() {
-  std::string address = setup.address;
+core::Result<void> ProbingTrialRun::Parts::make_device() {
+  if (fast()) {
+    device = fast_rig(setup);
+    return {};
+  }
+  address = setup.address;
   if (setup.device == "sim-rig") {
     auto started = devices::RigProcess::start({.program = setup.program,
                                                .seed = setup.seed,
                                                .skill = setup.skill,
                                                .surgeon = setup.surgeon,
-                                               .bus_clock = fast()});
+                                               .bus_clock = false});
     if (!started) return started.error();
     process.emplace(std::move(*started));
     address = process->address();
@@ -137,6 +146,11 @@ core::Result<void> ProbingTrialRun::Parts::open_device() {
   auto made = devices::modbus_rig(address);
   if (!made) return made.error();
   device = std::move(*made);
+  return {};
+}
+
+core::Result<void> ProbingTrialRun::Parts::open_device() {
+  if (auto made = make_device(); !made) return made;
   auto found = device->open();
   if (!found) return found.error();
   identity = *found;
@@ -166,14 +180,15 @@ core::Result<void> ProbingTrialRun::Parts::make_file() {
   header.operator_name = operator_name();
   header.simulated = identity.simulated;
   header.device = setup.device;
-  header.started_utc_us = core::utc_us();
+  header.started_utc_us = setup.started_utc_us.value_or(core::utc_us());
   header.rate_Hz = setup.rate_Hz;
   header.rig = trial::Rig::probing;
   if (!task.blind) header.probe = {{"travel_m", task.law.travel_m}};
   header.extra = task.extra;
   header.extra["clock"] =
-      fast() ? "manual: simulated time, run as fast as the bus goes" : "monotonic: real time";
+      fast() ? "manual: simulated time, run as fast as it goes" : "monotonic: real time";
   header.extra["limits"] = limits.to_json();
+  if (setup.started_utc_us) header.extra["date"] = "simulated";
   if (setup.device == "sim-rig")
     header.extra["simulated_surgeon"] = {{"seed", setup.seed}, {"skill", setup.skill}};
   auto writer = trial::TrialWriter::create(folder.trial_file(header.id), header);
@@ -308,7 +323,8 @@ core::Result<void> ProbingTrialRun::Parts::append_end(const std::optional<trial:
                             {"missed_periods", n.missed},
                             {"lost_exchanges", n.bus_lost},
                             {"restarts", guard->restarts()},
-                            {"limited", n.ticks.limited}}});
+                            {"limited", n.ticks.limited},
+                            {"injected_J", loop->injected_J()}}});
 }
 
 core::Result<TrialReport> ProbingTrialRun::finish(const std::optional<trial::Answer>& answer) {
@@ -325,6 +341,7 @@ core::Result<TrialReport> ProbingTrialRun::finish(const std::optional<trial::Ans
                      .wake_p99_us = p.loop->wake().quantile_us(0.99),
                      .work_p50_us = p.loop->work().quantile_us(0.5),
                      .work_p99_us = p.loop->work().quantile_us(0.99),
+                     .injected_J = p.loop->injected_J(),
                      .grant = p.grant,
                      .answer = p.fault.empty() ? answer : std::nullopt,
                      .simulated = p.header.simulated,

@@ -25,9 +25,10 @@ struct RigSetup {
   std::uint64_t seed = 1;         ///< of the simulated surgeon, the sensor and the answer
   double skill = 0.5;             ///< of the simulated surgeon, 0 … 1
   bool surgeon = true;            ///< of "sim-rig": a SIMULATED surgeon pushes; else nobody does
-  Speed speed = Speed::real;      ///< fast: "sim-rig" alone; the rig's clock is moved by the bus
-  double rate_Hz = 1000.0;        ///< 100 … 1000
-  double duration_s = 120.0;      ///< at most so long
+  Speed speed = Speed::real;      ///< fast: "sim-rig" alone, in this process, without the bus
+  std::optional<std::int64_t> started_utc_us = {};  ///< fast alone: a SIMULATED date; else now
+  double rate_Hz = 1000.0;                          ///< 100 … 1000
+  double duration_s = 120.0;                        ///< at most so long
 };
 
 /// What is probed. A value; holds no name of a scenario when the trial is blind.

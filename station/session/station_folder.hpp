@@ -48,6 +48,7 @@ class StationFolder {
   const StationConfig& config() const noexcept { return config_; }
   const std::vector<std::string>& trusted() const noexcept { return trusted_; }
   std::filesystem::path cases() const { return root_ / "cases"; }
+  std::filesystem::path models() const { return root_ / "models"; }
   std::filesystem::path studies() const { return root_ / "studies"; }
   std::filesystem::path trials() const { return root_ / "trials"; }
   std::filesystem::path trial_file(const std::string& id) const {

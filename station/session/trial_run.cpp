@@ -63,6 +63,7 @@ core::Json TrialReport::to_json() const {
                     {"wake_p99_us", wake_p99_us},
                     {"work_p50_us", work_p50_us},
                     {"work_p99_us", work_p99_us},
+                    {"injected_J", injected_J},
                     {"realtime", grant.to_json()}};
   out.update(json_of(counts));
   if (bus)
@@ -153,14 +154,16 @@ core::Result<void> TrialRun::Parts::make_file(const PreparedCase& prepared,
   if (!setup.operator_name.empty()) header.operator_name = setup.operator_name;
   header.simulated = info.simulated;
   header.device = info.id;
-  header.started_utc_us = core::utc_us();
+  header.started_utc_us = setup.started_utc_us.value_or(core::utc_us());
   header.rate_Hz = setup.rate_Hz;
   header.probe = probe_of(prepared.model.base);
   header.extra = {
       {"clock", fast() ? "manual: simulated time, run as fast as it goes" : "monotonic: real time"},
       {"model", prepared.model.name},
-      {"limits", limiter.limits().to_json()}};
+      {"limits", limiter.limits().to_json()},
+      {"passivity", setup.passivity == loop::Passivity::controlled ? "controlled" : "observed"}};
   if (info.simulated) header.extra["seed"] = setup.seed;
+  if (setup.started_utc_us) header.extra["date"] = "simulated";
   if (!prepared.model.effects.empty())
     header.extra["effects"] = prepared.model.to_json()["effects"];
   auto writer = trial::TrialWriter::create(folder.trial_file(header.id), header);
@@ -177,6 +180,8 @@ core::Result<std::unique_ptr<TrialRun>> TrialRun::make(const StationFolder& fold
   if (setup.speed == Speed::fast && !info->simulated)
     return core::Error{core::Errc::bad_input,
                        fmt::format("--speed fast: {} is held by a person", info->id)};
+  if (setup.started_utc_us && setup.speed != Speed::fast)
+    return core::Error{core::Errc::bad_input, "--started: is of simulated time, --speed fast"};
   if (!(setup.duration_s >= 1.0 && setup.duration_s <= 3600.0))
     return core::Error{core::Errc::out_of_range,
                        fmt::format("--duration {}: 1 … 3600 s are possible", setup.duration_s)};
@@ -189,9 +194,10 @@ core::Result<std::unique_ptr<TrialRun>> TrialRun::make(const StationFolder& fold
       loop::place_device(prepared.opened.definition.tract, base.length_m, base.pose_offset_m);
   if (auto opened = parts->open_device(*info, prepared, X_VD); !opened) return opened.error();
   if (auto created = parts->make_file(prepared, *info); !created) return created.error();
-  parts->loop.emplace(loop::HapticLoop::Parts{parts->clock(), *parts->made.device, parts->contact,
-                                              parts->limiter, parts->ring, parts->live},
-                      X_VD, base.pose_offset_m, setup.rate_Hz);
+  parts->loop.emplace(
+      loop::HapticLoop::Parts{parts->clock(), *parts->made.device, parts->contact, parts->limiter,
+                              parts->ring, parts->live, setup.passivity},
+      X_VD, base.pose_offset_m, setup.rate_Hz);
   return std::unique_ptr<TrialRun>(new TrialRun(std::move(parts)));
 }
 
@@ -262,7 +268,9 @@ core::Result<void> TrialRun::Parts::append_end(const TrialReport& report) {
     const trial::Event answered{elapsed_s(), "answer", report.answer->to_json()};
     if (auto said = recorder->append(answered); !said) return said;
   }
-  return recorder->append({elapsed_s(), "end", json_of(report.counts)});
+  core::Json detail = json_of(report.counts);
+  detail["injected_J"] = report.injected_J;
+  return recorder->append({elapsed_s(), "end", detail});
 }
 
 core::Result<TrialReport> TrialRun::finish(const std::optional<trial::Answer>& answer) {
@@ -277,6 +285,7 @@ core::Result<TrialReport> TrialRun::finish(const std::optional<trial::Answer>& a
                      .wake_p99_us = p.loop->wake().quantile_us(0.99),
                      .work_p50_us = p.loop->work().quantile_us(0.5),
                      .work_p99_us = p.loop->work().quantile_us(0.99),
+                     .injected_J = p.loop->energy().injected_J(),
                      .grant = p.grant,
                      .answer = answer,
                      .simulated = p.header.simulated};

@@ -23,9 +23,11 @@ struct TrialSetup {
   double duration_s = 30.0;
   Speed speed = Speed::real;
   double rate_Hz = 4000.0;
+  loop::Passivity passivity = loop::Passivity::observed;
   /// Of an assigned trial: what its file calls the case and the trainee instead.
   std::string case_known_as = {};
   std::string operator_name = {};
+  std::optional<std::int64_t> started_utc_us = {};  ///< fast alone: a SIMULATED date; else now
 };
 
 /// What a trial came to.
@@ -37,6 +39,7 @@ struct TrialReport {
   double duration_s = 0.0;
   loop::Counts counts;
   double wake_p50_us = 0.0, wake_p99_us = 0.0, work_p50_us = 0.0, work_p99_us = 0.0;
+  double injected_J = 0.0;  ///< energy that the hand was given beyond what it gave (safety/energy)
   loop::RealtimeGrant grant;
   std::optional<trial::Answer> answer;
   bool simulated = false;

@@ -56,6 +56,7 @@ class DoubleServer final : public Server {
   }
   Answer take(const Request& request) {
     if (request.method == "GET") return file(request);
+    if (request.path.ends_with("/there")) return {204, {}};
     const std::string rest = request.path.substr(std::string("/api/v1/uploads/").size());
     const std::string id = rest.substr(0, 32);
     if (request.method == "PUT") return announce(id, request);

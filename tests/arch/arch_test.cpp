@@ -60,12 +60,14 @@ const std::map<std::string, Names> kAllowed = {
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/models", "shared/trial",
       "shared/plot", "shared/lab"}},
     {"db/store", {"shared/core", "shared/trial"}},
+    // Whether a hand may be given anything: no device, no loop, no model.
+    {"station/safety", {"shared/core", "shared/math"}},
     {"station/devices", {"shared/core", "shared/math"}},
     // The rig's electronics and mechanics, played by a process: the register map, and no law.
     {"station/rig", {"shared/core", "station/devices"}},
     {"station/loop",
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/effects",
-      "shared/models", "shared/trial", "station/devices"}},
+      "shared/models", "shared/trial", "station/devices", "station/safety"}},
     {"station/uplink", {"shared/core", "shared/trial", "shared/wire", "shared/cases"}},
     {"station/view",
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/models", "shared/cases",
@@ -73,7 +75,8 @@ const std::map<std::string, Names> kAllowed = {
     {"station/session",
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/effects",
       "shared/models", "shared/scenarios", "shared/cases", "shared/trial", "shared/metrics",
-      "shared/wire", "station/devices", "station/loop", "station/uplink"}},
+      "shared/wire", "station/devices", "station/loop", "station/uplink",
+      "station/rig"}},  // the simulated rig without its bus, for trials in simulated time
     {"server/http", {"shared/core"}},
     // A cohort's statistics are the plans of shared/assessment on a table of the store's trials.
     {"server/jobs",

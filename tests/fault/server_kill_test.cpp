@@ -10,12 +10,13 @@
 #include <random>
 #include <thread>
 
+#include "kills.hpp"
 #include "tests/fault/hand_over.hpp"
 
 namespace {
 using namespace fault;
 
-constexpr int kKills = 220;
+const int kKills = kills(220);
 TEST(KilledAtAnyMoment, TheServerLosesNothingItAcknowledgedAndKeepsNoHalfTrial) {
   KilledServer station;
   Client client;

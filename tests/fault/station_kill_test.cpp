@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "core/file.hpp"
+#include "kills.hpp"
 #include "tests/support/server/process.hpp"
 #include "tests/support/server/world.hpp"
 
@@ -21,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using namespace world;
 using Clock = std::chrono::steady_clock;
-constexpr int kKills = 120;
+const int kKills = kills(120);
 
 /// A station on the served case, and what it promised so far.
 class KilledStation {

@@ -11,6 +11,7 @@
 #include <random>
 
 #include "core/bytes.hpp"
+#include "kills.hpp"
 #include "trial/trial_file.hpp"
 
 namespace trial {
@@ -18,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 constexpr std::uint32_t kPerFrame = 80;  // 20 ms at 4 kHz
 constexpr std::uint32_t kFrames = 30;
-constexpr int kRounds = 250;
+const int kRounds = kills(250);
 
 Sample sample(std::uint32_t i) {
   Sample s;

@@ -1,4 +1,4 @@
-#include "trial_bytes.hpp"
+#include "fuzz/trial_bytes.hpp"
 
 #include <sys/mman.h>
 #include <unistd.h>
@@ -31,7 +31,9 @@ bool same(const trial::Trial& a, const trial::Trial& b) {
 
 template <class S>
 void require_sound(const std::vector<S>& samples, std::size_t file_bytes) {
-  require(samples.size() * sizeof(S) <= file_bytes, "samples come from the file");
+  const std::size_t frames = file_bytes / (trial::kFrameHeader_bytes + sizeof(std::uint32_t));
+  require(samples.size() <= frames * trial::max_frame_samples(sizeof(S)),
+          "a frame holds no more samples than it may");
   const S* before = nullptr;
   for (const auto& sample : samples) {
     require(trial::fault_of(sample, before).empty(), "every sample that is handed out is sound");
@@ -59,7 +61,8 @@ void require_recoverable(const std::string& path, const trial::Trial& read) {
 core::Bytes repaired(core::Bytes bytes) {
   const auto magic = core::bytes_of(trial::kMagic);
   if (bytes.size() < magic.size()) return bytes;
-  std::ranges::copy(magic, bytes.begin());
+  const bool one = core::text_of(bytes).starts_with(trial::kMagicOne);
+  std::ranges::copy(one ? core::bytes_of(trial::kMagicOne) : magic, bytes.begin());
   std::size_t at = magic.size();
   std::uint64_t samples = 0;
   for (std::uint32_t sequence = 0; at + trial::kFrameHeader_bytes <= bytes.size(); ++sequence) {
@@ -73,8 +76,9 @@ core::Bytes repaired(core::Bytes bytes) {
       std::ranges::copy(trial::end_payload(samples, core::sha256(core::ByteView(bytes).first(at))),
                         payload);
     std::uint32_t count = 0;  // of a frame of samples: what it says of itself
-    if (trial::FrameType(type) == trial::FrameType::samples && length >= sizeof count)
-      std::memcpy(&count, payload, sizeof count);
+    const bool holds_samples = trial::FrameType(type) == trial::FrameType::samples ||
+                               trial::FrameType(type) == trial::FrameType::packed;
+    if (holds_samples && length >= sizeof count) std::memcpy(&count, payload, sizeof count);
     samples += count;
     const auto frame =
         trial::frame_bytes(trial::FrameType(type), sequence,

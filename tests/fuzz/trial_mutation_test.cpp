@@ -4,7 +4,7 @@
 #include <random>
 
 #include "core/file.hpp"
-#include "trial_bytes.hpp"
+#include "fuzz/trial_bytes.hpp"
 
 namespace fuzz {
 namespace {
@@ -45,17 +45,27 @@ core::Bytes mutated(core::Bytes bytes, std::mt19937& random) {
   return bytes;
 }
 
-/// Of each rig.
-class TrialMutation : public testing::TestWithParam<const char*> {
+struct Golden {
+  const char *name, *whole, *torn;
+  friend void PrintTo(const Golden& golden, std::ostream* out) { *out << golden.name; }
+};
+
+/// Of each rig and format.
+class TrialMutation : public testing::TestWithParam<Golden> {
  protected:
-  core::Bytes small() const { return golden(GetParam() + std::string("/small.trial")); }
-  core::Bytes torn() const { return golden(GetParam() + std::string("/torn.trial")); }
+  core::Bytes small() const { return golden(GetParam().whole); }
+  core::Bytes torn() const { return golden(GetParam().torn); }
 };
 INSTANTIATE_TEST_SUITE_P(Rigs, TrialMutation,
-                         testing::Values("trial-format-1", "trial-format-1-probing"),
-                         [](const auto& rig) {
-                           return rig.index == 0 ? "palpation" : "probing";
-                         });
+                         testing::Values(Golden{"palpation", "trial-format-2/palpation.trial",
+                                                "trial-format-2/palpation-torn.trial"},
+                                         Golden{"probing", "trial-format-2/probing.trial",
+                                                "trial-format-2/probing-torn.trial"},
+                                         Golden{"palpation_one", "trial-format-1/small.trial",
+                                                "trial-format-1/torn.trial"},
+                                         Golden{"probing_one", "trial-format-1-probing/small.trial",
+                                                "trial-format-1-probing/torn.trial"}),
+                         [](const auto& rig) { return rig.param.name; });
 
 TEST_P(TrialMutation, TheWholeFilesAreRead) {
   EXPECT_TRUE(try_trial(small()));

@@ -19,6 +19,9 @@ const network = () => import('@/features/network');
 const PeoplePage = lazy(() => network().then(({ PeoplePage: page }) => ({ default: page })));
 const CohortsPage = lazy(() => network().then(({ CohortsPage: page }) => ({ default: page })));
 const StationsPage = lazy(() => network().then(({ StationsPage: page }) => ({ default: page })));
+const BackupsPage = lazy(() => network().then(({ BackupsPage: page }) => ({ default: page })));
+const StationPage = lazy(() => network().then(({ StationPage: page }) => ({ default: page })));
+const WallPage = lazy(() => import('@/features/wall').then(({ WallPage: page }) => ({ default: page })));
 const AuditPage = lazy(() => network().then(({ AuditPage: page }) => ({ default: page })));
 const GuidePage = lazy(() => import('@/features/guide').then(({ GuidePage: page }) => ({ default: page })));
 const analysis = () => import('@/features/analysis');
@@ -30,6 +33,15 @@ const RunPage = lazy(() => analysis().then(({ RunPage: page }) => ({ default: pa
 const trainees = () => import('@/features/trainees');
 const TraineesPage = lazy(() => trainees().then(({ TraineesPage: page }) => ({ default: page })));
 const TraineePage = lazy(() => trainees().then(({ TraineePage: page }) => ({ default: page })));
+const cases = () => import('@/features/cases');
+const CasesPage = lazy(() => cases().then(({ CasesPage: page }) => ({ default: page })));
+const CasePage = lazy(() => cases().then(({ CasePage: page }) => ({ default: page })));
+const NewCasePage = lazy(() => cases().then(({ NewCasePage: page }) => ({ default: page })));
+const assignments = () => import('@/features/assignments');
+const AssignmentsPage = lazy(() => assignments().then(({ AssignmentsPage: page }) => ({ default: page })));
+const AssignmentPage = lazy(() => assignments().then(({ AssignmentPage: page }) => ({ default: page })));
+const NewAssignmentPage = lazy(() => assignments().then(({ NewAssignmentPage: page }) => ({ default: page })));
+const DebriefPage = lazy(() => import('@/features/debrief').then(({ DebriefPage: page }) => ({ default: page })));
 const VersionsPage = lazy(() => lab().then(({ VersionsPage: page }) => ({ default: page })));
 
 function makeClient(): QueryClient {
@@ -52,12 +64,16 @@ function makeClient(): QueryClient {
 
 /** Which places a role has; the server decides again on every call. */
 const kPlaces = [
+  { to: '/assignments', name: 'My work', roles: ['trainee'] },
   { to: '/trials', name: 'Trials', roles: ['admin', 'director', 'faculty', 'trainee'] },
+  { to: '/cases', name: 'Cases', roles: ['admin', 'director', 'faculty', 'researcher'] },
+  { to: '/assignments', name: 'Assignments', roles: ['admin', 'director', 'faculty'] },
   { to: '/trainees', name: 'Trainees', roles: ['admin', 'director', 'faculty'] },
   { to: '/me', name: 'My curve', roles: ['trainee'] },
   { to: '/studies', name: 'Studies', roles: ['admin', 'researcher'] },
   { to: '/analysis', name: 'Analysis', roles: ['admin', 'researcher'] },
   { to: '/lab', name: 'Model lab', roles: ['admin', 'researcher'] },
+  { to: '/wall', name: 'Live', roles: ['admin', 'director', 'faculty', 'technician'] },
   { to: '/network', name: 'Network', roles: ['admin', 'director', 'faculty', 'technician'] },
   { to: '/guide', name: 'Guide', roles: ['admin', 'director', 'faculty', 'researcher', 'technician', 'trainee'] },
 ] as const;
@@ -131,8 +147,18 @@ function Pages() {
         <Route path="/network/people"><PeoplePage /></Route>
         <Route path="/network/cohorts"><CohortsPage /></Route>
         <Route path="/network/stations"><StationsPage /></Route>
+        <Route path="/network/stations/:id">{({ id }) => <StationPage key={id} id={id} />}</Route>
+        <Route path="/network/backups"><BackupsPage /></Route>
+        <Route path="/wall"><WallPage /></Route>
         <Route path="/network/audit"><AuditPage /></Route>
         <Route path="/trials"><TrialsPage /></Route>
+        <Route path="/cases"><CasesPage /></Route>
+        <Route path="/cases/new/:volume">{({ volume }) => <NewCasePage key={volume} volume={volume} />}</Route>
+        <Route path="/cases/:id">{({ id }) => <CasePage key={id} id={id} />}</Route>
+        <Route path="/assignments"><AssignmentsPage /></Route>
+        <Route path="/assignments/new"><NewAssignmentPage /></Route>
+        <Route path="/assignments/:id">{({ id }) => <AssignmentPage key={id} id={id} />}</Route>
+        <Route path="/trials/:id/debrief">{({ id }) => <DebriefPage key={id} id={id} />}</Route>
         <Route path="/trials/:id">{({ id }) => <TrialPage key={id} id={id} />}</Route>
         <Route path="/studies"><StudiesPage /></Route>
         <Route path="/studies/new"><NewStudyPage /></Route>

@@ -1,6 +1,7 @@
 /// Assignments: what trainees are to do, until when, and when they may see how they did.
 #include "db/store/assignments.hpp"
 
+#include "db/store/debriefs.hpp"
 #include "server/api/assignment_plan.hpp"
 #include "server/api/authentication.hpp"
 #include "server/api/backend.hpp"
@@ -51,22 +52,37 @@ Result<http::Response> list_assignments(const Call& call) {
   return json_response({{"assignments", list}});
 }
 
-Result<Json> trials_json(store::Reading& tx, const std::string& id) {
+/// @param whose  this participant's alone; empty: everybody's.
+Result<Json> trials_json(store::Reading& tx, const std::string& id, const std::string& whose) {
   auto slots = store::study_slots(tx, id);
   if (!slots) return slots.error();
-  std::map<std::string, std::string> whose;
-  for (const auto& slot : *slots) whose[slot.id] = slot.participant;
+  std::map<std::string, const store::Slot*> places;
+  for (const auto& slot : *slots) places[slot.id] = &slot;
   auto trials = store::study_trials(tx, id);
   if (!trials) return trials.error();
   Json out = Json::array();
-  for (const auto& trial : *trials)
+  for (const auto& trial : *trials) {
+    const auto place = places.find(trial.slot_id);
+    if (place == places.end() || (!whose.empty() && place->second->participant != whose)) continue;
+    auto comments = store::comments_of(tx, trial.trial_id);
+    if (!comments) return comments.error();
     out.push_back({{"trial_id", trial.trial_id},
-                   {"participant", whose[trial.slot_id]},
+                   {"participant", place->second->participant},
+                   {"number", place->second->position + 1},
                    {"state", trial.state},
                    {"reason", trial.reason},
                    {"correct", trial.correct ? Json(*trial.correct) : Json()},
+                   {"comments", comments->size()},
                    {"started_utc_us", time_or_null(trial.started_utc_us)}});
+  }
   return out;
+}
+
+/// What a trainee has done of it, once the results may be seen.
+Result<Json> own_trials_json(store::Reading& tx, const std::string& id, const std::string& me) {
+  auto participant = store::participant_for(tx, id, me);
+  if (!participant) return participant.error();
+  return trials_json(tx, id, *participant);
 }
 
 Result<Json> whole_json(store::Reading& tx, const std::string& id, Of of, const std::string& me) {
@@ -74,7 +90,13 @@ Result<Json> whole_json(store::Reading& tx, const std::string& id, Of of, const 
   if (!found) return found.error();
   if (!*found) return Error{Errc::not_found, "no assignment " + id.substr(0, 32)};
   Json out = assignment_json(**found, of);
-  if (of == Of::own) return out;
+  if (of == Of::own) {
+    if ((*found)->release == "held") return out;
+    auto own = own_trials_json(tx, id, me);
+    if (!own) return own.error();
+    out["trials"] = std::move(*own);
+    return out;
+  }
   out["trainees"] = Json::array();
   auto people = store::assigned_people(tx, id);
   if (!people) return people.error();
@@ -84,7 +106,7 @@ Result<Json> whole_json(store::Reading& tx, const std::string& id, Of of, const 
                                {"participant", person.participant},
                                {"done", person.done},
                                {"planned", person.planned}});
-  auto trials = trials_json(tx, id);
+  auto trials = trials_json(tx, id, "");
   if (!trials) return trials.error();
   out["trials"] = std::move(*trials);
   return out;
@@ -241,7 +263,8 @@ std::vector<NamedSchema> read_schemas() {
   using namespace schema;
   std::vector<Field> whole = summary_fields();
   whole.emplace_back("trainees", optional(array(ref("AssignedTrainee"), "by name")));
-  whole.emplace_back("trials", optional(array(ref("AssignedTrialDone"), "that arrived")));
+  whole.emplace_back("trials", optional(array(ref("AssignedTrialDone"),
+                                              "that arrived; a trainee: the own, once released")));
   return {
       {"AssignmentSummary", object(summary_fields())},
       {"Assignments",
@@ -254,9 +277,11 @@ std::vector<NamedSchema> read_schemas() {
       {"AssignedTrialDone",
        object({{"trial_id", text("32 hexadecimal characters")},
                {"participant", text("a pseudonym")},
+               {"number", integer("1", "of the person's trials, from 1")},
                {"state", one_of({"arriving", "counts", "invalid", "surplus"}, "does it count?")},
                {"reason", text("why it does not")},
                {"correct", nullable(truth("the answer against the truth"))},
+               {"comments", integer("1", "that were made on it")},
                {"started_utc_us", nullable(integer("us", "since 1970, UTC"))}})},
       {"Assignment", object(whole)}};
 }

@@ -22,7 +22,8 @@ core::Result<http::Response> list_cases(const Call& call) {
                     {"title", c.title},
                     {"source", c.source},
                     {"made_utc_us", c.made_utc_us},
-                    {"trials", c.trials}});
+                    {"trials", c.trials},
+                    {"retired", c.retired}});
   return json_response({{"cases", list}});
 }
 
@@ -102,7 +103,8 @@ std::vector<RouteInfo> cases_routes() {
                        {"title", schema::text("for people")},
                        {"source", schema::text("where the volume came from, licence")},
                        {"made_utc_us", schema::integer("us", "since 1970, UTC")},
-                       {"trials", schema::integer("1", "on this server")}})},
+                       {"trials", schema::integer("1", "on this server")},
+                       {"retired", schema::truth("offered no more")}})},
       {"CaseList",
        schema::object({{"cases", schema::array(schema::ref("CaseSummary"), "newest first")}})}};
   list.handle = list_cases;

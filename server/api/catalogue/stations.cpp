@@ -79,7 +79,10 @@ Result<http::Response> enrol(const Call& call) {
   if (!added && added.error().code == Errc::unauthorised)
     if (auto noted = note_failure(call.backend, kEnrolling, peer); !noted) return noted.error();
   if (!added) return added.error();
-  return json_response({{"id", station.id}, {"name", station.name}}, 201);
+  return json_response({{"id", station.id},
+                        {"name", station.name},
+                        {"case_signer", call.backend.secrets.case_key().public_hex}},
+                       201);
 }
 
 Result<http::Response> revoke(const Call& call) {
@@ -136,7 +139,10 @@ std::vector<RouteInfo> stations_routes() {
   in.schemas = {
       {"Enrolment", object({{"code", text("from makeEnrolmentCode")},
                             {"token_sha256", text("of the station's own key, 64 hexadecimal")}})},
-      {"Enrolled", object({{"id", text("never changes")}, {"name", text("as in the code")}})}};
+      {"Enrolled",
+       object({{"id", text("never changes")},
+               {"name", text("as in the code")},
+               {"case_signer", text("public key that this server signs cases with")}})}};
   RouteInfo out = route("POST", "/{id}/revoke", "revokeStation",
                         "Shut a station out for good; its trials stay", "", revoke);
   out.parameters = {path_text("id", "the station's")};

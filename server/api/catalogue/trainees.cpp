@@ -24,7 +24,11 @@ core::Result<http::Response> one_trainee(const Call& call) {
   if (at == names.end())
     return core::Error{core::Errc::not_found,
                        "no scored trials of " + call.text("name").substr(0, 64)};
-  return json_response(trainee_json(*programme, std::size_t(at - names.begin())));
+  core::Json out = trainee_json(*programme, std::size_t(at - names.begin()));
+  // What would be best to do next names a scenario: a trainee who waits for a blind trial is not
+  // told one.
+  if (call.of == Of::own) out["next"] = {{"scenario", ""}, {"why", ""}};
+  return json_response(out);
 }
 
 Parameter study_parameter() {
@@ -38,7 +42,7 @@ Parameter study_parameter() {
 }
 
 std::vector<Field> standing_fields() {
-  return {{"trainee", text("the operator's name, or a study's pseudonym")},
+  return {{"trainee", text("the account's name, a study's pseudonym, or the operator's name")},
           {"trials", integer("1", "that count and are judged")},
           {"right", integer("1", "of them")},
           {"share", number("1", "right, of all")},
@@ -47,7 +51,7 @@ std::vector<Field> standing_fields() {
           {"state", one_of({"learning", "competent", "relapsed"}, "by LC-CUSUM, then CUSUM")},
           {"certified", truth("competence can be said")},
           {"why", text("why it can, or cannot")},
-          {"next", object({{"scenario", text("to do next")}, {"why", text("that one")}})},
+          {"next", object({{"scenario", text("to do next; empty for the trainee, who is blind")}, {"why", text("that one")}})},
           {"simulated", truth("some of the trials are by a machine")},
           {"last_utc_us", integer("us", "of the last trial, since 1970, UTC")}};
 }

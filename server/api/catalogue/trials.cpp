@@ -6,6 +6,7 @@
 #include "server/api/backend.hpp"
 #include "server/api/schema.hpp"
 #include "server/api/trial_json.hpp"
+#include "server/api/trial_signals.hpp"
 #include "server/api/uploads.hpp"
 #include "server/jobs/case_facts.hpp"
 #include "server/jobs/scenario_facts.hpp"
@@ -59,12 +60,6 @@ core::Json truth_json(const std::optional<cases::Truth>& truth) {
   return shown;
 }
 
-core::Result<trial::Header> header_of(const store::TrialRecord& trial) {
-  auto json = core::parse_json(trial.header, "trial " + trial.summary.id);
-  if (!json) return json.error();
-  return trial::Header::from_json(*json, "trial " + trial.summary.id);
-}
-
 /// Where the trial stands in a study, if it is of one.
 core::Result<std::optional<StudyPlace>> study_place(Backend& backend, const std::string& trial_id) {
   using Place = std::optional<StudyPlace>;
@@ -110,30 +105,6 @@ core::Result<http::Response> one_trial(const Call& call) {
   return json_response(trial_json(found->trial, found->scores, *facts));
 }
 
-core::Result<trial::Signals> decode(Backend& backend, const store::TrialRecord& trial) {
-  auto header = header_of(trial);
-  if (!header) return header.error();
-  std::optional<trial::TractLine> line;
-  if (header->rig == trial::Rig::palpation) {
-    auto facts = jobs::case_facts(backend.store, backend.objects, trial.summary.case_id);
-    if (!facts) return facts.error();
-    line = trial::TractLine{facts->definition.tract.entry_m, facts->definition.tract.axis};
-  }
-  trial::Signals signals(*header, line);
-  auto read = trial::scan_trial(backend.objects.path_of(trial.sha256),
-                                [&](const trial::Block& block) { signals.add(block); },
-                                {.max_samples = kMaxTrialSamples, .max_bytes = kMaxTrial_bytes});
-  if (!read) return read.error();
-  return signals;
-}
-
-core::Result<std::shared_ptr<const trial::Signals>> signals_of(const Call& call) {
-  auto found = find_trial(call);
-  if (!found) return found.error();
-  return call.backend.trial_views.of(found->trial.summary.id,
-                                     [&] { return decode(call.backend, found->trial); });
-}
-
 std::vector<std::string> channels_of(const Call& call, const trial::Signals& signals) {
   if (call.text("channels") == "all") return signals.channels();
   std::vector<std::string> out;
@@ -147,7 +118,7 @@ std::vector<std::string> channels_of(const Call& call, const trial::Signals& sig
 }
 
 core::Result<http::Response> trial_signals(const Call& call) {
-  auto signals = signals_of(call);
+  auto signals = signals_of(call.backend, call.text("id"));
   if (!signals) return signals.error();
   const auto channels = channels_of(call, **signals);
   if (channels.size() > trial::kChannels.size())
@@ -166,7 +137,7 @@ core::Result<http::Response> trial_signals(const Call& call) {
 }
 
 core::Result<http::Response> trial_path(const Call& call) {
-  auto signals = signals_of(call);
+  auto signals = signals_of(call.backend, call.text("id"));
   if (!signals) return signals.error();
   const trial::Path path = (*signals)->path(static_cast<std::size_t>(call.integer("points")));
   core::Json tips = core::Json::array();
@@ -175,7 +146,7 @@ core::Result<http::Response> trial_path(const Call& call) {
 }
 
 core::Result<http::Response> trial_force_depth(const Call& call) {
-  auto signals = signals_of(call);
+  auto signals = signals_of(call.backend, call.text("id"));
   if (!signals) return signals.error();
   if ((*signals)->rig() != trial::Rig::probing)
     return core::Error{core::Errc::not_found, "force against depth: not a probing trial"};

@@ -225,12 +225,12 @@ Command trial_command() {
             "recover", "cut an unfinished last frame and end the file; a finished one stays");
         CLI::App* set = app.add_subcommand(
             "measurements", "write trials as a measurement set for compare, fit and diagnose");
-        set->add_option("FILES", options->files, "tractus-trial/1 files of one rig")->required();
+        set->add_option("FILES", options->files, "tractus-trial files of one rig")->required();
         set->add_option("--out", options->out, "folder to make")->required();
         set->add_flag("--json", options->json, "print as JSON");
         set->footer("Example:\n  tractus trial measurements st/trials/*.ttrial --out recorded");
         for (CLI::App* each : {look, rate, end}) {
-          each->add_option("FILE", options->file, "a tractus-trial/1 file")->required();
+          each->add_option("FILE", options->file, "a tractus-trial file")->required();
           each->add_flag("--json", options->json, "print as JSON");
         }
         look->footer("Example:\n  tractus trial show 018f.ttrial --csv 018f.csv");

@@ -4,7 +4,8 @@
  */
 import type * as v from 'valibot';
 import type { components } from './generated/schema';
-import type { effectCheckSchema, effectListSchema, labRunListSchema, labSignalsSchema, measurementListSchema, modelListSchema } from './lab-schemas';
+import type { effectCheckSchema, effectListSchema, labRunListSchema, labSignalsSchema, measurementListSchema, modelListSchema, sentModelSchema } from './lab-schemas';
+import type { backupListSchema } from './backup-queries';
 import type { accountListSchema, auditCheckSchema, auditSchema, cohortListSchema, cohortSchema, stationListSchema } from './network-schemas';
 import type { traineeListSchema } from './trainee-queries';
 import type { studyEventsSchema, studyListSchema, studySchema } from './study-schemas';
@@ -35,10 +36,12 @@ export interface Agreed {
   readonly audit: Takes<typeof auditSchema, Served['AuditRows']>;
   readonly auditCheck: Takes<typeof auditCheckSchema, Served['AuditCheck']>;
   readonly trainees: Takes<typeof traineeListSchema, Served['TraineeList']>;
+  readonly sentModel: Takes<typeof sentModelSchema, Served['SentModel']>;
+  readonly backups: Takes<typeof backupListSchema, Served['Backups']>;
   readonly studyEvents: Takes<typeof studyEventsSchema, Served['StudyEvents']>;
 }
 
 export const kAgreed: Agreed = {
   session: true, trials: true, trial: true, signals: true, path: true, forceDepth: true, studies: true, study: true, studyEvents: true,
-  models: true, measurements: true, effects: true, effectCheck: true, labRuns: true, labSignals: true, accounts: true, stations: true, cohorts: true, cohort: true, audit: true, auditCheck: true, trainees: true,
+  models: true, measurements: true, effects: true, effectCheck: true, labRuns: true, labSignals: true, accounts: true, stations: true, cohorts: true, cohort: true, audit: true, auditCheck: true, trainees: true, sentModel: true, backups: true,
 };

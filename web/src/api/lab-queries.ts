@@ -4,13 +4,14 @@ import * as v from 'valibot';
 import { address } from './address';
 import { ask } from './client';
 import {
-  effectCheckSchema, effectListSchema, labRunListSchema, labRunSchema, labSignalsSchema, measurementListSchema, measurementSetSchema, modelListSchema, modelVersionSchema,
+  effectCheckSchema, effectListSchema, labRunListSchema, labRunSchema, labSignalsSchema, measurementListSchema, measurementSetSchema, modelListSchema, modelVersionSchema, sentModelSchema,
   type LabRun, type Rig,
 } from './lab-schemas';
 
 const kWorking_ms = 700;
 const kIdle_ms = 15_000;
 const kRuns = 100;
+const kSent_ms = 4_000;
 
 export const atWork = ({ state }: Pick<LabRun, 'state'>) => state === 'queued' || state === 'running';
 
@@ -94,6 +95,17 @@ export const startFit = (model: string, measurements: string, add: readonly stri
 export const stopLabRun = (id: string) => started(address('/api/v1/lab/runs/{id}/stop', { id }));
 export const publishRun = (id: string, name: string, note: string) =>
   ask(address('/api/v1/lab/runs/{id}/publish', { id }), modelVersionSchema, { method: 'POST', body: { name, note } });
+
+/** Where a version is, or is on its way to; asked again while a station has not fetched it yet. */
+export const sentModelQuery = (id: string) =>
+  queryOptions({
+    queryKey: ['lab', 'sent', id],
+    queryFn: ({ signal }) => ask(address('/api/v1/lab/models/{id}/stations', { id }), sentModelSchema, { signal }),
+    refetchInterval: (query) => (query.state.data?.stations.some(({ state }) => state === 'waiting') ? kSent_ms : false),
+  });
+/** To these stations; to every one without any. */
+export const sendModel = (id: string, stations: readonly string[] | null) =>
+  ask(address('/api/v1/lab/models/{id}/send', { id }), sentModelSchema, { method: 'POST', body: stations === null ? { all: true } : { stations } });
 
 const link = (path: string) => `/api/v1${path}`;
 export const reportAddress = (id: string) => link(address('/api/v1/lab/runs/{id}/report', { id }));

@@ -114,6 +114,12 @@ export const labSignalsSchema = v.pipe(
   v.check((s) => [s.measured, s.simulated, s.residual].every((c) => c.min.length === s.t_s.length && c.max.length === s.t_s.length), 'signals: every series must be as long as t_s'),
 );
 
+/** Every station, and whether a version was sent there. */
+export const sentModelSchema = v.object({
+  stations: v.array(v.object({ id: v.string(), name: v.string(), state: v.picklist(['not_sent', 'waiting', 'there']), asked_utc_us: v.nullable(inUtc), asked_by: v.string(), there_utc_us: v.nullable(inUtc) })),
+});
+export type SentModel = v.InferOutput<typeof sentModelSchema>;
+
 export type ModelVersion = v.InferOutput<typeof modelVersionSchema>;
 export type MeasurementSet = v.InferOutput<typeof measurementSetSchema>;
 export type Rig = v.InferOutput<typeof rig>;

@@ -1,5 +1,6 @@
 /** What the server says of accounts, stations, cohorts and the audit trail. */
 import * as v from 'valibot';
+import { stationStateFields } from './live-schemas';
 import { count, inUtc } from './quantities';
 
 export const kRoles = ['admin', 'director', 'faculty', 'researcher', 'technician', 'trainee'] as const;
@@ -13,7 +14,7 @@ export const newAccountSchema = v.object({ account: accountSchema, password: v.n
 export const newPasswordSchema = v.object({ password: v.string() });
 export const codesSchema = v.object({ secret: v.string(), uri: v.string() });
 
-export const stationSchema = v.object({ id: v.string(), name: v.string(), enrolled_utc_us: inUtc, revoked_utc_us: v.nullable(inUtc) });
+export const stationSchema = v.object({ ...stationStateFields, enrolled_utc_us: inUtc, revoked_utc_us: v.nullable(inUtc) });
 export const stationListSchema = v.object({ stations: v.array(stationSchema) });
 export const enrolmentSchema = v.object({ name: v.string(), code: v.string(), expires_utc_us: inUtc });
 

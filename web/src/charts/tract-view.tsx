@@ -1,9 +1,10 @@
 import { useEffect, useRef, useState, type KeyboardEvent, type ReactNode } from 'react';
 import { formatForce, newton } from '@/units';
-import { resolved, viridis } from './colour';
+import { viridis } from './colour';
 import type { Cursor } from './cursor';
+import { canDraw, rgb } from './draw';
 import type { Scene } from './scene';
-import type { SceneBone, ScenePath, SceneTract, Vec3, ViewName } from './scene/types';
+import type { SceneBone, ScenePath, SceneTract, ViewName } from './scene/types';
 import styles from './tract-view.module.css';
 
 interface Props {
@@ -12,6 +13,8 @@ interface Props {
   /** null where the bone could not be fetched: the rest is drawn without it. */
   readonly bone: SceneBone | null;
   readonly cursor: Cursor;
+  /** Another trial on the same case, and its moment that goes with a moment of this one. */
+  readonly ghost?: { readonly path: ScenePath; readonly at: (t_s: number) => number } | null;
   readonly palette: number;
   readonly summary: string;
   readonly button: (label: string, text: string, press: () => void, pressed?: boolean) => ReactNode;
@@ -26,18 +29,6 @@ const kViews: readonly { name: ViewName; text: string; label: string }[] = [
 
 const kScale = `linear-gradient(to right, ${Array.from({ length: 9 }, (_, i) => `rgb(${viridis(i / 8).map((c) => Math.round(c * 255)).join(' ')})`).join(', ')})`;
 
-function rgb(token: string): Vec3 {
-  const [r = 128, g = 128, b = 128] = (resolved(token).match(/[\d.]+/g) ?? []).map(Number);
-  return [r / 255, g / 255, b / 255];
-}
-
-/** Asked of a canvas of its own, before a megabyte of renderer is fetched for nothing. */
-function canDraw(): boolean {
-  const context = document.createElement('canvas').getContext('webgl2');
-  context?.getExtension('WEBGL_lose_context')?.loseContext();
-  return context !== null;
-}
-
 /** Top of the colour scale: above all but the strongest twentieth, so that a few taps do not darken the rest. */
 function topOf(force_N: readonly number[]): number {
   const sorted = [...force_N].sort((a, b) => a - b);
@@ -45,7 +36,7 @@ function topOf(force_N: readonly number[]): number {
 }
 
 /** The tract, the bone round it and the way of the tip, to be turned about. */
-export function TractView({ tract, path, bone, cursor, palette, summary, button }: Props) {
+export function TractView({ tract, path, bone, cursor, ghost = null, palette, summary, button }: Props) {
   const stage = useRef<HTMLDivElement>(null);
   const canvas = useRef<HTMLDivElement>(null);
   const labels = useRef<HTMLDivElement>(null);
@@ -53,6 +44,7 @@ export function TractView({ tract, path, bone, cursor, palette, summary, button 
   const [failure, setFailure] = useState('');
   const [shown, setShown] = useState<'cut' | 'whole' | 'none'>('cut');
   const most_N = topOf(path.force_N);
+  const ghostPath = ghost?.path ?? null, ghostAt = ghost?.at ?? null;
 
   useEffect(() => {
     const place = canvas.current, holder = labels.current;
@@ -64,7 +56,7 @@ export function TractView({ tract, path, bone, cursor, palette, summary, button 
       if (!canDraw()) { setFailure('This browser offers no WebGL 2, so the picture in 3-D cannot be drawn.'); return; }
       const { makeScene } = await import('./scene');
       if (gone) return;
-      made = makeScene(place, holder, { tract, path, bone, most_N });
+      made = makeScene(place, holder, { tract, path, bone, most_N, ghost: ghostPath });
       place.querySelector('canvas')?.addEventListener('webglcontextlost', () => {
         if (!gone) setFailure('The graphics processor has dropped the picture. Reload the page to draw it again.');
       });
@@ -72,13 +64,22 @@ export function TractView({ tract, path, bone, cursor, palette, summary, button 
     };
     start().catch(fail);
     return () => { gone = true; made?.destroy(); setScene(null); };
-  }, [tract, path, bone, most_N]);
+  }, [tract, path, bone, most_N, ghostPath]);
 
   useEffect(() => {
-    scene?.colour({ bone: rgb('--bone'), tract: rgb('--accent'), moment: rgb('--series-across') });
+    scene?.colour({ bone: rgb('--bone'), tract: rgb('--accent'), moment: rgb('--series-across'), ghost: rgb('--event') });
   }, [scene, palette]);
   useEffect(() => { scene?.bone(shown !== 'none', shown === 'cut'); }, [scene, shown]);
-  useEffect(() => (scene ? cursor.subscribe(() => scene.moment(cursor.now())) : undefined), [scene, cursor]);
+  useEffect(() => {
+    if (!scene) return;
+    const follow = () => {
+      const now = cursor.now();
+      scene.moment(now);
+      scene.ghost(now === null || !ghostAt ? null : ghostAt(now));
+    };
+    follow();
+    return cursor.subscribe(follow);
+  }, [scene, cursor, ghostAt]);
   useEffect(() => {
     if (!scene || !canvas.current) return;
     const observer = new ResizeObserver(() => scene.resize());

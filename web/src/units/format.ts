@@ -81,6 +81,16 @@ export function formatRate(hertz: number): string {
 const kDateTime = new Intl.DateTimeFormat('en-GB', { dateStyle: 'medium', timeStyle: 'short' });
 const kSeconds = new Intl.DateTimeFormat('en-GB', { dateStyle: 'full', timeStyle: 'long' });
 
+const kBytes = ['B', 'kB', 'MB', 'GB', 'TB'] as const;
+
+/** "1.24 GB": in steps of a thousand, as disks are sold. */
+export function formatBytes(bytes: number): string {
+  if (!Number.isFinite(bytes)) return kNone;
+  const step = bytes < 1000 ? 0 : Math.min(Math.floor(Math.log10(bytes) / 3), kBytes.length - 1);
+  const shown = bytes / 1000 ** step;
+  return `${shown.toFixed(step === 0 || shown >= 100 ? 0 : shown >= 10 ? 1 : 2)}${kNarrowSpace}${kBytes[step] ?? 'B'}`;
+}
+
 /** In the reader's own time zone: "21 Nov 2025, 05:35". */
 export const formatDateTime = (value: UtcMicroseconds) => kDateTime.format(new Date(value / 1000));
 export const formatDateTimeLong = (value: UtcMicroseconds) => kSeconds.format(new Date(value / 1000));

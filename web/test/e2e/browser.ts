@@ -20,11 +20,29 @@ export function launch(drawing: readonly string[] = ['--use-gl=angle', '--use-an
 
 export interface Visit { readonly context: BrowserContext; readonly page: Page; readonly faults: string[] }
 
+/** How far the page has jumped since it was loaded (cumulative layout shift), and what jumped. Above 0.1 a person notices. */
+export const jumped = (page: Page) => page.evaluate(() => {
+  const { layoutShift, layoutShiftOf } = window as unknown as { layoutShift: number; layoutShiftOf: string[] };
+  return { layoutShift, layoutShiftOf };
+});
+
 interface Look { readonly width?: number; readonly height?: number; readonly dark?: boolean }
 
 /** A fresh person at a fresh screen. `faults` gathers what the page complains about: errors and refusals of the policy. */
 export async function visit(browser: Browser, { width = 1440, height = 900, dark = false }: Look = {}): Promise<Visit> {
   const context = await browser.newContext({ viewport: { width, height }, colorScheme: dark ? 'dark' : 'light', baseURL: inject('url') });
+  await context.addInitScript(() => {
+    const shifts = window as unknown as { layoutShift: number; layoutShiftOf: string[] };
+    shifts.layoutShift = 0;
+    shifts.layoutShiftOf = [];
+    new PerformanceObserver((list) => {
+      for (const entry of list.getEntries() as (PerformanceEntry & { value: number; hadRecentInput: boolean; sources?: { node?: Node | null }[] })[]) {
+        if (entry.hadRecentInput) continue;
+        shifts.layoutShift += entry.value;
+        for (const { node } of entry.sources ?? []) if (node instanceof Element) shifts.layoutShiftOf.push(`${node.tagName} ${node.className} ${entry.value.toFixed(3)}`);
+      }
+    }).observe({ type: 'layout-shift', buffered: true });
+  });
   const page = await context.newPage();
   page.setDefaultTimeout(30_000);
   const faults: string[] = [];

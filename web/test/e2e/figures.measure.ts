@@ -47,11 +47,18 @@ it('prints its figures', async () => {
   await page.getByLabel('Name').waitFor();
   console.log('first paint, sign-in, ms:', Math.round(await firstPaint_ms(page)));
   await signIn(page);
+  let volume_B = 0;
+  page.on('response', (response) => { if (response.url().includes('/preview')) void response.body().then((body) => { volume_B += body.length; }, () => undefined); });
   await page.goto('/trials/trial-001');
   await page.locator('[data-panel="force"] canvas').waitFor();
   console.log('first paint, trial, ms:', Math.round(await firstPaint_ms(page)));
   await page.getByText(/least and greatest/).waitFor();
   console.log('signals of 10⁶ samples on the screen, ms:', Math.round(await page.evaluate(() => performance.now())));
+  await page.locator('[data-part="scene"][data-ready]').waitFor();
+  const devtools = await page.context().newCDPSession(page);
+  await devtools.send('HeapProfiler.collectGarbage');
+  const { usedSize, embedderHeapUsedSize, backingStorageSize } = await devtools.send('Runtime.getHeapUsage') as { usedSize: number; embedderHeapUsedSize?: number; backingStorageSize?: number };
+  console.log(`the bone in 3-D: ${(volume_B / 1e6).toFixed(2)} MB came; the whole page holds ${((usedSize + (embedderHeapUsedSize ?? 0) + (backingStorageSize ?? 0)) / 1e6).toFixed(0)} MB`);
   await page.waitForTimeout(1500);
   console.log('zooming in:', await held(page, '+'));
   await page.locator('[data-part="panels"]').press('0');

@@ -7,17 +7,19 @@ import { afterAll, beforeAll, describe, expect, it } from 'vitest';
 import { kShots, launch } from './browser';
 import { programs, serveReal, type Served } from './real-server';
 
-const bin = programs('tractus-server', 'blind-probing');
+const bin = programs('tractus-server', 'tractus-station', 'blind-probing', 'blind-palpation');
 const kSeed = '7';
 
 /** "1.99 N" → 1.99 */
 const newtons = (text: string) => Number(/([\d.]+)\s*N/.exec(text.replaceAll('\u202f', ' '))?.[1] ?? Number.NaN);
 
 describe.skipIf(bin === undefined)('a set with a hidden effect', () => {
-  let browser: Browser, served: Served, page: Page;
+  let browser: Browser, served: Served, page: Page, token: string;
   beforeAll(async () => {
     served = await serveReal(bin ?? '');
     execFileSync(join(bin ?? '', 'blind-probing'), ['--seed', kSeed, '--out', join(served.folder, 'set'), '--effect', 'coulomb_friction', '--trials', '6', '--duration', '4']);
+    token = join(served.folder, 'station.token');
+    execFileSync(join(bin ?? '', 'tractus-server'), ['enrol', '--data', join(served.folder, 'data'), '--name', 'skills lab 1', '--out', token]);
     browser = await launch();
     const context = await browser.newContext({ viewport: { width: 1440, height: 900 }, baseURL: served.url });
     page = await context.newPage();
@@ -82,7 +84,15 @@ describe.skipIf(bin === undefined)('a set with a hidden effect', () => {
     await page.getByRole('link', { name: /^Add Coulomb friction and publish/ }).click();
     await page.getByRole('button', { name: 'Publish' }).click();
     await page.locator('[data-part="published"]').waitFor();
+    await page.getByRole('button', { name: 'Send to every station' }).click();
+    await page.locator('[data-part="sent"]').getByText('waits for the station').waitFor();
+    const at = ['--data', join(served.folder, 'station'), '--server', served.url, '--token-file', token];
+    execFileSync(join(bin ?? '', 'tractus-station'), ['sync', ...at]);
+    await page.locator('[data-part="sent"]').getByText('is there').waitFor();
     await shot('published');
+    const felt = execFileSync(join(bin ?? '', 'tractus-station'), ['--device', 'sim-rig', '--scenario', 'hard', '--model', 'handed base (simulated set)', '--data', join(served.folder, 'station'), '--speed', 'fast', '--json'], { encoding: 'utf8' });
+    const { trials: [trial] } = JSON.parse(felt) as { trials: { file: string }[] };
+    expect(readFileSync(trial?.file ?? '', 'latin1'), 'the trial was felt by the better model').toContain('coulomb_friction');
     await page.getByRole('link', { name: 'Old and new side by side' }).click();
     await page.locator('[data-part="error-after"]').waitFor();
     expect(newtons(await page.locator('[data-part="error-after"]').innerText())).toBeLessThan(before / 4);
@@ -126,4 +136,32 @@ describe.skipIf(bin === undefined)('a set with a hidden effect', () => {
     await page.getByText('The search was cancelled.').waitFor();
     await shot('cancelled');
   }, 120_000);
+
+  it('shows a palpation model’s error painted on the wall of the tract', async () => {
+    const set = join(served.folder, 'palpation');
+    execFileSync(join(bin ?? '', 'blind-palpation'), ['--seed', '12', '--out', set, '--effect', 'contact_friction', '--trials', '3', '--duration', '5', '--rate', '200']);
+    const model = JSON.parse(readFileSync(join(set, 'model.json'), 'utf8')) as Record<string, unknown>;
+    delete model.volume;  // the set brings it along
+    const told = JSON.parse(readFileSync(join(set, 'measurements/set.json'), 'utf8')) as Record<string, unknown>;
+    await page.goto('/lab');
+    await page.locator('[data-part="model-file"]').setInputFiles({ name: 'model.json', mimeType: 'application/json', buffer: Buffer.from(JSON.stringify({ ...model, name: 'palpation, as handed out' })) });
+    await page.getByText('palpation, as handed out').first().waitFor();
+    const choosing = page.waitForEvent('filechooser');
+    await page.getByRole('button', { name: 'Choose a zip' }).click();
+    const named = (name: string, buffer: Buffer) => ({ name, mimeType: 'application/octet-stream', buffer });
+    await (await choosing).setFiles([
+      named('set.json', Buffer.from(JSON.stringify({ ...told, name: 'palpated, simulated', simulated: true, volume: 'volume.nrrd' }))), named('volume.nrrd', readFileSync(join(set, 'volume.nrrd'))),
+      ...[1, 2, 3].map((n) => named(`trial${n}.csv`, readFileSync(join(set, `measurements/trial${n}.csv`)))),
+    ]);
+    await page.getByText('palpated, simulated').first().waitFor();
+    await page.getByRole('radio', { name: /palpated, simulated/ }).check();
+    await page.getByRole('radio', { name: /palpation, as handed out/ }).check();
+    await page.getByRole('button', { name: 'Compare' }).click();
+    await page.locator('[data-panel="value"] canvas').waitFor({ timeout: 120_000 });
+    await page.getByRole('link', { name: 'Where it fails' }).click();
+    await page.getByRole('heading', { name: 'On the wall of the tract' }).waitFor();
+    await page.locator('[data-part="painted"][data-ready]').waitFor();
+    await page.waitForTimeout(800);
+    await shot('palpation-where');
+  }, 240_000);
 });

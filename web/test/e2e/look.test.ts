@@ -3,7 +3,9 @@ import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import type { Browser, Page } from 'playwright-core';
 import { afterAll, beforeAll, describe, expect, it } from 'vitest';
-import { asked, assessedTrial, kShots, launch, signIn, someStudy, visit } from './browser';
+import { asked, assessedTrial, jumped, kShots, launch, signIn, someStudy, visit } from './browser';
+
+const kNoticed = 0.1;
 
 const kAxe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 
@@ -91,12 +93,21 @@ async function programme(page: Page, check: Check): Promise<void> {
   await page.getByRole('heading', { name: 'Competence' }).waitFor();
   await page.waitForLoadState('networkidle');
   await check('trainee');
-  for (const place of ['people', 'cohorts', 'stations', 'audit']) {
+  for (const place of ['people', 'cohorts', 'stations', 'backups', 'audit']) {
     await page.goto(`/network/${place}`);
     await page.locator('tbody tr').first().waitFor();
     await page.waitForLoadState('networkidle');
     await check(`network-${place}`);
   }
+  await page.goto('/network/stations');
+  await page.locator('tbody a').nth(2).click();
+  await page.getByRole('heading', { name: 'How it is' }).or(page.getByText('could not be loaded')).waitFor();
+  await page.waitForLoadState('networkidle');
+  await check('network-station');
+  await page.goto('/wall');
+  await page.locator('[data-station]').first().waitFor();
+  await page.waitForTimeout(300);
+  await check('wall');
 }
 
 /** Has the server models and measurements to work on? The demonstration's has a trial alone. */
@@ -118,6 +129,8 @@ describe.each([
     const check: Check = async (name) => {
       await page.screenshot({ path: `${kShots}${name}-${suffix}.png`, fullPage: true });
       expect(await accessibilityFaults(page), name).toEqual([]);
+      const { layoutShift, layoutShiftOf } = await jumped(page);
+      expect(layoutShift, `${name}: jumps: ${layoutShiftOf.join(', ')}`).toBeLessThan(kNoticed);
       const overflow = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
       expect(overflow, `${name}: pixels wider than the screen`).toBeLessThanOrEqual(0);
     };

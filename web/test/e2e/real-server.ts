@@ -1,6 +1,6 @@
 /** A tractus-server of its own for one test file: a fresh data folder, the built pages, a free port, gone afterwards. */
 import { execFileSync, spawn } from 'node:child_process';
-import { existsSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdtempSync, openSync, rmSync, writeFileSync } from 'node:fs';
 import { createServer, type AddressInfo } from 'node:net';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
@@ -22,18 +22,19 @@ async function freePort(): Promise<number> {
   return port;
 }
 
-export interface Served { readonly url: string; readonly folder: string; readonly account: { readonly name: string; readonly password: string }; readonly stop: () => Promise<void> }
+export interface Served { readonly url: string; readonly folder: string; readonly log: string; readonly account: { readonly name: string; readonly password: string }; readonly stop: () => Promise<void> }
 
 const kPassword = 'a password for the tests';
 
 /** `dist` is built by the run's set-up. */
-export async function serveReal(bin: string): Promise<Served> {
+export async function serveReal(bin: string, words: readonly string[] = []): Promise<Served> {
   const folder = mkdtempSync(join(tmpdir(), 'tractus-e2e-')), data = join(folder, 'data'), password = join(folder, 'password');
   writeFileSync(password, kPassword);
   const program = join(bin, 'tractus-server');
   execFileSync(program, ['init', '--data', data, '--admin-name', 'admin', '--password-file', password]);
+  const log = join(folder, 'server.log');
   const port = await freePort(), url = `http://127.0.0.1:${port}`;
-  const process_ = spawn(program, ['serve', '--plain', '--data', data, '--listen', `127.0.0.1:${port}`, '--web', `${kRoot}web/dist`], { stdio: 'ignore' });
+  const process_ = spawn(program, ['serve', '--plain', '--data', data, '--listen', `127.0.0.1:${port}`, '--web', `${kRoot}web/dist`, ...words], { stdio: ['ignore', 'ignore', openSync(log, 'a')] });
   for (let i = 0; i < 200; ++i) {
     const answered = await fetch(`${url}/api/v1/session`).then(() => true, () => false);
     if (answered) break;
@@ -41,7 +42,7 @@ export async function serveReal(bin: string): Promise<Served> {
     await new Promise((resolve) => setTimeout(resolve, 50));
   }
   return {
-    url, folder, account: { name: 'admin', password: kPassword },
+    url, folder, log, account: { name: 'admin', password: kPassword },
     stop: async () => {
       const ended = new Promise((resolve) => process_.once('exit', resolve));
       process_.kill();

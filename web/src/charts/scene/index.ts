@@ -1,9 +1,9 @@
 /** The tract in three dimensions. A chunk of its own: loaded when it is first shown. */
 import { makeBone } from './bone';
 import { makeLabels } from './labels';
-import { makeMoment, makePath } from './path';
-import { makeTract } from './tract';
-import { kPerMetre, scaled, sum, type SceneBone, type SceneColours, type ScenePath, type SceneTract, type Vec3, type ViewName } from './types';
+import { makeGhost, makeMoment, makePath } from './path';
+import { makeBreach, makeTract } from './tract';
+import { kPerMetre, scaled, sum, type SceneBone, type SceneBreach, type SceneColours, type ScenePath, type SceneTract, type Vec3, type ViewName } from './types';
 import { dispose, fit, makeWindow, paced } from './window';
 
 export interface Scene {
@@ -14,6 +14,8 @@ export interface Scene {
   bone(visible: boolean, cut: boolean): void;
   colour(colours: SceneColours): void;
   moment(t_s: number | null): void;
+  /** The same of the other trial. */
+  ghost(t_s: number | null): void;
   resize(): void;
   destroy(): void;
 }
@@ -24,6 +26,11 @@ interface Content {
   readonly bone: SceneBone | null;
   /** Force at the top of the colour scale. */
   readonly most_N: number;
+  readonly breach?: SceneBreach | null;
+  /** Another trial on the same case, drawn behind. */
+  readonly ghost?: ScenePath | null;
+  /** No channel is drawn, nor named: the tract only says where to look. */
+  readonly bare?: boolean;
 }
 
 /** Where the camera stands (from the middle of the tract) and what is up. */
@@ -44,12 +51,16 @@ export function makeScene(container: HTMLElement, labelHolder: HTMLElement, cont
   const tube = makeTract(tract);
   const ball = makeMoment(content.path);
   const bone = content.bone ? makeBone(content.bone, tract) : null;
-  renderer.addActor(tube);
+  const other = content.ghost && content.ghost.tip_m.length > 1 ? { way: makeGhost(content.ghost), ball: makeMoment(content.ghost) } : null;
+  if (other) { renderer.addActor(other.way); renderer.addActor(other.ball.actor); }
+  const hole = content.breach ? makeBreach(content.breach, tract.radius_m) : null;
+  if (!content.bare) renderer.addActor(tube);
+  if (hole) renderer.addActor(hole);
   if (content.path.tip_m.length > 1) renderer.addActor(makePath(content.path, content.most_N));
   renderer.addActor(ball.actor);
   for (const actor of bone?.actors ?? []) renderer.addActor(actor);
 
-  const placeLabels = makeLabels(labelHolder, tract, renderer);
+  const placeLabels = content.bare ? () => undefined : makeLabels(labelHolder, tract, renderer);
   const camera = renderer.getActiveCamera();
   camera.setParallelProjection(false);
   const render = paced(container, drawing);
@@ -89,9 +100,12 @@ export function makeScene(container: HTMLElement, labelHolder: HTMLElement, cont
       bone?.colour(colours.bone);
       tube.getProperty().setColor(...colours.tract);
       ball.actor.getProperty().setColor(...colours.moment);
+      for (const actor of other ? [other.way, other.ball.actor] : []) actor.getProperty().setColor(...(colours.ghost ?? colours.tract));
+      hole?.getProperty().setColor(...colours.moment);
       render();
     },
     moment(t_s) { if (ball.put(t_s)) render(); },
+    ghost(t_s) { if (other?.ball.put(t_s)) render(); },
     resize() {
       fit(container, drawing);
       placeLabels();

@@ -43,6 +43,21 @@ export function makePath(path: ScenePath, most_N: number): vtkActor {
   return actor;
 }
 
+/** The way of another trial: thin and in one colour, so that it stays behind the first. */
+export function makeGhost(path: ScenePath): vtkActor {
+  const points = vtkPoints.newInstance();
+  points.setData(Float32Array.from(path.tip_m.flatMap((p) => [p[0] * kPerMetre, p[1] * kPerMetre, p[2] * kPerMetre])), 3);
+  const line = vtkPolyData.newInstance();
+  line.setPoints(points);
+  line.setLines(vtkCellArray.newInstance({ values: Uint32Array.from([path.tip_m.length, ...path.tip_m.keys()]) }));
+  const mapper = vtkMapper.newInstance({ scalarVisibility: false });
+  mapper.setInputData(line);
+  const actor = vtkActor.newInstance();
+  actor.setMapper(mapper);
+  actor.getProperty().set({ ambient: 1, diffuse: 0, opacity: 0.55 });
+  return actor;
+}
+
 export interface MomentBall {
   readonly actor: vtkActor;
   /** Returns whether anything moved. */

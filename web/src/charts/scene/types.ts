@@ -27,10 +27,17 @@ export interface SceneBone {
   readonly opacity: Uint8Array;
 }
 
+/** A capsule from the tract's axis to beyond a wall. */
+export interface SceneBreach {
+  readonly from_m: Vec3;
+  readonly tip_m: Vec3;
+}
+
 export interface SceneColours {
   readonly bone: Vec3;
   readonly tract: Vec3;
   readonly moment: Vec3;
+  readonly ghost?: Vec3;
 }
 
 export type ViewName = 'start' | 'medial' | 'superior' | 'along';

@@ -18,7 +18,7 @@ export function GuidePage({ role }: { readonly role: string | undefined }) {
       <p className={styles.for}>{page.for}</p>
       <Card title="How it is done">
         <ol className={styles.steps}>
-          {page.steps.map(({ title, text, to }) => <li key={title}><strong>{title}</strong><p>{text} {to ? <Link href={to.href}>{to.name}</Link> : null}</p></li>)}
+          {page.steps.map(({ title, text, to, picture }) => <li key={title}><strong>{title}</strong><p>{text} {to ? <Link href={to.href}>{to.name}</Link> : null}</p>{picture ? <img className={styles.picture} src={`/guide/${picture.name}.jpg`} alt={picture.shows} width={1200} height={750} loading="lazy" /> : null}</li>)}
         </ol>
       </Card>
       <Card title="What the words mean"><dl className={styles.terms}>{page.terms.map(([word, meaning]) => <div key={word}><dt>{word}</dt><dd>{meaning}</dd></div>)}</dl></Card>

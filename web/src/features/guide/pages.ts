@@ -1,5 +1,7 @@
 /** What each role comes for and how it is done, in order; a page a role. */
-export interface Step { readonly title: string; readonly text: string; readonly to?: { readonly href: string; readonly name: string } }
+/** Made by the tests on a real server (GUIDE_PICTURES=1), so that it shows what is there. */
+export interface Picture { readonly name: string; readonly shows: string }
+export interface Step { readonly title: string; readonly text: string; readonly to?: { readonly href: string; readonly name: string }; readonly picture?: Picture }
 export interface GuidePage { readonly role: string; readonly name: string; readonly for: string; readonly steps: readonly Step[]; readonly terms: readonly (readonly [string, string])[] }
 
 const kSimulated = ['Simulated', 'Made by a machine, not by a hand. It is marked so wherever it is shown.'] as const;
@@ -11,9 +13,9 @@ export const kPages: readonly GuidePage[] = [
   {
     role: 'trainee', name: 'Trainee', for: 'Do the trials that are assigned to you, blind, and see your own curve.',
     steps: [
-      { title: 'Sign in at a station', text: 'With your badge number and PIN. The station gives you exactly the next trial; what kind of bone it is nobody tells you.' },
+      { title: 'Sign in at a station', text: 'With your badge number and PIN. The station gives you exactly the next trial; what kind of bone it is nobody tells you, not even the files on the station’s disk.' },
       { title: 'Palpate or probe, then answer', text: 'Was there a breach, where, and how sure are you? The answer ends the trial.' },
-      { title: 'See your curve', text: 'Once results are released: right answers over the trials, what you are strong in, and whether your confidence is worth what it says.', to: { href: '/me', name: 'My curve' } },
+      { title: 'See your curve', text: 'Once results are released: right answers over the trials, what you are strong in, and whether your confidence is worth what it says.', to: { href: '/me', name: 'My curve' }, picture: { name: 'trainee', shows: 'A trainee’s own page: standing, learning, competence, confidence' } },
     ],
     terms: [['Breach', 'A place where the channel has left the bone.'], kLearning, ['Confidence', 'How sure you said to be. On the diagonal of its picture, of answers given 80 % sure 80 % are right.']],
   },
@@ -22,14 +24,15 @@ export const kPages: readonly GuidePage[] = [
     steps: [
       { title: 'Gather a cohort', text: 'Give it a name, add trainees by the names of their accounts. Taking somebody out can be undone.', to: { href: '/network/cohorts', name: 'Cohorts' } },
       { title: 'Set up a study', text: 'Scenarios, repeats, order and participants. Everybody gets an order of their own, blind.', to: { href: '/studies', name: 'Studies' } },
-      { title: 'Debrief a trial', text: 'Signals, the way of the tip in 3-D, which walls were touched, force against depth. Point at a moment in one picture and all others follow.', to: { href: '/trials', name: 'Trials' } },
+      { title: 'Watch the stations', text: 'Who is at work, for how long, with which force; where somebody is needed stands first. Stop one that goes wrong, with a reason.', to: { href: '/wall', name: 'Stations live' } },
+      { title: 'Debrief a trial', text: 'Signals, the way of the tip in 3-D, which walls were touched, force against depth. Point at a moment in one picture and all others follow.', to: { href: '/trials', name: 'Trials' }, picture: { name: 'faculty', shows: 'A palpation trial: signals, the way of the tip in 3-D, the walls that were touched' } },
     ],
     terms: [['Walls touched', 'The wall of the tract unrolled, with the share of each side that the tip has felt.'], ['Scenario', 'The bone of a probing trial: its layers, and the walls that give way.'], kSimulated],
   },
   {
     role: 'director', name: 'Programme director', for: 'Who is on track, who has relapsed, who is due.',
     steps: [
-      { title: 'Look at the list', text: 'Narrow it to who has relapsed, who is learning, who has not been at a station for two months.', to: { href: '/trainees', name: 'Trainees' } },
+      { title: 'Look at the list', text: 'Narrow it to who has relapsed, who is learning, who has not been at a station for two months.', to: { href: '/trainees', name: 'Trainees' }, picture: { name: 'director', shows: 'The list of trainees with state, share right and last trial' } },
       { title: 'Open one trainee', text: 'Standing, learning, competence, recognition by scenario, confidence, on one page.' },
       { title: 'Print it', text: '“Print this page” makes one sheet for the interview.' },
     ],
@@ -39,8 +42,8 @@ export const kPages: readonly GuidePage[] = [
     role: 'researcher', name: 'Researcher', for: 'Cohort data with a locked plan; and the model lab: is the simulator’s physics true, where not, what is missing.',
     steps: [
       { title: 'Hold a model against measurements', text: 'Drop a folder or a zip, choose a model, compare. What is wrong in a file is told by its name and line.', to: { href: '/lab', name: 'Model lab' } },
-      { title: 'See where it fails, and what is missing', text: 'A short list of regions with their samples; then the effects of the catalogue, ranked by the error on trials that no fit saw. The verdict stands first, in plain words.' },
-      { title: 'Add it, and watch the error fall', text: 'By one press, by hand, or by a formula of your own whose units are checked while you write. Publish the better model as a version; any two versions can be compared.', to: { href: '/lab/versions', name: 'Versions' } },
+      { title: 'See where it fails, and what is missing', text: 'A short list of regions with their samples; then the effects of the catalogue, ranked by the error on trials that no fit saw. The verdict stands first, in plain words.', picture: { name: 'researcher-missing', shows: 'The verdict: which effect is missing, and the error falling to the noise floor' } },
+      { title: 'Add it, and watch the error fall', text: 'By one press, by hand, or by a formula of your own whose units are checked while you write. Publish the better model as a version; any two versions can be compared, and a version sent to the stations can be felt there minutes later.', to: { href: '/lab/versions', name: 'Versions' } },
       { title: 'Ask the cohort', text: 'Lock a plan before the data are seen, run it, run it again to the same digits. The published study is there as an example.', to: { href: '/analysis', name: 'Analysis' } },
     ],
     terms: [kFloor, kHeldOut, ['Confounded', 'Two effects that look alike in these measurements. The lab names the recording that would tell them apart.'], ['Locked plan', 'Every word of it has its hash taken, with name and time. It can be run and never changed.']],
@@ -49,14 +52,16 @@ export const kPages: readonly GuidePage[] = [
     role: 'technician', name: 'Technician', for: 'Stations that may fetch cases and bring trials.',
     steps: [
       { title: 'Enrol a station', text: 'Give it a name, type the code that is shown at the station. The code is good once.', to: { href: '/network/stations', name: 'Stations' } },
+      { title: 'See how each is', text: 'Open a station: its self-tests check by check, when its calibration is due, room on its disk, late steps. Lower its force limit when you doubt the device; only a person at the station raises it again.', picture: { name: 'technician', shows: 'Backups: made while the server serves, and tried by restoring them' } },
+      { title: 'Make a backup, and try it', text: 'It is made while everything goes on. Trying it restores it beside and looks everything over: only then is it worth something.', to: { href: '/network/backups', name: 'Backups' } },
       { title: 'Revoke one that is lost', text: 'Its key is refused at once; what it has recorded stays on its disk.' },
     ],
-    terms: [['Station', 'A machine with a simulator. It records to its own disk first and hands over when it can.']],
+    terms: [['Self-test', 'What a station checks of its device by itself: force at rest, timing, encoders, limits.'], ['Calibration', 'The force sensor against known weights; due again after half a year.'], ['Late steps', 'Steps of the force loop that came later than they should have. The hand feels them when there are many.'], ['Station', 'A machine with a simulator. It records to its own disk first and hands over when it can.']],
   },
   {
     role: 'admin', name: 'Administrator', for: 'Accounts, roles, and the record of every change.',
     steps: [
-      { title: 'Make accounts', text: 'A first password is made and shown once; it has to be changed at the first sign-in.', to: { href: '/network/people', name: 'Accounts' } },
+      { title: 'Make accounts', text: 'A first password is made and shown once; it has to be changed at the first sign-in.', to: { href: '/network/people', name: 'Accounts' }, picture: { name: 'admin', shows: 'The accounts, with a first password shown once' } },
       { title: 'Turn on one-time codes', text: 'For your own account first.', to: { href: '/account', name: 'My account' } },
       { title: 'Check the audit trail', text: 'Each row carries a hash of all rows before it, so that a change to the record itself shows.', to: { href: '/network/audit', name: 'Audit trail' } },
     ],

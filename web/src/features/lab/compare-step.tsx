@@ -51,6 +51,7 @@ export function CompareStep({ drawable, versions, against, setAgainst }: Props) 
           options={[{ value: '', text: 'No other version beside it' }, ...versions.map(({ id, name, note, made_utc_us }) => ({ value: id, text: `Beside: ${name}${note === '' ? '' : `, ${note}`} (${formatDateTime(made_utc_us)})` }))]} />
       ) : null}>
         <Headline before={before} after={after} names={names} />
+        <p className={styles.muted} data-part="as-published">The model as it was published, no number of it changed. “What is missing” fits its own numbers to these measurements first, so it begins from a smaller error.</p>
       </Card>
       <Card title="Measured and simulated"><Series drawable={drawable} /></Card>
       {shown ? (

@@ -1,3 +1,4 @@
+import { File as NodeFile } from 'node:buffer';
 import { describe, expect, it } from 'vitest';
 import type { Diagnosis } from '@/api';
 import { differences } from './differences';
@@ -5,7 +6,7 @@ import { kBlankOwn, ownEffect, parametersIn, withFormula } from './own-effect';
 import { parameterName } from './parameters';
 import { verdictOf } from './verdict';
 import { channelQuantity, effectName, joined } from './words';
-import { problemsOf, rootOf } from './zip-files';
+import { pack, problemsOf, rootOf } from './zip-files';
 
 const plain = (text: string) => text.replaceAll('\u202f', ' ');
 
@@ -14,6 +15,15 @@ describe('a folder that was dropped', () => {
     expect(rootOf(['./rec/trial1.csv', './rec/set.json', './rec/old/set.json'])).toBe('rec/');
     expect(rootOf(['set.json', 'a.csv'])).toBe('');
     expect(rootOf(['/rec/reset.json'])).toBeNull();
+  });
+
+  it('gives the set its name; files without a folder take the one that set.json states', async () => {
+    const file = (text: string, name: string) => new NodeFile([text], name) as unknown as File;  // jsdom's has no arrayBuffer
+    const dropped = (root: string, set = '{}') => [{ path: `${root}set.json`, file: file(set, 'set.json') }, { path: `${root}a.csv`, file: file('t_s', 'a.csv') }];
+    expect((await pack(dropped('./bench, 3 May/'))).name).toBe('bench, 3 May');
+    expect((await pack(dropped('/rec/'))).name).toBe('rec');
+    expect((await pack(dropped('', '{"name":"rig 2, dry"}'))).name).toBe('rig 2, dry');
+    expect((await pack(dropped('', 'no JSON'))).name).toBe('Measurements');
   });
 
   it('is refused with its faults by file and line', () => {

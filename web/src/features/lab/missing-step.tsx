@@ -2,7 +2,7 @@ import { useQuery } from '@tanstack/react-query';
 import { Link } from 'wouter';
 import { atWork, effectsQuery, reportAddress, startDiagnosis, type Diagnosis, type LabRun, type Rig } from '@/api';
 import { Badge, Button, Card, Notice, Skeleton } from '@/ui';
-import { formatShare, share } from '@/units';
+import { formatFigure, formatShare, share } from '@/units';
 import { Headline, primaryOf } from './comparison-parts';
 import { Series, type Drawable } from './compare-step';
 import { Falls } from './falls';
@@ -53,7 +53,9 @@ function Found({ run, diagnosis, model, set, rig }: Props & { readonly run: LabR
           {run.model_ready && found.length > 0 ? <p className={styles.buttons}><Link href={workAddress(model, set, 'publish')} className={styles.solidLink}>Add {joined(found)} and publish</Link><Link href={workAddress(model, set, 'add')}>Try others or a formula of your own</Link></p> : null}
         </div>
       </Card>
-      <Card title="The error falls"><Falls steps={diagnosis.steps.map(({ model: name, ...errors }) => ({ name: stepName(name), ...errors }))} noise_floor={diagnosis.base.noise_floor} unit={unit} /></Card>
+      <Card title="The error falls"><Falls steps={diagnosis.steps.map(({ model: name, ...errors }) => ({ name: stepName(name), ...errors }))} noise_floor={diagnosis.base.noise_floor} unit={unit} />
+        <p className={styles.readable} data-part="why-two">“Refitted alone” is {formatFigure(diagnosis.base.rmse, unit)}, and <Link href={workAddress(model, set)}>Compare</Link> may show more: there the model stands as it was published, here its own numbers were fitted to these measurements first. What a refit mends is a number that was off; what it leaves is what the model lacks.</p>
+      </Card>
       <Card title="Effects, ranked"><Ranking ranking={diagnosis.ranking} effects={effects} unit={unit} without={diagnosis.base.held_out_rmse} addressToTry={(id) => `${workAddress(model, set, 'add')}?add=${encodeURIComponent(id)}`} /></Card>
       <Undecided diagnosis={diagnosis} />
       {drawable ? <Card title={drawable.names.after ? 'What is left, without and with' : 'What is left'} aside={<Badge>{diagnosis.held_out === 'trials' ? 'held out by trial' : diagnosis.held_out}</Badge>}><div className={styles.stack}><Headline before={drawable.before} after={drawable.after} names={drawable.names} /><Series drawable={drawable} /></div></Card> : null}

@@ -7,9 +7,10 @@ import { formatClock, formatFigure } from '@/units';
 import { addedWords } from './add-step';
 import { primaryOf } from './comparison-parts';
 import styles from './lab.module.css';
+import { SendCard } from './send-card';
 import { channelUnit, effectName, joined, workAddress } from './words';
 
-interface Props { readonly model: ModelVersion; readonly set: string }
+interface Props { readonly model: ModelVersion; readonly set: string; readonly versions: readonly ModelVersion[] }
 
 /** What a run made: its effects and what they leave. */
 export function madeWords(run: LabRun): string {
@@ -41,16 +42,14 @@ function Published({ version, base, set }: { readonly version: string; readonly 
           <Link href={`/lab/versions?a=${base.id}&b=${version}&set=${set}`} className={styles.solidLink}>Old and new side by side</Link>
           <Link href={workAddress(version, set)}>Go on from the new version</Link>
         </p>
-        <h3>Feel it at a station</h3>
-        <p className={styles.readable}>The same file runs in the live loop. <a href={modelAddress(version)} download={`${base.name}.model.json`}>Save the file</a> on the station and start it with</p>
-        <pre className={styles.command}><code>tractus-station --model {base.name.replaceAll(/[^A-Za-z0-9]+/g, '-')}.model.json</code></pre>
+        <p className={styles.muted}><a href={modelAddress(version)} download={`${base.name}.model.json`}>Save the file</a>: it drives <code>tractus</code> and a station as it is.</p>
       </div>
     </Card>
   );
 }
 
 /** The better model as a version that others can use. */
-export function PublishStep({ model, set }: Props) {
+export function PublishStep({ model, set, versions }: Props) {
   const client = useQueryClient();
   const list = useQuery(labRunsQuery({ model: model.id, measurements: set }));
   const ready = (list.data?.runs ?? []).filter(({ model_ready }) => model_ready);
@@ -90,6 +89,7 @@ export function PublishStep({ model, set }: Props) {
         </form>
       </Card>
       {version === null ? null : <Published version={version} base={model} set={set} />}
+      {version === null ? null : <SendCard version={{ id: version, name: made.data?.name ?? versions.find(({ id }) => id === version)?.name ?? model.name, rig: model.rig }} />}
     </>
   );
 }

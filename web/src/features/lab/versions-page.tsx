@@ -8,6 +8,7 @@ import { Channels, Headline } from './comparison-parts';
 import { Series } from './compare-step';
 import { differences } from './differences';
 import styles from './lab.module.css';
+import { SendCard } from './send-card';
 import { parameterName } from './parameters';
 import { RunState } from './run-state';
 import { useComparison } from './use-run';
@@ -99,6 +100,7 @@ export function VersionsPage() {
         {models.isPending ? <Skeleton height="160px" /> : roots.length === 0 ? <p className={styles.muted}>There are no models yet. <Link href="/lab">Add the first one in the lab.</Link></p>
           : <ul className={styles.tree} data-part="tree">{roots.map((root) => <Node key={root.id} model={root} all={all} picked={picked} pick={pick} />)}</ul>}
       </Card>
+      {b ? <SendCard key={b.id} version={b} /> : null}
       {a && b && a.id !== b.id ? a.rig === b.rig ? (
         <>
           <Card title="Numbers that differ"><Numbers a={a} b={b} /></Card>

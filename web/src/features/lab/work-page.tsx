@@ -50,7 +50,7 @@ function Content({ work, step }: { readonly work: Work; readonly step: Step }) {
     case 'compare': case 'where': return <Compared {...work} step={step} />;
     case 'missing': return <MissingStep model={model.id} set={set.id} rig={model.rig} />;
     case 'add': return <AddStep key={asked.join(' ')} model={model.id} set={set.id} rig={model.rig} asked={asked} />;
-    case 'publish': return <PublishStep key={model.id} model={model} set={set.id} />;
+    case 'publish': return <PublishStep key={model.id} model={model} set={set.id} versions={work.versions} />;
   }
 }
 

@@ -20,6 +20,15 @@ function zipped(files: AsyncZippable): Promise<Uint8Array<ArrayBuffer>> {
   });
 }
 
+/** The name that set.json itself gives, for files that were dropped without their folder. */
+async function statedName(set: File | undefined): Promise<string | undefined> {
+  try {
+    const json: unknown = JSON.parse(await set?.text() ?? '');
+    if (typeof json === 'object' && json !== null && 'name' in json && typeof json.name === 'string' && json.name.trim() !== '') return json.name.trim();
+  } catch { /* what is wrong with it the server says, by its line */ }
+  return undefined;
+}
+
 /** Errors: a sentence for the person who dropped them. */
 export async function pack(dropped: readonly Dropped[]): Promise<Packed> {
   const [only] = dropped;
@@ -33,11 +42,12 @@ export async function pack(dropped: readonly Dropped[]): Promise<Packed> {
   const inside = dropped.map(({ path, file }) => ({ path: withoutSlash(path), file })).filter(({ path }) => path.startsWith(root) && !path.split('/').some((part) => part.startsWith('.')));
   const size = inside.reduce((sum, { file }) => sum + file.size, 0);
   if (size > 4 * kMost_bytes) throw new Error('The folder is larger than 1 GiB.');
+  const stated = await statedName(inside.find(({ path }) => path === `${root}set.json`)?.file);
   const files: AsyncZippable = {};
   for (const { path, file } of inside) files[path.slice(root.length)] = new Uint8Array(await file.arrayBuffer());
   const data = await zipped(files);
   if (data.length > kMost_bytes) throw new Error('The folder is larger than 256 MiB even when packed.');
-  return { name: root.split('/').filter(Boolean).at(-1) ?? 'Measurements', zip: data };
+  return { name: root.split('/').filter(Boolean).at(-1) ?? stated ?? 'Measurements', zip: data };
 }
 
 /** One fault a line, "FILE:LINE: what is wrong", as the server writes them. */

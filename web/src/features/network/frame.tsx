@@ -9,6 +9,7 @@ const kPlaces = [
   { at: 'people', name: 'Accounts', roles: ['admin'] },
   { at: 'cohorts', name: 'Cohorts', roles: ['admin', 'director', 'faculty'] },
   { at: 'stations', name: 'Stations', roles: ['admin', 'technician', 'faculty'] },
+  { at: 'backups', name: 'Backups', roles: ['admin', 'technician'] },
   { at: 'audit', name: 'Audit trail', roles: ['admin'] },
 ] as const;
 type Place = (typeof kPlaces)[number]['at'];

@@ -1,11 +1,13 @@
 import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { useState, type FormEvent } from 'react';
 import { enrolStation, revokeStation, sessionQuery, stationsQuery, type Station } from '@/api';
+import { Link } from 'wouter';
 import { AskDialog, Badge, Button, Card, Field, Notice, Table } from '@/ui';
 import { formatDateTime } from '@/units';
 import { Frame } from './frame';
 import styles from './network.module.css';
 import { Once } from './people-page';
+import { calibrationWords } from './words';
 
 function Enrol() {
   const client = useQueryClient();
@@ -26,6 +28,12 @@ function Enrol() {
   );
 }
 
+function StateOf({ station }: { readonly station: Station }) {
+  if (station.revoked_utc_us !== null) return <Badge tone="warn">revoked</Badge>;
+  if (!station.connected) return <Badge>away</Badge>;
+  return <Badge tone={station.state === 'fault' ? 'bad' : 'good'}>{station.state === 'fault' ? 'fault' : 'connected'}</Badge>;
+}
+
 /** The stations that may bring trials. */
 export function StationsPage() {
   const client = useQueryClient();
@@ -36,13 +44,16 @@ export function StationsPage() {
   return (
     <Frame at="stations" lead="The stations that may fetch cases and bring trials. A station that is revoked is refused at once; what it has recorded stays on its disk.">
       {query.isError ? <Notice tone="bad" title="The stations could not be loaded." onRetry={() => void query.refetch()}>{query.error.message}</Notice> : null}
+      <p><Link href="/wall">Watch them live</Link></p>
       {may ? <Enrol /> : null}
       <Card title="Stations">
-        <Table<Station> caption="Stations" rows={query.data?.stations} keyOf={({ id }) => id} empty="No station is enrolled yet." columns={[
-          { name: 'Station', cell: (one) => one.name },
-          { name: 'State', cell: (one) => (one.revoked_utc_us === null ? <Badge tone="good">enrolled</Badge> : <Badge tone="warn">revoked</Badge>) },
+        <Table<Station> caption="Stations" minWidth={760} rows={query.data?.stations} keyOf={({ id }) => id} empty="No station is enrolled yet." columns={[
+          { name: 'Station', cell: (one) => (may ? <Link href={`/network/stations/${one.id}`}>{one.name}</Link> : one.name) },
+          { name: 'State', cell: (one) => <StateOf station={one} /> },
+          { name: 'Last heard of', cell: (one) => (one.last_seen_utc_us === null ? 'not yet' : formatDateTime(one.last_seen_utc_us)) },
+          { name: 'Self-test', cell: (one) => (one.self_test === null ? <span className={styles.muted}>not told yet</span> : <Badge tone={one.self_test.passed ? 'good' : 'bad'}>{one.self_test.passed ? 'passed' : 'failed'}</Badge>) },
+          { name: 'Calibration', cell: (one) => { const due = calibrationWords(one.calibration_due_utc_us, query.dataUpdatedAt * 1000); return <Badge tone={due.tone}>{due.words}</Badge>; } },
           { name: 'Enrolled', cell: (one) => formatDateTime(one.enrolled_utc_us) },
-          { name: 'Revoked', cell: (one) => (one.revoked_utc_us === null ? '–' : formatDateTime(one.revoked_utc_us)) },
           { name: <span className="hidden-visually">Decide</span>, cell: (one) => (may && one.revoked_utc_us === null ? <span className={styles.buttons}><Button label={`Revoke ${one.name}`} onClick={() => setEnding(one)}>Revoke…</Button></span> : null) },
         ]} />
       </Card>

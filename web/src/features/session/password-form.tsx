@@ -4,7 +4,7 @@ import { changePassword, sessionQuery } from '@/api';
 import { Button, Field, Notice } from '@/ui';
 import styles from './own-account.module.css';
 
-const kLeast = 10;
+const kLeast = 12;
 
 /** The old password and a new one, twice. */
 export function PasswordForm() {

@@ -17,11 +17,11 @@ function Head({ trainee }: { readonly trainee: Trainee }) {
         <Facts facts={[
           { name: <Term definition={kInterval}>Right answers</Term>, value: <strong className={styles.big}>{formatCount(trainee.right)} of {formatCount(trainee.trials)}</strong> },
           { name: 'Share', value: <><strong className={styles.big}>{formatShare(trainee.share)}</strong> <span className={styles.muted}>{formatShare(trainee.wilson_low)}–{formatShare(trainee.wilson_high)}</span></> },
-          { name: 'Next case', value: <strong>{trainee.next.scenario}</strong> },
+          ...(trainee.next.scenario === '' ? [] : [{ name: 'Next case', value: <strong>{trainee.next.scenario}</strong> }]),
           { name: 'Last trial', value: formatDateTime(trainee.last_utc_us) },
         ]} />
         <p>{state.says} {trainee.certified ? 'Competence can be certified: ' : 'Competence cannot be certified: '}{trainee.why}.</p>
-        <p className={styles.muted}>Next: {trainee.next.why}.</p>
+        {trainee.next.why === '' ? null : <p className={styles.muted}>Next: {trainee.next.why}.</p>}
       </div>
     </Card>
   );

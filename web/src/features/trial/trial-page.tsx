@@ -19,7 +19,7 @@ import { WallsPanel } from './walls-panel';
 function Header({ trial }: { readonly trial: Trial }) {
   return (
     <>
-      <p className={styles.back}><Link href="/trials">← Trials</Link></p>
+      <p className={styles.back}><Link href="/trials">← Trials</Link> · <Link href={`/trials/${trial.id}/debrief`}>Debrief</Link></p>
       <div className={styles.title}>
         <h1>{trial.case_title}</h1>
         {trial.simulated ? <Badge tone="warn">simulated</Badge> : null}

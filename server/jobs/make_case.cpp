@@ -1,0 +1,151 @@
+#include "server/jobs/make_case.hpp"
+
+#include <chrono>
+
+#include "cases/case.hpp"
+#include "core/clock.hpp"
+#include "core/file.hpp"
+#include "db/store/case_makings.hpp"
+#include "server/jobs/publish.hpp"
+#include "server/jobs/source_volume.hpp"
+
+namespace jobs {
+namespace {
+
+using core::Json;
+using core::Result;
+
+constexpr double kAny_m = 1e3;
+constexpr std::chrono::milliseconds kBetween{300};
+/// Shares of the whole that are over when a step begins.
+constexpr double kCarving = 0.2, kWriting = 0.6;
+
+math::Vec3 point(core::Fields& fields, const char* key) {
+  const auto numbers = fields.numbers(key, 3);
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+Result<volume::BreachPlan> breach_from(const Json& json, const std::string& where) {
+  core::Fields fields(json, where);
+  volume::BreachPlan out;
+  const auto wall = volume::wall_named(fields.text("wall", 16));
+  if (wall)
+    out.wall = *wall;
+  else
+    fields.wrong("wall", "medial, lateral, superior, inferior or anterior is expected");
+  out.depth_m = fields.number_or("depth_m", out.depth_m, -kAny_m, kAny_m);
+  if (fields.has("at_m")) out.at_m = fields.number("at_m", -kAny_m, kAny_m);
+  if (auto done = fields.done(); !done) return done.error();
+  return out;
+}
+
+/// Notes how far the making is about three times a second; ends when the server does.
+class Noting {
+ public:
+  Noting(store::Store& store, std::string id, const std::function<bool()>& ending)
+      : store_(store), id_(std::move(id)), ending_(ending) {}
+  core::Progress at(std::string phase, double from, double to) {
+    next_ = {};
+    return [this, phase = std::move(phase), from, to](double share) {
+      return note(phase, from + (to - from) * share);
+    };
+  }
+
+ private:
+  bool note(const std::string& phase, double share) {
+    if (ending_()) return false;
+    const auto now = std::chrono::steady_clock::now();
+    if (now < next_) return true;
+    next_ = now + kBetween;
+    // A database that is busy for once stops nothing.
+    (void)store_.write([&](store::Writing& tx) {
+      return store::note_making(tx, id_, share, phase, core::utc_us());
+    });
+    return true;
+  }
+  store::Store& store_;
+  std::string id_;
+  const std::function<bool()>& ending_;
+  std::chrono::steady_clock::time_point next_{};
+};
+
+cases::NewCase new_case(const store::CaseMaking& making, const SourceVolume& source,
+                        const models::PalpationModel& model, const cases::Carved& carved) {
+  cases::NewCase out{.definition = {},
+                     .truth = carved.truth(),
+                     .volume = carved.volume,
+                     .meta = {source.source, "part about a tract, drilled"},
+                     .draw = {}};
+  out.definition.title = making.title;
+  out.definition.source = source.source.empty() ? source.name : source.source;
+  out.definition.made_utc_us = core::utc_us();
+  out.definition.tract = carved.tract;
+  out.definition.model = model;
+  return out;
+}
+
+}  // namespace
+
+Result<cases::CarvingPlan> plan_from(core::Fields& fields) {
+  cases::CarvingPlan out;
+  out.entry_m = point(fields, "entry_m");
+  out.target_m = point(fields, "target_m");
+  out.radius_m = fields.number_or("radius_m", out.radius_m, 0.0, kAny_m);
+  const Json* breach = fields.member("breach", false);
+  if (!breach || breach->is_null()) return out;
+  auto read = breach_from(*breach, fields.where() + "/breach");
+  if (!read) return read.error();
+  out.breach = *read;
+  return out;
+}
+
+Json plan_json(const cases::CarvingPlan& plan) {
+  const auto numbers = [](const math::Vec3& p) { return Json::array({p.x(), p.y(), p.z()}); };
+  Json out{{"entry_m", numbers(plan.entry_m)},
+           {"target_m", numbers(plan.target_m)},
+           {"radius_m", plan.radius_m},
+           {"breach", Json()}};
+  if (!plan.breach) return out;
+  out["breach"] = {{"wall", volume::name(plan.breach->wall)}, {"depth_m", plan.breach->depth_m}};
+  if (plan.breach->at_m) out["breach"]["at_m"] = *plan.breach->at_m;
+  return out;
+}
+
+Result<void> make_case(store::Store& store, const store::Objects& objects, const core::KeyPair& key,
+                       const std::string& making_id, const std::function<bool()>& ending) {
+  auto making =
+      store.read([&](store::Reading& tx) { return store::case_making_of(tx, making_id); });
+  if (!making) return making.error();
+  if (!*making) return core::Error{core::Errc::not_found, "no making of a case " + making_id};
+  if ((*making)->state == "done") return {};
+  auto json = core::parse_json((*making)->plan, "plan");
+  if (!json) return json.error();
+  core::Fields fields(*json, "plan");
+  const auto plan = plan_from(fields);
+  if (!plan) return plan.error();
+  const auto source = released_volume(store, objects, (*making)->volume_id);
+  if (!source) return source.error();
+  Noting noting(store, making_id, ending);
+  const auto ct = read_about(source->file, plan->entry_m, plan->target_m,
+                             noting.at("reading the volume", 0.0, kCarving));
+  if (!ct) return ct.error();
+  models::PalpationModel model;
+  model.name = "uniform cantilever";
+  const auto carved =
+      cases::carve(*ct, model.transfer, *plan, noting.at("drilling the tract", kCarving, kWriting));
+  if (!carved) return carved.error();
+  auto scratch = core::ScratchFolder::make(std::filesystem::temp_directory_path() / "tractus-case");
+  if (!scratch) return scratch.error();
+  const auto bundle = scratch->path() / "case";
+  const auto written = cases::write_case(bundle, new_case(**making, *source, model, *carved), key,
+                                         noting.at("writing and signing", kWriting, 1.0));
+  if (!written) return written.error();
+  auto published =
+      publish_bundle(store, objects, bundle, [&](store::Writing& tx, const std::string& id) {
+        return store::finish_making(tx, making_id, id, core::utc_us());
+      });
+  if (!published) return published.error();
+  return {};
+}
+
+}  // namespace jobs

@@ -1,0 +1,39 @@
+/** Where a point of the patient lies on a slice, and a point of the slice in the patient. */
+import { dot, sum, scaled, type Vec3 } from './scene/types';
+
+/** Grey pixels of a plane and where they lie; LPS, SI. */
+export interface SlicePicture {
+  readonly width: number;
+  readonly height: number;
+  readonly spacing_m: readonly [number, number];
+  readonly origin_m: Vec3;
+  readonly alongRow: Vec3;
+  readonly alongColumn: Vec3;
+  readonly pixels: Uint8Array;
+}
+
+/** Something that is drawn over a slice: a point, or a line where it has a second end. */
+export interface SliceMark {
+  readonly id: string;
+  readonly at: Vec3;
+  readonly to?: Vec3;
+  readonly text?: string;
+  readonly look: 'entry' | 'target' | 'tract' | 'wall' | 'breach' | 'thin';
+  /** Width of a line, in hundredths of the picture. */
+  readonly wide?: number;
+  /** It cannot be dragged. */
+  readonly fixed?: boolean;
+}
+
+/** In pixels from the corner of the first one; how far off the plane. */
+export function onSlice(picture: SlicePicture, p: Vec3): { x: number; y: number; off_m: number } {
+  const from = sum(p, scaled(picture.origin_m, -1));
+  const { alongRow: u, alongColumn: w } = picture;
+  const normal: Vec3 = [u[1] * w[2] - u[2] * w[1], u[2] * w[0] - u[0] * w[2], u[0] * w[1] - u[1] * w[0]];
+  return { x: dot(from, u) / picture.spacing_m[0] + 0.5, y: dot(from, w) / picture.spacing_m[1] + 0.5, off_m: dot(from, normal) };
+}
+
+/** The point of the plane itself. */
+export function onPlane(picture: SlicePicture, x: number, y: number): Vec3 {
+  return sum(picture.origin_m, scaled(picture.alongRow, (x - 0.5) * picture.spacing_m[0]), scaled(picture.alongColumn, (y - 0.5) * picture.spacing_m[1]));
+}

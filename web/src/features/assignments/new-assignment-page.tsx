@@ -1,0 +1,126 @@
+import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
+import { useState, type FormEvent } from 'react';
+import { Link, useLocation, useSearch } from 'wouter';
+import { addAssignment, assignmentsQuery, casesQuery, cohortQuery, cohortsQuery, scenariosQuery } from '@/api';
+import { Badge, Button, Card, Field, Notice, Select, Skeleton, useTitle } from '@/ui';
+import { formatCount } from '@/units';
+import styles from './assignments.module.css';
+import { kNoDraft, lacking, toggled, trialsEach, wishOf, type Draft, type Item } from './draft';
+import { kOrderWords, kReleaseWords } from './words';
+
+type Change = (change: Partial<Draft>) => void;
+
+/** All that can be assigned; undefined while it is on its way. */
+function useItems(): { items: Item[] | undefined; failed: Error | null; retry: () => void } {
+  const cases = useQuery(casesQuery), scenarios = useQuery(scenariosQuery);
+  const failed = cases.error ?? scenarios.error;
+  const retry = () => { void cases.refetch(); void scenarios.refetch(); };
+  if (!cases.data || !scenarios.data) return { items: undefined, failed, retry };
+  const items: Item[] = [
+    ...cases.data.cases.filter(({ retired }) => !retired).map(({ id, title }) => ({ key: `case ${id}`, title, rig: 'palpation' as const, case_id: id })),
+    ...scenarios.data.scenarios.filter(({ published }) => published).map(({ id, name }) => ({ key: `scenario ${id}`, title: name, rig: 'probing' as const, case_id: id })),
+    ...scenarios.data.tuned.map(({ kind, name }) => ({ key: `tuned ${kind}`, title: `${name} (ships with the rig)`, rig: 'probing' as const, tuned: kind })),
+  ];
+  return { items, failed, retry };
+}
+
+function CasesField({ draft, items, onDraft }: { readonly draft: Draft; readonly items: readonly Item[]; readonly onDraft: (draft: Draft) => void }) {
+  return (
+    <fieldset className={styles.choices}>
+      <legend className="hidden-visually">Cases</legend>
+      {items.map((item) => {
+        const chosen = draft.chosen.find(({ key }) => key === item.key);
+        return (
+          <div key={item.key} className={styles.choice} data-chosen={chosen !== undefined || undefined}>
+            <label><input type="checkbox" checked={chosen !== undefined} onChange={() => onDraft(toggled(draft, item))} /> <span>{item.title}</span></label>
+            <Badge>{item.rig}</Badge>
+            <input className={styles.blind} aria-label={`Blind name of ${item.title}`} placeholder="blind name" maxLength={128} value={chosen?.blind ?? ''} disabled={!chosen}
+              onChange={(event) => onDraft({ ...draft, chosen: draft.chosen.map((one) => (one.key === item.key ? { ...one, blind: event.target.value } : one)) })} />
+          </div>
+        );
+      })}
+    </fieldset>
+  );
+}
+
+function People({ draft, change }: { readonly draft: Draft; readonly change: Change }) {
+  const cohorts = useQuery(cohortsQuery);
+  const [from, setFrom] = useState('');
+  const source = from || cohorts.data?.cohorts[0]?.id || '';
+  const members = useQuery({ ...cohortQuery(source), enabled: source !== '' });
+  if (cohorts.isError) return <Notice tone="bad" title="The cohorts could not be loaded." onRetry={() => void cohorts.refetch()}>{cohorts.error.message}</Notice>;
+  if (!cohorts.data) return <Skeleton height="180px" />;
+  if (cohorts.data.cohorts.length === 0) return <p>There is no cohort yet. <Link href="/network/cohorts">Make one</Link>, with the trainees in it.</p>;
+  const options = cohorts.data.cohorts.map(({ id, name, trainees }) => ({ value: id, text: `${name}, ${formatCount(trainees)} ${trainees === 1 ? 'trainee' : 'trainees'}` }));
+  const trainees = members.data?.people.filter(({ part, state }) => part === 'trainee' && state === 'active') ?? [];
+  return (
+    <div className={styles.stack}>
+      <Select label="Cohort (also who joins it later)" value={draft.cohort} options={[{ value: '', text: 'no whole cohort' }, ...options]} onChange={(event) => change({ cohort: event.target.value })} />
+      <Select label="Single people of" value={source} options={options} onChange={(event) => setFrom(event.target.value)} />
+      <fieldset className={styles.people}>
+        <legend className="hidden-visually">People</legend>
+        {members.isPending ? <Skeleton height="28px" /> : null}
+        {members.data && trainees.length === 0 ? <p className={styles.muted}>Nobody learns in it yet.</p> : null}
+        {trainees.map(({ name }) => (
+          <label key={name} className={styles.person}>
+            <input type="checkbox" checked={draft.people.includes(name) || draft.cohort === source} disabled={draft.cohort === source}
+              onChange={() => change({ people: draft.people.includes(name) ? draft.people.filter((one) => one !== name) : [...draft.people, name] })} /> {name}
+          </label>
+        ))}
+      </fieldset>
+    </div>
+  );
+}
+
+/** Which cases, by whom, in which order, until when, and who sees the results. */
+export function NewAssignmentPage() {
+  useTitle('New assignment');
+  const client = useQueryClient();
+  const [, go] = useLocation();
+  const wanted = new URLSearchParams(useSearch()).get('case');
+  const [written, setDraft] = useState<Draft | null>(null);
+  const { items, failed, retry } = useItems();
+  const first = wanted === null ? undefined : items?.find(({ case_id }) => case_id === wanted);
+  const draft = written ?? (first ? toggled(kNoDraft, first) : kNoDraft);
+  const change: Change = (next) => setDraft({ ...draft, ...next });
+  const made = useMutation({
+    mutationFn: addAssignment,
+    onSuccess: async ({ id }) => { await client.invalidateQueries({ queryKey: assignmentsQuery.queryKey, exact: true }); go(`/assignments/${id}`); },
+  });
+  const missing = lacking(draft);
+  const submit = (event: FormEvent) => { event.preventDefault(); if (missing === '') made.mutate(wishOf(draft)); };
+  return (
+    <form className={styles.page} onSubmit={submit}>
+      <p><Link href="/assignments">← Assignments</Link></p>
+      <h1>New assignment</h1>
+      {failed ? <Notice tone="bad" title="What can be assigned could not be loaded." onRetry={retry}>{failed.message}</Notice> : null}
+      <div className={styles.two}>
+        <Card title="Cases" aside={<span className={styles.muted}>{formatCount(draft.chosen.length)} chosen</span>}>
+          <div className={styles.stack}>
+            <p className={styles.muted}>Trainees see the blind name alone, never what the case is called here.</p>
+            {items ? (items.length === 0 ? <p>There is no case yet.</p> : <CasesField draft={draft} items={items} onDraft={setDraft} />) : <Skeleton height="240px" />}
+          </div>
+        </Card>
+        <Card title="Who"><People draft={draft} change={change} /></Card>
+      </div>
+      <Card title="How">
+        <div className={styles.form}>
+          <Field label="Title, shown to trainees" value={draft.title} required maxLength={200} placeholder="Week 12, palpation" onChange={(event) => change({ title: event.target.value })} />
+          <Select label="Order" value={draft.ordering} options={Object.keys(kOrderWords).map((value) => ({ value, text: value }))} aria-describedby="order-means"
+            onChange={(event) => { const to = event.target.value; if (to === 'fixed' || to === 'random' || to === 'balanced') change({ ordering: to }); }} />
+          <Field label="Times each case is done" type="number" min={1} max={20} value={draft.repeats} onChange={(event) => { const n = Number(event.target.value); if (Number.isInteger(n) && n >= 1 && n <= 20) change({ repeats: n }); }} />
+          <Field label="Due (may be left out)" type="datetime-local" value={draft.due} onChange={(event) => change({ due: event.target.value })} />
+          <Select label="Results" value={draft.release} options={Object.entries(kReleaseWords).map(([value, { name }]) => ({ value, text: name }))} aria-describedby="release-means"
+            onChange={(event) => { const to = event.target.value; if (to === 'held' || to === 'released' || to === 'at_once') change({ release: to }); }} />
+          <p id="order-means" className={`${styles.wide} ${styles.muted}`}>Order: {kOrderWords[draft.ordering]}.</p>
+          <p id="release-means" className={`${styles.wide} ${styles.muted}`}>{kReleaseWords[draft.release].means}</p>
+        </div>
+      </Card>
+      {made.isError ? <Notice tone="bad" title="It was not assigned.">{made.error.message}</Notice> : null}
+      <div className={styles.go}>
+        <span role="status" className={styles.muted}>{missing || `${formatCount(trialsEach(draft))} ${trialsEach(draft) === 1 ? 'trial' : 'trials'} for each trainee.`}</span>
+        <Button look="solid" type="submit" disabled={missing !== '' || made.isPending}>{made.isPending ? 'Assigning…' : 'Assign'}</Button>
+      </div>
+    </form>
+  );
+}

@@ -1,0 +1,26 @@
+import { describe, expect, it } from 'vitest';
+import { utcMicroseconds } from '@/units';
+import { fromField, toField } from './dates';
+import { pressing } from './words';
+
+const now = Date.UTC(2026, 2, 10, 12) * 1000;
+const day_us = 24 * 3600 * 1e6;
+const due = (days: number | null, done = 0) => ({ due_utc_us: days === null ? null : utcMicroseconds(now + days * day_us), done, planned: 4 });
+
+describe('what is due', () => {
+  it('is late once its date has passed, and no longer when all is done', () => {
+    expect(pressing(due(-1), now)).toBe('late');
+    expect(pressing(due(-1, 4), now)).toBe('none');
+  });
+  it('is soon within three days', () => {
+    expect(pressing(due(2), now)).toBe('soon');
+    expect(pressing(due(4), now)).toBe('later');
+  });
+  it('is nothing without a date', () => { expect(pressing(due(null), now)).toBe('none'); });
+  it('is read from the field to the minute that was written into it', () => {
+    const at = Date.UTC(2026, 6, 1, 8, 30) * 1000;
+    expect(fromField(toField(at))).toBe(at);
+    expect(fromField('')).toBeNull();
+    expect(fromField('soon')).toBeNull();
+  });
+});

@@ -1,0 +1,70 @@
+import { useQuery } from '@tanstack/react-query';
+import { useState } from 'react';
+import { Link } from 'wouter';
+import { ApiError, caseQuery, caseTruthQuery, previewQuery, type CaseTruth } from '@/api';
+import { PlanView } from '@/charts';
+import { Button, Card, Facts, Notice, Skeleton, usePalette, useTitle } from '@/ui';
+import { formatDateTime, formatLength, metre } from '@/units';
+import styles from './cases.module.css';
+
+function told(truth: CaseTruth): { name: string; value: string }[] {
+  if (truth.breached === null) return [{ name: 'Breach', value: 'none' }];
+  return [
+    { name: 'Breach', value: truth.breached },
+    { name: 'Wall there', value: `${formatLength(metre(truth.wall_thickness_m))} thick` },
+    { name: 'Beyond the bone', value: formatLength(metre(truth.breach_depth_m)) },
+  ];
+}
+
+/** The truth is asked for on purpose: somebody may look over the teacher's shoulder. */
+function Truth({ id }: { readonly id: string }) {
+  const [shown, setShown] = useState(false);
+  const query = useQuery({ ...caseTruthQuery(id), enabled: shown });
+  const refused = query.error instanceof ApiError && query.error.code === 'forbidden';
+  return (
+    <Card title="Truth">
+      <div className={styles.truth}>
+        {!shown ? <Button onClick={() => setShown(true)}>Show which wall gives way</Button> : null}
+        {shown && query.data ? <><Facts facts={told(query.data)} /><Button look="quiet" onClick={() => setShown(false)}>Hide</Button></> : null}
+        {shown && query.isPending ? <Skeleton height="40px" /> : null}
+        {shown && query.isError ? <Notice tone={refused ? 'warn' : 'bad'} title={refused ? 'The truth is for those who teach.' : 'The truth could not be loaded.'}>{query.error.message}</Notice> : null}
+      </div>
+    </Card>
+  );
+}
+
+/** One case: what it is made of, its tract in the bone, and the truth for those who may know it. */
+export function CasePage({ id }: { readonly id: string }) {
+  const query = useQuery(caseQuery(id));
+  const preview = useQuery(previewQuery(id));
+  const palette = usePalette();
+  const found = query.data;
+  useTitle(found?.title ?? 'Case');
+  return (
+    <div className={styles.page}>
+      <p><Link href="/cases">← Cases</Link></p>
+      {query.isError ? <Notice tone="bad" title="The case could not be loaded." onRetry={() => void query.refetch()}>{query.error.message}</Notice> : null}
+      {query.isPending ? <div role="status"><span className="hidden-visually">Loading the case</span><Skeleton height="480px" /></div> : null}
+      {found ? (
+        <>
+          <h1>{found.title}</h1>
+          <Facts facts={[
+            { name: 'Source', value: found.source },
+            { name: 'Made', value: formatDateTime(found.made_utc_us) },
+            { name: 'Tract', value: `${formatLength(found.tract.length_m)} long, ${formatLength(metre(2 * found.tract.radius_m))} wide` },
+          ]} />
+          <div className={styles.pair}>
+            <Card title="Tract in the bone">
+              {preview.isError ? <Notice tone="warn" title="The bone could not be loaded; the rest is drawn without it." onRetry={() => void preview.refetch()}>{preview.error.message}</Notice> : null}
+              {preview.isPending ? <Skeleton height="444px" /> : (
+                <PlanView tract={found.tract} breach={null} bone={preview.data ?? null} palette={palette} summary="The drilled tract with the bone round it."
+                  button={(label, text, press, pressed) => <Button label={label} onClick={press} {...(pressed === undefined ? {} : { pressed })}>{text}</Button>} />
+              )}
+            </Card>
+            <Truth id={id} />
+          </div>
+        </>
+      ) : null}
+    </div>
+  );
+}

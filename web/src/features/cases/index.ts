@@ -1,0 +1,3 @@
+export { CasePage } from './case-page';
+export { CasesPage } from './cases-page';
+export { NewCasePage } from './new-case-page';

@@ -1,0 +1,143 @@
+import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
+import { useEffect, useReducer, useState, type FormEvent } from 'react';
+import { Link, useLocation, useSearch } from 'wouter';
+import { makeCase, makingsQuery, plannedTractQuery, sourceVolumesQuery, volumeBoneQuery, type PlannedTract, type Preview, type SourceVolume, type Vec3, type Window } from '@/api';
+import { PlanView } from '@/charts';
+import { Button, Card, Field, Notice, Select, Skeleton, usePalette, useTitle } from '@/ui';
+import { formatLength } from '@/units';
+import styles from './cases.module.css';
+import { BreachFields, PointFields } from './fields';
+import { caseOf, draw, fromAddress, toAddress, wishOf, type End, type Plan } from './plan';
+import { boundsOf, Slices } from './slices';
+import { useSettled } from './use-settled';
+import { Walls } from './walls';
+
+const kWindows: Record<string, { readonly text: string; readonly window: Window }> = {
+  bone: { text: 'Bone', window: { low: -200, high: 1100 } },
+  wide: { text: 'Wide', window: { low: -1000, high: 2000 } },
+  soft: { text: 'Soft tissue', window: { low: -160, high: 240 } },
+};
+
+function middleOf(block: Preview): Vec3 {
+  const { low, high } = boundsOf(block);
+  return [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2];
+}
+
+/** What the server found of the plan, in a few sentences. */
+function Findings({ plan, found, looking }: { readonly plan: Plan; readonly found: PlannedTract | undefined; readonly looking: boolean }) {
+  if (!plan.entry || !plan.target) return <p className={styles.muted} role="status">Place the entry, then the target: click into a slice, drag a mark, or type its place.</p>;
+  if (!found) return <p className={styles.muted} role="status">{looking ? 'Looking at the bone…' : ''}</p>;
+  const { breach, problems } = found;
+  return (
+    <div className={styles.findings} data-part="findings" data-late={looking || undefined} role="status">
+      {problems.map((problem) => <p key={problem} className={styles.problem}>{problem}</p>)}
+      {found.tract ? <p>{found.side === 'left' ? 'Left' : 'Right'} side, tract of {formatLength(found.length_m)}.</p> : null}
+      {breach ? <p data-part="breach">The {breach.wall} wall gives way at a depth of <strong>{formatLength(breach.at_m)}</strong>, where it is <strong>{formatLength(breach.wall_thickness_m)}</strong> thick; the tool goes {formatLength(breach.depth_m)} beyond.</p> : found.tract ? <p>No wall is breached.</p> : null}
+    </div>
+  );
+}
+
+function Make({ volume, plan, ready }: { readonly volume: string; readonly plan: Plan; readonly ready: boolean }) {
+  const client = useQueryClient();
+  const [, go] = useLocation();
+  const [title, setTitle] = useState('');
+  const wish = wishOf(plan);
+  const made = useMutation({
+    mutationFn: makeCase,
+    onSuccess: async () => { await client.invalidateQueries({ queryKey: makingsQuery.queryKey }); go('/cases'); },
+  });
+  const submit = (event: FormEvent) => { event.preventDefault(); if (wish) made.mutate(caseOf(wish, volume, title.trim())); };
+  return (
+    <form className={styles.make} onSubmit={submit}>
+      <Field label="Title, for those who teach" value={title} required maxLength={200} placeholder="L3 left, medial breach" onChange={(event) => setTitle(event.target.value)} />
+      <Button look="solid" type="submit" disabled={!ready || wish === null || title.trim() === '' || made.isPending}>{made.isPending ? 'Asking…' : 'Make the case'}</Button>
+      <p className={styles.muted}>Trainees never see the title: in an assignment a case has a blind name.</p>
+      {made.isError ? <Notice tone="bad" title="The case is not being made.">{made.error.message}</Notice> : null}
+    </form>
+  );
+}
+
+function Workbench({ volume, block }: { readonly volume: SourceVolume; readonly block: Preview }) {
+  const search = useSearch();
+  const palette = usePalette();
+  const [{ plan, past, future }, step] = useReducer(draw, search, (address) => ({ plan: fromAddress(address), past: [], future: [] }));
+  const [chosen, setChosen] = useState<End>(plan.entry ? 'target' : 'entry');
+  const [focus, setFocus] = useState<Vec3>(() => plan.entry ?? middleOf(block));
+  const [dragging, setDragging] = useState(false);
+  const [window_, setWindow] = useState('bone');
+  const settled = useSettled(plan, 250);
+  const wish = wishOf(settled);
+  const answer = useQuery(plannedTractQuery(volume.id, wish));
+  const found = wish ? answer.data : undefined;
+  const looking = answer.isFetching || settled !== plan;
+  useEffect(() => { window.history.replaceState(null, '', `?${toAddress(settled)}`); }, [settled]);
+
+  const place = (end: End, at: Vec3, done: boolean) => {
+    step({ kind: 'change', to: end === 'entry' ? { entry: at } : { target: at }, passing: dragging });
+    setDragging(!done);
+    setChosen(end);
+    if (!done) return;
+    setFocus(at);
+    if (end === 'entry' && !plan.target) setChosen('target');
+  };
+  const type = (end: End, at: Vec3) => { step({ kind: 'change', to: end === 'entry' ? { entry: at } : { target: at } }); setFocus(at); };
+  return (
+    <>
+      <div className={styles.bench}>
+        <Card title="Slices" aside={(
+          <span className={styles.tools}>
+            <Select label={<span className="hidden-visually">Window</span>} value={window_} options={Object.entries(kWindows).map(([value, { text }]) => ({ value, text }))} onChange={(event) => setWindow(event.target.value)} />
+            <Button onClick={() => step({ kind: 'undo' })} disabled={past.length === 0}>Undo</Button>
+            <Button onClick={() => step({ kind: 'redo' })} disabled={future.length === 0}>Redo</Button>
+          </span>
+        )}>
+          <Slices volume={volume.id} block={block} window={kWindows[window_]?.window ?? { low: -200, high: 1100 }} plan={plan} found={found} chosen={chosen} focus={focus} onFocus={setFocus} onPlace={place} />
+        </Card>
+        <Card title="Tract">
+          <div className={styles.stack}>
+            <fieldset className={styles.ends}>
+              <legend className="hidden-visually">Which end a click places</legend>
+              {(['entry', 'target'] as const).map((end) => <PointFields key={end} end={end} at={plan[end]} chosen={chosen === end} onChoose={() => { setChosen(end); const at = plan[end]; if (at) setFocus(at); }} onAt={(at) => type(end, at)} />)}
+            </fieldset>
+            <BreachFields plan={plan} length_m={found?.length_m ?? null} onBreach={(breach) => step({ kind: 'change', to: { breach } })} />
+            {answer.isError ? <Notice tone="bad" title="The plan could not be looked at." onRetry={() => void answer.refetch()}>{answer.error.message}</Notice> : <Findings plan={plan} found={found} looking={looking} />}
+            <Make volume={volume.id} plan={plan} ready={found?.tract !== null && found?.problems.length === 0 && !looking} />
+          </div>
+        </Card>
+      </div>
+      <div className={styles.pair}>
+        <Card title="In three dimensions">
+          <PlanView tract={found?.tract ?? null} breach={found?.breach ?? null} bone={block} palette={palette} summary="The bone with the planned tract and its breach."
+            button={(label, text, press, pressed) => <Button label={label} onClick={press} {...(pressed === undefined ? {} : { pressed })}>{text}</Button>} />
+        </Card>
+        <Card title="Walls along the tract">
+          {found?.tract ? <Walls found={found} /> : <p className={`${styles.muted} ${styles.tall}`}>Where the walls are and how thick they are is shown here as soon as both ends of the tract are placed.</p>}
+        </Card>
+      </div>
+    </>
+  );
+}
+
+function Chosen({ volume }: { readonly volume: SourceVolume }) {
+  const block = useQuery(volumeBoneQuery(volume.id));
+  if (block.isError) return <Notice tone="bad" title="The volume could not be loaded." onRetry={() => void block.refetch()}>{block.error.message}</Notice>;
+  return block.data ? <Workbench volume={volume} block={block.data} /> : <div role="status"><span className="hidden-visually">Loading the volume</span><Skeleton height="640px" /></div>;
+}
+
+/** From a released volume to a case: tract, breach, title. */
+export function NewCasePage({ volume: id }: { readonly volume: string }) {
+  const volumes = useQuery(sourceVolumesQuery);
+  const volume = volumes.data?.volumes.find((one) => one.id === id);
+  useTitle('New case');
+  return (
+    <div className={styles.page}>
+      <p><Link href="/cases">← Cases</Link></p>
+      <div><h1>New case{volume ? ` of ${volume.name}` : ''}</h1><p className={styles.lead}>Place the tract of a pedicle screw in the bone, and choose where it breaks out. Millimetres of the patient: x to the left, y to the back, z upwards.</p></div>
+      {volumes.isError ? <Notice tone="bad" title="The volumes could not be loaded." onRetry={() => void volumes.refetch()}>{volumes.error.message}</Notice> : null}
+      {volumes.isPending ? <div role="status"><span className="hidden-visually">Loading</span><Skeleton height="640px" /></div> : null}
+      {volumes.data && !volume ? <Notice tone="warn" title="There is no such volume.">It may have been refused since.</Notice> : null}
+      {volume && volume.state !== 'released' ? <Notice tone="warn" title="This volume is not released.">An administrator or the programme director looks at it first.</Notice> : null}
+      {volume?.state === 'released' ? <Chosen volume={volume} /> : null}
+    </div>
+  );
+}

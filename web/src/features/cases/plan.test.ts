@@ -1,0 +1,27 @@
+import { describe, expect, it } from 'vitest';
+import { draw, fromAddress, kNoPlan, toAddress, wishOf, type Drawing } from './plan';
+
+const empty: Drawing = { plan: kNoPlan, past: [], future: [] };
+
+describe('a plan of a case', () => {
+  it('brings back what a drag began with, not each of its moves', () => {
+    const placed = draw(empty, { kind: 'change', to: { entry: [0.04, 0.2, -0.06] } });
+    // A drag: its first move is a step, the others pass.
+    const begun = draw(placed, { kind: 'change', to: { entry: [0.041, 0.2, -0.06] } });
+    const moved = draw(begun, { kind: 'change', to: { entry: [0.05, 0.2, -0.06] }, passing: true });
+    const back = draw(moved, { kind: 'undo' });
+    expect(back.plan.entry).toEqual([0.04, 0.2, -0.06]);
+    expect(draw(back, { kind: 'redo' }).plan.entry).toEqual([0.05, 0.2, -0.06]);
+  });
+  it('asks nothing of the server until both ends are placed', () => {
+    expect(wishOf({ ...kNoPlan, entry: [0, 0, 0] })).toBeNull();
+    expect(wishOf({ ...kNoPlan, entry: [0, 0, 0], target: [0, -0.04, 0] })).toMatchObject({ target_m: [0, -0.04, 0], breach: null });
+  });
+  it('is the same after it was an address', () => {
+    const plan = { entry: [0.0453, 0.1991, -0.0611], target: [0.039, 0.158, -0.061], radius_m: 0.0015, breach: { wall: 'medial', depth_m: 0.003, at_m: null } } as const;
+    expect(fromAddress(toAddress(plan))).toEqual(plan);
+  });
+  it('takes nothing from an address that is none', () => {
+    expect(fromAddress('entry=1,2&target=a,b,c&breach=upwards,3')).toEqual(kNoPlan);
+  });
+});

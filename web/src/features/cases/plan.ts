@@ -1,0 +1,76 @@
+/** A plan of a case as it is being drawn, and each step as a value: what was may be brought back. */
+import { kWalls, type NewCase, type TractWish, type Vec3 } from '@/api';
+
+export type WallName = (typeof kWalls)[number];
+export type End = 'entry' | 'target';
+
+export interface Breach { readonly wall: WallName; readonly depth_m: number; /** null: where the wall is thinnest. */ readonly at_m: number | null }
+export interface Plan { readonly entry: Vec3 | null; readonly target: Vec3 | null; readonly radius_m: number; readonly breach: Breach | null }
+
+export const kNoPlan: Plan = { entry: null, target: null, radius_m: 0.0015, breach: null };
+
+export interface Drawing { readonly plan: Plan; readonly past: readonly Plan[]; readonly future: readonly Plan[] }
+
+const kMostSteps = 100;
+
+export type Step =
+  | { readonly kind: 'change'; readonly to: Partial<Plan>; /** Part of a drag: no step of its own. */ readonly passing?: boolean }
+  | { readonly kind: 'undo' } | { readonly kind: 'redo' };
+
+export function draw(drawing: Drawing, step: Step): Drawing {
+  const { plan, past, future } = drawing;
+  switch (step.kind) {
+    case 'change': {
+      const next = { ...plan, ...step.to };
+      return step.passing ? { ...drawing, plan: next } : { plan: next, past: [...past, plan].slice(-kMostSteps), future: [] };
+    }
+    case 'undo': {
+      const before = past.at(-1);
+      return before ? { plan: before, past: past.slice(0, -1), future: [plan, ...future] } : drawing;
+    }
+    case 'redo': {
+      const [next, ...rest] = future;
+      return next ? { plan: next, past: [...past, plan], future: rest } : drawing;
+    }
+  }
+}
+
+/** What the server is asked; null while an end is missing. A tenth of a millimetre's hundredth is enough. */
+export function wishOf({ entry, target, radius_m, breach }: Plan): TractWish | null {
+  if (!entry || !target) return null;
+  const tidy = (p: Vec3): [number, number, number] => [round(p[0]), round(p[1]), round(p[2])];
+  return {
+    entry_m: tidy(entry), target_m: tidy(target), radius_m,
+    breach: breach ? { wall: breach.wall, depth_m: breach.depth_m, ...(breach.at_m === null ? {} : { at_m: breach.at_m }) } : null,
+  };
+}
+const round = (value: number) => Math.round(value * 1e6) / 1e6;
+
+export const caseOf = (wish: TractWish, volume: string, title: string): NewCase => ({ ...wish, volume, title });
+
+/** The plan as part of an address, in millimetres: a link to it can be kept. */
+export function toAddress({ entry, target, radius_m, breach }: Plan): string {
+  const said = new URLSearchParams();
+  const mm = (p: Vec3) => p.map((value) => Math.round(value * 1e5) / 100).join(',');
+  if (entry) said.set('entry', mm(entry));
+  if (target) said.set('target', mm(target));
+  if (radius_m !== kNoPlan.radius_m) said.set('radius', String(Math.round(radius_m * 1e5) / 100));
+  if (breach) said.set('breach', [breach.wall, breach.depth_m * 1000, ...(breach.at_m === null ? [] : [breach.at_m * 1000])].join(','));
+  return said.toString();
+}
+
+function pointOf(text: string | null): Vec3 | null {
+  const [x, y, z, ...more] = (text ?? '').split(',').map((part) => (part.trim() === '' ? Number.NaN : Number(part) / 1000));
+  return x !== undefined && y !== undefined && z !== undefined && more.length === 0 && [x, y, z].every(Number.isFinite) ? [x, y, z] : null;
+}
+
+export function fromAddress(search: string): Plan {
+  const said = new URLSearchParams(search);
+  const [wall, depth, at] = (said.get('breach') ?? '').split(',');
+  const known = kWalls.find((one) => one === wall);
+  const number = (text: string | undefined | null, otherwise: number) => (text && Number.isFinite(Number(text)) ? Number(text) / 1000 : otherwise);
+  return {
+    entry: pointOf(said.get('entry')), target: pointOf(said.get('target')), radius_m: number(said.get('radius'), kNoPlan.radius_m),
+    breach: known ? { wall: known, depth_m: number(depth, 0.003), at_m: at === undefined ? null : number(at, 0) } : null,
+  };
+}

@@ -1,0 +1,99 @@
+import { useQueries } from '@tanstack/react-query';
+import { useMemo } from 'react';
+import { sliceQuery, type PlannedTract, type Preview, type SlicePlane, type Vec3, type Window } from '@/api';
+import { SliceView, type SliceMark } from '@/charts';
+import { Notice } from '@/ui';
+import styles from './cases.module.css';
+import type { End, Plan } from './plan';
+
+const kPlanes: readonly { plane: SlicePlane; name: string; axis: 0 | 1 | 2; ends: readonly [string, string] }[] = [
+  { plane: 'axial', name: 'Axial', axis: 2, ends: ['feet', 'head'] },
+  { plane: 'coronal', name: 'Coronal', axis: 1, ends: ['front', 'back'] },
+  { plane: 'sagittal', name: 'Sagittal', axis: 0, ends: ['right', 'left'] },
+];
+const kPitch_m = 0.0005;
+
+/** The corners of the block along the patient's axes. */
+export function boundsOf({ dims, spacing_m, origin_m, directions: d }: Preview): { low: Vec3; high: Vec3 } {
+  const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+  for (let corner = 0; corner < 8; ++corner) {
+    for (const row of [0, 1, 2] as const) {
+      let at = origin_m[row];
+      for (const i of [0, 1, 2] as const) at += (corner >> i) & 1 ? (d[3 * row + i] ?? 0) * (dims[i] - 1) * spacing_m[i] : 0;
+      low[row] = Math.min(low[row] ?? 0, at);
+      high[row] = Math.max(high[row] ?? 0, at);
+    }
+  }
+  return { low: [low[0] ?? 0, low[1] ?? 0, low[2] ?? 0], high: [high[0] ?? 0, high[1] ?? 0, high[2] ?? 0] };
+}
+
+const add = (a: Vec3, b: Vec3, by: number): Vec3 => [a[0] + by * b[0], a[1] + by * b[1], a[2] + by * b[2]];
+
+/** Faces of the walls along the tract, the tract itself, the breach. */
+function marksOf(plan: Plan, found: PlannedTract | undefined): SliceMark[] {
+  const out: SliceMark[] = [];
+  const tract = found?.tract;
+  if (tract) {
+    const towards: Record<string, Vec3> = {
+      medial: tract.medial, lateral: add([0, 0, 0], tract.medial, -1), superior: tract.superior, inferior: add([0, 0, 0], tract.superior, -1), anterior: tract.axis,
+    };
+    for (const { wall, depth_m, inner_m, thickness_m } of found.walls) {
+      const side = towards[wall];
+      if (!side || wall === 'anterior') continue;
+      for (let i = 0; i + 2 < depth_m.length; i += 2) {
+        for (const face of ['inner', 'outer'] as const) {
+          const place = (at: number) => {
+            const inner = inner_m[at], thick = thickness_m[at];
+            if (inner === null || inner === undefined || thick === null || thick === undefined || inner > 0.015) return null;
+            return add(add(tract.entry_m, tract.axis, depth_m[at] ?? 0), side, face === 'inner' ? inner : inner + thick);
+          };
+          const from = place(i), to = place(i + 2);
+          if (from && to) out.push({ id: `${wall} ${face} ${i}`, at: from, to, look: 'wall', wide: 0.35 });
+        }
+      }
+    }
+  }
+  if (plan.entry && plan.target) out.push({ id: 'tract', at: plan.entry, to: plan.target, look: 'tract', wide: 1.2 });
+  if (found?.breach) {
+    out.push({ id: 'breach', at: found.breach.from_m, to: found.breach.tip_m, look: 'breach', wide: 1.4 });
+    out.push({ id: 'hole', at: found.breach.breach_m, look: 'breach', text: 'breach', fixed: true });
+  }
+  if (plan.target) out.push({ id: 'target', at: plan.target, look: 'target', text: 'target' });
+  if (plan.entry) out.push({ id: 'entry', at: plan.entry, look: 'entry', text: 'entry' });
+  return out;
+}
+
+interface Props {
+  readonly volume: string;
+  readonly block: Preview;
+  readonly window: Window;
+  readonly plan: Plan;
+  readonly found: PlannedTract | undefined;
+  readonly chosen: End;
+  readonly focus: Vec3;
+  readonly onFocus: (at: Vec3) => void;
+  readonly onPlace: (end: End, at: Vec3, done: boolean) => void;
+}
+
+/** The volume in three planes through one point, with the plan drawn over it. */
+export function Slices({ volume, block, window, plan, found, chosen, focus, onFocus, onPlace }: Props) {
+  const { low, high } = useMemo(() => boundsOf(block), [block]);
+  const marks = useMemo(() => marksOf(plan, found), [plan, found]);
+  const on = (axis: 0 | 1 | 2) => Math.min(Math.max(Math.round(focus[axis] / kPitch_m) * kPitch_m, low[axis]), high[axis]);
+  const answers = useQueries({ queries: kPlanes.map(({ plane, axis }) => sliceQuery(volume, plane, Math.round(on(axis) * 1e6) / 1e6, window)) });
+  const failed = answers.find(({ isError }) => isError);
+  return (
+    <div>
+      {failed ? <Notice tone="bad" title="A slice could not be loaded." onRetry={() => { for (const one of answers) if (one.isError) void one.refetch(); }}>{failed.error?.message}</Notice> : null}
+      <div className={styles.slices}>
+        {kPlanes.map(({ plane, name, axis, ends }, i) => (
+          <SliceView
+            key={plane} name={name} picture={answers[i]?.data ?? null} late={answers[i]?.isPlaceholderData === true} at_m={on(axis)} from_m={low[axis]} to_m={high[axis]} ends={ends}
+            marks={marks} chosen={chosen} onAt={(at) => onFocus([axis === 0 ? at : focus[0], axis === 1 ? at : focus[1], axis === 2 ? at : focus[2]])}
+            onPlace={(id, at, done) => { if (id === 'entry' || id === 'target') onPlace(id, at, done); }}
+          />
+        ))}
+      </div>
+    </div>
+  );
+}

@@ -1,0 +1,154 @@
+/** Each role on a real server, from sign-in to what it came for. Set GUIDE_PICTURES=1 to keep the guide's pictures. */
+import { mkdirSync, writeFileSync } from 'node:fs';
+import { fileURLToPath } from 'node:url';
+import type { Browser, Page } from 'playwright-core';
+import { afterAll, beforeAll, describe, expect, it } from 'vitest';
+import { kShots, launch } from './browser';
+import { at, furnish, kTrainees, Person, scored, tuned, type Programme } from './programme';
+import { programs, serveReal, type Served } from './real-server';
+
+const bin = programs('tractus-server', 'tractus-station', 'tractus');
+const kPictures = fileURLToPath(new URL('../../public/guide/', import.meta.url));
+const [kAda, kBen] = kTrainees;
+
+/** What the guide shows: the upper part of a page, 1200 × 750. */
+async function picture(page: Page, name: string): Promise<void> {
+  await page.setViewportSize({ width: 1200, height: 750 });
+  await page.waitForLoadState('networkidle');
+  await page.waitForTimeout(600);
+  const bytes = await page.screenshot({ type: 'jpeg', quality: 82 });
+  writeFileSync(`${kShots}guide-${name}.jpg`, bytes);
+  if (process.env.GUIDE_PICTURES) { mkdirSync(kPictures, { recursive: true }); writeFileSync(`${kPictures}${name}.jpg`, bytes); }
+  await page.setViewportSize({ width: 1440, height: 900 });
+}
+
+describe.skipIf(bin === undefined)('on a real server', () => {
+  let browser: Browser, served: Served, programme: Programme, assignment: string;
+  const faults: string[] = [];
+  beforeAll(async () => {
+    served = await serveReal(bin ?? '');
+    programme = await furnish(served, bin ?? '');
+    const faculty = await new Person(served.url).in('faculty', programme.passwords.get('faculty') ?? '');
+    const { cases } = await faculty.ask<{ cases: { id: string }[] }>('GET', '/cases');
+    ({ id: assignment } = await faculty.ask<{ id: string }>('POST', '/assignments', { title: 'Four kinds of bone', cases: tuned, cohort: programme.cohort, repeats: 4, seed: 3, release: 'held' }));
+    programme.does(kAda, 16);
+    programme.does(kBen, 16);
+    await faculty.ask('POST', '/assignments', { title: 'The wall of the tract', cases: [{ case: cases[0]?.id }], people: [kAda], release: 'at_once' });
+    programme.does(kAda, 1, 'sim-lambda6');
+    await scored(programme.admin);
+    browser = await launch();
+  }, 600_000);
+  afterAll(async () => { await browser.close(); await served.stop(); });
+  const enter = async (name: string) => {
+    const page = await at(browser, served, name, programme.passwords.get(name) ?? '');
+    page.on('pageerror', (error) => faults.push(`${name}: ${String(error)}`));
+    return page;
+  };
+
+  it('a trainee sees nothing of the assignment before its results are released, and the own curve after', async () => {
+    const page = await enter(kBen);
+    expect(await page.getByRole('navigation', { name: 'Pages' }).getByRole('link').allInnerTexts()).not.toContain('Studies');
+    await page.goto('/me');
+    await page.getByText('There is nothing to show yet.').waitFor();
+    await programme.admin.ask('POST', `/assignments/${assignment}/release`, { release: 'released' });
+    await page.reload();
+    await page.getByText(/ of 16/).waitFor();
+    expect(await page.getByText('Next case').count(), 'no scenario is named that may come').toBe(0);
+    await picture(page, 'trainee');
+    await page.goto('/trials');
+    await page.locator('tbody a').first().click();
+    await page.locator('[data-part="depth-curve"]').waitFor();
+    await page.context().close();
+  }, 120_000);
+
+  it('a director finds who is on track and prints one page', async () => {
+    const page = await enter('director');
+    await page.goto('/trainees');
+    await page.getByRole('link', { name: kAda }).waitFor();
+    await picture(page, 'director');
+    await page.getByRole('link', { name: kAda }).click();
+    await page.getByRole('heading', { name: 'Competence' }).waitFor();
+    await page.waitForLoadState('networkidle');
+    const pdf = await page.pdf({ format: 'A4', printBackground: false });
+    writeFileSync(`${kShots}trainee.pdf`, pdf);
+    const sheets = pdf.toString('latin1').match(/\/Type\s*\/Page[^s]/g)?.length ?? 0;
+    expect(sheets, 'sheets of paper').toBe(1);
+    await page.context().close();
+  }, 120_000);
+
+  it('a member of the faculty opens a palpation trial of the own cohort', async () => {
+    const page = await enter('faculty');
+    await page.goto('/trials');
+    await page.locator('tbody a').first().waitFor();
+    const { trials } = await page.evaluate(async () => (await fetch('/api/v1/trials?limit=50')).json() as Promise<{ trials: { id: string; case_title: string }[] }>);
+    const palpated = trials.find(({ case_title }) => case_title === 'L3 left pedicle');
+    await page.goto(`/trials/${palpated?.id ?? ''}`);
+    await page.locator('[data-part="scene"][data-ready]').waitFor();
+    await page.locator('[data-panel="force"] canvas').waitFor();
+    await picture(page, 'faculty');
+    await page.context().close();
+  }, 120_000);
+
+  it('a researcher locks a plan, runs it and reads the result', async () => {
+    const page = await enter('researcher');
+    await page.goto('/analysis');
+    await page.getByRole('link', { name: 'New plan' }).click();
+    await page.getByLabel('Title').fill('Does practice shorten the operation?');
+    await page.getByLabel('Endpoint').first().selectOption('operation_time');
+    await page.getByRole('button', { name: 'Add to the plan' }).click();
+    await page.getByRole('button', { name: 'Lock the plan…' }).click();
+    await page.getByRole('button', { name: 'Lock it' }).click();
+    await page.getByRole('button', { name: 'Run on the trials of now' }).click();
+    await page.getByText('Methods, for a paper').waitFor({ timeout: 60_000 });
+    await page.context().close();
+  }, 120_000);
+
+  it('a technician enrols a station by its code, revokes it, makes a backup and tries it', async () => {
+    const page = await enter('technician');
+    await page.goto('/network/stations');
+    await page.getByLabel('Name of the station').fill('theatre 4');
+    await page.getByRole('button', { name: 'Make a code' }).click();
+    const code = await page.locator('[data-part="secret"]').innerText();
+    const { execFileSync } = await import('node:child_process');
+    execFileSync(`${bin ?? ''}/tractus-station`, ['enrol', '--server', served.url, '--code', code.trim(), '--token-file', `${served.folder}/theatre.token`]);
+    await page.reload();
+    await page.getByRole('link', { name: 'theatre 4' }).click();
+    await page.getByRole('heading', { name: 'How it is' }).or(page.getByText('The station could not be loaded.')).waitFor();
+    await page.goto('/network/stations');
+    await page.getByRole('button', { name: 'Revoke theatre 4' }).click();
+    await page.getByRole('button', { name: 'Revoke', exact: true }).click();
+    await page.getByRole('row', { name: /theatre 4/ }).getByText('revoked').waitFor();
+
+    await page.goto('/network/backups');
+    await page.getByText('There is no backup yet.').waitFor();
+    await page.getByRole('button', { name: 'Make a backup' }).click();
+    await page.getByText('whole').waitFor({ timeout: 60_000 });
+    await page.getByRole('button', { name: /^Try the backup/ }).click();
+    await page.getByText('holds', { exact: true }).waitFor({ timeout: 90_000 });
+    await picture(page, 'technician');
+    await page.context().close();
+  }, 240_000);
+
+  it('an administrator makes an account that has to choose its own password, and finds the trail untouched', async () => {
+    const page = await at(browser, served, served.account.name, served.account.password);
+    await page.goto('/network/people');
+    await page.getByLabel('Name', { exact: true }).fill('newcomer');
+    await page.getByRole('button', { name: 'Make the account' }).click();
+    const first = await page.locator('[data-part="secret"]').innerText();
+    await picture(page, 'admin');
+    const fresh = await at(browser, served, 'newcomer', first.trim());
+    await fresh.getByLabel('Password now').fill(first.trim());
+    await fresh.getByLabel('New password', { exact: true }).fill('a password of my own');
+    await fresh.getByLabel('New password again').fill('a password of my own');
+    await fresh.getByRole('button', { name: 'Change the password' }).click();
+    await fresh.getByRole('navigation', { name: 'Pages' }).getByRole('link', { name: 'My curve' }).click();
+    await fresh.getByText('There is nothing to show yet.').waitFor();
+    await fresh.context().close();
+    await page.goto('/network/audit');
+    await page.getByRole('button', { name: 'Check the whole trail' }).click();
+    await page.getByText(/^The trail holds/).waitFor();
+    expect(await page.getByRole('row', { name: /Add account/ }).count()).toBeGreaterThan(0);
+    await page.context().close();
+    expect(faults).toEqual([]);
+  }, 120_000);
+});
