@@ -50,17 +50,10 @@ Json breach_json(const volume::Breach& breach) {
 Json tract_json(const volume::Volume& ct, const volume::TransferFunction& transfer,
                 cases::CarvingPlan plan) {
   const auto asked = std::exchange(plan.breach, std::nullopt);
-  Json out{{"length_m", (plan.target_m - plan.entry_m).norm()},
-           {"side", Json()},
-           {"tract", Json()},
-           {"walls", Json::array()},
-           {"breach", Json()},
-           {"problems", Json::array()}};
   const auto placed = cases::place(ct, transfer, plan);
-  if (!placed) {
-    out["problems"].push_back(placed.error().what);
-    return out;
-  }
+  if (!placed) return no_tract_json(plan, placed.error().what);
+  Json out = no_tract_json(plan, "");
+  out["problems"] = Json::array();
   out["side"] = placed->left_side() ? "left" : "right";
   out["tract"] = tract_of(placed->tract);
   const volume::WallFinder finder(ct, transfer);

@@ -15,4 +15,7 @@ inline constexpr double kWallStep_m = 0.0005;
 core::Json tract_json(const volume::Volume& ct, const volume::TransferFunction& transfer,
                       cases::CarvingPlan plan);
 
+/// The same for a plan that is not of this volume at all.
+core::Json no_tract_json(const cases::CarvingPlan& plan, const std::string& problem);
+
 }  // namespace api

@@ -100,6 +100,8 @@ core::Result<volume::Box> box_that_matters(const volume::Geometry& geometry, con
                                            const Vec3& target_m) {
   if (!entry_m.allFinite() || !target_m.allFinite())
     return Error{Errc::bad_input, "entry and target must be finite numbers"};
+  if (!geometry.contains(entry_m)) return outside("the entry", entry_m, geometry);
+  if (!geometry.contains(target_m)) return outside("the target", target_m, geometry);
   const Vec3 low = entry_m.cwiseMin(target_m) - kMatters_m;
   const Vec3 high = entry_m.cwiseMax(target_m) + kMatters_m;
   Vec3 first = Vec3::Constant(1e30), last = Vec3::Constant(-1e30);
@@ -116,7 +118,6 @@ core::Result<volume::Box> box_that_matters(const volume::Geometry& geometry, con
     const double top = geometry.dims[at];
     box.begin[at] = int(std::clamp(std::floor(first[a]), 0.0, top));
     box.end[at] = int(std::clamp(std::ceil(last[a]) + 1.0, 0.0, top));
-    if (box.begin[at] >= box.end[at]) return outside("the entry", entry_m, geometry);
   }
   return box;
 }

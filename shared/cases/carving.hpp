@@ -43,8 +43,8 @@ struct Carved : Placed {
 };
 
 /// The voxels that `place` and `carve` look at, at the default margin: whatever lies outside may be
-/// missing from `ct` and the answer is the same. Errors: out_of_range where that is nothing of the
-/// volume, bad_input for numbers that are none.
+/// missing from `ct` and the answer is the same. Errors: out_of_range for an entry or a target
+/// outside the volume, bad_input for numbers that are none.
 core::Result<volume::Box> box_that_matters(const volume::Geometry& geometry,
                                            const math::Vec3& entry_m, const math::Vec3& target_m);
 

@@ -35,6 +35,8 @@ Result<http::Response> look_at_tract(const Call& call) {
       jobs::released_volume(call.backend.store, call.backend.objects, call.text("id"));
   if (!source) return source.error();
   const auto ct = jobs::read_about(source->file, plan->entry_m, plan->target_m);
+  if (!ct && ct.error().code == Errc::out_of_range)
+    return json_response(no_tract_json(*plan, ct.error().what));
   if (!ct) return ct.error();
   return json_response(tract_json(*ct, models::PalpationModel{}.transfer, *plan));
 }

@@ -54,7 +54,7 @@ export const volumeBoneQuery = (volume: string) =>
 export const plannedTractQuery = (volume: string, wish: TractWish | null) =>
   queryOptions({
     queryKey: ['planned-tract', volume, wish],
-    queryFn: ({ signal }) => ask(address('/api/v1/volumes/{id}/tract', { id: volume }), plannedTractSchema, { ...posted, body: wish, signal }),
+    queryFn: ({ signal }) => ask(address('/api/v1/volumes/{id}/tract', { id: volume }), plannedTractSchema, { ...posted, body: wish, signal, timeout_ms: 60_000 }),
     enabled: wish !== null,
     staleTime: Infinity,
     placeholderData: keepPreviousData,

@@ -92,6 +92,7 @@ describe.each([
 ])('at $width px, dark: $dark', ({ width, dark }) => {
   it('the pages of teaching can be used without sight, fit the screen and break no policy', async () => {
     const { context, page, faults } = await visit(browser, { width, dark });
+    page.setDefaultTimeout(90_000);
     const suffix = `${width}-${dark ? 'dark' : 'light'}`;
     const check: Check = async (name) => {
       await page.screenshot({ path: `${kShots}teaching-${name}-${suffix}.png`, fullPage: true });
@@ -114,5 +115,5 @@ describe.each([
       await check(`${place}-failing`);
     }
     await context.close();
-  }, 300_000);
+  }, 600_000);
 });
