@@ -109,15 +109,13 @@ TEST_F(Assignments, TheEarliestDueComesFirst) {
 
 TEST_F(Assignments, TheSameSeedGivesTheSameOrders) {
   const auto order = [&](std::int64_t seed) {
-    assigned(two_cases({{"title", "x"},
-                        {"ordering", "random"},
-                        {"repeats", 8},
-                        {"seed", seed},
-                        {"due_utc_us", 1000 + seed}}));
-    const auto all = store_.read([](store::Reading& tx) {
-      return tx.query(
-          "select case_id from study_slots where study_id = (select study_id from "
-          "assignments order by rowid desc limit 1) order by position");
+    const std::string id = assigned(two_cases({{"title", "x"},
+                                               {"ordering", "random"},
+                                               {"repeats", 8},
+                                               {"seed", seed},
+                                               {"due_utc_us", 1000 + seed}}));
+    const auto all = store_.read([&](store::Reading& tx) {
+      return tx.query("select case_id from study_slots where study_id = ? order by position", {id});
     });
     std::string out;
     for (const auto& row : *all) out += row.text(0).front();

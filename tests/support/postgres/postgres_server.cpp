@@ -51,6 +51,21 @@ fs::path place_of(Durable durable) {
   return durable == Durable::no && fits && ::access(memory.c_str(), W_OK) == 0 ? memory : "/tmp";
 }
 
+/// What a test program that was killed has left: clusters whose server is gone.
+void sweep(const fs::path& place) {
+  std::error_code failure;
+  for (const auto& entry : fs::directory_iterator(place, failure)) {
+    if (!entry.path().filename().string().starts_with("tractus-pg-")) continue;
+    pid_t server = 0;
+    std::ifstream(entry.path() / "data/postmaster.pid") >> server;
+    const auto changed = fs::last_write_time(entry.path() / "data", failure);
+    const bool old = fs::file_time_type::clock::now() - changed > std::chrono::minutes(5);
+    // Without a number it is being made, or it ended when its test did.
+    if (server > 0 ? ::kill(server, 0) != 0 && errno == ESRCH : !failure && old)
+      fs::remove_all(entry.path(), failure);
+  }
+}
+
 const passwd& user_without_privileges() {
   if (const passwd* user = ::getpwnam("postgres")) return *user;
   if (const passwd* user = ::getpwnam("nobody")) return *user;
@@ -86,14 +101,19 @@ std::string tail_of(const fs::path& log) {
 PostgresServer::PostgresServer(Durable durable)
     : programs_(newest_programs()),
       folder_(place_of(durable) / ("tractus-pg-" + core::new_id().substr(0, 12))) {
+  sweep(folder_.parent_path());
   fs::create_directories(folder_);
   if (::geteuid() == 0) {
     user_ = user_without_privileges().pw_uid;
     group_ = user_without_privileges().pw_gid;
     if (::chown(folder_.c_str(), user_, group_) != 0) give_up("cannot give the folder away");
   }
-  settings_ = {"listen_addresses=", "unix_socket_directories=" + folder_.string(),
-               "max_connections=80", "shared_buffers=32MB", "log_min_messages=warning"};
+  settings_ = {"listen_addresses=",
+               "unix_socket_directories=" + folder_.string(),
+               "max_connections=80",
+               "shared_buffers=32MB",
+               "log_min_messages=warning",
+               "dynamic_shared_memory_type=mmap"};  // within the folder: nothing else to clean up
   if (durable == Durable::no)
     for (const char* off : {"fsync=off", "full_page_writes=off", "autovacuum=off"})
       settings_.emplace_back(off);
@@ -133,12 +153,6 @@ void PostgresServer::stop(int signal) {
   ::kill(pid_, signal);
   ::waitpid(pid_, nullptr, 0);
   pid_ = -1;
-}
-
-void PostgresServer::kill_and_restart() {
-  stop(SIGKILL);  // its children end when they see that
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));
-  start();
 }
 
 std::string PostgresServer::address(const std::string& database) const {

@@ -28,8 +28,6 @@ class PostgresServer {
   /// A new database's name, a copy of `of`.
   std::string add_database(const std::string& of = "template0");
   void drop_database(const std::string& name);
-  /// SIGKILL to the server and all its children, then starts it again.
-  void kill_and_restart();
   const std::filesystem::path& folder() const { return folder_; }
 
  private:
