@@ -129,10 +129,10 @@ void BackupFolder::verify_now(api::Backup& backup) {
     if (!scratch) return scratch.error();
     const fs::path restored = scratch->path() / "data";
     const auto shown = progress();
-    auto put_back =
-        restore(folder_ / backup.id, restored, [&](double share) { return shown(0.5 * share); });
+    auto put_back = restore(folder_ / backup.id, restored, Database::file_in(restored),
+                            [&](double share) { return shown(0.5 * share); });
     if (!put_back) return put_back.error();
-    auto data = open_data(restored);
+    auto data = open_data(restored, Database::file_in(restored));
     if (!data) return data.error();
     auto anchors = anchors_of(restored);
     if (!anchors) return anchors.error();

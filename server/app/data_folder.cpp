@@ -65,15 +65,20 @@ core::Result<api::Secrets> secrets_of(const fs::path& folder, store::Store& stor
 }  // namespace
 
 core::Result<DataFolder> open_data(const fs::path& path) {
-  if (auto there = database_of(path); !there) return there.error();
-  return make_data(path);
+  auto database = database_of(path);
+  if (!database) return database.error();
+  return open_data(path, *database);
 }
 
 core::Result<DataFolder> make_data(const fs::path& path) {
   auto database = new_database(path);
   if (!database) return database.error();
-  if (database->is_shared())  // nothing is made when it cannot be reached
-    if (auto reached = database->open(); !reached) return reached.error();
+  return open_data(path, *database);
+}
+
+core::Result<DataFolder> open_data(const fs::path& path, const Database& database) {
+  if (database.is_shared())  // nothing is made when it cannot be reached
+    if (auto reached = database.open(); !reached) return reached.error();
   std::error_code failure;
   const bool fresh = fs::create_directories(path, failure);
   if (failure)
@@ -84,9 +89,9 @@ core::Result<DataFolder> make_data(const fs::path& path) {
   if (!objects) return objects.error();
   auto partials = store::PartialFiles::open(path);
   if (!partials) return partials.error();
-  auto opened = database->open();
+  auto opened = database.open();
   if (!opened) return opened.error();
-  if (auto noted = note_address(path, *database); !noted) return noted.error();
+  if (auto noted = note_address(path, database); !noted) return noted.error();
   auto secrets = secrets_of(path, *opened);
   if (!secrets) return secrets.error();
   opened->set_audit_key(secrets->audit_key());

@@ -24,6 +24,8 @@ struct DataFolder {
 
 /// Opens one that `init` made. Errors: not_found, and those of the database.
 core::Result<DataFolder> open_data(const std::filesystem::path& path);
+/// With its records there, whatever the environment says.
+core::Result<DataFolder> open_data(const std::filesystem::path& path, const Database& database);
 /// Makes one, or opens what is there (accounts are another matter).
 core::Result<DataFolder> make_data(const std::filesystem::path& path);
 

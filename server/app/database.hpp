@@ -18,6 +18,7 @@ inline constexpr const char* kAddressVariable = "TRACTUS_DATABASE";
 struct Database {
   std::filesystem::path file;
   std::string address;  ///< empty: the file
+  static Database file_in(const std::filesystem::path& folder) { return {folder / kDatabase, {}}; }
   bool is_shared() const { return !address.empty(); }
   /// For a person; never a password.
   std::string name() const;

@@ -76,7 +76,9 @@ Run restore_command(CLI::App& command) {
   const auto from = std::make_shared<std::filesystem::path>();
   command.add_option("--from", *from, "The backup's folder")->required();
   return [=]() -> core::Result<int> {
-    auto made = restore(*from, common->data, core::terminal_progress("Restore"));
+    auto target = new_database(common->data);
+    if (!target) return target.error();
+    auto made = restore(*from, common->data, *target, core::terminal_progress("Restore"));
     if (!made) return made.error();
     return verified(*common);
   };

@@ -212,7 +212,7 @@ core::Result<core::Json> back_up(const fs::path& data, const fs::path& out,
   return manifest;
 }
 
-core::Result<core::Json> restore(const fs::path& from, const fs::path& data,
+core::Result<core::Json> restore(const fs::path& from, const fs::path& data, const Database& target,
                                  const core::Progress& shown) {
   auto manifest = read_manifest(from);
   if (!manifest) return manifest.error();
@@ -224,8 +224,6 @@ core::Result<core::Json> restore(const fs::path& from, const fs::path& data,
       return core::Error{core::Errc::bad_input, (from / kManifest).string() + ": odd name " + name};
     if (auto fine = check_file(from / name, sha256); !fine) return fine.error();
   }
-  auto target = new_database(data);
-  if (!target) return target.error();
   auto scratch = scratch_for(data);
   if (!scratch) return scratch.error();
   std::error_code failure;
@@ -234,8 +232,8 @@ core::Result<core::Json> restore(const fs::path& from, const fs::path& data,
     return core::Error{core::Errc::io, fmt::format("{}: cannot copy: {}",
                                                    (from / kDatabase).string(), failure.message())};
   if (auto copied = copy_files(from, scratch->path(), shown); !copied) return copied.error();
-  if (target->is_shared())
-    if (auto moved = move_records(scratch->path(), *target); !moved) return moved.error();
+  if (target.is_shared())
+    if (auto moved = move_records(scratch->path(), target); !moved) return moved.error();
   if (auto kept = scratch->keep_as(data); !kept) return kept.error();
   return *manifest;
 }

@@ -16,11 +16,12 @@ core::Result<core::Json> back_up(const std::filesystem::path& data,
                                  const std::filesystem::path& out, const core::Progress& shown);
 
 /// Makes a new data folder of a backup, every file checked against backup.json and its name. Its
-/// records go into the PostgreSQL database that is named (TRACTUS_DATABASE), which must be empty,
-/// or stay a file: so a server moves from one to the other.
+/// records go into `target`: a PostgreSQL database, which must be empty, or the folder's own file:
+/// so a server moves from one to the other.
 /// Errors: as above; bad_input when `from` is no backup.
 core::Result<core::Json> restore(const std::filesystem::path& from,
-                                 const std::filesystem::path& data, const core::Progress& shown);
+                                 const std::filesystem::path& data, const Database& target,
+                                 const core::Progress& shown);
 
 /// Ends of the audit trail noted beside the database (audit.anchor). Errors: corrupt with the line.
 core::Result<store::Anchors> anchors_of(const std::filesystem::path& data);

@@ -2,10 +2,7 @@
 /// websocket.cpp).
 #include <utility>  // before Asio: 1.74 uses std::exchange without it
 //
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/sendfile.h>
-#include <unistd.h>
 
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
@@ -20,6 +17,7 @@
 #include <list>
 
 #include "server/http/coroutine.hpp"
+#include "server/http/pieces.hpp"
 #include "server/http/server.hpp"
 #include "server/http/static_files.hpp"
 #include "server/http/stream.hpp"
@@ -35,51 +33,9 @@ using Admission = std::variant<std::uint64_t, Response>;
 using Opening = std::variant<Response, std::shared_ptr<Conversation>>;
 using Parser = beast::http::request_parser<beast::http::string_body>;
 
-constexpr std::size_t kPiece_bytes = 256 * 1024;
-constexpr std::size_t kSent_bytes = 4u << 20;  // at once, by the kernel, when it takes them
 constexpr std::size_t kLingering_bytes = 16u << 20;
 constexpr std::chrono::seconds kLingering_time{2};
 constexpr std::chrono::milliseconds kFarewell_time{500};
-
-class File {
- public:
-  explicit File(const std::filesystem::path& path)
-      : fd_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {}
-  /// Another name of a socket, so that it stays the same one whoever closes it meanwhile.
-  static File again(int socket) { return File(::fcntl(socket, F_DUPFD_CLOEXEC, 0)); }
-  ~File() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  File(const File&) = delete;
-  File& operator=(const File&) = delete;
-  explicit operator bool() const { return fd_ >= 0; }
-  /// Fills all of `piece`; false when the file is shorter or cannot be read.
-  bool read_at(std::uint64_t offset, std::string& piece) const {
-    std::size_t done = 0;
-    while (done < piece.size()) {
-      const ssize_t n =
-          ::pread(fd_, piece.data() + done, piece.size() - done, static_cast<off_t>(offset + done));
-      if (n < 0 && errno == EINTR) continue;
-      if (n <= 0) return false;
-      done += static_cast<std::size_t>(n);
-    }
-    return true;
-  }
-  /// Copies to a socket that does not block, within the kernel: how many bytes it took; nothing
-  /// when the file is shorter or the other side is gone.
-  std::optional<std::uint64_t> send_to(const File& socket, std::uint64_t offset,
-                                       std::uint64_t size) const {
-    auto at = static_cast<off_t>(offset);
-    const ssize_t n = ::sendfile(socket.fd_, fd_, &at, size);
-    if (n > 0) return static_cast<std::uint64_t>(n);
-    if (n < 0 && (errno == EAGAIN || errno == EINTR)) return 0;
-    return std::nullopt;
-  }
-
- private:
-  explicit File(int fd) : fd_(fd) {}
-  int fd_;
-};
 
 /// A library threw where a handler did not expect it: this request fails, the server goes on.
 Response broken(const std::exception& failure) {
@@ -115,18 +71,6 @@ struct OpeningConversation {
     return broken(failure);
   }
 };
-struct ReadingPiece {
-  const File* file;
-  std::string* piece;
-  std::uint64_t offset;
-  bool operator()() const { return file->read_at(offset, *piece); }
-};
-struct SendingPiece {
-  const File *file, *socket;
-  std::uint64_t offset, size;
-  std::optional<std::uint64_t> operator()() const { return file->send_to(*socket, offset, size); }
-};
-
 std::string lower_case(beast::string_view text) {
   std::string out(text);
   for (char& c : out)

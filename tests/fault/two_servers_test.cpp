@@ -11,6 +11,7 @@
 #include <random>
 #include <thread>
 
+#include "kills.hpp"
 #include "tests/fault/hand_over.hpp"
 #include "tests/support/postgres/postgres_server.hpp"
 
@@ -19,7 +20,7 @@ using namespace fault;
 using test_support::Durable;
 using test_support::PostgresServer;
 
-constexpr int kKills = 60;
+const int kKills = kills(60);
 
 std::unique_ptr<ServerProcess> started(const std::filesystem::path& data) {
   return std::make_unique<ServerProcess>(data,
