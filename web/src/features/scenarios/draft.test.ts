@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import type { ScenarioFile } from '@/api';
-import { draftOf, fromShown, kBone, shown, valueAt, withLayer, withValue, withWall } from './draft';
+import { draftOf, fromShown, inUnitsOf, kBone, shown, valueAt, withLayer, withValue, withWall } from './draft';
 
 const file: ScenarioFile = {
   format: 'tractus-scenario/1', name: 'hard', kind: 'hard', density: 1, travel_m: 0.05, walls_m: [], layers: [],
@@ -27,6 +27,10 @@ describe('a scenario being tuned', () => {
   });
   it('does not lay a stretch beyond the probe stop', () => {
     expect(withLayer({ ...file, layers: [{ start_m: 0, thickness_m: 0.05, density: 1 }] }).layers).toHaveLength(1);
+  });
+  it('says what is out of range in the unit of the field', () => {
+    expect(inUnitsOf('-1000 is outside 0 … 200000', { times: 1e-3, unit: 'N/mm' })).toBe('-1 is outside 0 … 200 N/mm');
+    expect(inUnitsOf('is missing', { times: 1e-3, unit: 'N/mm' })).toBe('is missing');
   });
   it('leaves who and when to the server', () => { expect(draftOf(file)).not.toHaveProperty('origin'); });
 });

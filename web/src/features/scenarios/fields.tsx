@@ -1,7 +1,7 @@
 import { useId, useState } from 'react';
 import type { ScenarioCheck, ScenarioFile } from '@/api';
 import { Button } from '@/ui';
-import { fromShown, shown, valueAt, withLayer, withValue, withWall, type Knob } from './draft';
+import { fromShown, inUnitsOf, shown, valueAt, withLayer, withValue, withWall, type Knob } from './draft';
 import styles from './scenarios.module.css';
 
 interface Props { readonly file: ScenarioFile; readonly check: ScenarioCheck | undefined; readonly onFile: (file: ScenarioFile) => void }
@@ -13,7 +13,7 @@ function Number_({ knob, file, check, onFile }: Props & { readonly knob: Knob })
   const value = valueAt(file, knob.pointer);
   const text = typed ?? (typeof value === 'number' ? shown(value, knob) : '');
   const none = text.trim() === '' || !Number.isFinite(Number(text));
-  const refused = check && !check.ok && check.field === knob.pointer ? check.error : '';
+  const refused = check && !check.ok && check.field === knob.pointer ? inUnitsOf(check.error, knob) : '';
   const wrong = none ? 'a number is expected' : refused;
   return (
     <div className={styles.knob}>
