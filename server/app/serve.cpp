@@ -13,9 +13,12 @@
 
 #include "core/clock.hpp"
 #include "core/json.hpp"
+#include "db/store/consent.hpp"
 #include "server/api/backend.hpp"
+#include "server/api/oidc.hpp"
 #include "server/api/service.hpp"
 #include "server/api/uploads.hpp"
+#include "server/app/taking.hpp"
 #include "server/app/upkeep.hpp"
 #include "server/http/certificates.hpp"
 #include "server/http/static_files.hpp"
@@ -74,14 +77,18 @@ http::Service service_of(api::Backend& backend, const std::optional<std::filesys
       .handle =
           [&backend, is_api, pages](const http::Request& request) {
             return is_api(request) ? api::answer(backend, api::routes(), request) : pages(request);
-          }};
+          },
+      .spools = [](const http::RequestHead& head) { return api::takes_file(api::routes(), head); }};
+}
+
+std::string address_of(const ServeOptions& options, std::uint16_t port) {
+  const bool six = options.http.address.find(':') != std::string::npos;
+  const std::string address = six ? "[" + options.http.address + "]" : options.http.address;
+  return fmt::format("{}://{}:{}", options.http.tls ? "https" : "http", address, port);
 }
 
 void say_where(const ServeOptions& options, std::uint16_t port) {
-  const bool six = options.http.address.find(':') != std::string::npos;
-  const std::string address = six ? "[" + options.http.address + "]" : options.http.address;
-  const std::string url =
-      fmt::format("{}://{}:{}/", options.http.tls ? "https" : "http", address, port);
+  const std::string url = address_of(options, port) + "/";
   if (options.json)
     fmt::print("{}\n", core::Json{{"listening", url}}.dump());
   else
@@ -178,6 +185,59 @@ core::Result<ServeOptions> secured(ServeOptions options) {
 
 }  // namespace
 
+namespace {
+
+/// A new DATA/scratch, for this process's owner alone: what a process that died left there may hold
+/// a patient's scan.
+core::Result<std::filesystem::path> empty_scratch(const std::filesystem::path& data) {
+  const std::filesystem::path out = data / "scratch";
+  std::error_code failure;
+  std::filesystem::remove_all(out, failure);
+  if (!failure) std::filesystem::create_directory(out, failure);
+  if (!failure) std::filesystem::permissions(out, std::filesystem::perms::owner_all, failure);
+  if (failure)
+    return core::Error{core::Errc::io, out.string() + ": cannot be made: " + failure.message()};
+  return out;
+}
+
+std::string fingerprint_of(const api::Secrets::Key& key) {
+  return core::sha256(core::bytes_of("key of pseudonyms " + core::hex(key))).substr(0, 32);
+}
+
+/// The key of pseudonyms, made where there never was one. Where the one that was is not there,
+/// nothing is exported, and the log says so: another key would give everybody another name.
+core::Result<std::optional<api::Secrets::Key>> pseudonym_key_of(const std::filesystem::path& path,
+                                                                store::Store& store) {
+  using Maybe = std::optional<api::Secrets::Key>;
+  auto known = store.read([](store::Reading& tx) { return store::pseudonym_key_known(tx); });
+  if (!known) return known.error();
+  std::error_code failure;
+  const bool there = std::filesystem::exists(path, failure);
+  if (!there && !known->empty()) {
+    log_line({{"what", "the key of pseudonyms is missing: nothing can be exported"}});
+    return Maybe();
+  }
+  if (!there) {
+    if (std::filesystem::create_directories(path.parent_path(), failure))
+      std::filesystem::permissions(path.parent_path(), std::filesystem::perms::owner_all, failure);
+    if (auto made = make_key_file(path); !made) return made.error();
+  }
+  auto key = read_key_file(path);
+  if (!key) return key.error();
+  if (known->empty()) {
+    auto noted = store.write([&](store::Writing& tx) {
+      return store::note_pseudonym_key(tx, fingerprint_of(*key), core::utc_us());
+    });
+    if (!noted) return noted.error();
+  } else if (*known != fingerprint_of(*key)) {
+    log_line({{"what", "another key of pseudonyms lies there: nothing can be exported"}});
+    return Maybe();
+  }
+  return Maybe(*key);
+}
+
+}  // namespace
+
 core::Result<void> serve(const ServeOptions& given) {
   StopSignals signals;
   auto data = open_data(given.data);
@@ -186,10 +246,22 @@ core::Result<void> serve(const ServeOptions& given) {
   if (!lock) return lock.error();
   const auto secure = secured(given);
   if (!secure) return secure.error();
-  const ServeOptions& options = *secure;
+  auto scratch = empty_scratch(given.data);
+  if (!scratch) return scratch.error();
+  ServeOptions options = *secure;
+  options.http.spool = *scratch;
   if (options.web && !std::filesystem::is_regular_file(*options.web / "index.html"))
     return core::Error{core::Errc::not_found,
                        options.web->string() + ": no index.html there; build the web pages first"};
+  std::optional<api::OidcSettings> oidc_settings;
+  if (options.oidc) {
+    auto settings = api::read_oidc_settings(*options.oidc);
+    if (!settings) return settings.error();
+    oidc_settings = std::move(*settings);
+  }
+  const auto pseudonym_key = pseudonym_key_of(
+      options.pseudonym_key.value_or(given.data / "pseudonyms" / "key"), data->store);
+  if (!pseudonym_key) return pseudonym_key.error();
   auto runner = jobs::Runner::start(data->store, data->objects, [](const std::string& line) {
     log_line({{"what", "job"}, {"line", line}});
   });
@@ -202,10 +274,18 @@ core::Result<void> serve(const ServeOptions& given) {
                        .secrets = data->secrets,
                        .secure_cookies = options.http.tls || options.http.behind_proxy,
                        .log = log_line,
-                       .logs_requests = options.log_requests};
+                       .logs_requests = options.log_requests,
+                       .take_volume = take_volume_apart,
+                       .scratch = *scratch,
+                       .pseudonym_key = *pseudonym_key};
   if (auto fine = api::reconcile_uploads(backend); !fine) return fine;
   auto server = http::Server::open(options.http, service_of(backend, options.web));
   if (!server) return server.error();
+  std::optional<api::Oidc> oidc;
+  if (oidc_settings) {
+    if (oidc_settings->base.empty()) oidc_settings->base = address_of(options, server->port());
+    backend.oidc = &oidc.emplace(std::move(*oidc_settings));
+  }
   signals.watch(*server);
   say_where(options, server->port());
   {
