@@ -11,3 +11,4 @@ export { kRoles } from './network-schemas';
 export type * from './network-schemas';
 export * from './trainee-queries';
 export * from './cohort-queries';
+export * from './oidc-queries';
