@@ -1,43 +1,43 @@
-# Reads a cohort from a Tractus server into data frames (needs the packages curl and jsonlite).
-#   TRACTUS_PASSWORD=... Rscript read_cohort.R https://sim.example.org:8480 rex authority.pem [study]
-library(curl)
-asked <- commandArgs(trailingOnly = TRUE)
-url <- paste0(sub("/$", "", asked[1]), "/api/v1")
-handle <- new_handle(cainfo = asked[3])
+#!/usr/bin/env Rscript
+# Reads a cohort that GET /api/v1/export/cohort.zip gave (tractus-cohort/1) with nothing but R itself.
+#
+#     Rscript read_cohort.R cohort.zip
+#
+# Prints one line a table and one a trial's samples. In a session: cohort <- read_cohort("cohort.zip"); then cohort$trials and
+# cohort$scores are data frames, cohort$samples a list of matrices by trial.
 
-sign_in <- function(name, password) {
-  handle_setopt(handle, copypostfields = jsonlite::toJSON(list(name = name, password = password), auto_unbox = TRUE))
-  handle_setheaders(handle, "Content-Type" = "application/json")
-  answer <- curl_fetch_memory(paste0(url, "/session"), handle)
-  stopifnot(answer$status_code == 200)
-  handle_setopt(handle, httpget = TRUE)  # the handle keeps the cookie
-}
-bytes_of <- function(path) {
-  answer <- curl_fetch_memory(paste0(url, path), handle)
-  stopifnot(answer$status_code == 200)
-  answer$content
-}
-table_of <- function(name, study = NA)
-  read.csv(text = rawToChar(bytes_of(paste0("/export/", name, ".csv", if (!is.na(study)) paste0("?study=", curl_escape(study))))),
-           na.strings = "", stringsAsFactors = FALSE)
-
-# NumPy's .npy version 1.0 of doubles, row after row: 10 bytes, a header of stated length, the numbers.
-samples_of <- function(trial, rate_Hz = 100) {
-  bytes <- bytes_of(sprintf("/export/trials/%s/samples.npy?rate_Hz=%g", trial, rate_Hz))
-  length <- readBin(bytes[9:10], "integer", size = 2, signed = FALSE, endian = "little")
-  header <- rawToChar(bytes[11:(10 + length)])
-  shape <- as.integer(regmatches(header, regexec("\\(([0-9]+), ([0-9]+)\\)", header))[[1]][2:3])
-  matrix(readBin(bytes[-(1:(10 + length))], "double", n = prod(shape), size = 8, endian = "little"), nrow = shape[1], byrow = TRUE)
+# A .npy file of version 1.0: a matrix, a row per sample.
+read_npy <- function(path) {
+  file <- file(path, "rb")
+  on.exit(close(file))
+  magic <- readBin(file, "raw", 8)
+  if (!identical(magic, as.raw(c(0x93, 0x4e, 0x55, 0x4d, 0x50, 0x59, 1, 0)))) stop(path, ": not a .npy file of version 1.0")
+  length <- readBin(file, "integer", 1, size = 2, signed = FALSE, endian = "little")
+  head <- rawToChar(readBin(file, "raw", length))
+  if (!grepl("'<f8'", head) || !grepl("'fortran_order': False", head)) stop(path, ": little-endian doubles row after row are expected")
+  shape <- as.integer(strsplit(sub(".*'shape': \\(([0-9]+), ([0-9]+)\\).*", "\\1 \\2", head), " ")[[1]])
+  matrix(readBin(file, "double", prod(shape), size = 8, endian = "little"), shape[1], shape[2], byrow = TRUE)
 }
 
-sign_in(asked[2], Sys.getenv("TRACTUS_PASSWORD"))
-study <- if (length(asked) > 3) asked[4] else NA
-trials <- table_of("trials", study)
-scores <- table_of("scores", study)
-dictionary <- table_of("dictionary")
-cat(nrow(trials), "trials of", length(unique(trials$participant)), "participants,", nrow(scores), "scores\n")
-if (nrow(trials) > 0) {
-  samples <- samples_of(trials$trial[1])
-  colnames(samples) <- dictionary$column[dictionary$table == trials$rig[1]]
-  print(head(samples))
+read_cohort <- function(path) {
+  folder <- tempfile("cohort")
+  on.exit(unlink(folder, recursive = TRUE))
+  utils::unzip(path, exdir = folder)
+  about <- paste(readLines(file.path(folder, "cohort.json"), warn = FALSE), collapse = "")
+  if (!grepl("tractus-cohort/1", about, fixed = TRUE)) stop(path, ": not a tractus-cohort/1")
+  table <- function(name) read.csv(file.path(folder, name), na.strings = "", stringsAsFactors = FALSE, encoding = "UTF-8")
+  files <- list.files(file.path(folder, "samples"), "\\.npy$", full.names = TRUE)
+  list(trials = table("trials.csv"), scores = table("scores.csv"), dictionary = table("dictionary.csv"),
+       samples = stats::setNames(lapply(files, read_npy), sub("\\.npy$", "", basename(files))))
+}
+
+if (sys.nframe() == 0) {
+  arguments <- commandArgs(trailingOnly = TRUE)
+  if (length(arguments) != 1) stop("usage: read_cohort.R cohort.zip")
+  cohort <- read_cohort(arguments[1])
+  cat(sprintf("trials %d participants %d scores %d\n", nrow(cohort$trials), length(unique(cohort$trials$participant)), nrow(cohort$scores)))
+  for (trial in sort(names(cohort$samples))) {
+    m <- cohort$samples[[trial]]
+    cat(sprintf("samples %s rows %d columns %d last_t_s %.6f\n", trial, nrow(m), ncol(m), m[nrow(m), 1]))
+  }
 }

@@ -1,55 +1,65 @@
 #!/usr/bin/env python3
-"""Reads a cohort from a Tractus server: trials, scores, dictionary, and the samples of one trial.
+"""Reads a cohort that GET /api/v1/export/cohort.zip gave (tractus-cohort/1) with nothing but Python itself.
 
-    TRACTUS_PASSWORD=... ./read_cohort.py https://sim.example.org:8480 --name rex --authority authority.pem [--study spine-1]
+    python3 read_cohort.py cohort.zip
+
+Prints one line a table and one a trial's samples. In a notebook: trials, scores, samples = read("cohort.zip"); with pandas
+pandas.DataFrame(trials), with NumPy numpy.load(zipfile.ZipFile("cohort.zip").open(name)).
 """
-import argparse, csv, getpass, io, json, os, ssl, urllib.parse, urllib.request
+import ast
+import csv
+import io
+import json
+import struct
+import sys
+import zipfile
 
-import numpy
+
+def table(archive, name):
+    """Rows as dictionaries; numbers as numbers by dictionary.csv, what is not known as None."""
+    with archive.open("dictionary.csv") as file:
+        kinds = {(row["table"], row["column"]): row["type"] for row in csv.DictReader(io.TextIOWrapper(file, "utf-8"))}
+    with archive.open(name) as file:
+        rows = list(csv.DictReader(io.TextIOWrapper(file, "utf-8")))
+    convert = {"number": float, "integer": int, "truth": lambda text: text == "1"}
+    for row in rows:
+        for column, text in row.items():
+            kind = kinds[name.removesuffix(".csv"), column]
+            row[column] = None if text == "" else convert.get(kind, str)(text)
+    return rows
 
 
-class Server:
-    def __init__(self, url, authority=None):
-        self.url = url.rstrip("/") + "/api/v1"
-        context = ssl.create_default_context(cafile=authority)
-        self.opener = urllib.request.build_opener(urllib.request.HTTPSHandler(context=context), urllib.request.HTTPCookieProcessor())
+def array(archive, name):
+    """A .npy file of version 1.0: a list of rows of floats."""
+    data = archive.read(name)
+    if data[:8] != b"\x93NUMPY\x01\x00":
+        raise ValueError(f"{name}: not a .npy file of version 1.0")
+    length = struct.unpack("<H", data[8:10])[0]
+    head = ast.literal_eval(data[10:10 + length].decode("latin1"))
+    if head["descr"] != "<f8" or head["fortran_order"]:
+        raise ValueError(f"{name}: little-endian doubles row after row are expected")
+    rows, columns = head["shape"]
+    values = struct.unpack(f"<{rows * columns}d", data[10 + length:])
+    return [values[row * columns:(row + 1) * columns] for row in range(rows)]
 
-    def sign_in(self, name, password):
-        body = json.dumps({"name": name, "password": password}).encode()
-        request = urllib.request.Request(self.url + "/session", body, {"Content-Type": "application/json"})
-        # urllib keeps a Secure cookie for https alone; on plain loopback the server sends none that is Secure.
-        self.opener.open(request).close()
 
-    def bytes_of(self, path, **query):
-        query = "?" + urllib.parse.urlencode(query) if query else ""
-        with self.opener.open(self.url + path + query) as answer:
-            return answer.read()
-
-    def table(self, name, **query):
-        """Rows as dictionaries; an empty cell is None."""
-        text = self.bytes_of(f"/export/{name}.csv", **query).decode("utf-8")
-        return [{k: (v if v != "" else None) for k, v in row.items()} for row in csv.DictReader(io.StringIO(text, newline=""))]
-
-    def samples(self, trial, rate_Hz=100):
-        """Array of doubles, a row per sample; its columns by dictionary.csv (table: the trial's rig)."""
-        return numpy.load(io.BytesIO(self.bytes_of(f"/export/trials/{trial}/samples.npy", rate_Hz=rate_Hz)), allow_pickle=False)
+def read(path):
+    with zipfile.ZipFile(path) as archive:
+        about = json.loads(archive.read("cohort.json"))
+        if about["format"] != "tractus-cohort/1":
+            raise ValueError(f"{path}: not a tractus-cohort/1")
+        samples = {name[8:-4]: array(archive, name) for name in archive.namelist() if name.startswith("samples/")}
+        return table(archive, "trials.csv"), table(archive, "scores.csv"), samples
 
 
 def main():
-    asked = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    asked.add_argument("url"), asked.add_argument("--name", required=True)
-    asked.add_argument("--authority"), asked.add_argument("--study")
-    asked = asked.parse_args()
-    server = Server(asked.url, asked.authority)
-    server.sign_in(asked.name, os.environ.get("TRACTUS_PASSWORD") or getpass.getpass())
-    of = {"study": asked.study} if asked.study else {}
-    trials, scores, dictionary = server.table("trials", **of), server.table("scores", **of), server.table("dictionary")
-    print(f"{len(trials)} trials of {len({t['participant'] for t in trials})} participants, {len(scores)} scores")
-    for trial in trials[:1]:
-        samples = server.samples(trial["trial"])
-        columns = [row["column"] for row in dictionary if row["table"] == trial["rig"]]
-        print(f"{trial['trial']} ({trial['rig']}): {samples.shape[0]} rows at 100 Hz of {', '.join(columns)}")
-        assert samples.shape[1] == len(columns)
+    if len(sys.argv) != 2:
+        sys.exit("usage: read_cohort.py cohort.zip")
+    trials, scores, samples = read(sys.argv[1])
+    people = {trial["participant"] for trial in trials}
+    print(f"trials {len(trials)} participants {len(people)} scores {len(scores)}")
+    for trial, rows in sorted(samples.items()):
+        print(f"samples {trial} rows {len(rows)} columns {len(rows[0])} last_t_s {rows[-1][0]:.6f}")
 
 
 if __name__ == "__main__":

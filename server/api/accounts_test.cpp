@@ -181,11 +181,15 @@ TEST_F(Audited, EveryChangeIsARowWithWhoAndWhatAndNoSecret) {
   EXPECT_EQ(all[0].act.detail.find("9876"), std::string::npos);
 }
 
-TEST_F(Audited, WhatIsRefusedOrOnlyReadLeavesNoRow) {
+TEST_F(Audited, WhatFailsOrIsOnlyReadLeavesNoRowAndWhatIsRefusedIsCalledSo) {
   EXPECT_EQ(post("ann", "/accounts", {{"name", "tom"}, {"role", "trainee"}}).status, 409);
-  EXPECT_EQ(post("tom", "/accounts", {{"name", "x"}, {"role", "admin"}}).status, 403);
   EXPECT_EQ(get("ann", "/accounts").status, 200);
   EXPECT_TRUE(rows().empty());
+  EXPECT_EQ(post("tom", "/accounts", {{"name", "x"}, {"role", "admin"}}).status, 403);
+  const auto all = rows();
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_EQ(all[0].act.what, "refused: addAccount");
+  EXPECT_EQ(all[0].act.who, "tom");
 }
 
 TEST_F(Audited, SigningInNamesWhoAndAFailureDoesToo) {

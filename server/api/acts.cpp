@@ -32,17 +32,21 @@ core::Json detail_of(const http::Request& request) {
 
 }  // namespace
 
+std::string object_text(const std::map<std::string, std::string>& segments) {
+  std::string out;
+  for (const auto& [key, value] : segments)
+    out += (out.empty() ? "" : " ") + key + "=" + value.substr(0, 128);
+  return out;
+}
+
 store::Act act_of(const RouteInfo& route, const Call& call,
                   const std::map<std::string, std::string>& segments) {
-  std::string object;
-  for (const auto& [key, value] : segments)
-    object += (object.empty() ? "" : " ") + key + "=" + value.substr(0, 128);
   return {
       .who = call.caller.name,
       .role = route.open ? "" : std::string(name(call.caller.role)),
       .peer = call.request.peer,
       .what = route.id,
-      .object = object,
+      .object = object_text(segments),
       .detail = detail_of(call.request).dump(-1, ' ', false, core::Json::error_handler_t::replace),
       .at_utc_us = call.backend.now_utc_us()};
 }

@@ -11,4 +11,7 @@ namespace api {
 store::Act act_of(const RouteInfo& route, const Call& call,
                   const std::map<std::string, std::string>& segments);
 
+/// "id=…": what a path's placeholders stand for, shortened.
+std::string object_text(const std::map<std::string, std::string>& segments);
+
 }  // namespace api

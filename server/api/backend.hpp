@@ -7,6 +7,7 @@
 #include "db/store/objects.hpp"
 #include "db/store/store.hpp"
 #include "server/api/backups.hpp"
+#include "server/api/refusals.hpp"
 #include "server/api/secrets.hpp"
 #include "server/api/telemetry.hpp"
 #include "server/api/trial_views.hpp"
@@ -15,6 +16,13 @@ namespace api {
 
 /// What happened, as fields: never a name, an address, or anything that somebody typed.
 using Log = std::function<void(const core::Json& fields)>;
+
+/// jobs::take_volume, wherever it is run.
+using TakeVolume = std::function<core::Result<core::Json>(const std::filesystem::path& upload,
+                                                          const std::filesystem::path& folder,
+                                                          const std::array<std::byte, 32>& key)>;
+
+class Oidc;
 
 struct Backend {
   store::Store& store;
@@ -28,6 +36,12 @@ struct Backend {
   Log log = {};                                    ///< a line for whoever runs the server
   bool logs_requests = false;                      ///< every one, not only those that fail
   Backups* backups = nullptr;                      ///< none: this process makes none
+  TakeVolume take_volume = {};                     ///< in a process of its own; none: in this one
+  std::filesystem::path scratch = {};              ///< for large bodies; empty: with the uploads
+  const Oidc* oidc = nullptr;                      ///< who else may vouch for people; none: nobody
+  /// Which pseudonym is whose (export.hpp): kept apart from all else. None: no export.
+  std::optional<std::array<std::byte, 32>> pseudonym_key = {};
+  RefusalLimit refusals{};
   Telemetry telemetry{};
   TrialViews trial_views{};
 };

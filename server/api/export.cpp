@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "db/store/accounts.hpp"
 #include "metrics/metric.hpp"
 #include "server/api/uploads.hpp"
 #include "trial/trial_file.hpp"
@@ -37,14 +38,19 @@ std::string cell(const std::optional<double>& number) {
   return number ? fmt::format("{}", *number) : "";
 }
 
-std::string person_of(const store::CohortTrial& trial, const Pseudonyms& names) {
-  return trial.study.empty() ? names.person(trial.summary.operator_name) : trial.participant;
-}
-
 struct Column {
   const char *table, *column, *type, *unit, *meaning;
 };
 constexpr std::array kColumns{
+    Column{"summary", "participant", "text", "", "as in trials"},
+    Column{"summary", "study", "text", "", "as in trials"},
+    Column{"summary", "rig", "text", "", "as in trials"},
+    Column{"summary", "level", "text", "", "as in trials"},
+    Column{"summary", "experience_years", "number", "a", "as in trials"},
+    Column{"summary", "simulated", "truth", "", "as in trials"},
+    Column{"summary", "trials", "integer", "1", "of the participant in the study on the rig"},
+    Column{"summary", "answered", "integer", "1", "of them with an answer"},
+    Column{"summary", "correct", "integer", "1", "of them with the right one"},
     Column{"trials", "trial", "text", "", "pseudonym of the trial, the same in every export"},
     Column{"trials", "participant", "text", "", "pseudonym of the person, or of the machine"},
     Column{"trials", "study", "text", "", "study or assignment; empty: none"},
@@ -93,6 +99,13 @@ constexpr std::array kProbing{
     Column{"probing", "flags", "integer", "1", "bits of tractus-trial/2: late, limited, …"},
 };
 
+std::string header_of(std::string_view table) {
+  std::string out;
+  for (const Column& column : kColumns)
+    if (column.table == table) out += (out.empty() ? "" : ",") + std::string(column.column);
+  return out + "\r\n";
+}
+
 void append_row(std::vector<double>& out, const trial::Sample& s) {
   out.insert(out.end(), {s.t_s, s.p_VH_m[0], s.p_VH_m[1], s.p_VH_m[2], s.q_VH[0], s.q_VH[1],
                          s.q_VH[2], s.q_VH[3]});
@@ -127,12 +140,10 @@ std::string npy(const std::vector<double>& values, std::size_t columns) {
 
 }  // namespace
 
-Pseudonyms::Pseudonyms(const Secrets& secrets) : key_{} {
-  constexpr std::string_view kPurpose = "pseudonyms of exports";
-  const Secrets::Key root = secrets.audit_key();
-  crypto_generichash(reinterpret_cast<unsigned char*>(key_.data()), key_.size(),
-                     reinterpret_cast<const unsigned char*>(kPurpose.data()), kPurpose.size(),
-                     reinterpret_cast<const unsigned char*>(root.data()), root.size());
+Result<Pseudonyms> Pseudonyms::of(const Backend& backend) {
+  if (backend.pseudonym_key) return Pseudonyms(*backend.pseudonym_key);
+  return Error{Errc::unavailable,
+               "this server has not got the key of its pseudonyms: nothing can be exported"};
 }
 
 std::string Pseudonyms::hashed(char first, const std::string& text) const {
@@ -147,52 +158,111 @@ std::string Pseudonyms::hashed(char first, const std::string& text) const {
 std::string Pseudonyms::trial(const std::string& id) const { return hashed('T', id); }
 std::string Pseudonyms::person(const std::string& id) const { return hashed('P', id); }
 
-Result<std::vector<store::CohortTrial>> trials_to_export(Backend& backend,
-                                                         const std::string& study) {
-  using Trials = std::vector<store::CohortTrial>;
+Result<std::vector<ExportedTrial>> trials_to_export(Backend& backend, const std::string& study,
+                                                    store::Tier least) {
+  const auto names = Pseudonyms::of(backend);
+  if (!names) return names.error();
+  using Trials = std::vector<ExportedTrial>;
   return backend.store.read([&](store::Reading& tx) -> Result<Trials> {
     if (!study.empty()) {
       auto known = store::study_of(tx, study);
       if (!known) return known.error();
       if (!*known) return Error{Errc::not_found, "study: there is no study " + study.substr(0, 32)};
     }
-    return store::cohort_trials(tx, study, kMaxTrials);
+    auto trials = store::cohort_trials(tx, study, kMaxTrials);
+    if (!trials) return trials.error();
+    const auto book = store::ConsentBook::read(tx);
+    if (!book) return book.error();
+    Trials out;
+    for (store::CohortTrial& trial : *trials) {
+      const store::Tier tier = book->tier_of(trial);
+      if (tier < least || tier == store::Tier::none) continue;
+      trial.participant = names->person(book->person_of(trial));
+      out.push_back({std::move(trial), tier});
+    }
+    return out;
   });
 }
 
-std::string trials_csv(const std::vector<store::CohortTrial>& trials, const Pseudonyms& names) {
+std::string trials_csv(const std::vector<ExportedTrial>& trials, const Pseudonyms& names) {
   std::map<std::string, std::int64_t> first;
-  for (const auto& trial : trials)
-    first.try_emplace(person_of(trial, names), trial.summary.started_utc_us);
-  std::string out;
-  for (const Column& column : kColumns)
-    if (std::string_view(column.table) == "trials")
-      out += (out.empty() ? "" : ",") + std::string(column.column);
-  out += "\r\n";
-  for (const auto& trial : trials) {
+  for (const auto& [trial, _] : trials)
+    first.try_emplace(trial.participant, trial.summary.started_utc_us);
+  std::string out = header_of("trials");
+  for (const auto& [trial, _] : trials) {
     const auto& s = trial.summary;
-    const std::string person = person_of(trial, names);
     const bool in_study = !trial.study.empty();
-    const double days = double(s.started_utc_us - first.at(person)) / kDay_us;
-    out +=
-        fmt::format("{},{},{},{},{},{},{},{},{},{:.4f},{},{},{},{},{}\r\n", names.trial(s.id),
-                    cell(person), cell(trial.study), in_study ? std::to_string(trial.number) : "",
-                    cell(trial.level), cell(trial.experience_years), cell(s.case_title),
-                    cell(trial.rig), s.simulated ? 1 : 0, days, s.duration_s, s.samples,
-                    trial.complete ? 1 : 0, in_study ? (trial.place == "counts" ? "1" : "0") : "",
-                    s.correct ? (*s.correct ? "1" : "0") : "");
+    const double days = double(s.started_utc_us - first.at(trial.participant)) / kDay_us;
+    out += fmt::format("{},{},{},{},{},{},{},{},{},{:.4f},{},{},{},{},{}\r\n", names.trial(s.id),
+                       cell(trial.participant), cell(trial.study),
+                       in_study ? std::to_string(trial.number) : "", cell(trial.level),
+                       cell(trial.experience_years), cell(s.case_title), cell(trial.rig),
+                       s.simulated ? 1 : 0, days, s.duration_s, s.samples, trial.complete ? 1 : 0,
+                       in_study ? (trial.place == "counts" ? "1" : "0") : "",
+                       s.correct ? (*s.correct ? "1" : "0") : "");
   }
   return out;
 }
 
-std::string scores_csv(const std::vector<store::CohortTrial>& trials, const Pseudonyms& names) {
+std::string summary_csv(const std::vector<ExportedTrial>& trials) {
+  struct Sum {
+    const store::CohortTrial* first;
+    int trials = 0, answered = 0, correct = 0;
+  };
+  std::map<std::array<std::string, 3>, Sum> sums;
+  for (const auto& [trial, _] : trials) {
+    Sum& sum =
+        sums.try_emplace({trial.participant, trial.study, trial.rig}, Sum{&trial}).first->second;
+    ++sum.trials;
+    sum.answered += trial.summary.correct.has_value();
+    sum.correct += trial.summary.correct.value_or(false);
+  }
+  std::string out = header_of("summary");
+  for (const auto& [key, sum] : sums)
+    out += fmt::format("{},{},{},{},{},{},{},{},{}\r\n", cell(key[0]), cell(key[1]), cell(key[2]),
+                       cell(sum.first->level), cell(sum.first->experience_years),
+                       sum.first->summary.simulated ? 1 : 0, sum.trials, sum.answered, sum.correct);
+  return out;
+}
+
+std::string scores_csv(const std::vector<ExportedTrial>& trials, const Pseudonyms& names) {
   std::map<std::string, std::string> units;
   for (const auto& metric : metrics::all()) units[metric.id] = metric.unit;
   std::string out = "trial,score,value,unit\r\n";
-  for (const auto& trial : trials)
+  for (const auto& [trial, _] : trials)
     for (const auto& [id, value] : trial.metrics)
       out += fmt::format("{},{},{},{}\r\n", names.trial(trial.summary.id), cell(id), value,
                          cell(units[id]));
+  return out;
+}
+
+Result<std::string> key_csv(Backend& backend) {
+  const auto names = Pseudonyms::of(backend);
+  if (!names) return names.error();
+  using Lines = std::map<std::string, std::string>;
+  auto lines = backend.store.read([&](store::Reading& tx) -> Result<Lines> {
+    auto trials = store::cohort_trials(tx, "", kMaxTrials);
+    if (!trials) return trials.error();
+    const auto book = store::ConsentBook::read(tx);
+    if (!book) return book.error();
+    std::map<std::string, std::string> accounts;
+    auto all = store::all_accounts(tx);
+    if (!all) return all.error();
+    for (const auto& account : *all) accounts[account.id] = account.name;
+    Lines out;
+    for (const auto& trial : *trials) {
+      const std::string person = book->person_of(trial);
+      const auto colon = person.find(':');
+      const std::string kind = person.substr(0, colon), id = person.substr(colon + 1);
+      const auto account = accounts.find(id);
+      const bool known = kind == "account" && account != accounts.end();
+      out[names->person(person)] = kind + "," + cell(known ? account->second : id);
+    }
+    return out;
+  });
+  if (!lines) return lines.error();
+  std::string out = "participant,kind,name\r\n";
+  for (const auto& [pseudonym, rest] : *lines) out += pseudonym + "," + rest + "\r\n";
   return out;
 }
 

@@ -1,5 +1,8 @@
 #include "server/api/export.hpp"
 
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
 #include <fstream>
 
 #include "core/file.hpp"
@@ -12,6 +15,24 @@ using testing::PeopleTest;
 
 class Export : public PeopleTest {
  protected:
+  Export() {
+    backend_.pseudonym_key.emplace();
+    backend_.pseudonym_key->fill(std::byte{7});
+    agree("tom", "full");
+  }
+  /// By the trainee's own word, of everywhere.
+  void agree(const std::string& account, const std::string& tier) {
+    const auto said = post(account, "/session/consent", {{"tier", tier}});
+    ASSERT_EQ(said.status, 200) << text(said);
+    EXPECT_EQ(json(said)["everywhere"], tier);
+  }
+  std::string toms_name() const {
+    return Pseudonyms(*backend_.pseudonym_key).trial(trial_of("tom"));
+  }
+  int rows(const std::string& name) {
+    const std::string all = csv(name);
+    return static_cast<int>(std::ranges::count(all, '\n')) - 1;
+  }
   /// A trial file of 1 kHz whose depth is 1e-6 m a tick, in place of tom's.
   void write_toms_trial(std::uint32_t samples) {
     const auto path = folder_.path() / "trial";
@@ -61,12 +82,15 @@ TEST_F(Export, NamesNobodyAndNoTimeOfDay) {
     EXPECT_EQ(all.find("," + secret + ","), std::string::npos) << secret << all;
   EXPECT_EQ(all.find("Mustermann"), std::string::npos) << all;
   EXPECT_EQ(all.find(trial_of("tom")), std::string::npos) << all;
-  EXPECT_NE(all.find(",P-tom,"), std::string::npos) << "the pseudonym is there";
+  EXPECT_EQ(all.find("P-tom"), std::string::npos) << "that one stands in the database";
+  const Pseudonyms names(*backend_.pseudonym_key);
+  EXPECT_NE(all.find("," + names.person("account:tom") + ","), std::string::npos) << all;
 }
 
 TEST_F(Export, APseudonymIsTheSameAgainAndAnotherWithAnotherKey) {
-  const Pseudonyms here(backend_.secrets), elsewhere(Secrets::random());
-  EXPECT_EQ(here.person("Erika"), Pseudonyms(backend_.secrets).person("Erika"));
+  const Secrets::Key one{std::byte{1}}, two{std::byte{2}};
+  const Pseudonyms here(one), elsewhere(two);
+  EXPECT_EQ(here.person("Erika"), Pseudonyms(one).person("Erika"));
   EXPECT_NE(here.person("Erika"), elsewhere.person("Erika"));
   EXPECT_NE(here.person("Erika"), here.person("Eva"));
 }
@@ -96,7 +120,7 @@ TEST_F(Export, AFormulaAndAQuoteAreHarmless) {
 /// that ends in a newline at a multiple of 64.
 TEST_F(Export, SamplesAreAnArrayThatNumpyReads) {
   write_toms_trial(1000);
-  const std::string name = Pseudonyms(backend_.secrets).trial(trial_of("tom"));
+  const std::string name = toms_name();
   const auto response = get("rex", "/export/trials/" + name + "/samples.npy?rate_Hz=100");
   ASSERT_EQ(response.status, 200) << text(response);
   const std::string array = text(response);
@@ -116,6 +140,107 @@ TEST_F(Export, SamplesAreAnArrayThatNumpyReads) {
   EXPECT_EQ(row[3], 2.5);
   const auto full = text(get("rex", "/export/trials/" + name + "/samples.npy?rate_Hz=0"));
   EXPECT_NE(full.find("'shape': (1000, 8)"), std::string::npos);
+}
+
+TEST_F(Export, GivesOfEachPersonWhatTheyAgreedToAndNoMore) {
+  write_toms_trial(1000);
+  const std::string samples = "/export/trials/" + toms_name() + "/samples.npy?rate_Hz=";
+  // tier, rows of summary, of trials (header and file aside), samples at 100 Hz, all samples
+  struct Case {
+    const char* tier;
+    int summary, trials, reduced, full;
+  };
+  for (const Case& c : {Case{"full", 1, 1, 200, 200}, Case{"reduced", 1, 1, 200, 403},
+                        Case{"metrics", 1, 1, 403, 403}, Case{"summary", 1, 0, 404, 404},
+                        Case{"none", 0, 0, 404, 404}}) {
+    agree("tom", c.tier);  // tia never said a word: nothing of hers is ever there
+    EXPECT_EQ(rows("summary.csv"), c.summary) << c.tier;
+    EXPECT_EQ(rows("trials.csv"), c.trials) << c.tier;
+    EXPECT_EQ(get("rex", samples + "100").status, c.reduced) << c.tier;
+    EXPECT_EQ(get("rex", samples + "0").status, c.full) << c.tier;
+    EXPECT_EQ(get("rex", samples + "101").status, c.full) << c.tier;
+  }
+}
+
+TEST_F(Export, ConsentOfOneStudyIsOfThatStudyAlone) {
+  agree("tom", "none");
+  EXPECT_EQ(post("tom", "/session/consent", {{"tier", "metrics"}, {"study", "a-tia"}}).status, 404);
+  EXPECT_EQ(post("tom", "/session/consent", {{"tier", "metrics"}, {"study", "a-tom"}}).status, 200);
+  EXPECT_EQ(rows("trials.csv"), 1);
+  EXPECT_EQ(post("tom", "/session/consent", {{"tier", "everything"}}).status, 400);
+  // For somebody with an account nobody but an administrator notes a form.
+  const core::Json form{{"account", "tia"}, {"tier", "full"}, {"basis", "form 3"}};
+  EXPECT_EQ(post("rex", "/consents", form).status, 403);
+  EXPECT_EQ(post("rex", "/consents",
+                 {{"study", "a-tia"}, {"participant", "P-tia"}, {"tier", "full"}, {"basis", "x"}})
+                .status,
+            409);
+  EXPECT_EQ(post("ann", "/consents", form).status, 204);
+  EXPECT_EQ(rows("trials.csv"), 2);
+}
+
+TEST_F(Export, TheWholeCohortIsOneZipOfTheSameTables) {
+  write_toms_trial(1000);
+  const auto zip = get("rex", "/export/cohort.zip?tier=full");
+  ASSERT_EQ(zip.status, 200) << text(zip);
+  const std::string bytes = text(zip);
+  EXPECT_EQ(bytes.substr(0, 4), "PK\x03\x04");
+  for (const std::string& name :
+       {std::string("cohort.json"), std::string("trials.csv"), std::string("scores.csv"),
+        std::string("dictionary.csv"), "samples/" + toms_name() + ".npy"})
+    EXPECT_NE(bytes.find(name), std::string::npos) << name;
+  EXPECT_EQ(text(get("rex", "/export/cohort.zip?tier=metrics")).find("samples/"),
+            std::string::npos);
+  EXPECT_EQ(get("rex", "/export/cohort.zip?tier=none").status, 400);
+}
+
+/// deploy/examples, as a researcher would run them: nothing but Python, nothing but R.
+TEST_F(Export, TheExamplesInPythonAndRReadTheZip) {
+  write_toms_trial(1000);
+  const auto zip = get("rex", "/export/cohort.zip?tier=reduced");
+  ASSERT_EQ(zip.status, 200) << text(zip);
+  const auto path = folder_.path() / "cohort.zip";
+  std::ofstream(path, std::ios::binary) << text(zip);
+  // Tom's one trial, with its one score; 1 s at 1 kHz is 100 rows at 100 Hz, the last at 0.99 s;
+  // of probing trials eight columns.
+  const std::string expected = "trials 1 participants 1 scores 1\nsamples " + toms_name() +
+                               " rows 100 columns 8 last_t_s 0.990000\n";
+  int ran = 0;
+  for (const auto& [program, script] :
+       {std::pair("python3", "read_cohort.py"), std::pair("Rscript", "read_cohort.R")}) {
+    if (std::system((std::string(program) + " --version > /dev/null 2>&1").c_str()) != 0) {
+      std::printf("not run, %s is not installed: %s\n", program, script);
+      continue;
+    }
+    const std::string command = std::string(program) + " " TRACTUS_SOURCE_DIR "/deploy/examples/" +
+                                script + " " + path.string() + " 2>&1";
+    std::FILE* out = ::popen(command.c_str(), "r");
+    std::string said;
+    std::array<char, 4096> piece{};
+    while (const std::size_t n = std::fread(piece.data(), 1, piece.size(), out))
+      said.append(piece.data(), n);
+    EXPECT_EQ(::pclose(out), 0) << said;
+    EXPECT_EQ(said, expected) << script;
+    ++ran;
+  }
+  if (ran == 0) GTEST_SKIP() << "the examples: neither python3 nor R is installed";
+}
+
+TEST_F(Export, TheKeyIsAnAdministratorsAndLookingAtItIsNoted) {
+  write_toms_trial(10);
+  EXPECT_EQ(get("rex", "/export/key.csv").status, 403);
+  const auto key = get("ann", "/export/key.csv");
+  ASSERT_EQ(key.status, 200);
+  const Pseudonyms names(*backend_.pseudonym_key);
+  EXPECT_NE(text(key).find(names.person("account:tom") + ",account,tom\r\n"), std::string::npos)
+      << text(key);
+  const auto rows = json(get("ann", "/audit"))["rows"];
+  EXPECT_EQ(rows[0]["what"], "exportKey");
+  EXPECT_EQ(rows[0]["who"], "ann");
+  EXPECT_EQ(rows[1]["what"], "refused: exportKey");
+  EXPECT_EQ(rows[1]["who"], "rex");
+  backend_.pseudonym_key.reset();
+  EXPECT_EQ(get("rex", "/export/trials.csv").status, 503);
 }
 
 TEST_F(Export, AnIdOfTheServersOwnOpensNothing) {

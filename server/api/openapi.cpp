@@ -1,6 +1,7 @@
 #include "server/api/openapi.hpp"
 
 #include <algorithm>
+#include <set>
 
 #include "server/api/schema.hpp"
 
@@ -113,22 +114,29 @@ core::Json openapi(const std::vector<RouteInfo>& table) {
   core::Json paths = core::Json::object(), schemas = core::Json::object();
   schemas["Error"] = schema::object({{"error", schema::text("one line for a person")},
                                      {"code", schema::text("the cause, for a program")}});
+  std::set<std::string> resources;
   for (const RouteInfo& route : table) {
     paths[route.path][lower_case(route.method)] = operation(route);
+    resources.insert(resource_of(route.path));
     for (const NamedSchema& named : route.schemas) schemas[named.name] = named.schema;
   }
-  return {
-      {"openapi", "3.1.0"},
-      {"info",
-       {{"title", "Tractus"},
-        {"version", "1"},
-        {"description", "Cases, trials and their assessment. Units are SI and end each name."}}},
-      {"paths", paths},
-      {"components",
-       {{"schemas", schemas},
-        {"securitySchemes",
-         {{"session", {{"type", "apiKey"}, {"in", "cookie"}, {"name", "tractus_session"}}},
-          {"station", {{"type", "http"}, {"scheme", "bearer"}}}}}}}};
+  core::Json tags = core::Json::array();
+  for (const std::string& resource : resources)
+    tags.push_back({{"name", resource}, {"description", "What is asked under /" + resource}});
+  return {{"openapi", "3.1.0"},
+          {"info",
+           {{"title", "Tractus"},
+            {"version", "1"},
+            {"description", "Cases, trials and their assessment. Units are SI and end each name."},
+            {"license", {{"name", "All rights reserved"}, {"identifier", "LicenseRef-Tractus"}}}}},
+          {"servers", core::Json::array({{{"url", "/"}, {"description", "the server itself"}}})},
+          {"tags", tags},
+          {"paths", paths},
+          {"components",
+           {{"schemas", schemas},
+            {"securitySchemes",
+             {{"session", {{"type", "apiKey"}, {"in", "cookie"}, {"name", "tractus_session"}}},
+              {"station", {{"type", "http"}, {"scheme", "bearer"}}}}}}}};
 }
 
 }  // namespace api

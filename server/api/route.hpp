@@ -102,6 +102,7 @@ struct RouteInfo {
   std::vector<Parameter> parameters;
   std::string body;  ///< name of the body's schema, kBytes, or "" for none
   std::uint64_t body_limit_bytes = 0;
+  bool body_to_file = false;         ///< it is large: handlers find it in Request::body_file
   std::string answer;                ///< name of the answer's schema, kBytes, or "" for none (204)
   std::vector<NamedSchema> schemas;  ///< those it names that no other route has named already
   core::Result<http::Response> (*handle)(const Call& call);

@@ -34,8 +34,11 @@ TEST_F(Routes, AllButSigningInRefuseWhoHasNoCredentials) {
     else
       EXPECT_EQ(status, 401) << route.method << " " << route.path;
   }
-  EXPECT_EQ(open, (std::vector<std::string>{"GET /api/v1/health", "POST /api/v1/session",
-                                            "POST /api/v1/stations/enrol"}));
+  EXPECT_EQ(open,
+            (std::vector<std::string>{"GET /api/v1/session/oidc", "GET /api/v1/session/oidc/start",
+                                      "GET /api/v1/session/oidc/callback",
+                                      "GET /api/v1/session/oidc/end", "GET /api/v1/health",
+                                      "POST /api/v1/session", "POST /api/v1/stations/enrol"}));
 }
 
 TEST_F(Routes, RefuseBeforeTheBodyIsRead) {

@@ -10,7 +10,7 @@
 namespace api {
 namespace {
 
-constexpr std::uint64_t kAudit = 1, kSealing = 2, kCases = 3;
+constexpr std::uint64_t kAudit = 1, kSealing = 2, kCases = 3, kIdentifiers = 4;
 
 unsigned char* raw(std::byte* bytes) { return reinterpret_cast<unsigned char*>(bytes); }
 const unsigned char* raw(const std::byte* bytes) {
@@ -38,6 +38,8 @@ Secrets::Key Secrets::derived(std::uint64_t purpose) const {
 Secrets::Key Secrets::audit_key() const { return derived(kAudit); }
 
 core::KeyPair Secrets::case_key() const { return core::KeyPair::from_seed(derived(kCases)); }
+
+Secrets::Key Secrets::uid_key() const { return derived(kIdentifiers); }
 
 std::string Secrets::sealed(std::string_view text) const {
   const Key key = derived(kSealing);

@@ -23,6 +23,7 @@ class Secrets {
   Key audit_key() const;
   /// What the server signs the cases with that are made on it.
   core::KeyPair case_key() const;
+  Key uid_key() const;  ///< of the identifiers that replace a scan's own
   /// Authenticated encryption (XSalsa20-Poly1305) as hexadecimal text.
   std::string sealed(std::string_view text) const;
   /// Errors: corrupt when it was not sealed by this key, or was changed.

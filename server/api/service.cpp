@@ -102,16 +102,21 @@ core::Result<void> check_not_forged(const RouteInfo& route, const Caller& caller
   return core::Error{core::Errc::forbidden, std::string(kKeepOut)};
 }
 
-core::Result<Caller> allowed_caller(Backend& backend, const RouteInfo& route,
+/// Who asks, if they may. Known callers that may not are noted in the audit trail.
+core::Result<Caller> allowed_caller(Backend& backend, const Match& matched,
                                     const http::RequestHead& head) {
+  const RouteInfo& route = *matched.route;
   Caller caller{Role::station, "", "", ""};
   if (!route.open) {
     auto known = authenticate(backend, head);
     if (!known) return known.error();
     caller = std::move(*known);
-    if (!granted(route, caller.role))
-      return core::Error{core::Errc::forbidden,
-                         fmt::format("this is not for the role {}", name(caller.role))};
+    if (!granted(route, caller.role)) {
+      const core::Error no{core::Errc::forbidden,
+                           fmt::format("this is not for the role {}", name(caller.role))};
+      note_refusal(backend, caller, head.peer, route.id, object_text(matched.segments), no.what);
+      return no;
+    }
     if (caller.must_change && !route.before_password_change)
       return core::Error{core::Errc::forbidden,
                          "choose a password of your own first: POST /api/v1/session/password"};
@@ -188,7 +193,7 @@ http::Response answer_to(Backend& backend, const core::Result<Match>& matched,
     auto known = authenticate(backend, request);
     return known ? refusal(matched.error(), allowed) : refusal(known.error(), "");
   }
-  auto caller = allowed_caller(backend, *matched->route, request);
+  auto caller = allowed_caller(backend, *matched, request);
   if (!caller) return refusal(caller.error(), "");
   if (request.body.size() > matched->route->body_limit_bytes)
     return error_response({core::Errc::too_large,
@@ -196,10 +201,18 @@ http::Response answer_to(Backend& backend, const core::Result<Match>& matched,
                                        request.body.size(), matched->route->body_limit_bytes)});
   auto checked = arguments(*matched, request);
   if (!checked) return error_response(checked.error());
-  if (auto own = check_object(backend, *matched->route, *caller, *checked); !own)
+  if (auto own = check_object(backend, *matched->route, *caller, *checked); !own) {
+    if (own.error().code == core::Errc::not_found)
+      note_refusal(backend, *caller, request.peer, matched->route->id,
+                   object_text(matched->segments), own.error().what);
     return refusal(own.error(), "");
+  }
   auto response = handled(backend, *matched, *caller, request, std::move(*checked));
-  return response ? std::move(*response) : refusal(response.error(), "");
+  if (response) return std::move(*response);
+  if (response.error().code == core::Errc::forbidden)
+    note_refusal(backend, *caller, request.peer, matched->route->id, object_text(matched->segments),
+                 response.error().what);
+  return refusal(response.error(), "");
 }
 
 /// Counts it, and says what took long or went wrong.
@@ -238,9 +251,14 @@ std::variant<std::uint64_t, http::Response> admit(Backend& backend,
     auto known = authenticate(backend, head);
     return known ? refusal(matched.error(), allowed) : refusal(known.error(), "");
   }
-  if (auto caller = allowed_caller(backend, *matched->route, head); !caller)
+  if (auto caller = allowed_caller(backend, *matched, head); !caller)
     return refusal(caller.error(), "");
   return matched->route->body_limit_bytes;
+}
+
+bool takes_file(const std::vector<RouteInfo>& table, const http::RequestHead& head) {
+  const auto matched = match(table, head);
+  return matched && matched->route->body_to_file;
 }
 
 }  // namespace api

@@ -30,4 +30,7 @@ std::variant<std::uint64_t, http::Response> admit(Backend& backend,
                                                   const std::vector<RouteInfo>& table,
                                                   const http::RequestHead& head);
 
+/// Does the request's body go to a file (RouteInfo::body_to_file)?
+bool takes_file(const std::vector<RouteInfo>& table, const http::RequestHead& head);
+
 }  // namespace api

@@ -15,9 +15,9 @@ namespace app {
 namespace fs = std::filesystem;
 namespace {
 constexpr const char* kSecret = "secret.key";
+}  // namespace
 
-/// Makes the key's file, for its owner's eyes; one that is there stays.
-core::Result<void> make_secret(const fs::path& path) {
+core::Result<void> make_key_file(const fs::path& path) {
   const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
   if (fd < 0)
     return errno == EEXIST ? core::Result<void>() : core::system_error(path, "cannot make");
@@ -30,7 +30,7 @@ core::Result<void> make_secret(const fs::path& path) {
   return core::system_error(path, "cannot write");
 }
 
-core::Result<api::Secrets> read_secret(const fs::path& path) {
+core::Result<api::Secrets::Key> read_key_file(const fs::path& path) {
   auto bytes = core::read_file(path, 4096);
   if (!bytes) return bytes.error();
   std::string_view text = core::text_of(*bytes);
@@ -44,8 +44,10 @@ core::Result<api::Secrets> read_secret(const fs::path& path) {
     std::from_chars(text.data() + 2 * i, text.data() + 2 * i + 2, value, 16);
     key[i] = static_cast<std::byte>(value);
   }
-  return api::Secrets(key);
+  return key;
 }
+
+namespace {
 
 /// The key, made when the database has nothing yet that needs it.
 core::Result<api::Secrets> secrets_of(const fs::path& folder, store::Store& store) {
@@ -58,9 +60,11 @@ core::Result<api::Secrets> secrets_of(const fs::path& folder, store::Store& stor
                          (folder / kSecret).string() +
                              ": is missing; the audit trail was made with it: bring it back from "
                              "a backup"};
-    if (auto made = make_secret(folder / kSecret); !made) return made.error();
+    if (auto made = make_key_file(folder / kSecret); !made) return made.error();
   }
-  return read_secret(folder / kSecret);
+  auto key = read_key_file(folder / kSecret);
+  if (!key) return key.error();
+  return api::Secrets(*key);
 }
 }  // namespace
 

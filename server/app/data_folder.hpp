@@ -29,6 +29,11 @@ core::Result<DataFolder> open_data(const std::filesystem::path& path, const Data
 /// Makes one, or opens what is there (accounts are another matter).
 core::Result<DataFolder> make_data(const std::filesystem::path& path);
 
+/// Makes a file of a new key, for its owner's eyes; one that is there stays. Errors: io.
+core::Result<void> make_key_file(const std::filesystem::path& path);
+/// Errors: not_found, io, corrupt (64 hexadecimal characters are expected).
+core::Result<api::Secrets::Key> read_key_file(const std::filesystem::path& path);
+
 /// An act of the command line, by the user of this system who typed it.
 store::Act command_act(const std::string& command, const core::Json& detail);
 

@@ -6,6 +6,7 @@
 #include "core/words.hpp"
 #include "server/app/command.hpp"
 #include "server/app/database.hpp"
+#include "server/app/taking.hpp"
 
 namespace app {
 
@@ -64,6 +65,8 @@ constexpr Command kCommands[] = {
      "tractus-server migrate --data /srv/tractus", app::migrate_command},
     {"openapi", "Print the description of the API, OpenAPI 3.1",
      "tractus-server openapi > openapi.json", app::openapi_command},
+    {"take-volume", "", "tractus-server take-volume --upload FILE --folder FOLDER",
+     app::take_volume_command},  // the server's own child
 };
 
 /// Exit code of CLI11's own end: 0 for --help, 2 for bad use, said in one line.
@@ -87,6 +90,7 @@ int main(int argc, char** argv) {
     CLI::App* sub = commands.add_subcommand(command.name, command.summary);
     sub->footer(std::string("Example: ") + command.example);
     if (std::string(command.name) == "serve") sub->alias("run");
+    if (std::string(command.summary).empty()) sub->group("");  // not for people
     sub->callback([&chosen, run = command.make(*sub)] { chosen = run; });
   }
   try {

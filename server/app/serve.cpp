@@ -11,12 +11,16 @@
 #include <mutex>
 #include <thread>
 
+#include "core/bytes.hpp"
 #include "core/clock.hpp"
 #include "core/json.hpp"
+#include "db/store/consent.hpp"
 #include "server/api/backend.hpp"
+#include "server/api/oidc.hpp"
 #include "server/api/service.hpp"
 #include "server/api/uploads.hpp"
 #include "server/app/backups.hpp"
+#include "server/app/taking.hpp"
 #include "server/app/upkeep.hpp"
 #include "server/http/certificates.hpp"
 #include "server/http/static_files.hpp"
@@ -75,14 +79,18 @@ http::Service service_of(api::Backend& backend, const std::optional<std::filesys
       .handle =
           [&backend, is_api, pages](const http::Request& request) {
             return is_api(request) ? api::answer(backend, api::routes(), request) : pages(request);
-          }};
+          },
+      .spools = [](const http::RequestHead& head) { return api::takes_file(api::routes(), head); }};
+}
+
+std::string address_of(const ServeOptions& options, std::uint16_t port) {
+  const bool six = options.http.address.find(':') != std::string::npos;
+  const std::string address = six ? "[" + options.http.address + "]" : options.http.address;
+  return fmt::format("{}://{}:{}", options.http.tls ? "https" : "http", address, port);
 }
 
 void say_where(const ServeOptions& options, std::uint16_t port) {
-  const bool six = options.http.address.find(':') != std::string::npos;
-  const std::string address = six ? "[" + options.http.address + "]" : options.http.address;
-  const std::string url =
-      fmt::format("{}://{}:{}/", options.http.tls ? "https" : "http", address, port);
+  const std::string url = address_of(options, port) + "/";
   if (options.json)
     fmt::print("{}\n", core::Json{{"listening", url}}.dump());
   else
@@ -186,6 +194,69 @@ core::Result<ServeOptions> secured(ServeOptions options) {
 
 }  // namespace
 
+namespace {
+
+/// Where this process puts large bodies: a folder of its own below DATA/scratch.
+struct Scratch {
+  std::filesystem::path path;
+  ServingLock lock;  ///< held as long as the process lives
+};
+
+/// Takes a new folder and removes those of processes that died: what they left may hold a patient's
+/// scan.
+core::Result<Scratch> own_scratch(const std::filesystem::path& data) {
+  const std::filesystem::path all = data / "scratch", own = all / core::new_id();
+  std::error_code failure;
+  std::filesystem::create_directories(all, failure);
+  if (!failure) std::filesystem::permissions(all, std::filesystem::perms::owner_all, failure);
+  for (const auto& left : std::filesystem::directory_iterator(all, failure))
+    if (ServingLock::take(left.path(), false)) std::filesystem::remove_all(left.path(), failure);
+  if (!failure) std::filesystem::create_directory(own, failure);
+  if (failure)
+    return core::Error{core::Errc::io, own.string() + ": cannot be made: " + failure.message()};
+  auto lock = ServingLock::take(own, false);
+  if (!lock) return lock.error();
+  return Scratch{own, std::move(*lock)};
+}
+
+std::string fingerprint_of(const api::Secrets::Key& key) {
+  return core::sha256(core::bytes_of("key of pseudonyms " + core::hex(key))).substr(0, 32);
+}
+
+/// The key of pseudonyms, made where there never was one. Where the one that was is not there,
+/// nothing is exported, and the log says so: another key would give everybody another name.
+core::Result<std::optional<api::Secrets::Key>> pseudonym_key_of(const std::filesystem::path& path,
+                                                                store::Store& store) {
+  using Maybe = std::optional<api::Secrets::Key>;
+  auto known = store.read([](store::Reading& tx) { return store::pseudonym_key_known(tx); });
+  if (!known) return known.error();
+  std::error_code failure;
+  const bool there = std::filesystem::exists(path, failure);
+  if (!there && !known->empty()) {
+    log_line({{"what", "the key of pseudonyms is missing: nothing can be exported"}});
+    return Maybe();
+  }
+  if (!there) {
+    if (std::filesystem::create_directories(path.parent_path(), failure))
+      std::filesystem::permissions(path.parent_path(), std::filesystem::perms::owner_all, failure);
+    if (auto made = make_key_file(path); !made) return made.error();
+  }
+  auto key = read_key_file(path);
+  if (!key) return key.error();
+  if (known->empty()) {
+    auto noted = store.write([&](store::Writing& tx) {
+      return store::note_pseudonym_key(tx, fingerprint_of(*key), core::utc_us());
+    });
+    if (!noted) return noted.error();
+  } else if (*known != fingerprint_of(*key)) {
+    log_line({{"what", "another key of pseudonyms lies there: nothing can be exported"}});
+    return Maybe();
+  }
+  return Maybe(*key);
+}
+
+}  // namespace
+
 core::Result<void> serve(const ServeOptions& given) {
   StopSignals signals;
   auto data = open_data(given.data);
@@ -194,10 +265,22 @@ core::Result<void> serve(const ServeOptions& given) {
   if (!lock) return lock.error();
   const auto secure = secured(given);
   if (!secure) return secure.error();
-  const ServeOptions& options = *secure;
+  const auto scratch = own_scratch(given.data);
+  if (!scratch) return scratch.error();
+  ServeOptions options = *secure;
+  options.http.spool = scratch->path;
   if (options.web && !std::filesystem::is_regular_file(*options.web / "index.html"))
     return core::Error{core::Errc::not_found,
                        options.web->string() + ": no index.html there; build the web pages first"};
+  std::optional<api::OidcSettings> oidc_settings;
+  if (options.oidc) {
+    auto settings = api::read_oidc_settings(*options.oidc);
+    if (!settings) return settings.error();
+    oidc_settings = std::move(*settings);
+  }
+  const auto pseudonym_key = pseudonym_key_of(
+      options.pseudonym_key.value_or(given.data / "pseudonyms" / "key"), data->store);
+  if (!pseudonym_key) return pseudonym_key.error();
   auto runner = jobs::Runner::start(
       data->store, data->objects, data->secrets.case_key(),
       [](const std::string& line) {
@@ -215,10 +298,18 @@ core::Result<void> serve(const ServeOptions& given) {
                        .secure_cookies = options.http.tls || options.http.behind_proxy,
                        .log = log_line,
                        .logs_requests = options.log_requests,
-                       .backups = &backups};
+                       .backups = &backups,
+                       .take_volume = take_volume_apart,
+                       .scratch = scratch->path,
+                       .pseudonym_key = *pseudonym_key};
   if (auto fine = api::reconcile_uploads(backend); !fine) return fine;
   auto server = http::Server::open(options.http, service_of(backend, options.web));
   if (!server) return server.error();
+  std::optional<api::Oidc> oidc;
+  if (oidc_settings) {
+    if (oidc_settings->base.empty()) oidc_settings->base = address_of(options, server->port());
+    backend.oidc = &oidc.emplace(std::move(*oidc_settings));
+  }
   signals.watch(*server);
   say_where(options, server->port());
   {

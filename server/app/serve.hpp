@@ -22,6 +22,9 @@ struct ServeOptions {
   /// PEM files of an own certificate chain and its key, instead of the house's.
   std::optional<std::pair<std::filesystem::path, std::filesystem::path>> certificate;
   std::chrono::milliseconds job_lease{30'000};  ///< see jobs::Runner
+  std::optional<std::filesystem::path> oidc;  ///< settings of a provider of identities
+  /// The key of exports' pseudonyms; none: DATA/pseudonyms/key.
+  std::optional<std::filesystem::path> pseudonym_key;
   bool log_requests = false;  ///< a line for every one, not only for those that fail
   bool json = false;          ///< the line that says where it listens
 };

@@ -38,6 +38,13 @@ Run serve_command(CLI::App& command) {
                   "How long a job of a server that died waits before another takes it over")
       ->check(CLI::Range(0.3, 3600.0))
       ->capture_default_str();
+  const auto oidc = std::make_shared<std::filesystem::path>();
+  command.add_option("--oidc", *oidc,
+                     "Settings of a provider of identities by which people may sign in");
+  const auto pseudonyms = std::make_shared<std::filesystem::path>();
+  command.add_option("--pseudonym-key", *pseudonyms,
+                     "File of the key of exports' pseudonyms, made when it is not there; "
+                     "DATA/pseudonyms/key if not given. No backup holds it: copy it by itself");
   const auto certificate = std::make_shared<std::filesystem::path>();
   const auto key = std::make_shared<std::filesystem::path>();
   auto* chain = command.add_option("--certificate", *certificate,
@@ -49,6 +56,8 @@ Run serve_command(CLI::App& command) {
     options->data = common->data;
     options->json = common->json;
     if (!web->empty()) options->web = *web;
+    if (!oidc->empty()) options->oidc = *oidc;
+    if (!pseudonyms->empty()) options->pseudonym_key = *pseudonyms;
     if (!certificate->empty()) options->certificate.emplace(*certificate, *key);
     options->http.address = address->first;
     options->http.port = address->second;

@@ -42,6 +42,8 @@ std::string forwarded_peer(const RequestHead& head);
 
 struct Request : RequestHead {
   std::string body;
+  /// Where a large body lies instead, for as long as the request is handled; empty: in `body`.
+  std::filesystem::path body_file = {};
 };
 
 /// Part of a file, sent in pieces.

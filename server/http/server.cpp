@@ -19,6 +19,7 @@
 #include "server/http/coroutine.hpp"
 #include "server/http/pieces.hpp"
 #include "server/http/server.hpp"
+#include "server/http/spool.hpp"
 #include "server/http/static_files.hpp"
 #include "server/http/stream.hpp"
 #include "server/http/websocket.hpp"
@@ -136,7 +137,7 @@ struct Server::State {
                                 const RequestHead& head);
   bool make_room();
   net::awaitable<std::optional<Response>> read_body(Connection& connection, Parser& parser,
-                                                    const RequestHead& head);
+                                                    const RequestHead& head, SpooledFile& spooled);
   net::awaitable<bool> write(Connection& connection, const RequestHead& head, Response& response,
                              bool keep_alive);
   net::awaitable<void> refuse(Connection& connection, const RequestHead& head, Response& refusal);
@@ -261,15 +262,16 @@ net::awaitable<bool> Server::State::exchange(Connection& c) {
   c.waited = false;
   if (service.converse && beast::websocket::is_upgrade(parser.get()))
     co_return co_await converse(c, parser, *head);
-  std::optional<Response> refusal = co_await read_body(c, parser, *head);
+  const bool keep_alive = parser.get().keep_alive();
+  SpooledFile spooled;
+  std::optional<Response> refusal = co_await read_body(c, parser, *head, spooled);
   if (refusal) {
     co_await refuse(c, *head, *refusal);
     co_return false;
   }
-  const bool keep_alive = parser.get().keep_alive();
   Response response;
   {
-    Request request{*head, std::move(parser.get().body())};
+    Request request{*head, std::move(parser.get().body()), spooled.path};
     c.stream.expires_never();
     response = co_await on_workers(workers, Handling{&service, &request});
   }
@@ -295,7 +297,8 @@ net::awaitable<bool> Server::State::converse(Connection& c, const Parser& parser
 }
 
 net::awaitable<std::optional<Response>> Server::State::read_body(Connection& c, Parser& parser,
-                                                                 const RequestHead& head) {
+                                                                 const RequestHead& head,
+                                                                 SpooledFile& spooled) {
   if (parser.is_done()) co_return std::nullopt;
   c.stream.expires_never();
   Admission admitted = co_await on_workers(workers, Admitting{&service, &head});
@@ -313,8 +316,15 @@ net::awaitable<std::optional<Response>> Server::State::read_body(Connection& c, 
     static constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
     co_await net::async_write(c.stream, net::buffer(kContinue), into(failure));
   }
-  if (!failure) co_await beast::http::async_read(c.stream, c.buffer, parser, into(failure));
+  const bool to_file = service.spools && !options.spool.empty() && service.spools(head);
+  const SpoolLimits spool{options.spool, limit, options.body_time};  // no temporary: see on_workers
+  if (!failure && to_file)
+    failure = co_await spool_body(c.stream, c.buffer, parser, spool, workers, spooled);
+  else if (!failure)
+    co_await beast::http::async_read(c.stream, c.buffer, parser, into(failure));
   c.waited = false;
+  if (spooled.broken)
+    co_return error_response(503, "unavailable", "there is no room for this now: try again later");
   if (!failure) co_return std::nullopt;
   auto refusal = answer_to(failure);
   if (!refusal) refusal = error_response(400, "bad_input", "the request ended within its body");

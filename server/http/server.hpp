@@ -25,10 +25,11 @@ struct ServerOptions {
   std::uint32_t max_header_bytes = 16 * 1024;
   std::chrono::milliseconds header_time{
       10'000};  ///< from a request's first byte to the end of its head
-  std::chrono::milliseconds idle_time{60'000};     ///< between requests
-  std::chrono::milliseconds body_time{60'000};     ///< for a whole body
-  std::chrono::milliseconds write_time{60'000};    ///< for each piece (256 KiB) of an answer
-  std::chrono::milliseconds drain_time{10'000};    ///< for requests under way once told to stop
+  std::chrono::milliseconds idle_time{60'000};   ///< between requests
+  std::chrono::milliseconds body_time{60'000};   ///< for a whole body
+  std::chrono::milliseconds write_time{60'000};  ///< for each piece (256 KiB) of an answer
+  std::chrono::milliseconds drain_time{10'000};  ///< for requests under way once told to stop
+  std::filesystem::path spool;  ///< folder for bodies that go to a file; empty: none do
   std::chrono::milliseconds silence_time{30'000};  ///< of a WebSocket, pings unanswered
   std::chrono::milliseconds talk_write_time{
       5'000};  ///< for a WebSocket's listener to take a message
@@ -42,6 +43,9 @@ struct Service {
   /// A request for a WebSocket: a refusal, or who answers in it. Empty: none are held.
   std::function<std::variant<Response, std::shared_ptr<Conversation>>(const RequestHead&)>
       converse = {};
+  /// Is this request's body to go to a file (ServerOptions::spool)? Called on the input/output
+  /// thread. Empty: none is.
+  std::function<bool(const RequestHead&)> spools = {};
 };
 
 /// One listening socket, HTTP/1.1 with keep-alive. `open` binds; `run` serves in the calling thread

@@ -1,6 +1,7 @@
 #include "server/jobs/cohort_table.hpp"
 
 #include <fmt/format.h>
+#include <sodium.h>
 
 #include <algorithm>
 #include <set>
@@ -32,15 +33,27 @@ std::string cell(const std::optional<double>& number) {
   return number ? fmt::format("{}", *number) : "";
 }
 
-std::string row_of(const store::CohortTrial& trial, const std::vector<std::string>& metrics) {
+/// Of somebody in no study: the same for the same name, and nobody without the server's key can say
+/// whose.
+std::string pseudonym(const store::AuditKey& key, const std::string& name) {
+  const std::string message = "participant of the cohort's table: " + name;
+  std::array<std::byte, 16> hash{};
+  crypto_generichash(reinterpret_cast<unsigned char*>(hash.data()), hash.size(),
+                     reinterpret_cast<const unsigned char*>(message.data()), message.size(),
+                     reinterpret_cast<const unsigned char*>(key.data()), key.size());
+  return "P" + core::hex(hash).substr(0, 16);
+}
+
+std::string row_of(const store::CohortTrial& trial, const std::vector<std::string>& metrics,
+                   const store::AuditKey& key) {
   const auto& s = trial.summary;
   const bool in_study = !trial.study.empty();
   std::string out =
       fmt::format("{},{},{},{},{},{},{},{},{},{}", cell(s.id),
-                  cell(in_study ? trial.participant : s.operator_name), cell(trial.study),
-                  in_study ? std::to_string(trial.number) : "", cell(trial.level),
-                  cell(trial.experience_years), cell(s.case_title), cell(trial.rig),
-                  s.simulated ? 1 : 0, s.correct ? (*s.correct ? "1" : "0") : "");
+                  cell(in_study ? trial.participant : pseudonym(key, s.operator_name)),
+                  cell(trial.study), in_study ? std::to_string(trial.number) : "",
+                  cell(trial.level), cell(trial.experience_years), cell(s.case_title),
+                  cell(trial.rig), s.simulated ? 1 : 0, s.correct ? (*s.correct ? "1" : "0") : "");
   for (const auto& id : metrics) {
     const auto at = trial.metrics.find(id);
     out += ',' + (at == trial.metrics.end() ? "" : cell(std::optional(at->second)));
@@ -75,7 +88,7 @@ std::vector<store::CohortTrial> counting(std::vector<store::CohortTrial> trials,
 std::map<std::string, std::string> meanings_of(const std::vector<std::string>& metrics) {
   std::map<std::string, std::string> out = {
       {"trial", "its id on the server"},
-      {"participant", "the study's pseudonym, else the operator's name"},
+      {"participant", "the study's pseudonym, else one of the server's; no name"},
       {"study", "empty: of no study"},
       {"number", "of the trial among the participant's in the study, from 1"},
       {"level", "of training, as the study states it"},
@@ -110,7 +123,7 @@ Result<CohortTable> cohort_table(store::Store& store, const std::string& study, 
   out.csv = "trial,participant,study,number,level,experience_years,case,rig,simulated,correct";
   for (const auto& id : metrics) out.csv += ',' + cell(id);
   out.csv += '\n';
-  for (const auto& trial : trials) out.csv += row_of(trial, metrics);
+  for (const auto& trial : trials) out.csv += row_of(trial, metrics, store.audit_key());
   out.rows = trials.size();
   out.simulated = static_cast<std::size_t>(
       std::ranges::count_if(trials, [](const auto& trial) { return trial.summary.simulated; }));

@@ -8,9 +8,10 @@
 namespace jobs {
 
 /// One row per trial that counts and is scored, oldest first. Columns: trial, participant (a
-/// study's pseudonym, else the operator's name), study, number (of the trial among the
-/// participant's, from 1), level, experience_years, case, rig, simulated, correct (1, 0), then each
-/// metric that any row has, by its id. What is not known is an empty cell.
+/// study's pseudonym, else one made of the operator's name by the server's key: never the name),
+/// study, number (of the trial among the participant's, from 1), level, experience_years, case,
+/// rig, simulated, correct (1, 0), then each metric that any row has, by its id. What is not known
+/// is an empty cell.
 struct CohortTable {
   std::string csv;  ///< with a header line, LF
   std::string sha256;

@@ -78,10 +78,12 @@ const std::map<std::string, Names> kAllowed = {
       "shared/wire", "station/devices", "station/loop", "station/uplink",
       "station/rig"}},  // the simulated rig without its bus, for trials in simulated time
     {"server/http", {"shared/core"}},
+    // Reading a CT (volume/io) is work of a process of its own; its key is the api's to hand over.
     // A cohort's statistics are the plans of shared/assessment on a table of the store's trials.
     {"server/jobs",
      {"shared/core", "shared/trial", "shared/metrics", "shared/cases", "shared/scenarios",
-      "shared/volume", "shared/lab", "shared/lab/io", "shared/assessment", "db/store"}},
+      "shared/volume", "shared/volume/io", "shared/lab", "shared/lab/io", "shared/assessment",
+      "db/store"}},
     {"server/api",
      {"shared/core", "shared/math", "shared/trial", "shared/metrics", "shared/cases",
       "shared/scenarios", "shared/study", "shared/volume", "shared/wire", "shared/models",

@@ -1,7 +1,9 @@
 /// Research takes its data from here: tables and arrays by pseudonym.
 #include "server/api/export.hpp"
 
+#include "db/store/audit.hpp"
 #include "db/store/trials.hpp"
+#include "server/api/cohort_zip.hpp"
 #include "server/api/route.hpp"
 #include "server/api/schema.hpp"
 
@@ -11,6 +13,7 @@ namespace {
 using core::Errc;
 using core::Error;
 using core::Result;
+using store::Tier;
 
 http::Response csv_response(std::string csv, const char* name) {
   http::Response response{.status = 200, .headers = {}, .body = std::move(csv)};
@@ -22,42 +25,85 @@ http::Response csv_response(std::string csv, const char* name) {
 
 std::string study_of_call(const Call& call) { return call.has("study") ? call.text("study") : ""; }
 
-Result<http::Response> export_trials(const Call& call) {
-  auto trials = trials_to_export(call.backend, study_of_call(call));
+Result<http::Response> export_summary(const Call& call) {
+  auto trials = trials_to_export(call.backend, study_of_call(call), Tier::summary);
   if (!trials) return trials.error();
-  return csv_response(trials_csv(*trials, Pseudonyms(call.backend.secrets)), "trials.csv");
+  return csv_response(summary_csv(*trials), "summary.csv");
+}
+
+Result<http::Response> table(const Call& call, const char* name,
+                             std::string (*csv)(const std::vector<ExportedTrial>&,
+                                                const Pseudonyms&)) {
+  auto trials = trials_to_export(call.backend, study_of_call(call), Tier::metrics);
+  if (!trials) return trials.error();
+  return csv_response(csv(*trials, Pseudonyms::of(call.backend).value()), name);
+}
+
+Result<http::Response> export_trials(const Call& call) {
+  return table(call, "trials.csv", trials_csv);
 }
 
 Result<http::Response> export_scores(const Call& call) {
-  auto trials = trials_to_export(call.backend, study_of_call(call));
-  if (!trials) return trials.error();
-  return csv_response(scores_csv(*trials, Pseudonyms(call.backend.secrets)), "scores.csv");
+  return table(call, "scores.csv", scores_csv);
 }
 
 Result<http::Response> export_dictionary(const Call&) {
   return csv_response(dictionary_csv(), "dictionary.csv");
 }
 
+http::Response bytes_response(std::string bytes, const char* type, const char* name) {
+  http::Response response{.status = 200, .headers = {}, .body = std::move(bytes)};
+  response.with("Content-Type", type)
+      .with("Content-Disposition", std::string("attachment; filename=\"") + name + "\"")
+      .with("Cache-Control", "no-store");
+  return response;
+}
+
 /// Only the key can tell which trial a pseudonym is: so the key is tried on all of them.
 Result<http::Response> export_samples(const Call& call) {
-  auto trials = trials_to_export(call.backend, "");
+  const double rate_Hz = call.number("rate_Hz");
+  const bool reduced = rate_Hz > 0.0 && rate_Hz <= kReduced_Hz;
+  auto trials = trials_to_export(call.backend, "", Tier::metrics);
   if (!trials) return trials.error();
-  const Pseudonyms names(call.backend.secrets);
-  for (const auto& trial : *trials) {
+  const Pseudonyms names = Pseudonyms::of(call.backend).value();
+  for (const auto& [trial, tier] : *trials) {
     if (names.trial(trial.summary.id) != call.text("trial")) continue;
+    if (tier < (reduced ? Tier::reduced : Tier::full))
+      return Error{Errc::forbidden, std::string("who did this trial agreed to ") +
+                                        std::string(store::name(tier)) + ", and this is " +
+                                        (reduced ? "reduced" : "full")};
     auto record = call.backend.store.read(
-        [&](store::Reading& tx) { return store::trial_of(tx, trial.summary.id); });
+        [&, id = trial.summary.id](store::Reading& tx) { return store::trial_of(tx, id); });
     if (!record) return record.error();
-    auto array =
-        samples_npy(call.backend.objects.path_of((*record)->sha256), call.number("rate_Hz"));
+    auto array = samples_npy(call.backend.objects.path_of((*record)->sha256), rate_Hz);
     if (!array) return array.error();
-    http::Response response{.status = 200, .headers = {}, .body = std::move(*array)};
-    response.with("Content-Type", "application/octet-stream")
-        .with("Content-Disposition", "attachment; filename=\"samples.npy\"")
-        .with("Cache-Control", "no-store");
-    return response;
+    return bytes_response(std::move(*array), "application/octet-stream", "samples.npy");
   }
   return Error{Errc::not_found, "no trial " + call.text("trial").substr(0, 32)};
+}
+
+Result<http::Response> export_cohort(const Call& call) {
+  const auto tier = store::tier_named(call.text("tier"));
+  if (!tier || *tier == Tier::none)
+    return Error{Errc::bad_input, "tier: summary, metrics, reduced or full is expected"};
+  auto zip = cohort_zip(call.backend, study_of_call(call), *tier);
+  if (!zip) return zip.error();
+  return bytes_response(std::move(*zip), "application/zip", "cohort.zip");
+}
+
+/// Looking at it is an act of its own.
+Result<http::Response> export_key(const Call& call) {
+  auto csv = key_csv(call.backend);
+  if (!csv) return csv.error();
+  const store::Act act{.who = call.caller.name,
+                       .role = std::string(name(call.caller.role)),
+                       .peer = call.request.peer,
+                       .what = "exportKey",
+                       .at_utc_us = call.backend.now_utc_us()};
+  auto noted = call.backend.store.write(
+      [&](store::Writing& tx) { return store::add_act(tx, call.backend.store.audit_key(), act); });
+  if (!noted) return noted.error();
+  return csv_response(std::move(*csv), "key.csv");
 }
 
 RouteInfo route(std::string tail, std::string id, std::string summary,
@@ -105,7 +151,25 @@ std::vector<RouteInfo> export_routes() {
                          .low = 0,
                          .high = 10'000,
                          .fallback = "100"}};
-  return {trials, scores, dictionary, samples};
+  RouteInfo summary =
+      route("summary.csv", "exportSummary", "Counts per person, study and rig", export_summary);
+  summary.parameters = {study};
+  RouteInfo cohort =
+      route("cohort.zip", "exportCohort",
+            "All of it in one file: tables, dictionary, and samples where they were agreed to",
+            export_cohort);
+  cohort.parameters = {study,
+                       {.in = Parameter::In::query,
+                        .name = "tier",
+                        .kind = Parameter::Kind::text,
+                        .unit = "",
+                        .meaning = "summary, metrics, reduced (samples at 100 Hz) or full",
+                        .required = false,
+                        .fallback = "metrics"}};
+  RouteInfo key = route("key.csv", "exportKey",
+                        "Who is who in the exports; that somebody looked is noted", export_key);
+  key.who = {Role::admin};
+  return {summary, trials, scores, dictionary, samples, cohort, key};
 }
 
 }  // namespace api

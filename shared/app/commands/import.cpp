@@ -6,6 +6,7 @@
 
 #include "app/command.hpp"
 #include "core/progress.hpp"
+#include "volume/io/burnt_text.hpp"
 #include "volume/io/read_volume.hpp"
 #include "volume/volume_file.hpp"
 
@@ -13,7 +14,7 @@ namespace commands {
 namespace {
 
 struct Options {
-  std::string source, target;
+  std::string source, target, report;
   bool json = false;
 };
 
@@ -31,7 +32,8 @@ void print_json(const Options& o, const volume_io::Imported& in, const std::stri
                           {"dims", g.dims},
                           {"spacing_m", {g.spacing_m.x(), g.spacing_m.y(), g.spacing_m.z()}},
                           {"value_range", volume::value_range_of(in.volume)},
-                          {"notes", in.notes}};
+                          {"notes", in.notes},
+                          {"suspicions", in.suspicions}};
   std::puts(out.dump(2).c_str());
 }
 
@@ -42,12 +44,18 @@ void print_text(const Options& o, const volume_io::Imported& in, const std::stri
              in.format, g.dims[0], g.dims[1], g.dims[2], g.spacing_m.x() * 1e3,
              g.spacing_m.y() * 1e3, g.spacing_m.z() * 1e3, range[0], range[1]);
   for (const auto& note : in.notes) fmt::print("note: {}\n", note);
+  for (const auto& suspicion : in.suspicions)
+    fmt::print("look before you pass it on: {}\n", suspicion);
   fmt::print("{}  {}\n", id, o.target);
 }
 
 Outcome run(const Options& o) {
   auto in = volume_io::read_volume(o.source, core::terminal_progress("reading"));
   if (!in) return in.error();
+  for (auto& found : volume_io::text_suspicions(in->volume))
+    in->suspicions.push_back(std::move(found));
+  if (!o.report.empty())
+    if (auto written = core::write_json(o.report, in->report); !written) return written.error();
   const auto id = volume::write_volume(o.target, in->volume, {in->source, joined(in->notes)},
                                        core::terminal_progress("writing"));
   if (!id) return id.error();
@@ -66,6 +74,8 @@ Command import_command() {
                 ->required();
             app.add_option("OUT", options->target, "file to write; an older one is replaced")
                 ->required();
+            app.add_option("--report", options->report,
+                           "file for what became of each DICOM attribute, without values");
             app.add_flag("--json", options->json, "print what was read as JSON");
             return [options] { return run(*options); };
           }};

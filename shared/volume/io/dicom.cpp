@@ -4,10 +4,13 @@
 #include <vtkNew.h>
 #include <vtkStringArray.h>
 
+#include <fstream>
 #include <numbers>
 
+#include "core/file.hpp"
 #include "volume/io/claims.hpp"
 #include "volume/io/counts.hpp"
+#include "volume/io/deidentify.hpp"
 #include "volume/io/dicom_slices.hpp"
 #include "volume/io/formats.hpp"
 #include "volume/io/isolated.hpp"
@@ -17,6 +20,8 @@
 namespace volume_io {
 namespace fs = std::filesystem;
 namespace {
+
+constexpr std::uint64_t kSliceLimitBytes = 256ull << 20;
 
 /// Decodes the slices in our order; stored numbers, or CT values where slices are scaled
 /// differently.
@@ -56,8 +61,37 @@ core::Result<Counts> read_voxels(const Series& series, const fs::path& folder) {
   return counts;
 }
 
+/// Copies without the patient, by the same names.
+core::Result<void> clean(const Listing& listing, const fs::path& into, Deidentifier& deidentifier,
+                         const core::Progress& progress) {
+  for (std::size_t i = 0; i < listing.files.size(); ++i) {
+    const auto file = core::read_file(listing.files[i], kSliceLimitBytes);
+    if (!file) return file.error();
+    auto cleaned = deidentifier.cleaned(*file, listing.files[i]);
+    if (!cleaned) return cleaned.error();
+    std::ofstream copy(into / listing.files[i].filename(), std::ios::binary);
+    copy.write(reinterpret_cast<const char*>(cleaned->data()),
+               static_cast<std::streamsize>(cleaned->size()));
+    copy.close();
+    if (!copy) return core::system_error(into, "cannot write");
+    if (progress &&
+        !progress(0.5 * static_cast<double>(i + 1) / static_cast<double>(listing.files.size())))
+      return core::Error{core::Errc::cancelled, "reading was stopped"};
+  }
+  return {};
+}
+
+/// Who gave us a folder knows nothing of our copies: errors name the files that he has.
+core::Error with_path_of(const fs::path& folder, const fs::path& copies, core::Error error) {
+  const std::string ours = copies.string();
+  for (std::size_t at; (at = error.what.find(ours)) != std::string::npos;)
+    error.what.replace(at, ours.size(), folder.string());
+  return error;
+}
+
 core::Result<Imported> read_series(const fs::path& folder, const core::Progress& progress) {
-  auto series = scan_series(folder, progress);
+  auto series =
+      scan_series(folder, [&](double share) { return !progress || progress(0.5 + 0.5 * share); });
   if (!series) return series.error();
   auto voxels = read_voxels(*series, folder);
   if (!voxels) return voxels.error();
@@ -66,6 +100,7 @@ core::Result<Imported> read_series(const fs::path& folder, const core::Progress&
                fmt::format("DICOM series of {} {} slices", series->slices.size(),
                            printable(series->slices.front().modality)),
                std::move(series->notes)};
+  out.modality = series->slices.front().modality;
   if (!voxels->note.empty()) out.notes.push_back(voxels->note);
   if (series->tilt_rad == 0.0) return out;
   auto straight = upright(out.volume, series->shear_m, folder.string());
@@ -77,12 +112,36 @@ core::Result<Imported> read_series(const fs::path& folder, const core::Progress&
   return out;
 }
 
+core::Result<Imported> read_cleaned(const fs::path& folder, const fs::path& copies,
+                                    const UidKey& key, const core::Progress& progress) {
+  const auto listing = list_series(folder);
+  if (!listing) return listing.error();
+  Deidentifier deidentifier(key);
+  if (auto done = clean(*listing, copies, deidentifier, progress); !done) return done.error();
+  auto out = read_series(copies, progress);
+  if (!out) return with_path_of(folder, copies, out.error());
+  if (listing->others > 0)
+    out->notes.push_back(
+        fmt::format("{} other files in the folder were left out", listing->others));
+  out->suspicions = deidentifier.suspicions();
+  out->report = deidentifier.report();
+  return out;
+}
+
 }  // namespace
 
-core::Result<Imported> read_dicom(const fs::path& folder, const core::Progress& progress) {
+core::Result<Imported> read_dicom(const fs::path& folder, const ReadOptions& options) {
+  std::error_code failure;
+  const fs::path temporary = fs::temp_directory_path(failure);
+  if (failure) return core::Error{core::Errc::io, "there is no folder for temporary files"};
+  auto copies = core::ScratchFolder::make(temporary / "tractus-dicom");
+  if (!copies) return copies.error();
   return isolated(
-      folder, [&](const core::Progress& passed_on) { return read_series(folder, passed_on); },
-      progress);
+      folder,
+      [&](const core::Progress& passed_on) {
+        return read_cleaned(folder, copies->path(), options.uid_key, passed_on);
+      },
+      options.progress);
 }
 
 }  // namespace volume_io

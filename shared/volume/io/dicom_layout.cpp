@@ -52,7 +52,8 @@ struct Element {
 
 class Walk {
  public:
-  Walk(core::ByteView file, const fs::path& path) : file_(file), path_(path) {}
+  Walk(core::ByteView file, const fs::path& path, const ElementSeen& seen)
+      : file_(file), path_(path), seen_(seen) {}
 
   core::Result<DicomLayout> run() {
     std::size_t at = 132;
@@ -65,6 +66,7 @@ class Walk {
         layout_.transfer_syntax =
             std::string(value.substr(0, value.find_first_of(std::string_view(" \0", 2))));
       at = element->value_at + element->length;
+      tell(*element, at, -1);
     }
     if (auto known = choose_syntax(); !known) return known.error();
     const auto end = elements(at, file_.size(), explicit_, 0, false);
@@ -89,6 +91,8 @@ class Walk {
         explicit_ = syntax.uid != "1.2.840.10008.1.2";
         big_ = syntax.uid == "1.2.840.10008.1.2.2";
         layout_.compressed = syntax.compressed;
+        layout_.with_vr = explicit_;
+        layout_.big_endian = big_;
         return {};
       }
     return bad(path_, fmt::format("transfer syntax \"{}\" is not read{}",
@@ -96,6 +100,10 @@ class Walk {
                                   layout_.transfer_syntax == "1.2.840.10008.1.2.1.99"
                                       ? " (deflated; inflate it first)"
                                       : ""));
+  }
+
+  void tell(const Element& e, std::size_t end, int depth) const {
+    if (seen_) seen_({e.tag, e.vr, e.at, e.value_at, end, depth});
   }
 
   core::Error lie(const Element& e, std::size_t left) const {
@@ -146,6 +154,7 @@ class Walk {
       }
       auto stop = value(*e, end, with_vr, depth);
       if (!stop) return stop.error();
+      tell(*e, *stop, depth);
       at = *stop;
     }
     if (open) return bad(path_, fmt::format("a sequence's item has no end before byte {}", end));
@@ -216,6 +225,7 @@ class Walk {
 
   core::ByteView file_;
   const fs::path& path_;
+  const ElementSeen& seen_;
   DicomLayout layout_;
   bool explicit_ = true, big_ = false;
   int fragments_ = 0;
@@ -234,8 +244,9 @@ bool looks_like_dicom(core::ByteView file) {
   return file.size() >= 132 && core::text_of(file.subspan(128, 4)) == "DICM";
 }
 
-core::Result<DicomLayout> parse_dicom_layout(core::ByteView file, const fs::path& path) {
-  return Walk(file, path).run();
+core::Result<DicomLayout> parse_dicom_layout(core::ByteView file, const fs::path& path,
+                                             const ElementSeen& seen) {
+  return Walk(file, path, seen).run();
 }
 
 std::pair<std::uint32_t, std::uint32_t> codestream_extent(core::ByteView s) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 
 #include "core/bytes.hpp"
@@ -13,11 +14,24 @@ namespace volume_io {
 /// Where the pixels of a file lie. PS3.5 section 7.1 (elements), 7.5 (sequences), A.4 (fragments).
 struct DicomLayout {
   std::string transfer_syntax;
+  bool with_vr = true;      ///< explicit syntax
+  bool big_endian = false;  ///< of the data set; the meta information never is
   bool compressed = false;  ///< pixels are in fragments
   std::size_t pixels_at =
       0;  ///< offset of the pixel bytes, or of the first fragment that holds any; 0: no pixels
   std::size_t pixel_bytes = 0;
 };
+
+/// An element as it lies in the file. Fragments of pixels are within their element.
+struct DicomElement {
+  std::uint32_t tag = 0;     ///< 0xGGGGEEEE
+  std::string_view vr;       ///< empty in implicit syntaxes
+  std::size_t at = 0;        ///< of its header
+  std::size_t value_at = 0;  ///< of its value, or of its first item
+  std::size_t end = 0;       ///< one beyond it, closing items included
+  int depth = 0;             ///< 0: of the data set itself; -1: of the file's meta information
+};
+using ElementSeen = std::function<void(const DicomElement&)>;
 
 /// Has it the preamble and "DICM" of PS3.10?
 bool looks_like_dicom(core::ByteView file);
@@ -25,8 +39,9 @@ bool looks_like_dicom(core::ByteView file);
 /// Walks every element and sequence and holds each length against what is left of the file.
 /// Errors: bad_input naming the element, its offset and the length it claims; a transfer syntax we
 /// do not read.
-core::Result<DicomLayout> parse_dicom_layout(core::ByteView file,
-                                             const std::filesystem::path& path);
+/// `seen` (if given) gets every element, nested ones before the one that holds them.
+core::Result<DicomLayout> parse_dicom_layout(core::ByteView file, const std::filesystem::path& path,
+                                             const ElementSeen& seen = {});
 
 /// Rows and columns that a JPEG, JPEG-LS or JPEG 2000 stream states of itself; {0, 0} when it is
 /// none of these.

@@ -20,12 +20,9 @@ constexpr double kEven = 0.01;                                    // of a slice 
 constexpr double kUpright_rad = 0.01 * std::numbers::pi / 180.0;  // below this a tilt is rounding
 constexpr double kMaxTilt_rad = 45.0 * std::numbers::pi / 180.0;
 
-struct Listing {
-  std::vector<fs::path> files;  ///< DICOM, sorted by name
-  std::vector<std::string> others;
-};
+}  // namespace
 
-core::Result<Listing> list(const fs::path& folder) {
+core::Result<Listing> list_series(const fs::path& folder) {
   Listing out;
   std::error_code failure;
   for (fs::directory_iterator it(folder, failure), end; !failure && it != end;
@@ -36,7 +33,7 @@ core::Result<Listing> list(const fs::path& folder) {
     if (image)
       out.files.push_back(it->path());
     else
-      out.others.push_back(it->path().filename().string());
+      ++out.others;
     if (out.files.size() > 4096)
       return core::Error{core::Errc::too_large,
                          folder.string() + ": over 4096 DICOM files, at most so many are taken"};
@@ -46,9 +43,10 @@ core::Result<Listing> list(const fs::path& folder) {
                        fmt::format("{}: cannot list: {}", folder.string(), failure.message())};
   if (out.files.empty()) return bad(folder, "no DICOM file in this folder");
   std::ranges::sort(out.files);
-  std::ranges::sort(out.others);
   return out;
 }
+
+namespace {
 
 core::Error differ(const Slice& a, const Slice& b, const std::string& what) {
   return bad(b.path, fmt::format("{} than {}: the slices of one series are expected", what,
@@ -134,7 +132,7 @@ core::Result<void> place(Series& series, const fs::path& folder) {
   return volume::check_geometry(g, folder.string());
 }
 
-void add_notes(Series& series, const Listing& listing) {
+void add_notes(Series& series) {
   const Slice& a = series.slices.front();
   for (const Slice& b : series.slices)
     if (b.slope != a.slope || b.intercept != a.intercept) series.same_scaling = false;
@@ -146,15 +144,12 @@ void add_notes(Series& series, const Listing& listing) {
     if (a.transfer_syntax.ends_with(lossy))
       series.notes.push_back("compressed by a method that may lose detail (" + a.transfer_syntax +
                              ")");
-  if (!listing.others.empty())
-    series.notes.push_back(
-        fmt::format("{} other files in the folder were left out", listing.others.size()));
 }
 
 }  // namespace
 
 core::Result<Series> scan_series(const fs::path& folder, const core::Progress& progress) {
-  const auto listing = list(folder);
+  const auto listing = list_series(folder);
   if (!listing) return listing.error();
   Series series;
   for (std::size_t i = 0; i < listing->files.size(); ++i) {
@@ -167,7 +162,7 @@ core::Result<Series> scan_series(const fs::path& folder, const core::Progress& p
   }
   if (auto alike = check_alike(series.slices); !alike) return alike.error();
   if (auto placed = place(series, folder); !placed) return placed.error();
-  add_notes(series, *listing);
+  add_notes(series);
   return series;
 }
 

@@ -36,6 +36,14 @@ struct Series {
   std::vector<std::string> notes;
 };
 
+/// The files of a folder, not of folders in it.
+struct Listing {
+  std::vector<std::filesystem::path> files;  ///< DICOM, sorted by name
+  std::size_t others = 0;
+};
+/// Errors: bad_input when none is DICOM, io, too_large (over 4096).
+core::Result<Listing> list_series(const std::filesystem::path& folder);
+
 /// Reads the tags of every DICOM file of a folder (not of folders in it) and checks that they are
 /// the slices of one volume: one series, one size, one orientation, evenly spaced, none missing,
 /// none twice. Errors: not_found, io, bad_input naming the files that do not fit, too_large,

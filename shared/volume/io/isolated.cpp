@@ -18,7 +18,7 @@ namespace volume_io {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::uint64_t kTextLimit = 1u << 20;
+constexpr std::uint64_t kTextLimit = 16u << 20;
 
 /// What the child says: how far it is ('p', a double), an error or a volume ('e', 'v', a JSON
 /// text); counts follow a 'v'.
@@ -69,7 +69,10 @@ std::string text_of(const Imported& in) {
                     {"intercept", in.volume.intercept},
                     {"format", in.format},
                     {"source", in.source},
-                    {"notes", in.notes}}
+                    {"notes", in.notes},
+                    {"modality", in.modality},
+                    {"suspicions", in.suspicions},
+                    {"report", in.report}}
       .dump(-1, ' ', false, core::Json::error_handler_t::replace);
 }
 
@@ -89,6 +92,9 @@ Imported imported_of(const core::Json& json) {
   out.format = json.at("format").get<std::string>();
   out.source = json.at("source").get<std::string>();
   out.notes = json.at("notes").get<std::vector<std::string>>();
+  out.modality = json.at("modality").get<std::string>();
+  out.suspicions = json.at("suspicions").get<std::vector<std::string>>();
+  out.report = json.at("report");
   return out;
 }
 

@@ -25,8 +25,13 @@ core::Result<Imported> read_own(const fs::path& path, const core::Progress& prog
 }  // namespace
 
 core::Result<Imported> read_volume(const fs::path& path, const core::Progress& progress) {
+  return read_volume(path, ReadOptions{.progress = progress});
+}
+
+core::Result<Imported> read_volume(const fs::path& path, const ReadOptions& options) {
+  const core::Progress& progress = options.progress;
   std::error_code failure;
-  if (fs::is_directory(path, failure)) return read_dicom(path, progress);
+  if (fs::is_directory(path, failure)) return read_dicom(path, options);
   const auto first = first_bytes(path, kLookAtBytes);
   if (!first) return first.error();
   const std::string_view text = core::text_of(*first);

@@ -18,3 +18,4 @@ export * from './teaching-queries';
 export { kKinds, kReleases, kWalls } from './teaching-schemas';
 export type * from './teaching-schemas';
 export type { Slice, SlicePlane, Vec3 } from './slices';
+export * from './oidc-queries';

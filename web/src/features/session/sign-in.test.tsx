@@ -46,6 +46,27 @@ describe('signing in', () => {
     expect(document.activeElement).toBe(screen.getByLabelText('Password'));
   });
 
+  it('offers the provider of identities that the server has, and says how its answer went', async () => {
+    window.history.replaceState(null, '', '/?sign_in=unknown');
+    vi.spyOn(globalThis, 'fetch').mockImplementation((input) =>
+      String(input).endsWith('/session/oidc') ? json({ offered: true, label: 'Sign in with the hospital' }, 200) : json({ error: 'nobody', code: 'unauthorised' }, 401));
+    render(
+      <QueryClientProvider client={new QueryClient({ defaultOptions: { queries: { retry: false } } })}>
+        <SessionGate waiting="waiting">the page</SessionGate>
+      </QueryClientProvider>,
+    );
+    const link = await screen.findByRole('link', { name: 'Sign in with the hospital' });
+    expect(link.getAttribute('href')).toBe('/api/v1/session/oidc/start');
+    expect(screen.getByRole('alert').textContent).toContain('no account here is linked');
+    window.history.replaceState(null, '', '/');
+  });
+
+  it('offers none where there is none', async () => {
+    open(() => json({}, 200));
+    await screen.findByLabelText('Name');
+    expect(screen.queryByRole('link')).toBeNull();
+  });
+
   it('says that the server is away when it is', async () => {
     open(() => Promise.reject(new TypeError('Failed to fetch')));
     await attempt();

@@ -1,6 +1,6 @@
-import { useMutation, useQueryClient } from '@tanstack/react-query';
+import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { useEffect, useRef, useState, type FormEvent } from 'react';
-import { ApiError, sessionQuery, signIn } from '@/api';
+import { ApiError, kOidcStart, oidcOfferQuery, sessionQuery, signIn } from '@/api';
 import { Button, Field, useTitle } from '@/ui';
 import { endedByItself } from './ended';
 import styles from './sign-in.module.css';
@@ -15,6 +15,15 @@ function sentence(reason: Error): string {
   }
 }
 
+/** What the server's answer after the provider's says, in the address. */
+function returned(): string {
+  switch (new URLSearchParams(window.location.search).get('sign_in')) {
+    case 'unknown': return 'Your institution knows you, but no account here is linked with you yet. Ask an administrator of this server.';
+    case 'failed': return 'Signing in by your institution did not work. Try again.';
+    default: return '';
+  }
+}
+
 export function SignIn() {
   useTitle('Sign in');
   const client = useQueryClient();
@@ -23,6 +32,8 @@ export function SignIn() {
   const [code, setCode] = useState('');
   const [asked, setAsked] = useState(false);
   const [ended] = useState(endedByItself);
+  const [back] = useState(returned);
+  const offer = useQuery(oidcOfferQuery);
   const nameField = useRef<HTMLInputElement>(null);
   const passwordField = useRef<HTMLInputElement>(null);
   const codeField = useRef<HTMLInputElement>(null);
@@ -59,8 +70,9 @@ export function SignIn() {
         <Field label="Password" name="password" type="password" autoComplete="current-password" required
           inputRef={passwordField} value={password} onChange={(event) => setPassword(event.target.value)} aria-invalid={attempt.isError} />
         {asked ? <Field label="One-time code" name="code" inputMode="numeric" autoComplete="one-time-code" maxLength={8} inputRef={codeField} value={code} onChange={(event) => setCode(event.target.value)} /> : null}
-        <p className={styles.error} role="alert">{attempt.isError ? sentence(attempt.error) : ''}</p>
+        <p className={styles.error} role="alert">{attempt.isError ? sentence(attempt.error) : back}</p>
         <Button type="submit" look="solid" disabled={attempt.isPending}>{attempt.isPending ? 'Signing in…' : 'Sign in'}</Button>
+        {offer.data?.offered ? <a className={styles.provider} href={kOidcStart}>{offer.data.label ?? 'Sign in with your institution'}</a> : null}
       </form>
     </div>
   );

@@ -1,0 +1,13 @@
+/// A whole cohort in one file that R and Python read without any package (ADR-0021).
+#pragma once
+
+#include "server/api/export.hpp"
+
+namespace api {
+
+/// A zip of summary.csv, trials.csv, scores.csv, dictionary.csv, cohort.json and, from the tier
+/// `reduced` on, samples/TRIAL.npy: of each trial as much as was agreed to, and no more than
+/// `tier`. Errors: those of trials_to_export and of reading; too_large (the zip is over 256 MiB).
+core::Result<std::string> cohort_zip(Backend& backend, const std::string& study, store::Tier tier);
+
+}  // namespace api

@@ -1,0 +1,54 @@
+#include "server/api/refusals.hpp"
+
+#include <algorithm>
+
+#include "db/store/audit.hpp"
+#include "server/api/backend.hpp"
+#include "server/api/route.hpp"
+
+namespace api {
+
+bool RefusalLimit::draw(Bucket& bucket, double per_minute, double most, std::int64_t now_utc_us) {
+  const double minutes = std::max(0.0, double(now_utc_us - bucket.at_utc_us) / 60e6);
+  bucket.left = std::min(most, bucket.left + minutes * per_minute);
+  bucket.at_utc_us = now_utc_us;
+  if (bucket.left < 1.0) return false;
+  bucket.left -= 1.0;
+  return true;
+}
+
+std::optional<std::uint64_t> RefusalLimit::turn(const std::string& caller,
+                                                std::int64_t now_utc_us) {
+  const std::lock_guard held(mutex_);
+  if (!callers_.contains(caller) && callers_.size() >= kCallers)
+    callers_.erase(std::ranges::min_element(
+        callers_, {}, [](const auto& entry) { return entry.second.at_utc_us; }));
+  Bucket& own = callers_.try_emplace(caller, Bucket{kBurst, now_utc_us}).first->second;
+  if (!draw(own, kPerMinute, kBurst, now_utc_us) ||
+      !draw(all_, kAllPerMinute, kAllPerMinute, now_utc_us)) {
+    ++unnoted_;
+    return std::nullopt;
+  }
+  return std::exchange(unnoted_, 0);
+}
+
+void note_refusal(Backend& backend, const Caller& caller, const std::string& peer,
+                  const std::string& route, const std::string& object, const std::string& why) {
+  const std::int64_t now = backend.now_utc_us();
+  const auto unnoted = backend.refusals.turn(caller.id, now);
+  if (!unnoted) return;
+  core::Json detail{{"why", why}};
+  if (*unnoted > 0) detail["refusals_not_noted"] = *unnoted;
+  const store::Act act{.who = caller.name,
+                       .role = std::string(name(caller.role)),
+                       .peer = peer,
+                       .what = "refused: " + route,
+                       .object = object,
+                       .detail = detail.dump(-1, ' ', false, core::Json::error_handler_t::replace),
+                       .at_utc_us = now};
+  const auto noted = backend.store.write(
+      [&](store::Writing& tx) { return store::add_act(tx, backend.store.audit_key(), act); });
+  if (!noted && backend.log) backend.log({{"what", "refusal not noted"}});
+}
+
+}  // namespace api

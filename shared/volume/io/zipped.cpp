@@ -1,0 +1,126 @@
+#include "volume/io/zipped.hpp"
+
+#include <archive.h>
+#include <archive_entry.h>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <fstream>
+#include <memory>
+
+#include "core/file.hpp"
+#include "volume/io/claims.hpp"
+#include "volume/io/dicom_layout.hpp"
+
+namespace volume_io {
+namespace fs = std::filesystem;
+namespace {
+
+using core::Errc;
+using core::Error;
+using core::Result;
+
+constexpr int kMostSlices = 4096, kMostEntries = 16384;
+constexpr std::uint64_t kMost_bytes = 4ull << 30, kAlways_bytes = 64ull << 20;
+constexpr std::uint64_t kMostRatio = 100;
+
+struct Closes {
+  void operator()(archive* reader) const { archive_read_free(reader); }
+};
+
+class Unpacking {
+ public:
+  Unpacking(const fs::path& zip, const fs::path& into) : zip_(zip), into_(into) {}
+
+  Result<void> run() {
+    const auto size = size_of_file(zip_);
+    if (!size) return size.error();
+    limit_bytes_ = std::min(kMost_bytes, std::max(kAlways_bytes, *size * kMostRatio));
+    reader_.reset(archive_read_new());
+    archive_read_support_format_zip(reader_.get());
+    if (archive_read_open_filename(reader_.get(), zip_.c_str(), 1 << 16) != ARCHIVE_OK)
+      return bad(zip_, "not a zip");
+    for (int entries = 0;; ++entries) {
+      archive_entry* entry = nullptr;
+      const int got = archive_read_next_header(reader_.get(), &entry);
+      if (got == ARCHIVE_EOF) break;
+      if (got != ARCHIVE_OK && got != ARCHIVE_WARN) return bad(zip_, "is damaged");
+      if (entries >= kMostEntries)
+        return Error{Errc::too_large,
+                     fmt::format("{}: over {} entries", zip_.string(), kMostEntries)};
+      if (archive_entry_is_encrypted(entry)) return bad(zip_, "is encrypted");
+      if (archive_entry_filetype(entry) != AE_IFREG) continue;
+      if (auto taken = take(); !taken) return taken;
+    }
+    if (slices_ == 0) return bad(zip_, "holds no DICOM file");
+    return {};
+  }
+
+ private:
+  /// The entry's next piece; empty at its end.
+  Result<core::ByteView> piece() {
+    const la_ssize_t n = archive_read_data(reader_.get(), buffer_.data(), buffer_.size());
+    if (n < 0) return bad(zip_, "is damaged");
+    bytes_ += std::uint64_t(n);
+    if (bytes_ > limit_bytes_)
+      return Error{Errc::too_large,
+                   fmt::format("{}: unpacks to over {} MiB", zip_.string(), limit_bytes_ >> 20)};
+    return core::ByteView(buffer_).first(std::size_t(n));
+  }
+
+  Result<void> take() {
+    // The first piece is short when the entry is stored in small blocks: gather a head's worth.
+    core::Bytes head;
+    while (head.size() < 132) {
+      auto part = piece();
+      if (!part) return part.error();
+      if (part->empty()) break;
+      head.insert(head.end(), part->begin(), part->end());
+    }
+    if (!looks_like_dicom(head)) return {};
+    if (++slices_ > kMostSlices)
+      return Error{Errc::too_large,
+                   fmt::format("{}: over {} DICOM files", zip_.string(), kMostSlices)};
+    std::ofstream file(into_ / fmt::format("{:06}.dcm", slices_), std::ios::binary);
+    const auto write = [&](core::ByteView part) {
+      file.write(reinterpret_cast<const char*>(part.data()), std::streamsize(part.size()));
+    };
+    write(head);
+    for (;;) {
+      auto part = piece();
+      if (!part) return part.error();
+      if (part->empty()) break;
+      write(*part);
+    }
+    file.close();
+    if (!file) return core::system_error(into_, "cannot write");
+    return {};
+  }
+
+  const fs::path &zip_, &into_;
+  std::unique_ptr<archive, Closes> reader_;
+  std::array<std::byte, 1 << 16> buffer_{};
+  std::uint64_t bytes_ = 0, limit_bytes_ = 0;
+  int slices_ = 0;
+};
+
+}  // namespace
+
+bool is_zip(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::array<char, 4> start{};
+  file.read(start.data(), start.size());
+  return file.gcount() == 4 && std::string_view(start.data(), 4) == "PK\x03\x04";
+}
+
+Result<void> unpack_slices(const fs::path& zip, const fs::path& into) {
+  std::error_code failure;
+  fs::create_directories(into, failure);
+  if (failure) return Error{Errc::io, into.string() + ": cannot create: " + failure.message()};
+  return Unpacking(zip, into).run();
+}
+
+}  // namespace volume_io

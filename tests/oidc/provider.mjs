@@ -1,0 +1,45 @@
+// A real OpenID provider for the sign-in tests: listens on a free port, prints its issuer, then reads one line from standard
+// input, the address that it may send browsers back to. Anybody may sign in there by any name: whom the server lets in is the
+// server's to decide.
+import {createServer} from 'node:http';
+import {createInterface} from 'node:readline';
+
+import Provider from 'oidc-provider';
+
+const [algorithm = 'RS256'] = process.argv.slice(2);
+let answer = (_request, response) => response.writeHead(503).end();
+const server = createServer((request, response) => answer(request, response));
+server.listen(0, '127.0.0.1', () => {
+  const issuer = `http://127.0.0.1:${server.address().port}`;
+  const lines = createInterface({input: process.stdin});
+  lines.once('line', (redirect) => {
+    const base = new URL(redirect).origin;
+    const provider = new Provider(issuer, {
+      clients: [{
+        client_id: 'tractus',
+        client_secret: 'secret of a test',
+        redirect_uris: [redirect],
+        post_logout_redirect_uris: [`${base}/`],
+        id_token_signed_response_alg: algorithm,
+      }],
+      cookies: {keys: ['of a test']},
+      features: {devInteractions: {enabled: true}, rpInitiatedLogout: {enabled: true}},
+      jwks: {keys: [globalThis.signingKey]},
+      pkce: {required: () => true},
+      findAccount: (_context, id) => ({accountId: id, claims: () => ({sub: id})}),
+    });
+    answer = provider.callback();
+    console.log('ready');
+  });
+  lines.on('close', () => process.exit(0));
+  console.log(issuer);
+});
+
+const kinds = {
+  RS256: {name: 'RSASSA-PKCS1-v1_5', modulusLength: 2048, publicExponent: new Uint8Array([1, 0, 1]), hash: 'SHA-256'},
+  ES256: {name: 'ECDSA', namedCurve: 'P-256'},
+};
+const pair = await crypto.subtle.generateKey(kinds[algorithm], true, ['sign', 'verify']);
+globalThis.signingKey = {...(await crypto.subtle.exportKey('jwk', pair.privateKey)), use: 'sig', alg: algorithm, kid: 'one'};
+delete globalThis.signingKey.key_ops;
+delete globalThis.signingKey.ext;
