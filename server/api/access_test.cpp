@@ -143,22 +143,38 @@ TEST_F(Access, ATraineeAndAStationReachTheseRoutesAlone) {
     for (const Grant& grant : route.who)
       reach[grant.role].insert(route.id +
                                (grant.of == Of::all ? "" : " of " + std::string(name(grant.of))));
-  EXPECT_EQ(reach[Role::trainee],
-            (std::set<std::string>{
-                "whoAmI", "signOut", "changePassword", "beginCodes", "confirmCodes", "endCodes",
-                "description", "metrics", "trials of own", "trial of own", "trialSignals of own",
-                "trialPath of own", "trialForceDepth of own", "casePreview of own",
-                "cohorts of own", "assignments of own", "assignment of own", "trainee of own",
-                "trialComments of own", "trialReferences of own", "referenceWay of own"}));
+  EXPECT_EQ(reach[Role::trainee], (std::set<std::string>{"whoAmI",
+                                                         "signOut",
+                                                         "changePassword",
+                                                         "beginCodes",
+                                                         "confirmCodes",
+                                                         "endCodes",
+                                                         "description",
+                                                         "metrics",
+                                                         "trials of own",
+                                                         "trial of own",
+                                                         "trialSignals of own",
+                                                         "trialPath of own",
+                                                         "trialForceDepth of own",
+                                                         "casePreview of own",
+                                                         "cohorts of own",
+                                                         "assignments of own",
+                                                         "assignment of own",
+                                                         "trainee of own",
+                                                         "trialComments of own",
+                                                         "trialReferences of own",
+                                                         "referenceWay of own"}));
   EXPECT_EQ(reach[Role::station],
             (std::set<std::string>{"whoAmI", "description", "metrics", "cases", "case", "casePart",
                                    "casePreview", "announceUpload", "uploadState", "appendUpload",
                                    "commitUpload", "takeTrials", "signInAtStation", "nextTrial",
-                                   "signOutAtStation", "serverMetrics"}));
+                                   "signOutAtStation", "serverMetrics", "stationModels",
+                                   "stationModelFile", "stationModelThere"}));
   EXPECT_EQ(reach[Role::technician],
             (std::set<std::string>{"whoAmI", "signOut", "changePassword", "beginCodes",
                                    "confirmCodes", "endCodes", "description", "metrics", "stations",
-                                   "makeEnrolmentCode", "revokeStation", "serverMetrics"}));
+                                   "makeEnrolmentCode", "revokeStation", "serverMetrics", "backups",
+                                   "makeBackup", "verifyBackup", "sendModel", "sentModel"}));
 }
 
 TEST_F(Access, ARouteThatNamesNobodyIsRefusedToAll) {
