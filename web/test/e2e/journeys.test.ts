@@ -8,7 +8,7 @@ import { at, furnish, kTrainees, Person, scored, tuned, type Programme } from '.
 import { programs, serveReal, type Served } from './real-server';
 
 const bin = programs('tractus-server', 'tractus-station', 'tractus');
-const kPictures = fileURLToPath(new URL('../../public/guide/', import.meta.url));
+const kPictures = fileURLToPath(new URL('../../src/features/guide/pictures/', import.meta.url));
 const [kAda, kBen] = kTrainees;
 
 /** What the guide shows: the upper part of a page, 1200 × 750. */

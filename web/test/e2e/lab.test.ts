@@ -2,6 +2,7 @@
 import { execFileSync } from 'node:child_process';
 import { join } from 'node:path';
 import { readFileSync } from 'node:fs';
+import { fileURLToPath } from 'node:url';
 import type { Browser, Page } from 'playwright-core';
 import { afterAll, beforeAll, describe, expect, it } from 'vitest';
 import { kShots, launch } from './browser';
@@ -9,6 +10,7 @@ import { programs, serveReal, type Served } from './real-server';
 
 const bin = programs('tractus-server', 'tractus-station', 'blind-probing', 'blind-palpation');
 const kSeed = '7';
+const kPicture = fileURLToPath(new URL('../../src/features/guide/pictures/researcher-missing.jpg', import.meta.url));
 
 /** "1.99 N" → 1.99 */
 const newtons = (text: string) => Number(/([\d.]+)\s*N/.exec(text.replaceAll('\u202f', ' '))?.[1] ?? Number.NaN);
@@ -80,6 +82,12 @@ describe.skipIf(bin === undefined)('a set with a hidden effect', () => {
     expect(newtons(held.at(-1) ?? '')).toBeLessThanOrEqual(1.1 * floor);
     await page.waitForLoadState('networkidle');
     await shot('missing');
+    if (process.env.GUIDE_PICTURES) {
+      await page.setViewportSize({ width: 1200, height: 750 });
+      await page.waitForTimeout(600);
+      await page.screenshot({ path: kPicture, type: 'jpeg', quality: 82 });
+      await page.setViewportSize({ width: 1440, height: 900 });
+    }
 
     await page.getByRole('link', { name: /^Add Coulomb friction and publish/ }).click();
     await page.getByRole('button', { name: 'Publish' }).click();

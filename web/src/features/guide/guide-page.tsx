@@ -5,6 +5,10 @@ import { Card, useTitle } from '@/ui';
 import styles from './guide.module.css';
 import { kPages } from './pages';
 
+/** Address of each picture that the tests have made, by its name; a step without one stands alone. */
+const kMade = import.meta.glob<string>('./pictures/*.jpg', { eager: true, query: '?url', import: 'default' });
+const addressOf = (name: string | undefined) => (name === undefined ? undefined : kMade[`./pictures/${name}.jpg`]);
+
 /** One page for each role: what it comes for, how that is done, what the words mean. */
 export function GuidePage({ role }: { readonly role: string | undefined }) {
   const own = useQuery({ ...sessionQuery, enabled: false }).data?.role;
@@ -18,7 +22,7 @@ export function GuidePage({ role }: { readonly role: string | undefined }) {
       <p className={styles.for}>{page.for}</p>
       <Card title="How it is done">
         <ol className={styles.steps}>
-          {page.steps.map(({ title, text, to, picture }) => <li key={title}><strong>{title}</strong><p>{text} {to ? <Link href={to.href}>{to.name}</Link> : null}</p>{picture ? <img className={styles.picture} src={`/guide/${picture.name}.jpg`} alt={picture.shows} width={1200} height={750} loading="lazy" /> : null}</li>)}
+          {page.steps.map(({ title, text, to, picture }) => <li key={title}><strong>{title}</strong><p>{text} {to ? <Link href={to.href}>{to.name}</Link> : null}</p>{picture && addressOf(picture.name) ? <img className={styles.picture} src={addressOf(picture.name)} alt={picture.shows} width={1200} height={750} loading="lazy" /> : null}</li>)}
         </ol>
       </Card>
       <Card title="What the words mean"><dl className={styles.terms}>{page.terms.map(([word, meaning]) => <div key={word}><dt>{word}</dt><dd>{meaning}</dd></div>)}</dl></Card>
