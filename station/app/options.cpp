@@ -18,6 +18,7 @@ constexpr const char* kExamples = R"(Examples:
   tractus-station study  --study spine-1 --participant P01 --device rig --data st --server URL --token-file st.token
   tractus-station enrol  --server https://sim.example.org:8480 --authority authority.pem --code C --token-file st.token
   tractus-station assigned --badge 4711 --data st --server URL --token-file st.token
+  tractus-station --device lambda6 --sdk /opt/sdk --case 3f9ac2d1 --data st
   tractus-station sync   --data st --server URL --token-file st.token
   tractus-station upload --data st --server URL --token-file st.token --wait 600)";
 
@@ -105,8 +106,12 @@ void add_tune(CLI::App& app, Options& options) {
 }
 
 void add_run(CLI::App& app, Options& options) {
-  app.add_option("--device", options.setup.device, "sim-lambda6; rig or sim-rig for a scenario")
+  app.add_option("--device", options.setup.device,
+                 "lambda6 or sim-lambda6; rig or sim-rig for a scenario")
       ->capture_default_str();
+  app.add_option(
+      "--sdk", options.setup.sdk,
+      "lambda6: the vendor's SDK, its folder or library; else $FDSDK, else as installed");
   app.add_option("--case", options.case_name,
                  "a case's folder, or 8 or more characters of the id of one in the data folder");
   app.add_option("--model", options.model_file,
@@ -176,8 +181,10 @@ void add_assigned(CLI::App& app, Options& options) {
   add_server(app, options, true);
   app.add_option("--badge", options.badge, "the trainee's badge number")->required();
   app.add_option("--pin-file", options.pin_file, "its first line is the PIN; else asked for");
-  app.add_option("--device", options.setup.device, "sim-lambda6; rig or sim-rig for scenarios")
+  app.add_option("--device", options.setup.device,
+                 "lambda6 or sim-lambda6; rig or sim-rig for scenarios")
       ->capture_default_str();
+  app.add_option("--sdk", options.setup.sdk, "lambda6: the vendor's SDK, its folder or library");
   add_rig(app, options);
   add_started(app, options);
   app.add_option("--seed", options.setup.seed, "of the simulated hand")

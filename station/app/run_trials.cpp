@@ -1,7 +1,9 @@
 /// The trials themselves: prepare, run, answer, hand over.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cstdio>
+#include <iostream>
 
 #include "station/app/aftermath.hpp"
 #include "station/app/deeds.hpp"
@@ -80,6 +82,15 @@ void print_report(const TrialReport& report, bool fast) {
   fmt::print("  answer: {}\n  {}\n", answer_text(report), report.file.string());
 }
 
+/// After a fault of a machine that a person holds, that person goes on; nobody else does.
+bool may_go_on(const TrialReport& last) {
+  if (last.complete || last.simulated) return true;
+  if (!::isatty(STDIN_FILENO)) return false;
+  fmt::print(stderr, "Look at the device; plug it in if it was out. Enter goes on, Ctrl-D ends: ");
+  std::string line;
+  return bool(std::getline(std::cin, line));
+}
+
 }  // namespace
 
 core::Result<int> run_trials(const Options& options) {
@@ -103,9 +114,11 @@ core::Result<int> run_trials(const Options& options) {
     auto scores = session::scores_of(report->file, &(*prepared)->opened.definition.tract);
     if (!scores) return scores.error();
     trials.push_back(json_of(*report, *scores));
-    if (options.json) continue;
-    print_report(*report, options.setup.speed == session::Speed::fast);
-    print_scores(*scores);
+    if (!options.json) {
+      print_report(*report, options.setup.speed == session::Speed::fast);
+      print_scores(*scores);
+    }
+    if (i + 1 < options.trials && !may_go_on(*report)) break;
   }
   const core::Json uploads = hand_over_after(options, *folder);
   if (options.json)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -22,12 +23,20 @@ struct Channel {
   double radius_m = 0.0025;
 };
 
-/// What a device is told before it is made. A machine that is held by a person needs none of it.
+/// What a device does that has lost its zero (switched off meanwhile).
+enum class Homing : std::uint8_t {
+  refuse,  ///< says so
+  move,    ///< looks for it: the handle moves by itself, somebody must stand by
+};
+
+/// What a device is told before it is made: a simulated one the first five, a machine the last two.
 struct DeviceOptions {
   std::uint64_t seed = 1;        ///< of everything random in a simulated device
   double duration_s = 30.0;      ///< of a simulated hand's plan
   double probe_length_m = 0.13;  ///< handle's origin to tip
-  Channel channel;
+  Channel channel = {};
+  std::filesystem::path sdk = {};  ///< the vendor's library or folder; empty: where it installs
+  Homing homing = Homing::refuse;
 };
 
 /// What a trainee says afterwards.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <string>
 
 #include "core/clock.hpp"
@@ -27,13 +28,17 @@ struct Sample {
   math::Pose X_DH;  ///< handle frame in the device's frame D
   math::Vec3 velocity_m_s = math::Vec3::Zero();
   math::Vec3 angular_velocity_rad_s = math::Vec3::Zero();
-  bool saturated = false;  ///< the device could not give all of the last command
+  bool saturated = false;      ///< the device could not give all of the last command
+  std::uint32_t buttons = 0;   ///< a bit each, where there are any
+  double gripper_gap_m = 0.0;  ///< where there is a gripper
 };
 
 struct Limits {
   double max_force_N = 0.0;
   double max_torque_Nm = 0.0;
   double rate_Hz = 0.0;
+  std::string name = {};   ///< as the device calls itself; empty when it does not
+  bool simulated = false;  ///< behind the driver stands no machine
 };
 
 class Device {

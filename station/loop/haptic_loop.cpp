@@ -114,7 +114,8 @@ void HapticLoop::tick(core::Instant_ns now, std::uint32_t number, bool late) noe
        .rendered_force_N = array_of(rendered_H),
        .rendered_torque_Nm = array_of(Vec3(q_DH.conjugate() * passed.wrench.torque_Nm)),
        .tick = number,
-       .late_ticks = static_cast<std::uint32_t>(counts_.late)});
+       .late_ticks = static_cast<std::uint32_t>(counts_.late),
+       .buttons = sample.buttons});
 }
 
 // The model's wrench in D, and the energy of the stretch that ends here.

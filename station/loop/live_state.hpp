@@ -60,6 +60,7 @@ struct Live {
   std::array<double, 3> rendered_torque_Nm{};
   std::uint32_t tick = 0;
   std::uint32_t late_ticks = 0;
+  std::uint32_t buttons = 0;  ///< of the device, a bit each
 };
 
 using LiveState = Seqlock<Live>;

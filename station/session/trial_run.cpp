@@ -81,6 +81,7 @@ struct TrialRun::Parts {
   TrialSetup setup;
   trial::Header header;
   devices::MadeDevice made;
+  devices::Limits opened;
   core::MonotonicClock real_clock;
   core::ManualClock manual_clock;
   loop::SampleRing ring{kRing};
@@ -133,7 +134,8 @@ core::Result<void> TrialRun::Parts::open_device(const devices::DeviceInfo& info,
       info.make({.seed = setup.seed,
                  .duration_s = setup.duration_s,
                  .probe_length_m = base.length_m,
-                 .channel = channel_of(loop::tract_in_device(tract, X_VD, base.pose_offset_m))});
+                 .channel = channel_of(loop::tract_in_device(tract, X_VD, base.pose_offset_m)),
+                 .sdk = setup.sdk});
   if (!device) return device.error();
   made = std::move(*device);
   auto limits = made.device->open();
@@ -142,6 +144,7 @@ core::Result<void> TrialRun::Parts::open_device(const devices::DeviceInfo& info,
   device_limits.max_force_N = limits->max_force_N;
   device_limits.max_torque_Nm = limits->max_torque_Nm;
   limiter.lower(device_limits);
+  opened = *limits;
   return {};
 }
 
@@ -152,7 +155,7 @@ core::Result<void> TrialRun::Parts::make_file(const PreparedCase& prepared,
   header.station = folder.config().name;
   header.operator_name = made.trainee ? made.trainee->name() : "not named";
   if (!setup.operator_name.empty()) header.operator_name = setup.operator_name;
-  header.simulated = info.simulated;
+  header.simulated = info.simulated || opened.simulated;
   header.device = info.id;
   header.started_utc_us = setup.started_utc_us.value_or(core::utc_us());
   header.rate_Hz = setup.rate_Hz;
@@ -162,6 +165,7 @@ core::Result<void> TrialRun::Parts::make_file(const PreparedCase& prepared,
       {"model", prepared.model.name},
       {"limits", limiter.limits().to_json()},
       {"passivity", setup.passivity == loop::Passivity::controlled ? "controlled" : "observed"}};
+  if (!opened.name.empty()) header.extra["device_name"] = opened.name;
   if (info.simulated) header.extra["seed"] = setup.seed;
   if (setup.started_utc_us) header.extra["date"] = "simulated";
   if (!prepared.model.effects.empty())

@@ -19,6 +19,7 @@ enum class Speed {
 
 struct TrialSetup {
   std::string device = "sim-lambda6";
+  std::filesystem::path sdk = {};  ///< of a device that needs its vendor's library
   std::uint64_t seed = 1;
   double duration_s = 30.0;
   Speed speed = Speed::real;

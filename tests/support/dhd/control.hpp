@@ -1,0 +1,48 @@
+/// What a test tells the stand-in, and what it saw: one page of memory that both map.
+#pragma once
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cstdint>
+#include <new>
+#include <string>
+
+namespace standin {
+
+struct Control {
+  // Commands.
+  std::atomic<int> plugged{1};      ///< 0: every call ends with a communication error
+  std::atomic<int> in_use{0};       ///< another program has it: open is refused
+  std::atomic<int> initialised{1};  ///< 0: has lost its zero until drdAutoInit
+  std::atomic<int> active_wrist{1};
+  std::atomic<int> stuck{0};            ///< samples do not change any more: "time guard"
+  std::atomic<int> force_off_cause{0};  ///< the device took its forces away
+  std::atomic<int> error{0};            ///< the next calls fail with this code
+  std::atomic<unsigned> buttons{0};
+  std::atomic<double> hand_m[3]{};  ///< where the hand wants the handle
+  std::atomic<double> hand_N_per_m{350.0};
+  std::atomic<double> gap_m{0.012};
+  std::atomic<std::int64_t> step_ns{0};  ///< of its own time a read; 0: the monotonic clock's
+  // Seen.
+  std::atomic<double> force_N[3]{}, torque_Nm[3]{}, handle_m[3]{};
+  std::atomic<int> force_on{0}, gravity{0}, watchdog_steps{0}, opened{0}, stops{0};
+  std::atomic<int> velocity_guard_writes{0}, watchdog_trips{0}, homings{0};
+  std::atomic<std::uint64_t> reads{0}, writes{0};
+};
+
+/// Maps the file (made when it is not there). Null when that fails.
+inline Control* map_control(const std::string& path) {
+  const int fd = ::open(path.c_str(), O_RDWR | O_CREAT, 0666);
+  if (fd < 0) return nullptr;
+  const bool fresh = ::lseek(fd, 0, SEEK_END) < off_t(sizeof(Control));
+  if (fresh && ::ftruncate(fd, sizeof(Control)) != 0) return nullptr;
+  void* at = ::mmap(nullptr, sizeof(Control), PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
+  ::close(fd);
+  if (at == MAP_FAILED) return nullptr;
+  return fresh ? new (at) Control : static_cast<Control*>(at);
+}
+
+}  // namespace standin
