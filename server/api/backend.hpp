@@ -7,9 +7,14 @@
 #include "db/store/objects.hpp"
 #include "db/store/store.hpp"
 #include "server/api/backups.hpp"
+#include "server/api/refusals.hpp"
 #include "server/api/secrets.hpp"
 #include "server/api/telemetry.hpp"
 #include "server/api/trial_views.hpp"
+
+namespace live {
+class Hub;
+}
 
 namespace api {
 
@@ -27,8 +32,10 @@ struct Backend {
   std::function<std::uint64_t()> free_bytes = {};  ///< on the disk; none: the system is asked
   Log log = {};                                    ///< a line for whoever runs the server
   bool logs_requests = false;                      ///< every one, not only those that fail
+  live::Hub* live = nullptr;                       ///< none: stations have no lines
   Backups* backups = nullptr;                      ///< none: this process makes none
   Telemetry telemetry{};
+  Refusals refusals{};
   TrialViews trial_views{};
 };
 

@@ -21,6 +21,7 @@
 #include "server/http/certificates.hpp"
 #include "server/http/static_files.hpp"
 #include "server/jobs/runner.hpp"
+#include "server/live/hub.hpp"
 
 namespace app {
 namespace {
@@ -75,6 +76,10 @@ http::Service service_of(api::Backend& backend, const std::optional<std::filesys
       .handle =
           [&backend, is_api, pages](const http::Request& request) {
             return is_api(request) ? api::answer(backend, api::routes(), request) : pages(request);
+          },
+      .converse =
+          [&backend](const http::RequestHead& head) {
+            return api::converse(backend, api::routes(), head);
           }};
 }
 
@@ -216,7 +221,20 @@ core::Result<void> serve(const ServeOptions& given) {
                        .log = log_line,
                        .logs_requests = options.log_requests,
                        .backups = &backups};
+  live::Hub hub({.store = data->store,
+                 .now_utc_us = core::utc_us,
+                 .refused =
+                     [&backend](const live::StationRef& station, const std::string& why) {
+                       backend.refusals.note(backend, {.station = station.name,
+                                                       .peer = "",
+                                                       .route = "liveStation",
+                                                       .status = 0,
+                                                       .why = why});
+                     },
+                 .log = log_line});
+  backend.live = &hub;
   if (auto fine = api::reconcile_uploads(backend); !fine) return fine;
+  if (auto started = hub.start(); !started) return started;
   auto server = http::Server::open(options.http, service_of(backend, options.web));
   if (!server) return server.error();
   signals.watch(*server);
