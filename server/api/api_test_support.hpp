@@ -8,6 +8,7 @@
 #include "server/api/authentication.hpp"
 #include "server/api/backend.hpp"
 #include "server/api/service.hpp"
+#include "server/live/hub.hpp"
 #include "tests/support/database/database.hpp"
 
 namespace api::testing {
@@ -76,11 +77,13 @@ class ApiTest : public ::testing::Test {
   store::PartialFiles partials_ = std::move(store::PartialFiles::open(folder_.path()).value());
   std::int64_t now_ = 1'000'000'000'000'000;
   int woken_ = 0;
+  live::Hub hub_{{.store = store_, .now_utc_us = [this] { return now_; }}};
   Backend backend_{.store = store_,
                    .objects = objects_,
                    .partials = partials_,
                    .now_utc_us = [this] { return now_; },
-                   .work_waits = [this] { ++woken_; }};
+                   .work_waits = [this] { ++woken_; },
+                   .live = &hub_};
 };
 
 }  // namespace api::testing

@@ -36,7 +36,7 @@ core::Result<Caller> by_token(Backend& backend, std::string_view token) {
   return Caller{Role::station, (*station)->id, (*station)->name, ""};
 }
 
-core::Result<Caller> by_cookie(Backend& backend, std::string_view token) {
+core::Result<Caller> by_cookie(Backend& backend, std::string_view token, Presence presence) {
   const std::string hash = token_hash(token);
   auto session =
       backend.store.read([&](store::Reading& tx) { return store::session_of(tx, hash); });
@@ -45,7 +45,7 @@ core::Result<Caller> by_cookie(Backend& backend, std::string_view token) {
   const bool over = !*session || now - (*session)->seen_utc_us > kSessionIdle_us ||
                     now - (*session)->made_utc_us > kSessionAge_us;
   if (over) return core::Error{core::Errc::unauthorised, "sign in first: the session is over"};
-  if (now - (*session)->seen_utc_us > kTouch_us) {
+  if (presence == Presence::shown && now - (*session)->seen_utc_us > kTouch_us) {
     auto touched = backend.store.write_beside(
         [&](store::Writing& tx) { return store::touch_session(tx, hash, now); });
     if (!touched) return touched.error();
@@ -161,13 +161,14 @@ core::Result<SignedIn> sign_in(Backend& backend, const Credentials& given,
   return SignedIn{std::move(*account), token};
 }
 
-core::Result<Caller> authenticate(Backend& backend, const http::RequestHead& head) {
+core::Result<Caller> authenticate(Backend& backend, const http::RequestHead& head,
+                                  Presence presence) {
   constexpr std::string_view kBearer = "Bearer ";
   const std::string_view authorization = head.header("authorization");
   if (authorization.starts_with(kBearer))
     return by_token(backend, authorization.substr(kBearer.size()));
   if (const std::string_view cookie = head.cookie(kSessionCookie); !cookie.empty())
-    return by_cookie(backend, cookie);
+    return by_cookie(backend, cookie, presence);
   return core::Error{core::Errc::unauthorised, "sign in first"};
 }
 

@@ -52,8 +52,11 @@ core::Result<void> use_code(Backend& backend, store::Account& account, const std
 /// The throttle's refusal, which HTTP calls 429.
 bool is_throttled(const core::Error& error);
 
+/// Does a request show that somebody is there? What a program asks by itself does not.
+enum class Presence { shown, not_shown };
 /// The caller by bearer token (a station) or cookie (a session that is neither idle nor old).
 /// Errors: unauthorised.
-core::Result<Caller> authenticate(Backend& backend, const http::RequestHead& head);
+core::Result<Caller> authenticate(Backend& backend, const http::RequestHead& head,
+                                  Presence presence = Presence::shown);
 
 }  // namespace api

@@ -12,6 +12,10 @@
 #include "server/api/telemetry.hpp"
 #include "server/api/trial_views.hpp"
 
+namespace live {
+class Hub;
+}
+
 namespace api {
 
 /// What happened, as fields: never a name, an address, or anything that somebody typed.
@@ -35,6 +39,7 @@ struct Backend {
   std::function<std::uint64_t()> free_bytes = {};  ///< on the disk; none: the system is asked
   Log log = {};                                    ///< a line for whoever runs the server
   bool logs_requests = false;                      ///< every one, not only those that fail
+  live::Hub* live = nullptr;                       ///< none: stations have no lines
   Backups* backups = nullptr;                      ///< none: this process makes none
   TakeVolume take_volume = {};                     ///< in a process of its own; none: in this one
   std::filesystem::path scratch = {};              ///< for large bodies; empty: with the uploads

@@ -52,7 +52,9 @@ core::Json error_answer(const char* description) {
 
 core::Json responses(const RouteInfo& route) {
   core::Json out = core::Json::object();
-  if (route.answer.empty())
+  if (route.converse)
+    out["101"] = {{"description", route.summary}};
+  else if (route.answer.empty())
     out["204"] = {{"description", "done"}};
   else
     out["200"] = {{"description", route.summary}, {"content", content(route.answer)}};
@@ -99,6 +101,7 @@ core::Json operation(const RouteInfo& route) {
   if (!route.body.empty())
     out["requestBody"] = {{"required", true}, {"content", content(route.body)}};
   out["responses"] = responses(route);
+  if (route.converse) out["x-websocket"] = {{"frames", schema::ref(route.answer)}};
   return out;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/words.hpp"
 #include "db/store/audit.hpp"
 #include "server/api/backend.hpp"
 #include "server/api/route.hpp"
@@ -32,12 +33,25 @@ std::optional<std::uint64_t> RefusalLimit::turn(const std::string& caller,
   return std::exchange(unnoted_, 0);
 }
 
+bool is_refusal_of_station(const std::string& route, int status) {
+  if (status == 409) return route != "appendUpload" && route != "commitUpload";
+  return status >= 400 && status < 500 && status != 401 && status != 408 && status != 426;
+}
+
+std::string words_of(const http::Response& response) {
+  const auto* text = std::get_if<std::string>(&response.body);
+  const core::Json json = text ? core::Json::parse(*text, nullptr, false) : core::Json();
+  return json.is_object() ? core::one_line(json.value("error", ""), 300) : std::string();
+}
+
 void note_refusal(Backend& backend, const Caller& caller, const std::string& peer,
-                  const std::string& route, const std::string& object, const std::string& why) {
+                  const std::string& route, const std::string& object, const std::string& why,
+                  int status) {
   const std::int64_t now = backend.now_utc_us();
   const auto unnoted = backend.refusals.turn(caller.id, now);
   if (!unnoted) return;
   core::Json detail{{"why", why}};
+  if (status > 0) detail["status"] = status;
   if (*unnoted > 0) detail["refusals_not_noted"] = *unnoted;
   const store::Act act{.who = caller.name,
                        .role = std::string(name(caller.role)),

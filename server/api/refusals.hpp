@@ -8,6 +8,8 @@
 #include <optional>
 #include <string>
 
+#include "server/http/message.hpp"
+
 namespace api {
 
 /// Of one caller kBurst refusals are noted at once and kPerMinute from then on, of all callers
@@ -37,9 +39,17 @@ class RefusalLimit {
 struct Backend;
 struct Caller;
 
-/// Notes a refusal: what = "refused: ROUTE". `object` as acts.hpp names it, `why` in our words.
+/// Is an answer of this status to a station a refusal that somebody should see? Not those of every
+/// day: an upload that stands elsewhere, a disk that is full, a token that is not known any more.
+bool is_refusal_of_station(const std::string& route, int status);
+/// The one line that an answer gives as its reason, at most 300 bytes.
+std::string words_of(const http::Response& response);
+
+/// Notes a refusal: what = "refused: ROUTE". `object` as acts.hpp names it, `why` in our words,
+/// `status` of the answer, 0 where a line was hung up.
 /// Never fails: a trail that cannot be written is the log's to say.
 void note_refusal(Backend& backend, const Caller& caller, const std::string& peer,
-                  const std::string& route, const std::string& object, const std::string& why);
+                  const std::string& route, const std::string& object, const std::string& why,
+                  int status = 0);
 
 }  // namespace api

@@ -95,6 +95,12 @@ http::Response json_response(const core::Json& json, int status) {
   return response;
 }
 
+core::Result<http::Response> wants_websocket(const Call&) {
+  auto response = http::error_response(426, "bad_input", "this address is a WebSocket");
+  response.with("Upgrade", "websocket").with("Connection", "upgrade");
+  return response;
+}
+
 int status_of(core::Errc code) {
   switch (code) {
     case core::Errc::bad_input:

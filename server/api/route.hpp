@@ -2,12 +2,15 @@
 #pragma once
 
 #include <array>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/json.hpp"
 #include "core/result.hpp"
+#include "server/http/conversation.hpp"
 #include "server/http/message.hpp"
 
 namespace api {
@@ -83,6 +86,9 @@ struct NamedSchema {
   core::Json schema;
 };
 
+/// 426: this address is a WebSocket.
+core::Result<http::Response> wants_websocket(const Call& call);
+
 /// A whole answer that is not JSON.
 inline constexpr const char* kBytes = "bytes";
 
@@ -106,6 +112,10 @@ struct RouteInfo {
   std::string answer;                ///< name of the answer's schema, kBytes, or "" for none (204)
   std::vector<NamedSchema> schemas;  ///< those it names that no other route has named already
   core::Result<http::Response> (*handle)(const Call& call);
+  /// Of a route that is a WebSocket: who answers in it, once everything was checked that is checked
+  /// of any route, and by cookie the Origin. `handle` then answers those who come without one.
+  core::Result<std::shared_ptr<http::Conversation>> (*converse)(
+      const Call& call, std::function<bool()> may_stay) = nullptr;
 };
 
 /// Every file's routes, in file-name order.

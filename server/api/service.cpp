@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 
@@ -102,20 +103,28 @@ core::Result<void> check_not_forged(const RouteInfo& route, const Caller& caller
   return core::Error{core::Errc::forbidden, std::string(kKeepOut)};
 }
 
-/// Who asks, if they may. Known callers that may not are noted in the audit trail.
-core::Result<Caller> allowed_caller(Backend& backend, const Match& matched,
-                                    const http::RequestHead& head) {
-  const RouteInfo& route = *matched.route;
+/// What was asked of whom: for the notes.
+struct Asked {
+  const core::Result<Match>& matched;
+  const std::string& allowed;
+  std::optional<Caller> caller = std::nullopt;
+  bool overstepped = false;  ///< asked for what is not theirs
+};
+
+/// @param asked  gets who it is, allowed or not
+core::Result<Caller> allowed_caller(Backend& backend, const RouteInfo& route,
+                                    const http::RequestHead& head, Asked* asked = nullptr,
+                                    Presence presence = Presence::shown) {
   Caller caller{Role::station, "", "", ""};
   if (!route.open) {
-    auto known = authenticate(backend, head);
-    if (!known) return known.error();
-    caller = std::move(*known);
+    auto authenticated = authenticate(backend, head, presence);
+    if (!authenticated) return authenticated.error();
+    caller = std::move(*authenticated);
+    if (asked) asked->caller = caller;
     if (!granted(route, caller.role)) {
-      const core::Error no{core::Errc::forbidden,
-                           fmt::format("this is not for the role {}", name(caller.role))};
-      note_refusal(backend, caller, head.peer, route.id, object_text(matched.segments), no.what);
-      return no;
+      if (asked) asked->overstepped = true;
+      return core::Error{core::Errc::forbidden,
+                         fmt::format("this is not for the role {}", name(caller.role))};
     }
     if (caller.must_change && !route.before_password_change)
       return core::Error{core::Errc::forbidden,
@@ -186,14 +195,18 @@ core::Result<std::map<std::string, std::string>> arguments(const Match& matched,
 
 namespace {
 
-http::Response answer_to(Backend& backend, const core::Result<Match>& matched,
-                         const std::string& allowed, const http::Request& request) {
+http::Response answer_to_nowhere(Backend& backend, Asked& asked, const http::RequestHead& head) {
   // Who may not come in is not told which addresses there are.
-  if (!matched) {
-    auto known = authenticate(backend, request);
-    return known ? refusal(matched.error(), allowed) : refusal(known.error(), "");
-  }
-  auto caller = allowed_caller(backend, *matched, request);
+  auto known = authenticate(backend, head);
+  if (!known) return refusal(known.error(), "");
+  asked.caller = std::move(*known);
+  return refusal(asked.matched.error(), asked.allowed);
+}
+
+http::Response answer_to(Backend& backend, Asked& asked, const http::Request& request) {
+  const auto& matched = asked.matched;
+  if (!matched) return answer_to_nowhere(backend, asked, request);
+  auto caller = allowed_caller(backend, *matched->route, request, &asked);
   if (!caller) return refusal(caller.error(), "");
   if (request.body.size() > matched->route->body_limit_bytes)
     return error_response({core::Errc::too_large,
@@ -202,17 +215,27 @@ http::Response answer_to(Backend& backend, const core::Result<Match>& matched,
   auto checked = arguments(*matched, request);
   if (!checked) return error_response(checked.error());
   if (auto own = check_object(backend, *matched->route, *caller, *checked); !own) {
-    if (own.error().code == core::Errc::not_found)
-      note_refusal(backend, *caller, request.peer, matched->route->id,
-                   object_text(matched->segments), own.error().what);
+    asked.overstepped = own.error().code == core::Errc::not_found;
     return refusal(own.error(), "");
   }
   auto response = handled(backend, *matched, *caller, request, std::move(*checked));
   if (response) return std::move(*response);
-  if (response.error().code == core::Errc::forbidden)
-    note_refusal(backend, *caller, request.peer, matched->route->id, object_text(matched->segments),
-                 response.error().what);
+  asked.overstepped = response.error().code == core::Errc::forbidden;
   return refusal(response.error(), "");
+}
+
+/// Who asked for what is not theirs, and what a station was refused, is in the audit trail.
+void note_if_refused(Backend& backend, const Asked& asked, const http::RequestHead& head,
+                     const http::Response& response) {
+  if (!asked.caller) return;
+  const std::string route = asked.matched ? asked.matched->route->id : "nothing";
+  const bool noted = asked.caller->role == Role::station
+                         ? is_refusal_of_station(route, response.status)
+                         : asked.overstepped;
+  if (!noted) return;
+  note_refusal(backend, *asked.caller, head.peer, route,
+               asked.matched ? object_text(asked.matched->segments) : "", words_of(response),
+               response.status);
 }
 
 /// Counts it, and says what took long or went wrong.
@@ -236,7 +259,9 @@ http::Response answer(Backend& backend, const std::vector<RouteInfo>& table,
   const core::Instant_ns begun = clock.now();
   std::string allowed;
   const auto matched = match(table, request, &allowed);
-  http::Response response = answer_to(backend, matched, allowed, request);
+  Asked asked{matched, allowed};
+  http::Response response = answer_to(backend, asked, request);
+  note_if_refused(backend, asked, request, response);
   note(backend, matched ? matched->route->id : "", request, response,
        double(clock.now() - begun) * 1e-9);
   return response;
@@ -247,13 +272,79 @@ std::variant<std::uint64_t, http::Response> admit(Backend& backend,
                                                   const http::RequestHead& head) {
   std::string allowed;
   auto matched = match(table, head, &allowed);
-  if (!matched) {
-    auto known = authenticate(backend, head);
-    return known ? refusal(matched.error(), allowed) : refusal(known.error(), "");
+  Asked asked{matched, allowed};
+  const auto refused = [&](http::Response response) {
+    note_if_refused(backend, asked, head, response);
+    return response;
+  };
+  if (!matched) return refused(answer_to_nowhere(backend, asked, head));
+  if (auto caller = allowed_caller(backend, *matched->route, head, &asked); !caller)
+    return refused(refusal(caller.error(), ""));
+  const std::uint64_t limit = matched->route->body_limit_bytes;
+  if (head.body_bytes > limit)
+    return refused(error_response(
+        {core::Errc::too_large,
+         fmt::format("the body has {} bytes, at most {} are taken", head.body_bytes, limit)}));
+  return limit;
+}
+
+namespace {
+
+/// "https://host:port" is the host that was asked?
+bool is_own_origin(const http::RequestHead& head) {
+  std::string_view origin = head.header("origin");
+  const auto scheme = origin.find("://");
+  if (scheme == std::string_view::npos) return false;
+  origin.remove_prefix(scheme + 3);
+  return std::ranges::equal(
+      origin, head.header("host"), {}, [](unsigned char c) { return std::tolower(c); },
+      [](unsigned char c) { return std::tolower(c); });
+}
+
+core::Result<std::shared_ptr<http::Conversation>> conversation(Backend& backend, Asked& asked,
+                                                               const http::Request& request) {
+  const RouteInfo& route = *asked.matched->route;
+  auto caller = allowed_caller(backend, route, request, &asked);
+  if (!caller) return caller.error();
+  if (!caller->session_hash.empty() && !is_own_origin(request))
+    return core::Error{core::Errc::forbidden, "the page that asks for this WebSocket is not ours"};
+  auto checked = arguments(*asked.matched, request);
+  if (!checked) return checked.error();
+  if (auto own = check_object(backend, route, *caller, *checked); !own) {
+    asked.overstepped = own.error().code == core::Errc::not_found;
+    return own.error();
   }
-  if (auto caller = allowed_caller(backend, *matched, head); !caller)
-    return refusal(caller.error(), "");
-  return matched->route->body_limit_bytes;
+  const Call call{backend, request, *caller, std::move(*checked),
+                  granted(route, caller->role).value_or(Of::own)};
+  return route.converse(call, [&backend, &route, head = http::RequestHead(request)] {
+    return bool(allowed_caller(backend, route, head, nullptr, Presence::not_shown));
+  });
+}
+
+}  // namespace
+
+std::variant<http::Response, std::shared_ptr<http::Conversation>> converse(
+    Backend& backend, const std::vector<RouteInfo>& table, const http::RequestHead& head) {
+  std::string allowed;
+  const auto matched = match(table, head, &allowed);
+  Asked asked{matched, allowed};
+  const http::Request request{head, std::string()};
+  const auto refused = [&](http::Response response) {
+    note_if_refused(backend, asked, head, response);
+    note(backend, matched ? matched->route->id : "", request, response, 0.0);
+    return response;
+  };
+  if (!matched) return refused(answer_to_nowhere(backend, asked, head));
+  if (!matched->route->converse) {
+    const core::Error none{core::Errc::bad_input, "this address is no WebSocket"};
+    auto caller = allowed_caller(backend, *matched->route, head, &asked);
+    return refused(refusal(caller ? none : caller.error(), ""));
+  }
+  auto opened = conversation(backend, asked, request);
+  if (!opened) return refused(refusal(opened.error(), ""));
+  note(backend, matched->route->id, request,
+       http::Response{.status = 101, .headers = {}, .body = {}}, 0.0);
+  return std::move(*opened);
 }
 
 bool takes_file(const std::vector<RouteInfo>& table, const http::RequestHead& head) {

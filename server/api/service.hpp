@@ -32,5 +32,8 @@ std::variant<std::uint64_t, http::Response> admit(Backend& backend,
 
 /// Does the request's body go to a file (RouteInfo::body_to_file)?
 bool takes_file(const std::vector<RouteInfo>& table, const http::RequestHead& head);
+/// A request for a WebSocket: checked as any, then the route's conversation.
+std::variant<http::Response, std::shared_ptr<http::Conversation>> converse(
+    Backend& backend, const std::vector<RouteInfo>& table, const http::RequestHead& head);
 
 }  // namespace api

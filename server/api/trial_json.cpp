@@ -107,6 +107,8 @@ core::Json trial_json(const store::TrialRecord& trial,
   out["late_ticks"] = trial.late_ticks;
   out["not_converged"] = trial.not_converged;
   out["skipped_ticks"] = trial.skipped_ticks;
+  out["clock_offset_s"] = facts.clock ? core::Json(facts.clock->offset_s) : core::Json();
+  out["clock_error_s"] = facts.clock ? core::Json(facts.clock->error_s) : core::Json();
   out["answer"] = answer_json(events);
   out["events"] = events;
   out["truth"] = facts.truth;

@@ -1,6 +1,7 @@
 /// Trials as the pages get them.
 #pragma once
 
+#include "db/store/fleet.hpp"
 #include "db/store/study_slots.hpp"
 #include "db/store/trials.hpp"
 #include "scenarios/scenario.hpp"
@@ -22,6 +23,7 @@ struct TrialFacts {
   core::Json truth = {};                             ///< palpation: null where it is not known
   std::optional<scenarios::Scenario> scenario = {};  ///< probing: the truth, too
   std::optional<StudyPlace> study = {};
+  std::optional<store::TrialClock> clock = {};
 };
 
 core::Json summary_json(const store::TrialSummary& trial);

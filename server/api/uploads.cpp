@@ -72,6 +72,26 @@ core::Result<wire::UploadState> insert(store::Writing& tx, const Caller& station
   return state_of(upload);
 }
 
+/// Where the same upload stands; nothing when there is none of this id. Errors: not_found (another
+/// station's), conflict (another announcement).
+core::Result<std::optional<wire::UploadState>> announced_before(
+    store::Reading& tx, const Caller& station, const std::string& trial_id,
+    const wire::UploadAnnouncement& announced) {
+  auto upload = store::upload_of(tx, trial_id);
+  if (!upload) return upload.error();
+  if (!*upload) return std::optional<wire::UploadState>();
+  const store::Upload& known = **upload;
+  if (known.station_id != station.id) return unknown(trial_id);
+  auto slot = store::slot_of_trial(tx, trial_id);
+  if (!slot) return slot.error();
+  const std::string& case_id = *slot ? (*slot)->id : known.case_id;
+  if (case_id == announced.case_id && known.size_bytes == announced.size_bytes &&
+      known.sha256 == announced.sha256)
+    return std::optional(state_of(known));
+  return core::Error{core::Errc::conflict,
+                     fmt::format("trial {} was announced differently before", trial_id)};
+}
+
 }  // namespace
 
 std::uint64_t free_bytes(const Backend& backend) {
@@ -114,20 +134,16 @@ core::Result<wire::UploadState> announce_upload(Backend& backend, const Caller& 
   const auto held = hold_upload(backend, trial_id);
   if (!held) return held.error();
   if (auto room = check_room(backend, announced.size_bytes); !room) return room.error();
+  // What is known already changes nothing, and is no row of the audit trail.
+  auto known = backend.store.read(
+      [&](store::Reading& tx) { return announced_before(tx, station, trial_id, announced); });
+  if (!known) return known.error();
+  if (*known) return **known;
   return backend.store.write([&](store::Writing& tx) -> core::Result<wire::UploadState> {
-    auto upload = store::upload_of(tx, trial_id);
-    if (!upload) return upload.error();
-    if (!*upload) return insert(tx, station, trial_id, announced, backend.now_utc_us());
-    const store::Upload& known = **upload;
-    if (known.station_id != station.id) return unknown(trial_id);
-    auto slot = store::slot_of_trial(tx, trial_id);
-    if (!slot) return slot.error();
-    const std::string& case_id = *slot ? (*slot)->id : known.case_id;
-    if (case_id == announced.case_id && known.size_bytes == announced.size_bytes &&
-        known.sha256 == announced.sha256)
-      return state_of(known);
-    return core::Error{core::Errc::conflict,
-                       fmt::format("trial {} was announced differently before", trial_id)};
+    auto again = announced_before(tx, station, trial_id, announced);
+    if (!again) return again.error();
+    if (*again) return **again;
+    return insert(tx, station, trial_id, announced, backend.now_utc_us());
   });
 }
 

@@ -17,6 +17,7 @@
 #include "db/store/consent.hpp"
 #include "server/api/backend.hpp"
 #include "server/api/oidc.hpp"
+#include "server/api/refusals.hpp"
 #include "server/api/service.hpp"
 #include "server/api/uploads.hpp"
 #include "server/app/backups.hpp"
@@ -25,6 +26,7 @@
 #include "server/http/certificates.hpp"
 #include "server/http/static_files.hpp"
 #include "server/jobs/runner.hpp"
+#include "server/live/hub.hpp"
 
 namespace app {
 namespace {
@@ -79,6 +81,10 @@ http::Service service_of(api::Backend& backend, const std::optional<std::filesys
       .handle =
           [&backend, is_api, pages](const http::Request& request) {
             return is_api(request) ? api::answer(backend, api::routes(), request) : pages(request);
+          },
+      .converse =
+          [&backend](const http::RequestHead& head) {
+            return api::converse(backend, api::routes(), head);
           },
       .spools = [](const http::RequestHead& head) { return api::takes_file(api::routes(), head); }};
 }
@@ -302,7 +308,17 @@ core::Result<void> serve(const ServeOptions& given) {
                        .take_volume = take_volume_apart,
                        .scratch = scratch->path,
                        .pseudonym_key = *pseudonym_key};
+  live::Hub hub({.store = data->store,
+                 .now_utc_us = core::utc_us,
+                 .refused =
+                     [&backend](const live::StationRef& station, const std::string& why) {
+                       const api::Caller caller{api::Role::station, station.id, station.name, ""};
+                       api::note_refusal(backend, caller, "", "liveStation", "", why);
+                     },
+                 .log = log_line});
+  backend.live = &hub;
   if (auto fine = api::reconcile_uploads(backend); !fine) return fine;
+  if (auto started = hub.start(); !started) return started;
   auto server = http::Server::open(options.http, service_of(backend, options.web));
   if (!server) return server.error();
   std::optional<api::Oidc> oidc;

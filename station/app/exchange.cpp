@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstdio>
 
@@ -10,7 +11,9 @@
 #include "station/app/deeds.hpp"
 #include "station/uplink/http_server.hpp"
 #include "station/uplink/models.hpp"
+#include "station/uplink/reports.hpp"
 #include "station/uplink/sync.hpp"
+#include "wire/live.hpp"
 
 namespace app {
 namespace {
@@ -54,12 +57,59 @@ core::Result<std::unique_ptr<uplink::Server>> connect(const Options& options) {
 void ask_to_stop() noexcept { stop_asked = true; }
 bool asked_to_stop() noexcept { return stop_asked; }
 
+namespace {
+
+/// What self-tests left goes with whatever else is exchanged; what cannot go now goes next time.
+void hand_over_notes(uplink::Server& server, const session::StationFolder& folder) {
+  if (auto handed = uplink::hand_over_reports(server, folder.reports()); handed)
+    for (const std::string& line : handed->refused)
+      std::fprintf(stderr, "warning: the server does not take a report: %s\n", line.c_str());
+}
+
+/// The server's trail says what a station would not take from it.
+void tell_refused(uplink::Server& server, const std::vector<std::string>& refused) {
+  if (refused.empty()) return;
+  wire::StationReport report;
+  report.version = TRACTUS_VERSION;
+  report.refused = refused;
+  const std::string body = report.to_json().dump();
+  const uplink::Request request{.method = "POST",
+                                .path = "/api/v1/station/report",
+                                .headers = {{"Content-Type", "application/json"}},
+                                .body = core::bytes_of(body)};
+  if (auto answer = server.send(request); !answer || answer->status / 100 != 2)
+    std::fprintf(stderr, "warning: the server was not told which cases were refused\n");
+}
+
+/// How the clocks stand, as far as it can be known just now.
+std::optional<uplink::ClockOffset> clock_offset(uplink::Server& server,
+                                                const session::StationFolder& folder) {
+  constexpr std::int64_t kDay_us = 24ll * 3600 * 1'000'000;
+  core::MonotonicClock clock;
+  if (auto measured = uplink::measure_clock(server, clock, core::utc_us)) {
+    uplink::keep_clock(folder.clock(), *measured);
+    return *measured;
+  }
+  return uplink::kept_clock(folder.clock(), core::utc_us(), kDay_us);
+}
+
+bool anything_waits(const session::StationFolder& folder) {
+  const auto entries = folder.outbox().entries();
+  return entries && std::ranges::any_of(*entries, [](const uplink::OutboxEntry& entry) {
+           return entry.state == "queued";
+         });
+}
+
+}  // namespace
+
 core::Result<core::Json> fetch_cases(const Options& options, const session::StationFolder& folder) {
   auto server = connect(options);
   if (!server) return server.error();
   auto report = uplink::sync_cases(**server, folder.cases(), folder.trusted(),
                                    stoppable(core::terminal_progress("Cases")));
   if (!report) return report.error();
+  tell_refused(**server, report->refused);
+  hand_over_notes(**server, folder);
   return report->to_json();
 }
 
@@ -84,11 +134,13 @@ core::Result<uplink::UploadReport> hand_over(const Options& options,
   if (!lock) return lock.error();
   auto server = connect(options);
   if (!server) return server.error();
+  hand_over_notes(**server, folder);
+  const auto offset = anything_waits(folder) ? clock_offset(**server, folder) : std::nullopt;
   PatientClock clock;
   uplink::Patience patience;
   patience.give_up_after_ns = static_cast<core::Instant_ns>(options.wait_s * 1e9);
   return uplink::upload_all(**server, folder.outbox(), folder.trials(), clock, patience,
-                            stoppable(core::terminal_progress("Upload")));
+                            stoppable(core::terminal_progress("Upload")), offset);
 }
 
 core::Result<int> sync_cases(const Options& options) {
@@ -133,6 +185,32 @@ core::Result<int> upload_trials(const Options& options) {
   if (!report) return report.error();
   fmt::print("{}\n", options.json ? report->to_json().dump(2) : text_of(*report));
   return report->waiting || report->refused ? 1 : 0;
+}
+
+core::Result<int> show_limits(const Options& options) {
+  auto folder = session::StationFolder::open(options.data);
+  if (!folder) return folder.error();
+  if (options.restore) {
+    if (auto restored = folder->restore_force(); !restored) return restored.error();
+    folder = session::StationFolder::open(options.data);
+    if (!folder) return folder.error();
+  }
+  const session::StationConfig& config = folder->config();
+  const double own_N = config.limits.max_force_N;
+  core::Json said{{"force_N", own_N}, {"own_force_N", own_N}, {"lowered_force_N", nullptr}};
+  std::string more;
+  if (config.lowered_force_N) {
+    const double lowered_N = *config.lowered_force_N;
+    said["force_N"] = std::min(own_N, lowered_N);
+    said["lowered_force_N"] = lowered_N;
+    more = fmt::format("; lowered to {:g} N from afar", lowered_N);
+  }
+  if (options.json)
+    fmt::print("{}\n", said.dump(2));
+  else
+    fmt::print("a hand gets at most {:g} N (this station's own limit: {:g} N{})\n",
+               said["force_N"].get<double>(), own_N, more);
+  return 0;
 }
 
 core::Result<int> trust_signer(const Options& options) {

@@ -24,6 +24,8 @@ core::Result<int> done(const app::Options& options) {
       return app::run_assigned(options);
     case app::Deed::enrol:
       return app::enrol_station(options);
+    case app::Deed::limits:
+      return app::show_limits(options);
     case app::Deed::trust:
       return app::trust_signer(options);
   }

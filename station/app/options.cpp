@@ -270,6 +270,10 @@ Parsed parse(int argc, char** argv) {
   CLI::App* tune = app.add_subcommand(
       "tune", "feel a scenario and nudge its eight parameters by keys; save new versions");
   add_tune(*tune, options);
+  CLI::App* limits = app.add_subcommand(
+      "limits", "how much force a hand gets; --restore takes back what was lowered from afar");
+  add_data(*limits, options, true);
+  limits->add_flag("--restore", options.restore, "this station's own limits hold again");
   CLI::App* trust =
       app.add_subcommand("trust", "take cases that are signed by this key from now on");
   add_data(*trust, options, true);
@@ -289,6 +293,7 @@ Parsed parse(int argc, char** argv) {
   if (upload->parsed()) options.deed = Deed::upload;
   if (enrol->parsed()) options.deed = Deed::enrol;
   if (assigned->parsed()) options.deed = Deed::assigned;
+  if (limits->parsed()) options.deed = Deed::limits;
   if (trust->parsed()) options.deed = Deed::trust;
   if (tune->parsed()) options.deed = Deed::tune;
   if (options.deed == Deed::trust && options.signer_hex.empty() && options.signer_of_case.empty())

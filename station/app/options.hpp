@@ -12,7 +12,7 @@ namespace app {
 
 inline constexpr std::int64_t kBetweenTrials_us = 600'000'000;  ///< of simulated dates
 
-enum class Deed { run, probe, tune, study, sync, upload, trust, enrol, assigned };
+enum class Deed { run, probe, tune, study, sync, upload, trust, enrol, assigned, limits };
 
 struct Options {
   Deed deed = Deed::run;
@@ -44,6 +44,7 @@ struct Options {
   std::filesystem::path pin_file;  ///< empty: asked at the terminal
   // upload
   double wait_s = 0.0;
+  bool restore = false;  ///< limits: those of config.json hold again
   // trust
   std::string signer_hex;
   std::filesystem::path signer_of_case;

@@ -10,6 +10,7 @@
 #include "station/app/aftermath.hpp"
 #include "station/app/deeds.hpp"
 #include "station/app/exchange.hpp"
+#include "station/app/presence.hpp"
 #include "station/session/probing_trial.hpp"
 #include "station/session/station.hpp"
 #include "station/uplink/assigned.hpp"
@@ -37,8 +38,9 @@ core::Result<std::string> pin_of(const Options& options) {
 
 bool stopped_by_hand() { return asked_to_stop(); }
 
-core::Result<TrialReport> palpate(const Options& options, const session::StationFolder& folder,
-                                  const AssignedWork& work, int number) {
+core::Result<TrialReport> palpate(const Options& options, Presence& presence,
+                                  const session::StationFolder& folder, const AssignedWork& work,
+                                  int number) {
   const AssignedTrial& trial = *work.trial;
   if (!session::find_case(folder, trial.case_id))
     if (auto fetched = fetch_cases(options, folder); !fetched) return fetched.error();
@@ -49,6 +51,7 @@ core::Result<TrialReport> palpate(const Options& options, const session::Station
   session::TrialSetup setup = options.setup;
   setup.case_known_as = trial.slot;
   setup.operator_name = work.participant;
+  setup.outside = presence.outside();
   setup.started_utc_us = started_of(options, number);
   session::Station station(folder, setup);
   if (auto ready = station.prepare(prepared, options.setup.seed + trial.number); !ready)
@@ -58,7 +61,9 @@ core::Result<TrialReport> palpate(const Options& options, const session::Station
   const auto watch = [&](const session::Glimpse& seen) {
     return onlooker->look(seen) && !stopped_by_hand();
   };
-  if (auto ran = station.run(watch); !ran) return ran.error();
+  if (auto ran = station.run(presence.watched(watch, trial.slot, *prepared)); !ran)
+    return ran.error();
+  presence.is(Presence::State::questions);
   std::optional<trial::Answer> said;
   if (station.state() == session::State::answering && !stopped_by_hand()) {
     auto answer = answer_of(options, station.simulated_answer());
@@ -68,8 +73,9 @@ core::Result<TrialReport> palpate(const Options& options, const session::Station
   return station.answer(said);
 }
 
-core::Result<TrialReport> probe(const Options& options, const session::StationFolder& folder,
-                                const AssignedWork& work, int number) {
+core::Result<TrialReport> probe(const Options& options, Presence& presence,
+                                const session::StationFolder& folder, const AssignedWork& work,
+                                int number) {
   auto token = token_of(options);
   if (!token) return token.error();
   const study::StationKey key(core::sha256(core::bytes_of(*token)));
@@ -87,15 +93,20 @@ core::Result<TrialReport> probe(const Options& options, const session::StationFo
   setup.speed = options.setup.speed;
   setup.seed = options.setup.seed + trial.number;
   setup.started_utc_us = started_of(options, number);
+  setup.outside = presence.outside();
+  const auto watch = [](const session::ProbingGlimpse&) { return !stopped_by_hand(); };
   return session::run_probing_trial(
-      folder, task, setup, [](const session::ProbingGlimpse&) { return !stopped_by_hand(); },
+      folder, task, setup, presence.watched(watch, task),
       [&](const session::ProbingTrialRun& run) -> core::Result<std::optional<trial::Answer>> {
+        presence.is(Presence::State::questions);
         return answer_of(options, run.simulated_answer());
       });
 }
 
-core::Result<TrialReport> one_trial(const Options& options, const session::StationFolder& folder,
-                                    const AssignedWork& work, int number) {
+core::Result<TrialReport> one_trial(const Options& options, Presence& presence,
+                                    const session::StationFolder& folder, const AssignedWork& work,
+                                    int number) {
+  presence.is(Presence::State::preparing);
   const std::string& device = options.setup.device;
   const bool is_rig = device == "rig" || device == "sim-rig";
   const bool probing = work.trial->rig == "probing";
@@ -103,7 +114,10 @@ core::Result<TrialReport> one_trial(const Options& options, const session::Stati
     return core::Error{core::Errc::bad_input,
                        fmt::format("the next trial is for {}: --device {} is not for that",
                                    work.trial->rig, device)};
-  return probing ? probe(options, folder, work, number) : palpate(options, folder, work, number);
+  auto report = probing ? probe(options, presence, folder, work, number)
+                        : palpate(options, presence, folder, work, number);
+  if (report) presence.done(*report);
+  return report;
 }
 
 /// What was done and what is left.
@@ -114,10 +128,11 @@ struct Tally {
 };
 
 /// One after the other; the server has each before it gives the next.
-core::Result<Tally> rounds(const Options& options, const session::StationFolder& folder,
-                           uplink::Server& server, const uplink::Ticket& ticket) {
+core::Result<Tally> rounds(const Options& options, Presence& presence,
+                           const session::StationFolder& folder, uplink::Server& server,
+                           const uplink::Ticket& ticket) {
   Tally tally;
-  for (int i = 0; !stopped_by_hand(); ++i) {
+  for (int i = 0; !stopped_by_hand() && presence.may_go_on(); ++i) {
     auto work = uplink::next_trial(server, ticket);
     if (!work) return work.error();
     tally.left = work->left;
@@ -125,7 +140,7 @@ core::Result<Tally> rounds(const Options& options, const session::StationFolder&
     const AssignedTrial& trial = *work->trial;
     if (!options.json)
       fmt::print("{}: {}, {} of {}\n", trial.assignment, trial.name, trial.number, trial.planned);
-    auto report = one_trial(options, folder, *work, i);
+    auto report = one_trial(options, presence, folder, *work, i);
     if (!report) return report.error();
     tally.trials.push_back({{"trial_id", report->trial_id},
                             {"number", trial.number},
@@ -135,7 +150,9 @@ core::Result<Tally> rounds(const Options& options, const session::StationFolder&
     tally.faulted = !report->complete;
     auto handed = hand_over(options, folder);
     if (!handed) return handed.error();
-    if (tally.faulted) return tally;  // a person looks at the device first
+    const bool stopped = presence.outside()->stopped();
+    if (tally.faulted && !(stopped && presence.may_go_on()))
+      return tally;  // a person looks at the device first
   }
   return tally;
 }
@@ -157,7 +174,8 @@ core::Result<int> run_assigned(const Options& options) {
   if (auto before = hand_over(options, *folder); !before) return before.error();
   auto ticket = uplink::sign_in(**server, options.badge, *pin);
   if (!ticket) return ticket.error();
-  auto tally = rounds(options, *folder, **server, *ticket);
+  Presence presence(options, *folder);
+  auto tally = rounds(options, presence, *folder, **server, *ticket);
   uplink::sign_out(**server, *ticket);
   if (!tally) return tally.error();
   if (options.json)

@@ -7,6 +7,7 @@
 #include "station/app/aftermath.hpp"
 #include "station/app/deeds.hpp"
 #include "station/app/exchange.hpp"
+#include "station/app/presence.hpp"
 #include "station/app/probing.hpp"
 
 namespace app {
@@ -69,16 +70,22 @@ session::ProbingWatch watch_of(const Options& options, const ProbingTask& task) 
   };
 }
 
-core::Result<TrialReport> one_trial(const Options& options, const session::StationFolder& folder,
-                                    const ProbingTask& task, std::uint64_t seed) {
+core::Result<TrialReport> one_trial(const Options& options, Presence& presence,
+                                    const session::StationFolder& folder, const ProbingTask& task,
+                                    std::uint64_t seed) {
   session::RigSetup setup = options.rig;
   setup.seed = seed;
-  return session::run_probing_trial(folder, task, setup, watch_of(options, task),
-                                    [&options](const session::ProbingTrialRun& trial)
-                                        -> core::Result<std::optional<trial::Answer>> {
-                                      if (asked_to_stop()) return std::optional<trial::Answer>();
-                                      return answer_of(options, trial.simulated_answer());
-                                    });
+  setup.outside = presence.outside();
+  presence.is(Presence::State::preparing);
+  auto report = session::run_probing_trial(
+      folder, task, setup, presence.watched(watch_of(options, task), task),
+      [&](const session::ProbingTrialRun& trial) -> core::Result<std::optional<trial::Answer>> {
+        presence.is(Presence::State::questions);
+        if (asked_to_stop()) return std::optional<trial::Answer>();
+        return answer_of(options, trial.simulated_answer());
+      });
+  if (report) presence.done(*report);
+  return report;
 }
 }  // namespace
 
@@ -93,10 +100,11 @@ core::Result<int> run_probing_trials(const Options& options) {
   auto task = task_of(options, *folder);
   if (!task) return task.error();
 
+  Presence presence(options, *folder);
   core::Json trials = core::Json::array();
   bool faulted = false;
-  for (int i = 0; i < options.trials && !asked_to_stop(); ++i) {
-    auto report = one_trial(options, *folder, *task, options.rig.seed + std::uint64_t(i));
+  for (int i = 0; i < options.trials && !asked_to_stop() && presence.may_go_on(); ++i) {
+    auto report = one_trial(options, presence, *folder, *task, options.rig.seed + std::uint64_t(i));
     if (!report) return report.error();
     faulted = faulted || !report->complete;
     auto scores = session::scores_of(report->file);

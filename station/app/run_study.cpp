@@ -10,6 +10,7 @@
 #include "station/app/aftermath.hpp"
 #include "station/app/deeds.hpp"
 #include "station/app/exchange.hpp"
+#include "station/app/presence.hpp"
 #include "station/rig/surgeon.hpp"
 #include "station/session/study_plan.hpp"
 #include "station/uplink/study.hpp"
@@ -28,6 +29,7 @@ struct Study {
   const Options& options;
   const session::StationFolder& folder;
   study::StationKey key;
+  Presence& presence;
   core::Json trials = core::Json::array();
 };
 
@@ -122,17 +124,22 @@ core::Result<TrialReport> one_trial(const Study& study, const StudyWork& work,
   task.extra = {{"study", work.study}, {"number", trial.number}};
   task.blind = true;
   session::RigSetup setup = study.options.rig;
+  setup.outside = study.presence.outside();
+  study.presence.is(Presence::State::preparing);
   setup.seed = seed_of(study.options, work, trial);
   setup.started_utc_us = started_of(study.options, std::int64_t(study.trials.size()));
   if (work.simulated && !study.options.skill_given)
     setup.skill = rig::SurgeonParameters::skill_of_experience(work.experience_years.value_or(0.0));
-  return session::run_probing_trial(
-      study.folder, task, setup, watch_of(study.options),
-      [](const session::ProbingTrialRun& run) -> core::Result<std::optional<trial::Answer>> {
+  auto report = session::run_probing_trial(
+      study.folder, task, setup, study.presence.watched(watch_of(study.options), task),
+      [&](const session::ProbingTrialRun& run) -> core::Result<std::optional<trial::Answer>> {
+        study.presence.is(Presence::State::questions);
         if (asked_to_stop()) return std::optional<trial::Answer>();
         auto simulated = run.simulated_answer();
         return simulated ? simulated : asked();
       });
+  if (report) study.presence.done(*report);
+  return report;
 }
 
 /// Duration, samples and answer tell a person what they did, and no number tells what it was.
@@ -171,13 +178,14 @@ core::Result<std::uint64_t> rounds(Study& study, bool& faulted) {
     auto todo = session::still_to_do(study.folder, *work);
     if (!todo) return todo.error();
     for (const SealedTrial& trial : *todo) {
-      if (left == 0 || asked_to_stop()) return todo->size();
+      if (left == 0 || asked_to_stop() || !study.presence.may_go_on()) return todo->size();
       auto report = one_trial(study, *work, trial);
       if (!report) return report.error();
       note(study, *work, trial, *report);
       handed(study);
       --left;
       faulted = !report->complete;
+      if (faulted && study.presence.outside()->stopped() && study.presence.may_go_on()) break;
       if (faulted) return todo->size();  // a person looks at the rig first
     }
     if (todo->empty() || away) return away ? 0 : work->unfinished;
@@ -197,7 +205,8 @@ core::Result<int> run_study(const Options& options) {
   auto key = key_of(options);
   if (!key) return key.error();
   if (auto server = connect(options); !server) return server.error();  // of no shape: said once
-  Study study{options, *folder, *key};
+  Presence presence(options, *folder);
+  Study study{options, *folder, *key, presence};
   bool faulted = false;
   auto left = rounds(study, faulted);
   if (!left) return left.error();

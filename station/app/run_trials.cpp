@@ -8,6 +8,7 @@
 #include "station/app/aftermath.hpp"
 #include "station/app/deeds.hpp"
 #include "station/app/exchange.hpp"
+#include "station/app/presence.hpp"
 #include "station/session/station.hpp"
 
 namespace app {
@@ -42,14 +43,19 @@ session::Watch watch_of(const Options& options, const core::Progress& shown, Onl
       };
 }
 
-core::Result<TrialReport> one_trial(const Options& options, session::Station& station,
+core::Result<TrialReport> one_trial(const Options& options, Presence& presence,
+                                    session::Station& station,
                                     const std::shared_ptr<const session::PreparedCase>& prepared,
                                     std::uint64_t seed) {
+  presence.is(Presence::State::preparing);
   if (auto ready = station.prepare(prepared, seed); !ready) return ready.error();
   auto onlooker = Onlooker::make(*prepared, options.show, options.picture);
   if (!onlooker) return onlooker.error();
   const core::Progress shown = core::terminal_progress(fmt::format("Trial, seed {}", seed));
-  if (auto ran = station.run(watch_of(options, shown, *onlooker)); !ran) return ran.error();
+  const auto watch =
+      presence.watched(watch_of(options, shown, *onlooker), prepared->opened.id, *prepared);
+  if (auto ran = station.run(watch); !ran) return ran.error();
+  presence.is(Presence::State::questions);
   if (auto left = onlooker->leave_picture(); !left)
     std::fprintf(stderr, "warning: no picture: %s\n", left.error().what.c_str());
   std::optional<trial::Answer> said;
@@ -58,7 +64,9 @@ core::Result<TrialReport> one_trial(const Options& options, session::Station& st
     if (!answer) return answer.error();
     said = *answer;
   }
-  return station.answer(said);
+  auto report = station.answer(said);
+  if (report) presence.done(*report);
+  return report;
 }
 
 void print_report(const TrialReport& report, bool fast) {
@@ -101,14 +109,19 @@ core::Result<int> run_trials(const Options& options) {
   auto recovered = folder->recover();
   if (!recovered) return recovered.error();
   say_recovered(*recovered);
+  Presence presence(options, *folder);
+  presence.is(Presence::State::preparing);
   auto prepared = prepare(options, *folder);
   if (!prepared) return prepared.error();
 
-  session::Station station(*folder, options.setup);
+  session::TrialSetup setup = options.setup;
+  setup.outside = presence.outside();
+  session::Station station(*folder, setup);
   core::Json trials = core::Json::array();
   bool faulted = false;
-  for (int i = 0; i < options.trials && !asked_to_stop(); ++i) {
-    auto report = one_trial(options, station, *prepared, options.setup.seed + std::uint64_t(i));
+  for (int i = 0; i < options.trials && !asked_to_stop() && presence.may_go_on(); ++i) {
+    auto report =
+        one_trial(options, presence, station, *prepared, options.setup.seed + std::uint64_t(i));
     if (!report) return report.error();
     faulted = faulted || !report->complete;
     auto scores = session::scores_of(report->file, &(*prepared)->opened.definition.tract);

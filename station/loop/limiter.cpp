@@ -162,10 +162,11 @@ Limiter::Passed Limiter::pass(core::Instant_ns now, Status status, const Sample&
   has_pose_ = true;
 
   const double dt_s = static_cast<double>(std::min(elapsed, 2 * period_)) * 1e-9;
-  const Vec3 force = clamped(part * wanted.force_N, limits_.max_force_N);
+  const double max_N = std::min(limits_.max_force_N, cap_N_.value());
+  const Vec3 force = clamped(part * wanted.force_N, max_N);
   const Vec3 torque = clamped(part * wanted.torque_Nm, limits_.max_torque_Nm);
-  last_.force_N = clamped(towards(last_.force_N, force, limits_.max_force_slew_N_per_s * dt_s),
-                          limits_.max_force_N);
+  last_.force_N =
+      clamped(towards(last_.force_N, force, limits_.max_force_slew_N_per_s * dt_s), max_N);
   last_.torque_Nm =
       clamped(towards(last_.torque_Nm, torque, limits_.max_torque_slew_Nm_per_s * dt_s),
               limits_.max_torque_Nm);

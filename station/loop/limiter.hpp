@@ -6,6 +6,7 @@
 
 #include "core/json.hpp"
 #include "station/devices/device.hpp"
+#include "station/loop/falling.hpp"
 #include "station/safety/machine.hpp"
 
 namespace loop {
@@ -61,6 +62,9 @@ class Limiter {
     limits_ = limits_.lowered_by(other);
     machine_.lengthen_ramp(static_cast<core::Instant_ns>(limits_.ramp_s * 1e9));
   }
+  /// From any thread, while ticks run: no more force than this from the next tick on. A second call
+  /// that asks for more changes nothing.
+  void cap_force(double force_N) noexcept { cap_N_.lower(force_N); }
 
   struct Passed {
     math::Wrench wrench;
@@ -82,6 +86,7 @@ class Limiter {
                        const devices::Sample& sample) noexcept;
 
   HandLimits limits_;
+  Falling cap_N_;
   core::Instant_ns period_;
   safety::Machine machine_;
   math::Wrench last_;

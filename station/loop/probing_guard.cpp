@@ -90,7 +90,7 @@ ProbingGuard::Seen ProbingGuard::see(devices::Exchange how,
 }
 
 bool ProbingGuard::held_by_push() noexcept {
-  const bool held = std::abs(last_.fz_N - tare_N_) > limits_.max_push_N;
+  const bool held = std::abs(last_.fz_N - tare_N_) > std::min(limits_.max_push_N, cap_N_.value());
   pushed_s_ = held ? pushed_s_ + period_s_ : 0.0;
   if (pushed_s_ >= kPushed_s) machine_.fail(RigFault::pushed);
   return held;

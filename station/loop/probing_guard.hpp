@@ -5,6 +5,7 @@
 
 #include "core/json.hpp"
 #include "station/devices/rig_device.hpp"
+#include "station/loop/falling.hpp"
 #include "station/safety/machine.hpp"
 
 namespace loop {
@@ -62,6 +63,10 @@ class ProbingGuard {
   /// Last in the tick: what goes out with the next exchange.
   Passed pass(double speed_m_s, double torque_Nm) noexcept;
 
+  /// From any thread, while ticks run: the stage stands still above this push from the next tick
+  /// on. A second call that asks for more changes nothing.
+  void cap_push(double push_N) noexcept { cap_N_.lower(push_N); }
+
   safety::State state() const noexcept { return machine_.state(); }
   bool latched() const noexcept { return state() == safety::State::latched; }
   RigFault fault() const noexcept { return machine_.fault(); }
@@ -81,6 +86,7 @@ class ProbingGuard {
   double within_travel(double speed_m_s) const noexcept;
 
   RigLimits limits_;
+  Falling cap_N_;
   double travel_m_, period_s_;
   safety::Machine machine_;
   devices::RigReading last_;

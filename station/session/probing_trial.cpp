@@ -123,6 +123,7 @@ struct ProbingTrialRun::Parts {
   void after_tick(const trial::ProbingSample& sample);
   void loop_thread(std::promise<void>& prepared, const std::future<void>& go);
   ProbingGlimpse glimpse() const;
+  void heed_outside();
   void watch_until(const std::future<void>& done, const ProbingWatch& watch);
   core::Result<void> append_end(const std::optional<trial::Answer>& answer);
 };
@@ -255,9 +256,16 @@ ProbingGlimpse ProbingTrialRun::Parts::glimpse() const {
   return out;
 }
 
+void ProbingTrialRun::Parts::heed_outside() {
+  if (!setup.outside) return;
+  guard->cap_push(setup.outside->force_N());
+  if (setup.outside->stopped()) loop->stop();
+}
+
 void ProbingTrialRun::Parts::watch_until(const std::future<void>& done, const ProbingWatch& watch) {
   for (bool over = false; !over;) {
     over = done.wait_for(kWatch) == std::future_status::ready;
+    heed_outside();
     if (watch && !watch(glimpse())) loop->stop();
   }
 }
@@ -277,6 +285,7 @@ core::Result<void> ProbingTrialRun::run(const ProbingWatch& watch) {
   go.set_value();
   p.watch_until(ended, watch);
   thread.join();
+  if (p.setup.outside && p.setup.outside->stopped()) p.fault = stopped_text(*p.setup.outside);
   if (p.guard->latched()) p.fault = loop::text_of(p.guard->fault());
   if (p.loop->counts().ticks.lost > 0)
     p.fault = fmt::format("{} samples were not recorded: the disk was too slow",

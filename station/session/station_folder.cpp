@@ -50,6 +50,7 @@ core::Result<StationFolder> StationFolder::open(const fs::path& root) {
                                                      (root / name).string(), failure.message())};
   }
   if (auto read = folder.read_config(); !read) return read.error();
+  if (auto read = folder.read_lowered(); !read) return read.error();
   if (auto read = folder.read_trusted(); !read) return read.error();
   return folder;
 }
@@ -70,6 +71,30 @@ core::Result<void> StationFolder::read_config() {
     config_.limits = *read;
   }
   return fields.done();
+}
+
+core::Result<void> StationFolder::read_lowered() {
+  const fs::path path = root_ / "lowered.json";
+  auto json = core::read_json(path);
+  if (!json && json.error().code == core::Errc::not_found) return {};
+  if (!json) return json.error();
+  core::Fields fields(*json, path.string() + ": ");
+  config_.lowered_force_N = fields.number("force_N", 0.0, 1e4);
+  return fields.done();
+}
+
+core::Result<void> StationFolder::lower_force(double force_N) const {
+  StationFolder now(root_);  // another process may have lowered it since
+  if (auto read = now.read_lowered(); !read) return read;
+  if (now.config_.lowered_force_N && *now.config_.lowered_force_N <= force_N) return {};
+  return core::write_json(root_ / "lowered.json", {{"force_N", force_N}});
+}
+
+core::Result<void> StationFolder::restore_force() const {
+  std::error_code failure;
+  fs::remove(root_ / "lowered.json", failure);
+  if (!failure) return {};
+  return core::Error{core::Errc::io, fmt::format("{}: {}", root_.string(), failure.message())};
 }
 
 core::Result<void> StationFolder::read_trusted() {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,6 +29,9 @@ class FolderLock {
 struct StationConfig {
   std::string name = "station";
   loop::HandLimits limits;
+  /// From lowered.json: at most so much on the hand, by the server's word; a person at the station
+  /// takes it back.
+  std::optional<double> lowered_force_N = {};
 };
 
 /// What was found from an earlier, interrupted run.
@@ -51,6 +55,10 @@ class StationFolder {
   std::filesystem::path models() const { return root_ / "models"; }
   std::filesystem::path studies() const { return root_ / "studies"; }
   std::filesystem::path trials() const { return root_ / "trials"; }
+  /// What self-tests and calibrations left for the server.
+  std::filesystem::path reports() const { return root_ / "reports"; }
+  /// The last comparison with the server's clock.
+  std::filesystem::path clock() const { return root_ / "clock.json"; }
   std::filesystem::path trial_file(const std::string& id) const {
     return trials() / (id + ".ttrial");
   }
@@ -61,6 +69,10 @@ class StationFolder {
   core::Result<FolderLock> upload_lock() const;
   /// Adds a public key to trusted_signers.json. Errors: bad_input (no key), io.
   core::Result<void> trust(const std::string& signer_public_hex);
+  /// Keeps a lower limit for this and every later trial; a higher one than is kept changes nothing.
+  core::Result<void> lower_force(double force_N) const;
+  /// The deed of a person at the station: the limits of config.json hold again.
+  core::Result<void> restore_force() const;
   /// Ends and queues what a crash left, clears half-made leftovers. With lock() held. Errors: io.
   core::Result<Recovered> recover() const;
   /// Errors: io when fewer than `bytes` and ten minutes' samples more would fit.
@@ -69,6 +81,7 @@ class StationFolder {
  private:
   explicit StationFolder(std::filesystem::path root) : root_(std::move(root)) {}
   core::Result<void> read_config();
+  core::Result<void> read_lowered();
   core::Result<void> read_trusted();
   core::Result<void> clear_leftovers() const;
   core::Result<void> recover_file(const std::filesystem::path& file, Recovered& out) const;

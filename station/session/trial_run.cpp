@@ -113,6 +113,7 @@ struct TrialRun::Parts {
   void after_tick();
   void loop_thread(std::promise<void>& prepared, const std::future<void>& go);
   void watch_until(const std::future<void>& done, const Watch& watch);
+  void heed_outside();
   core::Result<void> append_end(const TrialReport& report);
 };
 
@@ -143,6 +144,8 @@ core::Result<void> TrialRun::Parts::open_device(const devices::DeviceInfo& info,
   loop::HandLimits device_limits = loop::HandLimits::kCeiling;
   device_limits.max_force_N = limits->max_force_N;
   device_limits.max_torque_Nm = limits->max_torque_Nm;
+  if (setup.outside)
+    device_limits.max_force_N = std::min(device_limits.max_force_N, setup.outside->force_N());
   limiter.lower(device_limits);
   opened = *limits;
   return {};
@@ -227,9 +230,16 @@ void TrialRun::Parts::loop_thread(std::promise<void>& prepared, const std::futur
   loop->run([this] { after_tick(); });
 }
 
+void TrialRun::Parts::heed_outside() {
+  if (!setup.outside) return;
+  limiter.cap_force(setup.outside->force_N());
+  if (setup.outside->stopped()) loop->stop();
+}
+
 void TrialRun::Parts::watch_until(const std::future<void>& done, const Watch& watch) {
   for (bool over = false; !over;) {
     over = done.wait_for(kWatch) == std::future_status::ready;
+    heed_outside();
     if (watch && !watch(glimpse())) loop->stop();
   }
 }
@@ -250,6 +260,7 @@ core::Result<void> TrialRun::run(const Watch& watch) {
   go.set_value();
   p.watch_until(ended, watch);
   thread.join();
+  if (p.setup.outside && p.setup.outside->stopped()) p.fault = stopped_text(*p.setup.outside);
   if (p.limiter.guard() == loop::Guard::latched) p.fault = loop::text_of(p.limiter.fault());
   if (p.loop->counts().lost > 0)
     p.fault =

@@ -3,17 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 
 #include "cases/case.hpp"
 #include "core/file.hpp"
+#include "station/uplink/part_fetch.hpp"
 
 namespace uplink {
 namespace fs = std::filesystem;
 namespace {
 constexpr std::uint64_t kMaxManifest_bytes = 1u << 20;
 constexpr std::uint64_t kMaxPart_bytes = 4ull << 30;
-constexpr std::uint64_t kPiece_bytes = 4u << 20;
 constexpr std::size_t kMaxCases = 10'000;
 
 core::Result<core::Bytes> fetch(Server& server, const std::string& path, std::uint64_t limit) {
@@ -48,40 +47,17 @@ bool plain_name(const std::string& name) {
          });
 }
 
+fs::path incoming_of(const fs::path& cases_folder) {
+  return cases_folder.parent_path() / "incoming";
+}
+
 core::Error changed(const std::string& id, const std::string& what) {
   return {core::Errc::corrupt, fmt::format("case {}: {}", id.substr(0, 12), what)};
 }
 
-/// In pieces by Range, so that the memory stays small.
-core::Result<void> fetch_part(Server& server, const std::string& id, const cases::Part& part,
-                              const fs::path& target) {
-  std::ofstream file(target, std::ios::binary);
-  core::Sha256 hash;
-  for (std::uint64_t at = 0; at < part.size_bytes;) {
-    const std::uint64_t size = std::min(kPiece_bytes, part.size_bytes - at);
-    const Request request{.method = "GET",
-                          .path = fmt::format("/api/v1/cases/{}/parts/{}", id, part.name),
-                          .headers = {{"Range", fmt::format("bytes={}-{}", at, at + size - 1)}},
-                          .max_answer_bytes = size};
-    auto answer = server.send(request);
-    if (!answer) return answer.error();
-    if (answer->status != 206 && !(answer->status == 200 && size == part.size_bytes))
-      return answer->status / 100 == 2 ? changed(id, part.name + ": the server ignores ranges")
-                                       : error_of(request, *answer);
-    if (answer->body.size() != size) return changed(id, part.name + ": a piece has the wrong size");
-    file.write(reinterpret_cast<const char*>(answer->body.data()),
-               static_cast<std::streamsize>(size));
-    hash.add(answer->body);
-    at += size;
-  }
-  file.close();
-  if (!file) return core::Error{core::Errc::io, fmt::format("{}: cannot write", target.string())};
-  if (hash.hex() != part.sha256) return changed(id, part.name + ": is not what the manifest names");
-  return {};
-}
-
-core::Result<void> fetch_case(Server& server, const std::string& id, const fs::path& cases_folder,
-                              const std::vector<std::string>& trusted) {
+/// The manifest of that name, kept in `folder` with its signature.
+core::Result<cases::Case> fetch_manifest(Server& server, const std::string& id,
+                                         const fs::path& folder) {
   const std::string path = "/api/v1/cases/" + id;
   auto manifest = fetch(server, path, kMaxManifest_bytes);
   if (!manifest) return manifest.error();
@@ -92,37 +68,88 @@ core::Result<void> fetch_case(Server& server, const std::string& id, const fs::p
   if (!definition) return definition.error();
   auto signature = fetch(server, path + "/parts/case.sig", 64u << 10);
   if (!signature) return signature.error();
+  std::error_code failure;
+  fs::create_directories(folder, failure);
+  for (const auto& entry :
+       fs::directory_iterator(folder, failure))  // what a kill left half written
+    if (entry.path().extension() == ".part") fs::remove(entry.path(), failure);
+  if (auto written = core::write_file(folder / "case.json", *manifest); !written)
+    return written.error();
+  if (auto written = core::write_file(folder / "case.sig", *signature); !written)
+    return written.error();
+  return definition;
+}
 
-  auto scratch = core::ScratchFolder::make(cases_folder / id);
-  if (!scratch) return scratch.error();
-  if (auto written = core::write_file(scratch->path() / "case.json", *manifest); !written)
-    return written;
-  if (auto written = core::write_file(scratch->path() / "case.sig", *signature); !written)
-    return written;
-  for (const cases::Part& part : definition->parts) {
+/// Room for what is still to come, and for the trials to come.
+core::Result<void> check_room(const std::string& id, const cases::Case& definition,
+                              const fs::path& folder, const SyncLimits& limits) {
+  std::uint64_t wanted = limits.reserve_bytes;
+  std::error_code ignored;
+  for (const cases::Part& part : definition.parts) {
     if (part.secret) continue;
     if (!plain_name(part.name) || part.size_bytes > kMaxPart_bytes)
       return changed(id, "a part's name or size is not acceptable");
-    if (auto got = fetch_part(server, id, part, scratch->path() / part.name); !got) return got;
+    const fs::path there = folder / part.name;
+    const std::uint64_t here = fs::exists(there, ignored) ? fs::file_size(there, ignored) : 0;
+    wanted += part.size_bytes - std::min(here, part.size_bytes);
   }
-  auto opened = cases::open_case(scratch->path());
+  const std::uint64_t free =
+      limits.free_bytes ? limits.free_bytes() : fs::space(folder, ignored).available;
+  if (free >= wanted) return {};
+  return core::Error{core::Errc::io,
+                     fmt::format("case {}: {} MB are wanted with what trials need, {} MB are free: "
+                                 "make room first",
+                                 id.substr(0, 12), wanted >> 20, free >> 20)};
+}
+
+core::Result<void> fetch_case(Server& server, const std::string& id, const fs::path& cases_folder,
+                              const std::vector<std::string>& trusted, const SyncLimits& limits,
+                              SyncReport& report) {
+  const fs::path folder = incoming_of(cases_folder) / id;
+  auto definition = fetch_manifest(server, id, folder);
+  if (!definition) return definition.error();
+  if (auto room = check_room(id, *definition, folder, limits); !room) return room;
+  const LocalParts local(cases_folder);
+  for (const cases::Part& part : definition->parts) {
+    if (part.secret) continue;
+    report.bytes_of_cases += part.size_bytes;
+    if (auto got = fetch_part(server, id, part, local, folder / part.name, report.bytes_fetched);
+        !got)
+      return got;
+  }
+  auto opened = cases::open_case(folder);
   if (!opened) return opened.error();
   if (opened->id != id) return changed(id, "holds another case");
   if (std::ranges::find(trusted, opened->signer_public_hex) == trusted.end())
     return core::Error{core::Errc::forbidden,
                        fmt::format("case {}: signed by {}, whom this station does not trust",
                                    id.substr(0, 12), opened->signer_public_hex)};
-  return scratch->keep_as(cases_folder / id);
+  if (auto kept = core::sync_folder(folder); !kept) return kept;
+  std::error_code failure;
+  fs::rename(folder, cases_folder / id, failure);  // whole, in one step
+  if (failure)
+    return core::Error{core::Errc::io,
+                       fmt::format("case {}: {}", id.substr(0, 12), failure.message())};
+  return core::sync_folder(cases_folder);
+}
+
+bool passes(core::Errc code) {  // worth going on with later
+  return code == core::Errc::unavailable || code == core::Errc::io ||
+         code == core::Errc::unauthorised;
 }
 }  // namespace
 
 core::Json SyncReport::to_json() const {
-  return {{"fetched", fetched}, {"present", present}, {"refused", refused}};
+  return {{"fetched", fetched},
+          {"present", present},
+          {"refused", refused},
+          {"bytes_fetched", bytes_fetched},
+          {"bytes_of_cases", bytes_of_cases}};
 }
 
 core::Result<SyncReport> sync_cases(Server& server, const fs::path& cases_folder,
                                     const std::vector<std::string>& trusted,
-                                    const core::Progress& progress) {
+                                    const core::Progress& progress, const SyncLimits& limits) {
   auto ids = case_ids(server);
   if (!ids) return ids.error();
   SyncReport report;
@@ -131,12 +158,12 @@ core::Result<SyncReport> sync_cases(Server& server, const fs::path& cases_folder
     const std::string& id = (*ids)[i];
     if (fs::exists(cases_folder / id, ignored)) {
       report.present.push_back(id);
-    } else if (auto got = fetch_case(server, id, cases_folder, trusted); got) {
+    } else if (auto got = fetch_case(server, id, cases_folder, trusted, limits, report); got) {
       report.fetched.push_back(id);
-    } else if (got.error().code == core::Errc::unavailable || got.error().code == core::Errc::io ||
-               got.error().code == core::Errc::unauthorised) {
+    } else if (passes(got.error().code)) {
       return got.error();
     } else {
+      fs::remove_all(incoming_of(cases_folder) / id, ignored);
       report.refused.push_back(got.error().what);
     }
     if (progress && !progress(double(i + 1) / double(ids->size())))

@@ -102,6 +102,12 @@ core::Result<void> send_rest(Server& server, const std::string& path, const fs::
   return {};
 }
 
+std::string note_of(const std::optional<ClockOffset>& offset) {
+  if (!offset) return {};
+  return core::Json{{"clock_offset_s", offset->offset_s}, {"clock_error_s", offset->error_s}}
+      .dump();
+}
+
 bool passes(core::Errc code) {  // worth trying again later
   return code == core::Errc::unavailable || code == core::Errc::cancelled ||
          code == core::Errc::io || code == core::Errc::too_large;
@@ -109,7 +115,8 @@ bool passes(core::Errc code) {  // worth trying again later
 }  // namespace
 
 core::Result<void> upload_trial(Server& server, const fs::path& trial_file, OutboxEntry& entry,
-                                const core::Progress& progress) {
+                                const core::Progress& progress,
+                                const std::optional<ClockOffset>& offset) {
   const std::string path = "/api/v1/uploads/" + entry.trial_id;
   auto state = announce(server, path, entry);
   if (!state) return state.error();
@@ -117,7 +124,11 @@ core::Result<void> upload_trial(Server& server, const fs::path& trial_file, Outb
   entry.offset_bytes = state->offset_bytes;
   if (state->state != "complete") {
     if (auto sent = send_rest(server, path, trial_file, entry, progress); !sent) return sent;
-    const Request request{.method = "POST", .path = path + "/commit"};
+    const std::string note = note_of(offset);
+    const Request request{.method = "POST",
+                          .path = path + "/commit",
+                          .headers = {{"Content-Type", "application/json"}},
+                          .body = core::bytes_of(note)};
     auto committed = state_of(request, server.send(request));
     if (!committed) return committed.error();
     if (committed->state != "complete")
@@ -136,7 +147,8 @@ core::Json UploadReport::to_json() const {
 
 core::Result<UploadReport> upload_all(Server& server, const Outbox& outbox,
                                       const fs::path& trials_folder, core::Clock& clock,
-                                      const Patience& patience, const core::Progress& progress) {
+                                      const Patience& patience, const core::Progress& progress,
+                                      const std::optional<ClockOffset>& offset) {
   auto entries = outbox.entries();
   if (!entries) return entries.error();
   std::erase_if(*entries, [](const OutboxEntry& entry) { return entry.state != "queued"; });
@@ -146,7 +158,7 @@ core::Result<UploadReport> upload_all(Server& server, const Outbox& outbox,
     OutboxEntry& entry = (*entries)[i];
     const std::uint64_t before = entry.offset_bytes;
     const auto outcome =
-        upload_trial(server, trials_folder / (entry.trial_id + ".ttrial"), entry, progress);
+        upload_trial(server, trials_folder / (entry.trial_id + ".ttrial"), entry, progress, offset);
     if (!outcome && outcome.error().code == core::Errc::unauthorised) return outcome.error();
     const bool later = !outcome && passes(outcome.error().code);
     if (!outcome && !later) entry.state = "refused", entry.reason = outcome.error().what;

@@ -5,6 +5,7 @@
 
 #include "core/clock.hpp"
 #include "core/progress.hpp"
+#include "station/uplink/clock_offset.hpp"
 #include "station/uplink/outbox.hpp"
 #include "station/uplink/server.hpp"
 
@@ -14,8 +15,10 @@ namespace uplink {
 /// commit. `entry` follows what the server acknowledged. May be repeated at will: a trial that the
 /// server holds is not sent again. Errors: the server's, unavailable, corrupt (the file is not what
 /// was queued).
+/// @param offset  this station's clock, noted with the trial
 core::Result<void> upload_trial(Server& server, const std::filesystem::path& trial_file,
-                                OutboxEntry& entry, const core::Progress& progress = {});
+                                OutboxEntry& entry, const core::Progress& progress = {},
+                                const std::optional<ClockOffset>& offset = {});
 
 struct UploadReport {
   int handed_over = 0;  ///< now
@@ -38,6 +41,7 @@ struct Patience {
 core::Result<UploadReport> upload_all(Server& server, const Outbox& outbox,
                                       const std::filesystem::path& trials_folder,
                                       core::Clock& clock, const Patience& patience,
-                                      const core::Progress& progress = {});
+                                      const core::Progress& progress = {},
+                                      const std::optional<ClockOffset>& offset = {});
 
 }  // namespace uplink

@@ -68,7 +68,9 @@ const std::map<std::string, Names> kAllowed = {
     {"station/loop",
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/effects",
       "shared/models", "shared/trial", "station/devices", "station/safety"}},
-    {"station/uplink", {"shared/core", "shared/trial", "shared/wire", "shared/cases"}},
+    // How volumes are stored in bricks: those that are here are not fetched.
+    {"station/uplink",
+     {"shared/core", "shared/trial", "shared/wire", "shared/cases", "shared/volume"}},
     {"station/view",
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/models", "shared/cases",
       "shared/trial"}},
@@ -84,8 +86,11 @@ const std::map<std::string, Names> kAllowed = {
      {"shared/core", "shared/trial", "shared/metrics", "shared/cases", "shared/scenarios",
       "shared/volume", "shared/volume/io", "shared/lab", "shared/lab/io", "shared/assessment",
       "db/store"}},
+      "shared/volume", "shared/lab", "shared/lab/io", "shared/assessment", "db/store"}},
+    // What stations do just now: their words, the database they share, lines to those who look on.
+    {"server/live", {"shared/core", "shared/wire", "db/store", "server/http"}},
     {"server/api",
-     {"shared/core", "shared/math", "shared/trial", "shared/metrics", "shared/cases",
+     {"server/live", "shared/core", "shared/math", "shared/trial", "shared/metrics", "shared/cases",
       "shared/scenarios", "shared/study", "shared/volume", "shared/wire", "shared/models",
       "shared/assessment", "shared/statistics", "shared/lab/io", "db/store", "server/http",
       "server/jobs"}},

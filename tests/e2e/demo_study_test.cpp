@@ -9,9 +9,8 @@
 namespace {
 
 int exit_of_demo(const std::string& options) {
-  const std::string command = "TRACTUS_BIN=" TRACTUS_BIN_DIR " " TRACTUS_SOURCE_DIR
-                              "/deploy/demo-study " +
-                              options;
+  const std::string command =
+      "TRACTUS_BIN=" TRACTUS_BIN_DIR " " TRACTUS_SOURCE_DIR "/deploy/demo-study " + options;
   const int status = std::system(command.c_str());
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }

@@ -84,6 +84,10 @@ core::Result<TrialFacts> trial_facts(Backend& backend, const store::TrialRecord&
   auto study = study_place(backend, trial.summary.id);
   if (!study) return study.error();
   out.study = std::move(*study);
+  auto clock = backend.store.read(
+      [&](store::Reading& tx) { return store::trial_clock_of(tx, trial.summary.id); });
+  if (!clock) return clock.error();
+  out.clock = *clock;
   if (header->rig == trial::Rig::probing) {
     auto scenario = jobs::scenario_of(backend.store, backend.objects, case_id);
     if (!scenario) return scenario.error();

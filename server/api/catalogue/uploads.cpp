@@ -3,6 +3,8 @@
 
 #include <charconv>
 
+#include "db/store/fleet.hpp"
+#include "server/api/backend.hpp"
 #include "server/api/schema.hpp"
 
 namespace api {
@@ -47,8 +49,29 @@ core::Result<http::Response> append(const Call& call) {
                        409);
 }
 
+/// What a station may add when it commits: how its clock stands.
+core::Result<std::optional<store::TrialClock>> clock_of(const std::string& body) {
+  if (body.empty()) return std::optional<store::TrialClock>();
+  auto json = core::parse_json(body, "body");
+  if (!json) return json.error();
+  core::Fields fields(*json, "body");
+  constexpr double kMost_s = 1e10;
+  const store::TrialClock clock{fields.number("clock_offset_s", -kMost_s, kMost_s),
+                                fields.number("clock_error_s", 0.0, kMost_s)};
+  if (auto done = fields.done(); !done) return done.error();
+  return std::optional(clock);
+}
+
 core::Result<http::Response> commit(const Call& call) {
-  return as_response(commit_upload(call.backend, call.caller, call.text("trial_id")));
+  auto clock = clock_of(call.request.body);
+  if (!clock) return clock.error();
+  const std::string& id = call.text("trial_id");
+  auto state = commit_upload(call.backend, call.caller, id);
+  if (!state || !*clock) return as_response(state);
+  auto kept = call.backend.store.write(
+      [&](store::Writing& tx) { return store::add_trial_clock(tx, id, **clock); });
+  if (!kept) return kept.error();
+  return as_response(state);
 }
 
 RouteInfo upload_route(std::string method, std::string tail, std::string id, std::string summary) {
@@ -105,8 +128,15 @@ std::vector<RouteInfo> uploads_routes() {
   patch.audited = false;  // announcing and committing are
   patch.handle = append;
 
-  RouteInfo post = upload_route("POST", "/commit", "commitUpload",
-                                "Check all of it and make it a trial; repeating it is harmless");
+  RouteInfo post = upload_route(
+      "POST", "/commit", "commitUpload",
+      "Check all of it and make it a trial; repeating it is harmless, and so is an empty body");
+  post.body = "CommitUpload";
+  post.body_limit_bytes = 4096;
+  post.schemas = {
+      {"CommitUpload",
+       schema::object({{"clock_offset_s", schema::number("s", "server's clock less the station's")},
+                       {"clock_error_s", schema::number("s", "bound of its error")}})}};
   post.handle = commit;
   return {put, read, patch, post};
 }

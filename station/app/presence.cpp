@@ -1,0 +1,232 @@
+#include "station/app/presence.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <iostream>
+
+#include "station/app/exchange.hpp"
+#include "station/loop/live_state.hpp"
+#include "station/uplink/clock_offset.hpp"
+#include "station/uplink/live.hpp"
+
+namespace app {
+namespace {
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::seconds kDiskEvery{5}, kOutboxEvery{30};
+
+/// The running trial in plain bytes: written by the thread that watches it, read by the uplink's.
+struct Seen {
+  char trial_id[33] = {}, case_id[65] = {};
+  bool probing = false, blind = false;
+  double t_s = 0.0, force_N = 0.0, depth_m = 0.0;
+  std::uint64_t samples = 0, late = 0;
+};
+
+template <std::size_t N>
+void put(char (&to)[N], const std::string& from) {
+  const std::size_t size = std::min(from.size(), N - 1);
+  std::memcpy(to, from.data(), size);
+  to[size] = '\0';
+}
+
+const char* text_of(Presence::State state) {
+  static constexpr const char* kNames[] = {"idle",      "preparing", "trial",
+                                           "questions", "stopped",   "fault"};
+  return kNames[static_cast<int>(state)];
+}
+
+double depth_m(const loop::Live& live, const session::PreparedCase& prepared) {
+  const auto& [w, x, y, z] = live.q_VH;
+  const math::Quat turn(w, x, y, z);
+  const math::Vec3 tip_H(live.deflection_m[0], live.deflection_m[1], prepared.model.base.length_m);
+  const math::Vec3 tip = math::Vec3(live.p_VH_m[0], live.p_VH_m[1], live.p_VH_m[2]) + turn * tip_H;
+  const volume::Tract& tract = prepared.opened.definition.tract;
+  return (tip - tract.entry_m).dot(tract.axis);
+}
+
+}  // namespace
+
+struct Presence::Parts {
+  const Options& options;
+  const session::StationFolder& folder;
+  session::Outside outside;
+  std::atomic<State> state = State::idle;
+  loop::Seqlock<Seen> seen;
+  std::atomic<std::uint64_t> ticks = 0, late = 0;
+  std::string device;
+  bool simulated = false;
+  // Of the uplink's thread alone:
+  std::optional<uplink::ClockOffset> offset;
+  Clock::time_point disk_at, outbox_at;
+  std::optional<std::uint64_t> free_bytes, waiting;
+  std::unique_ptr<uplink::LiveUplink> line;  ///< last: ends before what its thread uses
+
+  Parts(const Options& given, const session::StationFolder& where) : options(given), folder(where) {
+    const bool rig = given.deed == Deed::probe || given.deed == Deed::study;
+    device = rig ? given.rig.device : given.setup.device;
+    simulated = device.starts_with("sim-");
+    if (where.config().lowered_force_N) outside.lower_force(*where.config().lowered_force_N);
+  }
+  wire::StationTold told();
+  void look_around();
+  void measure_clock();
+  void heed(const wire::StationCommand& command);
+};
+
+void Presence::Parts::look_around() {
+  const auto now = Clock::now();
+  if (!free_bytes || now - disk_at > kDiskEvery) {
+    disk_at = now;
+    std::error_code failure;
+    const auto space = fs::space(folder.trials(), failure);
+    if (!failure) free_bytes = space.available;
+  }
+  // Many small files: not while a trial runs.
+  if (waiting && (now - outbox_at < kOutboxEvery || state == State::trial)) return;
+  outbox_at = now;
+  if (const auto entries = folder.outbox().entries())
+    waiting = static_cast<std::uint64_t>(std::ranges::count_if(
+        *entries, [](const uplink::OutboxEntry& entry) { return entry.state == "queued"; }));
+}
+
+wire::StationTold Presence::Parts::told() {
+  look_around();
+  wire::StationTold out;
+  out.state = text_of(state);
+  out.version = TRACTUS_VERSION;
+  out.device = device;
+  out.simulated = simulated;
+  out.free_disk_bytes = free_bytes;
+  out.waiting_trials = waiting;
+  if (offset) out.clock_offset_s = offset->offset_s, out.clock_error_s = offset->error_s;
+  if (ticks > 0) out.late_share = static_cast<double>(late) / static_cast<double>(ticks);
+  const auto now = seen.read();
+  if (state != State::trial || !now || now->trial_id[0] == '\0') return out;
+  wire::LiveTrial& trial = out.trial.emplace();
+  trial.trial_id = now->trial_id;
+  trial.case_id = now->case_id;
+  trial.rig = now->probing ? "probing" : "palpation";
+  trial.t_s = now->t_s;
+  trial.samples = now->samples;
+  trial.late_ticks = now->late;
+  if (!now->blind && std::isfinite(now->force_N)) trial.force_N = now->force_N;
+  if (!now->blind && std::isfinite(now->depth_m)) trial.depth_m = now->depth_m;
+  return out;
+}
+
+/// Compares the clocks before the first word; what fails is tried at the next line.
+void Presence::Parts::measure_clock() {
+  auto server = connect(options);
+  if (!server) return;
+  core::MonotonicClock clock;
+  if (auto measured = uplink::measure_clock(**server, clock, core::utc_us)) {
+    offset = *measured;
+    uplink::keep_clock(folder.clock(), *measured);
+  }
+}
+
+void Presence::Parts::heed(const wire::StationCommand& command) {
+  if (command.kind == wire::StationCommand::Kind::stop) {
+    outside.stop(command.reason);
+    return;
+  }
+  outside.lower_force(command.force_N);
+  if (auto kept = folder.lower_force(command.force_N); !kept)
+    fmt::print(stderr, "warning: the lower limit holds for this program alone: {}\n",
+               kept.error().what);
+}
+
+Presence::Presence(const Options& options, const session::StationFolder& folder)
+    : parts_(std::make_unique<Parts>(options, folder)) {
+  Parts& p = *parts_;
+  if (options.server_url.empty()) return;
+  auto token = token_of(options);
+  if (!token) return;  // whoever needs the server says why
+  std::string url = options.server_url;
+  while (url.ends_with('/')) url.pop_back();
+  const uplink::LineTo to{.url = url,
+                          .authorization = "Authorization: Bearer " + *token,
+                          .authority = options.authority};
+  p.line = std::make_unique<uplink::LiveUplink>(uplink::LiveUplink::Parts{
+      .open = [to](const std::atomic<bool>& stopped) { return uplink::open_line(to, stopped); },
+      .told = [&p] { return p.told(); },
+      .commanded = [&p](const wire::StationCommand& command) { p.heed(command); },
+      .connected = [&p] { p.measure_clock(); }});
+}
+
+Presence::~Presence() = default;
+
+session::Outside* Presence::outside() noexcept { return &parts_->outside; }
+
+void Presence::is(State state) noexcept { parts_->state = state; }
+
+session::Watch Presence::watched(session::Watch inner, const std::string& case_id,
+                                 const session::PreparedCase& prepared) {
+  return [this, inner = std::move(inner), case_id, &prepared](const session::Glimpse& now) {
+    Seen seen;
+    put(seen.trial_id, now.trial_id);
+    put(seen.case_id, case_id);
+    seen.t_s = now.live.t_s;
+    const auto& force = now.live.rendered_force_N;
+    seen.force_N = math::Vec3(force[0], force[1], force[2]).norm();
+    seen.depth_m = std::clamp(depth_m(now.live, prepared), -1.0, 1.0);
+    seen.samples = now.samples_safe;
+    seen.late = now.live.late_ticks;
+    parts_->seen.write(seen);
+    is(State::trial);
+    return !inner || inner(now);
+  };
+}
+
+session::ProbingWatch Presence::watched(session::ProbingWatch inner,
+                                        const session::ProbingTask& task) {
+  return [this, inner = std::move(inner), case_id = task.case_id,
+          blind = task.blind](const session::ProbingGlimpse& now) {
+    Seen seen;
+    put(seen.trial_id, now.trial_id);
+    put(seen.case_id, case_id);
+    seen.probing = true;
+    seen.blind = blind;
+    seen.t_s = std::max(now.t_s, 0.0);
+    seen.force_N = std::abs(now.push_N);
+    seen.depth_m = std::clamp(now.x_m, -1.0, 1.0);
+    seen.samples = now.samples_safe;
+    seen.late = now.missed;
+    parts_->seen.write(seen);
+    is(State::trial);
+    return !inner || inner(now);
+  };
+}
+
+void Presence::done(const session::TrialReport& report) {
+  parts_->ticks += report.counts.ticks;
+  parts_->late += report.counts.late;
+  if (parts_->outside.stopped())
+    is(State::stopped);
+  else
+    is(report.fault.empty() ? State::idle : State::fault);
+}
+
+bool Presence::may_go_on() {
+  Parts& p = *parts_;
+  if (!p.outside.stopped()) return true;
+  is(State::stopped);
+  fmt::print(stderr, "{}\n", session::stopped_text(p.outside));
+  if (!::isatty(STDIN_FILENO)) return false;
+  fmt::print(stderr, "Look at the device, then press Enter to go on: ");
+  std::string line;
+  if (!std::getline(std::cin, line)) return false;
+  p.outside.go_on();
+  is(State::idle);
+  return true;
+}
+
+}  // namespace app

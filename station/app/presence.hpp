@@ -1,0 +1,43 @@
+/// The station as those who look on see it, and what they may ask of it: the live line, wired to
+/// whatever this program does.
+#pragma once
+
+#include <memory>
+
+#include "station/app/options.hpp"
+#include "station/session/prepared_case.hpp"
+#include "station/session/station_folder.hpp"
+
+namespace app {
+
+class Presence {
+ public:
+  enum class State { idle, preparing, trial, questions, stopped, fault };
+
+  /// Opens the line when a server was named; without, everything here does nothing.
+  Presence(const Options& options, const session::StationFolder& folder);
+  ~Presence();
+  Presence(const Presence&) = delete;
+  Presence& operator=(const Presence&) = delete;
+
+  /// For TrialSetup and RigSetup.
+  session::Outside* outside() noexcept;
+  void is(State state) noexcept;
+  /// Shows the trial to those who look on, and goes on with `inner`.
+  /// @param case_id  what the server knows the case by
+  /// @param prepared  outlives the watch
+  session::Watch watched(session::Watch inner, const std::string& case_id,
+                         const session::PreparedCase& prepared);
+  session::ProbingWatch watched(session::ProbingWatch inner, const session::ProbingTask& task);
+  /// After a trial: idle again, or fault, or stopped.
+  void done(const session::TrialReport& report);
+  /// Nobody stopped it, or a person at the terminal says that it goes on. False: it was stopped,
+  /// and nobody is there.
+  bool may_go_on();
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace app

@@ -1,0 +1,74 @@
+#include "tests/bench/stations_load/backlog.hpp"
+
+#include <fmt/format.h>
+
+#include "core/file.hpp"
+#include "station/uplink/upload.hpp"
+#include "tests/bench/stations_load/station.hpp"
+#include "wire/messages.hpp"
+
+namespace load {
+namespace fs = std::filesystem;
+namespace {
+
+/// Seconds for one stream of these bytes; negative: it failed.
+double plain_upload_s(uplink::Server& server, const std::string& case_id,
+                      const std::string& bytes) {
+  const std::string path = "/api/v1/uploads/" + core::new_id();
+  const std::string said =
+      wire::UploadAnnouncement{case_id, bytes.size(), core::sha256(core::bytes_of(bytes))}
+          .to_json()
+          .dump();
+  const auto announced = server.send({.method = "PUT", .path = path, .body = core::bytes_of(said)});
+  if (!announced || announced->status != 200) return -1.0;
+  const double begun = bench::wall_s();
+  for (std::size_t at = 0; at < bytes.size(); at += wire::kMaxChunk_bytes) {
+    const auto piece = core::bytes_of(std::string_view(bytes).substr(at, wire::kMaxChunk_bytes));
+    const auto answer =
+        server.send({.method = "PATCH",
+                     .path = fmt::format("{}?offset_bytes={}", path, at),
+                     .headers = {{"X-Crc32c", fmt::format("{:08x}", core::crc32c(piece))},
+                                 {"Content-Type", "application/octet-stream"}},
+                     .body = piece});
+    if (!answer || answer->status != 200) return -1.0;
+  }
+  return bench::wall_s() - begun;
+}
+
+}  // namespace
+
+void judge_backlog(bench::Report& report, const Server& server, int trials,
+                   const fs::path& folder) {
+  const fs::path station = folder / "station";
+  fs::create_directories(station / "outbox");
+  fs::create_directories(station / "trials");
+  const uplink::Outbox outbox(station / "outbox");
+  std::string all;
+  for (int i = 0; i < trials; ++i) {
+    const std::string id = core::new_id();
+    auto bytes = trial_bytes(folder, id, server.case_id(), 1000.0, 10.0, unsigned(i));
+    if (!bytes) return report.must(bytes.error().what, false);
+    const fs::path file = station / "trials" / (id + ".ttrial");
+    const bool kept =
+        core::write_file(file, core::bytes_of(*bytes)) && outbox.queue(id, server.case_id(), file);
+    if (!kept) return report.must("the backlog is on the disk", false);
+    all += *bytes;
+  }
+  auto line = uplink::HttpServer::make(server.url(), server.token(0), server.authority());
+  if (!line) return report.must(line.error().what, false);
+  const double plain_s = plain_upload_s(**line, server.case_id(), all);
+  core::MonotonicClock clock;
+  const double begun = bench::wall_s();
+  auto handed = uplink::upload_all(**line, outbox, station / "trials", clock, {});
+  const double took_s = bench::wall_s() - begun;
+  report.must("every trial of the backlog was handed over",
+              handed && handed->handed_over == trials && handed->waiting == 0);
+  const double size_MB = double(all.size()) * 1e-6;
+  report.row("backlog", double(trials), "trials", fmt::format("{:.1f} MB", size_MB));
+  report.row("plain upload of the same bytes", size_MB / plain_s, "MB/s");
+  report.row("backlog drains at", size_MB / took_s, "MB/s",
+             fmt::format("{:.1f} trials/s", trials / took_s));
+  report.row("backlog against plain", plain_s / took_s, "");
+}
+
+}  // namespace load
