@@ -47,6 +47,15 @@ Json breach_json(const volume::Breach& breach) {
 
 }  // namespace
 
+Json no_tract_json(const cases::CarvingPlan& plan, const std::string& problem) {
+  return {{"length_m", (plan.target_m - plan.entry_m).norm()},
+          {"side", Json()},
+          {"tract", Json()},
+          {"walls", Json::array()},
+          {"breach", Json()},
+          {"problems", Json::array({problem})}};
+}
+
 Json tract_json(const volume::Volume& ct, const volume::TransferFunction& transfer,
                 cases::CarvingPlan plan) {
   const auto asked = std::exchange(plan.breach, std::nullopt);
