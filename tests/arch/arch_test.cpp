@@ -86,7 +86,6 @@ const std::map<std::string, Names> kAllowed = {
      {"shared/core", "shared/trial", "shared/metrics", "shared/cases", "shared/scenarios",
       "shared/volume", "shared/volume/io", "shared/lab", "shared/lab/io", "shared/assessment",
       "db/store"}},
-      "shared/volume", "shared/lab", "shared/lab/io", "shared/assessment", "db/store"}},
     // What stations do just now: their words, the database they share, lines to those who look on.
     {"server/live", {"shared/core", "shared/wire", "db/store", "server/http"}},
     {"server/api",
