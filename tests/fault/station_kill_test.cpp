@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <limits>
 #include <random>
 #include <sstream>
 #include <thread>
@@ -141,11 +142,15 @@ TEST(KilledAtAnyMoment, TheStationLosesNothingItPromisedAndEveryTrialArrivesOnce
   ASSERT_EQ(trusted.code, 0) << trusted.out;
   ASSERT_EQ(station.ask("sync", server.port()).code, 0);
 
-  const auto began = Clock::now();
-  const auto whole = run_program("tractus-station", station.arguments(server.port(), 1));
-  ASSERT_EQ(whole.code, 0) << whole.out;
-  const auto length =
-      std::chrono::duration_cast<std::chrono::microseconds>(Clock::now() - began).count();
+  long length = std::numeric_limits<long>::max();  // of the shortest whole run
+  for (int run = 0; run < 3; ++run) {
+    const auto began = Clock::now();
+    const auto whole = run_program("tractus-station", station.arguments(server.port(), 1));
+    ASSERT_EQ(whole.code, 0) << whole.out;
+    length = std::min<long>(
+        length,
+        std::chrono::duration_cast<std::chrono::microseconds>(Clock::now() - began).count());
+  }
 
   std::mt19937 random(20260302);
   for (int kill = 0; kill < kKills && !::testing::Test::HasFailure(); ++kill) {

@@ -1,6 +1,6 @@
 /** The whole: which address shows which page, and what an ended session does to all of them. */
 import { QueryCache, QueryClient, QueryClientProvider, useQuery } from '@tanstack/react-query';
-import { lazy, Suspense, useState, type ReactNode } from 'react';
+import { Suspense, useState, type ReactNode } from 'react';
 import { Link, Redirect, Route, Switch, useLocation } from 'wouter';
 import { ApiError, endSession, sessionQuery } from '@/api';
 import { Account, OwnAccountPage, SessionGate } from '@/features/session';
@@ -10,42 +10,9 @@ import { TrialsPage } from '@/features/trials';
 import { Notice, Shell, Skeleton, useTitle } from '@/ui';
 import styles from './app.module.css';
 import { Fault } from './fault';
-
-const TrialPage = lazy(() => import('@/features/trial'));
-const lab = () => import('@/features/lab');
-const LabPage = lazy(() => lab().then(({ LabPage: page }) => ({ default: page })));
-const WorkPage = lazy(() => lab().then(({ WorkPage: page }) => ({ default: page })));
-const network = () => import('@/features/network');
-const PeoplePage = lazy(() => network().then(({ PeoplePage: page }) => ({ default: page })));
-const CohortsPage = lazy(() => network().then(({ CohortsPage: page }) => ({ default: page })));
-const StationsPage = lazy(() => network().then(({ StationsPage: page }) => ({ default: page })));
-const BackupsPage = lazy(() => network().then(({ BackupsPage: page }) => ({ default: page })));
-const StationPage = lazy(() => network().then(({ StationPage: page }) => ({ default: page })));
-const WallPage = lazy(() => import('@/features/wall').then(({ WallPage: page }) => ({ default: page })));
-const AuditPage = lazy(() => network().then(({ AuditPage: page }) => ({ default: page })));
-const GuidePage = lazy(() => import('@/features/guide').then(({ GuidePage: page }) => ({ default: page })));
-const analysis = () => import('@/features/analysis');
-const AnalysisPage = lazy(() => analysis().then(({ AnalysisPage: page }) => ({ default: page })));
-const ExamplePage = lazy(() => analysis().then(({ ExamplePage: page }) => ({ default: page })));
-const NewPlanPage = lazy(() => analysis().then(({ NewPlanPage: page }) => ({ default: page })));
-const PlanPage = lazy(() => analysis().then(({ PlanPage: page }) => ({ default: page })));
-const RunPage = lazy(() => analysis().then(({ RunPage: page }) => ({ default: page })));
-const trainees = () => import('@/features/trainees');
-const TraineesPage = lazy(() => trainees().then(({ TraineesPage: page }) => ({ default: page })));
-const TraineePage = lazy(() => trainees().then(({ TraineePage: page }) => ({ default: page })));
-const cases = () => import('@/features/cases');
-const CasesPage = lazy(() => cases().then(({ CasesPage: page }) => ({ default: page })));
-const CasePage = lazy(() => cases().then(({ CasePage: page }) => ({ default: page })));
-const NewCasePage = lazy(() => cases().then(({ NewCasePage: page }) => ({ default: page })));
-const assignments = () => import('@/features/assignments');
-const AssignmentsPage = lazy(() => assignments().then(({ AssignmentsPage: page }) => ({ default: page })));
-const AssignmentPage = lazy(() => assignments().then(({ AssignmentPage: page }) => ({ default: page })));
-const NewAssignmentPage = lazy(() => assignments().then(({ NewAssignmentPage: page }) => ({ default: page })));
-const scenarios = () => import('@/features/scenarios');
-const ScenariosPage = lazy(() => scenarios().then(({ ScenariosPage: page }) => ({ default: page })));
-const ScenarioPage = lazy(() => scenarios().then(({ ScenarioPage: page }) => ({ default: page })));
-const DebriefPage = lazy(() => import('@/features/debrief').then(({ DebriefPage: page }) => ({ default: page })));
-const VersionsPage = lazy(() => lab().then(({ VersionsPage: page }) => ({ default: page })));
+import {
+  TrialPage, LabPage, WorkPage, PeoplePage, CohortsPage, StationsPage, BackupsPage, StationPage, WallPage, AuditPage, GuidePage, AnalysisPage, ExamplePage, NewPlanPage, PlanPage, RunPage, TraineesPage, TraineePage, CasesPage, CasePage, NewCasePage, AssignmentsPage, AssignmentPage, NewAssignmentPage, ScenariosPage, ScenarioPage, DebriefPage, VersionsPage,
+} from './later-pages';
 
 function makeClient(): QueryClient {
   const onError = (reason: Error) => {

@@ -133,13 +133,17 @@ ServerProcess::ServerProcess(const fs::path& data, std::vector<std::string> more
   const Started started = start("tractus-server", arguments);
   pid_ = started.pid;
   output_ = started.output;
-  std::string said;
-  char c = 0;
-  while (said.find('\n') == std::string::npos && ::read(output_, &c, 1) == 1) said += c;
   const std::string before = transport == Transport::plain ? "listening on http://127.0.0.1:"
                                                            : "listening on https://127.0.0.1:";
-  if (said.starts_with(before)) port_ = std::stoi(said.substr(before.size()));
-  EXPECT_NE(port_, 0) << said;
+  std::string said, line;  // lines of its log may come before
+  char c = 0;
+  while (port_ == 0 && ::read(output_, &c, 1) == 1) {
+    line += c;
+    if (c != '\n') continue;
+    if (line.starts_with(before)) port_ = std::stoi(line.substr(before.size()));
+    said += std::exchange(line, "");
+  }
+  EXPECT_NE(port_, 0) << said << line;
 }
 
 ServerProcess::~ServerProcess() { kill_now(); }

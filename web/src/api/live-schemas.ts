@@ -8,7 +8,7 @@ const number = v.pipe(v.number(), v.finite());
 const known = <Schema extends v.GenericSchema>(schema: Schema) => v.nullish(schema, null);
 
 const runningTrialSchema = v.object({
-  trial_id: v.string(), rig: v.string(), case_title: known(v.string()), person: known(v.string()), t_s: number, samples: count, force_N: number,
+  trial_id: v.string(), rig: v.string(), case_title: known(v.string()), person: known(v.string()), t_s: number, samples: count, force_N: known(number),
   depth_m: known(number), late_ticks: count,
 });
 const selfTestSchema = v.object({ at_utc_us: inUtc, passed: v.boolean(), failed: v.array(v.string()) });
@@ -32,7 +32,7 @@ const checkSchema = v.object({ name: v.string(), passed: v.boolean(), value: kno
 export const stationPageSchema = v.object({
   ...stationStateFields, enrolled_utc_us: inUtc, revoked_utc_us: known(inUtc),
   self_tests: v.optional(v.array(v.object({ at_utc_us: inUtc, passed: v.boolean(), checks: v.array(checkSchema) })), []),
-  calibrations: v.optional(v.array(v.object({ at_utc_us: inUtc, due_utc_us: inUtc, kind: v.string(), words: v.optional(v.string(), '') })), []),
+  calibrations: v.optional(v.array(v.object({ at_utc_us: inUtc, due_utc_us: known(inUtc), kind: v.string(), words: v.optional(v.string(), '') })), []),
 });
 
 export type StationState = v.InferOutput<typeof stationStateSchema>;

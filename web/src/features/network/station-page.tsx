@@ -94,7 +94,7 @@ export function StationPage({ id }: { readonly id: string }) {
         <Table<Page['calibrations'][number]> caption="Calibrations, newest first" rows={station.calibrations} keyOf={(one) => String(one.at_utc_us)} empty="It has not told of a calibration yet. At the station: tractus-station calibrate" columns={[
           { name: 'Done', cell: (one) => formatDateTime(one.at_utc_us) },
           { name: 'Of', cell: (one) => one.kind },
-          { name: 'Due', cell: (one) => { const due = calibrationWords(one.due_utc_us, now); return <Badge tone={due.tone}>{formatDateTime(one.due_utc_us)}</Badge>; } },
+          { name: 'Due', cell: (one) => one.due_utc_us === null ? <span className={styles.muted}>not stated</span> : <Badge tone={calibrationWords(one.due_utc_us, now).tone}>{formatDateTime(one.due_utc_us)}</Badge> },
           { name: 'Result', cell: (one) => <span className={styles.muted}>{one.words}</span> },
         ]} />
       </Card>

@@ -14,7 +14,7 @@ function Trial({ trial }: { readonly trial: NonNullable<StationState['trial']> }
       <div><dt>Who</dt><dd>{trial.person ?? 'somebody of another cohort'}</dd></div>
       {trial.case_title === null ? null : <div><dt>Case</dt><dd>{trial.case_title}</dd></div>}
       <div><dt>Time</dt><dd className={styles.number}>{formatDuration(second(trial.t_s))}</dd></div>
-      <div><dt>Force</dt><dd className={styles.number}>{formatForce(newton(trial.force_N))}</dd></div>
+      {trial.force_N === null ? null : <div><dt>Force</dt><dd className={styles.number}>{formatForce(newton(trial.force_N))}</dd></div>}
       {trial.depth_m === null ? null : <div><dt>Depth</dt><dd className={styles.number}>{formatLength(metre(trial.depth_m))}</dd></div>}
       {trial.late_ticks > 0 ? <div><dt>Late steps</dt><dd className={styles.number}>{trial.late_ticks}</dd></div> : null}
     </dl>
@@ -23,7 +23,7 @@ function Trial({ trial }: { readonly trial: NonNullable<StationState['trial']> }
 
 function since(station: StationState): string {
   if (station.state === 'away') return station.last_seen_utc_us === null ? 'never heard of' : `last heard of ${formatDateTime(station.last_seen_utc_us)}`;
-  return station.since_utc_us === null ? '' : `since ${formatDateTime(station.since_utc_us)}`;
+  return station.since_utc_us === null || station.since_utc_us === 0 ? '' : `since ${formatDateTime(station.since_utc_us)}`;
 }
 
 function Tile({ station, named, onStop }: { readonly station: StationState; readonly named: boolean; readonly onStop: () => void }) {

@@ -1,0 +1,38 @@
+/** Pages that are fetched when they are first shown. */
+import { lazy } from 'react';
+
+export const TrialPage = lazy(() => import('@/features/trial'));
+const lab = () => import('@/features/lab');
+export const LabPage = lazy(() => lab().then(({ LabPage: page }) => ({ default: page })));
+export const WorkPage = lazy(() => lab().then(({ WorkPage: page }) => ({ default: page })));
+const network = () => import('@/features/network');
+export const PeoplePage = lazy(() => network().then(({ PeoplePage: page }) => ({ default: page })));
+export const CohortsPage = lazy(() => network().then(({ CohortsPage: page }) => ({ default: page })));
+export const StationsPage = lazy(() => network().then(({ StationsPage: page }) => ({ default: page })));
+export const BackupsPage = lazy(() => network().then(({ BackupsPage: page }) => ({ default: page })));
+export const StationPage = lazy(() => network().then(({ StationPage: page }) => ({ default: page })));
+export const WallPage = lazy(() => import('@/features/wall').then(({ WallPage: page }) => ({ default: page })));
+export const AuditPage = lazy(() => network().then(({ AuditPage: page }) => ({ default: page })));
+export const GuidePage = lazy(() => import('@/features/guide').then(({ GuidePage: page }) => ({ default: page })));
+const analysis = () => import('@/features/analysis');
+export const AnalysisPage = lazy(() => analysis().then(({ AnalysisPage: page }) => ({ default: page })));
+export const ExamplePage = lazy(() => analysis().then(({ ExamplePage: page }) => ({ default: page })));
+export const NewPlanPage = lazy(() => analysis().then(({ NewPlanPage: page }) => ({ default: page })));
+export const PlanPage = lazy(() => analysis().then(({ PlanPage: page }) => ({ default: page })));
+export const RunPage = lazy(() => analysis().then(({ RunPage: page }) => ({ default: page })));
+const trainees = () => import('@/features/trainees');
+export const TraineesPage = lazy(() => trainees().then(({ TraineesPage: page }) => ({ default: page })));
+export const TraineePage = lazy(() => trainees().then(({ TraineePage: page }) => ({ default: page })));
+const cases = () => import('@/features/cases');
+export const CasesPage = lazy(() => cases().then(({ CasesPage: page }) => ({ default: page })));
+export const CasePage = lazy(() => cases().then(({ CasePage: page }) => ({ default: page })));
+export const NewCasePage = lazy(() => cases().then(({ NewCasePage: page }) => ({ default: page })));
+const assignments = () => import('@/features/assignments');
+export const AssignmentsPage = lazy(() => assignments().then(({ AssignmentsPage: page }) => ({ default: page })));
+export const AssignmentPage = lazy(() => assignments().then(({ AssignmentPage: page }) => ({ default: page })));
+export const NewAssignmentPage = lazy(() => assignments().then(({ NewAssignmentPage: page }) => ({ default: page })));
+const scenarios = () => import('@/features/scenarios');
+export const ScenariosPage = lazy(() => scenarios().then(({ ScenariosPage: page }) => ({ default: page })));
+export const ScenarioPage = lazy(() => scenarios().then(({ ScenarioPage: page }) => ({ default: page })));
+export const DebriefPage = lazy(() => import('@/features/debrief').then(({ DebriefPage: page }) => ({ default: page })));
+export const VersionsPage = lazy(() => lab().then(({ VersionsPage: page }) => ({ default: page })));
