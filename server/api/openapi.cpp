@@ -53,7 +53,7 @@ core::Json error_answer(const char* description) {
 core::Json responses(const RouteInfo& route) {
   core::Json out = core::Json::object();
   if (route.converse)
-    out["101"] = {{"description", route.summary}};
+    out["101"] = {{"description", route.summary}, {"content", content(route.answer)}};
   else if (route.answer.empty())
     out["204"] = {{"description", "done"}};
   else
@@ -101,7 +101,7 @@ core::Json operation(const RouteInfo& route) {
   if (!route.body.empty())
     out["requestBody"] = {{"required", true}, {"content", content(route.body)}};
   out["responses"] = responses(route);
-  if (route.converse) out["x-websocket"] = {{"frames", schema::ref(route.answer)}};
+  if (route.converse) out["x-websocket"] = true;  // the frames are the answer's content
   return out;
 }
 

@@ -71,6 +71,9 @@ void LiveUplink::hold(Line& line) {
         parts_.commanded(*command);
     }
   }
+  // Whoever stopped this station waits to see that it did: long enough for a wall to be told.
+  if (const std::string last = parts_.told().to_json().dump(); last != said && line.say(last))
+    std::this_thread::sleep_for(std::chrono::milliseconds(3 * kBetween_ms));
 }
 
 }  // namespace uplink
