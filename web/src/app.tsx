@@ -1,6 +1,6 @@
 /** The whole: which address shows which page, and what an ended session does to all of them. */
 import { QueryCache, QueryClient, QueryClientProvider, useQuery } from '@tanstack/react-query';
-import { Suspense, useState, type ReactNode } from 'react';
+import { Suspense, type ReactNode } from 'react';
 import { Link, Redirect, Route, Switch, useLocation } from 'wouter';
 import { ApiError, endSession, sessionQuery } from '@/api';
 import { Account, OwnAccountPage, SessionGate } from '@/features/session';
@@ -14,7 +14,7 @@ import {
   TrialPage, LabPage, WorkPage, PeoplePage, CohortsPage, StationsPage, BackupsPage, StationPage, WallPage, AuditPage, GuidePage, AnalysisPage, ExamplePage, NewPlanPage, PlanPage, RunPage, TraineesPage, TraineePage, CasesPage, CasePage, NewCasePage, AssignmentsPage, AssignmentPage, NewAssignmentPage, ScenariosPage, ScenarioPage, DebriefPage, VersionsPage,
 } from './later-pages';
 
-function makeClient(): QueryClient {
+export function makeClient(): QueryClient {
   const onError = (reason: Error) => {
     if (reason instanceof ApiError && reason.code === 'unauthorised') endSession(client);
   };
@@ -154,8 +154,7 @@ function Framed({ children }: { readonly children: ReactNode }) {
   return <Shell home={<Brand />} account={<Account />}>{children}</Shell>;
 }
 
-export function App() {
-  const [client] = useState(makeClient);
+export function App({ client }: { readonly client: QueryClient }) {
   return (
     <QueryClientProvider client={client}>
       <Framed>
