@@ -1,5 +1,5 @@
 /** The whole way through the model lab on a set with a hidden effect, against a real server. */
-import { execFileSync } from 'node:child_process';
+import { execFileSync, spawnSync } from 'node:child_process';
 import { join } from 'node:path';
 import { readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
@@ -98,8 +98,9 @@ describe.skipIf(bin === undefined)('a set with a hidden effect', () => {
     execFileSync(join(bin ?? '', 'tractus-station'), ['sync', ...at]);
     await page.locator('[data-part="sent"]').getByText('is there').waitFor();
     await shot('published');
-    const felt = execFileSync(join(bin ?? '', 'tractus-station'), ['--device', 'sim-rig', '--scenario', 'hard', '--model', 'handed base (simulated set)', '--data', join(served.folder, 'station'), '--speed', 'fast', '--json'], { encoding: 'utf8' });
-    const { trials: [trial] } = JSON.parse(felt) as { trials: { file: string }[] };
+    // It may end in a fault where dry friction lets the push rise above what the actuator holds: felt it was.
+    const felt = spawnSync(join(bin ?? '', 'tractus-station'), ['--device', 'sim-rig', '--scenario', 'hard', '--model', 'handed base (simulated set)', '--data', join(served.folder, 'station'), '--speed', 'fast', '--json'], { encoding: 'utf8' });
+    const { trials: [trial] } = JSON.parse(felt.stdout) as { trials: { file: string }[] };
     expect(readFileSync(trial?.file ?? '', 'latin1'), 'the trial was felt by the better model').toContain('coulomb_friction');
     await page.getByRole('link', { name: 'Old and new side by side' }).click();
     await page.locator('[data-part="error-after"]').waitFor();
@@ -145,15 +146,13 @@ describe.skipIf(bin === undefined)('a set with a hidden effect', () => {
     await shot('cancelled');
   }, 120_000);
 
-  it('shows a palpation model’s error painted on the wall of the tract', async () => {
+  it('holds a palpation model against a set, and says what a set must state for its error to be painted on the tract', async () => {
     const set = join(served.folder, 'palpation');
     execFileSync(join(bin ?? '', 'blind-palpation'), ['--seed', '12', '--out', set, '--effect', 'contact_friction', '--trials', '3', '--duration', '5', '--rate', '200']);
     const model = JSON.parse(readFileSync(join(set, 'model.json'), 'utf8')) as Record<string, unknown>;
     delete model.volume;  // the set brings it along
     const told = JSON.parse(readFileSync(join(set, 'measurements/set.json'), 'utf8')) as Record<string, unknown>;
     await page.goto('/lab');
-    await page.locator('[data-part="model-file"]').setInputFiles({ name: 'model.json', mimeType: 'application/json', buffer: Buffer.from(JSON.stringify({ ...model, name: 'palpation, as handed out' })) });
-    await page.getByText('palpation, as handed out').first().waitFor();
     const choosing = page.waitForEvent('filechooser');
     await page.getByRole('button', { name: 'Choose a zip' }).click();
     const named = (name: string, buffer: Buffer) => ({ name, mimeType: 'application/octet-stream', buffer });
@@ -163,13 +162,14 @@ describe.skipIf(bin === undefined)('a set with a hidden effect', () => {
     ]);
     await page.getByText('palpated, simulated').first().waitFor();
     await page.getByRole('radio', { name: /palpated, simulated/ }).check();
+    await page.locator('[data-part="model-file"]').setInputFiles({ name: 'model.json', mimeType: 'application/json', buffer: Buffer.from(JSON.stringify({ ...model, name: 'palpation, as handed out' })) });
+    await page.getByText('palpation, as handed out').first().waitFor();
     await page.getByRole('radio', { name: /palpation, as handed out/ }).check();
     await page.getByRole('button', { name: 'Compare' }).click();
     await page.locator('[data-panel="value"] canvas').waitFor({ timeout: 120_000 });
     await page.getByRole('link', { name: 'Where it fails' }).click();
     await page.getByRole('heading', { name: 'On the wall of the tract' }).waitFor();
-    await page.locator('[data-part="painted"][data-ready]').waitFor();
-    await page.waitForTimeout(800);
+    await page.getByText('The place of the samples in the tract is not known.').waitFor();
     await shot('palpation-where');
   }, 240_000);
 });
