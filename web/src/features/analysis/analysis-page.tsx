@@ -25,16 +25,16 @@ export function AnalysisPage() {
       </div>
       <Card title="The cohort" aside={<span className={styles.buttons}><Select label={<span className="hidden-visually">Trials of</span>} value={study} onChange={(event) => setStudy(event.target.value)} options={[{ value: '', text: 'All scored trials' }, ...studies.map(({ id, title }) => ({ value: id, text: title }))]} /><a href={cohortTableAddress(study)} download="cohort.csv">As CSV</a></span>}>
         {table.isError ? <Notice tone="bad" title="The cohort could not be loaded." onRetry={() => void table.refetch()}>{table.error.message}</Notice> : null}
-        {table.isPending ? <Skeleton height="52px" /> : (
+        <div className={styles.holdsFacts}>{table.isPending ? <Skeleton height="52px" /> : (
           <Facts facts={[
             { name: 'Trials that count and are scored', value: <strong>{formatCount(rows.length)}</strong> }, { name: 'Participants', value: <strong>{formatCount(people)}</strong> },
             { name: 'By a machine', value: simulated > 0 ? <Badge tone="warn">{formatCount(simulated)} simulated</Badge> : 'none' }, { name: 'Columns', value: formatCount(table.data?.columns.length ?? 0) },
           ]} />
-        )}
+        )}</div>
       </Card>
       <Card title="One question, at once" aside={<Badge>not planned beforehand</Badge>}>
-        {table.data && rows.length > 0 ? <QuestionForm key={study} table={table.data} metrics={metrics} deed="Ask" busy={asked.isPending} onAsk={(question) => asked.mutate(question)} />
-          : table.isPending ? <Skeleton height="140px" /> : <p className={styles.muted}>There is no scored trial yet. <Link href="/analysis/example">See how it looks with the published study.</Link></p>}
+        <div className={styles.holdsForm}>{table.data && rows.length > 0 ? <QuestionForm key={study} table={table.data} metrics={metrics} deed="Ask" busy={asked.isPending} onAsk={(question) => asked.mutate(question)} />
+          : table.isPending ? <Skeleton height="140px" /> : <p className={styles.muted}>There is no scored trial yet. <Link href="/analysis/example">See how it looks with the published study.</Link></p>}</div>
         {asked.isError ? <Notice tone="bad" title="That cannot be asked.">{asked.error.message}</Notice> : null}
       </Card>
       <Card title="Locked plans">
