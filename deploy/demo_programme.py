@@ -221,7 +221,7 @@ class Programme:
     def hidden_effects(self):
         """What the model lab is for; the truth stays in a file beside the data, for who wants to look afterwards. Probing last: the
         lab offers the newest first, and its search takes seconds."""
-        for rig, seed, effect, more in (("palpation", 12, "contact_friction", ["--trials", 4, "--duration", 6, "--rate", 200]),
+        for rig, seed, effect, more in (("palpation", 12, "contact_friction", ["--tract", "--trials", 4, "--duration", 6, "--rate", 200]),
                                         ("probing", 7, "coulomb_friction", ["--trials", 6, "--duration", 4])):
             out = self.home / f"hidden-{rig}"
             if not out.exists():

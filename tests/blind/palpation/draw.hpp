@@ -13,7 +13,8 @@ struct PalpationRequest {
   std::vector<std::string> ids;  ///< of the effects, when they are not to be drawn
   int trials = 8;
   double duration_s = 8.0, rate_Hz = 200.0;
-  std::filesystem::path ct;  ///< a real scan, used by some seeds; empty: never
+  bool states_tract = false;  ///< in set.json: where the channel is
+  std::filesystem::path ct;   ///< a real scan, used by some seeds; empty: never
 };
 
 struct PalpationPlan {

@@ -48,6 +48,7 @@ int main(int argc, char** argv) {
   what->add_flag("--base-wrong", base_wrong, "nothing, and the handed numbers far off");
   app.add_option("--trials", request.trials)->check(CLI::Range(1, 1000));
   app.add_option("--duration", request.duration_s, "s per trial")->check(CLI::Range(1.0, 600.0));
+  app.add_flag("--tract", request.states_tract, "let set.json state where the channel is");
   app.add_option("--rate", request.rate_Hz, "Hz")->check(CLI::Range(20.0, 4000.0));
   CLI11_PARSE(app, argc, argv);
   if (!choose(request, effect, pair, outside, none ? "none" : base_wrong ? "base_wrong" : ""))

@@ -88,9 +88,14 @@ bool write_set(const PalpationSet& set, const fs::path& folder) {
     trials.push_back({{"id", id}, {"file", id + ".csv"}, {"operator", "simulated"}, {"notes", ""}});
     good = put_trial(folder / "measurements" / (id + ".csv"), set.trials[i]) && good;
   }
-  return put(folder / "measurements" / "set.json",
-             {{"format", "tractus-measurements/1"}, {"rig", "palpation"}, {"trials", trials}}) &&
-         good;
+  Json index = {{"format", "tractus-measurements/1"}, {"rig", "palpation"}, {"trials", trials}};
+  if (plan.request.states_tract) {
+    const Vec3 &entry = plan.tract.entry_m, axis = plan.tract.along.normalized();
+    index["tract"] = {{"entry_m", {entry[0], entry[1], entry[2]}},
+                      {"axis", {axis[0], axis[1], axis[2]}},
+                      {"length_m", plan.tract.depth_m}};
+  }
+  return put(folder / "measurements" / "set.json", index) && good;
 }
 
 bool write_truth(const PalpationSet& set, const fs::path& file) {
