@@ -113,14 +113,22 @@ class KilledStation {
     }
     for (const auto& [id, safe] : safe_) EXPECT_GE(here[id], safe) << id;
 
-    const Answer list = client.ask("GET", "/api/v1/trials?limit=500", world_.admin(client));
-    ASSERT_EQ(list.status, 200) << list.body;
     std::map<std::string, std::uint64_t> there;
-    const auto trials = list.json()["trials"];
-    for (const auto& trial : trials) {
-      const auto id = trial["id"].get<std::string>();
-      EXPECT_FALSE(there.contains(id)) << id << " arrived twice";
-      there[id] = trial["samples"].get<std::uint64_t>();
+    const auto admin = world_.admin(client);
+    bool more = true;
+    for (std::string before; more;) {
+      const Answer list = client.ask("GET", "/api/v1/trials?limit=500" + before, admin);
+      ASSERT_EQ(list.status, 200) << list.body;
+      const auto trials = list.json()["trials"];
+      for (const auto& trial : trials) {
+        const auto id = trial["id"].get<std::string>();
+        EXPECT_FALSE(there.contains(id)) << id << " arrived twice";
+        there[id] = trial["samples"].get<std::uint64_t>();
+      }
+      more = list.json()["more"].get<bool>();
+      if (more)
+        before =
+            "&before_utc_us=" + std::to_string(trials.back()["started_utc_us"].get<std::int64_t>());
     }
     EXPECT_EQ(there, here);
   }
