@@ -4,6 +4,7 @@
 #include <random>
 
 #include "core/file.hpp"
+#include "fuzz/mutation.hpp"
 #include "fuzz/trial_bytes.hpp"
 
 namespace fuzz {
@@ -11,38 +12,6 @@ namespace {
 
 core::Bytes golden(const std::string& name) {
   return core::read_file(std::string(TRACTUS_SOURCE_DIR) + "/tests/golden/" + name).value();
-}
-
-/// One to four times: a byte changed, a stretch removed, doubled or zeroed, a 32-bit number made
-/// extreme.
-core::Bytes mutated(core::Bytes bytes, std::mt19937& random) {
-  const auto below = [&](std::size_t limit) {
-    return std::uniform_int_distribution<std::size_t>(0, limit - 1)(random);
-  };
-  for (std::size_t turn = 1 + below(4); turn > 0 && !bytes.empty(); --turn) {
-    const std::size_t at = below(bytes.size());
-    const std::size_t length = 1 + below(std::min<std::size_t>(bytes.size() - at, 200));
-    const auto begin = bytes.begin() + std::ptrdiff_t(at), end = begin + std::ptrdiff_t(length);
-    switch (below(5)) {
-      case 0:
-        *begin = std::byte(below(256));
-        break;
-      case 1:
-        bytes.erase(begin, end);
-        break;
-      case 2: {
-        const core::Bytes part(begin, end);
-        bytes.insert(end, part.begin(), part.end());
-        break;
-      }
-      case 3:
-        std::fill(begin, end, std::byte{});
-        break;
-      default:
-        std::fill(begin, begin + std::ptrdiff_t(std::min<std::size_t>(length, 4)), std::byte{0xff});
-    }
-  }
-  return bytes;
 }
 
 struct Golden {
@@ -77,7 +46,7 @@ TEST_P(TrialMutation, TheWholeFilesAreRead) {
 TEST_P(TrialMutation, NoMutationBreaksAPromise) {
   std::mt19937 random(1);
   const auto whole = small();
-  for (int i = 0; i < 4000; ++i) try_trial(mutated(whole, random));
+  for (int i = 0; i < 4000; ++i) try_trial(mutated(whole, random, Texts::none));
 }
 
 TEST_P(TrialMutation, NoMutationWithTrueChecksumsBreaksAPromise) {
@@ -85,7 +54,7 @@ TEST_P(TrialMutation, NoMutationWithTrueChecksumsBreaksAPromise) {
   const auto whole = small();
   int read = 0;
   constexpr int kTries = 8000;
-  for (int i = 0; i < kTries; ++i) read += try_trial(repaired(mutated(whole, random)));
+  for (int i = 0; i < kTries; ++i) read += try_trial(repaired(mutated(whole, random, Texts::none)));
   EXPECT_GT(read, kTries / 20) << "the repair reaches nothing";
   EXPECT_LT(read, kTries * 19 / 20) << "nothing is refused";
 }
