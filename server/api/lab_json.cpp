@@ -104,27 +104,8 @@ Result<Json> whole_run_json(const Call& call, const store::LabRun& run) {
 
 RouteInfo lab_route(std::string method, std::string tail, std::string id, std::string summary,
                     std::string answer, Result<http::Response> (*handle)(const Call&)) {
-  RouteInfo out{.method = std::move(method),
-                .path = "/api/v1/lab/" + tail,
-                .id = std::move(id),
-                .summary = std::move(summary),
-                .who = {Role::admin, Role::researcher},
-                .parameters = {},
-                .body = "",
-                .answer = std::move(answer),
-                .schemas = {},
-                .handle = handle};
-  if (out.path.find("{id}") != std::string::npos)
-    out.parameters.push_back(path_text("id", "32 hexadecimal characters"));
-  return out;
-}
-
-RouteInfo taking(RouteInfo out, std::string body, std::uint64_t limit_bytes,
-                 std::vector<NamedSchema> schemas) {
-  out.body = std::move(body);
-  out.body_limit_bytes = limit_bytes;
-  out.schemas = std::move(schemas);
-  return out;
+  return research_route(std::move(method), "lab/" + tail, std::move(id), std::move(summary),
+                        std::move(answer), handle);
 }
 
 Parameter optional_text(std::string name, std::string meaning) {

@@ -21,11 +21,9 @@ core::Json own_effects(const store::LabRun& run);
 std::vector<NamedSchema> lab_model_schemas();
 std::vector<NamedSchema> lab_run_schemas();
 
-/// A route under /api/v1/lab, for administrators; {id} in the tail is declared.
+/// research_route under /api/v1/lab.
 RouteInfo lab_route(std::string method, std::string tail, std::string id, std::string summary,
                     std::string answer, core::Result<http::Response> (*handle)(const Call&));
-RouteInfo taking(RouteInfo route, std::string body, std::uint64_t limit_bytes,
-                 std::vector<NamedSchema> schemas);
 /// An argument in the query that may be left out.
 Parameter optional_text(std::string name, std::string meaning);
 core::Error absent(const char* what, const std::string& id);

@@ -87,6 +87,37 @@ const std::vector<RouteInfo>& routes() {
   return flat;
 }
 
+RouteInfo research_route(std::string method, std::string path, std::string id, std::string summary,
+                         std::string answer, core::Result<http::Response> (*handle)(const Call&)) {
+  RouteInfo out{.method = std::move(method),
+                .path = "/api/v1/" + path,
+                .id = std::move(id),
+                .summary = std::move(summary),
+                .who = {Role::admin, Role::researcher},
+                .parameters = {},
+                .body = "",
+                .answer = std::move(answer),
+                .schemas = {},
+                .handle = handle};
+  if (out.path.find("{id}") != std::string::npos)
+    out.parameters.push_back(path_text("id", "32 hexadecimal characters"));
+  return out;
+}
+
+RouteInfo taking(RouteInfo out, std::string body, std::uint64_t limit_bytes,
+                 std::vector<NamedSchema> schemas) {
+  out.body = std::move(body);
+  out.body_limit_bytes = limit_bytes;
+  out.schemas = std::move(schemas);
+  return out;
+}
+
+http::Response as_report(http::Response response) {
+  response.with("Content-Security-Policy",
+                "default-src 'none'; style-src 'unsafe-inline'; img-src data:; sandbox");
+  return response;
+}
+
 http::Response json_response(const core::Json& json, int status) {
   http::Response response{.status = status,
                           .headers = {},

@@ -123,6 +123,15 @@ std::vector<std::vector<RouteInfo>> all();
 /// The same, in one.
 const std::vector<RouteInfo>& routes();
 
+/// A route of researchers and administrators at "/api/v1/" + path; "{id}" in it is a parameter.
+RouteInfo research_route(std::string method, std::string path, std::string id, std::string summary,
+                         std::string answer, core::Result<http::Response> (*handle)(const Call&));
+/// The same route with a body, and with the schemas it is the first to name.
+RouteInfo taking(RouteInfo route, std::string body, std::uint64_t limit_bytes,
+                 std::vector<NamedSchema> schemas);
+
+/// A report as a page of its own: it may show itself and do nothing else.
+http::Response as_report(http::Response response);
 http::Response json_response(const core::Json& json, int status = 200);
 /// The system's causes as HTTP: the one place that knows.
 int status_of(core::Errc code);

@@ -145,10 +145,7 @@ Result<http::Response> part_of(const Call& call) {
                                       page   ? "text/html; charset=utf-8"
                                       : json ? "application/json"
                                              : "text/csv; charset=utf-8");
-  // A page of its own: it may show itself and do nothing else.
-  if (response && page)
-    response->with("Content-Security-Policy",
-                   "default-src 'none'; style-src 'unsafe-inline'; img-src data:; sandbox");
+  if (response && page) *response = as_report(std::move(*response));
   if (response && !page)
     response->with("Content-Disposition", fmt::format("attachment; filename=\"{}\"", part));
   return response;
@@ -167,27 +164,8 @@ Result<http::Response> table_of(const Call& call) {
 
 RouteInfo route(std::string method, std::string tail, std::string id, std::string summary,
                 std::string answer, Result<http::Response> (*handle)(const Call&)) {
-  RouteInfo out{.method = std::move(method),
-                .path = "/api/v1/cohort/" + tail,
-                .id = std::move(id),
-                .summary = std::move(summary),
-                .who = {Role::admin, Role::researcher},
-                .parameters = {},
-                .body = "",
-                .answer = std::move(answer),
-                .schemas = {},
-                .handle = handle};
-  if (out.path.find("{id}") != std::string::npos)
-    out.parameters.push_back(path_text("id", "32 hexadecimal characters"));
-  return out;
-}
-
-RouteInfo taking(RouteInfo out, std::string body, std::uint64_t limit_bytes,
-                 std::vector<NamedSchema> schemas) {
-  out.body = std::move(body);
-  out.body_limit_bytes = limit_bytes;
-  out.schemas = std::move(schemas);
-  return out;
+  return research_route(std::move(method), "cohort/" + tail, std::move(id), std::move(summary),
+                        std::move(answer), handle);
 }
 
 std::vector<NamedSchema> plan_schemas() {

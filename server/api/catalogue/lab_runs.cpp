@@ -150,11 +150,8 @@ Result<http::Response> report_of(const Call& call) {
   if (!run->report) return absent("report of the run", run->id);
   auto response = http::file_response(call.backend.objects.path_of(*run->report), call.request,
                                       "text/html; charset=utf-8");
-  // A page of its own: it may show itself and do nothing else.
-  if (response)
-    response->with("Content-Security-Policy",
-                   "default-src 'none'; style-src 'unsafe-inline'; img-src data:; sandbox");
-  return response;
+  if (!response) return response;
+  return as_report(std::move(*response));
 }
 
 Result<http::Response> better_model(const Call& call) {
