@@ -1,4 +1,5 @@
-/// What `tractus-station` does, each to its end. An Error becomes one line and exit 2.
+/// What `tractus-station` does. A new one: a line here, its file, and its subcommand in
+/// options.cpp.
 #pragma once
 
 #include "station/app/options.hpp"

@@ -6,6 +6,8 @@
 #include <limits>
 #include <map>
 
+#include "station/app/deeds.hpp"
+
 namespace app {
 namespace {
 constexpr const char* kExamples = R"(Examples:
@@ -30,6 +32,13 @@ const std::map<std::string, loop::Passivity> kPassivities{
 
 const std::map<std::string, Show> kShows{
     {"none", Show::none}, {"window", Show::window}, {"offscreen", Show::offscreen}};
+
+/// A subcommand that is done by `deed`.
+CLI::App* add_deed(CLI::App& app, Options& options, Deed deed, const char* name, const char* what) {
+  CLI::App* added = app.add_subcommand(name, what);
+  added->callback([&options, deed] { options.deed = deed; });
+  return added;
+}
 
 void add_data(CLI::App& app, Options& options, bool needed) {
   auto* data = app.add_option("--data", options.data, "the station's folder; made when missing");
@@ -171,7 +180,6 @@ void add_study(CLI::App& app, Options& options) {
 }
 
 void set_study(const CLI::App& app, Options& options) {
-  options.deed = Deed::study;
   options.skill_given = app.count("--skill") > 0;
   if (app.count("--trials") == 0) options.trials = std::numeric_limits<int>::max();
 }
@@ -205,6 +213,22 @@ void add_assigned(CLI::App& app, Options& options) {
       ->default_str("none");
 }
 
+void add_enrol(CLI::App& app, Options& options) {
+  app.add_flag("--json", options.json, "one JSON document on standard output");
+  app.add_option("--data", options.data,
+                 "the station's folder: cases that are made on the server are taken there");
+  add_server(app, options, true);
+  app.add_option("--code", options.code, "from the server's administrator; holds an hour")
+      ->required();
+}
+
+void add_trust(CLI::App& app, Options& options) {
+  add_data(app, options, true);
+  auto* key = app.add_option("--signer", options.signer_hex, "public key, 64 hexadecimal digits");
+  auto* bundle = app.add_option("--case", options.signer_of_case, "a case: its signer's key");
+  key->excludes(bundle);
+}
+
 int refuse(const std::string& why) {
   std::fprintf(stderr, "tractus-station: %s (see --help)\n", why.c_str());
   return 2;
@@ -214,9 +238,9 @@ int refuse(const std::string& why) {
 std::optional<int> check_run(const CLI::App& app, Options& options) {
   session::RigSetup& rig = options.rig;
   rig.device = options.setup.device;
-  if (rig.device == "rig" || rig.device == "sim-rig") options.deed = Deed::probe;
+  if (rig.device == "rig" || rig.device == "sim-rig") options.deed = run_probing_trials;
   if (options.data.empty()) return refuse("--data is required");
-  if (options.deed == Deed::run) {
+  if (options.deed == run_trials) {
     if (!options.scenario.empty()) return refuse("--scenario: --device rig or sim-rig is expected");
     return options.case_name.empty() ? std::optional(refuse("--case is required")) : std::nullopt;
   }
@@ -235,6 +259,7 @@ std::optional<int> check_run(const CLI::App& app, Options& options) {
 Parsed parse(int argc, char** argv) {
   Parsed out;
   Options& options = out.options;
+  options.deed = run_trials;
   CLI::App app("A station: feel a case with a haptic device, record the trial, hand it over",
                "tractus-station");
   app.set_version_flag("--version", TRACTUS_VERSION);
@@ -244,43 +269,38 @@ Parsed parse(int argc, char** argv) {
   add_server(app, options, false);
   add_run(app, options);
 
-  CLI::App* sync = app.add_subcommand("sync", "fetch the cases that the server has");
+  CLI::App* sync =
+      add_deed(app, options, sync_cases, "sync", "fetch the cases that the server has");
   add_data(*sync, options, true);
   add_server(*sync, options, true);
-  CLI::App* study = app.add_subcommand("study", "a participant's trials of a blind study");
+  CLI::App* study =
+      add_deed(app, options, run_study, "study", "a participant's trials of a blind study");
   add_data(*study, options, true);
   add_server(*study, options, true);
   add_study(*study, options);
-  CLI::App* upload = app.add_subcommand("upload", "hand over the trials that wait");
+  CLI::App* upload =
+      add_deed(app, options, upload_trials, "upload", "hand over the trials that wait");
   add_data(*upload, options, true);
   add_server(*upload, options, true);
   upload->add_option("--wait", options.wait_s, "s to go on trying when the server does not answer")
       ->check(CLI::Range(0.0, 1e7));
-  CLI::App* assigned =
-      app.add_subcommand("assigned", "sign in with badge and PIN; do what is assigned, in order");
-  add_assigned(*assigned, options);
-  CLI::App* enrol = app.add_subcommand(
-      "enrol", "make a key for this station and let the server know it, by a one-time code");
-  enrol->add_flag("--json", options.json, "one JSON document on standard output");
-  enrol->add_option("--data", options.data,
-                    "the station's folder: cases that are made on the server are taken there");
-  add_server(*enrol, options, true);
-  enrol->add_option("--code", options.code, "from the server's administrator; holds an hour")
-      ->required();
-  CLI::App* tune = app.add_subcommand(
-      "tune", "feel a scenario and nudge its eight parameters by keys; save new versions");
-  add_tune(*tune, options);
-  CLI::App* limits = app.add_subcommand(
-      "limits", "how much force a hand gets; --restore takes back what was lowered from afar");
+  add_assigned(*add_deed(app, options, run_assigned, "assigned",
+                         "sign in with badge and PIN; do what is assigned, in order"),
+               options);
+  add_enrol(*add_deed(app, options, enrol_station, "enrol",
+                      "make a key for this station and let the server know it, by a one-time code"),
+            options);
+  add_tune(*add_deed(app, options, tune_scenario, "tune",
+                     "feel a scenario and nudge its eight parameters by keys; save new versions"),
+           options);
+  CLI::App* limits =
+      add_deed(app, options, show_limits, "limits",
+               "how much force a hand gets; --restore takes back what was lowered from afar");
   add_data(*limits, options, true);
   limits->add_flag("--restore", options.restore, "this station's own limits hold again");
-  CLI::App* trust =
-      app.add_subcommand("trust", "take cases that are signed by this key from now on");
-  add_data(*trust, options, true);
-  auto* key =
-      trust->add_option("--signer", options.signer_hex, "public key, 64 hexadecimal digits");
-  auto* bundle = trust->add_option("--case", options.signer_of_case, "a case: its signer's key");
-  key->excludes(bundle);
+  add_trust(*add_deed(app, options, trust_signer, "trust",
+                      "take cases that are signed by this key from now on"),
+            options);
 
   try {
     app.parse(argc, argv);
@@ -289,16 +309,9 @@ Parsed parse(int argc, char** argv) {
     return out;
   }
   if (study->parsed()) set_study(*study, options);
-  if (sync->parsed()) options.deed = Deed::sync;
-  if (upload->parsed()) options.deed = Deed::upload;
-  if (enrol->parsed()) options.deed = Deed::enrol;
-  if (assigned->parsed()) options.deed = Deed::assigned;
-  if (limits->parsed()) options.deed = Deed::limits;
-  if (trust->parsed()) options.deed = Deed::trust;
-  if (tune->parsed()) options.deed = Deed::tune;
-  if (options.deed == Deed::trust && options.signer_hex.empty() && options.signer_of_case.empty())
+  if (options.deed == trust_signer && options.signer_hex.empty() && options.signer_of_case.empty())
     out.leave = refuse("trust: --signer or --case is expected");
-  if (options.deed == Deed::run) out.leave = check_run(app, options);
+  if (options.deed == run_trials) out.leave = check_run(app, options);
   return out;
 }
 

@@ -12,10 +12,12 @@ namespace app {
 
 inline constexpr std::int64_t kBetweenTrials_us = 600'000'000;  ///< of simulated dates
 
-enum class Deed { run, probe, tune, study, sync, upload, trust, enrol, assigned, limits };
+struct Options;
+/// What is to be done (deeds.hpp), to its end. An Error becomes one line and exit 2.
+using Deed = core::Result<int> (*)(const Options&);
 
 struct Options {
-  Deed deed = Deed::run;
+  Deed deed = nullptr;  ///< set by `parse`
   std::filesystem::path data;
   std::string server_url;
   std::filesystem::path token_file;

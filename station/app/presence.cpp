@@ -10,6 +10,7 @@
 #include <cstring>
 #include <iostream>
 
+#include "station/app/deeds.hpp"
 #include "station/app/exchange.hpp"
 #include "station/loop/live_state.hpp"
 #include "station/uplink/clock_offset.hpp"
@@ -70,7 +71,7 @@ struct Presence::Parts {
   std::unique_ptr<uplink::LiveUplink> line;  ///< last: ends before what its thread uses
 
   Parts(const Options& given, const session::StationFolder& where) : options(given), folder(where) {
-    const bool rig = given.deed == Deed::probe || given.deed == Deed::study;
+    const bool rig = given.deed == run_probing_trials || given.deed == run_study;
     device = rig ? given.rig.device : given.setup.device;
     simulated = device.starts_with("sim-");
     if (where.config().lowered_force_N) outside.lower_force(*where.config().lowered_force_N);

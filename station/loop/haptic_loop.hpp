@@ -47,7 +47,7 @@ class TimeHistogram {
 };
 
 /// What is done about energy that the device puts into the hand (safety/energy.hpp).
-enum class Passivity : std::uint8_t {
+enum class Passivity {
   observed,    ///< logged alone
   controlled,  ///< and taken back by damping
 };
