@@ -33,6 +33,7 @@ TEST_F(WithRuntime, SaysThatTrackingIsLostAndGoesOnWhenItIsBack) {
   control_->untracked_from = 20;
   control_->untracked_to = 30;
   auto headset = made(shown());
+  ASSERT_TRUE(headset);
   ASSERT_TRUE(step_to(*headset, *control_, 25));
   EXPECT_EQ(headset->seen(), Seen::tracking_lost);
   ASSERT_TRUE(step_to(*headset, *control_, 40));
@@ -45,6 +46,7 @@ TEST_F(WithRuntime, SaysThatTrackingIsLostAndGoesOnWhenItIsBack) {
 TEST_F(WithRuntime, ALostSessionEndsTheView) {
   control_->lose_session_at = 15;
   auto headset = made(shown());
+  ASSERT_TRUE(headset);
   EXPECT_FALSE(step_to(*headset, *control_, 40));
   EXPECT_EQ(headset->seen(), Seen::over);
   EXPECT_EQ(headset->why(), "the runtime lost the session");
@@ -61,6 +63,7 @@ TEST_F(WithRuntime, ALostSessionEndsTheView) {
 TEST_F(WithRuntime, ACallThatAnswersSessionLostEndsTheView) {
   control_->call_fails_at = 15;
   auto headset = made(shown());
+  ASSERT_TRUE(headset);
   EXPECT_FALSE(step_to(*headset, *control_, 40));
   EXPECT_NE(headset->why().find("XR_ERROR_SESSION_LOST"), std::string::npos) << headset->why();
 }
@@ -68,6 +71,7 @@ TEST_F(WithRuntime, ACallThatAnswersSessionLostEndsTheView) {
 TEST_F(WithRuntime, ARuntimeThatEndsEndsTheView) {
   control_->lose_instance_at = 15;
   auto headset = made(shown());
+  ASSERT_TRUE(headset);
   EXPECT_FALSE(step_to(*headset, *control_, 40));
   EXPECT_EQ(headset->why(), "the runtime itself is ending");
 }
@@ -76,6 +80,7 @@ TEST_F(WithRuntime, FramesThatWereDueAndNotMadeAreCounted) {
   control_->late_at = 20;
   control_->late_by = 5;
   auto headset = made(shown());
+  ASSERT_TRUE(headset);
   ASSERT_TRUE(step_to(*headset, *control_, 40));
   EXPECT_EQ(headset->figures().dropped, 5u);
   EXPECT_TRUE(left(*headset));
@@ -84,6 +89,7 @@ TEST_F(WithRuntime, FramesThatWereDueAndNotMadeAreCounted) {
 TEST_F(WithRuntime, TakenOffItWaitsAndPutOnAgainItShows) {
   control_->take_off_at = 20;
   auto headset = made(shown());
+  ASSERT_TRUE(headset);
   bool waited = false;
   for (int i = 0; i < 200 && control_->frames < 60; ++i) {
     ASSERT_TRUE(headset->step());
@@ -98,6 +104,7 @@ TEST_F(WithRuntime, TakenOffItWaitsAndPutOnAgainItShows) {
 TEST_F(WithRuntime, APersonMayEndItAtTheHeadset) {
   control_->quit_at = 20;
   auto headset = made(shown());
+  ASSERT_TRUE(headset);
   EXPECT_FALSE(step_to(*headset, *control_, 60));
   EXPECT_EQ(headset->why(), "ended at the headset");
 }
@@ -126,6 +133,7 @@ TEST_F(WithRuntime, OpenGlOnXAloneAsksForADisplay) {
 TEST_F(WithRuntime, AnAlignmentIsOfTheStageAndNotUsedWithoutIt) {
   control_->offer_stage = 0;
   auto headset = made(shown());
+  ASSERT_TRUE(headset);
   ASSERT_TRUE(step_to(*headset, *control_, 10));
   EXPECT_FALSE(headset->figures().aligned);
   EXPECT_EQ(headset->seen(), Seen::shown);

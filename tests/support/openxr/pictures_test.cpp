@@ -53,6 +53,7 @@ class Pictures : public WithRuntime {
 // Twice as far, at (0.05, 1.5, -0.8): left 195.60, right 148.05, up 136.26.
 TEST_F(Pictures, ANearPointLiesFurtherApartThanAFarOneAndWhereGeometryPutsBoth) {
   auto headset = made(shown());
+  ASSERT_TRUE(headset);
   ASSERT_TRUE(step_to(*headset, *control_, 5));
   const auto near = seen(*headset);
   EXPECT_GT(near[0].pixels, 20);
@@ -82,6 +83,7 @@ TEST_F(Pictures, AReachingAlignmentPutsTheProbeWhereTheHandIs) {
   what.X_SD = math::Pose{
       {0.3, 1.2, -0.5}, math::Quat(Eigen::AngleAxisd(0.5 * std::numbers::pi, math::Vec3::UnitY()))};
   auto headset = made(what);
+  ASSERT_TRUE(headset);
   ASSERT_TRUE(step_to(*headset, *control_, 5));
   const auto balls = seen(*headset);
   EXPECT_NEAR(balls[0].x_px, 202.06, 0.6);
@@ -94,6 +96,7 @@ TEST_F(Pictures, WithoutAnAlignmentTheSceneStandsBeforeThePersonAndAPressBringsI
   Shown what = shown();
   what.X_SD.reset();
   auto headset = made(what);
+  ASSERT_TRUE(headset);
   ASSERT_TRUE(step_to(*headset, *control_, 5));
   const auto first = seen(*headset);
   // Straight ahead: the two eyes see it mirrored; 0.22 m below at 0.45 m ahead.
