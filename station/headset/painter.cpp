@@ -6,7 +6,6 @@
 #include <vtkActor.h>
 #include <vtkCamera.h>
 #include <vtkGenericOpenGLRenderWindow.h>
-#include <vtkLight.h>
 #include <vtkMatrix4x4.h>
 #include <vtkOpenGLFramebufferObject.h>
 #include <vtkOpenGLState.h>
@@ -26,7 +25,6 @@ constexpr double kNear_m = 0.03, kFar_m = 10.0;
 constexpr double kGrip_m = 0.02;
 const math::Vec3 kWordsAt_m{0.0, -0.05, -1.0};  // in the head's frame
 constexpr double kWordsHigh_rad = 0.03;
-const math::Vec3 kLampAt_m{0.0, 0.25, 0.0};  // in the head's frame, as a surgeon wears one
 
 vtkSmartPointer<vtkActor> grip() {
   vtkNew<vtkSphereSource> ball;
@@ -47,7 +45,6 @@ struct Painter::Parts {
   vtkNew<vtkGenericOpenGLRenderWindow> window;
   vtkNew<vtkRenderer> scene, board;  // one is drawn: what there is, or words
   vtkNew<vtkTextActor> words;
-  vtkNew<vtkLight> lamp;  // one for both eyes, or surfaces would glitter
   std::array<vtkSmartPointer<vtkActor>, 2> grips{grip(), grip()};
   view::Picture picture;
   unsigned target = 0;  // framebuffer that holds the runtime's texture
@@ -57,7 +54,6 @@ struct Painter::Parts {
   Parts(const view::LentContext& with, int width, int height)
       : context(with), width_px(width), height_px(height) {}
   void aim(vtkRenderer& renderer, const Eye& eye) const;
-  void light_from(const math::Vec3& p_V_m) const;
   core::Result<void> copy_to(unsigned texture);
 };
 
@@ -84,11 +80,6 @@ core::Result<std::unique_ptr<Painter>> Painter::make(const view::Scene& scene,
   if (!p.window->InitializeFromCurrentContext())
     return core::Error{core::Errc::unavailable, "headset: VTK cannot use the OpenGL context"};
   p.picture.add(*p.scene, scene);
-  const math::Vec3& entry = scene.tract.entry_m;
-  p.lamp->SetLightTypeToSceneLight();
-  p.lamp->SetFocalPoint(entry.x(), entry.y(), entry.z());
-  p.scene->AutomaticLightCreationOff();
-  p.scene->AddLight(p.lamp);
   for (const auto& grip : p.grips) p.scene->AddActor(grip);
   p.words->GetTextProperty()->SetColor(0.95, 0.86, 0.55);
   p.words->GetTextProperty()->SetJustificationToCentered();
@@ -139,16 +130,10 @@ void Painter::Parts::aim(vtkRenderer& renderer, const Eye& eye) const {
   camera->UseExplicitProjectionTransformMatrixOn();
 }
 
-void Painter::Parts::light_from(const math::Vec3& p_V_m) const {
-  lamp->SetPosition(p_V_m.x(), p_V_m.y(), p_V_m.z());
-}
-
 core::Result<void> Painter::paint(const Eye& eye, const math::Pose& X_WE, unsigned texture) {
   Parts& p = *parts_;
   p.timer->begin();
   p.aim(*p.scene, eye);
-  const math::Pose X_VW = eye.X_VE * X_WE.inverse();
-  p.light_from(X_VW * kLampAt_m);
   const math::Vec3 words_E = X_WE.inverse() * kWordsAt_m;
   const math::Vec2 at = pixel_of(words_E, eye.fov, p.width_px, p.height_px);
   p.words->SetDisplayPosition(int(std::lround(at.x())), int(std::lround(at.y())));

@@ -94,10 +94,10 @@ TEST_F(HeadsetTrial, IsAlignedSeenByBothEyesAndReported) {
   control_->head_m[2] = -0.45;
   control_->head_yaw_rad = 0.5;
   control_->width_px = control_->height_px = 256;
-  control_->outward_rad = 0.35;  // and looks down
+  control_->head_pitch_rad = -0.55;
+  control_->outward_rad = 0.35;
   control_->inward_rad = 0.3;
-  control_->up_rad = -0.25;
-  control_->down_rad = 0.75;
+  control_->up_rad = control_->down_rad = 0.3;
   control_->keep_at = 16;
   ASSERT_EQ(trial("headset"), 0) << text_of("err");
   const Json one = report();
