@@ -47,6 +47,8 @@ const std::map<std::string, Names> kAllowed = {
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/effects",
       "shared/models"}},
     {"shared/trial", {"shared/core", "shared/math"}},
+    // A measuring room's files become a measurement set.
+    {"shared/capture", {"shared/core", "shared/math", "shared/trial"}},
     {"shared/metrics", {"shared/core", "shared/math", "shared/volume", "shared/trial"}},
     // Analyses of a cohort: tables in, findings and pictures out.
     {"shared/assessment",
@@ -65,6 +67,8 @@ const std::map<std::string, Names> kAllowed = {
     {"station/devices", {"shared/core", "shared/math"}},
     // The rig's electronics and mechanics, played by a process: the register map, and no law.
     {"station/rig", {"shared/core", "station/devices"}},
+    // What measures people and machines; never in the haptic loop.
+    {"station/sensors", {"shared/core", "shared/math"}},
     {"station/loop",
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/effects",
       "shared/models", "shared/trial", "station/devices", "station/safety"}},

@@ -1,0 +1,96 @@
+/// `tractus assemble`: recordings of a measuring room become a measurement set.
+#include "capture/assemble.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "app/command.hpp"
+#include "core/progress.hpp"
+
+namespace commands {
+namespace {
+using core::Errc;
+using core::Error;
+using core::Json;
+
+struct Options {
+  std::string recipe, out;
+  bool json = false;
+};
+
+Json json_of(const capture::Assembled& one) {
+  Json taps = Json::array();
+  for (const double t : one.clock.taps_s) taps.push_back(t);
+  return {
+      {"id", one.trial.id},
+      {"samples", one.trial.t_s.size()},
+      {"rate_Hz", one.rate_Hz},
+      {"duration_s", one.trial.t_s.back()},
+      {"clock_offset_s", one.clock.offset_s},
+      {"clock_offset_sd_s", one.clock.sd_s},
+      {"taps_s", taps},
+      {"zero_force_N", {one.zero_S.force_N.x(), one.zero_S.force_N.y(), one.zero_S.force_N.z()}},
+      {"unseen", one.unseen}};
+}
+
+std::string line_of(const capture::Assembled& one) {
+  std::string out =
+      fmt::format("{}: {} samples at {:.4g} Hz, {:.1f} s; clocks {:+.4f} s apart", one.trial.id,
+                  one.trial.t_s.size(), one.rate_Hz, one.trial.t_s.back(), one.clock.offset_s);
+  if (one.clock.taps_s.empty())
+    out += " (stated)";
+  else
+    out +=
+        fmt::format(" (± {:.2g} ms, from {} taps)", 1e3 * one.clock.sd_s, one.clock.taps_s.size());
+  if (one.unseen > 0.001)
+    out += fmt::format("; a body was not seen for {:.1f} % of it", 100.0 * one.unseen);
+  return out;
+}
+
+Outcome run(const Options& options) {
+  const std::filesystem::path target = options.out;
+  if (std::filesystem::exists(target))
+    return Error{Errc::conflict, fmt::format("{}: is there already", options.out)};
+  const auto recipe = capture::Recipe::read(options.recipe);
+  if (!recipe) return recipe.error();
+  trial::PalpationSet set;
+  set.stated = recipe->stated;
+
+  const auto shown = core::terminal_progress("Assembling");
+  Json trials = Json::array();
+  std::string lines;
+  for (std::size_t k = 0; k < recipe->recordings.size(); ++k) {
+    if (!shown(double(k) / double(recipe->recordings.size())))
+      return Error{Errc::cancelled, "stopped; nothing was written"};
+    auto one = capture::assemble(*recipe, recipe->recordings[k]);
+    if (!one) return one.error();
+    trials.push_back(json_of(*one));
+    lines += line_of(*one) + "\n";
+    set.trials.push_back(std::move(one->trial));
+  }
+  if (auto written = trial::write_palpation_set(target, set); !written) return written.error();
+  if (options.json)
+    fmt::print("{}\n", Json{{"set", options.out}, {"trials", trials}}.dump(2));
+  else
+    fmt::print("{}", lines);
+  return 0;
+}
+}  // namespace
+
+Command assemble_command() {
+  return {.name = "assemble",
+          .summary = "Make a measurement set of motion capture and force recordings",
+          .example = "tractus assemble --recipe room/assembly.json --out recordings/",
+          .make = [](CLI::App& app) -> std::function<Outcome()> {
+            auto options = std::make_shared<Options>();
+            app.add_option("--recipe", options->recipe,
+                           "tractus-assembly/1: which file, body and sensor is what")
+                ->required();
+            app.add_option("--out", options->out, "the set's folder; must not exist")->required();
+            app.add_flag("--json", options->json, "one JSON document on standard output");
+            return [options] { return run(*options); };
+          }};
+}
+
+}  // namespace commands
