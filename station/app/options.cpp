@@ -22,7 +22,8 @@ constexpr const char* kExamples = R"(Examples:
   tractus-station assigned --badge 4711 --data st --server URL --token-file st.token
   tractus-station --device lambda6 --sdk /opt/sdk --case 3f9ac2d1 --data st
   tractus-station sync   --data st --server URL --token-file st.token
-  tractus-station upload --data st --server URL --token-file st.token --wait 600)";
+  tractus-station upload --data st --server URL --token-file st.token --wait 600
+  tractus-station record --netft 192.168.1.1 --igtl tracker.local --body probe --body bone --out room/)";
 
 const std::map<std::string, session::Speed> kSpeeds{{"real", session::Speed::real},
                                                     {"fast", session::Speed::fast}};
@@ -229,9 +230,48 @@ void add_trust(CLI::App& app, Options& options) {
   key->excludes(bundle);
 }
 
+void add_record(CLI::App& app, Options& options) {
+  sensors::RecordSetup& record = options.record;
+  app.add_option("--out", options.room, "the recording's new folder; must not exist")->required();
+  app.add_option("--netft", record.netft_host, "ATI Net F/T sensor: its host name or address");
+  app.add_option("--igtl", record.igtl_host, "motion capture over OpenIGTLink: its host");
+  app.add_option("--body", record.bodies, "of the capture system, once for each: the tool first")
+      ->needs("--igtl");
+  app.add_option("--for", record.for_s, "s; ends sooner by Ctrl-C, which keeps what there is")
+      ->check(CLI::Range(0.1, 86'400.0))
+      ->capture_default_str();
+  app.add_flag("--bias", record.bias,
+               "the sensor takes what it feels now as its zero; without, assemble takes it off");
+  const auto port = CLI::Range(1, 65'535);
+  app.add_option("--netft-port", record.netft_port, "UDP, of RDT")
+      ->check(port)
+      ->capture_default_str();
+  app.add_option("--http-port", record.http_port, "of the sensor's page")
+      ->check(port)
+      ->capture_default_str();
+  app.add_option("--igtl-port", record.igtl_port, "TCP")->check(port)->capture_default_str();
+  app.add_flag("--json", options.json, "one JSON document on standard output");
+  app.footer(
+      "Example:\n  tractus-station record --netft 192.168.1.1 --igtl tracker.local --body probe "
+      "--body vertebra --for 90 --out room/\nThen tap five times, palpate, tap five times again; "
+      "complete room/assembly.json; tractus assemble.");
+}
+
 int refuse(const std::string& why) {
   std::fprintf(stderr, "tractus-station: %s (see --help)\n", why.c_str());
   return 2;
+}
+
+std::optional<int> check_record(const Options& options) {
+  const sensors::RecordSetup& record = options.record;
+  if (record.netft_host.empty() && record.igtl_host.empty())
+    return refuse("record: --netft or --igtl is expected, or both");
+  if (!record.igtl_host.empty() && record.bodies.empty())
+    return refuse("record: --igtl: --body is expected, once for each body that is kept");
+  for (const std::string& body : record.bodies)
+    if (body.empty() || body.find_first_of(",\"\n\r") != std::string::npos)
+      return refuse("record: --body: a name without commas, quotes and line breaks is expected");
+  return std::nullopt;
 }
 
 /// Palpation or probing? What does not fit is refused.
@@ -301,6 +341,9 @@ Parsed parse(int argc, char** argv) {
   add_trust(*add_deed(app, options, trust_signer, "trust",
                       "take cases that are signed by this key from now on"),
             options);
+  add_record(*add_deed(app, options, record_room, "record",
+                       "a force/torque sensor and motion capture at once, for a measurement set"),
+             options);
 
   try {
     app.parse(argc, argv);
@@ -311,6 +354,7 @@ Parsed parse(int argc, char** argv) {
   if (study->parsed()) set_study(*study, options);
   if (options.deed == trust_signer && options.signer_hex.empty() && options.signer_of_case.empty())
     out.leave = refuse("trust: --signer or --case is expected");
+  if (options.deed == record_room) out.leave = check_record(options);
   if (options.deed == run_trials) out.leave = check_run(app, options);
   return out;
 }

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "station/app/onlooker.hpp"
+#include "station/sensors/record.hpp"
 #include "station/session/probing_trial.hpp"
 
 namespace app {
@@ -50,6 +51,9 @@ struct Options {
   // trust
   std::string signer_hex;
   std::filesystem::path signer_of_case;
+  // record
+  sensors::RecordSetup record;
+  std::filesystem::path room;  ///< the new folder
 };
 
 /// Of the n-th trial of this call; nothing when no date was given.

@@ -3,14 +3,14 @@
 #include <arpa/inet.h>
 #include <curl/curl.h>
 #include <fmt/format.h>
-#include <netdb.h>
-#include <poll.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstring>
+
+#include "core/words.hpp"
 
 namespace sensors {
 namespace {
@@ -18,7 +18,22 @@ using core::Errc;
 using core::Error;
 
 constexpr std::size_t kMaxPage = 256 * 1024;
-constexpr std::uint16_t kStart = 2, kStop = 0, kHeader = 0x1234;
+constexpr std::uint16_t kStart = 0x0002, kStop = 0x0000, kBias = 0x0042, kHeader = 0x1234;
+constexpr std::int32_t kAnew = 1000;  // a record this far back is no late one
+
+struct Bit {
+  int number;
+  const char* says;
+};
+/// Those on which the vendor's manuals agree; a Net F/T box uses further ones for its insides.
+constexpr std::array<Bit, 8> kBits{{{0, "inner temperature out of range"},
+                                    {1, "supply voltage out of range"},
+                                    {2, "a gage is broken"},
+                                    {16, "a threshold was passed"},
+                                    {27, "a gage is out of range"},
+                                    {28, "simulated error"},
+                                    {29, "the calibration's checksum is wrong"},
+                                    {30, "force or torque out of range"}}};
 
 /// What stands between <tag> and </tag>, blanks taken off.
 std::optional<std::string_view> inside(std::string_view xml, const std::string& tag) {
@@ -69,8 +84,8 @@ core::Result<double> positive(std::string_view xml, const char* tag, const std::
   double value = 0.0;
   const auto [end, failed] = std::from_chars(text->data(), text->data() + text->size(), value);
   if (failed != std::errc() || !(value > 0.0) || !std::isfinite(value))
-    return Error{Errc::bad_input,
-                 fmt::format("{}: <{}>: '{}': a number above 0 is expected", where, tag, *text)};
+    return Error{Errc::bad_input, fmt::format("{}: <{}>: '{}': a number above 0 is expected", where,
+                                              tag, core::one_line(*text, 64))};
   return value;
 }
 
@@ -93,6 +108,11 @@ core::Result<NetFtCalibration> parse_netft_xml(std::string_view xml, const std::
   if (!per_force) return per_force.error();
   const auto per_torque = positive(xml, "cfgcpt", where);
   if (!per_torque) return per_torque.error();
+  if (inside(xml, "comrdte").value_or("Enabled") == "Disabled")
+    return Error{Errc::bad_input,
+                 fmt::format("{}: RDT is switched off; enable it on the sensor's page "
+                             "Communications",
+                             where)};
   const auto rate = positive(xml, "comrdtrate", where);
   if (!rate) return rate.error();
   const auto force = inside(xml, "scfgfu"), torque = inside(xml, "scfgtu");
@@ -100,11 +120,12 @@ core::Result<NetFtCalibration> parse_netft_xml(std::string_view xml, const std::
              torque_si = si_of(kTorques, torque.value_or(""));
   if (!force_si || !torque_si)
     return Error{Errc::bad_input, fmt::format("{}: units '{}' and '{}' are not known", where,
-                                              force.value_or(""), torque.value_or(""))};
+                                              core::one_line(force.value_or(""), 64),
+                                              core::one_line(torque.value_or(""), 64))};
   return NetFtCalibration{.counts_per_N = *per_force / *force_si,
                           .counts_per_Nm = *per_torque / *torque_si,
                           .rate_Hz = *rate,
-                          .serial = std::string(inside(xml, "setserial").value_or(""))};
+                          .serial = core::one_line(inside(xml, "calsn").value_or(""), 64)};
 }
 
 core::Result<NetFtCalibration> ask_calibration(const std::string& host, int http_port) {
@@ -144,53 +165,64 @@ math::Wrench wrench_of(const RdtRecord& record, const NetFtCalibration& by) noex
           math::Vec3(c[3], c[4], c[5]) / by.counts_per_Nm};
 }
 
-core::Result<std::unique_ptr<NetFtStream>> NetFtStream::open(const std::string& host, int port) {
-  addrinfo wanted{}, *found = nullptr;
-  wanted.ai_socktype = SOCK_DGRAM;
-  const auto refuse = [&](const char* why) {
-    return Error{Errc::unavailable, fmt::format("force sensor at {}:{}: {}", host, port, why)};
-  };
-  if (const int failed = ::getaddrinfo(host.c_str(), std::to_string(port).c_str(), &wanted, &found))
-    return refuse(::gai_strerror(failed));
-  const int fd = ::socket(found->ai_family, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  const bool connected = fd >= 0 && ::connect(fd, found->ai_addr, found->ai_addrlen) == 0;
-  const char* why = std::strerror(errno);
-  ::freeaddrinfo(found);
-  if (!connected) {
-    if (fd >= 0) ::close(fd);
-    return refuse(why);
-  }
-  std::unique_ptr<NetFtStream> out(new NetFtStream(fd));
+bool is_faulty(std::uint32_t status) noexcept { return (status & 0x80000000u) != 0; }
+
+bool is_saturated(std::uint32_t status) noexcept { return (status & 0x48000000u) != 0; }
+
+std::string status_words(std::uint32_t status) {
+  std::string words;
+  for (const Bit& bit : kBits)
+    if (status & 1u << bit.number)
+      words += fmt::format("{}{}", words.empty() ? "" : ", ", bit.says);
+  if (words.empty()) words = is_faulty(status) ? "an error" : "no error";
+  return fmt::format("{:#010x} ({})", status, words);
+}
+
+core::Result<std::unique_ptr<NetFtStream>> NetFtStream::open(const std::string& host, int port,
+                                                             bool bias) {
+  auto socket = Socket::connect("force sensor", host, port, Wire::udp);
+  if (!socket) return socket.error();
+  std::unique_ptr<NetFtStream> out(new NetFtStream(std::move(*socket)));
+  if (bias) out->command(kBias);
   out->command(kStart);
   return out;
 }
 
-NetFtStream::~NetFtStream() {
-  command(kStop);
-  ::close(fd_);
-}
+NetFtStream::~NetFtStream() { command(kStop); }
 
 void NetFtStream::command(std::uint16_t what) const noexcept {
+  // Header, command, and as many samples as there are until it is stopped: 0.
   const std::array<std::uint16_t, 4> request{htons(kHeader), htons(what), 0, 0};
-  static_cast<void>(::send(fd_, request.data(), sizeof request, MSG_NOSIGNAL));
+  static_cast<void>(::send(socket_.fd(), request.data(), sizeof request, MSG_NOSIGNAL));
 }
 
-std::optional<RdtRecord> NetFtStream::next(int wait_ms) {
-  pollfd waiting{.fd = fd_, .events = POLLIN, .revents = 0};
-  while (::poll(&waiting, 1, wait_ms) > 0) {
+core::Result<std::optional<RdtRecord>> NetFtStream::next(int wait_ms) {
+  while (socket_.readable(wait_ms)) {
     std::array<std::byte, 256> datagram;
-    const ssize_t size = ::recv(fd_, datagram.data(), datagram.size(), 0);
-    if (size < 0) return std::nullopt;  // nobody there (refused)
+    const ssize_t size = ::recv(socket_.fd(), datagram.data(), datagram.size(), 0);
+    if (size < 0 && (errno == EAGAIN || errno == EINTR)) continue;
+    if (size < 0)
+      return Error{Errc::unavailable,
+                   fmt::format("the force sensor is gone: {}", std::strerror(errno))};
     const auto record = parse_rdt(std::span(datagram.data(), std::size_t(size)));
     if (!record) continue;
     const auto ahead = static_cast<std::int32_t>(record->sequence - last_);
-    if (started_ && ahead <= 0) continue;
-    if (started_) lost_ += std::uint64_t(ahead - 1);
+    if (started_ && ahead < -kAnew)
+      return Error{Errc::unavailable, "the force sensor began to count anew: was it switched off?"};
+    if (started_ && ahead <= 0) {
+      ++late_;
+      continue;
+    }
+    if (started_) {
+      lost_ += std::uint64_t(ahead - 1);
+      index_ += std::uint64_t(ahead);
+    }
     started_ = true;
     last_ = record->sequence;
-    return record;
+    return std::optional(*record);
   }
-  return std::nullopt;
+  if (!started_) command(kStart);  // it may have been lost on the way, as all of UDP
+  return std::optional<RdtRecord>();
 }
 
 }  // namespace sensors

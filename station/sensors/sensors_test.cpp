@@ -13,7 +13,7 @@ namespace {
 using math::Vec3;
 
 const char* const kPage =
-    "<?xml version=\"1.0\"?><netft><setserial>FT1234</setserial><cfgcpf>1000000</cfgcpf>"
+    "<?xml version=\"1.0\"?><netft><calsn>FT1234</calsn><cfgcpf>1000000</cfgcpf>"
     "<cfgcpt>500000</cfgcpt><scfgfu>N</scfgfu><scfgtu>Nm</scfgtu><comrdtrate>7000</comrdtrate></"
     "netft>";
 
