@@ -5,15 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "trial/csv.hpp"
-
 namespace capture {
 namespace {
 using core::Errc;
 using core::Error;
 using math::Vec3;
 
-constexpr double kAfterTaps_s = 0.5;
+constexpr double kBesideTaps_s = 0.5, kShown_s = 0.4;
 constexpr double kLongestGap_s = 0.05;  // of the capture: beyond it a body was not seen
 
 core::Result<BodyTrack> track_of(const Motion& motion, const Carrier& carrier,
@@ -109,16 +107,47 @@ std::vector<double> norms(const ForceTrack& force, const math::Wrench& zero) {
   return out;
 }
 
-core::Result<ClockOffset> clock_of(const Recipe& recipe, const Recording& recording,
-                                   const ForceTrack& force, const Probe& probe) {
-  if (recording.offset_s) return ClockOffset{.offset_s = *recording.offset_s};
+std::vector<Vec3> tips(const Recipe& recipe, const Probe& probe) {
+  std::vector<Vec3> out;
+  for (const math::Pose& X : probe.X_VH) out.push_back(X * Vec3(0, 0, recipe.tip_z_m));
+  return out;
+}
+
+TapView view_of(const TapPair& run, const ClockFit& clock, const Tapped& tapped) {
+  TapView out;
+  const double from_s = run.taps_s.front() - kShown_s, to_s = run.taps_s.back() + kShown_s;
+  const auto shown = [&](double t) { return t >= from_s && t <= to_s; };
+  for (std::size_t k = 0; k < tapped.force_t_s.size(); ++k)
+    if (const double t = clock.motion_time(tapped.force_t_s[k]); shown(t)) {
+      out.force_t_s.push_back(t);
+      out.force_N.push_back(tapped.force_N[k]);
+    }
+  for (std::size_t k = 0; k < tapped.motion_t_s.size(); ++k)
+    if (shown(tapped.motion_t_s[k])) {
+      out.way_t_s.push_back(tapped.motion_t_s[k]);
+      out.way_m.push_back(run.inward.dot(tapped.tip_m[k]));
+    }
+  const double deepest = out.way_m.empty() ? 0.0 : *std::ranges::max_element(out.way_m);
+  for (double& w : out.way_m) w -= deepest;
+  return out;
+}
+
+/// The clocks, and the runs of taps for a person to see.
+core::Result<ClockFit> clock_of(const Recipe& recipe, const Recording& recording,
+                                const ForceTrack& force, const Probe& probe, Assembled& out) {
+  ClockFit stated;
+  stated.offset_s = recording.offset_s.value_or(0.0);
+  if (recording.offset_s || recording.motion == recording.force) return stated;
   // A first zero from the start is good enough to see the taps.
   const auto zero = zero_of(force, force.t_s.front(), recipe.tare_s);
   if (!zero) return zero.error();
-  std::vector<Vec3> tip;
-  for (const math::Pose& X : probe.X_VH) tip.push_back(X * Vec3(0, 0, recipe.tip_z_m));
-  return align(force_taps(force.t_s, norms(force, *zero), recipe.taps),
-               motion_taps(probe.t_s, tip, recipe.taps));
+  const auto tip = tips(recipe, probe);
+  const auto pull = norms(force, *zero);
+  const Tapped tapped{force.t_s, pull, probe.t_s, tip};
+  auto clock = align(tapped, recipe.taps);
+  if (!clock) return clock;
+  for (const TapPair& run : clock->runs) out.taps.push_back(view_of(run, *clock, tapped));
+  return clock;
 }
 
 /// Eq. (2).
@@ -131,12 +160,14 @@ math::Wrench at_handle(const Sensor& sensor, const math::Wrench& in_S, const mat
 
 void keep_rows(const Recipe& recipe, const Recording& recording, const ForceTrack& force,
                const Probe& probe, Assembled& out) {
-  double from_s = out.clock.taps_s.empty() ? -1e300 : out.clock.taps_s.back() + kAfterTaps_s;
-  if (recording.from_s) from_s = *recording.from_s;
-  const double to_s = recording.to_s.value_or(1e300), half_s = 0.5 / out.rate_Hz;
+  const auto& runs = out.clock.runs;
+  double from_s = runs.empty() ? -1e300 : runs.front().taps_s.back() + kBesideTaps_s, to_s = 1e300;
+  if (runs.size() > 1) to_s = runs.back().taps_s.front() - kBesideTaps_s;
+  from_s = recording.from_s.value_or(from_s), to_s = recording.to_s.value_or(to_s);
+  const double half_s = 0.5 / out.rate_Hz;
   for (std::size_t k = 0; k < probe.t_s.size(); ++k) {
     if (probe.t_s[k] < from_s || probe.t_s[k] > to_s) continue;
-    const auto mean = mean_about(force, probe.t_s[k] + out.clock.offset_s, half_s);
+    const auto mean = mean_about(force, out.clock.force_time(probe.t_s[k]), half_s);
     if (!mean) continue;
     out.trial.t_s.push_back(probe.t_s[k]);
     out.trial.X_VH.push_back(probe.X_VH[k]);
@@ -157,27 +188,11 @@ double rate_of(const std::vector<double>& t_s) {
 }
 }  // namespace
 
-core::Result<ForceTrack> read_force(const std::filesystem::path& path) {
-  constexpr std::array<std::string_view, 7> kColumns{"t_s",   "fx_N",  "fy_N", "fz_N",
-                                                     "tx_Nm", "ty_Nm", "tz_Nm"};
-  ForceTrack out;
-  auto read = trial::read_csv(path, kColumns, [&](std::size_t, std::span<const double> v) {
-    if (!out.t_s.empty() && v[0] <= out.t_s.back()) return std::string("time does not run forward");
-    out.t_s.push_back(v[0]);
-    out.wrench_S.push_back({{v[1], v[2], v[3]}, {v[4], v[5], v[6]}});
-    return std::string();
-  });
-  if (!read) return read.error();
-  if (out.t_s.size() < 2)
-    return Error{Errc::bad_input, fmt::format("{}: two rows at least are expected", path.string())};
-  return out;
-}
-
 core::Result<Assembled> assemble(const Recipe& recipe, const Recording& recording) {
   const auto motion_file = recipe.folder / recording.motion;
   const auto motion = read_motion(motion_file);
   if (!motion) return motion.error();
-  const auto force = read_force(recipe.folder / recording.force);
+  const auto force = read_force(recipe.folder / recording.force, recipe.sensor.channels);
   if (!force) return force.error();
   const auto tool = track_of(*motion, recipe.tool, motion_file.string());
   if (!tool) return tool.error();
@@ -195,11 +210,12 @@ core::Result<Assembled> assemble(const Recipe& recipe, const Recording& recordin
     return named({Errc::bad_input, "tool and bone are never seen together"});
   Assembled out;
   out.rate_Hz = recording.rate_Hz > 0.0 ? recording.rate_Hz : rate_of(probe.t_s);
-  auto clock = clock_of(recipe, recording, *force, probe);
+  auto clock = clock_of(recipe, recording, *force, probe, out);
   if (!clock) return named(clock.error());
   out.clock = std::move(*clock);
+  const auto& runs = out.clock.runs;
   const double first_tap_s =
-      out.clock.taps_s.empty() ? force->t_s.front() : out.clock.taps_s.front() + out.clock.offset_s;
+      runs.empty() ? force->t_s.front() : out.clock.force_time(runs.front().taps_s.front());
   const auto zero = zero_of(*force, first_tap_s, recipe.tare_s);
   if (!zero) return named(zero.error());
   out.zero_S = *zero;

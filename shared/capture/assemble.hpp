@@ -1,27 +1,25 @@
 /// Motion, force and recipe to a measurement set.
 #pragma once
 
+#include "capture/clock.hpp"
+#include "capture/force.hpp"
 #include "capture/recipe.hpp"
-#include "capture/taps.hpp"
 #include "trial/measurement_set.hpp"
 
 namespace capture {
 
-/// A force/torque recording in the sensor's frame S, at its origin.
-struct ForceTrack {
-  std::vector<double> t_s;  ///< strictly increasing, of the sensor's clock
-  std::vector<math::Wrench> wrench_S;
+/// A run of taps as both recordings have it, on the motion's clock: for a person to look at.
+struct TapView {
+  std::vector<double> force_t_s, force_N;  ///< tared, its norm
+  std::vector<double> way_t_s, way_m;      ///< of the tip, into the surface; 0 at its deepest
 };
-
-/// `t_s,fx_N,fy_N,fz_N,tx_Nm,ty_Nm,tz_Nm`. Errors: as trial::read_csv; bad_input where time does
-/// not run forward or with fewer than two rows.
-core::Result<ForceTrack> read_force(const std::filesystem::path& path);
 
 /// What was found on the way to a trial.
 struct Assembled {
   trial::PalpationMeasurement trial;
-  ClockOffset clock;    ///< sd_s is 0 and no taps are there when the recipe states the offset
-  math::Wrench zero_S;  ///< the sensor's zero, taken off
+  ClockFit clock;
+  std::vector<TapView> taps;  ///< for each of the clock's runs
+  math::Wrench zero_S;        ///< the sensor's zero, taken off
   double rate_Hz = 0.0;
   double unseen = 0.0;  ///< share of the kept time in which a body was not seen
 };
@@ -32,8 +30,9 @@ struct Assembled {
 ///     f_H = R_HS (f_S − zero),   τ_H = R_HS (τ_S − zero) + p_HS × f_H                     (2)
 ///
 /// at the motion's frames (or `rate_Hz`); the force is its mean over the row's period about the
-/// row's instant on the sensor's clock, so that it is neither late nor aliased. Kept is what
-/// follows the last tap by half a second or more, where tool, bone and force were all seen. Errors:
+/// row's instant on the sensor's clock, so that it is neither late nor aliased. Kept is what lies
+/// half a second or more after the first run of taps and before a last one, where tool, bone and
+/// force were all seen. A recording whose motion and force are one file needs no taps. Errors:
 /// bad_input naming the body, the taps or the file.
 core::Result<Assembled> assemble(const Recipe& recipe, const Recording& recording);
 

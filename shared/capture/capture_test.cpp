@@ -182,25 +182,31 @@ struct Tapping {
 TEST(Taps, TellTheClocksApartToAMillisecond) {
   for (const double offset_s : {0.0, 0.73, -1.2345, 12.0}) {
     const Tapping room(offset_s, 1.0);
-    const auto clock =
-        align(force_taps(room.t_force, room.force, 5), motion_taps(room.t_motion, room.tip, 5));
+    const auto clock = align({room.t_force, room.force, room.t_motion, room.tip}, 5);
     ASSERT_TRUE(clock) << clock.error().what;
-    EXPECT_NEAR(clock->offset_s, offset_s, 0.0015);
-    EXPECT_LT(clock->sd_s, 0.002);
-    ASSERT_EQ(clock->taps_s.size(), 5u);
-    EXPECT_NEAR(clock->taps_s[0], 2.0, 0.005);
+    EXPECT_NEAR(clock->offset_s, offset_s, 0.0005);
+    EXPECT_LT(clock->sd_s, 0.001);
+    EXPECT_EQ(clock->drift, 0.0);
+    ASSERT_EQ(clock->runs.size(), 1u);
+    ASSERT_EQ(clock->runs[0].taps_s.size(), 5u);
+    EXPECT_NEAR(clock->runs[0].taps_s[0], 2.0, 0.005);
   }
 }
 
 TEST(Taps, AreNotFoundWhereThereAreNoneOrTheRhythmIsAnother) {
   const Tapping room(0.5, 1.0);
-  const auto force = force_taps(room.t_force, room.force, 5);
-  EXPECT_FALSE(align(force, motion_taps(room.t_motion, room.tip, 6)));
-  auto other = motion_taps(room.t_motion, room.tip, 5);
-  for (TapRun& run : other) run.at_s[2] += 0.1;
-  const auto wrong = align(force, other);
-  ASSERT_FALSE(wrong);
-  EXPECT_NE(wrong.error().what.find("rhythm"), std::string::npos);
+  const auto why = [&](const Tapped& tapped, int count) {
+    const auto clock = align(tapped, count);
+    return clock ? std::string() : clock.error().what;
+  };
+  EXPECT_NE(why({room.t_force, room.force, room.t_motion, room.tip}, 6).find("6 taps in the force"),
+            std::string::npos);
+  std::vector<double> slower = room.t_motion;
+  for (double& t : slower) t *= 1.2;
+  EXPECT_NE(why({room.t_force, room.force, slower, room.tip}, 5).find("rhythm"), std::string::npos);
+  const std::vector<Vec3> at_rest(room.tip.size(), Vec3::Zero());
+  EXPECT_NE(why({room.t_force, room.force, room.t_motion, at_rest}, 5).find("in the motion"),
+            std::string::npos);
   const std::vector<double> still(room.force.size(), 0.01);
   EXPECT_TRUE(force_taps(room.t_force, still, 5).empty());
 }

@@ -51,6 +51,17 @@ Carrier carrier_of(Fields& outer, const char* key, const char* frame) {
   return out;
 }
 
+ForceChannels channels_of(Fields& in) {
+  ForceChannels out;
+  const Json* names = in.member("channels", false);
+  if (names && names->is_array())
+    for (const Json& name : *names)
+      if (name.is_string()) out.push_back(name.get<std::string>());
+  if (out.size() != 6)
+    in.wrong("channels", "six names of analog channels are expected: forces, then torques");
+  return out;
+}
+
 std::filesystem::path within(Fields& fields, const char* key) {
   const std::filesystem::path path = fields.text(key, 1024);
   for (const auto& part : path)
@@ -101,6 +112,7 @@ core::Result<Recipe> Recipe::read(const std::filesystem::path& file) {
     if (says != "on_probe" && says != "by_probe")
       in.wrong("says", "on_probe (what the bone does to the probe) or by_probe is expected");
     out.sensor.by_probe = says == "by_probe";
+    if (in.has("channels")) out.sensor.channels = channels_of(in);
     if (auto done = in.done(); !done) fields.wrong("sensor", done.error().what);
   }
   out.taps = int(fields.integer_or("taps", 5, 3, 20));

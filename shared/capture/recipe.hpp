@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "capture/force.hpp"
 #include "capture/motion.hpp"
 #include "core/json.hpp"
 
@@ -21,6 +22,7 @@ struct Carrier {
 struct Sensor {
   math::Pose X_HS;        ///< the sensor's frame in the handle's
   bool by_probe = false;  ///< it says what the probe does to the bone: turned round
+  ForceChannels channels{"Fx", "Fy", "Fz", "Mx", "My", "Mz"};  ///< of a C3D file
 };
 
 struct Recording {

@@ -1,11 +1,8 @@
 #include "capture/taps.hpp"
 
-#include <fmt/format.h>
-
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace capture {
 namespace {
@@ -13,7 +10,6 @@ using math::Vec3;
 
 constexpr double kSoonest_s = 0.12, kLatest_s = 1.5;
 constexpr double kBetween = 1.0 / 3.0, kLeastHeight = 0.5;
-constexpr double kRhythm_s = 0.025, kOtherOffset_s = 0.05;
 constexpr double kLeastForce_N = 0.5, kLeastWay_m = 0.002;
 
 struct Peak {
@@ -86,6 +82,25 @@ Vec3 principal_axis(std::span<const Vec3> points) {
   return Eigen::SelfAdjointEigenSolver<math::Mat3>(spread).eigenvectors().col(2);
 }
 
+/// The axis of a run itself, the way that `rough` points: its window may hold other motion.
+Vec3 axis_of_run(std::span<const double> t_s, std::span<const Vec3> tip_m, const TapRun& run,
+                 const Vec3& rough) {
+  const auto from = std::ranges::lower_bound(t_s, run.at_s.front() - kSoonest_s);
+  const auto to = std::ranges::upper_bound(t_s, run.at_s.back() + kSoonest_s);
+  const Vec3 axis =
+      principal_axis(tip_m.subspan(std::size_t(from - t_s.begin()), std::size_t(to - from)));
+  return axis.dot(rough) < 0.0 ? Vec3(-axis) : axis;
+}
+
+/// Is it one of those that were found already? Windows overlap.
+bool is_known(const std::vector<TapRun>& known, const TapRun& run) {
+  return std::ranges::any_of(known, [&](const TapRun& other) {
+    return std::abs(other.at_s.front() - run.at_s.front()) < 0.5 * kSoonest_s &&
+           std::abs(other.at_s.back() - run.at_s.back()) < 0.5 * kSoonest_s &&
+           other.inward.dot(run.inward) > 0.0;
+  });
+}
+
 /// Taps along one direction within samples begin … end: the way measured from its own low line.
 std::vector<TapRun> along(std::span<const double> t_s, std::span<const Vec3> tip_m,
                           const Vec3& axis, int count) {
@@ -93,30 +108,12 @@ std::vector<TapRun> along(std::span<const double> t_s, std::span<const Vec3> tip
   for (std::size_t k = 0; k < way.size(); ++k) way[k] = axis.dot(tip_m[k]);
   const double floor = *std::ranges::min_element(way);
   for (double& w : way) w -= floor;
-  return runs_of(peaks_of(t_s, way, kLeastWay_m), count,
-                 [&](std::size_t a, std::size_t b) { return least_between(way, a, b); });
+  auto runs = runs_of(peaks_of(t_s, way, kLeastWay_m), count,
+                      [&](std::size_t a, std::size_t b) { return least_between(way, a, b); });
+  for (TapRun& run : runs) run.inward = axis_of_run(t_s, tip_m, run, axis);
+  return runs;
 }
 
-double rms_of_rhythm(const TapRun& a, const TapRun& b) {
-  double sum = 0.0;
-  for (std::size_t k = 1; k < a.at_s.size(); ++k) {
-    const double off = (a.at_s[k] - a.at_s[k - 1]) - (b.at_s[k] - b.at_s[k - 1]);
-    sum += off * off;
-  }
-  return std::sqrt(sum / double(std::max<std::size_t>(1, a.at_s.size() - 1)));
-}
-
-ClockOffset between(const TapRun& force, const TapRun& motion) {
-  ClockOffset out{.rhythm_s = rms_of_rhythm(force, motion), .taps_s = motion.at_s};
-  std::vector<double> off;
-  for (std::size_t k = 0; k < force.at_s.size(); ++k) off.push_back(force.at_s[k] - motion.at_s[k]);
-  std::ranges::sort(off);
-  out.offset_s = off[off.size() / 2];
-  double sum = 0.0;
-  for (const double o : off) sum += (o - out.offset_s) * (o - out.offset_s);
-  out.sd_s = std::sqrt(sum / double(off.size() * std::max<std::size_t>(1, off.size() - 1)));
-  return out;
-}
 }  // namespace
 
 std::vector<TapRun> force_taps(std::span<const double> t_s, std::span<const double> force_N,
@@ -142,39 +139,12 @@ std::vector<TapRun> motion_taps(std::span<const double> t_s, std::span<const Vec
       const auto points = tip_m.subspan(from, to - from);
       const Vec3 axis = principal_axis(points);
       for (const Vec3& way : {axis, Vec3(-axis)})
-        for (TapRun& run : along(times, points, way, count)) out.push_back(std::move(run));
+        for (TapRun& run : along(times, points, way, count))
+          if (!is_known(out, run)) out.push_back(std::move(run));
     }
     from = half + 1;
   }
   return out;
-}
-
-core::Result<ClockOffset> align(std::span<const TapRun> force, std::span<const TapRun> motion) {
-  const auto wrong = [](const std::string& what) {
-    return core::Error{core::Errc::bad_input, what};
-  };
-  if (force.empty())
-    return wrong("no run of taps in the force: taps against a solid surface are expected");
-  if (motion.empty()) return wrong("no run of taps in the motion");
-  std::vector<ClockOffset> all;
-  for (const TapRun& f : force)
-    for (const TapRun& m : motion)
-      if (f.at_s.size() == m.at_s.size()) all.push_back(between(f, m));
-  if (all.empty()) return wrong("the runs of taps are not of one length");
-  const auto best = std::ranges::min_element(all, {}, &ClockOffset::rhythm_s);
-  if (best->rhythm_s > kRhythm_s)
-    return wrong(
-        fmt::format("the taps' rhythm differs by {:.0f} ms between force and motion: "
-                    "{:.0f} ms at most is expected",
-                    1e3 * best->rhythm_s, 1e3 * kRhythm_s));
-  for (const ClockOffset& other : all)
-    if (std::abs(other.offset_s - best->offset_s) > kOtherOffset_s &&
-        other.rhythm_s < std::max(2.0 * best->rhythm_s, 0.004))
-      return wrong(
-          fmt::format("two offsets fit the taps as well: {:.3f} s and {:.3f} s; tap with an "
-                      "uneven rhythm, or narrow it with from_s and to_s",
-                      best->offset_s, other.offset_s));
-  return *best;
 }
 
 }  // namespace capture

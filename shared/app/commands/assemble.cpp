@@ -21,7 +21,11 @@ struct Options {
 
 Json json_of(const capture::Assembled& one) {
   Json taps = Json::array();
-  for (const double t : one.clock.taps_s) taps.push_back(t);
+  for (const auto& run : one.clock.runs)
+    taps.push_back({{"taps_s", run.taps_s},
+                    {"offset_s", run.offset_s},
+                    {"sd_s", run.sd_s},
+                    {"together", run.together}});
   return {
       {"id", one.trial.id},
       {"samples", one.trial.t_s.size()},
@@ -29,7 +33,9 @@ Json json_of(const capture::Assembled& one) {
       {"duration_s", one.trial.t_s.back()},
       {"clock_offset_s", one.clock.offset_s},
       {"clock_offset_sd_s", one.clock.sd_s},
-      {"taps_s", taps},
+      {"clock_offset_at_s", one.clock.at_s},
+      {"clock_drift", one.clock.drift},
+      {"tap_runs", taps},
       {"zero_force_N", {one.zero_S.force_N.x(), one.zero_S.force_N.y(), one.zero_S.force_N.z()}},
       {"unseen", one.unseen}};
 }
@@ -38,11 +44,12 @@ std::string line_of(const capture::Assembled& one) {
   std::string out =
       fmt::format("{}: {} samples at {:.4g} Hz, {:.1f} s; clocks {:+.4f} s apart", one.trial.id,
                   one.trial.t_s.size(), one.rate_Hz, one.trial.t_s.back(), one.clock.offset_s);
-  if (one.clock.taps_s.empty())
+  if (one.clock.runs.empty())
     out += " (stated)";
   else
-    out +=
-        fmt::format(" (± {:.2g} ms, from {} taps)", 1e3 * one.clock.sd_s, one.clock.taps_s.size());
+    out += fmt::format(" (± {:.2g} ms, from {} run{} of taps)", 1e3 * one.clock.sd_s,
+                       one.clock.runs.size(), one.clock.runs.size() == 1 ? "" : "s");
+  if (one.clock.drift != 0.0) out += fmt::format(", drift {:+.0f} ppm", 1e6 * one.clock.drift);
   if (one.unseen > 0.001)
     out += fmt::format("; a body was not seen for {:.1f} % of it", 100.0 * one.unseen);
   return out;
