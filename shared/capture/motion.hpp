@@ -30,9 +30,10 @@ struct Motion {
 };
 
 /// By what stands in the file: a QTM export of bodies or markers (TSV), a Motive export of rigid
-/// bodies (CSV, quaternions), C3D (markers), or a CSV with `t_s` and `NAME.px_m` … `NAME.qz`.
-/// Errors: not_found, io; bad_input "FILE:LINE: what is wrong" (C3D: "FILE: …"); too_large over
-/// 2·10⁶ frames or 1 GiB.
+/// bodies (CSV, quaternions) or markers, C3D (markers), or a CSV with `t_s` and `NAME.px_m` …
+/// `NAME.qz` (a quaternion of zeros: not seen; retimed where it has `arrived_s`). Errors:
+/// not_found, io; bad_input "FILE:LINE: what is wrong" (C3D: "FILE: …"); too_large over 2·10⁶
+/// frames (C3D: 256 MiB).
 core::Result<Motion> read_motion(const std::filesystem::path& path);
 
 /// Where a body's markers are in its own frame, m: three at least, not on a line.

@@ -1,13 +1,16 @@
 /// Motion out of text: Qualisys Track Manager's TSV, OptiTrack Motive's CSV, our own CSV.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fstream>
 #include <optional>
 #include <string_view>
 
+#include "capture/force.hpp"
 #include "capture/motion.hpp"
+#include "core/words.hpp"
 #include "trial/csv.hpp"
 
 namespace capture::detail {
@@ -26,6 +29,8 @@ std::vector<std::string_view> split(std::string_view line, char by) {
     std::string_view cell = line.substr(0, end);
     while (!cell.empty() && (cell.back() == '\r' || cell.back() == ' ')) cell.remove_suffix(1);
     while (!cell.empty() && cell.front() == ' ') cell.remove_prefix(1);
+    if (cell.size() > 1 && cell.front() == '"' && cell.back() == '"')
+      cell = cell.substr(1, cell.size() - 2);
     out.push_back(cell);
     if (end == std::string_view::npos) return out;
     line.remove_prefix(end + 1);
@@ -46,9 +51,19 @@ class Lines {
   explicit Lines(const fs::path& path) : path_(path), file_(path) {}
   bool next() {
     ++number_;
-    return bool(std::getline(file_, line_)) && line_.size() < kMaxLine;
+    line_.clear();
+    for (int c = file_.get(); c != std::ifstream::traits_type::eof(); c = file_.get()) {
+      if (c == '\n') return true;
+      if (line_.size() == kMaxLine) return too_long_ = true, false;
+      line_ += char(c);
+    }
+    return !line_.empty();
   }
+  bool too_long() const { return too_long_; }
   std::string_view line() const { return line_; }
+  Error too_many() const {
+    return {Errc::too_large, fmt::format("{}: more than {} frames", path_.string(), kMaxFrames)};
+  }
   Error wrong(const std::string& what) const {
     return {Errc::bad_input, fmt::format("{}:{}: {}", path_.string(), number_, what)};
   }
@@ -58,7 +73,14 @@ class Lines {
   std::ifstream file_;
   std::string line_;
   std::size_t number_ = 0;
+  bool too_long_ = false;
 };
+
+/// What is wrong when lines end early, if anything is.
+std::optional<Error> cut_short(const Lines& lines) {
+  if (!lines.too_long()) return std::nullopt;
+  return lines.wrong(fmt::format("a line of more than {} bytes", kMaxLine));
+}
 
 void add(BodyTrack& track, double t_s, const math::Pose& pose) {
   track.t_s.push_back(t_s);
@@ -74,7 +96,7 @@ struct QtmHeader {
 std::vector<std::string> names_of(const std::vector<std::string_view>& cells) {
   std::vector<std::string> out;
   for (std::size_t k = 1; k < cells.size(); ++k)
-    if (!cells[k].empty()) out.emplace_back(cells[k]);
+    if (!cells[k].empty()) out.push_back(core::one_line(cells[k]));
   return out;
 }
 
@@ -93,16 +115,18 @@ std::optional<math::Pose> qtm_pose(const std::vector<std::string_view>& cells, s
   return math::Pose{1e-3 * Vec3(v[0], v[1], v[2]), math::Quat(turn).normalized()};
 }
 
-core::Result<Motion> qtm_rows(Lines& lines, const QtmHeader& header, bool numbered) {
+/// @param begun  the first row is the line that was read last
+core::Result<Motion> qtm_rows(Lines& lines, const QtmHeader& header, bool numbered, bool begun) {
   Motion out;
   out.rate_Hz = header.rate_Hz;
   const bool six = !header.bodies.empty();
   const std::size_t names = six ? header.bodies.size() : header.markers.size();
   const std::size_t from = numbered ? 2 : 0, each = six ? 16 : 3;
   std::size_t frame = 0;
-  for (; lines.next(); ++frame) {
-    if (frame == kMaxFrames) return Error{Errc::too_large, "more than 2·10⁶ frames"};
-    if (lines.line().empty()) continue;
+  double last_s = -1e300;
+  for (bool more = begun || lines.next(); more; more = lines.next()) {
+    if (frame == kMaxFrames) return lines.too_many();
+    if (lines.line().empty() || lines.line() == "\r") continue;
     const auto cells = split(lines.line(), '\t');
     if (cells.size() < from + each * names)
       return lines.wrong(
@@ -110,9 +134,10 @@ core::Result<Motion> qtm_rows(Lines& lines, const QtmHeader& header, bool number
     double t_s = double(frame) / header.rate_Hz;
     if (numbered) {
       const auto stated = number(cells[1]);
-      if (!stated) return lines.wrong(fmt::format("'{}' is no time", cells[1]));
-      t_s = *stated;
+      if (!stated || *stated <= last_s) return lines.wrong("a time that runs forward is expected");
+      last_s = t_s = *stated;
     }
+    ++frame;
     for (std::size_t n = 0; n < names; ++n) {
       if (six) {
         if (const auto pose = qtm_pose(cells, from + each * n))
@@ -126,6 +151,7 @@ core::Result<Motion> qtm_rows(Lines& lines, const QtmHeader& header, bool number
       out.markers[header.markers[n]].p_C_m.push_back(1e-3 * Vec3(*x, *y, *z));
     }
   }
+  if (const auto why = cut_short(lines)) return *why;
   return out;
 }
 }  // namespace
@@ -139,26 +165,39 @@ core::Result<Motion> read_qtm(const fs::path& path) {
       header.rate_Hz = number(cells[1]).value_or(0.0);
     if (cells[0] == "BODY_NAMES") header.bodies = names_of(cells);
     if (cells[0] == "MARKER_NAMES") header.markers = names_of(cells);
-    // The row of column names; a marker export may have none and begin with numbers.
-    const bool columns = cells[0] == "Frame" || cells[0] == "X" ||
-                         (!header.bodies.empty() && cells[0] == header.bodies[0]) ||
-                         cells[0].ends_with(" X");
-    if (!columns) continue;
+    // Then a row of column names, or in an export of markers straight the numbers.
+    const bool columns = cells[0] == "Frame" || cells[0] == "X" || cells[0].ends_with(" X") ||
+                         (!header.bodies.empty() && cells[0] == header.bodies[0]);
+    const bool numbers = number(cells[0]).has_value();
+    if (!columns && !numbers) continue;
     if (!(header.rate_Hz > 0.0)) return lines.wrong("FREQUENCY is missing above");
     if (header.bodies.empty() && header.markers.empty())
       return lines.wrong("neither BODY_NAMES nor MARKER_NAMES is above");
-    return qtm_rows(lines, header, cells[0] == "Frame");
+    const std::size_t wanted =
+        header.bodies.empty() ? 3 * header.markers.size() : 16 * header.bodies.size();
+    return qtm_rows(lines, header, cells[0] == "Frame" || (numbers && cells.size() >= wanted + 2),
+                    numbers);
   }
+  if (const auto why = cut_short(lines)) return *why;
   return Error{Errc::bad_input,
-               fmt::format("{}: no row of column names after the header", path.string())};
+               fmt::format("{}: no row of numbers after the header", path.string())};
 }
 
 namespace {
 /// Where a Motive export keeps each rigid body: seven columns, rotation x y z w, position x y z.
+/// Of a marker, three columns, in the place of the position's.
 struct MotiveColumns {
-  std::map<std::string, std::array<int, 7>> bodies;
+  std::map<std::string, std::array<int, 7>> bodies, markers;
   int time = -1;
 };
+
+/// A column's place among a body's seven, from "Rotation" or "Position" and "X" … "W".
+std::optional<std::size_t> place_of(const std::string& kind, const std::string& axis) {
+  const std::size_t base = kind == "Rotation" ? 0 : kind == "Position" ? 4 : 7;
+  const auto at = std::string_view("XYZW").find(axis.empty() ? '?' : axis[0]);
+  if (at == std::string_view::npos || base + at > 6) return std::nullopt;
+  return base + at;
+}
 
 MotiveColumns motive_columns(const std::vector<std::vector<std::string>>& rows) {
   MotiveColumns out;
@@ -166,26 +205,40 @@ MotiveColumns motive_columns(const std::vector<std::vector<std::string>>& rows) 
   const auto &names = rows[1], &kinds = rows[rows.size() - 2], &axes = rows.back();
   for (std::size_t k = 0; k < axes.size(); ++k) {
     if (axes[k].starts_with("Time")) out.time = int(k);
-    if (k >= types.size() || types[k] != "Rigid Body" || k >= kinds.size()) continue;
-    auto [body, fresh] = out.bodies.try_emplace(names[k]);
-    if (fresh) body->second.fill(-1);
-    const int base = kinds[k] == "Rotation" ? 0 : kinds[k] == "Position" ? 4 : -1;
-    const auto axis = std::string_view("XYZW").find(axes[k].empty() ? '?' : axes[k][0]);
-    if (base < 0 || axis == std::string_view::npos || base + int(axis) > 6) continue;
-    body->second[std::size_t(base) + axis] = int(k);
+    if (k >= types.size() || k >= names.size() || k >= kinds.size()) continue;
+    if (types[k] != "Rigid Body" && types[k] != "Marker") continue;
+    const auto place = place_of(kinds[k], axes[k]);
+    if (!place) continue;
+    auto& group = types[k] == "Marker" ? out.markers : out.bodies;
+    auto [one, fresh] = group.try_emplace(core::one_line(names[k]));
+    if (fresh) one->second.fill(-1);
+    one->second[*place] = int(k);
   }
   std::erase_if(out.bodies, [](const auto& body) {
     return std::ranges::find(body.second, -1) != body.second.end();
   });
+  std::erase_if(out.markers, [](const auto& marker) {
+    return std::find(marker.second.begin() + 4, marker.second.end(), -1) != marker.second.end();
+  });
   return out;
+}
+
+std::optional<double> cell_at(const std::vector<std::string_view>& cells, int at) {
+  return std::size_t(at) < cells.size() ? number(cells[std::size_t(at)]) : std::nullopt;
+}
+
+std::optional<Vec3> motive_point(const std::vector<std::string_view>& cells,
+                                 const std::array<int, 7>& at, double unit_m) {
+  const auto x = cell_at(cells, at[4]), y = cell_at(cells, at[5]), z = cell_at(cells, at[6]);
+  if (!x || !y || !z) return std::nullopt;
+  return unit_m * Vec3(*x, *y, *z);
 }
 
 std::optional<math::Pose> motive_pose(const std::vector<std::string_view>& cells,
                                       const std::array<int, 7>& at, double unit_m) {
   std::array<double, 7> v{};
   for (std::size_t k = 0; k < 7; ++k) {
-    const auto value = std::size_t(at[k]) < cells.size() ? number(cells[std::size_t(at[k])])
-                                                         : std::optional<double>();
+    const auto value = cell_at(cells, at[k]);
     if (!value) return std::nullopt;
     v[k] = *value;
   }
@@ -207,7 +260,6 @@ core::Result<Motion> read_motive(const fs::path& path) {
     if (first[k] == "Length Units") unit_m = first[k + 1].starts_with("Milli") ? 1e-3 : 1.0;
     if (first[k] == "Rotation Type") quaternions = first[k + 1] == "Quaternion";
   }
-  if (!quaternions) return lines.wrong("Rotation Type Quaternion is expected");
   std::vector<std::vector<std::string>> head;
   while (lines.next()) {
     if (lines.line().find_first_not_of(",\r") == std::string_view::npos) continue;
@@ -220,17 +272,31 @@ core::Result<Motion> read_motive(const fs::path& path) {
   for (auto& row : head)  // the first cell of type, name and kind rows is empty
     if (row.size() > 1 && row[0].empty() && row[1] == "Type") row[1].clear();
   const MotiveColumns columns = motive_columns(head);
-  if (columns.time < 0 || columns.bodies.empty())
-    return lines.wrong("a Time column and a Rigid Body with rotation and position are expected");
+  if (!quaternions && !columns.bodies.empty())
+    return lines.wrong("Rotation Type Quaternion is expected: export anew with it");
+  if (columns.time < 0 || columns.bodies.size() + columns.markers.size() == 0)
+    return lines.wrong(
+        "a Time column, and a Rigid Body with rotation and position or a Marker are expected");
+  double last_s = -1e300;
   for (std::size_t frame = 0; lines.next(); ++frame) {
-    if (frame == kMaxFrames) return Error{Errc::too_large, "more than 2·10⁶ frames"};
+    if (frame == kMaxFrames) return lines.too_many();
     const auto cells = split(lines.line(), ',');
     if (cells.size() <= std::size_t(columns.time)) continue;
     const auto t_s = number(cells[std::size_t(columns.time)]);
-    if (!t_s) return lines.wrong(fmt::format("'{}' is no time", cells[std::size_t(columns.time)]));
+    if (!t_s)
+      return lines.wrong(
+          fmt::format("'{}' is no time", core::one_line(cells[std::size_t(columns.time)], 64)));
+    if (*t_s <= last_s) return lines.wrong("time does not run forward");
+    last_s = *t_s;
     for (const auto& [name, at] : columns.bodies)
       if (const auto pose = motive_pose(cells, at, unit_m)) add(out.bodies[name], *t_s, *pose);
+    for (const auto& [name, at] : columns.markers)
+      if (const auto point = motive_point(cells, at, unit_m)) {
+        out.markers[name].t_s.push_back(*t_s);
+        out.markers[name].p_C_m.push_back(*point);
+      }
   }
+  if (const auto why = cut_short(lines)) return *why;
   return out;
 }
 
@@ -247,12 +313,16 @@ core::Result<Motion> read_plain(const fs::path& path) {
   for (const std::string& body : bodies)
     for (const char* what : {"px_m", "py_m", "pz_m", "qw", "qx", "qy", "qz"})
       columns.push_back(body + "." + what);
+  const bool stamped = std::ranges::find(*header, "arrived_s") != header->end();
+  if (stamped) columns.emplace_back("arrived_s");
   const std::vector<std::string_view> views(columns.begin(), columns.end());
   Motion out;
   double last_s = -1e300;
+  std::vector<double> times_s, arrived_s;
   auto read = trial::read_csv(path, views, [&](std::size_t, std::span<const double> v) {
     if (!(v[0] > last_s)) return std::string("time does not run forward");
     last_s = v[0];
+    if (stamped) times_s.push_back(v[0]), arrived_s.push_back(v.back());
     for (std::size_t b = 0; b < bodies.size(); ++b) {
       const double* at = &v[1 + 7 * b];
       const math::Quat q(at[3], at[4], at[5], at[6]);
@@ -264,6 +334,11 @@ core::Result<Motion> read_plain(const fs::path& path) {
     return std::string();
   });
   if (!read) return read.error();
+  const auto rate = device_rate(times_s, arrived_s);
+  if (!rate)
+    return Error{rate.error().code, fmt::format("{}: {}", path.string(), rate.error().what)};
+  for (auto& [name, track] : out.bodies)
+    for (double& t : track.t_s) t *= *rate;
   return out;
 }
 

@@ -102,7 +102,7 @@ core::Result<Recipe> Recipe::read(const std::filesystem::path& file) {
   if (fields.text("format") != "tractus-assembly/1")
     fields.wrong("format", "tractus-assembly/1 is expected");
   if (fields.text("rig") != "palpation") fields.wrong("rig", "palpation is expected");
-  out.volume = fields.text_or("volume", "");
+  if (fields.has("volume")) out.volume = within(fields, "volume");
   out.tool = carrier_of(fields, "tool", "X_BH");
   if (fields.has("bone")) out.bone = carrier_of(fields, "bone", "X_BV");
   if (const Json* sensor = fields.member("sensor", false)) {

@@ -57,7 +57,7 @@ def tip(t):
     wide = 0.0012 + 0.0017 * (0.5 - 0.5 * np.cos(2 * np.pi * s / 0.9))
     inside = np.array([wide * np.cos(2.1 * s), wide * np.sin(2.1 * s), deep])
     u = smooth((t - MOVE_IN) / (PALPATE - MOVE_IN)) - smooth((t - MOVE_OUT) / (LAST_TAPS[0] - 0.3 - MOVE_OUT))
-    return (1 - u) * above + u * inside
+    return (1 - u) * above + u * inside - [0, 0, 0.16 * u * (1 - u)]  # lifted on the way between them
 
 
 def turn(t):
@@ -68,7 +68,7 @@ def force_on_tip(p, v):
     """What plate and bone do to the tip, in V: springs that lose a little (Hunt and Crossley's form)."""
     f = np.zeros(3)
     into = p[2] - PLATE[2]
-    if p[0] > 0.02 and into > 0:
+    if p[0] > 0.03 and into > 0:
         f[2] -= PLATE_K * into * max(0.0, 1 + LOSS * v[2])
     r = np.hypot(p[0], p[1])
     if p[0] < 0.02 and p[2] > 0 and r > CANAL_R:
