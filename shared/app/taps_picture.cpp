@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <limits>
 
 namespace app {
 namespace {
-constexpr const char *kForce = "#1b4f8f", *kWay = "#c05a1c", *kTap = "#d9dde2";
-constexpr double kTap_s = 0.002, kFigure_mm = 4.0;
+constexpr const char *kForce = "#1b4f8f", *kWay = "#c05a1c";
+constexpr double kShown_mm = 4.0;
 
 plot::Panel panel_of(const std::string& trial, const capture::ClockFit& clock,
                      const capture::TapPair& pair, const capture::TapView& run) {
@@ -19,7 +19,6 @@ plot::Panel panel_of(const std::string& trial, const capture::ClockFit& clock,
   panel.x_label = "t, s (motion's clock)";
   panel.y_label = "|F|, N";
   panel.right_label = "way into the surface, mm";
-  for (const double t : pair.taps_s) panel.bands.push_back({t - kTap_s, t + kTap_s, kTap, ""});
   plot::Line force, way;
   force.label = "force";
   force.x = run.force_t_s, force.y = run.force_N;
@@ -29,7 +28,8 @@ plot::Panel panel_of(const std::string& trial, const capture::ClockFit& clock,
   way.colour = kWay;
   way.right_axis = true;
   // Far above the surface nothing is to be seen: the last millimetres fill the panel.
-  for (const double w : run.way_m) way.y.push_back(std::max(1e3 * w, -kFigure_mm));
+  for (const double w : run.way_m)
+    way.y.push_back(1e3 * w > -kShown_mm ? 1e3 * w : std::numeric_limits<double>::quiet_NaN());
   panel.lines = {std::move(way), std::move(force)};
   return panel;
 }

@@ -16,7 +16,7 @@ struct ShownTaps {
 };
 
 /// A panel for each run: the force (left axis) and the tip's way into the surface (right axis) by
-/// the motion's clock, with a line at each tap. Well aligned, both rise and fall together. A trial
+/// the motion's clock. Well aligned, both rise and fall together. A trial
 /// whose offset was stated has no panel; the note says so.
 plot::Figure taps_figure(const std::vector<ShownTaps>& trials);
 

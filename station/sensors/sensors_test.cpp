@@ -1,12 +1,17 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "core/bytes.hpp"
+#include "core/file.hpp"
 #include "station/sensors/igtl.hpp"
+#include "station/sensors/motion_rows.hpp"
 #include "station/sensors/netft.hpp"
+#include "station/sensors/row_file.hpp"
 
 namespace sensors {
 namespace {
@@ -62,6 +67,29 @@ TEST(NetFt, ReadsARecordAsDocumented) {
   EXPECT_LT((wrench.torque_Nm - Vec3(0.1, 0, -0.1)).norm(), 1e-12);
   bytes.pop_back();
   EXPECT_FALSE(parse_rdt(bytes));
+}
+
+TEST(NetFt, SaysWhatAStatusMeans) {
+  EXPECT_FALSE(is_faulty(0));
+  EXPECT_FALSE(is_faulty(0x00010000));  // a threshold is no error
+  EXPECT_TRUE(is_faulty(0x80000020));
+  EXPECT_FALSE(is_saturated(0x80000020));
+  // "30 F/T out of range 0xC0000000", "27 Gage out of range 0x88000000" (9610-05, table 4.9)
+  EXPECT_TRUE(is_saturated(0xC0000000));
+  EXPECT_TRUE(is_saturated(0x88000000));
+  EXPECT_EQ(status_words(0xC0000000), "0xc0000000 (force or torque out of range)");
+  EXPECT_EQ(status_words(0x80000005),
+            "0x80000005 (inner temperature out of range, a gage is broken)");
+  EXPECT_EQ(status_words(0x80000000), "0x80000000 (an error)");
+  EXPECT_EQ(status_words(0), "0x00000000 (no error)");
+}
+
+TEST(NetFt, RefusesAPageThatSaysThatRdtIsOff) {
+  std::string page = kPage;
+  page.insert(page.find("<comrdtrate>"), "<comrdte>Disabled</comrdte>");
+  const auto off = parse_netft_xml(page, "p");
+  ASSERT_FALSE(off);
+  EXPECT_NE(off.error().what.find("switched off"), std::string::npos);
 }
 
 TEST(Igtl, HasTheStandardsCrc) {
@@ -126,6 +154,99 @@ TEST(Igtl, ReadsATransformAndATdataMessage) {
       parse_igtl_body(*parse_igtl_header(two), std::span(two).subspan(kIgtlHeaderBytes));
   ASSERT_EQ(both.size(), 2u);
   EXPECT_EQ(both[1].body, "bone");
+}
+
+TEST(Igtl, ReadsQuaternionsOfAQtdataMessage) {
+  std::vector<std::byte> element(22);
+  std::memcpy(element.data(), "probe", 5);
+  const float half = std::sqrt(0.5f);
+  for (const float v : {10.f, 20.f, 30.f, 0.f, 0.f, half, half}) put(element, v);  // x y z w
+  const auto one = message("QTDATA", "tracker", element);
+  const auto poses = parse_igtl_body(*parse_igtl_header(one), std::span(one).subspan(58));
+  ASSERT_EQ(poses.size(), 1u);
+  EXPECT_EQ(poses[0].body, "probe");
+  EXPECT_LT((poses[0].X_CB.p - Vec3(0.01, 0.02, 0.03)).norm(), 1e-9);
+  EXPECT_LT((poses[0].X_CB.q * Vec3::UnitX() - Vec3::UnitY()).norm(), 1e-6);
+}
+
+TEST(Igtl, ReadsWhatLiesBetweenAnExtendedHeaderAndMetadata) {
+  std::vector<std::byte> body(12);  // version 3 of the protocol, 2 of the header
+  body[1] = std::byte{12};          // its own size
+  body[3] = std::byte{2};           // of the metadata's header
+  body[7] = std::byte{5};           // of the metadata
+  const auto m = matrix();
+  body.insert(body.end(), m.begin(), m.end());
+  body.resize(body.size() + 7);
+  auto one = message("TRANSFORM", "probe", body);
+  one[1] = std::byte{2};
+  const auto poses = parse_igtl_body(*parse_igtl_header(one), std::span(one).subspan(58));
+  ASSERT_EQ(poses.size(), 1u);
+  EXPECT_LT((poses[0].X_CB.p - Vec3(0.01, 0.02, 0.03)).norm(), 1e-9);
+}
+
+TEST(Igtl, ReadsWhatASenderSaysOfItself) {
+  std::vector<std::byte> body(30);
+  body[1] = std::byte{6};
+  std::memcpy(&body[10], "Busy", 4);
+  for (const char c : std::string("calibrating\n")) body.push_back(std::byte(c));
+  const auto one = message("STATUS", "tracker", body);
+  const auto status = parse_igtl_status(*parse_igtl_header(one), std::span(one).subspan(58));
+  ASSERT_TRUE(status);
+  EXPECT_EQ(status->code, 6);
+  EXPECT_EQ(status->name, "Busy");
+  EXPECT_EQ(status->message, "calibrating?");  // one line, whatever was sent
+  EXPECT_FALSE(parse_igtl_status(*parse_igtl_header(one), std::span(one).subspan(58, 29)));
+}
+
+TEST(MotionRows, MakeOneRowOfAnInstant) {
+  MotionRows rows({"probe", "bone"});
+  const math::Pose X{{1, 2, 3}, math::Quat::Identity()};
+  EXPECT_FALSE(rows.take({"probe", X, 500.0}, 7.0));
+  EXPECT_FALSE(rows.take({"bone", X, 500.0}, 7.001));
+  EXPECT_FALSE(rows.take({"pointer", X, 500.0}, 7.001));
+  const auto first = rows.take({"probe", X, 500.25}, 7.25);
+  ASSERT_TRUE(first);
+  EXPECT_EQ(*first, "0.0000000,1,2,3,1,0,0,0,1,2,3,1,0,0,0,7.0000000\n");
+  const auto second = rows.flush();
+  ASSERT_TRUE(second);
+  EXPECT_EQ(*second, "0.2500000,1,2,3,1,0,0,0,0,0,0,0,0,0,0,7.2500000\n");  // bone: not seen
+  EXPECT_EQ(rows.count(), 2u);
+  EXPECT_TRUE(rows.others().contains("pointer"));
+}
+
+TEST(MotionRows, TakeThisComputersTimeWhereNobodyStamps) {
+  MotionRows rows({"probe"});
+  EXPECT_FALSE(rows.take({"probe", {}, 0.0}, 1.5));
+  const auto row = rows.take({"probe", {}, 0.0}, 1.625);
+  ASSERT_TRUE(row);
+  EXPECT_TRUE(row->starts_with("1.5000000,"));
+}
+
+class Rows : public testing::Test {
+ protected:
+  void TearDown() override { std::filesystem::remove(path_); }
+  std::filesystem::path path_ = std::filesystem::temp_directory_path() / core::new_id();
+  std::string there() const {
+    const auto bytes = core::read_file(path_);
+    return bytes ? std::string(core::text_of(*bytes)) : "";
+  }
+};
+
+TEST_F(Rows, AreInTheFileAfterHalfASecondAndAlwaysWhole) {
+  auto file = RowFile::make(path_, "t_s\n");
+  ASSERT_TRUE(file) << file.error().what;
+  EXPECT_EQ(there(), "t_s\n");
+  file->add("1\n", 1'000'000'000);
+  EXPECT_EQ(there(), "t_s\n1\n");
+  file->add("2\n", 1'300'000'000);
+  file->add("3\n", 1'400'000'000);
+  EXPECT_EQ(there(), "t_s\n1\n");
+  file->add("4\n", 1'500'000'000);
+  EXPECT_EQ(there(), "t_s\n1\n2\n3\n4\n");
+  file->add("5\n", 1'600'000'000);
+  EXPECT_TRUE(file->finish());
+  EXPECT_EQ(there(), "t_s\n1\n2\n3\n4\n5\n");
+  EXPECT_FALSE(RowFile::make(path_, "t_s\n"));  // nothing is overwritten
 }
 
 TEST(Igtl, GivesNothingForWhatIsCutOrNoTurnOrAnotherType) {
