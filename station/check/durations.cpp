@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "station/check/findings.hpp"
+
 namespace check {
 
 double Durations::quantile_s(double share) const {
@@ -17,8 +19,8 @@ double Durations::quantile_s(double share) const {
 }
 
 std::string Durations::text() const {
-  return fmt::format("p50 {:.3g} µs, p99 {:.3g} µs, longest {:.3g} µs", 1e6 * quantile_s(0.5),
-                     1e6 * quantile_s(0.99), 1e6 * quantile_s(1.0));
+  const auto at = [&](double share) { return spelled(quantile_s(share), "s"); };
+  return fmt::format("p50 {}, p99 {}, longest {}", at(0.5), at(0.99), at(1.0));
 }
 
 }  // namespace check

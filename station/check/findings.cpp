@@ -24,8 +24,17 @@ std::optional<double> number_in(core::Fields& fields, const char* key) {
   if (!fields.has(key)) return std::nullopt;
   return fields.number(key, -1e6, 1e6);
 }
+}  // namespace
 
-/// SI as a person reads it.
+core::Json Finding::to_json() const {
+  return {{"name", name},
+          {"passed", passed},
+          {"value", number_or_null(value)},
+          {"unit", unit},
+          {"limit", number_or_null(limit)},
+          {"words", core::one_line(words, kWords)}};
+}
+
 std::string spelled(double value, const std::string& unit) {
   struct Prefix {
     const char *of, *as;
@@ -42,17 +51,6 @@ std::string spelled(double value, const std::string& unit) {
   if (unit.empty()) return fmt::format("{:.3g} %", 100.0 * value);
   return fmt::format("{:.3g} {}", value, unit);
 }
-}  // namespace
-
-core::Json Finding::to_json() const {
-  return {{"name", name},
-          {"passed", passed},
-          {"value", number_or_null(value)},
-          {"unit", unit},
-          {"limit", number_or_null(limit)},
-          {"words", core::one_line(words, kWords)}};
-}
-
 std::string figure_of(const Finding& finding) {
   if (!finding.value) return "";
   const std::string found = spelled(*finding.value, finding.unit);

@@ -25,6 +25,8 @@ struct Finding {
   core::Json to_json() const;
 };
 
+/// "12 µs", "2.8 mm", "0.04 %" of SI; a share has no unit.
+std::string spelled(double value, const std::string& unit);
 /// "0.21 ms (at most 0.25 ms)"; empty without a value.
 std::string figure_of(const Finding& finding);
 /// "2026-03-01" of microseconds since 1970.
