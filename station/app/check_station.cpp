@@ -16,7 +16,7 @@
 namespace app {
 namespace {
 constexpr std::int64_t kDay_us = 86'400'000'000;
-constexpr double kHandRate_Hz = 4000.0, kWatched_s = 5.0;
+constexpr double kHandRate_Hz = 4000.0, kWatched_s = 5.0;  // at most
 
 void warn(const std::string& line) { std::fprintf(stderr, "warning: %s\n", line.c_str()); }
 
@@ -38,9 +38,9 @@ core::Result<void> check_machine(Checked& checked) {
   const bool rig = is_rig(options.setup.device);
   if (!rig && options.show != Show::none) out.push_back(check_display(options.show));
   const core::Progress shown = core::terminal_progress("Loop");
-  out.push_back(
-      check::check_wake_ups(rig ? options.rig.rate_Hz : kHandRate_Hz, kWatched_s,
-                            [&](double share) { return shown(share) && !asked_to_stop(); }));
+  out.push_back(check::check_wake_ups(
+      rig ? options.rig.rate_Hz : kHandRate_Hz, std::min(kWatched_s, options.for_s),
+      [&](double share) { return shown(share) && !asked_to_stop(); }));
   if (auto done = check::check_disk(checked.folder.trials(), out); !done) return done;
   out.push_back(check::check_clock());
   out.push_back(check::check_time_of_day(offset_to_server(options)));
@@ -60,10 +60,7 @@ core::Result<void> check_calibration(Checked& checked) {
 check::Report report_for(const session::StationFolder& folder) {
   std::error_code failed;
   const auto space = std::filesystem::space(folder.trials(), failed);
-  return {.self_test = std::nullopt,
-          .calibration = std::nullopt,
-          .version = TRACTUS_VERSION,
-          .free_disk_bytes = failed ? 0 : space.available};
+  return {.version = TRACTUS_VERSION, .free_disk_bytes = failed ? 0 : space.available};
 }
 
 /// Into the folder; to the server when there is one, else with the next exchange; as a page.
@@ -93,9 +90,9 @@ void print(const Checked& checked) {
   fmt::print("{}{}\n", checked.device.empty() ? checked.options.setup.device : checked.device,
              checked.simulated ? "  (SIMULATED: no machine was tested)" : "");
   for (const check::Finding& f : checked.findings) {
-    const std::string figure = check::figure_of(f);
-    fmt::print("  {}  {:<36} {}{}{}\n", f.passed ? "passed    " : "NOT passed", f.name, figure,
-               figure.empty() ? "" : "; ", f.words);
+    const std::string wanted = check::wanted_of(f);
+    fmt::print("  {}  {:<36} {:>9}{}  {}\n", f.passed ? "passed    " : "NOT passed", f.name,
+               check::found_of(f), wanted.empty() ? "" : fmt::format(" ({})", wanted), f.words);
   }
 }
 
@@ -132,7 +129,7 @@ void describe(const Checked& checked, const std::optional<check::Calibration>& l
     out.words = fmt::format(
         "{}: zero found, gravity balanced (drift {}), six directions and the "
         "step as they should be",
-        checked.device, rest ? check::figure_of(*rest) : "");
+        checked.device, rest ? check::found_of(*rest) : "");
   } else {
     out.zero_N = push->value;
     out.zero_Nm = twist->value;
@@ -215,6 +212,7 @@ core::Result<int> calibrate(const Options& options) {
   if (auto kept = core::write_json(file, made.to_json()); !kept) return kept.error();
   check::Report report = report_for(*folder);
   report.calibration = std::move(made);
+  report.checks = checked.findings;
   if (auto kept = keep(checked, report); !kept) return kept.error();
   if (options.json) {
     fmt::print("{}\n", report.to_json().dump(2));

@@ -254,10 +254,11 @@ TEST(Calibration, ComesBackFromItsFileAndNamesAWrongField) {
 
 TEST(Finding, IsSpelledForAPerson) {
   const Finding way{.value = 0.0028, .limit = 0.0005, .bound = Bound::at_least, .unit = "m"};
-  EXPECT_EQ(figure_of(way), "2.8 mm (at least 0.5 mm)");
-  EXPECT_EQ(figure_of({.value = 2.1e-5, .limit = 2.5e-4, .unit = "s"}), "21 µs (at most 250 µs)");
-  EXPECT_EQ(figure_of({.value = 0.0004, .limit = 0.001}), "0.04 % (at most 0.1 %)");
-  EXPECT_EQ(figure_of({}), "");
+  EXPECT_EQ(found_of(way), "2.8 mm");
+  EXPECT_EQ(wanted_of(way), "at least 0.5 mm");
+  EXPECT_EQ(found_of({.value = 2.1e-5, .unit = "s"}), "21 µs");
+  EXPECT_EQ(wanted_of({.limit = 0.001}), "at most 0.1 %");
+  EXPECT_EQ(found_of({}) + wanted_of({}), "");
 }
 
 TEST(Report, EscapesWhatItPrints) {

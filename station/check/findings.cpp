@@ -51,11 +51,13 @@ std::string spelled(double value, const std::string& unit) {
   if (unit.empty()) return fmt::format("{:.3g} %", 100.0 * value);
   return fmt::format("{:.3g} {}", value, unit);
 }
-std::string figure_of(const Finding& finding) {
-  if (!finding.value) return "";
-  const std::string found = spelled(*finding.value, finding.unit);
-  if (!finding.limit) return found;
-  return fmt::format("{} (at {} {})", found, finding.bound == Bound::at_most ? "most" : "least",
+std::string found_of(const Finding& finding) {
+  return finding.value ? spelled(*finding.value, finding.unit) : "";
+}
+
+std::string wanted_of(const Finding& finding) {
+  if (!finding.limit) return "";
+  return fmt::format("at {} {}", finding.bound == Bound::at_most ? "most" : "least",
                      spelled(*finding.limit, finding.unit));
 }
 

@@ -27,8 +27,10 @@ struct Finding {
 
 /// "12 µs", "2.8 mm", "0.04 %" of SI; a share has no unit.
 std::string spelled(double value, const std::string& unit);
-/// "0.21 ms (at most 0.25 ms)"; empty without a value.
-std::string figure_of(const Finding& finding);
+/// "0.21 ms"; empty without a value.
+std::string found_of(const Finding& finding);
+/// "at most 0.25 ms"; empty without a limit.
+std::string wanted_of(const Finding& finding);
 /// "2026-03-01" of microseconds since 1970.
 std::string day_of(std::int64_t utc_us);
 
@@ -65,6 +67,7 @@ std::string due_warning(const Calibration& last, std::int64_t now_utc_us);
 struct Report {
   std::optional<SelfTest> self_test = {};
   std::optional<Calibration> calibration = {};
+  std::vector<Finding> checks = {};  ///< of a calibration; on the page alone
   std::string version = {};
   std::uint64_t free_disk_bytes = 0;
 

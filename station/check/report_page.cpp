@@ -40,8 +40,8 @@ p{margin:.3rem 0}.quiet{color:#555}
 .mark{border:1px solid #8a5a00;color:#8a5a00;padding:.1rem .4rem;font-weight:600}
 table{border-collapse:collapse;width:100%;font-size:.92em}
 th,td{text-align:left;padding:.35rem .5rem;border-bottom:1px solid #c9ced4;vertical-align:top}
-td:nth-child(1){width:28%}td:nth-child(2){white-space:nowrap}
-td:nth-child(3){width:20%;font-variant-numeric:tabular-nums}
+.checks td:nth-child(1){width:27%}.checks td:nth-child(-n+4):not(:first-child){white-space:nowrap}
+td{font-variant-numeric:tabular-nums}
 thead{display:table-header-group}tr{break-inside:avoid}
 .no td:nth-child(2){color:#a3161a;font-weight:700}
 .sign{margin-top:3.5rem;display:flex;gap:2.5rem;break-inside:avoid}
@@ -57,17 +57,23 @@ std::string verdict_of(const SelfTest& test) {
                      test.findings.size());
 }
 
-std::string table_of(const SelfTest& test) {
+std::string or_dash(const std::string& text) { return text.empty() ? "–" : escaped(text); }
+
+std::string table_of(const std::vector<Finding>& findings) {
   std::string out =
-      "<table><thead><tr><th>Check<th>Outcome<th>Found<th>What was seen, what to "
-      "do</tr></thead>\n<tbody>";
-  for (const Finding& f : test.findings) {
-    const std::string figure = figure_of(f);
-    out += fmt::format("<tr{}><td>{}<td>{}<td>{}<td>{}</tr>\n", f.passed ? "" : " class=no",
-                       escaped(f.name), f.passed ? "passed" : "NOT passed",
-                       figure.empty() ? "–" : escaped(figure), escaped(f.words));
-  }
+      "<table class=checks><thead><tr><th>Check<th>Outcome<th>Found<th>Wanted<th>What was seen, "
+      "what to do</tr></thead>\n<tbody>";
+  for (const Finding& f : findings)
+    out += fmt::format("<tr{}><td>{}<td>{}<td>{}<td>{}<td>{}</tr>\n", f.passed ? "" : " class=no",
+                       escaped(f.name), f.passed ? "passed" : "NOT passed", or_dash(found_of(f)),
+                       or_dash(wanted_of(f)), escaped(f.words));
   return out + "</tbody></table>\n";
+}
+
+/// "2026-03-01 12:00 UTC"
+std::string minute_of(std::int64_t utc_us) {
+  std::string text = core::utc_text(utc_us).substr(0, 16);
+  return text.replace(10, 1, " ") + " UTC";
 }
 
 std::string section_of(const Calibration& calibration) {
@@ -75,9 +81,8 @@ std::string section_of(const Calibration& calibration) {
       "<p class=verdict>Calibrated. Due again on {}.</p>\n<table><tbody>"
       "<tr><td>Device<td>{}</tr><tr><td>Done<td>{}</tr><tr><td>By<td>{}</tr>"
       "<tr><td>Found<td>{}</tr></tbody></table>\n",
-      day_of(calibration.due_utc_us), escaped(calibration.kind),
-      core::utc_text(calibration.at_utc_us).substr(0, 19) + "Z", escaped(calibration.who),
-      escaped(calibration.words));
+      day_of(calibration.due_utc_us), escaped(calibration.kind), minute_of(calibration.at_utc_us),
+      escaped(calibration.who), escaped(calibration.words));
 }
 }  // namespace
 
@@ -90,12 +95,13 @@ std::string Report::to_html(const std::string& station) const {
       escaped(station), kind, kStyle, escaped(version), 1e-9 * double(free_disk_bytes));
   if (self_test) {
     out += fmt::format(
-        "<p>{} UTC. Device: <b>{}</b>{}</p>\n", core::utc_text(self_test->at_utc_us).substr(0, 16),
+        "<p>{} UTC. Device: <b>{}</b>{}</p>\n", minute_of(self_test->at_utc_us),
         escaped(self_test->device),
         self_test->simulated ? " <span class=mark>SIMULATED: no machine was tested</span>" : "");
-    out += verdict_of(*self_test) + table_of(*self_test);
+    out += verdict_of(*self_test) + table_of(self_test->findings);
   }
   if (calibration) out += section_of(*calibration);
+  if (calibration && !checks.empty()) out += "<h2>Checks</h2>\n" + table_of(checks);
   return out + "<div class=sign><div>Name</div><div>Date</div><div>Signature</div></div></html>\n";
 }
 
