@@ -184,6 +184,18 @@ TEST(Architecture, EveryFolderOfTheTableSaysWhatItIs) {
   }
 }
 
+/// A test's file that no target compiles is a promise that nobody checks.
+TEST(Architecture, EveryTestIsCompiled) {
+  const std::string built = text_of(fs::path(TRACTUS_BINARY_DIR) / "compile_commands.json");
+  if (built.empty()) GTEST_SKIP() << "built without CMAKE_EXPORT_COMPILE_COMMANDS";
+  for (const char* top : {"shared", "db", "server", "station", "tests"})
+    for (const auto& entry : fs::recursive_directory_iterator(kRoot / top)) {
+      const std::string file = entry.path().string();
+      if (!file.ends_with("_test.cpp")) continue;
+      EXPECT_NE(built.find(file), std::string::npos) << file << " belongs to no target";
+    }
+}
+
 TEST(Architecture, HeadersAreGuardedAndWithoutUsingNamespace) {
   for (const auto& path : sources()) {
     if (path.extension() != ".hpp") continue;

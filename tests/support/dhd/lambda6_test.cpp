@@ -79,7 +79,7 @@ class Lambda6 : public testing::Test {
 standin::Control* Lambda6::control_ = nullptr;
 std::string Lambda6::path_;
 
-TEST_F(Lambda6, OpensWithGravityWatchdogAndForcesOnAndTheFactorysVelocityGuardUntouched) {
+TEST_F(Lambda6, OpensWithGravityAndWatchdogOnAndTheFactorysVelocityGuardUntouched) {
   const auto device = made();
   const auto limits = device->open();
   ASSERT_TRUE(limits) << limits.error().what;
@@ -87,12 +87,29 @@ TEST_F(Lambda6, OpensWithGravityWatchdogAndForcesOnAndTheFactorysVelocityGuardUn
   EXPECT_EQ(limits->name, "SIMULATED lambda.6, serial number 0");
   EXPECT_EQ(control_->gravity, 1);
   EXPECT_EQ(control_->watchdog_steps, 80);  // 10 ms in steps of 125 µs
-  EXPECT_EQ(control_->force_on, 1);
+  EXPECT_EQ(control_->force_on, 0);         // until somebody commands
   EXPECT_EQ(control_->velocity_guard_writes, 0);
+  ASSERT_EQ(device->write({}), Status::ok);
+  EXPECT_EQ(control_->force_on, 1);
   device->close();
   EXPECT_EQ(control_->force_on, 0);
   EXPECT_EQ(control_->opened, 0);
   device->close();  // twice is fine
+}
+
+// A volume is made ready and a file is made between the two: seconds, to a watchdog of 10 ms.
+TEST_F(Lambda6, WaitsAsLongAsItTakesBetweenOpeningAndTheFirstCommand) {
+  const auto device = made();
+  ASSERT_TRUE(device->open());
+  Sample sample;
+  control_->step_ns = 1'000'000'000;
+  for (int k = 0; k < 100; ++k) ASSERT_EQ(device->read(k, sample), Status::ok);
+  control_->step_ns = kPeriod;
+  for (int tick = 0; tick < 400; ++tick) {
+    ASSERT_EQ(device->write({{0, 1.0, 0}, Vec3::Zero()}), Status::ok);
+    ASSERT_EQ(device->read(tick * kPeriod, sample), Status::ok);
+  }
+  EXPECT_EQ(control_->watchdog_trips, 0);
 }
 
 TEST_F(Lambda6, GivesPoseWrenchButtonsAndGripper) {
