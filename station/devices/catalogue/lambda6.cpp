@@ -67,6 +67,7 @@ class Lambda6 final : public Device {
   Status read(core::Instant_ns now, Sample& out) noexcept override {
     if (!open_) return Status::fault;
     if (!watch_->present()) return Status::gone;
+    if (!sampled_ && !begin()) return trouble();
     double p[3], v[3], w[3], axes[3][3];
     const int posed = api_->pose(&p[0], &p[1], &p[2], axes, id_);
     if (posed < 0) return trouble();
@@ -145,12 +146,19 @@ class Lambda6 final : public Device {
     return {};
   }
 
+  /// Before the first sample: between `open` and the loop more than the watchdog's 10 ms go by.
+  bool begin() const noexcept {
+    return api_->enable_force(1, id_) >= 0 && api_->set_wrench(0, 0, 0, 0, 0, 0, 0, id_) >= 0;
+  }
+
   core::Result<void> home() {
-    if (!api_->is_initialised || api_->is_initialised(id_)) return {};
-    if (options_.homing == Homing::refuse)
+    if (!api_->is_initialised) return {};
+    if (options_.homing == Homing::refuse) {
+      if (api_->is_initialised(id_)) return {};
       return not_ready(
-          "not calibrated since it was switched on: let the vendor's initialisation find its zero; "
-          "the handle will move by itself");
+          "not calibrated since it was switched on: run `tractus-station calibrate`; its handle "
+          "will move by itself");
+    }
     if (api_->initialise(id_) < 0) return refused("cannot find its zero");
     if (api_->stop_regulation(true, id_) < 0) return refused("cannot let go of its handle");
     return {};
