@@ -53,7 +53,8 @@ core::Result<Setup> Setup::of(const trial::Header& header) {
 
 std::optional<bool> Redrilled::agrees() const {
   if (!said.is_object()) return std::nullopt;
-  return said.value("counts_sha256", "") == drilled_of(erosion).sha256();
+  const auto hash = said.find("counts_sha256");
+  return hash != said.end() && *hash == Json(drilled_of(erosion).sha256());
 }
 
 core::Result<Redrilled> redrill(

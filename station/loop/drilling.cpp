@@ -118,7 +118,9 @@ void Drilling::finish() {
 }
 
 std::optional<volume::Box> Drilling::show(volume::Volume& shown) {
-  const std::lock_guard lock(bone_mutex_);
+  // The worker may hold it until the loop gives a patch back, and the loop end meanwhile: no wait.
+  const std::unique_lock lock(bone_mutex_, std::try_to_lock);
+  if (!lock) return std::nullopt;
   const volume::Box box = std::exchange(unshown_, {});
   if (box.begin[0] >= box.end[0]) return std::nullopt;
   const volume::Volume& now = erosion_.volume();

@@ -57,7 +57,8 @@ class Drilling final : public Tool {
   double lag_quantile_s(double share) const noexcept { return lag_.quantile_us(share) * 1e-4; }
 
   /// From any one thread that shows the bone: writes into `shown` (the bone, or what this wrote
-  /// before) what changed since the last call; the box of it, nothing when nothing did.
+  /// before) what changed since the last call; the box of it, nothing when nothing did or the
+  /// worker is at it just now (then the next call has it). Never waits.
   std::optional<volume::Box> show(volume::Volume& shown);
 
  private:
