@@ -13,6 +13,8 @@ namespace {
 constexpr const char* kExamples = R"(Examples:
   tractus-station trust  --data st --case case/                 whose cases this station takes
   tractus-station --device sim-lambda6 --case case/ --data st   a trial in real time, SIMULATED hand
+  tractus-station --case undrilled/ --data st --tool burr       make the channel; then palpate it:
+  tractus-station --case undrilled/ --data st --drilled 0193c8… the id that the drilling said
   tractus-station --case 3f9ac2d1 --data st --speed fast --seed 7 --trials 5 --json
   tractus-station --case 3f9ac2d1 --data st --server http://127.0.0.1:8480 --token-file st.token
   tractus-station --device sim-rig --scenario lateral_breach --data st --speed fast   SIMULATED rig
@@ -34,6 +36,8 @@ const std::map<std::string, session::Speed> kSpeeds{{"real", session::Speed::rea
 
 const std::map<std::string, loop::Passivity> kPassivities{
     {"observed", loop::Passivity::observed}, {"controlled", loop::Passivity::controlled}};
+
+const std::map<std::string, bool> kTools{{"probe", false}, {"burr", true}};
 
 const std::map<std::string, Show> kShows{
     {"none", Show::none}, {"window", Show::window}, {"offscreen", Show::offscreen}};
@@ -166,6 +170,15 @@ void add_run(CLI::App& app, Options& options) {
   app.add_option("--device", options.setup.device,
                  "lambda6 or sim-lambda6; rig or sim-rig for a scenario")
       ->capture_default_str();
+  app.add_option("--tool", options.burr,
+                 "probe: the channel is felt; burr: the bone is drilled while the device's button "
+                 "is held (a case of tractus carve --no-channel)")
+      ->transform(CLI::CheckedTransformer(kTools))
+      ->default_str("probe");
+  app.add_option("--burr", options.burr_file,
+                 "JSON file with the burr's numbers, with --tool burr");
+  app.add_option("--drilled", options.drilled,
+                 "palpate what this trial drilled into the case: its id");
   app.add_option(
       "--sdk", options.setup.sdk,
       "lambda6: the vendor's SDK, its folder or library; else $FDSDK, else as installed");
@@ -329,11 +342,16 @@ std::optional<int> check_run(const CLI::App& app, Options& options) {
   if (options.data.empty()) return refuse("--data is required");
   if (options.deed == run_trials) {
     if (!options.scenario.empty()) return refuse("--scenario: --device rig or sim-rig is expected");
+    if (!options.burr && !options.burr_file.empty()) return refuse("--burr: needs --tool burr");
+    if (options.burr && !options.drilled.empty())
+      return refuse("--drilled: is palpated, with --tool probe; a burr begins on the case's bone");
     return options.case_name.empty() ? std::optional(refuse("--case is required")) : std::nullopt;
   }
   if (!options.case_name.empty()) return refuse("--case: is felt with sim-lambda6, not on the rig");
   if (options.scenario.empty() && options.model_file.empty())
     return refuse("--scenario is required (or --model alone, without walls)");
+  if (options.burr || !options.drilled.empty())
+    return refuse("--tool, --drilled: are of a case, with sim-lambda6 or lambda6");
   if (options.show != Show::none || !options.picture.empty())
     return refuse("--view, --picture: the rig has none; its person feels alone");
   rig.seed = options.setup.seed;

@@ -33,6 +33,9 @@ struct Options {
   std::string who;                     ///< tune: the expert; calibrate: who does it
   std::filesystem::path tuned_folder;  ///< tune: where new versions go
   std::string case_name;
+  bool burr = false;                ///< drill, instead of palpating
+  std::filesystem::path burr_file;  ///< its numbers; empty: the default ones
+  std::string drilled;              ///< id of the trial whose channel is palpated
   std::filesystem::path model_file;
   std::optional<std::int64_t> started_utc_us;  ///< of the first trial; a SIMULATED date
   std::string answer;  ///< empty: the simulated hand's own, or asked at the terminal

@@ -14,6 +14,7 @@
 #include "station/view/view.hpp"
 
 class vtkActor;
+class vtkImageData;
 
 namespace view {
 
@@ -21,6 +22,11 @@ namespace view {
 class Bone {
  public:
   void add(vtkRenderer& renderer, const Scene& scene);
+  /// Takes the counts of `box` anew.
+  void carve_away(const volume::Box& box, const volume::Volume& volume);
+
+ private:
+  vtkSmartPointer<vtkImageData> image_;
 };
 
 /// The tract: rings and its axis.
