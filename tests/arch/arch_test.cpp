@@ -73,11 +73,10 @@ const std::map<std::string, Names> kAllowed = {
     {"station/sensors", {"shared/core", "shared/math"}},
     {"station/loop",
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/effects",
-      "shared/models", "shared/trial", "station/devices", "station/safety"}},
+      "shared/models", "shared/trial", "shared/drilling", "station/devices", "station/safety"}},
     // Devices and this machine put to the question: every force through the loop's limiters.
     {"station/check",
      {"shared/core", "shared/math", "station/devices", "station/loop", "station/safety"}},
-      "shared/models", "shared/trial", "shared/drilling", "station/devices", "station/safety"}},
     // How volumes are stored in bricks: those that are here are not fetched.
     {"station/uplink",
      {"shared/core", "shared/trial", "shared/wire", "shared/cases", "shared/volume"}},
