@@ -122,7 +122,7 @@ void View::draw(const ProbeState& state, std::span<const math::Vec3> path_m) {
 }
 
 void View::carve_away(const volume::Box& box, const volume::Volume& volume) {
-  parts_->bone.carve_away(box, volume);
+  parts_->picture.carve_away(box, volume);
 }
 
 core::Result<void> View::save_png(const std::filesystem::path& path) const {
