@@ -74,4 +74,14 @@ void say_calibration_due(const session::StationFolder& folder, const std::string
   if (!line.empty()) std::fprintf(stderr, "warning: %s\n", line.c_str());
 }
 
+session::ProbingWatch warned(session::ProbingWatch inner, const session::StationFolder& folder,
+                             const std::string& device) {
+  return [inner = std::move(inner), &folder, device,
+          said = false](const session::ProbingGlimpse& seen) mutable {
+    if (!said) say_calibration_due(folder, device);
+    said = true;
+    return inner(seen);
+  };
+}
+
 }  // namespace app

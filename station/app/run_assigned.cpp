@@ -57,6 +57,7 @@ core::Result<TrialReport> palpate(const Options& options, Presence& presence,
   session::Station station(folder, setup);
   if (auto ready = station.prepare(prepared, options.setup.seed + trial.number); !ready)
     return ready.error();
+  say_calibration_due(folder, options.setup.device);
   auto onlooker = Onlooker::make(*prepared, options.show, {});
   if (!onlooker) return onlooker.error();
   const auto watch = [&](const session::Glimpse& seen) {
@@ -97,7 +98,7 @@ core::Result<TrialReport> probe(const Options& options, Presence& presence,
   setup.outside = presence.outside();
   const auto watch = [](const session::ProbingGlimpse&) { return !stopped_by_hand(); };
   return session::run_probing_trial(
-      folder, task, setup, presence.watched(watch, task),
+      folder, task, setup, warned(presence.watched(watch, task), folder, setup.device),
       [&](const session::ProbingTrialRun& run) -> core::Result<std::optional<trial::Answer>> {
         presence.is(Presence::State::questions);
         return answer_of(options, run.simulated_answer());
@@ -107,9 +108,8 @@ core::Result<TrialReport> probe(const Options& options, Presence& presence,
 core::Result<TrialReport> one_trial(const Options& options, Presence& presence,
                                     const session::StationFolder& folder, const AssignedWork& work,
                                     int number) {
-  const std::string& device = options.setup.device;
-  say_calibration_due(folder, device);
   presence.is(Presence::State::preparing);
+  const std::string& device = options.setup.device;
   const bool is_rig = device == "rig" || device == "sim-rig";
   const bool probing = work.trial->rig == "probing";
   if (is_rig != probing)

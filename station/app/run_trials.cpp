@@ -48,9 +48,9 @@ core::Result<TrialReport> one_trial(const Options& options, Presence& presence,
                                     const session::StationFolder& folder, session::Station& station,
                                     const std::shared_ptr<const session::PreparedCase>& prepared,
                                     std::uint64_t seed) {
-  say_calibration_due(folder, options.setup.device);
   presence.is(Presence::State::preparing);
   if (auto ready = station.prepare(prepared, seed); !ready) return ready.error();
+  say_calibration_due(folder, options.setup.device);
   auto onlooker = Onlooker::make(*prepared, options.show, options.picture);
   if (!onlooker) return onlooker.error();
   const core::Progress shown = core::terminal_progress(fmt::format("Trial, seed {}", seed));

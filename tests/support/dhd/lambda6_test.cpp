@@ -279,16 +279,6 @@ TEST_F(Lambda6, PulledOutItStopsAndPluggedInAgainAPersonResumes) {
   EXPECT_NEAR(force_of(*control_), 2.0, 1e-6);
 }
 
-TEST_F(Lambda6, ALoopThatBeginsLongAfterTheOpeningFindsItsForcesOn) {
-  Live live(made());
-  ASSERT_TRUE(live.device->open());
-  control_->away_ns = 500'000'000;  // a case was prepared meanwhile
-  for (int k = 0; k < 2000; ++k) live.tick();
-  EXPECT_EQ(control_->watchdog_trips, 1);
-  EXPECT_EQ(live.limiter.fault(), loop::Fault::none) << loop::text_of(live.limiter.fault());
-  EXPECT_NEAR(force_of(*control_), 2.0, 1e-6);
-}
-
 TEST_F(Lambda6, ItsOwnWatchdogCutsTheForcesOfAComputerThatHangs) {
   Live live(made());
   ASSERT_TRUE(live.device->open());
