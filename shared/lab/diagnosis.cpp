@@ -28,8 +28,9 @@ FoundEffect found(const Problem& problem, const Fit& fit, const std::string& id)
   out.id = id;
   for (const Candidate& candidate : problem.candidates()) {
     if (candidate.facts.id != id) continue;
-    for (const auto& [what, value] : problem.derived(fit.structure, fit.values, id))
-      out.parameters.push_back({what, {value}, {0.0}});
+    const double inflation = std::max(1.0, fit.whitened_rms);
+    for (const auto& [what, value, sd] : problem.derived(fit.structure, fit.values, id))
+      out.parameters.push_back({what, {value}, {inflation * sd}});
     if (candidate.facts.free_per_trial) break;
     for (const effects::Param& p : candidate.facts.params) {
       FoundParameter parameter{p.name, {}, {}};

@@ -21,6 +21,11 @@ class Drift {
   void remove(Eigen::Ref<Eigen::VectorXd> residual) const;
   /// The trend at any times, in the unit of the unweighted residual.
   Eigen::VectorXd at(std::span<const double> t_s, const Eigen::VectorXd& coefficients) const;
+  /// Variance of the difference of the fitted trend at two times, when the weighted residuals are
+  /// independent of variance 1.
+  double variance_between(double a_s, double b_s) const {
+    return (to_basis_.transpose() * (powers(a_s) - powers(b_s)).transpose()).squaredNorm();
+  }
 
  private:
   Eigen::RowVectorXd powers(double t_s) const;

@@ -96,9 +96,8 @@ class PalpationProblem final : public Problem {
   Residuals full_rate(const Structure& structure, std::span<const double> values,
                       int k) const override;
   States states(int k) const override;
-  std::vector<std::pair<std::string, double>> derived(const Structure& structure,
-                                                      std::span<const double> values,
-                                                      std::string_view effect) const override;
+  std::vector<Derived> derived(const Structure& structure, std::span<const double> values,
+                               std::string_view effect) const override;
   std::string recording(std::string_view a, std::string_view b) const override {
     return palpation_recording(a, b);
   }
@@ -345,25 +344,35 @@ States PalpationProblem::states(int k) const {
   return out;
 }
 
-std::vector<std::pair<std::string, double>> PalpationProblem::derived(
-    const Structure& structure, std::span<const double> values, std::string_view effect) const {
+std::vector<Derived> PalpationProblem::derived(const Structure& structure,
+                                               std::span<const double> values,
+                                               std::string_view effect) const {
   if (effect != kDrift || !has_drift(structure)) return {};
   // Mean over the trials, and over the axes that drift: by half as much as the one that does most.
-  double sum = 0.0;
+  double sum = 0.0, variance = 0.0;
   for (int k = 0; k < trials(); ++k) {
     const Eigen::Matrix3Xd slow = trend(structure, values, k).topRows<3>();
-    const Vec3 range = slow.rowwise().maxCoeff() - slow.rowwise().minCoeff();
+    const auto& t_s = trials_[std::size_t(k)].motion.t_s;
+    Vec3 range, square;
+    for (int axis = 0; axis < 3; ++axis) {
+      Eigen::Index high = 0, low = 0;
+      range(axis) = slow.row(axis).maxCoeff(&high) - slow.row(axis).minCoeff(&low);
+      square(axis) = trends_[std::size_t(k)].variance_between(axis, t_s[std::size_t(high)],
+                                                              t_s[std::size_t(low)]);
+    }
     const auto drifts = (range.array() >= 0.5 * range.maxCoeff()).cast<double>();
     sum += (range.array() * drifts).sum() / drifts.sum();
+    variance += (square.array() * drifts).sum() / (drifts.sum() * drifts.sum());
   }
-  return {{"range_N", sum / double(trials())}};
+  const double n = trials();
+  return {{"range_N", sum / n, std::sqrt(variance) / n}};
 }
 
 core::Json PalpationProblem::model(const Structure& structure,
                                    std::span<const double> values) const {
   models::PalpationModel model = numbers_.with(structure, values);
-  for (const auto& [name, value] : derived(structure, values, kDrift))
-    model.effects.push_back({std::string(kDrift), {value}});
+  for (const Derived& range : derived(structure, values, kDrift))
+    model.effects.push_back({std::string(kDrift), {range.value}});
   return model.to_json();
 }
 

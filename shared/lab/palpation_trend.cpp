@@ -51,4 +51,10 @@ Eigen::MatrixXd Trend::at(std::span<const double> t_s, const Eigen::VectorXd& re
   return out;
 }
 
+double Trend::variance_between(int channel, double a_s, double b_s) const {
+  if (basis_.rows() == 0) return 0.0;
+  const auto rows = to_plain_.middleRows(channel * kOrders, kOrders);
+  return ((powers(a_s) - powers(b_s)) * rows).squaredNorm();
+}
+
 }  // namespace lab

@@ -25,6 +25,9 @@ class Trend {
   void remove(Eigen::Ref<Eigen::VectorXd> residual) const;
   /// The trend in a whitened residual at any times, [channel][time], N and N·m.
   Eigen::MatrixXd at(std::span<const double> t_s, const Eigen::VectorXd& residual) const;
+  /// Variance of the difference of a channel's trend at two times, (N or N·m)², when the whitened
+  /// residuals are independent of variance 1.
+  double variance_between(int channel, double a_s, double b_s) const;
 
  private:
   Eigen::RowVectorXd powers(double t_s) const;

@@ -76,9 +76,8 @@ class ProbingProblem final : public Problem {
   Residuals full_rate(const Structure& structure, std::span<const double> values,
                       int k) const override;
   States states(int k) const override;
-  std::vector<std::pair<std::string, double>> derived(const Structure& structure,
-                                                      std::span<const double> values,
-                                                      std::string_view effect) const override;
+  std::vector<Derived> derived(const Structure& structure, std::span<const double> values,
+                               std::string_view effect) const override;
   std::string recording(std::string_view a, std::string_view b) const override {
     return probing_recording(a, b);
   }
@@ -283,22 +282,27 @@ States ProbingProblem::states(int k) const {
   return out;
 }
 
-std::vector<std::pair<std::string, double>> ProbingProblem::derived(const Structure& structure,
-                                                                    std::span<const double> values,
-                                                                    std::string_view effect) const {
+std::vector<Derived> ProbingProblem::derived(const Structure& structure,
+                                             std::span<const double> values,
+                                             std::string_view effect) const {
   if (effect != kDrift || !has_drift(structure)) return {};
-  double sum = 0.0;
+  double sum = 0.0, variance = 0.0;
   for (int k = 0; k < trials(); ++k) {
     const Eigen::VectorXd trend = drift(structure, values, k);
-    sum += trend.maxCoeff() - trend.minCoeff();
+    const auto& t_s = trial(k).motion.t_s;
+    Eigen::Index high = 0, low = 0;
+    sum += trend.maxCoeff(&high) - trend.minCoeff(&low);
+    variance +=
+        drifts_[std::size_t(k)].variance_between(t_s[std::size_t(high)], t_s[std::size_t(low)]);
   }
-  return {{"range_N", sum / double(trials())}};
+  const double n = trials();
+  return {{"range_N", sum / n, std::sqrt(variance) / n}};
 }
 
 core::Json ProbingProblem::model(const Structure& structure, std::span<const double> values) const {
   models::ProbingModel model = numbers_.with(structure, values);
-  for (const auto& [name, value] : derived(structure, values, kDrift))
-    model.effects.push_back({std::string(kDrift), {value}});
+  for (const Derived& range : derived(structure, values, kDrift))
+    model.effects.push_back({std::string(kDrift), {range.value}});
   return model.to_json();
 }
 

@@ -53,6 +53,12 @@ struct Candidate {
   std::string why_not;  ///< if not possible: "theta_rad was not recorded"
 };
 
+/// A number that is reported and not fitted.
+struct Derived {
+  std::string name;
+  double value = 0.0, sd = 0.0;  ///< sd for residuals of variance 1
+};
+
 /// One trial's error, measured − predicted at the full rate, [channel][sample] in the order of
 /// Problem::channels; of a primary that is a norm (force_N) the norm of the error.
 struct Residuals {
@@ -134,11 +140,10 @@ class Problem {
                               int trial) const = 0;
   virtual States states(int trial) const = 0;
 
-  /// Numbers to report of an effect that are not parameters of the fit (sensor_drift's range_N), as
-  /// name → value; empty for most.
-  virtual std::vector<std::pair<std::string, double>> derived(const Structure& structure,
-                                                              std::span<const double> values,
-                                                              std::string_view effect) const = 0;
+  /// Numbers to report of an effect that are not parameters of the fit (sensor_drift's range_N);
+  /// empty for most.
+  virtual std::vector<Derived> derived(const Structure& structure, std::span<const double> values,
+                                       std::string_view effect) const = 0;
   /// Which recording would separate two effects on this rig, or show one (`b` empty).
   virtual std::string recording(std::string_view a, std::string_view b) const = 0;
   /// Remarks on the recording itself that belong into every answer: "tz_Nm was not recorded: …".

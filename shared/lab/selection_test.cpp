@@ -101,8 +101,8 @@ class Toy final : public Problem {
     }
     return out;
   }
-  std::vector<std::pair<std::string, double>> derived(const Structure&, std::span<const double>,
-                                                      std::string_view) const override {
+  std::vector<Derived> derived(const Structure&, std::span<const double>,
+                               std::string_view) const override {
     return {};
   }
   std::string recording(std::string_view a, std::string_view) const override {
@@ -315,8 +315,8 @@ class Misra1a final : public Problem {
   int free_per_trial(const Structure&) const override { return 0; }
   Residuals full_rate(const Structure&, std::span<const double>, int) const override { return {}; }
   States states(int) const override { return {}; }
-  std::vector<std::pair<std::string, double>> derived(const Structure&, std::span<const double>,
-                                                      std::string_view) const override {
+  std::vector<Derived> derived(const Structure&, std::span<const double>,
+                               std::string_view) const override {
     return {};
   }
   std::string recording(std::string_view, std::string_view) const override { return ""; }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -163,6 +164,24 @@ TEST(Drift, TakesOutAPolynomialAndGivesItBack) {
   EXPECT_NEAR(back(100), 1.0 + 0.3 * 5.0 - 0.02 * 25.0, 1e-9);
   drift.remove(residual);
   EXPECT_LT(residual.norm(), 1e-9);
+}
+
+// By the textbook's (XᵀWX)⁻¹ on monomials, which span what the Legendre polynomials span.
+TEST(Drift, KnowsHowWellItKnowsADifference) {
+  std::vector<double> t_s, sd;
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(6, 6);
+  const auto monomials = [](double t) {
+    return Eigen::VectorXd{{1.0, t, t * t, std::pow(t, 3), std::pow(t, 4), std::pow(t, 5)}};
+  };
+  for (int k = 0; k < 200; ++k) {
+    t_s.push_back(-1.0 + 0.01 * k);
+    sd.push_back(k % 2 ? 0.1 : 0.2);
+    const Eigen::VectorXd x = monomials(t_s.back()) / sd.back();
+    information += x * x.transpose();
+  }
+  const Eigen::VectorXd contrast = monomials(0.9) - monomials(-0.4);
+  const double expected = contrast.dot(information.ldlt().solve(contrast));
+  EXPECT_NEAR(Drift(t_s, sd).variance_between(0.9, -0.4) / expected, 1.0, 1e-9);
 }
 
 }  // namespace

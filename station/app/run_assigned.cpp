@@ -8,6 +8,7 @@
 
 #include "core/file.hpp"
 #include "station/app/aftermath.hpp"
+#include "station/app/checks.hpp"
 #include "station/app/deeds.hpp"
 #include "station/app/exchange.hpp"
 #include "station/app/presence.hpp"
@@ -106,8 +107,9 @@ core::Result<TrialReport> probe(const Options& options, Presence& presence,
 core::Result<TrialReport> one_trial(const Options& options, Presence& presence,
                                     const session::StationFolder& folder, const AssignedWork& work,
                                     int number) {
-  presence.is(Presence::State::preparing);
   const std::string& device = options.setup.device;
+  say_calibration_due(folder, device);
+  presence.is(Presence::State::preparing);
   const bool is_rig = device == "rig" || device == "sim-rig";
   const bool probing = work.trial->rig == "probing";
   if (is_rig != probing)

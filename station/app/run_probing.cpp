@@ -5,6 +5,7 @@
 
 #include "core/progress.hpp"
 #include "station/app/aftermath.hpp"
+#include "station/app/checks.hpp"
 #include "station/app/deeds.hpp"
 #include "station/app/exchange.hpp"
 #include "station/app/presence.hpp"
@@ -76,6 +77,7 @@ core::Result<TrialReport> one_trial(const Options& options, Presence& presence,
   session::RigSetup setup = options.rig;
   setup.seed = seed;
   setup.outside = presence.outside();
+  say_calibration_due(folder, setup.device);
   presence.is(Presence::State::preparing);
   auto report = session::run_probing_trial(
       folder, task, setup, presence.watched(watch_of(options, task), task),

@@ -8,6 +8,7 @@
 
 #include "core/file.hpp"
 #include "station/app/aftermath.hpp"
+#include "station/app/checks.hpp"
 #include "station/app/deeds.hpp"
 #include "station/app/exchange.hpp"
 #include "station/app/presence.hpp"
@@ -115,6 +116,7 @@ session::ProbingWatch watch_of(const Options& options) {
 
 core::Result<TrialReport> one_trial(const Study& study, const StudyWork& work,
                                     const SealedTrial& trial) {
+  say_calibration_due(study.folder, study.options.rig.device);
   auto law = study::opened_law(trial.sealed, trial.slot, study.key);
   if (!law) return law.error();
   session::ProbingTask task;

@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include "station/app/aftermath.hpp"
+#include "station/app/checks.hpp"
 #include "station/app/deeds.hpp"
 #include "station/app/exchange.hpp"
 #include "station/app/presence.hpp"
@@ -44,9 +45,10 @@ session::Watch watch_of(const Options& options, const core::Progress& shown, Onl
 }
 
 core::Result<TrialReport> one_trial(const Options& options, Presence& presence,
-                                    session::Station& station,
+                                    const session::StationFolder& folder, session::Station& station,
                                     const std::shared_ptr<const session::PreparedCase>& prepared,
                                     std::uint64_t seed) {
+  say_calibration_due(folder, options.setup.device);
   presence.is(Presence::State::preparing);
   if (auto ready = station.prepare(prepared, seed); !ready) return ready.error();
   auto onlooker = Onlooker::make(*prepared, options.show, options.picture);
@@ -144,8 +146,8 @@ core::Result<int> run_trials(const Options& options) {
   core::Json trials = core::Json::array();
   bool faulted = false;
   for (int i = 0; i < options.trials && !asked_to_stop() && presence.may_go_on(); ++i) {
-    auto report =
-        one_trial(options, presence, station, *prepared, options.setup.seed + std::uint64_t(i));
+    auto report = one_trial(options, presence, *folder, station, *prepared,
+                            options.setup.seed + std::uint64_t(i));
     if (!report) return report.error();
     faulted = faulted || !report->complete;
     auto scores = session::scores_of(report->file, &(*prepared)->opened.definition.tract);

@@ -11,6 +11,7 @@
 #include "core/clock.hpp"
 #include "core/file.hpp"
 #include "station/app/aftermath.hpp"
+#include "station/app/checks.hpp"
 #include "station/app/deeds.hpp"
 #include "station/app/exchange.hpp"
 #include "station/app/probing.hpp"
@@ -108,6 +109,7 @@ core::Result<session::TrialReport> one_trial(const Options& options,
   auto task = session::task_of(expert.tuning().now());
   if (!task) return task.error();
   task->operator_name = options.who;
+  say_calibration_due(folder, options.rig.device);
   auto made = session::ProbingTrialRun::make(folder, *task, options.rig);
   if (!made) return made.error();
   session::ProbingTrialRun& trial = **made;

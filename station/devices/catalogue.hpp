@@ -23,10 +23,10 @@ struct Channel {
   double radius_m = 0.0025;
 };
 
-/// What a device does that has lost its zero (switched off meanwhile).
+/// What a device does about its zero, which it loses while it is switched off.
 enum class Homing : std::uint8_t {
-  refuse,  ///< says so
-  move,    ///< looks for it: the handle moves by itself, somebody must stand by
+  refuse,  ///< takes it as it is; says so when it is lost
+  move,    ///< looks for it anew: the handle moves by itself, somebody must stand by
 };
 
 /// What the hand holds.

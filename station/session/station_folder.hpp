@@ -57,6 +57,10 @@ class StationFolder {
   std::filesystem::path trials() const { return root_ / "trials"; }
   /// What self-tests and calibrations left for the server.
   std::filesystem::path reports() const { return root_ / "reports"; }
+  /// A device's last calibration.
+  std::filesystem::path calibration_file(const std::string& device) const {
+    return root_ / "calibration" / (device + ".json");
+  }
   /// The last comparison with the server's clock.
   std::filesystem::path clock() const { return root_ / "clock.json"; }
   std::filesystem::path trial_file(const std::string& id) const {

@@ -206,4 +206,12 @@ void TipPath::add(vtkRenderer& renderer) {
 
 void TipPath::points(std::span<const math::Vec3> path_m) { set_line(*line_, path_m); }
 
+void Picture::add(vtkRenderer& renderer, const Scene& scene) {
+  renderer.SetBackground(0.09, 0.10, 0.12);
+  bone_.add(renderer, scene);
+  outline_.add(renderer, scene.tract);
+  path_.add(renderer);
+  shank_.add(renderer, scene.probe);
+}
+
 }  // namespace view

@@ -47,6 +47,8 @@ const std::map<std::string, Names> kAllowed = {
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/effects",
       "shared/models"}},
     {"shared/trial", {"shared/core", "shared/math"}},
+    // A measuring room's files become a measurement set.
+    {"shared/capture", {"shared/core", "shared/math", "shared/trial"}},
     // What a burr takes from a volume: a function of a trial's samples.
     {"shared/drilling", {"shared/core", "shared/math", "shared/volume", "shared/trial"}},
     {"shared/metrics", {"shared/core", "shared/math", "shared/volume", "shared/trial"}},
@@ -67,9 +69,14 @@ const std::map<std::string, Names> kAllowed = {
     {"station/devices", {"shared/core", "shared/math"}},
     // The rig's electronics and mechanics, played by a process: the register map, and no law.
     {"station/rig", {"shared/core", "station/devices"}},
+    // What measures people and machines; never in the haptic loop.
+    {"station/sensors", {"shared/core", "shared/math"}},
     {"station/loop",
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/effects",
       "shared/models", "shared/trial", "shared/drilling", "station/devices", "station/safety"}},
+    // Devices and this machine put to the question: every force through the loop's limiters.
+    {"station/check",
+     {"shared/core", "shared/math", "station/devices", "station/loop", "station/safety"}},
     // How volumes are stored in bricks: those that are here are not fetched.
     {"station/uplink",
      {"shared/core", "shared/trial", "shared/wire", "shared/cases", "shared/volume"}},
@@ -181,6 +188,18 @@ TEST(Architecture, EveryFolderOfTheTableSaysWhatItIs) {
     if (!fs::exists(kRoot / folder)) continue;
     EXPECT_TRUE(fs::exists(kRoot / folder / "README.md")) << folder << " has no README.md";
   }
+}
+
+/// A test's file that no target compiles is a promise that nobody checks.
+TEST(Architecture, EveryTestIsCompiled) {
+  const std::string built = text_of(fs::path(TRACTUS_BINARY_DIR) / "compile_commands.json");
+  if (built.empty()) GTEST_SKIP() << "built without CMAKE_EXPORT_COMPILE_COMMANDS";
+  for (const char* top : {"shared", "db", "server", "station", "tests"})
+    for (const auto& entry : fs::recursive_directory_iterator(kRoot / top)) {
+      const std::string file = entry.path().string();
+      if (!file.ends_with("_test.cpp")) continue;
+      EXPECT_NE(built.find(file), std::string::npos) << file << " belongs to no target";
+    }
 }
 
 TEST(Architecture, HeadersAreGuardedAndWithoutUsingNamespace) {

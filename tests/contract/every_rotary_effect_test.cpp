@@ -59,7 +59,11 @@ class EveryRotaryEffect : public testing::TestWithParam<std::string> {
     EXPECT_TRUE(made) << made.error().what;
     return std::move(*made);
   }
-  static ProbingRuntime without() { return std::move(*ProbingRuntime::make(bone(), {})); }
+  static ProbingRuntime without() {
+    auto made = ProbingRuntime::make(bone(), {});
+    EXPECT_TRUE(made) << made.error().what;
+    return std::move(*made);
+  }
   static ProbingForces predicted(const ProbingRuntime& runtime, const ProbingMotion& motion) {
     ProbingForces out;
     runtime.predict(motion, out);

@@ -67,6 +67,7 @@ class Lambda6 final : public Device {
   Status read(core::Instant_ns now, Sample& out) noexcept override {
     if (!open_) return Status::fault;
     if (!watch_->present()) return Status::gone;
+    if (!sampled_ && !begin()) return trouble();
     double p[3], v[3], w[3], axes[3][3];
     const int posed = api_->pose(&p[0], &p[1], &p[2], axes, id_);
     if (posed < 0) return trouble();
@@ -92,6 +93,8 @@ class Lambda6 final : public Device {
     if (!open_) return Status::fault;
     const Vec3 &f = on_hand_D.force_N, &t = on_hand_D.torque_Nm;
     if (!f.allFinite() || !t.allFinite()) return Status::fault;
+    if (!forces_on_ && api_->enable_force(1, id_) < 0) return trouble();
+    forces_on_ = true;
     const int given = api_->set_wrench(f.x(), f.y(), f.z(), t.x(), t.y(), t.z(), 0.0, id_);
     saturated_ = given == DhdApi::kSaturated;
     return given < 0 ? trouble() : Status::ok;
@@ -104,7 +107,7 @@ class Lambda6 final : public Device {
       api_->close(id_);
     }
     id_ = -1;
-    open_ = sampled_ = saturated_ = false;
+    open_ = sampled_ = saturated_ = forces_on_ = false;
     watch_.reset();
   }
 
@@ -137,18 +140,25 @@ class Lambda6 final : public Device {
     if (api_->gravity(kGravity_m_s2, id_) < 0 || api_->compensate_gravity(1, id_) < 0)
       return refused("its gravity compensation cannot be switched on");
     if (auto watched = set_watchdog(); !watched) return watched;
-    // The factory's velocity guard stays as it is.
-    if (api_->enable_force(1, id_) < 0) return refused("its forces cannot be switched on");
-    if (api_->set_wrench(0, 0, 0, 0, 0, 0, 0, id_) < 0) return refused("it takes no command");
+    // The factory's velocity guard stays as it is. Forces wait for the first command: from then on
+    // somebody keeps the watchdog quiet.
+    if (api_->enable_force(0, id_) < 0) return refused("its forces cannot be switched");
     return {};
   }
 
+  /// Before the first sample: between `open` and the loop more than the watchdog's 10 ms go by.
+  bool begin() const noexcept {
+    return api_->enable_force(1, id_) >= 0 && api_->set_wrench(0, 0, 0, 0, 0, 0, 0, id_) >= 0;
+  }
+
   core::Result<void> home() {
-    if (!api_->is_initialised || api_->is_initialised(id_)) return {};
-    if (options_.homing == Homing::refuse)
+    if (!api_->is_initialised) return {};
+    if (options_.homing == Homing::refuse) {
+      if (api_->is_initialised(id_)) return {};
       return not_ready(
-          "not calibrated since it was switched on: let the vendor's initialisation find its zero; "
-          "the handle will move by itself");
+          "not calibrated since it was switched on: run `tractus-station calibrate`; its handle "
+          "will move by itself");
+    }
     if (api_->initialise(id_) < 0) return refused("cannot find its zero");
     if (api_->stop_regulation(true, id_) < 0) return refused("cannot let go of its handle");
     return {};
@@ -186,7 +196,7 @@ class Lambda6 final : public Device {
     if (api_->status(status, id_) < 0) return trouble();
     if (!status[DhdApi::kConnected] || status[DhdApi::kForceOffCause] == DhdApi::kForceOffUnplugged)
       return Status::gone;
-    return status[DhdApi::kForce] ? Status::ok : Status::forces_off;
+    return status[DhdApi::kForce] || !forces_on_ ? Status::ok : Status::forces_off;
   }
 
   DeviceOptions options_;
@@ -196,7 +206,8 @@ class Lambda6 final : public Device {
   core::Instant_ns stamp_ = 0;
   unsigned reads_ = 0;
   char id_ = -1;
-  bool open_ = false, sampled_ = false, saturated_ = false, has_gripper_ = false;
+  bool open_ = false, sampled_ = false, saturated_ = false, forces_on_ = false;
+  bool has_gripper_ = false;
 };
 
 core::Result<MadeDevice> make(const DeviceOptions& options) {
