@@ -20,15 +20,18 @@ namespace drilling {
 /// with F the size of the model's force as it was recorded. The felt tip lies ahead of the ball's
 /// centre: where it is, (1) must still take something away, or a hand would never get on.
 ///
-/// Assumes one bone: soft and hard voxels lose the same share in the same time. Known limit: the
-/// force is that of the whole probe, so a shank that leans on a wall cuts a little faster. The
-/// numbers are plausible choices of ours, tuned on the simulated hand, not measurements.
+/// Assumes one bone: soft and hard voxels lose the same share in the same time. Known limits: the
+/// force is that of the whole probe, so a shank that leans on a wall cuts a little faster; and it
+/// is the palpation model's, which gives tenths of a newton in marrow: F₁ is small so that the burr
+/// cuts there, and cortex then costs hardly more push than marrow. The numbers are plausible
+/// choices of ours, tuned on the simulated hand in a lumbar CT, not measurements.
 struct Burr {
-  double radius_m = 0.0015;   ///< r, 0.0003 … 0.005
-  double nose_m = 0.00075;    ///< felt tip ahead of the ball's centre, 0 … 0.9 r
-  double rate_per_s = 20.0;   ///< ρ₁, of a voxel at the centre under full force, 0.01 … 1000
-  double threshold_N = 0.05;  ///< F₀, no bone goes below, 0 … 100
-  double full_N = 1.0;        ///< F₁, no faster above; > F₀, … 100
+  double radius_m = 0.0015;  ///< r, 0.0003 … 0.005
+  double nose_m = 0.00075;   ///< felt tip ahead of the ball's centre, 0 … 0.9 r
+  double rate_per_s = 40.0;  ///< ρ₁, of a voxel at the centre under full force, 0.01 … 1000
+  double threshold_N =
+      0.01;             ///< F₀, no bone goes below: the least contact that [Zoller2020] counts
+  double full_N = 0.2;  ///< F₁, no faster above; > F₀, … 100
 
   /// ρ(F), eq. (2), 1/s.
   double rate_at_per_s(double force_N) const noexcept;

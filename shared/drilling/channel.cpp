@@ -18,7 +18,8 @@ using volume::Wall;
 
 constexpr double kOfIt = 0.5;      // share lost
 constexpr double kEach_m = 0.001;  // along the tract, where walls are looked for
-constexpr double kSlender = 3.0;   // length over width from which there is a direction
+constexpr double kEnclosed_m = 0.012, kPastEntry_m = 0.005;  // as WallFinder::thinnest has it
+constexpr double kSlender = 3.0;  // length over width from which there is a direction
 
 struct Lost {
   Vec3 at_m;
@@ -27,7 +28,7 @@ struct Lost {
 
 std::vector<Lost> lost_voxels(const Erosion& erosion) {
   std::vector<Lost> out;
-  const auto& box = erosion.box();
+  const auto& box = erosion.worn();
   for (int k = box.begin[2]; k < box.end[2]; ++k)
     for (int j = box.begin[1]; j < box.end[1]; ++j)
       for (int i = box.begin[0]; i < box.end[0]; ++i)
@@ -54,19 +55,22 @@ void set_axis(const std::vector<Lost>& voxels, const volume::Tract& tract, Chann
   out.entry_offset_m = tract.offset_of(mean - tract.depth_of(mean) / along * axis);
 }
 
-/// Outer faces of the side walls by depth, and of the anterior wall.
+/// Outer faces of the side walls by depth, and of the anterior wall. Side walls hold where the bone
+/// encloses the tract: all four begin within kEnclosed_m, from kPastEntry_m behind the first such
+/// place.
 class Faces {
  public:
   Faces(const volume::Volume& bone, const volume::TransferFunction& transfer,
         const volume::Tract& tract)
       : tract_(tract) {
     const volume::WallFinder finder(bone, transfer);
-    for (double at_m = 0.0; at_m <= tract.length_m; at_m += kEach_m)
-      for (const Wall wall : volume::kWalls) {
-        if (wall == Wall::anterior) continue;
-        const auto found = finder.wall_at(tract, wall, at_m);
-        sides_[std::size_t(wall)].push_back(found ? std::optional(found->outer_m) : std::nullopt);
-      }
+    std::optional<double> enclosed_from_m;
+    for (double at_m = 0.0; at_m <= tract.length_m; at_m += kEach_m) {
+      auto section = section_at(finder, at_m);
+      if (section && !enclosed_from_m) enclosed_from_m = at_m;
+      if (section && at_m < *enclosed_from_m + kPastEntry_m) section.reset();
+      sections_.push_back(section);
+    }
     if (const auto found = finder.wall_at(tract, Wall::anterior, tract.length_m); found)
       anterior_m_ = found->outer_m;
   }
@@ -83,18 +87,28 @@ class Faces {
     const Wall wall = volume::Tract::side_of(offset);
     const bool across = wall == Wall::medial || wall == Wall::lateral;
     if (std::abs(across ? offset.y() : offset.x()) > tract_.radius_m) return;  // no ray went there
-    const auto& faces = sides_[std::size_t(wall)];
-    const auto slice = std::min(std::size_t(std::lround(depth_m / kEach_m)), faces.size() - 1);
-    if (faces[slice]) note(wall, std::abs(across ? offset.x() : offset.y()) - *faces[slice], out);
+    const auto slice = std::min(std::size_t(std::lround(depth_m / kEach_m)), sections_.size() - 1);
+    if (const auto& section = sections_[slice])
+      note(wall, std::abs(across ? offset.x() : offset.y()) - (*section)[std::size_t(wall)], out);
   }
 
  private:
+  using Section = std::array<double, 4>;  // outer faces in the order of volume::kWalls
+  std::optional<Section> section_at(const volume::WallFinder& finder, double at_m) const {
+    Section section{};
+    for (std::size_t side = 0; side < section.size(); ++side) {
+      const auto found = finder.wall_at(tract_, volume::kWalls[side], at_m);
+      if (!found || found->inner_m > kEnclosed_m) return std::nullopt;
+      section[side] = found->outer_m;
+    }
+    return section;
+  }
   static void note(Wall wall, double beyond_m, Channel& out) {
     auto& most = out.beyond_m[std::size_t(wall)];
     most = std::max(most.value_or(beyond_m), beyond_m);
   }
   const volume::Tract& tract_;
-  std::array<std::vector<std::optional<double>>, volume::kWalls.size()> sides_;
+  std::vector<std::optional<Section>> sections_;
   std::optional<double> anterior_m_;
 };
 

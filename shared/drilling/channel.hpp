@@ -16,9 +16,9 @@ namespace drilling {
 ///
 /// The axis is the principal axis of the voxels' shares lost between the first and the last of them
 /// along the tract. Whether the channel left the bone is asked of the bone as it was
-/// (volume::WallFinder): at every millimetre of the tract the outer face of each side wall, and the
-/// anterior one ahead of its end; a wall is seen as its finder sees it, over the width of the
-/// tract. Where no wall is found, nothing is said.
+/// (volume::WallFinder): at every millimetre of the tract that bone encloses, as `thinnest` means
+/// it, the outer face of each side wall, and the anterior one ahead of its end; a wall is seen as
+/// its finder sees it, over the width of the tract. Where no wall is found, nothing is said.
 struct Channel {
   std::size_t voxels = 0;
   /// Of the axis at the plane of the planned entry: towards medial, towards superior, m. As the

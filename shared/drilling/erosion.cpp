@@ -150,9 +150,11 @@ void Erosion::wear(const Take& changed) {
 void Erosion::wear_voxel(std::size_t at, int i, int j, int k, double share) noexcept {
   const std::uint16_t whole = bone_->counts[at];
   const float before = lost_[at];
-  if (whole <= empty_ || before >= 1.0f) return;
+  if (before >= 1.0f) return;
   const float after = std::min(1.0f, before + float(share));
   lost_[at] = after;
+  worn_ = united(worn_, {{i, j, k}, {i + 1, j + 1, k + 1}});
+  if (whole <= empty_) return;  // fat, air: the burr went there, and nothing changes
   if (is_bone_[whole]) removed_m3_ += double(after - before) * bone_->geometry.spacing_m.prod();
   const auto gone = std::uint16_t(std::lround(double(after) * (whole - empty_)));
   const auto count = std::uint16_t(whole - gone);

@@ -58,8 +58,10 @@ class Erosion {
 
   const volume::Volume& volume() const noexcept { return drilled_; }  ///< as it is now
   const volume::Volume& bone() const noexcept { return *bone_; }      ///< as it was
-  /// Share that a voxel has lost, 0 … 1; 0 where there never was more than the empty value.
+  /// Share that a voxel has lost, 0 … 1; also where there was no more than the empty value.
   double lost(int i, int j, int k) const noexcept { return lost_[bone_->offset(i, j, k)]; }
+  /// The voxels that lost anything; empty (begin = end) when none did.
+  const volume::Box& worn() const noexcept { return worn_; }
   /// The voxels whose counts changed; empty (begin = end) when none did.
   const volume::Box& box() const noexcept { return box_; }
   /// Of voxels whose CT value has opacity, m³.
@@ -100,7 +102,7 @@ class Erosion {
   std::optional<Last> last_;
   std::uint32_t chunk_ = 0;
   Dose dose_;
-  volume::Box changing_, box_;
+  volume::Box changing_, box_, worn_;
   double removed_m3_ = 0.0;
   std::uint32_t changes_ = 0;
 };

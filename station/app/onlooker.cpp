@@ -1,5 +1,7 @@
 #include "station/app/onlooker.hpp"
 
+#include "station/loop/drilling.hpp"
+
 namespace app {
 namespace {
 constexpr int kWidth_px = 1280, kHeight_px = 800;

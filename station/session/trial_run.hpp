@@ -7,11 +7,14 @@
 
 #include "drilling/burr.hpp"
 #include "station/devices/catalogue.hpp"
-#include "station/loop/drilling.hpp"
 #include "station/loop/haptic_loop.hpp"
 #include "station/loop/realtime.hpp"
 #include "station/session/outside.hpp"
 #include "station/session/prepared_case.hpp"
+
+namespace loop {
+class Drilling;
+}
 
 namespace session {
 
