@@ -33,8 +33,8 @@ class Locks {
 /// Among the threads of this process: for a database that one process serves.
 std::unique_ptr<Locks> local_locks();
 /// Among all processes on a PostgreSQL database. A process that dies, or is cut off from the
-/// database, holds nothing any more: what is written to the database under a lock says what it
-/// expects to find there (set_upload_offset).
+/// database, holds nothing any more: what is done under a lock must be right even then (a piece of
+/// an upload is written where it belongs, twice or not).
 std::unique_ptr<Locks> postgres_locks(const std::string& address);
 
 }  // namespace store

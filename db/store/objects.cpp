@@ -43,25 +43,20 @@ bool write_all(int fd, std::uint64_t offset, core::ByteView bytes) {
   return true;
 }
 
-/// Hands out the file's first `size` bytes in pieces (all of it when `size` is beyond its end);
-/// returns how many.
-core::Result<std::uint64_t> each_piece(const fs::path& path, std::uint64_t size,
-                                       const std::function<bool(core::ByteView)>& take) {
+/// Hands out a file in pieces.
+core::Result<void> each_piece(const fs::path& path,
+                              const std::function<bool(core::ByteView)>& take) {
   const Descriptor file(path, O_RDONLY);
   if (!file) return core::system_error(path, "cannot open");
   core::Bytes piece(kPiece_bytes);
-  std::uint64_t done = 0;
-  while (done < size) {
-    const auto want = static_cast<std::size_t>(std::min<std::uint64_t>(piece.size(), size - done));
-    const ssize_t n = ::read(file.fd(), piece.data(), want);
+  for (;;) {
+    const ssize_t n = ::read(file.fd(), piece.data(), piece.size());
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) return core::system_error(path, "cannot read");
-    if (n == 0) break;
+    if (n == 0) return {};
     if (!take(core::ByteView(piece).first(static_cast<std::size_t>(n))))
       return core::system_error(path, "cannot copy");
-    done += static_cast<std::uint64_t>(n);
   }
-  return done;
 }
 
 core::Result<fs::path> made_folder(const fs::path& path) {
@@ -118,7 +113,7 @@ core::Result<void> Objects::copy_in(const fs::path& file, const std::string& sha
     const Descriptor out(beside, O_WRONLY | O_CREAT | O_EXCL);
     if (!out) return core::system_error(beside, "cannot create");
     std::uint64_t offset = 0;
-    auto copied = each_piece(file, UINT64_MAX, [&](core::ByteView piece) {
+    auto copied = each_piece(file, [&](core::ByteView piece) {
       hash.add(piece);
       const bool written = write_all(out.fd(), offset, piece);
       offset += piece.size();
@@ -167,22 +162,25 @@ std::uint64_t PartialFiles::size_of(const std::string& trial_id) const {
   return file && ::fstat(file.fd(), &facts) == 0 ? static_cast<std::uint64_t>(facts.st_size) : 0;
 }
 
-core::Result<void> PartialFiles::write_at(const std::string& trial_id, std::uint64_t offset,
-                                          core::ByteView bytes) const {
+core::Result<void> PartialFiles::append(const std::string& trial_id, std::uint64_t offset,
+                                        core::ByteView bytes) const {
   const fs::path path = path_of(trial_id);
   const bool fresh = offset == 0;
-  const Descriptor file(path, O_WRONLY | O_CREAT);
-  if (!file) return core::system_error(path, "cannot create");
-  if (!write_all(file.fd(), offset, bytes)) return core::system_error(path, "cannot write");
-  if (::fdatasync(file.fd()) != 0) return core::system_error(path, "cannot flush");
+  const Descriptor file(path, fresh ? O_WRONLY | O_CREAT : O_WRONLY);
+  if (!file) return core::system_error(path, "cannot open");
+  if (!write_all(file.fd(), offset, bytes) || ::fdatasync(file.fd()) != 0) {
+    const core::Error failure = core::system_error(path, "cannot write");
+    if (::ftruncate(file.fd(), static_cast<off_t>(offset)) != 0) remove(trial_id);
+    return failure;
+  }
   return fresh ? core::sync_folder(root_) : core::Result<void>();
 }
 
-core::Result<void> PartialFiles::cut(const std::string& trial_id, std::uint64_t size) const {
+core::Result<void> PartialFiles::flush(const std::string& trial_id) const {
   const fs::path path = path_of(trial_id);
-  if (::truncate(path.c_str(), static_cast<off_t>(size)) != 0 && errno != ENOENT)
-    return core::system_error(path, "cannot cut");
-  return {};
+  const Descriptor file(path, O_WRONLY);
+  if (!file || ::fdatasync(file.fd()) != 0) return core::system_error(path, "cannot flush");
+  return core::sync_folder(root_);
 }
 
 void PartialFiles::remove(const std::string& trial_id) const noexcept {
@@ -201,21 +199,9 @@ std::vector<std::string> PartialFiles::ids() const {
 
 core::Result<std::string> file_sha256(const fs::path& path) {
   core::Sha256 hash;
-  auto read =
-      each_piece(path, UINT64_MAX, [&](core::ByteView piece) { return hash.add(piece), true; });
+  auto read = each_piece(path, [&](core::ByteView piece) { return hash.add(piece), true; });
   if (!read) return read.error();
   return hash.hex();
-}
-
-core::Result<std::uint32_t> file_crc32c(const fs::path& path, std::uint64_t size) {
-  std::uint32_t crc = 0;
-  auto read = each_piece(
-      path, size, [&](core::ByteView piece) { return crc = core::crc32c(piece, crc), true; });
-  if (!read) return read.error();
-  if (*read != size)
-    return core::Error{core::Errc::corrupt,
-                       fmt::format("{}: {} bytes, {} are expected", path.string(), *read, size)};
-  return crc;
 }
 
 }  // namespace store

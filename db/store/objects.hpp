@@ -40,13 +40,14 @@ class PartialFiles {
 
   /// @pre is_id(trial_id)
   std::filesystem::path path_of(const std::string& trial_id) const;
-  /// Length on the disk; 0 when there is none.
+  /// How much of an upload is here; 0 when there is no file. What it counts was flushed, unless a
+  /// process died within `append` (`flush` then).
   std::uint64_t size_of(const std::string& trial_id) const;
-  /// Writes at `offset` and returns once the disk has it (fdatasync; for a new file its folder
-  /// too). Errors: io.
-  core::Result<void> write_at(const std::string& trial_id, std::uint64_t offset,
-                              core::ByteView bytes) const;
-  core::Result<void> cut(const std::string& trial_id, std::uint64_t size) const;
+  /// Writes at the end, which is at `offset`, and returns once the disk has it (fdatasync; for a
+  /// new file its folder too). Errors: io; the file is then as long as before.
+  core::Result<void> append(const std::string& trial_id, std::uint64_t offset,
+                            core::ByteView bytes) const;
+  core::Result<void> flush(const std::string& trial_id) const;
   void remove(const std::string& trial_id) const noexcept;
   /// Trials that have one.
   std::vector<std::string> ids() const;
@@ -60,6 +61,5 @@ class PartialFiles {
 /// Reads a file from its start in pieces of at most 1 MiB; `size` bytes of it.
 /// Errors: those of the system; corrupt when it is shorter.
 core::Result<std::string> file_sha256(const std::filesystem::path& path);
-core::Result<std::uint32_t> file_crc32c(const std::filesystem::path& path, std::uint64_t size);
 
 }  // namespace store

@@ -1,7 +1,9 @@
 #include "db/store/objects.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <csignal>
 #include <fstream>
 
 #include "core/file.hpp"
@@ -52,26 +54,31 @@ TEST(Objects, LinkingTwiceIsLinkingOnce) {
   EXPECT_EQ(files_in(folder.path() / "objects"), 1u);
 }
 
-TEST(PartialFiles, GrowByPiecesAndAreCutBack) {
+TEST(PartialFiles, GrowByPiecesAndSayHowMuchIsHere) {
   const TestFolder folder;
   const auto parts = std::move(PartialFiles::open(folder.path()).value());
   EXPECT_EQ(parts.size_of(kTrial), 0u);
-  ASSERT_TRUE(parts.write_at(kTrial, 0, core::bytes_of("abX")));
-  ASSERT_TRUE(parts.write_at(kTrial, 2, core::bytes_of("cXX")));
-  EXPECT_EQ(parts.size_of(kTrial), 5u);
-  ASSERT_TRUE(parts.cut(kTrial, 3));
+  ASSERT_TRUE(parts.append(kTrial, 0, core::bytes_of("a")));
+  ASSERT_TRUE(parts.append(kTrial, 1, core::bytes_of("bc")));
+  EXPECT_EQ(parts.size_of(kTrial), 3u);
   EXPECT_EQ(file_sha256(parts.path_of(kTrial)).value(), kAbc);
+  EXPECT_FALSE(parts.append(std::string(32, 'e'), 3, core::bytes_of("x")));  // has no beginning
 }
 
-TEST(PartialFiles, ACrcOverMoreThanIsThereIsCorrupt) {
+// A file may be no longer than 1 KiB here: the piece that does not fit is taken back whole.
+TEST(PartialFiles, AreAsLongAsBeforeAfterAWriteThatFailed) {
   const TestFolder folder;
   const auto parts = std::move(PartialFiles::open(folder.path()).value());
-  ASSERT_TRUE(parts.write_at(kTrial, 0, core::bytes_of("123456789 and a tail")));
-  // CRC-32C of "123456789": the check value of the CRC catalogue (iSCSI), RFC 3720.
-  EXPECT_EQ(file_crc32c(parts.path_of(kTrial), 9).value(), 0xe3069283u);
-  auto beyond = file_crc32c(parts.path_of(kTrial), 21);
-  ASSERT_FALSE(beyond);
-  EXPECT_EQ(beyond.error().code, core::Errc::corrupt);
+  ASSERT_TRUE(parts.append(kTrial, 0, core::bytes_of("abc")));
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  const rlimit small{1024, before.rlim_max};
+  std::signal(SIGXFSZ, SIG_IGN);
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+  const auto written = parts.append(kTrial, 3, core::Bytes(4096));
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  EXPECT_FALSE(written);
+  EXPECT_EQ(file_sha256(parts.path_of(kTrial)).value(), kAbc);
 }
 
 }  // namespace

@@ -15,7 +15,6 @@
 #include "db/store/cases.hpp"
 #include "db/store/jobs.hpp"
 #include "db/store/postgres_link.hpp"
-#include "db/store/uploads.hpp"
 #include "tests/support/database/database.hpp"
 
 namespace store {
@@ -118,22 +117,6 @@ TEST_P(SharedDatabase, ANameIsHeldByOneUntilItLetsGo) {
   let_go = true;
   mine->reset();
   theirs.get();
-}
-
-TEST_P(SharedDatabase, AnOffsetIsNotSetByWhoeverReadAnOlderOne) {
-  ASSERT_TRUE(one_.write([](Writing& tx) -> core::Result<void> {
-    if (auto done = add_station(tx, {"s", "station"}, "token", 1); !done) return done;
-    if (auto done = add_case(tx, {"c", "L3", "", 1, 0}, {}, 1); !done) return done;
-    return add_upload(tx, {"t", "s", "c", 10, "x", 0, 0, "receiving"}, 1);
-  }));
-  const auto set = [](Store& store, std::uint64_t before, std::uint64_t after) {
-    return store.write_beside(
-        [&](Writing& tx) { return set_upload_offset(tx, "t", before, after, 0); });
-  };
-  EXPECT_TRUE(set(one_, 0, 4));
-  auto stale = set(other_, 0, 4);
-  ASSERT_FALSE(stale);
-  EXPECT_EQ(stale.error().code, core::Errc::conflict);
 }
 
 TEST_P(SharedDatabase, AConnectionThatBrokeIsMadeAnew) {

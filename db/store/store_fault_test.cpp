@@ -37,7 +37,7 @@ core::Result<void> furnish(Writing& tx) {
   if (auto done = add_case(tx, {kCase, "L3", "made", 1, 0}, {{"case.json", kCase, 9, false}}, 1);
       !done)
     return done;
-  return add_upload(tx, {kTrial, "s", kCase, 10, kSha, 10, 0, "receiving"}, 1);
+  return add_upload(tx, {kTrial, "s", kCase, 10, kSha, "receiving"}, 1);
 }
 
 TrialRecord trial() {

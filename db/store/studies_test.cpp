@@ -56,8 +56,7 @@ class Studies : public test_support::BothDatabases {
   /// A whole trial for a slot, as the station's upload brings it.
   void bring(const std::string& trial_id, const Slot& slot, bool complete = true) {
     write([&](Writing& tx) -> core::Result<void> {
-      if (auto done = add_upload(tx, {trial_id, "s1", slot.case_id, 1, kA, 1, 0, "receiving"}, 9);
-          !done)
+      if (auto done = add_upload(tx, {trial_id, "s1", slot.case_id, 1, kA, "receiving"}, 9); !done)
         return done;
       if (auto done = announce_for_slot(tx, trial_id, slot.id, 9); !done) return done;
       return record_for_slot(tx, trial_id, complete, {"station-s1", 10});

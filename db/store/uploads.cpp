@@ -4,18 +4,10 @@ namespace store {
 namespace {
 
 constexpr const char* kUpload =
-    "select trial_id, station_id, case_id, size_bytes, sha256, offset_bytes, crc32c, state "
-    "from uploads ";
+    "select trial_id, station_id, case_id, size_bytes, sha256, state from uploads ";
 
 Upload upload_from(const Row& row) {
-  return {row.text(0),
-          row.text(1),
-          row.text(2),
-          row.count(3),
-          row.text(4),
-          row.count(5),
-          static_cast<std::uint32_t>(row.count(6)),
-          row.text(7)};
+  return {row.text(0), row.text(1), row.text(2), row.count(3), row.text(4), row.text(5)};
 }
 
 core::Result<void> done(const core::Result<Rows>& rows) {
@@ -48,25 +40,11 @@ core::Result<std::uint64_t> open_upload_count(Reading& tx, const std::string& st
 }
 
 core::Result<void> add_upload(Writing& tx, const Upload& upload, std::int64_t now_utc_us) {
-  return done(tx.query(
-      "insert into uploads (trial_id, station_id, case_id, size_bytes, sha256, offset_bytes, "
-      "crc32c, state, announced_utc_us) values (?, ?, ?, ?, ?, ?, ?, ?, ?)",
-      {upload.trial_id, upload.station_id, upload.case_id, count_value(upload.size_bytes),
-       upload.sha256, count_value(upload.offset_bytes), std::int64_t{upload.crc32c}, upload.state,
-       now_utc_us}));
-}
-
-core::Result<void> set_upload_offset(Writing& tx, const std::string& trial_id, std::uint64_t before,
-                                     std::uint64_t offset_bytes, std::uint32_t crc32c) {
-  auto rows = tx.query(
-      "update uploads set offset_bytes = ?, crc32c = ? where trial_id = ? and offset_bytes = ? and "
-      "state = 'receiving' returning trial_id",
-      {count_value(offset_bytes), std::int64_t{crc32c}, trial_id, count_value(before)});
-  if (!rows) return rows.error();
-  if (rows->empty())
-    return core::Error{core::Errc::conflict,
-                       "trial " + trial_id + ": another server took it over meanwhile; ask again"};
-  return {};
+  return done(
+      tx.query("insert into uploads (trial_id, station_id, case_id, size_bytes, sha256, state, "
+               "announced_utc_us) values (?, ?, ?, ?, ?, ?, ?)",
+               {upload.trial_id, upload.station_id, upload.case_id, count_value(upload.size_bytes),
+                upload.sha256, upload.state, now_utc_us}));
 }
 
 core::Result<void> complete_upload(Writing& tx, const std::string& trial_id) {

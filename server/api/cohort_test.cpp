@@ -60,7 +60,7 @@ class Cohort : public ApiTest {
     trial.complete = true;
     trial.header = trial.events = "{}";
     const auto added = store_.write([&](store::Writing& tx) -> core::Result<void> {
-      if (auto done = store::add_upload(tx, {id, "s1", kCase, 1, sha, 1, 0, "receiving"}, 1); !done)
+      if (auto done = store::add_upload(tx, {id, "s1", kCase, 1, sha, "receiving"}, 1); !done)
         return done;
       if (!slot.empty())
         if (auto done = store::announce_for_slot(tx, id, slot, 1); !done) return done;

@@ -16,7 +16,4 @@ core::Result<store::TrialRecord> checked_trial(Backend& backend, const store::Up
 core::Result<void> store_trial(Backend& backend, const store::Upload& upload,
                                const store::TrialRecord& trial);
 
-/// The upload begins again at 0. Errors: conflict when it is not as it was read.
-core::Result<void> restart_upload(Backend& backend, const store::Upload& upload);
-
 }  // namespace api

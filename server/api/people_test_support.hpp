@@ -74,7 +74,7 @@ class PeopleTest : public ApiTest {
     trial.sha256 = sha;
     trial.complete = true;
     trial.header = trial.events = "{}";
-    if (auto done = store::add_upload(tx, {id, "s1", kCase, 1, sha, 1, 0, "receiving"}, 1); !done)
+    if (auto done = store::add_upload(tx, {id, "s1", kCase, 1, sha, "receiving"}, 1); !done)
       return done;
     if (auto done = store::announce_for_slot(tx, id, slot, 1); !done) return done;
     if (auto done = store::add_object(tx, sha, 1, 1); !done) return done;

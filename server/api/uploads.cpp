@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
-#include <set>
 
 #include "db/store/cases.hpp"
 #include "db/store/study_slots.hpp"
@@ -17,8 +17,10 @@ namespace {
 constexpr std::uint64_t kReserve_bytes = 256ull
                                          << 20;  ///< left free for the database and running trials
 
-wire::UploadState state_of(const store::Upload& upload) {
-  return {upload.offset_bytes, upload.state};
+/// The file is the truth: what it holds was flushed before it was acknowledged.
+wire::UploadState state_of(const Backend& backend, const store::Upload& upload) {
+  const bool complete = upload.state == "complete";
+  return {complete ? upload.size_bytes : backend.partials.size_of(upload.trial_id), upload.state};
 }
 
 core::Error unknown(const std::string& trial_id) {
@@ -50,10 +52,8 @@ core::Result<std::string> case_meant(store::Reading& tx, const std::string& anno
   return core::Error{core::Errc::not_found, "case_id: no case " + announced + " on this server"};
 }
 
-core::Result<wire::UploadState> insert(store::Writing& tx, const Caller& station,
-                                       const std::string& trial_id,
-                                       const wire::UploadAnnouncement& announced,
-                                       std::int64_t now_utc_us) {
+core::Result<void> insert(store::Writing& tx, const Caller& station, const std::string& trial_id,
+                          const wire::UploadAnnouncement& announced, std::int64_t now_utc_us) {
   std::optional<store::Slot> slot;
   auto case_id = case_meant(tx, announced.case_id, slot);
   if (!case_id) return case_id.error();
@@ -63,23 +63,20 @@ core::Result<wire::UploadState> insert(store::Writing& tx, const Caller& station
     return core::Error{
         core::Errc::unavailable,
         fmt::format("{} uploads of this station are unfinished: finish some first", *open)};
-  store::Upload upload{trial_id,         station.id, *case_id, announced.size_bytes,
-                       announced.sha256, 0,          0,        "receiving"};
+  const store::Upload upload{trial_id,         station.id, *case_id, announced.size_bytes,
+                             announced.sha256, "receiving"};
   if (auto added = store::add_upload(tx, upload, now_utc_us); !added) return added.error();
-  if (slot)
-    if (auto noted = store::announce_for_slot(tx, trial_id, slot->id, now_utc_us); !noted)
-      return noted.error();
-  return state_of(upload);
+  return slot ? store::announce_for_slot(tx, trial_id, slot->id, now_utc_us) : core::Result<void>();
 }
 
 /// Where the same upload stands; nothing when there is none of this id. Errors: not_found (another
 /// station's), conflict (another announcement).
-core::Result<std::optional<wire::UploadState>> announced_before(
+core::Result<std::optional<store::Upload>> announced_before(
     store::Reading& tx, const Caller& station, const std::string& trial_id,
     const wire::UploadAnnouncement& announced) {
   auto upload = store::upload_of(tx, trial_id);
   if (!upload) return upload.error();
-  if (!*upload) return std::optional<wire::UploadState>();
+  if (!*upload) return upload;
   const store::Upload& known = **upload;
   if (known.station_id != station.id) return unknown(trial_id);
   auto slot = store::slot_of_trial(tx, trial_id);
@@ -87,7 +84,7 @@ core::Result<std::optional<wire::UploadState>> announced_before(
   const std::string& case_id = *slot ? (*slot)->id : known.case_id;
   if (case_id == announced.case_id && known.size_bytes == announced.size_bytes &&
       known.sha256 == announced.sha256)
-    return std::optional(state_of(known));
+    return upload;
   return core::Error{core::Errc::conflict,
                      fmt::format("trial {} was announced differently before", trial_id)};
 }
@@ -107,14 +104,6 @@ core::Result<void> check_room(const Backend& backend, std::uint64_t size_bytes) 
   return core::Error{
       core::Errc::unavailable,
       fmt::format("the server's disk has {} bytes left: too few for another trial", free)};
-}
-
-core::Result<void> restart_upload(Backend& backend, const store::Upload& upload) {
-  auto done = backend.store.write([&](store::Writing& tx) {
-    return store::set_upload_offset(tx, upload.trial_id, upload.offset_bytes, 0, 0);
-  });
-  if (done) backend.partials.remove(upload.trial_id);
-  return done;
 }
 
 core::Result<std::unique_ptr<store::NamedLock>> hold_upload(Backend& backend,
@@ -138,20 +127,26 @@ core::Result<wire::UploadState> announce_upload(Backend& backend, const Caller& 
   auto known = backend.store.read(
       [&](store::Reading& tx) { return announced_before(tx, station, trial_id, announced); });
   if (!known) return known.error();
-  if (*known) return **known;
-  return backend.store.write([&](store::Writing& tx) -> core::Result<wire::UploadState> {
+  if (*known) return state_of(backend, **known);
+  auto added = backend.store.write([&](store::Writing& tx) -> core::Result<void> {
     auto again = announced_before(tx, station, trial_id, announced);
     if (!again) return again.error();
-    if (*again) return **again;
+    if (*again) return {};
     return insert(tx, station, trial_id, announced, backend.now_utc_us());
   });
+  if (!added) return added.error();
+  return wire::UploadState{backend.partials.size_of(trial_id), "receiving"};
 }
 
 core::Result<wire::UploadState> upload_state(Backend& backend, const Caller& station,
                                              const std::string& trial_id) {
+  auto first = own_upload(backend, station, trial_id);
+  if (!first) return first.error();
+  const auto held = hold_upload(backend, trial_id);  // no piece is half on its way
+  if (!held) return held.error();
   auto upload = own_upload(backend, station, trial_id);
   if (!upload) return upload.error();
-  return state_of(*upload);
+  return state_of(backend, *upload);
 }
 
 core::Result<Appended> append_upload(Backend& backend, const Caller& station,
@@ -167,13 +162,9 @@ core::Result<Appended> append_upload(Backend& backend, const Caller& station,
   if (upload->state != "receiving")
     return core::Error{core::Errc::conflict, fmt::format("trial {} is complete", trial_id)};
   const std::uint64_t there = backend.partials.size_of(trial_id);
-  if (there < upload->offset_bytes) {  // acknowledged bytes were lost under us: begin again
-    if (auto again = restart_upload(backend, *upload); !again) return again.error();
-    return Appended{{0, upload->state}, false};
-  }
-  if (offset_bytes != upload->offset_bytes) return Appended{state_of(*upload), false};
+  if (offset_bytes != there) return Appended{{there, upload->state}, false};
   if (bytes.empty()) return core::Error{core::Errc::bad_input, "the piece is empty"};
-  if (bytes.size() > upload->size_bytes - upload->offset_bytes)
+  if (bytes.size() > upload->size_bytes - std::min(there, upload->size_bytes))
     return core::Error{core::Errc::out_of_range,
                        fmt::format("{} bytes at {} go beyond the {} announced", bytes.size(),
                                    offset_bytes, upload->size_bytes)};
@@ -181,18 +172,8 @@ core::Result<Appended> append_upload(Backend& backend, const Caller& station,
     return core::Error{core::Errc::corrupt,
                        fmt::format("X-Crc32c: the body's checksum is {:08x}, not {:08x}",
                                    core::crc32c(bytes), crc32c)};
-  if (there > offset_bytes)
-    if (auto cut = backend.partials.cut(trial_id, offset_bytes); !cut) return cut.error();
-  if (auto done = backend.partials.write_at(trial_id, offset_bytes, bytes); !done)
-    return done.error();
-  const std::uint32_t chained = core::crc32c(bytes, upload->crc32c);
-  auto noted = backend.store.write_beside([&](store::Writing& tx) {
-    return store::set_upload_offset(tx, trial_id, offset_bytes, offset_bytes + bytes.size(),
-                                    chained);
-  });
-  if (!noted) return noted.error();
-  upload->offset_bytes += bytes.size();
-  return Appended{state_of(*upload), true};
+  if (auto done = backend.partials.append(trial_id, there, bytes); !done) return done.error();
+  return Appended{{there + bytes.size(), upload->state}, true};
 }
 
 core::Result<wire::UploadState> commit_upload(Backend& backend, const Caller& station,
@@ -203,18 +184,18 @@ core::Result<wire::UploadState> commit_upload(Backend& backend, const Caller& st
   if (!held) return held.error();
   auto upload = own_upload(backend, station, trial_id);
   if (!upload) return upload.error();
-  if (upload->state == "complete") return state_of(*upload);
-  if (upload->offset_bytes != upload->size_bytes)
-    return core::Error{core::Errc::conflict,
-                       fmt::format("{} of {} bytes are here: send the rest first",
-                                   upload->offset_bytes, upload->size_bytes)};
+  if (upload->state == "complete") return state_of(backend, *upload);
+  if (const std::uint64_t there = backend.partials.size_of(trial_id); there < upload->size_bytes)
+    return core::Error{
+        core::Errc::conflict,
+        fmt::format("{} of {} bytes are here: send the rest first", there, upload->size_bytes)};
   auto trial = checked_trial(backend, *upload);
   if (!trial) {
     const auto code = trial.error().code;
     if (code != core::Errc::corrupt && code != core::Errc::bad_input &&
         code != core::Errc::too_large)
       return trial.error();
-    if (auto again = restart_upload(backend, *upload); !again) return again.error();
+    backend.partials.remove(trial_id);  // it begins again
     return trial.error();
   }
   if (auto stored = store_trial(backend, *upload, *trial); !stored) return stored.error();
@@ -225,21 +206,6 @@ core::Result<wire::UploadState> commit_upload(Backend& backend, const Caller& st
 
 namespace {
 
-core::Result<void> reconcile(Backend& backend, const store::Upload& upload) {
-  const std::uint64_t there = backend.partials.size_of(upload.trial_id);
-  if (there >= upload.offset_bytes) {
-    if (upload.offset_bytes == 0)
-      return backend.partials.remove(upload.trial_id), core::Result<void>();
-    auto crc = store::file_crc32c(backend.partials.path_of(upload.trial_id), upload.offset_bytes);
-    if (!crc) return crc.error();
-    if (*crc == upload.crc32c)
-      return there > upload.offset_bytes
-                 ? backend.partials.cut(upload.trial_id, upload.offset_bytes)
-                 : core::Result<void>();
-  }
-  return restart_upload(backend, upload);
-}
-
 /// Under its lock and by what the database says then: another server may be at it.
 core::Result<void> reconcile_one(Backend& backend, const std::string& trial_id) {
   const auto held = hold_upload(backend, trial_id);
@@ -247,19 +213,14 @@ core::Result<void> reconcile_one(Backend& backend, const std::string& trial_id) 
   auto upload =
       backend.store.read([&](store::Reading& tx) { return store::upload_of(tx, trial_id); });
   if (!upload) return upload.error();
-  if (*upload && (*upload)->state == "receiving") return reconcile(backend, **upload);
+  if (*upload && (*upload)->state == "receiving") return backend.partials.flush(trial_id);
   return backend.partials.remove(trial_id), core::Result<void>();
 }
 
 }  // namespace
 
 core::Result<void> reconcile_uploads(Backend& backend) {
-  auto open = backend.store.read([](store::Reading& tx) { return store::open_uploads(tx); });
-  if (!open) return open.error();
-  std::set<std::string> ids;
-  for (const store::Upload& upload : *open) ids.insert(upload.trial_id);
-  for (const std::string& id : backend.partials.ids()) ids.insert(id);
-  for (const std::string& id : ids)
+  for (const std::string& id : backend.partials.ids())
     if (auto done = reconcile_one(backend, id); !done) return done;
   return {};
 }

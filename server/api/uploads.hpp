@@ -49,9 +49,9 @@ core::Result<void> check_room(const Backend& backend, std::uint64_t size_bytes);
 /// What a trial that is about to begin may need: ten minutes at 4 kHz of 160 B.
 inline constexpr std::uint64_t kTrialToCome_bytes = 384ull << 20;
 
-/// For the start: makes partial files and their acknowledged offsets agree again after a crash. A
-/// tail nobody acknowledged is cut; acknowledged bytes that are no longer what they were begin
-/// again at 0; files that belong to no open upload go.
+/// For the start, after a crash: what partial files hold is flushed, for they say from now on how
+/// much of an upload is here; files that belong to no open upload go. Whether they hold what they
+/// should, the commit finds by the SHA-256 of the whole.
 core::Result<void> reconcile_uploads(Backend& backend);
 
 }  // namespace api

@@ -164,30 +164,43 @@ TEST_F(Uploads, AnUnknownCaseAnOversizeAndAnEvilNameAreRefused) {
   EXPECT_EQ(upload_state(backend_, kOne, "../../etc/passwd").error().code, core::Errc::not_found);
 }
 
-TEST_F(Uploads, AfterACrashTheUnacknowledgedTailIsCut) {
+// A process that dies within a piece leaves the beginning of it; the station goes on from there.
+TEST_F(Uploads, AfterACrashItGoesOnFromWhatTheFileHolds) {
   ASSERT_TRUE(announce_upload(backend_, kOne, kTrial, announcement(bytes_)));
   ASSERT_TRUE(send(bytes_, 0, 100));
-  ASSERT_TRUE(partials_.write_at(kTrial, 100, core::bytes_of("torn")));
+  ASSERT_TRUE(partials_.append(kTrial, 100, core::bytes_of(bytes_.substr(100, 7))));
   ASSERT_TRUE(reconcile_uploads(backend_));
-  EXPECT_EQ(partials_.size_of(kTrial), 100u);
-  ASSERT_TRUE(send(bytes_, 100, bytes_.size()));
+  EXPECT_EQ(offset(), 107u);
+  ASSERT_TRUE(send(bytes_, 107, bytes_.size()));
   EXPECT_TRUE(commit_upload(backend_, kOne, kTrial));
 }
 
-TEST_F(Uploads, AfterACrashBytesThatChangedOrAreMissingBeginAgain) {
-  for (const bool missing : {true, false}) {
-    ASSERT_TRUE(announce_upload(backend_, kOne, kTrial, announcement(bytes_)));
-    ASSERT_TRUE(send(bytes_, 0, 100));
-    ASSERT_TRUE(missing ? partials_.cut(kTrial, 50)
-                        : partials_.write_at(kTrial, 10, core::bytes_of("\xff")));
-    ASSERT_TRUE(reconcile_uploads(backend_));
-    EXPECT_EQ(offset(), 0u);
-    EXPECT_EQ(partials_.size_of(kTrial), 0u);
-  }
+TEST_F(Uploads, BytesThatChangedOnTheDiskAreFoundAtTheEndAndBeginAgain) {
+  ASSERT_TRUE(announce_upload(backend_, kOne, kTrial, announcement(bytes_)));
+  ASSERT_TRUE(send(bytes_, 0, 100));
+  std::fstream file(partials_.path_of(kTrial), std::ios::in | std::ios::out | std::ios::binary);
+  file.seekp(10);
+  file.put('\xff').flush();
+  ASSERT_TRUE(reconcile_uploads(backend_));
+  ASSERT_TRUE(send(bytes_, 100, bytes_.size()));
+  EXPECT_EQ(commit_upload(backend_, kOne, kTrial).error().code, core::Errc::corrupt);
+  EXPECT_EQ(offset(), 0u);
+  ASSERT_TRUE(send(bytes_, 0, bytes_.size()));
+  EXPECT_TRUE(commit_upload(backend_, kOne, kTrial));
+}
+
+TEST_F(Uploads, AFileThatIsGoneBeginsAgain) {
+  ASSERT_TRUE(announce_upload(backend_, kOne, kTrial, announcement(bytes_)));
+  ASSERT_TRUE(send(bytes_, 0, 100));
+  partials_.remove(kTrial);
+  auto lost = send(bytes_, 100, bytes_.size());
+  ASSERT_TRUE(lost);
+  EXPECT_FALSE(lost->taken);
+  EXPECT_EQ(lost->state.offset_bytes, 0u);
 }
 
 TEST_F(Uploads, PartialFilesThatBelongToNoOpenUploadGo) {
-  ASSERT_TRUE(partials_.write_at(std::string(32, 'f'), 0, core::bytes_of("orphan")));
+  ASSERT_TRUE(partials_.append(std::string(32, 'f'), 0, core::bytes_of("orphan")));
   ASSERT_TRUE(reconcile_uploads(backend_));
   EXPECT_TRUE(partials_.ids().empty());
 }

@@ -63,8 +63,8 @@ core::Result<std::uint64_t> copy_objects(const fs::path& from, store::Store& nam
   return bytes;
 }
 
-/// What of unfinished uploads the database acknowledged. An upload that ended meanwhile has no
-/// partial file: its station hands it over again.
+/// What is here of unfinished uploads. One that ended meanwhile has no partial file: its station
+/// hands it over again.
 core::Result<void> copy_partials(const fs::path& from, store::Store& names,
                                  const store::PartialFiles& into) {
   auto source = store::PartialFiles::open(from);
@@ -72,12 +72,10 @@ core::Result<void> copy_partials(const fs::path& from, store::Store& names,
   auto open = names.read([](store::Reading& tx) { return store::open_uploads(tx); });
   if (!open) return open.error();
   for (const store::Upload& upload : *open) {
-    if (upload.offset_bytes == 0 || source->size_of(upload.trial_id) < upload.offset_bytes)
-      continue;
+    if (source->size_of(upload.trial_id) == 0) continue;
     auto bytes = core::read_file(source->path_of(upload.trial_id), 1u << 30);
     if (!bytes) continue;  // it ended just now
-    bytes->resize(upload.offset_bytes);
-    if (auto written = into.write_at(upload.trial_id, 0, *bytes); !written) return written;
+    if (auto written = into.append(upload.trial_id, 0, *bytes); !written) return written;
   }
   return {};
 }

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "station/headset/alignment.hpp"
+#include "station/loop/drilling.hpp"
 #include "station/loop/placement.hpp"
 
 namespace app {
@@ -10,10 +11,22 @@ namespace {
 constexpr int kWidth_px = 1280, kHeight_px = 800;
 constexpr auto kUntilSeen = std::chrono::seconds(10);
 
-view::Scene scene_of(const session::PreparedCase& prepared) {
-  return {prepared.volume, prepared.model.transfer, prepared.opened.definition.tract,
-          prepared.model.base};
+constexpr int kLooksPerBone = 10;  // a third of a second: the whole image goes to the graphics
+
+view::Scene scene_of(const session::PreparedCase& prepared, const volume::Volume& bone) {
+  return {bone, prepared.model.transfer, prepared.opened.definition.tract, prepared.model.base};
 }
+
+/// The smallest box with both in it.
+volume::Box around(const volume::Box& a, const volume::Box& b) {
+  volume::Box out = a;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    out.begin[axis] = std::min(a.begin[axis], b.begin[axis]);
+    out.end[axis] = std::max(a.end[axis], b.end[axis]);
+  }
+  return out;
+}
+
 /// What the loop says, as something to draw.
 headset::Moment moment_of(const session::PreparedCase& prepared, const loop::Live& live) {
   headset::Moment now;
@@ -72,7 +85,7 @@ core::Result<void> Onlooker::open_headset(const Look& look) {
   const math::Pose X_VD =
       loop::place_device(definition.tract, prepared_->model.base.length_m, math::Vec3::Zero());
   auto started = headset::HeadsetThread::start(
-      {.scene = scene_of(*prepared_),
+      {.scene = scene_of(*prepared_, prepared_->volume),
        .X_VD = X_VD,
        .X_SD = *X_SD,
        .latest = [&prepared = *prepared_, followed = live_]() -> std::optional<headset::Moment> {
@@ -80,7 +93,14 @@ core::Result<void> Onlooker::open_headset(const Look& look) {
          const auto seen = live ? live->read() : std::nullopt;
          if (!seen) return std::nullopt;
          return moment_of(prepared, *seen);
-       }});
+       },
+       .carved =
+           [carved = carved_](const headset::TakeBone& take) {
+             const std::unique_lock held(carved->mutex, std::try_to_lock);
+             if (!held || !carved->fresh) return;
+             take(*carved->fresh, *carved->bone);
+             carved->fresh.reset();
+           }});
   if (!started) return started.error();
   headset_ = std::move(*started);
   if (!*X_SD)
@@ -112,15 +132,30 @@ core::Json Onlooker::end_headset() {
 }
 
 core::Result<void> Onlooker::open(view::Mode mode) {
-  auto view = view::View::make(scene_of(*prepared_), mode, kWidth_px, kHeight_px);
+  auto view =
+      view::View::make(scene_of(*prepared_, carved_->bone ? *carved_->bone : prepared_->volume),
+                       mode, kWidth_px, kHeight_px);
   if (!view) return view.error();
   view_ = std::move(*view);
   return {};
 }
 
+void Onlooker::look_at_bone(loop::Drilling& drilling) {
+  drilling_ = &drilling;
+  const std::unique_lock held(carved_->mutex, std::try_to_lock);
+  if (!held) return;  // the headset is at it: the next look has it
+  auto& bone = carved_->bone;
+  if (!bone) bone = prepared_->volume;
+  const auto box = drilling.show(*bone);
+  if (!box) return;
+  if (view_) view_->carve_away(*box, *bone);
+  carved_->fresh = carved_->fresh ? around(*carved_->fresh, *box) : *box;
+}
+
 bool Onlooker::look(const session::Glimpse& seen) {
   if (headset_) tell_headset();
-  if (!view_ && picture_.empty()) return true;
+  if (!view_ && !headset_ && picture_.empty()) return true;
+  if (seen.drilling && looks_++ % kLooksPerBone == 0) look_at_bone(*seen.drilling);
   const Moment now = moment_of(*prepared_, seen.live);
   path_m_.push_back(now.tip_m);
   const volume::Tract& tract = prepared_->opened.definition.tract;
@@ -132,6 +167,7 @@ bool Onlooker::look(const session::Glimpse& seen) {
 core::Result<void> Onlooker::leave_picture() {
   end_headset();  // one at a time draws
   if (picture_.empty() || !deepest_) return {};
+  if (drilling_) look_at_bone(*drilling_);
   if (!view_)
     if (auto opened = open(view::Mode::offscreen); !opened) return opened.error();
   view_->draw(deepest_->state, path_m_);

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -38,7 +39,8 @@ class Onlooker {
   bool look(const session::Glimpse& seen);
   /// The headset's figures, for the trial's report; null without one. Its view ends here.
   core::Json end_headset();
-  /// Leaves the picture: the probe where its tip was deepest, and the tip's way.
+  /// Leaves the picture: the probe where its tip was deepest, and the tip's way. While the trial
+  /// that was looked at is there.
   core::Result<void> leave_picture();
 
  private:
@@ -48,6 +50,7 @@ class Onlooker {
   core::Result<void> open(view::Mode mode);
   core::Result<void> open_headset(const Look& look);
   void tell_headset();
+  void look_at_bone(loop::Drilling& drilling);
 
   const session::PreparedCase* prepared_ = nullptr;
   std::filesystem::path picture_;
@@ -57,6 +60,15 @@ class Onlooker {
   std::unique_ptr<headset::HeadsetThread> headset_;
   headset::Seen told_ = headset::Seen::shown;  ///< the last that was said of it
   std::vector<math::Vec3> path_m_;
+  loop::Drilling* drilling_ = nullptr;  // of the trial that is looked at
+  /// The bone as it is drilled; without a drilling the case's stands.
+  struct Carved {
+    std::mutex mutex;  ///< this thread writes, the headset's takes over; neither waits long
+    std::optional<volume::Volume> bone;
+    std::optional<volume::Box> fresh;  ///< what the headset has not taken over yet
+  };
+  std::shared_ptr<Carved> carved_ = std::make_shared<Carved>();
+  int looks_ = 0;
   std::optional<Moment> deepest_;
 };
 

@@ -121,6 +121,10 @@ void View::draw(const ProbeState& state, std::span<const math::Vec3> path_m) {
   if (parts_->interactor) parts_->interactor->ProcessEvents();
 }
 
+void View::carve_away(const volume::Box& box, const volume::Volume& volume) {
+  parts_->picture.carve_away(box, volume);
+}
+
 core::Result<void> View::save_png(const std::filesystem::path& path) const {
   const int* size = parts_->window->GetSize();
   vtkNew<vtkUnsignedCharArray> pixels;  // RGB, row by row from below

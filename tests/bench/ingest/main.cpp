@@ -16,6 +16,8 @@
 #include "db/store/cases.hpp"
 #include "db/store/objects.hpp"
 #include "db/store/uploads.hpp"
+#include "server/api/backend.hpp"
+#include "server/api/uploads.hpp"
 #include "tests/bench/ingest/postgres_copy.hpp"
 #include "tests/support/postgres/postgres_server.hpp"
 #include "trial/trial_file.hpp"
@@ -56,38 +58,43 @@ class Raw {
   int fd_;
 };
 
-/// The server's way: the piece into the partial file, flushed, then the offset in the database.
+/// The server's way, as its route calls it: who asks is looked up, the checksum is made, the piece
+/// is in the partial file and flushed.
 class Upload {
  public:
   Upload(const fs::path& folder, store::Store store)
       : store_(std::move(store)),
+        objects_(std::move(store::Objects::open(folder).value())),
         partials_(std::move(store::PartialFiles::open(folder).value())),
         id_(core::new_id()) {
     auto made = store_.write([&](store::Writing& tx) -> core::Result<void> {
       if (auto done = store::add_station(tx, {"s", "s"}, "t", 1); !done) return done;
       if (auto done = store::add_case(tx, {"c", "c", "", 1, 0}, {}, 1); !done) return done;
-      return store::add_upload(tx, {id_, "s", "c", 1u << 30, "x", 0, 0, "receiving"}, 1);
+      return store::add_upload(tx, {id_, "s", "c", 1u << 30, "x", "receiving"}, 1);
     });
     core::require(bool(made), "the upload is announced");
   }
   bool add(Batch batch) {
     const auto bytes = bytes_of(batch);
-    if (!partials_.write_at(id_, offset_, bytes)) return false;
-    crc_ = core::crc32c(bytes, crc_);
-    auto noted = store_.write_beside([&](store::Writing& tx) {
-      return store::set_upload_offset(tx, id_, offset_, offset_ + bytes.size(), crc_);
-    });
+    const auto taken =
+        api::append_upload(backend_, station_, id_, offset_, core::crc32c(bytes), bytes);
     offset_ += bytes.size();
-    return bool(noted);
+    return taken && taken->taken;
   }
   fs::path file() const { return partials_.path_of(id_); }
 
  private:
   store::Store store_;
+  store::Objects objects_;
   store::PartialFiles partials_;
+  api::Backend backend_{.store = store_,
+                        .objects = objects_,
+                        .partials = partials_,
+                        .now_utc_us = [] { return std::int64_t{1}; },
+                        .work_waits = [] {}};
+  const api::Caller station_{api::Role::station, "s", "s", ""};
   std::string id_;
   std::uint64_t offset_ = 0;
-  std::uint32_t crc_ = 0;
 };
 
 struct Rival {
