@@ -177,6 +177,33 @@ TEST(Touching, AScriptedHandLeadsToWhereTheDeviceStands) {
   EXPECT_LT(found->worst_m, 6e-4);  // the hand misses each point by up to 0.5 mm
 }
 
+// Its watchdog met a slow machine: there is no force, which nobody wanted, and a pose all the same.
+TEST(Touching, GoesOnWithADeviceThatTookItsForcesAway) {
+  class Forceless final : public devices::Device {
+   public:
+    core::Result<devices::Limits> open() override { return hand.open(); }
+    devices::Status read(core::Instant_ns now, devices::Sample& out) noexcept override {
+      const auto status = hand.read(now, out);
+      return ++reads % 8 == 0 ? devices::Status::forces_off : status;
+    }
+    devices::Status write(const math::Wrench&) noexcept override {
+      return devices::Status::forces_off;
+    }
+    void close() noexcept override {}
+    TouchingHand hand{kTable, math::Vec3::Zero()};
+    int reads = 0;
+  } device;
+  ASSERT_TRUE(device.open());
+  core::ManualClock clock;
+  const TouchTalk talk{.ask = [](const FixturePoint&) {},
+                       .moved = [](const FixturePoint&) { FAIL(); },
+                       .enter = [] { return false; },
+                       .stop = [] { return false; }};
+  const auto touched = touch_points(device, clock, kTable, math::Vec3::Zero(), talk);
+  ASSERT_TRUE(touched) << touched.error().what;
+  EXPECT_TRUE(align(*touched, 0.005));
+}
+
 TEST(Touching, EndsWhenAPersonSaysSoAndWhenTheDeviceIsGone) {
   TouchingHand hand(kTable, math::Vec3::Zero());
   ASSERT_TRUE(hand.open());

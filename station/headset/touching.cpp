@@ -25,6 +25,11 @@ Touch::State Touch::feed(double t_s, const math::Vec3& tip_D_m, bool pressed) {
 
 namespace {
 
+/// A device that took its forces away (its watchdog met a slow machine) still says where it is.
+bool is_lost(devices::Status status) {
+  return status == devices::Status::gone || status == devices::Status::fault;
+}
+
 core::Result<Touched> touch_point(devices::Device& device, core::Clock& clock,
                                   const FixturePoint& point, const math::Vec3& tip_H_m,
                                   const TouchTalk& talk) {
@@ -36,10 +41,11 @@ core::Result<Touched> touch_point(devices::Device& device, core::Clock& clock,
     if (talk.stop()) return core::Error{core::Errc::cancelled, "alignment: ended by a person"};
     devices::Sample sample;
     const core::Instant_ns now = clock.now();
-    const bool answers =
-        device.read(now, sample) == devices::Status::ok && device.write({}) == devices::Status::ok;
-    if (!answers)
+    const auto read = device.read(now, sample), wrote = device.write({});
+    if (is_lost(read) || is_lost(wrote))
       return core::Error{core::Errc::unavailable, "alignment: the device does not answer any more"};
+    if (now > due + kPeriod_ns) due = now;  // late: not chased
+    if (read != devices::Status::ok) continue;
     const double t_s = 1e-9 * double(now - start);
     const bool down = sample.buttons != 0;
     const bool button = down && !was_down && t_s > kButtonRest_s;
@@ -47,7 +53,6 @@ core::Result<Touched> touch_point(devices::Device& device, core::Clock& clock,
     const auto state = touch.feed(t_s, sample.X_DH * tip_H_m, talk.enter() || button);
     if (state == Touch::State::done) return Touched{point, touch.tip_D_m()};
     if (state == Touch::State::moved) talk.moved(point);
-    if (now > due + kPeriod_ns) due = now;  // late: not chased
   }
 }
 
