@@ -13,6 +13,8 @@ namespace {
 constexpr const char* kExamples = R"(Examples:
   tractus-station trust  --data st --case case/                 whose cases this station takes
   tractus-station --device sim-lambda6 --case case/ --data st   a trial in real time, SIMULATED hand
+  tractus-station --case undrilled/ --data st --tool burr       make the channel; then palpate it:
+  tractus-station --case undrilled/ --data st --drilled 0193c8… the id that the drilling said
   tractus-station --case 3f9ac2d1 --data st --speed fast --seed 7 --trials 5 --json
   tractus-station --case 3f9ac2d1 --data st --server http://127.0.0.1:8480 --token-file st.token
   tractus-station --device sim-rig --scenario lateral_breach --data st --speed fast   SIMULATED rig
@@ -23,6 +25,7 @@ constexpr const char* kExamples = R"(Examples:
   tractus-station --device lambda6 --sdk /opt/sdk --case 3f9ac2d1 --data st
   tractus-station sync   --data st --server URL --token-file st.token
   tractus-station upload --data st --server URL --token-file st.token --wait 600
+  tractus-station record --netft 192.168.1.1 --igtl tracker.local --body probe --body bone --out room/
   tractus-station self-test --device lambda6 --data st --page today.html
   tractus-station calibrate --device rig --address 192.168.1.40:1502 --data st --who Ada)";
 
@@ -33,6 +36,8 @@ const std::map<std::string, session::Speed> kSpeeds{{"real", session::Speed::rea
 
 const std::map<std::string, loop::Passivity> kPassivities{
     {"observed", loop::Passivity::observed}, {"controlled", loop::Passivity::controlled}};
+
+const std::map<std::string, bool> kTools{{"probe", false}, {"burr", true}};
 
 const std::map<std::string, Show> kShows{
     {"none", Show::none}, {"window", Show::window}, {"offscreen", Show::offscreen}};
@@ -165,6 +170,15 @@ void add_run(CLI::App& app, Options& options) {
   app.add_option("--device", options.setup.device,
                  "lambda6 or sim-lambda6; rig or sim-rig for a scenario")
       ->capture_default_str();
+  app.add_option("--tool", options.burr,
+                 "probe: the channel is felt; burr: the bone is drilled while the device's button "
+                 "is held (a case of tractus carve --no-channel)")
+      ->transform(CLI::CheckedTransformer(kTools))
+      ->default_str("probe");
+  app.add_option("--burr", options.burr_file,
+                 "JSON file with the burr's numbers, with --tool burr");
+  app.add_option("--drilled", options.drilled,
+                 "palpate what this trial drilled into the case: its id");
   app.add_option(
       "--sdk", options.setup.sdk,
       "lambda6: the vendor's SDK, its folder or library; else $FDSDK, else as installed");
@@ -276,9 +290,48 @@ void add_trust(CLI::App& app, Options& options) {
   key->excludes(bundle);
 }
 
+void add_record(CLI::App& app, Options& options) {
+  sensors::RecordSetup& record = options.record;
+  app.add_option("--out", options.room, "the recording's new folder; must not exist")->required();
+  app.add_option("--netft", record.netft_host, "ATI Net F/T sensor: its host name or address");
+  app.add_option("--igtl", record.igtl_host, "motion capture over OpenIGTLink: its host");
+  app.add_option("--body", record.bodies, "of the capture system, once for each: the tool first")
+      ->needs("--igtl");
+  app.add_option("--for", record.for_s, "s; ends sooner by Ctrl-C, which keeps what there is")
+      ->check(CLI::Range(0.1, 86'400.0))
+      ->capture_default_str();
+  app.add_flag("--bias", record.bias,
+               "the sensor takes what it feels now as its zero; without, assemble takes it off");
+  const auto port = CLI::Range(1, 65'535);
+  app.add_option("--netft-port", record.netft_port, "UDP, of RDT")
+      ->check(port)
+      ->capture_default_str();
+  app.add_option("--http-port", record.http_port, "of the sensor's page")
+      ->check(port)
+      ->capture_default_str();
+  app.add_option("--igtl-port", record.igtl_port, "TCP")->check(port)->capture_default_str();
+  app.add_flag("--json", options.json, "one JSON document on standard output");
+  app.footer(
+      "Example:\n  tractus-station record --netft 192.168.1.1 --igtl tracker.local --body probe "
+      "--body vertebra --for 90 --out room/\nThen tap five times, palpate, tap five times again; "
+      "complete room/assembly.json; tractus assemble.");
+}
+
 int refuse(const std::string& why) {
   std::fprintf(stderr, "tractus-station: %s (see --help)\n", why.c_str());
   return 2;
+}
+
+std::optional<int> check_record(const Options& options) {
+  const sensors::RecordSetup& record = options.record;
+  if (record.netft_host.empty() && record.igtl_host.empty())
+    return refuse("record: --netft or --igtl is expected, or both");
+  if (!record.igtl_host.empty() && record.bodies.empty())
+    return refuse("record: --igtl: --body is expected, once for each body that is kept");
+  for (const std::string& body : record.bodies)
+    if (body.empty() || body.find_first_of(",\"\n\r") != std::string::npos)
+      return refuse("record: --body: a name without commas, quotes and line breaks is expected");
+  return std::nullopt;
 }
 
 /// Palpation or probing? What does not fit is refused.
@@ -289,11 +342,16 @@ std::optional<int> check_run(const CLI::App& app, Options& options) {
   if (options.data.empty()) return refuse("--data is required");
   if (options.deed == run_trials) {
     if (!options.scenario.empty()) return refuse("--scenario: --device rig or sim-rig is expected");
+    if (!options.burr && !options.burr_file.empty()) return refuse("--burr: needs --tool burr");
+    if (options.burr && !options.drilled.empty())
+      return refuse("--drilled: is palpated, with --tool probe; a burr begins on the case's bone");
     return options.case_name.empty() ? std::optional(refuse("--case is required")) : std::nullopt;
   }
   if (!options.case_name.empty()) return refuse("--case: is felt with sim-lambda6, not on the rig");
   if (options.scenario.empty() && options.model_file.empty())
     return refuse("--scenario is required (or --model alone, without walls)");
+  if (options.burr || !options.drilled.empty())
+    return refuse("--tool, --drilled: are of a case, with sim-lambda6 or lambda6");
   if (options.show != Show::none || !options.picture.empty())
     return refuse("--view, --picture: the rig has none; its person feels alone");
   rig.seed = options.setup.seed;
@@ -354,6 +412,9 @@ Parsed parse(int argc, char** argv) {
   add_trust(*add_deed(app, options, trust_signer, "trust",
                       "take cases that are signed by this key from now on"),
             options);
+  add_record(*add_deed(app, options, record_room, "record",
+                       "a force/torque sensor and motion capture at once, for a measurement set"),
+             options);
 
   try {
     app.parse(argc, argv);
@@ -366,6 +427,7 @@ Parsed parse(int argc, char** argv) {
   if (options.who.size() > kLongestName) out.leave = refuse("--who: at most 64 bytes");
   if (options.deed == trust_signer && options.signer_hex.empty() && options.signer_of_case.empty())
     out.leave = refuse("trust: --signer or --case is expected");
+  if (options.deed == record_room) out.leave = check_record(options);
   if (options.deed == run_trials) out.leave = check_run(app, options);
   return out;
 }

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "station/app/onlooker.hpp"
+#include "station/sensors/record.hpp"
 #include "station/session/probing_trial.hpp"
 
 namespace app {
@@ -32,6 +33,9 @@ struct Options {
   std::string who;                     ///< tune: the expert; calibrate: who does it
   std::filesystem::path tuned_folder;  ///< tune: where new versions go
   std::string case_name;
+  bool burr = false;                ///< drill, instead of palpating
+  std::filesystem::path burr_file;  ///< its numbers; empty: the default ones
+  std::string drilled;              ///< id of the trial whose channel is palpated
   std::filesystem::path model_file;
   std::optional<std::int64_t> started_utc_us;  ///< of the first trial; a SIMULATED date
   std::string answer;  ///< empty: the simulated hand's own, or asked at the terminal
@@ -55,6 +59,9 @@ struct Options {
   // trust
   std::string signer_hex;
   std::filesystem::path signer_of_case;
+  // record
+  sensors::RecordSetup record;
+  std::filesystem::path room;  ///< the new folder
 };
 
 /// Of the n-th trial of this call; nothing when no date was given.

@@ -29,12 +29,16 @@ enum class Homing : std::uint8_t {
   move,    ///< looks for it anew: the handle moves by itself, somebody must stand by
 };
 
-/// What a device is told before it is made: a simulated one the first five, a machine the last two.
+/// What the hand holds.
+enum class Tool : std::uint8_t { probe, burr };
+
+/// What a device is told before it is made: a simulated one the first six, a machine the last two.
 struct DeviceOptions {
   std::uint64_t seed = 1;        ///< of everything random in a simulated device
   double duration_s = 30.0;      ///< of a simulated hand's plan
   double probe_length_m = 0.13;  ///< handle's origin to tip
   Channel channel = {};
+  Tool tool = Tool::probe;         ///< with a burr a simulated hand makes the channel
   std::filesystem::path sdk = {};  ///< the vendor's library or folder; empty: where it installs
   Homing homing = Homing::refuse;
 };

@@ -66,6 +66,10 @@ class StationFolder {
   std::filesystem::path trial_file(const std::string& id) const {
     return trials() / (id + ".ttrial");
   }
+  /// What trials with a burr left of the bone.
+  std::filesystem::path drilled_file(const std::string& trial_id) const {
+    return root_ / "drilled" / (trial_id + ".tdrill");
+  }
   uplink::Outbox outbox() const { return uplink::Outbox(root_ / "outbox"); }
 
   /// Who records or fetches cases holds the first; who uploads the second.

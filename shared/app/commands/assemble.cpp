@@ -1,0 +1,144 @@
+/// `tractus assemble`: recordings of a measuring room become a measurement set.
+#include "capture/assemble.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "app/command.hpp"
+#include "app/taps_picture.hpp"
+#include "core/file.hpp"
+#include "core/progress.hpp"
+
+namespace commands {
+namespace {
+using core::Errc;
+using core::Error;
+using core::Json;
+
+struct Options {
+  std::string recipe, out, picture;
+  bool json = false;
+};
+
+Json json_of(const capture::Assembled& one) {
+  Json taps = Json::array();
+  for (const auto& run : one.clock.runs)
+    taps.push_back({{"taps_s", run.taps_s},
+                    {"offset_s", run.offset_s},
+                    {"sd_s", run.sd_s},
+                    {"together", run.together}});
+  return {
+      {"id", one.trial.id},
+      {"samples", one.trial.t_s.size()},
+      {"rate_Hz", one.rate_Hz},
+      {"duration_s", one.trial.t_s.back()},
+      {"clock_offset_s", one.clock.offset_s},
+      {"clock_offset_sd_s", one.clock.sd_s},
+      {"clock_offset_at_s", one.clock.at_s},
+      {"clock_drift", one.clock.drift},
+      {"tap_runs", taps},
+      {"zero_force_N", {one.zero_S.force_N.x(), one.zero_S.force_N.y(), one.zero_S.force_N.z()}},
+      {"unseen", one.unseen}};
+}
+
+std::string line_of(const capture::Assembled& one) {
+  std::string out =
+      fmt::format("{}: {} samples at {:.4g} Hz, {:.1f} s; clocks {:+.4f} s apart", one.trial.id,
+                  one.trial.t_s.size(), one.rate_Hz, one.trial.t_s.back(), one.clock.offset_s);
+  if (one.clock.runs.empty())
+    out += " (stated)";
+  else
+    out += fmt::format(" (± {:.2g} ms, from {} run{} of taps)", 1e3 * one.clock.sd_s,
+                       one.clock.runs.size(), one.clock.runs.size() == 1 ? "" : "s");
+  if (one.clock.drift != 0.0) out += fmt::format(", drift {:+.0f} ppm", 1e6 * one.clock.drift);
+  if (one.unseen > 0.001)
+    out += fmt::format("; a body was not seen for {:.1f} % of it", 100.0 * one.unseen);
+  return out;
+}
+
+/// The set with the volume that its recipe names, whole or not at all.
+core::Result<void> write_whole(const std::filesystem::path& target, trial::PalpationSet& set,
+                               const capture::Recipe& recipe) {
+  namespace fs = std::filesystem;
+  if (recipe.volume.empty()) return trial::write_palpation_set(target, set);
+  const fs::path from = (recipe.folder / recipe.volume).lexically_normal();
+  set.volume = from.has_filename() ? from.filename().string() : "volume";
+  auto scratch = core::ScratchFolder::make(target);
+  if (!scratch) return scratch.error();
+  const fs::path inner = scratch->path() / "set";
+  if (auto written = trial::write_palpation_set(inner, set); !written) return written;
+  std::error_code failure;
+  fs::copy(from, inner / set.volume, fs::copy_options::recursive, failure);
+  if (failure)
+    return Error{Errc::io, fmt::format("{}: cannot be copied into the set: {}", from.string(),
+                                       failure.message())};
+  fs::rename(inner, target, failure);
+  if (failure) return Error{Errc::io, fmt::format("{}: {}", target.string(), failure.message())};
+  return core::sync_folder(target.has_parent_path() ? target.parent_path() : fs::path("."));
+}
+
+/// Refuses what could not be written at the end, before the work.
+core::Result<void> check(const Options& options, const std::filesystem::path& target) {
+  if (std::filesystem::exists(target))
+    return Error{Errc::conflict, fmt::format("{}: is there already", options.out)};
+  if (!options.picture.empty()) return core::may_be_replaced(options.picture);
+  return {};
+}
+
+Outcome run(const Options& options) {
+  std::filesystem::path target = options.out;
+  if (!target.has_filename()) target = target.parent_path();  // a folder's name may end in a slash
+  if (auto fine = check(options, target); !fine) return fine.error();
+  const auto recipe = capture::Recipe::read(options.recipe);
+  if (!recipe) return recipe.error();
+  trial::PalpationSet set;
+  set.stated = recipe->stated;
+
+  const auto shown = core::terminal_progress("Assembling");
+  Json trials = Json::array();
+  std::string lines;
+  std::vector<app::ShownTaps> shown_taps;
+  for (std::size_t k = 0; k < recipe->recordings.size(); ++k) {
+    if (!shown(double(k) / double(recipe->recordings.size())))
+      return Error{Errc::cancelled, "stopped; nothing was written"};
+    auto one = capture::assemble(*recipe, recipe->recordings[k]);
+    if (!one) return one.error();
+    trials.push_back(json_of(*one));
+    lines += line_of(*one) + "\n";
+    shown_taps.push_back({one->trial.id, one->clock, std::move(one->taps)});
+    set.trials.push_back(std::move(one->trial));
+  }
+  if (!options.picture.empty()) {
+    const std::string drawn = plot::svg(app::taps_figure(shown_taps));
+    if (auto done = core::write_file(options.picture, core::bytes_of(drawn)); !done)
+      return done.error();
+  }
+  if (auto written = write_whole(target, set, *recipe); !written) return written.error();
+  if (options.json)
+    fmt::print("{}\n", Json{{"set", options.out}, {"trials", trials}}.dump(2));
+  else
+    fmt::print("{}", lines);
+  return 0;
+}
+}  // namespace
+
+Command assemble_command() {
+  return {.name = "assemble",
+          .summary = "Make a measurement set of motion capture and force recordings",
+          .example =
+              "tractus assemble --recipe room/assembly.json --out recordings/ --picture taps.svg",
+          .make = [](CLI::App& app) -> std::function<Outcome()> {
+            auto options = std::make_shared<Options>();
+            app.add_option("--recipe", options->recipe,
+                           "tractus-assembly/1: which file, body and sensor is what")
+                ->required();
+            app.add_option("--out", options->out, "the set's folder; must not exist")->required();
+            app.add_option("--picture", options->picture,
+                           "SVG: the taps of force and motion on one clock, to look at");
+            app.add_flag("--json", options->json, "one JSON document on standard output");
+            return [options] { return run(*options); };
+          }};
+}
+
+}  // namespace commands

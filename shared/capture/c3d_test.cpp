@@ -1,0 +1,101 @@
+#include "capture/c3d.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "capture/force.hpp"
+#include "capture/motion.hpp"
+#include "core/bytes.hpp"
+
+namespace capture {
+namespace {
+namespace fs = std::filesystem;
+using math::Vec3;
+
+const fs::path kGolden = TRACTUS_SOURCE_DIR "/tests/golden/c3d";
+
+// The numbers of tests/golden/c3d/make.py: multiples of 0.25, exact in any of the six files.
+class EveryC3d : public testing::TestWithParam<const char*> {
+ protected:
+  fs::path file() const { return kGolden / (std::string(GetParam()) + ".c3d"); }
+};
+
+TEST_P(EveryC3d, GivesBackItsPointsAndChannels) {
+  const auto read = read_c3d_file(file());
+  ASSERT_TRUE(read) << read.error().what;
+  EXPECT_EQ(read->rate_Hz, 50.0);
+  EXPECT_EQ(read->analog_rate_Hz, 150.0);
+  EXPECT_EQ(read->points, (std::vector<std::string>{"tip", "top"}));
+  ASSERT_EQ(read->p_C_m.size(), 8u);
+  for (int k = 0; k < 4; ++k) {
+    const Vec3 tip(10.0 * k + 1.5, -20.25 - k, 300.0 + 2.0 * k), top(0.5, 1000.0 - k, -0.75);
+    EXPECT_LT((read->p_C_m[std::size_t(2 * k)] - 1e-3 * tip).norm(), 1e-12);
+    if (k == 2)
+      EXPECT_TRUE(std::isnan(read->p_C_m[5].x()));
+    else
+      EXPECT_LT((read->p_C_m[std::size_t(2 * k + 1)] - 1e-3 * top).norm(), 1e-12);
+  }
+  ASSERT_EQ(read->analog.size(), 6u);
+  for (std::size_t n = 0; n < 12; ++n) {
+    EXPECT_EQ(read->analog[0].values[n], double(n) + 0.5);
+    EXPECT_EQ(read->analog[3].values[n], 100.0 * double(n));
+  }
+}
+
+TEST_P(EveryC3d, IsAMotionAndAForce) {
+  const auto motion = read_motion(file());
+  ASSERT_TRUE(motion) << motion.error().what;
+  EXPECT_EQ(motion->markers.at("tip").t_s, (std::vector<double>{0.0, 0.02, 0.04, 0.06}));
+  EXPECT_EQ(motion->markers.at("top").t_s, (std::vector<double>{0.0, 0.02, 0.06}));
+  const auto force = read_force(file());
+  ASSERT_TRUE(force) << force.error().what;
+  ASSERT_EQ(force->t_s.size(), 12u);
+  EXPECT_NEAR(force->t_s[4], 4.0 / 150.0, 1e-12);
+  EXPECT_EQ(force->wrench_S[4].force_N, Vec3(4.5, -8.0, 10.0));
+  EXPECT_LT((force->wrench_S[4].torque_Nm - Vec3(0.4, -0.05, 0.001)).norm(), 1e-12);  // of N mm
+}
+
+INSTANTIATE_TEST_SUITE_P(Golden, EveryC3d,
+                         testing::Values("intel_real", "intel_integer", "dec_real", "dec_integer",
+                                         "mips_real", "mips_integer"),
+                         [](const auto& file) { return std::string(file.param); });
+
+TEST(C3dForce, NamesTheChannelThatIsMissing) {
+  const auto none =
+      read_force(kGolden / "intel_real.c3d", {"Fx", "Fy", "Force.Z", "Mx", "My", "Mz"});
+  ASSERT_FALSE(none);
+  EXPECT_NE(none.error().what.find("'Force.Z'"), std::string::npos) << none.error().what;
+  EXPECT_NE(none.error().what.find("'Fz'"), std::string::npos);  // one of those that there are
+  const auto swapped = read_force(kGolden / "intel_real.c3d", {"Mx", "Fy", "Fz", "Mx", "My", "Mz"});
+  ASSERT_FALSE(swapped);
+  EXPECT_NE(swapped.error().what.find("'Nmm'"), std::string::npos) << swapped.error().what;
+}
+
+// A device whose second is 1.0143 of ours (a rate that was rounded up), its samples late by up to
+// 30 ms, in bursts, and never early.
+TEST(DeviceRate, IsToldByTheLeastLateSamples) {
+  std::vector<double> t_s, arrived_s;
+  unsigned random = 7;
+  for (int k = 0; k < 20'000; ++k) {
+    random = random * 1664525u + 1013904223u;
+    const double late_s = (k / 500) % 3 == 0 ? 0.03 * double(random >> 8) / double(1 << 24) : 2e-4;
+    t_s.push_back(0.001 * k);
+    arrived_s.push_back(3.0 + 1.0143 * t_s.back() + late_s);
+  }
+  const auto rate = device_rate(t_s, arrived_s);
+  ASSERT_TRUE(rate) << rate.error().what;
+  EXPECT_NEAR(*rate, 1.0143, 1e-5);
+}
+
+TEST(DeviceRate, RefusesClocksThatAreNotOfOneRecording) {
+  std::vector<double> t_s, arrived_s;
+  for (int k = 0; k < 1000; ++k) t_s.push_back(0.01 * k), arrived_s.push_back(0.02 * k);
+  EXPECT_FALSE(device_rate(t_s, arrived_s));
+  EXPECT_EQ(*device_rate(std::span(t_s).first(50), std::span(arrived_s).first(50)), 1.0);
+}
+
+}  // namespace
+}  // namespace capture
