@@ -23,6 +23,8 @@ constexpr const char* kExamples = R"(Examples:
   tractus-station enrol  --server https://sim.example.org:8480 --authority authority.pem --code C --token-file st.token
   tractus-station assigned --badge 4711 --data st --server URL --token-file st.token
   tractus-station --device lambda6 --sdk /opt/sdk --case 3f9ac2d1 --data st
+  tractus-station --device lambda6 --case 3f9ac2d1 --data st --view headset
+  tractus-station align  --device lambda6 --data st --fixture table.json   where the device stands in the room
   tractus-station sync   --data st --server URL --token-file st.token
   tractus-station upload --data st --server URL --token-file st.token --wait 600
   tractus-station record --netft 192.168.1.1 --igtl tracker.local --body probe --body bone --out room/
@@ -39,8 +41,11 @@ const std::map<std::string, loop::Passivity> kPassivities{
 
 const std::map<std::string, bool> kTools{{"probe", false}, {"burr", true}};
 
-const std::map<std::string, Show> kShows{
-    {"none", Show::none}, {"window", Show::window}, {"offscreen", Show::offscreen}};
+const std::map<std::string, Show> kShows{{"none", Show::none},
+                                         {"window", Show::window},
+                                         {"offscreen", Show::offscreen},
+                                         {"headset", Show::headset},
+                                         {"headset-or-window", Show::headset_or_window}};
 
 /// A subcommand that is done by `deed`.
 CLI::App* add_deed(CLI::App& app, Options& options, Deed deed, const char* name, const char* what) {
@@ -95,6 +100,25 @@ void add_rig(CLI::App& app, Options& options) {
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
   app.add_flag("!--no-surgeon", options.rig.surgeon, "sim-rig: nobody pushes but who writes to it");
+}
+
+void add_align(CLI::App& app, Options& options) {
+  add_data(app, options, true);
+  app.add_option("--device", options.setup.device, "lambda6, or sim-lambda6 in a SIMULATED hand")
+      ->capture_default_str();
+  app.add_option("--sdk", options.setup.sdk, "lambda6: the vendor's SDK, its folder or library");
+  app.add_option(
+         "--fixture", options.fixture,
+         "the points to touch, in the headset's STAGE frame (m, y up): {\"format\": "
+         "\"tractus-fixture/1\", \"points\": [{\"name\": \"A\", \"stage_m\": [x, y, z]}, …]}")
+      ->required();
+  app.add_option("--tip", options.tip_mm,
+                 "mm from the handle's origin along the handle to what touches the points")
+      ->check(CLI::Range(-300.0, 300.0))
+      ->capture_default_str();
+  app.add_option("--limit", options.limit_mm, "mm that a point may be off")
+      ->check(CLI::Range(0.1, 20.0))
+      ->capture_default_str();
 }
 
 void add_tune(CLI::App& app, Options& options) {
@@ -207,7 +231,10 @@ void add_run(CLI::App& app, Options& options) {
   app.add_option("--trials", options.trials, "how many, one after the other")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  app.add_option("--view", options.show, "window, offscreen (drawn, not shown) or none")
+  app.add_option("--view", options.show,
+                 "window; headset (OpenXR); headset-or-window: a window when there is no headset; "
+                 "offscreen "
+                 "(drawn, not shown); none")
       ->transform(CLI::CheckedTransformer(kShows))
       ->default_str("none");
   app.add_option("--picture", options.picture,
@@ -269,7 +296,7 @@ void add_assigned(CLI::App& app, Options& options) {
   app.add_option("--trials", options.trials, "at most so many now")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  app.add_option("--view", options.show, "window, offscreen or none")
+  app.add_option("--view", options.show, "window, headset, headset-or-window, offscreen or none")
       ->transform(CLI::CheckedTransformer(kShows))
       ->default_str("none");
 }
@@ -398,6 +425,10 @@ Parsed parse(int argc, char** argv) {
   add_tune(*add_deed(app, options, tune_scenario, "tune",
                      "feel a scenario and nudge its eight parameters by keys; save new versions"),
            options);
+  add_align(
+      *add_deed(app, options, align_room, "align",
+                "touch three points with the handle, so that the headset shows it where it is"),
+      options);
   CLI::App* limits =
       add_deed(app, options, show_limits, "limits",
                "how much force a hand gets; --restore takes back what was lowered from afar");
