@@ -48,6 +48,8 @@ core::Result<void> check(const CarvingPlan& plan, double length_m,
                          const volume::Geometry& geometry) {
   if (!plan.entry_m.allFinite() || !plan.target_m.allFinite())
     return Error{Errc::bad_input, "entry and target must be finite numbers"};
+  if (plan.breach && !plan.drilled)
+    return Error{Errc::bad_input, "a bone that is not drilled has no breach"};
   if (auto ok = within("a length", length_m, 1e-4, kLongest_m); !ok) return ok;
   if (auto ok = within("a radius", plan.radius_m, kThinnest_m, kWidest_m); !ok) return ok;
   if (auto ok = within("a margin", plan.margin_m, 1e-3, 0.1); !ok) return ok;
@@ -145,6 +147,7 @@ core::Result<Placed> place(const volume::Volume& ct, const volume::TransferFunct
   const volume::WallFinder finder(ct, transfer);
   Placed placed{
       .tract = *tract, .midline = *midline, .empty_value = *empty, .breach = {}, .walls = {}};
+  placed.drilled = plan.drilled;
   placed.mouth_m = finder.behind_entry_m(*tract) + kOpenAir_m;
   for (const auto wall : volume::kWalls) placed.walls.push_back(finder.thinnest(*tract, wall));
   if (!plan.breach) return placed;
@@ -163,14 +166,16 @@ core::Result<Carved> carve(const volume::Volume& ct, const volume::TransferFunct
                                      plan.spacing_m, progress);
   if (!part) return part.error();
   carved.volume = std::move(*part);
-  volume::drill(carved.volume, carved.tract, carved.mouth_m, carved.breach, carved.empty_value);
+  if (carved.drilled)
+    volume::drill(carved.volume, carved.tract, carved.mouth_m, carved.breach, carved.empty_value);
   return carved;
 }
 
 core::Result<volume::Volume> drilled_surroundings(const volume::Volume& ct, const Carved& carved) {
   auto part = volume::resample_finer(ct, region_of(ct.geometry, carved, kSurroundings_m),
                                      kSurroundingsSpacing_m);
-  if (part) volume::drill(*part, carved.tract, carved.mouth_m, carved.breach, carved.empty_value);
+  if (part && carved.drilled)
+    volume::drill(*part, carved.tract, carved.mouth_m, carved.breach, carved.empty_value);
   return part;
 }
 

@@ -21,12 +21,14 @@ struct CarvingPlan {
   std::optional<double> midline_x_m = {};  ///< stated by a person; estimated if not given
   double spacing_m = 0.00035;              ///< of the drilled volume, where the CT is coarser
   double margin_m = 0.020;                 ///< of the drilled volume about tract and breach
+  bool drilled = true;  ///< else the tract is a plan: the bone stays whole, and has no breach
 };
 
 /// Where tract, walls and breach come to lie, before anything is drilled.
 struct Placed {
   volume::Tract tract;
   volume::Midline midline;
+  bool drilled = true;       ///< else a plan alone
   double mouth_m = 0.0;      ///< how far behind the entry the channel was opened
   double empty_value = 0.0;  ///< CT value of what was removed
   std::optional<volume::Breach> breach;
@@ -54,7 +56,8 @@ core::Result<volume::Box> box_that_matters(const volume::Geometry& geometry,
 core::Result<Placed> place(const volume::Volume& ct, const volume::TransferFunction& transfer,
                            const CarvingPlan& plan);
 
-/// Places it, cuts the part about the tract out on a finer grid and drills it. Errors: those of
+/// Places it, cuts the part about the tract out on a finer grid and drills it (or does not:
+/// CarvingPlan::drilled). Errors: those of
 /// `place`; too_large; cancelled.
 core::Result<Carved> carve(const volume::Volume& ct, const volume::TransferFunction& transfer,
                            const CarvingPlan& plan, const core::Progress& progress = {});

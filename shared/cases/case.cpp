@@ -15,6 +15,7 @@ using core::Json;
 using math::Vec3;
 
 constexpr const char* kCaseFormat = "tractus-case/1";
+constexpr const char* kPlanned = "planned";  // a channel: the bone is whole yet
 constexpr const char* kTruthFormat = "tractus-truth/1";
 constexpr std::size_t kMaxParts = 64;
 constexpr double kFar_m = 100.0;  // a volume lies within this of its origin
@@ -121,19 +122,21 @@ Json Case::to_json() const {
                     {"sha256", part.sha256},
                     {"size_bytes", part.size_bytes},
                     {"secret", part.secret}});
-  return {{"format", kCaseFormat},
-          {"title", title},
-          {"source", source},
-          {"made_utc_us", made_utc_us},
-          {"tract",
-           {{"entry_m", json_of(tract.entry_m)},
-            {"axis", json_of(tract.axis)},
-            {"length_m", tract.length_m},
-            {"radius_m", tract.radius_m},
-            {"medial", json_of(tract.medial)},
-            {"superior", json_of(tract.superior)}}},
-          {"model", model.to_json()},
-          {"parts", std::move(list)}};
+  Json json = {{"format", kCaseFormat},
+               {"title", title},
+               {"source", source},
+               {"made_utc_us", made_utc_us},
+               {"tract",
+                {{"entry_m", json_of(tract.entry_m)},
+                 {"axis", json_of(tract.axis)},
+                 {"length_m", tract.length_m},
+                 {"radius_m", tract.radius_m},
+                 {"medial", json_of(tract.medial)},
+                 {"superior", json_of(tract.superior)}}},
+               {"model", model.to_json()},
+               {"parts", std::move(list)}};
+  if (planned) json["channel"] = kPlanned;
+  return json;
 }
 
 core::Result<Case> Case::from_json(const Json& json, const std::string& where) {
@@ -145,6 +148,9 @@ core::Result<Case> Case::from_json(const Json& json, const std::string& where) {
   made.made_utc_us = fields.integer("made_utc_us", 0, 1l << 60);
   const Json *tract = fields.member("tract"), *model = fields.member("model"),
              *parts = fields.member("parts");
+  made.planned = fields.has("channel");
+  if (made.planned && fields.text("channel") != kPlanned)
+    fields.wrong("channel", "\"planned\" is expected, or no such field: then it is drilled");
   if (auto done = fields.done(); !done) return done.error();
   auto tract_read = read_tract(*tract, where + "/tract");
   if (!tract_read) return tract_read.error();

@@ -36,6 +36,7 @@ struct Case {
   std::string source;  ///< where the volume came from, licence
   std::int64_t made_utc_us = 0;
   volume::Tract tract = {};
+  bool planned = false;  ///< the tract is a plan alone: the bone is whole, a channel is to be made
   models::PalpationModel model = {};  ///< probe, transfer function, factors
   std::vector<Part> parts =
       {};  ///< the volume open, the truth secret, the picture (it shows the breach) secret

@@ -297,5 +297,40 @@ TEST(AnswerRight, IsUnknownWithoutTheTruthAndTheLastAnswerCounts) {
   EXPECT_EQ(bench.score("answer_right").value, 1.0);
 }
 
+// 30 mm planned: 31.2 mm deep is 1.2 mm too far; an entry (3, −4) mm aside is 5 mm off.
+TEST(Metrics, OfADrilledChannelAreWhatItsEventSays) {
+  Bench bench;
+  bench.trial.events.push_back(
+      {1.0,
+       "drilled",
+       {{"removed_m3", 2.5e-7},
+        {"channel",
+         {{"entry_offset_m", {0.003, -0.004}},
+          {"angle_rad", 0.1},
+          {"depth_m", 0.0312},
+          {"beyond_m", {{"medial", -0.001}, {"superior", 0.0004}, {"anterior", nullptr}}}}}}});
+  EXPECT_EQ(bench.score("drilled_volume").value, 2.5e-7);
+  EXPECT_EQ(bench.score("channel_angle").value, 0.1);
+  EXPECT_DOUBLE_EQ(*bench.score("channel_entry_offset").value, 0.005);
+  EXPECT_NEAR(*bench.score("channel_beyond_end").value, 0.0012, 1e-12);
+  EXPECT_EQ(bench.score("channel_breach").value, 0.0004);
+  EXPECT_EQ(bench.score("channel_breach").note, "through the superior wall");
+}
+
+TEST(Metrics, OfADrilledChannelHaveNoValueWhereTheEventIsNotUnderstood) {
+  for (const core::Json& detail :
+       {core::Json::object(), core::Json{{"channel", 7}, {"removed_m3", "much"}},
+        core::Json{
+            {"channel", {{"entry_offset_m", {1}}, {"beyond_m", 3}, {"depth_m", nullptr}}}}}) {
+    Bench bench;
+    bench.trial.events.push_back({1.0, "drilled", detail});
+    for (const char* id : {"drilled_volume", "channel_angle", "channel_entry_offset",
+                           "channel_beyond_end", "channel_breach"}) {
+      EXPECT_FALSE(bench.score(id).value) << id << " " << detail;
+      EXPECT_FALSE(bench.score(id).note.empty()) << id;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace metrics

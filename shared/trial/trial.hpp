@@ -29,7 +29,9 @@ struct Sample {
   std::uint32_t tick = 0;               ///< counts from 0; a gap is a tick that was skipped
   std::uint16_t iterations = 0;         ///< of the equilibrium
   std::uint16_t flags = 0;              ///< Flag bits
-  std::uint32_t reserved0 = 0, reserved1 = 0;
+  /// Of a trial that drills: changes of the field that this tick's force has felt, in their order.
+  std::uint32_t patches = 0;
+  std::uint32_t reserved1 = 0;
 
   math::Pose pose() const {
     return {{p_VH_m[0], p_VH_m[1], p_VH_m[2]}, {q_VH[0], q_VH[1], q_VH[2], q_VH[3]}};
@@ -82,6 +84,7 @@ enum Flag : std::uint16_t {
   kSaturated = 16,    ///< the device reports that it could not give what was asked
   kMissed = 32,       ///< probing: the exchange ended after the next period had begun
   kBusLost = 64,      ///< probing: the exchange failed
+  kPressed = 128,     ///< palpation: the device's first button was held
 };
 
 /// Samples in order, of one rig: the other's span is empty.
@@ -98,7 +101,8 @@ struct Block {
   }
 };
 
-/// Something that happened at a time: "start", "answer", "end", "fault", "interrupted".
+/// Something that happened at a time: "start", "answer", "drilled", "end", "fault",
+/// "interrupted".
 struct Event {
   double t_s = 0.0;
   std::string kind;

@@ -39,12 +39,12 @@ struct Scratch {
 class Tile {
  public:
   Tile(const Volume& volume, const OpacityRamps& ramps, const Box& box, Scratch& scratch,
-       ScalarGrid& grid)
+       const BlurTarget& target)
       : volume_(volume),
         ramps_(ramps),
         box_(box),
         scratch_(scratch),
-        grid_(grid),
+        target_(target),
         width_(rounded_up(box.end[0] - box.begin[0], 8)),
         height_(box.end[1] - box.begin[1]) {}
 
@@ -118,8 +118,8 @@ class Tile {
       const float* sources[kWindow];
       for (int m = 0; m < kWindow; ++m)
         sources[m] = window_row(std::clamp(z - kTaps + m, 0, last), y);
-      float* const first = grid_.row(box_.begin[1] + y, z) + box_.begin[0];
-      const std::ptrdiff_t pitch = grid_.slice_pitch();
+      float* const first = target_.at(box_.begin[0], box_.begin[1] + y, z);
+      const std::ptrdiff_t pitch = target_.slice_pitch;
       float* const out[4] = {first, first + pitch, first + 2 * pitch, first + 3 * pitch};
       if (count == 4)
         blur_kernels::across_four<kStore>(weights_, sources, width_, out);
@@ -132,7 +132,7 @@ class Tile {
   const OpacityRamps& ramps_;
   const Box box_;
   Scratch& scratch_;
-  ScalarGrid& grid_;
+  const BlurTarget target_;
   const int width_, height_;
   const blur_kernels::Weights weights_;
 };
@@ -171,10 +171,8 @@ class Count {
   std::mutex mutex_;
 };
 
-}  // namespace
-
-bool blur(const Volume& volume, const OpacityRamps& ramps, const Box& box,
-          const core::Progress& progress, ScalarGrid& grid) {
+bool blur_tiles(const Volume& volume, const OpacityRamps& ramps, const Box& box,
+                const core::Progress& progress, const BlurTarget& target) {
   const std::vector<Box> tiles = tiles_of(box);
   Count count(progress, tiles.size());
   const auto work = [&](std::span<const Box> share) {
@@ -182,9 +180,9 @@ bool blur(const Volume& volume, const OpacityRamps& ramps, const Box& box,
     for (const Box& tile : share) {
       if (count.stopped()) return;
       if (tiles.size() > 8)
-        Tile(volume, ramps, tile, scratch, grid).blur<Store::streamed>();
+        Tile(volume, ramps, tile, scratch, target).blur<Store::streamed>();
       else
-        Tile(volume, ramps, tile, scratch, grid).blur<Store::cached>();
+        Tile(volume, ramps, tile, scratch, target).blur<Store::cached>();
       count.one_more();
     }
   };
@@ -195,6 +193,19 @@ bool blur(const Volume& volume, const OpacityRamps& ramps, const Box& box,
                       [&](std::size_t k) { work(std::span(tiles).subspan(k, 1)); });
   _mm_sfence();
   return !count.stopped();
+}
+
+}  // namespace
+
+bool blur(const Volume& volume, const OpacityRamps& ramps, const Box& box,
+          const core::Progress& progress, ScalarGrid& grid) {
+  return blur_tiles(volume, ramps, box, progress,
+                    {grid.row(0, 0), {0, 0, 0}, grid.row_pitch(), grid.slice_pitch()});
+}
+
+void blur(const Volume& volume, const OpacityRamps& ramps, const Box& box,
+          const BlurTarget& target) {
+  blur_tiles(volume, ramps, box, {}, target);
 }
 
 }  // namespace volume

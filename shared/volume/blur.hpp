@@ -2,6 +2,9 @@
 /// counts.
 #pragma once
 
+#include <array>
+#include <cstddef>
+
 #include "core/progress.hpp"
 #include "volume/opacity_ramps.hpp"
 #include "volume/scalar_grid.hpp"
@@ -24,5 +27,21 @@ inline constexpr int kBlurReach = 7;
 /// to stop; the grid is then half written.
 bool blur(const Volume& volume, const OpacityRamps& ramps, const Box& box,
           const core::Progress& progress, ScalarGrid& grid);
+
+/// Floats [k][j][i] that stand for a part of a volume, from voxel `begin` on.
+struct BlurTarget {
+  float* first;
+  std::array<int, 3> begin;
+  std::ptrdiff_t row_pitch, slice_pitch;  ///< floats from row to row, from slice to slice
+
+  float* at(int i, int j, int k) const noexcept {
+    return first + ((k - begin[2]) * slice_pitch + (j - begin[1]) * row_pitch + (i - begin[0]));
+  }
+};
+
+/// The same values into other memory. Rows are written from the multiple of eight before the box to
+/// the one behind it: there `target` must have room.
+void blur(const Volume& volume, const OpacityRamps& ramps, const Box& box,
+          const BlurTarget& target);
 
 }  // namespace volume

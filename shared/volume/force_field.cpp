@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
+#include <memory>
 
 #include "core/require.hpp"
 #include "volume/blur.hpp"
@@ -12,19 +14,11 @@ namespace volume {
 namespace {
 
 constexpr std::size_t kMostVoxels = std::size_t(1) << 31;
+constexpr int kRow = 8;            // floats written together along a row
+constexpr std::size_t kLine = 16;  // floats of a cache line
 
-/// The voxels whose blurred opacity depends on voxels of `changed`. Empty (begin ≥ end) when none
-/// does.
-Box reached_from(const Box& changed, const std::array<int, 3>& dims) {
-  Box out;
-  for (std::size_t a = 0; a < 3; ++a) {
-    const int begin = std::max(changed.begin[a], 0), end = std::min(changed.end[a], dims[a]);
-    if (begin >= end) return {};
-    out.begin[a] = std::max(begin - kBlurReach, 0);
-    out.end[a] = std::min(end + kBlurReach, dims[a]);
-  }
-  return out;
-}
+int down(int n) { return n / kRow * kRow; }
+int up(int n) { return (n + kRow - 1) / kRow * kRow; }
 
 }  // namespace
 
@@ -75,8 +69,58 @@ core::Result<ForceField> ForceField::make(const Volume& volume, const TransferFu
 void ForceField::update(const Volume& volume, const Box& changed) noexcept {
   core::require(volume.geometry.dims == grid_->geometry.dims,
                 "a field is updated from the volume it was made of");
-  const Box reached = reached_from(changed, grid_->geometry.dims);
+  const Box reached = FieldPatch::reached(changed, grid_->geometry.dims);
   if (reached.begin[0] < reached.end[0]) blur(volume, grid_->ramps, reached, {}, grid_->blurred);
+}
+
+FieldPatch::FieldPatch(std::size_t most_voxels)
+    : room_(most_voxels), memory_(new float[most_voxels + kLine]()) {
+  void* at = memory_.get();
+  std::size_t space = (most_voxels + kLine) * sizeof(float);
+  first_ = static_cast<float*>(
+      std::align(kLine * sizeof(float), most_voxels * sizeof(float), at, space));
+}
+FieldPatch::~FieldPatch() = default;
+FieldPatch::FieldPatch(FieldPatch&&) noexcept = default;
+FieldPatch& FieldPatch::operator=(FieldPatch&&) noexcept = default;
+
+Box FieldPatch::reached(const Box& changed, const std::array<int, 3>& dims) noexcept {
+  Box out;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const int begin = std::max(changed.begin[a], 0), end = std::min(changed.end[a], dims[a]);
+    if (begin >= end) return {};
+    out.begin[a] = std::max(begin - kBlurReach, 0);
+    out.end[a] = std::min(end + kBlurReach, dims[a]);
+  }
+  return out;
+}
+
+std::size_t FieldPatch::floats_for(const Box& changed, const std::array<int, 3>& dims) noexcept {
+  const Box box = reached(changed, dims);
+  return std::size_t(up(box.end[0]) - down(box.begin[0])) * std::size_t(box.end[1] - box.begin[1]) *
+         std::size_t(box.end[2] - box.begin[2]);
+}
+
+void ForceField::compute(const Volume& volume, const Box& changed, FieldPatch& out) const noexcept {
+  const auto& dims = grid_->geometry.dims;
+  core::require(volume.geometry.dims == dims, "a patch is computed from the field's own volume");
+  core::require(FieldPatch::floats_for(changed, dims) <= out.room_,
+                "a patch has room for what it is asked to hold");
+  out.box_ = FieldPatch::reached(changed, dims);
+  if (out.box_.begin[0] >= out.box_.end[0]) return;
+  out.begin_ = {down(out.box_.begin[0]), out.box_.begin[1], out.box_.begin[2]};
+  out.row_pitch_ = up(out.box_.end[0]) - out.begin_[0];
+  const std::ptrdiff_t slice = out.row_pitch_ * (out.box_.end[1] - out.begin_[1]);
+  blur(volume, grid_->ramps, out.box_, {out.first_, out.begin_, out.row_pitch_, slice});
+}
+
+void ForceField::apply(const FieldPatch& patch) noexcept {
+  const Box& box = patch.box_;
+  const auto bytes = std::size_t(std::max(box.end[0] - box.begin[0], 0)) * sizeof(float);
+  const float* from = patch.first_ + (box.begin[0] - patch.begin_[0]);
+  for (int k = box.begin[2]; k < box.end[2]; ++k)
+    for (int j = box.begin[1]; j < box.end[1]; ++j, from += patch.row_pitch_)
+      std::memcpy(grid_->blurred.row(j, k) + box.begin[0], from, bytes);
 }
 
 FieldKind ForceField::kind() const noexcept { return grid_->kind; }

@@ -24,6 +24,31 @@ struct FieldSample {
   Mat3 jacobian_per_m2;  ///< ∂g_a/∂p_b, 1/m², in V
 };
 
+/// The blurred opacity of a part of a volume, computed beside a field and put into it later. Its
+/// memory is taken once, at construction.
+class FieldPatch {
+ public:
+  /// @param most_voxels  room for a patch whose `floats_for` is at most this
+  explicit FieldPatch(std::size_t most_voxels);
+  ~FieldPatch();
+  FieldPatch(FieldPatch&&) noexcept;
+  FieldPatch& operator=(FieldPatch&&) noexcept;
+
+  /// What would be written again: the voxels that `changed` reaches. Empty (begin ≥ end) for none.
+  static Box reached(const Box& changed, const std::array<int, 3>& dims) noexcept;
+  /// The room that a change needs, in floats.
+  static std::size_t floats_for(const Box& changed, const std::array<int, 3>& dims) noexcept;
+
+ private:
+  friend class ForceField;
+  std::size_t room_ = 0;
+  std::unique_ptr<float[]> memory_;
+  float* first_ = nullptr;      // aligned, for voxel begin_
+  std::array<int, 3> begin_{};  // of the memory: a multiple of eight along i
+  std::ptrdiff_t row_pitch_ = 0;
+  Box box_{};
+};
+
 /// The field of [Zoller2020, eq. (1)]:
 ///
 ///     g = −∇(ω ∗ α)                                                         (1)
@@ -52,6 +77,13 @@ class ForceField {
   /// Makes the field that of `volume` again after voxels within `changed` were written. Not beside
   /// samplers.
   void update(const Volume& volume, const Box& changed) noexcept;
+
+  /// What `update` would write, into `out`; the field stays as it is. Beside samplers and `apply`:
+  /// it reads nothing that they write. `out` must have room: FieldPatch::floats_for.
+  void compute(const Volume& volume, const Box& changed, FieldPatch& out) const noexcept;
+  /// Puts a patch in place: with `compute` before, `update` to the last bit. Copies rows, nothing
+  /// else: no allocation, real-time safe. Not beside samplers.
+  void apply(const FieldPatch& patch) noexcept;
 
   FieldKind kind() const noexcept;
   const Geometry& geometry() const noexcept;

@@ -214,6 +214,58 @@ TEST_P(FieldOfKind, AfterRemovalsEqualsAFullRecompute) {
   EXPECT_LE(worst, 1e-5);
 }
 
+// The field of `update` is the expected one, to the last bit: what a loop is given in patches must
+// be what a replay makes with updates. Boxes at both edges, and patches whose memory was used
+// before.
+TEST_P(FieldOfKind, ComputedAsideAndPutInPlaceIsTheUpdatedFieldToTheLastBit) {
+  Volume v = rough({61, 43, 35}, 11);
+  auto updated = ForceField::make(v, transfer(), GetParam());
+  auto patched = ForceField::make(v, transfer(), GetParam());
+  ASSERT_TRUE(updated && patched);
+  FieldPatch patch(40 * 40 * 40);
+  std::mt19937 random(12);
+  const auto& n = v.geometry.dims;
+  for (int removal = 0; removal < 30; ++removal) {
+    Box box;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const int size = std::uniform_int_distribution<int>(1, 9)(random);
+      box.begin[a] = removal % 3 == 0   ? 0
+                     : removal % 3 == 1 ? n[a] - size
+                                        : int(random() % unsigned(n[a] - size));
+      box.end[a] = box.begin[a] + size;
+    }
+    for (int k = box.begin[2]; k < box.end[2]; ++k)
+      for (int j = box.begin[1]; j < box.end[1]; ++j)
+        for (int i = box.begin[0]; i < box.end[0]; ++i)
+          v.counts[v.offset(i, j, k)] = std::uint16_t(random() % 3000);
+    updated->update(v, box);
+    patched->compute(v, box, patch);
+    patched->apply(patch);
+  }
+  for (int trial = 0; trial < 20000; ++trial) {
+    const Vec3 index(double(random() % 6600) / 100.0 - 2.0, double(random() % 4700) / 100.0 - 2.0,
+                     double(random() % 3900) / 100.0 - 2.0);
+    const Vec3 p = v.geometry.position_of(index);
+    ASSERT_EQ(updated->opacity(p), patched->opacity(p));
+    ASSERT_EQ(updated->gradient_per_m(p), patched->gradient_per_m(p));
+  }
+}
+
+TEST(FieldPatch, OfAChangeOutsideTheVolumeHoldsNothing) {
+  const Volume v = rough({20, 20, 20}, 13);
+  auto field = ForceField::make(v, transfer(), FieldKind::paper);
+  ASSERT_TRUE(field);
+  const Box outside{{25, 0, 0}, {30, 5, 5}};
+  EXPECT_EQ(FieldPatch::floats_for(outside, v.geometry.dims), 0u);
+  // 4 … 9 reaches 0 … 16 along i, in rows of eight, and 0 … 16 along j and k.
+  EXPECT_EQ(FieldPatch::floats_for({{4, 4, 4}, {9, 9, 9}}, v.geometry.dims), 16u * 16u * 16u);
+  FieldPatch patch(16);
+  field->compute(v, outside, patch);
+  const double before = field->opacity(v.geometry.position_of({10.5, 10, 10}));
+  field->apply(patch);
+  EXPECT_EQ(field->opacity(v.geometry.position_of({10.5, 10, 10})), before);
+}
+
 TEST_P(FieldOfKind, IsZeroFarOutsideAlongTheNormalAndAtNoNumber) {
   const Volume v = rough({20, 20, 20}, 7);
   const auto field = ForceField::make(v, transfer(), GetParam());

@@ -18,6 +18,8 @@ core::Result<int> enrol_station(const Options& options);
 core::Result<int> show_limits(const Options& options);
 core::Result<int> trust_signer(const Options& options);
 core::Result<int> record_room(const Options& options);
+core::Result<int> self_test(const Options& options);
+core::Result<int> calibrate(const Options& options);
 
 /// From a signal handler: ends what is running in good order.
 void ask_to_stop() noexcept;

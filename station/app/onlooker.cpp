@@ -1,12 +1,15 @@
 #include "station/app/onlooker.hpp"
 
+#include "station/loop/drilling.hpp"
+
 namespace app {
 namespace {
 constexpr int kWidth_px = 1280, kHeight_px = 800;
 
-view::Scene scene_of(const session::PreparedCase& prepared) {
-  return {prepared.volume, prepared.model.transfer, prepared.opened.definition.tract,
-          prepared.model.base};
+constexpr int kLooksPerBone = 10;  // a third of a second: the whole image goes to the graphics
+
+view::Scene scene_of(const session::PreparedCase& prepared, const volume::Volume& bone) {
+  return {bone, prepared.model.transfer, prepared.opened.definition.tract, prepared.model.base};
 }
 }  // namespace
 
@@ -23,7 +26,8 @@ core::Result<Onlooker> Onlooker::make(const session::PreparedCase& prepared, Sho
 }
 
 core::Result<void> Onlooker::open(view::Mode mode) {
-  auto view = view::View::make(scene_of(*prepared_), mode, kWidth_px, kHeight_px);
+  auto view = view::View::make(scene_of(*prepared_, bone_ ? *bone_ : prepared_->volume), mode,
+                               kWidth_px, kHeight_px);
   if (!view) return view.error();
   view_ = std::move(*view);
   return {};
@@ -40,8 +44,16 @@ Onlooker::Moment Onlooker::moment(const loop::Live& live) const {
   return now;
 }
 
+void Onlooker::look_at_bone(loop::Drilling& drilling) {
+  drilling_ = &drilling;
+  if (!bone_) bone_ = prepared_->volume;
+  const auto box = drilling.show(*bone_);
+  if (box && view_) view_->carve_away(*box, *bone_);
+}
+
 bool Onlooker::look(const session::Glimpse& seen) {
   if (!view_ && picture_.empty()) return true;
+  if (seen.drilling && looks_++ % kLooksPerBone == 0) look_at_bone(*seen.drilling);
   const Moment now = moment(seen.live);
   path_m_.push_back(now.tip_m);
   const volume::Tract& tract = prepared_->opened.definition.tract;
@@ -52,6 +64,7 @@ bool Onlooker::look(const session::Glimpse& seen) {
 
 core::Result<void> Onlooker::leave_picture() {
   if (picture_.empty() || !deepest_) return {};
+  if (drilling_) look_at_bone(*drilling_);
   if (!view_)
     if (auto opened = open(view::Mode::offscreen); !opened) return opened.error();
   view_->draw(deepest_->state, path_m_);

@@ -23,7 +23,8 @@ class Onlooker {
   /// Looks at the latest state, draws it when there is a view. False when a person closed the
   /// window.
   bool look(const session::Glimpse& seen);
-  /// Leaves the picture: the probe where its tip was deepest, and the tip's way.
+  /// Leaves the picture: the probe where its tip was deepest, and the tip's way. While the trial
+  /// that was looked at is there.
   core::Result<void> leave_picture();
 
  private:
@@ -34,11 +35,15 @@ class Onlooker {
   Onlooker() = default;
   Moment moment(const loop::Live& live) const;
   core::Result<void> open(view::Mode mode);
+  void look_at_bone(loop::Drilling& drilling);
 
   const session::PreparedCase* prepared_ = nullptr;
   std::filesystem::path picture_;
   std::unique_ptr<view::View> view_;
   std::vector<math::Vec3> path_m_;
+  loop::Drilling* drilling_ = nullptr;  // of the trial that is looked at
+  std::optional<volume::Volume> bone_;  // as it is drilled; without a drilling the case's stands
+  int looks_ = 0;
   std::optional<Moment> deepest_;
 };
 

@@ -13,6 +13,8 @@ namespace {
 constexpr const char* kExamples = R"(Examples:
   tractus-station trust  --data st --case case/                 whose cases this station takes
   tractus-station --device sim-lambda6 --case case/ --data st   a trial in real time, SIMULATED hand
+  tractus-station --case undrilled/ --data st --tool burr       make the channel; then palpate it:
+  tractus-station --case undrilled/ --data st --drilled 0193c8… the id that the drilling said
   tractus-station --case 3f9ac2d1 --data st --speed fast --seed 7 --trials 5 --json
   tractus-station --case 3f9ac2d1 --data st --server http://127.0.0.1:8480 --token-file st.token
   tractus-station --device sim-rig --scenario lateral_breach --data st --speed fast   SIMULATED rig
@@ -23,13 +25,19 @@ constexpr const char* kExamples = R"(Examples:
   tractus-station --device lambda6 --sdk /opt/sdk --case 3f9ac2d1 --data st
   tractus-station sync   --data st --server URL --token-file st.token
   tractus-station upload --data st --server URL --token-file st.token --wait 600
-  tractus-station record --netft 192.168.1.1 --igtl tracker.local --body probe --body bone --out room/)";
+  tractus-station record --netft 192.168.1.1 --igtl tracker.local --body probe --body bone --out room/
+  tractus-station self-test --device lambda6 --data st --page today.html
+  tractus-station calibrate --device rig --address 192.168.1.40:1502 --data st --who Ada)";
+
+constexpr std::size_t kLongestName = 64;
 
 const std::map<std::string, session::Speed> kSpeeds{{"real", session::Speed::real},
                                                     {"fast", session::Speed::fast}};
 
 const std::map<std::string, loop::Passivity> kPassivities{
     {"observed", loop::Passivity::observed}, {"controlled", loop::Passivity::controlled}};
+
+const std::map<std::string, bool> kTools{{"probe", false}, {"burr", true}};
 
 const std::map<std::string, Show> kShows{
     {"none", Show::none}, {"window", Show::window}, {"offscreen", Show::offscreen}};
@@ -115,10 +123,62 @@ void add_tune(CLI::App& app, Options& options) {
       "--scenario hard --who \"Dr. A\" --out scenarios/");
 }
 
+/// What self-test and calibrate share.
+void add_check(CLI::App& app, Options& options) {
+  add_data(app, options, true);
+  add_server(app, options, false);
+  app.add_option("--device", options.setup.device, "lambda6, sim-lambda6, rig or sim-rig")
+      ->check(CLI::IsMember({"lambda6", "sim-lambda6", "rig", "sim-rig"}))
+      ->capture_default_str();
+  app.add_option("--sdk", options.setup.sdk, "lambda6: the vendor's SDK, its folder or library");
+  app.add_option("--address", options.rig.address,
+                 "of the rig: HOST:PORT, or a serial line /dev/…[@BAUD]")
+      ->capture_default_str();
+  app.add_option("--rate", options.rig.rate_Hz, "Hz, of the rig's loop")
+      ->check(CLI::Range(100.0, 1000.0))
+      ->capture_default_str();
+  app.add_option("--page", options.page, "the report as a page to print, HTML");
+  app.add_flag("--stand-by", options.stand_by,
+               "a person stands by and knows what will move: nobody is asked at the terminal");
+}
+
+void add_self_test(CLI::App& app, Options& options) {
+  add_check(app, options);
+  app.add_option("--for", options.for_s, "s, that a hand moves the handle to its ends")
+      ->check(CLI::Range(1.0, 120.0))
+      ->capture_default_str();
+  app.add_option("--view", options.show, "the display that is timed: window, offscreen or none")
+      ->transform(CLI::CheckedTransformer(kShows))
+      ->default_str("offscreen");
+  app.footer(
+      "Exit 0 all passed, 1 something did not, 2 bad use. A simulated device needs nobody.\n"
+      "Example:\n  tractus-station self-test --device lambda6 --data st --page today.html");
+}
+
+void add_calibrate(CLI::App& app, Options& options) {
+  add_check(app, options);
+  app.add_option("--who", options.who, "who does it, as the record names them")->required();
+  app.add_option("--due-days", options.due_days, "days until the next one")
+      ->check(CLI::Range(1, 3650))
+      ->capture_default_str();
+  app.footer(
+      "lambda6: its handle moves by itself to find its zero. Exit 0 noted, 1 not, 2 bad use.\n"
+      "Example:\n  tractus-station calibrate --device lambda6 --data st --who Ada --due-days 90");
+}
+
 void add_run(CLI::App& app, Options& options) {
   app.add_option("--device", options.setup.device,
                  "lambda6 or sim-lambda6; rig or sim-rig for a scenario")
       ->capture_default_str();
+  app.add_option("--tool", options.burr,
+                 "probe: the channel is felt; burr: the bone is drilled while the device's button "
+                 "is held (a case of tractus carve --no-channel)")
+      ->transform(CLI::CheckedTransformer(kTools))
+      ->default_str("probe");
+  app.add_option("--burr", options.burr_file,
+                 "JSON file with the burr's numbers, with --tool burr");
+  app.add_option("--drilled", options.drilled,
+                 "palpate what this trial drilled into the case: its id");
   app.add_option(
       "--sdk", options.setup.sdk,
       "lambda6: the vendor's SDK, its folder or library; else $FDSDK, else as installed");
@@ -282,11 +342,16 @@ std::optional<int> check_run(const CLI::App& app, Options& options) {
   if (options.data.empty()) return refuse("--data is required");
   if (options.deed == run_trials) {
     if (!options.scenario.empty()) return refuse("--scenario: --device rig or sim-rig is expected");
+    if (!options.burr && !options.burr_file.empty()) return refuse("--burr: needs --tool burr");
+    if (options.burr && !options.drilled.empty())
+      return refuse("--drilled: is palpated, with --tool probe; a burr begins on the case's bone");
     return options.case_name.empty() ? std::optional(refuse("--case is required")) : std::nullopt;
   }
   if (!options.case_name.empty()) return refuse("--case: is felt with sim-lambda6, not on the rig");
   if (options.scenario.empty() && options.model_file.empty())
     return refuse("--scenario is required (or --model alone, without walls)");
+  if (options.burr || !options.drilled.empty())
+    return refuse("--tool, --drilled: are of a case, with sim-lambda6 or lambda6");
   if (options.show != Show::none || !options.picture.empty())
     return refuse("--view, --picture: the rig has none; its person feels alone");
   rig.seed = options.setup.seed;
@@ -338,6 +403,12 @@ Parsed parse(int argc, char** argv) {
                "how much force a hand gets; --restore takes back what was lowered from afar");
   add_data(*limits, options, true);
   limits->add_flag("--restore", options.restore, "this station's own limits hold again");
+  CLI::App* test = add_deed(app, options, self_test, "self-test",
+                            "device, loop, display, disk and clock put to the question");
+  add_self_test(*test, options);
+  add_calibrate(*add_deed(app, options, calibrate, "calibrate",
+                          "find the device's zero, check it, note it and when it is due again"),
+                options);
   add_trust(*add_deed(app, options, trust_signer, "trust",
                       "take cases that are signed by this key from now on"),
             options);
@@ -352,6 +423,8 @@ Parsed parse(int argc, char** argv) {
     return out;
   }
   if (study->parsed()) set_study(*study, options);
+  if (test->parsed() && test->count("--view") == 0) options.show = Show::offscreen;
+  if (options.who.size() > kLongestName) out.leave = refuse("--who: at most 64 bytes");
   if (options.deed == trust_signer && options.signer_hex.empty() && options.signer_of_case.empty())
     out.leave = refuse("trust: --signer or --case is expected");
   if (options.deed == record_room) out.leave = check_record(options);

@@ -30,9 +30,12 @@ struct Options {
   session::TrialSetup setup;
   session::RigSetup rig;
   std::string scenario;                ///< a file, or a tuned one's name
-  std::string who;                     ///< tune: the expert
+  std::string who;                     ///< tune: the expert; calibrate: who does it
   std::filesystem::path tuned_folder;  ///< tune: where new versions go
   std::string case_name;
+  bool burr = false;                ///< drill, instead of palpating
+  std::filesystem::path burr_file;  ///< its numbers; empty: the default ones
+  std::string drilled;              ///< id of the trial whose channel is palpated
   std::filesystem::path model_file;
   std::optional<std::int64_t> started_utc_us;  ///< of the first trial; a SIMULATED date
   std::string answer;  ///< empty: the simulated hand's own, or asked at the terminal
@@ -45,6 +48,11 @@ struct Options {
   // assigned
   std::string badge;
   std::filesystem::path pin_file;  ///< empty: asked at the terminal
+  // self-test, calibrate
+  std::filesystem::path page;  ///< HTML to print; empty: none
+  double for_s = 10.0;         ///< that a hand moves the handle about
+  int due_days = 90;
+  bool stand_by = false;  ///< somebody does: nobody is asked at the terminal
   // upload
   double wait_s = 0.0;
   bool restore = false;  ///< limits: those of config.json hold again

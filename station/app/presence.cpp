@@ -12,6 +12,7 @@
 
 #include "station/app/deeds.hpp"
 #include "station/app/exchange.hpp"
+#include "station/check/findings.hpp"
 #include "station/loop/live_state.hpp"
 #include "station/uplink/clock_offset.hpp"
 #include "station/uplink/live.hpp"
@@ -64,6 +65,7 @@ struct Presence::Parts {
   std::atomic<std::uint64_t> ticks = 0, late = 0;
   std::string device;
   bool simulated = false;
+  std::optional<std::int64_t> calibration_due_utc_us;
   // Of the uplink's thread alone:
   std::optional<uplink::ClockOffset> offset;
   Clock::time_point disk_at, outbox_at;
@@ -74,6 +76,8 @@ struct Presence::Parts {
     const bool rig = given.deed == run_probing_trials || given.deed == run_study;
     device = rig ? given.rig.device : given.setup.device;
     simulated = device.starts_with("sim-");
+    if (const auto last = check::Calibration::read(where.calibration_file(device)); last && *last)
+      calibration_due_utc_us = (*last)->due_utc_us;
     if (where.config().lowered_force_N) outside.lower_force(*where.config().lowered_force_N);
   }
   wire::StationTold told();
@@ -107,6 +111,7 @@ wire::StationTold Presence::Parts::told() {
   out.simulated = simulated;
   out.free_disk_bytes = free_bytes;
   out.waiting_trials = waiting;
+  out.calibration_due_utc_us = calibration_due_utc_us;
   if (offset) out.clock_offset_s = offset->offset_s, out.clock_error_s = offset->error_s;
   if (ticks > 0) out.late_share = static_cast<double>(late) / static_cast<double>(ticks);
   const auto now = seen.read();

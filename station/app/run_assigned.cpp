@@ -8,6 +8,7 @@
 
 #include "core/file.hpp"
 #include "station/app/aftermath.hpp"
+#include "station/app/checks.hpp"
 #include "station/app/deeds.hpp"
 #include "station/app/exchange.hpp"
 #include "station/app/presence.hpp"
@@ -56,6 +57,7 @@ core::Result<TrialReport> palpate(const Options& options, Presence& presence,
   session::Station station(folder, setup);
   if (auto ready = station.prepare(prepared, options.setup.seed + trial.number); !ready)
     return ready.error();
+  say_calibration_due(folder, options.setup.device);
   auto onlooker = Onlooker::make(*prepared, options.show, {});
   if (!onlooker) return onlooker.error();
   const auto watch = [&](const session::Glimpse& seen) {
@@ -96,7 +98,7 @@ core::Result<TrialReport> probe(const Options& options, Presence& presence,
   setup.outside = presence.outside();
   const auto watch = [](const session::ProbingGlimpse&) { return !stopped_by_hand(); };
   return session::run_probing_trial(
-      folder, task, setup, presence.watched(watch, task),
+      folder, task, setup, warned(presence.watched(watch, task), folder, setup.device),
       [&](const session::ProbingTrialRun& run) -> core::Result<std::optional<trial::Answer>> {
         presence.is(Presence::State::questions);
         return answer_of(options, run.simulated_answer());

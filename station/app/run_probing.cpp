@@ -5,6 +5,7 @@
 
 #include "core/progress.hpp"
 #include "station/app/aftermath.hpp"
+#include "station/app/checks.hpp"
 #include "station/app/deeds.hpp"
 #include "station/app/exchange.hpp"
 #include "station/app/presence.hpp"
@@ -78,7 +79,8 @@ core::Result<TrialReport> one_trial(const Options& options, Presence& presence,
   setup.outside = presence.outside();
   presence.is(Presence::State::preparing);
   auto report = session::run_probing_trial(
-      folder, task, setup, presence.watched(watch_of(options, task), task),
+      folder, task, setup,
+      warned(presence.watched(watch_of(options, task), task), folder, setup.device),
       [&](const session::ProbingTrialRun& trial) -> core::Result<std::optional<trial::Answer>> {
         presence.is(Presence::State::questions);
         if (asked_to_stop()) return std::optional<trial::Answer>();

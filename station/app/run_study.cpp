@@ -8,6 +8,7 @@
 
 #include "core/file.hpp"
 #include "station/app/aftermath.hpp"
+#include "station/app/checks.hpp"
 #include "station/app/deeds.hpp"
 #include "station/app/exchange.hpp"
 #include "station/app/presence.hpp"
@@ -131,7 +132,8 @@ core::Result<TrialReport> one_trial(const Study& study, const StudyWork& work,
   if (work.simulated && !study.options.skill_given)
     setup.skill = rig::SurgeonParameters::skill_of_experience(work.experience_years.value_or(0.0));
   auto report = session::run_probing_trial(
-      study.folder, task, setup, study.presence.watched(watch_of(study.options), task),
+      study.folder, task, setup,
+      warned(study.presence.watched(watch_of(study.options), task), study.folder, setup.device),
       [&](const session::ProbingTrialRun& run) -> core::Result<std::optional<trial::Answer>> {
         study.presence.is(Presence::State::questions);
         if (asked_to_stop()) return std::optional<trial::Answer>();

@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include "station/app/aftermath.hpp"
+#include "station/app/checks.hpp"
 #include "station/app/deeds.hpp"
 #include "station/app/exchange.hpp"
 #include "station/app/presence.hpp"
@@ -24,7 +25,7 @@ core::Result<std::shared_ptr<const session::PreparedCase>> prepare(
   const auto model = model_file_of(options, folder);
   if (!model) return model.error();
   auto made = session::prepare_case(folder, options.case_name, *model,
-                                    core::terminal_progress("Preparing the case"));
+                                    core::terminal_progress("Preparing the case"), options.drilled);
   if (!made) return made.error();
   return std::shared_ptr<const session::PreparedCase>(std::move(*made));
 }
@@ -44,11 +45,12 @@ session::Watch watch_of(const Options& options, const core::Progress& shown, Onl
 }
 
 core::Result<TrialReport> one_trial(const Options& options, Presence& presence,
-                                    session::Station& station,
+                                    const session::StationFolder& folder, session::Station& station,
                                     const std::shared_ptr<const session::PreparedCase>& prepared,
                                     std::uint64_t seed) {
   presence.is(Presence::State::preparing);
   if (auto ready = station.prepare(prepared, seed); !ready) return ready.error();
+  say_calibration_due(folder, options.setup.device);
   auto onlooker = Onlooker::make(*prepared, options.show, options.picture);
   if (!onlooker) return onlooker.error();
   const core::Progress shown = core::terminal_progress(fmt::format("Trial, seed {}", seed));
@@ -59,7 +61,8 @@ core::Result<TrialReport> one_trial(const Options& options, Presence& presence,
   if (auto left = onlooker->leave_picture(); !left)
     std::fprintf(stderr, "warning: no picture: %s\n", left.error().what.c_str());
   std::optional<trial::Answer> said;
-  if (station.state() == session::State::answering && !asked_to_stop()) {
+  const bool asks = !options.burr;  // who drills made the channel: there is nothing to guess
+  if (station.state() == session::State::answering && asks && !asked_to_stop()) {
     auto answer = answer_of(options, station.simulated_answer());
     if (!answer) return answer.error();
     said = *answer;
@@ -67,6 +70,24 @@ core::Result<TrialReport> one_trial(const Options& options, Presence& presence,
   auto report = station.answer(said);
   if (report) presence.done(*report);
   return report;
+}
+
+void print_drilled(const TrialReport::Drilled& drilled) {
+  const core::Json& made = drilled.detail;
+  fmt::print("  drilled {:.1f} mm3 of bone in {} changes, felt {:.1f} ms later (p99 {:.1f} ms)\n",
+             made.at("removed_m3").get<double>() * 1e9, made.at("changes").get<int>(),
+             1e3 * drilled.lag_p50_s, 1e3 * drilled.lag_p99_s);
+}
+
+/// The burr that was asked for, if one was.
+core::Result<std::optional<drilling::Burr>> burr_of(const Options& options) {
+  if (!options.burr) return std::optional<drilling::Burr>();
+  if (options.burr_file.empty()) return std::optional(drilling::Burr{});
+  const auto json = core::read_json(options.burr_file);
+  if (!json) return json.error();
+  auto burr = drilling::Burr::from_json(*json, options.burr_file.string());
+  if (!burr) return burr.error();
+  return std::optional(*burr);
 }
 
 void print_report(const TrialReport& report, bool fast) {
@@ -85,9 +106,11 @@ void print_report(const TrialReport& report, bool fast) {
                report.wake_p50_us, report.wake_p99_us, report.work_p50_us, report.work_p99_us);
   fmt::print("  energy given to the hand beyond what it gave: at most {:.2g} mJ\n",
              1e3 * report.injected_J);
+  if (report.drilled) print_drilled(*report.drilled);
   for (const auto& warning : report.grant.warnings) fmt::print("  warning: {}\n", warning);
   if (!report.fault.empty()) fmt::print("  FAULT: {}\n", report.fault);
-  fmt::print("  answer: {}\n  {}\n", answer_text(report), report.file.string());
+  if (!report.drilled) fmt::print("  answer: {}\n", answer_text(report));
+  fmt::print("  {}\n", report.file.string());
 }
 
 /// After a fault of a machine that a person holds, that person goes on; nobody else does.
@@ -102,6 +125,8 @@ bool may_go_on(const TrialReport& last) {
 }  // namespace
 
 core::Result<int> run_trials(const Options& options) {
+  const auto burr = burr_of(options);
+  if (!burr) return burr.error();
   auto folder = session::StationFolder::open(options.data);
   if (!folder) return folder.error();
   auto lock = folder->lock();
@@ -116,12 +141,13 @@ core::Result<int> run_trials(const Options& options) {
 
   session::TrialSetup setup = options.setup;
   setup.outside = presence.outside();
+  setup.burr = *burr;
   session::Station station(*folder, setup);
   core::Json trials = core::Json::array();
   bool faulted = false;
   for (int i = 0; i < options.trials && !asked_to_stop() && presence.may_go_on(); ++i) {
-    auto report =
-        one_trial(options, presence, station, *prepared, options.setup.seed + std::uint64_t(i));
+    auto report = one_trial(options, presence, *folder, station, *prepared,
+                            options.setup.seed + std::uint64_t(i));
     if (!report) return report.error();
     faulted = faulted || !report->complete;
     auto scores = session::scores_of(report->file, &(*prepared)->opened.definition.tract);

@@ -11,6 +11,7 @@
 #include "core/clock.hpp"
 #include "core/file.hpp"
 #include "station/app/aftermath.hpp"
+#include "station/app/checks.hpp"
 #include "station/app/deeds.hpp"
 #include "station/app/exchange.hpp"
 #include "station/app/probing.hpp"
@@ -111,6 +112,7 @@ core::Result<session::TrialReport> one_trial(const Options& options,
   auto made = session::ProbingTrialRun::make(folder, *task, options.rig);
   if (!made) return made.error();
   session::ProbingTrialRun& trial = **made;
+  say_calibration_due(folder, options.rig.device);
   const auto ran = trial.run([&](const session::ProbingGlimpse&) {
     for (auto c = key(); c; c = key())
       if (!expert.press(*c, trial)) return false;

@@ -23,18 +23,22 @@ struct Channel {
   double radius_m = 0.0025;
 };
 
-/// What a device does that has lost its zero (switched off meanwhile).
+/// What a device does about its zero, which it loses while it is switched off.
 enum class Homing : std::uint8_t {
-  refuse,  ///< says so
-  move,    ///< looks for it: the handle moves by itself, somebody must stand by
+  refuse,  ///< takes it as it is; says so when it is lost
+  move,    ///< looks for it anew: the handle moves by itself, somebody must stand by
 };
 
-/// What a device is told before it is made: a simulated one the first five, a machine the last two.
+/// What the hand holds.
+enum class Tool : std::uint8_t { probe, burr };
+
+/// What a device is told before it is made: a simulated one the first six, a machine the last two.
 struct DeviceOptions {
   std::uint64_t seed = 1;        ///< of everything random in a simulated device
   double duration_s = 30.0;      ///< of a simulated hand's plan
   double probe_length_m = 0.13;  ///< handle's origin to tip
   Channel channel = {};
+  Tool tool = Tool::probe;         ///< with a burr a simulated hand makes the channel
   std::filesystem::path sdk = {};  ///< the vendor's library or folder; empty: where it installs
   Homing homing = Homing::refuse;
 };

@@ -10,6 +10,10 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kOutside_m =
     0.030;  // How far beyond the wall the straight tip would be at the deepest point.
 constexpr double kPress_m = 0.0105;
+constexpr double kBeforeBone_m = 0.012;  // Where the first feed begins: bone may reach so far out.
+constexpr double kShortOfEnd_m = 0.001;
+constexpr double kBack_m = 0.004;
+constexpr int kFeeds = 8;
 constexpr double kMaxTilt_rad = 0.35;
 constexpr double kSweep_rad = 0.35;  // to both sides of the wall's direction
 constexpr double kSweep_Hz = 0.7;
@@ -28,6 +32,20 @@ PalpationPlan::PalpationPlan(const DeviceOptions& options)
       random_(options.seed) {
   keys_.push_back({0.0, -kOutside_m, 0.0, Act::rest, -1});
   add(0.6, -kOutside_m, 0.0, Act::rest);
+  options.tool == Tool::burr ? plan_drilling() : plan_palpation();
+  add(2.0, -kOutside_m, 0.0, Act::withdraw);
+  const double scale = options.duration_s / keys_.back().t_s;
+  for (Key& key : keys_) key.t_s *= scale;
+  for (std::size_t axis = 0; axis < tremor_.size(); ++axis)
+    for (Wave& wave : tremor_[axis]) {
+      const double amplitude = axis < 3 ? kTremor_m : kTremor_rad;
+      wave = {amplitude * (0.5 + uniform()), 2.0 * kPi * (8.0 + 4.0 * uniform()),
+              2.0 * kPi * uniform()};
+    }
+  sweep_phase_rad_ = 2.0 * kPi * uniform();
+}
+
+void PalpationPlan::plan_palpation() {
   add(2.0, -0.002, 0.0, Act::approach);
   add(2.0, deepest_m_, 0.0, Act::approach);
   const double tilt = std::min(kMaxTilt_rad, std::atan2(channel_.radius_m + kPress_m, deepest_m_));
@@ -44,16 +62,20 @@ PalpationPlan::PalpationPlan(const DeviceOptions& options)
     add(0.7, channel_.length_m + kTapBeyond_m, 0.0, Act::tap);
     add(0.5, deepest_m_, 0.0, Act::approach);
   }
-  add(2.0, -kOutside_m, 0.0, Act::withdraw);
-  const double scale = options.duration_s / keys_.back().t_s;
-  for (Key& key : keys_) key.t_s *= scale;
-  for (std::size_t axis = 0; axis < tremor_.size(); ++axis)
-    for (Wave& wave : tremor_[axis]) {
-      const double amplitude = axis < 3 ? kTremor_m : kTremor_rad;
-      wave = {amplitude * (0.5 + uniform()), 2.0 * kPi * (8.0 + 4.0 * uniform()),
-              2.0 * kPi * uniform()};
-    }
-  sweep_phase_rad_ = 2.0 * kPi * uniform();
+}
+
+void PalpationPlan::plan_drilling() {
+  const double end_m = channel_.length_m - kShortOfEnd_m;
+  const double feed_m = (end_m + kBeforeBone_m) / kFeeds;
+  add(1.0, -kBeforeBone_m, 0.0, Act::approach);
+  for (int feed = 1; feed <= kFeeds; ++feed) {
+    const double bottom_m = -kBeforeBone_m + feed * feed_m;
+    add(3.0, bottom_m, 0.0, Act::drill);
+    add(0.5, bottom_m, 0.0, Act::drill);
+    if (feed == kFeeds) break;
+    add(0.5, bottom_m - kBack_m, 0.0, Act::withdraw);
+    add(0.5, bottom_m - 0.0005, 0.0, Act::approach);
+  }
 }
 
 void PalpationPlan::add(double weight_s, double depth_m, double tilt_rad, Act act, int wall) {
@@ -83,6 +105,7 @@ math::Pose PalpationPlan::pose_at(double t_s, double lean, Intent& intent) const
   const Key &from = keys_[next - 1], &to = keys_[next];
   const double s = minimum_jerk((t - from.t_s) / (to.t_s - from.t_s));
   intent.act = to.act;
+  intent.button = to.act == Act::drill;
   intent.wall = to.act == Act::stroke ? to.wall : -1;
   intent.depth_m = from.depth_m + s * (to.depth_m - from.depth_m);
   const double tilt = lean * (from.tilt_rad + s * (to.tilt_rad - from.tilt_rad));

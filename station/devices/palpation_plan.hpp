@@ -1,4 +1,4 @@
-/// What a simulated hand means to do: a seeded plan of palpation strokes.
+/// What a simulated hand means to do: a seeded plan of palpation strokes, or of drilling feeds.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace devices {
 
-enum class Act : std::uint8_t { rest, approach, stroke, tap, withdraw };
+enum class Act : std::uint8_t { rest, approach, stroke, tap, drill, withdraw };
 
 /// Where the hand wants the handle, and what for.
 struct Intent {
@@ -17,6 +17,7 @@ struct Intent {
   Act act = Act::rest;
   int wall = -1;         ///< of a stroke: 0 medial, 1 superior, 2 lateral, 3 inferior
   double depth_m = 0.0;  ///< of the straight probe's tip
+  bool button = false;   ///< held: while it drills
   math::Vec3 press = math::Vec3::Zero();  ///< unit vector towards the wall of a stroke, in D
 };
 
@@ -25,6 +26,10 @@ struct Intent {
 /// minimum jerk [Flash1985]: s = 10τ³ − 15τ⁴ + 6τ⁵. The shank turns about the channel's
 /// mouth, as a real one must. Physiological tremor of 8–12 Hz rides on all of it. Amplitudes,
 /// speeds and tilts are plausible choices of ours, not measurements.
+///
+/// With a burr: along the axis from before the bone to a little short of the planned end, in feeds
+/// with the button held, each followed by a pause at the bottom, a way back with the button let go
+/// and the way in again.
 class PalpationPlan {
  public:
   PalpationPlan(const DeviceOptions& options);
@@ -49,6 +54,8 @@ class PalpationPlan {
   struct Wave {
     double amplitude, frequency_rad_s, phase_rad;
   };
+  void plan_palpation();
+  void plan_drilling();
   void add(double weight_s, double depth_m, double tilt_rad, Act act, int wall = -1);
   double uniform() noexcept;
   math::Pose pose_at(double t_s, double lean, Intent& intent) const noexcept;

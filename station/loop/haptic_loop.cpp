@@ -73,6 +73,8 @@ void HapticLoop::tick(core::Instant_ns now, std::uint32_t number, bool late) noe
   const bool usable = status == Status::ok && plausible(sample.X_DH);
   if (usable) X_DH_ = sample.X_DH;  // else the last good pose stands, flagged
   const math::Pose X_VH = X_VD_ * X_DH_;
+  const double t_s = static_cast<double>(now - start_) * 1e-9;
+  const std::uint32_t patches = parts_.tool ? parts_.tool->apply(t_s) : 0;
   laws::PalpationStep step;
   if (usable)
     step = parts_.contact.step({.X_VH = X_VH,
@@ -88,7 +90,7 @@ void HapticLoop::tick(core::Instant_ns now, std::uint32_t number, bool late) noe
   energy_.holds(passed.wrench);
 
   trial::Sample out;
-  out.t_s = static_cast<double>(now - start_) * 1e-9;
+  out.t_s = t_s;
   out.p_VH_m = array_of(X_VH.p);
   out.q_VH = array_of(X_VH.q);
   out.force_N = floats_of(recordable(step.wrench_H.force_N));
@@ -104,7 +106,9 @@ void HapticLoop::tick(core::Instant_ns now, std::uint32_t number, bool late) noe
   out.flags = static_cast<std::uint16_t>(
       (step.converged ? 0 : trial::kNotConverged) | (passed.limited ? trial::kLimited : 0) |
       (late ? trial::kLate : 0) | (passed.stale ? trial::kStale : 0) |
-      (sample.saturated ? trial::kSaturated : 0));
+      (sample.saturated ? trial::kSaturated : 0) | (sample.buttons & 1u ? trial::kPressed : 0));
+  out.patches = patches;
+  if (parts_.tool) parts_.tool->worked(out);
   record(out);
   parts_.live.write(
       {.t_s = out.t_s,

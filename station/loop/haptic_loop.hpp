@@ -10,6 +10,7 @@
 #include "station/loop/limiter.hpp"
 #include "station/loop/live_state.hpp"
 #include "station/loop/ring.hpp"
+#include "station/loop/tool.hpp"
 #include "station/safety/energy.hpp"
 #include "trial/trial.hpp"
 
@@ -63,6 +64,7 @@ class HapticLoop {
     SampleRing& ring;
     LiveState& live;
     Passivity passivity = Passivity::observed;
+    Tool* tool = nullptr;  ///< one that changes the bone; none: a probe
   };
   /// @param X_VD           the device's frame in the volume's
   /// @param pose_offset_m  of the model: only for what `live` shows

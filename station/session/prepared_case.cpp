@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "station/session/trial_drilling.hpp"
 #include "volume/volume_file.hpp"
 
 namespace session {
@@ -51,7 +52,8 @@ core::Result<fs::path> find_case(const StationFolder& folder, const std::string&
 core::Result<std::unique_ptr<PreparedCase>> prepare_case(const StationFolder& folder,
                                                          const std::string& which,
                                                          const fs::path& model_file,
-                                                         const core::Progress& progress) {
+                                                         const core::Progress& progress,
+                                                         const std::string& drilled) {
   auto path = find_case(folder, which);
   if (!path) return path.error();
   auto opened = cases::open_case(*path);
@@ -63,11 +65,13 @@ core::Result<std::unique_ptr<PreparedCase>> prepare_case(const StationFolder& fo
   if (!file) return file.error();
   auto voxels = file->read_all(part_of(progress, 0.0, 0.5));
   if (!voxels) return voxels.error();
+  if (!drilled.empty())
+    if (auto put = put_drilled(folder, drilled, opened->id, *voxels); !put) return put.error();
   auto runtime = models::PalpationRuntime::make(*model, *voxels, part_of(progress, 0.5, 1.0));
   if (!runtime) return runtime.error();
   if (progress) progress(1.0);
-  return std::unique_ptr<PreparedCase>(new PreparedCase{std::move(*opened), std::move(*model),
-                                                        std::move(*voxels), std::move(*runtime)});
+  return std::unique_ptr<PreparedCase>(new PreparedCase{
+      std::move(*opened), std::move(*model), std::move(*voxels), std::move(*runtime), drilled});
 }
 
 }  // namespace session

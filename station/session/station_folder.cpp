@@ -42,7 +42,7 @@ core::Result<FolderLock> StationFolder::upload_lock() const {
 
 core::Result<StationFolder> StationFolder::open(const fs::path& root) {
   StationFolder folder(root);
-  for (const char* name : {"cases", "trials", "outbox"}) {
+  for (const char* name : {"cases", "trials", "drilled", "outbox"}) {
     std::error_code failure;
     fs::create_directories(root / name, failure);
     if (failure)

@@ -57,10 +57,18 @@ class StationFolder {
   std::filesystem::path trials() const { return root_ / "trials"; }
   /// What self-tests and calibrations left for the server.
   std::filesystem::path reports() const { return root_ / "reports"; }
+  /// A device's last calibration.
+  std::filesystem::path calibration_file(const std::string& device) const {
+    return root_ / "calibration" / (device + ".json");
+  }
   /// The last comparison with the server's clock.
   std::filesystem::path clock() const { return root_ / "clock.json"; }
   std::filesystem::path trial_file(const std::string& id) const {
     return trials() / (id + ".ttrial");
+  }
+  /// What trials with a burr left of the bone.
+  std::filesystem::path drilled_file(const std::string& trial_id) const {
+    return root_ / "drilled" / (trial_id + ".tdrill");
   }
   uplink::Outbox outbox() const { return uplink::Outbox(root_ / "outbox"); }
 

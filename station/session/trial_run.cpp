@@ -7,6 +7,7 @@
 
 #include "station/loop/placement.hpp"
 #include "station/loop/recorder.hpp"
+#include "station/session/trial_drilling.hpp"
 
 namespace session {
 namespace {
@@ -72,12 +73,18 @@ core::Json TrialReport::to_json() const {
                   {"restarts", bus->restarts},
                   {"round_trip_p50_us", bus->p50_us},
                   {"round_trip_p99_us", bus->p99_us}};
+  if (drilled) {
+    out["drilled"] = drilled->detail;
+    out["drilled"]["lag_p50_s"] = drilled->lag_p50_s;
+    out["drilled"]["lag_p99_s"] = drilled->lag_p99_s;
+  }
   out["answer"] = answer ? answer->to_json() : core::Json();
   return out;
 }
 
 struct TrialRun::Parts {
   const StationFolder& folder;
+  const PreparedCase& prepared;
   TrialSetup setup;
   trial::Header header;
   devices::MadeDevice made;
@@ -86,17 +93,18 @@ struct TrialRun::Parts {
   core::ManualClock manual_clock;
   loop::SampleRing ring{kRing};
   loop::LiveState live;
-  loop::PalpationContact contact;
+  std::unique_ptr<loop::Drilling> drilling;  // null with a probe
+  std::optional<loop::PalpationContact> contact;
   loop::Limiter limiter;
   std::optional<loop::Recorder> recorder;
   std::optional<loop::HapticLoop> loop;
   loop::RealtimeGrant grant;
   std::string fault;
 
-  Parts(const StationFolder& where, const PreparedCase& prepared, const TrialSetup& how)
+  Parts(const StationFolder& where, const PreparedCase& on, const TrialSetup& how)
       : folder(where),
+        prepared(on),
         setup(how),
-        contact(prepared.runtime),
         limiter(where.config().limits, static_cast<core::Instant_ns>(1e9 / how.rate_Hz)) {}
 
   bool fast() const { return setup.speed == Speed::fast; }
@@ -107,11 +115,12 @@ struct TrialRun::Parts {
   }
   double elapsed_s() { return static_cast<double>(clock().now() - loop->started()) * 1e-9; }
   Glimpse glimpse() const;
-  core::Result<void> open_device(const devices::DeviceInfo& info, const PreparedCase& prepared,
-                                 const math::Pose& X_VD);
-  core::Result<void> make_file(const PreparedCase& prepared, const devices::DeviceInfo& info);
+  core::Result<void> open_device(const devices::DeviceInfo& info, const math::Pose& X_VD);
+  core::Result<void> take_tool();
+  core::Result<void> make_file(const devices::DeviceInfo& info);
+  void finish_drilling();
   void after_tick();
-  void loop_thread(std::promise<void>& prepared, const std::future<void>& go);
+  void loop_thread(std::promise<void>& ready, const std::future<void>& go);
   void watch_until(const std::future<void>& done, const Watch& watch);
   void heed_outside();
   core::Result<void> append_end(const TrialReport& report);
@@ -123,11 +132,11 @@ Glimpse TrialRun::Parts::glimpse() const {
   return {.trial_id = header.id,
           .live = seen,
           .progress = made.trainee ? made.trainee->progress() : std::min(1.0, share),
-          .samples_safe = recorder->samples_safe()};
+          .samples_safe = recorder->samples_safe(),
+          .drilling = drilling.get()};
 }
 
 core::Result<void> TrialRun::Parts::open_device(const devices::DeviceInfo& info,
-                                                const PreparedCase& prepared,
                                                 const math::Pose& X_VD) {
   const auto& base = prepared.model.base;
   const auto& tract = prepared.opened.definition.tract;
@@ -136,6 +145,7 @@ core::Result<void> TrialRun::Parts::open_device(const devices::DeviceInfo& info,
                  .duration_s = setup.duration_s,
                  .probe_length_m = base.length_m,
                  .channel = channel_of(loop::tract_in_device(tract, X_VD, base.pose_offset_m)),
+                 .tool = setup.burr ? devices::Tool::burr : devices::Tool::probe,
                  .sdk = setup.sdk});
   if (!device) return device.error();
   made = std::move(*device);
@@ -151,8 +161,22 @@ core::Result<void> TrialRun::Parts::open_device(const devices::DeviceInfo& info,
   return {};
 }
 
-core::Result<void> TrialRun::Parts::make_file(const PreparedCase& prepared,
-                                              const devices::DeviceInfo& info) {
+core::Result<void> TrialRun::Parts::take_tool() {
+  if (!setup.burr) {
+    contact.emplace(prepared.runtime);
+    return {};
+  }
+  if (!prepared.drilled.empty())
+    return core::Error{core::Errc::bad_input,
+                       "--drilled: a bone that was drilled is palpated; a burr begins anew"};
+  auto drills = loop::Drilling::make(prepared.volume, prepared.model, *setup.burr);
+  if (!drills) return drills.error();
+  drilling = std::move(*drills);
+  contact.emplace(drilling->runtime());
+  return {};
+}
+
+core::Result<void> TrialRun::Parts::make_file(const devices::DeviceInfo& info) {
   header.id = core::new_id();
   header.case_id = setup.case_known_as.empty() ? prepared.opened.id : setup.case_known_as;
   header.station = folder.config().name;
@@ -168,6 +192,8 @@ core::Result<void> TrialRun::Parts::make_file(const PreparedCase& prepared,
       {"model", prepared.model.name},
       {"limits", limiter.limits().to_json()},
       {"passivity", setup.passivity == loop::Passivity::controlled ? "controlled" : "observed"}};
+  if (drilling) header.extra["drilling"] = drilling->setup().to_json();
+  if (!prepared.drilled.empty()) header.extra["drilled"] = prepared.drilled;
   if (!opened.name.empty()) header.extra["device_name"] = opened.name;
   if (info.simulated) header.extra["seed"] = setup.seed;
   if (setup.started_utc_us) header.extra["date"] = "simulated";
@@ -199,11 +225,12 @@ core::Result<std::unique_ptr<TrialRun>> TrialRun::make(const StationFolder& fold
   const auto& base = prepared.model.base;
   const math::Pose X_VD =
       loop::place_device(prepared.opened.definition.tract, base.length_m, base.pose_offset_m);
-  if (auto opened = parts->open_device(*info, prepared, X_VD); !opened) return opened.error();
-  if (auto created = parts->make_file(prepared, *info); !created) return created.error();
+  if (auto taken = parts->take_tool(); !taken) return taken.error();
+  if (auto opened = parts->open_device(*info, X_VD); !opened) return opened.error();
+  if (auto created = parts->make_file(*info); !created) return created.error();
   parts->loop.emplace(
-      loop::HapticLoop::Parts{parts->clock(), *parts->made.device, parts->contact, parts->limiter,
-                              parts->ring, parts->live, setup.passivity},
+      loop::HapticLoop::Parts{parts->clock(), *parts->made.device, *parts->contact, parts->limiter,
+                              parts->ring, parts->live, setup.passivity, parts->drilling.get()},
       X_VD, base.pose_offset_m, setup.rate_Hz);
   return std::unique_ptr<TrialRun>(new TrialRun(std::move(parts)));
 }
@@ -220,12 +247,14 @@ void TrialRun::Parts::after_tick() {
   const double longest_s = setup.duration_s + (made.trainee ? kGrace_s : 0.0);
   const auto passed = static_cast<double>(counts.ticks + counts.skipped);
   if (over || passed >= longest_s * setup.rate_Hz || recorder->failed()) loop->stop();
+  if (drilling && drilling->fell_behind()) loop->stop();
+  if (drilling && fast() && counts.ticks % drilling::kChunkTicks == 0) drilling->work();
   if (fast() && counts.ticks % kDrainEveryTicks == 0) recorder->drain();
 }
 
-void TrialRun::Parts::loop_thread(std::promise<void>& prepared, const std::future<void>& go) {
+void TrialRun::Parts::loop_thread(std::promise<void>& ready, const std::future<void>& go) {
   if (!fast()) grant = loop::prepare_realtime();
-  prepared.set_value();
+  ready.set_value();
   go.wait();
   loop->run([this] { after_tick(); });
 }
@@ -257,9 +286,11 @@ core::Result<void> TrialRun::run(const Watch& watch) {
   if (!p.recorder->append({0.0, "start", detail})) p.loop->stop();  // the error is kept for stop()
   p.limiter.arm();
   if (!p.fast()) p.recorder->start();
+  if (p.drilling && !p.fast()) p.drilling->start(p.real_clock);
   go.set_value();
   p.watch_until(ended, watch);
   thread.join();
+  p.finish_drilling();
   if (p.setup.outside && p.setup.outside->stopped()) p.fault = stopped_text(*p.setup.outside);
   if (p.limiter.guard() == loop::Guard::latched) p.fault = loop::text_of(p.limiter.fault());
   if (p.loop->counts().lost > 0)
@@ -269,7 +300,15 @@ core::Result<void> TrialRun::run(const Watch& watch) {
   return p.recorder->stop();
 }
 
+void TrialRun::Parts::finish_drilling() {
+  if (!drilling) return;
+  drilling->finish();
+  if (drilling->fell_behind())
+    fault = "the bone could not be worn as fast as the hand drilled: the machine is too busy";
+}
+
 std::optional<trial::Answer> TrialRun::simulated_answer() const {
+  if (parts_->drilling) return std::nullopt;  // it made the channel, and felt no walls
   if (!parts_->made.trainee || !parts_->made.trainee->done()) return std::nullopt;
   const devices::Answer said = parts_->made.trainee->answer();
   trial::Answer out{.breach = said.breach, .wall = std::nullopt, .confidence = said.confidence};
@@ -278,6 +317,10 @@ std::optional<trial::Answer> TrialRun::simulated_answer() const {
 }
 
 core::Result<void> TrialRun::Parts::append_end(const TrialReport& report) {
+  if (report.drilled) {
+    const trial::Event drilled{elapsed_s(), "drilled", report.drilled->detail};
+    if (auto said = recorder->append(drilled); !said) return said;
+  }
   if (!fault.empty()) return recorder->append({elapsed_s(), "fault", {{"what", fault}}});
   if (report.answer) {
     const trial::Event answered{elapsed_s(), "answer", report.answer->to_json()};
@@ -304,10 +347,16 @@ core::Result<TrialReport> TrialRun::finish(const std::optional<trial::Answer>& a
                      .grant = p.grant,
                      .answer = answer,
                      .simulated = p.header.simulated};
+  if (p.drilling)
+    report.drilled = {drilled_detail(*p.drilling, p.prepared), p.drilling->lag_quantile_s(0.5),
+                      p.drilling->lag_quantile_s(0.99)};
   if (auto ended = p.append_end(report); !ended) return ended.error();
   if (auto sealed = p.recorder->finish(); !sealed) return sealed.error();
   auto queued = p.folder.outbox().queue(p.header.id, p.header.case_id, report.file);
   if (!queued) return queued.error();
+  if (p.drilling)
+    if (auto kept = keep_drilled(p.folder, *p.drilling, p.header.id, p.prepared.opened.id); !kept)
+      return kept.error();
   return report;
 }
 

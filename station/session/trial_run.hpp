@@ -5,11 +5,16 @@
 #include <memory>
 #include <optional>
 
+#include "drilling/burr.hpp"
 #include "station/devices/catalogue.hpp"
 #include "station/loop/haptic_loop.hpp"
 #include "station/loop/realtime.hpp"
 #include "station/session/outside.hpp"
 #include "station/session/prepared_case.hpp"
+
+namespace loop {
+class Drilling;
+}
 
 namespace session {
 
@@ -26,6 +31,7 @@ struct TrialSetup {
   Speed speed = Speed::real;
   double rate_Hz = 4000.0;
   loop::Passivity passivity = loop::Passivity::observed;
+  std::optional<drilling::Burr> burr = {};  ///< the tool; none: a probe
   /// Of an assigned trial: what its file calls the case and the trainee instead.
   std::string case_known_as = {};
   std::string operator_name = {};
@@ -54,6 +60,12 @@ struct TrialReport {
     double p50_us = 0.0, p99_us = 0.0;  ///< round trip
   };
   std::optional<Bus> bus = std::nullopt;
+  /// Of a trial with a burr.
+  struct Drilled {
+    core::Json detail;                        ///< of the trial's "drilled" event
+    double lag_p50_s = 0.0, lag_p99_s = 0.0;  ///< from a pose to the tick that felt its work
+  };
+  std::optional<Drilled> drilled = std::nullopt;
 
   core::Json to_json() const;
 };
@@ -62,8 +74,9 @@ struct TrialReport {
 struct Glimpse {
   const std::string& trial_id;
   loop::Live live;
-  double progress = 0.0;           ///< 0 … 1
-  std::uint64_t samples_safe = 0;  ///< on the disk for good
+  double progress = 0.0;               ///< 0 … 1
+  std::uint64_t samples_safe = 0;      ///< on the disk for good
+  loop::Drilling* drilling = nullptr;  ///< of a trial with a burr: for `show`; lives as the trial
 };
 /// Called from the thread that called `run`, about thirty times a second; false stops the trial.
 using Watch = std::function<bool(const Glimpse&)>;
@@ -71,7 +84,8 @@ using Watch = std::function<bool(const Glimpse&)>;
 class TrialRun {
  public:
   /// Makes and opens the device, checks the disk, makes the trial file. `prepared` and `folder`
-  /// must outlive this. Errors: not_found (no such device), bad_input, io, and the device's.
+  /// must outlive this. Errors: not_found (no such device), bad_input, io, the device's, and the
+  /// drilling's.
   static core::Result<std::unique_ptr<TrialRun>> make(const StationFolder& folder,
                                                       const PreparedCase& prepared,
                                                       const TrialSetup& setup);

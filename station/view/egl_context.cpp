@@ -26,6 +26,7 @@ namespace view {
 
 struct EglContext::Handles {
   EGLDisplay display = EGL_NO_DISPLAY;
+  EGLConfig config = nullptr;
   EGLContext context = EGL_NO_CONTEXT;
 };
 
@@ -51,10 +52,9 @@ core::Result<std::unique_ptr<EglContext>> EglContext::make() {
   if (!eglBindAPI(EGL_OPENGL_API)) return missing("EGL offers no desktop OpenGL");
   const EGLint wanted[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE, EGL_PBUFFER_BIT,
                            EGL_NONE};
-  EGLConfig config = nullptr;
   EGLint count = 0;
-  if (!eglChooseConfig(handles->display, wanted, &config, 1, &count) || count == 0)
-    config = nullptr;
+  if (!eglChooseConfig(handles->display, wanted, &handles->config, 1, &count) || count == 0)
+    handles->config = nullptr;
   const EGLint version[] = {EGL_CONTEXT_MAJOR_VERSION,
                             3,
                             EGL_CONTEXT_MINOR_VERSION,
@@ -62,7 +62,7 @@ core::Result<std::unique_ptr<EglContext>> EglContext::make() {
                             EGL_CONTEXT_OPENGL_PROFILE_MASK,
                             EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
                             EGL_NONE};
-  handles->context = eglCreateContext(handles->display, config, EGL_NO_CONTEXT, version);
+  handles->context = eglCreateContext(handles->display, handles->config, EGL_NO_CONTEXT, version);
   if (handles->context == EGL_NO_CONTEXT) return missing("no OpenGL 3.3 context");
   std::unique_ptr<EglContext> made(new EglContext(std::move(handles)));
   if (!made->make_current()) return missing("the context cannot be made current");
@@ -73,5 +73,9 @@ bool EglContext::make_current() const {
   return eglMakeCurrent(handles_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, handles_->context) ==
          EGL_TRUE;
 }
+
+void* EglContext::display() const { return handles_->display; }
+void* EglContext::config() const { return handles_->config; }
+void* EglContext::context() const { return handles_->context; }
 
 }  // namespace view

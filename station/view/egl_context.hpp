@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "core/result.hpp"
+#include "station/view/lent_context.hpp"
 
 namespace view {
 
@@ -11,14 +12,18 @@ namespace view {
 /// Debian's GLEW knows only GLX and calls a missing X display an error although all entry points
 /// were loaded; this file therefore interposes `glewInit` and forgives that one code while a
 /// surfaceless context lives.
-class EglContext {
+class EglContext final : public LentContext {
  public:
   /// Errors: unavailable, with what is missing.
   static core::Result<std::unique_ptr<EglContext>> make();
-  ~EglContext();
+  ~EglContext() override;
   EglContext(const EglContext&) = delete;
   EglContext& operator=(const EglContext&) = delete;
-  bool make_current() const;
+  bool make_current() const override;
+  /// EGLDisplay, EGLConfig (may be null), EGLContext.
+  void* display() const;
+  void* config() const;
+  void* context() const;
 
  private:
   struct Handles;

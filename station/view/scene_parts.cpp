@@ -101,7 +101,8 @@ void colour_bone(vtkVolumeProperty& property, const Scene& scene) {
 void Bone::add(vtkRenderer& renderer, const Scene& scene) {
   const double voxel_m = scene.volume.geometry.spacing_m.minCoeff();
   vtkNew<vtkGPUVolumeRayCastMapper> mapper;
-  mapper->SetInputData(image_of(scene.volume));
+  image_ = image_of(scene.volume);
+  mapper->SetInputData(image_);
   mapper->SetAutoAdjustSampleDistances(0);
   mapper->SetSampleDistance(static_cast<float>(0.7 * voxel_m));
   mapper->UseJitteringOn();
@@ -124,6 +125,18 @@ void Bone::add(vtkRenderer& renderer, const Scene& scene) {
   }
   bone->SetUserMatrix(X_VI);
   renderer.AddVolume(bone);
+}
+
+void Bone::carve_away(const volume::Box& box, const volume::Volume& volume) {
+  auto* counts = vtkUnsignedShortArray::SafeDownCast(image_->GetPointData()->GetScalars());
+  const auto width = static_cast<std::ptrdiff_t>(box.end[0] - box.begin[0]);
+  for (int k = box.begin[2]; k < box.end[2]; ++k)
+    for (int j = box.begin[1]; j < box.end[1]; ++j) {
+      const auto at = static_cast<std::ptrdiff_t>(volume.offset(box.begin[0], j, k));
+      std::copy_n(volume.counts.begin() + at, width, counts->GetPointer(at));
+    }
+  counts->Modified();
+  image_->Modified();
 }
 
 void TractOutline::add(vtkRenderer& renderer, const volume::Tract& tract) {
@@ -192,5 +205,13 @@ void TipPath::add(vtkRenderer& renderer) {
 }
 
 void TipPath::points(std::span<const math::Vec3> path_m) { set_line(*line_, path_m); }
+
+void Picture::add(vtkRenderer& renderer, const Scene& scene) {
+  renderer.SetBackground(0.09, 0.10, 0.12);
+  bone_.add(renderer, scene);
+  outline_.add(renderer, scene.tract);
+  path_.add(renderer);
+  shank_.add(renderer, scene.probe);
+}
 
 }  // namespace view

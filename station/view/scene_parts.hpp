@@ -14,6 +14,7 @@
 #include "station/view/view.hpp"
 
 class vtkActor;
+class vtkImageData;
 
 namespace view {
 
@@ -21,6 +22,11 @@ namespace view {
 class Bone {
  public:
   void add(vtkRenderer& renderer, const Scene& scene);
+  /// Takes the counts of `box` anew.
+  void carve_away(const volume::Box& box, const volume::Volume& volume);
+
+ private:
+  vtkSmartPointer<vtkImageData> image_;
 };
 
 /// The tract: rings and its axis.
@@ -50,6 +56,23 @@ class TipPath {
 
  private:
   vtkNew<vtkPolyData> line_;
+};
+
+/// All of it, in whatever renderer draws: the window's, the off-screen one's, the headset's eyes'.
+class Picture {
+ public:
+  void add(vtkRenderer& renderer, const Scene& scene);
+  void pose(const ProbeState& state) { shank_.pose(state); }
+  void path(std::span<const math::Vec3> path_m) { path_.points(path_m); }
+  void carve_away(const volume::Box& box, const volume::Volume& volume) {
+    bone_.carve_away(box, volume);
+  }
+
+ private:
+  Bone bone_;
+  TractOutline outline_;
+  Shank shank_;
+  TipPath path_;
 };
 
 }  // namespace view

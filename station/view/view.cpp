@@ -18,6 +18,7 @@
 
 #include "core/file.hpp"
 #include "station/view/egl_context.hpp"
+#include "station/view/lent_context.hpp"
 #include "station/view/scene_parts.hpp"
 
 namespace view {
@@ -28,10 +29,7 @@ struct View::Parts {
   vtkSmartPointer<vtkRenderWindowInteractor> interactor;  // null off screen
   vtkNew<vtkRenderer> renderer;
   vtkNew<vtkTextActor> caption;
-  Bone bone;
-  TractOutline outline;
-  Shank shank;
-  TipPath path;
+  Picture picture;
   bool closed = false;
 };
 
@@ -45,18 +43,6 @@ core::Result<void> display_is_there() {
         "--view window: no X display answers; set DISPLAY, or use --view offscreen or none"};
   XCloseDisplay(display);
   return {};
-}
-
-/// VTK asks these of a context that is not its own.
-void lend_context(vtkGenericOpenGLRenderWindow& window, EglContext& context) {
-  vtkNew<vtkCallbackCommand> current;
-  current->SetClientData(&context);
-  current->SetCallback([](vtkObject*, unsigned long event, void* data, void* answer) {
-    const bool ok = static_cast<EglContext*>(data)->make_current();
-    if (event == vtkCommand::WindowIsCurrentEvent && answer) *static_cast<bool*>(answer) = ok;
-  });
-  window.AddObserver(vtkCommand::WindowMakeCurrentEvent, current);
-  window.AddObserver(vtkCommand::WindowIsCurrentEvent, current);
 }
 
 void look_at(vtkRenderer& renderer, const volume::Tract& tract) {
@@ -113,11 +99,7 @@ core::Result<std::unique_ptr<View>> View::make(const Scene& scene, Mode mode, in
     return core::Error{core::Errc::unavailable,
                        "off-screen view: VTK cannot use the OpenGL context"};
 
-  parts->renderer->SetBackground(0.09, 0.10, 0.12);
-  parts->bone.add(*parts->renderer, scene);
-  parts->outline.add(*parts->renderer, scene.tract);
-  parts->path.add(*parts->renderer);
-  parts->shank.add(*parts->renderer, scene.probe);
+  parts->picture.add(*parts->renderer, scene);
   parts->caption->GetTextProperty()->SetFontSize(16);
   parts->caption->GetTextProperty()->SetColor(0.92, 0.94, 0.96);
   parts->caption->SetDisplayPosition(16, 14);
@@ -128,8 +110,8 @@ core::Result<std::unique_ptr<View>> View::make(const Scene& scene, Mode mode, in
 }
 
 void View::draw(const ProbeState& state, std::span<const math::Vec3> path_m) {
-  parts_->shank.pose(state);
-  parts_->path.points(path_m);
+  parts_->picture.pose(state);
+  parts_->picture.path(path_m);
   const math::Vec3& f = state.wrench_H.force_N;
   parts_->caption->SetInput(fmt::format("F_xy {:.2f} N   F_z {:.2f} N   bend {:.1f} mm",
                                         std::hypot(f.x(), f.y()), std::abs(f.z()),
@@ -137,6 +119,10 @@ void View::draw(const ProbeState& state, std::span<const math::Vec3> path_m) {
                                 .c_str());
   parts_->window->Render();
   if (parts_->interactor) parts_->interactor->ProcessEvents();
+}
+
+void View::carve_away(const volume::Box& box, const volume::Volume& volume) {
+  parts_->picture.carve_away(box, volume);
 }
 
 core::Result<void> View::save_png(const std::filesystem::path& path) const {

@@ -42,6 +42,9 @@ class View {
   /// Draws one picture of the state; `path_m` is the tip's way so far in V (thinned by the caller),
   /// drawn as a line.
   void draw(const ProbeState& state, std::span<const math::Vec3> path_m);
+  /// The bone has changed within `box`: `volume` is the scene's as it is now. Seen from the next
+  /// picture on.
+  void carve_away(const volume::Box& box, const volume::Volume& volume);
   /// The last picture as PNG.
   core::Result<void> save_png(const std::filesystem::path& path) const;
   /// Did a person close the window?

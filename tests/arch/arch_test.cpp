@@ -49,6 +49,8 @@ const std::map<std::string, Names> kAllowed = {
     {"shared/trial", {"shared/core", "shared/math"}},
     // A measuring room's files become a measurement set.
     {"shared/capture", {"shared/core", "shared/math", "shared/trial"}},
+    // What a burr takes from a volume: a function of a trial's samples.
+    {"shared/drilling", {"shared/core", "shared/math", "shared/volume", "shared/trial"}},
     {"shared/metrics", {"shared/core", "shared/math", "shared/volume", "shared/trial"}},
     // Analyses of a cohort: tables in, findings and pictures out.
     {"shared/assessment",
@@ -71,7 +73,10 @@ const std::map<std::string, Names> kAllowed = {
     {"station/sensors", {"shared/core", "shared/math"}},
     {"station/loop",
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/effects",
-      "shared/models", "shared/trial", "station/devices", "station/safety"}},
+      "shared/models", "shared/trial", "shared/drilling", "station/devices", "station/safety"}},
+    // Devices and this machine put to the question: every force through the loop's limiters.
+    {"station/check",
+     {"shared/core", "shared/math", "station/devices", "station/loop", "station/safety"}},
     // How volumes are stored in bricks: those that are here are not fetched.
     {"station/uplink",
      {"shared/core", "shared/trial", "shared/wire", "shared/cases", "shared/volume"}},
@@ -81,7 +86,7 @@ const std::map<std::string, Names> kAllowed = {
     {"station/session",
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/effects",
       "shared/models", "shared/scenarios", "shared/cases", "shared/trial", "shared/metrics",
-      "shared/wire", "station/devices", "station/loop", "station/uplink",
+      "shared/wire", "shared/drilling", "station/devices", "station/loop", "station/uplink",
       "station/rig"}},  // the simulated rig without its bus, for trials in simulated time
     {"server/http", {"shared/core"}},
     // Reading a CT (volume/io) is work of a process of its own; its key is the api's to hand over.

@@ -25,6 +25,7 @@ struct Options {
   std::string volume, out, title, source, model, key, png;
   std::string entry, target, length, radius = "1.5", midline;
   std::string breach, breach_depth, breach_at, spacing = "0.35", margin = "20";
+  bool no_channel = false;
   bool json = false;
 };
 
@@ -72,6 +73,7 @@ core::Result<cases::CarvingPlan> plan_of(const Options& o) {
   if (auto read = read_length(o.spacing, "--spacing", plan.spacing_m); !read) return read.error();
   if (auto read = read_length(o.margin, "--margin", plan.margin_m); !read) return read.error();
   if (auto read = read_breach(o, plan); !read) return read.error();
+  plan.drilled = !o.no_channel;
   return plan;
 }
 
@@ -111,6 +113,7 @@ Json report_of(const cases::OpenedCase& made, const cases::Carved& carved) {
       {"signer", made.signer_public_hex},
       {"side", carved.left_side() ? "left" : "right"},
       {"tract", made.definition.to_json()["tract"]},
+      {"channel", carved.drilled ? "drilled" : "planned"},
       {"mouth_m", carved.mouth_m},
       {"midline", {{"x_m", carved.midline.at_m.x()}, {"turn_rad", carved.midline.turn_rad}}},
       {"volume", {{"dims", grid.dims}, {"spacing_m", json_of(grid.spacing_m)}}},
@@ -154,6 +157,7 @@ void print_text(const cases::OpenedCase& made, const cases::Carved& carved) {
     fmt::print("{} breach at depth {:.1f} mm, through {:.1f} mm of bone and {:.1f} mm beyond\n",
                volume::name(breach->wall.wall), breach->wall.at_m * 1e3,
                breach->wall.thickness_m() * 1e3, breach->depth_m * 1e3);
+  if (!carved.drilled) fmt::print("the bone is whole: the tract is a plan, to be drilled\n");
   fmt::print(
       "{} x {} x {} voxels of {:.3g} x {:.3g} x {:.3g} mm; removed bone has the CT value {:g}\n",
       grid.dims[0], grid.dims[1], grid.dims[2], grid.spacing_m.x() * 1e3, grid.spacing_m.y() * 1e3,
@@ -173,9 +177,11 @@ cases::NewCase case_of(const Options& o, const cases::Carved& carved,
   made.definition.source = o.source.empty() ? source : o.source;
   made.definition.made_utc_us = core::utc_us();
   made.definition.tract = carved.tract;
+  made.definition.planned = !carved.drilled;
   made.definition.model = model;
   made.definition.model.volume.clear();
-  made.meta = {source, "part about a tract, drilled"};
+  made.meta = {source, carved.drilled ? "part about a tract, drilled"
+                                      : "part about a planned tract, not drilled"};
   made.draw = [&carved, surroundings = std::move(surroundings)](const std::filesystem::path& path) {
     return draw_case(path, surroundings, carved);
   };
@@ -239,6 +245,9 @@ void add_options(CLI::App& app, Options& o) {
   app.add_option("--breach-depth", o.breach_depth, "how far beyond the bone, mm (default 3)");
   app.add_option("--breach-at", o.breach_at,
                  "depth along the tract, mm (default: where that wall is thinnest in the pedicle)");
+  app.add_flag("--no-channel", o.no_channel,
+               "leaves the bone whole: the tract is a plan, and a trainee drills it "
+               "(tractus-station --tool burr)");
   app.add_option("--midline-x", o.midline,
                  "x of the midline, mm (default: estimated from the bone's symmetry)");
   app.add_option("--spacing", o.spacing,

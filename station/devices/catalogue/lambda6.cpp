@@ -146,11 +146,13 @@ class Lambda6 final : public Device {
   }
 
   core::Result<void> home() {
-    if (!api_->is_initialised || api_->is_initialised(id_)) return {};
-    if (options_.homing == Homing::refuse)
+    if (!api_->is_initialised) return {};
+    if (options_.homing == Homing::refuse) {
+      if (api_->is_initialised(id_)) return {};
       return not_ready(
-          "not calibrated since it was switched on: let the vendor's initialisation find its zero; "
-          "the handle will move by itself");
+          "not calibrated since it was switched on: run `tractus-station calibrate`; its handle "
+          "will move by itself");
+    }
     if (api_->initialise(id_) < 0) return refused("cannot find its zero");
     if (api_->stop_regulation(true, id_) < 0) return refused("cannot let go of its handle");
     return {};

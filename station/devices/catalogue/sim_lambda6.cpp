@@ -56,7 +56,8 @@ class SimLambda6 final : public Device, public SimulatedTrainee {
   core::Result<Limits> open() override {
     X_DH_ = plan_.at(0.0, lean_).X_DH;
     velocity_.setZero(), turn_.setZero(), wrench_ = {};
-    elapsed_s_ = 0.0, lean_ = 1.0, last_ = -1, felt_ = {}, done_ = false, progress_ = 0.0;
+    elapsed_s_ = 0.0, lean_ = 1.0, last_ = -1, felt_ = {}, button_ = false, done_ = false,
+    progress_ = 0.0;
     open_ = true;
     return kLimits;
   }
@@ -69,7 +70,8 @@ class SimLambda6 final : public Device, public SimulatedTrainee {
            .X_DH = X_DH_,
            .velocity_m_s = velocity_,
            .angular_velocity_rad_s = turn_,
-           .saturated = saturated_};
+           .saturated = saturated_,
+           .buttons = button_ ? 1u : 0u};
     return Status::ok;
   }
 
@@ -105,6 +107,7 @@ class SimLambda6 final : public Device, public SimulatedTrainee {
       intent = plan_.at(elapsed_s_, lean_);
       integrate(intent, h);
     }
+    button_ = intent.button;
     feel(intent);
     ease(intent, gap_s);
     progress_ = std::min(1.0, elapsed_s_ / plan_.duration_s());
@@ -157,7 +160,7 @@ class SimLambda6 final : public Device, public SimulatedTrainee {
   double elapsed_s_ = 0.0;
   double lean_ = 1.0;  ///< share of the plan's tilt
   core::Instant_ns last_ = -1;
-  bool open_ = false, saturated_ = false;
+  bool open_ = false, saturated_ = false, button_ = false;
   std::atomic<bool> done_ = false;
   std::atomic<double> progress_ = 0.0;
 };
@@ -186,7 +189,7 @@ DeviceInfo sim_lambda6() {
   return {.id = "sim-lambda6",
           .summary =
               "SIMULATED lambda.6: a handle with mass and friction, held by a simulated hand that "
-              "palpates",
+              "palpates, or drills",
           .simulated = true,
           .make = make};
 }

@@ -21,9 +21,14 @@ struct Control {
   std::atomic<int> stuck{0};            ///< samples do not change any more: "time guard"
   std::atomic<int> force_off_cause{0};  ///< the device took its forces away
   std::atomic<int> error{0};            ///< the next calls fail with this code
+  /// Of each motor, x y z and about them: what comes of a command. −1: reversed; 0: no force.
+  std::atomic<double> motor[6]{1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
+  std::atomic<unsigned> jammed{0};  ///< a bit for each of the same six: it does not move
   std::atomic<unsigned> buttons{0};
   std::atomic<double> hand_m[3]{};  ///< where the hand wants the handle
   std::atomic<double> hand_N_per_m{350.0};
+  /// For a second after opening the hand moves to and fro, so far from there along each axis.
+  std::atomic<double> roaming_m{0.0};
   std::atomic<double> gap_m{0.012};
   std::atomic<std::int64_t> step_ns{0};  ///< of its own time a read; 0: the monotonic clock's
   // Seen.

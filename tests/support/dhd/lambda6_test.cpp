@@ -118,6 +118,9 @@ TEST_F(Lambda6, GivesPoseWrenchButtonsAndGripper) {
   control_->hand_m[1] = 0.02;
   control_->buttons = 5;
   Sample sample;
+  ASSERT_EQ(device->read(0, sample), Status::ok);  // nothing pushed it yet
+  EXPECT_LT((sample.X_DH.q * Vec3::UnitZ() + Vec3::UnitX()).norm(), 1e-12);
+  EXPECT_LT((sample.X_DH.q * Vec3::UnitX() - Vec3::UnitZ()).norm(), 1e-12);
   for (int tick = 1; tick <= 4000; ++tick) {
     ASSERT_EQ(device->read(tick * kPeriod, sample), Status::ok);
     ASSERT_EQ(device->write({{1.0, 0, -2.0}, {0, 0.05, 0}}), Status::ok);
@@ -127,9 +130,11 @@ TEST_F(Lambda6, GivesPoseWrenchButtonsAndGripper) {
   EXPECT_NEAR(sample.X_DH.p.x(), 1.0 / 350, 1e-5);
   EXPECT_NEAR(sample.X_DH.p.y(), 0.02, 1e-5);
   EXPECT_NEAR(sample.X_DH.p.z(), -2.0 / 350, 1e-5);
-  // The shank points away from the operator, who is at +x; up stays up.
-  EXPECT_LT((sample.X_DH.q * Vec3::UnitZ() + Vec3::UnitX()).norm(), 1e-12);
-  EXPECT_LT((sample.X_DH.q * Vec3::UnitX() - Vec3::UnitZ()).norm(), 1e-12);
+  // The wrist's spring of 4 N·m/rad at rest: 0.05/4 = 12.5 mrad about y, from the frame in which
+  // the shank points away from the operator, who is at +x, and up stays up.
+  const math::Quat turn(Eigen::AngleAxisd(0.05 / 4, Vec3::UnitY()));
+  EXPECT_LT((sample.X_DH.q * Vec3::UnitZ() + turn * Vec3::UnitX()).norm(), 1e-6);
+  EXPECT_LT((sample.X_DH.q * Vec3::UnitX() - turn * Vec3::UnitZ()).norm(), 1e-6);
   EXPECT_EQ(sample.buttons, 5u);
   EXPECT_NEAR(sample.gripper_gap_m, 0.012, 1e-12);
   EXPECT_EQ(control_->torque_Nm[1], 0.05);
@@ -151,10 +156,12 @@ TEST_F(Lambda6, TellsAbsenceFromInUseFromLostCalibrationFromTooFewDegrees) {
   EXPECT_NE(why().find("six driven degrees"), std::string::npos);
   control_->active_wrist = 1;
   control_->initialised = 0;
-  EXPECT_NE(why().find("not calibrated"), std::string::npos);
+  EXPECT_NE(why().find("tractus-station calibrate"), std::string::npos);
   EXPECT_EQ(control_->homings, 0);  // nothing moves by itself unasked
   EXPECT_EQ(why(Homing::move), "open");
   EXPECT_EQ(control_->homings, 1);
+  EXPECT_EQ(why(Homing::move), "open");  // a calibration looks for it anew, lost or not
+  EXPECT_EQ(control_->homings, 2);
   pull_out();
   EXPECT_NE(why().find("plug it in"), std::string::npos);
 }

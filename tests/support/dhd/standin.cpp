@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <numbers>
 
 #include "tests/support/dhd/control.hpp"
 
@@ -11,6 +12,7 @@ namespace {
 using standin::Control;
 
 constexpr double kMass_kg = 0.2, kHand_Ns_per_m = 14.0, kFriction_Ns_per_m = 0.8;
+constexpr double kInertia_kgm2 = 2e-4, kHand_Nm_per_rad = 4.0, kHand_Nms_per_rad = 0.04;
 constexpr double kMaxForce_N = 20.0, kMaxTorque_Nm = 0.2, kStep_s = 1.25e-4;
 constexpr std::int64_t kWatchdogStep_ns = 125'000;
 constexpr int kErrorCom = 2, kErrorNoDevice = 5, kErrorInUse = 20, kCauseWatchdog = 3;
@@ -25,9 +27,10 @@ Control& control() {
   return *at;
 }
 
-/// The handle in the hand: translation alone moves; the wrist is held still.
+/// The handle in the hand: springs and dampers to where the hand wants it, in six degrees.
 struct Handle {
-  std::array<double, 3> p{}, v{}, force{}, torque{};
+  std::array<double, 3> p{}, v{}, r{}, w{}, force{}, torque{};  // r: turn, rad
+  double opened_s = 0.0;
   std::int64_t now_ns = 0, commanded_ns = 0;
   bool started = false, tripped = false;
 };
@@ -46,20 +49,45 @@ int trouble() {
   return control().error;
 }
 
+/// Rodrigues' formula: the matrix of a turn about `r` by its length.
+void turned(const std::array<double, 3>& r, double m[3][3]) {
+  const double angle = std::hypot(r[0], r[1], r[2]);
+  const double s = angle > 1e-9 ? std::sin(angle) / angle : 1.0;
+  const double c = angle > 1e-9 ? (1.0 - std::cos(angle)) / (angle * angle) : 0.5;
+  const double cross[3][3] = {{0, -r[2], r[1]}, {r[2], 0, -r[0]}, {-r[1], r[0], 0}};
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j)
+      m[i][j] = (i == j ? 1.0 - c * angle * angle : 0.0) + s * cross[i][j] + c * r[i] * r[j];
+}
+
 std::int64_t clock_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
              std::chrono::steady_clock::now().time_since_epoch())
       .count();
 }
 
+/// Where the hand wants the handle.
+double wanted_m(std::size_t axis) {
+  const double far = handle.opened_s < 1.0 ? double{control().roaming_m} : 0.0;
+  return control().hand_m[axis] + far * std::sin(2.0 * std::numbers::pi * handle.opened_s);
+}
+
 void integrate(double dt_s) {
   const double k = control().hand_N_per_m;
   const bool on = control().force_on && !handle.tripped && !control().force_off_cause;
+  handle.opened_s += dt_s;
   for (std::size_t a = 0; a < 3; ++a) {
-    const double pull = k * (control().hand_m[a] - handle.p[a]) + (on ? handle.force[a] : 0.0);
+    const double push = on ? control().motor[a] * handle.force[a] : 0.0;
+    const double pull = k * (wanted_m(a) - handle.p[a]) + push;
     handle.v[a] = (handle.v[a] + dt_s / kMass_kg * pull) /
                   (1.0 + dt_s / kMass_kg * (kHand_Ns_per_m + kFriction_Ns_per_m));
+    const double turn = on ? control().motor[a + 3] * handle.torque[a] : 0.0;
+    handle.w[a] = (handle.w[a] + dt_s / kInertia_kgm2 * (turn - kHand_Nm_per_rad * handle.r[a])) /
+                  (1.0 + dt_s / kInertia_kgm2 * kHand_Nms_per_rad);
+    if (control().jammed >> a & 1u) handle.v[a] = 0.0;
+    if (control().jammed >> (a + 3) & 1u) handle.w[a] = 0.0;
     handle.p[a] += dt_s * handle.v[a];
+    handle.r[a] += dt_s * handle.w[a];
     control().handle_m[a] = handle.p[a];
   }
 }
@@ -167,8 +195,7 @@ int dhdGetPositionAndOrientationFrame(double* x, double* y, double* z, double ma
   ++control().reads;
   if (!control().stuck) advance();
   *x = handle.p[0], *y = handle.p[1], *z = handle.p[2];
-  for (int row = 0; row < 3; ++row)
-    for (int column = 0; column < 3; ++column) matrix[row][column] = row == column ? 1.0 : 0.0;
+  turned(handle.r, matrix);
   return control().stuck ? 1 : 0;
 }
 int dhdGetLinearVelocity(double* x, double* y, double* z, char) {
@@ -178,7 +205,7 @@ int dhdGetLinearVelocity(double* x, double* y, double* z, char) {
 }
 int dhdGetAngularVelocityRad(double* x, double* y, double* z, char) {
   if (const int error = trouble()) return fail(error);
-  *x = *y = *z = 0.0;
+  *x = handle.w[0], *y = handle.w[1], *z = handle.w[2];
   return 0;
 }
 unsigned dhdGetButtonMask(char) { return control().buttons; }

@@ -135,6 +135,7 @@ const kMeasures: Record<string, Quantity | undefined> = {
   '%': { name: 'Share', unit: '%', perSi: 1, decimals: 0 },
   'm/s': kSpeed,
   'N^2': { name: 'Variance of force', unit: 'N²', perSi: 1, decimals: 1 },
+  'm^3': { name: 'Volume', unit: 'mm³', perSi: 1e9, decimals: 1 },
   'm^2/s^2': { name: 'Variance of speed', unit: 'mm²/s²', perSi: 1e6, decimals: 1 },
 };
 

@@ -1,0 +1,193 @@
+/// `tractus drill`: drills a recorded trial again, and holds what was made against the plan.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+#include <numbers>
+
+#include "app/command.hpp"
+#include "app/drill_forces.hpp"
+#include "cases/case.hpp"
+#include "core/file.hpp"
+#include "drilling/channel.hpp"
+#include "volume/volume_file.hpp"
+
+namespace commands {
+namespace {
+
+using core::Errc;
+using core::Error;
+using core::Json;
+
+constexpr double kSame_N = 1e-6;
+
+struct Options {
+  std::string trial, volume, case_folder, out;
+  bool json = false;
+};
+
+/// A bone to drill, with the case it is of where that is known.
+struct Bone {
+  volume::Volume volume;
+  std::optional<cases::OpenedCase> opened;
+};
+
+core::Result<Bone> bone_of(const Options& o) {
+  if (o.volume.empty() == o.case_folder.empty())
+    return Error{Errc::bad_input, "drill: one of --volume FILE and --case FOLDER is expected"};
+  Bone bone;
+  if (!o.case_folder.empty()) {
+    auto opened = cases::open_case(o.case_folder);
+    if (!opened) return opened.error();
+    bone.opened = std::move(*opened);
+  }
+  const std::filesystem::path path =
+      bone.opened ? bone.opened->folder / cases::kVolumePart : std::filesystem::path(o.volume);
+  const auto file = volume::VolumeFile::open(path);
+  if (!file) return file.error();
+  auto volume = file->read_all(core::terminal_progress("reading"));
+  if (!volume) return volume.error();
+  bone.volume = std::move(*volume);
+  return bone;
+}
+
+/// Forces can be had again where the case's own model ran, without effects.
+core::Result<std::unique_ptr<DrillForces>> forces_of(const Bone& bone) {
+  if (!bone.opened || !bone.opened->definition.model.effects.empty())
+    return std::unique_ptr<DrillForces>();
+  return DrillForces::make(bone.volume, bone.opened->definition.model);
+}
+
+Json json_of(const drilling::Redrilled& again, const DrillForces* forces) {
+  Json out = {{"trial_id", again.header.id}, {"simulated", again.header.simulated}};
+  out.update(drilling::drilled_of(again.erosion).to_json());
+  const auto agrees = again.agrees();
+  out["agrees"] = agrees ? Json(*agrees) : Json();
+  out["forces"] = Json();
+  if (forces)
+    out["forces"] = {{"compared", forces->compared()},
+                     {"largest_difference_N", forces->largest_N()},
+                     {"in_order", forces->in_order()}};
+  return out;
+}
+
+void print_replay(const Json& told) {
+  fmt::print("{:.2f} mm3 of bone drilled in {} changes{}\n",
+             told.at("removed_m3").get<double>() * 1e9, told.at("changes").get<int>(),
+             told.at("simulated").get<bool>() ? "  (SIMULATED hand)" : "");
+  const Json &agrees = told.at("agrees"), &forces = told.at("forces");
+  fmt::print("the voxels are {}\n",
+             agrees.is_null()     ? "those up to the last sample: the trial was "
+                                    "cut short and says nothing of its own"
+             : agrees.get<bool>() ? "those of the trial, by their hash"
+                                  : "NOT those of the trial: another volume, or another build");
+  if (!forces.is_null())
+    fmt::print("{} forces felt again, within {:.1e} N{}\n",
+               forces.at("compared").get<std::uint64_t>(),
+               forces.at("largest_difference_N").get<double>(),
+               forces.at("in_order").get<bool>() ? "" : "; a change was felt BEFORE its cause");
+}
+
+Outcome replay(const Options& o) {
+  const auto bone = bone_of(o);
+  if (!bone) return bone.error();
+  const auto made = forces_of(*bone);
+  if (!made) return made.error();
+  DrillForces* const forces = made->get();
+  const auto again = drilling::redrill(
+      o.trial, bone->volume,
+      [forces](const trial::Sample& sample) {
+        if (forces) forces->feel(sample);
+      },
+      [forces](const drilling::Change& change, const volume::Volume& drilled) {
+        if (forces) forces->follow(change, drilled);
+      });
+  if (!again) return again.error();
+  if (!o.out.empty()) {
+    const auto written = volume::write_volume(o.out, again->erosion.volume(),
+                                              {"trial " + again->header.id, "drilled again"},
+                                              core::terminal_progress("writing"));
+    if (!written) return written.error();
+  }
+  const Json told = json_of(*again, forces);
+  o.json ? void(std::puts(told.dump(2).c_str())) : print_replay(told);
+  const bool felt = !forces || (forces->in_order() && forces->largest_N() <= kSame_N);
+  return again->agrees().value_or(true) && felt ? 0 : 1;
+}
+
+void print_channel(const drilling::Channel& made, const volume::Tract& tract) {
+  if (!made.depth_m) {
+    fmt::print("no voxel has lost half of itself: there is no channel\n");
+    return;
+  }
+  if (made.angle_rad)
+    fmt::print(
+        "entry {:.1f} mm medial and {:.1f} mm superior of the plan, turned by {:.1f} "
+        "degrees\n",
+        made.entry_offset_m->x() * 1e3, made.entry_offset_m->y() * 1e3,
+        *made.angle_rad * 180.0 / std::numbers::pi);
+  else
+    fmt::print("too short to have a direction\n");
+  fmt::print("deepest at {:.1f} mm; the plan ends at {:.1f} mm\n", *made.depth_m * 1e3,
+             tract.length_m * 1e3);
+  for (const volume::Wall wall : volume::kWalls) {
+    const auto beyond = made.beyond_m[std::size_t(wall)];
+    if (!beyond)
+      fmt::print("{:>9}: not reached where that wall is known\n", volume::name(wall));
+    else if (*beyond > 0.0)
+      fmt::print("{:>9}: BREACHED, {:.1f} mm beyond the bone\n", volume::name(wall), *beyond * 1e3);
+    else
+      fmt::print("{:>9}: within the bone, {:.1f} mm to its outer face\n", volume::name(wall),
+                 -*beyond * 1e3);
+  }
+}
+
+Outcome report(const Options& o) {
+  const auto bone = bone_of(o);
+  if (!bone) return bone.error();
+  if (!bone->opened)
+    return Error{Errc::bad_input, "drill report: --case FOLDER is expected: it has the plan"};
+  const auto again = drilling::redrill(o.trial, bone->volume);
+  if (!again) return again.error();
+  const cases::Case& definition = bone->opened->definition;
+  const drilling::Channel made =
+      drilling::channel_of(again->erosion, definition.model.transfer, definition.tract);
+  Json told = json_of(*again, nullptr);
+  told["channel"] = made.to_json();
+  if (o.json)
+    std::puts(told.dump(2).c_str());
+  else
+    print_replay(told), print_channel(made, definition.tract);
+  return again->agrees().value_or(true) ? 0 : 1;
+}
+
+void add_options(CLI::App& app, Options& o) {
+  app.add_option("trial", o.trial, "a trial with a burr, .ttrial")->required();
+  app.add_option("--case", o.case_folder, "the case that was drilled");
+  app.add_option("--volume", o.volume, "or its volume alone, .tvol");
+  app.add_flag("--json", o.json, "print it as JSON (SI units)");
+}
+
+}  // namespace
+
+Command drill_command() {
+  return {
+      "drill",
+      "Drills a recorded trial again: the same voxels, the same forces; what was made of the plan",
+      "tractus drill replay st/trials/ID.ttrial --case undrilled/ --out drilled.tvol\n"
+      "  tractus drill report st/trials/ID.ttrial --case undrilled/",
+      [](CLI::App& app) {
+        auto options = std::make_shared<Options>();
+        CLI::App* again = app.add_subcommand(
+            "replay", "the volume from the trial's samples, held against the trial's own hash");
+        add_options(*again, *options);
+        again->add_option("--out", options->out, "where the drilled volume is written, .tvol");
+        CLI::App* held = app.add_subcommand(
+            "report", "entry, direction and depth against the plan; did it leave the bone?");
+        add_options(*held, *options);
+        app.require_subcommand(1);
+        return [options, again] { return again->parsed() ? replay(*options) : report(*options); };
+      }};
+}
+
+}  // namespace commands

@@ -1,0 +1,96 @@
+#include "drilling/channel.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "drilling/drilling_test_support.hpp"
+
+namespace drilling {
+namespace {
+
+using math::Vec3;
+using volume::Wall;
+
+/// 1000 HU within |x| < 6 mm, |y| < 4 mm, |z| < 12 mm, 40 HU about it: a bar along z, 0.35 mm.
+volume::Volume bar() {
+  volume::Volume bone = block(91, 0.00035);
+  for (int k = 0; k < 91; ++k)
+    for (int j = 0; j < 91; ++j)
+      for (int i = 0; i < 91; ++i) {
+        const Vec3 p = bone.geometry.position_of({double(i), double(j), double(k)});
+        const bool within =
+            std::abs(p.x()) < 0.006 && std::abs(p.y()) < 0.004 && std::abs(p.z()) < 0.012;
+        bone.counts[bone.offset(i, j, k)] = within ? 2024 : 1064;
+      }
+  return bone;
+}
+
+/// Along the bar's middle, 18 mm long, from 2 mm within.
+const volume::Tract kTract{.entry_m = Vec3(0, 0, -0.010),
+                           .axis = Vec3::UnitZ(),
+                           .length_m = 0.018,
+                           .radius_m = 0.0015,
+                           .medial = Vec3::UnitX(),
+                           .superior = Vec3::UnitY()};
+constexpr Burr kFast{.nose_m = 0.0, .rate_per_s = 300.0, .threshold_N = 0.0, .full_N = 1.0};
+
+Channel drilled(const volume::Volume& bone, const Vec3& from, const Vec3& to) {
+  const auto made = eroded(bone, kFast, stroke(0, from, to, 8000, 2.0f));
+  EXPECT_TRUE(made);
+  return channel_of(*made, volume::TransferFunction::bone(), kTract);
+}
+
+// The line from (1, −0.5, −12) to (1, −0.5, 6) mm, parallel to the tract: 1 mm medial, 0.5 mm
+// inferior of it; deepest 10 mm + 6 mm + the ball's radius, less a voxel and the skin that
+// lost less than half: s from the centre the front's dose is 300/s / (9 mm/s) (r − s − (r³ −
+// s³)/3r²), a half at s = r − 0.16 mm.
+TEST(Channel, OfAParallelPlungeIsOffsetAndNotTurned) {
+  const Channel made = drilled(bar(), Vec3(0.001, -0.0005, -0.012), Vec3(0.001, -0.0005, 0.006));
+  ASSERT_TRUE(made.entry_offset_m && made.angle_rad && made.depth_m);
+  EXPECT_NEAR(made.entry_offset_m->x(), 0.001, 5e-5);
+  EXPECT_NEAR(made.entry_offset_m->y(), -0.0005, 5e-5);
+  EXPECT_NEAR(*made.angle_rad, 0.0, 0.005);
+  EXPECT_LE(*made.depth_m, 0.016 + 0.0015);
+  EXPECT_GE(*made.depth_m, 0.016 + 0.0015 - 0.00016 - 0.00035);
+}
+
+// 2 mm aside over 18 mm: atan(1/9) = 6.34°, and where it passes the entry's plane, z = −10 mm, it
+// is 2/9 mm aside.
+TEST(Channel, OfAnObliquePlungeHasItsAngle) {
+  const Channel made = drilled(bar(), Vec3(0, 0, -0.012), Vec3(0.002, 0, 0.006));
+  ASSERT_TRUE(made.entry_offset_m && made.angle_rad);
+  EXPECT_NEAR(*made.angle_rad, std::atan(1.0 / 9.0), 0.01);
+  EXPECT_NEAR(made.entry_offset_m->x(), 0.002 / 9.0, 1e-4);
+}
+
+// The bar's faces are 6 and 4 mm from the axis (in the image half a voxel uncertain), its end 4 mm
+// ahead of the tract's.
+TEST(Channel, LeavesTheBoneWhereTheBallReachesBeyondItsFace) {
+  const Channel within = drilled(bar(), Vec3(0, 0, -0.012), Vec3(0, 0, 0.006));
+  for (const Wall wall : {Wall::medial, Wall::lateral}) {
+    ASSERT_TRUE(within.beyond_m[std::size_t(wall)]);
+    EXPECT_NEAR(*within.beyond_m[std::size_t(wall)], 0.0015 - 0.006, 0.0004);
+  }
+  EXPECT_NEAR(within.beyond_m[std::size_t(Wall::superior)].value_or(0), 0.0015 - 0.004, 0.0004);
+  EXPECT_FALSE(within.beyond_m[std::size_t(Wall::anterior)]);  // never ahead of the tract's end
+
+  const Channel aside = drilled(bar(), Vec3(0, 0.0035, -0.012), Vec3(0, 0.0035, 0.006));
+  EXPECT_NEAR(aside.beyond_m[std::size_t(Wall::superior)].value_or(0), 0.001, 0.0004);
+  const Channel ahead = drilled(bar(), Vec3(0, 0, -0.012), Vec3(0, 0, 0.0125));
+  EXPECT_NEAR(ahead.beyond_m[std::size_t(Wall::anterior)].value_or(0), 0.0125 + 0.0015 - 0.012,
+              0.0005);
+}
+
+TEST(Channel, OfAHoleHasNoDirectionAndOfNothingHasNothing) {
+  const Channel hole = drilled(bar(), Vec3(0, 0, 0.000), Vec3(0, 0, 0.001));
+  EXPECT_GT(hole.voxels, 100u);
+  EXPECT_FALSE(hole.angle_rad);
+  EXPECT_TRUE(hole.depth_m);
+  const Channel nothing = drilled(bar(), Vec3(0, 0, -0.019), Vec3(0, 0, -0.0189));
+  EXPECT_FALSE(nothing.depth_m);
+  EXPECT_TRUE(nothing.to_json().at("beyond_m").at("medial").is_null());
+}
+
+}  // namespace
+}  // namespace drilling

@@ -1,0 +1,226 @@
+/// self-test and calibrate: what a technician runs, and what is left of it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "core/file.hpp"
+#include "station/app/checks.hpp"
+#include "station/app/deeds.hpp"
+#include "station/app/exchange.hpp"
+#include "station/app/presence.hpp"
+#include "station/check/machine_check.hpp"
+#include "station/uplink/clock_offset.hpp"
+#include "station/uplink/reports.hpp"
+
+namespace app {
+namespace {
+constexpr std::int64_t kDay_us = 86'400'000'000;
+constexpr double kHandRate_Hz = 4000.0, kWatched_s = 5.0;  // at most
+
+void warn(const std::string& line) { std::fprintf(stderr, "warning: %s\n", line.c_str()); }
+
+/// How the server's clock stands; nothing without one.
+std::optional<check::Offset> offset_to_server(const Options& options) {
+  if (options.server_url.empty()) return std::nullopt;
+  auto server = connect(options);
+  core::MonotonicClock clock;
+  auto measured = server ? uplink::measure_clock(**server, clock, core::utc_us)
+                         : core::Result<uplink::ClockOffset>(server.error());
+  if (measured) return check::Offset{measured->offset_s, measured->error_s};
+  warn("the server's clock was not compared: " + measured.error().what);
+  return std::nullopt;
+}
+
+core::Result<void> check_machine(Checked& checked) {
+  const Options& options = checked.options;
+  std::vector<check::Finding>& out = checked.findings;
+  const bool rig = is_rig(options.setup.device);
+  if (!rig && options.show != Show::none) out.push_back(check_display(options.show));
+  const core::Progress shown = core::terminal_progress("Loop");
+  out.push_back(check::check_wake_ups(
+      rig ? options.rig.rate_Hz : kHandRate_Hz, std::min(kWatched_s, options.for_s),
+      [&](double share) { return shown(share) && !asked_to_stop(); }));
+  if (auto done = check::check_disk(checked.folder.trials(), out); !done) return done;
+  out.push_back(check::check_clock());
+  out.push_back(check::check_time_of_day(offset_to_server(options)));
+  return {};
+}
+
+/// Not of a simulated device that nobody ever calibrated: there is nothing to calibrate.
+core::Result<void> check_calibration(Checked& checked) {
+  const std::string& device = checked.options.setup.device;
+  auto last = check::Calibration::read(checked.folder.calibration_file(device));
+  if (!last) return last.error();
+  if (*last || !device.starts_with("sim-"))
+    checked.findings.push_back(check::check_calibration(*last, core::utc_us()));
+  return {};
+}
+
+check::Report report_for(const session::StationFolder& folder) {
+  std::error_code failed;
+  const auto space = std::filesystem::space(folder.trials(), failed);
+  return {.version = TRACTUS_VERSION, .free_disk_bytes = failed ? 0 : space.available};
+}
+
+/// Into the folder; to the server when there is one, else with the next exchange; as a page.
+core::Result<void> keep(const Checked& checked, const check::Report& report) {
+  const Options& options = checked.options;
+  auto left = report.leave(checked.folder.reports());
+  if (!left) return left.error();
+  if (!options.page.empty()) {
+    const std::string page = report.to_html(checked.folder.config().name);
+    if (auto written = core::write_file(options.page, core::bytes_of(page)); !written)
+      return written;
+  }
+  if (options.server_url.empty()) return {};
+  auto server = connect(options);
+  if (!server) return server.error();
+  auto handed = uplink::hand_over_reports(**server, checked.folder.reports());
+  if (!handed) {
+    warn("the report waits for the server: " + handed.error().what);
+    return {};
+  }
+  for (const std::string& line : handed->refused)
+    warn("the server does not take a report: " + line);
+  return {};
+}
+
+void print(const Checked& checked) {
+  fmt::print("{}{}\n", checked.device.empty() ? checked.options.setup.device : checked.device,
+             checked.simulated ? "  (SIMULATED: no machine was tested)" : "");
+  for (const check::Finding& f : checked.findings) {
+    const std::string wanted = check::wanted_of(f);
+    fmt::print("  {}  {:<36} {:>9}{}  {}\n", f.passed ? "passed    " : "NOT passed", f.name,
+               check::found_of(f), wanted.empty() ? "" : fmt::format(" ({})", wanted), f.words);
+  }
+}
+
+bool all_passed(const Checked& checked) {
+  return std::ranges::all_of(checked.findings, &check::Finding::passed);
+}
+
+/// What went wrong with the device itself is a finding like others; bad use and a stop are not.
+core::Result<void> heeded(const core::Result<void>& outcome, Checked& checked) {
+  if (outcome || outcome.error().code != core::Errc::unavailable) return outcome;
+  checked.findings.push_back({.name = "device", .words = outcome.error().what});
+  return {};
+}
+
+/// The exit code of what did not come to its end.
+core::Result<int> unfinished(const core::Error& why) {
+  if (why.code != core::Errc::cancelled) return why;
+  std::fprintf(stderr, "stopped: zero force, and no report was left\n");
+  return 1;
+}
+
+const check::Finding* finding(const Checked& checked, const char* name) {
+  const auto found = std::ranges::find(checked.findings, name, &check::Finding::name);
+  return found == checked.findings.end() ? nullptr : &*found;
+}
+
+/// One line of what the calibration found; of a rig, how far its sensor has moved since the last.
+void describe(const Checked& checked, const std::optional<check::Calibration>& last,
+              check::Calibration& out) {
+  const auto* push = finding(checked, "sensor zero, push");
+  const auto* twist = finding(checked, "sensor zero, torque");
+  if (!push || !twist) {
+    const auto* rest = finding(checked, "rest at zero force");
+    out.words = fmt::format(
+        "{}: zero found, gravity balanced (drift {}), six directions and the "
+        "step as they should be",
+        checked.device, rest ? check::found_of(*rest) : "");
+  } else {
+    out.zero_N = push->value;
+    out.zero_Nm = twist->value;
+    out.words = fmt::format("{}: sensor zero {:.3f} N, {:.4f} N·m", checked.device, *push->value,
+                            *twist->value);
+    if (last && last->zero_N)
+      out.words += fmt::format(" ({:+.3f} N since {})", *push->value - *last->zero_N,
+                               check::day_of(last->at_utc_us));
+    out.words += ", entry found, e-stop, travel, watchdog and motor as they should be";
+  }
+  if (checked.simulated) out.words += " (SIMULATED)";
+}
+
+/// Nothing is noted: what is wrong is said.
+int not_calibrated(const Checked& checked) {
+  if (checked.options.json) {
+    core::Json checks = core::Json::array();
+    for (const check::Finding& f : checked.findings) checks.push_back(f.to_json());
+    fmt::print("{}\n", core::Json{{"calibration", nullptr}, {"checks", checks}}.dump(2));
+  } else {
+    print(checked);
+  }
+  std::fprintf(stderr, "not calibrated: put right what did not pass, and repeat\n");
+  return 1;
+}
+}  // namespace
+
+core::Result<int> self_test(const Options& options) {
+  auto folder = session::StationFolder::open(options.data);
+  if (!folder) return folder.error();
+  auto lock = folder->lock();
+  if (!lock) return lock.error();
+  Presence presence(options, *folder);
+  presence.is(Presence::State::preparing);
+  Checked checked{options, *folder, *presence.outside()};
+  check::SelfTest test{.at_utc_us = core::utc_us()};
+  const auto device =
+      is_rig(options.setup.device) ? check_whole_rig(checked) : self_test_hand(checked);
+  if (auto fine = heeded(device, checked); !fine) return unfinished(fine.error());
+  if (auto done = check_calibration(checked); !done) return done.error();
+  if (auto done = check_machine(checked); !done) return done.error();
+  if (asked_to_stop()) return unfinished({core::Errc::cancelled, ""});
+  test.device = checked.device.empty() ? options.setup.device : checked.device;
+  test.simulated = checked.simulated;
+  test.findings = checked.findings;
+  check::Report report = report_for(*folder);
+  report.self_test = std::move(test);
+  if (auto kept = keep(checked, report); !kept) return kept.error();
+  if (options.json)
+    fmt::print("{}\n", report.to_json().dump(2));
+  else
+    print(checked);
+  return all_passed(checked) ? 0 : 1;
+}
+
+core::Result<int> calibrate(const Options& options) {
+  auto folder = session::StationFolder::open(options.data);
+  if (!folder) return folder.error();
+  auto lock = folder->lock();
+  if (!lock) return lock.error();
+  const std::filesystem::path file = folder->calibration_file(options.setup.device);
+  auto last = check::Calibration::read(file);
+  if (!last) return last.error();
+  auto presence = std::make_unique<Presence>(options, *folder);
+  presence->is(Presence::State::preparing);
+  Checked checked{options, *folder, *presence->outside()};
+  const auto device =
+      is_rig(options.setup.device) ? check_whole_rig(checked) : calibrate_hand(checked);
+  if (auto fine = heeded(device, checked); !fine) return unfinished(fine.error());
+  if (!all_passed(checked)) return not_calibrated(checked);
+  presence.reset();  // it told the date that was due until now
+  const std::int64_t now = core::utc_us();
+  check::Calibration made{.at_utc_us = now,
+                          .due_utc_us = now + options.due_days * kDay_us,
+                          .kind = options.setup.device,
+                          .who = options.who};
+  describe(checked, *last, made);
+  std::error_code there;
+  std::filesystem::create_directories(file.parent_path(), there);
+  if (auto kept = core::write_json(file, made.to_json()); !kept) return kept.error();
+  check::Report report = report_for(*folder);
+  report.calibration = std::move(made);
+  report.checks = checked.findings;
+  if (auto kept = keep(checked, report); !kept) return kept.error();
+  if (options.json) {
+    fmt::print("{}\n", report.to_json().dump(2));
+    return 0;
+  }
+  print(checked);
+  fmt::print("calibrated; due again on {}\n", check::day_of(report.calibration->due_utc_us));
+  return 0;
+}
+
+}  // namespace app

@@ -1,0 +1,291 @@
+#include "station/check/device_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace check {
+namespace {
+using devices::Sample;
+using math::Vec3;
+using math::Wrench;
+
+constexpr double kMoment_s = 0.25, kAfterRamp_s = 0.1, kAtRest_s = 1.0, kStep_s = 0.5;
+constexpr std::size_t kTrips = 1 << 16;
+constexpr const char* kAxes[] = {"x (to the operator)", "y (to the right)", "z (up)"};
+
+/// Drives the device at its rate, every force through the limiter.
+class Driver {
+ public:
+  explicit Driver(Bench& bench)
+      : bench_(bench),
+        period_(core::Instant_ns(std::llround(1e9 / bench.rate_Hz))),
+        next_(bench.clock.now()) {
+    bench_.limiter.arm();
+  }
+  ~Driver() {
+    bench_.limiter.disarm();
+    static_cast<void>(bench_.device.write({}));
+  }
+  Driver(const Driver&) = delete;
+  Driver& operator=(const Driver&) = delete;
+
+  /// One tick with this wrench wanted. Errors: unavailable, cancelled.
+  core::Result<Sample> tick(const Wrench& wanted) {
+    bench_.clock.sleep_until(next_);
+    const core::Instant_ns now = bench_.clock.now();
+    next_ = std::max(next_ + period_, now);
+    Sample sample;
+    const core::Instant_ns asked = bench_.wall.now();
+    const devices::Status status = bench_.device.read(now, sample);
+    const core::Instant_ns came = bench_.wall.now();
+    const auto passed = bench_.limiter.pass(now, status, sample, wanted);
+    const core::Instant_ns decided = bench_.wall.now();
+    const devices::Status given = bench_.device.write(passed.wrench);
+    trips_.add(bench_.wall.now() - decided + came - asked);
+    if (const auto fault = loop::fault_of(given); fault != loop::Fault::none)
+      bench_.limiter.fail(fault);
+    if (bench_.limiter.guard() == loop::Guard::latched)
+      return core::Error{core::Errc::unavailable,
+                         fmt::format("stopped: {}", loop::text_of(bench_.limiter.fault()))};
+    return sample;
+  }
+
+  /// For so long; `each` sees every sample and the time since the start of it.
+  template <class Each>
+  core::Result<void> run(double for_s, const Wrench& wanted, const Each& each) {
+    const int ticks = int(for_s * bench_.rate_Hz), shown = std::max(1, int(bench_.rate_Hz / 30.0));
+    for (int k = 0; k < ticks; ++k) {
+      auto sample = tick(wanted);
+      if (!sample) return sample.error();
+      each(double(k) / bench_.rate_Hz, *sample);
+      elapsed_s_ += 1.0 / bench_.rate_Hz;
+      if (k % shown == 0 && bench_.progress &&
+          !bench_.progress(std::min(1.0, elapsed_s_ / plan_s_)))
+        return core::Error{core::Errc::cancelled, "stopped"};
+    }
+    return {};
+  }
+  core::Result<void> run(double for_s, const Wrench& wanted) {
+    return run(for_s, wanted, [](double, const Sample&) {});
+  }
+
+  /// Mean pose over a moment.
+  core::Result<math::Pose> mean_pose(double for_s, const Wrench& wanted) {
+    Vec3 sum = Vec3::Zero();
+    Eigen::Vector4d turn = Eigen::Vector4d::Zero();
+    int count = 0;
+    auto ran = run(for_s, wanted, [&](double, const Sample& sample) {
+      const Eigen::Vector4d q = sample.X_DH.q.coeffs();
+      turn += turn.dot(q) < 0.0 ? -q : q;
+      sum += sample.X_DH.p;
+      ++count;
+    });
+    if (!ran) return ran.error();
+    return math::Pose{sum / count, math::Quat(Eigen::Vector4d(turn.normalized()))};
+  }
+
+  void plan(double for_s) { plan_s_ = for_s; }  ///< what `progress` shares
+  const Durations& trips() const { return trips_; }
+
+ private:
+  Bench& bench_;
+  core::Instant_ns period_, next_;
+  Durations trips_{kTrips};
+  double elapsed_s_ = 0.0, plan_s_ = 1.0;
+};
+
+Vec3 turn_between(const math::Quat& from, const math::Quat& to) {
+  const Eigen::AngleAxisd turn((to * from.conjugate()).normalized());
+  return turn.angle() * turn.axis();
+}
+
+core::Result<void> check_rest(Driver& driver, const DeviceGoals& goals, std::vector<Finding>& out) {
+  auto from = driver.mean_pose(kMoment_s, {});
+  if (!from) return from.error();
+  if (auto waited = driver.run(kAtRest_s - kMoment_s, {}); !waited) return waited;
+  auto at = driver.mean_pose(kMoment_s, {});
+  if (!at) return at.error();
+  const double drift = (at->p - from->p).norm();
+  const bool still = drift <= goals.rest_m;
+  out.push_back({.name = "rest at zero force",
+                 .passed = still,
+                 .value = drift,
+                 .limit = goals.rest_m,
+                 .unit = "m",
+                 .words = still ? "in a second with no force the handle stays where it is held"
+                                : "with no force the handle wanders: calibrate it; look for a "
+                                  "cable that pulls"});
+  return {};
+}
+
+/// What a push along `axis` did, in words.
+std::string words_of(const Vec3& way, int axis, double least, const std::string& push) {
+  Vec3 across = way;
+  across[axis] = 0.0;
+  if (way[axis] <= -least)
+    return fmt::format(
+        "{} moves it the WRONG WAY: do not use it; its motor or its cabling is "
+        "reversed",
+        push);
+  if (way[axis] < least)
+    return fmt::format(
+        "{} does not move it: let it move freely and repeat; else its motor gives "
+        "no force, or the axis is stuck",
+        push);
+  if (across.norm() > 0.5 * way[axis])
+    return fmt::format("{} moves it across as well: hold it loosely and repeat; else calibrate it",
+                       push);
+  return fmt::format("{} moves it the right way", push);
+}
+
+Finding direction_of(const math::Pose& before, const math::Pose& after, int axis,
+                     const DeviceGoals& goals) {
+  const bool turns = axis >= 3;
+  const Vec3 way = turns ? turn_between(before.q, after.q) : Vec3(after.p - before.p);
+  const double least = turns ? goals.least_turn_rad : goals.least_way_m;
+  Vec3 across = way;
+  across[axis % 3] = 0.0;
+  const std::string push =
+      turns ? fmt::format("{} N·m", goals.turn_Nm) : fmt::format("{} N", goals.push_N);
+  return {.name = fmt::format("direction {} {}", turns ? "about" : "along", kAxes[axis % 3]),
+          .passed = way[axis % 3] >= least && across.norm() <= 0.5 * way[axis % 3],
+          .value = way[axis % 3],
+          .limit = least,
+          .bound = Bound::at_least,
+          .unit = turns ? "rad" : "m",
+          .words = words_of(way, axis % 3, least, push)};
+}
+
+core::Result<void> check_directions(Driver& driver, const DeviceGoals& goals,
+                                    std::vector<Finding>& out) {
+  for (int axis = 0; axis < 6; ++axis) {
+    Wrench push;
+    (axis < 3 ? push.force_N : push.torque_Nm)[axis % 3] = axis < 3 ? goals.push_N : goals.turn_Nm;
+    auto before = driver.mean_pose(kMoment_s, {});
+    if (!before) return before.error();
+    if (auto settled = driver.run(kMoment_s, push); !settled) return settled;
+    auto after = driver.mean_pose(kMoment_s, push);
+    if (!after) return after.error();
+    if (auto back = driver.run(kMoment_s, {}); !back) return back;
+    out.push_back(direction_of(*before, *after, axis, goals));
+  }
+  return {};
+}
+
+/// The way along x at each time since the step, s and m.
+using Way = std::vector<std::pair<double, double>>;
+
+double time_at(const Way& way, double height_m) {
+  const auto at =
+      std::ranges::find_if(way, [&](const auto& point) { return point.second >= height_m; });
+  return at == way.end() ? kStep_s : at->first;
+}
+
+void judge_step(const Way& way, const DeviceGoals& goals, std::vector<Finding>& out) {
+  double end_m = 0.0, most_m = 0.0;
+  const auto tail = way.size() - std::max<std::size_t>(1, way.size() / 10);
+  for (std::size_t k = 0; k < way.size(); ++k) {
+    most_m = std::max(most_m, way[k].second);
+    if (k >= tail) end_m += way[k].second / double(way.size() - tail);
+  }
+  Finding delay{.name = "step response, delay", .limit = goals.response_s, .unit = "s"};
+  if (end_m < goals.least_way_m) {
+    delay.words = fmt::format("a step of {} N along x did not move the handle", goals.push_N);
+    out.push_back(delay);
+    return;
+  }
+  const double tenth_s = time_at(way, 0.1 * end_m);
+  const double rise_s = time_at(way, 0.9 * end_m) - tenth_s;
+  const double over = most_m / end_m - 1.0;
+  delay.value = tenth_s;
+  delay.passed = tenth_s <= goals.response_s;
+  delay.words =
+      fmt::format("from a step of {} N along x to a tenth of its {:.1f} mm{}", goals.push_N,
+                  1e3 * end_m, delay.passed ? "" : ": too late; look for friction and slack");
+  out.push_back(delay);
+  out.push_back({.name = "step response, rise time",
+                 .passed = rise_s <= goals.rise_s,
+                 .value = rise_s,
+                 .limit = goals.rise_s,
+                 .unit = "s",
+                 .words = rise_s <= goals.rise_s
+                              ? "from a tenth to nine tenths of its way"
+                              : "it creeps: hold it loosely and repeat; else look for friction"});
+  out.push_back(
+      {.name = "step response, overshoot",
+       .passed = over <= goals.overshoot,
+       .value = over,
+       .limit = goals.overshoot,
+       .unit = "",
+       .words = over <= goals.overshoot
+                    ? "share of the way, beyond where it came to rest"
+                    : "it swings: hold it loosely and repeat; else its joints have play"});
+}
+
+core::Result<void> check_step(Driver& driver, const DeviceGoals& goals, std::vector<Finding>& out) {
+  const Wrench push{{goals.push_N, 0, 0}, Vec3::Zero()};
+  auto before = driver.mean_pose(kMoment_s, {});
+  if (!before) return before.error();
+  Way way;
+  way.reserve(kTrips);
+  auto ran = driver.run(kStep_s, push, [&](double t_s, const Sample& sample) {
+    way.emplace_back(t_s, sample.X_DH.p.x() - before->p.x());
+  });
+  if (!ran) return ran;
+  judge_step(way, goals, out);
+  return {};
+}
+
+Finding round_trip(const Durations& trips, double period_s) {
+  const double p99_s = trips.quantile_s(0.99);
+  const bool fits = p99_s <= period_s;
+  return {.name = "device round trip",
+          .passed = fits,
+          .value = p99_s,
+          .limit = period_s,
+          .unit = "s",
+          .words = fmt::format("a read and a write through the driver: {}{}", trips.text(),
+                               fits ? ""
+                                    : ": longer than a step of the loop; give the device a USB "
+                                      "controller of its own")};
+}
+}  // namespace
+
+core::Result<void> check_travel(Bench bench, const DeviceGoals& goals, double for_s,
+                                std::vector<Finding>& out) {
+  Driver driver(bench);
+  driver.plan(for_s);
+  Eigen::AlignedBox3d seen;
+  auto ran = driver.run(for_s, {}, [&](double, const Sample& s) { seen.extend(s.X_DH.p); });
+  if (!ran) return ran;
+  const Vec3 range = seen.sizes();
+  const bool far = range.minCoeff() >= goals.travel_m;
+  out.push_back({.name = "travel",
+                 .passed = far,
+                 .value = range.minCoeff(),
+                 .limit = goals.travel_m,
+                 .bound = Bound::at_least,
+                 .unit = "m",
+                 .words = fmt::format("a hand moved it {:.0f} × {:.0f} × {:.0f} mm (x, y, z){}",
+                                      1e3 * range.x(), 1e3 * range.y(), 1e3 * range.z(),
+                                      far ? ""
+                                          : ": move it to every end; else something blocks it "
+                                            "or a joint does not count")});
+  return {};
+}
+
+core::Result<void> check_forces(Bench bench, const DeviceGoals& goals, std::vector<Finding>& out) {
+  Driver driver(bench);
+  // The quiet moment and the ramp, with nothing wanted yet.
+  const double ramp_s = bench.limiter.limits().ramp_s + kAfterRamp_s;
+  driver.plan(ramp_s + kAtRest_s + 6 * 4 * kMoment_s + 2 * kMoment_s + kStep_s);
+  if (auto ready = driver.run(ramp_s, {}); !ready) return ready;
+  for (auto* part : {&check_rest, &check_directions, &check_step})
+    if (auto done = (*part)(driver, goals, out); !done) return done;
+  out.push_back(round_trip(driver.trips(), 1.0 / bench.rate_Hz));
+  return {};
+}
+
+}  // namespace check
