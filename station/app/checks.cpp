@@ -58,7 +58,7 @@ core::Result<void> run_shown(
     if (asked_to_stop() || outside.stopped()) stop = true;
   }
   thread.join();
-  shown(1.0);
+  if (*outcome) shown(1.0);
   return *outcome;
 }
 
