@@ -3,6 +3,7 @@
 #include <vtkNew.h>
 #include <vtkPNGReader.h>
 
+#include <algorithm>
 #include <numbers>
 
 #include "tests/support/openxr/headset_fixture.hpp"
@@ -111,6 +112,34 @@ TEST_F(Pictures, WithoutAnAlignmentTheSceneStandsBeforeThePersonAndAPressBringsI
   const auto again = seen(*headset);
   EXPECT_NEAR(again[0].x_px, first[0].x_px, 0.6);
   EXPECT_NEAR(again[1].x_px, first[1].x_px, 0.6);
+  EXPECT_TRUE(left(*headset));
+}
+
+TEST_F(Pictures, BoneThatIsDrilledAwayIsGoneFromBothEyes) {
+  // Between voxel centres a cube of 70 mm, left of the cut, its face 0.43 m ahead: that alone is
+  // 320 * 0.07 / (1.6918 * 0.43) = 30.8 pixels wide and 30.9 high, 950 in all.
+  volume_.geometry.spacing_m = math::Vec3::Constant(0.01);
+  volume_.geometry.origin_m = {-0.1, 1.5, -0.5};
+  std::ranges::fill(volume_.counts, volume_.count_of(900.0));
+  bool drilled = false;
+  Shown what = shown();
+  what.carved = [&](const TakeBone& take) {
+    if (!drilled) return;
+    std::ranges::fill(volume_.counts, volume_.count_of(-1000.0));
+    take({.begin = {0, 0, 0}, .end = volume_.geometry.dims}, volume_);
+    drilled = false;
+  };
+  auto headset = made(what);
+  ASSERT_TRUE(headset);
+  ASSERT_TRUE(step_to(*headset, *control_, 5));
+  seen(*headset);
+  const std::array<std::uint64_t, 2> before{control_->lit_px[0], control_->lit_px[1]};
+  drilled = true;
+  seen(*headset);
+  for (std::size_t eye = 0; eye < 2; ++eye) {
+    EXPECT_GT(before[eye], 900u);
+    EXPECT_LT(control_->lit_px[eye] + 900u, before[eye]);
+  }
   EXPECT_TRUE(left(*headset));
 }
 
