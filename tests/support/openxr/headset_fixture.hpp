@@ -15,16 +15,19 @@
 
 namespace headset {
 
+/// What test and runtime share; of this process, gone with it.
+struct ControlFile {
+  ~ControlFile() { std::filesystem::remove(path); }
+  const std::string path =
+      (std::filesystem::temp_directory_path() / ("tractus_openxr_" + core::new_id())).string();
+};
+
 class WithRuntime : public testing::Test {
  protected:
   void SetUp() override {
-    static fakexr::Control* const mapped = [] {
-      const std::string path =
-          (std::filesystem::temp_directory_path() / ("tractus_openxr_" + core::new_id())).string();
-      ::setenv("TRACTUS_OPENXR_TEST", path.c_str(), 1);
-      fakexr::Control* at = fakexr::map_control(path);
-      return at;
-    }();
+    static const ControlFile file;
+    ::setenv("TRACTUS_OPENXR_TEST", file.path.c_str(), 1);
+    static fakexr::Control* const mapped = fakexr::map_control(file.path);
     ASSERT_NE(mapped, nullptr);
     control_ = new (mapped) fakexr::Control;
     control_->paced = 0;
