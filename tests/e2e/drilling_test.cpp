@@ -189,7 +189,7 @@ TEST_F(DrillingLive, WhatDoesNotFitIsRefusedInOneLine) {
   }
   ASSERT_TRUE(core::write_file(folder_ / "burr.json",
                                core::bytes_of(R"({"radius_m":0.05,"nose_m":0,"rate_per_s":1,
-                                                 "threshold_N":0,"full_N":1})")));
+                                                 "threshold_N":0,"full_N":1,"shank_radius_m":0.001})")));
   EXPECT_EQ(run("tractus-station --data st --speed fast --case case --tool burr --burr burr.json"),
             2);
   EXPECT_NE(said().find("radius_m"), std::string::npos) << said();
