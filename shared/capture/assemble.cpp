@@ -161,6 +161,10 @@ math::Wrench at_handle(const Sensor& sensor, const math::Wrench& in_S, const mat
 void keep_rows(const Recipe& recipe, const Recording& recording, const ForceTrack& force,
                const Probe& probe, Assembled& out) {
   const auto& runs = out.clock.runs;
+  out.trial.id = recording.id;
+  out.trial.file = recording.id + ".csv";
+  out.trial.operator_name = recording.operator_name;
+  out.trial.notes = recording.notes;
   double from_s = runs.empty() ? -1e300 : runs.front().taps_s.back() + kBesideTaps_s, to_s = 1e300;
   if (runs.size() > 1) to_s = runs.back().taps_s.front() - kBesideTaps_s;
   from_s = recording.from_s.value_or(from_s), to_s = recording.to_s.value_or(to_s);
@@ -219,10 +223,6 @@ core::Result<Assembled> assemble(const Recipe& recipe, const Recording& recordin
   const auto zero = zero_of(*force, first_tap_s, recipe.tare_s);
   if (!zero) return named(zero.error());
   out.zero_S = *zero;
-  out.trial.id = recording.id;
-  out.trial.file = recording.id + ".csv";
-  out.trial.operator_name = recording.operator_name;
-  out.trial.notes = recording.notes;
   keep_rows(recipe, recording, *force, probe, out);
   if (out.trial.t_s.size() < 2)
     return named({Errc::bad_input,

@@ -184,36 +184,70 @@ TEST_F(Capture, RefusesRubbishInOneLineThatNamesTheFile) {
 struct Tapping {
   std::vector<double> t_force, force, t_motion;
   std::vector<Vec3> tip;
-  explicit Tapping(double offset_s, double noise, unsigned seed = 1) {
-    const std::vector<double> taps{2.0, 2.45, 2.83, 3.4, 3.76};
-    std::mt19937 random(seed);
+
+  /// @param noise_N  of the force; the motion's is 0.1 mm @param drift  of the force's clock
+  explicit Tapping(double offset_s, double noise_N, double drift = 0.0,
+                   const std::vector<double>& taps = {2.0, 2.45, 2.83, 3.4, 3.76}) {
+    std::mt19937 random(1);
     std::normal_distribution<double> normal;
-    for (int k = 0; k < 10'000; ++k) {
-      const double t = 0.001 * k;
+    const double end_s = taps.back() + 6.0;
+    for (double t = 0.0; t < end_s; t += 0.001) {
       double f = 0.0;
       for (const double tap : taps)
         if (std::abs(t - tap) < 0.02) f += 6.0 * std::cos(M_PI * (t - tap) / 0.04);
-      if (t > 6.0) f += 1.0 + std::sin(5.0 * t);
-      t_force.push_back(t + offset_s);
-      force.push_back(std::abs(f + 0.02 * noise * normal(random)));
+      if (t > taps.back() + 2.0) f += 1.0 + std::sin(5.0 * t);
+      t_force.push_back(t * (1.0 + drift) + offset_s);
+      force.push_back(std::abs(f + noise_N * normal(random)));
     }
-    for (int k = 0; k < 2000; ++k) {
-      const double t = 0.005 * k;
+    for (double t = 0.0; t < end_s; t += 0.005) {
       double z = 0.03;
       for (const double tap : taps)
         if (std::abs(t - tap) < 0.17) z -= 0.015 * (1.0 + std::cos(M_PI * (t - tap) / 0.17));
-      if (t > 6.0) z += 0.01 * std::sin(3.0 * t);
+      if (t > taps.back() + 2.0) z += 0.01 * std::sin(3.0 * t);
       tip.push_back(Vec3(0.001 * std::sin(t), 0, z) +
-                    1e-4 * noise * Vec3(normal(random), normal(random), normal(random)));
+                    1e-4 * Vec3(normal(random), normal(random), normal(random)));
       t_motion.push_back(t);
     }
   }
+  core::Result<ClockFit> clock(int count) const {
+    return align({t_force, force, t_motion, tip}, count);
+  }
 };
+
+TEST(Taps, TellTheDriftWhenTheyStandAtBothEnds) {
+  const Tapping room(0.5, 0.02, 300e-6,
+                     {2.0, 2.45, 2.83, 3.4, 3.76, 42.0, 42.4, 42.95, 43.31, 43.8});
+  const auto clock = room.clock(5);
+  ASSERT_TRUE(clock) << clock.error().what;
+  ASSERT_EQ(clock->runs.size(), 2u);
+  EXPECT_NEAR(clock->drift, 300e-6, 1e-5);  // half a millisecond over 40 s
+  EXPECT_NEAR(clock->force_time(30.0), 30.0 * (1.0 + 300e-6) + 0.5, 5e-4);
+  EXPECT_NEAR(clock->motion_time(clock->force_time(30.0)), 30.0, 1e-12);
+}
+
+TEST(Taps, StandOutOfNoiseAndOfBumpsBetweenThem) {
+  Tapping room(0.5, 0.25);
+  for (std::size_t k = 0; k < room.force.size(); ++k)
+    for (const double bump : {2.2, 2.65, 3.1, 3.6})
+      if (std::abs(room.t_force[k] - 0.5 - bump) < 0.03) room.force[k] += 1.0;
+  const auto clock = room.clock(5);
+  ASSERT_TRUE(clock) << clock.error().what;
+  EXPECT_NEAR(clock->offset_s, 0.5, 0.001);
+}
+
+TEST(Taps, ThatCouldBeAlignedTwoWaysAreRefused) {
+  // Six in an even rhythm where five are asked for: the first five or the last?
+  const Tapping room(0.5, 0.02, 0.0, {2.0, 2.4, 2.8, 3.2, 3.6, 4.0});
+  const auto clock = room.clock(5);
+  ASSERT_FALSE(clock);
+  EXPECT_NE(clock.error().what.find("two offsets"), std::string::npos) << clock.error().what;
+  EXPECT_TRUE(room.clock(6));
+}
 
 TEST(Taps, TellTheClocksApartToAMillisecond) {
   for (const double offset_s : {0.0, 0.73, -1.2345, 12.0}) {
-    const Tapping room(offset_s, 1.0);
-    const auto clock = align({room.t_force, room.force, room.t_motion, room.tip}, 5);
+    const Tapping room(offset_s, 0.02);
+    const auto clock = room.clock(5);
     ASSERT_TRUE(clock) << clock.error().what;
     EXPECT_NEAR(clock->offset_s, offset_s, 0.0005);
     EXPECT_LT(clock->sd_s, 0.001);
@@ -225,7 +259,7 @@ TEST(Taps, TellTheClocksApartToAMillisecond) {
 }
 
 TEST(Taps, AreNotFoundWhereThereAreNoneOrTheRhythmIsAnother) {
-  const Tapping room(0.5, 1.0);
+  const Tapping room(0.5, 0.02);
   const auto why = [&](const Tapped& tapped, int count) {
     const auto clock = align(tapped, count);
     return clock ? std::string() : clock.error().what;

@@ -186,12 +186,10 @@ ClockFit line_through(std::vector<TapPair> runs) {
   out.runs = std::move(runs);
   return out;
 }
-}  // namespace
+core::Error wrong(const std::string& what) { return {core::Errc::bad_input, what}; }
 
-core::Result<ClockFit> align(const Tapped& tapped, int count) {
-  const auto wrong = [](const std::string& what) {
-    return core::Error{core::Errc::bad_input, what};
-  };
+/// Steps 1 and 2: the same taps in both.
+core::Result<std::vector<TapPair>> pairs_of(const Tapped& tapped, int count) {
   const auto force = force_taps(tapped.force_t_s, tapped.force_N, count);
   if (force.empty())
     return wrong(
@@ -212,23 +210,29 @@ core::Result<ClockFit> align(const Tapped& tapped, int count) {
                     "most {:.0f} ms is expected: are these two recordings of one trial? "
                     "Or state offset_s",
                     1e3 * nearest_s, 1e3 * kRhythm_s));
-  std::vector<TapPair> pairs;
+  std::vector<TapPair> out;
   for (const Candidate& one : all) {
-    if (pairs.size() == kMostPairs) break;
-    if (auto pair = fine(tapped, one)) pairs.push_back(std::move(*pair));
+    if (out.size() == kMostPairs) break;
+    if (auto pair = fine(tapped, one)) out.push_back(std::move(*pair));
   }
-  if (pairs.empty())
+  if (out.empty())
     return wrong(
         "force and motion do not go together in the taps: is the tool's frame (X_BH, "
         "tip_z_m) right, and the surface solid? Or state offset_s");
+  return out;
+}
+}  // namespace
+
+core::Result<ClockFit> align(const Tapped& tapped, int count) {
+  const auto pairs = pairs_of(tapped, count);
+  if (!pairs) return pairs.error();
   std::vector<TapPair> best;
-  for (const TapPair& one : pairs)
-    if (auto runs = agreeing(pairs, one); score(runs) > score(best)) best = std::move(runs);
-  for (const TapPair& one : pairs) {
-    const auto rival = agreeing(pairs, one);
+  for (const TapPair& one : *pairs)
+    if (auto runs = agreeing(*pairs, one); score(runs) > score(best)) best = std::move(runs);
+  for (const TapPair& one : *pairs) {
     const double apart_s = std::abs(one.taps_s.front() - best.front().taps_s.front());
     if (std::abs(one.offset_s - best.front().offset_s) > 2.0 * kAgree_s + kMostDrift * apart_s &&
-        score(rival) > kRival * score(best))
+        score(agreeing(*pairs, one)) > kRival * score(best))
       return wrong(
           fmt::format("two offsets fit the taps as well, {:.3f} s and {:.3f} s: tap with "
                       "an uneven rhythm, or state offset_s",

@@ -47,8 +47,9 @@ struct Tapped {
 ///  3. the offset that most runs agree on; of runs 5 s apart or more the drift, a line through
 ///     their offsets.
 /// Departs from the source, which aligned peaks alone: at 100 Hz those are 10 ms wide.
-/// Known limit: a surface that damps makes the force lead; by 1 ms where it leads by a tenth of its
-/// peak in contacts of 40 ms. Errors: bad_input, what was not found and what to do.
+/// Known limit: a surface that damps makes the force lead: 0.2 ms where it takes a few per cent off
+/// the force on the way out, 3 ms where it takes most (SIMULATED, contacts of 60 ms). Errors:
+/// bad_input, what was not found and what to do.
 core::Result<ClockFit> align(const Tapped& tapped, int count);
 
 }  // namespace capture

@@ -246,18 +246,19 @@ std::optional<math::Pose> motive_pose(const std::vector<std::string_view>& cells
   if (std::abs(q.norm() - 1.0) > 0.01) return std::nullopt;
   return math::Pose{unit_m * Vec3(v[4], v[5], v[6]), q.normalized()};
 }
-}  // namespace
+/// What stands above a Motive export's numbers.
+struct MotiveHeader {
+  double rate_Hz = 0.0, unit_m = 1.0;
+  MotiveColumns columns;
+};
 
-core::Result<Motion> read_motive(const fs::path& path) {
-  Lines lines(path);
-  if (!lines.next()) return Error{Errc::bad_input, fmt::format("{}: is empty", path.string())};
-  Motion out;
-  double unit_m = 1.0;
+core::Result<MotiveHeader> motive_header(Lines& lines) {
+  MotiveHeader out;
   const auto first = split(lines.line(), ',');
   bool quaternions = false;
   for (std::size_t k = 0; k + 1 < first.size(); ++k) {
     if (first[k] == "Export Frame Rate") out.rate_Hz = number(first[k + 1]).value_or(0.0);
-    if (first[k] == "Length Units") unit_m = first[k + 1].starts_with("Milli") ? 1e-3 : 1.0;
+    if (first[k] == "Length Units") out.unit_m = first[k + 1].starts_with("Milli") ? 1e-3 : 1.0;
     if (first[k] == "Rotation Type") quaternions = first[k + 1] == "Quaternion";
   }
   std::vector<std::vector<std::string>> head;
@@ -269,29 +270,37 @@ core::Result<Motion> read_motive(const fs::path& path) {
     if (head.size() > 8) return lines.wrong("no row that begins with Frame in the header");
   }
   if (head.size() < 4) return lines.wrong("types, names, kinds and axes are expected above Frame");
-  for (auto& row : head)  // the first cell of type, name and kind rows is empty
-    if (row.size() > 1 && row[0].empty() && row[1] == "Type") row[1].clear();
-  const MotiveColumns columns = motive_columns(head);
-  if (!quaternions && !columns.bodies.empty())
-    return lines.wrong("Rotation Type Quaternion is expected: export anew with it");
-  if (columns.time < 0 || columns.bodies.size() + columns.markers.size() == 0)
+  out.columns = motive_columns(head);
+  if (out.columns.time < 0 || out.columns.bodies.size() + out.columns.markers.size() == 0)
     return lines.wrong(
         "a Time column, and a Rigid Body with rotation and position or a Marker are expected");
+  if (!quaternions && !out.columns.bodies.empty())
+    return lines.wrong("Rotation Type Quaternion is expected: export anew with it");
+  return out;
+}
+}  // namespace
+
+core::Result<Motion> read_motive(const fs::path& path) {
+  Lines lines(path);
+  if (!lines.next()) return Error{Errc::bad_input, fmt::format("{}: is empty", path.string())};
+  const auto header = motive_header(lines);
+  if (!header) return header.error();
+  const MotiveColumns& columns = header->columns;
+  Motion out;
+  out.rate_Hz = header->rate_Hz;
   double last_s = -1e300;
   for (std::size_t frame = 0; lines.next(); ++frame) {
     if (frame == kMaxFrames) return lines.too_many();
     const auto cells = split(lines.line(), ',');
     if (cells.size() <= std::size_t(columns.time)) continue;
     const auto t_s = number(cells[std::size_t(columns.time)]);
-    if (!t_s)
-      return lines.wrong(
-          fmt::format("'{}' is no time", core::one_line(cells[std::size_t(columns.time)], 64)));
-    if (*t_s <= last_s) return lines.wrong("time does not run forward");
+    if (!t_s || *t_s <= last_s) return lines.wrong("a time that runs forward is expected");
     last_s = *t_s;
     for (const auto& [name, at] : columns.bodies)
-      if (const auto pose = motive_pose(cells, at, unit_m)) add(out.bodies[name], *t_s, *pose);
+      if (const auto pose = motive_pose(cells, at, header->unit_m))
+        add(out.bodies[name], *t_s, *pose);
     for (const auto& [name, at] : columns.markers)
-      if (const auto point = motive_point(cells, at, unit_m)) {
+      if (const auto point = motive_point(cells, at, header->unit_m)) {
         out.markers[name].t_s.push_back(*t_s);
         out.markers[name].p_C_m.push_back(*point);
       }
@@ -300,12 +309,21 @@ core::Result<Motion> read_motive(const fs::path& path) {
   return out;
 }
 
+namespace {
+/// Bodies of our own CSV, by the header's NAME.px_m.
+std::vector<std::string> plain_bodies(const std::vector<std::string>& header) {
+  std::vector<std::string> out;
+  for (const std::string& name : header)
+    if (name.ends_with(".px_m")) out.push_back(name.substr(0, name.size() - 5));
+  return out;
+}
+}  // namespace
+
 core::Result<Motion> read_plain(const fs::path& path) {
   const auto header = trial::csv_header(path);
   if (!header) return header.error();
-  std::vector<std::string> bodies, columns{"t_s"};
-  for (const std::string& name : *header)
-    if (name.ends_with(".px_m")) bodies.push_back(name.substr(0, name.size() - 5));
+  const std::vector<std::string> bodies = plain_bodies(*header);
+  std::vector<std::string> columns{"t_s"};
   if (bodies.empty())
     return Error{
         Errc::bad_input,

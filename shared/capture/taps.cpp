@@ -10,6 +10,7 @@ using math::Vec3;
 
 constexpr double kSoonest_s = 0.12, kLatest_s = 1.5;
 constexpr double kBetween = 1.0 / 3.0, kLeastHeight = 0.5;
+constexpr double kLevels = 0.8;  // each is the next one's share
 constexpr double kLeastForce_N = 0.5, kLeastWay_m = 0.002;
 
 struct Peak {
@@ -46,11 +47,10 @@ std::vector<Peak> peaks_of(std::span<const double> t_s, std::span<const double> 
 
 /// Runs of `count` peaks in a row that look like taps; `low` gives the least value between two.
 template <class Low>
-std::vector<TapRun> runs_of(const std::vector<Peak>& peaks, int count, const Low& low) {
-  std::vector<TapRun> out;
-  const auto n = std::size_t(count);
+void add_runs(std::span<const Peak> peaks, std::size_t n, const Low& low,
+              std::vector<TapRun>& out) {
   for (std::size_t first = 0; first + n <= peaks.size(); ++first) {
-    const std::span<const Peak> run(&peaks[first], n);
+    const auto run = peaks.subspan(first, n);
     const double highest = std::ranges::max(run, {}, &Peak::height).height;
     bool fits = true;
     for (std::size_t k = 0; k < n && fits; ++k) {
@@ -64,8 +64,24 @@ std::vector<TapRun> runs_of(const std::vector<Peak>& peaks, int count, const Low
     if (!fits) continue;
     TapRun found;
     for (const Peak& p : run) found.at_s.push_back(p.t_s), found.height.push_back(p.height);
-    out.push_back(std::move(found));
+    if (std::ranges::find(out, found.at_s, &TapRun::at_s) == out.end())
+      out.push_back(std::move(found));
   }
+}
+
+/// The same among all peaks over a level, for each level: small bumps between taps, and noise, do
+/// not break a run.
+template <class Low>
+std::vector<TapRun> runs_of(std::vector<Peak> peaks, int count, const Low& low) {
+  std::vector<TapRun> out;
+  double level = 0.0;
+  while (peaks.size() >= std::size_t(count)) {
+    add_runs(peaks, std::size_t(count), low, out);
+    const double lowest = std::ranges::min(peaks, {}, &Peak::height).height;
+    level = std::max(level / kLevels, lowest / kLevels);
+    std::erase_if(peaks, [&](const Peak& p) { return p.height < level; });
+  }
+  std::ranges::sort(out, {}, [](const TapRun& run) { return run.at_s.front(); });
   return out;
 }
 

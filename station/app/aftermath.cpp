@@ -34,6 +34,21 @@ std::string answer_text(const TrialReport& report) {
   return fmt::format("{}, confidence {:.2f}", wall, *report.answer->confidence);
 }
 
+std::string headset_text(const core::Json& figures) {
+  const std::string ended = figures.at("ended").get<std::string>();
+  return fmt::format(
+      "headset{}: {} frames at {:.0f} Hz, {} dropped, {} without tracking, frame p50 {:.1f} ms, "
+      "p99 "
+      "{:.1f} ms{}{}",
+      figures.at("simulated").get<bool>() ? " (SIMULATED runtime)" : "",
+      figures.at("frames").get<std::uint64_t>(), figures.at("rate_Hz").get<double>(),
+      figures.at("dropped_frames").get<std::uint64_t>(),
+      figures.at("untracked_frames").get<std::uint64_t>(), figures.at("frame_p50_ms").get<double>(),
+      figures.at("frame_p99_ms").get<double>(),
+      figures.at("aligned").get<bool>() ? "" : ", room not aligned",
+      ended.empty() ? "" : "; ended before the trial: " + ended);
+}
+
 void print_scores(const session::Scores& scores) {
   for (const auto& [info, score] : scores)
     if (score.value) fmt::print("  {:<34} {:>10.4g} {}\n", info.label, *score.value, info.unit);

@@ -15,6 +15,8 @@ core::Result<std::optional<trial::Answer>> answer_of(const Options& options,
                                                      const std::optional<trial::Answer>& simulated);
 
 std::string answer_text(const session::TrialReport& report);
+/// One line on the headset's view.
+std::string headset_text(const core::Json& figures);
 void print_scores(const session::Scores& scores);
 core::Json json_of(const session::TrialReport& report, const session::Scores& scores);
 

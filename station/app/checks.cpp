@@ -58,7 +58,7 @@ core::Result<void> run_shown(
     if (asked_to_stop() || outside.stopped()) stop = true;
   }
   thread.join();
-  shown(1.0);
+  if (*outcome) shown(1.0);
   return *outcome;
 }
 
@@ -72,6 +72,16 @@ void say_calibration_due(const session::StationFolder& folder, const std::string
   else if (!device.starts_with("sim-"))
     line = fmt::format("{} was never calibrated here: run `tractus-station calibrate`", device);
   if (!line.empty()) std::fprintf(stderr, "warning: %s\n", line.c_str());
+}
+
+session::ProbingWatch warned(session::ProbingWatch inner, const session::StationFolder& folder,
+                             const std::string& device) {
+  return [inner = std::move(inner), &folder, device,
+          said = false](const session::ProbingGlimpse& seen) mutable {
+    if (!said) say_calibration_due(folder, device);
+    said = true;
+    return inner(seen);
+  };
 }
 
 }  // namespace app

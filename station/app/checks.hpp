@@ -49,7 +49,11 @@ core::Result<void> check_whole_rig(Checked& checked);
 /// Draws a picture as in a trial: a small simulated block of bone.
 check::Finding check_display(Show show);
 
-/// Before a trial, to standard error: one line when the device's calibration is due or over.
+/// To standard error: one line when the device's calibration is due or over, or a machine never had
+/// one. For a trial that begins.
 void say_calibration_due(const session::StationFolder& folder, const std::string& device);
+/// `inner`, and that line when it is called first: the trial has begun.
+session::ProbingWatch warned(session::ProbingWatch inner, const session::StationFolder& folder,
+                             const std::string& device);
 
 }  // namespace app

@@ -16,6 +16,7 @@ core::Result<int> upload_trials(const Options& options);
 core::Result<int> run_assigned(const Options& options);
 core::Result<int> enrol_station(const Options& options);
 core::Result<int> show_limits(const Options& options);
+core::Result<int> align_room(const Options& options);
 core::Result<int> trust_signer(const Options& options);
 core::Result<int> record_room(const Options& options);
 core::Result<int> self_test(const Options& options);

@@ -1,60 +1,162 @@
 #include "station/app/onlooker.hpp"
 
+#include <cstdio>
+
+#include "station/headset/alignment.hpp"
 #include "station/loop/drilling.hpp"
+#include "station/loop/placement.hpp"
 
 namespace app {
 namespace {
 constexpr int kWidth_px = 1280, kHeight_px = 800;
+constexpr auto kUntilSeen = std::chrono::seconds(10);
 
 constexpr int kLooksPerBone = 10;  // a third of a second: the whole image goes to the graphics
 
 view::Scene scene_of(const session::PreparedCase& prepared, const volume::Volume& bone) {
   return {bone, prepared.model.transfer, prepared.opened.definition.tract, prepared.model.base};
 }
-}  // namespace
 
-core::Result<Onlooker> Onlooker::make(const session::PreparedCase& prepared, Show show,
-                                      std::filesystem::path picture) {
-  Onlooker made;
-  made.prepared_ = &prepared;
-  made.picture_ = std::move(picture);
-  if (show != Show::none)
-    if (auto opened = made.open(show == Show::window ? view::Mode::window : view::Mode::offscreen);
-        !opened)
-      return opened.error();
-  return made;
+/// The smallest box with both in it.
+volume::Box around(const volume::Box& a, const volume::Box& b) {
+  volume::Box out = a;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    out.begin[axis] = std::min(a.begin[axis], b.begin[axis]);
+    out.end[axis] = std::max(a.end[axis], b.end[axis]);
+  }
+  return out;
 }
 
-core::Result<void> Onlooker::open(view::Mode mode) {
-  auto view = view::View::make(scene_of(*prepared_, bone_ ? *bone_ : prepared_->volume), mode,
-                               kWidth_px, kHeight_px);
-  if (!view) return view.error();
-  view_ = std::move(*view);
-  return {};
-}
-
-Onlooker::Moment Onlooker::moment(const loop::Live& live) const {
-  Moment now;
+/// What the loop says, as something to draw.
+headset::Moment moment_of(const session::PreparedCase& prepared, const loop::Live& live) {
+  headset::Moment now;
   now.state.X_VH = {{live.p_VH_m[0], live.p_VH_m[1], live.p_VH_m[2]},
                     {live.q_VH[0], live.q_VH[1], live.q_VH[2], live.q_VH[3]}};
   now.state.deflection_m = {live.deflection_m[0], live.deflection_m[1]};
   now.state.wrench_H.force_N = {live.rendered_force_N[0], live.rendered_force_N[1],
                                 live.rendered_force_N[2]};
-  now.tip_m = prepared_->runtime.law().tip_m(now.state.X_VH, now.state.deflection_m);
+  now.tip_m = prepared.runtime.law().tip_m(now.state.X_VH, now.state.deflection_m);
   return now;
+}
+
+/// The alignment that holds for this device, if there is one.
+core::Result<std::optional<math::Pose>> room_of(const Look& look) {
+  auto kept = headset::kept_alignment(look.data);
+  if (!kept) return kept.error();
+  if (*kept && (*kept)->device == look.device) return std::optional((*kept)->alignment.X_SD);
+  return std::optional<math::Pose>{};
+}
+
+}  // namespace
+
+core::Result<Onlooker> Onlooker::make(const session::PreparedCase& prepared, const Look& look) {
+  Onlooker made;
+  made.prepared_ = &prepared;
+  made.picture_ = look.picture;
+  if (auto opened = made.open(look); !opened) return opened.error();
+  return made;
+}
+
+core::Result<void> Onlooker::open(const Look& look) {
+  switch (look.show) {
+    case Show::none:
+      return {};
+    case Show::window:
+      return open(view::Mode::window);
+    case Show::offscreen:
+      return open(view::Mode::offscreen);
+    case Show::headset:
+    case Show::headset_or_window:
+      break;
+  }
+  auto opened = open_headset(look);
+  const bool fall = look.show == Show::headset_or_window && !opened &&
+                    opened.error().code == core::Errc::unavailable;
+  if (!fall) return opened;
+  std::fprintf(stderr, "warning: %s; a window instead\n", opened.error().what.c_str());
+  return open(view::Mode::window);
+}
+
+core::Result<void> Onlooker::open_headset(const Look& look) {
+  auto X_SD = room_of(look);
+  if (!X_SD) return X_SD.error();
+  // With the model's pose offset left out: it is in the poses that the loop gives, not in the room.
+  const auto& definition = prepared_->opened.definition;
+  const math::Pose X_VD =
+      loop::place_device(definition.tract, prepared_->model.base.length_m, math::Vec3::Zero());
+  auto started = headset::HeadsetThread::start(
+      {.scene = scene_of(*prepared_, prepared_->volume),
+       .X_VD = X_VD,
+       .X_SD = *X_SD,
+       .latest = [&prepared = *prepared_, followed = live_]() -> std::optional<headset::Moment> {
+         const loop::LiveState* live = followed->load();
+         const auto seen = live ? live->read() : std::nullopt;
+         if (!seen) return std::nullopt;
+         return moment_of(prepared, *seen);
+       },
+       .carved =
+           [carved = carved_](const headset::TakeBone& take) {
+             const std::unique_lock held(carved->mutex, std::try_to_lock);
+             if (!held || !carved->fresh) return;
+             take(*carved->fresh, *carved->bone);
+             carved->fresh.reset();
+           }});
+  if (!started) return started.error();
+  headset_ = std::move(*started);
+  if (!*X_SD)
+    std::fprintf(stderr,
+                 "headset: the room is not aligned with %s: the scene stands before the person "
+                 "(tractus-station align)\n",
+                 look.device.c_str());
+  if (!headset_->wait_until_seen(kUntilSeen))
+    std::fprintf(stderr, "warning: headset: nobody sees the scene yet; the trial begins\n");
+  return {};
+}
+
+void Onlooker::tell_headset() {
+  const headset::Seen now = headset_->seen();
+  if (now == told_) return;
+  told_ = now;
+  const char* words = "shows the scene";
+  if (now == headset::Seen::waiting) words = "shows nothing just now; the trial goes on";
+  if (now == headset::Seen::tracking_lost) words = "tracking lost; the trial goes on";
+  if (now == headset::Seen::over) words = "its view is over; the trial goes on";
+  std::fprintf(stderr, "headset: %s\n", words);
+}
+
+core::Json Onlooker::end_headset() {
+  if (!headset_) return {};
+  const core::Json figures = headset_->end().to_json();
+  headset_.reset();
+  return figures;
+}
+
+core::Result<void> Onlooker::open(view::Mode mode) {
+  auto view =
+      view::View::make(scene_of(*prepared_, carved_->bone ? *carved_->bone : prepared_->volume),
+                       mode, kWidth_px, kHeight_px);
+  if (!view) return view.error();
+  view_ = std::move(*view);
+  return {};
 }
 
 void Onlooker::look_at_bone(loop::Drilling& drilling) {
   drilling_ = &drilling;
-  if (!bone_) bone_ = prepared_->volume;
-  const auto box = drilling.show(*bone_);
-  if (box && view_) view_->carve_away(*box, *bone_);
+  const std::unique_lock held(carved_->mutex, std::try_to_lock);
+  if (!held) return;  // the headset is at it: the next look has it
+  auto& bone = carved_->bone;
+  if (!bone) bone = prepared_->volume;
+  const auto box = drilling.show(*bone);
+  if (!box) return;
+  if (view_) view_->carve_away(*box, *bone);
+  carved_->fresh = carved_->fresh ? around(*carved_->fresh, *box) : *box;
 }
 
 bool Onlooker::look(const session::Glimpse& seen) {
-  if (!view_ && picture_.empty()) return true;
+  if (headset_) tell_headset();
+  if (!view_ && !headset_ && picture_.empty()) return true;
   if (seen.drilling && looks_++ % kLooksPerBone == 0) look_at_bone(*seen.drilling);
-  const Moment now = moment(seen.live);
+  const Moment now = moment_of(*prepared_, seen.live);
   path_m_.push_back(now.tip_m);
   const volume::Tract& tract = prepared_->opened.definition.tract;
   if (!deepest_ || tract.depth_of(now.tip_m) > tract.depth_of(deepest_->tip_m)) deepest_ = now;
@@ -63,6 +165,7 @@ bool Onlooker::look(const session::Glimpse& seen) {
 }
 
 core::Result<void> Onlooker::leave_picture() {
+  end_headset();  // one at a time draws
   if (picture_.empty() || !deepest_) return {};
   if (drilling_) look_at_bone(*drilling_);
   if (!view_)

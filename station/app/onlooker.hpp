@@ -3,46 +3,71 @@
 
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <vector>
 
+#include "station/headset/headset_thread.hpp"
 #include "station/session/trial_run.hpp"
 #include "station/view/view.hpp"
 
 namespace app {
 
-enum class Show { none, window, offscreen };
+enum class Show { none, window, offscreen, headset, headset_or_window };
+
+/// How a trial is looked at.
+struct Look {
+  Show show = Show::none;
+  std::filesystem::path picture;  ///< where a PNG of the trial is left at its end; empty: none. A
+                                  ///< picture without a view is drawn off screen
+  std::filesystem::path data;     ///< the station's folder, which may hold an alignment of the room
+  std::string device;             ///< that an alignment must be of
+};
 
 class Onlooker {
  public:
-  /// @param picture  where a PNG of the trial is left at its end; empty: none. A picture without a
-  /// view is drawn off screen. Errors: unavailable (no display, no OpenGL).
-  static core::Result<Onlooker> make(const session::PreparedCase& prepared, Show show,
-                                     std::filesystem::path picture);
+  /// Before the trial is made, so that nothing is left of it when there is nothing to look with.
+  /// With a headset this returns when somebody sees the scene, or after a while. `prepared`
+  /// outlives this. Errors: unavailable (no display, no OpenGL, no headset), bad_input
+  /// (alignment.json).
+  static core::Result<Onlooker> make(const session::PreparedCase& prepared, const Look& look);
+  /// Whose state the headset shows, as often as it likes, until `end_headset`.
+  void follow(const loop::LiveState& live) { live_->store(&live); }
 
   /// Looks at the latest state, draws it when there is a view. False when a person closed the
   /// window.
   bool look(const session::Glimpse& seen);
+  /// The headset's figures, for the trial's report; null without one. Its view ends here.
+  core::Json end_headset();
   /// Leaves the picture: the probe where its tip was deepest, and the tip's way. While the trial
   /// that was looked at is there.
   core::Result<void> leave_picture();
 
  private:
-  struct Moment {
-    view::ProbeState state;
-    math::Vec3 tip_m;
-  };
+  using Moment = headset::Moment;
   Onlooker() = default;
-  Moment moment(const loop::Live& live) const;
+  core::Result<void> open(const Look& look);
   core::Result<void> open(view::Mode mode);
+  core::Result<void> open_headset(const Look& look);
+  void tell_headset();
   void look_at_bone(loop::Drilling& drilling);
 
   const session::PreparedCase* prepared_ = nullptr;
   std::filesystem::path picture_;
   std::unique_ptr<view::View> view_;
+  using Followed = std::atomic<const loop::LiveState*>;
+  std::shared_ptr<Followed> live_ = std::make_shared<Followed>(nullptr);  ///< the headset's too
+  std::unique_ptr<headset::HeadsetThread> headset_;
+  headset::Seen told_ = headset::Seen::shown;  ///< the last that was said of it
   std::vector<math::Vec3> path_m_;
   loop::Drilling* drilling_ = nullptr;  // of the trial that is looked at
-  std::optional<volume::Volume> bone_;  // as it is drilled; without a drilling the case's stands
+  /// The bone as it is drilled; without a drilling the case's stands.
+  struct Carved {
+    std::mutex mutex;  ///< this thread writes, the headset's takes over; neither waits long
+    std::optional<volume::Volume> bone;
+    std::optional<volume::Box> fresh;  ///< what the headset has not taken over yet
+  };
+  std::shared_ptr<Carved> carved_ = std::make_shared<Carved>();
   int looks_ = 0;
   std::optional<Moment> deepest_;
 };

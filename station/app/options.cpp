@@ -1,12 +1,12 @@
 #include "station/app/options.hpp"
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <ctime>
 #include <limits>
 #include <map>
 
 #include "station/app/deeds.hpp"
+#include "station/app/option_parts.hpp"
 
 namespace app {
 namespace {
@@ -23,13 +23,13 @@ constexpr const char* kExamples = R"(Examples:
   tractus-station enrol  --server https://sim.example.org:8480 --authority authority.pem --code C --token-file st.token
   tractus-station assigned --badge 4711 --data st --server URL --token-file st.token
   tractus-station --device lambda6 --sdk /opt/sdk --case 3f9ac2d1 --data st
+  tractus-station --device lambda6 --case 3f9ac2d1 --data st --view headset
+  tractus-station align  --device lambda6 --data st --fixture table.json   where the device stands in the room
   tractus-station sync   --data st --server URL --token-file st.token
   tractus-station upload --data st --server URL --token-file st.token --wait 600
   tractus-station record --netft 192.168.1.1 --igtl tracker.local --body probe --body bone --out room/
   tractus-station self-test --device lambda6 --data st --page today.html
   tractus-station calibrate --device rig --address 192.168.1.40:1502 --data st --who Ada)";
-
-constexpr std::size_t kLongestName = 64;
 
 const std::map<std::string, session::Speed> kSpeeds{{"real", session::Speed::real},
                                                     {"fast", session::Speed::fast}};
@@ -38,31 +38,6 @@ const std::map<std::string, loop::Passivity> kPassivities{
     {"observed", loop::Passivity::observed}, {"controlled", loop::Passivity::controlled}};
 
 const std::map<std::string, bool> kTools{{"probe", false}, {"burr", true}};
-
-const std::map<std::string, Show> kShows{
-    {"none", Show::none}, {"window", Show::window}, {"offscreen", Show::offscreen}};
-
-/// A subcommand that is done by `deed`.
-CLI::App* add_deed(CLI::App& app, Options& options, Deed deed, const char* name, const char* what) {
-  CLI::App* added = app.add_subcommand(name, what);
-  added->callback([&options, deed] { options.deed = deed; });
-  return added;
-}
-
-void add_data(CLI::App& app, Options& options, bool needed) {
-  auto* data = app.add_option("--data", options.data, "the station's folder; made when missing");
-  if (needed) data->required();
-  app.add_flag("--json", options.json, "one JSON document on standard output");
-}
-
-void add_server(CLI::App& app, Options& options, bool needed) {
-  auto* url = app.add_option("--server", options.server_url, "http(s)://HOST:PORT");
-  auto* token = app.add_option("--token-file", options.token_file, "file with the station's token");
-  url->needs(token);
-  app.add_option("--authority", options.authority,
-                 "PEM file of the certificate authority to trust (the server's tls/authority.pem)");
-  if (needed) url->required();
-}
 
 /// "2026-03-02T09:30Z" → microseconds since 1970.
 std::optional<std::int64_t> utc_from(const std::string& text) {
@@ -110,8 +85,7 @@ void add_tune(CLI::App& app, Options& options) {
       ->capture_default_str();
   app.add_option("--seed", options.rig.seed, "of sim-rig's simulated surgeon")
       ->capture_default_str();
-  app.add_option("--speed", options.rig.speed, "real or fast")
-      ->transform(CLI::CheckedTransformer(kSpeeds));
+  app.add_option("--speed", options.rig.speed, "real or fast")->transform(word_of(kSpeeds));
   app.add_option("--duration", options.rig.duration_s, "s, of a trial at most")
       ->check(CLI::Range(1.0, 3600.0))
       ->capture_default_str();
@@ -124,48 +98,6 @@ void add_tune(CLI::App& app, Options& options) {
 }
 
 /// What self-test and calibrate share.
-void add_check(CLI::App& app, Options& options) {
-  add_data(app, options, true);
-  add_server(app, options, false);
-  app.add_option("--device", options.setup.device, "lambda6, sim-lambda6, rig or sim-rig")
-      ->check(CLI::IsMember({"lambda6", "sim-lambda6", "rig", "sim-rig"}))
-      ->capture_default_str();
-  app.add_option("--sdk", options.setup.sdk, "lambda6: the vendor's SDK, its folder or library");
-  app.add_option("--address", options.rig.address,
-                 "of the rig: HOST:PORT, or a serial line /dev/…[@BAUD]")
-      ->capture_default_str();
-  app.add_option("--rate", options.rig.rate_Hz, "Hz, of the rig's loop")
-      ->check(CLI::Range(100.0, 1000.0))
-      ->capture_default_str();
-  app.add_option("--page", options.page, "the report as a page to print, HTML");
-  app.add_flag("--stand-by", options.stand_by,
-               "a person stands by and knows what will move: nobody is asked at the terminal");
-}
-
-void add_self_test(CLI::App& app, Options& options) {
-  add_check(app, options);
-  app.add_option("--for", options.for_s, "s, that a hand moves the handle to its ends")
-      ->check(CLI::Range(1.0, 120.0))
-      ->capture_default_str();
-  app.add_option("--view", options.show, "the display that is timed: window, offscreen or none")
-      ->transform(CLI::CheckedTransformer(kShows))
-      ->default_str("offscreen");
-  app.footer(
-      "Exit 0 all passed, 1 something did not, 2 bad use. A simulated device needs nobody.\n"
-      "Example:\n  tractus-station self-test --device lambda6 --data st --page today.html");
-}
-
-void add_calibrate(CLI::App& app, Options& options) {
-  add_check(app, options);
-  app.add_option("--who", options.who, "who does it, as the record names them")->required();
-  app.add_option("--due-days", options.due_days, "days until the next one")
-      ->check(CLI::Range(1, 3650))
-      ->capture_default_str();
-  app.footer(
-      "lambda6: its handle moves by itself to find its zero. Exit 0 noted, 1 not, 2 bad use.\n"
-      "Example:\n  tractus-station calibrate --device lambda6 --data st --who Ada --due-days 90");
-}
-
 void add_run(CLI::App& app, Options& options) {
   app.add_option("--device", options.setup.device,
                  "lambda6 or sim-lambda6; rig or sim-rig for a scenario")
@@ -173,7 +105,7 @@ void add_run(CLI::App& app, Options& options) {
   app.add_option("--tool", options.burr,
                  "probe: the channel is felt; burr: the bone is drilled while the device's button "
                  "is held (a case of tractus carve --no-channel)")
-      ->transform(CLI::CheckedTransformer(kTools))
+      ->transform(word_of(kTools))
       ->default_str("probe");
   app.add_option("--burr", options.burr_file,
                  "JSON file with the burr's numbers, with --tool burr");
@@ -198,17 +130,20 @@ void add_run(CLI::App& app, Options& options) {
       ->capture_default_str();
   app.add_option("--speed", options.setup.speed,
                  "real, or fast: simulated time, as fast as it goes")
-      ->transform(CLI::CheckedTransformer(kSpeeds));
+      ->transform(word_of(kSpeeds));
   app.add_option("--passivity", options.setup.passivity,
                  "observed: energy given to the hand is logged; controlled: and damped away")
-      ->transform(CLI::CheckedTransformer(kPassivities));
+      ->transform(word_of(kPassivities));
   app.add_option("--answer", options.answer, "what to answer instead of the simulated hand")
       ->check(CLI::IsMember({"none", "medial", "lateral", "superior", "inferior", "anterior"}));
   app.add_option("--trials", options.trials, "how many, one after the other")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  app.add_option("--view", options.show, "window, offscreen (drawn, not shown) or none")
-      ->transform(CLI::CheckedTransformer(kShows))
+  app.add_option("--view", options.show,
+                 "window; headset (OpenXR); headset-or-window: a window when there is no headset; "
+                 "offscreen "
+                 "(drawn, not shown); none")
+      ->transform(word_of(shows()))
       ->default_str("none");
   app.add_option("--picture", options.picture,
                  "PNG of the (last) trial: bone cut open, probe, the tip's way");
@@ -232,7 +167,7 @@ void add_study(CLI::App& app, Options& options) {
       ->check(CLI::Range(0.0, 9e15))
       ->capture_default_str();
   app.add_option("--speed", options.rig.speed, "real, or fast: simulated time, sim-rig alone")
-      ->transform(CLI::CheckedTransformer(kSpeeds));
+      ->transform(word_of(kSpeeds));
   add_started(app, options);
   app.add_option("--trials", options.trials, "at most so many now; all that are left if not given")
       ->check(CLI::Range(1, 1000));
@@ -262,15 +197,14 @@ void add_assigned(CLI::App& app, Options& options) {
   app.add_option("--duration", options.setup.duration_s, "s, of a palpation trial")
       ->check(CLI::Range(1.0, 3600.0))
       ->capture_default_str();
-  app.add_option("--speed", options.setup.speed, "real or fast")
-      ->transform(CLI::CheckedTransformer(kSpeeds));
+  app.add_option("--speed", options.setup.speed, "real or fast")->transform(word_of(kSpeeds));
   app.add_option("--answer", options.answer, "what to answer instead of the simulated hand")
       ->check(CLI::IsMember({"none", "medial", "lateral", "superior", "inferior", "anterior"}));
   app.add_option("--trials", options.trials, "at most so many now")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  app.add_option("--view", options.show, "window, offscreen or none")
-      ->transform(CLI::CheckedTransformer(kShows))
+  app.add_option("--view", options.show, "window, headset, headset-or-window, offscreen or none")
+      ->transform(word_of(shows()))
       ->default_str("none");
 }
 
@@ -288,50 +222,6 @@ void add_trust(CLI::App& app, Options& options) {
   auto* key = app.add_option("--signer", options.signer_hex, "public key, 64 hexadecimal digits");
   auto* bundle = app.add_option("--case", options.signer_of_case, "a case: its signer's key");
   key->excludes(bundle);
-}
-
-void add_record(CLI::App& app, Options& options) {
-  sensors::RecordSetup& record = options.record;
-  app.add_option("--out", options.room, "the recording's new folder; must not exist")->required();
-  app.add_option("--netft", record.netft_host, "ATI Net F/T sensor: its host name or address");
-  app.add_option("--igtl", record.igtl_host, "motion capture over OpenIGTLink: its host");
-  app.add_option("--body", record.bodies, "of the capture system, once for each: the tool first")
-      ->needs("--igtl");
-  app.add_option("--for", record.for_s, "s; ends sooner by Ctrl-C, which keeps what there is")
-      ->check(CLI::Range(0.1, 86'400.0))
-      ->capture_default_str();
-  app.add_flag("--bias", record.bias,
-               "the sensor takes what it feels now as its zero; without, assemble takes it off");
-  const auto port = CLI::Range(1, 65'535);
-  app.add_option("--netft-port", record.netft_port, "UDP, of RDT")
-      ->check(port)
-      ->capture_default_str();
-  app.add_option("--http-port", record.http_port, "of the sensor's page")
-      ->check(port)
-      ->capture_default_str();
-  app.add_option("--igtl-port", record.igtl_port, "TCP")->check(port)->capture_default_str();
-  app.add_flag("--json", options.json, "one JSON document on standard output");
-  app.footer(
-      "Example:\n  tractus-station record --netft 192.168.1.1 --igtl tracker.local --body probe "
-      "--body vertebra --for 90 --out room/\nThen tap five times, palpate, tap five times again; "
-      "complete room/assembly.json; tractus assemble.");
-}
-
-int refuse(const std::string& why) {
-  std::fprintf(stderr, "tractus-station: %s (see --help)\n", why.c_str());
-  return 2;
-}
-
-std::optional<int> check_record(const Options& options) {
-  const sensors::RecordSetup& record = options.record;
-  if (record.netft_host.empty() && record.igtl_host.empty())
-    return refuse("record: --netft or --igtl is expected, or both");
-  if (!record.igtl_host.empty() && record.bodies.empty())
-    return refuse("record: --igtl: --body is expected, once for each body that is kept");
-  for (const std::string& body : record.bodies)
-    if (body.empty() || body.find_first_of(",\"\n\r") != std::string::npos)
-      return refuse("record: --body: a name without commas, quotes and line breaks is expected");
-  return std::nullopt;
 }
 
 /// Palpation or probing? What does not fit is refused.
@@ -360,6 +250,41 @@ std::optional<int> check_run(const CLI::App& app, Options& options) {
   return std::nullopt;
 }
 }  // namespace
+
+CLI::App* add_deed(CLI::App& app, Options& options, Deed deed, const char* name, const char* what) {
+  CLI::App* added = app.add_subcommand(name, what);
+  added->callback([&options, deed] { options.deed = deed; });
+  return added;
+}
+
+void add_data(CLI::App& app, Options& options, bool needed) {
+  auto* data = app.add_option("--data", options.data, "the station's folder; made when missing");
+  if (needed) data->required();
+  app.add_flag("--json", options.json, "one JSON document on standard output");
+}
+
+void add_server(CLI::App& app, Options& options, bool needed) {
+  auto* url = app.add_option("--server", options.server_url, "http(s)://HOST:PORT");
+  auto* token = app.add_option("--token-file", options.token_file, "file with the station's token");
+  url->needs(token);
+  app.add_option("--authority", options.authority,
+                 "PEM file of the certificate authority to trust (the server's tls/authority.pem)");
+  if (needed) url->required();
+}
+
+int refuse(const std::string& why) {
+  std::fprintf(stderr, "tractus-station: %s (see --help)\n", why.c_str());
+  return 2;
+}
+
+const std::map<std::string, Show>& shows() {
+  static const std::map<std::string, Show> all{{"none", Show::none},
+                                               {"window", Show::window},
+                                               {"offscreen", Show::offscreen},
+                                               {"headset", Show::headset},
+                                               {"headset-or-window", Show::headset_or_window}};
+  return all;
+}
 
 Parsed parse(int argc, char** argv) {
   Parsed out;
@@ -398,23 +323,10 @@ Parsed parse(int argc, char** argv) {
   add_tune(*add_deed(app, options, tune_scenario, "tune",
                      "feel a scenario and nudge its eight parameters by keys; save new versions"),
            options);
-  CLI::App* limits =
-      add_deed(app, options, show_limits, "limits",
-               "how much force a hand gets; --restore takes back what was lowered from afar");
-  add_data(*limits, options, true);
-  limits->add_flag("--restore", options.restore, "this station's own limits hold again");
-  CLI::App* test = add_deed(app, options, self_test, "self-test",
-                            "device, loop, display, disk and clock put to the question");
-  add_self_test(*test, options);
-  add_calibrate(*add_deed(app, options, calibrate, "calibrate",
-                          "find the device's zero, check it, note it and when it is due again"),
-                options);
   add_trust(*add_deed(app, options, trust_signer, "trust",
                       "take cases that are signed by this key from now on"),
             options);
-  add_record(*add_deed(app, options, record_room, "record",
-                       "a force/torque sensor and motion capture at once, for a measurement set"),
-             options);
+  add_technician(app, options);
 
   try {
     app.parse(argc, argv);
@@ -423,11 +335,9 @@ Parsed parse(int argc, char** argv) {
     return out;
   }
   if (study->parsed()) set_study(*study, options);
-  if (test->parsed() && test->count("--view") == 0) options.show = Show::offscreen;
-  if (options.who.size() > kLongestName) out.leave = refuse("--who: at most 64 bytes");
   if (options.deed == trust_signer && options.signer_hex.empty() && options.signer_of_case.empty())
     out.leave = refuse("trust: --signer or --case is expected");
-  if (options.deed == record_room) out.leave = check_record(options);
+  if (auto refused = check_technician(options)) out.leave = refused;
   if (options.deed == run_trials) out.leave = check_run(app, options);
   return out;
 }

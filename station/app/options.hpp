@@ -55,6 +55,9 @@ struct Options {
   bool stand_by = false;  ///< somebody does: nobody is asked at the terminal
   // upload
   double wait_s = 0.0;
+  // align
+  std::filesystem::path fixture;
+  double tip_mm = 0.0, limit_mm = 5.0;
   bool restore = false;  ///< limits: those of config.json hold again
   // trust
   std::string signer_hex;
@@ -63,6 +66,14 @@ struct Options {
   sensors::RecordSetup record;
   std::filesystem::path room;  ///< the new folder
 };
+
+/// How its palpation trials are looked at.
+inline Look look_of(const Options& options) {
+  return {.show = options.show,
+          .picture = options.picture,
+          .data = options.data,
+          .device = options.setup.device};
+}
 
 /// Of the n-th trial of this call; nothing when no date was given.
 inline std::optional<std::int64_t> started_of(const Options& options, std::int64_t n) {

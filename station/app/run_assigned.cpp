@@ -55,23 +55,30 @@ core::Result<TrialReport> palpate(const Options& options, Presence& presence,
   setup.outside = presence.outside();
   setup.started_utc_us = started_of(options, number);
   session::Station station(folder, setup);
+  auto onlooker = Onlooker::make(*prepared, look_of(options));
+  if (!onlooker) return onlooker.error();
   if (auto ready = station.prepare(prepared, options.setup.seed + trial.number); !ready)
     return ready.error();
-  auto onlooker = Onlooker::make(*prepared, options.show, {});
-  if (!onlooker) return onlooker.error();
+  onlooker->follow(station.trial()->live());
+  say_calibration_due(folder, options.setup.device);
   const auto watch = [&](const session::Glimpse& seen) {
     return onlooker->look(seen) && !stopped_by_hand();
   };
   if (auto ran = station.run(presence.watched(watch, trial.slot, *prepared)); !ran)
     return ran.error();
   presence.is(Presence::State::questions);
+  const core::Json headset = onlooker->end_headset();
+  if (!headset.is_null())
+    if (auto noted = station.note("headset", headset); !noted) return noted.error();
   std::optional<trial::Answer> said;
   if (station.state() == session::State::answering && !stopped_by_hand()) {
     auto answer = answer_of(options, station.simulated_answer());
     if (!answer) return answer.error();
     said = *answer;
   }
-  return station.answer(said);
+  auto report = station.answer(said);
+  if (report) report->headset = headset;
+  return report;
 }
 
 core::Result<TrialReport> probe(const Options& options, Presence& presence,
@@ -97,7 +104,7 @@ core::Result<TrialReport> probe(const Options& options, Presence& presence,
   setup.outside = presence.outside();
   const auto watch = [](const session::ProbingGlimpse&) { return !stopped_by_hand(); };
   return session::run_probing_trial(
-      folder, task, setup, presence.watched(watch, task),
+      folder, task, setup, warned(presence.watched(watch, task), folder, setup.device),
       [&](const session::ProbingTrialRun& run) -> core::Result<std::optional<trial::Answer>> {
         presence.is(Presence::State::questions);
         return answer_of(options, run.simulated_answer());
@@ -107,9 +114,8 @@ core::Result<TrialReport> probe(const Options& options, Presence& presence,
 core::Result<TrialReport> one_trial(const Options& options, Presence& presence,
                                     const session::StationFolder& folder, const AssignedWork& work,
                                     int number) {
-  const std::string& device = options.setup.device;
-  say_calibration_due(folder, device);
   presence.is(Presence::State::preparing);
+  const std::string& device = options.setup.device;
   const bool is_rig = device == "rig" || device == "sim-rig";
   const bool probing = work.trial->rig == "probing";
   if (is_rig != probing)
@@ -149,6 +155,10 @@ core::Result<Tally> rounds(const Options& options, Presence& presence,
                             {"name", trial.name},
                             {"complete", report->complete},
                             {"fault", report->fault}});
+    if (!report->headset.is_null()) {
+      tally.trials.back()["headset"] = report->headset;
+      if (!options.json) fmt::print("  {}\n", headset_text(report->headset));
+    }
     tally.faulted = !report->complete;
     auto handed = hand_over(options, folder);
     if (!handed) return handed.error();

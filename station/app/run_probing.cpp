@@ -77,10 +77,10 @@ core::Result<TrialReport> one_trial(const Options& options, Presence& presence,
   session::RigSetup setup = options.rig;
   setup.seed = seed;
   setup.outside = presence.outside();
-  say_calibration_due(folder, setup.device);
   presence.is(Presence::State::preparing);
   auto report = session::run_probing_trial(
-      folder, task, setup, presence.watched(watch_of(options, task), task),
+      folder, task, setup,
+      warned(presence.watched(watch_of(options, task), task), folder, setup.device),
       [&](const session::ProbingTrialRun& trial) -> core::Result<std::optional<trial::Answer>> {
         presence.is(Presence::State::questions);
         if (asked_to_stop()) return std::optional<trial::Answer>();

@@ -116,7 +116,6 @@ session::ProbingWatch watch_of(const Options& options) {
 
 core::Result<TrialReport> one_trial(const Study& study, const StudyWork& work,
                                     const SealedTrial& trial) {
-  say_calibration_due(study.folder, study.options.rig.device);
   auto law = study::opened_law(trial.sealed, trial.slot, study.key);
   if (!law) return law.error();
   session::ProbingTask task;
@@ -133,7 +132,8 @@ core::Result<TrialReport> one_trial(const Study& study, const StudyWork& work,
   if (work.simulated && !study.options.skill_given)
     setup.skill = rig::SurgeonParameters::skill_of_experience(work.experience_years.value_or(0.0));
   auto report = session::run_probing_trial(
-      study.folder, task, setup, study.presence.watched(watch_of(study.options), task),
+      study.folder, task, setup,
+      warned(study.presence.watched(watch_of(study.options), task), study.folder, setup.device),
       [&](const session::ProbingTrialRun& run) -> core::Result<std::optional<trial::Answer>> {
         study.presence.is(Presence::State::questions);
         if (asked_to_stop()) return std::optional<trial::Answer>();

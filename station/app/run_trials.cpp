@@ -48,16 +48,20 @@ core::Result<TrialReport> one_trial(const Options& options, Presence& presence,
                                     const session::StationFolder& folder, session::Station& station,
                                     const std::shared_ptr<const session::PreparedCase>& prepared,
                                     std::uint64_t seed) {
-  say_calibration_due(folder, options.setup.device);
   presence.is(Presence::State::preparing);
-  if (auto ready = station.prepare(prepared, seed); !ready) return ready.error();
-  auto onlooker = Onlooker::make(*prepared, options.show, options.picture);
+  auto onlooker = Onlooker::make(*prepared, look_of(options));
   if (!onlooker) return onlooker.error();
+  if (auto ready = station.prepare(prepared, seed); !ready) return ready.error();
+  onlooker->follow(station.trial()->live());
+  say_calibration_due(folder, options.setup.device);
   const core::Progress shown = core::terminal_progress(fmt::format("Trial, seed {}", seed));
   const auto watch =
       presence.watched(watch_of(options, shown, *onlooker), prepared->opened.id, *prepared);
   if (auto ran = station.run(watch); !ran) return ran.error();
   presence.is(Presence::State::questions);
+  const core::Json headset = onlooker->end_headset();
+  if (!headset.is_null())
+    if (auto noted = station.note("headset", headset); !noted) return noted.error();
   if (auto left = onlooker->leave_picture(); !left)
     std::fprintf(stderr, "warning: no picture: %s\n", left.error().what.c_str());
   std::optional<trial::Answer> said;
@@ -68,6 +72,7 @@ core::Result<TrialReport> one_trial(const Options& options, Presence& presence,
     said = *answer;
   }
   auto report = station.answer(said);
+  if (report) report->headset = headset;
   if (report) presence.done(*report);
   return report;
 }
@@ -106,6 +111,7 @@ void print_report(const TrialReport& report, bool fast) {
                report.wake_p50_us, report.wake_p99_us, report.work_p50_us, report.work_p99_us);
   fmt::print("  energy given to the hand beyond what it gave: at most {:.2g} mJ\n",
              1e3 * report.injected_J);
+  if (!report.headset.is_null()) fmt::print("  {}\n", headset_text(report.headset));
   if (report.drilled) print_drilled(*report.drilled);
   for (const auto& warning : report.grant.warnings) fmt::print("  warning: {}\n", warning);
   if (!report.fault.empty()) fmt::print("  FAULT: {}\n", report.fault);

@@ -109,10 +109,10 @@ core::Result<session::TrialReport> one_trial(const Options& options,
   auto task = session::task_of(expert.tuning().now());
   if (!task) return task.error();
   task->operator_name = options.who;
-  say_calibration_due(folder, options.rig.device);
   auto made = session::ProbingTrialRun::make(folder, *task, options.rig);
   if (!made) return made.error();
   session::ProbingTrialRun& trial = **made;
+  say_calibration_due(folder, options.rig.device);
   const auto ran = trial.run([&](const session::ProbingGlimpse&) {
     for (auto c = key(); c; c = key())
       if (!expert.press(*c, trial)) return false;

@@ -40,17 +40,18 @@ std::string spelled(double value, const std::string& unit) {
     const char *of, *as;
     double factor, below;  ///< for values below
   };
-  static constexpr Prefix kPrefixes[] = {{"s", "µs", 1e6, 1e-3},
-                                         {"s", "ms", 1e3, 1.0},
-                                         {"m", "mm", 1e3, 1.0},
-                                         {"rad", "mrad", 1e3, 1.0},
-                                         {"B", "GB", 1e-9, 1e300}};
+  static constexpr Prefix kPrefixes[] = {{"s", "µs", 1e6, 1e-3},     {"s", "ms", 1e3, 1.0},
+                                         {"m", "mm", 1e3, 1.0},      {"rad", "mrad", 1e3, 1.0},
+                                         {"N·m", "mN·m", 1e3, 0.05}, {"B", "GB", 1e-9, 1e300}};
+  const auto shown = [](double number) {
+    return std::abs(number) < 5e-4 ? std::string("0") : fmt::format("{:.3g}", number);
+  };
   for (const Prefix& p : kPrefixes)
-    if (unit == p.of && std::abs(value) < p.below)
-      return fmt::format("{:.3g} {}", value * p.factor, p.as);
-  if (unit.empty()) return fmt::format("{:.3g} %", 100.0 * value);
-  return fmt::format("{:.3g} {}", value, unit);
+    if (unit == p.of && std::abs(value) < p.below) return shown(value * p.factor) + " " + p.as;
+  if (unit.empty()) return shown(100.0 * value) + " %";
+  return shown(value) + " " + unit;
 }
+
 std::string found_of(const Finding& finding) {
   return finding.value ? spelled(*finding.value, finding.unit) : "";
 }

@@ -30,7 +30,7 @@ std::string escaped(const std::string& text) {
 }
 
 constexpr const char* kStyle = R"(
-@page{size:A4;margin:16mm}
+@page{size:A4;margin:13mm}
 body{font:14px/1.45 system-ui,"DejaVu Sans",sans-serif;max-width:48rem;margin:2rem auto;padding:0 1rem;
  color:#14181d;background:#fff}
 h1{font-size:1.6rem;margin:0 0 .2rem}h2{font-size:1.1rem;margin:1.6rem 0 .4rem}
@@ -46,7 +46,8 @@ thead{display:table-header-group}tr{break-inside:avoid}
 .no td:nth-child(2){color:#a3161a;font-weight:700}
 .sign{margin-top:3.5rem;display:flex;gap:2.5rem;break-inside:avoid}
 .sign div{flex:1;border-top:1px solid #14181d;padding-top:.3rem;font-size:.9em}
-@media print{body{margin:0;padding:0;max-width:none;font-size:11pt}})";
+@media print{body{margin:0;padding:0;max-width:none;font-size:8.5pt}
+ td,th{padding:.2rem .4rem}.sign{margin-top:2rem}})";
 
 std::string verdict_of(const SelfTest& test) {
   std::size_t failed = 0;
@@ -95,7 +96,7 @@ std::string Report::to_html(const std::string& station) const {
       escaped(station), kind, kStyle, escaped(version), 1e-9 * double(free_disk_bytes));
   if (self_test) {
     out += fmt::format(
-        "<p>{} UTC. Device: <b>{}</b>{}</p>\n", minute_of(self_test->at_utc_us),
+        "<p>{}. Device: <b>{}</b>{}</p>\n", minute_of(self_test->at_utc_us),
         escaped(self_test->device),
         self_test->simulated ? " <span class=mark>SIMULATED: no machine was tested</span>" : "");
     out += verdict_of(*self_test) + table_of(self_test->findings);

@@ -37,7 +37,7 @@ struct Alignment {
   std::string worst;  ///< the point's name
 };
 
-/// Rigid, by least squares [Umeyama1991, eqs (40)–(42), scale 1; Horn1987 asks the same]:
+/// Rigid, by least squares [Umeyama1991, scale 1; Horn1987 asks the same]:
 ///
 ///     min over R, p:  Σ |p_S,i − (R p_D,i + p)|²
 ///

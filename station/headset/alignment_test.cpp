@@ -174,7 +174,7 @@ TEST(Touching, AScriptedHandLeadsToWhereTheDeviceStands) {
   const math::Pose truth = TouchingHand::stands_at();
   EXPECT_LT((found->X_SD.p - truth.p).norm(), 1e-3);
   EXPECT_LT(found->X_SD.q.angularDistance(truth.q), 2e-3);
-  EXPECT_LT(found->worst_m, 2e-4);
+  EXPECT_LT(found->worst_m, 6e-4);  // the hand misses each point by up to 0.5 mm
 }
 
 TEST(Touching, EndsWhenAPersonSaysSoAndWhenTheDeviceIsGone) {

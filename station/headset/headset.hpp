@@ -17,6 +17,9 @@ struct Moment {
   math::Vec3 tip_m;  ///< in V
 };
 
+/// Takes over the counts of a box of the bone that was drilled; the volume is the scene's.
+using TakeBone = std::function<void(const volume::Box& box, const volume::Volume& bone)>;
+
 /// What is to be shown, and where in the room.
 struct Shown {
   view::Scene scene;
@@ -24,6 +27,8 @@ struct Shown {
   std::optional<math::Pose> X_SD;  ///< the device in the room (alignment.hpp); else it is taken to
                                    ///< stand before the person
   std::function<std::optional<Moment>()> latest;  ///< asked once a frame, from the headset's thread
+  /// Asked once a frame as well: calls back when the bone has changed. Empty: it does not.
+  std::function<void(const TakeBone& take)> carved = {};
 };
 
 enum class Seen {

@@ -88,9 +88,15 @@ core::Result<std::unique_ptr<Painter>> Painter::make(const view::Scene& scene,
   p.board->DrawOff();
   p.timer.emplace();
   glGenFramebuffers(1, &p.target);
+  // Shaders are made and the volume goes to the GPU now, not in the first frame.
+  p.aim(*p.scene, {});
+  p.window->Render();
   return std::unique_ptr<Painter>(new Painter(std::move(parts)));
 }
 
+void Painter::carve_away(const volume::Box& box, const volume::Volume& volume) {
+  parts_->picture.carve_away(box, volume);
+}
 void Painter::pose(const view::ProbeState& state) { parts_->picture.pose(state); }
 void Painter::path(std::span<const math::Vec3> path_m) { parts_->picture.path(path_m); }
 

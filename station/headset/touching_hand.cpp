@@ -7,6 +7,12 @@ namespace headset {
 namespace {
 constexpr double kTravel_s = 1.0, kRest_s = 1.0, kPress_s = 0.3;  // of a rest, until it presses
 constexpr double kTremor_m = 1e-4;
+constexpr double kMiss_m = 3e-4;  // how far beside a point it comes to rest, along each axis
+
+math::Vec3 miss_of(std::size_t point) {
+  const double k = double(point) + 1.0;
+  return kMiss_m * math::Vec3(std::sin(12.9 * k), std::sin(78.2 * k), std::sin(37.7 * k));
+}
 }  // namespace
 
 math::Pose TouchingHand::stands_at() {
@@ -21,7 +27,8 @@ math::Pose TouchingHand::stands_at() {
 TouchingHand::TouchingHand(std::span<const FixturePoint> points, const math::Vec3& tip_H_m)
     : tip_H_m_(tip_H_m) {
   const math::Pose X_DS = stands_at().inverse();
-  for (const FixturePoint& point : points) tips_D_m_.push_back(X_DS * point.p_S_m);
+  for (const FixturePoint& point : points)
+    tips_D_m_.push_back(X_DS * point.p_S_m + miss_of(tips_D_m_.size()));
 }
 
 core::Result<devices::Limits> TouchingHand::open() {

@@ -9,8 +9,8 @@
 
 namespace headset {
 
-/// Goes from point to point (minimum jerk [Flash1985]), holds still but for a tremor of a tenth of
-/// a millimetre, presses the button; begins again after the last.
+/// Goes from point to point (minimum jerk [Flash1985]), comes to rest a fraction of a millimetre
+/// beside it, holds still but for a tremor, presses the button; begins again after the last.
 class TouchingHand final : public devices::Device {
  public:
   /// Where the simulated device stands in the room: on a table before the person, who looks along

@@ -227,15 +227,16 @@ core::Result<Recorded> finished(Room& room, Shared& shared, const std::filesyste
     out.force_faulty = force.faulty, out.force_saturated = force.saturated;
     out.worst_status = force.worst_status;
     out.calibration = force.calibration;
-    if (auto done = room.force->file.finish(); !done) return done.error();
+    if (auto done = room.force->file.finish(); !done) out.ended_by = done.error().what;
   }
   if (room.motion) {
     out.motion_rows = room.motion->rows, out.motion_damaged = room.motion->stream->damaged();
     out.complaint = room.motion->stream->complaint();
-    if (auto done = room.motion->file.finish(); !done) return done.error();
+    if (auto done = room.motion->file.finish(); !done) out.ended_by = done.error().what;
   }
+  // A full disk may have no room for this either; the rows are there all the same.
   if (auto done = core::write_json(folder / "recording.json", out.json()); !done)
-    return done.error();
+    if (out.ended_by.empty()) return done.error();
   return out;
 }
 }  // namespace

@@ -28,6 +28,7 @@ RowFile::RowFile(RowFile&& other) noexcept
     : path_(std::move(other.path_)),
       fd_(std::exchange(other.fd_, -1)),
       waiting_(std::move(other.waiting_)),
+      size_(other.size_),
       written_at_(other.written_at_),
       error_(std::move(other.error_)) {}
 
@@ -40,9 +41,16 @@ void RowFile::write() {
   while (!rest.empty() && !error_) {
     const ssize_t n = ::write(fd_, rest.data(), rest.size());
     if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) error_ = core::system_error(path_, "cannot write");
+    if (n <= 0) error_ = core::system_error(path_.filename(), "cannot write");
     if (n > 0) rest.remove_prefix(std::size_t(n));
   }
+  if (error_) {  // what got there ends with a whole row
+    const std::string_view there =
+        std::string_view(waiting_).substr(0, waiting_.size() - rest.size());
+    const auto whole = there.rfind('\n') + 1;  // 0 when there is none
+    if (::ftruncate(fd_, off_t(size_ + whole)) != 0) return;
+  }
+  size_ += waiting_.size();
   waiting_.clear();
 }
 
@@ -55,8 +63,8 @@ void RowFile::add(std::string_view row, core::Instant_ns now) {
 }
 
 core::Result<void> RowFile::finish() {
-  write();
-  if (!error_ && ::fsync(fd_) != 0) error_ = core::system_error(path_, "cannot flush");
+  if (!error_) write();
+  if (!error_ && ::fsync(fd_) != 0) error_ = core::system_error(path_.filename(), "cannot flush");
   if (error_) return *error_;
   return {};
 }

@@ -12,7 +12,7 @@
 namespace sensors {
 
 /// Rows are handed to the system in one write each half second (or 64 KiB), never half a row: when
-/// the program is killed, the file ends with a whole row that is at most so old.
+/// the program is killed, or the disk is full, the file ends with a whole row.
 class RowFile {
  public:
   /// Makes the file. Errors: io, conflict (it is there).
@@ -33,6 +33,7 @@ class RowFile {
   std::filesystem::path path_;
   int fd_;
   std::string waiting_;
+  std::size_t size_ = 0;  ///< of the file
   core::Instant_ns written_at_ = 0;
   std::optional<core::Error> error_;
 };

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <cmath>
+#include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <string>
@@ -247,6 +249,24 @@ TEST_F(Rows, AreInTheFileAfterHalfASecondAndAlwaysWhole) {
   EXPECT_TRUE(file->finish());
   EXPECT_EQ(there(), "t_s\n1\n2\n3\n4\n5\n");
   EXPECT_FALSE(RowFile::make(path_, "t_s\n"));  // nothing is overwritten
+}
+
+TEST_F(Rows, EndWithAWholeOneWhenTheDiskTakesNoMore) {
+  // A file may grow to 25 bytes here: two rows of ten and a half.
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  auto file = RowFile::make(path_, "t_s,fx_N_\n");
+  ASSERT_TRUE(file);
+  const rlimit small{.rlim_cur = 25, .rlim_max = before.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+  file->add("1,1234567\n2,1234567\n3,1234567\n", 1'000'000'000);
+  const auto finished = file->finish();
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
+  EXPECT_TRUE(file->failed());
+  ASSERT_FALSE(finished);
+  EXPECT_NE(finished.error().what.find("File too large"), std::string::npos);
+  EXPECT_EQ(there(), "t_s,fx_N_\n1,1234567\n");
 }
 
 TEST(Igtl, GivesNothingForWhatIsCutOrNoTurnOrAnotherType) {

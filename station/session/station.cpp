@@ -44,6 +44,11 @@ std::optional<trial::Answer> Station::simulated_answer() const {
   return state_ == State::answering ? trial_->simulated_answer() : std::nullopt;
 }
 
+core::Result<void> Station::note(const std::string& kind, const core::Json& detail) {
+  const bool ended = state_ == State::answering || (state_ == State::fault && trial_);
+  return ended ? trial_->note(kind, detail) : core::Result<void>(not_now("note an event"));
+}
+
 core::Result<TrialReport> Station::answer(const std::optional<trial::Answer>& answer) {
   const bool faulted = state_ == State::fault && trial_;
   if (state_ != State::answering && !faulted) return not_now("take an answer");

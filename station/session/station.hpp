@@ -25,6 +25,8 @@ class Station {
   core::Result<void> prepare(std::shared_ptr<const PreparedCase> prepared, std::uint64_t seed);
   /// ready → running → answering, or fault.
   core::Result<void> run(const Watch& watch = {});
+  /// answering, fault: an event for the trial's file.
+  core::Result<void> note(const std::string& kind, const core::Json& detail);
   /// answering → done; fault → fault (a fault takes no answer, but the trial is sealed and kept).
   core::Result<TrialReport> answer(const std::optional<trial::Answer>& answer);
   /// What the simulated hand says, in `answering`.

@@ -73,6 +73,7 @@ core::Json TrialReport::to_json() const {
                   {"restarts", bus->restarts},
                   {"round_trip_p50_us", bus->p50_us},
                   {"round_trip_p99_us", bus->p99_us}};
+  if (!headset.is_null()) out["headset"] = headset;
   if (drilled) {
     out["drilled"] = drilled->detail;
     out["drilled"]["lag_p50_s"] = drilled->lag_p50_s;
@@ -315,6 +316,10 @@ std::optional<trial::Answer> TrialRun::simulated_answer() const {
   trial::Answer out{.breach = said.breach, .wall = std::nullopt, .confidence = said.confidence};
   if (said.breach) out.wall = said.wall;
   return out;
+}
+
+core::Result<void> TrialRun::note(const std::string& kind, const core::Json& detail) {
+  return parts_->recorder->append({parts_->elapsed_s(), kind, detail});
 }
 
 core::Result<void> TrialRun::Parts::append_end(const TrialReport& report) {

@@ -52,6 +52,7 @@ struct TrialReport {
   loop::RealtimeGrant grant;
   std::optional<trial::Answer> answer;
   bool simulated = false;
+  core::Json headset = {};  ///< figures of a headset's view; null without one
   /// Of a probing trial.
   struct Bus {
     std::uint64_t missed = 0;           ///< exchanges that ended after the next period had begun
@@ -97,6 +98,8 @@ class TrialRun {
   bool faulted() const;
   /// What the simulated trainee answers; nothing for a device that a person holds.
   std::optional<trial::Answer> simulated_answer() const;
+  /// After `run`: an event of the trial's file that no other call writes.
+  core::Result<void> note(const std::string& kind, const core::Json& detail);
   /// Writes the answer (if any) and the end, seals the file and queues it for upload.
   core::Result<TrialReport> finish(const std::optional<trial::Answer>& answer);
   /// Readable from any thread at any time, without a lock.

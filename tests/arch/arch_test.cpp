@@ -83,6 +83,10 @@ const std::map<std::string, Names> kAllowed = {
     {"station/view",
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/models", "shared/cases",
       "shared/trial"}},
+    // The window's picture, for two eyes; a device's handle touches points when the room is aligned.
+    {"station/headset",
+     {"shared/core", "shared/math", "shared/volume", "shared/laws", "station/view",
+      "station/devices"}},
     {"station/session",
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/effects",
       "shared/models", "shared/scenarios", "shared/cases", "shared/trial", "shared/metrics",

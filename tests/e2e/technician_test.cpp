@@ -1,12 +1,14 @@
 /// Self-test and calibration as a technician runs them: the program, the stand-in for the lambda.6
 /// behind a USB of umockdev's making, a rig behind Modbus, a real server.
 #include <gtest/gtest.h>
+#include <pthread.h>
 #include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
 
 #include <algorithm>
 #include <fstream>
+#include <future>
 #include <set>
 #include <thread>
 
@@ -194,14 +196,19 @@ TEST_F(TechnicianAtTheLambda6, CtrlCEndsAtZeroForceAndLeavesNoReport) {
 class TechnicianAtTheRig : public Technician {
  protected:
   void set_up(const rig::World& world) {
-    electronics_.emplace(rig::MachineParameters{}, world, clock_);
-    auto listening = rig::listen_tcp(*electronics_, traffic_, "127.0.0.1", 0);
-    ASSERT_TRUE(listening) << listening.error().what;
-    peer_ = std::move(*listening);
-    thread_ = std::thread([this] {
+    std::promise<int> listening;
+    thread_ = std::thread([&, this] {
+      const sched_param urgent{.sched_priority = 70};  // as tractus-rig; a refusal is no error
+      static_cast<void>(pthread_setschedparam(pthread_self(), SCHED_FIFO, &urgent));
+      electronics_.emplace(rig::MachineParameters{}, world, clock_);
+      auto made = rig::listen_tcp(*electronics_, traffic_, "127.0.0.1", 0);
+      if (made) peer_ = std::move(*made);
+      listening.set_value(peer_ ? peer_->port() : 0);
       for (core::Instant_ns next = clock_.now(); !stop_; clock_.sleep_until(next += 1'000'000))
         electronics_->advance();
     });
+    port_ = listening.get_future().get();
+    ASSERT_NE(port_, 0);
   }
   ~TechnicianAtTheRig() override {
     stop_ = true;
@@ -209,10 +216,11 @@ class TechnicianAtTheRig : public Technician {
     peer_.reset();
   }
   Said rig(const std::string& words) const {
-    return station(words + " --device rig --address 127.0.0.1:" + std::to_string(peer_->port()));
+    return station(words + " --device rig --address 127.0.0.1:" + std::to_string(port_));
   }
 
  private:
+  int port_ = 0;
   core::MonotonicClock clock_;
   std::optional<rig::Electronics> electronics_;
   rig::Traffic traffic_;
@@ -221,17 +229,22 @@ class TechnicianAtTheRig : public Technician {
   std::thread thread_;
 };
 
+// In real time: a machine that is held up for over 6 ms trips the rig's watchdog on the way, and
+// the travel is short. Five times in a row that is no chance.
 TEST_F(TechnicianAtTheRig, AHealthyOneIsCalibratedAndItsZeroNoted) {
   set_up({});
-  const Said first = rig("calibrate --who Ada");
-  if (first.code == 1 && failed(first.json["checks"]).empty())
-    GTEST_SKIP() << "this machine is too busy for a rig: " << first.json.dump();
+  const auto calibrated = [&](const std::string& who) {
+    Said said;
+    for (int left = 5; left-- > 0 && said.code != 0;) said = rig("calibrate --who " + who);
+    return said;
+  };
+  const Said first = calibrated("Ada");
   ASSERT_EQ(first.code, 0) << first.json.dump(2) << first.words;
   const auto kept = core::read_json(folder_ / "st/calibration/rig.json");
   ASSERT_TRUE(kept);
   // The sensor's bias of the simulated rig is well below a newton (station/rig/sensor.hpp).
   EXPECT_LT(std::abs((*kept)["zero_N"].get<double>()), 3.0);
-  EXPECT_NE(rig("calibrate --who Bo").json.dump().find(" N since "), std::string::npos);
+  EXPECT_NE(calibrated("Bo").json.dump().find(" N since "), std::string::npos);
 }
 
 TEST_F(TechnicianAtTheRig, OneWhoseEmergencyStopIsLatchedIsNotMoved) {

@@ -92,6 +92,9 @@ Outcome run(const Options& options) {
   if (auto fine = check(options, target); !fine) return fine.error();
   const auto recipe = capture::Recipe::read(options.recipe);
   if (!recipe) return recipe.error();
+  if (!std::filesystem::exists(recipe->folder / recipe->volume))
+    return Error{Errc::not_found,
+                 fmt::format("{}: /volume: '{}' is not there", options.recipe, recipe->volume)};
   trial::PalpationSet set;
   set.stated = recipe->stated;
 
@@ -109,12 +112,12 @@ Outcome run(const Options& options) {
     shown_taps.push_back({one->trial.id, one->clock, std::move(one->taps)});
     set.trials.push_back(std::move(one->trial));
   }
+  if (auto written = write_whole(target, set, *recipe); !written) return written.error();
   if (!options.picture.empty()) {
     const std::string drawn = plot::svg(app::taps_figure(shown_taps));
     if (auto done = core::write_file(options.picture, core::bytes_of(drawn)); !done)
       return done.error();
   }
-  if (auto written = write_whole(target, set, *recipe); !written) return written.error();
   if (options.json)
     fmt::print("{}\n", Json{{"set", options.out}, {"trials", trials}}.dump(2));
   else

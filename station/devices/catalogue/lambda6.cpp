@@ -67,7 +67,6 @@ class Lambda6 final : public Device {
   Status read(core::Instant_ns now, Sample& out) noexcept override {
     if (!open_) return Status::fault;
     if (!watch_->present()) return Status::gone;
-    if (!sampled_ && !begin()) return trouble();
     double p[3], v[3], w[3], axes[3][3];
     const int posed = api_->pose(&p[0], &p[1], &p[2], axes, id_);
     if (posed < 0) return trouble();
@@ -144,11 +143,6 @@ class Lambda6 final : public Device {
     // somebody keeps the watchdog quiet.
     if (api_->enable_force(0, id_) < 0) return refused("its forces cannot be switched");
     return {};
-  }
-
-  /// Before the first sample: between `open` and the loop more than the watchdog's 10 ms go by.
-  bool begin() const noexcept {
-    return api_->enable_force(1, id_) >= 0 && api_->set_wrench(0, 0, 0, 0, 0, 0, 0, id_) >= 0;
   }
 
   core::Result<void> home() {

@@ -11,6 +11,7 @@ that a busy minute of the machine meets all of them:
     network   that, and as much over the loopback as a line of 1 Gbit/s carries
     disk      1 MiB written and flushed, again and again, on the disk that the trial is recorded on
     display   the station's own view, drawn without a window (software renderer unless there is a GPU)
+    headset   the station's view in a headset, by the test runtime (tests/support/openxr, SIMULATED): two eyes at 90 Hz
 
 A tick is late when it wakes more than a quarter period (62.5 us) after its deadline. Exits 1 when more than 0.1 % are in the median of
 the quiet rounds. SCHED_FIFO needs the right to it; without, the table says so and nothing is judged. The rival is the kernel itself: a
@@ -81,7 +82,7 @@ def serve(home, bin):
 
 def trial(home, args, load, to_server):
     command = [args.bin / "tractus-station", "--device", args.device, "--case", home / "case", "--data", home / "station", "--duration", args.seconds,
-               "--answer", "none", "--json", "--view", "offscreen" if load == "display" else "none"]
+               "--answer", "none", "--json", "--view", {"display": "offscreen", "headset": "headset"}.get(load, "none")]
     if load in ("server", "network"):
         command += to_server
     if args.device == "lambda6":
@@ -126,10 +127,12 @@ def main():
     parser.add_argument("--seconds", type=float, default=20)
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--device", choices=["lambda6", "sim-lambda6"], default="lambda6")
-    parser.add_argument("--loads", nargs="*", default=["server", "network", "disk", "display"])
+    parser.add_argument("--loads", nargs="*", default=["server", "network", "disk", "display", "headset"])
     args = parser.parse_args()
     args.build = args.build.resolve()
     args.bin = args.build / "bin"
+    os.environ["XR_RUNTIME_JSON"] = str(args.build / "standin/openxr_runtime.json")
+    os.environ.pop("DISPLAY", None)
     home = pathlib.Path(tempfile.mkdtemp(prefix="tractus-loop-"))
     seen, server, kernel = {}, None, []
     try:

@@ -31,7 +31,6 @@ struct Control {
   std::atomic<double> roaming_m{0.0};
   std::atomic<double> gap_m{0.012};
   std::atomic<std::int64_t> step_ns{0};  ///< of its own time a read; 0: the monotonic clock's
-  std::atomic<std::int64_t> away_ns{0};  ///< own time that goes by before the next call, once
   // Seen.
   std::atomic<double> force_N[3]{}, torque_Nm[3]{}, handle_m[3]{};
   std::atomic<int> force_on{0}, gravity{0}, watchdog_steps{0}, opened{0}, stops{0};

@@ -1,8 +1,14 @@
 /// The lambda.6's driver through the stand-in library and a USB of umockdev's making.
 #include <gtest/gtest.h>
+#include <linux/usbdevice_fs.h>
+#include <sys/ioctl.h>
 #include <umockdev.h>
+#include <unistd.h>
 
+#include <atomic>
+#include <cerrno>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <sstream>
@@ -17,6 +23,7 @@
 namespace devices {
 namespace {
 using math::Vec3;
+namespace fs = std::filesystem;
 
 constexpr core::Instant_ns kPeriod = 250'000;
 const std::string kDevice = "/sys/devices/pci0000:00/0000:00:14.0/usb1/1-2";
@@ -279,16 +286,6 @@ TEST_F(Lambda6, PulledOutItStopsAndPluggedInAgainAPersonResumes) {
   EXPECT_NEAR(force_of(*control_), 2.0, 1e-6);
 }
 
-TEST_F(Lambda6, ALoopThatBeginsLongAfterTheOpeningFindsItsForcesOn) {
-  Live live(made());
-  ASSERT_TRUE(live.device->open());
-  control_->away_ns = 500'000'000;  // a case was prepared meanwhile
-  for (int k = 0; k < 2000; ++k) live.tick();
-  EXPECT_EQ(control_->watchdog_trips, 1);
-  EXPECT_EQ(live.limiter.fault(), loop::Fault::none) << loop::text_of(live.limiter.fault());
-  EXPECT_NEAR(force_of(*control_), 2.0, 1e-6);
-}
-
 TEST_F(Lambda6, ItsOwnWatchdogCutsTheForcesOfAComputerThatHangs) {
   Live live(made());
   ASSERT_TRUE(live.device->open());
@@ -305,6 +302,69 @@ TEST_F(Lambda6, UsbTellsWhatIsThereFromWhatIsNot) {
   EXPECT_EQ(seen->presence, UsbPresence::present);
   EXPECT_EQ(seen->where, "bus 1, device 5");
   EXPECT_EQ(look_for_usb(0x1452)->presence, UsbPresence::absent);
+}
+
+/// While it lives this process is nobody in particular; nothing when it is so already.
+class AsNobody {
+ public:
+  AsNobody() : before_(::geteuid()) { becomes(kNobody); }
+  ~AsNobody() { becomes(before_); }
+  AsNobody(const AsNobody&) = delete;
+  AsNobody& operator=(const AsNobody&) = delete;
+
+ private:
+  static constexpr uid_t kNobody = 65534;
+  void becomes(uid_t who) const {
+    if (before_ != 0) return;
+    EXPECT_EQ(::seteuid(who), 0);
+  }
+  uid_t before_;
+};
+
+// The kernel itself refuses to open the node, which stands for /dev/bus/usb/001/005 as udev makes
+// it without a rule: root's alone.
+TEST_F(Lambda6, UsbTellsAMissingPermissionFromAbsence) {
+  const fs::path root = umockdev_testbed_get_root_dir(bed_), node = root / "dev/bus/usb/001/005";
+  fs::permissions(root, fs::perms::all);  // else not even the list is to be seen
+  for (const auto& one : fs::recursive_directory_iterator(root))
+    if (!one.is_symlink()) fs::permissions(one.path(), fs::perms::all);
+  fs::permissions(node, fs::perms::none);
+  const AsNobody nobody;
+  const auto seen = look_for_usb(kForceDimension);
+  ASSERT_TRUE(seen) << seen.error().what;
+  EXPECT_EQ(seen->presence, UsbPresence::no_permission);
+  EXPECT_EQ(seen->where, "bus 1, device 5");
+  const auto opened = made()->open();
+  ASSERT_FALSE(opened);
+  EXPECT_NE(opened.error().what.find("deploy/udev/70-tractus.rules"), std::string::npos)
+      << opened.error().what;
+}
+
+/// The kernel's part while another program holds the interface: EBUSY on a claim, all else is fine.
+gboolean held_by_another(UMockdevIoctlBase*, UMockdevIoctlClient* client, gpointer claims) {
+  const bool claim = umockdev_ioctl_client_get_request(client) == USBDEVFS_CLAIMINTERFACE;
+  if (claim) ++*static_cast<std::atomic<int>*>(claims);
+  umockdev_ioctl_client_complete(client, claim ? -1 : 0, claim ? EBUSY : 0);
+  return TRUE;
+}
+
+TEST_F(Lambda6, UsbTellsThatAnotherProgramHasItFromAMissingPermission) {
+  std::atomic<int> claims = 0;
+  UMockdevIoctlBase* kernel = umockdev_ioctl_base_new();
+  g_signal_connect(kernel, "handle-ioctl", G_CALLBACK(held_by_another), &claims);
+  constexpr const char* kNode = "/dev/bus/usb/001/005";
+  ASSERT_TRUE(umockdev_testbed_attach_ioctl(bed_, kNode, kernel, nullptr));
+  const auto seen = look_for_usb(kForceDimension);
+  const auto opened = made()->open();
+  umockdev_testbed_detach_ioctl(bed_, kNode, nullptr);
+  g_object_unref(kernel);
+  ASSERT_TRUE(seen) << seen.error().what;
+  EXPECT_EQ(seen->presence, UsbPresence::in_use);
+  EXPECT_EQ(claims, 2);
+  ASSERT_FALSE(opened);
+  EXPECT_NE(opened.error().what.find("another program has it"), std::string::npos);
+  EXPECT_EQ(control_->opened, 0) << "the SDK was not asked";
+  EXPECT_EQ(look_for_usb(kForceDimension)->presence, UsbPresence::present) << "it let go";
 }
 
 /// Reported, never a gate: a read and a write through the driver, beside nothing else.

@@ -92,14 +92,6 @@ void integrate(double dt_s) {
   }
 }
 
-void watch_commands() {
-  const std::int64_t most = control().watchdog_steps * kWatchdogStep_ns;
-  if (most <= 0 || !control().force_on || handle.tripped) return;
-  if (handle.now_ns - handle.commanded_ns <= most) return;
-  handle.tripped = true;
-  ++control().watchdog_trips;
-}
-
 /// Brings the handle, and the firmware's watchdog, to now.
 void advance() {
   const std::int64_t own = control().step_ns;
@@ -107,7 +99,11 @@ void advance() {
   if (!handle.started) handle.now_ns = now, handle.started = true;
   double left_s = std::min(0.02, double(now - handle.now_ns) * 1e-9);
   handle.now_ns = now;
-  watch_commands();
+  const std::int64_t most = control().watchdog_steps * kWatchdogStep_ns;
+  if (most > 0 && control().force_on && now - handle.commanded_ns > most && !handle.tripped) {
+    handle.tripped = true;
+    ++control().watchdog_trips;
+  }
   for (; left_s > 1e-9; left_s -= kStep_s) integrate(std::min(kStep_s, left_s));
 }
 }  // namespace
@@ -170,8 +166,6 @@ int dhdGetStatus(int status[16], char) {
 
 int dhdEnableForce(unsigned char on, char) {
   if (const int error = trouble()) return fail(error);
-  handle.now_ns += control().away_ns.exchange(0);
-  watch_commands();
   control().force_on = on;
   handle.tripped = false;
   handle.commanded_ns = handle.now_ns;
@@ -199,7 +193,6 @@ int dhdGetWatchdog(unsigned char* steps, char) {
 int dhdGetPositionAndOrientationFrame(double* x, double* y, double* z, double matrix[3][3], char) {
   if (const int error = trouble()) return fail(error);
   ++control().reads;
-  handle.now_ns += control().away_ns.exchange(0);
   if (!control().stuck) advance();
   *x = handle.p[0], *y = handle.p[1], *z = handle.p[2];
   turned(handle.r, matrix);

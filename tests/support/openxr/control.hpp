@@ -19,7 +19,7 @@ struct Control {
   std::atomic<double> outward_rad{0.75}, inward_rad{0.65}, up_rad{0.7}, down_rad{0.7};
   std::atomic<double> eyes_apart_m{0.064};
   std::atomic<double> head_m[3]{0.0, 1.6, 0.0};
-  std::atomic<double> head_yaw_rad{0.0};
+  std::atomic<double> head_yaw_rad{0.0}, head_pitch_rad{0.0};  ///< to the left, up
   std::atomic<int> paced{1};  ///< 0: its clock jumps to the next frame, nobody waits
   std::atomic<double> rate_Hz{90.0};
   // Faults. Frames are counted from 1; 0: never.

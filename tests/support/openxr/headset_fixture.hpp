@@ -68,7 +68,8 @@ class WithRuntime : public testing::Test {
               now.state.X_VH.p = tip_m_ - probe_.length_m * math::Vec3::UnitY();
               now.tip_m = tip_m_;
               return now;
-            }};
+            },
+            .carved = {}};
   }
   std::unique_ptr<Headset> made(const Shown& what) {
     auto out = Headset::make(what, clock_);

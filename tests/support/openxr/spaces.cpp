@@ -7,24 +7,28 @@
 namespace fakexr {
 namespace {
 
-/// The head in the room, in either of its frames.
+/// The head in the room, in either of its frames: turned about the vertical, then nodding.
 XrPosef head() {
   XrPosef pose{};
-  const double half = 0.5 * control().head_yaw_rad;
-  pose.orientation = {0.0F, static_cast<float>(std::sin(half)), 0.0F,
-                      static_cast<float>(std::cos(half))};
+  const double yaw = 0.5 * control().head_yaw_rad, pitch = 0.5 * control().head_pitch_rad;
+  pose.orientation = {static_cast<float>(std::cos(yaw) * std::sin(pitch)),
+                      static_cast<float>(std::sin(yaw) * std::cos(pitch)),
+                      static_cast<float>(-std::sin(yaw) * std::sin(pitch)),
+                      static_cast<float>(std::cos(yaw) * std::cos(pitch))};
   pose.position = {static_cast<float>(control().head_m[0]), static_cast<float>(control().head_m[1]),
                    static_cast<float>(control().head_m[2])};
   return pose;
 }
 
-/// A point of the head's frame in the room: turned about the vertical.
+/// A point of the head's frame in the room.
 XrVector3f in_room(const XrVector3f& p) {
-  const double yaw = control().head_yaw_rad, c = std::cos(yaw), s = std::sin(yaw);
+  const double yaw = control().head_yaw_rad, pitch = control().head_pitch_rad;
+  const double y = std::cos(pitch) * double(p.y) - std::sin(pitch) * double(p.z);
+  const double z = std::sin(pitch) * double(p.y) + std::cos(pitch) * double(p.z);
   const XrPosef at = head();
-  return {static_cast<float>(c * double(p.x) + s * double(p.z)) + at.position.x,
-          p.y + at.position.y,
-          static_cast<float>(-s * double(p.x) + c * double(p.z)) + at.position.z};
+  return {static_cast<float>(std::cos(yaw) * double(p.x) + std::sin(yaw) * z) + at.position.x,
+          static_cast<float>(y) + at.position.y,
+          static_cast<float>(-std::sin(yaw) * double(p.x) + std::cos(yaw) * z) + at.position.z};
 }
 
 XrResult XRAPI_CALL reference_spaces(XrSession, std::uint32_t capacity, std::uint32_t* count,

@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { formatFigure, formatWithin, nameAndUnit } from '@/units';
+import { formatFigure, formatFound, formatWithin, nameAndUnit } from '@/units';
 
 const plain = (text: string) => text.replaceAll('\u202f', ' ');
 
@@ -13,6 +13,18 @@ describe('a figure', () => {
   it('that does not exist is a dash', () => {
     expect(formatFigure(null, 'N')).toBe('–');
     expect(formatFigure(Number.NaN)).toBe('–');
+  });
+});
+
+describe('a figure of a self-test', () => {
+  it.each([
+    [1.41e-6, 's', '1.41 µs'], [0.00025, 's', '250 µs'], [0.0708, 's', '70.8 ms'], [1, 's', '1.00 s'], [64_261_746_688, 'B', '64.3 GB'], [0.00286, 'm', '2.86 mm'], [0.0297, '', '0.0297'],
+  ])('%d %s is read as %s', (value, unit, text) => {
+    expect(plain(formatFound(value, unit))).toBe(text);
+  });
+
+  it('without a value is a dash', () => {
+    expect(formatFound(null, 's')).toBe('–');
   });
 });
 

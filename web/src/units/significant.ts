@@ -1,5 +1,5 @@
 /** Numbers of any size: as many digits as mean something, and no more. SI in; millimetres, milliseconds and degrees out. */
-import { digits, kNone, united } from './format';
+import { digits, formatBytes, kNone, united } from './format';
 import type { Quantity } from './quantity';
 
 /** Units in which a fitted number is read at a table; all others stay SI. */
@@ -30,6 +30,14 @@ const spelled = (value: number, unit: string, decimals: number) => {
 export function formatFigure(value: number | null | undefined, unit = '', figures = 3): string {
   if (value === null || value === undefined || !Number.isFinite(value)) return kNone;
   return spelled(value, unit, decimalsOf(Math.abs(value) * shownAs(unit).perSi, figures));
+}
+
+/** A figure of a station's self-test: short times in ms and µs, room on a disk in GB. */
+export function formatFound(value: number | null, unit: string): string {
+  if (value === null) return kNone;
+  if (unit === 'B') return formatBytes(value);
+  if (unit !== 's' || Math.abs(value) >= 1) return formatFigure(value, unit);
+  return Math.abs(value) < 1e-3 ? formatFigure(value * 1e6, 'µs') : formatFigure(value * 1e3, 'ms');
 }
 
 /** "2.3813 ± 0.0011 N": two digits of the uncertainty, and the value to match. */

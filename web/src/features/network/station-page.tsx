@@ -3,7 +3,7 @@ import { useState, type FormEvent } from 'react';
 import { Link } from 'wouter';
 import { limitStation, revokeStation, stationQuery, stationsQuery, type StationPage as Page } from '@/api';
 import { AskDialog, Badge, Button, Card, Facts, Field, Notice, Skeleton, Table, Term, useTitle } from '@/ui';
-import { formatBytes, formatDateTime, formatFigure, formatShare, share } from '@/units';
+import { formatBytes, formatDateTime, formatFound, formatShare, share } from '@/units';
 import styles from './network.module.css';
 import { calibrationWords } from './words';
 
@@ -26,7 +26,7 @@ function Health({ station, now }: { readonly station: Page; readonly now: number
         { name: 'Room on its disk', value: station.free_disk_bytes === null ? kUnknown : formatBytes(station.free_disk_bytes) },
         { name: 'Trials still there', value: station.waiting_trials === null ? kUnknown : String(station.waiting_trials) },
         { name: <Term definition="Steps of the force loop that came later than they should have, of all in the last trials. Above one in a thousand the machine does too much else.">Late steps</Term>, value: station.late_share === null ? kUnknown : formatShare(share(station.late_share), 2) },
-        { name: <Term definition="How far the station's clock is from the server's. Times inside a trial do not depend on it.">Clock</Term>, value: station.clock_offset_s === null ? kUnknown : formatFigure(station.clock_offset_s, 's', 2) },
+        { name: <Term definition="How far the station's clock is from the server's. Times inside a trial do not depend on it.">Clock</Term>, value: station.clock_offset_s === null ? kUnknown : formatFound(station.clock_offset_s, 's') },
       ]} />
     </Card>
   );
@@ -39,8 +39,8 @@ function Tests({ station }: { readonly station: Page }) {
       <div className={styles.stack}>
         <Table<Check> caption="Checks of the newest self-test" rows={newest?.checks ?? []} keyOf={({ name }) => name} empty="It has not told of a self-test yet. At the station: tractus-station self-test" columns={[
           { name: 'Check', cell: (one) => one.name },
-          { name: 'Found', cell: (one) => (one.value === null ? '–' : formatFigure(one.value, one.unit)), number: true },
-          { name: 'Limit', cell: (one) => (one.limit === null ? '–' : formatFigure(one.limit, one.unit)), number: true },
+          { name: 'Found', cell: (one) => formatFound(one.value, one.unit), number: true },
+          { name: 'Limit', cell: (one) => formatFound(one.limit, one.unit), number: true },
           { name: 'Result', cell: (one) => <Badge tone={one.passed ? 'good' : 'bad'}>{one.passed ? 'passed' : 'failed'}</Badge> },
           { name: 'In words', cell: (one) => <span className={styles.muted}>{one.words}</span> },
         ]} />

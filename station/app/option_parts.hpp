@@ -1,0 +1,39 @@
+/// What the sources of the options share. For them alone.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <map>
+
+#include "station/app/options.hpp"
+
+namespace app {
+
+/// A subcommand that is done by `deed`.
+CLI::App* add_deed(CLI::App& app, Options& options, Deed deed, const char* name, const char* what);
+void add_data(CLI::App& app, Options& options, bool needed);
+void add_server(CLI::App& app, Options& options, bool needed);
+/// Says why on standard error; the exit code of wrong use.
+int refuse(const std::string& why);
+const std::map<std::string, Show>& shows();  ///< of --view
+
+/// One of these words; neither help nor a refusal shows the numbers behind them.
+template <class T>
+CLI::Validator word_of(const std::map<std::string, T>& words) {
+  std::string all;
+  for (const auto& [word, _] : words) all += (all.empty() ? "" : ", ") + word;
+  return CLI::Validator(
+      [words, all](std::string& given) {
+        const auto found = words.find(given);
+        if (found == words.end()) return given + ": one of " + all + " is expected";
+        given = std::to_string(static_cast<int>(found->second));
+        return std::string();
+      },
+      "{" + all + "}");
+}
+
+/// What a technician does at a station: limits, self-test, calibrate, align, record.
+void add_technician(CLI::App& app, Options& options);
+/// What does not fit together in those is refused.
+std::optional<int> check_technician(const Options& options);
+
+}  // namespace app

@@ -1,0 +1,139 @@
+/// The options of what a technician does.
+
+#include "station/app/deeds.hpp"
+#include "station/app/option_parts.hpp"
+
+namespace app {
+namespace {
+constexpr std::size_t kLongestName = 64;
+
+void add_align(CLI::App& app, Options& options) {
+  add_data(app, options, true);
+  app.add_option("--device", options.setup.device, "lambda6, or sim-lambda6 in a SIMULATED hand")
+      ->capture_default_str();
+  app.add_option("--sdk", options.setup.sdk, "lambda6: the vendor's SDK, its folder or library");
+  app.add_option(
+         "--fixture", options.fixture,
+         "the points to touch, in the headset's STAGE frame (m, y up): {\"format\": "
+         "\"tractus-fixture/1\", \"points\": [{\"name\": \"A\", \"stage_m\": [x, y, z]}, …]}")
+      ->required();
+  app.add_option("--tip", options.tip_mm,
+                 "mm from the handle's origin along the handle to what touches the points")
+      ->check(CLI::Range(-300.0, 300.0))
+      ->capture_default_str();
+  app.add_option("--limit", options.limit_mm, "mm that a point may be off")
+      ->check(CLI::Range(0.1, 20.0))
+      ->capture_default_str();
+}
+
+void add_check(CLI::App& app, Options& options) {
+  add_data(app, options, true);
+  add_server(app, options, false);
+  app.add_option("--device", options.setup.device, "lambda6, sim-lambda6, rig or sim-rig")
+      ->check(CLI::IsMember({"lambda6", "sim-lambda6", "rig", "sim-rig"}))
+      ->capture_default_str();
+  app.add_option("--sdk", options.setup.sdk, "lambda6: the vendor's SDK, its folder or library");
+  app.add_option("--address", options.rig.address,
+                 "of the rig: HOST:PORT, or a serial line /dev/…[@BAUD]")
+      ->capture_default_str();
+  app.add_option("--rate", options.rig.rate_Hz, "Hz, of the rig's loop")
+      ->check(CLI::Range(100.0, 1000.0))
+      ->capture_default_str();
+  app.add_option("--page", options.page, "the report as a page to print, HTML");
+  app.add_flag("--stand-by", options.stand_by,
+               "a person stands by and knows what will move: nobody is asked at the terminal");
+}
+
+void add_self_test(CLI::App& app, Options& options) {
+  add_check(app, options);
+  app.preparse_callback([&options](std::size_t) { options.show = Show::offscreen; });
+  app.add_option("--for", options.for_s, "s, that a hand moves the handle to its ends")
+      ->check(CLI::Range(1.0, 120.0))
+      ->capture_default_str();
+  app.add_option("--view", options.show, "the display that is timed: window, offscreen or none")
+      ->transform(word_of(shows()))
+      ->default_str("offscreen");
+  app.footer(
+      "Exit 0 all passed, 1 something did not, 2 bad use. A simulated device needs nobody.\n"
+      "Example:\n  tractus-station self-test --device lambda6 --data st --page today.html");
+}
+
+void add_calibrate(CLI::App& app, Options& options) {
+  add_check(app, options);
+  app.add_option("--who", options.who, "who does it, as the record names them")->required();
+  app.add_option("--due-days", options.due_days, "days until the next one")
+      ->check(CLI::Range(1, 3650))
+      ->capture_default_str();
+  app.footer(
+      "lambda6: its handle moves by itself to find its zero. Exit 0 noted, 1 not, 2 bad use.\n"
+      "Example:\n  tractus-station calibrate --device lambda6 --data st --who Ada --due-days 90");
+}
+
+void add_record(CLI::App& app, Options& options) {
+  sensors::RecordSetup& record = options.record;
+  app.add_option("--out", options.room, "the recording's new folder; must not exist")->required();
+  app.add_option("--netft", record.netft_host, "ATI Net F/T sensor: its host name or address");
+  app.add_option("--igtl", record.igtl_host, "motion capture over OpenIGTLink: its host");
+  app.add_option("--body", record.bodies, "of the capture system, once for each: the tool first")
+      ->needs("--igtl");
+  app.add_option("--for", record.for_s, "s; ends sooner by Ctrl-C, which keeps what there is")
+      ->check(CLI::Range(0.1, 86'400.0))
+      ->capture_default_str();
+  app.add_flag("--bias", record.bias,
+               "the sensor takes what it feels now as its zero; without, assemble takes it off");
+  const auto port = CLI::Range(1, 65'535);
+  app.add_option("--netft-port", record.netft_port, "UDP, of RDT")
+      ->check(port)
+      ->capture_default_str();
+  app.add_option("--http-port", record.http_port, "of the sensor's page")
+      ->check(port)
+      ->capture_default_str();
+  app.add_option("--igtl-port", record.igtl_port, "TCP")->check(port)->capture_default_str();
+  app.add_flag("--json", options.json, "one JSON document on standard output");
+  app.footer(
+      "Example:\n  tractus-station record --netft 192.168.1.1 --igtl tracker.local --body probe "
+      "--body vertebra --for 90 --out room/\nThen tap five times, palpate, tap five times again; "
+      "complete room/assembly.json; tractus assemble.");
+}
+
+std::optional<int> check_record(const Options& options) {
+  const sensors::RecordSetup& record = options.record;
+  if (record.netft_host.empty() && record.igtl_host.empty())
+    return refuse("record: --netft or --igtl is expected, or both");
+  if (!record.igtl_host.empty() && record.bodies.empty())
+    return refuse("record: --igtl: --body is expected, once for each body that is kept");
+  for (const std::string& body : record.bodies)
+    if (body.empty() || body.find_first_of(",\"\n\r") != std::string::npos)
+      return refuse("record: --body: a name without commas, quotes and line breaks is expected");
+  return std::nullopt;
+}
+
+}  // namespace
+
+void add_technician(CLI::App& app, Options& options) {
+  CLI::App* limits =
+      add_deed(app, options, show_limits, "limits",
+               "how much force a hand gets; --restore takes back what was lowered from afar");
+  add_data(*limits, options, true);
+  limits->add_flag("--restore", options.restore, "this station's own limits hold again");
+  add_self_test(*add_deed(app, options, self_test, "self-test",
+                          "device, loop, display, disk and clock put to the question"),
+                options);
+  add_calibrate(*add_deed(app, options, calibrate, "calibrate",
+                          "find the device's zero, check it, note it and when it is due again"),
+                options);
+  add_align(
+      *add_deed(app, options, align_room, "align",
+                "touch three points with the handle, so that the headset shows it where it is"),
+      options);
+  add_record(*add_deed(app, options, record_room, "record",
+                       "a force/torque sensor and motion capture at once, for a measurement set"),
+             options);
+}
+
+std::optional<int> check_technician(const Options& options) {
+  if (options.who.size() > kLongestName) return refuse("--who: at most 64 bytes");
+  return options.deed == record_room ? check_record(options) : std::nullopt;
+}
+
+}  // namespace app
