@@ -9,11 +9,8 @@ double Burr::rate_at_per_s(double force_N) const noexcept {
 }
 
 core::Json Burr::to_json() const {
-  return {{"radius_m", radius_m},
-          {"nose_m", nose_m},
-          {"rate_per_s", rate_per_s},
-          {"threshold_N", threshold_N},
-          {"full_N", full_N}};
+  return {{"radius_m", radius_m},       {"nose_m", nose_m}, {"rate_per_s", rate_per_s},
+          {"threshold_N", threshold_N}, {"full_N", full_N}, {"shank_radius_m", shank_radius_m}};
 }
 
 core::Result<Burr> Burr::from_json(const core::Json& json, const std::string& where) {
@@ -24,6 +21,7 @@ core::Result<Burr> Burr::from_json(const core::Json& json, const std::string& wh
   burr.rate_per_s = fields.number("rate_per_s", 0.01, 1000.0);
   burr.threshold_N = fields.number("threshold_N", 0.0, 100.0);
   burr.full_N = fields.number("full_N", 1e-3, 100.0);
+  burr.shank_radius_m = fields.number("shank_radius_m", 3e-4, 5e-3);
   if (burr.full_N <= burr.threshold_N)
     fields.wrong("full_N", "a force above threshold_N is expected");
   if (auto done = fields.done(); !done) return done.error();

@@ -32,6 +32,9 @@ struct Burr {
   double threshold_N =
       0.01;             ///< F₀, no bone goes below: the least contact that [Zoller2020] counts
   double full_N = 0.2;  ///< F₁, no faster above; > F₀, … 100
+  /// Of the shaft, steel as the probe's: it takes the place of the model's radius, or the burr
+  /// would bend away from what it cuts. 0.0003 … 0.005
+  double shank_radius_m = 0.00125;
 
   /// ρ(F), eq. (2), 1/s.
   double rate_at_per_s(double force_N) const noexcept;

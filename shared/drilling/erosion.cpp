@@ -75,8 +75,8 @@ core::Result<Erosion> Erosion::make(const volume::Volume& bone,
   Erosion made(bone, burr, probe, bone.count_of(*empty));
   if (!made.lost_)
     return core::Error{core::Errc::too_large, "drilling: there is not enough memory"};
-  for (std::size_t count = 0; count < made.is_bone_.size(); ++count)
-    made.is_bone_[count] = transfer.opacity(bone.intercept + bone.slope * double(count)) > 0.0;
+  for (std::size_t count = 0; count < made.opacity_.size(); ++count)
+    made.opacity_[count] = float(transfer.opacity(bone.intercept + bone.slope * double(count)));
   return made;
 }
 
@@ -85,7 +85,7 @@ Erosion::Erosion(const volume::Volume& bone, const Burr& burr, const trial::Prob
     : bone_(&bone),
       drilled_(bone),
       lost_(static_cast<float*>(std::calloc(bone.counts.size(), sizeof(float)))),
-      is_bone_(std::size_t(1) << 16),
+      opacity_(std::size_t(1) << 16),
       burr_(burr),
       probe_(probe),
       empty_(empty),
@@ -106,10 +106,32 @@ void Erosion::add(const trial::Sample& sample, const Take& changed) {
   const bool moved_on =
       dt_s > 0.0 && dt_s <= kLongest_s && (centre_m - last_->centre_m).norm() <= kFarthest_m;
   if (moved_on && (sample.flags & trial::kPressed)) {
-    const double dose = burr_.rate_at_per_s(push_N(sample)) * dt_s;
+    const double opacity = mean_opacity(centre_m);
+    const double rate_per_s =
+        opacity > 0.0 ? burr_.rate_at_per_s(push_N(sample) / opacity) : burr_.rate_per_s;
+    const double dose = rate_per_s * dt_s;
     if (dose > 0.0) sweep(last_->centre_m, centre_m, dose, changed);
   }
   last_ = {centre_m, sample.t_s};
+}
+
+// ᾱ of the ball at its place.
+double Erosion::mean_opacity(const Vec3& centre_m) const noexcept {
+  const volume::Geometry& geometry = bone_->geometry;
+  const Vec3 index = geometry.index_of(centre_m);
+  const Box ball = box_of_ball(geometry, index, burr_.radius_m);
+  const double r2 = burr_.radius_m * burr_.radius_m;
+  double sum = 0.0, weight = 0.0;
+  for (int k = ball.begin[2]; k < ball.end[2]; ++k)
+    for (int j = ball.begin[1]; j < ball.end[1]; ++j)
+      for (int i = ball.begin[0]; i < ball.end[0]; ++i) {
+        const Vec3 off_m = (Vec3(i, j, k) - index).cwiseProduct(geometry.spacing_m);
+        const double w = 1.0 - off_m.squaredNorm() / r2;
+        if (w <= 0.0) continue;
+        sum += w * double(opacity_[drilled_.counts[bone_->offset(i, j, k)]]);
+        weight += w;
+      }
+  return weight > 0.0 ? sum / weight : 0.0;
 }
 
 void Erosion::finish(const Take& changed) { flush(changed); }
@@ -155,7 +177,8 @@ void Erosion::wear_voxel(std::size_t at, int i, int j, int k, double share) noex
   lost_[at] = after;
   worn_ = united(worn_, {{i, j, k}, {i + 1, j + 1, k + 1}});
   if (whole <= empty_) return;  // fat, air: the burr went there, and nothing changes
-  if (is_bone_[whole]) removed_m3_ += double(after - before) * bone_->geometry.spacing_m.prod();
+  if (opacity_[whole] > 0.0f)
+    removed_m3_ += double(after - before) * bone_->geometry.spacing_m.prod();
   const auto gone = std::uint16_t(std::lround(double(after) * (whole - empty_)));
   const auto count = std::uint16_t(whole - gone);
   if (count == drilled_.counts[at]) return;

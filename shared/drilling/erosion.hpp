@@ -38,6 +38,10 @@ struct Change {
 ///
 ///     c = c₀ − round(m (c₀ − c_empty)),   m = min(1, ∫ρ (1 − d²/r²) dt),   c₀ > c_empty
 ///
+/// The model's field pushes back in proportion to opacity, and not at all where there is none. So
+/// the push that counts is taken per opacity (own): ρ(F/ᾱ), with ᾱ the mean opacity in the ball as
+/// it is now, weighed by 1 − d²/r²; where ᾱ is 0 nothing resists, and ρ = ρ₁ without a push.
+///
 /// The integral is a sum over balls no farther apart than half a voxel. Changes are told at the
 /// end of each chunk, and within one where the box would outgrow kMostPatchFloats.
 class Erosion {
@@ -84,6 +88,7 @@ class Erosion {
   };
   Erosion(const volume::Volume& bone, const Burr& burr, const trial::ProbeShape& probe,
           std::uint16_t empty);
+  double mean_opacity(const math::Vec3& centre_m) const noexcept;
   void sweep(const math::Vec3& from_m, const math::Vec3& to_m, double dose, const Take& changed);
   void place(const math::Vec3& centre_m, double dose, const Take& changed);
   void wear(const Take& changed);
@@ -94,7 +99,7 @@ class Erosion {
   const volume::Volume* bone_;
   volume::Volume drilled_;
   std::unique_ptr<float[], Free> lost_;  // zero pages until they are touched
-  std::vector<bool> is_bone_;            // [count]
+  std::vector<float> opacity_;           // [count]
   Burr burr_;
   trial::ProbeShape probe_;
   std::uint16_t empty_;

@@ -48,7 +48,7 @@ TEST(Erosion, IsNoMoreThanAllOfAVoxelAndNothingOfAir) {
 
 // Eq. (2): half-way between threshold and full force the rate is halved.
 TEST(Erosion, GrowsWithThePushFromItsThresholdToItsCap) {
-  const volume::Volume bone = block(21, 0.0005);
+  const volume::Volume bone = block(21, 0.0005);  // ᾱ = 1, and after a loss of 0.2 still
   const auto lost_at = [&](float push_N) {
     return eroded(bone, kSlow, stroke(0, Vec3::Zero(), Vec3::Zero(), 400, push_N))
         ->lost(10, 10, 10);
@@ -57,6 +57,20 @@ TEST(Erosion, GrowsWithThePushFromItsThresholdToItsCap) {
   EXPECT_NEAR(lost_at(1.5f), 0.1, 1e-6);  // 0.1 s · 1/s
   EXPECT_NEAR(lost_at(2.5f), 0.2, 1e-6);
   EXPECT_NEAR(lost_at(9.0f), 0.2, 1e-6);
+}
+
+// α(425 HU) = (425 − 150)/(700 − 150) = 0.5: 0.75 N count as 1.5 N, half-way, so 1/s; as it wears
+// α falls (to 0.492 after 0.01) and the rate with it rises, to 1.02/s. Without opacity: 2/s
+// unpushed.
+TEST(Erosion, NeedsLessPushInSofterBoneAndNoneWhereNothingResists) {
+  const auto lost_of = [](std::uint16_t count, float push_N) {
+    volume::Volume bone = block(21, 0.0005);
+    std::ranges::fill(bone.counts, count);
+    return eroded(bone, kSlow, stroke(0, Vec3::Zero(), Vec3::Zero(), 40, push_N))->lost(10, 10, 10);
+  };
+  EXPECT_NEAR(lost_of(1449, 0.75f), 0.0101, 1e-4);
+  EXPECT_EQ(lost_of(1449, 0.25f), 0.0);
+  EXPECT_NEAR(lost_of(1124, 0.0f), 0.02, 1e-6);
 }
 
 TEST(Erosion, NeedsTheButtonAndAFreshSample) {

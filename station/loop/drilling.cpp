@@ -10,10 +10,11 @@ constexpr core::Instant_ns kPoll_ns = 500'000;
 }  // namespace
 
 core::Result<std::unique_ptr<Drilling>> Drilling::make(const volume::Volume& bone,
-                                                       const models::PalpationModel& model,
+                                                       models::PalpationModel model,
                                                        const drilling::Burr& burr,
                                                        const core::Progress& progress) {
-  const auto& base = model.base;
+  auto& base = model.base;
+  base.radius_m = burr.shank_radius_m;
   auto erosion = drilling::Erosion::make(
       bone, model.transfer, burr, {.length_m = base.length_m, .pose_offset_m = base.pose_offset_m});
   if (!erosion) return erosion.error();

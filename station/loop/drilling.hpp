@@ -31,9 +31,10 @@ class Drilling final : public Tool {
  public:
   static constexpr std::size_t kRoom = 16384;  ///< samples: four seconds
 
-  /// `bone` must outlive this. Errors: those of drilling::Erosion, ForceField and the model.
+  /// The model with the burr's shank. `bone` must outlive this. Errors: those of drilling::Erosion,
+  /// ForceField and the model.
   static core::Result<std::unique_ptr<Drilling>> make(const volume::Volume& bone,
-                                                      const models::PalpationModel& model,
+                                                      models::PalpationModel model,
                                                       const drilling::Burr& burr,
                                                       const core::Progress& progress = {});
   ~Drilling() override;

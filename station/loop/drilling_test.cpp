@@ -98,7 +98,9 @@ void expect_replays(const Bench& bench, const std::vector<trial::Sample>& sample
                                          {.length_m = bench.model.base.length_m});
   auto field = volume::ForceField::make(bench.bone, setup.transfer, bench.model.field);
   ASSERT_TRUE(erosion && field);
-  const auto runtime = models::PalpationRuntime::make(bench.model, *field);
+  models::PalpationModel with_burr = bench.model;
+  with_burr.base.radius_m = setup.burr.shank_radius_m;
+  const auto runtime = models::PalpationRuntime::make(with_burr, *field);
   ASSERT_TRUE(runtime);
   std::deque<volume::FieldPatch> waiting;
   const auto take = [&](const drilling::Change& change) {
@@ -162,7 +164,7 @@ TEST(Drilling, TakesNothingWithoutTheButton) {
 // A burr that takes the bone from under the hand at once: the model's force falls in one tick by
 // more than the slew lets through, and what is rendered does not.
 TEST(Drilling, OfAllTheBoneAtOnceDoesNotJerkTheHand) {
-  Bench bench({.nose_m = 0.0, .rate_per_s = 1000.0, .threshold_N = 1.2, .full_N = 1.201});
+  Bench bench({.nose_m = 0.0, .rate_per_s = 1000.0, .threshold_N = 2.2, .full_N = 2.201});
   bench.device.give_m_per_N = 0.0;
   const auto samples = bench.run(8000, [&] { bench.drilling->work(); });
   const double most_N = bench.limiter.limits().max_force_slew_N_per_s * 0.00025;

@@ -188,6 +188,7 @@ core::Result<void> TrialRun::Parts::make_file(const devices::DeviceInfo& info) {
   header.started_utc_us = setup.started_utc_us.value_or(core::utc_us());
   header.rate_Hz = setup.rate_Hz;
   header.probe = probe_of(prepared.model.base);
+  if (setup.burr) header.probe["radius_m"] = setup.burr->shank_radius_m;
   header.extra = {
       {"clock", fast() ? "manual: simulated time, run as fast as it goes" : "monotonic: real time"},
       {"model", prepared.model.name},

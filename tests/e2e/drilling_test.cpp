@@ -73,9 +73,9 @@ TEST_F(DrillingLive, AChannelIsMadeReplaysToTheSameVoxelsAndForcesAndIsThenFelt)
   EXPECT_TRUE(made.at("complete").get<bool>());
   EXPECT_TRUE(made.at("answer").is_null());  // there is nothing to guess
   const double removed_m3 = made.at("drilled").at("removed_m3");
-  // A cylinder of the burr's 1.5 mm over the 42 mm of the tract is 300 mm³; not all of it is bone,
-  // and a fast feed leaves a narrower channel.
-  EXPECT_GT(removed_m3, 60e-9);
+  // A cylinder of the burr's 1.5 mm over the 42 mm of the tract is 300 mm³; most of it is marrow
+  // without opacity in this spine, and a fast feed leaves a narrower channel.
+  EXPECT_GT(removed_m3, 20e-9);
   EXPECT_LT(removed_m3, 400e-9);
 
   ASSERT_EQ(run("tractus drill replay " + file_of(id) + " --case case --out drilled.tvol --json"),
@@ -94,8 +94,8 @@ TEST_F(DrillingLive, AChannelIsMadeReplaysToTheSameVoxelsAndForcesAndIsThenFelt)
   EXPECT_LT(channel.at("angle_rad").get<double>(), 0.05);  // the simulated hand keeps to the plan
   EXPECT_GT(channel.at("depth_m").get<double>(), 0.035);
 
-  // The same hand palpates the whole bone and the channel: only in the channel does its tip come
-  // as deep as it means to without being pushed back.
+  // The same hand goes in, in the channel and through the whole bone: what pushes back along
+  // the shank in the first 7 s, the way in, is less in the channel.
   const auto palpated = [&](const std::string& also) {
     EXPECT_EQ(run("tractus-station --data st --case case --speed fast --seed 5 --json " + also), 0)
         << said();
@@ -108,13 +108,14 @@ TEST_F(DrillingLive, AChannelIsMadeReplaysToTheSameVoxelsAndForcesAndIsThenFelt)
   EXPECT_EQ(trial->header.extra.at("drilled"), id);
   const auto axial_N = [](const trial::Trial& of) {
     double sum = 0.0;
-    for (const auto& sample : of.samples) sum += std::abs(double(sample.force_N[2]));
-    return sum / double(of.samples.size());
+    for (const auto& sample : of.samples)
+      if (sample.t_s < 7.0) sum += std::abs(double(sample.force_N[2]));
+    return sum;
   };
   const auto whole =
       trial::read_trial(folder_ / file_of(palpated("").at("trial_id").get<std::string>()));
   ASSERT_TRUE(whole);
-  EXPECT_LT(axial_N(*trial), 0.6 * axial_N(*whole));
+  EXPECT_LT(axial_N(*trial), 0.8 * axial_N(*whole));
 }
 
 TEST_F(DrillingLive, AnotherVolumeOrATrialOfPalpationIsRefusedOrNotAgreedWith) {
@@ -189,7 +190,7 @@ TEST_F(DrillingLive, WhatDoesNotFitIsRefusedInOneLine) {
   }
   ASSERT_TRUE(core::write_file(folder_ / "burr.json",
                                core::bytes_of(R"({"radius_m":0.05,"nose_m":0,"rate_per_s":1,
-                                                 "threshold_N":0,"full_N":1})")));
+                                                 "threshold_N":0,"full_N":1,"shank_radius_m":0.001})")));
   EXPECT_EQ(run("tractus-station --data st --speed fast --case case --tool burr --burr burr.json"),
             2);
   EXPECT_NE(said().find("radius_m"), std::string::npos) << said();

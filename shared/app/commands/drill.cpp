@@ -1,6 +1,7 @@
 /// `tractus drill`: drills a recorded trial again, and holds what was made against the plan.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <numbers>
@@ -52,10 +53,16 @@ core::Result<Bone> bone_of(const Options& o) {
 }
 
 /// Forces can be had again where the case's own model ran, without effects.
-core::Result<std::unique_ptr<DrillForces>> forces_of(const Bone& bone) {
+core::Result<std::unique_ptr<DrillForces>> forces_of(const Options& o, const Bone& bone) {
   if (!bone.opened || !bone.opened->definition.model.effects.empty())
     return std::unique_ptr<DrillForces>();
-  return DrillForces::make(bone.volume, bone.opened->definition.model);
+  const auto trial = trial::scan_trial(o.trial, [](const trial::Block&) {});
+  if (!trial) return trial.error();
+  const auto setup = drilling::Setup::of(trial->header);
+  if (!setup) return Error{setup.error().code, o.trial + ": " + setup.error().what};
+  models::PalpationModel model = bone.opened->definition.model;
+  model.base.radius_m = setup->burr.shank_radius_m;
+  return DrillForces::make(bone.volume, model);
 }
 
 Json json_of(const drilling::Redrilled& again, const DrillForces* forces) {
@@ -91,7 +98,7 @@ void print_replay(const Json& told) {
 Outcome replay(const Options& o) {
   const auto bone = bone_of(o);
   if (!bone) return bone.error();
-  const auto made = forces_of(*bone);
+  const auto made = forces_of(o, *bone);
   if (!made) return made.error();
   DrillForces* const forces = made->get();
   const auto again = drilling::redrill(
@@ -121,11 +128,12 @@ void print_channel(const drilling::Channel& made, const volume::Tract& tract) {
     return;
   }
   if (made.angle_rad)
-    fmt::print(
-        "entry {:.1f} mm medial and {:.1f} mm superior of the plan, turned by {:.1f} "
-        "degrees\n",
-        made.entry_offset_m->x() * 1e3, made.entry_offset_m->y() * 1e3,
-        *made.angle_rad * 180.0 / std::numbers::pi);
+    fmt::print("entry {:.1f} mm {} and {:.1f} mm {} of the plan, turned by {:.1f} degrees\n",
+               std::abs(made.entry_offset_m->x()) * 1e3,
+               made.entry_offset_m->x() >= 0.0 ? "medial" : "lateral",
+               std::abs(made.entry_offset_m->y()) * 1e3,
+               made.entry_offset_m->y() >= 0.0 ? "superior" : "inferior",
+               *made.angle_rad * 180.0 / std::numbers::pi);
   else
     fmt::print("too short to have a direction\n");
   fmt::print("deepest at {:.1f} mm; the plan ends at {:.1f} mm\n", *made.depth_m * 1e3,
