@@ -40,10 +40,10 @@ TEST(DeviceAhead, StandsLevelBeforeThePersonWhoeverLooksWherever) {
   EXPECT_TRUE((X_SD.q * math::Vec3::UnitY()).isApprox(math::Vec3::UnitX(), 1e-12));
   EXPECT_TRUE((X_SD.q * math::Vec3::UnitZ()).isApprox(math::Vec3::UnitY(), 1e-12));
   // Straight down at the feet: ahead is where the top of the head points.
-  const math::Pose down{
-      {}, math::Quat(Eigen::AngleAxisd(-0.5 * std::numbers::pi, math::Vec3::UnitX()))};
+  const math::Pose down{math::Vec3::Zero(), math::Quat(Eigen::AngleAxisd(-0.5 * std::numbers::pi,
+                                                                         math::Vec3::UnitX()))};
   EXPECT_NEAR(device_ahead_of(down).p.z(), -0.45, 1e-12);
-  const math::Pose up{{},
+  const math::Pose up{math::Vec3::Zero(),
                       math::Quat(Eigen::AngleAxisd(0.5 * std::numbers::pi, math::Vec3::UnitX()))};
   EXPECT_NEAR(device_ahead_of(up).p.z(), -0.45, 1e-12);
 }
