@@ -64,6 +64,43 @@ TEST_F(ViewTest, OffscreenShowsBoneInTheMiddleAndBackgroundInTheCorner) {
   EXPECT_GT(brightness(160, 150), 80);  // bone, lit
 }
 
+// The half of the block that is carved away shows the background where bone was.
+TEST_F(ViewTest, BoneThatWasCarvedAwayIsGoneFromTheNextPicture) {
+  auto bone = block();
+  const auto transfer = volume::TransferFunction::bone();
+  volume::Tract tract;
+  tract.entry_m = {0, 0, -0.02};
+  tract.length_m = 0.03;
+  tract.radius_m = 0.002;
+  auto made = View::make({bone, transfer, tract, {}}, Mode::offscreen, 320, 240);
+  ASSERT_TRUE(made) << made.error().what;
+  ProbeState away;
+  away.X_VH.p = {0, 0, -0.5};
+  const auto bright_pixels = [&] {
+    (*made)->draw(away, {});
+    EXPECT_TRUE((*made)->save_png(picture_));
+    vtkNew<vtkPNGReader> reader;
+    reader->SetFileName(picture_.c_str());
+    reader->Update();
+    int bright = 0;
+    for (int y = 40; y < 240; ++y)
+      for (int x = 0; x < 320; ++x)
+        bright += reader->GetOutput()->GetScalarComponentAsDouble(x, y, 0, 0) > 80;
+    return bright;
+  };
+  const int whole = bright_pixels();
+  const volume::Box half{{0, 0, 0}, {40, 40, 20}};
+  std::fill_n(bone.counts.begin(), 40 * 40 * 20, std::uint16_t(0));
+  (*made)->carve_away(half, bone);
+  const int left = bright_pixels();
+  (*made)->carve_away({{0, 0, 20}, {40, 40, 40}},
+                      block());  // the other half's own counts: nothing new
+  EXPECT_EQ(bright_pixels(), left);
+  EXPECT_GT(whole, 2000);
+  EXPECT_LT(left, 3 * whole / 4);
+  EXPECT_GT(left, whole / 8);
+}
+
 TEST_F(ViewTest, AWindowWithoutADisplayIsRefusedInWords) {
   const char* display = ::getenv("DISPLAY");
   const std::string kept = display ? display : "";
