@@ -2,6 +2,8 @@
 
 namespace metrics {
 
+bool drills(const trial::Trial& trial) { return trial.header.extra.contains("drilling"); }
+
 const core::Json* drilled_detail(const Subject& subject) {
   const core::Json* found = nullptr;
   for (const trial::Event& event : subject.trial.events)
@@ -11,7 +13,7 @@ const core::Json* drilled_detail(const Subject& subject) {
 
 Score channel_score(const Subject& subject, const char* key) {
   const core::Json* detail = drilled_detail(subject);
-  if (!detail) return {{}, kNotDrilled};
+  if (!detail) return {{}, kCutShort};
   const auto channel = detail->find("channel");
   if (channel == detail->end() || !channel->is_object())
     return {{}, "the station did not measure the channel"};

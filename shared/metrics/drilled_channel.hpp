@@ -6,12 +6,15 @@
 
 namespace metrics {
 
-/// What the event's detail says; null when the trial drilled nothing or was cut short.
+/// What the event's detail says; null when the trial was cut short.
 const core::Json* drilled_detail(const Subject& subject);
 
 /// The number under `key` of the event's `channel`, or no value and why.
 Score channel_score(const Subject& subject, const char* key);
 
-inline constexpr const char* kNotDrilled = "nothing was drilled";
+inline constexpr const char* kCutShort = "the trial was cut short";
+
+/// Was the tool a burr?
+bool drills(const trial::Trial& trial);
 
 }  // namespace metrics

@@ -6,6 +6,7 @@ std::vector<std::pair<MetricInfo, Score>> score_all(const Subject& subject) {
   std::vector<std::pair<MetricInfo, Score>> out;
   for (auto& info : all()) {
     if (info.rig && info.rig != subject.trial.header.rig) continue;
+    if (info.is_of && !info.is_of(subject.trial)) continue;
     Score score = info.compute(subject);
     out.emplace_back(std::move(info), std::move(score));
   }

@@ -41,6 +41,7 @@ struct MetricInfo {
   std::string source;      ///< paper, table or "own definition"
   Score (*compute)(const Subject& subject);
   std::optional<trial::Rig> rig = trial::Rig::palpation;  ///< whose trials it is of; nothing: both
+  bool (*is_of)(const trial::Trial& trial) = nullptr;     ///< of which of them; null: of all
 };
 
 /// Every metric, in file-name order.

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <numbers>
@@ -330,6 +331,18 @@ TEST(Metrics, OfADrilledChannelHaveNoValueWhereTheEventIsNotUnderstood) {
       EXPECT_FALSE(bench.score(id).note.empty()) << id;
     }
   }
+}
+
+TEST(Metrics, OfADrilledChannelAreOfTrialsThatDrill) {
+  const auto has_one = [](const trial::Trial& trial) {
+    return std::ranges::any_of(score_all({.trial = trial}), [](const auto& scored) {
+      return scored.first.id == "drilled_volume";
+    });
+  };
+  Bench bench;
+  EXPECT_FALSE(has_one(bench.trial));
+  bench.trial.header.extra["drilling"] = {{"law", "tractus-drilling/1"}};
+  EXPECT_TRUE(has_one(bench.trial));
 }
 
 }  // namespace

@@ -9,7 +9,9 @@ MetricInfo channel_angle() {
           "Angle between the principal axis of the voxels that lost half of themselves or more and "
           "the planned tract.",
           "own definition",
-          [](const Subject& subject) { return channel_score(subject, "angle_rad"); }};
+          [](const Subject& subject) { return channel_score(subject, "angle_rad"); },
+          trial::Rig::palpation,
+          drills};
 }
 
 }  // namespace metrics

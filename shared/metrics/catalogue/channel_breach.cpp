@@ -9,7 +9,7 @@ namespace {
 /// The farthest reach beyond a wall's outer face.
 Score beyond_bone(const Subject& subject) {
   const core::Json* detail = drilled_detail(subject);
-  if (!detail) return {{}, kNotDrilled};
+  if (!detail) return {{}, kCutShort};
   const auto channel = detail->find("channel");
   if (channel == detail->end() || !channel->is_object() || !channel->contains("beyond_m"))
     return {{}, "the station did not measure the channel"};
@@ -34,7 +34,9 @@ MetricInfo channel_breach() {
           "How far the channel reaches beyond the outer face of a wall, as the image shows it "
           "before the drilling; negative where it stays within, and then to the nearest face.",
           "own definition",
-          beyond_bone};
+          beyond_bone,
+          trial::Rig::palpation,
+          drills};
 }
 
 }  // namespace metrics

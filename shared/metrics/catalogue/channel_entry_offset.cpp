@@ -6,7 +6,7 @@ namespace metrics {
 namespace {
 Score offset(const Subject& subject) {
   const core::Json* detail = drilled_detail(subject);
-  if (!detail) return {{}, kNotDrilled};
+  if (!detail) return {{}, kCutShort};
   const auto channel = detail->find("channel");
   if (channel == detail->end() || !channel->is_object())
     return {{}, "the station did not measure the channel"};
@@ -25,7 +25,9 @@ MetricInfo channel_entry_offset() {
           "Distance from the planned entry to where the channel's axis meets the plane across the "
           "tract there.",
           "own definition",
-          offset};
+          offset,
+          trial::Rig::palpation,
+          drills};
 }
 
 }  // namespace metrics

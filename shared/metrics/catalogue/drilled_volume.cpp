@@ -4,7 +4,7 @@ namespace metrics {
 namespace {
 Score removed(const Subject& subject) {
   const core::Json* detail = drilled_detail(subject);
-  if (!detail) return {{}, kNotDrilled};
+  if (!detail) return {{}, kCutShort};
   const auto value = detail->find("removed_m3");
   if (value == detail->end() || !value->is_number()) return {{}, "the station did not say"};
   return {value->get<double>(), ""};
@@ -17,7 +17,9 @@ MetricInfo drilled_volume() {
           "m^3",
           "Sum over the voxels that had opacity of the share that the burr took, times a voxel.",
           "own definition",
-          removed};
+          removed,
+          trial::Rig::palpation,
+          drills};
 }
 
 }  // namespace metrics

@@ -4,6 +4,7 @@ import { afterEach, describe, expect, it } from 'vitest';
 import type { Answer, Metric, Scenario } from '@/api';
 import { metre, share } from '@/units';
 import { breachMarks } from './breaches';
+import { channelOf } from './channel';
 import { judge, judgeProbing } from './judgement';
 import { arranged, shown } from './measure-rows';
 import { Measures } from './measures';
@@ -31,6 +32,27 @@ describe('the judgement', () => {
   it('stays open without an answer or without the truth', () => {
     expect(judge(null, { breached: null }).headline).toBe('No answer');
     expect(judge(answer({}), null)).toMatchObject({ outcome: 'open', truth: 'Not released for this trial.' });
+  });
+});
+
+describe('the channel that a burr made', () => {
+  const drilled = (beyond: number | null, note: string) => [
+    metric('drilled_volume', 5.6e-8, 'm^3'), metric('channel_breach', beyond, 'm', note), metric('channel_angle', null, 'rad', 'too short'),
+  ];
+  it.each([
+    [0.0021, 'through the medial wall', 'out', 'Left the bone, through the medial wall, by 2.1 mm'],
+    [-0.0014, 'nearest to the inferior wall', 'within', 'Within the bone, 1.4 mm left, nearest to the inferior wall'],
+    [null, 'the channel came to no place with a known wall', 'unknown', 'Not told: the channel came to no place with a known wall'],
+  ] as const)('reaching %s m beyond the bone', (beyond, note, outcome, words) => {
+    const channel = channelOf(drilled(beyond, note));
+    expect(channel?.outcome).toBe(outcome);
+    expect(channel?.headline.replaceAll('\u202f', ' ')).toBe(words);
+    expect(channel?.removed.replaceAll('\u202f', ' ')).toBe('56.0 mm³');
+    expect(channel?.direction).toBe('–');
+  });
+
+  it('is of no trial that palpated', () => {
+    expect(channelOf([metric('force_xy_mean', 0.1)])).toBeNull();
   });
 });
 
