@@ -44,7 +44,8 @@ core::Result<void> run_shown(
   std::atomic<bool> stop = false, done = false;
   std::optional<core::Result<void>> outcome;
   std::thread thread([&] {
-    if (pace == Pace::real_time) static_cast<void>(loop::prepare_realtime());
+    std::optional<loop::Realtime> realtime;
+    if (pace == Pace::real_time) realtime.emplace();
     outcome.emplace(work([&](double now) {
       share = now;
       return !stop;

@@ -60,7 +60,8 @@ struct Woken {
 };
 
 void wake_up(double rate_Hz, double for_s, Woken& out) {
-  out.grant = loop::prepare_realtime();
+  const loop::Realtime realtime;
+  out.grant = realtime.grant();
   core::MonotonicClock clock;
   const auto period = core::Instant_ns(std::llround(1e9 / rate_Hz));
   core::Instant_ns deadline = clock.now();

@@ -239,7 +239,8 @@ void ProbingTrialRun::Parts::after_tick(const trial::ProbingSample& sample) {
 
 void ProbingTrialRun::Parts::loop_thread(std::promise<void>& prepared,
                                          const std::future<void>& go) {
-  if (!fast()) grant = loop::prepare_realtime();
+  std::optional<loop::Realtime> realtime;
+  if (!fast()) grant = realtime.emplace().grant();
   prepared.set_value();
   go.wait();
   loop->run([this](const trial::ProbingSample& sample) { after_tick(sample); });

@@ -255,7 +255,8 @@ void TrialRun::Parts::after_tick() {
 }
 
 void TrialRun::Parts::loop_thread(std::promise<void>& ready, const std::future<void>& go) {
-  if (!fast()) grant = loop::prepare_realtime();
+  std::optional<loop::Realtime> realtime;
+  if (!fast()) grant = realtime.emplace().grant();
   ready.set_value();
   go.wait();
   loop->run([this] { after_tick(); });
