@@ -47,6 +47,7 @@ export const kPages: readonly GuidePage[] = [
       { title: 'Hold a model against measurements', text: 'Drop a folder or a zip, choose a model, compare. What is wrong in a file is told by its name and line.', to: { href: '/lab', name: 'Model lab' } },
       { title: 'See where it fails, and what is missing', text: 'A short list of regions with their samples; then the effects of the catalogue, ranked by the error on trials that no fit saw. The verdict stands first, in plain words.', picture: { name: 'researcher-missing', shows: 'The verdict: which effect is missing, and the error falling to the noise floor' } },
       { title: 'Add it, and watch the error fall', text: 'By one press, by hand, or by a formula of your own whose units are checked while you write. Publish the better model as a version; any two versions can be compared, and a version sent to the stations can be felt there minutes later.', to: { href: '/lab/versions', name: 'Versions' } },
+      { title: 'Bring measurements of your own', text: 'tractus record takes a force/torque sensor and motion capture, tractus assemble makes a set of them: clocks made one by five taps, frames by a recipe. How, step by step, is in shared/doc/measuring-room.md.' },
       { title: 'Ask the cohort', text: 'Lock a plan before the data are seen, run it, run it again to the same digits. The published study is there as an example.', to: { href: '/analysis', name: 'Analysis' } },
     ],
     terms: [kFloor, kHeldOut, ['Confounded', 'Two effects that look alike in these measurements. The lab names the recording that would tell them apart.'], ['Locked plan', 'Every word of it has its hash taken, with name and time. It can be run and never changed.']],
@@ -55,11 +56,12 @@ export const kPages: readonly GuidePage[] = [
     role: 'technician', name: 'Technician', for: 'Stations that may fetch cases and bring trials.',
     steps: [
       { title: 'Enrol a station', text: 'Give it a name, type the code that is shown at the station. The code is good once.', to: { href: '/network/stations', name: 'Stations' } },
+      { title: 'Test and calibrate', text: 'At the station: tractus-station self-test asks device, loop, display, disk and clock, check by check, and prints a page (--page); tractus-station calibrate finds the device’s zeros, under your name. Both are told here.' },
       { title: 'See how each is', text: 'Open a station: its self-tests check by check, when its calibration is due, room on its disk, late steps. Lower its force limit when you doubt the device; only a person at the station raises it again.', picture: { name: 'technician', shows: 'Backups: made while the server serves, and tried by restoring them' } },
       { title: 'Make a backup, and try it', text: 'It is made while everything goes on. Trying it restores it beside and looks everything over: only then is it worth something.', to: { href: '/network/backups', name: 'Backups' } },
       { title: 'Revoke one that is lost', text: 'Its key is refused at once; what it has recorded stays on its disk.' },
     ],
-    terms: [['Self-test', 'What a station checks of its device by itself: force at rest, timing, encoders, limits.'], ['Calibration', 'The force sensor against known weights; due again after half a year.'], ['Late steps', 'Steps of the force loop that came later than they should have. The hand feels them when there are many.'], ['Station', 'A machine with a simulator. It records to its own disk first and hands over when it can.']],
+    terms: [['Self-test', 'What a station asks of itself: travel, rest, direction of every axis, step response and round trip of its device; wake-ups, display, disk and clock of the machine.'], ['Calibration', 'The device’s zeros found anew and checked, by whom and when; due again on the date that was set, 90 days later if none was.'], ['Late steps', 'Steps of the force loop that came later than they should have. The hand feels them when there are many.'], ['Station', 'A machine with a simulator. It records to its own disk first and hands over when it can.']],
   },
   {
     role: 'admin', name: 'Administrator', for: 'Accounts, roles, and the record of every change.',
