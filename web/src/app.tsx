@@ -20,8 +20,11 @@ export function makeClient(): QueryClient {
   };
   const client = new QueryClient({
     queryCache: new QueryCache({ onError }),
+    // The server is in the house: whether the browser thinks that there is an Internet says nothing about it.
     defaultOptions: {
+      mutations: { networkMode: 'always' },
       queries: {
+        networkMode: 'always',
         staleTime: 5_000,
         retry: (failures, reason) =>
           failures < 2 && reason instanceof ApiError && (reason.code === 'unreachable' || reason.code === 'unavailable'),
