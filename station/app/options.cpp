@@ -97,7 +97,6 @@ void add_tune(CLI::App& app, Options& options) {
       "--scenario hard --who \"Dr. A\" --out scenarios/");
 }
 
-/// What self-test and calibrate share.
 void add_run(CLI::App& app, Options& options) {
   app.add_option("--device", options.setup.device,
                  "lambda6 or sim-lambda6; rig or sim-rig for a scenario")

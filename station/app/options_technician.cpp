@@ -26,6 +26,7 @@ void add_align(CLI::App& app, Options& options) {
       ->capture_default_str();
 }
 
+/// What self-test and calibrate share.
 void add_check(CLI::App& app, Options& options) {
   add_data(app, options, true);
   add_server(app, options, false);

@@ -2,32 +2,12 @@
 #include <fmt/format.h>
 
 #include "core/clock.hpp"
+#include "plot/text.hpp"
 #include "station/check/findings.hpp"
 
 namespace check {
 namespace {
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
+using plot::escaped;
 
 constexpr const char* kStyle = R"(
 @page{size:A4;margin:13mm}

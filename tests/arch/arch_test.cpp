@@ -76,14 +76,16 @@ const std::map<std::string, Names> kAllowed = {
       "shared/models", "shared/trial", "shared/drilling", "station/devices", "station/safety"}},
     // Devices and this machine put to the question: every force through the loop's limiters.
     {"station/check",
-     {"shared/core", "shared/math", "station/devices", "station/loop", "station/safety"}},
+     {"shared/core", "shared/math", "shared/plot", "station/devices", "station/loop",
+      "station/safety"}},
     // How volumes are stored in bricks: those that are here are not fetched.
     {"station/uplink",
      {"shared/core", "shared/trial", "shared/wire", "shared/cases", "shared/volume"}},
     {"station/view",
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/models", "shared/cases",
       "shared/trial"}},
-    // The window's picture, for two eyes; a device's handle touches points when the room is aligned.
+    // The window's picture, for two eyes; a device's handle touches points when the room is
+    // aligned.
     {"station/headset",
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "station/view",
       "station/devices"}},
