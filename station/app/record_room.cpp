@@ -16,7 +16,7 @@ std::string words_of(const sensors::Recorded& done, const std::filesystem::path&
   out += "\n";
   if (done.force_faulty > 0)
     out += fmt::format("left out: {} force samples with status {}\n", done.force_faulty,
-                       sensors::status_words(done.worst_status));
+                       sensors::status_words(done.worst_status, done.calibration.status));
   if (done.complaint)
     out += fmt::format("the motion capture said: {} {} {}\n", done.complaint->code,
                        done.complaint->name, done.complaint->message);

@@ -21,20 +21,6 @@ constexpr std::size_t kMaxPage = 256 * 1024;
 constexpr std::uint16_t kStart = 0x0002, kStop = 0x0000, kBias = 0x0042, kHeader = 0x1234;
 constexpr std::int32_t kAnew = 1000;  // a record this far back is no late one
 
-struct Bit {
-  int number;
-  const char* says;
-};
-/// Those on which the vendor's manuals agree; a Net F/T box uses further ones for its insides.
-constexpr std::array<Bit, 8> kBits{{{0, "inner temperature out of range"},
-                                    {1, "supply voltage out of range"},
-                                    {2, "a gage is broken"},
-                                    {16, "a threshold was passed"},
-                                    {27, "a gage is out of range"},
-                                    {28, "simulated error"},
-                                    {29, "the calibration's checksum is wrong"},
-                                    {30, "force or torque out of range"}}};
-
 /// What stands between <tag> and </tag>, blanks taken off.
 std::optional<std::string_view> inside(std::string_view xml, const std::string& tag) {
   const auto from = xml.find("<" + tag + ">");
@@ -52,11 +38,12 @@ struct Unit {
   std::string_view name;
   double si;
 };
-constexpr std::array<Unit, 5> kForces{{{"N", 1.0},
+constexpr std::array<Unit, 6> kForces{{{"N", 1.0},
                                        {"kN", 1000.0},
                                        {"lbf", 4.4482216152605},
                                        {"klbf", 4448.2216152605},
-                                       {"kgf", 9.80665}}};
+                                       {"kgf", 9.80665},
+                                       {"gf", 0.00980665}}};
 constexpr std::array<Unit, 6> kTorques{{{"Nm", 1.0},
                                         {"Nmm", 1e-3},
                                         {"kNm", 1000.0},
@@ -122,10 +109,17 @@ core::Result<NetFtCalibration> parse_netft_xml(std::string_view xml, const std::
     return Error{Errc::bad_input, fmt::format("{}: units '{}' and '{}' are not known", where,
                                               core::one_line(force.value_or(""), 64),
                                               core::one_line(torque.value_or(""), 64))};
-  return NetFtCalibration{.counts_per_N = *per_force / *force_si,
-                          .counts_per_Nm = *per_torque / *torque_si,
-                          .rate_Hz = *rate,
-                          .serial = core::one_line(inside(xml, "calsn").value_or(""), 64)};
+  // The active configuration's calibration is named here; `calsn` is the calibration page's word.
+  const auto serial = inside(xml, "cfgcalsn");
+  const auto product = inside(xml, "prodname").value_or("");
+  const bool axia = product.find("Axia") != std::string_view::npos || inside(xml, "setrate");
+  return NetFtCalibration{
+      .counts_per_N = *per_force / *force_si,
+      .counts_per_Nm = *per_torque / *torque_si,
+      .rate_Hz = *rate,
+      .serial = core::one_line(serial ? *serial : inside(xml, "calsn").value_or(""), 64),
+      .product = core::one_line(product, 64),
+      .status = axia ? NetFtStatus::axia : NetFtStatus::box};
 }
 
 core::Result<NetFtCalibration> ask_calibration(const std::string& host, int http_port) {
@@ -163,19 +157,6 @@ math::Wrench wrench_of(const RdtRecord& record, const NetFtCalibration& by) noex
   const auto& c = record.counts;
   return {math::Vec3(c[0], c[1], c[2]) / by.counts_per_N,
           math::Vec3(c[3], c[4], c[5]) / by.counts_per_Nm};
-}
-
-bool is_faulty(std::uint32_t status) noexcept { return (status & 0x80000000u) != 0; }
-
-bool is_saturated(std::uint32_t status) noexcept { return (status & 0x48000000u) != 0; }
-
-std::string status_words(std::uint32_t status) {
-  std::string words;
-  for (const Bit& bit : kBits)
-    if (status & 1u << bit.number)
-      words += fmt::format("{}{}", words.empty() ? "" : ", ", bit.says);
-  if (words.empty()) words = is_faulty(status) ? "an error" : "no error";
-  return fmt::format("{:#010x} ({})", status, words);
 }
 
 core::Result<std::unique_ptr<NetFtStream>> NetFtStream::open(const std::string& host, int port,

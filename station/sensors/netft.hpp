@@ -1,5 +1,5 @@
 /// ATI Net F/T: a force/torque sensor on the network. Protocol and page as in the vendor's
-/// "Network F/T" manual (9620-05-Net FT, sections 9 and 10) and "Ethernet Axia" (9610-05, 4.8).
+/// "Network F/T" manual (9620-05-Net FT, sections 9 and 10) and "Ethernet Axia" (9610-05, 4.8, 11).
 #pragma once
 
 #include <array>
@@ -16,11 +16,16 @@
 
 namespace sensors {
 
+/// What the bits of a status mean: a Net F/T box and an Ethernet Axia have a table each.
+enum class NetFtStatus { box, axia };
+
 /// What the sensor says of itself at http://HOST/netftapi2.xml.
 struct NetFtCalibration {
   double counts_per_N = 0.0, counts_per_Nm = 0.0;
   double rate_Hz = 0.0;  ///< of its RDT stream as configured there; it may round it up
   std::string serial;    ///< of the calibration; empty if the page does not say
+  std::string product;   ///< "Net F/T", "Ethernet Axia", …; empty if the page does not say
+  NetFtStatus status = NetFtStatus::box;  ///< axia: its product says so, or its `setrate`
 };
 
 /// Reads the page; counts are per the unit that it names (N, lbf, …), brought to SI here. Errors:
@@ -41,12 +46,16 @@ inline constexpr std::size_t kRdtBytes = 36;
 std::optional<RdtRecord> parse_rdt(std::span<const std::byte> datagram) noexcept;
 math::Wrench wrench_of(const RdtRecord& record, const NetFtCalibration& calibration) noexcept;
 
-/// Does the status say that the sample is no good (its bit 31, "any error")?
+/// Does the status say that the sample is no good: its bit 31, "any error"? A threshold of the
+/// user's that was passed is none; a box raises bit 31 for it too (0x80010000).
 bool is_faulty(std::uint32_t status) noexcept;
-/// Was it beyond what the sensor can measure: a gage (bit 27) or a force or torque (bit 30)?
-bool is_saturated(std::uint32_t status) noexcept;
-/// "0xc0000000 (force or torque out of range)": the bits that the manual names.
-std::string status_words(std::uint32_t status);
+/// Was it beyond what the sensor can measure? An Axia's bits 27 (a gage) and 30 (a force or
+/// torque), a box's bit 17.
+bool is_saturated(std::uint32_t status, NetFtStatus of) noexcept;
+/// "0xc0000000 (force or torque out of range)": the bits that have a name. An Axia's are those of
+/// its manual (9610-05, table 4.7); a box's as public drivers for it name them, which follow its
+/// manual's "System Status Code": never seen from a real one.
+std::string status_words(std::uint32_t status, NetFtStatus of);
 
 /// A stream, started when it is opened and stopped when this goes. One thread.
 class NetFtStream {

@@ -62,9 +62,10 @@ struct Force : Gatherer {
   std::uint32_t worst_status = 0;
 
   void take(const RdtRecord& record, double arrived_s) {
-    if (is_faulty(record.status) || is_saturated(record.status)) {
+    const bool beyond = is_saturated(record.status, calibration.status);
+    if (is_faulty(record.status) || beyond) {
       ++faulty;
-      saturated += is_saturated(record.status);
+      saturated += beyond;
       worst_status |= record.status;
       return;
     }
@@ -186,8 +187,9 @@ core::Result<Room> open_room(const RecordSetup& setup, const std::filesystem::pa
 Error not_begun(const RecordSetup& setup, const Room& room, const std::string& ended_by) {
   if (!ended_by.empty()) return {Errc::unavailable, ended_by};
   if (room.force && room.force->faulty > 0)
-    return {Errc::unavailable, fmt::format("the force sensor says of every sample: {}",
-                                           status_words(room.force->worst_status))};
+    return {Errc::unavailable,
+            fmt::format("the force sensor says of every sample: {}",
+                        status_words(room.force->worst_status, room.force->calibration.status))};
   if (room.force && room.force->rows == 0)
     return {Errc::unavailable,
             fmt::format("the force sensor at {} sends no samples", setup.netft_host)};
@@ -252,7 +254,8 @@ core::Json Recorded::json() const {
                     {"late", force_late},
                     {"faulty", force_faulty},
                     {"saturated", force_saturated},
-                    {"status", status_words(worst_status)},
+                    {"status", status_words(worst_status, calibration.status)},
+                    {"product", calibration.product},
                     {"calibration", calibration.serial},
                     {"counts_per_N", calibration.counts_per_N},
                     {"counts_per_Nm", calibration.counts_per_Nm},

@@ -38,6 +38,9 @@ TEST(NetFt, ReadsItsCalibrationInAnyUnitThatItUses) {
   ASSERT_TRUE(us);
   EXPECT_NEAR(us->counts_per_N, 1e6 / 4.4482216152605, 1e-3);      // 1 lbf = 4.44822… N
   EXPECT_NEAR(us->counts_per_Nm, 5e5 / 0.1129848290276167, 1e-2);  // 1 lbf·in = 0.112985 N·m
+  std::string grams = kPage;
+  grams.replace(grams.find(">N<"), 3, ">gf<");
+  EXPECT_NEAR(parse_netft_xml(grams, "page")->counts_per_N, 1e6 / 0.00980665, 1e-3);
 }
 
 TEST(NetFt, NamesWhatAPageLacks) {
@@ -71,19 +74,60 @@ TEST(NetFt, ReadsARecordAsDocumented) {
   EXPECT_FALSE(parse_rdt(bytes));
 }
 
-TEST(NetFt, SaysWhatAStatusMeans) {
+TEST(NetFt, SaysWhatAnAxiasStatusMeans) {
+  constexpr auto kAxia = NetFtStatus::axia;
   EXPECT_FALSE(is_faulty(0));
   EXPECT_FALSE(is_faulty(0x00010000));  // a threshold is no error
   EXPECT_TRUE(is_faulty(0x80000020));
-  EXPECT_FALSE(is_saturated(0x80000020));
+  EXPECT_FALSE(is_saturated(0x80000020, kAxia));
   // "30 F/T out of range 0xC0000000", "27 Gage out of range 0x88000000" (9610-05, table 4.9)
-  EXPECT_TRUE(is_saturated(0xC0000000));
-  EXPECT_TRUE(is_saturated(0x88000000));
-  EXPECT_EQ(status_words(0xC0000000), "0xc0000000 (force or torque out of range)");
-  EXPECT_EQ(status_words(0x80000005),
+  EXPECT_TRUE(is_saturated(0xC0000000, kAxia));
+  EXPECT_TRUE(is_saturated(0x88000000, kAxia));
+  EXPECT_EQ(status_words(0xC0000000, kAxia), "0xc0000000 (force or torque out of range)");
+  EXPECT_EQ(status_words(0x80000005, kAxia),
             "0x80000005 (inner temperature out of range, a gage is broken)");
-  EXPECT_EQ(status_words(0x80000000), "0x80000000 (an error)");
-  EXPECT_EQ(status_words(0), "0x00000000 (no error)");
+  EXPECT_EQ(status_words(0x80000000, kAxia), "0x80000000 (an error)");
+  EXPECT_EQ(status_words(0, kAxia), "0x00000000 (no error)");
+}
+
+// Bits as public drivers of the Net F/T name them: 16 "monitor condition latched", for which bit 31
+// is up too, 17 "transducer saturation or A/D error", 27 "serial link communication error".
+TEST(NetFt, SaysWhatABoxsStatusMeansWhichHasOtherBits) {
+  constexpr auto kBox = NetFtStatus::box;
+  EXPECT_FALSE(is_faulty(0x80010000));  // a threshold of the user's: the sample is good
+  EXPECT_TRUE(is_faulty(0x80020000));
+  EXPECT_TRUE(is_faulty(0x80030000));
+  EXPECT_TRUE(is_saturated(0x80020000, kBox));
+  EXPECT_FALSE(is_saturated(0x88000000, kBox));
+  EXPECT_FALSE(is_saturated(0xC0000000, kBox));
+  EXPECT_NE(status_words(0x80020000, kBox).find("saturated"), std::string::npos);
+  EXPECT_EQ(status_words(0x88000000, kBox), "0x88000000 (the serial link failed)");
+}
+
+TEST(NetFt, KnowsAnAxiaFromABoxByItsPage) {
+  EXPECT_EQ(parse_netft_xml(kPage, "p")->status, NetFtStatus::box);
+  std::string page = kPage;
+  page.insert(page.find("<cfgcpf>"), "<prodname>Ethernet Axia</prodname>");
+  const auto axia = parse_netft_xml(page, "p");
+  EXPECT_EQ(axia->status, NetFtStatus::axia);
+  EXPECT_EQ(axia->product, "Ethernet Axia");
+  std::string nameless = kPage;  // "setrate" is in the Axia's table of elements alone
+  nameless.insert(nameless.find("<cfgcpf>"), "<setrate>0</setrate>");
+  EXPECT_EQ(parse_netft_xml(nameless, "p")->status, NetFtStatus::axia);
+}
+
+// Of a Gamma SI-330-30 with firmware 2.2.59, as a public driver's tests have the page, shortened.
+TEST(NetFt, ReadsTheCalibrationsSerialNumberOfARealBoxsPage) {
+  const auto page = parse_netft_xml(
+      "<?xml version=\"1.0\"?><netft>\n<runstat>0x00000000</runstat><runrate>7000</runrate>\n"
+      "<cfgnam>empty</cfgnam><cfgcalsel>0</cfgcalsel><cfgcalsn>FT27462</cfgcalsn>\n"
+      "<scfgfu>N</scfgfu><scfgtu>Nm</scfgtu>\n<cfgcpf>1000000</cfgcpf><cfgcpt>1000000</cfgcpt>\n"
+      "<comrdte>Enabled</comrdte><comrdtrate>100</comrdtrate><comrdtbsiz>1</comrdtbsiz>\n</netft>",
+      "p");
+  ASSERT_TRUE(page) << page.error().what;
+  EXPECT_EQ(page->serial, "FT27462");
+  EXPECT_EQ(page->rate_Hz, 100.0);
+  EXPECT_EQ(page->status, NetFtStatus::box);
 }
 
 TEST(NetFt, RefusesAPageThatSaysThatRdtIsOff) {

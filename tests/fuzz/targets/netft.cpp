@@ -8,7 +8,9 @@ bool run(core::ByteView bytes) {
   const auto record = sensors::parse_rdt(bytes);
   core::require(record.has_value() == (bytes.size() == sensors::kRdtBytes),
                 "a record is 36 bytes, whatever they are");
-  if (record) core::require(!sensors::status_words(record->status).empty(), "a status has words");
+  if (record)
+    for (const auto of : {sensors::NetFtStatus::box, sensors::NetFtStatus::axia})
+      core::require(!sensors::status_words(record->status, of).empty(), "a status has words");
   const auto page = sensors::parse_netft_xml(core::text_of(bytes), "it");
   if (!taken(page)) return record.has_value();
   core::require(page->counts_per_N > 0.0 && page->counts_per_Nm > 0.0 && page->rate_Hz > 0.0,

@@ -12,7 +12,7 @@ import threading
 import time
 
 PAGE = """<?xml version="1.0" encoding="ISO-8859-1"?><netft>
-<prodname>SIMULATED Net F/T</prodname><setcfgsel>0</setcfgsel><calsn>SIM0001</calsn>
+<prodname>SIMULATED Net F/T</prodname><setcfgsel>0</setcfgsel><cfgcalsn>SIM0001</cfgcalsn>
 <cfgfu>{fu_code}</cfgfu><scfgfu>{fu}</scfgfu><cfgtu>{tu_code}</cfgtu><scfgtu>{tu}</scfgtu>
 <cfgcpf>{cpf}</cfgcpf><cfgcpt>{cpt}</cfgcpt><comrdte>{rdt}</comrdte><comrdtrate>1000</comrdtrate><comrdtbsiz>1</comrdtbsiz>
 </netft>"""
