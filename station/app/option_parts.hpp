@@ -1,6 +1,8 @@
 /// What the sources of the options share. For them alone.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <map>
 
@@ -15,6 +17,19 @@ void add_server(CLI::App& app, Options& options, bool needed);
 /// Says why on standard error; the exit code of wrong use.
 int refuse(const std::string& why);
 const std::map<std::string, Show>& shows();  ///< of --view
+
+/// A number from `low` to `high`, which CLI::Range lets "nan" be.
+inline CLI::Validator between(double low, double high) {
+  const CLI::Range range(low, high);
+  return CLI::Validator(
+      [low, high](std::string& given) {
+        double value = 0.0;
+        if (CLI::detail::lexical_cast(given, value) && value >= low && value <= high)
+          return std::string();
+        return fmt::format("{}: a number from {} to {} is expected", given, low, high);
+      },
+      range.get_description());
+}
 
 /// One of these words; neither help nor a refusal shows the numbers behind them.
 template <class T>

@@ -64,10 +64,10 @@ void add_rig(CLI::App& app, Options& options) {
                  "of the rig: HOST:PORT, or a serial line /dev/…[@BAUD]")
       ->capture_default_str();
   app.add_option("--rate", options.rig.rate_Hz, "Hz, of the rig's loop")
-      ->check(CLI::Range(100.0, 1000.0))
+      ->check(between(100.0, 1000.0))
       ->capture_default_str();
   app.add_option("--skill", options.rig.skill, "of sim-rig's simulated surgeon, 0 … 1")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(between(0.0, 1.0))
       ->capture_default_str();
   app.add_flag("!--no-surgeon", options.rig.surgeon, "sim-rig: nobody pushes but who writes to it");
 }
@@ -87,7 +87,7 @@ void add_tune(CLI::App& app, Options& options) {
       ->capture_default_str();
   app.add_option("--speed", options.rig.speed, "real or fast")->transform(word_of(kSpeeds));
   app.add_option("--duration", options.rig.duration_s, "s, of a trial at most")
-      ->check(CLI::Range(1.0, 3600.0))
+      ->check(between(1.0, 3600.0))
       ->capture_default_str();
   app.add_option("--trials", options.trials, "how many, one after the other")
       ->check(CLI::Range(1, 1000))
@@ -122,10 +122,10 @@ void add_run(CLI::App& app, Options& options) {
                  "a scenario's file, or hard, soft, lateral_breach, in_out_in: those that ship");
   add_rig(app, options);
   app.add_option("--seed", options.setup.seed, "of the simulated hand; +1 for each further trial")
-      ->check(CLI::Range(0.0, 9e15))
+      ->check(between(0.0, 9e15))
       ->capture_default_str();
   app.add_option("--duration", options.setup.duration_s, "s, of the trial; on the rig at most")
-      ->check(CLI::Range(1.0, 3600.0))
+      ->check(between(1.0, 3600.0))
       ->capture_default_str();
   app.add_option("--speed", options.setup.speed,
                  "real, or fast: simulated time, as fast as it goes")
@@ -161,9 +161,9 @@ void add_study(CLI::App& app, Options& options) {
       ->capture_default_str();
   app.add_option("--skill", options.rig.skill,
                  "of the simulated surgeon, 0 … 1; without, it follows from their experience")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(between(0.0, 1.0));
   app.add_option("--seed", options.rig.seed, "of the simulated surgeons")
-      ->check(CLI::Range(0.0, 9e15))
+      ->check(between(0.0, 9e15))
       ->capture_default_str();
   app.add_option("--speed", options.rig.speed, "real, or fast: simulated time, sim-rig alone")
       ->transform(word_of(kSpeeds));
@@ -191,10 +191,10 @@ void add_assigned(CLI::App& app, Options& options) {
   add_rig(app, options);
   add_started(app, options);
   app.add_option("--seed", options.setup.seed, "of the simulated hand")
-      ->check(CLI::Range(0.0, 9e15))
+      ->check(between(0.0, 9e15))
       ->capture_default_str();
   app.add_option("--duration", options.setup.duration_s, "s, of a palpation trial")
-      ->check(CLI::Range(1.0, 3600.0))
+      ->check(between(1.0, 3600.0))
       ->capture_default_str();
   app.add_option("--speed", options.setup.speed, "real or fast")->transform(word_of(kSpeeds));
   app.add_option("--answer", options.answer, "what to answer instead of the simulated hand")
@@ -312,7 +312,7 @@ Parsed parse(int argc, char** argv) {
   add_data(*upload, options, true);
   add_server(*upload, options, true);
   upload->add_option("--wait", options.wait_s, "s to go on trying when the server does not answer")
-      ->check(CLI::Range(0.0, 1e7));
+      ->check(between(0.0, 1e7));
   add_assigned(*add_deed(app, options, run_assigned, "assigned",
                          "sign in with badge and PIN; do what is assigned, in order"),
                options);
