@@ -1,5 +1,7 @@
 /// The options of what a technician does.
 
+#include <set>
+
 #include "station/app/deeds.hpp"
 #include "station/app/option_parts.hpp"
 
@@ -19,10 +21,10 @@ void add_align(CLI::App& app, Options& options) {
       ->required();
   app.add_option("--tip", options.tip_mm,
                  "mm from the handle's origin along the handle to what touches the points")
-      ->check(CLI::Range(-300.0, 300.0))
+      ->check(between(-300.0, 300.0))
       ->capture_default_str();
   app.add_option("--limit", options.limit_mm, "mm that a point may be off")
-      ->check(CLI::Range(0.1, 20.0))
+      ->check(between(0.1, 20.0))
       ->capture_default_str();
 }
 
@@ -38,7 +40,7 @@ void add_check(CLI::App& app, Options& options) {
                  "of the rig: HOST:PORT, or a serial line /dev/…[@BAUD]")
       ->capture_default_str();
   app.add_option("--rate", options.rig.rate_Hz, "Hz, of the rig's loop")
-      ->check(CLI::Range(100.0, 1000.0))
+      ->check(between(100.0, 1000.0))
       ->capture_default_str();
   app.add_option("--page", options.page, "the report as a page to print, HTML");
   app.add_flag("--stand-by", options.stand_by,
@@ -49,7 +51,7 @@ void add_self_test(CLI::App& app, Options& options) {
   add_check(app, options);
   app.preparse_callback([&options](std::size_t) { options.show = Show::offscreen; });
   app.add_option("--for", options.for_s, "s, that a hand moves the handle to its ends")
-      ->check(CLI::Range(1.0, 120.0))
+      ->check(between(1.0, 120.0))
       ->capture_default_str();
   app.add_option("--view", options.show, "the display that is timed: window, offscreen or none")
       ->transform(word_of(shows()))
@@ -78,7 +80,7 @@ void add_record(CLI::App& app, Options& options) {
   app.add_option("--body", record.bodies, "of the capture system, once for each: the tool first")
       ->needs("--igtl");
   app.add_option("--for", record.for_s, "s; ends sooner by Ctrl-C, which keeps what there is")
-      ->check(CLI::Range(0.1, 86'400.0))
+      ->check(between(0.1, 86'400.0))
       ->capture_default_str();
   app.add_flag("--bias", record.bias,
                "the sensor takes what it feels now as its zero; without, assemble takes it off");
@@ -103,6 +105,11 @@ std::optional<int> check_record(const Options& options) {
     return refuse("record: --netft or --igtl is expected, or both");
   if (!record.igtl_host.empty() && record.bodies.empty())
     return refuse("record: --igtl: --body is expected, once for each body that is kept");
+  if (std::set(record.bodies.begin(), record.bodies.end()).size() < record.bodies.size())
+    return refuse("record: --body: each body once");
+  for (const std::string* host : {&record.netft_host, &record.igtl_host})
+    if (host->find_first_of("/@ ?#") != std::string::npos)
+      return refuse("record: '" + *host + "': a host's name or address alone is expected");
   for (const std::string& body : record.bodies)
     if (body.empty() || body.find_first_of(",\"\n\r") != std::string::npos)
       return refuse("record: --body: a name without commas, quotes and line breaks is expected");

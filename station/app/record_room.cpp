@@ -12,6 +12,10 @@ std::string words_of(const sensors::Recorded& done, const std::filesystem::path&
     out += fmt::format("; force: {} samples, {} lost", done.force_samples, done.force_lost);
   if (done.force_late > 0) out += fmt::format(" ({} came too late or twice)", done.force_late);
   if (done.motion_rows > 0) out += fmt::format("; motion: {} rows", done.motion_rows);
+  for (const auto& [body, rows] : done.seen)
+    if (rows < done.motion_rows)
+      out += fmt::format(" ({} seen in {:.1f} %)", body,
+                         100.0 * double(rows) / double(done.motion_rows));
   if (done.motion_damaged > 0) out += fmt::format(", {} damaged messages", done.motion_damaged);
   out += "\n";
   if (done.force_faulty > 0)

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "core/result.hpp"
-#include "station/sensors/igtl_message.hpp"
+#include "station/sensors/igtl_reader.hpp"
 #include "station/sensors/socket.hpp"
 
 namespace sensors {
@@ -17,23 +17,18 @@ class IgtlStream {
   /// Errors: unavailable naming host and port.
   static core::Result<std::unique_ptr<IgtlStream>> open(const std::string& host, int port = kPort);
 
-  /// The poses of the next message; empty after `wait_ms` without one. Messages that are damaged
-  /// are passed over, those of other types too. Errors: unavailable (closed), bad_input (not
-  /// OpenIGTLink, or a message over kIgtlMostBytes).
+  /// The poses of the next message; empty when it has none (it is damaged, or of another type), and
+  /// after `wait_ms` without one. Errors: unavailable (closed), bad_input (not OpenIGTLink).
   core::Result<std::vector<TrackedPose>> next(int wait_ms);
-  std::uint64_t damaged() const noexcept { return damaged_; }  ///< messages whose CRC was wrong
-  /// The last word of the sender that was not "all right".
-  const std::optional<IgtlStatus>& complaint() const noexcept { return complaint_; }
+  std::uint64_t damaged() const noexcept { return reader_.damaged(); }
+  const std::optional<IgtlStatus>& complaint() const noexcept { return reader_.complaint(); }
+  std::uint64_t received() const noexcept { return received_; }  ///< bytes, of whatever messages
 
  private:
   explicit IgtlStream(Socket socket) : socket_(std::move(socket)) {}
-  /// The next whole message out of what is held; nothing if more has to come.
-  core::Result<std::optional<std::vector<TrackedPose>>> held();
   Socket socket_;
-  std::vector<std::byte> held_;
-  std::size_t taken_ = 0;  ///< bytes of it that were read
-  std::uint64_t damaged_ = 0;
-  std::optional<IgtlStatus> complaint_;
+  IgtlReader reader_;
+  std::uint64_t received_ = 0;
 };
 
 }  // namespace sensors

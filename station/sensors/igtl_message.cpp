@@ -54,7 +54,8 @@ std::optional<math::Pose> quaternion(Bytes bytes, std::size_t at) {
   return math::Pose{p, q.normalized()};
 }
 
-/// A body of version 2 may begin with an extended header and end with metadata: what lies between.
+/// A body from version 2 on may begin with an extended header and end with metadata: what lies
+/// between.
 Bytes content_of(const IgtlHeader& header, Bytes body, std::size_t each) {
   if (header.version < 2 || body.size() < 12) return body;
   const std::size_t extended = big<std::uint16_t>(body, 0);
@@ -86,7 +87,7 @@ std::optional<IgtlHeader> parse_igtl_header(Bytes b) {
   if (b.size() < kIgtlHeaderBytes) return std::nullopt;
   IgtlHeader out;
   out.version = big<std::uint16_t>(b, 0);
-  if (out.version < 1 || out.version > 2) return std::nullopt;
+  if (out.version < 1 || out.version > 3) return std::nullopt;
   out.type = text(b, 2, 12);
   out.device = text(b, 14, 20);
   out.stamp_s =

@@ -1,5 +1,6 @@
-/// OpenIGTLink's bytes: a header of 58, then what the type says. Versions 1 and 2 of the header,
-/// big-endian, lengths in mm, as openigtlink.org documents them.
+/// OpenIGTLink's bytes: a header of 58, then what the type says, big-endian, lengths in mm, as
+/// openigtlink.org documents them. Versions 1 and 2 of the header (the protocol's version 3 has 2
+/// there), and 3, which some senders write instead.
 #pragma once
 
 #include <cstddef>

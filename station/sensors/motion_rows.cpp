@@ -9,6 +9,17 @@ namespace {
 constexpr std::size_t kMostOthers = 50;
 }
 
+MotionRows::MotionRows(std::vector<std::string> bodies) : bodies_(std::move(bodies)) {
+  for (const std::string& body : bodies_) seen_[body] = 0;
+}
+
+std::vector<std::string> MotionRows::missing() const {
+  std::vector<std::string> out;
+  for (const auto& [body, rows] : seen_)
+    if (rows == 0 && !held_.contains(body)) out.push_back(body);
+  return out;
+}
+
 std::string MotionRows::header() const {
   std::string out = "t_s";
   for (const std::string& b : bodies_)
@@ -47,6 +58,7 @@ std::optional<std::string> MotionRows::flush() {
       row += ",0,0,0,0,0,0,0";
       continue;
     }
+    ++seen_[b];
     const auto& [p, q] = at->second;
     row += fmt::format(",{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}", p.x(), p.y(), p.z(),
                        q.w(), q.x(), q.y(), q.z());

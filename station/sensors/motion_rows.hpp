@@ -16,19 +16,24 @@ namespace sensors {
 /// row's instant has zeros for its quaternion. Rows whose time does not run forward are left out.
 class MotionRows {
  public:
-  explicit MotionRows(std::vector<std::string> bodies) : bodies_(std::move(bodies)) {}
+  explicit MotionRows(std::vector<std::string> bodies);
   std::string header() const;
   /// The row that is whole now that this came, if one is.
   std::optional<std::string> take(const TrackedPose& seen, double arrived_s);
   /// What is left.
   std::optional<std::string> flush();
   std::uint64_t count() const noexcept { return count_; }
+  /// Of each body: rows in which it was seen, for what was flushed.
+  const std::map<std::string, std::uint64_t>& seen() const noexcept { return seen_; }
+  /// Bodies that never came.
+  std::vector<std::string> missing() const;
   /// Names that came and are not kept; 50 at most.
   const std::set<std::string>& others() const noexcept { return others_; }
 
  private:
   std::vector<std::string> bodies_;
   std::map<std::string, math::Pose> held_;
+  std::map<std::string, std::uint64_t> seen_;
   std::set<std::string> others_;
   std::optional<double> first_stamp_s_;
   double t_s_ = 0.0, arrived_s_ = 0.0, last_s_ = -1e300;

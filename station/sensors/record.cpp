@@ -18,6 +18,8 @@ using core::Error;
 
 constexpr int kWait_ms = 50;
 constexpr double kBegin_s = 5.0, kSilent_s = 2.0;
+// A capture system may have nothing to say while it sees nothing.
+constexpr double kSilentMotion_s = 10.0;
 
 /// What the threads of a recording share.
 struct Shared {
@@ -97,16 +99,26 @@ struct Motion : Gatherer {
       : Gatherer(std::move(to)), stream(std::move(from)), table(std::move(rows_of)) {}
   std::unique_ptr<IgtlStream> stream;
   MotionRows table;
+  std::atomic<bool> complete = false;  ///< each body was seen once
 
   void run(Shared& shared) {
+    double heard_s = 0.0;
+    std::uint64_t heard = 0;
     while (!shared.stop && !file.failed()) {
       const auto seen = stream->next(kWait_ms);
+      const double now_s = shared.seconds();
       if (!seen) {
         shared.end(seen.error().what);
         break;
       }
+      if (heard != stream->received()) heard = stream->received(), heard_s = now_s;
+      if (now_s - heard_s > kSilentMotion_s) {
+        shared.end("the motion capture fell silent");
+        break;
+      }
       for (const TrackedPose& pose : *seen)
-        if (const auto row = table.take(pose, shared.seconds())) add(*row);
+        if (const auto row = table.take(pose, now_s)) add(*row);
+      if (!complete && table.missing().empty()) complete = true;
     }
     if (const auto row = table.flush()) add(*row);
     if (file.failed()) shared.end("the disk takes no more");
@@ -133,7 +145,9 @@ struct Room {
   std::unique_ptr<Force> force;
   std::unique_ptr<Motion> motion;
 
-  bool begun() const { return (!force || force->rows > 0) && (!motion || motion->rows > 0); }
+  bool begun() const {
+    return (!force || force->rows > 0) && (!motion || (motion->rows > 0 && motion->complete));
+  }
   void start(Shared& shared) {
     shared.start = core::MonotonicClock().now();
     if (force) force->thread = std::thread([this, &shared] { force->run(shared); });
@@ -197,7 +211,8 @@ Error not_begun(const RecordSetup& setup, const Room& room, const std::string& e
   for (const auto& name : room.motion->table.others()) others += fmt::format(" '{}'", name);
   return {Errc::unavailable,
           fmt::format("the motion capture at {} sends nothing of '{}'; it sends{}", setup.igtl_host,
-                      fmt::join(setup.bodies, "' or '"), others.empty() ? " no poses" : others)};
+                      fmt::join(room.motion->table.missing(), "' and '"),
+                      others.empty() ? " no other poses" : others)};
 }
 
 /// Waits until every stream has given something, then gives the folder its name.
@@ -233,6 +248,7 @@ core::Result<Recorded> finished(Room& room, Shared& shared, const std::filesyste
   }
   if (room.motion) {
     out.motion_rows = room.motion->rows, out.motion_damaged = room.motion->stream->damaged();
+    out.seen = room.motion->table.seen();
     out.complaint = room.motion->stream->complaint();
     if (auto done = room.motion->file.finish(); !done) out.ended_by = done.error().what;
   }
@@ -261,7 +277,7 @@ core::Json Recorded::json() const {
                     {"counts_per_Nm", calibration.counts_per_Nm},
                     {"rate_Hz", calibration.rate_Hz}};
   if (motion_rows > 0)
-    out["motion"] = {{"rows", motion_rows}, {"damaged_messages", motion_damaged}};
+    out["motion"] = {{"rows", motion_rows}, {"seen", seen}, {"damaged_messages", motion_damaged}};
   if (complaint)
     out["motion"]["complaint"] = {
         {"code", complaint->code}, {"name", complaint->name}, {"message", complaint->message}};

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,6 +28,7 @@ struct Recorded {
   std::uint64_t force_faulty = 0, force_saturated = 0;  ///< left out for their status
   std::uint32_t worst_status = 0;                       ///< every bit that was up in one of those
   std::uint64_t motion_rows = 0, motion_damaged = 0;
+  std::map<std::string, std::uint64_t> seen;  ///< of each body: rows in which it was seen
   double duration_s = 0.0;
   NetFtCalibration calibration;
   std::optional<IgtlStatus> complaint;  ///< of the motion capture
@@ -41,9 +43,10 @@ struct Recorded {
 ///  - `assembly.json`: a recipe in which the frames' places are still the identity;
 ///  - `recording.json`: "state" is "recording", and "done" with the counts at the end.
 /// Rows reach the disk within half a second: what was recorded is kept when the program is killed,
-/// and when a stream breaks off (closed, or 2 s without a sample), which ends the recording.
-/// `progress` may stop it early. Errors, after which nothing is left: unavailable (who does not
-/// answer, or begins within 5 s), conflict (the folder is there), bad_input, io.
+/// and when a stream breaks off (closed, 2 s without a force sample, 10 s without a byte of the
+/// motion capture), which ends the recording. `progress` may stop it early. Errors, after which
+/// nothing is left: unavailable (who does not answer, a stream that has not begun or a body that
+/// was not seen within 5 s), conflict (the folder is there), bad_input, io.
 core::Result<Recorded> record(const RecordSetup& setup, const std::filesystem::path& folder,
                               const std::function<bool(double share)>& progress = {});
 

@@ -244,6 +244,89 @@ TEST(Igtl, ReadsWhatASenderSaysOfItself) {
   EXPECT_FALSE(parse_igtl_status(*parse_igtl_header(one), std::span(one).subspan(58, 29)));
 }
 
+/// The head of a message of so many bytes.
+std::vector<std::byte> head(const std::string& type, std::uint64_t bytes) {
+  auto out = message(type, "it", {});
+  for (std::size_t k = 0; k < 8; ++k) out[42 + k] = std::byte(bytes >> (56 - 8 * k));
+  return out;
+}
+
+// A server of ultrasound or video sends its pictures to everybody: 1920 × 1080 in three colours.
+TEST(IgtlReader, PassesOverALongPictureBetweenTwoPoses) {
+  constexpr std::size_t kPicture = 1920 * 1080 * 3 + 72;
+  auto bytes = message("TRANSFORM", "probe", matrix());
+  const auto picture = head("IMAGE", kPicture), after = message("TRANSFORM", "bone", matrix());
+  bytes.insert(bytes.end(), picture.begin(), picture.end());
+  bytes.resize(bytes.size() + kPicture, std::byte{0x5a});
+  bytes.insert(bytes.end(), after.begin(), after.end());
+  for (const std::size_t piece : {std::size_t{1}, std::size_t{57}, std::size_t{65536}}) {
+    IgtlReader reader;
+    std::vector<std::string> seen;
+    for (std::size_t at = 0; at < bytes.size(); at += piece) {
+      reader.add(std::span(bytes).subspan(at, std::min(piece, bytes.size() - at)));
+      for (;;) {
+        const auto next = reader.next();
+        ASSERT_TRUE(next) << next.error().what;
+        if (!*next) break;
+        for (const TrackedPose& pose : **next) seen.push_back(pose.body);
+      }
+      ASSERT_LE(reader.held(), kIgtlHeaderBytes + 48 + piece);
+    }
+    EXPECT_EQ(seen, (std::vector<std::string>{"probe", "bone"})) << piece;
+  }
+}
+
+TEST(IgtlReader, RefusesWhatIsNoOpenIgtlink) {
+  const auto refused = [](const std::vector<std::byte>& bytes) {
+    IgtlReader reader;
+    reader.add(bytes);
+    return !reader.next();
+  };
+  EXPECT_TRUE(refused(head("TDATA", kIgtlMostBytes + 1)));
+  EXPECT_TRUE(refused(head("IMAGE", ~std::uint64_t{0})));
+  auto other = head("TDATA", 0);
+  other[0] = std::byte{'H'}, other[1] = std::byte{'T'};  // "HTTP/1.1 …"
+  EXPECT_TRUE(refused(other));
+}
+
+TEST(IgtlReader, CountsADamagedMessageAndReadsTheNext) {
+  auto bytes = message("TRANSFORM", "probe", matrix());
+  bytes.back() ^= std::byte{1};
+  const auto after = message("TRANSFORM", "bone", matrix());
+  bytes.insert(bytes.end(), after.begin(), after.end());
+  IgtlReader reader;
+  reader.add(bytes);
+  EXPECT_TRUE((*reader.next())->empty());
+  EXPECT_EQ(reader.damaged(), 1u);
+  EXPECT_EQ((*reader.next())->at(0).body, "bone");
+}
+
+// "Version 3: Header (58) + ExtHdrSize (2) + ExtHdr + Content": some senders write 3 there.
+TEST(Igtl, TakesAHeaderOfVersion3AsOneOf2) {
+  std::vector<std::byte> body(12);
+  body[1] = std::byte{12};
+  const auto m = matrix();
+  body.insert(body.end(), m.begin(), m.end());
+  auto one = message("TRANSFORM", "probe", body);
+  one[1] = std::byte{3};
+  ASSERT_TRUE(parse_igtl_header(one));
+  EXPECT_EQ(parse_igtl_body(*parse_igtl_header(one), std::span(one).subspan(58)).size(), 1u);
+  one[1] = std::byte{4};
+  EXPECT_FALSE(parse_igtl_header(one));
+}
+
+TEST(MotionRows, KnowHowOftenEachBodyWasSeenAndWhichNever) {
+  MotionRows rows({"probe", "bone", "pelvis"});
+  EXPECT_FALSE(rows.take({"probe", {}, 500.0}, 7.0));
+  EXPECT_EQ(rows.missing(), (std::vector<std::string>{"bone", "pelvis"}));
+  EXPECT_FALSE(rows.take({"bone", {}, 500.0}, 7.0));
+  EXPECT_TRUE(rows.take({"probe", {}, 500.5}, 7.5));
+  EXPECT_TRUE(rows.flush());
+  EXPECT_EQ(rows.missing(), (std::vector<std::string>{"pelvis"}));
+  EXPECT_EQ(rows.seen(),
+            (std::map<std::string, std::uint64_t>{{"bone", 1}, {"pelvis", 0}, {"probe", 2}}));
+}
+
 TEST(MotionRows, MakeOneRowOfAnInstant) {
   MotionRows rows({"probe", "bone"});
   const math::Pose X{{1, 2, 3}, math::Quat::Identity()};

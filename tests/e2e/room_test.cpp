@@ -261,7 +261,7 @@ TEST_F(Room, AC3dFileHoldsBothAndNeedsNoTaps) {
 TEST_F(Room, LossesFaultsAndDamageAreCountedAndSaid) {
   const auto peers = play(
       "--type QTDATA --fault lose=50 --fault swap=97 --fault status=0.5:1.0:80020000 --fault "
-      "damage=10 --fault busy");
+      "damage=10 --fault busy --fault pictures=25");
   const auto told = record(peers, 3.0, "--json --bias");
   ASSERT_EQ(told.code, 0) << told.out;
   const auto said = Json::parse(told.out);
@@ -279,6 +279,7 @@ TEST_F(Room, LossesFaultsAndDamageAreCountedAndSaid) {
   EXPECT_NEAR(said["force"]["late"].get<int>(), swapped, 10);
   EXPECT_GT(said["motion"]["damaged_messages"].get<int>(), 15);
   EXPECT_EQ(said["motion"]["complaint"]["name"], "Busy");
+  EXPECT_GT(said["motion"]["seen"]["vertebra"].get<int>(), 100);
   EXPECT_EQ(did->at("biases"), 1);
   EXPECT_EQ(did->at("stops"), 1);
   EXPECT_EQ(did->at("bad_requests"), 0);
@@ -287,7 +288,8 @@ TEST_F(Room, LossesFaultsAndDamageAreCountedAndSaid) {
 TEST_F(Room, AStreamThatBreaksOffEndsTheRecordingAndWhatCameIsKept) {
   const std::map<std::string, std::string> ends{{"--fault stall=1", "fell silent"},
                                                 {"--fault die=1", "fell silent"},
-                                                {"--fault close=1", "closed the connection"}};
+                                                {"--fault close=1", "closed the connection"},
+                                                {"--fault hush=1", "capture fell silent"}};
   for (const auto& [fault, words] : ends) {
     const auto told = record(play(fault), 20.0);
     EXPECT_EQ(told.code, 1) << told.out;
@@ -338,6 +340,11 @@ TEST_F(Room, WhatCannotBeRecordedIsRefusedInOneLineAndNothingIsLeft) {
   auto other = play("");
   other.replace(other.find("--body probe --body vertebra"), 28, "--body nobody");
   refused(other, "'probe'");  // those that there are
+  auto one = play("");
+  one.replace(one.find("--body vertebra"), 15, "--body vertebr");
+  refused(one, "sends nothing of 'vertebr'; it sends 'vertebra'");
+  refused(play("") + " --body probe", "each body once");
+  refused("--netft http://127.0.0.1", "a host's name or address alone");
 }
 
 TEST_F(Room, TheToolSaysWhereToRecordWhenTheStationIsNotBesideIt) {

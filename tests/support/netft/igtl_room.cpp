@@ -7,7 +7,10 @@
 // MOTION.csv: a header, then rows t_s and for each body seven columns (x y z in m, qw qx qy qz). A
 // row is sent when the monotonic clock has reached zero + t_s, stamped with t_s * RATE + EPOCH as
 // the capture system's own clock would. Faults: damage=N (each N-th message has a wrong checksum),
-// close=S (closes after S seconds), busy (a STATUS message "busy" at the start).
+// close=S (closes after S seconds), hush=S (says nothing more after S seconds), busy (a STATUS
+// message "busy" at the start), pictures=N (before each N-th row a picture of 1920 × 1080, as a
+// server of video sends to everybody).
+#include <igtlImageMessage.h>
 #include <igtlQuaternionTrackingDataMessage.h>
 #include <igtlServerSocket.h>
 #include <igtlStatusMessage.h>
@@ -111,6 +114,16 @@ bool send_row(Room& room, igtl::Socket* socket, const std::vector<double>& row) 
   return send(room, socket, message, stamp_s);
 }
 
+bool send_picture(Room& room, igtl::Socket* socket, double stamp_s) {
+  auto message = igtl::ImageMessage::New();
+  message->SetDeviceName("Video");
+  message->SetDimensions(1920, 1080, 1);
+  message->SetScalarTypeToUint8();
+  message->AllocateScalars();
+  std::memset(message->GetScalarPointer(), 0x42, std::size_t(message->GetImageSize()));
+  return send(room, socket, message, stamp_s);
+}
+
 void say_busy(Room& room, igtl::Socket* socket) {
   auto status = igtl::StatusMessage::New();
   status->SetDeviceName("SIMULATED");
@@ -142,10 +155,16 @@ int main(int argc, char** argv) {
   long long zero_ns = 0;
   if (!(std::cin >> word >> zero_ns)) return 1;
   const auto zero = std::chrono::steady_clock::time_point(std::chrono::nanoseconds(zero_ns));
+  const auto pictures = room.faults.find("pictures");
+  int n = 0;
   for (const auto& row : room.rows) {
     if (room.faults.contains("close") && row[0] > room.faults["close"]) break;
+    if (room.faults.contains("hush") && row[0] > room.faults["hush"]) break;
     std::this_thread::sleep_until(zero + std::chrono::duration_cast<std::chrono::nanoseconds>(
                                              std::chrono::duration<double>(row[0])));
+    if (pictures != room.faults.end() && ++n % int(pictures->second) == 0 &&
+        !send_picture(room, client, row[0] + kEpoch_s))
+      return 0;
     if (!send_row(room, client, row)) return 0;
   }
   if (!room.faults.contains("close")) std::this_thread::sleep_for(std::chrono::seconds(60));

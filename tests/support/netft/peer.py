@@ -119,7 +119,7 @@ def main():
     parser.add_argument("--type", default="TRANSFORM", choices=["TRANSFORM", "TDATA", "QTDATA"])
     parser.add_argument("--fault", action="append", default=[],
                         help="of the sensor: lose=N swap=N cut=N status=FROM:TO:HEX stall=S die=S rdt=Disabled fu=UNIT; of the "
-                             "capture: damage=N close=S busy")
+                             "capture: damage=N close=S hush=S busy pictures=N")
     args = parser.parse_args()
     faults = dict(f.split("=", 1) if "=" in f else (f, "1") for f in args.fault)
     truth = json.loads((args.room / "truth.json").read_text())
@@ -129,7 +129,7 @@ def main():
                                         rdt=faults.get("rdt", "Enabled")))
     capture = None
     if args.igtl:
-        own = [f for f in args.fault if f.split("=")[0] in ("damage", "close", "busy")]
+        own = [f for f in args.fault if f.split("=")[0] in ("damage", "close", "busy", "pictures", "hush")]
         capture = subprocess.Popen([args.igtl, str(args.room / "played.csv"), args.type, *own], stdin=subprocess.PIPE,
                                    stdout=subprocess.PIPE, text=True)
         igtl_port = int(capture.stdout.readline().split()[1])
@@ -149,6 +149,7 @@ def main():
             sensor.play()
             time.sleep(0.0005)
     finally:
+        sensor.listen()  # what was asked at the very end
         (args.room / "peer.json").write_text(json.dumps(sensor.log))
         if capture:
             capture.kill()
