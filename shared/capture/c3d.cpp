@@ -40,6 +40,29 @@ struct Layout {
   }
 };
 
+/// How many frames the file says it has; 0 when it does not. Long recordings do not fit the
+/// header's 16 bits, and writers have put their number in three other places.
+std::size_t frames_said(const C3dBytes& file, const C3dParameters& all) {
+  // An integer of 16 bits without a sign, or a float.
+  const auto whole = [&](const char* name, std::size_t index = 0) {
+    const double value = all.number(name, index).value_or(0.0);
+    const double count = value < 0.0 && value >= -32768.0 ? value + 65536.0 : value;
+    return count >= 1.0 && count < 4e9 ? std::size_t(count) : std::size_t{0};
+  };
+  if (const std::size_t frames = whole("POINT:LONG_FRAMES"); frames > 0) return frames;
+  // Two words each, the low one first.
+  const auto field = [&](const char* name) {
+    return whole(name, 0) + (std::size_t{whole(name, 1)} << 16);
+  };
+  const std::size_t first = field("TRIAL:ACTUAL_START_FIELD"),
+                    last = field("TRIAL:ACTUAL_END_FIELD");
+  if (first > 0 && last >= first) return last - first + 1;
+  const std::size_t frames = whole("POINT:FRAMES"), begin = file.word(6), end = file.word(8);
+  if (frames > 65535) return frames;  // a float
+  const bool full = end == 65535 || end < begin || frames == 65535 || frames == 32767;
+  return full ? 0 : end - begin + 1;
+}
+
 std::string layout_of(const C3dBytes& file, const C3dParameters& all, Layout& at) {
   const std::size_t data_block = file.word(16);
   at.points = file.word(2);
@@ -56,12 +79,11 @@ std::string layout_of(const C3dBytes& file, const C3dParameters& all, Layout& at
     return "no points and no channels, or no scale in its header";
   if (!(at.rate_Hz > 0.0) || !std::isfinite(at.rate_Hz)) return "no rate in its header";
   if (!file.has(at.data, at.frame_bytes())) return "no frame of it is there";
-  // Long recordings do not fit the header's 16 bits: what is there is read then.
+  // What stands behind the last frame fills a block: a file's size alone would give frames too
+  // many.
   at.frames = (file.size() - at.data) / at.frame_bytes();
-  const std::size_t begin = file.word(6), end = file.word(8);
-  if (end >= begin && end < 65535 && all.number("POINT:FRAMES").value_or(0.0) < 32767.0 &&
-      all.number("POINT:FRAMES").value_or(0.0) >= 0.0)
-    at.frames = std::min(at.frames, end - begin + 1);
+  if (const std::size_t said = frames_said(file, all); said > 0)
+    at.frames = std::min(at.frames, said);
   return "";
 }
 

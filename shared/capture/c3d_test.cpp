@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 
@@ -62,6 +64,73 @@ INSTANTIATE_TEST_SUITE_P(Golden, EveryC3d,
                          testing::Values("intel_real", "intel_integer", "dec_real", "dec_integer",
                                          "mips_real", "mips_integer"),
                          [](const auto& file) { return std::string(file.param); });
+
+/// A C3D file as c3d.org lays it out (Intel, integers, one point): header, one block of parameters,
+/// frames, and zeros to the end of the last block.
+class LongC3d {
+ public:
+  explicit LongC3d(std::size_t frames) : frames_(frames), bytes_(1024) {
+    bytes_[0] = std::byte{2}, bytes_[1] = std::byte{0x50};
+    word(2, 1), word(6, 1), word(8, std::min<std::size_t>(frames, 65535)), word(16, 3);
+    real(12, 1.0F), real(20, 100.0F);
+    bytes_[512] = std::byte{1}, bytes_[513] = std::byte{0x50};
+    bytes_[514] = std::byte{1}, bytes_[515] = std::byte{84};
+    group(1, "POINT"), group(2, "TRIAL");
+    parameter(1, "FRAMES", {std::min<std::size_t>(frames, 65535)});
+  }
+  void group(int number, const std::string& name) {
+    begin(name, -number, 3);
+    ++at_;
+  }
+  void parameter(int group, const std::string& name, const std::vector<std::size_t>& words) {
+    begin(name, group, 5 + 2 * words.size());
+    bytes_[at_] = std::byte{2}, bytes_[at_ + 1] = std::byte{1};
+    bytes_[at_ + 2] = std::byte(words.size());
+    at_ += 3;
+    for (const std::size_t w : words) word(at_, w), at_ += 2;
+  }
+  fs::path write(const std::string& name) {
+    for (std::size_t f = 0; f < frames_; ++f)
+      for (const std::size_t v : {f % 1000 + 1, std::size_t{2}, std::size_t{3}, std::size_t{0}}) {
+        bytes_.push_back(std::byte(v)), bytes_.push_back(std::byte(v >> 8));
+      }
+    bytes_.resize((bytes_.size() + 511) / 512 * 512);
+    const fs::path path = fs::temp_directory_path() / (name + core::new_id() + ".c3d");
+    std::ofstream(path, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes_.data()), std::streamsize(bytes_.size()));
+    return path;
+  }
+
+ private:
+  void begin(const std::string& name, int group, std::size_t to_next) {
+    bytes_[at_] = std::byte(name.size()), bytes_[at_ + 1] = std::byte(group);
+    for (std::size_t k = 0; k < name.size(); ++k) bytes_[at_ + 2 + k] = std::byte(name[k]);
+    at_ += 2 + name.size();
+    word(at_, to_next);
+    at_ += 2;
+  }
+  void word(std::size_t at, std::size_t v) {
+    bytes_[at] = std::byte(v), bytes_[at + 1] = std::byte(v >> 8);
+  }
+  void real(std::size_t at, float v) { std::memcpy(&bytes_[at], &v, 4); }
+  std::size_t frames_, at_ = 516;
+  std::vector<std::byte> bytes_;
+};
+
+// The frames' count has 16 bits: without a sign it reaches to 65535, and longer recordings are
+// stated by TRIAL's fields (low word first). What fills the last block is no frame.
+TEST(LongC3dFile, HasAsManyFramesAsItSays) {
+  const auto frames_of = [](const fs::path& path) {
+    const auto read = read_c3d_file(path);
+    fs::remove(path);
+    return read ? read->frames : 0;
+  };
+  EXPECT_EQ(frames_of(LongC3d(40'001).write("forty")), 40'001u);
+  LongC3d longer(70'001);
+  longer.parameter(2, "ACTUAL_START_FIELD", {1, 0});
+  longer.parameter(2, "ACTUAL_END_FIELD", {70'001 & 0xffff, 70'001 >> 16});
+  EXPECT_EQ(frames_of(longer.write("seventy")), 70'001u);
+}
 
 TEST(C3dForce, NamesTheChannelThatIsMissing) {
   const auto none =
