@@ -106,6 +106,22 @@ TEST_F(Capture, ReadsRigidBodiesOfAMotiveExport) {
   EXPECT_LT((probe.X_CB[0].q * Vec3::UnitX() - Vec3::UnitY()).norm(), 1e-7);
 }
 
+TEST_F(Capture, TakesAMotiveExportsUnitAsItSaysAndNoneThatItDoesNotKnow) {
+  const auto in = [&](const std::string& unit) {
+    return read_motion(
+        file("m.csv", "Format Version,1.23,Length Units," + unit +
+                          ",Export Frame Rate,100\n\n,,Marker,Marker,Marker\n,,M1,M1,M1\n"
+                          ",,Position,Position,Position\nFrame,Time (Seconds),X,Y,Z\n"
+                          "0,0.0,10,20,30\n1,0.01,10,20,30\n"));
+  };
+  const auto cm = in("Centimeters");
+  ASSERT_TRUE(cm) << cm.error().what;
+  EXPECT_LT((cm->markers.at("M1").p_C_m[0] - Vec3(0.1, 0.2, 0.3)).norm(), 1e-12);
+  const auto inches = in("Inches");
+  ASSERT_FALSE(inches);
+  EXPECT_NE(inches.error().what.find("Length Units 'Inches'"), std::string::npos);
+}
+
 /// A C3D file by hand: header, one parameter block with POINT:LABELS and POINT:UNITS, float frames.
 std::string c3d(const std::vector<std::array<float, 4>>& points_of_frames, int points) {
   std::string out(1024, '\0');

@@ -246,6 +246,15 @@ std::optional<math::Pose> motive_pose(const std::vector<std::string_view>& cells
   if (std::abs(q.norm() - 1.0) > 0.01) return std::nullopt;
   return math::Pose{unit_m * Vec3(v[4], v[5], v[6]), q.normalized()};
 }
+
+/// Metres of a Motive export's unit.
+std::optional<double> motive_unit_m(std::string_view name) {
+  if (name.starts_with("Milli")) return 1e-3;
+  if (name.starts_with("Centi")) return 1e-2;
+  if (name.starts_with("Meter")) return 1.0;
+  return std::nullopt;
+}
+
 /// What stands above a Motive export's numbers.
 struct MotiveHeader {
   double rate_Hz = 0.0, unit_m = 1.0;
@@ -258,7 +267,15 @@ core::Result<MotiveHeader> motive_header(Lines& lines) {
   bool quaternions = false;
   for (std::size_t k = 0; k + 1 < first.size(); ++k) {
     if (first[k] == "Export Frame Rate") out.rate_Hz = number(first[k + 1]).value_or(0.0);
-    if (first[k] == "Length Units") out.unit_m = first[k + 1].starts_with("Milli") ? 1e-3 : 1.0;
+    if (first[k] == "Length Units") {
+      const auto unit = motive_unit_m(first[k + 1]);
+      if (!unit)
+        return lines.wrong(
+            fmt::format("Length Units '{}': Meters, Centimeters or Millimeters are "
+                        "expected",
+                        core::one_line(first[k + 1], 64)));
+      out.unit_m = *unit;
+    }
     if (first[k] == "Rotation Type") quaternions = first[k + 1] == "Quaternion";
   }
   std::vector<std::vector<std::string>> head;
