@@ -1,7 +1,9 @@
 /// self-test and calibrate: what a technician runs, and what is left of it.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 
 #include "core/file.hpp"
@@ -63,15 +65,34 @@ check::Report report_for(const session::StationFolder& folder) {
   return {.version = TRACTUS_VERSION, .free_disk_bytes = failed ? 0 : space.available};
 }
 
+/// What the page calls the station: its own name, else the computer's.
+std::string name_of(const session::StationFolder& folder) {
+  std::array<char, 256> host{};
+  const bool nameless = folder.config().name == session::StationConfig{}.name;
+  if (!nameless || ::gethostname(host.data(), host.size() - 1) != 0) return folder.config().name;
+  return fmt::format("{} on {}", folder.config().name, host.data());
+}
+
+/// A page that cannot be written is better known before anything moves.
+core::Result<void> check_page(const Options& options) {
+  if (options.page.empty()) return {};
+  const auto folder = std::filesystem::absolute(options.page).parent_path();
+  if (std::filesystem::is_directory(folder) && ::access(folder.c_str(), W_OK) == 0 &&
+      !std::filesystem::is_directory(options.page))
+    return {};
+  return core::Error{core::Errc::bad_input,
+                     fmt::format("--page {}: cannot be written", options.page.string())};
+}
+
 /// Into the folder; to the server when there is one, else with the next exchange; as a page.
 core::Result<void> keep(const Checked& checked, const check::Report& report) {
   const Options& options = checked.options;
   auto left = report.leave(checked.folder.reports());
   if (!left) return left.error();
   if (!options.page.empty()) {
-    const std::string page = report.to_html(checked.folder.config().name);
+    const std::string page = report.to_html(name_of(checked.folder));
     if (auto written = core::write_file(options.page, core::bytes_of(page)); !written)
-      return written;
+      warn("there is no page: " + written.error().what);
   }
   if (options.server_url.empty()) return {};
   auto server = connect(options);
@@ -158,6 +179,7 @@ int not_calibrated(const Checked& checked) {
 }  // namespace
 
 core::Result<int> self_test(const Options& options) {
+  if (auto fine = check_page(options); !fine) return fine.error();
   auto folder = session::StationFolder::open(options.data);
   if (!folder) return folder.error();
   auto lock = folder->lock();
@@ -186,6 +208,7 @@ core::Result<int> self_test(const Options& options) {
 }
 
 core::Result<int> calibrate(const Options& options) {
+  if (auto fine = check_page(options); !fine) return fine.error();
   auto folder = session::StationFolder::open(options.data);
   if (!folder) return folder.error();
   auto lock = folder->lock();
@@ -212,6 +235,7 @@ core::Result<int> calibrate(const Options& options) {
   if (auto kept = core::write_json(file, made.to_json()); !kept) return kept.error();
   check::Report report = report_for(*folder);
   report.calibration = std::move(made);
+  report.simulated = checked.simulated;
   report.checks = checked.findings;
   if (auto kept = keep(checked, report); !kept) return kept.error();
   if (options.json) {

@@ -261,6 +261,14 @@ TEST(Finding, IsSpelledForAPerson) {
   EXPECT_EQ(found_of({}) + wanted_of({}), "");
 }
 
+TEST(Report, MarksTheCalibrationOfASimulatedDevice) {
+  Report report;
+  report.calibration = Calibration{.kind = "sim-lambda6", .who = "Ada"};
+  EXPECT_EQ(report.to_html("st").find("class=mark"), std::string::npos);
+  report.simulated = true;
+  EXPECT_NE(report.to_html("st").find("class=mark>SIMULATED"), std::string::npos);
+}
+
 TEST(Report, EscapesWhatItPrints) {
   Report report;
   report.self_test = SelfTest{.device = "<script>&\"", .findings = {{.name = "<b>"}}};

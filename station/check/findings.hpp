@@ -68,6 +68,7 @@ struct Report {
   std::optional<SelfTest> self_test = {};
   std::optional<Calibration> calibration = {};
   std::vector<Finding> checks = {};  ///< of a calibration; on the page alone
+  bool simulated = false;            ///< a calibration of no machine; its words say so elsewhere
   std::string version = {};
   std::uint64_t free_disk_bytes = 0;
 

@@ -29,6 +29,8 @@ thead{display:table-header-group}tr{break-inside:avoid}
 @media print{body{margin:0;padding:0;max-width:none;font-size:8.5pt}
  td,th{padding:.2rem .4rem}.sign{margin-top:2rem}})";
 
+constexpr const char* kMark = " <span class=mark>SIMULATED: no machine was tested</span>";
+
 std::string verdict_of(const SelfTest& test) {
   std::size_t failed = 0;
   for (const Finding& f : test.findings) failed += f.passed ? 0 : 1;
@@ -57,13 +59,13 @@ std::string minute_of(std::int64_t utc_us) {
   return text.replace(10, 1, " ") + " UTC";
 }
 
-std::string section_of(const Calibration& calibration) {
+std::string section_of(const Calibration& calibration, const char* mark) {
   return fmt::format(
       "<p class=verdict>Calibrated. Due again on {}.</p>\n<table><tbody>"
-      "<tr><td>Device<td>{}</tr><tr><td>Done<td>{}</tr><tr><td>By<td>{}</tr>"
+      "<tr><td>Device<td>{}{}</tr><tr><td>Done<td>{}</tr><tr><td>By<td>{}</tr>"
       "<tr><td>Found<td>{}</tr></tbody></table>\n",
-      day_of(calibration.due_utc_us), escaped(calibration.kind), minute_of(calibration.at_utc_us),
-      escaped(calibration.who), escaped(calibration.words));
+      day_of(calibration.due_utc_us), escaped(calibration.kind), mark,
+      minute_of(calibration.at_utc_us), escaped(calibration.who), escaped(calibration.words));
 }
 }  // namespace
 
@@ -75,13 +77,11 @@ std::string Report::to_html(const std::string& station) const {
       "<p class=quiet>Tractus {3}; {4:.1f} GB free on its disk</p>\n",
       escaped(station), kind, kStyle, escaped(version), 1e-9 * double(free_disk_bytes));
   if (self_test) {
-    out += fmt::format(
-        "<p>{}. Device: <b>{}</b>{}</p>\n", minute_of(self_test->at_utc_us),
-        escaped(self_test->device),
-        self_test->simulated ? " <span class=mark>SIMULATED: no machine was tested</span>" : "");
+    out += fmt::format("<p>{}. Device: <b>{}</b>{}</p>\n", minute_of(self_test->at_utc_us),
+                       escaped(self_test->device), self_test->simulated ? kMark : "");
     out += verdict_of(*self_test) + table_of(self_test->findings);
   }
-  if (calibration) out += section_of(*calibration);
+  if (calibration) out += section_of(*calibration, simulated ? kMark : "");
   if (calibration && !checks.empty()) out += "<h2>Checks</h2>\n" + table_of(checks);
   return out + "<div class=sign><div>Name</div><div>Date</div><div>Signature</div></div></html>\n";
 }

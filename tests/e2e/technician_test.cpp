@@ -336,7 +336,9 @@ TEST_F(TechnicianWithAServer, ACalibrationHasItsDateThereAndTrialsWarnWhenItIsOv
 TEST_F(Technician, IsToldOfBadUseInOneLine) {
   for (const char* words :
        {"self-test --device lambda7", "self-test --for 0", "calibrate --device sim-lambda6",
-        "calibrate --device sim-lambda6 --who A --due-days 0", "self-test --view 3d"}) {
+        "calibrate --device sim-lambda6 --who A --due-days 0", "self-test --view 3d",
+        "self-test --for nan", "self-test --view headset",
+        "self-test --page /no/such/folder/page.html", "align --fixture f --limit nan"}) {
     const Said said = station(words);
     EXPECT_EQ(said.code, 2) << words;
     EXPECT_EQ(std::ranges::count(said.words, '\n'), 1) << said.words;
