@@ -14,8 +14,8 @@ namespace drilling {
 ///
 /// A voxel at the distance d < r from the ball's centre loses the share of itself
 ///
-///     dm/dt = −ρ(F) (1 − d²/r²)                         [Agus2003, eq. ?]   (1)
-///     ρ(F)  = ρ₁ · clamp((F − F₀)/(F₁ − F₀), 0, 1)      own                 (2)
+///     dm/dt = −ρ(F) (1 − d²/r²)                         own, after [Agus2003]   (1)
+///     ρ(F)  = ρ₁ · clamp((F − F₀)/(F₁ − F₀), 0, 1)      own                     (2)
 ///
 /// with F the size of the model's force as it was recorded. The felt tip lies ahead of the ball's
 /// centre: where it is, (1) must still take something away, or a hand would never get on.
