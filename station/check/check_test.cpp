@@ -261,6 +261,16 @@ TEST(Finding, IsSpelledForAPerson) {
   EXPECT_EQ(found_of({}) + wanted_of({}), "");
 }
 
+TEST(SelfTest, TellsTheServerWhatWasTestedAndThatItWasNoMachine) {
+  SelfTest test{.device = "d 7", .simulated = true, .findings = {{.name = "travel"}}};
+  const auto checks = test.to_json()["checks"];
+  ASSERT_EQ(checks.size(), 2u);
+  EXPECT_EQ(checks[0]["name"], "device");
+  EXPECT_EQ(checks[0]["words"], "d 7 (SIMULATED: no machine was tested)");
+  test.findings.push_back({.name = "device", .words = "it was unplugged"});
+  EXPECT_EQ(test.to_json()["checks"].size(), 2u) << "what went wrong with it is told already";
+}
+
 TEST(Report, MarksTheCalibrationOfASimulatedDevice) {
   Report report;
   report.calibration = Calibration{.kind = "sim-lambda6", .who = "Ada"};

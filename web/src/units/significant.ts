@@ -32,10 +32,11 @@ export function formatFigure(value: number | null | undefined, unit = '', figure
   return spelled(value, unit, decimalsOf(Math.abs(value) * shownAs(unit).perSi, figures));
 }
 
-/** A figure of a station's self-test: short times in ms and µs, room on a disk in GB. */
+/** A figure of a station's self-test: short times in ms and µs, room on a disk in GB, a share (it has no unit) in percent. */
 export function formatFound(value: number | null, unit: string): string {
   if (value === null) return kNone;
   if (unit === 'B') return formatBytes(value);
+  if (unit === '') return formatFigure(value * 100, '%');
   if (unit !== 's' || Math.abs(value) >= 1) return formatFigure(value, unit);
   return Math.abs(value) < 1e-3 ? formatFigure(value * 1e6, 'µs') : formatFigure(value * 1e3, 'ms');
 }
