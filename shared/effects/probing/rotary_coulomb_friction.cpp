@@ -23,7 +23,7 @@ ProbingEffectInfo rotary_coulomb_friction() {
            .kind = Kind::force,
            .summary = "Dry friction of constant size against the turning",
            .equation = "T_c sgn ω",
-           .source = "Olsson1998, eq. ?",
+           .source = "Olsson1998, Coulomb friction",
            .params = {{.name = "torque_Nm",
                        .meaning = "T_c, size of the friction",
                        .initial = 0.01,
