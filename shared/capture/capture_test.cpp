@@ -327,8 +327,13 @@ TEST_F(Capture, NamesTheFieldThatIsWrongInARecipe) {
   EXPECT_NE(
       why(R"({"format":"tractus-assembly/1","rig":"palpation","tool":{"body":"p","X_BH":{"q":[1,1,0,0]}},
       "trials":[]})")
-          .find("X_BH"),
+          .find("r.json: /tool/X_BH/q: a quaternion"),
       std::string::npos);
+  EXPECT_NE(why(R"({"format":"tractus-assembly/1","rig":"palpation","tool":{"body":"p"},
+      "trials":[{"id":"a","motion":"m.tsv","force":"f.csv"},
+                {"id":"a","motion":"n.tsv","force":"g.csv"}]})")
+                .find("/trials/1/id: 'a' is there twice"),
+            std::string::npos);
   EXPECT_NE(why(R"({"format":"tractus-assembly/1","rig":"palpation","tool":{"body":"p"},
       "trials":[{"id":"a","motion":"../m.tsv","force":"f.csv"}]})")
                 .find("motion"),

@@ -2,12 +2,25 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "trial/measurement_set.hpp"
 
 namespace capture {
 namespace {
 using core::Fields;
 using core::Json;
+
+/// What is wrong with a member that is an object, under its own pointer.
+void pass_on(Fields& outer, const std::string& key, const Fields& inner) {
+  const auto done = inner.done();
+  if (done) return;
+  std::string what = done.error().what;
+  if (what.starts_with(inner.where())) what.erase(0, inner.where().size());
+  const auto colon = what.find(": ");
+  if (colon == std::string::npos) return outer.wrong(key.c_str(), what);
+  outer.wrong((key + what.substr(0, colon)).c_str(), what.substr(colon + 2));
+}
 
 /// {"p_m":[…],"q":[w,x,y,z]}; either may be missing.
 math::Pose pose_of(Fields& outer, const char* key) {
@@ -27,7 +40,7 @@ math::Pose pose_of(Fields& outer, const char* key) {
     else
       out.q.normalize();
   }
-  if (auto done = fields.done(); !done) outer.wrong(key, done.error().what);
+  pass_on(outer, key, fields);
   return out;
 }
 
@@ -47,7 +60,7 @@ Carrier carrier_of(Fields& outer, const char* key, const char* frame) {
       }
       out.shape[name] = {p[0].get<double>(), p[1].get<double>(), p[2].get<double>()};
     }
-  if (auto done = fields.done(); !done) outer.wrong(key, done.error().what);
+  pass_on(outer, key, fields);
   return out;
 }
 
@@ -113,7 +126,7 @@ core::Result<Recipe> Recipe::read(const std::filesystem::path& file) {
       in.wrong("says", "on_probe (what the bone does to the probe) or by_probe is expected");
     out.sensor.by_probe = says == "by_probe";
     if (in.has("channels")) out.sensor.channels = channels_of(in);
-    if (auto done = in.done(); !done) fields.wrong("sensor", done.error().what);
+    pass_on(fields, "sensor", in);
   }
   out.taps = int(fields.integer_or("taps", 5, 3, 20));
   out.tip_z_m = fields.number_or("tip_z_m", out.tip_z_m, 0.0, 2.0);
@@ -127,6 +140,9 @@ core::Result<Recipe> Recipe::read(const std::filesystem::path& file) {
   for (std::size_t k = 0; k < trials->size(); ++k) {
     auto one = recording_of((*trials)[k], fmt::format("{}/trials/{}", fields.where(), k));
     if (!one) return one.error();
+    if (std::ranges::find(out.recordings, one->id, &Recording::id) != out.recordings.end())
+      return core::Error{core::Errc::bad_input, fmt::format("{}/trials/{}/id: '{}' is there twice",
+                                                            fields.where(), k, one->id)};
     out.recordings.push_back(std::move(*one));
   }
   return out;
