@@ -158,6 +158,24 @@ math::Wrench at_handle(const Sensor& sensor, const math::Wrench& in_S, const mat
   return {f, t + sensor.X_HS.p.cross(f)};
 }
 
+/// The push of the taps' peaks against the way out.
+std::optional<double> push_off(const Recipe& recipe, const ForceTrack& force, const Probe& probe,
+                               const ClockFit& clock, const math::Wrench& zero) {
+  Vec3 push = Vec3::Zero(), out_of_it = Vec3::Zero();
+  for (const TapPair& run : clock.runs)
+    for (const double t : run.taps_s) {
+      const auto mean = mean_about(force, clock.force_time(t), 0.005);
+      const auto at = std::ranges::lower_bound(probe.t_s, t);
+      if (!mean || at == probe.t_s.end()) continue;
+      const math::Pose& X_VH = probe.X_VH[std::size_t(at - probe.t_s.begin())];
+      push += X_VH.q * at_handle(recipe.sensor, *mean, zero).force_N;
+      out_of_it -= run.inward;
+    }
+  const double size = push.norm() * out_of_it.norm();
+  if (!(size > 0.0)) return std::nullopt;
+  return std::acos(std::clamp(push.dot(out_of_it) / size, -1.0, 1.0));
+}
+
 void keep_rows(const Recipe& recipe, const Recording& recording, const ForceTrack& force,
                const Probe& probe, Assembled& out) {
   const auto& runs = out.clock.runs;
@@ -223,6 +241,7 @@ core::Result<Assembled> assemble(const Recipe& recipe, const Recording& recordin
   const auto zero = zero_of(*force, first_tap_s, recipe.tare_s);
   if (!zero) return named(zero.error());
   out.zero_S = *zero;
+  out.push_off_rad = push_off(recipe, *force, probe, out.clock, *zero);
   keep_rows(recipe, recording, *force, probe, out);
   if (out.trial.t_s.size() < 2)
     return named({Errc::bad_input,

@@ -1,6 +1,8 @@
 /// Motion, force and recipe to a measurement set.
 #pragma once
 
+#include <optional>
+
 #include "capture/clock.hpp"
 #include "capture/force.hpp"
 #include "capture/recipe.hpp"
@@ -22,6 +24,9 @@ struct Assembled {
   math::Wrench zero_S;        ///< the sensor's zero, taken off
   double rate_Hz = 0.0;
   double unseen = 0.0;  ///< share of the kept time in which a body was not seen
+  /// Between the force on the probe at the taps' peaks and the way out of the surface, which pushes
+  /// it there: near 0, or near π where the sensor says the opposite. Nothing without taps.
+  std::optional<double> push_off_rad;
 };
 
 /// One recording of the recipe.

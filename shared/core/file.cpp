@@ -78,6 +78,13 @@ Result<void> may_be_replaced(const fs::path& path) {
   return Error{Errc::conflict, fmt::format("{}: exists and is not a regular file", path.string())};
 }
 
+Result<void> may_be_written(const fs::path& path) {
+  if (auto free = may_be_replaced(path); !free) return free;
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  if (::access(folder.c_str(), W_OK | X_OK) != 0) return system_error(path, "cannot create");
+  return {};
+}
+
 Result<void> write_file(const fs::path& path, ByteView bytes) {
   if (auto free = may_be_replaced(path); !free) return free;
   const fs::path beside = path.string() + fmt::format(".{}.part", hex(random_bytes(4)));

@@ -17,6 +17,10 @@ Result<Bytes> read_file(const std::filesystem::path& path, std::uint64_t limit_b
 /// Errors: conflict on a folder, a device or a pipe, which a rename would put out of the way.
 Result<void> may_be_replaced(const std::filesystem::path& path);
 
+/// That, and whether its folder is there and lets a file be made: to be asked before long work.
+/// Errors: conflict, io.
+Result<void> may_be_written(const std::filesystem::path& path);
+
 /// Writes beside, flushes to the disk, renames, flushes the folder. Nothing is left behind on
 /// failure. Errors: io, those of `may_be_replaced`.
 Result<void> write_file(const std::filesystem::path& path, ByteView bytes);

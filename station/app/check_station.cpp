@@ -76,12 +76,7 @@ std::string name_of(const session::StationFolder& folder) {
 /// A page that cannot be written is better known before anything moves.
 core::Result<void> check_page(const Options& options) {
   if (options.page.empty()) return {};
-  const auto folder = std::filesystem::absolute(options.page).parent_path();
-  if (std::filesystem::is_directory(folder) && ::access(folder.c_str(), W_OK) == 0 &&
-      !std::filesystem::is_directory(options.page))
-    return {};
-  return core::Error{core::Errc::bad_input,
-                     fmt::format("--page {}: cannot be written", options.page.string())};
+  return core::may_be_written(options.page);
 }
 
 /// Into the folder; to the server when there is one, else with the next exchange; as a page.

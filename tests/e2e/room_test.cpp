@@ -238,6 +238,35 @@ TEST_F(Room, FilesGiveBackTheOffsetAndTheDriftOfTheClocks) {
   expect_true(3.82);
 }
 
+TEST_F(Room, ASensorThatSaysTheOppositeOrLiesOtherwiseIsSeenInTheTaps) {
+  auto json = *core::read_json(folder_ / "room/assembly.json");
+  const auto told_of = [&](const Json& recipe) {
+    EXPECT_TRUE(core::write_json(folder_ / "room/x.json", recipe));
+    fs::remove_all(folder_ / "set");
+    return ran(fmt::format("{}/tractus assemble --recipe {} --out {}", kBin, at("room/x.json"),
+                           at("set")));
+  };
+  EXPECT_EQ(told_of(json).out.find("warning"), std::string::npos);
+  EXPECT_LT(assembled("room/assembly.json")["tap_force_off_way_rad"].get<double>(), 0.2);
+  auto opposite = json;
+  opposite["sensor"]["says"] =
+      json["sensor"].value("says", "on_probe") == "on_probe" ? "by_probe" : "on_probe";
+  const auto told = told_of(opposite);
+  EXPECT_EQ(told.code, 0) << told.out;
+  EXPECT_NE(told.out.find("does the sensor say the opposite"), std::string::npos) << told.out;
+  auto turned = json;
+  turned["sensor"]["X_HS"]["q"] = {0.5, 0.5, 0.5, 0.5};  // x, y, z for y, z, x
+  EXPECT_NE(told_of(turned).out.find("X_HS"), std::string::npos);
+}
+
+TEST_F(Room, APictureThatCannotBeDrawnIsRefusedBeforeTheSetIsMade) {
+  const auto told = ran(fmt::format("{}/tractus assemble --recipe {} --out {} --picture {}", kBin,
+                                    at("room/assembly.json"), at("set"), at("none/taps.svg")));
+  EXPECT_EQ(told.code, 2);
+  EXPECT_NE(told.out.find("none/taps.svg: cannot create"), std::string::npos) << told.out;
+  EXPECT_FALSE(fs::exists(folder_ / "set"));
+}
+
 TEST_F(Room, AC3dFileHoldsBothAndNeedsNoTaps) {
   auto json = *core::read_json(folder_ / "room/assembly.json");
   for (const char* body : {"tool", "bone"})

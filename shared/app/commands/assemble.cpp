@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <memory>
+#include <numbers>
 
 #include "app/command.hpp"
 #include "app/taps_picture.hpp"
@@ -39,7 +41,20 @@ Json json_of(const capture::Assembled& one) {
       {"clock_drift", one.clock.drift},
       {"tap_runs", taps},
       {"zero_force_N", {one.zero_S.force_N.x(), one.zero_S.force_N.y(), one.zero_S.force_N.z()}},
-      {"unseen", one.unseen}};
+      {"unseen", one.unseen},
+      {"tap_force_off_way_rad", one.push_off_rad ? Json(*one.push_off_rad) : Json()}};
+}
+
+/// Nothing where no taps tell it.
+std::string warning_of(const capture::Assembled& one) {
+  constexpr double kRight_rad = 1.0;
+  if (!one.push_off_rad || *one.push_off_rad < kRight_rad) return "";
+  return fmt::format(
+      "warning: {}: in the taps the force points {:.0f}° off the way out of the surface: {}\n",
+      one.trial.id, *one.push_off_rad * 180.0 / std::numbers::pi,
+      *one.push_off_rad > std::numbers::pi - kRight_rad
+          ? "does the sensor say the opposite (\"says\")?"
+          : "is the sensor's place (X_HS) right?");
 }
 
 std::string line_of(const capture::Assembled& one) {
@@ -82,7 +97,7 @@ core::Result<void> write_whole(const std::filesystem::path& target, trial::Palpa
 core::Result<void> check(const Options& options, const std::filesystem::path& target) {
   if (std::filesystem::exists(target))
     return Error{Errc::conflict, fmt::format("{}: is there already", options.out)};
-  if (!options.picture.empty()) return core::may_be_replaced(options.picture);
+  if (!options.picture.empty()) return core::may_be_written(options.picture);
   return {};
 }
 
@@ -100,7 +115,7 @@ Outcome run(const Options& options) {
 
   const auto shown = core::terminal_progress("Assembling");
   Json trials = Json::array();
-  std::string lines;
+  std::string lines, warnings;
   std::vector<app::ShownTaps> shown_taps;
   for (std::size_t k = 0; k < recipe->recordings.size(); ++k) {
     if (!shown(double(k) / double(recipe->recordings.size())))
@@ -109,6 +124,7 @@ Outcome run(const Options& options) {
     if (!one) return one.error();
     trials.push_back(json_of(*one));
     lines += line_of(*one) + "\n";
+    warnings += warning_of(*one);
     shown_taps.push_back({one->trial.id, one->clock, std::move(one->taps)});
     set.trials.push_back(std::move(one->trial));
   }
@@ -118,6 +134,7 @@ Outcome run(const Options& options) {
     if (auto done = core::write_file(options.picture, core::bytes_of(drawn)); !done)
       return done.error();
   }
+  std::fputs(warnings.c_str(), stderr);
   if (options.json)
     fmt::print("{}\n", Json{{"set", options.out}, {"trials", trials}}.dump(2));
   else
