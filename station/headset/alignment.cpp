@@ -7,6 +7,7 @@
 
 #include "core/clock.hpp"
 #include "core/json.hpp"
+#include "core/words.hpp"
 
 namespace headset {
 namespace {
@@ -76,7 +77,7 @@ core::Result<void> check_fixture(const std::string& where, std::span<const Fixtu
 core::Result<std::vector<FixturePoint>> read_fixture(const std::filesystem::path& path) {
   auto json = core::read_json(path);
   if (!json) return json.error();
-  core::Fields fields(*json, path.string());
+  core::Fields fields(*json, path.string() + ": ");
   if (fields.text("format") != "tractus-fixture/1")
     fields.wrong("format", "\"tractus-fixture/1\" is expected");
   fields.text_or("name", "");
@@ -87,6 +88,8 @@ core::Result<std::vector<FixturePoint>> read_fixture(const std::filesystem::path
   for (std::size_t i = 0; fits && i < list->size(); ++i) {
     core::Fields one((*list)[i], fmt::format("{}: /points/{}", path.string(), i));
     points.push_back({one.text("name", 64), point_of(one, "stage_m")});
+    if (std::ranges::count(points, points.back().name, &FixturePoint::name) > 1)
+      one.wrong("name", fmt::format("'{}' is there twice", core::one_line(points.back().name)));
     if (auto done = one.done(); !done) return done.error();
   }
   if (auto done = fields.done(); !done) return done.error();
@@ -152,7 +155,7 @@ core::Result<std::optional<KeptAlignment>> kept_alignment(const std::filesystem:
   if (!std::filesystem::exists(path)) return std::optional<KeptAlignment>{};
   auto json = core::read_json(path);
   if (!json) return json.error();
-  core::Fields fields(*json, path.string());
+  core::Fields fields(*json, path.string() + ": ");
   KeptAlignment out;
   if (fields.text("format") != "tractus-alignment/1")
     fields.wrong("format", "\"tractus-alignment/1\" is expected");

@@ -116,7 +116,10 @@ TEST_F(AlignmentFiles, AFixtureWhosePointsTellEachOtherApartIsReadOthersAreRefus
   EXPECT_NE(refusal(three("[0.15,0.001,0]")).find("on a line"), std::string::npos);
   EXPECT_NE(refusal(three("[0,200,0]")).find("/points/2"), std::string::npos);
   EXPECT_NE(refusal(three("[0,0.2]")).find("stage_m"), std::string::npos);
-  EXPECT_NE(refusal("[]").find("3 … 8 points"), std::string::npos);
+  EXPECT_NE(refusal("[]").find("json: /points: a list of 3 … 8 points"), std::string::npos);
+  std::string twice = three("[0,0.2,0]");
+  twice.replace(twice.find("\"B\""), 3, "\"A\"");
+  EXPECT_NE(refusal(twice).find("/points/1/name: 'A' is there twice"), std::string::npos);
 }
 
 TEST_F(AlignmentFiles, WhatIsKeptIsReadAgainAndAMeddledOneIsRefused) {
