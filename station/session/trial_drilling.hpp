@@ -14,8 +14,9 @@ core::Result<void> keep_drilled(const StationFolder& folder, const loop::Drillin
                                 const std::string& trial_id, const std::string& case_id);
 
 /// Puts what a trial drilled into the case's volume: from the kept state, else (a trial that was
-/// cut short) by drilling its file again. Errors: not_found (neither is here), bad_input (a trial
-/// of another case, or one that drilled nothing), corrupt, io.
+/// cut short) by drilling its file again: one that names another case must leave the very bone that
+/// it says it left. Errors: not_found (neither is here), bad_input (a trial of another case, or one
+/// that drilled nothing), corrupt, io.
 core::Result<void> put_drilled(const StationFolder& folder, const std::string& trial_id,
                                const std::string& case_id, volume::Volume& bone);
 
