@@ -17,7 +17,7 @@ export function DueDate({ one, now_us }: { readonly one: AssignmentSummary; read
 
 export function Drilling({ one }: { readonly one: AssignmentSummary }) {
   const said = drilling(one);
-  return said === '' ? null : <Badge>{said}</Badge>;
+  return said === '' ? null : <span className={styles.drilling}>{said}</span>;
 }
 
 export function Done({ done, planned, label }: { readonly done: number; readonly planned: number; readonly label: string }) {
