@@ -29,20 +29,34 @@ class Bone {
   vtkSmartPointer<vtkImageData> image_;
 };
 
+/// What a burr has taken: the surface about the voxels that lost half of themselves or more, marrow
+/// without opacity too. The side towards the eye is left out, so that one looks in.
+class Channel {
+ public:
+  void add(vtkRenderer& renderer, const Scene& scene);
+  void show(const drilling::Worn& worn);
+
+ private:
+  vtkSmartPointer<vtkImageData> lost_;
+  vtkSmartPointer<vtkActor> actor_;
+  volume::Geometry geometry_;
+};
+
 /// The tract: rings and its axis.
 class TractOutline {
  public:
   void add(vtkRenderer& renderer, const volume::Tract& tract);
 };
 
-/// The probe: handle, bent shank, contact points.
+/// The tool: handle, bent shank, and the probe's contact points or the burr's ball.
 class Shank {
  public:
-  void add(vtkRenderer& renderer, const laws::PalpationParameters& probe);
+  void add(vtkRenderer& renderer, const Scene& scene);
   void pose(const ProbeState& state);
 
  private:
   laws::PalpationParameters probe_;
+  double nose_m_ = 0.0;  // of a burr
   vtkNew<vtkPolyData> curve_;
   std::vector<vtkSmartPointer<vtkActor>> points_;
   vtkSmartPointer<vtkActor> handle_;
@@ -64,12 +78,15 @@ class Picture {
   void add(vtkRenderer& renderer, const Scene& scene);
   void pose(const ProbeState& state) { shank_.pose(state); }
   void path(std::span<const math::Vec3> path_m) { path_.points(path_m); }
-  void carve_away(const volume::Box& box, const volume::Volume& volume) {
+  void carve_away(const volume::Box& box, const volume::Volume& volume,
+                  const drilling::Worn& worn) {
     bone_.carve_away(box, volume);
+    channel_.show(worn);
   }
 
  private:
   Bone bone_;
+  Channel channel_;
   TractOutline outline_;
   Shank shank_;
   TipPath path_;

@@ -30,6 +30,7 @@ struct View::Parts {
   vtkNew<vtkRenderer> renderer;
   vtkNew<vtkTextActor> caption;
   Picture picture;
+  double removed_m3 = 0.0;
   bool closed = false;
 };
 
@@ -100,6 +101,7 @@ core::Result<std::unique_ptr<View>> View::make(const Scene& scene, Mode mode, in
                        "off-screen view: VTK cannot use the OpenGL context"};
 
   parts->picture.add(*parts->renderer, scene);
+  if (scene.worn) parts->removed_m3 = scene.worn->removed_m3;
   parts->caption->GetTextProperty()->SetFontSize(16);
   parts->caption->GetTextProperty()->SetColor(0.92, 0.94, 0.96);
   parts->caption->SetDisplayPosition(16, 14);
@@ -113,16 +115,20 @@ void View::draw(const ProbeState& state, std::span<const math::Vec3> path_m) {
   parts_->picture.pose(state);
   parts_->picture.path(path_m);
   const math::Vec3& f = state.wrench_H.force_N;
-  parts_->caption->SetInput(fmt::format("F_xy {:.2f} N   F_z {:.2f} N   bend {:.1f} mm",
-                                        std::hypot(f.x(), f.y()), std::abs(f.z()),
-                                        1e3 * state.deflection_m.norm())
-                                .c_str());
+  std::string caption =
+      fmt::format("F_xy {:.2f} N   F_z {:.2f} N   bend {:.1f} mm", std::hypot(f.x(), f.y()),
+                  std::abs(f.z()), 1e3 * state.deflection_m.norm());
+  if (parts_->removed_m3 > 0.0)
+    caption += fmt::format("   {:.0f} mm\u00b3 of bone drilled away", 1e9 * parts_->removed_m3);
+  parts_->caption->SetInput(caption.c_str());
   parts_->window->Render();
   if (parts_->interactor) parts_->interactor->ProcessEvents();
 }
 
-void View::carve_away(const volume::Box& box, const volume::Volume& volume) {
-  parts_->picture.carve_away(box, volume);
+void View::carve_away(const volume::Box& box, const volume::Volume& volume,
+                      const drilling::Worn& worn) {
+  parts_->picture.carve_away(box, volume, worn);
+  parts_->removed_m3 = worn.removed_m3;
 }
 
 core::Result<void> View::save_png(const std::filesystem::path& path) const {

@@ -126,7 +126,7 @@ TEST_F(Pictures, BoneThatIsDrilledAwayIsGoneFromBothEyes) {
   what.carved = [&](const TakeBone& take) {
     if (!drilled) return;
     std::ranges::fill(volume_.counts, volume_.count_of(-1000.0));
-    take({.begin = {0, 0, 0}, .end = volume_.geometry.dims}, volume_);
+    take({.begin = {0, 0, 0}, .end = volume_.geometry.dims}, volume_, {});
     drilled = false;
   };
   auto headset = made(what);
