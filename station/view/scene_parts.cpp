@@ -40,12 +40,14 @@ vtkSmartPointer<vtkActor> actor_of(vtkAlgorithmOutput* shape, std::array<double,
 
 /// A polyline through the points, replacing what `line` held.
 void set_line(vtkPolyData& line, std::span<const math::Vec3> points_m) {
+  const auto count = static_cast<vtkIdType>(points_m.size());
   vtkNew<vtkPoints> points;
   vtkNew<vtkCellArray> cells;
-  if (points_m.size() > 1) cells->InsertNextCell(static_cast<int>(points_m.size()));
-  for (const math::Vec3& p : points_m) {
-    const vtkIdType id = points->InsertNextPoint(p.data());
-    if (points_m.size() > 1) cells->InsertCellPoint(id);
+  points->SetNumberOfPoints(count);
+  if (count > 1) cells->InsertNextCell(static_cast<int>(count));
+  for (vtkIdType id = 0; id < count; ++id) {
+    points->SetPoint(id, points_m[static_cast<std::size_t>(id)].data());
+    if (count > 1) cells->InsertCellPoint(id);
   }
   line.SetPoints(points);
   line.SetLines(cells);
@@ -153,10 +155,10 @@ void Channel::add(vtkRenderer& renderer, const Scene& scene) {
   surface->SetInputData(lost_);
   surface->SetValue(0, 0.5);
   surface->ComputeScalarsOff();
-  actor_ = actor_of(surface->GetOutputPort(), {0.80, 0.25, 0.60});
+  actor_ = actor_of(surface->GetOutputPort(), kDrilled);
   actor_->GetProperty()->FrontfaceCullingOn();
-  actor_->GetProperty()->SetAmbient(0.35);
-  actor_->GetProperty()->SetDiffuse(0.65);
+  actor_->GetProperty()->SetAmbient(0.25);
+  actor_->GetProperty()->SetDiffuse(0.75);
   renderer.AddActor(actor_);
   show(scene.worn ? *scene.worn : drilling::Worn{});
 }
@@ -201,8 +203,9 @@ void TractOutline::add(vtkRenderer& renderer, const volume::Tract& tract) {
     ring->SetRadius(tract.radius_m);
     ring->SetNumberOfSides(48);
     ring->GeneratePolygonOff();
-    auto actor = actor_of(ring->GetOutputPort(), {0.35, 0.75, 0.95});
-    actor->GetProperty()->SetLineWidth(1.5F);
+    auto actor = actor_of(ring->GetOutputPort(), kPlanned);
+    actor->GetProperty()->SetLineWidth(2.0F);
+    actor->GetProperty()->LightingOff();
     renderer.AddActor(actor);
   }
 }
@@ -221,7 +224,7 @@ void Shank::add(vtkRenderer& renderer, const Scene& scene) {
     ball->SetRadius(scene.burr ? scene.burr->radius_m : 1.4 * probe.radius_m);
     ball->SetThetaResolution(24);
     ball->SetPhiResolution(24);
-    points_.push_back(actor_of(ball->GetOutputPort(), {0.95, 0.35, 0.25}));
+    points_.push_back(actor_of(ball->GetOutputPort(), kTouches));
     renderer.AddActor(points_.back());
   }
   vtkNew<vtkCylinderSource> grip;
@@ -257,8 +260,9 @@ void TipPath::add(vtkRenderer& renderer) {
   mapper->SetInputData(line_);
   vtkNew<vtkActor> actor;
   actor->SetMapper(mapper);
-  actor->GetProperty()->SetColor(0.98, 0.78, 0.25);
+  actor->GetProperty()->SetColor(kWay[0], kWay[1], kWay[2]);
   actor->GetProperty()->SetLineWidth(1.2F);
+  actor->GetProperty()->LightingOff();
   renderer.AddActor(actor);
 }
 
