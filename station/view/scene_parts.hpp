@@ -21,7 +21,7 @@ namespace view {
 
 // Told apart from bone, from the dark behind it and from one another by the colour-blind too: a
 // light blue, a purple, a yellow and a red that differ in lightness.
-inline constexpr std::array kPlanned{0.45, 0.85, 1.0}, kDrilled{0.86, 0.30, 0.70},
+inline constexpr std::array kPlanned{0.45, 0.85, 1.0}, kDrilled{0.80, 0.32, 0.86},
     kWay{1.0, 0.82, 0.30}, kTouches{0.95, 0.35, 0.25};
 
 /// The bone: volume rendering of opacity and CT value, the half towards the eye cut away.
