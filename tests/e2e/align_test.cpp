@@ -23,7 +23,7 @@ class AlignLambda6 : public testing::Test {
   void SetUp() override {
     fs::create_directories(folder_);
     ::setenv("TRACTUS_DHD_STANDIN", (folder_ / "control").c_str(), 1);
-    control_ = standin::map_control(folder_ / "control");
+    control_ = support::mapped_in<standin::Control>(folder_ / "control");
     ASSERT_NE(control_, nullptr);
   }
   void TearDown() override { fs::remove_all(folder_); }

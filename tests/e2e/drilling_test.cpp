@@ -1,6 +1,7 @@
 /// A channel made and then palpated with the real programs, on the real CT: drilled by a SIMULATED
 /// hand, drilled again from the trial's file, held against the plan, felt.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -14,7 +15,9 @@
 #include "core/bytes.hpp"
 #include "core/file.hpp"
 #include "core/json.hpp"
+#include "trial/signals.hpp"
 #include "trial/trial_file.hpp"
+#include "volume/volume_file.hpp"
 
 namespace {
 
@@ -62,6 +65,16 @@ class DrillingLive : public testing::Test {
         << said();
     return answered().at("trials").at(0);
   }
+  /// A volume's counts as plain bytes, for programs of others.
+  volume::Volume counts_into(const char* tvol, const char* plain) {
+    const auto file = volume::VolumeFile::open(folder_ / tvol);
+    EXPECT_TRUE(file);
+    auto volume = file->read_all();
+    EXPECT_TRUE(volume);
+    EXPECT_TRUE(core::write_file(folder_ / plain, std::as_bytes(std::span(volume->counts))));
+    return std::move(*volume);
+  }
+  static Json listed(const math::Vec3& v) { return Json{v.x(), v.y(), v.z()}; }
   std::string file_of(const std::string& id) const { return "st/trials/" + id + ".ttrial"; }
 
   const fs::path folder_ = fs::temp_directory_path() / ("tractus_drilling_" + core::new_id());
@@ -73,10 +86,10 @@ TEST_F(DrillingLive, AChannelIsMadeReplaysToTheSameVoxelsAndForcesAndIsThenFelt)
   EXPECT_TRUE(made.at("complete").get<bool>());
   EXPECT_TRUE(made.at("answer").is_null());  // there is nothing to guess
   const double removed_m3 = made.at("drilled").at("removed_m3");
-  // A cylinder of the burr's 1.5 mm over the 42 mm of the tract is 300 mm³; most of it is marrow
-  // without opacity in this spine, and a fast feed leaves a narrower channel.
-  EXPECT_GT(removed_m3, 20e-9);
-  EXPECT_LT(removed_m3, 400e-9);
+  // Less than a cylinder of the burr's 1.5 mm over the 42 mm of the tract, most of which is marrow
+  // without opacity in this spine. How much it must be: the test after this one.
+  EXPECT_GT(removed_m3, 0.0);
+  EXPECT_LT(removed_m3, 300e-9);
 
   ASSERT_EQ(run("tractus drill replay " + file_of(id) + " --case case --out drilled.tvol --json"),
             0)
@@ -115,6 +128,54 @@ TEST_F(DrillingLive, AChannelIsMadeReplaysToTheSameVoxelsAndForcesAndIsThenFelt)
       trial::read_trial(folder_ / file_of(palpated("").at("trial_id").get<std::string>()));
   ASSERT_TRUE(whole);
   EXPECT_LT(axial_N(*trial), 0.8 * axial_N(*whole));
+}
+
+// By tests/golden/drilling/law.py, which shares nothing with the product. What separates the two:
+// the product adds up balls a quarter of a voxel apart, each tick's push is weighed by a bone up to
+// 5 ms old: hundredths of a voxel's share at most.
+TEST_F(DrillingLive, TakesAwayWhatTheLawSaysWhenItIsIntegratedAnew) {
+  const Json made = drilled();
+  const std::string id = made.at("trial_id");
+  ASSERT_EQ(run("tractus drill replay " + file_of(id) + " --case case --out drilled.tvol"), 0);
+  const volume::Volume bone = counts_into("case/volume.tvol", "bone.u16");
+  counts_into("drilled.tvol", "drilled.u16");
+  const auto trial = trial::read_trial(folder_ / file_of(id));
+  ASSERT_TRUE(trial) << trial.error().what;
+  const auto& place = bone.geometry;
+  Json rows = Json::array();
+  for (int r = 0; r < 3; ++r) rows.push_back(listed(place.directions.row(r)));
+  const Json& drilling = trial->header.extra.at("drilling");
+  ASSERT_TRUE(
+      core::write_json(folder_ / "setup.json", {{"dims", place.dims},
+                                                {"spacing_m", listed(place.spacing_m)},
+                                                {"origin_m", listed(place.origin_m)},
+                                                {"directions", rows},
+                                                {"slope", bone.slope},
+                                                {"intercept", bone.intercept},
+                                                {"length_m", trial->header.probe.at("length_m")},
+                                                {"transfer", drilling.at("transfer")},
+                                                {"burr", drilling.at("burr")}}));
+  EXPECT_EQ(trial->header.probe.at("pose_offset_m"), Json({0.0, 0.0, 0.0}));
+  std::string csv;
+  for (const trial::Sample& s : trial->samples)
+    csv += fmt::format(
+        "{},{},{},{},{},{}\n", s.t_s, fmt::join(s.p_VH_m, ","), fmt::join(s.q_VH, ","),
+        fmt::join(s.deflection_m, ","), fmt::join(s.force_N, ","),
+        fmt::join(
+            std::array{int((s.flags & trial::kPressed) != 0), int((s.flags & trial::kStale) != 0)},
+            ","));
+  ASSERT_TRUE(core::write_file(folder_ / "samples.csv", core::bytes_of(csv)));
+  ASSERT_EQ(std::system(fmt::format("/usr/bin/python3 {}/tests/golden/drilling/law.py {} >{}/out",
+                                    TRACTUS_SOURCE_DIR, folder_.string(), folder_.string())
+                            .c_str()),
+            0)
+      << "python3-numpy is needed";
+  const Json law = answered();
+  const double removed_m3 = made.at("drilled").at("removed_m3");
+  EXPECT_GT(law.at("touched").get<int>(), 1000);
+  EXPECT_NEAR(removed_m3 / law.at("removed_m3").get<double>(), 1.0, 0.005);
+  EXPECT_LT(law.at("share_rms").get<double>(), 0.005);
+  EXPECT_LT(law.at("share_worst").get<double>(), 0.05);
 }
 
 TEST_F(DrillingLive, AnotherVolumeOrATrialOfPalpationIsRefusedOrNotAgreedWith) {

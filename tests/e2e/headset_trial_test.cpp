@@ -36,7 +36,7 @@ class HeadsetTrial : public testing::Test {
     ::setenv("TRACTUS_OPENXR_TEST", (home() / "control").c_str(), 1);
     ::setenv("XR_RUNTIME_JSON", TRACTUS_STANDIN_DIR "/openxr_runtime.json", 1);
     ::unsetenv("DISPLAY");
-    control_ = fakexr::map_control(home() / "control");
+    control_ = support::mapped_in<fakexr::Control>(home() / "control");
     ASSERT_NE(control_, nullptr);
     new (control_) fakexr::Control;
     control_->width_px = control_->height_px = 64;  // a slow machine draws some frames too

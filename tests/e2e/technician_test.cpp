@@ -82,7 +82,7 @@ class Technician : public testing::Test {
 class TechnicianAtTheLambda6 : public Technician {
  protected:
   TechnicianAtTheLambda6() {
-    control_ = standin::map_control(control_file());
+    control_ = support::mapped_in<standin::Control>(control_file());
     control_->step_ns = 250'000;  // a read moves its time: a busy machine is no fault of it
     control_->roaming_m = 0.06;
   }

@@ -61,58 +61,32 @@ core::Result<http::Response> events_of(const Call& call) {
   return json_response({{"events", list}});
 }
 
-RouteInfo route(std::string method, std::string tail, std::string id, std::string summary,
-                std::string answer) {
-  return {.method = std::move(method),
-          .path = "/api/v1/studies" + tail,
-          .id = std::move(id),
-          .summary = std::move(summary),
-          .who = {Role::admin, Role::researcher},
-          .parameters = {},
-          .body = "",
-          .answer = std::move(answer),
-          .schemas = {},
-          .handle = nullptr};
-}
-
 }  // namespace
 
 std::vector<RouteInfo> studies_routes() {
-  const Parameter id = path_text("id", "the study's");
-  RouteInfo list = route("GET", "", "studies", "Studies, newest first", "StudyList");
+  RouteInfo list = research_route("GET", "studies", "studies", "Studies, newest first", "StudyList",
+                                  list_studies);
   list.schemas = study_schemas();
-  list.handle = list_studies;
-
-  RouteInfo make = route("POST", "", "makeStudy",
-                         "Make a study: scenarios, repeats, order, participants", "Study");
-  make.body = "NewStudy";
-  make.body_limit_bytes = kMaxPlan_bytes;
-  make.schemas = study_deed_schemas();
-  make.handle = new_study;
-
-  RouteInfo one = route("GET", "/{id}", "study", "Who has done what", "Study");
-  one.parameters = {id};
-  one.handle = one_study;
-
-  RouteInfo events =
-      route("GET", "/{id}/events", "studyEvents", "Every change, who and when", "StudyEvents");
-  events.parameters = {id,
-                       {.in = Parameter::In::query,
-                        .name = "limit",
-                        .kind = Parameter::Kind::integer,
-                        .unit = "1",
-                        .meaning = "at most so many",
-                        .low = 1,
-                        .high = 10000,
-                        .fallback = "200"}};
-  events.handle = events_of;
-
-  RouteInfo add = route("POST", "/{id}/participants", "enrolParticipant",
-                        "Enrol one more participant", "Study");
-  add.parameters = {id};
-  add.body = "NewParticipant";
-  add.body_limit_bytes = kMaxParticipant_bytes;
-  add.handle = new_participant;
+  const RouteInfo make = taking(
+      research_route("POST", "studies", "makeStudy",
+                     "Make a study: scenarios, repeats, order, participants", "Study", new_study),
+      "NewStudy", kMaxPlan_bytes, study_deed_schemas());
+  const RouteInfo one =
+      research_route("GET", "studies/{id}", "study", "Who has done what", "Study", one_study);
+  RouteInfo events = research_route("GET", "studies/{id}/events", "studyEvents",
+                                    "Every change, who and when", "StudyEvents", events_of);
+  events.parameters.push_back({.in = Parameter::In::query,
+                               .name = "limit",
+                               .kind = Parameter::Kind::integer,
+                               .unit = "1",
+                               .meaning = "at most so many",
+                               .low = 1,
+                               .high = 10000,
+                               .fallback = "200"});
+  const RouteInfo add =
+      taking(research_route("POST", "studies/{id}/participants", "enrolParticipant",
+                            "Enrol one more participant", "Study", new_participant),
+             "NewParticipant", kMaxParticipant_bytes, {});
   return {list, make, one, events, add};
 }
 

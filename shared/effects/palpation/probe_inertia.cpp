@@ -4,27 +4,23 @@
 ///     F = −m a,   τ = c ẑ × F   (in H),   a = a_H + α × c + ω × (ω × c)  of the mass
 ///
 /// A point mass: its own moment of inertia is left out.
-#include <cmath>
-
-#include "effects/palpation_effect.hpp"
+#include "effects/palpation/mass_on_axis.hpp"
 
 namespace effects {
 namespace {
 
 class ProbeInertia final : public HandleWrench {
  public:
-  ProbeInertia(double mass_kg, double centre_m) : mass_kg_(mass_kg), centre_m_(centre_m) {}
+  explicit ProbeInertia(MassOnAxis mass) : mass_(mass) {}
 
   void add(const HandleMotion& motion, math::Wrench& wrench_H) const noexcept override {
-    const Vec3 c = motion.X_VH.q * Vec3(0.0, 0.0, centre_m_), &w = motion.omega_rad_s;
+    const Vec3 c = motion.X_VH.q * Vec3(0.0, 0.0, mass_.centre_m), &w = motion.omega_rad_s;
     const Vec3 a = motion.a_m_s2 + motion.alpha_rad_s2.cross(c) + w.cross(w.cross(c));
-    const Vec3 F = -mass_kg_ * (motion.X_VH.q.conjugate() * a);
-    wrench_H.force_N += F;
-    wrench_H.torque_Nm += centre_m_ * Vec3::UnitZ().cross(F);
+    mass_.pull(-mass_.mass_kg * (motion.X_VH.q.conjugate() * a), wrench_H);
   }
 
  private:
-  double mass_kg_, centre_m_;
+  MassOnAxis mass_;
 };
 
 }  // namespace
@@ -36,19 +32,9 @@ PalpationEffectInfo probe_inertia() {
                     .summary = "Inertia of the part of the probe below the sensor",
                     .equation = "F = −m a of a mass at centre_m along the handle's axis",
                     .source = "own; Newton's second law",
-                    .params = {{.name = "mass_kg",
-                                .meaning = "mass below the sensor",
-                                .initial = 0.02,
-                                .low = 0.0,
-                                .high = 2.0},
-                               {.name = "centre_m",
-                                .meaning = "its centre from the sensor towards the tip",
-                                .initial = 0.05,
-                                .low = -0.2,
-                                .high = 1.0,
-                                .off = NAN}}},
+                    .params = MassOnAxis::params()},
           .make = [](std::span<const double> values) -> PalpationEffect {
-            return std::make_unique<ProbeInertia>(values[0], values[1]);
+            return std::make_unique<ProbeInertia>(MassOnAxis::of(values));
           }};
 }
 }  // namespace palpation

@@ -41,7 +41,7 @@ class Lambda6 : public testing::Test {
     const std::string path = "/tmp/tractus-dhd-standin-" + std::to_string(::getpid());
     ::unlink(path.c_str());
     ::setenv("TRACTUS_DHD_STANDIN", path.c_str(), 1);
-    control_ = standin::map_control(path);
+    control_ = support::mapped_in<standin::Control>(path);
     ASSERT_NE(control_, nullptr);
     path_ = path;
   }

@@ -21,7 +21,7 @@ Control& control() {
   static Control own;
   static Control* const at = [] {
     const char* path = std::getenv("TRACTUS_DHD_STANDIN");
-    Control* mapped = path ? standin::map_control(path) : nullptr;
+    Control* mapped = path ? support::mapped_in<standin::Control>(path) : nullptr;
     return mapped ? mapped : &own;
   }();
   return *at;

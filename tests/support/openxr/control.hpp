@@ -1,14 +1,10 @@
-/// What a test tells the runtime, and what it saw: memory that both map.
+/// What a test tells the runtime, and what it saw.
 #pragma once
-
-#include <fcntl.h>
-#include <sys/mman.h>
-#include <unistd.h>
 
 #include <atomic>
 #include <cstdint>
-#include <new>
-#include <string>
+
+#include "tests/support/mapped_page.hpp"  // how both come by it
 
 namespace fakexr {
 
@@ -40,17 +36,5 @@ struct Control {
   std::atomic<int> violations{0};
   char words[8192] = {};  ///< a line each
 };
-
-/// Maps the file (made when it is not there). Null when that fails.
-inline Control* map_control(const std::string& path) {
-  const int fd = ::open(path.c_str(), O_RDWR | O_CREAT, 0666);
-  if (fd < 0) return nullptr;
-  const bool fresh = ::lseek(fd, 0, SEEK_END) < off_t(sizeof(Control));
-  if (fresh && ::ftruncate(fd, sizeof(Control)) != 0) return nullptr;
-  void* at = ::mmap(nullptr, sizeof(Control), PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
-  ::close(fd);
-  if (at == MAP_FAILED) return nullptr;
-  return fresh ? new (at) Control : static_cast<Control*>(at);
-}
 
 }  // namespace fakexr

@@ -27,7 +27,7 @@ class WithRuntime : public testing::Test {
   void SetUp() override {
     static const ControlFile file;
     ::setenv("TRACTUS_OPENXR_TEST", file.path.c_str(), 1);
-    static fakexr::Control* const mapped = fakexr::map_control(file.path);
+    static fakexr::Control* const mapped = support::mapped_in<fakexr::Control>(file.path);
     ASSERT_NE(mapped, nullptr);
     control_ = new (mapped) fakexr::Control;
     control_->paced = 0;

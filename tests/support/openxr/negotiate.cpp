@@ -16,7 +16,7 @@ Control& control() {
   static Control own;
   static Control* const at = [] {
     const char* path = std::getenv("TRACTUS_OPENXR_TEST");
-    Control* mapped = path ? map_control(path) : nullptr;
+    Control* mapped = path ? support::mapped_in<Control>(path) : nullptr;
     return mapped ? mapped : &own;
   }();
   return *at;

@@ -17,10 +17,19 @@ export interface Scene {
   /** The same of the other trial. */
   ghost(t_s: number | null): void;
   resize(): void;
+  /** Where it is looked at from, for a scene that takes this one's place. */
+  looks(): Looks;
   destroy(): void;
 }
 
-interface Content {
+/** A camera, in the scene's millimetres. */
+export interface Looks {
+  readonly from: Vec3;
+  readonly at: Vec3;
+  readonly up: Vec3;
+}
+
+export interface SceneContent {
   readonly tract: SceneTract;
   readonly path: ScenePath;
   readonly bone: SceneBone | null;
@@ -43,8 +52,8 @@ function stand(view: ViewName, { axis, medial, superior }: SceneTract): { from: 
   }
 }
 
-/** Throws where the browser cannot draw; the caller says so on the page. */
-export function makeScene(container: HTMLElement, labelHolder: HTMLElement, content: Content): Scene {
+/** Throws where the browser cannot draw; the caller says so on the page. Without `looks` it is looked at from where it starts. */
+export function makeScene(container: HTMLElement, labelHolder: HTMLElement, content: SceneContent, looks?: Looks): Scene {
   const drawing = makeWindow(container);
   const { renderer } = drawing;
   const { tract } = content;
@@ -66,20 +75,24 @@ export function makeScene(container: HTMLElement, labelHolder: HTMLElement, cont
   const render = paced(container, drawing);
   const watching = camera.onModified(placeLabels);
 
+  const stands = ({ from, at, up }: Looks) => {
+    camera.setFocalPoint(...at);
+    camera.setPosition(...from);
+    camera.setViewUp(...up);
+    renderer.resetCameraClippingRange();
+    render();
+  };
   const look = (name: ViewName) => {
     const middle = sum(scaled(tract.entry_m), scaled(tract.axis, (tract.length_m * kPerMetre) / 2));
     const { from, up } = stand(name, tract);
     const size = Math.sqrt(from[0] ** 2 + from[1] ** 2 + from[2] ** 2);
     const distance = tract.length_m * kPerMetre * 2.2;
-    camera.setFocalPoint(...middle);
-    camera.setPosition(...sum(middle, scaled(from, distance / size)));
-    camera.setViewUp(up[0], up[1], up[2]);
-    renderer.resetCameraClippingRange();
-    render();
+    stands({ from: sum(middle, scaled(from, distance / size)), at: middle, up });
   };
 
   const scene: Scene = {
     look,
+    looks: () => ({ from: camera.getPosition(), at: camera.getFocalPoint(), up: camera.getViewUp() }),
     turn(azimuth, elevation) {
       camera.azimuth(azimuth);
       camera.elevation(elevation);
@@ -118,6 +131,7 @@ export function makeScene(container: HTMLElement, labelHolder: HTMLElement, cont
     },
   };
   scene.resize();
-  look('start');
+  if (looks) stands(looks);
+  else look('start');
   return scene;
 }
