@@ -13,10 +13,11 @@ core::Json drilled_detail(const loop::Drilling& drilling, const PreparedCase& pr
 core::Result<void> keep_drilled(const StationFolder& folder, const loop::Drilling& drilling,
                                 const std::string& trial_id, const std::string& case_id);
 
-/// Puts what a trial drilled into the case's volume, by drilling its file again: what was worn
-/// without a trace in the counts (marrow like water) is then known too, and returned. Without the
-/// file, from the kept state, which does not know that. Errors: not_found (neither is here),
-/// bad_input (a trial of another case, or one that drilled nothing), corrupt, io.
+/// Puts what a trial drilled into the case's volume: from the kept state, else (a trial that was
+/// cut short) by drilling its file again. Returns what was worn, also where that left no trace in
+/// the counts (marrow like water): only the file knows that; nothing without it. Errors: not_found
+/// (neither is here), bad_input (a trial of another case, or one that drilled nothing), corrupt,
+/// io.
 core::Result<drilling::Worn> put_drilled(const StationFolder& folder, const std::string& trial_id,
                                          const std::string& case_id, volume::Volume& bone);
 
