@@ -8,7 +8,7 @@ core::Result<void> done(const core::Result<Rows>& rows) {
   return {};
 }
 
-/// Columns as assignment_from reads them; the one placeholder twice: whose counts (empty: all).
+/// Columns as assignment_from reads them; the one placeholder six times: whose counts (empty: all).
 constexpr const char* kAssignment =
     "select a.study_id, s.title, s.state, s.ordering, s.repeats, s.seed, s.on_invalid, "
     "s.made_utc_us, s.made_by, a.cohort_id, a.due_utc_us, a.release, a.made_by_id, "
@@ -17,7 +17,10 @@ constexpr const char* kAssignment =
     "k.study_id and p.participant = k.participant where k.study_id = a.study_id and k.state = "
     "'recorded' and (? = '' or p.account_id = ?)), (select count(*) from study_slots k join "
     "assignment_people p on p.study_id = k.study_id and p.participant = k.participant where "
-    "k.study_id = a.study_id and k.state <> 'invalid' and (? = '' or p.account_id = ?)) "
+    "k.study_id = a.study_id and k.state <> 'invalid' and (? = '' or p.account_id = ?)), (select "
+    "count(*) from study_slots k join cases d on d.id = k.case_id join assignment_people p on "
+    "p.study_id = k.study_id and p.participant = k.participant where k.study_id = a.study_id and "
+    "k.state <> 'invalid' and d.planned = 1 and (? = '' or p.account_id = ?)) "
     "from assignments a join studies s on s.id = a.study_id left join cohorts c on c.id = "
     "a.cohort_id ";
 
@@ -43,7 +46,8 @@ Assignment assignment_from(const Row& row) {
           .cohort_name = row.text(13),
           .people = row.count(14),
           .done = row.count(15),
-          .planned = row.count(16)};
+          .planned = row.count(16),
+          .to_drill = row.count(17)};
 }
 
 }  // namespace
@@ -105,7 +109,7 @@ core::Result<std::vector<Assignment>> assignments_of(Reading& tx, const WhoseAss
           "f.cohort_id = a.cohort_id and f.account_id = ? and f.part = 'faculty')) and (? = '' or "
           "exists (select 1 from assignment_people p where p.study_id = a.study_id and "
           "p.account_id = ?)) order by a.due_utc_us is null, a.due_utc_us, s.made_utc_us, s.id",
-      {me, me, me, me, leader, leader, leader, me, me});
+      {me, me, me, me, me, me, leader, leader, leader, me, me});
   if (!rows) return rows.error();
   std::vector<Assignment> out;
   for (const Row& row : *rows) out.push_back(assignment_from(row));
@@ -115,7 +119,7 @@ core::Result<std::vector<Assignment>> assignments_of(Reading& tx, const WhoseAss
 core::Result<std::optional<Assignment>> assignment_of(Reading& tx, const std::string& id,
                                                       const std::string& done_by) {
   auto rows = tx.query(std::string(kAssignment) + "where a.study_id = ?",
-                       {done_by, done_by, done_by, done_by, id});
+                       {done_by, done_by, done_by, done_by, done_by, done_by, id});
   if (!rows) return rows.error();
   if (rows->empty()) return std::optional<Assignment>();
   return std::optional(assignment_from(rows->front()));

@@ -16,6 +16,7 @@ struct Assignment {
   // Filled on reading:
   std::string cohort_name = {};
   std::uint64_t people = 0, done = 0, planned = 0;  ///< of the account alone where one is asked for
+  std::uint64_t to_drill = 0;  ///< of `planned`: their channel is drilled first, and felt then
 };
 
 struct AssignedPerson {

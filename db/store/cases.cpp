@@ -6,11 +6,11 @@ namespace {
 constexpr const char* kSummary =
     "select c.id, c.title, c.source, c.made_utc_us, "
     "(select count(*) from trials t where t.case_id = c.id), c.kind, "
-    "case when c.retired_utc_us is null then 0 else 1 end from cases c ";
+    "case when c.retired_utc_us is null then 0 else 1 end, c.planned from cases c ";
 
 CaseSummary summary_from(const Row& row) {
-  return {row.text(0),  row.text(1), row.text(2), row.integer(3),
-          row.count(4), row.text(5), row.truth(6)};
+  return {row.text(0),  row.text(1), row.text(2),  row.integer(3),
+          row.count(4), row.text(5), row.truth(6), row.truth(7)};
 }
 
 }  // namespace
@@ -28,9 +28,10 @@ core::Result<void> add_object(Writing& tx, const std::string& sha256, std::uint6
 core::Result<void> add_case(Writing& tx, const CaseSummary& summary,
                             const std::vector<CasePart>& parts, std::int64_t now_utc_us) {
   auto done = tx.query(
-      "insert into cases (id, title, source, made_utc_us, published_utc_us, kind) "
-      "values (?, ?, ?, ?, ?, ?) on conflict (id) do nothing",
-      {summary.id, summary.title, summary.source, summary.made_utc_us, now_utc_us, summary.kind});
+      "insert into cases (id, title, source, made_utc_us, published_utc_us, kind, planned) "
+      "values (?, ?, ?, ?, ?, ?, ?) on conflict (id) do update set planned = ?",
+      {summary.id, summary.title, summary.source, summary.made_utc_us, now_utc_us, summary.kind,
+       bool_value(summary.planned), bool_value(summary.planned)});
   if (!done) return done.error();
   for (const CasePart& part : parts) {
     if (auto noted = add_object(tx, part.sha256, part.size_bytes, now_utc_us); !noted) return noted;

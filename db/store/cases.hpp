@@ -20,6 +20,7 @@ struct CaseSummary {
   std::uint64_t trials = 0;  ///< counted on reading
   std::string kind = kPalpation;
   bool retired = false;  ///< offered no more; what was assigned of it goes on
+  bool planned = false;  ///< the bone is whole: a channel is drilled first, and felt then
 };
 
 /// A file of the bundle, case.json and case.sig among them.
@@ -30,7 +31,8 @@ struct CasePart {
   bool secret = false;  ///< never for a station
 };
 
-/// Notes the case, its parts and their objects. Publishing the same case again changes nothing.
+/// Notes the case, its parts and their objects. Publishing the same case again changes nothing (of
+/// one noted before `planned` was kept, that alone).
 core::Result<void> add_case(Writing& tx, const CaseSummary& summary,
                             const std::vector<CasePart>& parts, std::int64_t now_utc_us);
 /// Those for palpation, newest first: scenarios are nobody's to list.

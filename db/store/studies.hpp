@@ -59,6 +59,7 @@ struct Slot {
   std::string state;  ///< "waiting", "taken" (a station has it), "recorded", "invalid"
   std::optional<std::string> station_id;
   std::optional<std::string> repeat_of;  ///< the slot that it repeats
+  bool planned = false;  ///< of its case: one trial drills the channel, another then feels it
 };
 
 struct StudyEvent {

@@ -14,7 +14,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-const std::string kA(64, 'a'), kB(64, 'b');
+const std::string kA(64, 'a'), kB(64, 'b'), kWhole(64, 'w');
 const Deed kAda{"ada", 7, "said so"};
 
 class Studies : public test_support::BothDatabases {
@@ -27,7 +27,7 @@ class Studies : public test_support::BothDatabases {
       for (const std::string& id : {kA, kB})
         if (auto done = add_case(tx, {id, "scenario", "", 1, 0, kProbing}, {}, 1); !done)
           return done;
-      return {};
+      return add_case(tx, {kWhole, "whole bone", "", 1, 0, kPalpation, false, true}, {}, 1);
     });
   }
   template <class Work>
@@ -47,6 +47,15 @@ class Studies : public test_support::BothDatabases {
       return add_participant(tx, "study", {.name = "P1"}, {kA, kB, kB}, kAda);
     });
   }
+  /// A trial that drills and one that feels it, then an ordinary one.
+  void make_drilling(const std::string& on_invalid) {
+    write([&](Writing& tx) -> core::Result<void> {
+      const Study study{
+          .id = "study", .title = "Drill", .ordering = "fixed", .on_invalid = on_invalid};
+      if (auto done = add_study(tx, study, {kWhole, kB}, kAda); !done) return done;
+      return add_participant(tx, "study", {.name = "P1"}, {kWhole, kB}, kAda);
+    });
+  }
   core::Result<Taken> take(const std::string& station, std::int64_t ahead) {
     return store_.write([&](Writing& tx) -> core::Result<Taken> {
       return take_slots(tx, **study_of(tx, "study"), **participant_of(tx, "study", "P1"), station,
@@ -54,13 +63,19 @@ class Studies : public test_support::BothDatabases {
     });
   }
   /// A whole trial for a slot, as the station's upload brings it.
-  void bring(const std::string& trial_id, const Slot& slot, bool complete = true) {
+  void bring(const std::string& trial_id, const Slot& slot, bool complete = true,
+             const Tool& tool = {}) {
     write([&](Writing& tx) -> core::Result<void> {
       if (auto done = add_upload(tx, {trial_id, "s1", slot.case_id, 1, kA, "receiving"}, 9); !done)
         return done;
       if (auto done = announce_for_slot(tx, trial_id, slot.id, 9); !done) return done;
-      return record_for_slot(tx, trial_id, complete, {"station-s1", 10});
+      return record_for_slot(tx, trial_id, complete, {"station-s1", 10}, tool);
     });
+  }
+  /// What the next trial of the participant at s1 is to feel.
+  std::string drilling() {
+    const std::string slot = take("s1", 1).value().slots.at(0).id;
+    return store_.read([&](Reading& tx) { return drilling_of(tx, slot); }).value();
   }
   /// State of each slot in the participant's order and its case, a letter each.
   std::string states() {
@@ -197,6 +212,98 @@ TEST_P(Studies, NoteEveryChangeWithWhoDidIt) {
   EXPECT_THAT(happened(),
               ElementsAre("ada made", "ada enrolled", "station-s1 taken", "station-s1 recorded",
                           "ada invalid", "ada repeated", "ada paused"));
+}
+
+const Tool kBurr{.burr = true};
+Tool feeling(const std::string& drilled) { return {.burr = false, .drilled = drilled}; }
+
+TEST_P(Studies, WholeBoneIsDoneWhenItsChannelWasDrilledAndThatVeryChannelFelt) {
+  make_drilling("at_end");
+  const Slot slot = take("s1", 1)->slots[0];
+  EXPECT_EQ(drilling(), "");
+  bring("t1", slot, true, kBurr);
+  EXPECT_EQ(states(), "tw wb ");
+  EXPECT_EQ(take("s1", 1)->slots[0].id, slot.id);
+  EXPECT_EQ(take("s1", 1)->unfinished, 2u);
+  EXPECT_EQ(drilling(), "t1");
+  EXPECT_FALSE(take("s2", 1)) << "the channel is on the first station's disk";
+  bring("t2", slot, true, feeling("t1"));
+  EXPECT_EQ(states(), "rw wb ");
+  EXPECT_EQ(state_of("t1") + " " + state_of("t2"), "counts counts");
+  EXPECT_EQ(take("s1", 1)->unfinished, 1u);
+}
+
+TEST_P(Studies, WholeBoneIsNotDoneByAPalpationOfAnotherChannelOrOfNone) {
+  make_drilling("at_end");
+  const Slot slot = take("s1", 1)->slots[0];
+  bring("t1", slot);
+  EXPECT_EQ(state_of("t1"), "surplus");
+  bring("t2", slot, true, kBurr);
+  bring("t3", slot, true, feeling("t9"));
+  bring("t4", slot, true, kBurr);
+  EXPECT_EQ(state_of("t3") + " " + state_of("t4"), "surplus surplus");
+  EXPECT_EQ(states(), "tw wb ");
+  EXPECT_EQ(drilling(), "t2");
+}
+
+TEST_P(Studies, ADrillingCutShortIsRepeatedAsAnyTrial) {
+  make_drilling("at_once");
+  bring("t1", take("s1", 1)->slots[0], false, kBurr);
+  EXPECT_EQ(states(), "iw ww wb ");
+  EXPECT_EQ(drilling(), "");
+}
+
+TEST_P(Studies, APalpationCutShortOrInvalidIsDoneAgainOnTheChannelThatIsThere) {
+  make_drilling("at_end");
+  const Slot slot = take("s1", 1)->slots[0];
+  bring("t1", slot, true, kBurr);
+  bring("t2", slot, false, feeling("t1"));
+  EXPECT_EQ(state_of("t2"), "invalid");
+  EXPECT_EQ(drilling(), "t1");
+  bring("t3", slot, true, feeling("t1"));
+  EXPECT_EQ(states(), "rw wb ");
+  write([](Writing& tx) { return set_trial_invalid(tx, "study", "t3", kAda); });
+  EXPECT_EQ(states(), "tw wb ");
+  EXPECT_EQ(drilling(), "t1");
+}
+
+TEST_P(Studies, APalpationThatDoesNotCountEndsWholeBoneWhereNothingIsRepeated) {
+  make_drilling("never");
+  const Slot slot = take("s1", 1)->slots[0];
+  bring("t1", slot, true, kBurr);
+  bring("t2", slot, false, feeling("t1"));
+  EXPECT_EQ(states(), "iw wb ");
+}
+
+TEST_P(Studies, WithADrillingThatDoesNotCountGoesThePalpationOfItsChannel) {
+  make_drilling("at_end");
+  const Slot slot = take("s1", 1)->slots[0];
+  bring("t1", slot, true, kBurr);
+  bring("t2", slot, true, feeling("t1"));
+  write([](Writing& tx) { return set_trial_invalid(tx, "study", "t1", kAda); });
+  EXPECT_EQ(state_of("t1") + " " + state_of("t2"), "invalid invalid");
+  EXPECT_EQ(states(), "iw wb ww ");
+}
+
+TEST_P(Studies, AFreedChannelThatWasNotFeltIsDrilledAnewWherever) {
+  make_drilling("at_end");
+  bring("t1", take("s1", 1)->slots[0], true, kBurr);
+  write([](Writing& tx) -> core::Result<void> {
+    auto freed = release_slots(tx, "study", "P1", kAda);
+    return freed ? core::Result<void>() : freed.error();
+  });
+  EXPECT_EQ(state_of("t1"), "invalid");
+  EXPECT_EQ(drilling(), "");
+  EXPECT_EQ(states(), "tw wb ");
+}
+
+TEST_P(Studies, ACaseNotedBeforeWasKnownToBePlannedIsPutRightByPublishingItAgain) {
+  write([](Writing& tx) {
+    return add_case(tx, {kA, "", "", 1, 0, kPalpation, false, true}, {}, 2);
+  });
+  const auto known = store_.read([](Reading& tx) { return case_of(tx, kA); });
+  EXPECT_TRUE((*known)->planned);
+  EXPECT_EQ((*known)->title, "scenario");
 }
 
 }  // namespace

@@ -11,7 +11,8 @@ namespace {
 
 constexpr const char* kSlot =
     "select k.id, k.study_id, k.participant, k.position, k.attempt, k.case_id, k.state, "
-    "k.station_id, k.repeat_of from study_slots k ";
+    "k.station_id, k.repeat_of, (select c.planned from cases c where c.id = k.case_id) "
+    "from study_slots k ";
 
 core::Result<void> done(const core::Result<Rows>& rows) {
   if (!rows) return rows.error();
@@ -27,7 +28,8 @@ Slot slot_from(const Row& row) {
           .case_id = row.text(5),
           .state = row.text(6),
           .station_id = row.text_or_null(7),
-          .repeat_of = row.text_or_null(8)};
+          .repeat_of = row.text_or_null(8),
+          .planned = row.truth(9)};
 }
 
 core::Result<std::vector<Slot>> slots_where(Reading& tx, const std::string& tail,
@@ -52,11 +54,11 @@ core::Result<void> set_slot(Writing& tx, const std::string& id, const char* stat
                {std::string(state), or_null(station_id), now_utc_us, id}));
 }
 
-core::Result<void> set_trial(Writing& tx, const std::string& trial_id, const char* state,
+core::Result<void> set_trial(Writing& tx, const std::string& trial_id, const std::string& state,
                              const Deed& deed) {
   return done(tx.query(
       "update study_trials set state = ?, reason = ?, changed_utc_us = ? where trial_id = ?",
-      {std::string(state), deed.reason, deed.at_utc_us, trial_id}));
+      {state, deed.reason, deed.at_utc_us, trial_id}));
 }
 
 /// Where a repetition of `slot` stands: after everything, or at its own place.
@@ -76,14 +78,20 @@ core::Result<std::pair<std::int64_t, std::int64_t>> place_of_repetition(
   return std::pair(rows->front().integer(0), rows->front().integer(1));
 }
 
-/// The slot did not yield a trial that counts: it is closed, and repeated as the study says.
-core::Result<void> close_and_repeat(Writing& tx, const Slot& slot, const Deed& deed) {
-  if (auto closed = set_slot(tx, slot.id, "invalid", slot.station_id, deed.at_utc_us); !closed)
-    return closed;
+/// The slot did not yield a trial that counts: it is closed, and repeated as the study says. That
+/// of a palpation whose channel is there stays open for the next one.
+core::Result<void> close_and_repeat(Writing& tx, const Slot& slot, const Tool& tool,
+                                    const Deed& deed) {
   auto study = study_of(tx, slot.study_id);
   if (!study) return study.error();
   core::require(study->has_value(), "a slot has its study");
-  if ((*study)->on_invalid == "never") return {};
+  const bool never = (*study)->on_invalid == "never";
+  if (slot.planned && !tool.burr && !never)
+    return set_slot(tx, slot.id, slot.station_id ? "taken" : "waiting", slot.station_id,
+                    deed.at_utc_us);
+  if (auto closed = set_slot(tx, slot.id, "invalid", slot.station_id, deed.at_utc_us); !closed)
+    return closed;
+  if (never) return {};
   auto place = place_of_repetition(tx, slot, (*study)->on_invalid);
   if (!place) return place.error();
   Slot again = slot;
@@ -95,6 +103,37 @@ core::Result<void> close_and_repeat(Writing& tx, const Slot& slot, const Deed& d
        slot.id, deed.at_utc_us});
   if (!added) return added.error();
   return add_study_event(tx, slot.study_id, deed, "repeated", &again);
+}
+
+/// What becomes of a trial, and why.
+struct Judged {
+  std::string state, reason = {};
+};
+
+/// @param drilling  drilling_of the slot
+Judged judged(const Slot& slot, bool complete, const Tool& tool, const std::string& drilling) {
+  if (slot.state != "waiting" && slot.state != "taken")
+    return {"surplus", "its place in the order has a trial already"};
+  if (slot.planned && tool.burr && !drilling.empty())
+    return {"surplus", "a channel was drilled for it already"};
+  if (slot.planned && !tool.burr && (drilling.empty() || tool.drilled != drilling))
+    return {"surplus", "it did not feel the channel that was drilled for it"};
+  if (!complete) return {"invalid", "cut short before its end"};
+  return {"counts"};
+}
+
+/// The trials of a slot that count no longer do.
+core::Result<void> discount(Writing& tx, const Slot& slot, const Deed& deed) {
+  auto rows = tx.query("select trial_id from study_trials where slot_id = ? and state = 'counts'",
+                       {slot.id});
+  if (!rows) return rows.error();
+  for (const Row& row : *rows) {
+    if (auto set = set_trial(tx, row.text(0), "invalid", deed); !set) return set;
+    if (auto noted = add_study_event(tx, slot.study_id, deed, "invalid", &slot, row.text(0));
+        !noted)
+      return noted;
+  }
+  return {};
 }
 
 core::Error paused(const std::string& what) {
@@ -160,7 +199,10 @@ core::Result<std::uint64_t> release_slots(Writing& tx, const std::string& study_
   auto held = slots_where(tx, "where k.study_id = ? and k.participant = ? and k.state = 'taken'",
                           {study_id, participant});
   if (!held) return held.error();
+  Deed unfelt = deed;
+  unfelt.reason = "freed before its channel was felt";
   for (const Slot& slot : *held) {
+    if (auto dropped = discount(tx, slot, unfelt); !dropped) return dropped.error();
     if (auto set = set_slot(tx, slot.id, "waiting", std::nullopt, deed.at_utc_us); !set)
       return set.error();
     if (auto noted = add_study_event(tx, study_id, deed, "released", &slot); !noted)
@@ -198,24 +240,36 @@ core::Result<void> announce_for_slot(Writing& tx, const std::string& trial_id,
                {trial_id, slot_id, now_utc_us}));
 }
 
+core::Result<std::string> drilling_of(Reading& tx, const std::string& slot_id) {
+  auto rows = tx.query(
+      "select trial_id from study_trials where slot_id = ? and state = 'counts' and tool = 'burr'",
+      {slot_id});
+  if (!rows) return rows.error();
+  return rows->empty() ? std::string() : rows->front().text(0);
+}
+
 core::Result<void> record_for_slot(Writing& tx, const std::string& trial_id, bool complete,
-                                   const Deed& deed) {
-  auto slot = slot_of_trial(tx, trial_id);
-  if (!slot) return slot.error();
-  if (!*slot) return {};
-  const bool open = (*slot)->state == "waiting" || (*slot)->state == "taken";
+                                   const Deed& deed, const Tool& tool) {
+  auto found = slot_of_trial(tx, trial_id);
+  if (!found) return found.error();
+  if (!*found) return {};
+  const Slot& slot = **found;
+  auto drilling = drilling_of(tx, slot.id);
+  if (!drilling) return drilling.error();
+  const Judged what = judged(slot, complete, tool, *drilling);
   Deed said = deed;
-  if (!open) said.reason = "its place in the order has a trial already";
-  if (open && !complete) said.reason = "cut short before its end";
-  const char* state = !open ? "surplus" : complete ? "counts" : "invalid";
-  if (auto set = set_trial(tx, trial_id, state, said); !set) return set;
-  if (auto noted = add_study_event(tx, (*slot)->study_id, said,
-                                   open && complete ? "recorded" : state, &**slot, trial_id);
-      !noted)
+  if (!what.reason.empty()) said.reason = what.reason;
+  if (auto set = set_trial(tx, trial_id, what.state, said); !set) return set;
+  auto held = tx.query("update study_trials set tool = ? where trial_id = ?",
+                       {std::string(tool.burr ? "burr" : "probe"), trial_id});
+  if (!held) return held.error();
+  const bool counts = what.state == "counts", to_be_felt = slot.planned && tool.burr;
+  const std::string event = !counts ? what.state : to_be_felt ? "drilled" : "recorded";
+  if (auto noted = add_study_event(tx, slot.study_id, said, event, &slot, trial_id); !noted)
     return noted;
-  if (!open) return {};
-  if (!complete) return close_and_repeat(tx, **slot, said);
-  return set_slot(tx, (*slot)->id, "recorded", (*slot)->station_id, deed.at_utc_us);
+  if (what.state == "invalid") return close_and_repeat(tx, slot, tool, said);
+  if (!counts || to_be_felt) return {};
+  return set_slot(tx, slot.id, "recorded", slot.station_id, deed.at_utc_us);
 }
 
 core::Result<void> set_trial_invalid(Writing& tx, const std::string& study_id,
@@ -225,21 +279,24 @@ core::Result<void> set_trial_invalid(Writing& tx, const std::string& study_id,
   if (!*slot || (*slot)->study_id != study_id)
     return core::Error{core::Errc::not_found,
                        fmt::format("study {} has no trial {}", study_id, trial_id.substr(0, 32))};
-  auto state = tx.query("select state from study_trials where trial_id = ?", {trial_id});
-  if (!state) return state.error();
-  if (state->front().text(0) != "counts")
+  auto trial = tx.query("select state, tool from study_trials where trial_id = ?", {trial_id});
+  if (!trial) return trial.error();
+  if (trial->front().text(0) != "counts")
     return core::Error{core::Errc::conflict,
                        fmt::format("trial {} does not count as it is", trial_id)};
+  const Tool tool{.burr = trial->front().text(1) == "burr"};
   if (auto set = set_trial(tx, trial_id, "invalid", deed); !set) return set;
   if (auto noted = add_study_event(tx, study_id, deed, "invalid", &**slot, trial_id); !noted)
     return noted;
-  return close_and_repeat(tx, **slot, deed);
+  if (tool.burr)
+    if (auto with_it = discount(tx, **slot, deed); !with_it) return with_it;
+  return close_and_repeat(tx, **slot, tool, deed);
 }
 
 core::Result<std::vector<StudyTrial>> study_trials(Reading& tx, const std::string& study_id) {
   auto rows = tx.query(
       "select x.trial_id, x.slot_id, x.state, x.reason, x.changed_utc_us, s.name, t.duration_s, "
-      "t.samples, t.started_utc_us, t.sha256, t.correct, t.state from study_trials x "
+      "t.samples, t.started_utc_us, t.sha256, t.correct, t.state, x.tool from study_trials x "
       "join study_slots k on k.id = x.slot_id join uploads u on u.trial_id = x.trial_id "
       "join stations s on s.id = u.station_id left join trials t on t.id = x.trial_id "
       "where k.study_id = ? order by x.changed_utc_us, x.trial_id",
@@ -253,6 +310,7 @@ core::Result<std::vector<StudyTrial>> study_trials(Reading& tx, const std::strin
                    .reason = row.text(3),
                    .changed_utc_us = row.integer(4),
                    .station = row.text(5),
+                   .tool = row.text(12),
                    .duration_s = row.number_or_null(6),
                    .samples = {},
                    .started_utc_us = {},

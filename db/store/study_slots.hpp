@@ -12,6 +12,7 @@ struct StudyTrial {
   std::string reason;
   std::int64_t changed_utc_us = 0;
   std::string station = {};  ///< that announced it
+  std::string tool = {};     ///< once it was recorded: "burr" (it drilled), "probe"
   // Once it has arrived:
   std::optional<double> duration_s = {};
   std::optional<std::int64_t> samples = {}, started_utc_us = {};
@@ -34,7 +35,8 @@ struct Taken {
 /// same. Errors: conflict when another station has some, or when study or participant is paused.
 core::Result<Taken> take_slots(Writing& tx, const Study& study, const Participant& participant,
                                const std::string& station_id, std::int64_t ahead, const Deed& deed);
-/// What stations had of a participant waits again: the number of slots.
+/// What stations had of a participant waits again: the number of slots. A channel that was drilled
+/// for one and not felt yet is on that station alone: its drilling no longer counts.
 core::Result<std::uint64_t> release_slots(Writing& tx, const std::string& study_id,
                                           const std::string& participant, const Deed& deed);
 
@@ -47,13 +49,26 @@ core::Result<std::optional<StudyTrial>> study_trial_of(Reading& tx, const std::s
 core::Result<void> announce_for_slot(Writing& tx, const std::string& trial_id,
                                      const std::string& slot_id, std::int64_t now_utc_us);
 
+/// With what a trial was done, as its file says.
+struct Tool {
+  bool burr = false;         ///< it drilled
+  std::string drilled = {};  ///< trial that drilled the channel it felt
+};
+/// The trial that drilled the channel which a slot's next trial feels; empty: none did.
+core::Result<std::string> drilling_of(Reading& tx, const std::string& slot_id);
+
 /// A trial has arrived: it counts, unless its slot has one already (then it is surplus) or it was
 /// cut short (then it does not count, and the slot is repeated as the study says).
+///
+/// The slot of a planned case takes two: the drilling, with which it stays open at its station, and
+/// the palpation of that very channel, with which it is recorded. A drilling that does not count is
+/// repeated as any trial; a palpation is done again next, on the channel that is there (unless the
+/// study never repeats).
 core::Result<void> record_for_slot(Writing& tx, const std::string& trial_id, bool complete,
-                                   const Deed& deed);
+                                   const Deed& deed, const Tool& tool = {});
 /// A person says that a trial does not count; the reason is the deed's. It stays, and its slot is
-/// repeated as the study says. Errors: not_found (no trial of this study), conflict (it does not
-/// count as it is).
+/// repeated as above; with a drilling goes the palpation of its channel. Errors: not_found (no
+/// trial of this study), conflict (it does not count as it is).
 core::Result<void> set_trial_invalid(Writing& tx, const std::string& study_id,
                                      const std::string& trial_id, const Deed& deed);
 

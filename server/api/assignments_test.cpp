@@ -46,11 +46,13 @@ class Assignments : public PeopleTest {
     EXPECT_EQ(given.status, 200) << text(given);
     return json(given);
   }
-  /// The trial of a slot arrives.
-  void hand_over(const std::string& slot) {
+  /// The trial of a slot arrives; its id.
+  std::string hand_over(const std::string& slot, const store::Tool& tool = {}) {
     const std::string id = core::new_id();
-    const auto done = store_.write([&](store::Writing& tx) { return furnish_trial(tx, id, slot); });
-    ASSERT_TRUE(done) << done.error().what;
+    const auto done =
+        store_.write([&](store::Writing& tx) { return furnish_trial(tx, id, slot, tool); });
+    EXPECT_TRUE(done) << done.error().what;
+    return id;
   }
   const std::string other_ = std::string(64, 'd');
 };
@@ -96,6 +98,41 @@ TEST_F(Assignments, AScenarioIsSealedForTheStation) {
   EXPECT_EQ(trial["case_id"], "");
   EXPECT_FALSE(trial["sealed"].get<std::string>().empty());
   EXPECT_EQ(trial.dump().find("lateral"), std::string::npos);
+}
+
+TEST_F(Assignments, WholeBoneIsToBeDrilledAndThenItsChannelFelt) {
+  const std::string whole(64, 'e');
+  ASSERT_TRUE(store_.write([&](store::Writing& tx) {
+    return store::add_case(tx, {whole, "L5, whole", "made", 3, 0, store::kPalpation, false, true},
+                           {}, 0);
+  }));
+  const std::string id = assigned(two_cases({{"cases", {{{"case", whole}}, {{"case", kCase}}}}}));
+  const std::string in = ticket();
+  const core::Json first = next(in)["trial"];
+  EXPECT_EQ(first["tool"], "burr");
+  EXPECT_FALSE(first.contains("drilled"));
+  EXPECT_EQ(json(get("tom", "/assignments/" + id))["to_drill"], 1);
+
+  const std::string drilling = hand_over(first["slot"], {.burr = true});
+  const core::Json then = next(in);
+  EXPECT_EQ(then["trial"]["slot"], first["slot"]);
+  EXPECT_EQ(then["trial"]["drilled"], drilling);
+  EXPECT_FALSE(then["trial"].contains("tool"));
+  EXPECT_EQ(then["trial"]["number"], 1);
+  EXPECT_EQ(then["left"], 2);
+  EXPECT_EQ(json(get("fay", "/assignments/" + id))["done"], 0);
+
+  hand_over(first["slot"], {.burr = false, .drilled = drilling});
+  const core::Json seen = json(get("fay", "/assignments/" + id));
+  EXPECT_EQ(seen["done"], 1);
+  EXPECT_EQ(seen["planned"], 2);
+  EXPECT_EQ(seen["to_drill"], 1);
+  ASSERT_EQ(seen["trials"].size(), 2u);
+  EXPECT_NE(seen["trials"][0]["tool"], seen["trials"][1]["tool"]);
+  const core::Json ordinary = next(in)["trial"];
+  EXPECT_EQ(ordinary["case_id"], kCase);
+  EXPECT_FALSE(ordinary.contains("tool") || ordinary.contains("drilled"))
+      << "stations that know no drilling read it as ever";
 }
 
 TEST_F(Assignments, TheEarliestDueComesFirst) {

@@ -117,6 +117,21 @@ TEST_F(CaseMaking, WhatIsWrongWithAPlanIsASentenceAndNoError) {
   EXPECT_EQ(post("fay", "/volumes/released/tract", {{"entry_m", {0, 0}}}).status, 400);
 }
 
+TEST_F(CaseMaking, ABoneLeftWholeIsACaseToBeDrilled) {
+  core::Json wish = plan({{"volume", "released"}, {"title", "To drill"}, {"channel", "planned"}});
+  EXPECT_EQ(post("fay", "/cases", wish).status, 400) << "it has no breach";
+  wish["breach"] = nullptr;
+  const std::string id = made(wish);
+  const auto facts = jobs::case_facts(store_, objects_, id);
+  ASSERT_TRUE(facts) << facts.error().what;
+  EXPECT_TRUE(facts->definition.planned);
+  EXPECT_FALSE(facts->truth->breached);
+  for (const core::Json& one : json(get("fay", "/cases"))["cases"])
+    EXPECT_EQ(one["planned"], one["id"] == id) << one;
+  wish["channel"] = "square";
+  EXPECT_EQ(post("fay", "/cases", wish).status, 400);
+}
+
 TEST_F(CaseMaking, ACaseIsMadeWhereThePlanSaidAndSignedByTheServer) {
   const core::Json told = look(plan());
   const std::string id = made(plan({{"volume", "released"}, {"title", "L3 left, medial"}}));

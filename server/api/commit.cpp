@@ -90,6 +90,15 @@ core::Result<void> check_identity(const store::Upload& upload, const Promised& p
   return {};
 }
 
+/// With what it was done, as the header says.
+store::Tool tool_of(const store::TrialRecord& trial) {
+  const core::Json header = core::Json::parse(trial.header);  // written by record_of
+  const core::Json extra = header.value("extra", core::Json::object());
+  const auto drilled = extra.find("drilled");
+  const bool felt = drilled != extra.end() && drilled->is_string();
+  return {.burr = extra.contains("drilling"), .drilled = felt ? drilled->get<std::string>() : ""};
+}
+
 std::string events_text(const std::vector<trial::Event>& events) {
   core::Json out = core::Json::array();
   for (const trial::Event& event : events)
@@ -148,7 +157,8 @@ core::Result<void> store_trial(Backend& backend, const store::Upload& upload,
     if (auto done = store::complete_upload(tx, upload.trial_id); !done) return done;
     auto station = store::station_name(tx, upload.station_id);
     if (!station) return station.error();
-    if (auto done = store::record_for_slot(tx, upload.trial_id, trial.complete, {*station, now});
+    if (auto done = store::record_for_slot(tx, upload.trial_id, trial.complete, {*station, now},
+                                           tool_of(trial));
         !done)
       return done;
     return store::queue_job(tx, "metrics", upload.trial_id, now);

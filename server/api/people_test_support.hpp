@@ -64,7 +64,7 @@ class PeopleTest : public ApiTest {
   }
 
   static core::Result<void> furnish_trial(store::Writing& tx, const std::string& id,
-                                          const std::string& slot) {
+                                          const std::string& slot, const store::Tool& tool = {}) {
     const std::string sha = core::sha256(core::bytes_of(id));
     store::TrialRecord trial;
     trial.summary.id = id;
@@ -79,7 +79,7 @@ class PeopleTest : public ApiTest {
     if (auto done = store::announce_for_slot(tx, id, slot, 1); !done) return done;
     if (auto done = store::add_object(tx, sha, 1, 1); !done) return done;
     if (auto done = store::add_trial(tx, trial, 1); !done) return done;
-    return store::record_for_slot(tx, id, true, {"s1", 1});
+    return store::record_for_slot(tx, id, true, {"s1", 1}, tool);
   }
 
   static std::string trial_of(const std::string& trainee) {

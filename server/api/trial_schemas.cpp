@@ -56,9 +56,12 @@ core::Json trial_schema() {
 
 core::Json truth_schema() {
   return object({{"breached", nullable(one_of(kWalls, "the wall with the hole; null: none"))},
-                 {"breach_m", nullable(point("centre of the hole, in V"))},
+                 {"breach_m", nullable(point("centre of the hole, in V; null also where another "
+                                             "trial drilled it"))},
                  {"breach_depth_m", number("m", "how far the tool went beyond the bone")},
-                 {"wall_thickness_m", number("m", "of the bone there before it gave way")}});
+                 {"wall_thickness_m", nullable(number("m",
+                                                      "of the bone there before it gave way; "
+                                                      "null: another trial drilled it"))}});
 }
 
 core::Json tract_schema() {

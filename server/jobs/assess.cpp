@@ -47,7 +47,7 @@ core::Result<void> assess_trial(store::Store& store, const store::Objects& objec
   metrics::Subject subject{.trial = *trial};
   std::optional<CaseFacts> facts;
   if (trial->header.rig == trial::Rig::palpation) {
-    auto known = case_facts(store, objects, (*record)->summary.case_id);
+    auto known = facts_of_trial(store, objects, (*record)->summary.case_id, trial->header);
     if (!known) return known.error();
     facts = std::move(*known);
     subject.tract = &facts->definition.tract;

@@ -74,12 +74,14 @@ cases::NewCase new_case(const store::CaseMaking& making, const SourceVolume& sou
   cases::NewCase out{.definition = {},
                      .truth = carved.truth(),
                      .volume = carved.volume,
-                     .meta = {source.source, "part about a tract, drilled"},
+                     .meta = {source.source, carved.drilled ? "part about a tract, drilled"
+                                                            : "part about a planned tract"},
                      .draw = {}};
   out.definition.title = making.title;
   out.definition.source = source.source.empty() ? source.name : source.source;
   out.definition.made_utc_us = core::utc_us();
   out.definition.tract = carved.tract;
+  out.definition.planned = !carved.drilled;
   out.definition.model = model;
   return out;
 }
@@ -91,8 +93,15 @@ Result<cases::CarvingPlan> plan_from(core::Fields& fields) {
   out.entry_m = point(fields, "entry_m");
   out.target_m = point(fields, "target_m");
   out.radius_m = fields.number_or("radius_m", out.radius_m, 0.0, kAny_m);
+  if (fields.has("channel")) {
+    const std::string channel = fields.text("channel", 16);
+    if (channel != "drilled" && channel != "planned")
+      fields.wrong("channel", "drilled or planned is expected");
+    out.drilled = channel != "planned";
+  }
   const Json* breach = fields.member("breach", false);
   if (!breach || breach->is_null()) return out;
+  if (!out.drilled) fields.wrong("breach", "whole bone has none: null, or no such field");
   auto read = breach_from(*breach, fields.where() + "/breach");
   if (!read) return read.error();
   out.breach = *read;
@@ -104,6 +113,7 @@ Json plan_json(const cases::CarvingPlan& plan) {
   Json out{{"entry_m", numbers(plan.entry_m)},
            {"target_m", numbers(plan.target_m)},
            {"radius_m", plan.radius_m},
+           {"channel", plan.drilled ? "drilled" : "planned"},
            {"breach", Json()}};
   if (!plan.breach) return out;
   out["breach"] = {{"wall", volume::name(plan.breach->wall)}, {"depth_m", plan.breach->depth_m}};

@@ -41,8 +41,9 @@ core::Result<std::string> publish_bundle(
     if (auto in = objects.copy_in(bundle / part.name, part.sha256); !in) return in.error();
     parts.push_back({part.name, part.sha256, part.size_bytes, part.secret});
   }
-  const store::CaseSummary summary{opened->id, opened->definition.title, opened->definition.source,
-                                   opened->definition.made_utc_us, 0};
+  store::CaseSummary summary{opened->id, opened->definition.title, opened->definition.source,
+                             opened->definition.made_utc_us, 0};
+  summary.planned = opened->definition.planned;
   auto noted = store.write([&](store::Writing& tx) -> core::Result<void> {
     if (auto added = store::add_case(tx, summary, parts, core::utc_us()); !added) return added;
     return also ? also(tx, opened->id) : core::Result<void>();

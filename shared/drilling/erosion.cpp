@@ -60,6 +60,17 @@ Box united(const Box& a, const Box& b) noexcept {
   return out;
 }
 
+Worn worn_of(const Erosion& erosion) {
+  Worn out{.box = erosion.worn(), .lost = {}, .removed_m3 = erosion.removed_m3()};
+  const auto& [begin, end] = out.box;
+  out.lost.reserve(std::size_t(end[0] - begin[0]) * std::size_t(end[1] - begin[1]) *
+                   std::size_t(end[2] - begin[2]));
+  for (int k = begin[2]; k < end[2]; ++k)
+    for (int j = begin[1]; j < end[1]; ++j)
+      for (int i = begin[0]; i < end[0]; ++i) out.lost.push_back(float(erosion.lost(i, j, k)));
+  return out;
+}
+
 core::Result<Erosion> Erosion::make(const volume::Volume& bone,
                                     const volume::TransferFunction& transfer, const Burr& burr,
                                     const trial::ProbeShape& probe) {

@@ -112,6 +112,15 @@ class Erosion {
   std::uint32_t changes_ = 0;
 };
 
+/// What is shown of a drilling: the share that each voxel of a box has lost.
+struct Worn {
+  volume::Box box;          ///< empty (begin = end): nothing was worn
+  std::vector<float> lost;  ///< [k][j][i] of the box, Erosion::lost
+  double removed_m3 = 0.0;  ///< Erosion::removed_m3
+};
+
+Worn worn_of(const Erosion& erosion);
+
 /// The smallest box that holds both; an empty one adds nothing.
 volume::Box united(const volume::Box& a, const volume::Box& b) noexcept;
 

@@ -10,9 +10,12 @@ constexpr std::size_t kMaxName = 200, kMaxSealed = 64 * 1024;
 }  // namespace
 
 core::Json AssignedTrial::to_json() const {
-  return {
+  core::Json out{
       {"slot", slot},     {"rig", rig},         {"name", name},       {"assignment", assignment},
       {"number", number}, {"planned", planned}, {"case_id", case_id}, {"sealed", sealed}};
+  if (drills) out["tool"] = "burr";
+  if (!drilled.empty()) out["drilled"] = drilled;
+  return out;
 }
 
 core::Result<AssignedTrial> AssignedTrial::from_json(const core::Json& json,
@@ -32,6 +35,16 @@ core::Result<AssignedTrial> AssignedTrial::from_json(const core::Json& json,
   if (out.rig == "palpation" && !core::is_sha256(out.case_id))
     fields.wrong("case_id", "64 hexadecimal characters are expected");
   out.sealed = fields.text("sealed", kMaxSealed);
+  const std::string tool = fields.text_or("tool", "probe", 16);
+  if (tool != "probe" && tool != "burr") fields.wrong("tool", "probe or burr is expected");
+  out.drills = tool == "burr";
+  out.drilled = fields.text_or("drilled", "", 64);
+  if (!out.drilled.empty() && !core::is_id(out.drilled))
+    fields.wrong("drilled", "a trial's id is expected");
+  if ((out.drills || !out.drilled.empty()) && out.rig != "palpation")
+    fields.wrong("rig", "palpation is expected: the other rig drills nothing");
+  if (out.drills && !out.drilled.empty())
+    fields.wrong("drilled", "is felt with the probe: a burr begins on whole bone");
   if (auto done = fields.done(); !done) return done.error();
   return out;
 }

@@ -19,6 +19,9 @@ struct AssignedTrial {
   std::uint64_t planned = 0;
   std::string case_id;  ///< of a palpation case; empty for a scenario
   std::string sealed;   ///< of a scenario: the law's numbers, for this station alone; else empty
+  // Of a case whose bone is whole. Not on the wire elsewhere: stations that know no drilling go on.
+  bool drills = false;       ///< the channel is made now, with the burr
+  std::string drilled = {};  ///< trial of this station that made the channel, which is felt now
 
   core::Json to_json() const;
   static core::Result<AssignedTrial> from_json(const core::Json& json, const std::string& where);

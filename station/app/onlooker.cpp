@@ -11,21 +11,8 @@ namespace {
 constexpr int kWidth_px = 1280, kHeight_px = 800;
 constexpr auto kUntilSeen = std::chrono::seconds(10);
 
-constexpr int kLooksPerBone = 10;  // a third of a second: the whole image goes to the graphics
-
-view::Scene scene_of(const session::PreparedCase& prepared, const volume::Volume& bone) {
-  return {bone, prepared.model.transfer, prepared.opened.definition.tract, prepared.model.base};
-}
-
-/// The smallest box with both in it.
-volume::Box around(const volume::Box& a, const volume::Box& b) {
-  volume::Box out = a;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    out.begin[axis] = std::min(a.begin[axis], b.begin[axis]);
-    out.end[axis] = std::max(a.end[axis], b.end[axis]);
-  }
-  return out;
-}
+// The whole image goes to the graphics each time.
+constexpr auto kBetweenLooksAtBone = std::chrono::milliseconds(330);
 
 /// What the loop says, as something to draw.
 headset::Moment moment_of(const session::PreparedCase& prepared, const loop::Live& live) {
@@ -37,6 +24,17 @@ headset::Moment moment_of(const session::PreparedCase& prepared, const loop::Liv
                                 live.rendered_force_N[2]};
   now.tip_m = prepared.runtime.law().tip_m(now.state.X_VH, now.state.deflection_m);
   return now;
+}
+
+/// The same of a recorded sample.
+view::ProbeState state_of(const session::PreparedCase& prepared, const trial::Sample& sample) {
+  view::ProbeState out;
+  out.X_VH = sample.pose();
+  out.X_VH.p += prepared.model.base.pose_offset_m;
+  out.deflection_m = {sample.deflection_m[0], sample.deflection_m[1]};
+  const auto& f = sample.rendered_force_N;
+  out.wrench_H.force_N = {f[0], f[1], f[2]};
+  return out;
 }
 
 /// The alignment that holds for this device, if there is one.
@@ -53,8 +51,21 @@ core::Result<Onlooker> Onlooker::make(const session::PreparedCase& prepared, con
   Onlooker made;
   made.prepared_ = &prepared;
   made.picture_ = look.picture;
+  made.burr_ = look.burr;
   if (auto opened = made.open(look); !opened) return opened.error();
   return made;
+}
+
+view::Scene Onlooker::scene() const {
+  const Carved& carved = *carved_;
+  view::Scene out{.volume = carved.bone ? *carved.bone : prepared_->volume,
+                  .transfer = prepared_->model.transfer,
+                  .tract = prepared_->opened.definition.tract,
+                  .probe = prepared_->model.base,
+                  .burr = burr_,
+                  .worn = carved.bone ? &carved.worn : &prepared_->worn};
+  if (burr_) out.probe.radius_m = burr_->shank_radius_m;
+  return out;
 }
 
 core::Result<void> Onlooker::open(const Look& look) {
@@ -85,7 +96,7 @@ core::Result<void> Onlooker::open_headset(const Look& look) {
   const math::Pose X_VD =
       loop::place_device(definition.tract, prepared_->model.base.length_m, math::Vec3::Zero());
   auto started = headset::HeadsetThread::start(
-      {.scene = scene_of(*prepared_, prepared_->volume),
+      {.scene = scene(),
        .X_VD = X_VD,
        .X_SD = *X_SD,
        .latest = [&prepared = *prepared_, followed = live_]() -> std::optional<headset::Moment> {
@@ -98,7 +109,7 @@ core::Result<void> Onlooker::open_headset(const Look& look) {
            [carved = carved_](const headset::TakeBone& take) {
              const std::unique_lock held(carved->mutex, std::try_to_lock);
              if (!held || !carved->fresh) return;
-             take(*carved->fresh, *carved->bone);
+             take(*carved->fresh, *carved->bone, carved->worn);
              carved->fresh.reset();
            }});
   if (!started) return started.error();
@@ -132,45 +143,51 @@ core::Json Onlooker::end_headset() {
 }
 
 core::Result<void> Onlooker::open(view::Mode mode) {
-  auto view =
-      view::View::make(scene_of(*prepared_, carved_->bone ? *carved_->bone : prepared_->volume),
-                       mode, kWidth_px, kHeight_px);
+  auto view = view::View::make(scene(), mode, kWidth_px, kHeight_px);
   if (!view) return view.error();
   view_ = std::move(*view);
   return {};
 }
 
 void Onlooker::look_at_bone(loop::Drilling& drilling) {
-  drilling_ = &drilling;
   const std::unique_lock held(carved_->mutex, std::try_to_lock);
   if (!held) return;  // the headset is at it: the next look has it
-  auto& bone = carved_->bone;
-  if (!bone) bone = prepared_->volume;
-  const auto box = drilling.show(*bone);
-  if (!box) return;
-  if (view_) view_->carve_away(*box, *bone);
-  carved_->fresh = carved_->fresh ? around(*carved_->fresh, *box) : *box;
+  Carved& carved = *carved_;
+  if (!carved.bone) carved.bone = prepared_->volume;
+  const auto box = drilling.show(*carved.bone);
+  auto worn = drilling.worn();
+  if (!box && !worn) return;
+  if (worn) carved.worn = std::move(*worn);
+  if (view_) view_->carve_away(box.value_or(volume::Box{}), *carved.bone, carved.worn);
+  carved.fresh =
+      drilling::united(carved.fresh.value_or(volume::Box{}), box.value_or(volume::Box{}));
 }
 
 bool Onlooker::look(const session::Glimpse& seen) {
   if (headset_) tell_headset();
   if (!view_ && !headset_ && picture_.empty()) return true;
-  if (seen.drilling && looks_++ % kLooksPerBone == 0) look_at_bone(*seen.drilling);
-  const Moment now = moment_of(*prepared_, seen.live);
-  path_m_.push_back(now.tip_m);
-  const volume::Tract& tract = prepared_->opened.definition.tract;
-  if (!deepest_ || tract.depth_of(now.tip_m) > tract.depth_of(deepest_->tip_m)) deepest_ = now;
-  if (view_) view_->draw(now.state, path_m_);
-  return !(view_ && view_->closed());
+  way_ = &seen.way;
+  drilling_ = seen.drilling;
+  if (const auto now = std::chrono::steady_clock::now(); drilling_ && now >= next_look_at_bone_) {
+    look_at_bone(*drilling_);
+    next_look_at_bone_ = now + kBetweenLooksAtBone;
+  }
+  if (!view_) return true;
+  way_->show(path_);
+  view_->draw(moment_of(*prepared_, seen.live).state, path_.points_m);
+  return !view_->closed();
 }
 
 core::Result<void> Onlooker::leave_picture() {
   end_headset();  // one at a time draws
-  if (picture_.empty() || !deepest_) return {};
+  if (picture_.empty() || !way_) return {};
+  way_->show(path_);
+  const auto& sample = burr_ ? path_.withdrawn : path_.deepest;
+  if (!sample) return {};
   if (drilling_) look_at_bone(*drilling_);
   if (!view_)
     if (auto opened = open(view::Mode::offscreen); !opened) return opened.error();
-  view_->draw(deepest_->state, path_m_);
+  view_->draw(state_of(*prepared_, *sample), path_.points_m);
   return view_->save_png(picture_);
 }
 

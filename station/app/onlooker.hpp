@@ -1,11 +1,11 @@
 /// Shows a running trial and keeps a picture of it: reads the latest state, never the loop.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <vector>
 
 #include "station/headset/headset_thread.hpp"
 #include "station/session/trial_run.hpp"
@@ -22,6 +22,7 @@ struct Look {
                                   ///< picture without a view is drawn off screen
   std::filesystem::path data;     ///< the station's folder, which may hold an alignment of the room
   std::string device;             ///< that an alignment must be of
+  std::optional<drilling::Burr> burr = {};  ///< the tool; none: a probe
 };
 
 class Onlooker {
@@ -39,13 +40,14 @@ class Onlooker {
   bool look(const session::Glimpse& seen);
   /// The headset's figures, for the trial's report; null without one. Its view ends here.
   core::Json end_headset();
-  /// Leaves the picture: the probe where its tip was deepest, and the tip's way. While the trial
-  /// that was looked at is there.
+  /// Leaves the picture: the tip's whole way, and the probe where its tip was deepest; a burr,
+  /// which would hide its channel there, where it had just left the bone. While the trial that was
+  /// looked at is there.
   core::Result<void> leave_picture();
 
  private:
-  using Moment = headset::Moment;
   Onlooker() = default;
+  view::Scene scene() const;
   core::Result<void> open(const Look& look);
   core::Result<void> open(view::Mode mode);
   core::Result<void> open_headset(const Look& look);
@@ -54,22 +56,25 @@ class Onlooker {
 
   const session::PreparedCase* prepared_ = nullptr;
   std::filesystem::path picture_;
+  std::optional<drilling::Burr> burr_;
   std::unique_ptr<view::View> view_;
   using Followed = std::atomic<const loop::LiveState*>;
   std::shared_ptr<Followed> live_ = std::make_shared<Followed>(nullptr);  ///< the headset's too
   std::unique_ptr<headset::HeadsetThread> headset_;
   headset::Seen told_ = headset::Seen::shown;  ///< the last that was said of it
-  std::vector<math::Vec3> path_m_;
-  loop::Drilling* drilling_ = nullptr;  // of the trial that is looked at
+  // Of the trial that is looked at.
+  const session::TipWay* way_ = nullptr;
+  session::TipWay::Seen path_;
+  loop::Drilling* drilling_ = nullptr;
   /// The bone as it is drilled; without a drilling the case's stands.
   struct Carved {
     std::mutex mutex;  ///< this thread writes, the headset's takes over; neither waits long
     std::optional<volume::Volume> bone;
+    drilling::Worn worn;
     std::optional<volume::Box> fresh;  ///< what the headset has not taken over yet
   };
   std::shared_ptr<Carved> carved_ = std::make_shared<Carved>();
-  int looks_ = 0;
-  std::optional<Moment> deepest_;
+  std::chrono::steady_clock::time_point next_look_at_bone_{};
 };
 
 }  // namespace app

@@ -145,7 +145,7 @@ void add_run(CLI::App& app, Options& options) {
       ->transform(word_of(shows()))
       ->default_str("none");
   app.add_option("--picture", options.picture,
-                 "PNG of the (last) trial: bone cut open, probe, the tip's way");
+                 "PNG of the (last) trial: bone cut open, what was drilled, tool, the tip's way");
   app.add_flag("--follow", options.follow,
                "a JSON line on standard error whenever samples have reached the disk");
 }

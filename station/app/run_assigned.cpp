@@ -39,21 +39,44 @@ core::Result<std::string> pin_of(const Options& options) {
 
 bool stopped_by_hand() { return asked_to_stop(); }
 
-core::Result<TrialReport> palpate(const Options& options, Presence& presence,
-                                  const session::StationFolder& folder, const AssignedWork& work,
-                                  int number) {
-  const AssignedTrial& trial = *work.trial;
+/// The case, with the channel that the trainee drilled if that is what is felt.
+core::Result<std::shared_ptr<const session::PreparedCase>> prepare(
+    const Options& options, const session::StationFolder& folder, const AssignedTrial& trial) {
   if (!session::find_case(folder, trial.case_id))
     if (auto fetched = fetch_cases(options, folder); !fetched) return fetched.error();
   auto made = session::prepare_case(folder, trial.case_id, {},
-                                    core::terminal_progress("Preparing the case"));
+                                    core::terminal_progress("Preparing the case"), trial.drilled);
+  const bool lost = !made && made.error().code == core::Errc::not_found;
+  if (lost && !trial.drilled.empty() && session::find_case(folder, trial.case_id))
+    return core::Error{
+        core::Errc::not_found,
+        fmt::format("the channel that trial {} drilled is not on this station's disk "
+                    "any more: have this trainee's trial freed, to drill it anew",
+                    trial.drilled)};
   if (!made) return made.error();
-  const std::shared_ptr<const session::PreparedCase> prepared(std::move(*made));
+  if ((*made)->opened.definition.planned && !trial.drills && trial.drilled.empty())
+    return core::Error{
+        core::Errc::bad_input,
+        "the next trial is of whole bone, which is drilled first: the server does not "
+        "know of drilling yet"};
+  return std::shared_ptr<const session::PreparedCase>(std::move(*made));
+}
+
+/// One trial on a case: the burr makes the channel, or the probe feels one and its walls are asked
+/// for.
+core::Result<TrialReport> work_on_bone(const Options& options, Presence& presence,
+                                       const session::StationFolder& folder,
+                                       const AssignedWork& work, int number) {
+  const AssignedTrial& trial = *work.trial;
+  const auto made = prepare(options, folder, trial);
+  if (!made) return made.error();
+  const std::shared_ptr<const session::PreparedCase>& prepared = *made;
   session::TrialSetup setup = options.setup;
   setup.case_known_as = trial.slot;
   setup.operator_name = work.participant;
   setup.outside = presence.outside();
   setup.started_utc_us = started_of(options, number);
+  if (trial.drills) setup.burr = drilling::Burr{};
   session::Station station(folder, setup);
   auto onlooker = Onlooker::make(*prepared, look_of(options));
   if (!onlooker) return onlooker.error();
@@ -71,7 +94,8 @@ core::Result<TrialReport> palpate(const Options& options, Presence& presence,
   if (!headset.is_null())
     if (auto noted = station.note("headset", headset); !noted) return noted.error();
   std::optional<trial::Answer> said;
-  if (station.state() == session::State::answering && !stopped_by_hand()) {
+  const bool asks = !trial.drills;  // who drills made the channel: there is nothing to guess
+  if (station.state() == session::State::answering && asks && !stopped_by_hand()) {
     auto answer = answer_of(options, station.simulated_answer());
     if (!answer) return answer.error();
     said = *answer;
@@ -123,9 +147,15 @@ core::Result<TrialReport> one_trial(const Options& options, Presence& presence,
                        fmt::format("the next trial is for {}: --device {} is not for that",
                                    work.trial->rig, device)};
   auto report = probing ? probe(options, presence, folder, work, number)
-                        : palpate(options, presence, folder, work, number);
+                        : work_on_bone(options, presence, folder, work, number);
   if (report) presence.done(*report);
   return report;
+}
+
+/// What is asked of the trainee where that is not plain.
+const char* task_of(const AssignedTrial& trial) {
+  if (trial.drills) return ": drill the channel";
+  return trial.drilled.empty() ? "" : ": feel the channel that you drilled";
 }
 
 /// What was done and what is left.
@@ -147,12 +177,14 @@ core::Result<Tally> rounds(const Options& options, Presence& presence,
     if (!work->trial || i == options.trials) return tally;
     const AssignedTrial& trial = *work->trial;
     if (!options.json)
-      fmt::print("{}: {}, {} of {}\n", trial.assignment, trial.name, trial.number, trial.planned);
+      fmt::print("{}: {}, {} of {}{}\n", trial.assignment, trial.name, trial.number, trial.planned,
+                 task_of(trial));
     auto report = one_trial(options, presence, folder, *work, i);
     if (!report) return report.error();
     tally.trials.push_back({{"trial_id", report->trial_id},
                             {"number", trial.number},
                             {"name", trial.name},
+                            {"tool", trial.drills ? "burr" : "probe"},
                             {"complete", report->complete},
                             {"fault", report->fault}});
     if (!report->headset.is_null()) {

@@ -47,9 +47,11 @@ session::Watch watch_of(const Options& options, const core::Progress& shown, Onl
 core::Result<TrialReport> one_trial(const Options& options, Presence& presence,
                                     const session::StationFolder& folder, session::Station& station,
                                     const std::shared_ptr<const session::PreparedCase>& prepared,
-                                    std::uint64_t seed) {
+                                    const session::TrialSetup& setup, std::uint64_t seed) {
   presence.is(Presence::State::preparing);
-  auto onlooker = Onlooker::make(*prepared, look_of(options));
+  Look how = look_of(options);
+  how.burr = setup.burr;
+  auto onlooker = Onlooker::make(*prepared, how);
   if (!onlooker) return onlooker.error();
   if (auto ready = station.prepare(prepared, seed); !ready) return ready.error();
   onlooker->follow(station.trial()->live());
@@ -152,7 +154,7 @@ core::Result<int> run_trials(const Options& options) {
   core::Json trials = core::Json::array();
   bool faulted = false;
   for (int i = 0; i < options.trials && !asked_to_stop() && presence.may_go_on(); ++i) {
-    auto report = one_trial(options, presence, *folder, station, *prepared,
+    auto report = one_trial(options, presence, *folder, station, *prepared, setup,
                             options.setup.seed + std::uint64_t(i));
     if (!report) return report.error();
     faulted = faulted || !report->complete;

@@ -97,9 +97,8 @@ void Headset::Parts::frame() {
 
 void Headset::Parts::follow_probe() {
   if (shown.carved)
-    shown.carved([this](const volume::Box& box, const volume::Volume& bone) {
-      painter->carve_away(box, bone);
-    });
+    shown.carved([this](const volume::Box& box, const volume::Volume& bone,
+                        const drilling::Worn& worn) { painter->carve_away(box, bone, worn); });
   const auto now = shown.latest ? shown.latest() : std::nullopt;
   if (!now) return;
   painter->pose(now->state);

@@ -17,8 +17,10 @@ struct Moment {
   math::Vec3 tip_m;  ///< in V
 };
 
-/// Takes over the counts of a box of the bone that was drilled; the volume is the scene's.
-using TakeBone = std::function<void(const volume::Box& box, const volume::Volume& bone)>;
+/// Takes over the counts of a box of the bone that was drilled, and all that was worn; the volume
+/// is the scene's.
+using TakeBone = std::function<void(const volume::Box& box, const volume::Volume& bone,
+                                    const drilling::Worn& worn)>;
 
 /// What is to be shown, and where in the room.
 struct Shown {

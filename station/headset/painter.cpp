@@ -94,8 +94,9 @@ core::Result<std::unique_ptr<Painter>> Painter::make(const view::Scene& scene,
   return std::unique_ptr<Painter>(new Painter(std::move(parts)));
 }
 
-void Painter::carve_away(const volume::Box& box, const volume::Volume& volume) {
-  parts_->picture.carve_away(box, volume);
+void Painter::carve_away(const volume::Box& box, const volume::Volume& volume,
+                         const drilling::Worn& worn) {
+  parts_->picture.carve_away(box, volume, worn);
 }
 void Painter::pose(const view::ProbeState& state) { parts_->picture.pose(state); }
 void Painter::path(std::span<const math::Vec3> path_m) { parts_->picture.path(path_m); }

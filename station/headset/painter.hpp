@@ -22,8 +22,8 @@ class Painter {
                                                      int height_px);
   ~Painter();
 
-  /// The bone has changed within `box`: `volume` is the scene's as it is now.
-  void carve_away(const volume::Box& box, const volume::Volume& volume);
+  /// As view::View's.
+  void carve_away(const volume::Box& box, const volume::Volume& volume, const drilling::Worn& worn);
   void pose(const view::ProbeState& state);
   void path(std::span<const math::Vec3> path_m);
   /// Grips in V; what is not there is not drawn.

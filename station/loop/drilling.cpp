@@ -83,7 +83,10 @@ void Drilling::work() {
     const std::size_t taken = samples_.pop(block_);
     if (taken == 0) return;
     const std::lock_guard lock(bone_mutex_);
-    for (std::size_t i = 0; i < taken; ++i) erosion_.add(block_[i], taking);
+    for (std::size_t i = 0; i < taken; ++i) {
+      erosion_.add(block_[i], taking);
+      worn_more_ = worn_more_ || (block_[i].flags & trial::kPressed);
+    }
   }
 }
 
@@ -116,6 +119,7 @@ void Drilling::finish() {
   work();
   const std::lock_guard lock(bone_mutex_);
   erosion_.finish([this](const drilling::Change& change) { take(change); });
+  worn_more_ = true;  // the last dose
 }
 
 std::optional<volume::Box> Drilling::show(volume::Volume& shown) {
@@ -132,6 +136,12 @@ std::optional<volume::Box> Drilling::show(volume::Volume& shown) {
       std::copy_n(now.counts.begin() + at, width, shown.counts.begin() + at);
     }
   return box;
+}
+
+std::optional<drilling::Worn> Drilling::worn() {
+  const std::unique_lock lock(bone_mutex_, std::try_to_lock);
+  if (!lock || !std::exchange(worn_more_, false)) return std::nullopt;
+  return drilling::worn_of(erosion_);
 }
 
 }  // namespace loop

@@ -61,6 +61,9 @@ class Drilling final : public Tool {
   /// before) what changed since the last call; the box of it, nothing when nothing did or the
   /// worker is at it just now (then the next call has it). Never waits.
   std::optional<volume::Box> show(volume::Volume& shown);
+  /// Likewise: what was worn until now; nothing when the burr was not at work since the last call,
+  /// or the worker is at it just now. Never waits.
+  std::optional<drilling::Worn> worn();
 
  private:
   struct Slot {
@@ -74,9 +77,10 @@ class Drilling final : public Tool {
   void loop();
 
   drilling::Setup setup_;
-  std::mutex bone_mutex_;  // erosion_ and unshown_: worker and onlooker, never the loop
+  std::mutex bone_mutex_;  // the next three: worker and onlooker, never the loop
   drilling::Erosion erosion_;
   volume::Box unshown_;
+  bool worn_more_ = false;
   volume::ForceField field_;
   std::optional<models::PalpationRuntime> runtime_;
   std::vector<Slot> slots_;

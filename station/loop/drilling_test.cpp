@@ -221,5 +221,34 @@ TEST(Drilling, ShowsWhatChangedAndNothingTwice) {
   EXPECT_EQ(shown.counts, bench.drilling->erosion().volume().counts);
 }
 
+TEST(Drilling, ShowsWhatEachVoxelLostWhenTheBurrWasAtWork) {
+  Bench bench;
+  EXPECT_FALSE(bench.drilling->worn());
+  bench.run(4000, [&] { bench.drilling->work(); });
+  const auto worn = bench.drilling->worn();
+  ASSERT_TRUE(worn);
+  EXPECT_FALSE(bench.drilling->worn());
+  const auto& erosion = bench.drilling->erosion();
+  EXPECT_EQ(worn->removed_m3, erosion.removed_m3());
+  const auto& [begin, end] = worn->box;
+  ASSERT_LT(begin[2], end[2]);
+  std::size_t at = 0;
+  double inside = 0.0, all = 0.0;
+  for (int k = 0; k < 81; ++k)
+    for (int j = 0; j < 61; ++j)
+      for (int i = 0; i < 61; ++i) {
+        all += erosion.lost(i, j, k);
+        if (i < begin[0] || i >= end[0] || j < begin[1] || j >= end[1] || k < begin[2] ||
+            k >= end[2])
+          continue;
+        ASSERT_LT(at, worn->lost.size());
+        EXPECT_EQ(double(worn->lost[at++]), erosion.lost(i, j, k));
+        inside += erosion.lost(i, j, k);
+      }
+  EXPECT_EQ(at, worn->lost.size());
+  EXPECT_EQ(inside, all);
+  EXPECT_GT(all, 100.0);
+}
+
 }  // namespace
 }  // namespace loop

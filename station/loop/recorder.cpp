@@ -39,7 +39,9 @@ void RecorderOf<S>::drain() {
   for (;;) {
     const std::size_t taken = ring_.pop(block_);
     if (taken == 0) break;
-    if (!failed()) keep(writer_.append(std::span<const S>(block_).first(taken)));
+    const auto samples = std::span<const S>(block_).first(taken);
+    if (!failed()) keep(writer_.append(samples));
+    if (told_ && !failed()) told_(samples);
   }
   const core::Instant_ns now = clock_.now();
   if (now - last_flush_ >= kFlush_ns) flush(now);

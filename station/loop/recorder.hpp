@@ -2,6 +2,8 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
+#include <span>
 #include <thread>
 #include <vector>
 
@@ -28,6 +30,9 @@ class RecorderOf {
   RecorderOf(const RecorderOf&) = delete;
   RecorderOf& operator=(const RecorderOf&) = delete;
 
+  /// Before `start`: `take` has every sample that was recorded, in order, from the thread that
+  /// records; it must be quick.
+  void tell(std::function<void(std::span<const S>)> take) { told_ = std::move(take); }
   void start();
   /// Ends the thread if there is one, takes out the rest and flushes. Errors: the first of
   /// recording.
@@ -53,6 +58,7 @@ class RecorderOf {
   core::Clock& clock_;
   core::Instant_ns last_flush_;
   std::vector<S> block_;
+  std::function<void(std::span<const S>)> told_;
   core::Result<void> first_error_;
   std::atomic<bool> failed_ = false, stop_ = false;
   std::atomic<std::uint64_t> safe_ = 0;

@@ -80,7 +80,7 @@ TEST(Recorder, CountsSamplesAsSafeOnlyOnceTheyAreFlushed) {
   EXPECT_EQ(recorder.samples_safe(), 10u);
 }
 
-TEST(Recorder, WithItsOwnThreadLosesNothing) {
+TEST(Recorder, WithItsOwnThreadLosesNothingAndTellsAllOfIt) {
   const Folder folder;
   const fs::path path = folder / "a.ttrial";
   SampleRing ring(1024);
@@ -88,6 +88,10 @@ TEST(Recorder, WithItsOwnThreadLosesNothing) {
   auto writer = trial::TrialWriter::create(path, header());
   ASSERT_TRUE(writer);
   Recorder recorder(ring, std::move(*writer), clock);
+  std::uint32_t told = 0;
+  recorder.tell([&told](std::span<const trial::Sample> samples) {
+    for (const auto& sample : samples) EXPECT_EQ(sample.tick, told++);
+  });
   recorder.start();
   for (std::uint32_t i = 0; i < 20000;)
     if (ring.push(sample(i))) ++i;
@@ -96,6 +100,7 @@ TEST(Recorder, WithItsOwnThreadLosesNothing) {
   const auto read = trial::read_trial(path);
   ASSERT_TRUE(read);
   EXPECT_EQ(read->samples.size(), 20000u);
+  EXPECT_EQ(told, 20000u);
 }
 
 TEST(Recorder, KeepsTheFirstErrorAndWritesNothingAfterIt) {

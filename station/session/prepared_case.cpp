@@ -65,13 +65,18 @@ core::Result<std::unique_ptr<PreparedCase>> prepare_case(const StationFolder& fo
   if (!file) return file.error();
   auto voxels = file->read_all(part_of(progress, 0.0, 0.5));
   if (!voxels) return voxels.error();
-  if (!drilled.empty())
-    if (auto put = put_drilled(folder, drilled, opened->id, *voxels); !put) return put.error();
+  drilling::Worn worn;
+  if (!drilled.empty()) {
+    auto put = put_drilled(folder, drilled, opened->id, *voxels);
+    if (!put) return put.error();
+    worn = std::move(*put);
+  }
   auto runtime = models::PalpationRuntime::make(*model, *voxels, part_of(progress, 0.5, 1.0));
   if (!runtime) return runtime.error();
   if (progress) progress(1.0);
-  return std::unique_ptr<PreparedCase>(new PreparedCase{
-      std::move(*opened), std::move(*model), std::move(*voxels), std::move(*runtime), drilled});
+  return std::unique_ptr<PreparedCase>(new PreparedCase{std::move(*opened), std::move(*model),
+                                                        std::move(*voxels), std::move(*runtime),
+                                                        drilled, std::move(worn)});
 }
 
 }  // namespace session

@@ -6,6 +6,7 @@
 
 #include "cases/case.hpp"
 #include "core/progress.hpp"
+#include "drilling/erosion.hpp"
 #include "models/palpation_runtime.hpp"
 #include "station/session/station_folder.hpp"
 
@@ -17,6 +18,7 @@ struct PreparedCase {
   volume::Volume volume;         ///< the case's, with what `drilled` took away
   models::PalpationRuntime runtime;
   std::string drilled = {};  ///< trial that made the channel; empty: the case as it was given
+  drilling::Worn worn = {};  ///< by that trial, where its file is here
 };
 
 /// @param which       a case's id (or its first eight characters or more) in the station's folder,

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
+#include <algorithm>
+
 #include "core/file.hpp"
 #include "trial/trial_file.hpp"
 
@@ -175,6 +177,63 @@ TEST_F(Sessions, AnInterruptedTrialIsSealedAndQueuedAtTheNextStart) {
   EXPECT_FALSE(read->complete);
   EXPECT_TRUE(where.outbox().holds(recovered->trials[0].trial_id));
   EXPECT_TRUE(where.recover()->trials.empty());
+}
+
+/// A drilling in simulated time under a blind name, ended when `watch` says so.
+TrialReport drilled(const StationFolder& where, const PreparedCase& bone, double duration_s,
+                    const Watch& watch = {}) {
+  TrialSetup setup{.device = "sim-lambda6", .seed = 1, .duration_s = duration_s};
+  setup.speed = Speed::fast;
+  setup.burr = drilling::Burr{};
+  setup.case_known_as = std::string(64, 'b');
+  auto run = TrialRun::make(where, bone, setup);
+  EXPECT_TRUE(run && (*run)->run(watch));
+  auto report = (*run)->finish({});
+  EXPECT_TRUE(report) << report.error().what;
+  return *report;
+}
+
+TEST_F(Sessions, AnAssignedDrillingIsMadeAgainFromItsFileInItsOwnBoneAlone) {
+  StationFolder where = folder();
+  const auto block = prepared(where);
+  const auto case_of = [&](const char* name, volume::Volume volume) {
+    cases::NewCase made{.definition = block->opened.definition,
+                        .truth = {},
+                        .volume = volume,
+                        .meta = {},
+                        .draw = {}};
+    EXPECT_TRUE(cases::write_case(root_ / name, made, key_));
+  };
+  volume::Volume solid = block->volume;
+  std::ranges::fill(solid.counts, std::uint16_t{2024});
+  std::fill_n(solid.counts.begin(), 80 * 80 * 10, std::uint16_t{0});  // its face is 3.5 mm deep
+  case_of("whole", solid);
+  const auto whole = prepare_case(where, root_ / "whole", {});
+  ASSERT_TRUE(whole) << whole.error().what;
+  const std::string id = drilled(where, **whole, 8.0).trial_id;
+  const auto kept = prepare_case(where, root_ / "whole", {}, {}, id);
+  ASSERT_TRUE(kept) << kept.error().what;
+  EXPECT_NE((*kept)->volume.counts, solid.counts);
+  ASSERT_TRUE(fs::remove(where.drilled_file(id)));
+  const auto again = prepare_case(where, root_ / "whole", {}, {}, id);
+  ASSERT_TRUE(again) << again.error().what;
+  EXPECT_EQ((*again)->volume.counts, (*kept)->volume.counts);
+
+  case_of("other", (*kept)->volume);
+  const auto refused = prepare_case(where, root_ / "other", {}, {}, id);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, core::Errc::bad_input);
+}
+
+TEST_F(Sessions, ADrillingThatTookNothingAwayIsFeltAsWholeBone) {
+  StationFolder where = folder();
+  const auto bone = prepared(where);
+  // Ended in the first seconds of ten minutes, on the way to the bone.
+  const TrialReport nothing = drilled(where, *bone, 600.0, [](const Glimpse&) { return false; });
+  ASSERT_EQ(nothing.drilled->detail["changes"], 0);
+  const auto felt = prepare_case(where, root_ / "case", {}, {}, nothing.trial_id);
+  ASSERT_TRUE(felt) << felt.error().what;
+  EXPECT_EQ((*felt)->volume.counts, bone->volume.counts);
 }
 
 TEST_F(Sessions, ATrialWithoutASampleIsSetAside) {

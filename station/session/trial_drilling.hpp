@@ -14,9 +14,11 @@ core::Result<void> keep_drilled(const StationFolder& folder, const loop::Drillin
                                 const std::string& trial_id, const std::string& case_id);
 
 /// Puts what a trial drilled into the case's volume: from the kept state, else (a trial that was
-/// cut short) by drilling its file again. Errors: not_found (neither is here), bad_input (a trial
-/// of another case, or one that drilled nothing), corrupt, io.
-core::Result<void> put_drilled(const StationFolder& folder, const std::string& trial_id,
-                               const std::string& case_id, volume::Volume& bone);
+/// cut short) by drilling its file again: one that names another case must leave the very bone that
+/// it says it left. Returns what was worn, also where that left no trace in the counts (marrow like
+/// water): only the file knows that; nothing without it. Errors: not_found (neither is here),
+/// bad_input (a trial of another case, or one that drilled nothing), corrupt, io.
+core::Result<drilling::Worn> put_drilled(const StationFolder& folder, const std::string& trial_id,
+                                         const std::string& case_id, volume::Volume& bone);
 
 }  // namespace session

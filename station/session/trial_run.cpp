@@ -97,6 +97,7 @@ struct TrialRun::Parts {
   std::unique_ptr<loop::Drilling> drilling;  // null with a probe
   std::optional<loop::PalpationContact> contact;
   loop::Limiter limiter;
+  std::optional<TipWay> way;
   std::optional<loop::Recorder> recorder;
   std::optional<loop::HapticLoop> loop;
   loop::RealtimeGrant grant;
@@ -134,6 +135,7 @@ Glimpse TrialRun::Parts::glimpse() const {
           .live = seen,
           .progress = made.trainee ? made.trainee->progress() : std::min(1.0, share),
           .samples_safe = recorder->samples_safe(),
+          .way = *way,
           .drilling = drilling.get()};
 }
 
@@ -204,6 +206,10 @@ core::Result<void> TrialRun::Parts::make_file(const devices::DeviceInfo& info) {
   auto writer = trial::TrialWriter::create(folder.trial_file(header.id), header);
   if (!writer) return writer.error();
   recorder.emplace(ring, std::move(*writer), real_clock);
+  const auto& base = prepared.model.base;
+  way.emplace(trial::ProbeShape{base.length_m, base.pose_offset_m},
+              prepared.opened.definition.tract);
+  recorder->tell([this](std::span<const trial::Sample> samples) { way->add(samples); });
   return {};
 }
 

@@ -11,6 +11,7 @@
 #include "station/loop/realtime.hpp"
 #include "station/session/outside.hpp"
 #include "station/session/prepared_case.hpp"
+#include "station/session/tip_way.hpp"
 
 namespace loop {
 class Drilling;
@@ -77,6 +78,7 @@ struct Glimpse {
   loop::Live live;
   double progress = 0.0;               ///< 0 … 1
   std::uint64_t samples_safe = 0;      ///< on the disk for good
+  const TipWay& way;                   ///< lives as the trial
   loop::Drilling* drilling = nullptr;  ///< of a trial with a burr: for `show`; lives as the trial
 };
 /// Called from the thread that called `run`, about thirty times a second; false stops the trial.

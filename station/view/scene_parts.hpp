@@ -8,6 +8,7 @@
 #include <vtkRenderer.h>
 #include <vtkSmartPointer.h>
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -17,6 +18,11 @@ class vtkActor;
 class vtkImageData;
 
 namespace view {
+
+// Told apart from bone, from the dark behind it and from one another by the colour-blind too: a
+// light blue, a purple, a yellow and a red that differ in lightness.
+inline constexpr std::array kPlanned{0.45, 0.85, 1.0}, kDrilled{0.80, 0.32, 0.86},
+    kWay{1.0, 0.82, 0.30}, kTouches{0.95, 0.35, 0.25};
 
 /// The bone: volume rendering of opacity and CT value, the half towards the eye cut away.
 class Bone {
@@ -29,20 +35,34 @@ class Bone {
   vtkSmartPointer<vtkImageData> image_;
 };
 
+/// What a burr has taken: the surface about the voxels that lost half of themselves or more, marrow
+/// without opacity too. The side towards the eye is left out, so that one looks in.
+class Channel {
+ public:
+  void add(vtkRenderer& renderer, const Scene& scene);
+  void show(const drilling::Worn& worn);
+
+ private:
+  vtkSmartPointer<vtkImageData> lost_;
+  vtkSmartPointer<vtkActor> actor_;
+  volume::Geometry geometry_;
+};
+
 /// The tract: rings and its axis.
 class TractOutline {
  public:
   void add(vtkRenderer& renderer, const volume::Tract& tract);
 };
 
-/// The probe: handle, bent shank, contact points.
+/// The tool: handle, bent shank, and the probe's contact points or the burr's ball.
 class Shank {
  public:
-  void add(vtkRenderer& renderer, const laws::PalpationParameters& probe);
+  void add(vtkRenderer& renderer, const Scene& scene);
   void pose(const ProbeState& state);
 
  private:
   laws::PalpationParameters probe_;
+  double nose_m_ = 0.0;  // of a burr
   vtkNew<vtkPolyData> curve_;
   std::vector<vtkSmartPointer<vtkActor>> points_;
   vtkSmartPointer<vtkActor> handle_;
@@ -64,12 +84,15 @@ class Picture {
   void add(vtkRenderer& renderer, const Scene& scene);
   void pose(const ProbeState& state) { shank_.pose(state); }
   void path(std::span<const math::Vec3> path_m) { path_.points(path_m); }
-  void carve_away(const volume::Box& box, const volume::Volume& volume) {
+  void carve_away(const volume::Box& box, const volume::Volume& volume,
+                  const drilling::Worn& worn) {
     bone_.carve_away(box, volume);
+    channel_.show(worn);
   }
 
  private:
   Bone bone_;
+  Channel channel_;
   TractOutline outline_;
   Shank shank_;
   TipPath path_;

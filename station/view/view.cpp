@@ -28,9 +28,15 @@ struct View::Parts {
   vtkSmartPointer<vtkRenderWindow> window;
   vtkSmartPointer<vtkRenderWindowInteractor> interactor;  // null off screen
   vtkNew<vtkRenderer> renderer;
-  vtkNew<vtkTextActor> caption;
+  vtkSmartPointer<vtkTextActor> caption, drilled;
   Picture picture;
+  double removed_m3 = 0.0;
   bool closed = false;
+
+  void say_drilled(const drilling::Worn& worn) {
+    removed_m3 = worn.removed_m3;
+    drilled->SetVisibility(!worn.lost.empty());
+  }
 };
 
 namespace {
@@ -47,13 +53,24 @@ core::Result<void> display_is_there() {
 
 void look_at(vtkRenderer& renderer, const volume::Tract& tract) {
   const math::Vec3 focus = tract.entry_m + 0.4 * tract.length_m * tract.axis;
-  const math::Vec3 eye = focus + 0.115 * tract.medial - 0.045 * tract.axis + 0.02 * tract.superior;
+  const math::Vec3 eye = focus + 0.098 * tract.medial - 0.038 * tract.axis + 0.017 * tract.superior;
   vtkCamera* camera = renderer.GetActiveCamera();
   camera->SetFocalPoint(focus.x(), focus.y(), focus.z());
   camera->SetPosition(eye.x(), eye.y(), eye.z());
   camera->SetViewUp(tract.superior.x(), tract.superior.y(), tract.superior.z());
   camera->SetViewAngle(32);
   renderer.ResetCameraClippingRange();
+}
+
+/// A line of words, in the colour of what they name; line 0 is the lowest.
+vtkSmartPointer<vtkTextActor> words(const char* what, const std::array<double, 3>& colour,
+                                    int line) {
+  auto word = vtkSmartPointer<vtkTextActor>::New();
+  word->SetInput(what);
+  word->GetTextProperty()->SetFontSize(16);
+  word->GetTextProperty()->SetColor(colour[0], colour[1], colour[2]);
+  word->SetDisplayPosition(16, 14 + 26 * line);
+  return word;
 }
 
 }  // namespace
@@ -100,10 +117,12 @@ core::Result<std::unique_ptr<View>> View::make(const Scene& scene, Mode mode, in
                        "off-screen view: VTK cannot use the OpenGL context"};
 
   parts->picture.add(*parts->renderer, scene);
-  parts->caption->GetTextProperty()->SetFontSize(16);
-  parts->caption->GetTextProperty()->SetColor(0.92, 0.94, 0.96);
-  parts->caption->SetDisplayPosition(16, 14);
-  parts->renderer->AddActor2D(parts->caption);
+  parts->caption = words("", {0.92, 0.94, 0.96}, 0);
+  parts->drilled = words("drilled channel", kDrilled, 3);
+  for (const auto& line : {parts->caption, parts->drilled, words("way of the tip", kWay, 1),
+                           words("planned tract", kPlanned, 2)})
+    parts->renderer->AddActor2D(line);
+  parts->say_drilled(scene.worn ? *scene.worn : drilling::Worn{});
   look_at(*parts->renderer, scene.tract);
   if (parts->interactor) parts->interactor->Initialize();
   return std::unique_ptr<View>(new View(std::move(parts)));
@@ -113,16 +132,20 @@ void View::draw(const ProbeState& state, std::span<const math::Vec3> path_m) {
   parts_->picture.pose(state);
   parts_->picture.path(path_m);
   const math::Vec3& f = state.wrench_H.force_N;
-  parts_->caption->SetInput(fmt::format("F_xy {:.2f} N   F_z {:.2f} N   bend {:.1f} mm",
-                                        std::hypot(f.x(), f.y()), std::abs(f.z()),
-                                        1e3 * state.deflection_m.norm())
-                                .c_str());
+  std::string caption =
+      fmt::format("F_xy {:.2f} N   F_z {:.2f} N   bend {:.1f} mm", std::hypot(f.x(), f.y()),
+                  std::abs(f.z()), 1e3 * state.deflection_m.norm());
+  if (parts_->removed_m3 > 0.0)
+    caption += fmt::format("   {:.0f} mm\u00b3 of bone drilled away", 1e9 * parts_->removed_m3);
+  parts_->caption->SetInput(caption.c_str());
   parts_->window->Render();
   if (parts_->interactor) parts_->interactor->ProcessEvents();
 }
 
-void View::carve_away(const volume::Box& box, const volume::Volume& volume) {
-  parts_->picture.carve_away(box, volume);
+void View::carve_away(const volume::Box& box, const volume::Volume& volume,
+                      const drilling::Worn& worn) {
+  parts_->picture.carve_away(box, volume, worn);
+  parts_->say_drilled(worn);
 }
 
 core::Result<void> View::save_png(const std::filesystem::path& path) const {

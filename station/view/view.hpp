@@ -3,9 +3,11 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "core/result.hpp"
+#include "drilling/erosion.hpp"
 #include "laws/palpation_law.hpp"
 #include "volume/tract.hpp"
 #include "volume/transfer_function.hpp"
@@ -21,6 +23,8 @@ struct Scene {
   const volume::TransferFunction& transfer;
   volume::Tract tract;
   laws::PalpationParameters probe;
+  std::optional<drilling::Burr> burr = {};  ///< at the shank's end; none: the probe's points
+  const drilling::Worn* worn = nullptr;     ///< by an earlier drilling; copied
 };
 
 /// What moves.
@@ -42,9 +46,9 @@ class View {
   /// Draws one picture of the state; `path_m` is the tip's way so far in V (thinned by the caller),
   /// drawn as a line.
   void draw(const ProbeState& state, std::span<const math::Vec3> path_m);
-  /// The bone has changed within `box`: `volume` is the scene's as it is now. Seen from the next
-  /// picture on.
-  void carve_away(const volume::Box& box, const volume::Volume& volume);
+  /// The bone has changed within `box` (empty: nowhere): `volume` is the scene's as it is now, and
+  /// `worn` all that was worn. Seen from the next picture on.
+  void carve_away(const volume::Box& box, const volume::Volume& volume, const drilling::Worn& worn);
   /// The last picture as PNG.
   core::Result<void> save_png(const std::filesystem::path& path) const;
   /// Did a person close the window?

@@ -83,12 +83,12 @@ const std::map<std::string, Names> kAllowed = {
      {"shared/core", "shared/trial", "shared/wire", "shared/cases", "shared/volume"}},
     {"station/view",
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/models", "shared/cases",
-      "shared/trial"}},
+      "shared/trial", "shared/drilling"}},  // the burr, and what it took
     // The window's picture, for two eyes; a device's handle touches points when the room is
     // aligned.
     {"station/headset",
-     {"shared/core", "shared/math", "shared/volume", "shared/laws", "station/view",
-      "station/devices"}},
+     {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/drilling",
+      "station/view", "station/devices"}},
     {"station/session",
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/effects",
       "shared/models", "shared/scenarios", "shared/cases", "shared/trial", "shared/metrics",

@@ -58,9 +58,10 @@ class DrillingLive : public testing::Test {
     return json ? *json : Json();
   }
   /// A drilling in simulated time; its report.
-  Json drilled() {
+  Json drilled(const std::string& also = "") {
     EXPECT_EQ(run("tractus-station --data st --case case --tool burr --speed fast --seed 3 "
-                  "--duration 30 --json"),
+                  "--duration 30 --json " +
+                  also),
               0)
         << said();
     return answered().at("trials").at(0);
@@ -81,7 +82,8 @@ class DrillingLive : public testing::Test {
 };
 
 TEST_F(DrillingLive, AChannelIsMadeReplaysToTheSameVoxelsAndForcesAndIsThenFelt) {
-  const Json made = drilled();
+  const Json made = drilled("--picture burr.png");
+  EXPECT_TRUE(fs::exists(folder_ / "burr.png")) << said();
   const std::string id = made.at("trial_id");
   EXPECT_TRUE(made.at("complete").get<bool>());
   EXPECT_TRUE(made.at("answer").is_null());  // there is nothing to guess
@@ -114,7 +116,8 @@ TEST_F(DrillingLive, AChannelIsMadeReplaysToTheSameVoxelsAndForcesAndIsThenFelt)
         << said();
     return answered().at("trials").at(0);
   };
-  const Json in_channel = palpated("--drilled " + id);
+  const Json in_channel = palpated("--picture palpated.png --drilled " + id);
+  EXPECT_TRUE(fs::exists(folder_ / "palpated.png")) << said();
   const auto trial =
       trial::read_trial(folder_ / file_of(in_channel.at("trial_id").get<std::string>()));
   ASSERT_TRUE(trial) << trial.error().what;

@@ -121,6 +121,12 @@ Result<bool> take_of(store::Writing& tx, const Call& call, const store::Assignme
                             .sealed = ""};
   if (trial.name.empty()) trial.name = "Trial " + std::to_string(trial.number);
   if (trial.rig == store::kPalpation) trial.case_id = slot.case_id;
+  if (slot.planned) {
+    auto drilling = store::drilling_of(tx, slot.id);
+    if (!drilling) return drilling.error();
+    trial.drills = drilling->empty();
+    trial.drilled = std::move(*drilling);
+  }
   given.work.participant = participant;
   given.work.trial = std::move(trial);
   given.slot = slot;
@@ -211,7 +217,11 @@ std::vector<RouteInfo> assigned_work_routes() {
                {"number", integer("1", "of the trainee's trials in it, from 1")},
                {"planned", integer("1", "in all")},
                {"case_id", text("of a palpation case; else empty")},
-               {"sealed", text("of a scenario, for this station alone; else empty")}})},
+               {"sealed", text("of a scenario, for this station alone; else empty")},
+               {"tool", optional(one_of({"probe", "burr"},
+                                        "burr: the bone is whole, the channel "
+                                        "is drilled now; probe without"))},
+               {"drilled", optional(text("trial of this station whose channel is felt now"))}})},
       {"AssignedWork", object({{"participant", text("a pseudonym; empty without a trial")},
                                {"left", integer("1", "still to be done")},
                                {"trial", nullable(ref("AssignedTrial"))}})}};

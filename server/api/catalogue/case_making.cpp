@@ -130,6 +130,9 @@ std::vector<schema::Field> plan_fields() {
   return {{"entry_m", point},
           {"target_m", point},
           {"radius_m", optional(number("m", "of the drill; 0.0015 without"))},
+          {"channel", optional(one_of({"drilled", "planned"},
+                                      "planned: the bone is left whole, "
+                                      "for drilling; drilled without"))},
           {"breach", optional(nullable(ref("BreachWish")))}};
 }
 

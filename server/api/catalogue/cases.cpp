@@ -23,7 +23,8 @@ core::Result<http::Response> list_cases(const Call& call) {
                     {"source", c.source},
                     {"made_utc_us", c.made_utc_us},
                     {"trials", c.trials},
-                    {"retired", c.retired}});
+                    {"retired", c.retired},
+                    {"planned", c.planned}});
   return json_response({{"cases", list}});
 }
 
@@ -104,7 +105,9 @@ std::vector<RouteInfo> cases_routes() {
                        {"source", schema::text("where the volume came from, licence")},
                        {"made_utc_us", schema::integer("us", "since 1970, UTC")},
                        {"trials", schema::integer("1", "on this server")},
-                       {"retired", schema::truth("offered no more")}})},
+                       {"retired", schema::truth("offered no more")},
+                       {"planned", schema::truth("the bone is whole: its channel is drilled "
+                                                 "first, and felt then")}})},
       {"CaseList",
        schema::object({{"cases", schema::array(schema::ref("CaseSummary"), "newest first")}})}};
   list.handle = list_cases;

@@ -57,6 +57,7 @@ core::Json truth_json(const std::optional<cases::Truth>& truth) {
   core::Json shown = core::Json::object();  // without the salt
   for (const char* field : {"breached", "breach_m", "breach_depth_m", "wall_thickness_m"})
     shown[field] = out.contains(field) ? out[field] : core::Json();
+  if (truth->breached && !truth->breach_m) shown["wall_thickness_m"] = nullptr;  // a trainee's hole
   return shown;
 }
 
@@ -94,7 +95,7 @@ core::Result<TrialFacts> trial_facts(Backend& backend, const store::TrialRecord&
     out.scenario = std::move(*scenario);
     return out;
   }
-  auto facts = jobs::case_facts(backend.store, backend.objects, case_id);
+  auto facts = jobs::facts_of_trial(backend.store, backend.objects, case_id, *header);
   if (!facts) return facts.error();
   out.tract = facts->definition.tract;
   out.truth = truth_json(facts->truth);

@@ -126,7 +126,7 @@ TEST_F(Pictures, BoneThatIsDrilledAwayIsGoneFromBothEyes) {
   what.carved = [&](const TakeBone& take) {
     if (!drilled) return;
     std::ranges::fill(volume_.counts, volume_.count_of(-1000.0));
-    take({.begin = {0, 0, 0}, .end = volume_.geometry.dims}, volume_);
+    take({.begin = {0, 0, 0}, .end = volume_.geometry.dims}, volume_, {});
     drilled = false;
   };
   auto headset = made(what);
@@ -139,6 +139,48 @@ TEST_F(Pictures, BoneThatIsDrilledAwayIsGoneFromBothEyes) {
   for (std::size_t eye = 0; eye < 2; ++eye) {
     EXPECT_GT(before[eye], 900u);
     EXPECT_LT(control_->lit_px[eye] + 900u, before[eye]);
+  }
+  EXPECT_TRUE(left(*headset));
+}
+
+// Marrow that has no opacity either way; 4 x 4 x 4 voxels of 10 mm are lost, so half is lost on the
+// faces of a cube of 40 mm whose near side, not drawn, is 0.425 m ahead and its far one 0.465 m:
+// 320 * 0.04 / (1.6918 * 0.465) = 16.3 pixels wide and high, 260 in all, the edges cut off.
+TEST_F(Pictures, WhatABurrTookIsSeenByBothEyesWithoutATraceInTheBone) {
+  volume_.geometry.spacing_m = math::Vec3::Constant(0.01);
+  volume_.geometry.origin_m = {-0.1, 1.5, -0.5};
+  bool drilled = false;
+  Shown what = shown();
+  what.carved = [&](const TakeBone& take) {
+    if (!drilled) return;
+    take({}, volume_,
+         {.box = {{2, 2, 2}, {6, 6, 6}}, .lost = std::vector<float>(64, 1.0F), .removed_m3 = 0.0});
+    drilled = false;
+  };
+  const auto violet_in = [this](const char* eye) {
+    vtkNew<vtkPNGReader> reader;
+    reader->SetFileName((folder_ / eye).c_str());
+    reader->Update();
+    vtkImageData* image = reader->GetOutput();
+    int found = 0;
+    for (int y = 0; y < image->GetDimensions()[1]; ++y)
+      for (int x = 0; x < image->GetDimensions()[0]; ++x) {
+        const double green = image->GetScalarComponentAsDouble(x, y, 0, 1);
+        found += image->GetScalarComponentAsDouble(x, y, 0, 0) > 1.6 * green &&
+                 image->GetScalarComponentAsDouble(x, y, 0, 2) > 1.6 * green;
+      }
+    return found;
+  };
+  auto headset = made(what);
+  ASSERT_TRUE(headset);
+  ASSERT_TRUE(step_to(*headset, *control_, 5));
+  seen(*headset);
+  for (const char* eye : {"left.png", "right.png"}) EXPECT_EQ(violet_in(eye), 0);
+  drilled = true;
+  seen(*headset);
+  for (const char* eye : {"left.png", "right.png"}) {
+    EXPECT_GT(violet_in(eye), 200);
+    EXPECT_LT(violet_in(eye), 500);
   }
   EXPECT_TRUE(left(*headset));
 }

@@ -14,11 +14,11 @@ export const sourceVolumeSchema = v.object({
 export const sourceVolumeListSchema = v.object({ volumes: v.array(sourceVolumeSchema) });
 
 export const caseSummarySchema = v.object({
-  id: v.string(), title: v.string(), source: v.string(), made_utc_us: inUtc, trials: count, retired: v.boolean(),
+  id: v.string(), title: v.string(), source: v.string(), made_utc_us: inUtc, trials: count, retired: v.boolean(), planned: v.boolean(),
 });
 export const caseListSchema = v.object({ cases: v.array(caseSummarySchema) });
 /** Of the signed manifest and of the truth what a page shows. */
-export const caseManifestSchema = v.object({ title: v.string(), source: v.string(), made_utc_us: inUtc, tract: tractSchema });
+export const caseManifestSchema = v.object({ title: v.string(), source: v.string(), made_utc_us: inUtc, tract: tractSchema, channel: v.optional(v.literal('planned')) });
 export const caseTruthSchema = v.object({
   breached: v.nullish(wall, null), breach_m: v.nullish(point, null), breach_depth_m: v.optional(inMetres, 0), wall_thickness_m: v.optional(inMetres, 0),
 });
@@ -67,7 +67,7 @@ export const scenarioCheckSchema = v.object({
 export const kReleases = ['held', 'released', 'at_once'] as const;
 const assignmentFields = {
   id: v.string(), title: v.string(), state: v.picklist(['running', 'paused']), due_utc_us: v.nullable(inUtc), release: v.picklist(kReleases),
-  done: count, planned: count, cohort_id: v.nullable(v.string()), cohort_name: v.string(), made_utc_us: inUtc, made_by: v.string(),
+  done: count, planned: count, to_drill: count, cohort_id: v.nullable(v.string()), cohort_name: v.string(), made_utc_us: inUtc, made_by: v.string(),
   ordering: v.optional(v.picklist(['fixed', 'random', 'balanced'])), repeats: v.optional(count), people: v.optional(count),
 };
 export const assignmentListSchema = v.object({ assignments: v.array(v.object(assignmentFields)) });
@@ -75,7 +75,8 @@ export const assignmentSchema = v.object({
   ...assignmentFields,
   trainees: v.optional(v.array(v.object({ account_id: v.string(), name: v.string(), participant: v.string(), done: count, planned: count })), []),
   trials: v.optional(v.array(v.object({
-    trial_id: v.string(), participant: v.string(), number: count, state: v.picklist(['arriving', 'counts', 'invalid', 'surplus']), reason: v.string(),
+    trial_id: v.string(), participant: v.string(), number: count, tool: v.picklist(['probe', 'burr']),
+    state: v.picklist(['arriving', 'counts', 'invalid', 'surplus']), reason: v.string(),
     correct: v.nullable(v.boolean()), comments: count, started_utc_us: v.nullable(inUtc),
   })), []),
 });

@@ -35,6 +35,11 @@ async function cases(page: Page, check: Check, volume: string): Promise<void> {
   await page.locator('[data-part="scene"][data-ready]').waitFor();
   await still(page);
   await check('case-new-full');
+  await page.getByLabel('Channel', { exact: true }).selectOption('left whole');
+  await page.getByText('The bone stays whole').waitFor();
+  await page.locator('[data-part="scene"][data-ready]').waitFor();
+  await still(page);
+  await check('case-new-whole');
   await page.goto('/cases');
   await page.locator('tbody a[href^="/cases/"]:not([href^="/cases/new"])').first().click();
   await page.getByRole('button', { name: 'Show which wall gives way' }).click();

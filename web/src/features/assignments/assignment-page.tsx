@@ -6,7 +6,7 @@ import { AskDialog, Button, Card, Facts, Field, Notice, ReasonDialog, Skeleton, 
 import { formatDateTime } from '@/units';
 import styles from './assignments.module.css';
 import { fromField, toField } from './dates';
-import { Done, DueDate } from './parts';
+import { Done, Drilling, DueDate } from './parts';
 import { TrialsTable } from './trials-table';
 import { kOrderWords, kReleaseWords } from './words';
 
@@ -74,7 +74,7 @@ function Trainees({ one, keep, may }: { readonly one: Assignment; readonly keep:
       </div>
       {freeing ? (
         <AskDialog title={`Free what a station holds of ${freeing.name}?`} deed="Free it" onClose={() => setFreeing(null)} onDeed={() => freePerson(one.id, freeing.account_id).then(keep)}>
-          <p>A station that has begun a trial keeps it until it hands it over. Freed, the trial waits again and any station may hand it out; should the first one arrive after all, it stays as surplus.</p>
+          <p>A station that has begun a trial keeps it until it hands it over. Freed, the trial waits again and any station may hand it out; should the first one arrive after all, it stays as surplus.{one.to_drill > 0 ? ' A channel that was drilled there and not felt yet is drilled anew.' : ''}</p>
         </AskDialog>
       ) : null}
     </Card>
@@ -113,11 +113,14 @@ function Teaching({ one, may }: { readonly one: Assignment; readonly may: boolea
 
 function Own({ one }: { readonly one: Assignment }) {
   return (
-    <Card title="Results">
-      {one.release === 'held'
-        ? <p data-part="held">Your results are shown here once they are released. Until then the cases stay blind for all.</p>
-        : <TrialsTable one={one} may={false} own />}
-    </Card>
+    <>
+      {one.to_drill > 0 ? <p>Where the bone is whole you drill the channel first, and then feel the one that you made: two trials at the same station. It is done when both are in.</p> : null}
+      <Card title="Results">
+        {one.release === 'held'
+          ? <p data-part="held">Your results are shown here once they are released. Until then the cases stay blind for all.</p>
+          : <TrialsTable one={one} may={false} own />}
+      </Card>
+    </>
   );
 }
 
@@ -135,7 +138,7 @@ export function AssignmentPage({ id }: { readonly id: string }) {
       {query.isPending ? <div role="status"><span className="hidden-visually">Loading the assignment</span><Skeleton height="480px" /></div> : null}
       {one ? (
         <>
-          <div className={styles.headline}><h1>{one.title}</h1><DueDate one={one} now_us={now_us} /><Done done={one.done} planned={one.planned} label="Trials done in all" /></div>
+          <div className={styles.headline}><h1>{one.title}</h1><DueDate one={one} now_us={now_us} /><Done done={one.done} planned={one.planned} label="Trials done in all" /><Drilling one={one} /></div>
           {role === 'trainee' ? <Own one={one} /> : <Teaching one={one} may={role === 'admin' || role === 'faculty'} />}
         </>
       ) : null}

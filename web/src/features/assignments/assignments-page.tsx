@@ -5,7 +5,7 @@ import { assignmentsQuery, sessionQuery, type AssignmentSummary } from '@/api';
 import { Badge, Card, Notice, Table, useTitle, type Column } from '@/ui';
 import { formatCount } from '@/units';
 import styles from './assignments.module.css';
-import { Done, DueDate } from './parts';
+import { Done, Drilling, DueDate } from './parts';
 import { kReleaseWords } from './words';
 
 const releaseCell = (one: AssignmentSummary) => <Badge tone={one.release === 'held' ? 'neutral' : 'good'}>{kReleaseWords[one.release].name}</Badge>;
@@ -18,7 +18,7 @@ export function AssignmentsPage() {
   const own = role === 'trainee';
   const may = role === 'admin' || role === 'faculty';
   useTitle(own ? 'My work' : 'Assignments');
-  const name: Column<AssignmentSummary> = { name: 'Assignment', cell: (one) => <Link href={`/assignments/${one.id}`}>{one.title}</Link> };
+  const name: Column<AssignmentSummary> = { name: 'Assignment', cell: (one) => <><Link href={`/assignments/${one.id}`}>{one.title}</Link><div><Drilling one={one} /></div></> };
   const due: Column<AssignmentSummary> = { name: 'Due', cell: (one) => <DueDate one={one} now_us={now_us} /> };
   const done: Column<AssignmentSummary> = { name: 'Done', cell: (one) => <Done done={one.done} planned={one.planned} label={`Trials done of ${one.title}`} /> };
   const all = query.data?.assignments;

@@ -2,7 +2,7 @@
 import type { NewAssignment } from '@/api';
 import { fromField } from './dates';
 
-export interface Item { readonly key: string; readonly title: string; readonly rig: 'palpation' | 'probing'; readonly case_id?: string; readonly tuned?: string }
+export interface Item { readonly key: string; readonly title: string; readonly rig: 'palpation' | 'probing'; readonly case_id?: string; readonly tuned?: string; /** Its bone is whole. */ readonly whole?: boolean }
 export interface Chosen extends Item { readonly blind: string }
 
 export interface Draft {

@@ -6,7 +6,7 @@ import { Badge, Button, Card, Field, Notice, Select, Skeleton, useTitle } from '
 import { formatCount } from '@/units';
 import styles from './assignments.module.css';
 import { kNoDraft, lacking, toggled, trialsEach, wishOf, type Draft, type Item } from './draft';
-import { kOrderWords, kReleaseWords } from './words';
+import { kOrderWords, kReleaseWords, kToDrill } from './words';
 
 type Change = (change: Partial<Draft>) => void;
 
@@ -17,7 +17,7 @@ function useItems(): { items: Item[] | undefined; failed: Error | null; retry: (
   const retry = () => { void cases.refetch(); void scenarios.refetch(); };
   if (!cases.data || !scenarios.data) return { items: undefined, failed, retry };
   const items: Item[] = [
-    ...cases.data.cases.filter(({ retired }) => !retired).map(({ id, title }) => ({ key: `case ${id}`, title, rig: 'palpation' as const, case_id: id })),
+    ...cases.data.cases.filter(({ retired }) => !retired).map(({ id, title, planned }) => ({ key: `case ${id}`, title, rig: 'palpation' as const, case_id: id, whole: planned })),
     ...scenarios.data.scenarios.filter(({ published }) => published).map(({ id, name }) => ({ key: `scenario ${id}`, title: name, rig: 'probing' as const, case_id: id })),
     ...scenarios.data.tuned.map(({ kind, name }) => ({ key: `tuned ${kind}`, title: `${name} (ships with the rig)`, rig: 'probing' as const, tuned: kind })),
   ];
@@ -33,7 +33,7 @@ function CasesField({ draft, items, onDraft }: { readonly draft: Draft; readonly
         return (
           <div key={item.key} className={styles.choice} data-chosen={chosen !== undefined || undefined}>
             <label><input type="checkbox" checked={chosen !== undefined} onChange={() => onDraft(toggled(draft, item))} /> <span>{item.title}</span></label>
-            <Badge>{item.rig}</Badge>
+            <Badge>{item.whole ? kToDrill : item.rig}</Badge>
             <input className={styles.blind} aria-label={`Blind name of ${item.title}`} placeholder="blind name" maxLength={128} value={chosen?.blind ?? ''} disabled={!chosen}
               onChange={(event) => onDraft({ ...draft, chosen: draft.chosen.map((one) => (one.key === item.key ? { ...one, blind: event.target.value } : one)) })} />
           </div>

@@ -2,7 +2,7 @@ import type { AssignmentSummary } from '@/api';
 import { Badge, Progress } from '@/ui';
 import { formatCount, formatDateTime } from '@/units';
 import styles from './assignments.module.css';
-import { pressing } from './words';
+import { drilling, pressing } from './words';
 
 export function DueDate({ one, now_us }: { readonly one: AssignmentSummary; readonly now_us: number }) {
   if (one.due_utc_us === null) return <span className={styles.muted}>no date</span>;
@@ -13,6 +13,11 @@ export function DueDate({ one, now_us }: { readonly one: AssignmentSummary; read
       {how === 'late' ? <Badge tone="bad">overdue</Badge> : how === 'soon' ? <Badge tone="warn">due soon</Badge> : null}
     </span>
   );
+}
+
+export function Drilling({ one }: { readonly one: AssignmentSummary }) {
+  const said = drilling(one);
+  return said === '' ? null : <span className={styles.drilling}>{said}</span>;
 }
 
 export function Done({ done, planned, label }: { readonly done: number; readonly planned: number; readonly label: string }) {

@@ -19,10 +19,12 @@ interface Props { readonly one: Assignment; readonly may: boolean; readonly own?
 /** Trials that arrived: of all, or one's own. */
 export function TrialsTable({ one, may, own = false, onInvalid }: Props) {
   const names = new Map(one.trainees.map(({ participant, name }) => [participant, name]));
-  const link = (trial: Done) => <Link href={`/trials/${trial.trial_id}/debrief`} aria-label={`Debrief: ${own ? '' : `${names.get(trial.participant) ?? trial.participant}, `}trial ${formatCount(trial.number)}`}>Debrief</Link>;
+  const named = (trial: Done) => `trial ${formatCount(trial.number)}${trial.tool === 'burr' ? ', drilling' : ''}`;
+  const whose = (trial: Done) => (own ? '' : `${names.get(trial.participant) ?? trial.participant}, `);
+  const link = (trial: Done) => <Link href={`/trials/${trial.trial_id}/debrief`} aria-label={`Debrief: ${whose(trial)}${named(trial)}`}>Debrief</Link>;
   return (
     <Table<Done> caption="Trials" rows={one.trials} keyOf={({ trial_id }) => trial_id} empty="No trial has arrived yet." minWidth={own ? 480 : 680} columns={[
-      { name: 'Trial', cell: (trial) => <>{own ? '' : `${names.get(trial.participant) ?? trial.participant}, `}trial {formatCount(trial.number)}</> },
+      { name: 'Trial', cell: (trial) => <>{whose(trial)}{named(trial)}</> },
       { name: 'Done', cell: (trial) => (trial.started_utc_us === null ? '–' : formatDateTime(trial.started_utc_us)) },
       { name: 'Answer', cell: answer },
       { name: 'Comments', cell: (trial) => formatCount(trial.comments), number: true },
@@ -30,7 +32,7 @@ export function TrialsTable({ one, may, own = false, onInvalid }: Props) {
       { name: <span className="hidden-visually">Go on</span>, cell: (trial) => (
         <span className={styles.buttons}>
           {trial.state === 'arriving' ? null : link(trial)}
-          {may && trial.state === 'counts' ? <Button look="quiet" label={`Mark as invalid: trial ${formatCount(trial.number)} of ${names.get(trial.participant) ?? trial.participant}`} onClick={() => onInvalid?.(trial.trial_id)}>Invalid…</Button> : null}
+          {may && trial.state === 'counts' ? <Button look="quiet" label={`Mark as invalid: ${named(trial)} of ${names.get(trial.participant) ?? trial.participant}`} onClick={() => onInvalid?.(trial.trial_id)}>Invalid…</Button> : null}
         </span>) },
     ]} />
   );

@@ -1,7 +1,7 @@
 import { describe, expect, it } from 'vitest';
 import { utcMicroseconds } from '@/units';
 import { fromField, toField } from './dates';
-import { pressing } from './words';
+import { drilling, pressing } from './words';
 
 const now = Date.UTC(2026, 2, 10, 12) * 1000;
 const day_us = 24 * 3600 * 1e6;
@@ -22,5 +22,13 @@ describe('what is due', () => {
     expect(fromField(toField(at))).toBe(at);
     expect(fromField('')).toBeNull();
     expect(fromField('soon')).toBeNull();
+  });
+});
+
+describe('what is drilled', () => {
+  it('is said of all, of some, and not at all of none', () => {
+    expect(drilling({ to_drill: 2, planned: 2 })).toBe('to be drilled, then felt');
+    expect(drilling({ to_drill: 1, planned: 4 })).toBe('1 of 4 to be drilled, then felt');
+    expect(drilling({ to_drill: 0, planned: 4 })).toBe('');
   });
 });

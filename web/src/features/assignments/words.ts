@@ -12,6 +12,14 @@ export const kOrderWords = {
   balanced: 'orders that balance each other over the group',
 } as const;
 
+export const kToDrill = 'to be drilled, then felt';
+
+/** How many trials begin with the burr; empty: none does. */
+export function drilling({ to_drill, planned }: Pick<AssignmentSummary, 'to_drill' | 'planned'>): string {
+  if (to_drill === 0) return '';
+  return to_drill === planned ? kToDrill : `${to_drill} of ${planned} ${kToDrill}`;
+}
+
 export type Due = 'none' | 'late' | 'soon' | 'later';
 const kSoon_us = 3 * 24 * 3600 * 1e6;
 

@@ -51,13 +51,14 @@ export function CasePage({ id }: { readonly id: string }) {
           <Facts facts={[
             { name: 'Source', value: found.source },
             { name: 'Made', value: formatDateTime(found.made_utc_us) },
+            { name: 'Channel', value: found.channel === 'planned' ? 'to be drilled, then felt' : 'made' },
             { name: 'Tract', value: `${formatLength(found.tract.length_m)} long, ${formatLength(metre(2 * found.tract.radius_m))} wide` },
           ]} />
           <div className={styles.pair}>
             <Card title="Tract in the bone">
               {preview.isError ? <Notice tone="warn" title="The bone could not be loaded; the rest is drawn without it." onRetry={() => void preview.refetch()}>{preview.error.message}</Notice> : null}
               {preview.isPending ? <Skeleton height="444px" /> : (
-                <PlanView tract={found.tract} breach={null} bone={preview.data ?? null} palette={palette} summary="The drilled tract with the bone round it."
+                <PlanView tract={found.tract} breach={null} bone={preview.data ?? null} palette={palette} summary="The tract with the bone round it."
                   button={(label, text, press, pressed) => <Button label={label} onClick={press} {...(pressed === undefined ? {} : { pressed })}>{text}</Button>} />
               )}
             </Card>

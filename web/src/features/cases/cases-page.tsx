@@ -65,7 +65,7 @@ export function CasesPage() {
   const last = retired.data === undefined && retired.isSuccess ? retired.variables : null;
   return (
     <div className={styles.page}>
-      <div><h1>Cases</h1><p className={styles.lead}>A case is a patient’s bone with a drilled tract, and apart from it the truth: which wall gives way, and where. Stations fetch it without the truth.</p></div>
+      <div><h1>Cases</h1><p className={styles.lead}>A case is a patient’s bone with a drilled tract, and apart from it the truth: which wall gives way, and where. Stations fetch it without the truth. Of bone that is left whole a trainee makes the channel, and then feels it.</p></div>
       {may ? <Volumes /> : null}
       {may ? <Makings /> : null}
       {query.isError ? <Notice tone="bad" title="The cases could not be loaded." onRetry={() => void query.refetch()}>{query.error.message}</Notice> : (
@@ -76,7 +76,7 @@ export function CasesPage() {
               { name: 'Source', cell: (one) => one.source },
               { name: 'Made', cell: (one) => formatDateTime(one.made_utc_us) },
               { name: 'Trials', cell: (one) => formatCount(one.trials), number: true },
-              { name: 'State', cell: (one) => (one.retired ? <Badge>retired</Badge> : <Badge tone="good">offered</Badge>) },
+              { name: 'State', cell: (one) => (one.retired ? <Badge>retired</Badge> : <><Badge tone="good">offered</Badge>{one.planned ? <> <Badge>to be drilled</Badge></> : null}</>) },
               { name: <span className="hidden-visually">Decide</span>, cell: (one) => (may ? <Button look="quiet" label={`${one.retired ? 'Offer again' : 'Retire'}: ${one.title}`} disabled={retired.isPending} onClick={() => retired.mutate({ one, away: !one.retired })}>{one.retired ? 'Offer again' : 'Retire'}</Button> : null) },
             ]} />
             <p className={styles.said} role="status">

@@ -46,16 +46,20 @@ export function PointFields({ end, at, chosen, onChoose, onAt }: {
   );
 }
 
-export function BreachFields({ plan, length_m, onBreach }: { readonly plan: Plan; readonly length_m: number | null; readonly onBreach: (breach: Breach | null) => void }) {
+export function BreachFields({ plan, length_m, onBreach, onWhole }: {
+  readonly plan: Plan; readonly length_m: number | null; readonly onBreach: (breach: Breach | null) => void; readonly onWhole: (whole: boolean) => void;
+}) {
   const { breach } = plan;
   const longest_mm = Math.max(1, Math.floor((length_m ?? 0.1) * 1000));
   return (
     <div className={styles.breach}>
-      <Select label="Breach" value={breach?.wall ?? ''} options={[{ value: '', text: 'none' }, ...kWalls.map((wall) => ({ value: wall, text: wall }))]}
+      <Select label="Channel" value={plan.whole ? 'planned' : 'drilled'} options={[{ value: 'drilled', text: 'made' }, { value: 'planned', text: 'left whole' }]}
+        onChange={(event) => onWhole(event.target.value === 'planned')} />
+      {plan.whole ? null : <Select label="Breach" value={breach?.wall ?? ''} options={[{ value: '', text: 'none' }, ...kWalls.map((wall) => ({ value: wall, text: wall }))]}
         onChange={(event) => {
           const wall = kWalls.find((one) => one === event.target.value);
           onBreach(wall ? { wall, depth_m: breach?.depth_m ?? 0.003, at_m: wall === 'anterior' ? null : breach?.at_m ?? null } : null);
-        }} />
+        }} />}
       {breach ? <Millimetres label="Beyond the bone, mm" value_m={breach.depth_m} min={0.5} max={15} onValue={(depth_m) => { if (depth_m !== null) onBreach({ ...breach, depth_m }); }} /> : null}
       {breach && breach.wall !== 'anterior' ? (
         <Millimetres label="At depth, mm (empty: thinnest)" value_m={breach.at_m} min={0} max={longest_mm} required={false} onValue={(at_m) => onBreach({ ...breach, at_m })} />

@@ -32,7 +32,7 @@ function Findings({ plan, found, looking }: { readonly plan: Plan; readonly foun
     <div className={styles.findings} data-part="findings" data-late={looking || undefined} role="status">
       {problems.map((problem) => <p key={problem} className={styles.problem}>{problem}</p>)}
       {found.tract ? <p>{found.side === 'left' ? 'Left' : 'Right'} side, tract of {formatLength(found.length_m)}.</p> : null}
-      {breach ? <p data-part="breach">The {breach.wall} wall gives way at a depth of <strong>{formatLength(breach.at_m)}</strong>, where it is <strong>{formatLength(breach.wall_thickness_m)}</strong> thick; the tool goes {formatLength(breach.depth_m)} beyond.</p> : found.tract ? <p>No wall is breached.</p> : null}
+      {breach ? <p data-part="breach">The {breach.wall} wall gives way at a depth of <strong>{formatLength(breach.at_m)}</strong>, where it is <strong>{formatLength(breach.wall_thickness_m)}</strong> thick; the tool goes {formatLength(breach.depth_m)} beyond.</p> : found.tract ? <p>{plan.whole ? 'The bone stays whole: trainees drill this tract, then feel what they made.' : 'No wall is breached.'}</p> : null}
     </div>
   );
 }
@@ -109,7 +109,7 @@ function Workbench({ volume, block }: { readonly volume: SourceVolume; readonly 
             <legend className="hidden-visually">Which end a click places</legend>
             {(['entry', 'target'] as const).map((end) => <PointFields key={end} end={end} at={plan[end]} chosen={chosen === end} onChoose={() => { setChosen(end); const at = plan[end]; if (at) setFocus(at); }} onAt={(at) => type(end, at)} />)}
           </fieldset>
-          <BreachFields plan={plan} length_m={found?.length_m ?? null} onBreach={(breach) => step({ kind: 'change', to: { breach } })} />
+          <BreachFields plan={plan} length_m={found?.length_m ?? null} onBreach={(breach) => step({ kind: 'change', to: { breach } })} onWhole={(whole) => step({ kind: 'change', to: { whole, breach: null } })} />
           {answer.isError ? <Notice tone="bad" title="The plan could not be looked at." onRetry={() => void answer.refetch()}>{answer.error.message}</Notice> : <Findings plan={plan} found={found} looking={looking} />}
           <Make volume={volume.id} plan={plan} ready={found?.tract !== null && found?.problems.length === 0 && !looking} />
         </div>

@@ -5,9 +5,9 @@ export type WallName = (typeof kWalls)[number];
 export type End = 'entry' | 'target';
 
 export interface Breach { readonly wall: WallName; readonly depth_m: number; /** null: where the wall is thinnest. */ readonly at_m: number | null }
-export interface Plan { readonly entry: Vec3 | null; readonly target: Vec3 | null; readonly radius_m: number; readonly breach: Breach | null }
+export interface Plan { readonly entry: Vec3 | null; readonly target: Vec3 | null; readonly radius_m: number; readonly breach: Breach | null; /** No channel is made: trainees drill it. */ readonly whole: boolean }
 
-export const kNoPlan: Plan = { entry: null, target: null, radius_m: 0.0015, breach: null };
+export const kNoPlan: Plan = { entry: null, target: null, radius_m: 0.0015, breach: null, whole: false };
 
 export interface Drawing { readonly plan: Plan; readonly past: readonly Plan[]; readonly future: readonly Plan[] }
 
@@ -36,12 +36,12 @@ export function draw(drawing: Drawing, step: Step): Drawing {
 }
 
 /** What the server is asked; null while an end is missing. A tenth of a millimetre's hundredth is enough. */
-export function wishOf({ entry, target, radius_m, breach }: Plan): TractWish | null {
+export function wishOf({ entry, target, radius_m, breach, whole }: Plan): TractWish | null {
   if (!entry || !target) return null;
   const tidy = (p: Vec3): [number, number, number] => [round(p[0]), round(p[1]), round(p[2])];
   return {
-    entry_m: tidy(entry), target_m: tidy(target), radius_m,
-    breach: breach ? { wall: breach.wall, depth_m: breach.depth_m, ...(breach.at_m === null ? {} : { at_m: breach.at_m }) } : null,
+    entry_m: tidy(entry), target_m: tidy(target), radius_m, channel: whole ? 'planned' : 'drilled',
+    breach: breach && !whole ? { wall: breach.wall, depth_m: breach.depth_m, ...(breach.at_m === null ? {} : { at_m: breach.at_m }) } : null,
   };
 }
 const round = (value: number) => Math.round(value * 1e6) / 1e6;
@@ -49,12 +49,13 @@ const round = (value: number) => Math.round(value * 1e6) / 1e6;
 export const caseOf = (wish: TractWish, volume: string, title: string): NewCase => ({ ...wish, volume, title });
 
 /** The plan as part of an address, in millimetres: a link to it can be kept. */
-export function toAddress({ entry, target, radius_m, breach }: Plan): string {
+export function toAddress({ entry, target, radius_m, breach, whole }: Plan): string {
   const said = new URLSearchParams();
   const mm = (p: Vec3) => p.map((value) => Math.round(value * 1e5) / 100).join(',');
   if (entry) said.set('entry', mm(entry));
   if (target) said.set('target', mm(target));
   if (radius_m !== kNoPlan.radius_m) said.set('radius', String(Math.round(radius_m * 1e5) / 100));
+  if (whole) said.set('whole', '1');
   if (breach) said.set('breach', [breach.wall, breach.depth_m * 1000, ...(breach.at_m === null ? [] : [breach.at_m * 1000])].join(','));
   return said.toString();
 }
@@ -71,6 +72,7 @@ export function fromAddress(search: string): Plan {
   const number = (text: string | undefined | null, otherwise: number) => (text && Number.isFinite(Number(text)) ? Number(text) / 1000 : otherwise);
   return {
     entry: pointOf(said.get('entry')), target: pointOf(said.get('target')), radius_m: number(said.get('radius'), kNoPlan.radius_m),
+    whole: said.get('whole') === '1',
     breach: known ? { wall: known, depth_m: number(depth, 0.003), at_m: at === undefined ? null : number(at, 0) } : null,
   };
 }

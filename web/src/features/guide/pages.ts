@@ -16,7 +16,7 @@ export const kPages: readonly GuidePage[] = [
     steps: [
       { title: 'See what waits for you', text: 'What is assigned, how far you are, until when.', to: { href: '/assignments', name: 'My work' } },
       { title: 'Sign in at a station', text: 'With your badge number and PIN. The station gives you exactly the next trial; what kind of bone it is nobody tells you, not even the files on the station’s disk.' },
-      { title: 'Palpate or probe, then answer', text: 'Was there a breach, where, and how sure are you? The answer ends the trial.' },
+      { title: 'Palpate or probe, then answer', text: 'Was there a breach, where, and how sure are you? The answer ends the trial. Where the bone is whole you drill the channel first, with nothing to answer; the station then lets you feel the one that you made.' },
       { title: 'See your curve', text: 'Once results are released: right answers over the trials, what you are strong in, and whether your confidence is worth what it says.', to: { href: '/me', name: 'My curve' }, picture: { name: 'trainee', shows: 'A trainee’s own page: standing, learning, competence, confidence' } },
     ],
     terms: [['Breach', 'A place where the channel has left the bone.'], kLearning, ['Confidence', 'How sure you said to be. On the diagonal of its picture, of answers given 80 % sure 80 % are right.']],
@@ -25,7 +25,7 @@ export const kPages: readonly GuidePage[] = [
     role: 'faculty', name: 'Faculty', for: 'Make cases, assign them, watch, debrief, release results.',
     steps: [
       { title: 'Gather a cohort', text: 'Give it a name, add trainees by the names of their accounts. Taking somebody out can be undone.', to: { href: '/network/cohorts', name: 'Cohorts' } },
-      { title: 'Make a case', text: 'Place entry and target of the tract in the slices of a CT, choose which wall gives way and how deep; you see at once where it does and how thin it is there. Or write the layers and walls of a probing scenario.', to: { href: '/cases', name: 'Cases' } },
+      { title: 'Make a case', text: 'Place entry and target of the tract in the slices of a CT, choose which wall gives way and how deep; you see at once where it does and how thin it is there. Or leave the bone whole: whoever is assigned it drills the channel, then feels it. Or write the layers and walls of a probing scenario.', to: { href: '/cases', name: 'Cases' } },
       { title: 'Assign it', text: 'To a cohort or to people, with repeats, order and a date. Everybody gets an order of their own, blind. Results stay held until you release them.', to: { href: '/assignments', name: 'Assignments' } },
       { title: 'Watch the stations', text: 'Who is at work, for how long, with which force; where somebody is needed stands first. Stop one that goes wrong, with a reason.', to: { href: '/wall', name: 'Stations live' } },
       { title: 'Debrief a trial', text: 'Play it back: the way of the tip in 3-D, forces, which walls were touched, force against depth, an expert’s trial beside it as a ghost. Point at a moment in one picture and all others follow; leave a comment at it.', to: { href: '/trials', name: 'Trials' }, picture: { name: 'faculty', shows: 'A palpation trial: signals, the way of the tip in 3-D, the walls that were touched' } },
