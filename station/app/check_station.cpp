@@ -55,7 +55,9 @@ core::Result<void> check_calibration(Checked& checked) {
   auto last = check::Calibration::read(checked.folder.calibration_file(device));
   if (!last) return last.error();
   if (*last || !device.starts_with("sim-"))
-    checked.findings.push_back(check::check_calibration(*last, core::utc_us()));
+    checked.findings.push_back(check::check_calibration(
+        *last, core::utc_us(),
+        checked.simulated ? check::Tested::simulation : check::Tested::machine));
   return {};
 }
 
@@ -223,14 +225,14 @@ core::Result<int> calibrate(const Options& options) {
   check::Calibration made{.at_utc_us = now,
                           .due_utc_us = now + options.due_days * kDay_us,
                           .kind = options.setup.device,
-                          .who = options.who};
+                          .who = options.who,
+                          .simulated = checked.simulated};
   describe(checked, *last, made);
   std::error_code there;
   std::filesystem::create_directories(file.parent_path(), there);
   if (auto kept = core::write_json(file, made.to_json()); !kept) return kept.error();
   check::Report report = report_for(*folder);
   report.calibration = std::move(made);
-  report.simulated = checked.simulated;
   report.checks = checked.findings;
   if (auto kept = keep(checked, report); !kept) return kept.error();
   if (options.json) {

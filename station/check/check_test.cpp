@@ -206,9 +206,9 @@ TEST(MachineCheck, HoldsTheDaysTimeAgainstTheServers) {
 TEST(MachineCheck, SaysWhenCalibrationIsSoonDueAndOver) {
   constexpr std::int64_t kDay_us = 86'400'000'000;
   const Calibration last{.at_utc_us = 0, .due_utc_us = 30 * kDay_us, .kind = "lambda6", .who = "T"};
-  EXPECT_FALSE(check_calibration(std::nullopt, 1000).passed);
-  EXPECT_TRUE(check_calibration(last, 30 * kDay_us - 1).passed);
-  EXPECT_FALSE(check_calibration(last, 30 * kDay_us).passed);
+  EXPECT_FALSE(check_calibration(std::nullopt, 1000, Tested::machine).passed);
+  EXPECT_TRUE(check_calibration(last, 30 * kDay_us - 1, Tested::machine).passed);
+  EXPECT_FALSE(check_calibration(last, 30 * kDay_us, Tested::machine).passed);
   EXPECT_EQ(due_warning(last, 22 * kDay_us), "");
   EXPECT_NE(due_warning(last, 24 * kDay_us).find("is due on 1970-01-31"), std::string::npos);
   EXPECT_NE(due_warning(last, 30 * kDay_us).find("OVERDUE"), std::string::npos);
@@ -231,6 +231,21 @@ TEST(Report, HasTheServersFieldsAndOfACalibrationWhoDidIt) {
     EXPECT_TRUE((*json)["self_test"]["checks"][0].contains(key)) << key;
   EXPECT_EQ((*json)["calibration"]["words"], "by Ada: w");
   std::filesystem::remove_all(folder);
+}
+
+TEST(Calibration, OfASimulationDoesNotCountForTheMachine) {
+  const Calibration last{.at_utc_us = 1,
+                         .due_utc_us = 1'000'000'000'000,
+                         .kind = "rig",
+                         .who = "Ada",
+                         .words = "w",
+                         .simulated = true};
+  EXPECT_FALSE(check_calibration(last, 1000, Tested::machine).passed);
+  EXPECT_TRUE(check_calibration(last, 1000, Tested::simulation).passed);
+  EXPECT_NE(due_warning(last, 1000).find("SIMULATED"), std::string::npos);
+  const auto back = Calibration::from_json(last.to_json(), "");
+  ASSERT_TRUE(back) << back.error().what;
+  EXPECT_TRUE(back->simulated);
 }
 
 TEST(Calibration, ComesBackFromItsFileAndNamesAWrongField) {
@@ -275,7 +290,7 @@ TEST(Report, MarksTheCalibrationOfASimulatedDevice) {
   Report report;
   report.calibration = Calibration{.kind = "sim-lambda6", .who = "Ada"};
   EXPECT_EQ(report.to_html("st").find("class=mark"), std::string::npos);
-  report.simulated = true;
+  report.calibration->simulated = true;
   EXPECT_NE(report.to_html("st").find("class=mark>SIMULATED"), std::string::npos);
 }
 

@@ -85,6 +85,7 @@ core::Json Calibration::to_json() const {
   core::Json out{
       {"format", kFormat}, {"at_utc_us", at_utc_us}, {"due_utc_us", due_utc_us}, {"kind", kind},
       {"who", who},        {"words", words}};
+  if (simulated) out["simulated"] = true;
   if (zero_N) out["zero_N"] = *zero_N;
   if (zero_Nm) out["zero_Nm"] = *zero_Nm;
   return out;
@@ -109,6 +110,9 @@ core::Result<Calibration> Calibration::from_json(const core::Json& json, const s
                   .words = fields.text("words"),
                   .zero_N = number_in(fields, "zero_N"),
                   .zero_Nm = number_in(fields, "zero_Nm")};
+  const core::Json* simulated = fields.member("simulated", false);  // older ones do not say
+  if (simulated && !simulated->is_boolean()) fields.wrong("simulated", "true or false is expected");
+  out.simulated = simulated && simulated->is_boolean() && simulated->get<bool>();
   if (auto done = fields.done(); !done) return done.error();
   return out;
 }
@@ -123,6 +127,9 @@ core::Result<std::optional<Calibration>> Calibration::read(const std::filesystem
 }
 
 std::string due_warning(const Calibration& last, std::int64_t now_utc_us) {
+  if (last.simulated && !last.kind.starts_with("sim-"))
+    return fmt::format(
+        "the calibration of {} was of a SIMULATED one: run `tractus-station calibrate`", last.kind);
   if (now_utc_us < last.due_utc_us - kSoon_us) return "";
   const bool over = now_utc_us >= last.due_utc_us;
   return fmt::format("the calibration of {} {} {}: run `tractus-station calibrate`", last.kind,

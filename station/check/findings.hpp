@@ -44,11 +44,14 @@ struct SelfTest {
   core::Json to_json() const;  ///< as the server takes it
 };
 
+enum class Tested { machine, simulation };
+
 struct Calibration {
   std::int64_t at_utc_us = 0, due_utc_us = 0;
   std::string kind = {};  ///< the device's id
   std::string who = {};
   std::string words = {};  ///< what was done and found
+  bool simulated = false;  ///< no machine was calibrated
   /// Of a rig: where its sensor stood with nobody on the probe.
   std::optional<double> zero_N = {}, zero_Nm = {};
 
@@ -60,7 +63,8 @@ struct Calibration {
   static core::Result<std::optional<Calibration>> read(const std::filesystem::path& file);
 };
 
-/// One line when somebody should know before a trial: due within a week, overdue. Empty otherwise.
+/// One line when somebody should know before a trial: due within a week, overdue, of a simulation
+/// that stood in for the device. Empty otherwise.
 std::string due_warning(const Calibration& last, std::int64_t now_utc_us);
 
 /// What goes to the server, and onto paper.
@@ -68,7 +72,6 @@ struct Report {
   std::optional<SelfTest> self_test = {};
   std::optional<Calibration> calibration = {};
   std::vector<Finding> checks = {};  ///< of a calibration; on the page alone
-  bool simulated = false;            ///< a calibration of no machine; its words say so elsewhere
   std::string version = {};
   std::uint64_t free_disk_bytes = 0;
 

@@ -165,10 +165,16 @@ Finding check_time_of_day(const std::optional<Offset>& server) {
   return out;
 }
 
-Finding check_calibration(const std::optional<Calibration>& last, std::int64_t now_utc_us) {
+Finding check_calibration(const std::optional<Calibration>& last, std::int64_t now_utc_us,
+                          Tested tested) {
   Finding out{.name = "calibration"};
   if (!last) {
     out.words = "never calibrated: run `tractus-station calibrate`";
+    return out;
+  }
+  if (last->simulated && tested == Tested::machine) {
+    out.words = fmt::format("that of {} was of a SIMULATED device: run `tractus-station calibrate`",
+                            day_of(last->at_utc_us));
     return out;
   }
   out.passed = last->due_utc_us > now_utc_us;

@@ -28,6 +28,8 @@ struct Offset {
 /// network?
 Finding check_time_of_day(const std::optional<Offset>& server);
 /// When the last calibration was, and whether it is over.
-Finding check_calibration(const std::optional<Calibration>& last, std::int64_t now_utc_us);
+/// A simulated device's does not count for a machine.
+Finding check_calibration(const std::optional<Calibration>& last, std::int64_t now_utc_us,
+                          Tested tested);
 
 }  // namespace check

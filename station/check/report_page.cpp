@@ -59,12 +59,12 @@ std::string minute_of(std::int64_t utc_us) {
   return text.replace(10, 1, " ") + " UTC";
 }
 
-std::string section_of(const Calibration& calibration, const char* mark) {
+std::string section_of(const Calibration& calibration) {
   return fmt::format(
       "<p class=verdict>Calibrated. Due again on {}.</p>\n<table><tbody>"
       "<tr><td>Device<td>{}{}</tr><tr><td>Done<td>{}</tr><tr><td>By<td>{}</tr>"
       "<tr><td>Found<td>{}</tr></tbody></table>\n",
-      day_of(calibration.due_utc_us), escaped(calibration.kind), mark,
+      day_of(calibration.due_utc_us), escaped(calibration.kind), calibration.simulated ? kMark : "",
       minute_of(calibration.at_utc_us), escaped(calibration.who), escaped(calibration.words));
 }
 }  // namespace
@@ -81,7 +81,7 @@ std::string Report::to_html(const std::string& station) const {
                        escaped(self_test->device), self_test->simulated ? kMark : "");
     out += verdict_of(*self_test) + table_of(self_test->findings);
   }
-  if (calibration) out += section_of(*calibration, simulated ? kMark : "");
+  if (calibration) out += section_of(*calibration);
   if (calibration && !checks.empty()) out += "<h2>Checks</h2>\n" + table_of(checks);
   return out + "<div class=sign><div>Name</div><div>Date</div><div>Signature</div></div></html>\n";
 }
