@@ -40,7 +40,9 @@ YEAR = [(350, "Autumn: four kinds of bone", "probing", 3), (285, "Winter: the wa
         (12, "Autumn: a check before the holidays", "probing", 1)]
 OPEN = ("Before the examination: four kinds of bone", "probing", 1)  # due in two weeks, done by the fellows
 # The CT of the case that ships, a tract each with another wall gone; the station carves nothing of its own.
-CASES = {"L3 left pedicle, A": [], "L3 left pedicle, B": ["--breach", "lateral"], "L3 left pedicle, C": ["--breach", "inferior"]}
+CASES = {"L3 left pedicle, A": [], "L3 left pedicle, B": ["--breach", "lateral"], "L3 left pedicle, C": ["--breach", "inferior"],
+         "L3 left pedicle, whole": ["--no-channel"]}
+DRILLER = "Simulated Abel"  # has drilled and felt already what his year has to
 STUDY = "recognition-2026"
 YEARS_OF_EXPERIENCE = [6, 3, 1, 0.5, 0.1, 0]
 
@@ -166,7 +168,9 @@ class Programme:
                          "--title", title, "--source", "TPTBox sample CT, Apache-2.0 (tests/data/SOURCES.md)", "--key", self.key,
                          "--out", out)
             self.run("tractus-server", "publish", "--data", self.home / "server", out)
-        self.case_ids = [{"case": one["id"]} for one in self.admin.ask("GET", "/cases")["cases"] if one["title"].startswith("L3")]
+        shipped = [one for one in self.admin.ask("GET", "/cases")["cases"] if one["title"].startswith("L3")]
+        self.case_ids = [{"case": one["id"]} for one in shipped if not one["planned"]]
+        self.whole_ids = [{"case": one["id"]} for one in shipped if one["planned"]]
 
     def session(self, station, name, rig, days_ago, hour, trials, extra=()):
         """Somebody at a station: signs in by badge, does some of what waits."""
@@ -175,14 +179,14 @@ class Programme:
         seed = SEED * 1_000_000 + int(self.badges[name]) * 1000 + self.done[name]
         # The rig's hand has a skill; the palpating one takes its time as it learns.
         skill = skill_of(cohort[name], self.done[name])
-        how = ["--skill", f"{skill:.3f}"] if rig == "probing" else ["--duration", f"{5 + 7 * skill:.1f}"]
+        how = {"probing": ["--skill", f"{skill:.3f}"], "palpation": ["--duration", f"{5 + 7 * skill:.1f}"], "drilling": []}[rig]
         self.run("tractus-station", "assigned", "--badge", self.badges[name], "--pin-file", self.home / "demo.pin", "--data",
                  self.home / station, "--server", self.url, "--token-file", self.home / f"{station}.token", "--device", device,
                  "--speed", "fast", "--started", started(days_ago, hour), "--seed", seed, "--trials", trials, "--json", *how, *extra)
         self.done[name] += trials
 
     def assignment(self, cohort, title, rig, repeats, due_days_ago):
-        cases = SCENARIOS if rig == "probing" else self.case_ids
+        cases = {"probing": SCENARIOS, "palpation": self.case_ids, "drilling": self.whole_ids}[rig]
         self.faculty.ask("POST", "/assignments", {
             "title": title, "cases": cases, "cohort": self.cohorts[cohort], "ordering": "random", "repeats": repeats,
             "seed": SEED + due_days_ago % 1000, "due_utc_us": utc_us(due_days_ago, 18), "release": "at_once"})
@@ -205,6 +209,12 @@ class Programme:
         if cohort == "Fellows":
             for hour, name in enumerate(TRAINEES[cohort], 8):
                 self.session(station, name, rig, 2, hour, trials)
+
+    def drilling(self, station):
+        """Whole bone, due in a week: a channel is made, then felt."""
+        cohort = next(name for name, trainees in TRAINEES.items() if DRILLER in trainees)
+        self.assignment(cohort, "Make the channel, then feel it", "drilling", 1, -7)
+        self.session(station, DRILLER, "drilling", 1, 9, 2)
 
     def study(self, station):
         names = [f"S{number:02}" for number in range(1, len(YEARS_OF_EXPERIENCE) + 1)]
@@ -261,6 +271,7 @@ def make(programme):
         work.append(pool.submit(programme.hidden_effects))
         for one in work:
             one.result()
+    programme.drilling(programme.stations[0])
     say("a year of assignments, done by simulated hands")
     programme.study(programme.stations[0])
     trials = programme.scored()
