@@ -106,6 +106,30 @@ TEST_F(Capture, ReadsRigidBodiesOfAMotiveExport) {
   EXPECT_LT((probe.X_CB[0].q * Vec3::UnitX() - Vec3::UnitY()).norm(), 1e-7);
 }
 
+// As QTM 2020 writes them: each value is followed by a tab, the last one too. A rotation's columns
+// stand one after the other: Rot[1] is the sine of a yaw, here of 90 degrees.
+TEST_F(Capture, FindsAQtmBodysColumnsByTheirNames) {
+  const std::string columns =
+      " X\tY\tZ\tRoll\tPitch\tYaw\tResidual\tRot[0]\tRot[1]\tRot[2]\tRot[3]\tRot[4]\tRot[5]\tRot[6]"
+      "\t"
+      "Rot[7]\tRot[8]\t";
+  const std::string values = "\t0\t0\t0\t0\t90\t0.2\t0\t1\t0\t-1\t0\t0\t0\t0\t1\t";
+  for (const std::string between : {"", "\t"}) {
+    const auto motion =
+        read_motion(file("q.tsv",
+                         "NO_OF_FRAMES\t1\nNO_OF_BODIES\t2\nFREQUENCY\t100\nDATA_INCLUDED\t6D\n"
+                         "BODY_NAMES\tprobe\tbone\nFrame\tTime\tprobe" +
+                             columns + between + "bone" + columns + "\n1\t0.00000\t10" + values +
+                             between + "20" + values + "\n"));
+    ASSERT_TRUE(motion) << motion.error().what;
+    ASSERT_TRUE(motion->bodies.contains("bone")) << "between: " << between.size();
+    EXPECT_LT((motion->bodies.at("probe").X_CB[0].p - Vec3(0.01, 0, 0)).norm(), 1e-12);
+    const math::Pose& bone = motion->bodies.at("bone").X_CB[0];
+    EXPECT_LT((bone.p - Vec3(0.02, 0, 0)).norm(), 1e-12);
+    EXPECT_LT((bone.q * Vec3::UnitX() - Vec3::UnitY()).norm(), 1e-9);
+  }
+}
+
 TEST_F(Capture, TakesAMotiveExportsUnitAsItSaysAndNoneThatItDoesNotKnow) {
   const auto in = [&](const std::string& unit) {
     return read_motion(

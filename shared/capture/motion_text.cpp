@@ -91,7 +91,16 @@ void add(BodyTrack& track, double t_s, const math::Pose& pose) {
 struct QtmHeader {
   double rate_Hz = 0.0;
   std::vector<std::string> bodies, markers;
+  std::vector<std::size_t> from;  ///< columns in which each body begins, as the columns' names say
 };
+
+/// Where "NAME X" stands, or "X": there may be an empty column between two bodies.
+std::vector<std::size_t> first_columns(const std::vector<std::string_view>& names) {
+  std::vector<std::size_t> out;
+  for (std::size_t k = 0; k < names.size(); ++k)
+    if (names[k] == "X" || names[k].ends_with(" X")) out.push_back(k);
+  return out;
+}
 
 std::vector<std::string> names_of(const std::vector<std::string_view>& cells) {
   std::vector<std::string> out;
@@ -140,8 +149,11 @@ core::Result<Motion> qtm_rows(Lines& lines, const QtmHeader& header, bool number
     ++frame;
     for (std::size_t n = 0; n < names; ++n) {
       if (six) {
-        if (const auto pose = qtm_pose(cells, from + each * n))
-          add(out.bodies[header.bodies[n]], t_s, *pose);
+        const std::size_t at = header.from.size() == names ? header.from[n] : from + each * n;
+        if (at + each > cells.size())
+          return lines.wrong(
+              fmt::format("{} columns where {} are expected", cells.size(), at + each));
+        if (const auto pose = qtm_pose(cells, at)) add(out.bodies[header.bodies[n]], t_s, *pose);
         continue;
       }
       const auto x = number(cells[from + 3 * n]), y = number(cells[from + 3 * n + 1]),
@@ -173,6 +185,7 @@ core::Result<Motion> read_qtm(const fs::path& path) {
     if (!(header.rate_Hz > 0.0)) return lines.wrong("FREQUENCY is missing above");
     if (header.bodies.empty() && header.markers.empty())
       return lines.wrong("neither BODY_NAMES nor MARKER_NAMES is above");
+    if (columns && !header.bodies.empty()) header.from = first_columns(cells);
     const std::size_t wanted =
         header.bodies.empty() ? 3 * header.markers.size() : 16 * header.bodies.size();
     return qtm_rows(lines, header, cells[0] == "Frame" || (numbers && cells.size() >= wanted + 2),
