@@ -120,18 +120,18 @@ TEST_F(HeadsetTrial, IsAlignedSeenByBothEyesAndReported) {
 }
 
 TEST_F(HeadsetTrial, GoesOnWhenTheSessionIsLost) {
-  control_->lose_session_at = 6;
+  control_->lose_session_at = 2;  // a busy machine draws few frames
   ASSERT_EQ(trial("headset"), 0) << text_of("err");
   const Json one = report();
   EXPECT_EQ(one.at("complete"), true);
   EXPECT_GT(one.at("ticks").get<int>() + one.at("skipped_ticks").get<int>(), 11'900);  // 3 s
   EXPECT_EQ(one.at("headset").at("ended"), "the runtime lost the session");
-  EXPECT_LT(one.at("headset").at("frames"), 6);
+  EXPECT_LT(one.at("headset").at("frames"), 3);
   EXPECT_NE(text_of("err").find("its view is over; the trial goes on"), std::string::npos);
 }
 
 TEST_F(HeadsetTrial, SaysThatTrackingIsLostAndGoesOn) {
-  control_->untracked_from = 5;
+  control_->untracked_from = 2;
   control_->untracked_to = 1'000'000;
   ASSERT_EQ(trial("headset"), 0) << text_of("err");
   EXPECT_GT(report().at("headset").at("untracked_frames"), 0);
