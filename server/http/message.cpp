@@ -85,7 +85,8 @@ core::Result<void> read_target(std::string_view target, RequestHead& head) {
     if (!key) return key.error();
     if (!value) return value.error();
     if (!key->empty() && !head.query.emplace(*key, *value).second)
-      return core::Error{core::Errc::bad_input, "the address names " + *key + " twice"};
+      return core::Error{core::Errc::bad_input,
+                         "the address names " + core::one_line(*key, 80) + " twice"};
     rest.remove_prefix(std::min(end + 1, rest.size()));
   }
   return {};

@@ -29,6 +29,15 @@ TEST(Target, ABrokenEscapeAZeroByteANameTwiceOrAnAbsoluteAddressIsRefused) {
   }
 }
 
+TEST(Target, ANameTwiceIsRefusedInOneShortLineWhateverTheName) {
+  const std::string name = "a%0Ab" + std::string(5000, 'c');
+  RequestHead head;
+  const auto refused = read_target("/?" + name + "&" + name, head);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().what.find('\n'), std::string::npos);
+  EXPECT_LT(refused.error().what.size(), 200u);
+}
+
 TEST(Cookies, AreFoundByTheirWholeName) {
   const RequestHead head = head_with("cookie", "xsession=1; session=two;session2=3");
   EXPECT_EQ(head.cookie("session"), "two");

@@ -119,7 +119,7 @@ core::Result<Snapshot> Snapshot::read(const std::filesystem::path& folder) {
     return bad_input(path.string() + ": /format: should be \"tractus-snapshot/1\"");
   auto data = core::read_file(folder / "data.csv", 512ull << 20);
   if (!data) return data.error();
-  if (core::sha256(*data) != (*description)["sha256"])
+  if (core::sha256(*data) != (*description)["sha256"].get<std::string>())
     return core::Error{core::Errc::conflict,
                        fmt::format("{}: the data were changed after they were frozen on {}",
                                    (folder / "data.csv").string(),

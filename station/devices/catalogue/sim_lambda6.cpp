@@ -22,7 +22,7 @@ constexpr double kMass_kg = 0.2;
 constexpr double kInertia_kgm2 = 2e-4;
 constexpr double kFriction_Ns_per_m = 0.8;
 constexpr double kFriction_Nms_per_rad = 0.002;
-constexpr Limits kLimits{.max_force_N = 20.0, .max_torque_Nm = 0.2, .rate_Hz = 4000.0};
+const Limits kLimits{.max_force_N = 20.0, .max_torque_Nm = 0.2, .rate_Hz = 4000.0};
 constexpr double kMaxStep_s = 1.25e-4;  // 8 kHz
 constexpr core::Instant_ns kMaxGap_ns =
     20'000'000;  // a longer stall stops hand and handle with the machine
