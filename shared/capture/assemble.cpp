@@ -158,7 +158,8 @@ math::Wrench at_handle(const Sensor& sensor, const math::Wrench& in_S, const mat
   return {f, t + sensor.X_HS.p.cross(f)};
 }
 
-/// The push of the taps' peaks against the way out.
+/// Angle between the push of the taps' peaks and the way out of the surface, rad, 0 … π; nothing
+/// where no tap has both a force and a pose.
 std::optional<double> push_off(const Recipe& recipe, const ForceTrack& force, const Probe& probe,
                                const ClockFit& clock, const math::Wrench& zero) {
   Vec3 push = Vec3::Zero(), out_of_it = Vec3::Zero();

@@ -140,12 +140,16 @@ TEST_F(Live, NobodyIsToldMoreThanTwentyTimesASecond) {
       std::this_thread::sleep_for(std::chrono::milliseconds(35));
     }
   });
+  // For three seconds, and on a busy machine until it was told what an idle one is in half a
+  // second.
   int frames = 0;
-  for (long left = 3000; left > 0; left = begun + 3000 - WebSocket::now_ms())
-    frames += wall.hear(static_cast<int>(left)).has_value();
-  const double took_s = double(WebSocket::now_ms() - begun) * 1e-3;
-  EXPECT_LE(frames, 20.0 * took_s + 3);
-  EXPECT_GE(frames, 3) << "and it is told";  // 60, unless the machine is busy
+  long took_ms = 0;
+  while (took_ms < 3000 || (frames < 10 && took_ms < 60'000)) {
+    frames += wall.hear(static_cast<int>(std::max(100l, 3000 - took_ms))).has_value();
+    took_ms = WebSocket::now_ms() - begun;
+  }
+  EXPECT_LE(frames, 20e-3 * double(took_ms) + 3);
+  EXPECT_GE(frames, 10) << "and it is told";
 }
 
 /// Neither a station nor another browser waits for one that does not read.
