@@ -1,8 +1,9 @@
-import { useEffect, useRef, useState, type KeyboardEvent } from 'react';
+import { useEffect, useRef, useState } from 'react';
 import { viridis } from './colour';
 import { largestOf } from './painted-wall';
 import type { PaintedScene } from './scene/painted';
 import styles from './tract-view.module.css';
+import { turnByKey, useResized } from './turning';
 
 interface Props {
   readonly depth_m: readonly number[];
@@ -37,28 +38,13 @@ export function PaintedTract({ depth_m, angle_rad, values, radius_m, summary }: 
     }).catch(() => setFailed(true));
     return () => { gone = true; made?.destroy(); setScene(null); };
   }, [depth_m, angle_rad, values, radius_m]);
-  useEffect(() => {
-    if (!scene || !canvas.current) return;
-    const observer = new ResizeObserver(() => scene.resize());
-    observer.observe(canvas.current);
-    return () => observer.disconnect();
-  }, [scene]);
-  const onKeyDown = (event: KeyboardEvent) => {
-    const act: Record<string, (() => void) | undefined> = {
-      ArrowLeft: () => scene?.turn(10, 0), ArrowRight: () => scene?.turn(-10, 0), ArrowUp: () => scene?.turn(0, -10), ArrowDown: () => scene?.turn(0, 10),
-      '+': () => scene?.zoom(1.15), '=': () => scene?.zoom(1.15), '-': () => scene?.zoom(1 / 1.15), '0': () => scene?.reset(),
-    };
-    const done = act[event.key];
-    if (!done || event.ctrlKey || event.metaKey || event.altKey) return;
-    event.preventDefault();
-    done();
-  };
+  useResized(scene, canvas);
   return (
     <figure className={styles.figure}>
       {/* eslint-disable-next-line jsx-a11y/no-noninteractive-element-interactions -- an application takes keys */}
       <div className={`${styles.stage} ${styles.small}`} role="application" aria-roledescription="3-D picture" aria-label={summary} data-part="painted" data-ready={scene !== null || undefined}
         // eslint-disable-next-line jsx-a11y/no-noninteractive-tabindex -- an application takes keys
-        tabIndex={0} onKeyDown={onKeyDown}>
+        tabIndex={0} onKeyDown={(event) => turnByKey(event, scene, () => scene?.reset())}>
         <div ref={canvas} className={styles.canvas} hidden={failed} />
         {failed ? <p className={styles.failure} role="alert">The picture in 3-D could not be drawn. The unrolled wall beside it says the same.</p> : scene === null ? <p className={styles.failure} role="status">Drawing…</p> : null}
       </div>

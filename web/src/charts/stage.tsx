@@ -1,8 +1,9 @@
-import { useEffect, useRef, useState, type KeyboardEvent, type ReactNode } from 'react';
+import { useEffect, useRef, useState, type ReactNode } from 'react';
 import { canDraw, rgb } from './draw';
 import type { Looks, Scene, SceneContent } from './scene';
 import type { SceneColours, ViewName } from './scene/types';
 import styles from './tract-view.module.css';
+import { turnByKey, useResized } from './turning';
 
 export interface StageProps {
   /** What is drawn; keep it as long as it is the same: a new one is built anew. null: not there yet. */
@@ -59,24 +60,8 @@ function useScene(content: SceneContent | null, onScene: StageProps['onScene']) 
       stands(null);
     };
   }, [content, onScene]);
-  useEffect(() => {
-    if (!scene || !canvas.current) return;
-    const observer = new ResizeObserver(() => scene.resize());
-    observer.observe(canvas.current);
-    return () => observer.disconnect();
-  }, [scene]);
+  useResized(scene, canvas);
   return { canvas, labels, scene, failure };
-}
-
-function pressed(scene: Scene | null, event: KeyboardEvent) {
-  const act: Record<string, (() => void) | undefined> = {
-    ArrowLeft: () => scene?.turn(10, 0), ArrowRight: () => scene?.turn(-10, 0), ArrowUp: () => scene?.turn(0, -10), ArrowDown: () => scene?.turn(0, 10),
-    '+': () => scene?.zoom(1.15), '=': () => scene?.zoom(1.15), '-': () => scene?.zoom(1 / 1.15), '0': () => scene?.look('start'),
-  };
-  const done = act[event.key];
-  if (!done || event.ctrlKey || event.metaKey || event.altKey) return;
-  event.preventDefault();
-  done();
 }
 
 /** A scene to be turned about, with its views and its bone whole, cut open or away. */
@@ -113,7 +98,7 @@ export function Stage({ content, colours, palette, label, summary, caption, butt
       <div
         ref={stage} className={styles.stage} role="application" aria-roledescription="3-D picture" aria-label={summary} data-part="scene" data-ready={scene !== null || undefined}
         // eslint-disable-next-line jsx-a11y/no-noninteractive-tabindex -- an application takes keys
-        tabIndex={0} onKeyDown={(event) => pressed(scene, event)} onPointerDown={() => stage.current?.focus({ preventScroll: true })}
+        tabIndex={0} onKeyDown={(event) => turnByKey(event, scene, () => scene?.look('start'))} onPointerDown={() => stage.current?.focus({ preventScroll: true })}
       >
         <div ref={canvas} className={styles.canvas} hidden={failure !== ''} />
         <div ref={labels} className={styles.labels} aria-hidden="true" hidden={failure !== ''} />
