@@ -313,6 +313,7 @@ net::awaitable<bool> Server::State::write(Connection& c, const RequestHead& head
                                           Response& response, bool keep_alive) {
   namespace bh = beast::http;
   add_security_headers(response);
+  if (c.stream.is_tls() || options.behind_proxy) require_tls(response);
   const auto* slice = std::get_if<FileSlice>(&response.body);
   bh::response<bh::string_body> message(bh::int_to_status(static_cast<unsigned>(response.status)),
                                         11);
