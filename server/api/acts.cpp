@@ -23,8 +23,8 @@ void redact(core::Json& json) {
 core::Json detail_of(const http::Request& request) {
   if (request.body.empty()) return core::Json::object();
   if (request.body.size() <= kMaxDetail_bytes) {
-    core::Json json = core::Json::parse(request.body, nullptr, false);
-    if (json.is_object()) return redact(json), json;
+    auto json = core::parse_json(request.body, "body");
+    if (json && json->is_object()) return redact(*json), std::move(*json);
   }
   return {{"size_bytes", request.body.size()},
           {"sha256", core::sha256(core::bytes_of(request.body))}};

@@ -41,8 +41,8 @@ std::string challenge_of(const std::string& verifier) {
 Result<Json> json_at(const std::string& url, const std::filesystem::path& authority) {
   auto got = fetch({.url = url, .authority = authority});
   if (!got) return got.error();
-  Json out = Json::parse(got->body, nullptr, false);
-  if (got->status != 200 || !out.is_object())
+  auto out = core::parse_json(got->body, url);
+  if (got->status != 200 || !out || !out->is_object())
     return Error{Errc::unavailable,
                  "the provider does not answer as one: HTTP status " + std::to_string(got->status)};
   return out;
@@ -148,10 +148,10 @@ Result<Identity> Oidc::redeemed(const std::string& code, const OidcAttempt& atte
                        .password = percent_encoded(settings_.client_secret),
                        .authority = settings_.authority});
   if (!answer) return answer.error();
-  const Json json = Json::parse(answer->body, nullptr, false);
-  if (answer->status != 200 || !json.is_object())
+  const auto json = core::parse_json(answer->body, "token");
+  if (answer->status != 200 || !json || !json->is_object())
     return Error{Errc::unauthorised, "the provider does not take its code back"};
-  const std::string token = text_field(json, "id_token");
+  const std::string token = text_field(*json, "id_token");
   const Expected expected{settings_.issuer, settings_.client_id, attempt.nonce, utc_s};
   auto known = keys(false);
   if (!known) return known.error();

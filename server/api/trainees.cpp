@@ -123,7 +123,7 @@ std::optional<double> confidence_of(Backend& backend, const std::string& trial_i
   const auto trial =
       backend.store.read([&](store::Reading& tx) { return store::trial_of(tx, trial_id); });
   if (!trial || !*trial) return std::nullopt;
-  const auto events = core::parse_json((*trial)->events, "events");
+  const auto events = core::parse_json((*trial)->events, "events", core::kStoredJson);
   if (!events) return std::nullopt;
   const Json answer = answer_json(*events);
   if (!answer.is_object() || !answer["confidence"].is_number()) return std::nullopt;

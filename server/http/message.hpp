@@ -37,7 +37,7 @@ struct RequestHead {
 core::Result<void> read_target(std::string_view target, RequestHead& head);
 
 /// Whom a proxy names last in X-Forwarded-For: what stands before that anybody may have written.
-/// Without the header: the peer itself.
+/// Without the header, or when what it names is no address: the peer itself.
 std::string forwarded_peer(const RequestHead& head);
 
 struct Request : RequestHead {

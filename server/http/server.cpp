@@ -1,5 +1,4 @@
-/// The one file that includes Asio and Beast (with stream.hpp, which is its own, and
-/// websocket.cpp).
+/// Includes Asio and Beast, as only stream.hpp, head.hpp, spool.hpp and websocket.cpp do beside it.
 #include <utility>  // before Asio: 1.74 uses std::exchange without it
 //
 #include <fmt/format.h>
@@ -17,6 +16,7 @@
 #include <list>
 
 #include "server/http/coroutine.hpp"
+#include "server/http/head.hpp"
 #include "server/http/pieces.hpp"
 #include "server/http/server.hpp"
 #include "server/http/spool.hpp"
@@ -32,7 +32,6 @@ using boost::system::error_code;
 using net::ip::tcp;
 using Admission = std::variant<std::uint64_t, Response>;
 using Opening = std::variant<Response, std::shared_ptr<Conversation>>;
-using Parser = beast::http::request_parser<beast::http::string_body>;
 
 constexpr std::size_t kLingering_bytes = 16u << 20;
 constexpr std::chrono::seconds kLingering_time{2};
@@ -72,27 +71,6 @@ struct OpeningConversation {
     return broken(failure);
   }
 };
-std::string lower_case(beast::string_view text) {
-  std::string out(text);
-  for (char& c : out)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return out;
-}
-
-core::Result<RequestHead> head_of(const Parser& parser, std::string peer, bool behind_proxy) {
-  const auto& message = parser.get();
-  RequestHead head;
-  head.method = std::string(message.method_string());
-  head.peer = std::move(peer);
-  for (const auto& field : message)
-    head.headers.emplace(lower_case(field.name_string()), std::string(field.value()));
-  if (const auto length = parser.content_length()) head.body_bytes = *length;
-  if (behind_proxy) head.peer = forwarded_peer(head);
-  const auto target = message.target();
-  if (auto read = read_target({target.data(), target.size()}, head); !read) return read.error();
-  return head;
-}
-
 /// What a refused or broken request is answered, or nothing when there is nobody to answer.
 std::optional<Response> answer_to(error_code failure) {
   using beast::http::error;
@@ -252,7 +230,7 @@ net::awaitable<bool> Server::State::exchange(Connection& c) {
     if (refusal) co_await refuse(c, nobody, *refusal);
     co_return false;
   }
-  auto head = head_of(parser, c.peer, options.behind_proxy);
+  auto head = head_of(parser, c.peer, options.behind_proxy ? &options.proxies : nullptr);
   if (!head) {
     Response refusal = error_response(400, "bad_input", head.error().what);
     const RequestHead nobody;
@@ -335,6 +313,7 @@ net::awaitable<bool> Server::State::write(Connection& c, const RequestHead& head
                                           Response& response, bool keep_alive) {
   namespace bh = beast::http;
   add_security_headers(response);
+  if (c.stream.is_tls() || options.behind_proxy) require_tls(response);
   const auto* slice = std::get_if<FileSlice>(&response.body);
   bh::response<bh::string_body> message(bh::int_to_status(static_cast<unsigned>(response.status)),
                                         11);

@@ -11,6 +11,7 @@
 
 #include "server/http/conversation.hpp"
 #include "server/http/message.hpp"
+#include "server/http/networks.hpp"
 
 namespace http {
 
@@ -19,7 +20,9 @@ struct ServerOptions {
   std::uint16_t port = 8480;  ///< 0: any free one
   /// PEM files of a certificate chain and its key; none: plain HTTP.
   std::optional<std::pair<std::filesystem::path, std::filesystem::path>> tls;
-  bool behind_proxy = false;  ///< the peer is whom the proxy names last in X-Forwarded-For
+  bool behind_proxy = false;  ///< browsers reach it by TLS, by way of a proxy
+  /// Behind a proxy: whose X-Forwarded-For is believed; the peer is whom it names last.
+  Networks proxies = Networks::loopback();
   int workers = 4;            ///< threads on which handlers run
   int max_connections = 512;  ///< for one more, that which has kept us waiting longest is closed
   std::uint32_t max_header_bytes = 16 * 1024;

@@ -207,8 +207,8 @@ void Hub::forget_silent() {
 
 void Hub::hear_other(const store::Signal& signal) {
   if (signal.from == parts_.store.signals().own_id()) return;
-  const auto json =
-      core::parse_json(signal.payload.empty() ? R"({"ask":true})" : signal.payload, "live signal");
+  const auto json = core::parse_json(signal.payload.empty() ? R"({"ask":true})" : signal.payload,
+                                     "live signal", core::kStoredJson);
   if (!json || !json->is_object()) return;
   const std::lock_guard held(mutex_);
   if (json->contains("ask"))

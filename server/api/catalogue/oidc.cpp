@@ -66,7 +66,7 @@ Result<OidcAttempt> attempt_of(const Call& call) {
   if (sealed.empty()) return none;
   const auto opened = call.backend.secrets.opened(sealed);
   if (!opened) return none;
-  const Json json = Json::parse(*opened, nullptr, false);
+  const Json json = core::stored_json(*opened);
   if (!json.is_object() || call.backend.now_utc_us() > json.value("until_utc_us", std::int64_t{0}))
     return none;
   OidcAttempt out{json.value("state", ""), json.value("nonce", ""), json.value("verifier", "")};
