@@ -74,7 +74,7 @@ http::Service service_of(api::Backend& backend, const std::optional<std::filesys
   };
   return {
       .admit = [&backend, is_api](
-                   const http::RequestHead& head) -> std::variant<std::uint64_t, http::Response> {
+                   const http::RequestHead& head) -> std::variant<http::Admitted, http::Response> {
         if (is_api(head)) return api::admit(backend, api::routes(), head);
         return http::error_response(405, "bad_input", "pages take no body");
       },
@@ -85,8 +85,7 @@ http::Service service_of(api::Backend& backend, const std::optional<std::filesys
       .converse =
           [&backend](const http::RequestHead& head) {
             return api::converse(backend, api::routes(), head);
-          },
-      .spools = [](const http::RequestHead& head) { return api::takes_file(api::routes(), head); }};
+          }};
 }
 
 std::string address_of(const ServeOptions& options, std::uint16_t port) {
@@ -273,8 +272,10 @@ core::Result<void> serve(const ServeOptions& given) {
   if (!secure) return secure.error();
   const auto scratch = own_scratch(given.data);
   if (!scratch) return scratch.error();
+  ::setenv("TMPDIR", scratch->path.c_str(), 1);  // temporary files of every part of this program
+  const auto space = std::make_shared<http::ScratchSpace>(scratch->path);
   ServeOptions options = *secure;
-  options.http.spool = scratch->path;
+  options.http.scratch = space.get();
   if (options.web && !std::filesystem::is_regular_file(*options.web / "index.html"))
     return core::Error{core::Errc::not_found,
                        options.web->string() + ": no index.html there; build the web pages first"};
@@ -306,7 +307,7 @@ core::Result<void> serve(const ServeOptions& given) {
                        .logs_requests = options.log_requests,
                        .backups = &backups,
                        .take_volume = take_volume_apart,
-                       .scratch = scratch->path,
+                       .scratch = space,
                        .pseudonym_key = *pseudonym_key};
   live::Hub hub({.store = data->store,
                  .now_utc_us = core::utc_us,
