@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdio>
 
 #include "core/file.hpp"
 #include "trial/trial_file.hpp"
@@ -50,11 +49,7 @@ core::Result<StationFolder> StationFolder::open(const fs::path& root) {
       return core::Error{core::Errc::io, fmt::format("{}: cannot make the folder: {}",
                                                      (root / name).string(), failure.message())};
   }
-  auto repaired = core::make_private(root, "cases");
-  if (!repaired) return repaired.error();
-  if (*repaired > 0)
-    fmt::print(stderr, "{}: others had access to {} files and folders; now their owner alone has\n",
-               root.string(), *repaired);
+  if (auto repaired = core::make_private(root, "cases"); !repaired) return repaired.error();
   if (auto read = folder.read_config(); !read) return read.error();
   if (auto read = folder.read_lowered(); !read) return read.error();
   if (auto read = folder.read_trusted(); !read) return read.error();
