@@ -100,7 +100,9 @@ TEST_P(StoreFaults, ACommittedTrialIsWholeOrAbsent) {
     if (auto done = complete_upload(tx, kTrial); !done) return done;
     return queue_job(tx, "metrics", kTrial, 2);
   });
-  EXPECT_EQ(steps, 6);  // begin, four statements, commit
+  // begin, four statements, the trial's row read for its digest, the trail's end, its new row,
+  // commit
+  EXPECT_EQ(steps, 9);
 }
 
 TEST_P(StoreFaults, APublishedCaseIsWholeOrAbsent) {

@@ -156,9 +156,13 @@ TEST_F(Accounts, CohortsAreLedByWhoMadeThem) {
 
 class Audited : public PeopleTest {
  protected:
+  /// Of what people did.
   std::vector<store::AuditRow> rows() {
-    return store_.read([](store::Reading& tx) { return store::audit_before(tx, 1'000'000, 100); })
-        .value();
+    auto all =
+        store_.read([](store::Reading& tx) { return store::audit_before(tx, 1'000'000, 100); })
+            .value();
+    std::erase_if(all, [](const auto& row) { return row.act.role == store::kServer; });
+    return all;
   }
 };
 
@@ -171,7 +175,6 @@ TEST_F(Audited, EveryChangeIsARowWithWhoAndWhatAndNoSecret) {
       201);
   const auto all = rows();
   ASSERT_EQ(all.size(), 1u);
-  EXPECT_EQ(all[0].number, 1);
   EXPECT_EQ(all[0].act.who, "ann");
   EXPECT_EQ(all[0].act.role, "admin");
   EXPECT_EQ(all[0].act.what, "addAccount");
@@ -206,16 +209,21 @@ TEST_F(Audited, SigningInNamesWhoAndAFailureDoesToo) {
 TEST_F(Audited, AdministratorsReadTheTrailAndItsCheck) {
   ASSERT_EQ(post("fay", "/cohorts", {{"name", "2026"}}).status, 201);
   const auto listed = json(get("ann", "/audit"));
-  ASSERT_EQ(listed["rows"].size(), 1u);
+  ASSERT_GE(listed["rows"].size(), 1u);
   EXPECT_EQ(listed["rows"][0]["what"], "addCohort");
   EXPECT_EQ(listed["rows"][0]["detail"]["name"], "2026");
   EXPECT_EQ(json(get("ann", "/audit/check"))["holds"], true);
-  ASSERT_TRUE(store_.write([](store::Writing& tx) {
-    return tx.query("update audit set who = 'flo' where number = 1");
-  }));
+  const auto is_by = [&](const char* who) {
+    return bool(store_.write([&](store::Writing& tx) {
+      return tx.query("update audit set who = ? where what = 'addCohort'", {who});
+    }));
+  };
+  ASSERT_TRUE(is_by("flo"));
   const auto check = json(get("ann", "/audit/check"));
   EXPECT_EQ(check["holds"], false);
-  EXPECT_NE(check["failure"].get<std::string>().find("row 1"), std::string::npos);
+  EXPECT_NE(check["failure"].get<std::string>().find("row " + listed["rows"][0]["number"].dump()),
+            std::string::npos);
+  ASSERT_TRUE(is_by("fay"));
 }
 
 }  // namespace

@@ -4,14 +4,9 @@
 #include <sodium.h>
 
 #include <array>
-#include <bit>
-#include <cmath>
-#include <cstring>
 
 #include "db/store/accounts.hpp"
 #include "metrics/metric.hpp"
-#include "server/api/uploads.hpp"
-#include "trial/trial_file.hpp"
 
 namespace api {
 namespace {
@@ -21,7 +16,6 @@ using core::Error;
 using core::Result;
 
 constexpr std::int64_t kMaxTrials = 1'000'000;
-constexpr std::size_t kMaxArray_bytes = 512u << 20;
 constexpr double kDay_us = 86'400e6;
 
 /// One cell. What begins like a formula is kept from being one (OWASP, CSV injection).
@@ -104,38 +98,6 @@ std::string header_of(std::string_view table) {
   for (const Column& column : kColumns)
     if (column.table == table) out += (out.empty() ? "" : ",") + std::string(column.column);
   return out + "\r\n";
-}
-
-void append_row(std::vector<double>& out, const trial::Sample& s) {
-  out.insert(out.end(), {s.t_s, s.p_VH_m[0], s.p_VH_m[1], s.p_VH_m[2], s.q_VH[0], s.q_VH[1],
-                         s.q_VH[2], s.q_VH[3]});
-  for (const float force : s.force_N) out.push_back(double(force));
-  for (const float torque : s.torque_Nm) out.push_back(double(torque));
-  out.push_back(s.flags);
-}
-
-void append_row(std::vector<double>& out, const trial::ProbingSample& s) {
-  out.insert(out.end(), {s.t_s, s.x_m, s.theta_rad, double(s.fz_N), double(s.tz_Nm),
-                         double(s.speed_m_s), double(s.mode), double(s.flags)});
-}
-
-/// The .npy format 1.0: magic, version, length of the header, a Python literal, padded to 64 bytes.
-std::string npy(const std::vector<double>& values, std::size_t columns) {
-  static_assert(std::endian::native == std::endian::little);
-  std::string header =
-      fmt::format("{{'descr': '<f8', 'fortran_order': False, 'shape': ({}, {}), }}",
-                  values.size() / columns, columns);
-  header.append(63 - (10 + header.size()) % 64, ' ');
-  header += '\n';
-  std::string out("\x93NUMPY\x01\x00", 8);
-  out += static_cast<char>(header.size() & 255u);
-  out += static_cast<char>(header.size() >> 8);
-  out += header;
-  const std::size_t before = out.size();
-  out.resize(before + values.size() * sizeof(double));
-  if (!values.empty())
-    std::memcpy(out.data() + before, values.data(), values.size() * sizeof(double));
-  return out;
 }
 
 }  // namespace
@@ -280,30 +242,6 @@ std::string dictionary_csv() {
   add(kPalpation);
   add(kProbing);
   return out;
-}
-
-Result<std::string> samples_npy(const std::filesystem::path& trial_file, double rate_Hz) {
-  std::vector<double> values;
-  std::size_t columns = kPalpation.size();
-  double next_s = 0.0;
-  bool full = false;
-  const auto take = [&](const auto& sample) {
-    if (rate_Hz > 0.0 && sample.t_s < next_s) return;
-    // The next row is the first sample of the next interval: no drift over a long trial.
-    if (rate_Hz > 0.0) next_s = (std::floor(sample.t_s * rate_Hz + 1e-9) + 1.0) / rate_Hz;
-    full = full || values.size() * sizeof(double) >= kMaxArray_bytes;
-    if (!full) append_row(values, sample);
-  };
-  auto read = trial::scan_trial(trial_file,
-                                [&](const trial::Block& block) {
-                                  if (!block.probing.empty()) columns = kProbing.size();
-                                  block.each(take);
-                                },
-                                {.max_samples = kMaxTrialSamples, .max_bytes = kMaxTrial_bytes});
-  if (!read) return read.error();
-  if (full)
-    return Error{Errc::too_large, "the array is over 512 MiB: ask for fewer samples a second"};
-  return npy(values, columns);
 }
 
 }  // namespace api

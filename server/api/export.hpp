@@ -56,10 +56,4 @@ core::Result<std::string> key_csv(Backend& backend);
 /// The rate up to which samples are of the tier `reduced`.
 inline constexpr double kReduced_Hz = 100.0;
 
-/// The samples of a trial file as one array of doubles, a row per sample: NumPy's .npy, version 1.0
-/// (little-endian float64, row after row), which R reads as well. Columns by dictionary_csv.
-/// @param rate_Hz  of the rows; 0: every sample
-/// Errors: those of reading the file; too_large (over 512 MiB).
-core::Result<std::string> samples_npy(const std::filesystem::path& trial_file, double rate_Hz);
-
 }  // namespace api

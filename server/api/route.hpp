@@ -12,6 +12,7 @@
 #include "core/result.hpp"
 #include "server/http/conversation.hpp"
 #include "server/http/message.hpp"
+#include "server/http/scratch_space.hpp"
 
 namespace api {
 
@@ -85,6 +86,14 @@ struct NamedSchema {
   std::string name;  ///< "TrialSummary"
   core::Json schema;
 };
+
+/// The request's body as a file in `folder`, whether it came as one or is in memory. Errors: io.
+core::Result<std::filesystem::path> body_in(const Call& call, const std::filesystem::path& folder,
+                                            const std::string& name);
+/// A file as a whole answer, which is deleted once it is sent; it takes no more of the scratch
+/// space than it is long. Errors: io.
+core::Result<http::Response> scratch_response(std::shared_ptr<http::ScratchFile> file,
+                                              const char* content_type, const char* download_name);
 
 /// 426: this address is a WebSocket.
 core::Result<http::Response> wants_websocket(const Call& call);

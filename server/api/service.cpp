@@ -267,9 +267,9 @@ http::Response answer(Backend& backend, const std::vector<RouteInfo>& table,
   return response;
 }
 
-std::variant<std::uint64_t, http::Response> admit(Backend& backend,
-                                                  const std::vector<RouteInfo>& table,
-                                                  const http::RequestHead& head) {
+std::variant<http::Admitted, http::Response> admit(Backend& backend,
+                                                   const std::vector<RouteInfo>& table,
+                                                   const http::RequestHead& head) {
   std::string allowed;
   auto matched = match(table, head, &allowed);
   Asked asked{matched, allowed};
@@ -278,14 +278,14 @@ std::variant<std::uint64_t, http::Response> admit(Backend& backend,
     return response;
   };
   if (!matched) return refused(answer_to_nowhere(backend, asked, head));
-  if (auto caller = allowed_caller(backend, *matched->route, head, &asked); !caller)
-    return refused(refusal(caller.error(), ""));
+  const auto caller = allowed_caller(backend, *matched->route, head, &asked);
+  if (!caller) return refused(refusal(caller.error(), ""));
   const std::uint64_t limit = matched->route->body_limit_bytes;
   if (head.body_bytes > limit)
     return refused(error_response(
         {core::Errc::too_large,
          fmt::format("the body has {} bytes, at most {} are taken", head.body_bytes, limit)}));
-  return limit;
+  return http::Admitted{limit, matched->route->body_to_file, caller->id};
 }
 
 namespace {
@@ -345,11 +345,6 @@ std::variant<http::Response, std::shared_ptr<http::Conversation>> converse(
   note(backend, matched->route->id, request,
        http::Response{.status = 101, .headers = {}, .body = {}}, 0.0);
   return std::move(*opened);
-}
-
-bool takes_file(const std::vector<RouteInfo>& table, const http::RequestHead& head) {
-  const auto matched = match(table, head);
-  return matched && matched->route->body_to_file;
 }
 
 }  // namespace api

@@ -49,6 +49,12 @@ Run serve_command(CLI::App& command) {
   command.add_option("--pseudonym-key", *pseudonyms,
                      "File of the key of exports' pseudonyms, made when it is not there; "
                      "DATA/pseudonyms/key if not given. No backup holds it: copy it by itself");
+  const auto places = std::make_shared<std::vector<std::string>>();
+  command
+      .add_option("--anchors-to", *places,
+                  "Where every anchor of the audit trail goes as well: the absolute path of a file "
+                  "(on another disk), syslog, or an https address that takes it by POST; repeat it")
+      ->type_name("PLACE");
   const auto certificate = std::make_shared<std::filesystem::path>();
   const auto key = std::make_shared<std::filesystem::path>();
   auto* chain = command.add_option("--certificate", *certificate,
@@ -59,6 +65,11 @@ Run serve_command(CLI::App& command) {
     if (!address) return address.error();
     options->data = common->data;
     options->json = common->json;
+    for (const std::string& text : *places) {
+      auto place = anchor_place(text);
+      if (!place) return place.error();
+      options->anchor_places.push_back(std::move(*place));
+    }
     if (!web->empty()) options->web = *web;
     if (!oidc->empty()) options->oidc = *oidc;
     if (!pseudonyms->empty()) options->pseudonym_key = *pseudonyms;

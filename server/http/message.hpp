@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -51,6 +52,7 @@ struct FileSlice {
   std::filesystem::path path;
   std::uint64_t offset = 0;
   std::uint64_t size = 0;
+  std::shared_ptr<const void> owner = {};  ///< kept until it is sent: as http::ScratchFile
 };
 
 struct Response {

@@ -30,7 +30,7 @@ namespace net = boost::asio;
 namespace beast = boost::beast;
 using boost::system::error_code;
 using net::ip::tcp;
-using Admission = std::variant<std::uint64_t, Response>;
+using Admission = std::variant<Admitted, Response>;
 using Opening = std::variant<Response, std::shared_ptr<Conversation>>;
 
 constexpr std::size_t kLingering_bytes = 16u << 20;
@@ -281,11 +281,20 @@ net::awaitable<std::optional<Response>> Server::State::read_body(Connection& c, 
   c.stream.expires_never();
   Admission admitted = co_await on_workers(workers, Admitting{&service, &head});
   if (auto* refusal = std::get_if<Response>(&admitted)) co_return std::move(*refusal);
-  const std::uint64_t limit = std::get<std::uint64_t>(admitted);
+  const Admitted& how = std::get<Admitted>(admitted);
+  const std::uint64_t limit = how.limit_bytes;
   if (head.body_bytes > limit)
     co_return error_response(
         413, "too_large",
         fmt::format("the body has {} bytes, at most {} are taken", head.body_bytes, limit));
+  const bool to_file = how.to_file && options.scratch;
+  if (to_file) {
+    // A body that comes in pieces may be as long as the limit.
+    auto share =
+        options.scratch->reserve(how.client, head.body_bytes > 0 ? head.body_bytes : limit);
+    if (!share) co_return error_response(503, "unavailable", share.error().what);
+    spooled.share = std::move(*share);
+  }
   parser.body_limit(limit);
   error_code failure;
   c.wait_for_peer();
@@ -294,8 +303,8 @@ net::awaitable<std::optional<Response>> Server::State::read_body(Connection& c, 
     static constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
     co_await net::async_write(c.stream, net::buffer(kContinue), into(failure));
   }
-  const bool to_file = service.spools && !options.spool.empty() && service.spools(head);
-  const SpoolLimits spool{options.spool, limit, options.body_time};  // no temporary: see on_workers
+  const SpoolLimits spool{options.scratch, limit,
+                          options.body_time};  // no temporary: see on_workers
   if (!failure && to_file)
     failure = co_await spool_body(c.stream, c.buffer, parser, spool, workers, spooled);
   else if (!failure)

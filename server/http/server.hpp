@@ -12,6 +12,7 @@
 #include "server/http/conversation.hpp"
 #include "server/http/message.hpp"
 #include "server/http/networks.hpp"
+#include "server/http/scratch_space.hpp"
 
 namespace http {
 
@@ -32,23 +33,27 @@ struct ServerOptions {
   std::chrono::milliseconds body_time{60'000};   ///< for a whole body
   std::chrono::milliseconds write_time{60'000};  ///< for each piece (256 KiB) of an answer
   std::chrono::milliseconds drain_time{10'000};  ///< for requests under way once told to stop
-  std::filesystem::path spool;  ///< folder for bodies that go to a file; empty: none do
+  ScratchSpace* scratch = nullptr;  ///< for bodies that go to a file; none: all stay in memory
   std::chrono::milliseconds silence_time{30'000};  ///< of a WebSocket, pings unanswered
   std::chrono::milliseconds talk_write_time{
       5'000};  ///< for a WebSocket's listener to take a message
 };
 
+/// How a body is taken.
+struct Admitted {
+  std::uint64_t limit_bytes = 0;
+  bool to_file = false;     ///< into ServerOptions::scratch
+  std::string client = {};  ///< who sends it, by whatever name ScratchSpace shall know it
+};
+
 /// What the server does with requests. All are called on worker threads, several at a time.
 struct Service {
-  /// Sees the head before the body is read: how many bytes of body to take at most, or a refusal.
-  std::function<std::variant<std::uint64_t, Response>(const RequestHead&)> admit;
+  /// Sees the head before the body is read: how to take it, or a refusal.
+  std::function<std::variant<Admitted, Response>(const RequestHead&)> admit;
   std::function<Response(const Request&)> handle;
   /// A request for a WebSocket: a refusal, or who answers in it. Empty: none are held.
   std::function<std::variant<Response, std::shared_ptr<Conversation>>(const RequestHead&)>
       converse = {};
-  /// Is this request's body to go to a file (ServerOptions::spool)? Called on the input/output
-  /// thread. Empty: none is.
-  std::function<bool(const RequestHead&)> spools = {};
 };
 
 /// One listening socket, HTTP/1.1 with keep-alive. `open` binds; `run` serves in the calling thread

@@ -5,6 +5,7 @@
 #include "db/store/trials.hpp"
 #include "server/api/cohort_zip.hpp"
 #include "server/api/route.hpp"
+#include "server/api/samples_array.hpp"
 #include "server/api/schema.hpp"
 
 namespace api {
@@ -51,12 +52,14 @@ Result<http::Response> export_dictionary(const Call&) {
   return csv_response(dictionary_csv(), "dictionary.csv");
 }
 
-http::Response bytes_response(std::string bytes, const char* type, const char* name) {
-  http::Response response{.status = 200, .headers = {}, .body = std::move(bytes)};
-  response.with("Content-Type", type)
-      .with("Content-Disposition", std::string("attachment; filename=\"") + name + "\"")
-      .with("Cache-Control", "no-store");
-  return response;
+Result<http::Response> samples_of(const Call& call, const std::string& sha256,
+                                  std::uint64_t samples) {
+  auto file = http::scratch_file(*call.backend.scratch, call.caller.id, samples_npy_bytes(samples));
+  if (!file) return file.error();
+  auto written = write_samples_npy(call.backend.objects.path_of(sha256), call.number("rate_Hz"),
+                                   (*file)->path);
+  if (!written) return written.error();
+  return scratch_response(std::move(*file), "application/octet-stream", "samples.npy");
 }
 
 /// Only the key can tell which trial a pseudonym is: so the key is tried on all of them.
@@ -75,9 +78,7 @@ Result<http::Response> export_samples(const Call& call) {
     auto record = call.backend.store.read(
         [&, id = trial.summary.id](store::Reading& tx) { return store::trial_of(tx, id); });
     if (!record) return record.error();
-    auto array = samples_npy(call.backend.objects.path_of((*record)->sha256), rate_Hz);
-    if (!array) return array.error();
-    return bytes_response(std::move(*array), "application/octet-stream", "samples.npy");
+    return samples_of(call, (*record)->sha256, trial.summary.samples);
   }
   return Error{Errc::not_found, "no trial " + call.text("trial").substr(0, 32)};
 }
@@ -86,9 +87,9 @@ Result<http::Response> export_cohort(const Call& call) {
   const auto tier = store::tier_named(call.text("tier"));
   if (!tier || *tier == Tier::none)
     return Error{Errc::bad_input, "tier: summary, metrics, reduced or full is expected"};
-  auto zip = cohort_zip(call.backend, study_of_call(call), *tier);
+  auto zip = cohort_zip(call.backend, call.caller.id, study_of_call(call), *tier);
   if (!zip) return zip.error();
-  return bytes_response(std::move(*zip), "application/zip", "cohort.zip");
+  return scratch_response(std::move(*zip), "application/zip", "cohort.zip");
 }
 
 /// Looking at it is an act of its own.
