@@ -65,6 +65,15 @@ bool password_matches(const std::string& hash, const std::string& password) {
   return matches(hash.empty() ? nobodys : hash, password) && !hash.empty();
 }
 
+core::Result<void> check_unchanged(store::Reading& tx, const store::Account& checked) {
+  auto now = store::account_of(tx, checked.id);
+  if (!now) return now.error();
+  if (*now && (*now)->password_hash == checked.password_hash && (*now)->badge == checked.badge &&
+      (*now)->pin_hash == checked.pin_hash && (*now)->state == checked.state)
+    return {};
+  return core::Error{core::Errc::unauthorised, "the account was changed just now: try again"};
+}
+
 core::Result<void> use_code(Backend& backend, store::Account& account, const std::string& code) {
   auto secret = backend.secrets.opened(account.totp_secret);
   if (!secret) return secret.error();
@@ -126,6 +135,7 @@ core::Result<SignedIn> sign_in(Backend& backend, const Credentials& given,
   const std::int64_t now = backend.now_utc_us();
   const std::string token = new_token();
   auto made = backend.store.write([&](store::Writing& tx) -> core::Result<void> {
+    if (auto same = check_unchanged(tx, *account); !same) return same;
     if (auto done = note_success(tx, account->id, attempt, now); !done) return done;
     if (auto done = store::remove_old_sessions(tx, now - kSessionIdle_us, now - kSessionAge_us);
         !done)

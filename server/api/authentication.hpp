@@ -39,6 +39,9 @@ core::Result<SignedIn> sign_in(Backend& backend, const Credentials& given,
 bool needs_code(const core::Error& error);
 /// Takes as long for an unknown person as for a known one. @param hash  empty: of nobody
 bool password_matches(const std::string& hash, const std::string& password);
+/// Is the account's password, badge, PIN and state what it was when they were checked? A change
+/// meanwhile ends sessions, and this one is not to begin after it. Errors: unauthorised.
+core::Result<void> check_unchanged(store::Reading& tx, const store::Account& checked);
 /// Uses a one-time code up. Errors: unauthorised.
 core::Result<void> use_code(Backend& backend, store::Account& account, const std::string& code);
 /// Closes the conversations (live views) of an account whose sessions were ended: those of this

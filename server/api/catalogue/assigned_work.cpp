@@ -57,6 +57,7 @@ Result<http::Response> sign_in_at_station(const Call& call) {
   const std::string ticket = new_token();
   const std::int64_t now = call.backend.now_utc_us();
   auto in = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
+    if (auto same = check_unchanged(tx, *account); !same) return same;
     if (auto done = note_success(tx, account->id, attempt, now); !done) return done;
     return store::add_session(tx, ticket_hash(call, ticket), account->id, now);
   });

@@ -113,7 +113,11 @@ Result<std::string> session_for(const Call& call, const Oidc& oidc, const std::s
                               .peer = call.request.peer,
                               .what = "oidcSignIn",
                               .at_utc_us = call.backend.now_utc_us()});
-  auto made = call.backend.store.write([&](store::Writing& tx) {
+  auto made = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
+    auto linked = store::account_of_subject(tx, oidc.settings().issuer, subject);
+    if (!linked) return linked.error();
+    if (!*linked || (*linked)->id != (*account)->id || (*linked)->state != "active")
+      return Error{Errc::unauthorised, "the account was changed just now: try again"};
     return store::add_session(tx, token_hash(token), (*account)->id, call.backend.now_utc_us());
   });
   if (!made) return made.error();

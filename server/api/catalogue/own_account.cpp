@@ -17,6 +17,7 @@ using core::Error;
 using core::Result;
 
 constexpr std::uint64_t kMaxBody_bytes = 8192;
+constexpr const char* kCodesAreOn = "one-time codes are asked for already: end them first";
 constexpr std::size_t kTotpKey_bytes = 20;  // RFC 4226 section 4, R6: as long as SHA-1's output
 
 Result<store::Account> own_account(store::Reading& tx, const Call& call) {
@@ -40,10 +41,18 @@ struct Proof {
 
 using Change = std::function<Result<void>(store::Writing&, store::Account&)>;
 
+/// The own account, while the session that asks still lasts: a reset by an administrator ends it.
+Result<store::Account> account_of_session(store::Writing& tx, const Call& call) {
+  auto session = store::session_of(tx, call.caller.session_hash);
+  if (!session) return session.error();
+  if (!*session) return Error{Errc::unauthorised, "sign in first: the session is over"};
+  return std::move((*session)->account);
+}
+
 /// Changes the own account in one transaction and ends its other sessions.
 Result<void> changed(const Call& call, const Change& change) {
   auto done = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
-    auto account = own_account(tx, call);
+    auto account = account_of_session(tx, call);
     if (!account) return account.error();
     if (auto made = change(tx, *account); !made) return made;
     if (auto set = store::set_account(tx, *account); !set) return set;
@@ -123,13 +132,15 @@ Result<http::Response> begin_codes(const Call& call) {
   core::Fields fields(*json, "body");
   const Proof proof{"password", fields.text("password", kMaxPassword), ""};
   if (auto fine = fields.done(); !fine) return fine.error();
+  auto account = call.backend.store.read([&](store::Reading& tx) { return own_account(tx, call); });
+  if (!account) return account.error();
+  if (account->totp_confirmed) return Error{Errc::conflict, kCodesAreOn};
   auto refusal = refusal_of(call, proof);
   if (!refusal) return refusal.error();
   if (*refusal) return std::move(**refusal);
   const core::Bytes secret = core::random_bytes(kTotpKey_bytes);
   auto begun = changed(call, [&](store::Writing&, store::Account& own) -> Result<void> {
-    if (own.totp_confirmed)
-      return Error{Errc::conflict, "one-time codes are asked for already: end them first"};
+    if (own.totp_confirmed) return Error{Errc::conflict, kCodesAreOn};
     own.totp_secret = call.backend.secrets.sealed(core::text_of(secret));
     return {};
   });
