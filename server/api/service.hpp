@@ -30,6 +30,13 @@ std::variant<http::Admitted, http::Response> admit(Backend& backend,
                                                    const std::vector<RouteInfo>& table,
                                                    const http::RequestHead& head);
 
+/// The lane of the request's route; quick when there is none.
+http::Lane lane_of(const std::vector<RouteInfo>& table, const http::RequestHead& head);
+/// Familiar is who shows good credentials, and an origin from which somebody signed in before.
+/// Refuses who may not call the route, and an origin with too many failures.
+std::variant<http::Standing, http::Response> standing(Backend& backend,
+                                                      const std::vector<RouteInfo>& table,
+                                                      const http::RequestHead& head);
 /// A request for a WebSocket: checked as any, then the route's conversation.
 std::variant<http::Response, std::shared_ptr<http::Conversation>> converse(
     Backend& backend, const std::vector<RouteInfo>& table, const http::RequestHead& head);

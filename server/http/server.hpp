@@ -10,6 +10,7 @@
 #include <string>
 
 #include "server/http/conversation.hpp"
+#include "server/http/lane.hpp"
 #include "server/http/message.hpp"
 #include "server/http/networks.hpp"
 #include "server/http/scratch_space.hpp"
@@ -24,7 +25,9 @@ struct ServerOptions {
   bool behind_proxy = false;  ///< browsers reach it by TLS, by way of a proxy
   /// Behind a proxy: whose X-Forwarded-For is believed; the peer is whom it names last.
   Networks proxies = Networks::loopback();
-  int workers = 4;            ///< threads on which handlers run
+  int workers = 4;            ///< threads on which handlers run, but for those of a lane
+  LaneLimits hashing = hashing_limits();
+  LaneLimits remote{.threads = 4, .waiting_strangers = 8, .waiting = 32};
   int max_connections = 512;  ///< for one more, that which has kept us waiting longest is closed
   std::uint32_t max_header_bytes = 16 * 1024;
   std::chrono::milliseconds header_time{
@@ -54,6 +57,10 @@ struct Service {
   /// A request for a WebSocket: a refusal, or who answers in it. Empty: none are held.
   std::function<std::variant<Response, std::shared_ptr<Conversation>>(const RequestHead&)>
       converse = {};
+  /// Which threads handle it? Called on the input/output thread. Empty: the workers, always.
+  std::function<Lane(const RequestHead&)> lane = {};
+  /// For a lane with a queue, once the body is there: whose request it is, or a refusal.
+  std::function<std::variant<Standing, Response>(const RequestHead&)> standing = {};
 };
 
 /// One listening socket, HTTP/1.1 with keep-alive. `open` binds; `run` serves in the calling thread
