@@ -6,7 +6,7 @@ import type * as v from 'valibot';
 import type { components } from './generated/schema';
 import type { effectCheckSchema, effectListSchema, labRunListSchema, labSignalsSchema, measurementListSchema, modelListSchema, sentModelSchema } from './lab-schemas';
 import type { backupListSchema } from './backup-queries';
-import type { accountListSchema, auditCheckSchema, auditSchema, cohortListSchema, cohortSchema, stationListSchema } from './network-schemas';
+import type { accountListSchema, auditCheckSchema, auditSchema, cohortListSchema, cohortSchema, invitationListSchema, stationListSchema } from './network-schemas';
 import type { stationPageSchema } from './live-schemas';
 import type { traineeListSchema } from './trainee-queries';
 import type { studyEventsSchema, studyListSchema, studySchema } from './study-schemas';
@@ -35,6 +35,7 @@ export interface Agreed {
   readonly station: Takes<typeof stationPageSchema, Served['Station']>;
   readonly cohorts: Takes<typeof cohortListSchema, Served['Cohorts']>;
   readonly cohort: Takes<typeof cohortSchema, Served['Cohort']>;
+  readonly invitations: Takes<typeof invitationListSchema, Served['Invitations']>;
   readonly audit: Takes<typeof auditSchema, Served['AuditRows']>;
   readonly auditCheck: Takes<typeof auditCheckSchema, Served['AuditCheck']>;
   readonly trainees: Takes<typeof traineeListSchema, Served['TraineeList']>;
