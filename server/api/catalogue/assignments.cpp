@@ -318,6 +318,19 @@ std::vector<NamedSchema> plan_schemas() {
                                               "when a trial that does not count is repeated"))}})}};
 }
 
+RouteInfo adding_route() {
+  RouteInfo out = route("POST", "", "addAssignment",
+                        "Assign cases, or a study's protocol, to a cohort and to people",
+                        "NewAssignment", add_assignment_route);
+  out.body_limit_bytes = kMaxPlan_bytes;
+  out.ends = {{"/cohort", Object::cohort, out.who},
+              {"/people/*", Object::account, out.who, End::By::account_name},
+              {"/cases/*/case", Object::published_case, {Role::admin, Role::faculty}},
+              {"/protocol", Object::study, out.who}};
+  out.schemas = plan_schemas();
+  return out;
+}
+
 }  // namespace
 
 std::vector<RouteInfo> assignments_routes() {
@@ -330,15 +343,6 @@ std::vector<RouteInfo> assignments_routes() {
   RouteInfo one =
       route("GET", "/{id}", "assignment", "One, with who has done what", "", one_assignment);
   one.who = list.who;
-  RouteInfo add = route("POST", "", "addAssignment",
-                        "Assign cases, or a study's protocol, to a cohort and to people",
-                        "NewAssignment", add_assignment_route);
-  add.body_limit_bytes = kMaxPlan_bytes;
-  add.ends = {{"/cohort", Object::cohort, add.who},
-              {"/people/*", Object::account, add.who, End::By::account_name},
-              {"/cases/*/case", Object::published_case, {Role::admin, Role::faculty}},
-              {"/protocol", Object::study, add.who}};
-  add.schemas = plan_schemas();
   RouteInfo release = route("POST", "/{id}/release", "releaseResults",
                             "May trainees see their results?", "Release", set_release);
   release.schemas = {
@@ -359,7 +363,7 @@ std::vector<RouteInfo> assignments_routes() {
   // Whoever it is assigned to, also who has left the cohort since.
   free.ends = {{"account_id", Object::account, {Role::admin, Role::faculty}}};
   free.schemas = {{"Nothing", object({{"reason", optional(text("why"))}})}};
-  return {list, one, add, release, due, person, invalid, free};
+  return {list, one, adding_route(), release, due, person, invalid, free};
 }
 
 }  // namespace api

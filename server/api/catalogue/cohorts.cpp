@@ -156,9 +156,7 @@ RouteInfo route(std::string method, std::string tail, std::string id, std::strin
   return out;
 }
 
-}  // namespace
-
-std::vector<RouteInfo> cohorts_routes() {
+std::vector<NamedSchema> cohort_schemas() {
   using namespace schema;
   const std::vector<Field> summary{{"id", text("never changes")},
                                    {"name", text("for people")},
@@ -171,53 +169,67 @@ std::vector<RouteInfo> cohorts_routes() {
                                                   {"made_utc_us", integer("us", "since 1970, UTC")},
                                                   {"made_by", text("who")}}),
                                           "that wait for an answer, by name"));
+  return {{"CohortSummary", object(summary)},
+          {"Cohorts", object({{"cohorts", array(ref("CohortSummary"), "by name")}})},
+          {"CohortPerson", object({{"account_id", text("of the person")},
+                                   {"name", text("of the account")},
+                                   {"part", one_of({"trainee", "faculty"}, "faculty leads it")},
+                                   {"state", one_of({"active", "disabled"}, "of the account")}})},
+          {"Cohort", object(whole)}};
+}
+
+RouteInfo putting_route() {
+  RouteInfo out = route("POST", "/{id}/people", "putIntoCohort",
+                        "A trainee learns in it from now on, faculty leads it", put_person);
+  out.who.push_back(Role::director);
+  out.ends = {{"/name", Object::person, out.who, End::By::account_name}};
+  out.body = "PersonNamed";
+  out.schemas = {{"PersonNamed", schema::object({{"name", schema::text("of the account")}})}};
+  return out;
+}
+
+RouteInfo taking_route() {
+  RouteInfo out = route("DELETE", "/{id}/people/{account_id}", "takeFromCohort",
+                        "No longer in it; what was done stays", take_person);
+  out.parameters.push_back(path_text("account_id", "the person's"));
+  out.ends = {{"account_id", Object::person, out.who}};
+  return out;
+}
+
+/// Anybody may be invited: the person decides.
+std::vector<RouteInfo> inviting_routes() {
+  const std::vector<Grant> inviting{Role::admin, Role::director, Role::faculty};
+  RouteInfo ask = route("POST", "/{id}/invitations", "inviteIntoCohort",
+                        "Invite somebody into it whom one may not put there; the person decides",
+                        invite_person);
+  ask.who.push_back(Role::director);
+  ask.ends = {{"/name", Object::person, inviting, End::By::account_name}};
+  ask.body = "PersonNamed";
+  RouteInfo withdraw = route("DELETE", "/{id}/invitations/{name}", "withdrawInvitation",
+                             "Withdraw an invitation", withdraw_invitation);
+  withdraw.who.push_back(Role::director);
+  withdraw.parameters.push_back(path_text("name", "as it was typed"));
+  withdraw.ends = {{"name", Object::person, inviting, End::By::account_name}};
+  return {ask, withdraw};
+}
+
+}  // namespace
+
+std::vector<RouteInfo> cohorts_routes() {
   RouteInfo list = route("GET", "", "cohorts", "Cohorts by name: all, or those one leads or is in",
                          list_cohorts);
   list.answer = "Cohorts";
   list.who = {Role::admin, Role::director, {Role::faculty, Of::cohort}, {Role::trainee, Of::own}};
-  list.schemas = {
-      {"CohortSummary", object(summary)},
-      {"Cohorts", object({{"cohorts", array(ref("CohortSummary"), "by name")}})},
-      {"CohortPerson", object({{"account_id", text("of the person")},
-                               {"name", text("of the account")},
-                               {"part", one_of({"trainee", "faculty"}, "faculty leads it")},
-                               {"state", one_of({"active", "disabled"}, "of the account")}})},
-      {"Cohort", object(whole)}};
+  list.schemas = cohort_schemas();
   RouteInfo one = route("GET", "/{id}", "cohort", "One cohort with its people", one_cohort);
   one.who.push_back(Role::director);
   RouteInfo add = route("POST", "", "addCohort", "Make a cohort; faculty who makes it leads it",
                         add_cohort_route);
   add.body = "NewCohort";
-  add.schemas = {{"NewCohort", object({{"name", text("nobody else's")}})}};
-  RouteInfo in = route("POST", "/{id}/people", "putIntoCohort",
-                       "A trainee learns in it from now on, faculty leads it", put_person);
-  in.who.push_back(Role::director);
-  in.ends = {{.field = "/name",
-              .object = Object::person,
-              .who = {Role::admin, Role::director, {Role::faculty, Of::cohort}},
-              .by = End::By::account_name}};
-  in.body = "PersonNamed";
-  in.schemas = {{"PersonNamed", object({{"name", text("of the account")}})}};
-  RouteInfo out = route("DELETE", "/{id}/people/{account_id}", "takeFromCohort",
-                        "No longer in it; what was done stays", take_person);
-  out.parameters.push_back(path_text("account_id", "the person's"));
-  out.ends = {{.field = "account_id",
-               .object = Object::person,
-               .who = {Role::admin, {Role::faculty, Of::cohort}}}};
-  // Anybody may be invited: the person decides.
-  const std::vector<Grant> inviting{Role::admin, Role::director, Role::faculty};
-  RouteInfo ask =
-      route("POST", "/{id}/invitations", "inviteIntoCohort",
-            "Ask somebody into it whom one may not put there; who it is decides", invite_person);
-  ask.who.push_back(Role::director);
-  ask.ends = {{"/name", Object::person, inviting, End::By::account_name}};
-  ask.body = "PersonNamed";
-  RouteInfo withdraw = route("DELETE", "/{id}/invitations/{name}", "withdrawInvitation",
-                             "The invitation no longer waits", withdraw_invitation);
-  withdraw.who.push_back(Role::director);
-  withdraw.parameters.push_back(path_text("name", "as it was typed"));
-  withdraw.ends = {{"name", Object::person, inviting, End::By::account_name}};
-  return {list, one, add, in, out, ask, withdraw};
+  add.schemas = {{"NewCohort", schema::object({{"name", schema::text("nobody else's")}})}};
+  std::vector<RouteInfo> out{list, one, add, putting_route(), taking_route()};
+  for (RouteInfo& inviting : inviting_routes()) out.push_back(std::move(inviting));
+  return out;
 }
 
 }  // namespace api

@@ -46,5 +46,5 @@ export interface Agreed {
 
 export const kAgreed: Agreed = {
   session: true, trials: true, trial: true, signals: true, path: true, forceDepth: true, studies: true, study: true, studyEvents: true,
-  models: true, measurements: true, effects: true, effectCheck: true, labRuns: true, labSignals: true, accounts: true, stations: true, station: true, cohorts: true, cohort: true, audit: true, auditCheck: true, trainees: true, sentModel: true, backups: true,
+  models: true, measurements: true, effects: true, effectCheck: true, labRuns: true, labSignals: true, accounts: true, stations: true, station: true, cohorts: true, cohort: true, invitations: true, audit: true, auditCheck: true, trainees: true, sentModel: true, backups: true,
 };

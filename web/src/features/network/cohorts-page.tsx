@@ -22,9 +22,12 @@ function New() {
   );
 }
 
+const mayChange = (role: string | undefined) => role === 'admin' || role === 'faculty';
+
 type Person = Cohort['people'][number];
 
-function Members({ id, may, mayAdd }: { readonly id: string; readonly may: boolean; readonly mayAdd: boolean }) {
+function Members({ id, role }: { readonly id: string; readonly role: string | undefined }) {
+  const may = mayChange(role), mayAdd = may || role === 'director';
   const client = useQueryClient();
   const query = useQuery(cohortQuery(id));
   const [name, setName] = useState('');
@@ -47,9 +50,9 @@ function Members({ id, may, mayAdd }: { readonly id: string; readonly may: boole
             <Button look="quiet" disabled={invited.isPending || name.trim() === ''} onClick={() => invited.mutate(name.trim())}>Invite instead</Button>
           </form>
         ) : null}
-        {added.isError ? <Notice tone="bad" title="They were not added.">{added.error.message}. Of people whom you do not teach yet, invite them: they decide.</Notice> : null}
+        {added.isError ? <Notice tone="bad" title="They were not added.">{added.error.message}. Invite people whom you do not teach yet: they decide.</Notice> : null}
         {failed ? <Notice tone="bad" title="That was not done.">{failed.message}</Notice> : null}
-        {last ? <p role="status">{last.name} was taken out. <Button look="quiet" onClick={() => added.mutate(last.name)}>Undo</Button></p> : null}
+        {last ? <p role="status">{last.name} was taken out. {role === 'admin' ? <Button look="quiet" onClick={() => added.mutate(last.name)}>Undo</Button> : null}</p> : null}
         <Table<Person> caption="People of the cohort" rows={query.data.people} keyOf={({ account_id }) => account_id} empty="Nobody is in it yet." columns={[
           { name: 'Name', cell: (one) => one.name },
           { name: 'Part', cell: (one) => (one.part === 'faculty' ? <Badge tone="accent">leads</Badge> : 'trainee') },
@@ -66,7 +69,7 @@ function Members({ id, may, mayAdd }: { readonly id: string; readonly may: boole
 export function CohortsPage() {
   const query = useQuery(cohortsQuery);
   const role = useQuery({ ...sessionQuery, enabled: false }).data?.role;
-  const may = role === 'admin' || role === 'faculty';
+  const may = mayChange(role);
   const chosen = new URLSearchParams(useSearch()).get('id') ?? query.data?.cohorts[0]?.id;
   return (
     <Frame at="cohorts" lead="Groups of trainees and who leads them. Faculty see the trials of the people in the cohorts that they lead.">
@@ -82,7 +85,7 @@ export function CohortsPage() {
             {may ? <New /> : null}
           </div>
         </Card>
-        {chosen ? <Members key={chosen} id={chosen} may={may} mayAdd={may || role === 'director'} /> : null}
+        {chosen ? <Members key={chosen} id={chosen} role={role} /> : null}
       </div>
     </Frame>
   );
