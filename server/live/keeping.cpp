@@ -156,6 +156,9 @@ void Hub::refresh_names() {
       show(known({entry.station.id, entry.station.name}));
     }
   }
+  // Who teaches whom may have changed: who left a cohort no longer sees its people.
+  for (auto& [_, one] : stations_)
+    if (!one.shown_of.empty()) one.shown_due = due_ = true;
 }
 
 /// States of this process's own stations, several in one message.
