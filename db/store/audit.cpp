@@ -64,6 +64,10 @@ void Acting::is_by(const std::string& who, const std::string& role) {
   t_now->act_.role = role;
 }
 
+void Acting::without_detail() {
+  if (t_now) t_now->act_.detail = "{}";
+}
+
 core::Result<void> note_act(Writing& tx, const AuditKey& key) {
   if (!t_now || t_now->noted_) return {};
   return add_act(tx, key, t_now->act_);

@@ -35,6 +35,8 @@ class Acting {
   Acting& operator=(const Acting&) = delete;
   /// Names who acts, once that is known: at signing in.
   static void is_by(const std::string& who, const std::string& role);
+  /// Keeps nothing of what was sent: it may be a secret in the wrong field.
+  static void without_detail();
 
  private:
   friend core::Result<void> note_act(Writing& tx, const AuditKey& key);
