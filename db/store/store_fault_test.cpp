@@ -8,6 +8,7 @@
 #include "db/store/cases.hpp"
 #include "db/store/jobs.hpp"
 #include "db/store/migrations.hpp"
+#include "db/store/sign_ins.hpp"
 #include "db/store/store_test_support.hpp"
 #include "db/store/study_slots.hpp"
 #include "db/store/trials.hpp"
@@ -55,9 +56,9 @@ std::string contents(Store& store) {
   std::string out;
   auto read = store.read([&](Reading& tx) -> core::Result<void> {
     for (const char* table :
-         {"accounts", "sessions", "login_failures", "stations", "objects", "cases", "case_parts",
-          "uploads", "trials", "trial_metrics", "jobs", "studies", "study_scenarios",
-          "study_participants", "study_slots", "study_trials", "study_events"}) {
+         {"accounts", "sessions", "sign_in_failures", "known_origins", "stations", "objects",
+          "cases", "case_parts", "uploads", "trials", "trial_metrics", "jobs", "studies",
+          "study_scenarios", "study_participants", "study_slots", "study_trials", "study_events"}) {
       auto rows = tx.query(std::string("select * from ") + table);
       if (!rows) return rows.error();
       out += std::string(table) + ":" + std::to_string(rows->size()) + "\n";
@@ -151,14 +152,16 @@ TEST_P(StoreFaults, AnAssessmentIsWholeOrAbsent) {
 }
 
 TEST_P(StoreFaults, ASignInIsWholeOrAbsent) {
-  EXPECT_GE(fails_cleanly_at_every_step(GetParam(),
-                                        [](Writing& tx) -> core::Result<void> {
-                                          if (auto done = clear_login_failures(tx, "ada", "peer");
-                                              !done)
-                                            return done;
-                                          return add_session(tx, "token", "1", 2);
-                                        }),
-            4);
+  EXPECT_GE(
+      fails_cleanly_at_every_step(GetParam(),
+                                  [](Writing& tx) -> core::Result<void> {
+                                    const Attempt from{Secret::account_password, "ada", "peer"};
+                                    if (auto done = clear_failures(tx, from); !done) return done;
+                                    if (auto done = note_origin(tx, "1", from, 2, 1); !done)
+                                      return done;
+                                    return add_session(tx, "token", "1", 2);
+                                  }),
+      4);
 }
 
 TEST_P(StoreFaults, MigratingIsDoneAgainFromWhereItFailed) {

@@ -165,15 +165,26 @@ TEST_F(Assignments, TheSameSeedGivesTheSameOrders) {
   EXPECT_NE(order(8), first);
 }
 
-TEST_F(Assignments, AWrongPinLocksTheBadgeAfterFive) {
+TEST_F(Assignments, FiveWrongPinsSlowTheBadgeDownUntilItHasANewPin) {
   for (int i = 0; i < 5; ++i)
-    EXPECT_EQ(
-        work("sign-in", {{"badge", "4711"}, {"pin", "0000"}}, i % 2 ? "token-1" : "token-2").status,
-        401);
+    EXPECT_EQ(work("sign-in", {{"badge", "4711"}, {"pin", "0000"}}).status, 401);
   EXPECT_EQ(work("sign-in", {{"badge", "4711"}, {"pin", "2468"}}).status, 429);
   EXPECT_EQ(post("fay", "/accounts/tom/badge", {{"badge", "4711"}, {"pin", "1357"}}).status, 200);
   EXPECT_EQ(work("sign-in", {{"badge", "4711"}, {"pin", "1357"}}).status, 200) << "a new PIN opens";
   EXPECT_EQ(work("sign-in", {{"badge", "9999"}, {"pin", "2468"}}).status, 401);
+}
+
+TEST_F(Assignments, ATicketEndsWhenTheBadgeOrThePinIsTakenAwayOrChanged) {
+  assigned(two_cases());
+  for (const core::Json& badge :
+       {core::Json{{"badge", "4711"}, {"pin", "1357"}},
+        core::Json{{"badge", "4712"}, {"pin", "2468"}}, core::Json::object()}) {
+    EXPECT_EQ(post("fay", "/accounts/tom/badge", {{"badge", "4711"}, {"pin", "2468"}}).status, 200);
+    const std::string in = ticket("token-1");
+    EXPECT_EQ(work("next", {{"ticket", in}}).status, 200);
+    EXPECT_EQ(post("fay", "/accounts/tom/badge", badge).status, 200);
+    EXPECT_EQ(work("next", {{"ticket", in}}).status, 403) << badge;
+  }
 }
 
 TEST_F(Assignments, ATicketIsOfOneStationAndNoCookie) {

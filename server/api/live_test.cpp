@@ -216,5 +216,24 @@ TEST_F(LiveRoutes, RefusalsOfAStationAreNotedAndCannotFloodTheTrail) {
   EXPECT_EQ(rows_of("station-1").size(), 0u) << "of its own allowance";
 }
 
+TEST_F(LiveRoutes, WhoseSessionsEndIsHungUpOnAtOnce) {
+  const core::Json none = core::Json::object();
+  for (const auto& [path, body] :
+       {std::pair<std::string, core::Json>{"role", {{"role", "trainee"}}},
+        {"state", {{"state", "disabled"}}},
+        {"password", none},
+        {"badge", none}}) {
+    const auto watcher = watching("fay"), other = watching("flo");
+    ASSERT_EQ(post("ann", "/accounts/fay/" + path, body).status, 200) << path;
+    EXPECT_TRUE(watcher->ended) << path;
+    EXPECT_FALSE(other->ended) << path;
+    EXPECT_EQ(post("ann", "/accounts/fay/role", {{"role", "faculty"}}).status, 200);
+    EXPECT_EQ(post("ann", "/accounts/fay/state", {{"state", "active"}}).status, 200);
+    ASSERT_TRUE(store_.write([](store::Writing& tx) {
+      return tx.query("update accounts set must_change = 0 where id = 'fay'");
+    }));
+  }
+}
+
 }  // namespace
 }  // namespace api

@@ -11,6 +11,7 @@
 #include "core/json.hpp"
 #include "core/result.hpp"
 #include "server/http/conversation.hpp"
+#include "server/http/lane.hpp"
 #include "server/http/message.hpp"
 
 namespace api {
@@ -105,6 +106,7 @@ struct RouteInfo {
   std::string object_parameter = "id";  ///< the argument that names the object
   bool before_password_change = false;  ///< also for who must choose a password first
   bool audited = true;                  ///< a change by it is noted in the audit trail
+  http::Lane lane = http::Lane::quick;  ///< on which threads it is handled
   std::vector<Parameter> parameters;
   std::string body;  ///< name of the body's schema, kBytes, or "" for none
   std::uint64_t body_limit_bytes = 0;

@@ -11,6 +11,7 @@
 #include "server/api/access.hpp"
 #include "server/api/acts.hpp"
 #include "server/api/authentication.hpp"
+#include "server/api/throttle.hpp"
 
 namespace api {
 namespace {
@@ -106,7 +107,7 @@ core::Result<void> check_not_forged(const RouteInfo& route, const Caller& caller
 /// What was asked of whom: for the notes.
 struct Asked {
   const core::Result<Match>& matched;
-  const std::string& allowed;
+  std::string_view allowed;
   std::optional<Caller> caller = std::nullopt;
   bool overstepped = false;  ///< asked for what is not theirs
 };
@@ -146,14 +147,11 @@ core::Result<http::Response> handled(Backend& backend, const Match& matched, con
   return route.handle(call);
 }
 
-http::Response refusal(const core::Error& error, const std::string& allowed) {
+http::Response refusal(const core::Error& error, std::string_view allowed) {
   if (error.code == core::Errc::not_found && !allowed.empty()) {
-    auto response = http::error_response(405, "bad_input", "this address takes " + allowed);
-    return response.with("Allow", allowed), response;
-  }
-  if (is_throttled(error)) {
-    auto response = http::error_response(429, "too_many", error.what);
-    return response.with("Retry-After", std::to_string(kThrottleWindow_us / 1'000'000)), response;
+    const std::string methods(allowed);
+    auto response = http::error_response(405, "bad_input", "this address takes " + methods);
+    return response.with("Allow", methods), response;
   }
   auto response = error_response(error);
   if (error.code == core::Errc::unauthorised) response.with("WWW-Authenticate", "Bearer");
@@ -350,6 +348,46 @@ std::variant<http::Response, std::shared_ptr<http::Conversation>> converse(
 bool takes_file(const std::vector<RouteInfo>& table, const http::RequestHead& head) {
   const auto matched = match(table, head);
   return matched && matched->route->body_to_file;
+}
+
+http::Lane lane_of(const std::vector<RouteInfo>& table, const http::RequestHead& head) {
+  const auto matched = match(table, head);
+  return matched ? matched->route->lane : http::Lane::quick;
+}
+
+namespace {
+
+/// Of an open route, where nobody's credentials are known yet.
+std::variant<http::Standing, http::Response> standing_of_origin(Backend& backend,
+                                                                const RouteInfo& route,
+                                                                const std::string& origin) {
+  constexpr auto kSecret = store::Secret::account_password;
+  auto known = backend.store.read(
+      [&](store::Reading& tx) { return store::is_known_origin(tx, kSecret, origin); });
+  if (!known) return refusal(known.error(), "");
+  if (*known) return http::Standing::familiar;
+  if (route.lane != http::Lane::hashing) return http::Standing::stranger;
+  auto early = too_early_from(backend, kSecret, origin);
+  if (!early) return refusal(early.error(), "");
+  if (*early) return std::move(**early);
+  return http::Standing::stranger;
+}
+
+}  // namespace
+
+std::variant<http::Standing, http::Response> standing(Backend& backend,
+                                                      const std::vector<RouteInfo>& table,
+                                                      const http::RequestHead& head) {
+  const auto matched = match(table, head);
+  if (!matched) return refusal(matched.error(), "");
+  if (matched->route->open)
+    return standing_of_origin(backend, *matched->route, network_of(head.peer));
+  Asked asked{matched, ""};
+  auto caller = allowed_caller(backend, *matched->route, head, &asked);
+  if (caller) return http::Standing::familiar;
+  auto refused = refusal(caller.error(), "");
+  note_if_refused(backend, asked, head, refused);
+  return refused;
 }
 
 }  // namespace api

@@ -86,6 +86,11 @@ http::Service service_of(api::Backend& backend, const std::optional<std::filesys
           [&backend](const http::RequestHead& head) {
             return api::converse(backend, api::routes(), head);
           },
+      .lane = [](const http::RequestHead& head) { return api::lane_of(api::routes(), head); },
+      .standing =
+          [&backend](const http::RequestHead& head) {
+            return api::standing(backend, api::routes(), head);
+          },
       .spools = [](const http::RequestHead& head) { return api::takes_file(api::routes(), head); }};
 }
 

@@ -17,6 +17,7 @@
 #include <list>
 
 #include "server/http/coroutine.hpp"
+#include "server/http/handling.hpp"
 #include "server/http/pieces.hpp"
 #include "server/http/server.hpp"
 #include "server/http/spool.hpp"
@@ -30,48 +31,29 @@ namespace net = boost::asio;
 namespace beast = boost::beast;
 using boost::system::error_code;
 using net::ip::tcp;
-using Admission = std::variant<std::uint64_t, Response>;
-using Opening = std::variant<Response, std::shared_ptr<Conversation>>;
 using Parser = beast::http::request_parser<beast::http::string_body>;
 
 constexpr std::size_t kLingering_bytes = 16u << 20;
 constexpr std::chrono::seconds kLingering_time{2};
 constexpr std::chrono::milliseconds kFarewell_time{500};
 
-/// A library threw where a handler did not expect it: this request fails, the server goes on.
-Response broken(const std::exception& failure) {
-  fmt::print(stderr, "tractus-server: a request failed: {}\n", failure.what());
-  return error_response(500, "io", "the server could not do this; its log says why");
+/// A lane's threads and its queue. Touched by the input/output thread alone.
+struct Queue {
+  explicit Queue(const LaneLimits& given) : limits(given), threads(given.threads) {}
+  bool has_room(Standing standing) const {
+    const bool stranger = standing == Standing::stranger;
+    return taken < limits.threads + (stranger ? limits.waiting_strangers : limits.waiting);
+  }
+  LaneLimits limits;
+  std::size_t taken = 0;  ///< being handled or waiting
+  net::thread_pool threads;
+};
+
+Response too_many_at_once() {
+  auto response = error_response(503, "unavailable", "too many at once: try again in 2 s");
+  return response.with("Retry-After", "2"), response;
 }
 
-// What workers do: see on_workers.
-struct Handling {
-  const Service* service;
-  const Request* request;
-  Response operator()() const try {
-    return service->handle(*request);
-  } catch (const std::exception& failure) {
-    return broken(failure);
-  }
-};
-struct Admitting {
-  const Service* service;
-  const RequestHead* head;
-  Admission operator()() const try {
-    return service->admit(*head);
-  } catch (const std::exception& failure) {
-    return broken(failure);
-  }
-};
-struct OpeningConversation {
-  const Service* service;
-  const RequestHead* head;
-  Opening operator()() const try {
-    return service->converse(*head);
-  } catch (const std::exception& failure) {
-    return broken(failure);
-  }
-};
 std::string lower_case(beast::string_view text) {
   std::string out(text);
   for (char& c : out)
@@ -114,7 +96,9 @@ struct Server::State {
   State(ServerOptions given, Service what)
       : options(std::move(given)),
         service(std::move(what)),
-        workers(static_cast<std::size_t>(options.workers)) {}
+        workers(static_cast<std::size_t>(options.workers)),
+        hashing(options.hashing),
+        remote(options.remote) {}
 
   struct Connection {
     Connection(tcp::socket socket, net::ssl::context* tls) : stream(std::move(socket), tls) {}
@@ -133,6 +117,8 @@ struct Server::State {
   net::awaitable<void> serve(std::list<Connection>::iterator connection);
   /// One request and its answer; false when the connection is to be closed.
   net::awaitable<bool> exchange(Connection& connection);
+  net::awaitable<Response> handle(const Request& request);
+  net::awaitable<Response> handle_queued(Queue& queue, const Request& request);
   net::awaitable<bool> converse(Connection& connection, const Parser& parser,
                                 const RequestHead& head);
   bool make_room();
@@ -156,6 +142,7 @@ struct Server::State {
   tcp::acceptor acceptor{io};
   net::steady_timer drained{io};
   net::thread_pool workers;
+  Queue hashing, remote;
   std::list<Connection> connections;  ///< touched by the input/output thread alone
   bool draining = false;
 };
@@ -273,11 +260,28 @@ net::awaitable<bool> Server::State::exchange(Connection& c) {
   {
     Request request{*head, std::move(parser.get().body()), spooled.path};
     c.stream.expires_never();
-    response = co_await on_workers(workers, Handling{&service, &request});
+    response = co_await handle(request);
   }
   const bool stays = keep_alive && !draining;
   const bool written = co_await write(c, *head, response, stays);
   co_return written&& stays;
+}
+
+net::awaitable<Response> Server::State::handle(const Request& request) {
+  const Lane lane = service.lane ? service.lane(request) : Lane::quick;
+  if (lane == Lane::quick) co_return co_await on_workers(workers, Handling{&service, &request});
+  co_return co_await handle_queued(lane == Lane::hashing ? hashing : remote, request);
+}
+
+/// Answers 503 at once when the lane's queue is full: whoever waits in it is answered soon.
+net::awaitable<Response> Server::State::handle_queued(Queue& queue, const Request& request) {
+  Ranked ranked = co_await on_workers(workers, Ranking{&service, &request});
+  if (auto* refusal = std::get_if<Response>(&ranked)) co_return std::move(*refusal);
+  if (!queue.has_room(std::get<Standing>(ranked))) co_return too_many_at_once();
+  ++queue.taken;
+  Response response = co_await on_workers(queue.threads, Handling{&service, &request});
+  --queue.taken;
+  co_return response;
 }
 
 net::awaitable<bool> Server::State::converse(Connection& c, const Parser& parser,
@@ -452,6 +456,10 @@ void Server::run() {
   net::co_spawn(state_->io, state_->accept_all(), net::detached);
   state_->io.run();
   state_->workers.join();
+  for (Queue* queue : {&state_->hashing, &state_->remote}) {
+    queue->threads.stop();  // who waits in it has no connection any more
+    queue->threads.join();
+  }
 }
 
 void Server::stop() {

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "server/http/conversation.hpp"
+#include "server/http/lane.hpp"
 #include "server/http/message.hpp"
 
 namespace http {
@@ -20,7 +21,9 @@ struct ServerOptions {
   /// PEM files of a certificate chain and its key; none: plain HTTP.
   std::optional<std::pair<std::filesystem::path, std::filesystem::path>> tls;
   bool behind_proxy = false;  ///< the peer is whom the proxy names last in X-Forwarded-For
-  int workers = 4;            ///< threads on which handlers run
+  int workers = 4;            ///< threads on which handlers run, but for those of a lane
+  LaneLimits hashing = hashing_limits();
+  LaneLimits remote{.threads = 4, .waiting_strangers = 8, .waiting = 32};
   int max_connections = 512;  ///< for one more, that which has kept us waiting longest is closed
   std::uint32_t max_header_bytes = 16 * 1024;
   std::chrono::milliseconds header_time{
@@ -43,6 +46,10 @@ struct Service {
   /// A request for a WebSocket: a refusal, or who answers in it. Empty: none are held.
   std::function<std::variant<Response, std::shared_ptr<Conversation>>(const RequestHead&)>
       converse = {};
+  /// Which threads handle it? Called on the input/output thread. Empty: the workers, always.
+  std::function<Lane(const RequestHead&)> lane = {};
+  /// For a lane with a queue, once the body is there: whose request it is, or a refusal.
+  std::function<std::variant<Standing, Response>(const RequestHead&)> standing = {};
   /// Is this request's body to go to a file (ServerOptions::spool)? Called on the input/output
   /// thread. Empty: none is.
   std::function<bool(const RequestHead&)> spools = {};

@@ -9,6 +9,7 @@
 #include "server/api/backend.hpp"
 #include "server/api/people_json.hpp"
 #include "server/api/schema.hpp"
+#include "server/api/throttle.hpp"
 #include "server/api/uploads.hpp"
 #include "server/jobs/scenario_facts.hpp"
 #include "study/sealed_law.hpp"
@@ -20,7 +21,7 @@ using core::Errc;
 using core::Error;
 using core::Result;
 
-constexpr std::uint64_t kMaxBody_bytes = 1024, kPinFailures = 5;
+constexpr std::uint64_t kMaxBody_bytes = 1024;
 
 /// A ticket is a session of this trainee at this station: it opens nothing elsewhere, and no
 /// browser's cookie is one.
@@ -28,17 +29,16 @@ std::string ticket_hash(const Call& call, const std::string& ticket) {
   return token_hash("ticket " + call.caller.id + " " + ticket);
 }
 
-Result<store::Account> let_in(const Call& call, const std::string& badge, const std::string& pin) {
-  const std::string throttled = "badge " + badge;
-  if (auto open = check_throttle(call.backend, throttled, "", kPinFailures, kPinFailures); !open)
-    return open.error();
-  auto account = call.backend.store.read(
-      [&](store::Reading& tx) { return store::account_with_badge(tx, badge); });
+Result<store::Account> let_in(Backend& backend, const store::Attempt& attempt,
+                              const std::string& pin) {
+  auto account = backend.store.read(
+      [&](store::Reading& tx) { return store::account_with_badge(tx, attempt.name); });
   if (!account) return account.error();
   const bool right = password_matches(*account ? (*account)->pin_hash : "", pin);
+  if (!*account) store::Acting::without_detail();
   if (right && (*account)->state == "active" && (*account)->role == name(Role::trainee))
     return std::move(**account);
-  if (auto noted = note_failure(call.backend, throttled, ""); !noted) return noted.error();
+  if (auto noted = note_failure(backend, attempt); !noted) return noted.error();
   return Error{Errc::unauthorised, "badge or PIN is wrong"};
 }
 
@@ -48,13 +48,18 @@ Result<http::Response> sign_in_at_station(const Call& call) {
   core::Fields fields(*json, "body");
   const std::string badge = fields.text("badge", kMaxBadge), pin = fields.text("pin", kMaxPin);
   if (auto done = fields.done(); !done) return done.error();
-  auto account = let_in(call, badge, pin);
+  const store::Attempt attempt{store::Secret::badge_pin, badge, call.caller.id};
+  auto early = too_early(call.backend, attempt);
+  if (!early) return early.error();
+  if (*early) return std::move(**early);
+  auto account = let_in(call.backend, attempt, pin);
   if (!account) return account.error();
   const std::string ticket = new_token();
+  const std::int64_t now = call.backend.now_utc_us();
   auto in = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
-    if (auto done = store::clear_login_failures(tx, "badge " + badge, ""); !done) return done;
-    return store::add_session(tx, ticket_hash(call, ticket), account->id,
-                              call.backend.now_utc_us());
+    if (auto same = check_unchanged(tx, *account); !same) return same;
+    if (auto done = note_success(tx, account->id, attempt, now); !done) return done;
+    return store::add_session(tx, ticket_hash(call, ticket), account->id, now);
   });
   if (!in) return in.error();
   return json_response({{"ticket", ticket}, {"name", account->name}});
@@ -198,9 +203,10 @@ RouteInfo route(std::string tail, std::string id, std::string summary, std::stri
 std::vector<RouteInfo> assigned_work_routes() {
   using namespace schema;
   RouteInfo in = route("sign-in", "signInAtStation",
-                       "A trainee by badge and PIN; five failures "
-                       "lock the badge for a quarter of an hour",
+                       "A trainee by badge and PIN; after five failures at a station, one attempt "
+                       "in three minutes",
                        "BadgeAndPin", "Ticket", sign_in_at_station);
+  in.lane = http::Lane::hashing;
   in.schemas = {{"BadgeAndPin", object({{"badge", text("as read")}, {"pin", text("as typed")}})},
                 {"Ticket", object({{"ticket", text("for this station alone")},
                                    {"name", text("of the account, to greet by")}})}};

@@ -53,7 +53,9 @@ export const addCohort = (name: string) => ask(address('/api/v1/cohorts', {}), c
 export const addToCohort = (id: string, name: string) => ask(address('/api/v1/cohorts/{id}/people', { id }), cohortSchema, { ...posted, body: { name } });
 export const takeFromCohort = (id: string, account: string) => ask(address('/api/v1/cohorts/{id}/people/{account_id}', { id, account_id: account }), cohortSchema, { method: 'DELETE' });
 
-export const changePassword = (old: string, next: string) => tell(address('/api/v1/session/password', {}), { ...posted, body: { old, new: next } });
-export const beginCodes = () => ask(address('/api/v1/session/codes', {}), codesSchema, posted);
+/** @param code one-time, where the account asks for codes */
+export const changePassword = (old: string, next: string, code?: string) =>
+  tell(address('/api/v1/session/password', {}), { ...posted, body: { old, new: next, ...(code === undefined ? {} : { code }) } });
+export const beginCodes = (password: string) => ask(address('/api/v1/session/codes', {}), codesSchema, { ...posted, body: { password } });
 export const confirmCodes = (code: string) => tell(address('/api/v1/session/codes/confirm', {}), { ...posted, body: { code } });
-export const endCodes = (code: string) => tell(address('/api/v1/session/codes/end', {}), { ...posted, body: { code } });
+export const endCodes = (password: string, code: string) => tell(address('/api/v1/session/codes/end', {}), { ...posted, body: { password, code } });
