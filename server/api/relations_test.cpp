@@ -24,10 +24,6 @@ struct Example {
 };
 using Examples = std::map<std::string, std::vector<Example>>;
 
-const RouteInfo& route_named(const std::string& id) {
-  return *std::ranges::find(routes(), id, &RouteInfo::id);
-}
-
 Json filled(const Json& body, const std::string& value) {
   std::string text = body.dump();
   for (auto at = text.find('$'); at != std::string::npos; at = text.find('$'))
@@ -108,8 +104,8 @@ class Relations : public PeopleTest {
            "through",
            "running"}}},
         {"sendModel",
-         {{"id", "/models/$/send", {{"all", true}}, "m1", "m2"},
-          {"/stations/*", "/models/m1/send", {{"stations", {"$"}}}, "s1", "s2"}}},
+         {{"id", "/lab/models/$/send", {{"all", true}}, "m1", "m2"},
+          {"/stations/*", "/lab/models/m1/send", {{"stations", {"$"}}}, "s1", "s2"}}},
         {"referenceWay",
          {{"reference",
            "/trials/" + trial_of("tom") + "/references/$",
@@ -223,7 +219,7 @@ TEST_F(Relations, ARouteThatChangesSomethingNamesEveryEndOrIsOfOneObject) {
       // what all who may call these have all of: volumes, cases, scenarios, models, measurements
       "addVolume", "releaseVolume", "refuseVolume", "planTract", "makeCase", "retireCase",
       "checkScenario", "addScenario", "publishScenario", "addModel", "addMeasurements",
-      "checkEffect", "diagnose", "compare", "fit", "stopLabRun", "publishLabRun",
+      "checkEffect", "startDiagnosis", "startComparison", "startFit", "stopLabRun", "publishLabRun",
       // released trials alone (db/store/released.hpp)
       "lockAnalysisPlan", "analyseCohort",
       // the server's own
@@ -268,6 +264,9 @@ TEST_F(Relations, WhoIsInvitedDecides) {
   const auto invited = [&](const char* who) {
     return json(get(who, "/session/invitations"))["invitations"];
   };
+  const auto says = [&](const char* who, const std::string& deed) {
+    return ask(request("POST", "/api/v1/session/invitations/c-tom/" + deed, as(who))).status;
+  };
   const auto sees = [&] {
     return get("fay", "/trials/" + trial_of("tia") + "/comments").status == 200;
   };
@@ -279,14 +278,14 @@ TEST_F(Relations, WhoIsInvitedDecides) {
   EXPECT_EQ(invited("tia")[0]["cohort_id"], "c-tom");
   EXPECT_EQ(invited("tia")[0]["made_by"], "fay");
   EXPECT_EQ(invited("tom").size(), 0u);
-  EXPECT_EQ(post("tom", "/session/invitations/c-tom/accept").status, 404) << "it is tia's";
+  EXPECT_EQ(says("tom", "accept"), 404) << "it is tia's";
 
-  EXPECT_EQ(post("tia", "/session/invitations/c-tom/decline").status, 200);
-  EXPECT_EQ(post("tia", "/session/invitations/c-tom/accept").status, 404);
+  EXPECT_EQ(says("tia", "decline"), 200);
+  EXPECT_EQ(says("tia", "accept"), 404);
   EXPECT_FALSE(sees());
 
   EXPECT_EQ(post("fay", "/cohorts/c-tom/invitations", {{"name", "tia"}}).status, 201);
-  EXPECT_EQ(post("tia", "/session/invitations/c-tom/accept").status, 200);
+  EXPECT_EQ(says("tia", "accept"), 200);
   EXPECT_TRUE(sees());
   EXPECT_EQ(invited("tia").size(), 0u);
   const Json assignments = json(get("tia", "/assignments"))["assignments"];
