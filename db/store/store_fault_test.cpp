@@ -117,10 +117,12 @@ TEST_P(StoreFaults, APublishedCaseIsWholeOrAbsent) {
 /// A study of which a station has a trial, all of whose bytes are here.
 core::Result<void> furnish_study(Writing& tx) {
   const Study study{.id = "study", .title = "", .ordering = "random"};
-  if (auto done = add_study(tx, study, {kCase}, {"ada", 1}); !done) return done;
-  if (auto done = add_participant(tx, "study", {.name = "P1"}, {kCase, kCase}, {"ada", 1}); !done)
+  if (auto done = add_study(tx, study, {kCase}, {"ada", 1}); !done) return done.error();
+  if (auto done = add_participant(tx, find_study(tx, "study").value(), {.name = "P1"},
+                                  {kCase, kCase}, {"ada", 1});
+      !done)
     return done;
-  auto slots = study_slots(tx, "study");
+  auto slots = study_slots(tx, find_study(tx, "study").value());
   if (!slots) return slots.error();
   return announce_for_slot(tx, kTrial, slots->front().id, 1);
 }

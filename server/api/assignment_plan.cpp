@@ -161,14 +161,15 @@ Result<std::vector<std::string>> note_cases(store::Writing& tx, const Assignment
 /// Scenarios, order and repeats of the study that is the protocol.
 Result<std::vector<std::string>> protocol_cases(store::Reading& tx, const std::string& protocol,
                                                 store::Assignment& into) {
-  auto study = store::study_of(tx, protocol);
+  auto id = store::find_study(tx, protocol);
+  if (!id) return id.error();
+  auto study = store::study_of(tx, *id);
   if (!study) return study.error();
-  if (!*study) return absent("/protocol", protocol);
-  auto scenarios = store::study_scenarios(tx, protocol);
+  auto scenarios = store::study_scenarios(tx, *id);
   if (!scenarios) return scenarios.error();
-  into.study.ordering = (*study)->ordering;
-  into.study.repeats = (*study)->repeats;
-  into.study.on_invalid = (*study)->on_invalid;
+  into.study.ordering = study->ordering;
+  into.study.repeats = study->repeats;
+  into.study.on_invalid = study->on_invalid;
   std::vector<std::string> out;
   for (const auto& scenario : *scenarios) out.push_back(scenario.case_id);
   return out;
@@ -184,14 +185,13 @@ Result<void> make(store::Writing& tx, const Call& call, const AssignmentPlan& pl
   if (!cases) return cases.error();
   auto people = people_meant(tx, call, plan);
   if (!people) return people.error();
-  const std::string& id = assignment.study.id;
-  if (auto done = store::add_study(tx, assignment.study, *cases, deed); !done) return done;
-  if (auto done = store::add_assignment(tx, assignment); !done) return done;
+  auto id = store::add_assignment(tx, assignment, *cases, deed);
+  if (!id) return id.error();
   for (const AssignedCase& one : plan.cases)
     if (!one.name.empty())
-      if (auto done = store::set_assigned_name(tx, id, one.case_id, one.name); !done) return done;
+      if (auto done = store::set_assigned_name(tx, *id, one.case_id, one.name); !done) return done;
   for (const store::Account& person : *people)
-    if (auto done = assign_to(tx, id, person, deed); !done) return done;
+    if (auto done = assign_to(tx, *id, person, deed); !done) return done;
   return {};
 }
 
@@ -230,13 +230,12 @@ Result<std::string> make_assignment(const Call& call, const AssignmentPlan& plan
   return plan.assignment.study.id;
 }
 
-Result<void> assign_to(store::Writing& tx, const std::string& id, const store::Account& account,
-                       const store::Deed& deed) {
+Result<void> assign_to(store::Writing& tx, const store::AssignmentId& id,
+                       const store::Account& account, const store::Deed& deed) {
   if (account.role != name(Role::trainee))
     return Error{Errc::bad_input, account.name + ": is no trainee"};
   auto study = store::study_of(tx, id);
   if (!study) return study.error();
-  if (!*study) return absent("assignment", id);
   auto scenarios = store::study_scenarios(tx, id);
   if (!scenarios) return scenarios.error();
   auto there = store::study_participants(tx, id);
@@ -246,7 +245,7 @@ Result<void> assign_to(store::Writing& tx, const std::string& id, const store::A
   if (std::ranges::find(*there, participant, &store::Participant::name) != there->end())
     return Error{Errc::conflict, account.name + ": it is assigned to this person already"};
   if (auto done = store::add_participant(tx, id, {.name = participant},
-                                         order_for(**study, *scenarios, int(there->size())), deed);
+                                         order_for(*study, *scenarios, int(there->size())), deed);
       !done)
     return done;
   return store::add_assigned_person(tx, id, account.id, participant);
@@ -256,8 +255,8 @@ Result<void> assign_what_the_cohort_has(store::Writing& tx, const std::string& c
                                         const store::Account& account, const store::Deed& deed) {
   auto ids = store::assignments_of_cohort(tx, cohort_id);
   if (!ids) return ids.error();
-  for (const std::string& id : *ids) {
-    auto there = store::has_assignment(tx, account.id, id);
+  for (const store::AssignmentId& id : *ids) {
+    auto there = store::has_assignment(tx, account.id, id.text());
     if (!there) return there.error();
     if (*there) continue;
     if (auto done = assign_to(tx, id, account, deed); !done) return done;

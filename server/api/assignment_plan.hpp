@@ -31,7 +31,7 @@ core::Result<std::string> make_assignment(const Call& call, const AssignmentPlan
 
 /// Puts an account into it, with an order of its own. Errors: conflict when it is in it already;
 /// bad_input for one that is no trainee's.
-core::Result<void> assign_to(store::Writing& tx, const std::string& id,
+core::Result<void> assign_to(store::Writing& tx, const store::AssignmentId& id,
                              const store::Account& account, const store::Deed& deed);
 /// A trainee who joins a cohort later gets what it was assigned.
 core::Result<void> assign_what_the_cohort_has(store::Writing& tx, const std::string& cohort_id,

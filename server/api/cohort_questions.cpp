@@ -85,7 +85,7 @@ Result<void> of_method(Backend& backend, core::Fields& fields, store::AnalysisRu
   if (!plan) return plan.error();
   if (!run.study.empty()) {
     const auto known =
-        backend.store.read([&](store::Reading& tx) { return store::study_of(tx, run.study); });
+        backend.store.read([&](store::Reading& tx) { return store::series_exists(tx, run.study); });
     if (!known) return known.error();
     if (!*known) return wrong("body: study: there is no study " + run.study.substr(0, 32));
   }

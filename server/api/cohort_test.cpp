@@ -24,22 +24,28 @@ class Cohort : public ApiTest {
   Cohort() {
     const auto made = store_.write([&](store::Writing& tx) -> core::Result<void> {
       const store::Study study{.id = "spine", .title = "", .ordering = "random"};
-      if (auto done = store::add_study(tx, study, {kCase}, deed_); !done) return done;
+      if (auto done = store::add_study(tx, study, {kCase}, deed_); !done) return done.error();
       const std::vector<std::string> cases(4, kCase);
       for (const auto& person :
            {store::Participant{.name = "P1", .level = "resident", .experience_years = 2.5},
             store::Participant{.name = "P2", .level = "senior", .simulated = true}})
-        if (auto done = store::add_participant(tx, "spine", person, cases, deed_); !done)
+        if (auto done = store::add_participant(tx, store::find_study(tx, "spine").value(), person,
+                                               cases, deed_);
+            !done)
           return done;
       return {};
     });
     EXPECT_TRUE(made);
-    const auto slots =
-        store_.read([](store::Reading& tx) { return store::study_slots(tx, "spine"); }).value();
+    const auto slots = store_
+                           .read([](store::Reading& tx) {
+                             return store::study_slots(tx, store::find_study(tx, "spine").value());
+                           })
+                           .value();
     for (int i = 0; i < 8; ++i) add(i, slots[std::size_t(i)].id, values_[std::size_t(i)]);
     add(8, "", 7.5);
     const auto judged = store_.write([&](store::Writing& tx) {
-      return store::set_trial_invalid(tx, "spine", id_of(3), {"ada", 3, "phone rang"});
+      return store::set_trial_invalid(tx, store::find_study(tx, "spine").value(), id_of(3),
+                                      {"ada", 3, "phone rang"});
     });
     EXPECT_TRUE(judged) << judged.error().what;
   }
@@ -191,7 +197,8 @@ TEST_F(Cohort, ARunOnTheSameSnapshotGivesTheSameDigitsWhateverCameSince) {
   ASSERT_EQ(first["state"], "done") << first.dump();
   EXPECT_EQ(first["repeats"], nullptr);
   const auto judged = store_.write([&](store::Writing& tx) {
-    return store::set_trial_invalid(tx, "spine", id_of(0), {"ada", 4, "wrong probe"});
+    return store::set_trial_invalid(tx, store::find_study(tx, "spine").value(), id_of(0),
+                                    {"ada", 4, "wrong probe"});
   });
   ASSERT_TRUE(judged);
   const auto again = analysed({{"plan", id}, {"snapshot", first["snapshot"]}});

@@ -165,7 +165,7 @@ Result<std::vector<ExportedTrial>> trials_to_export(Backend& backend, const std:
   using Trials = std::vector<ExportedTrial>;
   return backend.store.read([&](store::Reading& tx) -> Result<Trials> {
     if (!study.empty()) {
-      auto known = store::study_of(tx, study);
+      auto known = store::series_exists(tx, study);
       if (!known) return known.error();
       if (!*known) return Error{Errc::not_found, "study: there is no study " + study.substr(0, 32)};
     }

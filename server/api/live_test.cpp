@@ -67,7 +67,9 @@ class LiveRoutes : public PeopleTest {
   }
   /// The slot of tom's assignment, given to station s1.
   std::string toms_slot() {
-    auto slots = store_.read([](store::Reading& tx) { return store::study_slots(tx, "a-tom"); });
+    auto slots = store_.read([](store::Reading& tx) {
+      return store::study_slots(tx, store::find_assignment(tx, "a-tom").value());
+    });
     EXPECT_TRUE(slots);
     const std::string id = slots->front().id;
     EXPECT_TRUE(store_.write([&](store::Writing& tx) {

@@ -123,8 +123,9 @@ TEST_F(StudyRoutes, GiveAStationTheLawOfExactlyTheNextTrial) {
   const auto law = study::opened_law(taken["trials"][0]["sealed"].get<std::string>(), slot,
                                      study::StationKey(token_hash("token-1")));
   ASSERT_TRUE(law) << law.error().what;
-  const auto slots =
-      store_.read([](store::Reading& tx) { return store::study_slots(tx, "probing-1"); });
+  const auto slots = store_.read([](store::Reading& tx) {
+    return store::study_slots(tx, store::find_study(tx, "probing-1").value());
+  });
   int fits = 0;
   for (int kind = 0; kind < scenarios::kKinds; ++kind) {
     const auto scenario = scenarios::tuned(scenarios::Kind(kind)).value();
@@ -330,8 +331,9 @@ TEST_F(StudyRoutes, AParticipantEnrolledLaterGetsAnOrderOfTheirOwn) {
   EXPECT_EQ(post("/probing-1/participants", {{"name", "P3"}}).status, 409);
   EXPECT_EQ(post("/nowhere/participants", {{"name", "P3"}}).status, 404);
   std::map<std::string, std::string> orders;
-  const auto slots =
-      store_.read([](store::Reading& tx) { return store::study_slots(tx, "probing-1"); });
+  const auto slots = store_.read([](store::Reading& tx) {
+    return store::study_slots(tx, store::find_study(tx, "probing-1").value());
+  });
   for (const auto& slot : slots.value()) orders[slot.participant] += slot.case_id;
   ASSERT_EQ(orders.size(), 3u);
   EXPECT_EQ(orders["P3"].size(), 12u * 64);

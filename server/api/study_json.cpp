@@ -127,12 +127,11 @@ Json participant_json(const StudyFacts& facts, const store::Participant& who, co
 
 }  // namespace
 
-core::Result<StudyFacts> study_facts(store::Reading& tx, const std::string& id) {
+core::Result<StudyFacts> study_facts(store::Reading& tx, const store::StudyId& id) {
   auto study = store::study_of(tx, id);
   if (!study) return study.error();
-  if (!*study) return core::Error{core::Errc::not_found, "no study " + id.substr(0, 32)};
   StudyFacts out;
-  out.study = std::move(**study);
+  out.study = std::move(*study);
   auto scenarios = store::study_scenarios(tx, id);
   if (!scenarios) return scenarios.error();
   out.scenarios = std::move(*scenarios);

@@ -52,7 +52,7 @@ Result<Trials> trials_for(const Call& call) {
   const std::string study = call.has("study") ? call.text("study") : "";
   return call.backend.store.read([&](store::Reading& tx) -> Result<Trials> {
     if (!study.empty()) {
-      const auto known = store::study_of(tx, study);
+      const auto known = store::series_exists(tx, study);
       if (!known) return known.error();
       if (!*known)
         return core::Error{core::Errc::bad_input,

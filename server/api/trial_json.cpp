@@ -57,8 +57,8 @@ core::Json scenario_json(const scenarios::Scenario& scenario) {
 }
 
 core::Json study_json(const StudyPlace& place) {
-  return {{"id", place.study.id},
-          {"title", place.study.title},
+  return {{"id", place.slot.study_id},
+          {"title", place.title},
           {"participant", place.slot.participant},
           {"number", place.slot.position + 1},
           {"state", place.state},

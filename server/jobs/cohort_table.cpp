@@ -110,7 +110,7 @@ Result<CohortTable> cohort_table(store::Store& store, const std::string& study, 
   using Trials = std::vector<store::CohortTrial>;
   auto found = store.read([&](store::Reading& tx) -> Result<Trials> {
     if (!study.empty()) {
-      auto known = store::study_of(tx, study);
+      auto known = store::series_exists(tx, study);
       if (!known) return known.error();
       if (!*known) return Error{Errc::bad_input, "study: there is no study " + study.substr(0, 32)};
     }

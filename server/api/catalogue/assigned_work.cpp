@@ -93,30 +93,20 @@ struct Given {
   std::string token_hash = {};
 };
 
-/// One assignment's next slot; false when it has none now.
-Result<bool> take_of(store::Writing& tx, const Call& call, const store::Assignment& assignment,
-                     const std::string& participant, Given& given) {
-  const auto& study = assignment.study;
-  if (study.state == "paused") return false;
-  auto person = store::participant_of(tx, study.id, participant);
-  if (!person) return person.error();
-  if (!*person || (*person)->state == "paused") return false;
-  auto taken = store::take_slots(tx, study, **person, call.caller.id, 1,
-                                 {call.caller.name, call.backend.now_utc_us()});
-  if (!taken) return taken.error();
-  given.work.left += taken->unfinished;
-  if (taken->slots.empty()) return false;
-  const store::Slot& slot = taken->slots.front();
-  auto name = store::assigned_name(tx, study.id, slot.case_id);
+/// What the station is told of the trial that is next.
+Result<wire::AssignedTrial> trial_of_slot(store::Reading& tx, const store::AssignmentId& id,
+                                          const std::string& title, const store::Taken& taken) {
+  const store::Slot& slot = taken.slots.front();
+  auto name = store::assigned_name(tx, id, slot.case_id);
   if (!name) return name.error();
   auto of = store::case_of(tx, slot.case_id);
   if (!of) return of.error();
   wire::AssignedTrial trial{.slot = slot.id,
                             .rig = (*of)->kind,
                             .name = *name,
-                            .assignment = study.title,
-                            .number = taken->planned - taken->unfinished + 1,
-                            .planned = taken->planned,
+                            .assignment = title,
+                            .number = taken.planned - taken.unfinished + 1,
+                            .planned = taken.planned,
                             .case_id = "",
                             .sealed = ""};
   if (trial.name.empty()) trial.name = "Trial " + std::to_string(trial.number);
@@ -127,10 +117,31 @@ Result<bool> take_of(store::Writing& tx, const Call& call, const store::Assignme
     trial.drills = drilling->empty();
     trial.drilled = std::move(*drilling);
   }
-  given.work.participant = participant;
-  given.work.trial = std::move(trial);
-  given.slot = slot;
-  return true;
+  return trial;
+}
+
+/// Gives the account's next slot of one assignment, where it has one now.
+Result<void> take_of(store::Writing& tx, const Call& call, const store::Assignment& assignment,
+                     const store::Account& account, Given& given) {
+  if (assignment.study.state == "paused") return {};
+  auto id = store::find_assignment(tx, assignment.study.id);
+  if (!id) return id.error();
+  auto participant = store::participant_for(tx, *id, account.id);
+  if (!participant) return participant.error();
+  auto person = store::participant_of(tx, *id, *participant);
+  if (!person) return person.error();
+  if (!*person || (*person)->state == "paused") return {};
+  auto taken = store::take_slots(tx, *id, **person, call.caller.id, 1,
+                                 {call.caller.name, call.backend.now_utc_us()});
+  if (!taken) return taken.error();
+  given.work.left += taken->unfinished;
+  if (taken->slots.empty()) return {};
+  auto trial = trial_of_slot(tx, *id, assignment.study.title, *taken);
+  if (!trial) return trial.error();
+  given.work.participant = *participant;
+  given.work.trial = std::move(*trial);
+  given.slot = taken->slots.front();
+  return {};
 }
 
 Result<Given> take(store::Writing& tx, const Call& call, const store::Account& account) {
@@ -145,10 +156,7 @@ Result<Given> take(store::Writing& tx, const Call& call, const store::Account& a
       given.work.left += assignment.planned - assignment.done;
       continue;
     }
-    auto participant = store::participant_for(tx, assignment.study.id, account.id);
-    if (!participant) return participant.error();
-    if (auto found = take_of(tx, call, assignment, *participant, given); !found)
-      return found.error();
+    if (auto done = take_of(tx, call, assignment, account, given); !done) return done.error();
   }
   return given;
 }

@@ -60,9 +60,9 @@ Result<http::Response> say_own(const Call& call) {
   if (auto fine = fields.done(); !fine) return fine.error();
   auto answer = call.backend.store.write([&](store::Writing& tx) -> Result<Json> {
     if (!said.study_id.empty()) {
-      auto participant = store::participant_for(tx, said.study_id, call.caller.id);
-      if (!participant) return participant.error();
-      if (participant->empty())
+      auto takes_part = store::has_assignment(tx, call.caller.id, said.study_id);
+      if (!takes_part) return takes_part.error();
+      if (!*takes_part)
         return Error{Errc::not_found, "study: you take part in no study of this name"};
     }
     if (auto set = store::set_consent(tx, said); !set) return set.error();
@@ -104,17 +104,12 @@ Result<void> resolve(store::Reading& tx, const std::string& account, store::Cons
     said.account_id = (*known)->id;
     return {};
   }
-  auto rows = tx.query("select count(*) from study_participants where study_id = ? and name = ?",
-                       {said.study_id, said.participant});
-  if (!rows) return rows.error();
-  if (rows->front().integer(0) == 0)
+  auto study = store::find_study(tx, said.study_id);
+  if (!study) return study.error();
+  auto participant = store::participant_of(tx, *study, said.participant);
+  if (!participant) return participant.error();
+  if (!*participant)
     return Error{Errc::not_found, "participant: there is none of this name in the study"};
-  auto owned =
-      tx.query("select count(*) from assignment_people where study_id = ? and participant = ?",
-               {said.study_id, said.participant});
-  if (!owned) return owned.error();
-  if (owned->front().integer(0) > 0)
-    return Error{Errc::conflict, "participant: has an account, and speaks for himself"};
   return {};
 }
 
