@@ -11,6 +11,3 @@ create table cohort_invitations (
   primary key (cohort_id, account_name)
 );
 create index cohort_invitations_by_name on cohort_invitations (account_name);
-
--- 1: the frozen data hold released trials alone, by pseudonym. Those frozen before had real ids, and consent was not asked.
-alter table analyses add column released bigint not null default 0;

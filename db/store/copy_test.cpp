@@ -24,14 +24,12 @@ core::Result<void> furnish(Writing& tx) {
   if (auto done = add_case(tx, {kA, "L3", "made", 1, 0}, {{"case.json", kA, 9, false}}, 1); !done)
     return done;
   const Study study{.id = "study", .title = "\xc3\xa9", .ordering = "random"};
-  if (auto done = add_study(tx, study, {kA}, {"ada", 1}); !done) return done.error();
+  auto id = add_study(tx, study, {kA}, {"ada", 1});
+  if (!id) return id.error();
   const Participant person{.name = "P1", .experience_years = 1.0 / 3.0};
-  if (auto done =
-          add_participant(tx, find_study(tx, "study").value(), person, {kA, kA}, {"ada", 1});
-      !done)
-    return done;
+  if (auto done = add_participant(tx, *id, person, {kA, kA}, {"ada", 1}); !done) return done;
   // Two that refer to each other: neither can be first.
-  auto slots = study_slots(tx, find_study(tx, "study").value());
+  auto slots = study_slots(tx, *id);
   if (!slots) return slots.error();
   for (int i = 0; i < 2; ++i) {
     auto set = tx.query("update study_slots set repeat_of = ? where id = ?",

@@ -117,12 +117,11 @@ TEST_P(StoreFaults, APublishedCaseIsWholeOrAbsent) {
 /// A study of which a station has a trial, all of whose bytes are here.
 core::Result<void> furnish_study(Writing& tx) {
   const Study study{.id = "study", .title = "", .ordering = "random"};
-  if (auto done = add_study(tx, study, {kCase}, {"ada", 1}); !done) return done.error();
-  if (auto done = add_participant(tx, find_study(tx, "study").value(), {.name = "P1"},
-                                  {kCase, kCase}, {"ada", 1});
-      !done)
+  auto id = add_study(tx, study, {kCase}, {"ada", 1});
+  if (!id) return id.error();
+  if (auto done = add_participant(tx, *id, {.name = "P1"}, {kCase, kCase}, {"ada", 1}); !done)
     return done;
-  auto slots = study_slots(tx, find_study(tx, "study").value());
+  auto slots = study_slots(tx, *id);
   if (!slots) return slots.error();
   return announce_for_slot(tx, kTrial, slots->front().id, 1);
 }

@@ -218,6 +218,35 @@ TEST_P(MigrationSteps, AStepThatBreaksLeavesTheDatabaseAtTheStepBefore) {
   EXPECT_TRUE(connection->query("select y from b", {}));
 }
 
+/// A database from before the column: an assignment is told by its row in `assignments`.
+TEST_P(MigrationSteps, StudiesAndAssignmentsOfAnOlderDatabaseGetTheirKind) {
+  const TestDatabase database(GetParam(), Content::nothing);
+  const auto connection = database.connection(Access::write);
+  auto older = migrations();
+  std::erase_if(older, [](const Migration& step) { return step.version >= 16; });
+  ASSERT_TRUE(migrate(*connection, older));
+  ASSERT_TRUE(
+      connection->query("insert into accounts (id, name, role, password_hash, made_utc_us) "
+                        "values ('fay', 'fay', 'faculty', 'x', 1)",
+                        {}));
+  for (const char* id : {"'a-study'", "'spine'"})
+    ASSERT_TRUE(connection->query(
+        std::string("insert into studies (id, title, state, ordering, repeats, seed, on_invalid, "
+                    "made_utc_us, made_by) values (") +
+            id + ", '', 'running', 'random', 1, 1, 'at_end', 1, 'ada')",
+        {}));
+  ASSERT_TRUE(
+      connection->query("insert into assignments (study_id, release, made_by_id) values ('spine', "
+                        "'held', 'fay')",
+                        {}));
+  ASSERT_TRUE(migrate(*connection, migrations()));
+  const auto rows = connection->query("select id, kind from studies order by id", {});
+  ASSERT_TRUE(rows);
+  ASSERT_EQ(rows->size(), 2u);
+  EXPECT_EQ((*rows)[0].text(1), "study");
+  EXPECT_EQ((*rows)[1].text(1), "assignment");
+}
+
 TEST_P(JobQueue, AreClaimedOnceInTheOrderTheyWereQueued) {
   Opened db(GetParam());
   auto claimed = db.store.write([](Writing& tx) -> core::Result<std::vector<std::string>> {

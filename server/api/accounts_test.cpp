@@ -145,10 +145,10 @@ TEST_F(Accounts, CohortsAreLedByWhoMadeThem) {
   const auto made = post("fay", "/cohorts", {{"name", "2026"}});
   ASSERT_EQ(made.status, 201) << text(made);
   const std::string path = "/cohorts/" + json(made)["id"].get<std::string>();
-  EXPECT_EQ(post("fay", path + "/people", {{"name", "tia"}}).status, 200);
+  EXPECT_EQ(post("dora", path + "/people", {{"name", "tia"}}).status, 200);
   EXPECT_EQ(json(get("fay", path))["people"].size(), 2u);
   EXPECT_EQ(json(get("fay", "/trials"))["trials"].size(), 2u) << "tia's trial too, from now on";
-  EXPECT_EQ(post("fay", path + "/people", {{"name", "rex"}}).status, 400) << "no trainee";
+  EXPECT_EQ(post("dora", path + "/people", {{"name", "rex"}}).status, 400) << "no trainee";
   EXPECT_EQ(get("flo", path).status, 404);
   EXPECT_EQ(ask(request("DELETE", "/api/v1" + path + "/people/tia", as("fay"))).status, 200);
   EXPECT_EQ(json(get("fay", "/trials"))["trials"].size(), 1u);

@@ -7,6 +7,7 @@
 
 #include "core/bytes.hpp"
 #include "db/store/cases.hpp"
+#include "db/store/invitations.hpp"
 #include "server/api/backend.hpp"
 #include "server/api/study_plan.hpp"
 #include "study/order.hpp"
@@ -93,24 +94,18 @@ store::Assignment assignment_from(core::Fields& fields) {
   return out;
 }
 
-bool may_lead_all(const Call& call) { return call.of == Of::all; }
-
 Error absent(const char* what, const std::string& name) {
-  return {Errc::not_found,
-          fmt::format("{}: there is none of yours named {}", what, name.substr(0, 64))};
+  return {Errc::not_found, fmt::format("{}: there is none named {}", what, name.substr(0, 64))};
 }
 
-/// The cohort's trainees and the people named, all taught by the caller.
-Result<std::vector<store::Account>> people_meant(store::Reading& tx, const Call& call,
-                                                 const AssignmentPlan& plan) {
+/// The cohort's trainees and the people named.
+Result<std::vector<store::Account>> people_meant(store::Reading& tx, const AssignmentPlan& plan) {
   std::vector<store::Account> out;
   if (plan.assignment.cohort_id) {
     const std::string& cohort = *plan.assignment.cohort_id;
     auto there = store::cohort_of(tx, cohort);
     if (!there) return there.error();
-    auto leads = store::leads_cohort(tx, call.caller.id, cohort);
-    if (!leads) return leads.error();
-    if (!*there || (!may_lead_all(call) && !*leads)) return absent("/cohort", cohort);
+    if (!*there) return absent("/cohort", cohort);
     auto people = store::people_of(tx, cohort);
     if (!people) return people.error();
     for (const auto& person : *people) {
@@ -124,9 +119,6 @@ Result<std::vector<store::Account>> people_meant(store::Reading& tx, const Call&
     auto account = store::account_named(tx, name);
     if (!account) return account.error();
     if (!*account) return absent("/people", name);
-    auto taught = store::teaches(tx, call.caller.id, (*account)->id);
-    if (!taught) return taught.error();
-    if (!may_lead_all(call) && !*taught) return absent("/people", name);
     if (std::ranges::find(out, (*account)->id, &store::Account::id) == out.end())
       out.push_back(std::move(**account));
   }
@@ -183,7 +175,7 @@ Result<void> make(store::Writing& tx, const Call& call, const AssignmentPlan& pl
   auto cases = plan.protocol.empty() ? note_cases(tx, plan, parts, deed)
                                      : protocol_cases(tx, plan.protocol, assignment);
   if (!cases) return cases.error();
-  auto people = people_meant(tx, call, plan);
+  auto people = people_meant(tx, plan);
   if (!people) return people.error();
   auto id = store::add_assignment(tx, assignment, *cases, deed);
   if (!id) return id.error();
@@ -251,6 +243,8 @@ Result<void> assign_to(store::Writing& tx, const store::AssignmentId& id,
   return store::add_assigned_person(tx, id, account.id, participant);
 }
 
+namespace {
+
 Result<void> assign_what_the_cohort_has(store::Writing& tx, const std::string& cohort_id,
                                         const store::Account& account, const store::Deed& deed) {
   auto ids = store::assignments_of_cohort(tx, cohort_id);
@@ -262,6 +256,23 @@ Result<void> assign_what_the_cohort_has(store::Writing& tx, const std::string& c
     if (auto done = assign_to(tx, id, account, deed); !done) return done;
   }
   return {};
+}
+
+}  // namespace
+
+Result<void> join_cohort(store::Writing& tx, const std::string& cohort_id,
+                         const store::Account& account, const store::Deed& deed) {
+  auto cohort = store::cohort_of(tx, cohort_id);
+  if (!cohort) return cohort.error();
+  if (!*cohort) return Error{Errc::not_found, "no cohort " + cohort_id.substr(0, 32)};
+  const bool learns = account.role == name(Role::trainee);
+  if (!learns && account.role != name(Role::faculty))
+    return Error{Errc::bad_input, account.name + ": is neither a trainee nor of the faculty"};
+  if (auto done = store::put_into_cohort(tx, cohort_id, account.id, account.role, deed.at_utc_us);
+      !done)
+    return done;
+  if (auto done = store::remove_invitation(tx, cohort_id, account.name); !done) return done;
+  return learns ? assign_what_the_cohort_has(tx, cohort_id, account, deed) : Result<void>();
 }
 
 }  // namespace api

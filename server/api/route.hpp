@@ -41,7 +41,30 @@ std::vector<Grant> people();
 
 /// What the route's object is, when a grant says less than "all". `none` with such a grant: the
 /// route has no object of its own, and its handler answers by Call::of alone.
-enum class Object { none, trial, published_case, account, cohort, assignment };
+enum class Object {
+  none,
+  trial,
+  published_case,
+  account,
+  person,  ///< an account as a member of cohorts, also one that leads them
+  cohort,
+  invitation,  ///< into a cohort, by the cohort's id
+  assignment,
+  study,  ///< of research; `cohort` of it: its participants are through, nothing of it is blind
+  model,
+  station,
+};
+
+/// One end of a relation that a route makes or changes, beside the route's own object: what the
+/// object is brought together with. Checked before the handler (access.hpp).
+struct End {
+  /// "account_id": the argument of this name. "/people/*": this field of the body, as a JSON
+  /// pointer in which * is every element. An end that is not there is not checked.
+  std::string field;
+  Object object;
+  std::vector<Grant> who;  ///< of which such objects each role may name one; others may name none
+  enum class By { id, account_name } by = By::id;
+};
 
 struct Caller {
   Role role;
@@ -103,6 +126,7 @@ struct RouteInfo {
   bool open = false;       ///< no credentials at all: signing in
   Object object = Object::none;
   std::string object_parameter = "id";  ///< the argument that names the object
+  std::vector<End> ends = {};           ///< every other end of a relation that it makes or changes
   bool before_password_change = false;  ///< also for who must choose a password first
   bool audited = true;                  ///< a change by it is noted in the audit trail
   std::vector<Parameter> parameters;

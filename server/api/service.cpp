@@ -214,9 +214,10 @@ http::Response answer_to(Backend& backend, Asked& asked, const http::Request& re
                                        request.body.size(), matched->route->body_limit_bytes)});
   auto checked = arguments(*matched, request);
   if (!checked) return error_response(checked.error());
-  if (auto own = check_object(backend, *matched->route, *caller, *checked); !own) {
-    asked.overstepped = own.error().code == core::Errc::not_found;
-    return refusal(own.error(), "");
+  if (auto may = check_access(backend, *matched->route, *caller, *checked, request.body); !may) {
+    asked.overstepped =
+        may.error().code == core::Errc::not_found || may.error().code == core::Errc::forbidden;
+    return refusal(may.error(), "");
   }
   auto response = handled(backend, *matched, *caller, request, std::move(*checked));
   if (response) return std::move(*response);
@@ -310,9 +311,9 @@ core::Result<std::shared_ptr<http::Conversation>> conversation(Backend& backend,
     return core::Error{core::Errc::forbidden, "the page that asks for this WebSocket is not ours"};
   auto checked = arguments(*asked.matched, request);
   if (!checked) return checked.error();
-  if (auto own = check_object(backend, route, *caller, *checked); !own) {
-    asked.overstepped = own.error().code == core::Errc::not_found;
-    return own.error();
+  if (auto may = check_access(backend, route, *caller, *checked, ""); !may) {
+    asked.overstepped = may.error().code == core::Errc::not_found;
+    return may.error();
   }
   const Call call{backend, request, *caller, std::move(*checked),
                   granted(route, caller->role).value_or(Of::own)};

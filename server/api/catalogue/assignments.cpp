@@ -191,11 +191,8 @@ Result<http::Response> assign_person(const Call& call) {
           const store::Deed& deed) -> Result<void> {
         auto account = store::account_named(tx, name);
         if (!account) return account.error();
-        auto taught =
-            *account ? store::teaches(tx, call.caller.id, (*account)->id) : Result<bool>(false);
-        if (!taught) return taught.error();
-        if (!*account || (call.of != Of::all && !*taught))
-          return Error{Errc::not_found, "body: /name: there is none of yours by this name"};
+        if (!*account)
+          return Error{Errc::not_found, "body: /name: there is no account of this name"};
         return assign_to(tx, id, **account, deed);
       });
 }
@@ -321,6 +318,19 @@ std::vector<NamedSchema> plan_schemas() {
                                               "when a trial that does not count is repeated"))}})}};
 }
 
+RouteInfo adding_route() {
+  RouteInfo out = route("POST", "", "addAssignment",
+                        "Assign cases, or a study's protocol, to a cohort and to people",
+                        "NewAssignment", add_assignment_route);
+  out.body_limit_bytes = kMaxPlan_bytes;
+  out.ends = {{"/cohort", Object::cohort, out.who},
+              {"/people/*", Object::account, out.who, End::By::account_name},
+              {"/cases/*/case", Object::published_case, {Role::admin, Role::faculty}},
+              {"/protocol", Object::study, out.who}};
+  out.schemas = plan_schemas();
+  return out;
+}
+
 }  // namespace
 
 std::vector<RouteInfo> assignments_routes() {
@@ -333,11 +343,6 @@ std::vector<RouteInfo> assignments_routes() {
   RouteInfo one =
       route("GET", "/{id}", "assignment", "One, with who has done what", "", one_assignment);
   one.who = list.who;
-  RouteInfo add = route("POST", "", "addAssignment",
-                        "Assign cases, or a study's protocol, to a cohort and to people",
-                        "NewAssignment", add_assignment_route);
-  add.body_limit_bytes = kMaxPlan_bytes;
-  add.schemas = plan_schemas();
   RouteInfo release = route("POST", "/{id}/release", "releaseResults",
                             "May trainees see their results?", "Release", set_release);
   release.schemas = {
@@ -346,6 +351,7 @@ std::vector<RouteInfo> assignments_routes() {
   due.schemas = {{"Due", object({{"due_utc_us", nullable(integer("us", "since 1970, UTC"))}})}};
   RouteInfo person = route("POST", "/{id}/people", "assignPerson", "One more trainee",
                            "PersonNamed", assign_person);
+  person.ends = {{"/name", Object::account, person.who, End::By::account_name}};
   RouteInfo invalid =
       route("POST", "/{id}/trials/{trial_id}/invalid", "markAssignedTrialInvalid",
             "A trial does not count: it stays, and is repeated as asked for", "Reason", invalidate);
@@ -354,8 +360,10 @@ std::vector<RouteInfo> assignments_routes() {
       route("POST", "/{id}/people/{account_id}/free", "freeAssignedPerson",
             "What a station holds of this person's trials waits again", "Nothing", free_person);
   free.parameters.push_back(path_text("account_id", "the person's"));
+  // Whoever it is assigned to, also who has left the cohort since.
+  free.ends = {{"account_id", Object::account, {Role::admin, Role::faculty}}};
   free.schemas = {{"Nothing", object({{"reason", optional(text("why"))}})}};
-  return {list, one, add, release, due, person, invalid, free};
+  return {list, one, adding_route(), release, due, person, invalid, free};
 }
 
 }  // namespace api
