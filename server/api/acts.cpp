@@ -9,8 +9,8 @@ namespace api {
 namespace {
 
 constexpr std::size_t kMaxDetail_bytes = 4096;
-constexpr std::array<std::string_view, 8> kSecret{"password", "old",   "new",          "pin",
-                                                  "code",     "token", "token_sha256", "secret"};
+constexpr std::array<std::string_view, 9> kSecret{
+    "password", "old", "new", "pin", "code", "token", "token_sha256", "secret", "seed"};
 
 void redact(core::Json& json) {
   if (json.is_object())

@@ -7,7 +7,8 @@
 namespace api {
 
 /// Who, what, of which object, with which words. Of a JSON body of up to 4 KiB every field but
-/// those that hold a secret (password, pin, code, token …); of any other body its size and SHA-256.
+/// those that hold a secret (password, pin, code, token, the seed of a study's orders …); of any
+/// other body its size and SHA-256.
 store::Act act_of(const RouteInfo& route, const Call& call,
                   const std::map<std::string, std::string>& segments);
 

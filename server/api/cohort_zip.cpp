@@ -6,7 +6,6 @@
 #include <memory>
 
 #include "core/json.hpp"
-#include "db/store/trials.hpp"
 
 namespace api {
 namespace {
@@ -63,43 +62,40 @@ class Zip {
   std::unique_ptr<archive, Frees> writer_;
 };
 
-Result<void> add_samples(Zip& zip, Backend& backend, const Pseudonyms& names,
-                         const ExportedTrial& exported, Tier tier) {
-  const Tier allowed = std::min(tier, exported.tier);
+Result<void> add_samples(Zip& zip, Backend& backend, const store::ReleasedTrial& trial, Tier tier) {
+  const Tier allowed = std::min(tier, trial.tier);
   if (allowed < Tier::reduced) return {};
-  const std::string& id = exported.trial.summary.id;
-  auto record = backend.store.read([&](store::Reading& tx) { return store::trial_of(tx, id); });
-  if (!record) return record.error();
-  auto array = samples_npy(backend.objects.path_of((*record)->sha256),
-                           allowed == Tier::full ? 0.0 : kReduced_Hz);
+  const auto file = trial.file(allowed);
+  if (!file) return file.error();
+  auto array =
+      samples_npy(backend.objects.path_of(*file), allowed == Tier::full ? 0.0 : kReduced_Hz);
   if (!array) return array.error();
-  return zip.add("samples/" + names.trial(id) + ".npy", *array);
+  return zip.add("samples/" + trial.id + ".npy", *array);
 }
 
 }  // namespace
 
 Result<std::string> cohort_zip(Backend& backend, const std::string& study, Tier tier) {
-  const auto names = Pseudonyms::of(backend);
-  if (!names) return names.error();
-  auto counted = trials_to_export(backend, study, Tier::summary);
+  const auto counted = released_trials(backend, study, Tier::summary);
   if (!counted) return counted.error();
-  std::vector<ExportedTrial> listed = *counted;
-  std::erase_if(listed, [&](const auto& one) { return std::min(tier, one.tier) < Tier::metrics; });
+  // A zip of summaries lists nobody's trials.
+  const auto listed =
+      tier < Tier::metrics ? store::ReleasedTrials() : counted->at_least(Tier::metrics);
   Zip zip;
   const core::Json about{{"format", "tractus-cohort/1"},
                          {"study", study.empty() ? core::Json() : core::Json(study)},
                          {"tier", store::name(tier)},
-                         {"trials_counted", counted->size()},
-                         {"trials_listed", listed.size()}};
+                         {"trials_counted", counted->all().size()},
+                         {"trials_listed", listed.all().size()}};
   for (const auto& [name, content] :
        std::vector<std::pair<std::string, std::string>>{{"cohort.json", about.dump(2) + "\n"},
                                                         {"dictionary.csv", dictionary_csv()},
                                                         {"summary.csv", summary_csv(*counted)},
-                                                        {"trials.csv", trials_csv(listed, *names)},
-                                                        {"scores.csv", scores_csv(listed, *names)}})
+                                                        {"trials.csv", trials_csv(listed)},
+                                                        {"scores.csv", scores_csv(listed)}})
     if (auto added = zip.add(name, content); !added) return added.error();
-  for (const auto& one : listed)
-    if (auto added = add_samples(zip, backend, *names, one, tier); !added) return added.error();
+  for (const auto& one : listed.all())
+    if (auto added = add_samples(zip, backend, one, tier); !added) return added.error();
   return zip.whole();
 }
 

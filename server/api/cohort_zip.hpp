@@ -7,7 +7,7 @@ namespace api {
 
 /// A zip of summary.csv, trials.csv, scores.csv, dictionary.csv, cohort.json and, from the tier
 /// `reduced` on, samples/TRIAL.npy: of each trial as much as was agreed to, and no more than
-/// `tier`. Errors: those of trials_to_export and of reading; too_large (the zip is over 256 MiB).
+/// `tier`. Errors: those of released_trials and of reading; too_large (the zip is over 256 MiB).
 core::Result<std::string> cohort_zip(Backend& backend, const std::string& study, store::Tier tier);
 
 }  // namespace api

@@ -58,6 +58,14 @@ class StudyRoutes : public ApiTest {
     const auto state = commit_upload(backend_, one, trial_id);
     ASSERT_TRUE(state) << state.error().what;
   }
+  /// Every participant is through.
+  void end_all() {
+    const auto ended = store_.write([](store::Writing& tx) {
+      return tx.query(
+          "update study_slots set state = 'recorded' where state in ('waiting', 'taken')");
+    });
+    EXPECT_TRUE(ended);
+  }
   std::string next_slot() {
     return json(take("token-1", "P1"))["trials"][0]["slot"].get<std::string>();
   }
@@ -230,6 +238,9 @@ TEST_F(StudyRoutes, ATrialComesBackUnderItsSlotsNameAndIsOneOfItsScenario) {
   EXPECT_EQ(study["participants"][0]["done"], 1);
   const auto kept = store_.read([&](store::Reading& tx) { return store::trial_of(tx, trial); });
   EXPECT_NE((*kept)->summary.case_id, slot);
+  EXPECT_EQ(place["trials"][0]["correct"], nullptr);
+  EXPECT_EQ(ask(request("GET", "/api/v1/trials/" + trial, own_)).status, 403) << "not through";
+  end_all();
   const auto page = json(ask(request("GET", "/api/v1/trials/" + trial, own_)));
   EXPECT_EQ(page["scenario"]["name"], (*kept)->summary.case_title);
   EXPECT_EQ(page["answer"]["depth_m"], 0.021);
@@ -308,6 +319,7 @@ TEST_F(StudyRoutes, AnInvalidTrialNeedsAReasonStaysAndIsRepeated) {
   EXPECT_EQ(
       post("/probing-1/trials/" + std::string(32, 'b') + "/invalid", {{"reason", "x"}}).status,
       404);
+  end_all();
   const auto kept = ask(request("GET", "/api/v1/trials/" + trial, own_));
   EXPECT_EQ(kept.status, 200) << "nothing is deleted: " << text(kept);
   EXPECT_EQ(json(kept)["study"]["state"], "invalid");

@@ -288,7 +288,7 @@ core::Result<void> serve(const ServeOptions& given) {
       options.pseudonym_key.value_or(given.data / "pseudonyms" / "key"), data->store);
   if (!pseudonym_key) return pseudonym_key.error();
   auto runner = jobs::Runner::start(
-      data->store, data->objects, data->secrets.case_key(),
+      data->store, data->objects, {data->secrets.case_key(), *pseudonym_key},
       [](const std::string& line) {
         log_line({{"what", "job"}, {"line", line}});
       },

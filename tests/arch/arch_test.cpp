@@ -167,6 +167,21 @@ TEST(Architecture, IncludesFollowTheTable) {
   }
 }
 
+/// Trials reach research through the filter of db/store/released.hpp alone: the rows with names are
+/// for the page of a trainee, and whoever else includes them is named here after somebody thought
+/// about it.
+TEST(Architecture, RowsOfTrialsWithNamesAreForThoseWhoTeachAlone) {
+  Names readers;
+  for (const auto& path : sources()) {
+    const std::string relative = fs::relative(path, kRoot).string();
+    if (relative.starts_with("db/store/")) continue;
+    const std::string text = text_of(path);
+    for (const char* word : {"db/store/cohort.hpp", "trials_for_teaching", "CohortTrial"})
+      if (text.find(word) != std::string::npos) readers.insert(relative);
+  }
+  EXPECT_EQ(readers, (Names{"server/api/trainees.cpp", "server/api/trainees.hpp"}));
+}
+
 /// The blind generators are a second implementation: what they include must not exist in the
 /// product, and no target of it may be linked.
 TEST(Architecture, BlindGeneratorsShareNothingWithTheProduct) {

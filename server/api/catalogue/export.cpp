@@ -2,7 +2,6 @@
 #include "server/api/export.hpp"
 
 #include "db/store/audit.hpp"
-#include "db/store/trials.hpp"
 #include "server/api/cohort_zip.hpp"
 #include "server/api/route.hpp"
 #include "server/api/schema.hpp"
@@ -26,17 +25,16 @@ http::Response csv_response(std::string csv, const char* name) {
 std::string study_of_call(const Call& call) { return call.has("study") ? call.text("study") : ""; }
 
 Result<http::Response> export_summary(const Call& call) {
-  auto trials = trials_to_export(call.backend, study_of_call(call), Tier::summary);
+  auto trials = released_trials(call.backend, study_of_call(call), Tier::summary);
   if (!trials) return trials.error();
   return csv_response(summary_csv(*trials), "summary.csv");
 }
 
 Result<http::Response> table(const Call& call, const char* name,
-                             std::string (*csv)(const std::vector<ExportedTrial>&,
-                                                const Pseudonyms&)) {
-  auto trials = trials_to_export(call.backend, study_of_call(call), Tier::metrics);
+                             std::string (*csv)(const store::ReleasedTrials&)) {
+  auto trials = released_trials(call.backend, study_of_call(call), Tier::metrics);
   if (!trials) return trials.error();
-  return csv_response(csv(*trials, Pseudonyms::of(call.backend).value()), name);
+  return csv_response(csv(*trials), name);
 }
 
 Result<http::Response> export_trials(const Call& call) {
@@ -63,19 +61,13 @@ http::Response bytes_response(std::string bytes, const char* type, const char* n
 Result<http::Response> export_samples(const Call& call) {
   const double rate_Hz = call.number("rate_Hz");
   const bool reduced = rate_Hz > 0.0 && rate_Hz <= kReduced_Hz;
-  auto trials = trials_to_export(call.backend, "", Tier::metrics);
+  auto trials = released_trials(call.backend, "", Tier::metrics);
   if (!trials) return trials.error();
-  const Pseudonyms names = Pseudonyms::of(call.backend).value();
-  for (const auto& [trial, tier] : *trials) {
-    if (names.trial(trial.summary.id) != call.text("trial")) continue;
-    if (tier < (reduced ? Tier::reduced : Tier::full))
-      return Error{Errc::forbidden, std::string("who did this trial agreed to ") +
-                                        std::string(store::name(tier)) + ", and this is " +
-                                        (reduced ? "reduced" : "full")};
-    auto record = call.backend.store.read(
-        [&, id = trial.summary.id](store::Reading& tx) { return store::trial_of(tx, id); });
-    if (!record) return record.error();
-    auto array = samples_npy(call.backend.objects.path_of((*record)->sha256), rate_Hz);
+  for (const store::ReleasedTrial& trial : trials->all()) {
+    if (trial.id != call.text("trial")) continue;
+    const auto file = trial.file(reduced ? Tier::reduced : Tier::full);
+    if (!file) return file.error();
+    auto array = samples_npy(call.backend.objects.path_of(*file), rate_Hz);
     if (!array) return array.error();
     return bytes_response(std::move(*array), "application/octet-stream", "samples.npy");
   }
