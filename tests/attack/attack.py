@@ -15,17 +15,18 @@ import time
 from pathlib import Path
 
 import flood
+import insiders
 import nesting
 import relations
 import sign_in
 import storage
 import transport
-from report import Report
+from report import ATTACKS, Report
 from trial_file import announced
 from wire import Client
 from world import Setup, World
 
-MODULES = (nesting, relations, sign_in, storage, transport, flood)  # in this order; importing them makes the list of attacks
+ORDER = [module.__name__ for module in (nesting, relations, sign_in, insiders, storage, transport, flood)]
 
 
 def warm_up(world):
@@ -47,7 +48,8 @@ def warm_up(world):
 
 
 def options_of(words):
-    parser = argparse.ArgumentParser(prog="tests/attack/attack.py", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(prog="tests/attack/attack.py", description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--bin", type=Path, required=True, help="folder of the programs")
     parser.add_argument("--database", choices=("sqlite", "postgresql"), default="sqlite")
     parser.add_argument("--behind", choices=("nothing", "nginx"), default="nothing", help="what stands before the server")
@@ -60,6 +62,7 @@ def options_of(words):
 def run(options, folder):
     suite = f"attack on {options.database}" + (f" behind {options.behind}" if options.behind != "nothing" else "")
     report, began, setup = Report(suite), time.monotonic(), None
+    ATTACKS.sort(key=lambda attack: ORDER.index(attack[1].__module__))
     try:
         setup = Setup(options.bin.resolve(), folder, options.database, options.behind)
         with World(setup) as world:

@@ -47,7 +47,8 @@ def plain_value(parameter):
 def routes_of(world):
     description = Client(world.target, world.admin.credentials).must("GET", "/api/openapi.json")  # a line of its own: processes fork
     schemas = description["components"]["schemas"]
-    found = [Route(path, method, operation, schemas) for path, methods in description["paths"].items() for method, operation in methods.items()]
+    found = [Route(path, method, operation, schemas)
+             for path, methods in description["paths"].items() for method, operation in methods.items()]
     return [route for route in found if route.id not in IGNORED]
 
 

@@ -6,6 +6,7 @@ import multiprocessing
 import random
 import struct
 import time
+import warnings
 import zipfile
 import zlib
 
@@ -17,10 +18,14 @@ from wire import Client, Line, request_bytes
 
 SEED = 20261122
 PROCESSES = 3
+TRIALS_A_STATION = 150  # so many uploads may one station leave unfinished, and some more
 SOURCE = "127.0.11.{}"  # the floods come from addresses of their own, so that what slows them slows nobody else
 # Their failures slow an account or end a session that the suite needs; `sign_in` attacks them.
 LEFT_OUT = {"changePassword", "confirmCodes", "endCodes", "beginCodes", "signOut", "makeBackup", "verifyBackup", "resetPassword",
             "setAccountState", "setAccountRole", "revokeStation", "signInAtStation", "enrolStation"}
+HEAD_PATHS = ["/api/v1/session", "/api/v1/trials?limit=5", "/", "/index.html", "/api/v1/cases", "*", "http://x/api/v1/health"]
+ODD_FIELDS = [{}, {"Range": "bytes=0-5,9-"}, {"Expect": "100-continue"}, {"Connection": "upgrade"}, {"Cookie": "a=b;" * 50},
+              {"Accept-Encoding": "x" * 2000}, {"If-None-Match": "\"x"}, {"Upgrade": "websocket"}]
 ODD_TEXTS = ["", " ", "\0", "\n", "'", "\"", "';drop table accounts;--", "../../../etc/passwd", "%00", "\u202e", "\ud7ff", "🦴" * 50, "a" * 5000,
              "NaN", "null", "=1+1", "<script>", "-1", "1e308", "{}", "[]", "\\u0000", "/", "..", "\x7f", "é" * 200]
 ODD_VALUES = [None, True, False, 0, -1, 1, 2**31, 2**53 + 1, 2**63, 2**64, -2**63, 1e308, -1e308, 1e-320, 0.1, [], {}, [[]], [None], {"": None}]
@@ -83,10 +88,11 @@ class Flood:
     """One process's part of a block: its draw, its people, and what it has seen."""
 
     def __init__(self, world, number):
-        self.world, self.number = world, number
+        self.world, self.number, self.trials = world, number, 0
         self.draw = random.Random(SEED * 100 + number)
-        self.people = {role: Client(world.target, client.credentials, SOURCE.format(number % 100 + 1), 60) for role, client in world.people.items()}
-        self.raw = Line(world.target, SOURCE.format(number % 100 + 1), 20)
+        source = SOURCE.format(number + 1)
+        self.people = {role: Client(world.target, client.credentials, source) for role, client in world.people.items()}
+        self.raw = Line(world.target, source, 20)
         self.routes = [route for route in routes_of(world) if route.id not in LEFT_OUT]
 
     def client(self, route):
@@ -103,36 +109,43 @@ class Flood:
         if self.draw.random() < 0.3:
             path = mutated_bytes(path.encode("utf-8", "replace"), self.draw).decode("latin-1")
         path = "/api" + path.removeprefix("/api").replace(" ", "%20").replace("\r", "").replace("\n", "")
-        return self.client(route).ask(route.method if self.draw.random() < 0.9 else self.draw.choice(["GET", "HEAD", "PUT", "DELETE"]), path)
+        method = route.method if self.draw.random() < 0.9 else self.draw.choice(["GET", "HEAD", "PUT", "DELETE"])
+        return self.client(route).ask(method, path)
 
     def head(self):
         credentials = self.draw.choice(list(self.people.values())).headers()
-        headers = credentials | self.draw.choice([{}, {"Range": "bytes=0-5,9-"}, {"Expect": "100-continue"}, {"Connection": "upgrade"}, {"Cookie": "a=b;" * 50},
-                                                 {"Accept-Encoding": "x" * 2000}, {"If-None-Match": "\"x"}, {"Upgrade": "websocket"}])
         method = self.draw.choice(["GET", "GET", "HEAD", "POST", "DELETE", "BREW", "get", "CONNECT", "PRI"])
-        path = self.draw.choice(["/api/v1/session", "/api/v1/trials?limit=5", "/", "/index.html", "/api/v1/cases", "*", "http://x/api/v1/health"])
-        raw = request_bytes(method, path, headers, self.draw.choice([b"", b"{}"]))
+        headers = credentials | self.draw.choice(ODD_FIELDS)
+        raw = request_bytes(method, self.draw.choice(HEAD_PATHS), headers, self.draw.choice([b"", b"{}"]))
         return self.raw.exchange(mutated_bytes(raw, self.draw) + b"\r\n\r\n", method)
 
     def archive(self):
-        body = odd_zip(self.draw) if self.draw.random() < 0.7 else mutated_bytes(zipped({"set.json": b"{}", "a.csv": b"t_s\n0\n"}), self.draw)
+        broken = mutated_bytes(zipped({"set.json": b"{}", "a.csv": b"t_s\n0\n"}), self.draw)
+        body = odd_zip(self.draw) if self.draw.random() < 0.7 else broken
         path = self.draw.choice(["/lab/measurements?name=odd", "/lab/measurements?name=odd", "/volumes?name=odd"])
         return self.people["researcher"].ask("POST", path, body, kind="application/octet-stream")
 
     def trial(self):
+        if self.trials % TRIALS_A_STATION == 0:
+            self.station = self.world.station(f"flood {self.number} {self.trials}", self.people["admin"])
+        self.trials += 1
         trial_id = "%032x" % self.draw.getrandbits(128)
-        data = odd_trial(trial_id, self.world.ours.slot, self.draw)
-        return hand_over(Client(self.world.target, self.world.ours.station.credentials, SOURCE.format(99)), trial_id, self.world.ours.slot, data)
+        return hand_over(self.station, trial_id, self.world.case, odd_trial(trial_id, self.world.case, self.draw))
+
+
+ODD_NAMES = ["a.csv", "../a.csv", "/etc/cron.d/a", "a/../../b", "..\\a", "C:\\a", "a" * 300, "a\0b", ".", "..", "link", "x/" * 200]
+ODD_HEADERS = [{}, {"probe": {}}, {"rate_Hz": -1}, {"started_utc_us": 2**63}, {"extra": {"a": [[[]]]}}, {"rig": "palpation"},
+               {"id": "0" * 32}, {"unknown": 1}]
 
 
 def odd_zip(draw):
     """Traversal, links, doubled names, lying sizes, bombs."""
+    warnings.simplefilter("ignore")  # doubled names are meant
     out, good = io.BytesIO(), b'{"format":"tractus-measurements/1","rig":"probing","trials":[{"id":"a","file":"a.csv"}]}'
     with zipfile.ZipFile(out, "w", draw.choice([zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED])) as archive:
         archive.writestr("set.json", draw.choice([good, mutated_bytes(good, draw), b"[" * 50_000]))
         for _ in range(draw.randrange(4)):
-            name = draw.choice(["a.csv", "../a.csv", "/etc/cron.d/a", "a/../../b", "..\\a", "C:\\a", "a" * 300, "a\0b", ".", "..", "link", "x/" * 200])
-            info = zipfile.ZipInfo(name)
+            info = zipfile.ZipInfo(draw.choice(ODD_NAMES))
             if draw.random() < 0.3:
                 info.external_attr = 0o120777 << 16  # a symbolic link
             archive.writestr(info, draw.choice([b"/etc/passwd", b"t_s,x_m,fz_N\n0,0,1\n", b"t_s,x_m,fz_N\n" + b"0" * 300_000]))
@@ -144,11 +157,11 @@ def odd_zip(draw):
 
 
 def odd_trial(trial_id, slot, draw):
-    whole = trial_bytes(trial_id, slot, draw.choice(["x", "a" * 300, "\u0000"]), count=draw.choice([1, 20, 40]), **draw.choice([
-        {}, {"probe": {}}, {"rate_Hz": -1}, {"started_utc_us": 2**63}, {"extra": {"a": [[[]]]}}, {"rig": "palpation"}, {"id": "0" * 32}, {"unknown": 1}]))
+    whole = trial_bytes(trial_id, slot, draw.choice(["x", "a" * 300, "\u0000"]), draw.choice([1, 20, 40]), fields=draw.choice(ODD_HEADERS))
     if draw.random() < 0.5:
         return mutated_bytes(whole, draw)
-    payloads = [(draw.choice([b"HEAD", b"EVNT", b"SAMP", b"PACK", b"XXXX"]), mutated_bytes(zlib.compress(whole[:200]), draw)) for _ in range(draw.randrange(1, 5))]
+    kinds = [draw.choice([b"HEAD", b"EVNT", b"SAMP", b"PACK", b"XXXX"]) for _ in range(draw.randrange(1, 5))]
+    payloads = [(kind, mutated_bytes(zlib.compress(whole[:200]), draw)) for kind in kinds]
     return sealed([(b"HEAD", mutated_json({"format": "tractus-trial/2", "id": trial_id}, draw))] + payloads, draw.choice([0, 1, 2**40]))
 
 
@@ -168,7 +181,9 @@ def block(world, kind, count):
     """So many mutated requests of a kind, over all processes."""
     out, statuses, odd = multiprocessing.Queue(), {}, []
     base = {"json_body": 0, "path_and_query": 10, "head": 20, "archive": 30, "trial": 40}[kind]
-    parts = [multiprocessing.Process(target=part_of_block, args=(world, kind, base + n, count // PROCESSES + 1, out), daemon=True) for n in range(PROCESSES)]
+    share = count // PROCESSES + 1
+    parts = [multiprocessing.Process(target=part_of_block, args=(world, kind, base + n, share, out), daemon=True)
+             for n in range(PROCESSES)]
     began = time.monotonic()
     for part in parts:
         part.start()
@@ -207,6 +222,7 @@ def mutated_archives(world):
 
 @attack("700 trial files whose frames, checksums and contents lie")
 def mutated_trials(world):
+    world.case = world.published_case()
     block(world, "trial", 700)
 
 

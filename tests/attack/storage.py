@@ -6,6 +6,7 @@ import signal
 import threading
 import time
 
+from forgeries import FORGERIES
 from report import NotTried, attack, expect
 from transport import raw_head
 from trial_file import announced
@@ -67,37 +68,6 @@ def many_slow_bodies(world):
     for made in held:
         made.close()
     expect(answer.status == 200 and took_s < 2, f"another person's request took {took_s:.1f} s: {answer.status}")
-
-
-# What is edited by hand, and how: on the records of a server that does not run.
-FORGERIES = [
-    ("an audit row's detail is rewritten", "update audit set detail = '{}' where number = (select max(number) from audit where detail <> '{}')"),
-    ("an audit row in the middle is taken out", "delete from audit where number = (select max(number) - 3 from audit)"),
-    ("the name in an audit row is another one", "update audit set who = 'nobody' where number = (select max(number) - 1 from audit)"),
-    ("a score is better", "update scores set value = value + 1 where trial_id = (select max(trial_id) from scores)"),
-    ("a score is taken away", "delete from scores where trial_id = (select max(trial_id) from scores)"),
-    ("a trial's answer is right now", "update trials set correct = 1 - coalesce(correct, 0) where id = (select max(id) from trials)"),
-    ("a trial's events are others", "update trials set events = '[]' where id = (select max(id) from trials)"),
-    ("a trial was done another day", "update trials set started_utc_us = 1 where id = (select max(id) from trials)"),
-    ("a trainee is an administrator", "update accounts set role = 'admin' where name = 'Our trainee'"),
-    ("a switched-off account is on again", "update accounts set state = 'active' where name = 'gone'"),
-    ("a password is that of another account", "update accounts set password_hash = (select password_hash from accounts where name = 'Our trainee') where name = 'admin'"),
-    ("one-time codes are no longer asked for", "update accounts set totp_confirmed = 1 - totp_confirmed where name = 'admin'"),
-    ("a PIN is that of another trainee", "update accounts set pin_hash = (select pin_hash from accounts where name = 'Our trainee') where name = 'Victim trainee'"),
-    ("everybody agreed to everything", "update consents set tier = 'full'"),
-    ("a consent that was withdrawn is away", "delete from consents"),
-    ("a study's place is done", "update study_slots set state = 'recorded' where state = 'waiting'"),
-    ("a study's place has another scenario", "update study_slots set case_id = (select max(case_id) from study_slots where case_id <> study_slots.case_id)"),
-    ("a trial that counted is invalid", "update study_trials set state = 'invalid' where state = 'counts'"),
-    ("a study's event is away", "delete from study_events where number = 1"),
-    ("faculty leads another cohort", "update cohort_people set part = 'faculty' where account_id = (select id from accounts where name = 'Our trainee')"),
-    ("somebody is in a cohort that nobody put there", "delete from cohort_people where part = 'trainee'"),
-    ("a revoked station is let in again", "update stations set revoked_utc_us = null where name = 'revoked'"),
-    ("an assignment's results are released", "update assignments set release = 'held'"),
-    ("a locked analysis plan is another one", "update analysis_plans set title = 'forged'"),
-    ("a plan was locked before the data were seen", "update analysis_plans set data_seen = 0, trials_then = 0"),
-    ("an account is linked with another identity", "insert into oidc_subjects (issuer, subject, account_id, linked_utc_us, linked_by) select 'https://evil.example', 's', id, 1, 'admin' from accounts where name = 'admin'"),
-]
 
 
 def prepared(side):
@@ -260,7 +230,7 @@ def leave_behind(side):
     from nesting import zipped
     body = zipped({"set.json": b'{"format":"tractus-measurements/1","trials":[]}', "a.csv": b"t_s,x_m,fz_N\n" + b"0,0,0\n" * 2_000_000})
     client = Client(side.target, side.people["researcher"].credentials, patience_s=5)
-    sender = threading.Thread(target=client.ask, args=("POST", "/lab/measurements?name=x", body), kwargs={"kind": "application/octet-stream"})
+    sender = threading.Thread(target=client.ask, args=("POST", "/lab/measurements?name=x", body, "application/octet-stream"))
     sender.start()
     end = time.monotonic() + 3
     while time.monotonic() < end and not any(path.name.startswith("tractus") for path in side.setup.temporary.iterdir()):
@@ -277,7 +247,7 @@ def announced_more_than_the_disk(world):
         raise NotTried(f"{free >> 30} GiB are free: {count} announcements would be needed")
     with World(world.setup) as side:
         station = side.station("greedy 0")
-        slot = published_case(side)
+        slot = side.published_case()
         taken = 0
         for n in range(count):
             if n % 200 == 199:
@@ -291,22 +261,14 @@ def announced_more_than_the_disk(world):
     expect(taken * MOST_ANNOUNCED_BYTES < free, f"{taken} × 512 MiB were taken, {free >> 20} MiB are free")
 
 
-def published_case(side):
-    """The id of a case that a station may announce a trial for."""
-    faculty = side.account("case maker", "faculty")
-    scenario = faculty.must("GET", "/scenarios/hard")
-    scenario.pop("origin", None)
-    return faculty.must("POST", "/scenarios", {"scenario": scenario | {"name": "published"}, "publish": True})["id"]
-
-
 @attack("a station sends pieces of an upload at wrong places, too long, and of another station")
 def odd_pieces(world):
     trial_id, slot = secrets.token_hex(16), world.ours.next_slot()["slot"]
     answer = announced(world.ours.station, trial_id, slot, bytes(4000))
     expect(answer.status == 200, f"an announced piece: {answer}")
-    for query, body in (("offset_bytes=5000", b"x"), ("offset_bytes=0", b"x" * 10), ("offset_bytes=4000", b"x" * 10), ("offset_bytes=4000", b"")):
-        answer = world.ours.station.ask("PATCH", f"/uploads/{trial_id}?{query}", body, headers={"X-Crc32c": "00000000"})
-        expect(400 <= answer.status < 500, f"{query}: {answer}")
+    for offset, body in ((5000, b"x"), (0, b"x" * 10), (4000, b"x" * 10), (4000, b"")):
+        answer = world.ours.station.ask("PATCH", f"/uploads/{trial_id}?offset_bytes={offset}", body, headers={"X-Crc32c": "00000000"})
+        expect(400 <= answer.status < 500, f"{len(body)} bytes at {offset}: {answer}")
     for method, tail in (("GET", ""), ("POST", "/commit"), ("PATCH", "?offset_bytes=4000")):
-        answer = world.theirs.station.ask(method, f"/uploads/{trial_id}{tail}", b"" if method != "GET" else None, headers={"X-Crc32c": "00000000"})
+        answer = world.theirs.station.ask(method, f"/uploads/{trial_id}{tail}", headers={"X-Crc32c": "00000000"})
         expect(answer.status in (400, 404), f"{method} by another station: {answer}")

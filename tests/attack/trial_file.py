@@ -40,11 +40,11 @@ def samples(count, seed):
     return out
 
 
-def trial_bytes(trial_id, case_id, operator, count=560, seed=0, **header_fields):
-    """A whole, sealed trial with an answer. `header_fields` replace those of the header."""
+def trial_bytes(trial_id, case_id, operator, count=560, seed=0, fields=None):
+    """A whole, sealed trial with an answer. `fields` replace those of the header."""
     header = {"format": "tractus-trial/2", "id": trial_id, "case_id": case_id, "station": "station", "operator": operator,
               "simulated": True, "device": "sim-rig", "started_utc_us": STARTED_UTC_US + seed * 60_000_000, "rate_Hz": 1000.0,
-              "probe": {"travel_m": 0.028}, "extra": {}, "rig": "probing"} | header_fields
+              "probe": {"travel_m": 0.028}, "extra": {}, "rig": "probing"} | (fields or {})
     end_s = count * 1e-3
     answer = {"t_s": end_s, "kind": "answer", "detail": {"breach": True, "wall": None, "confidence": 0.75, "depth_m": 0.021}}
     payloads = [(b"HEAD", json.dumps(header).encode()), (b"EVNT", b'{"t_s":0.0,"kind":"start","detail":{}}'),

@@ -66,7 +66,8 @@ class World:
         self.server.start()
         self.proxy = Proxy(self.folder / "nginx", self.server.port, self.data / "tls") if self.front == "nginx" else None
         encrypted = self.front in ("tls", "nginx")
-        self.target = Target(self.proxy.port if self.proxy else self.server.port, str(self.data / "tls/authority.pem") if encrypted else None)
+        authority = str(self.data / "tls/authority.pem") if encrypted else None
+        self.target = Target(self.proxy.port if self.proxy else self.server.port, authority)
         self.direct = self.target if not self.proxy else Target(self.server.port)
         self.people, self.passwords, self.restarts = {}, {}, 0
         self.admin = self.signed_in("admin", self.admin_password)
@@ -104,8 +105,8 @@ class World:
         self.passwords[name] = own
         return person
 
-    def station(self, name):
-        code, token = self.admin.must("POST", "/stations/codes", {"name": name})["code"], secrets.token_hex(32)
+    def station(self, name, admin=None):
+        code, token = (admin or self.admin).must("POST", "/stations/codes", {"name": name})["code"], secrets.token_hex(32)
         made = self.nobody().must("POST", "/stations/enrol", {"code": code, "token_sha256": hashlib.sha256(token.encode()).hexdigest()})
         client = Client(self.target, {"Authorization": f"Bearer {token}"})
         client.identity = made
@@ -123,6 +124,12 @@ class World:
             "id": self.study, "title": "A study", "repeats": 1, "ordering": "random", "seed": 1,
             "scenarios": [{"tuned": "soft"}, {"tuned": "lateral_breach"}], "participants": [{"name": "S01"}, {"name": "S02"}]})
         self.wait_for_scores()
+
+    def published_case(self):
+        """The id of a case that any station may announce a trial for."""
+        scenario = self.admin.must("GET", "/scenarios/hard")
+        scenario.pop("origin", None)
+        return self.admin.must("POST", "/scenarios", {"scenario": scenario | {"name": "published"}, "publish": True})["id"]
 
     def mend(self):
         """Undoes what attacks did to their own family and to the study."""
@@ -233,7 +240,8 @@ class Family:
         self.trial = self.next_trial(1)
         self.next_trial(2)
         self.slot = self.next_slot()["slot"]
-        self.comment = self.faculty.must("POST", f"/trials/{self.trial}/comments", {"text": f"{name} comment", "at_s": 0.1})["comments"][0]["id"]
+        said = self.faculty.must("POST", f"/trials/{self.trial}/comments", {"text": f"{name} comment", "at_s": 0.1})
+        self.comment = said["comments"][0]["id"]
         whole = self.faculty.must("GET", f"/assignments/{self.assignment}")
         self.participant = whole["trainees"][0]["participant"]
 
