@@ -16,8 +16,9 @@ as_root() {
   fi
 }
 
-missing_packages() {
-  sed 's/#.*//' deploy/packages.txt | tr -d ' ' | grep . | while read -r package; do
+missing_packages() {  # missing_packages LIST...   of deploy/packages-LIST.txt
+  local list
+  for list in "$@"; do sed 's/#.*//' "deploy/packages-$list.txt"; done | tr -d ' ' | grep . | while read -r package; do
     dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q '^install ok installed' || echo "$package"
   done
 }
@@ -37,10 +38,10 @@ quiet_services() {  # quiet_services PACKAGE...   before they are installed
   fi
 }
 
-install_packages() {
+install_packages() {  # install_packages LIST...
   local missing
-  missing=$(missing_packages)
-  [ -z "$missing" ] && { say "All Debian packages of deploy/packages.txt are there"; return; }
+  missing=$(missing_packages "$@")
+  [ -z "$missing" ] && { say "All Debian packages are installed (deploy/packages-*.txt)"; return; }
   say "Installing $(wc -w <<<"$missing") Debian packages:" $missing
   as_root apt-get update -qq
   local kept_quiet=0 outcome=0
@@ -70,9 +71,15 @@ install_node() {
   node_is_new_enough || die "deploy: Node.js 20.19 or newer is needed, $(node --version) is here"
 }
 
+# Ninja's own line says how many steps are done; the estimate beside it is the time left at the speed so far.
+export NINJA_STATUS='[%f of %t, %e s, %P] '
+
+configure() {  # configure [CMAKE-OPTION...]
+  cmake --preset $preset "$@" >build/configure.log 2>&1 || { tail -20 build/configure.log >&2; die "deploy: cmake failed"; }
+}
+
 build_programs() {  # build_programs [target...]
   say "Building the programs (build/$preset)"
-  cmake --preset $preset >build/configure.log 2>&1 || { tail -20 build/configure.log >&2; die "deploy: cmake failed"; }
   cmake --build --preset $preset ${1:+--target "$@"}
 }
 

@@ -300,7 +300,7 @@ class SerialLine {
     socat_ = std::make_unique<Process>(std::vector<std::string>{
         "socat", "pty,raw,echo=0,link=" + end(0), "pty,raw,echo=0,link=" + end(1)});
     for (int tries = 0; tries < 1000 && !there(); ++tries) ::poll(nullptr, 0, 10);
-    EXPECT_TRUE(there()) << "socat (deploy/packages.txt) made no line";
+    EXPECT_TRUE(there()) << "socat (deploy/packages-test.txt) made no line";
   }
   ~SerialLine() {
     socat_.reset();
