@@ -44,12 +44,14 @@ struct PalpationStep {
       force_H_N;  ///< F_i at each point, before scaling, in H; the first `points` are set
 };
 
-/// The law [Zoller2020, eqs (2)–(4)], as made precise in the design:
+/// The law of palpation [Zoller2020, eqs (2) to (4)]: how the bone pushes on a bending probe.
 ///
 ///     p_i = X_VH (z_i ẑ + φ(z_i) (δx x̂ + δy ŷ)),   z_i = L − i·spacing,   φ(z) = z²(3L − z)/(2L³)
-///     (4) F_i = c_f g(p_i) (2) k δ = Σ φ(z_i) F_i,⊥,   k = 3EI/L³            (quasi-static
-///     equilibrium, to < 0.001 N) F* = s_f Σ F_i,   τ* = s_t Σ (p_i − origin) × F_i (3)
+///     F_i = c_f g(p_i)                                                 (2)
+///     F* = s_f Σ F_i,   τ* = s_t Σ (p_i − origin) × F_i                (3)
+///     k δ = Σ φ(z_i) F_i,⊥,   k = 3EI/L³   (to < 0.001 N)              (4)
 ///
+/// (4) is the published v(z) = F z²(3L − z)/(6EI) with δ = v(L) as the unknown: v(z) = δ φ(z).
 /// Assumes small deflections, a straight uniform shank, contact at the n points alone. A model's
 /// effects replace two parts: the Shank (structure), and ContactForces instead of F_i = c_f g(p_i).
 /// Departs from the source: the equilibrium is found by Newton with a trust region instead of

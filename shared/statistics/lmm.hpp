@@ -1,8 +1,8 @@
 /// Linear mixed model with a random intercept per group: repeated trials of the same person.
 ///
 ///     y = X β + u_group + e,   u ~ N(0, τ²),  e ~ N(0, σ²)
-///     REML criterion = (n − p)(1 + ln(2π RSS/(n − p))) + Σ ln(1 + n_i λ) + ln|Xᵀ V⁻¹ X|,  λ =
-///     τ²/σ²
+///     REML criterion = (n − p)(1 + ln(2π RSS/(n − p))) + Σ ln(1 + n_i λ) + ln|Xᵀ V⁻¹ X|
+///     with λ = τ²/σ²
 ///
 /// Minimised in λ ≥ 0 by the root of its derivative, boundary included. Degrees of freedom after
 /// Satterthwaite: 2v² / (gᵀ A g) with v = cᵀ cov(β) c, g its gradient in (τ², σ²), A twice the
@@ -16,8 +16,8 @@
 
 namespace statistics {
 
-/// What small-sample tests need beside the fit (lmm_tests.hpp), of θ = (τ², σ²), V_1 = ZZᵀ, V_2 =
-/// I.
+/// What small-sample tests need beside the fit (lmm_tests.hpp), of θ = (τ², σ²),
+/// V_1 = ZZᵀ, V_2 = I.
 struct LmmCurvature {
   Matrix variance_covariance;  ///< of θ, from the observed information; no covariance where
                                ///< τ² = 0, at the edge
