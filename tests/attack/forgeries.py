@@ -2,7 +2,7 @@
 
 OUR_TRAINEE = "name = 'Our trainee'"
 LAST_TRIAL = "(select max(id) from trials)"
-LAST_SCORED = "(select max(trial_id) from scores)"
+LAST_SCORED = "(select max(trial_id) from trial_metrics)"
 
 TRAIL = [
     ("an audit row's detail is rewritten",
@@ -13,8 +13,8 @@ TRAIL = [
 ]
 
 ASSESSMENT = [
-    ("a score is better", f"update scores set value = value + 1 where trial_id = {LAST_SCORED}"),
-    ("a score is taken away", f"delete from scores where trial_id = {LAST_SCORED}"),
+    ("a score is better", f"update trial_metrics set value = value + 1 where trial_id = {LAST_SCORED}"),
+    ("a score is taken away", f"delete from trial_metrics where trial_id = {LAST_SCORED}"),
     ("a trial's answer is right now", f"update trials set correct = 1 - coalesce(correct, 0) where id = {LAST_TRIAL}"),
     ("a trial's events are others", f"update trials set events = '[]' where id = {LAST_TRIAL}"),
     ("a trial was done another day", f"update trials set started_utc_us = 1 where id = {LAST_TRIAL}"),

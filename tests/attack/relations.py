@@ -288,7 +288,7 @@ def questions(world, route, draw):
     if "{" in route.path or not route.takes_json:
         for value in ids.values():
             yield route.address(choose=lambda parameter: stranger_or_plain(parameter, value)), bodies[0]
-    own = own_ids(world).get(route.path.split("/")[3])
+    own = own_ids(world).get(route.path.removeprefix("/api/v1/").split("/")[0])
     if route.takes_json and (own or "{" not in route.path):
         for body in bodies:
             yield route.address(choose=lambda parameter: own if parameter["in"] == "path" else plain_value(parameter)), body

@@ -139,7 +139,8 @@ def write_settings(folder, issuer):
 def hanging_provider(world):
     folder = world.setup.folder / "hanging"
     folder.mkdir()
-    with World(world.setup, options=write_settings(folder, HangingProvider().issuer)) as side:
+    provider = HangingProvider()
+    with World(world.setup, options=write_settings(folder, provider.issuer)) as side:
         statuses = []
 
         def one(n):
@@ -153,6 +154,7 @@ def hanging_provider(world):
         began = time.monotonic()
         password = sign_in(side, "admin", side.admin_password, "127.0.0.1")
         password_s = time.monotonic() - began
+    provider.socket.close()
     print(f"      health took {longest_s:.2f} s at most; the next sign-in {again_s:.2f} s: {again.status}", flush=True)
     expect(longest_s < MOST_HEALTH_S, f"health took {longest_s:.2f} s while twelve people waited for the provider")
     expect(password.status == 200 and password_s < 3, f"signing in by password took {password_s:.1f} s: {password}")

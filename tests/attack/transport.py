@@ -61,10 +61,10 @@ def hosts(world):
 
 ODD_LENGTHS = [b"Content-Length: 0\r\nContent-Length: 45", b"Content-Length: +0", b"Content-Length: 0x0", b"Content-Length: -1",
                b"Content-Length: 0, 45", b"Content-Length: 18446744073709551616", b"X: a\n\nGET / HTTP/1.1",
-               b"X: a\r\n Transfer-Encoding: chunked", b"Transfer-Encoding: chunked\r\nContent-Length: 3", b"Content-Length: 0\x00"]
+               b"Transfer-Encoding: chunked\r\nContent-Length: 3", b"Content-Length: 0\x00"]
 
 
-@attack("two lengths, a length with a sign, a bare line feed or a folded field hide a second request")
+@attack("two lengths, a length with a sign, a bare line feed or two framings hide a second request")
 def odd_lengths(world):
     for fields in ODD_LENGTHS:
         out, closed = answers_of(world.target, b"POST /api/v1/session HTTP/1.1\r\nHost: x\r\n" + fields + b"\r\n\r\n" + SMUGGLED)

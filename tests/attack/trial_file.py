@@ -43,7 +43,7 @@ def samples(count, seed):
 def trial_bytes(trial_id, case_id, operator, count=560, seed=0, fields=None):
     """A whole, sealed trial with an answer. `fields` replace those of the header."""
     header = {"format": "tractus-trial/2", "id": trial_id, "case_id": case_id, "station": "station", "operator": operator,
-              "simulated": True, "device": "sim-rig", "started_utc_us": STARTED_UTC_US + seed * 60_000_000, "rate_Hz": 1000.0,
+              "simulated": False, "device": "sim-rig", "started_utc_us": STARTED_UTC_US + seed * 60_000_000, "rate_Hz": 1000.0,
               "probe": {"travel_m": 0.028}, "extra": {}, "rig": "probing"} | (fields or {})
     end_s = count * 1e-3
     answer = {"t_s": end_s, "kind": "answer", "detail": {"breach": True, "wall": None, "confidence": 0.75, "depth_m": 0.021}}

@@ -39,10 +39,9 @@ class Setup:
         return ended.stdout
 
     def proxy_options(self):
-        """Behind a proxy, by name where the server wants its proxies named."""
-        told = self.run("serve", "--help").stdout
-        line = next((line for line in told.splitlines() if "--behind-proxy" in line), "")
-        return ["--behind-proxy", OWN_ADDRESS] if "TEXT" in line or "ADDRESS" in line else ["--behind-proxy"]
+        """Behind a proxy on this machine, named where the server can be told which proxies it is to believe."""
+        named = "--trusted-proxy" in self.run("serve", "--help").stdout
+        return ["--behind-proxy", "--trusted-proxy", OWN_ADDRESS] if named else ["--behind-proxy"]
 
     def stop(self):
         if self.postgres:
