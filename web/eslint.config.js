@@ -1,3 +1,4 @@
+import { readdirSync } from 'node:fs';
 import jsxA11y from 'eslint-plugin-jsx-a11y';
 import reactHooks from 'eslint-plugin-react-hooks';
 import globals from 'globals';
@@ -23,7 +24,7 @@ function layer(name, allowed, extra = []) {
   };
 }
 
-const kFeatures = ['session', 'trials', 'trial', 'studies', 'study', 'lab', 'network', 'trainees', 'analysis', 'guide', 'cases', 'scenarios', 'assignments', 'debrief'];
+const kFeatures = readdirSync(new URL('src/features', import.meta.url));
 
 export default tseslint.config(
   { ignores: ['dist/', 'node_modules/', 'src/api/generated/', 'test/screenshots/'] },

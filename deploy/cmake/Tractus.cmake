@@ -142,7 +142,7 @@ function(tractus_library name)
     if(ARG_BOTH_DATABASES)
       set(both BOTH_DATABASES)
     endif()
-    tractus_add_test(${name}_test ${both} SOURCES ${tests} DEPS tractus::${name} ${ARG_TEST_DEPS})
+    tractus_add_test(${name}_test ${both} SOURCES ${tests} DEPS tractus::${name} ${ARG_TEST_DEPS} LABELS unit)
   endif()
 endfunction()
 

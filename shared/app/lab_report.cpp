@@ -6,7 +6,7 @@
 
 #include "core/file.hpp"
 #include "core/progress.hpp"
-#include "lab/words.hpp"
+#include "lab/verdict_text.hpp"
 
 namespace commands {
 namespace {
@@ -57,7 +57,7 @@ std::string ranking(const lab::Diagnosis& d, const std::string& unit) {
   std::size_t n = 0;
   for (const lab::Ranked& r : d.ranking) {
     if (++n > 8 && r.probability < 0.005) continue;
-    out += "  " + left(lab::effect_in_words(r.id), 30) + right(percent(r.probability), 12) +
+    out += "  " + left(lab::effect_label(r.id), 30) + right(percent(r.probability), 12) +
            right(r.held_out_rmse ? figure(*r.held_out_rmse, unit) : "–", 13) +
            (r.note.empty() ? "" : "  " + r.note) + "\n";
   }
@@ -128,7 +128,7 @@ std::string printed_comparison(const lab_io::Answer& answer) {
            right(channel.explained < 0.0 ? "< 0 %" : percent(channel.explained), 11) + "\n";
   out += "\n  " + left("where it fails", 44) + right("of error", 9) + right("of time", 9) +
          right("error", 12) + "\n";
-  for (const lab::Region& r : c.where.regions)
+  for (const lab::Region& r : c.error_regions.regions)
     out += "  " + left(r.words, 44) + right(percent(r.share_of_error), 9) +
            right(percent(r.share_of_time), 9) + right(figure(r.rmse, c.judged_unit), 12) + "\n";
   out += "\n  " + left("phase", 44) + right("of error", 9) + right("of time", 9) +
@@ -148,7 +148,7 @@ std::string printed_diagnosis(const lab_io::Answer& answer) {
                                 right("error", 12), right("held out", 13));
   for (const lab::Step& step : d.steps)
     out += "  " +
-           left(step.model.starts_with("+ ") ? "+ " + lab::effect_in_words(step.model.substr(2))
+           left(step.model.starts_with("+ ") ? "+ " + lab::effect_label(step.model.substr(2))
                                              : step.model,
                 30) +
            right(figure(step.rmse, unit), 12) + right(figure(step.held_out_rmse, unit), 13) + "\n";
@@ -157,10 +157,10 @@ std::string printed_diagnosis(const lab_io::Answer& answer) {
   for (const lab::Estimate& e : d.final_fit.estimates)
     if (!e.pointer.starts_with("/")) out += estimate(e);
   for (const auto& [a, b] : d.confounded)
-    out += fmt::format("\nHardly told apart here: {} and {}.", lab::effect_in_words(a),
-                       lab::effect_in_words(b));
+    out += fmt::format("\nHardly told apart here: {} and {}.", lab::effect_label(a),
+                       lab::effect_label(b));
   if (!d.confounded.empty()) out += "\n";
-  if (d.settle) out += fmt::format("\nRecord next: {}.\n", d.settle->recording);
+  if (d.discriminating_experiment) out += fmt::format("\nRecord next: {}.\n", d.discriminating_experiment->recording);
   return out + notes(d.notes);
 }
 

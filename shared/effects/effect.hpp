@@ -58,7 +58,7 @@ struct EffectFacts {
   bool passive = true;                    ///< gives back no more work than it got
   /// Do the numbers stand to each other as the law means it (breakaway ≥ friction)? A fit that ends
   /// elsewhere imitates something else. Null: always.
-  bool (*meant)(std::span<const double> values) = nullptr;
+  bool (*admissible)(std::span<const double> values) = nullptr;
 };
 
 /// An effect in a model: which, and its numbers in the order of the params, components flattened.

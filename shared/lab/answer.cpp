@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "effects/expression.hpp"
-#include "lab/words.hpp"
+#include "lab/verdict_text.hpp"
 
 namespace lab {
 namespace {
@@ -43,9 +43,9 @@ Json channel(const ChannelComparison& c) {
                             {"residual", numbers(c.spectrum.residual)}}}};
 }
 
-Json where_json(const Where& where) {
+Json error_regions_json(const ErrorRegions& found) {
   Json out = Json::array();
-  for (const Region& region : where.regions)
+  for (const Region& region : found.regions)
     out.push_back({{"region", region.text},
                    {"words", region.words},
                    {"share_of_error", number(region.share_of_error)},
@@ -66,11 +66,11 @@ Json effect(const FoundEffect& found) {
   return {{"id", found.id}, {"probability", number(found.probability)}, {"parameters", parameters}};
 }
 
-Json settle(const std::optional<Settle>& settle) {
-  if (!settle) return nullptr;
-  return {{"between", settle->between},
-          {"recording", settle->recording},
-          {"expected_gain", number(settle->expected_gain)}};
+Json discriminating_experiment_json(const std::optional<DiscriminatingExperiment>& experiment) {
+  if (!experiment) return nullptr;
+  return {{"between", experiment->between},
+          {"recording", experiment->recording},
+          {"expected_gain", number(experiment->expected_gain)}};
 }
 
 Json estimates(const Fit& fit) {
@@ -163,8 +163,8 @@ Json to_json(const Comparison& comparison) {
           {"primary", comparison.judged_name},
           {"channels", channels},
           {"trials", trials},
-          {"where", where_json(comparison.where)},
-          {"where_method", comparison.where.honest},
+          {"where", error_regions_json(comparison.error_regions)},
+          {"where_method", comparison.error_regions.honest},
           {"phases", phases}};
 }
 
@@ -211,9 +211,9 @@ Json to_json(const Diagnosis& d) {
                             {"rmse", number(step.rmse)},
                             {"held_out_rmse", number(step.held_out_rmse)}});
   for (const auto& [a, b] : d.confounded) out["confounded"].push_back(Json{a, b});
-  out["settle"] = settle(d.settle);
+  out["settle"] = discriminating_experiment_json(d.discriminating_experiment);
   out["depends_on"] = d.depends_on;
-  out["rest_explained"] = number(d.rest_explained);
+  out["rest_explained"] = number(d.dependence_explained);
   out["held_out"] = d.final_fit.folds;
   out["parameters"] = estimates(d.final_fit);
   out["trials"] = fitted_trials(d.final_fit);

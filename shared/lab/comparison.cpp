@@ -192,7 +192,7 @@ Comparison compare(const Samples& samples) {
   for (const TrialSamples& trial : samples.trials)
     out.trials.push_back(trial_comparison(samples, trial));
   out.phases = phases(samples);
-  out.where = where(samples);
+  out.error_regions = find_error_regions(samples);
   return out;
 }
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "lab/samples.hpp"
-#include "lab/where.hpp"
+#include "lab/error_regions.hpp"
 
 namespace lab {
 
@@ -62,7 +62,7 @@ struct Comparison {
   std::vector<ChannelComparison> channels;
   std::vector<TrialComparison> trials;
   std::vector<PhaseComparison> phases;  ///< empty where the samples name none
-  Where where;
+  ErrorRegions error_regions;
 };
 
 /// Every sample counts alike; a phase is the feature named "phase". At least one trial with two

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lab/belief.hpp"
+#include "lab/structure_posterior.hpp"
 #include "lab/fit_report.hpp"
-#include "lab/rest.hpp"
+#include "lab/residual_dependence.hpp"
 #include "lab/selection.hpp"
 
 namespace lab {
@@ -62,10 +62,10 @@ std::vector<Step> steps(const Residual& residual, Selection& selection, const Di
 std::string note_on(const Problem& problem, const Candidate& candidate,
                     const Selection& selection) {
   if (!candidate.possible) return candidate.why_not;
-  const auto seen = selection.looks().find(candidate.facts.id);
-  if (seen == selection.looks().end()) return "not tried";
+  const auto seen = selection.screens().find(candidate.facts.id);
+  if (seen == selection.screens().end()) return "not tried";
   if (!seen->second.excited)
-    return seen->second.own_share > 0.0
+    return seen->second.independent_share > 0.0
                ? "not excited: whatever it would do, the model's own numbers do as well; record " +
                      problem.recording(candidate.facts.id, "")
                : "not excited: these recordings never call on it; record " +
@@ -73,12 +73,12 @@ std::string note_on(const Problem& problem, const Candidate& candidate,
   return "";
 }
 
-std::vector<Ranked> ranking(const Residual& residual, Selection& selection, const Belief& belief) {
+std::vector<Ranked> ranking(const Residual& residual, Selection& selection, const StructurePosterior& posterior) {
   const Problem& problem = residual.problem();
   std::vector<Ranked> out;
   for (const Candidate& candidate : problem.candidates()) {
     Ranked ranked{candidate.facts.id,
-                  belief.of_effect(candidate.facts.id),
+                  posterior.of_effect(candidate.facts.id),
                   {},
                   note_on(problem, candidate, selection)};
     const auto single = selection.tried().find(candidate.facts.id);
@@ -129,7 +129,7 @@ Result<Diagnosis> diagnose(const Problem& problem, const DiagnoseOptions& option
   Selection selection(residual, options, progress);
   const auto early = [&] {
     if (options.early)
-      options.early(ranking(residual, selection, Belief(residual, selection, selection.leading())));
+      options.early(ranking(residual, selection, StructurePosterior(residual, selection, selection.leading())));
   };
   if (!selection.run(early)) return Error{Errc::cancelled, "stopped"};
   Diagnosis out;
@@ -140,27 +140,27 @@ Result<Diagnosis> diagnose(const Problem& problem, const DiagnoseOptions& option
   const bool named = out.verdict == Verdict::missing || out.verdict == Verdict::partly;
   Solution& final = named ? selection.chosen() : selection.tried().at("");
   out.final_fit = report(residual, final, true);
-  const Belief belief(residual, selection, final);
-  if (out.verdict == Verdict::missing && belief.outside() > 0.5) {
+  const StructurePosterior posterior(residual, selection, final);
+  if (out.verdict == Verdict::missing && posterior.outside() > 0.5) {
     out.verdict = Verdict::partly;
     out.notes.push_back(fmt::format(
         "{} effects together bring the residual to the floor; so many at once more likely imitate "
         "one that is in no catalogue",
         final.structure.effects.size()));
   }
-  out.probability = out.verdict == Verdict::unexplained ? belief.outside()
+  out.probability = out.verdict == Verdict::unexplained ? posterior.outside()
                     : out.verdict == Verdict::partly    ? kMoreIsMissing
-                                                        : belief.of_structure(final.structure);
+                                                        : posterior.of_structure(final.structure);
   for (const std::string& id : named ? selection.order() : std::vector<std::string>{}) {
     out.effects.push_back(found(problem, out.final_fit, id));
-    out.effects.back().probability = belief.of_effect(id);
+    out.effects.back().probability = posterior.of_effect(id);
   }
   out.steps = named ? steps(residual, selection, out)
                     : std::vector<Step>{{"base", out.base.rmse, out.base.held_out_rmse}};
   if (out.verdict == Verdict::partly || out.verdict == Verdict::unexplained) {
-    const Rest rest = rest_of(residual, final);
+    const ResidualDependence rest = residual_dependence(residual, final);
     out.depends_on = rest.words;
-    out.rest_explained = rest.explained;
+    out.dependence_explained = rest.explained;
   }
   if (!selection.refused().empty())
     out.notes.push_back(
@@ -168,9 +168,9 @@ Result<Diagnosis> diagnose(const Problem& problem, const DiagnoseOptions& option
                     "motion before: "
                     "something with a slow memory is missing that is in no catalogue",
                     selection.refused()));
-  out.ranking = ranking(residual, selection, belief);
-  out.confounded = belief.confounded();
-  out.settle = belief.settle(problem);
+  out.ranking = ranking(residual, selection, posterior);
+  out.confounded = posterior.confounded();
+  out.discriminating_experiment = posterior.discriminating_experiment(problem);
   if (std::size_t(problem.trials()) < kFewTrials)
     out.notes.push_back(
         fmt::format("{} trial{} only: stretches of time were held out instead of trials, and the "

@@ -45,7 +45,7 @@ struct Step {
   double rmse = 0.0, held_out_rmse = 0.0;
 };
 
-struct Settle {
+struct DiscriminatingExperiment {
   std::vector<std::string> between;  ///< two effects, or one and "nothing"
   std::string recording;             ///< what to record, in words
   double expected_gain = 0.0;        ///< in the probability of the right answer, 0 … 1
@@ -63,9 +63,9 @@ struct Diagnosis {
   std::vector<Ranked> ranking;  ///< most probable first; the whole catalogue
   std::vector<Step> steps;
   std::vector<std::pair<std::string, std::string>> confounded;
-  std::optional<Settle> settle;
+  std::optional<DiscriminatingExperiment> discriminating_experiment;
   std::string depends_on;       ///< what an unexplained rest varies with, in words; else empty
-  double rest_explained = 0.0;  ///< share of the rest over the floor that recorded signals predict
+  double dependence_explained = 0.0;  ///< share of the rest over the floor that recorded signals predict
   std::vector<std::string> notes;  ///< on the recording and on how the answer was reached
   Fit base_fit;                    ///< of the model as given
   Fit final_fit;                   ///< with the effects named; the base's when nothing is

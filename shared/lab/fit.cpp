@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lab/candidates.hpp"
+#include "lab/effect_screen.hpp"
 #include "lab/fit_report.hpp"
 #include "lab/parallel.hpp"
 
@@ -267,7 +267,7 @@ Result<Fit> fit(const Problem& problem, const Structure& structure, const FitOpt
     if (progress && !progress(double(k) / double(structure.effects.size() + 1)))
       return Error{Errc::cancelled, "stopped"};
     const std::string& id = structure.effects[k];
-    at = extend(residual, at, look(residual, at, id), id, 3);
+    at = extend(residual, at, linear_screen(residual, at, id), id, 3);
     differentiate(residual, at);
   }
   at =

@@ -10,8 +10,8 @@
 #include "core/require.hpp"
 #include "effects/palpation_effect.hpp"
 #include "lab/least_squares.hpp"
-#include "lab/palpation_advice.hpp"
-#include "lab/palpation_numbers.hpp"
+#include "lab/palpation_experiments.hpp"
+#include "lab/palpation_parameter_space.hpp"
 #include "lab/palpation_recording.hpp"
 #include "lab/palpation_trend.hpp"
 #include "lab/palpation_weights.hpp"
@@ -42,10 +42,10 @@ bool has_drift(const Structure& structure) {
 
 class PalpationProblem final : public Problem {
  public:
-  PalpationProblem(volume::ForceField field, models::PalpationModel model, Offered offered,
+  PalpationProblem(volume::ForceField field, models::PalpationModel model, UserEffects user_effects,
                    std::vector<PalpationRecording> trials, std::optional<trial::StatedTract> tract)
       : field_(std::move(field)),
-        numbers_(std::move(model), 500.0, std::move(offered)),
+        numbers_(std::move(model), 500.0, std::move(user_effects)),
         trials_(std::move(trials)),
         trends_(trials_.size()),
         rests_(trials_.size()),
@@ -76,15 +76,15 @@ class PalpationProblem final : public Problem {
     whitened(structure, values, k, out);
     if (has_drift(structure)) trends_[std::size_t(k)].remove(out);
   }
-  Sharpness sharpness() const override {
+  SelectionThresholds selection_thresholds() const override {
     return {.at_floor = 1.1,
-            .share_left = 0.0,
-            .enough = 0.9,
-            .as_given = 1.1,
-            .clear_share = 0.01,
-            .clear_of_excess = 0.0,
-            .per_trial = 300.0,
-            .followed = 1.01};
+            .least_excess_share = 0.0,
+            .stop_below = 0.9,
+            .stop_if_given_below = 1.1,
+            .least_gain_share = 0.01,
+            .least_gain_of_excess = 0.0,
+            .observations_per_trial = 300.0,
+            .drift_r2_on_motion = 1.01};
   }
   bool differs_cheaply() const override { return true; }
   void residuals_near(const Structure& structure, std::span<const double> values,
@@ -123,7 +123,7 @@ class PalpationProblem final : public Problem {
     if (!touches_) return;
     const auto middle = field.begin() + std::ptrdiff_t(field.size() / 2);
     std::ranges::nth_element(field, middle);
-    numbers_ = PalpationNumbers(numbers_.model(), *middle, numbers_.offered());
+    numbers_ = PalpationParameterSpace(numbers_.model(), *middle, numbers_.user_effects());
   }
   bool touches() const { return touches_; }
 
@@ -185,7 +185,7 @@ class PalpationProblem final : public Problem {
   };
 
   volume::ForceField field_;
-  PalpationNumbers numbers_;
+  PalpationParameterSpace numbers_;
   std::vector<PalpationRecording> trials_;
   std::vector<Trend> trends_;
   mutable std::vector<Rests> rests_;
@@ -220,7 +220,7 @@ void PalpationProblem::set_candidates() {
     if (std::ranges::none_of(numbers_.model().effects,
                              [&](const auto& use) { return use.id == info.facts.id; }))
       candidates_.push_back({info.facts, true, ""});
-  for (const auto& [use, facts] : numbers_.offered().all())
+  for (const auto& [use, facts] : numbers_.user_effects().all())
     candidates_.push_back({facts, true, ""});
 }
 
@@ -402,7 +402,7 @@ Result<std::unique_ptr<Problem>> make_palpation_problem(const models::PalpationM
   for (const std::string& what : wrong)
     if (!what.empty()) return Error{Errc::bad_input, what};
   if (progress && !progress(0.6)) return Error{Errc::cancelled, "stopped"};
-  auto problem = std::make_unique<PalpationProblem>(std::move(*field), model, options.offered,
+  auto problem = std::make_unique<PalpationProblem>(std::move(*field), model, options.user_effects,
                                                     std::move(recordings), set.tract);
   // As the file has it first, then as a fit has it, and again: which rests the shank finds depends
   // on the numbers, and the numbers on the rests.

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "lab/offered.hpp"
+#include "lab/user_effects.hpp"
 #include "lab/problem.hpp"
 #include "models/model.hpp"
 #include "trial/measurement_set.hpp"
@@ -13,7 +13,7 @@ namespace lab {
 
 struct PalpationOptions {
   int threads = 2;
-  Offered offered = {};  ///< the user's own effects, candidates as the catalogue's
+  UserEffects user_effects = {};  ///< the user's own effects, candidates as the catalogue's
 };
 
 /// Smooths and differentiates the poses, estimates the noise, makes the force field and the

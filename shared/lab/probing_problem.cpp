@@ -10,8 +10,8 @@
 #include "lab/fit_report.hpp"
 #include "lab/least_squares.hpp"
 #include "lab/parallel.hpp"
-#include "lab/probing_advice.hpp"
-#include "lab/probing_numbers.hpp"
+#include "lab/probing_experiments.hpp"
+#include "lab/probing_parameter_space.hpp"
 #include "lab/probing_recording.hpp"
 #include "models/probing_runtime.hpp"
 
@@ -37,7 +37,7 @@ bool is_dry(std::string_view effect) {
 
 class ProbingProblem final : public Problem {
  public:
-  ProbingProblem(ProbingNumbers numbers, std::vector<ProbingRecording> trials, bool turns)
+  ProbingProblem(ProbingParameterSpace numbers, std::vector<ProbingRecording> trials, bool turns)
       : numbers_(std::move(numbers)), trials_(std::move(trials)), turns_(turns) {
     for (const auto& r : trials_) drifts_.push_back(drift_of(r));
     set_candidates();
@@ -153,7 +153,7 @@ class ProbingProblem final : public Problem {
     return d.at(trial(k).motion.t_s, d.fit(residual));
   }
 
-  ProbingNumbers numbers_;
+  ProbingParameterSpace numbers_;
   std::vector<ProbingRecording> trials_;
   std::vector<Drift> drifts_;
   std::vector<Candidate> candidates_;
@@ -199,7 +199,7 @@ void ProbingProblem::set_candidates() {
              torque = every(&effects::ProbingMotion::tz_Nm);
   std::vector<effects::EffectFacts> all;
   for (const auto& info : effects::probing_effects()) all.push_back(info.facts);
-  for (const auto& [use, facts] : numbers_.offered().all()) all.push_back(facts);
+  for (const auto& [use, facts] : numbers_.user_effects().all()) all.push_back(facts);
   for (const effects::EffectFacts& facts : all) {
     // What acts about the axis shows in the torque, which is judged where the rig only turns.
     if (numbers_.has(facts.id) || (!turns_ && facts.id.starts_with(kRotary))) continue;
@@ -363,7 +363,7 @@ Result<std::unique_ptr<Problem>> make_probing_problem(const models::ProbingModel
                  fmt::format("{}: the probe moves by {:.2g} m in all; nothing can be told from "
                              "that",
                              set.folder.string(), reach.most_m - reach.least_m)};
-  auto problem = std::make_unique<ProbingProblem>(ProbingNumbers(model, reach, options.offered),
+  auto problem = std::make_unique<ProbingProblem>(ProbingParameterSpace(model, reach, options.user_effects),
                                                   std::move(recordings), turns);
   if (!shortened.empty()) problem->note(shortened);
   // Twice: borders and dampings of the file first, then those of a first fit.

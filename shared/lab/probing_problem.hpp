@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "lab/offered.hpp"
+#include "lab/user_effects.hpp"
 #include "lab/problem.hpp"
 #include "models/probing_model.hpp"
 #include "trial/probing_set.hpp"
@@ -12,7 +12,7 @@ namespace lab {
 
 struct ProbingOptions {
   int threads = 2;
-  Offered offered = {};  ///< the user's own effects, candidates as the catalogue's
+  UserEffects user_effects = {};  ///< the user's own effects, candidates as the catalogue's
 };
 
 /// Smooths and differentiates the motion, estimates the noise, and makes the problem. The set is

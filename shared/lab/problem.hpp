@@ -75,17 +75,17 @@ struct States {
   std::vector<std::vector<double>> values;
 };
 
-/// What mean squares of the whitened residual mean on a rig: how near to 1 a true model comes
-/// there.
-struct Sharpness {
+/// Thresholds of the selection on a rig, as mean squares of the whitened residual: how near to 1 a
+/// true model comes there.
+struct SelectionThresholds {
   double at_floor = 1.8;      ///< below this nothing is left to explain
-  double share_left = 0.001;  ///< of the given model's excess: less is as good as nothing
-  double enough = 1.25;       ///< below this no further effect is looked for
-  double as_given = 0.0;      ///< nor if the given model is below this and no effect betters it
-  double clear_share = 0.12;  ///< of the mean square, that a further effect must take away
-  double clear_of_excess = 0.004;  ///< and of the given model's excess
-  double per_trial = 12.0;         ///< observations that a trial is worth
-  double followed =
+  double least_excess_share = 0.001;  ///< of the given model's excess: less is as good as nothing
+  double stop_below = 1.25;       ///< below this no further effect is looked for
+  double stop_if_given_below = 0.0;      ///< nor if the given model is below this and no effect betters it
+  double least_gain_share = 0.12;  ///< of the mean square, that a further effect must take away
+  double least_gain_of_excess = 0.004;  ///< and of the given model's excess
+  double observations_per_trial = 12.0;         ///< observations that a trial is worth
+  double drift_r2_on_motion =
       0.45;  ///< a trend of which the motion's memory explains this share is no sensor's
 };
 
@@ -131,7 +131,7 @@ class Problem {
                               Eigen::Ref<Eigen::MatrixXd> out) const;
   /// Are those so cheap that a search should differentiate anew at every step?
   virtual bool differs_cheaply() const { return false; }
-  virtual Sharpness sharpness() const { return {}; }
+  virtual SelectionThresholds selection_thresholds() const { return {}; }
   /// How many numbers per trial `residuals` has eliminated by itself for that structure.
   virtual int free_per_trial(const Structure& structure) const = 0;
 

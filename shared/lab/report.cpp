@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "lab/report_parts.hpp"
-#include "lab/words.hpp"
+#include "lab/verdict_text.hpp"
 #include "plot/text.hpp"
 
 namespace lab {
@@ -42,7 +42,7 @@ std::string better_name(const ReportContent& content) {
   if (!content.diagnosis) return "fitted";
   const auto& effects = content.diagnosis->effects;
   if (effects.empty()) return "refitted";
-  return effects.size() == 1 ? "with " + effect_in_words(effects[0].id) : "with what was found";
+  return effects.size() == 1 ? "with " + effect_label(effects[0].id) : "with what was found";
 }
 
 }  // namespace page

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "lab/report_parts.hpp"
-#include "lab/words.hpp"
+#include "lab/verdict_text.hpp"
 #include "plot/text.hpp"
 
 namespace lab::page {
@@ -25,7 +25,7 @@ std::string regions(const Side& side) {
       "<table>\n<tr><th>region</th><th>share of the error</th><th class=\"n\"></th>"
       "<th class=\"n\">of the time</th><th class=\"n\">error there</th>"
       "<th class=\"n\">mean residual</th></tr>\n";
-  for (const Region& r : side.comparison.where.regions)
+  for (const Region& r : side.comparison.error_regions.regions)
     out += fmt::format(
         "<tr><td>{}</td><td class=\"wide\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td>"
         "<td class=\"n\">{}</td><td class=\"n\">{}</td></tr>\n",
@@ -83,7 +83,7 @@ NameAndUnit parameter_name(const std::string& pointer) {
   if (parts.size() >= 4 && parts[1] == "layers")
     out.name = fmt::format("layer {} · {}", std::atoi(parts[2].c_str()) + 1, out.name);
   else if (parts.size() > 1 && parts[parts.size() - 2] != "base")
-    out.name = effect_in_words(parts[parts.size() - 2]) + " · " + out.name;
+    out.name = effect_label(parts[parts.size() - 2]) + " · " + out.name;
   return out;
 }
 
@@ -105,10 +105,10 @@ std::string parameter_row(const ReportContent& content, const Estimate& e) {
       "<tr><td>{}{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td>"
       "<td class=\"n\">{}</td></tr>\n",
       escaped(name), remark(e).empty() ? "" : "<small>" + remark(e) + "</small>",
-      given ? figure(start->start, unit) : "–", figure_within(e.value, interval) + " " + unit,
+      given ? figure(start->start, unit) : "–", figure_with_uncertainty(e.value, interval) + " " + unit,
       std::isfinite(interval) && e.informed
-          ? fmt::format("{} … {}", figure_within(e.value - interval, interval),
-                        figure_within(e.value + interval, interval))
+          ? fmt::format("{} … {}", figure_with_uncertainty(e.value - interval, interval),
+                        figure_with_uncertainty(e.value + interval, interval))
           : "–",
       std::isfinite(change) ? fmt::format("{:+.1f} %", 100.0 * change) : "–");
 }
@@ -125,10 +125,10 @@ std::string places(const ReportContent& content) {
     body += "<h3>What is left, " + escaped(better_name(content)) + "</h3>\n" +
             (at_floor(*content.better) ? "<p>At the noise floor: nothing stands out.</p>\n"
                                        : regions(*content.better));
-  return section("Where the model fails",
+  return section("ErrorRegions the model fails",
                  "Moments of the recordings that hold more of the error than their time alone "
                  "would; " +
-                     escaped(content.before.comparison.where.honest) + ".",
+                     escaped(content.before.comparison.error_regions.honest) + ".",
                  body);
 }
 

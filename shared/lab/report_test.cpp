@@ -7,7 +7,7 @@
 #include <regex>
 
 #include "lab/phases.hpp"
-#include "lab/words.hpp"
+#include "lab/verdict_text.hpp"
 
 namespace lab {
 namespace {
@@ -63,7 +63,7 @@ ReportContent content() {
                {"inertia", 0.0, std::nullopt, "not excited: the speed hardly changes"}};
   d.steps = {{"base", 1.97, 2.02}, {"+ coulomb_friction", 0.05, 0.06}};
   d.confounded = {{"hysteresis", "coulomb_friction"}};
-  d.settle = Settle{{"hysteresis", "coulomb_friction"}, "three small reversals at 12 mm", 0.4};
+  d.discriminating_experiment = DiscriminatingExperiment{{"hysteresis", "coulomb_friction"}, "three small reversals at 12 mm", 0.4};
   d.final_fit.folds = "trials";
   d.final_fit.estimates = {{"/base/layers/0/stiffness_N_per_m", 4100.0, 12.0, true, false},
                            {"/base/layers/0/equilibrium_m", 0.0, INFINITY, false, false},
@@ -85,7 +85,7 @@ TEST(Report, SaysTheVerdictFirstInPlainWords) {
 TEST(Report, HoldsAllItPromises) {
   const std::string html = report(content());
   for (const char* heading :
-       {"The error, step by step", "Measured and simulated", "Where the model fails",
+       {"The error, step by step", "Measured and simulated", "ErrorRegions the model fails",
         "What could be missing", "Parameters", "What these recordings cannot tell",
         "How the error is distributed", "Trial by trial", "What was taken for granted"})
     EXPECT_HOLDS(html, heading);
@@ -125,14 +125,14 @@ TEST(Report, LeavesOutWhatThereIsNot) {
 }
 
 TEST(Words, NameEffectsAndUnits) {
-  EXPECT_EQ(effect_in_words("stribeck_friction"), "Stribeck friction");
+  EXPECT_EQ(effect_label("stribeck_friction"), "Stribeck friction");
   EXPECT_EQ(name_and_unit("coefficient_Ns2_per_m2").unit, "N·s²/m²");
   EXPECT_EQ(name_and_unit("yield_displacement_m").name, "yield displacement");
   EXPECT_EQ(figure(0.0123456, "N"), "0.0123 N");
   EXPECT_EQ(figure(4123.6), "4124");
   EXPECT_EQ(figure(2.5e-5), "2.5e-5");
-  EXPECT_EQ(figure_within(4000.0123, 0.21), "4000.01");
-  EXPECT_EQ(figure_within(2.29993, 0.06), "2.300");
+  EXPECT_EQ(figure_with_uncertainty(4000.0123, 0.21), "4000.01");
+  EXPECT_EQ(figure_with_uncertainty(2.29993, 0.06), "2.300");
 }
 
 TEST(Words, SayEachVerdict) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "lab/report_parts.hpp"
-#include "lab/words.hpp"
+#include "lab/verdict_text.hpp"
 #include "plot/text.hpp"
 
 namespace lab::page {
@@ -56,16 +56,16 @@ std::string ranked_row(const ReportContent& content, const Ranked& ranked) {
   return fmt::format(
       "<tr><td>{}{}{}<small>{}</small></td><td class=\"wide\">{}</td><td class=\"n\">{}</td>"
       "<td class=\"n\">{}</td></tr>\n",
-      found ? "<strong>" : "", escaped(effect_in_words(ranked.id)), found ? "</strong>" : "", small,
+      found ? "<strong>" : "", escaped(effect_label(ranked.id)), found ? "</strong>" : "", small,
       bar(ranked.probability, found ? "" : "quiet"), percent(ranked.probability),
       ranked.held_out_rmse ? figure(*ranked.held_out_rmse, unit) : "not tried");
 }
 
 /// "whether it is a or b", "whether b is missing too".
-std::string what_it_tells(const Settle& settle) {
+std::string what_it_tells(const DiscriminatingExperiment& experiment) {
   std::vector<std::string> effects;
-  for (const std::string& id : settle.between)
-    if (id != "nothing") effects.push_back(effect_in_words(id));
+  for (const std::string& id : experiment.between)
+    if (id != "nothing") effects.push_back(effect_label(id));
   return effects.size() == 1 ? fmt::format("whether {} is there at all", effects[0])
                              : fmt::format("whether it is {}", fmt::join(effects, " or "));
 }
@@ -78,7 +78,7 @@ std::string bars(const Step& step, const std::string& unit, double largest, doub
   };
   const bool plus = step.model.starts_with("+ ");
   const std::string label =
-      plus ? "+ " + effect_in_words(step.model.substr(2)) : step.model + " model, refitted";
+      plus ? "+ " + effect_label(step.model.substr(2)) : step.model + " model, refitted";
   return fmt::format(
       "<div>{}</div><div class=\"track{}\"><div style=\"position:relative\">"
       "<div class=\"floor\" style=\"left:{:.2f}%\"></div>{}{}</div></div>\n",
@@ -168,16 +168,16 @@ std::string undecided(const ReportContent& content) {
   if (!content.diagnosis) return {};
   std::string body;
   for (const auto& [a, b] : content.diagnosis->confounded)
-    body += fmt::format("<li>{} and {}</li>\n", escaped(effect_in_words(a)),
-                        escaped(effect_in_words(b)));
+    body += fmt::format("<li>{} and {}</li>\n", escaped(effect_label(a)),
+                        escaped(effect_label(b)));
   if (!body.empty())
     body = "<p>These recordings can hardly tell apart:</p><ul>\n" + body + "</ul>\n";
-  if (const auto& settle = content.diagnosis->settle) {
+  if (const auto& experiment = content.diagnosis->discriminating_experiment) {
     body += fmt::format(
         "<div class=\"ask\"><b>Record next: {}</b>It would tell {}; expected gain in the "
         "probability of the right answer: {}.</div>\n",
-        escaped(settle->recording), escaped(what_it_tells(*settle)),
-        percent(settle->expected_gain));
+        escaped(experiment->recording), escaped(what_it_tells(*experiment)),
+        percent(experiment->expected_gain));
   }
   return section("What these recordings cannot tell", "", body);
 }

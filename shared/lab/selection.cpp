@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "lab/fit_report.hpp"
-#include "lab/followed.hpp"
+#include "lab/drift_on_motion.hpp"
 
 namespace lab {
 namespace {
@@ -54,7 +54,7 @@ std::pair<double, double> mean_squares(const Solution& a, const Solution& b) {
 }  // namespace
 
 double cost(const Residual& residual, const Solution& s, const Solution& base) {
-  return 0.5 * residual.problem().sharpness().per_trial * double(residual.trials()) *
+  return 0.5 * residual.problem().selection_thresholds().observations_per_trial * double(residual.trials()) *
              std::log(std::max(kLeastSquare, s.mean_square())) +
          0.5 * (s.prior - base.prior) + kPrice * numbers_beyond(residual, s, base);
 }
@@ -77,7 +77,7 @@ bool Selection::go_on(double share) {
 Solution& Selection::fitted(const Solution& from, const std::string& effect, int tries) {
   const std::string key = name(plus(from.structure, effect));
   const auto known = tried_.find(key);
-  Solution found = extend(residual_, from, look(residual_, from, effect), effect, tries);
+  Solution found = extend(residual_, from, linear_screen(residual_, from, effect), effect, tries);
   if (known != tried_.end() && known->second.mean_square() <= found.mean_square())
     return known->second;
   return tried_[key] = std::move(found);
@@ -90,22 +90,22 @@ bool Selection::clearly_better(const Solution& larger, const Solution& smaller,
   const double gained = double(residual_.size()) * (before - after) / std::max(1.0, after) +
                         smaller.prior - larger.prior;
   return gained > kClearLoss * numbers &&
-         before - after > residual_.problem().sharpness().clear_share * before &&
+         before - after > residual_.problem().selection_thresholds().least_gain_share * before &&
          before - after > share * excess(base().mean_square());
 }
 
 bool Selection::clearly_better(const Solution& larger, const Solution& smaller) const {
-  return clearly_better(larger, smaller, residual_.problem().sharpness().clear_of_excess);
+  return clearly_better(larger, smaller, residual_.problem().selection_thresholds().least_gain_of_excess);
 }
 
-bool Selection::meant(const Solution& at) const {
+bool Selection::admissible(const Solution& at) const {
   for (const Candidate& candidate : residual_.problem().candidates()) {
-    if (candidate.facts.meant == nullptr || !contains(at.structure, candidate.facts.id)) continue;
+    if (candidate.facts.admissible == nullptr || !contains(at.structure, candidate.facts.id)) continue;
     std::vector<double> own;
     for (std::size_t k = 0; k < at.parameters.size(); ++k)
       if (at.parameters[k].pointer.starts_with(candidate.facts.id + "/"))
         own.push_back(at.values[k]);
-    if (!candidate.facts.meant(own)) return false;
+    if (!candidate.facts.admissible(own)) return false;
   }
   return true;
 }
@@ -113,7 +113,7 @@ bool Selection::meant(const Solution& at) const {
 std::vector<const Solution*> Selection::best_of(std::size_t effects, std::size_t most) const {
   std::vector<const Solution*> out;
   for (const auto& [key, solution] : tried_)
-    if (solution.structure.effects.size() == effects && meant(solution)) out.push_back(&solution);
+    if (solution.structure.effects.size() == effects && admissible(solution)) out.push_back(&solution);
   std::ranges::stable_sort(out, {}, [&](const Solution* s) { return cost(residual_, *s, base()); });
   if (out.size() > most) out.resize(most);
   return out;
@@ -128,9 +128,9 @@ void Selection::singles() {
     if (!candidate.possible) continue;
     if (!options_.only.empty() && std::ranges::find(options_.only, id) == options_.only.end())
       continue;
-    Look seen = look(residual_, base(), id);
+    LinearScreen seen = linear_screen(residual_, base(), id);
     if (seen.excited) tried_[id] = extend(residual_, base(), seen, id, kTries);
-    looks_[id] = std::move(seen);
+    screens_[id] = std::move(seen);
   }
 }
 
@@ -161,24 +161,24 @@ void Selection::reshape(std::size_t effects) {
 
 void Selection::grow() {
   refine(1);
-  const Sharpness sharp = residual_.problem().sharpness();
+  const SelectionThresholds sharp = residual_.problem().selection_thresholds();
   const auto first = best_of(1, 1);
-  if (base().mean_square() < sharp.as_given && !first.empty() &&
+  if (base().mean_square() < sharp.stop_if_given_below && !first.empty() &&
       !clearly_better(*first.front(), base()))
     return;
   for (int size = 1; size < options_.max_effects; ++size) {
     const auto best = best_of(std::size_t(size), kGrown);
-    if (best.empty() || best.front()->mean_square() < sharp.enough) return;
+    if (best.empty() || best.front()->mean_square() < sharp.stop_below) return;
     std::vector<std::pair<const Solution*, std::string>> todo;
     for (const Solution* from : best) {
       std::vector<std::pair<double, std::string>> gains;
       Solution at = *from;
       differentiate(residual_, at);
       tried_[name(at.structure)] = at;
-      for (const auto& [id, seen] : looks_) {
+      for (const auto& [id, seen] : screens_) {
         if (!seen.excited || contains(at.structure, id)) continue;
         if (!go_on(0.5 + 0.15 * size)) return;
-        const Look now = look(residual_, at, id);
+        const LinearScreen now = linear_screen(residual_, at, id);
         gains.emplace_back(now.starts.front().gain, id);
       }
       std::ranges::sort(gains, std::greater<>());
@@ -228,15 +228,15 @@ void Selection::prefer_parents() {
     const std::string& id = candidate.facts.id;
     if (chosen_.empty() || !contains(chosen().structure, id)) continue;
     for (const std::string& parent : candidate.facts.parents) {
-      if (contains(chosen().structure, parent) || !looks_.contains(parent) ||
-          !looks_.at(parent).excited)
+      if (contains(chosen().structure, parent) || !screens_.contains(parent) ||
+          !screens_.at(parent).excited)
         continue;
       const Structure less = minus(chosen().structure, id);
       if (!tried_.contains(name(less))) continue;
       Solution from = tried_.at(name(less));
       differentiate(residual_, from);
       const Solution& simpler = fitted(from, parent, kTries);
-      if (!clearly_better(chosen(), simpler, kClearOfParent)) chosen_ = name(simpler.structure);
+      if (!clearly_better(chosen(), simpler, kLeastGainOverParent)) chosen_ = name(simpler.structure);
     }
   }
 }
@@ -247,7 +247,7 @@ void Selection::refuse_trends() {
   for (const Candidate& candidate : residual_.problem().candidates()) {
     const std::string& id = candidate.facts.id;
     if (!candidate.facts.free_per_trial || !contains(chosen().structure, id)) continue;
-    if (followed_share(residual_, chosen(), id) < residual_.problem().sharpness().followed)
+    if (drift_r2_on_motion(residual_, chosen(), id) < residual_.problem().selection_thresholds().drift_r2_on_motion)
       continue;
     const Structure less = minus(chosen().structure, id);
     part(Solution(chosen()), less);
@@ -274,8 +274,8 @@ double moved(const Solution& at, int& count) {
 /// over its stiffness. One constant that brings all of them back to where the model has them is the
 /// simpler reading.
 void Selection::explain_shifts() {
-  const auto seen = looks_.find(std::string(kBias));
-  if (seen == looks_.end() || !seen->second.excited || contains(chosen().structure, kBias)) return;
+  const auto seen = screens_.find(std::string(kBias));
+  if (seen == screens_.end() || !seen->second.excited || contains(chosen().structure, kBias)) return;
   int layers = 0;
   const double before_m = moved(chosen(), layers);
   if (layers < 2 || before_m < kShifted_m) return;

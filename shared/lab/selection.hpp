@@ -7,14 +7,14 @@
 #include <vector>
 
 #include "core/progress.hpp"
-#include "lab/candidates.hpp"
+#include "lab/effect_screen.hpp"
 #include "lab/diagnosis.hpp"
 
 namespace lab {
 
 /// A child that refines its parent's law need bring less than a further effect (see Sharpness):
 /// this share of what the given model left over the floor.
-inline constexpr double kClearOfParent = 2e-4;
+inline constexpr double kLeastGainOverParent = 2e-4;
 
 /// Every structure that was fitted, kept by its name.
 class Selection {
@@ -33,7 +33,7 @@ class Selection {
   Solution& chosen() { return tried_.at(chosen_); }
   const std::map<std::string, Solution>& tried() const { return tried_; }
   std::map<std::string, Solution>& tried() { return tried_; }
-  const std::map<std::string, Look>& looks() const { return looks_; }  ///< on the base, by effect
+  const std::map<std::string, LinearScreen>& screens() const { return screens_; }  ///< on the base, by effect
   /// Ids in the order in which they brought most.
   const std::vector<std::string>& order() const { return order_; }
   /// An effect that reached the floor by imitation and is not named for that; empty for none.
@@ -44,7 +44,7 @@ class Selection {
   bool clearly_better(const Solution& larger, const Solution& smaller, double share) const;
   bool clearly_better(const Solution& larger, const Solution& smaller) const;
   /// Every effect's numbers stand to each other as its law means them.
-  bool meant(const Solution& at) const;
+  bool admissible(const Solution& at) const;
 
  private:
   Solution& fitted(const Solution& from, const std::string& effect, int tries);
@@ -65,7 +65,7 @@ class Selection {
   DiagnoseOptions options_;
   const core::Progress& progress_;
   std::map<std::string, Solution> tried_;
-  std::map<std::string, Look> looks_;
+  std::map<std::string, LinearScreen> screens_;
   std::vector<std::string> order_;
   std::string chosen_, refused_;
   bool stopped_ = false;

@@ -56,9 +56,9 @@ class Toy final : public Problem {
                    {facts("silent", false), true, ""},
                    {facts("deaf", false), false, "its channel was not recorded"}};
   }
-  void mean(std::string_view id, bool (*meant)(std::span<const double>)) {
+  void mean(std::string_view id, bool (*admissible)(std::span<const double>)) {
     for (auto& c : candidates_)
-      if (c.facts.id == id) c.facts.meant = meant;
+      if (c.facts.id == id) c.facts.admissible = admissible;
   }
   std::string_view rig() const override { return "toy"; }
   int trials() const override { return trials_; }

@@ -5,7 +5,7 @@
 
 #include <cstdio>
 
-#include "station/app/aftermath.hpp"
+#include "station/app/trial_epilogue.hpp"
 #include "station/app/deeds.hpp"
 #include "station/app/exchange.hpp"
 #include "station/devices/catalogue.hpp"

@@ -119,7 +119,7 @@ bool all_passed(const Checked& checked) {
 }
 
 /// What went wrong with the device itself is a finding like others; bad use and a stop are not.
-core::Result<void> heeded(const core::Result<void>& outcome, Checked& checked) {
+core::Result<void> recorded_outcome(const core::Result<void>& outcome, Checked& checked) {
   if (outcome || outcome.error().code != core::Errc::unavailable) return outcome;
   checked.findings.push_back({.name = "device", .words = outcome.error().what});
   return {};
@@ -187,7 +187,7 @@ core::Result<int> self_test(const Options& options) {
   check::SelfTest test{.at_utc_us = core::utc_us()};
   const auto device =
       is_rig(options.setup.device) ? check_whole_rig(checked) : self_test_hand(checked);
-  if (auto fine = heeded(device, checked); !fine) return unfinished(fine.error());
+  if (auto fine = recorded_outcome(device, checked); !fine) return unfinished(fine.error());
   if (auto done = check_calibration(checked); !done) return done.error();
   if (auto done = check_machine(checked); !done) return done.error();
   if (asked_to_stop()) return unfinished({core::Errc::cancelled, ""});
@@ -218,7 +218,7 @@ core::Result<int> calibrate(const Options& options) {
   Checked checked{options, *folder, *presence->outside()};
   const auto device =
       is_rig(options.setup.device) ? check_whole_rig(checked) : calibrate_hand(checked);
-  if (auto fine = heeded(device, checked); !fine) return unfinished(fine.error());
+  if (auto fine = recorded_outcome(device, checked); !fine) return unfinished(fine.error());
   if (!all_passed(checked)) return not_calibrated(checked);
   presence.reset();  // it told the date that was due until now
   const std::int64_t now = core::utc_us();

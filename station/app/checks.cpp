@@ -37,9 +37,9 @@ core::Result<void> ask_person(const Options& options, const char* what) {
 }
 
 core::Result<void> run_shown(
-    const std::string& label, Pace pace, const session::Outside& outside,
+    const std::string& label, Pace pace, const session::RemoteSupervisor& outside,
     const std::function<core::Result<void>(const std::function<bool(double)>& progress)>& work,
-    const std::function<void()>& heed) {
+    const std::function<void()>& on_wait) {
   std::atomic<double> share = 0.0;
   std::atomic<bool> stop = false, done = false;
   std::optional<core::Result<void>> outcome;
@@ -55,7 +55,7 @@ core::Result<void> run_shown(
   const core::Progress shown = core::terminal_progress(label);
   for (; !done; std::this_thread::sleep_for(kShown)) {
     shown(share);
-    if (heed) heed();
+    if (on_wait) on_wait();
     if (asked_to_stop() || outside.stopped()) stop = true;
   }
   thread.join();

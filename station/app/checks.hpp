@@ -23,7 +23,7 @@ core::Result<void> ask_person(const Options& options, const char* what);
 struct Checked {
   const Options& options;
   const session::StationFolder& folder;
-  session::Outside& outside;
+  session::RemoteSupervisor& outside;
   std::vector<check::Finding> findings = {};
   std::string device = {};  ///< as it calls itself
   bool simulated = false;
@@ -33,9 +33,9 @@ enum class Pace { real_time, as_fast_as_it_goes };
 /// Runs `work` in a thread of its own (of real time, as a trial's loop) and shows how far it is;
 /// Ctrl-C and a stop from afar make its progress answer "stop". `heed` is called meanwhile.
 core::Result<void> run_shown(
-    const std::string& label, Pace pace, const session::Outside& outside,
+    const std::string& label, Pace pace, const session::RemoteSupervisor& outside,
     const std::function<core::Result<void>(const std::function<bool(double)>& progress)>& work,
-    const std::function<void()>& heed = {});
+    const std::function<void()>& on_wait = {});
 
 /// The device's own checks, travel included; what was found before an error is in `checked`.
 /// Errors: unavailable (its fault, or it is not there), cancelled, bad_input (nobody stands by).

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "station/app/onlooker.hpp"
+#include "station/app/trial_viewer.hpp"
 #include "station/sensors/record.hpp"
 #include "station/session/probing_trial.hpp"
 
@@ -68,7 +68,7 @@ struct Options {
 };
 
 /// How its palpation trials are looked at.
-inline Look look_of(const Options& options) {
+inline ViewOptions look_of(const Options& options) {
   return {.show = options.show,
           .picture = options.picture,
           .data = options.data,

@@ -59,7 +59,7 @@ double depth_m(const loop::Live& live, const session::PreparedCase& prepared) {
 struct Presence::Parts {
   const Options& options;
   const session::StationFolder& folder;
-  session::Outside outside;
+  session::RemoteSupervisor outside;
   std::atomic<State> state = State::idle;
   loop::Seqlock<Seen> seen;
   std::atomic<std::uint64_t> ticks = 0, late = 0;
@@ -83,7 +83,7 @@ struct Presence::Parts {
   wire::StationTold told();
   void look_around();
   void measure_clock();
-  void heed(const wire::StationCommand& command);
+  void on_command(const wire::StationCommand& command);
 };
 
 void Presence::Parts::look_around() {
@@ -139,7 +139,7 @@ void Presence::Parts::measure_clock() {
   }
 }
 
-void Presence::Parts::heed(const wire::StationCommand& command) {
+void Presence::Parts::on_command(const wire::StationCommand& command) {
   if (command.kind == wire::StationCommand::Kind::stop) {
     outside.stop(command.reason);
     return;
@@ -164,13 +164,13 @@ Presence::Presence(const Options& options, const session::StationFolder& folder)
   p.line = std::make_unique<uplink::LiveUplink>(uplink::LiveUplink::Parts{
       .open = [to](const std::atomic<bool>& stopped) { return uplink::open_line(to, stopped); },
       .told = [&p] { return p.told(); },
-      .commanded = [&p](const wire::StationCommand& command) { p.heed(command); },
+      .commanded = [&p](const wire::StationCommand& command) { p.on_command(command); },
       .connected = [&p] { p.measure_clock(); }});
 }
 
 Presence::~Presence() = default;
 
-session::Outside* Presence::outside() noexcept { return &parts_->outside; }
+session::RemoteSupervisor* Presence::outside() noexcept { return &parts_->outside; }
 
 void Presence::is(State state) noexcept { parts_->state = state; }
 
@@ -221,16 +221,16 @@ void Presence::done(const session::TrialReport& report) {
     is(report.fault.empty() ? State::idle : State::fault);
 }
 
-bool Presence::may_go_on() {
+bool Presence::may_resume() {
   Parts& p = *parts_;
   if (!p.outside.stopped()) return true;
   is(State::stopped);
-  fmt::print(stderr, "{}\n", session::stopped_text(p.outside));
+  fmt::print(stderr, "{}\n", session::stop_message(p.outside));
   if (!::isatty(STDIN_FILENO)) return false;
   fmt::print(stderr, "Look at the device, then press Enter to go on: ");
   std::string line;
   if (!std::getline(std::cin, line)) return false;
-  p.outside.go_on();
+  p.outside.resume();
   is(State::idle);
   return true;
 }

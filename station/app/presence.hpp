@@ -21,7 +21,7 @@ class Presence {
   Presence& operator=(const Presence&) = delete;
 
   /// For TrialSetup and RigSetup.
-  session::Outside* outside() noexcept;
+  session::RemoteSupervisor* outside() noexcept;
   void is(State state) noexcept;
   /// Shows the trial to those who look on, and goes on with `inner`.
   /// @param case_id  what the server knows the case by
@@ -33,7 +33,7 @@ class Presence {
   void done(const session::TrialReport& report);
   /// Nobody stopped it, or a person at the terminal says that it goes on. False: it was stopped,
   /// and nobody is there.
-  bool may_go_on();
+  bool may_resume();
 
  private:
   struct Parts;

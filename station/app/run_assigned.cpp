@@ -7,7 +7,7 @@
 #include <cstdlib>
 
 #include "core/file.hpp"
-#include "station/app/aftermath.hpp"
+#include "station/app/trial_epilogue.hpp"
 #include "station/app/checks.hpp"
 #include "station/app/deeds.hpp"
 #include "station/app/exchange.hpp"
@@ -78,7 +78,7 @@ core::Result<TrialReport> work_on_bone(const Options& options, Presence& presenc
   setup.started_utc_us = started_of(options, number);
   if (trial.drills) setup.burr = drilling::Burr{};
   session::Station station(folder, setup);
-  auto onlooker = Onlooker::make(*prepared, look_of(options));
+  auto onlooker = TrialViewer::make(*prepared, look_of(options));
   if (!onlooker) return onlooker.error();
   if (auto ready = station.prepare(prepared, options.setup.seed + trial.number); !ready)
     return ready.error();
@@ -170,7 +170,7 @@ core::Result<Tally> rounds(const Options& options, Presence& presence,
                            const session::StationFolder& folder, uplink::Server& server,
                            const uplink::Ticket& ticket) {
   Tally tally;
-  for (int i = 0; !stopped_by_hand() && presence.may_go_on(); ++i) {
+  for (int i = 0; !stopped_by_hand() && presence.may_resume(); ++i) {
     auto work = uplink::next_trial(server, ticket);
     if (!work) return work.error();
     tally.left = work->left;
@@ -195,7 +195,7 @@ core::Result<Tally> rounds(const Options& options, Presence& presence,
     auto handed = hand_over(options, folder);
     if (!handed) return handed.error();
     const bool stopped = presence.outside()->stopped();
-    if (tally.faulted && !(stopped && presence.may_go_on()))
+    if (tally.faulted && !(stopped && presence.may_resume()))
       return tally;  // a person looks at the device first
   }
   return tally;

@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "core/progress.hpp"
-#include "station/app/aftermath.hpp"
+#include "station/app/trial_epilogue.hpp"
 #include "station/app/checks.hpp"
 #include "station/app/deeds.hpp"
 #include "station/app/exchange.hpp"
@@ -105,7 +105,7 @@ core::Result<int> run_probing_trials(const Options& options) {
   Presence presence(options, *folder);
   core::Json trials = core::Json::array();
   bool faulted = false;
-  for (int i = 0; i < options.trials && !asked_to_stop() && presence.may_go_on(); ++i) {
+  for (int i = 0; i < options.trials && !asked_to_stop() && presence.may_resume(); ++i) {
     auto report = one_trial(options, presence, *folder, *task, options.rig.seed + std::uint64_t(i));
     if (!report) return report.error();
     faulted = faulted || !report->complete;

@@ -7,7 +7,7 @@
 #include <iostream>
 
 #include "core/file.hpp"
-#include "station/app/aftermath.hpp"
+#include "station/app/trial_epilogue.hpp"
 #include "station/app/checks.hpp"
 #include "station/app/deeds.hpp"
 #include "station/app/exchange.hpp"
@@ -180,14 +180,14 @@ core::Result<std::uint64_t> rounds(Study& study, bool& faulted) {
     auto todo = session::still_to_do(study.folder, *work);
     if (!todo) return todo.error();
     for (const SealedTrial& trial : *todo) {
-      if (left == 0 || asked_to_stop() || !study.presence.may_go_on()) return todo->size();
+      if (left == 0 || asked_to_stop() || !study.presence.may_resume()) return todo->size();
       auto report = one_trial(study, *work, trial);
       if (!report) return report.error();
       note(study, *work, trial, *report);
       handed(study);
       --left;
       faulted = !report->complete;
-      if (faulted && study.presence.outside()->stopped() && study.presence.may_go_on()) break;
+      if (faulted && study.presence.outside()->stopped() && study.presence.may_resume()) break;
       if (faulted) return todo->size();  // a person looks at the rig first
     }
     if (todo->empty() || away) return away ? 0 : work->unfinished;

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <iostream>
 
-#include "station/app/aftermath.hpp"
+#include "station/app/trial_epilogue.hpp"
 #include "station/app/checks.hpp"
 #include "station/app/deeds.hpp"
 #include "station/app/exchange.hpp"
@@ -30,7 +30,7 @@ core::Result<std::shared_ptr<const session::PreparedCase>> prepare(
   return std::shared_ptr<const session::PreparedCase>(std::move(*made));
 }
 
-session::Watch watch_of(const Options& options, const core::Progress& shown, Onlooker& onlooker) {
+session::Watch watch_of(const Options& options, const core::Progress& shown, TrialViewer& onlooker) {
   return
       [&options, &shown, &onlooker, said = std::uint64_t{0}](const session::Glimpse& seen) mutable {
         if (options.follow && seen.samples_safe != said) {
@@ -49,9 +49,9 @@ core::Result<TrialReport> one_trial(const Options& options, Presence& presence,
                                     const std::shared_ptr<const session::PreparedCase>& prepared,
                                     const session::TrialSetup& setup, std::uint64_t seed) {
   presence.is(Presence::State::preparing);
-  Look how = look_of(options);
+  ViewOptions how = look_of(options);
   how.burr = setup.burr;
-  auto onlooker = Onlooker::make(*prepared, how);
+  auto onlooker = TrialViewer::make(*prepared, how);
   if (!onlooker) return onlooker.error();
   if (auto ready = station.prepare(prepared, seed); !ready) return ready.error();
   onlooker->follow(station.trial()->live());
@@ -122,7 +122,7 @@ void print_report(const TrialReport& report, bool fast) {
 }
 
 /// After a fault of a machine that a person holds, that person goes on; nobody else does.
-bool may_go_on(const TrialReport& last) {
+bool may_resume(const TrialReport& last) {
   if (last.complete || last.simulated) return true;
   if (!::isatty(STDIN_FILENO)) return false;
   fmt::print(stderr, "Look at the device; plug it in if it was out. Enter goes on, Ctrl-D ends: ");
@@ -153,7 +153,7 @@ core::Result<int> run_trials(const Options& options) {
   session::Station station(*folder, setup);
   core::Json trials = core::Json::array();
   bool faulted = false;
-  for (int i = 0; i < options.trials && !asked_to_stop() && presence.may_go_on(); ++i) {
+  for (int i = 0; i < options.trials && !asked_to_stop() && presence.may_resume(); ++i) {
     auto report = one_trial(options, presence, *folder, station, *prepared, setup,
                             options.setup.seed + std::uint64_t(i));
     if (!report) return report.error();
@@ -165,7 +165,7 @@ core::Result<int> run_trials(const Options& options) {
       print_report(*report, options.setup.speed == session::Speed::fast);
       print_scores(*scores);
     }
-    if (i + 1 < options.trials && !may_go_on(*report)) break;
+    if (i + 1 < options.trials && !may_resume(*report)) break;
   }
   const core::Json uploads = hand_over_after(options, *folder);
   if (options.json)

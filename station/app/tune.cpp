@@ -10,7 +10,7 @@
 
 #include "core/clock.hpp"
 #include "core/file.hpp"
-#include "station/app/aftermath.hpp"
+#include "station/app/trial_epilogue.hpp"
 #include "station/app/checks.hpp"
 #include "station/app/deeds.hpp"
 #include "station/app/exchange.hpp"

@@ -60,7 +60,7 @@ bool Controls::attach(const Instance& instance, XrSession session) {
 
 Controls::State Controls::look(const Session& session, const Frame& frame) {
   State out;
-  if (!attached_ || !session.life().focused()) return out;
+  if (!attached_ || !session.lifecycle().focused()) return out;
   const XrActiveActionSet active{set_, XR_NULL_PATH};
   auto sync = typed<XrActionsSyncInfo>(XR_TYPE_ACTIONS_SYNC_INFO);
   sync.countActiveActionSets = 1;

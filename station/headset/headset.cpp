@@ -32,7 +32,7 @@ struct Headset::Parts {
   Parts(const Shown& what, const core::Clock& with) : shown(what), clock(with) {}
   core::Result<void> open();
   void follow_probe();
-  void heed_controls(const Frame& frame, const Located& located);
+  void on_controls(const Frame& frame, const Located& located);
   bool paint(const Frame& frame, const Located& located);
   void frame();
 };
@@ -68,13 +68,13 @@ core::Result<void> Headset::Parts::open() {
 
 bool Headset::step() {
   Parts& p = *parts_;
-  p.session->heed();
-  if (p.session->life().running())
+  p.session->process_events();
+  if (p.session->lifecycle().running())
     p.frame();
   else
     p.due.pause();
-  if (!p.session->life().visible()) p.seen = Seen::waiting;
-  if (p.session->life().over()) p.seen = Seen::over;
+  if (!p.session->lifecycle().visible()) p.seen = Seen::waiting;
+  if (p.session->lifecycle().over()) p.seen = Seen::over;
   return p.seen != Seen::over;
 }
 
@@ -86,7 +86,7 @@ void Headset::Parts::frame() {
   period_s = 1e-9 * double(begun->period_ns);
   const auto located = begun->wanted ? session->locate(*begun) : std::nullopt;
   const bool drawn = located && paint(*begun, *located);
-  if (session->life().over()) return;
+  if (session->lifecycle().over()) return;
   session->end_frame(*begun, drawn ? &*located : nullptr);
   if (!drawn) return;
   work.add(1e-9 * double(clock.now() - start));
@@ -108,7 +108,7 @@ void Headset::Parts::follow_probe() {
   painter->path(path_m);
 }
 
-void Headset::Parts::heed_controls(const Frame& frame, const Located& located) {
+void Headset::Parts::on_controls(const Frame& frame, const Located& located) {
   Controls::State hands = controls->look(*session, frame);
   if (hands.recentre && !aligned) X_SD = device_ahead_of(located.X_SW);
   const math::Pose X_VS = shown.X_VD * X_SD->inverse();
@@ -121,7 +121,7 @@ bool Headset::Parts::paint(const Frame& frame, const Located& located) {
   if (located.tracked) {
     if (!X_SD) X_SD = device_ahead_of(located.X_SW);
     follow_probe();
-    heed_controls(frame, located);
+    on_controls(frame, located);
   }
   painter->say(located.tracked ? "" : kLost);
   const math::Pose X_VS = X_SD ? shown.X_VD * X_SD->inverse() : math::Pose{};
@@ -139,8 +139,8 @@ bool Headset::Parts::paint(const Frame& frame, const Located& located) {
 
 void Headset::ask_to_leave() { parts_->session->ask_to_leave(); }
 Seen Headset::seen() const { return parts_->seen; }
-bool Headset::running() const { return parts_->session->life().running(); }
-const std::string& Headset::why() const { return parts_->session->life().why(); }
+bool Headset::running() const { return parts_->session->lifecycle().running(); }
+const std::string& Headset::why() const { return parts_->session->lifecycle().why(); }
 
 Figures Headset::figures() const {
   const Parts& p = *parts_;

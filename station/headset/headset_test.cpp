@@ -6,7 +6,7 @@
 
 #include "station/headset/eyes.hpp"
 #include "station/headset/figures.hpp"
-#include "station/headset/life.hpp"
+#include "station/headset/session_lifecycle.hpp"
 #include "station/headset/xr.hpp"
 
 namespace headset {
@@ -48,39 +48,39 @@ TEST(DeviceAhead, StandsLevelBeforeThePersonWhoeverLooksWherever) {
   EXPECT_NEAR(device_ahead_of(up).p.z(), -0.45, 1e-12);
 }
 
-TEST(Life, BeginsOnReadyEndsOnStoppingAndMayBeginAgain) {
-  Life life;
-  EXPECT_EQ(life.heed(XR_SESSION_STATE_IDLE), Deed::none);
-  EXPECT_FALSE(life.running());
-  EXPECT_EQ(life.heed(XR_SESSION_STATE_READY), Deed::begin);
-  EXPECT_TRUE(life.running());
-  EXPECT_FALSE(life.visible());
-  EXPECT_EQ(life.heed(XR_SESSION_STATE_SYNCHRONIZED), Deed::none);
-  EXPECT_FALSE(life.visible());
-  life.heed(XR_SESSION_STATE_VISIBLE);
-  EXPECT_TRUE(life.visible());
-  EXPECT_FALSE(life.focused());
-  life.heed(XR_SESSION_STATE_FOCUSED);
-  EXPECT_TRUE(life.focused());
-  EXPECT_EQ(life.heed(XR_SESSION_STATE_STOPPING), Deed::end);
-  EXPECT_FALSE(life.running());
-  EXPECT_EQ(life.heed(XR_SESSION_STATE_STOPPING), Deed::none);
-  life.heed(XR_SESSION_STATE_IDLE);
-  EXPECT_EQ(life.heed(XR_SESSION_STATE_READY), Deed::begin);
+TEST(SessionLifecycle, BeginsOnReadyEndsOnStoppingAndMayBeginAgain) {
+  SessionLifecycle lifecycle;
+  EXPECT_EQ(lifecycle.on_state_changed(XR_SESSION_STATE_IDLE), LifecycleAction::none);
+  EXPECT_FALSE(lifecycle.running());
+  EXPECT_EQ(lifecycle.on_state_changed(XR_SESSION_STATE_READY), LifecycleAction::begin);
+  EXPECT_TRUE(lifecycle.running());
+  EXPECT_FALSE(lifecycle.visible());
+  EXPECT_EQ(lifecycle.on_state_changed(XR_SESSION_STATE_SYNCHRONIZED), LifecycleAction::none);
+  EXPECT_FALSE(lifecycle.visible());
+  lifecycle.on_state_changed(XR_SESSION_STATE_VISIBLE);
+  EXPECT_TRUE(lifecycle.visible());
+  EXPECT_FALSE(lifecycle.focused());
+  lifecycle.on_state_changed(XR_SESSION_STATE_FOCUSED);
+  EXPECT_TRUE(lifecycle.focused());
+  EXPECT_EQ(lifecycle.on_state_changed(XR_SESSION_STATE_STOPPING), LifecycleAction::end);
+  EXPECT_FALSE(lifecycle.running());
+  EXPECT_EQ(lifecycle.on_state_changed(XR_SESSION_STATE_STOPPING), LifecycleAction::none);
+  lifecycle.on_state_changed(XR_SESSION_STATE_IDLE);
+  EXPECT_EQ(lifecycle.on_state_changed(XR_SESSION_STATE_READY), LifecycleAction::begin);
 }
 
-TEST(Life, IsOverForGoodWhateverComesAfterwards) {
+TEST(SessionLifecycle, IsOverForGoodWhateverComesAfterwards) {
   for (const auto last : {XR_SESSION_STATE_EXITING, XR_SESSION_STATE_LOSS_PENDING}) {
-    Life life;
-    life.heed(XR_SESSION_STATE_READY);
-    EXPECT_EQ(life.heed(last), Deed::leave);
-    EXPECT_TRUE(life.over());
-    EXPECT_FALSE(life.running());
-    EXPECT_FALSE(life.why().empty());
+    SessionLifecycle lifecycle;
+    lifecycle.on_state_changed(XR_SESSION_STATE_READY);
+    EXPECT_EQ(lifecycle.on_state_changed(last), LifecycleAction::leave);
+    EXPECT_TRUE(lifecycle.over());
+    EXPECT_FALSE(lifecycle.running());
+    EXPECT_FALSE(lifecycle.why().empty());
     for (const auto later : {XR_SESSION_STATE_READY, XR_SESSION_STATE_FOCUSED})
-      EXPECT_EQ(life.heed(later), Deed::none);
-    EXPECT_FALSE(life.running());
-    EXPECT_FALSE(life.visible());
+      EXPECT_EQ(lifecycle.on_state_changed(later), LifecycleAction::none);
+    EXPECT_FALSE(lifecycle.running());
+    EXPECT_FALSE(lifecycle.visible());
   }
 }
 

@@ -91,44 +91,44 @@ core::Result<void> Session::make_pictures() {
 
 bool Session::went(const char* what, XrResult result) {
   if (result == XR_SESSION_LOSS_PENDING)
-    life_.end("the runtime lost the session");
+    lifecycle_.end("the runtime lost the session");
   else if (XR_FAILED(result))
-    life_.end(fmt::format("{}: {}", what, name_of(result)));
-  return !life_.over();
+    lifecycle_.end(fmt::format("{}: {}", what, name_of(result)));
+  return !lifecycle_.over();
 }
 
-void Session::heed() {
+void Session::process_events() {
   for (;;) {
     auto event = typed<XrEventDataBuffer>(XR_TYPE_EVENT_DATA_BUFFER);
     const XrResult result = xrPollEvent(instance_.handle(), &event);
     if (result == XR_EVENT_UNAVAILABLE || !went("the runtime says no more", result)) return;
     if (event.type == XR_TYPE_EVENT_DATA_INSTANCE_LOSS_PENDING)
-      life_.end("the runtime itself is ending");
+      lifecycle_.end("the runtime itself is ending");
     if (event.type != XR_TYPE_EVENT_DATA_SESSION_STATE_CHANGED) continue;
     const auto& changed = reinterpret_cast<const XrEventDataSessionStateChanged&>(event);
-    if (changed.session == handle_) heed_state(changed.state);
+    if (changed.session == handle_) on_state_changed(changed.state);
   }
 }
 
-void Session::heed_state(XrSessionState state) {
-  switch (life_.heed(state)) {
-    case Deed::begin: {
+void Session::on_state_changed(XrSessionState state) {
+  switch (lifecycle_.on_state_changed(state)) {
+    case LifecycleAction::begin: {
       auto info = typed<XrSessionBeginInfo>(XR_TYPE_SESSION_BEGIN_INFO);
       info.primaryViewConfigurationType = kStereo;
       went("the session does not begin", xrBeginSession(handle_, &info));
       return;
     }
-    case Deed::end:
+    case LifecycleAction::end:
       went("the session does not end", xrEndSession(handle_));
       return;
-    case Deed::leave:
-    case Deed::none:
+    case LifecycleAction::leave:
+    case LifecycleAction::none:
       return;
   }
 }
 
 void Session::ask_to_leave() {
-  if (life_.running()) went("the session does not end", xrRequestExitSession(handle_));
+  if (lifecycle_.running()) went("the session does not end", xrRequestExitSession(handle_));
 }
 
 std::optional<Frame> Session::begin_frame() {

@@ -7,7 +7,7 @@
 
 #include "station/headset/eyes.hpp"
 #include "station/headset/graphics.hpp"
-#include "station/headset/life.hpp"
+#include "station/headset/session_lifecycle.hpp"
 #include "station/headset/swapchain.hpp"
 
 namespace headset {
@@ -42,7 +42,7 @@ class Session {
   Session& operator=(const Session&) = delete;
 
   /// Takes in what the runtime has said since, and begins or ends the session as it asks.
-  void heed();
+  void process_events();
   /// Asks the runtime to end the session; `heed` and frames go on until it has.
   void ask_to_leave();
 
@@ -54,9 +54,9 @@ class Session {
   void end_frame(const Frame& frame, const Located* drawn);
 
   /// Ends what is of no use any more.
-  void give_up(const std::string& why) { life_.end(why); }
+  void give_up(const std::string& why) { lifecycle_.end(why); }
 
-  const Life& life() const { return life_; }
+  const SessionLifecycle& lifecycle() const { return lifecycle_; }
   Swapchain& pictures(std::size_t eye) { return pictures_[eye]; }
   XrSession handle() const { return handle_; }
   XrSpace room() const { return room_; }
@@ -70,7 +70,7 @@ class Session {
   core::Result<void> open(const Graphics& graphics);
   core::Result<void> make_spaces();
   core::Result<void> make_pictures();
-  void heed_state(XrSessionState state);
+  void on_state_changed(XrSessionState state);
   /// True when the call went well; else the session is over.
   bool went(const char* what, XrResult result);
 
@@ -80,7 +80,7 @@ class Session {
   bool in_stage_ = false;
   int width_px_ = 0, height_px_ = 0;
   std::vector<Swapchain> pictures_;
-  Life life_;
+  SessionLifecycle lifecycle_;
 };
 
 math::Pose pose_of(const XrPosef& pose);

@@ -6,7 +6,7 @@
 
 #include "core/json.hpp"
 #include "station/devices/device.hpp"
-#include "station/loop/falling.hpp"
+#include "station/loop/decreasing_limit.hpp"
 #include "station/safety/machine.hpp"
 
 namespace loop {
@@ -86,7 +86,7 @@ class Limiter {
                        const devices::Sample& sample) noexcept;
 
   HandLimits limits_;
-  Falling cap_N_;
+  DecreasingLimit cap_N_;
   core::Instant_ns period_;
   safety::Machine machine_;
   math::Wrench last_;

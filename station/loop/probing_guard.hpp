@@ -5,7 +5,7 @@
 
 #include "core/json.hpp"
 #include "station/devices/rig_device.hpp"
-#include "station/loop/falling.hpp"
+#include "station/loop/decreasing_limit.hpp"
 #include "station/safety/machine.hpp"
 
 namespace loop {
@@ -86,7 +86,7 @@ class ProbingGuard {
   double within_travel(double speed_m_s) const noexcept;
 
   RigLimits limits_;
-  Falling cap_N_;
+  DecreasingLimit cap_N_;
   double travel_m_, period_s_;
   safety::Machine machine_;
   devices::RigReading last_;

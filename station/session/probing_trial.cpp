@@ -123,7 +123,7 @@ struct ProbingTrialRun::Parts {
   void after_tick(const trial::ProbingSample& sample);
   void loop_thread(std::promise<void>& prepared, const std::future<void>& go);
   ProbingGlimpse glimpse() const;
-  void heed_outside();
+  void apply_remote_commands();
   void watch_until(const std::future<void>& done, const ProbingWatch& watch);
   core::Result<void> append_end(const std::optional<trial::Answer>& answer);
 };
@@ -257,7 +257,7 @@ ProbingGlimpse ProbingTrialRun::Parts::glimpse() const {
   return out;
 }
 
-void ProbingTrialRun::Parts::heed_outside() {
+void ProbingTrialRun::Parts::apply_remote_commands() {
   if (!setup.outside) return;
   guard->cap_push(setup.outside->force_N());
   if (setup.outside->stopped()) loop->stop();
@@ -266,7 +266,7 @@ void ProbingTrialRun::Parts::heed_outside() {
 void ProbingTrialRun::Parts::watch_until(const std::future<void>& done, const ProbingWatch& watch) {
   for (bool over = false; !over;) {
     over = done.wait_for(kWatch) == std::future_status::ready;
-    heed_outside();
+    apply_remote_commands();
     if (watch && !watch(glimpse())) loop->stop();
   }
 }
@@ -286,7 +286,7 @@ core::Result<void> ProbingTrialRun::run(const ProbingWatch& watch) {
   go.set_value();
   p.watch_until(ended, watch);
   thread.join();
-  if (p.setup.outside && p.setup.outside->stopped()) p.fault = stopped_text(*p.setup.outside);
+  if (p.setup.outside && p.setup.outside->stopped()) p.fault = stop_message(*p.setup.outside);
   if (p.guard->latched()) p.fault = loop::text_of(p.guard->fault());
   if (p.loop->counts().ticks.lost > 0)
     p.fault = fmt::format("{} samples were not recorded: the disk was too slow",

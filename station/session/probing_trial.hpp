@@ -29,7 +29,7 @@ struct RigSetup {
   std::optional<std::int64_t> started_utc_us = {};  ///< fast alone: a SIMULATED date; else now
   double rate_Hz = 1000.0;                          ///< 100 … 1000
   double duration_s = 120.0;                        ///< at most so long
-  Outside* outside = nullptr;  ///< who may stop it from afar; outlives the trial
+  RemoteSupervisor* outside = nullptr;  ///< who may stop it from afar; outlives the trial
 };
 
 /// What is probed. A value; holds no name of a scenario when the trial is blind.

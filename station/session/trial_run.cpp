@@ -124,7 +124,7 @@ struct TrialRun::Parts {
   void after_tick();
   void loop_thread(std::promise<void>& ready, const std::future<void>& go);
   void watch_until(const std::future<void>& done, const Watch& watch);
-  void heed_outside();
+  void apply_remote_commands();
   core::Result<void> append_end(const TrialReport& report);
 };
 
@@ -268,7 +268,7 @@ void TrialRun::Parts::loop_thread(std::promise<void>& ready, const std::future<v
   loop->run([this] { after_tick(); });
 }
 
-void TrialRun::Parts::heed_outside() {
+void TrialRun::Parts::apply_remote_commands() {
   if (!setup.outside) return;
   limiter.cap_force(setup.outside->force_N());
   if (setup.outside->stopped()) loop->stop();
@@ -277,7 +277,7 @@ void TrialRun::Parts::heed_outside() {
 void TrialRun::Parts::watch_until(const std::future<void>& done, const Watch& watch) {
   for (bool over = false; !over;) {
     over = done.wait_for(kWatch) == std::future_status::ready;
-    heed_outside();
+    apply_remote_commands();
     if (watch && !watch(glimpse())) loop->stop();
   }
 }
@@ -300,7 +300,7 @@ core::Result<void> TrialRun::run(const Watch& watch) {
   p.watch_until(ended, watch);
   thread.join();
   p.finish_drilling();
-  if (p.setup.outside && p.setup.outside->stopped()) p.fault = stopped_text(*p.setup.outside);
+  if (p.setup.outside && p.setup.outside->stopped()) p.fault = stop_message(*p.setup.outside);
   if (p.limiter.guard() == loop::Guard::latched) p.fault = loop::text_of(p.limiter.fault());
   if (p.loop->counts().lost > 0)
     p.fault =

@@ -9,7 +9,7 @@
 #include "station/devices/catalogue.hpp"
 #include "station/loop/haptic_loop.hpp"
 #include "station/loop/realtime.hpp"
-#include "station/session/outside.hpp"
+#include "station/session/remote_supervisor.hpp"
 #include "station/session/prepared_case.hpp"
 #include "station/session/tip_way.hpp"
 
@@ -36,7 +36,7 @@ struct TrialSetup {
   /// Of an assigned trial: what its file calls the case and the trainee instead.
   std::string case_known_as = {};
   std::string operator_name = {};
-  Outside* outside = nullptr;  ///< who may stop it from afar; outlives the trial
+  RemoteSupervisor* outside = nullptr;  ///< who may stop it from afar; outlives the trial
   std::optional<std::int64_t> started_utc_us = {};  ///< fast alone: a SIMULATED date; else now
 };
 

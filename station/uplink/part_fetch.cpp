@@ -61,7 +61,7 @@ struct Fetching {
 
   core::Result<core::Bytes> range(std::uint64_t at, std::uint64_t size) const;
   core::Result<std::vector<Segment>> plan() const;
-  core::Result<void> go_on(const std::vector<Segment>& plan) const;
+  core::Result<void> resume(const std::vector<Segment>& plan) const;
   core::Result<bool> holds() const;
 };
 
@@ -108,7 +108,7 @@ core::Result<core::Bytes> bytes_here(const Segment& segment, std::uint64_t skipp
   return core::system_error(segment.from, "cannot read");
 }
 
-core::Result<void> Fetching::go_on(const std::vector<Segment>& plan) const {
+core::Result<void> Fetching::resume(const std::vector<Segment>& plan) const {
   std::error_code ignored;
   std::uint64_t done = fs::exists(target, ignored) ? fs::file_size(target, ignored) : 0;
   Growing file(target);
@@ -147,13 +147,13 @@ core::Result<void> fetch_part(Server& server, const std::string& case_id, const 
   if (!plan) return plan.error();
   const bool from_here =
       begun || std::ranges::any_of(*plan, [](const Segment& one) { return !one.from.empty(); });
-  if (auto done = fetching.go_on(*plan); !done) return done;
+  if (auto done = fetching.resume(*plan); !done) return done;
   auto whole = fetching.holds();
   if (!whole) return whole.error();
   if (*whole) return {};
   fs::remove(target, ignored);
   if (!from_here) return changed(case_id, part.name + ": is not what the manifest names");
-  if (auto again = fetching.go_on({{.offset = 0, .size = part.size_bytes}}); !again) return again;
+  if (auto again = fetching.resume({{.offset = 0, .size = part.size_bytes}}); !again) return again;
   whole = fetching.holds();
   if (!whole) return whole.error();
   if (*whole) return {};

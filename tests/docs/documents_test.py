@@ -78,5 +78,15 @@ class Links(unittest.TestCase):
         self.assertEqual(broken, [])
 
 
+class Paths(unittest.TestCase):
+    def test_each_path_that_the_guides_name_exists(self):
+        missing = []
+        for name in ("CONTRIBUTING.md", "README.md", "shared/doc/architecture.md"):
+            for path in re.findall(r"`((?:shared|server|station|db|web|tests|deploy)/[\w./-]+)`", text_of(ROOT / name)):
+                if "NNNN" not in path and not (ROOT / path).exists():
+                    missing.append(f"{name}: {path}")
+        self.assertEqual(missing, [])
+
+
 if __name__ == "__main__":
     unittest.main()

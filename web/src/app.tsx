@@ -1,18 +1,17 @@
-/** The whole: which address shows which page, and what an ended session does to all of them. */
+/** The whole: the pages of all features, the menu of a role, and what an ended session does to them. */
 import { QueryCache, QueryClient, QueryClientProvider, useQuery } from '@tanstack/react-query';
 import { Suspense, type ReactNode } from 'react';
 import { Link, Redirect, Route, Switch, useLocation } from 'wouter';
 import { ApiError, endSession, sessionQuery } from '@/api';
-import { Account, OwnAccountPage, SessionGate } from '@/features/session';
-import { NewStudyPage, StudiesPage } from '@/features/studies';
-import { StudyPage } from '@/features/study';
-import { TrialsPage } from '@/features/trials';
-import { Notice, Shell, Skeleton, useTitle } from '@/ui';
+import { Account, SessionGate } from '@/features/session';
+import { type Feature, Notice, Shell, Skeleton, useTitle } from '@/ui';
 import styles from './app.module.css';
 import { Fault } from './fault';
-import {
-  TrialPage, LabPage, WorkPage, PeoplePage, CohortsPage, StationsPage, BackupsPage, StationPage, WallPage, AuditPage, GuidePage, AnalysisPage, ExamplePage, NewPlanPage, PlanPage, RunPage, TraineesPage, TraineePage, CasesPage, CasePage, NewCasePage, AssignmentsPage, AssignmentPage, NewAssignmentPage, ScenariosPage, ScenarioPage, DebriefPage, VersionsPage,
-} from './later-pages';
+/** Every folder of features/ that has a manifest: there is no list to edit. */
+const kFeatures = Object.values(import.meta.glob<{ feature: Feature }>('./features/*/manifest.tsx', { eager: true })).map(({ feature }) => feature);
+/** A fixed segment ("new") is tried before a parameter (":id"). */
+const kPages = kFeatures.flatMap(({ pages }) => pages).sort((a, b) => (a.path.replaceAll(':', '~') < b.path.replaceAll(':', '~') ? -1 : 1));
+const kMenu = kFeatures.flatMap(({ menu }) => menu).sort((a, b) => a.order - b.order);
 
 export function makeClient(): QueryClient {
   const onError = (reason: Error) => {
@@ -35,25 +34,7 @@ export function makeClient(): QueryClient {
   return client;
 }
 
-/** Which places a role has; the server decides again on every call. */
-const kPlaces = [
-  { to: '/assignments', name: 'My work', roles: ['trainee'] },
-  { to: '/trials', name: 'Trials', roles: ['admin', 'director', 'faculty', 'trainee'] },
-  { to: '/cases', name: 'Cases', roles: ['admin', 'director', 'faculty', 'researcher'] },
-  { to: '/scenarios', name: 'Scenarios', roles: ['admin', 'faculty'] },
-  { to: '/assignments', name: 'Assignments', roles: ['admin', 'director', 'faculty'] },
-  { to: '/trainees', name: 'Trainees', roles: ['admin', 'director', 'faculty'] },
-  { to: '/me', name: 'My curve', roles: ['trainee'] },
-  { to: '/studies', name: 'Studies', roles: ['admin', 'researcher'] },
-  { to: '/analysis', name: 'Analysis', roles: ['admin', 'researcher'] },
-  { to: '/lab', name: 'Model lab', roles: ['admin', 'researcher'] },
-  { to: '/wall', name: 'Live', roles: ['admin', 'director', 'faculty', 'technician'] },
-  { to: '/network', name: 'Network', roles: ['admin', 'director', 'faculty', 'technician'] },
-  { to: '/guide', name: 'Guide', roles: ['admin', 'director', 'faculty', 'researcher', 'technician', 'trainee'] },
-] as const;
-const kNetwork: Record<string, string> = { admin: 'people', technician: 'stations' };
-
-const open = (role: string) => kPlaces.filter(({ roles }) => (roles as readonly string[]).includes(role));
+const open = (role: string) => kMenu.filter(({ roles }) => roles.includes(role));
 
 function Brand() {
   const [at] = useLocation();
@@ -81,17 +62,6 @@ function Home() {
   return <Redirect to={open(role)[0]?.to ?? '/account'} replace />;
 }
 
-/** A trainee's own page. */
-function Me() {
-  const session = useQuery({ ...sessionQuery, enabled: false }).data;
-  return session ? <TraineePage name={session.name} /> : null;
-}
-
-function Network() {
-  const role = useQuery({ ...sessionQuery, enabled: false }).data?.role ?? '';
-  return <Redirect to={`/network/${kNetwork[role] ?? 'cohorts'}`} replace />;
-}
-
 function NotFound() {
   useTitle('Not found');
   return (
@@ -112,41 +82,9 @@ function Pages() {
     <Suspense fallback={<Loading />}>
       <Switch>
         <Route path="/"><Home /></Route>
-        <Route path="/account"><OwnAccountPage /></Route>
-        <Route path="/guide/:role?">{({ role }) => <GuidePage role={role} />}</Route>
-        <Route path="/me"><Me /></Route>
-        <Route path="/trainees"><TraineesPage /></Route>
-        <Route path="/trainees/:name">{({ name }) => <TraineePage key={name} name={decodeURIComponent(name)} />}</Route>
-        <Route path="/network"><Network /></Route>
-        <Route path="/network/people"><PeoplePage /></Route>
-        <Route path="/network/cohorts"><CohortsPage /></Route>
-        <Route path="/network/stations"><StationsPage /></Route>
-        <Route path="/network/stations/:id">{({ id }) => <StationPage key={id} id={id} />}</Route>
-        <Route path="/network/backups"><BackupsPage /></Route>
-        <Route path="/wall"><WallPage /></Route>
-        <Route path="/network/audit"><AuditPage /></Route>
-        <Route path="/trials"><TrialsPage /></Route>
-        <Route path="/cases"><CasesPage /></Route>
-        <Route path="/cases/new/:volume">{({ volume }) => <NewCasePage key={volume} volume={volume} />}</Route>
-        <Route path="/cases/:id">{({ id }) => <CasePage key={id} id={id} />}</Route>
-        <Route path="/scenarios"><ScenariosPage /></Route>
-        <Route path="/scenarios/:id">{({ id }) => <ScenarioPage key={id} id={id} />}</Route>
-        <Route path="/assignments"><AssignmentsPage /></Route>
-        <Route path="/assignments/new"><NewAssignmentPage /></Route>
-        <Route path="/assignments/:id">{({ id }) => <AssignmentPage key={id} id={id} />}</Route>
-        <Route path="/trials/:id/debrief">{({ id }) => <DebriefPage key={id} id={id} />}</Route>
-        <Route path="/trials/:id">{({ id }) => <TrialPage key={id} id={id} />}</Route>
-        <Route path="/studies"><StudiesPage /></Route>
-        <Route path="/studies/new"><NewStudyPage /></Route>
-        <Route path="/studies/:id">{({ id }) => <StudyPage key={id} id={id} />}</Route>
-        <Route path="/analysis"><AnalysisPage /></Route>
-        <Route path="/analysis/example"><ExamplePage /></Route>
-        <Route path="/analysis/plans/new"><NewPlanPage /></Route>
-        <Route path="/analysis/plans/:id">{({ id }) => <PlanPage key={id} id={id} />}</Route>
-        <Route path="/analysis/runs/:id">{({ id }) => <RunPage key={id} id={id} />}</Route>
-        <Route path="/lab"><LabPage /></Route>
-        <Route path="/lab/versions"><VersionsPage /></Route>
-        <Route path="/lab/work/:model/:set/:step?">{({ model, set, step }) => <WorkPage key={`${model} ${set}`} model={model} set={set} step={step ?? 'compare'} />}</Route>
+        {kPages.map(({ path, show }) => (
+          <Route key={path} path={path}>{(parameters: Record<string, string | undefined>) => show((name) => parameters[name] ?? '')}</Route>
+        ))}
         <Route><NotFound /></Route>
       </Switch>
     </Suspense>

@@ -48,7 +48,7 @@ ProbingEffectInfo stribeck_friction() {
                    .off = kNoOff,
                    .logarithmic = true}},
        .parents = {"coulomb_friction"},
-       .meant = [](std::span<const double> v) { return v[1] >= v[0]; }},
+       .admissible = [](std::span<const double> v) { return v[1] >= v[0]; }},
       made<StribeckFriction>};
 }
 

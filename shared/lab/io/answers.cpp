@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "lab/answer.hpp"
-#include "lab/own_effects.hpp"
-#include "lab/words.hpp"
+#include "lab/user_effect_checks.hpp"
+#include "lab/verdict_text.hpp"
 
 namespace lab_io {
 namespace {
@@ -70,7 +70,7 @@ std::string at_their_edge(const lab::Fit& fit) {
 std::string not_excited(const lab::Diagnosis& diagnosis) {
   std::vector<std::string> names;
   for (const lab::Ranked& ranked : diagnosis.ranking)
-    if (ranked.note.starts_with("not excited")) names.push_back(lab::effect_in_words(ranked.id));
+    if (ranked.note.starts_with("not excited")) names.push_back(lab::effect_label(ranked.id));
   if (names.empty()) return {};
   return fmt::format(
       "these recordings cannot tell whether there is {}: their motion does not call "

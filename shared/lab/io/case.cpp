@@ -8,7 +8,7 @@
 #include "effects/expression.hpp"
 #include "effects/palpation_expression.hpp"
 #include "lab/io/unpacked.hpp"
-#include "lab/own_effects.hpp"
+#include "lab/user_effect_checks.hpp"
 #include "lab/palpation_problem.hpp"
 #include "lab/probing_problem.hpp"
 #include "models/probing_model.hpp"
@@ -46,9 +46,9 @@ core::Json json_of(const trial::StatedTract& tract) {
 }
 
 /// The user's own effects, to be tried as the catalogue's are.
-Result<lab::Offered> take_own(const Sources& sources, const effects::ExpressionRig& rig,
+Result<lab::UserEffects> take_own(const Sources& sources, const effects::ExpressionRig& rig,
                               const std::vector<effects::Use>& in_model) {
-  std::vector<std::pair<effects::Use, effects::EffectFacts>> offered;
+  std::vector<std::pair<effects::Use, effects::EffectFacts>> user_effects;
   for (const OwnEffect& one : sources.own) {
     const auto expression = effects::Expression::from_json(one.definition, one.where, rig);
     if (!expression) return expression.error();
@@ -57,15 +57,15 @@ Result<lab::Offered> take_own(const Sources& sources, const effects::ExpressionR
     if (std::ranges::any_of(in_model, same))
       return Error{Errc::bad_input,
                    fmt::format("{}id: the model has an effect '{}' already", one.where, use.id)};
-    if (std::ranges::any_of(offered, [&](const auto& other) { return same(other.first); }))
+    if (std::ranges::any_of(user_effects, [&](const auto& other) { return same(other.first); }))
       return Error{Errc::bad_input, fmt::format("{}id: '{}' is given twice", one.where, use.id)};
     effects::EffectFacts facts = expression->facts();
     for (effects::Param& p : facts.params)  // a search cannot begin where the effect is off
       if (p.initial == p.off)
         p.initial = p.off + kFirstStep * (p.high > p.off ? p.high - p.off : p.low - p.off);
-    offered.emplace_back(std::move(use), std::move(facts));
+    user_effects.emplace_back(std::move(use), std::move(facts));
   }
-  return lab::Offered(std::move(offered));
+  return lab::UserEffects(std::move(user_effects));
 }
 
 /// What is wrong with an own effect on these recordings is told before anything is fitted.
@@ -154,7 +154,7 @@ Result<Case> open_probing(models::ProbingModel model, const Sources& sources,
   Case opened = begun(model.name, *set, sources);
   return with(std::move(opened),
               lab::make_probing_problem(model, std::move(*set),
-                                        {.threads = sources.threads, .offered = std::move(*own)},
+                                        {.threads = sources.threads, .user_effects = std::move(*own)},
                                         progress));
 }
 
@@ -176,7 +176,7 @@ Result<Case> open_palpation(models::PalpationModel model, const Sources& sources
   if (set->tract) opened.tract = json_of(*set->tract);
   return with(std::move(opened),
               lab::make_palpation_problem(model, std::move(*set), imported->volume,
-                                          {.threads = sources.threads, .offered = std::move(*own)},
+                                          {.threads = sources.threads, .user_effects = std::move(*own)},
                                           part_of(progress, 0.2, 0.8)));
 }
 

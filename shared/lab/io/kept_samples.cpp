@@ -48,7 +48,7 @@ Json header_of(const lab::Side& side, std::size_t every) {
     trials.push_back({{"id", trial.id}, {"samples", (trial.t_s.size() + every - 1) / every}});
   return {{"channels", channels},
           {"trials", trials},
-          {"regions", side.comparison.where.regions.size()}};
+          {"regions", side.comparison.error_regions.regions.size()}};
 }
 
 void append_side(std::string& out, const lab::Side& side, std::size_t every) {
@@ -59,7 +59,7 @@ void append_side(std::string& out, const lab::Side& side, std::size_t every) {
       append(out, thinned<float>(trial.simulated[c], every));
     }
     append(out, thinned<std::int8_t>(
-                    lab::region_of(side.samples, trial, side.comparison.where.regions), every));
+                    lab::regions_by_sample(side.samples, trial, side.comparison.error_regions.regions), every));
   }
 }
 

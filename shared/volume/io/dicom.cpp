@@ -14,7 +14,7 @@
 #include "volume/io/dicom_slices.hpp"
 #include "volume/io/formats.hpp"
 #include "volume/io/isolated.hpp"
-#include "volume/io/upright.hpp"
+#include "volume/io/gantry_tilt.hpp"
 #include "volume/io/vtk_quiet.hpp"
 
 namespace volume_io {
@@ -103,7 +103,7 @@ core::Result<Imported> read_series(const fs::path& folder, const core::Progress&
   out.modality = series->slices.front().modality;
   if (!voxels->note.empty()) out.notes.push_back(voxels->note);
   if (series->tilt_rad == 0.0) return out;
-  auto straight = upright(out.volume, series->shear_m, folder.string());
+  auto straight = correct_gantry_tilt(out.volume, series->shear_m, folder.string());
   if (!straight) return straight.error();
   out.volume = std::move(*straight);
   out.notes.push_back(

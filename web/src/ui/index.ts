@@ -17,3 +17,4 @@ export { Table, type Column } from './table';
 export { Term } from './term';
 export { setTheme, theme, usePalette, useTheme, type Theme } from './theme';
 export { useTitle } from './title';
+export type { Feature, MenuEntry, Page } from './feature';

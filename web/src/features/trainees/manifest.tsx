@@ -1,0 +1,27 @@
+/** Pages of trainees and their learning. */
+import { useQuery } from '@tanstack/react-query';
+import { lazy } from 'react';
+import { sessionQuery } from '@/api';
+import type { Feature } from '@/ui';
+
+const index = () => import('./index');
+const TraineePage = lazy(() => index().then(({ TraineePage: page }) => ({ default: page })));
+const TraineesPage = lazy(() => index().then(({ TraineesPage: page }) => ({ default: page })));
+
+/** A trainee's own page. */
+function OwnPage() {
+  const session = useQuery({ ...sessionQuery, enabled: false }).data;
+  return session ? <TraineePage name={session.name} /> : null;
+}
+
+export const feature: Feature = {
+  menu: [
+    { to: '/trainees', name: 'Trainees', roles: ['admin', 'director', 'faculty'], order: 60 },
+    { to: '/me', name: 'My curve', roles: ['trainee'], order: 70 },
+  ],
+  pages: [
+    { path: '/me', show: () => <OwnPage /> },
+    { path: '/trainees', show: () => <TraineesPage /> },
+    { path: '/trainees/:name', show: (at) => <TraineePage key={at('name')} name={decodeURIComponent(at('name'))} /> },
+  ],
+};
