@@ -106,7 +106,7 @@ def analysis_data(world):
     agree(world, "metrics")
     run, told, parts = analysed(world)
     for part, text in [("the answer", told)] + [(part, answer.body.decode(errors="replace")) for part, answer in parts.items()]:
-        for marker in (world.theirs.trial, world.theirs.participant, world.ours.trial, world.ours.participant):
+        for marker in (world.theirs.trial, world.theirs.participant, world.ours.finished_trial, world.ours.trial, world.ours.participant):
             expect(marker not in text, f"analysis {run}: {part} holds {marker}")
 
 
@@ -136,19 +136,21 @@ def export_without_consent(world):
 
 
 def do_study_trial(world, name):
-    """The participant's next trial at our station; the scenario's case id."""
+    """The participant's next trial at our station."""
     taken = world.ours.station.must("POST", f"/studies/{world.study}/participants/{name}/take")
     slot, trial_id = taken["trials"][0]["slot"], secrets.token_hex(16)
     answer = hand_over(world.ours.station, trial_id, slot, trial_bytes(trial_id, slot, name, seed=40))
     expect(answer.status == 200, f"the study's trial is not taken: {answer}")
     world.wait_for_scores()
-    return trial_id
 
 
-@attack("3: a study's scenarios are told before the participant is through")
+@attack("3: a study tells which scenario a trial had before the participant is through")
 def scenarios_before_the_end(world):
     do_study_trial(world, "S01")
     researcher = world.people["researcher"]
+    for person in researcher.must("GET", f"/studies/{world.study}")["participants"]:
+        told = [slot for slot in person["slots"] if slot["scenario"] is not None]
+        expect(not told, f"the study tells it: {told}")
     researcher.must("POST", "/consents", {"study": world.study, "participant": "S01", "tier": "metrics", "basis": "form 1"})
     table = researcher.ask("GET", f"/cohort/table?study={world.study}").body.decode().splitlines()
     column = table[0].split(",").index("case") if table and "case" in table[0] else -1
@@ -160,15 +162,14 @@ def scenarios_before_the_end(world):
         expect(row.split(",")[column] == "", f"the export tells a case before the participant is through: {row[:160]}")
 
 
-@attack("3: the secret part of a study's scenario is downloaded before the participants are through")
+@attack("3: the secret part of a scenario is downloaded by those who are blind to it")
 def scenario_part(world):
-    researcher = world.people["researcher"]
-    cases = {case["id"] for case in researcher.must("GET", "/cases")["cases"]}
+    cases = {case["id"] for case in world.people["researcher"].must("GET", "/cases")["cases"]}
     cases |= {one["id"] for one in world.ours.faculty.must("GET", "/scenarios")["tuned"]}
-    for role in ("researcher", "station", "trainee", "technician", "director"):
+    for role in ("station", "trainee", "technician", "director"):
         for case in cases:
             answer = world.people[role].ask("GET", f"/cases/{case}/parts/scenario.json")
-            expect(answer.status != 200, f"the {role} reads scenario.json of a study that runs: {answer}")
+            expect(answer.status != 200, f"the {role} reads scenario.json: {answer}")
 
 
 STUDY_DEEDS = [("POST", "/state", {"state": "paused", "reason": "attack"}), ("GET", "", None), ("GET", "/events", None),
@@ -222,21 +223,11 @@ def strangers_slot(world):
     expect(answer.status >= 400, f"the forged trial is taken: {answer}")
 
 
-def markers(world):
-    theirs = world.theirs
-    return {VICTIM: "a name", theirs.trial: "a trial", theirs.assignment: "an assignment", theirs.cohort: "a cohort",
-            theirs.comment: "a comment", theirs.ids()["account"]: "an account", theirs.slot: "a place", theirs.ticket: "a ticket"}
-
-
-# What a role may know of strangers: stations have names for all who look after them; who teaches may look for a name.
-KNOWN = {"faculty": {"/api/v1/stations", "/api/v1/stations/{id}", "/api/v1/stations/{id}/stop"}}
-
-
 def whole_of_theirs(world):
     """All that an administrator can see of the other family: what no attack may change."""
     admin, theirs, out = world.admin, world.theirs, {}
     for path in (f"/cohorts/{theirs.cohort}", f"/assignments/{theirs.assignment}", f"/trials/{theirs.trial}",
-                 f"/trials/{theirs.trial}/comments", f"/trials/{theirs.trial}/references"):
+                 f"/trials/{theirs.trial}/comments"):
         out[path] = admin.must("GET", path)
     accounts = admin.must("GET", "/accounts")["accounts"]
     out["accounts"] = [one for one in accounts if VICTIM in one["name"]]
@@ -269,9 +260,9 @@ def bodies_for(route, ids, draw):
 LEFT_OUT = {"signOut", "changePassword", "signIn", "beginCodes", "confirmCodes", "endCodes", "enrolStation", "signOutAtStation"}
 
 
-def leaks(answer, sent_text, found):
+def leaks(answer, found):
     text = answer.body.decode(errors="replace")
-    return [what for marker, what in found.items() if marker in text and marker not in sent_text]
+    return [what for secret, what in found.items() if secret in text]
 
 
 def own_ids(world):
@@ -296,15 +287,15 @@ def questions(world, route, draw):
 
 def asked_about_strangers(world):
     """Everything that was told of them."""
-    draw, found, told, cells = random.Random(14), markers(world), set(), 0
+    draw, found, told, cells = random.Random(14), world.theirs.secrets(), set(), 0
     for route in routes_of(world):
         for role in ("faculty", "researcher", "trainee", "station"):
-            if route.id in LEFT_OUT or role not in route.roles or route.path in KNOWN.get(role, ()):
+            if route.id in LEFT_OUT or role not in route.roles:
                 continue
             for path, body in questions(world, route, draw):
                 answer = world.people[role].ask(route.method, path, body, headers=route.headers())
                 cells += 1
-                for what in leaks(answer, path + json_text(body), found):
+                for what in leaks(answer, found):
                     told.add(f"{role}: {route.method} {route.path} told {what}")
     print(f"      {cells} requests", flush=True)
     return told

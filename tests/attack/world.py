@@ -223,26 +223,32 @@ def run_sqlite(path, sql):
 
 
 class Family:
-    """Faculty, a cohort, a trainee with a badge, a station, an assignment and a trial of it with a comment."""
+    """Faculty, a cohort of two trainees, a station, an assignment that is through and one with places left, trials, a comment."""
 
     def __init__(self, world, name, badge):
         self.world, self.name, self.badge = world, name, badge
         self.faculty = world.account(f"{name} faculty", "faculty")
         self.trainee = world.account(f"{name} trainee", "trainee", badge=badge, pin=PIN)
+        self.pupil = world.account(f"{name} pupil", "trainee")
         self.station = world.station(f"{name} station")
         self.cohort = self.faculty.must("POST", "/cohorts", {"name": f"{name} cohort"})["id"]
-        world.admin.must("POST", f"/cohorts/{self.cohort}/people", {"name": f"{name} trainee"})
-        self.assignment = self.faculty.must("POST", "/assignments", {
-            "title": f"{name} assignment", "cases": [{"scenario": {"tuned": "hard"}}], "cohort": self.cohort, "repeats": 6,
-            "seed": 1, "release": "at_once"})["id"]
+        for person in ("trainee", "pupil"):
+            world.admin.must("POST", f"/cohorts/{self.cohort}/people", {"name": f"{name} {person}"})
         self.ticket = self.sign_in_at_station()
-        self.trial = self.next_trial(1)
-        self.next_trial(2)
+        self.assign(3, people=[f"{name} trainee"])
+        self.finished_trial = [self.next_trial(seed) for seed in (1, 2, 3)][0]
+        self.assignment = self.assign(6, cohort=self.cohort)
+        self.trial = self.next_trial(4)
         self.slot = self.next_slot()["slot"]
         said = self.faculty.must("POST", f"/trials/{self.trial}/comments", {"text": f"{name} comment", "at_s": 0.1})
         self.comment = said["comments"][0]["id"]
         whole = self.faculty.must("GET", f"/assignments/{self.assignment}")
-        self.participant = whole["trainees"][0]["participant"]
+        self.participant = next(one["participant"] for one in whole["trainees"] if one["name"] == f"{name} trainee")
+
+    def assign(self, repeats, **whom):
+        return self.faculty.must("POST", "/assignments", whom | {
+            "title": f"{self.name} assignment", "cases": [{"scenario": {"tuned": "hard"}}], "repeats": repeats, "seed": 1,
+            "release": "at_once"})["id"]
 
     def sign_in_at_station(self):
         return self.station.must("POST", "/work/sign-in", {"badge": self.badge, "pin": PIN})["ticket"]
@@ -259,11 +265,16 @@ class Family:
         return trial_id
 
     def ids(self):
-        """By what a path or a body may call them."""
+        """What an attacker may have found out and asks with."""
         return {"account": self.trainee.identity["id"], "faculty": self.faculty.identity["id"], "cohort": self.cohort,
                 "assignment": self.assignment, "trial": self.trial, "comment": self.comment, "station": self.station.identity["id"],
-                "slot": self.slot, "participant": self.participant, "name": f"{self.name} trainee", "badge": self.badge,
+                "slot": self.slot, "participant": self.participant, "name": f"{self.name} pupil", "badge": self.badge,
                 "ticket": self.ticket}
+
+    def secrets(self):
+        """What nobody of the other family can know unless the server tells it: (text, what it is)."""
+        return {f"{self.name} trainee": "a trainee's name", f"{self.name} cohort": "a cohort's name", f"{self.name} assignment": "a title",
+                f"{self.name} comment": "a comment", f"{self.name} faculty": "a teacher's name", self.finished_trial: "a trial"}
 
 
 def quoted(text):
