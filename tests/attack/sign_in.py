@@ -30,9 +30,17 @@ def slowed(ask, patience_s=PATIENCE_S):
 
 
 def wrong_passwords(world, name, addresses, each):
-    for last in range(addresses):
+    def from_one(last):
         for _ in range(each):
             sign_in(world, name, "not the password", f"127.0.5.{last + 1}")
+    together([threading.Thread(target=from_one, args=(last,)) for last in range(addresses)])
+
+
+def together(threads):
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(120)
 
 
 @attack("5: a name that looks like a badge is tried at the pages until the badge is locked")
@@ -97,10 +105,7 @@ def beside(world, threads):
     until, took_s = threading.Event(), []
     watcher = threading.Thread(target=timed_health, args=(world, until, took_s))
     watcher.start()
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join(120)
+    together(threads)
     until.set()
     watcher.join(60)
     return max(took_s, default=60.0)

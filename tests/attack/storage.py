@@ -8,6 +8,7 @@ import time
 
 from forgeries import FORGERIES
 from report import NotTried, attack, expect
+from sign_in import together
 from transport import raw_head
 from trial_file import announced
 from wire import Client
@@ -37,11 +38,7 @@ def send_body(world, size):
 def bodies_in_memory(world):
     world.server.reset_peak()
     before = world.server.resident_bytes()
-    threads = [threading.Thread(target=send_body, args=(world, BODY_BYTES)) for _ in range(BODIES)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join(120)
+    together([threading.Thread(target=send_body, args=(world, BODY_BYTES)) for _ in range(BODIES)])
     grown = world.server.peak_bytes() - before
     print(f"      memory rose by {grown >> 20} MiB", flush=True)
     expect(grown < MOST_BODIES_BYTES, f"memory rose by {grown >> 20} MiB")

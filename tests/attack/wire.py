@@ -98,9 +98,8 @@ class Line:
     def exchange(self, raw, method="GET"):
         """Sends bytes as they are. None: closed without an answer."""
         for fresh in (self.socket is None, True):
-            if self.socket is None:
-                self.socket = self.target.connect(self.source, self.patience_s)
-                self.stream = self.socket.makefile("rb")
+            if not self._connected():
+                return None
             answer = self._once(raw, method)
             if answer and "close" not in answer.header("connection").lower():
                 return answer
@@ -108,6 +107,15 @@ class Line:
             if answer or fresh:
                 return answer
         return None
+
+    def _connected(self):
+        if self.socket is None:
+            try:
+                self.socket = self.target.connect(self.source, self.patience_s)
+            except OSError:
+                return False  # nobody listens any more
+            self.stream = self.socket.makefile("rb")
+        return True
 
     def _once(self, raw, method):
         try:

@@ -154,7 +154,8 @@ class World:
     # --- before and after each attack -----------------------------------------------------------------------------------------
 
     def healthy(self):
-        return self.server.alive() and Client(self.target, patience_s=15).ask("GET", "/health").status == 200
+        client = Client(self.target, patience_s=15)
+        return client.ask("GET", "/health").status == 200 and self.server.alive()
 
     def begin_attack(self):
         if not self.healthy():
