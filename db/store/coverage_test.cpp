@@ -24,6 +24,8 @@ constexpr const char* kRows[] = {
     "insert into cohorts (id, name, made_utc_us, made_by) values ('c', 'year 1', 1, 'ada')",
     "insert into cohort_people (cohort_id, account_id, part, since_utc_us) values ('c', 'a', "
     "'trainee', 1)",
+    "insert into cohort_invitations (cohort_id, account_name, made_utc_us, made_by) values ('c', "
+    "'tim', 1, 'ada')",
     "insert into consents (account_id, study_id, participant, tier, basis, noted_utc_us, noted_by) "
     "values ('a', '', '', 'full', 'signed', 1, 'ada')",
     "insert into pseudonym_keys (fingerprint, since_utc_us) values ('f', 1)",
@@ -32,7 +34,7 @@ constexpr const char* kRows[] = {
     "insert into case_parts (case_id, name, sha256, size_bytes, secret) values ('k', 'truth.json', "
     "'o', 1, 1)",
     "insert into studies (id, title, state, ordering, repeats, seed, on_invalid, made_utc_us, "
-    "made_by) values ('y', 'study', 'open', 'latin', 1, 7, 'repeat', 1, 'ada')",
+    "made_by, kind) values ('y', 'study', 'open', 'latin', 1, 7, 'repeat', 1, 'ada', 'study')",
     "insert into study_scenarios (study_id, position, case_id) values ('y', 1, 'k')",
     "insert into study_participants (study_id, name, position, state, level, experience_years, "
     "simulated, enrolled_utc_us) values ('y', 'P1', 1, 'enrolled', 'resident', 2.5, 0, 1)",
