@@ -13,8 +13,9 @@ class Refusals : public PeopleTest {
  protected:
   /// Of what people and stations did.
   core::Json rows() {
+    const core::Json trail = json(get("ann", "/audit?limit=100"));
     core::Json out = core::Json::array();
-    for (auto& row : json(get("ann", "/audit?limit=100"))["rows"])
+    for (const auto& row : trail["rows"])
       if (row["role"] != store::kServer) out.push_back(row);
     return out;
   }
