@@ -187,7 +187,7 @@ std::string overlays(const ReportContent& content) {
         plot::svg(figure));
   }
   return section("Measured and simulated",
-                 "Residual is measured − simulated; errors are root mean squares. ErrorRegions a few "
+                 "Residual is measured − simulated; errors are root mean squares. Where a few "
                  "residuals are far larger than all others, as at a border of layers, they end at "
                  "the picture's edge.",
                  body);

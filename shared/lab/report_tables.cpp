@@ -125,7 +125,7 @@ std::string places(const ReportContent& content) {
     body += "<h3>What is left, " + escaped(better_name(content)) + "</h3>\n" +
             (at_floor(*content.better) ? "<p>At the noise floor: nothing stands out.</p>\n"
                                        : regions(*content.better));
-  return section("ErrorRegions the model fails",
+  return section("Where the model fails",
                  "Moments of the recordings that hold more of the error than their time alone "
                  "would; " +
                      escaped(content.before.comparison.error_regions.honest) + ".",

@@ -85,7 +85,7 @@ TEST(Report, SaysTheVerdictFirstInPlainWords) {
 TEST(Report, HoldsAllItPromises) {
   const std::string html = report(content());
   for (const char* heading :
-       {"The error, step by step", "Measured and simulated", "ErrorRegions the model fails",
+       {"The error, step by step", "Measured and simulated", "Where the model fails",
         "What could be missing", "Parameters", "What these recordings cannot tell",
         "How the error is distributed", "Trial by trial", "What was taken for granted"})
     EXPECT_HOLDS(html, heading);
