@@ -136,15 +136,15 @@ ServerProcess::ServerProcess(const fs::path& data, std::vector<std::string> more
   output_ = started.output;
   const std::string before = transport == Transport::plain ? "listening on http://127.0.0.1:"
                                                            : "listening on https://127.0.0.1:";
-  std::string said, line;  // lines of its log may come before
+  std::string line;  // lines of its log may come before
   char c = 0;
   while (port_ == 0 && ::read(output_, &c, 1) == 1) {
     line += c;
     if (c != '\n') continue;
     if (line.starts_with(before)) port_ = std::stoi(line.substr(before.size()));
-    said += std::exchange(line, "");
+    said_ += std::exchange(line, "");
   }
-  EXPECT_NE(port_, 0) << said << line;
+  EXPECT_NE(port_, 0) << said_ << line;
 }
 
 ServerProcess::~ServerProcess() { kill_now(); }
