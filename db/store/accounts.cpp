@@ -234,29 +234,4 @@ core::Result<std::string> station_name(Reading& tx, const std::string& station_i
   return station_text(tx, "name", station_id);
 }
 
-core::Result<Failures> login_failures(Reading& tx, const std::string& name, const std::string& peer,
-                                      std::int64_t since_utc_us) {
-  auto rows = tx.query(
-      "select count(*), coalesce(sum(case when peer = ? then 1 else 0 end), 0) "
-      "from login_failures where name = ? and at_utc_us >= ?",
-      {peer, name, since_utc_us});
-  if (!rows) return rows.error();
-  return Failures{.from_peer = rows->front().count(1), .for_name = rows->front().count(0)};
-}
-
-core::Result<void> add_login_failure(Writing& tx, const std::string& name, const std::string& peer,
-                                     std::int64_t now_utc_us, std::int64_t forget_before_utc_us) {
-  auto forgotten =
-      run(tx, "delete from login_failures where at_utc_us < ?", {forget_before_utc_us});
-  if (!forgotten) return forgotten;
-  return run(tx, "insert into login_failures (name, peer, at_utc_us) values (?, ?, ?)",
-             {name, peer, now_utc_us});
-}
-
-core::Result<void> clear_login_failures(Writing& tx, const std::string& name,
-                                        const std::string& peer) {
-  return run(tx, "delete from login_failures where name = ? and (peer = ? or ? = '')",
-             {name, peer, peer});
-}
-
 }  // namespace store

@@ -1,5 +1,4 @@
-/// Who may come in: accounts and their sessions for people, stations for machines, and the failures
-/// that throttle.
+/// Who may come in: accounts and their sessions for people, stations for machines.
 #pragma once
 
 #include <vector>
@@ -94,19 +93,5 @@ core::Result<std::string> use_enrolment_code(Writing& tx, const std::string& cod
 core::Result<std::string> station_token_hash(Reading& tx, const std::string& station_id);
 /// Errors: not_found.
 core::Result<std::string> station_name(Reading& tx, const std::string& station_id);
-
-/// How often signing in failed since a time.
-struct Failures {
-  std::uint64_t from_peer = 0;  ///< for this name from this address
-  std::uint64_t for_name = 0;   ///< for this name from anywhere
-};
-core::Result<Failures> login_failures(Reading& tx, const std::string& name, const std::string& peer,
-                                      std::int64_t since_utc_us);
-/// Notes one more, and forgets those before `forget_before_utc_us`.
-core::Result<void> add_login_failure(Writing& tx, const std::string& name, const std::string& peer,
-                                     std::int64_t now_utc_us, std::int64_t forget_before_utc_us);
-/// @param peer  empty: from anywhere
-core::Result<void> clear_login_failures(Writing& tx, const std::string& name,
-                                        const std::string& peer);
 
 }  // namespace store

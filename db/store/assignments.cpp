@@ -1,5 +1,7 @@
 #include "db/store/assignments.hpp"
 
+#include "core/require.hpp"
+
 namespace store {
 namespace {
 
@@ -52,53 +54,60 @@ Assignment assignment_from(const Row& row) {
 
 }  // namespace
 
-core::Result<void> add_assignment(Writing& tx, const Assignment& a) {
-  return done(tx.query(
+core::Result<AssignmentId> add_assignment(Writing& tx, const Assignment& a,
+                                          const std::vector<std::string>& case_ids,
+                                          const Deed& deed) {
+  if (auto added = add_series(tx, a.study, "assignment", case_ids, deed); !added)
+    return added.error();
+  auto added = done(tx.query(
       "insert into assignments (study_id, cohort_id, due_utc_us, release, made_by_id) values "
       "(?, ?, ?, ?, ?)",
       {a.study.id, or_null(a.cohort_id), or_null(a.due_utc_us), a.release, a.made_by_id}));
+  if (!added) return added.error();
+  return find_assignment(tx, a.study.id);
 }
 
-core::Result<void> set_assigned_name(Writing& tx, const std::string& id, const std::string& case_id,
-                                     const std::string& name) {
+core::Result<void> set_assigned_name(Writing& tx, const AssignmentId& id,
+                                     const std::string& case_id, const std::string& name) {
   return done(tx.query(
       "insert into assignment_names (study_id, case_id, name) values (?, ?, ?) on conflict "
       "(study_id, case_id) do update set name = ?",
-      {id, case_id, name, name}));
+      {id.text(), case_id, name, name}));
 }
 
-core::Result<std::string> assigned_name(Reading& tx, const std::string& id,
+core::Result<std::string> assigned_name(Reading& tx, const AssignmentId& id,
                                         const std::string& case_id) {
   auto rows = tx.query("select name from assignment_names where study_id = ? and case_id = ?",
-                       {id, case_id});
+                       {id.text(), case_id});
   if (!rows) return rows.error();
   return rows->empty() ? std::string() : rows->front().text(0);
 }
 
-core::Result<void> add_assigned_person(Writing& tx, const std::string& id,
+core::Result<void> add_assigned_person(Writing& tx, const AssignmentId& id,
                                        const std::string& account_id,
                                        const std::string& participant) {
   auto added = done(
       tx.query("insert into assignment_people (study_id, account_id, participant) values (?, ?, ?)",
-               {id, account_id, participant}));
+               {id.text(), account_id, participant}));
   if (!added && added.error().code == core::Errc::conflict)
     return core::Error{core::Errc::conflict, "it is assigned to this person already"};
   return added;
 }
 
-core::Result<void> set_release(Writing& tx, const std::string& id, const std::string& release,
+core::Result<void> set_release(Writing& tx, const AssignmentId& id, const std::string& release,
                                const Deed& deed) {
-  auto set = done(tx.query("update assignments set release = ? where study_id = ?", {release, id}));
+  auto set =
+      done(tx.query("update assignments set release = ? where study_id = ?", {release, id.text()}));
   if (!set) return set;
-  return add_study_event(tx, id, deed, "results " + release);
+  return add_study_event(tx, id.text(), deed, "results " + release);
 }
 
-core::Result<void> set_due(Writing& tx, const std::string& id,
+core::Result<void> set_due(Writing& tx, const AssignmentId& id,
                            const std::optional<std::int64_t>& due_utc_us, const Deed& deed) {
   auto set = done(tx.query("update assignments set due_utc_us = ? where study_id = ?",
-                           {or_null(due_utc_us), id}));
+                           {or_null(due_utc_us), id.text()}));
   if (!set) return set;
-  return add_study_event(tx, id, deed, "due date changed");
+  return add_study_event(tx, id.text(), deed, "due date changed");
 }
 
 core::Result<std::vector<Assignment>> assignments_of(Reading& tx, const WhoseAssignments& whose) {
@@ -116,32 +125,36 @@ core::Result<std::vector<Assignment>> assignments_of(Reading& tx, const WhoseAss
   return out;
 }
 
-core::Result<std::optional<Assignment>> assignment_of(Reading& tx, const std::string& id,
-                                                      const std::string& done_by) {
+core::Result<Assignment> assignment_of(Reading& tx, const AssignmentId& id,
+                                       const std::string& done_by) {
   auto rows = tx.query(std::string(kAssignment) + "where a.study_id = ?",
-                       {done_by, done_by, done_by, done_by, done_by, done_by, id});
+                       {done_by, done_by, done_by, done_by, done_by, done_by, id.text()});
   if (!rows) return rows.error();
-  if (rows->empty()) return std::optional<Assignment>();
-  return std::optional(assignment_from(rows->front()));
+  core::require(!rows->empty(), "who has an assignment's id has looked it up");
+  return assignment_from(rows->front());
 }
 
-core::Result<std::vector<std::string>> assignments_of_cohort(Reading& tx,
-                                                             const std::string& cohort_id) {
+core::Result<std::vector<AssignmentId>> assignments_of_cohort(Reading& tx,
+                                                              const std::string& cohort_id) {
   auto rows = tx.query("select study_id from assignments where cohort_id = ?", {cohort_id});
   if (!rows) return rows.error();
-  std::vector<std::string> out;
-  for (const Row& row : *rows) out.push_back(row.text(0));
+  std::vector<AssignmentId> out;
+  for (const Row& row : *rows) {
+    auto id = find_assignment(tx, row.text(0));
+    if (!id) return id.error();
+    out.push_back(std::move(*id));
+  }
   return out;
 }
 
-core::Result<std::vector<AssignedPerson>> assigned_people(Reading& tx, const std::string& id) {
+core::Result<std::vector<AssignedPerson>> assigned_people(Reading& tx, const AssignmentId& id) {
   auto rows = tx.query(
       "select p.account_id, u.name, p.participant, (select count(*) from study_slots k where "
       "k.study_id = p.study_id and k.participant = p.participant and k.state = 'recorded'), "
       "(select count(*) from study_slots k where k.study_id = p.study_id and k.participant = "
       "p.participant and k.state <> 'invalid') from assignment_people p join accounts u on u.id = "
       "p.account_id where p.study_id = ? order by u.name",
-      {id});
+      {id.text()});
   if (!rows) return rows.error();
   std::vector<AssignedPerson> out;
   for (const Row& row : *rows)
@@ -149,11 +162,11 @@ core::Result<std::vector<AssignedPerson>> assigned_people(Reading& tx, const std
   return out;
 }
 
-core::Result<std::string> participant_for(Reading& tx, const std::string& id,
+core::Result<std::string> participant_for(Reading& tx, const AssignmentId& id,
                                           const std::string& account_id) {
   auto rows =
       tx.query("select participant from assignment_people where study_id = ? and account_id = ?",
-               {id, account_id});
+               {id.text(), account_id});
   if (!rows) return rows.error();
   return rows->empty() ? std::string() : rows->front().text(0);
 }

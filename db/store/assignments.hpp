@@ -8,7 +8,7 @@
 namespace store {
 
 struct Assignment {
-  Study study;  ///< its id is the assignment's
+  Study study;  ///< the series of trials; its id is the assignment's
   std::optional<std::string> cohort_id = {};
   std::optional<std::int64_t> due_utc_us = {};
   std::string release = "held";  ///< "held"; "released"; "at_once": each result once it is there
@@ -24,21 +24,23 @@ struct AssignedPerson {
   std::uint64_t done = 0, planned = 0;
 };
 
-/// The study must be there already.
-core::Result<void> add_assignment(Writing& tx, const Assignment& assignment);
+/// Errors: those of add_study.
+core::Result<AssignmentId> add_assignment(Writing& tx, const Assignment& assignment,
+                                          const std::vector<std::string>& case_ids,
+                                          const Deed& deed);
 /// What the trainee is shown for a case instead of its title.
-core::Result<void> set_assigned_name(Writing& tx, const std::string& id, const std::string& case_id,
-                                     const std::string& name);
+core::Result<void> set_assigned_name(Writing& tx, const AssignmentId& id,
+                                     const std::string& case_id, const std::string& name);
 /// Empty when it has none.
-core::Result<std::string> assigned_name(Reading& tx, const std::string& id,
+core::Result<std::string> assigned_name(Reading& tx, const AssignmentId& id,
                                         const std::string& case_id);
 /// Somebody's participant in the study. Errors: conflict when they are in it already.
-core::Result<void> add_assigned_person(Writing& tx, const std::string& id,
+core::Result<void> add_assigned_person(Writing& tx, const AssignmentId& id,
                                        const std::string& account_id,
                                        const std::string& participant);
-core::Result<void> set_release(Writing& tx, const std::string& id, const std::string& release,
+core::Result<void> set_release(Writing& tx, const AssignmentId& id, const std::string& release,
                                const Deed& deed);
-core::Result<void> set_due(Writing& tx, const std::string& id,
+core::Result<void> set_due(Writing& tx, const AssignmentId& id,
                            const std::optional<std::int64_t>& due_utc_us, const Deed& deed);
 
 /// Whose assignments a list is of. Both empty: all.
@@ -48,14 +50,14 @@ struct WhoseAssignments {
 };
 /// Those due first come first, those without a date last; then as they were made.
 core::Result<std::vector<Assignment>> assignments_of(Reading& tx, const WhoseAssignments& whose);
-core::Result<std::optional<Assignment>> assignment_of(Reading& tx, const std::string& id,
-                                                      const std::string& done_by = {});
-core::Result<std::vector<std::string>> assignments_of_cohort(Reading& tx,
-                                                             const std::string& cohort_id);
+core::Result<Assignment> assignment_of(Reading& tx, const AssignmentId& id,
+                                       const std::string& done_by = {});
+core::Result<std::vector<AssignmentId>> assignments_of_cohort(Reading& tx,
+                                                              const std::string& cohort_id);
 /// By name.
-core::Result<std::vector<AssignedPerson>> assigned_people(Reading& tx, const std::string& id);
+core::Result<std::vector<AssignedPerson>> assigned_people(Reading& tx, const AssignmentId& id);
 /// The account's participant in the study; empty: not in it.
-core::Result<std::string> participant_for(Reading& tx, const std::string& id,
+core::Result<std::string> participant_for(Reading& tx, const AssignmentId& id,
                                           const std::string& account_id);
 
 }  // namespace store

@@ -35,9 +35,11 @@ class Acting {
   Acting& operator=(const Acting&) = delete;
   /// Names who acts, once that is known: at signing in.
   static void is_by(const std::string& who, const std::string& role);
+  /// Keeps nothing of what was sent: it may be a secret in the wrong field.
+  static void without_detail();
 
  private:
-  friend core::Result<void> note_act(Writing& tx, const AuditKey& key);
+  friend core::Result<void> note_act(Writing& tx, const AuditKey& key, const std::string& changes);
   friend void act_was_noted() noexcept;
   friend bool act_waits() noexcept;
   Act act_;
@@ -48,13 +50,24 @@ struct AuditRow {
   std::int64_t number = 0;  ///< from 1, without gaps
   Act act;
   std::string hash;
+  std::string changes;  ///< digests of the covered rows that changed (coverage.hpp); "" for none
 };
 
 /// Newest first, of those before `number`; at most `limit`.
 core::Result<std::vector<AuditRow>> audit_before(Reading& tx, std::int64_t number,
                                                  std::int64_t limit);
-/// Notes an act that changes nothing else, as a refusal.
-core::Result<void> add_act(Writing& tx, const AuditKey& key, const Act& act);
+/// Notes an act; one that changes nothing else, as a refusal, has no `changes`.
+core::Result<void> add_act(Writing& tx, const AuditKey& key, const Act& act,
+                           const std::string& changes = "");
+
+/// `who` and `role` of what the server does by itself, as scoring a trial; and what it does then.
+inline constexpr const char* kServer = "server";
+inline constexpr const char* kServerWork = "serverWork";
+inline constexpr const char* kBeginCoverage = "beginCoverage";
+inline constexpr const char* kGoOnCoverage = "goOnCoverage";
+
+/// HMAC-SHA-256 over the fields, each with its length before it, as hexadecimal digits.
+std::string keyed_hash(const AuditKey& key, const std::vector<std::string>& fields);
 
 /// The newest row: its number (0: none yet) and hash.
 struct ChainEnd {

@@ -4,6 +4,8 @@
 
 #include <map>
 
+#include "db/store/coverage.hpp"
+
 namespace store {
 namespace {
 
@@ -46,22 +48,30 @@ core::Result<void> check_audit(Reading& tx, const AuditKey& key, const Anchors& 
   std::map<std::int64_t, std::string> noted;
   for (const ChainEnd& anchor : anchors) noted[anchor.number] = anchor.hash;
   std::int64_t last = 0;
+  TrailDigests digests;
   auto end = verify_chain(tx, key, [&](const AuditRow& row) {
     last = row.number;
+    digests.add(row);
     const auto at = noted.find(row.number);
     if (at != noted.end() && at->second != row.hash)
       found.lines.push_back(
           fmt::format("audit trail: row {} is not the one that was noted", row.number));
   });
   if (!end && end.error().code != core::Errc::corrupt) return end.error();
-  if (!end) found.lines.push_back(end.error().what);
-  if (end) found.audit = *end;
-  if (end && !noted.empty() && noted.rbegin()->first > last)
+  found.covered_since_utc_us = digests.since_utc_us();
+  found.covered_tables = digests.tables();
+  if (!end) {
+    found.lines.push_back(end.error().what);
+    found.lines.push_back("tables: not compared with the audit trail, which does not hold");
+    return {};
+  }
+  found.audit = *end;
+  if (!noted.empty() && noted.rbegin()->first > last)
     found.lines.push_back(
         fmt::format("audit trail: ends at row {}, but row {} was noted: the "
                     "newest rows were cut off",
                     last, noted.rbegin()->first));
-  return {};
+  return digests.compare(tx, key, found.lines);
 }
 
 std::string wrong_with(const Objects& objects, const ObjectEntry& entry) {

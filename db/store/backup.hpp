@@ -27,14 +27,18 @@ struct Findings {
   std::vector<std::string> lines;
   std::uint64_t objects = 0, bytes = 0;
   ChainEnd audit;
+  std::int64_t covered_since_utc_us =
+      0;  ///< rows are compared with the audit trail; 0: they are not
+  std::size_t covered_tables = 0;
 };
 
 /// Ends of the audit trail as noted outside the database: number and hash.
 using Anchors = std::vector<ChainEnd>;
 
 /// Everything that can be checked: the database's own structure and references, every object
-/// against its name, the audit trail against its key and against the anchors. `shown(share)` may
-/// return false to stop. Errors: those of reading; cancelled.
+/// against its name, the audit trail against its key and against the anchors, the rows of the
+/// covered tables (coverage.hpp) against the audit trail. `shown(share)` may return false to stop.
+/// Errors: those of reading; cancelled.
 core::Result<Findings> look_over(Store& store, const Objects& objects, const AuditKey& key,
                                  const Anchors& anchors,
                                  const std::function<bool(double)>& shown = {});

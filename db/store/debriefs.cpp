@@ -1,5 +1,7 @@
 #include "db/store/debriefs.hpp"
 
+#include "db/store/blinding.hpp"
+
 namespace store {
 
 core::Result<void> add_comment(Writing& tx, const Comment& comment) {
@@ -62,7 +64,8 @@ core::Result<std::vector<ReferenceTrial>> references_for(Reading& tx, const std:
   auto rows = tx.query(
       "select t.id, t.operator_name, t.started_utc_us, t.duration_s, t.simulated from "
       "reference_trials r join trials t on t.id = r.trial_id join trials mine on mine.case_id = "
-      "t.case_id where mine.id = ? and t.id <> mine.id order by t.started_utc_us desc, t.id",
+      "t.case_id where mine.id = ? and t.id <> mine.id and not " +
+          blinded_sql() + " order by t.started_utc_us desc, t.id",
       {trial_id});
   if (!rows) return rows.error();
   std::vector<ReferenceTrial> out;

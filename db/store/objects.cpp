@@ -19,7 +19,7 @@ constexpr std::size_t kPiece_bytes = 1u << 20;
 class Descriptor {
  public:
   Descriptor(const fs::path& path, int flags)
-      : fd_(::open(path.c_str(), flags | O_CLOEXEC, 0640)) {}
+      : fd_(::open(path.c_str(), flags | O_CLOEXEC, 0600)) {}
   ~Descriptor() {
     if (fd_ >= 0) ::close(fd_);
   }
@@ -59,9 +59,11 @@ core::Result<void> each_piece(const fs::path& path,
   }
 }
 
+/// For its owner alone, though the folder that it is in may not be.
 core::Result<fs::path> made_folder(const fs::path& path) {
   std::error_code failure;
-  fs::create_directories(path, failure);
+  if (fs::create_directories(path, failure) && !failure)
+    fs::permissions(path, fs::perms::owner_all, failure);
   if (failure)
     return core::Error{core::Errc::io,
                        fmt::format("{}: cannot create: {}", path.string(), failure.message())};

@@ -104,6 +104,14 @@ core::Result<bool> teaches(Reading& tx, const std::string& account_id,
                {trainee_id, account_id}));
 }
 
+core::Result<bool> leads_with(Reading& tx, const std::string& account_id,
+                              const std::string& person_id) {
+  return any(
+      tx.query("select 1 from cohort_people p join cohort_people f on f.cohort_id = p.cohort_id "
+               "where p.account_id = ? and f.account_id = ? and f.part = 'faculty' limit 1",
+               {person_id, account_id}));
+}
+
 core::Result<bool> teaches_trial(Reading& tx, const std::string& account_id,
                                  const std::string& trial_id) {
   return any(tx.query(std::string("select 1 from ") + kAssignedTrial +

@@ -46,6 +46,9 @@ core::Result<bool> is_in_cohort(Reading& tx, const std::string& account_id,
 /// Does the account lead a cohort in which `trainee_id` is a trainee?
 core::Result<bool> teaches(Reading& tx, const std::string& account_id,
                            const std::string& trainee_id);
+/// Does the account lead a cohort that this person is in, in whatever part?
+core::Result<bool> leads_with(Reading& tx, const std::string& account_id,
+                              const std::string& person_id);
 /// Did somebody taught by this account do the trial, in an assignment?
 core::Result<bool> teaches_trial(Reading& tx, const std::string& account_id,
                                  const std::string& trial_id);

@@ -15,6 +15,7 @@
 #include "db/store/cases.hpp"
 #include "db/store/jobs.hpp"
 #include "db/store/postgres_link.hpp"
+#include "db/store/sign_ins.hpp"
 #include "tests/support/database/database.hpp"
 
 namespace store {
@@ -46,8 +47,10 @@ TEST_P(SharedDatabase, TheAuditTrailIsOneChainWhoeverWrites) {
     for (int i = 0; i < kEach; ++i) {
       const Acting acting(
           {.who = who, .role = "admin", .what = "deed", .object = std::to_string(i)});
-      EXPECT_TRUE(store.write(
-          [&](Writing& tx) { return add_login_failure(tx, who, std::to_string(i), 1, 0); }));
+      EXPECT_TRUE(store.write([&](Writing& tx) {
+        const Attempt attempt{Secret::account_password, who, std::to_string(i)};
+        return set_failures(tx, attempt, Total::pair, {1.0, 1});
+      }));
     }
   };
   std::thread first([&] { act(one_, "ada"); }), second([&] { act(other_, "bob"); });

@@ -1,5 +1,7 @@
 #include "db/store/store.hpp"
 
+#include "core/require.hpp"
+#include "db/store/coverage.hpp"
 #include "db/store/migrations.hpp"
 
 namespace store {
@@ -35,12 +37,30 @@ void Pool::give_back(Connection* connection) {
   changed_.notify_one();
 }
 
-core::Result<Rows> Reading::query(std::string_view sql, std::initializer_list<Value> values) {
+core::Result<Rows> Reading::query_with(std::string_view sql, std::span<const Value> values) {
   for (const Value& value : values)
     if (const auto* text = std::get_if<std::string>(&value); text && !is_text(*text))
       return core::Error{core::Errc::bad_input,
                          "a text is not UTF-8, or holds a zero: it cannot be stored"};
-  return connection_.query(sql, std::span(values.begin(), values.size()));
+  return connection_.query(sql, values);
+}
+
+core::Result<Rows> Reading::query(std::string_view sql, std::initializer_list<Value> values) {
+  return query_with(sql, std::span(values.begin(), values.size()));
+}
+
+core::Result<Rows> Writing::query(std::string_view sql, std::initializer_list<Value> values) {
+  const CoveredTable* table = changed_table(sql);
+  if (!table) return Reading::query(sql, values);
+  auto rows = Reading::query(returning_keys(sql, *table), values);
+  if (!rows) return rows;
+  for (const Row& row : *rows) {
+    std::vector<Value> key;
+    for (std::size_t i = row.size() - table->keys.size(); i < row.size(); ++i)
+      key.push_back(row.value(i));
+    changed_.emplace(table, std::move(key));
+  }
+  return rows;
 }
 
 Store::Store(std::unique_ptr<Connection> reader, std::unique_ptr<Connection> writer)
@@ -68,8 +88,12 @@ core::Result<Store> Store::open_postgres(const std::string& address) {
   return out;
 }
 
-core::Result<void> Store::finish(Writing& tx, std::vector<Signals::Noted>& said) {
-  if (auto noted = note_act(tx, audit_key_); !noted) return noted;
+core::Result<void> Store::finish(Writing& tx, Access access, std::vector<Signals::Noted>& said) {
+  core::require(access == Access::write || tx.changed_.empty(),
+                "rows that the audit trail covers are changed by Store::write");
+  auto changes = changes_text(tx, audit_key_, tx.changed_);
+  if (!changes) return changes.error();
+  if (auto noted = note_act(tx, audit_key_, *changes); !noted) return noted;
   if (tx.noted_.empty()) return {};
   said = std::move(tx.noted_);
   return signals_->committing(tx, said);

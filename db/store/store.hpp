@@ -8,6 +8,8 @@
 #include <initializer_list>
 #include <memory>
 #include <mutex>
+#include <set>
+#include <span>
 #include <type_traits>
 
 #include "db/store/connection.hpp"
@@ -26,6 +28,7 @@ class Reading {
   /// Errors: those of Connection::query; bad_input for a text that is not UTF-8 or holds a zero,
   /// which PostgreSQL does not take.
   core::Result<Rows> query(std::string_view sql, std::initializer_list<Value> values = {});
+  core::Result<Rows> query_with(std::string_view sql, std::span<const Value> values);
   /// Row by row, in bounded memory. Errors: those of `seen` as well, which end it.
   core::Result<void> each(std::string_view sql,
                           const std::function<core::Result<void>(Row)>& seen) {
@@ -37,11 +40,18 @@ class Reading {
   Connection& connection_;
 };
 
+struct CoveredTable;  // coverage.hpp
+/// Keys of rows that a transaction has changed in tables that the audit trail covers.
+using ChangedRows = std::set<std::pair<const CoveredTable*, std::vector<Value>>>;
+
 /// A transaction that may change things: all of it happens, or none. Lent by Store::write for the
 /// length of a call.
 class Writing : public Reading {
  public:
   using Reading::Reading;
+  /// As Reading::query. A statement that changes rows of a covered table must begin with "insert
+  /// into", "update" or "delete from"; the answer's rows then end with the keys of those rows.
+  core::Result<Rows> query(std::string_view sql, std::initializer_list<Value> values = {});
 
  private:
   friend class Store;
@@ -49,12 +59,14 @@ class Writing : public Reading {
   friend core::Result<void> notify(Writing& tx, const std::string& channel,
                                    const std::string& payload);
   std::vector<Signals::Noted> noted_;  ///< said when this commits
+  ChangedRows changed_;
 };
 
 /// The key of the audit trail's chain (audit.hpp).
 using AuditKey = std::array<std::byte, 32>;
-/// Notes the act of this thread (audit.hpp) that has not been noted yet, if there is one.
-core::Result<void> note_act(Writing& tx, const AuditKey& key);
+/// Notes the act of this thread (audit.hpp) when it has not been noted yet, and the digests of the
+/// rows that this transaction changed, if there are any.
+core::Result<void> note_act(Writing& tx, const AuditKey& key, const std::string& changes);
 void act_was_noted() noexcept;
 bool act_waits() noexcept;
 
@@ -140,7 +152,7 @@ class Store {
 
  private:
   /// What goes with every write: its row of the audit trail, and what it wants said.
-  core::Result<void> finish(Writing& tx, std::vector<Signals::Noted>& said);
+  core::Result<void> finish(Writing& tx, Access access, std::vector<Signals::Noted>& said);
 
   template <class Work>
   std::invoke_result_t<Work, Writing&> written(Pool& pool, Access access, Work&& work) {
@@ -150,7 +162,7 @@ class Store {
     auto answer = in_transaction<Writing>(*lent, access, [&](Writing& tx) -> Answer {
       auto done = work(tx);
       if (!done) return done;
-      if (auto ready = finish(tx, said); !ready) return ready.error();
+      if (auto ready = finish(tx, access, said); !ready) return ready.error();
       return done;
     });
     if (!answer) return answer;

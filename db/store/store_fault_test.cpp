@@ -8,6 +8,7 @@
 #include "db/store/cases.hpp"
 #include "db/store/jobs.hpp"
 #include "db/store/migrations.hpp"
+#include "db/store/sign_ins.hpp"
 #include "db/store/store_test_support.hpp"
 #include "db/store/study_slots.hpp"
 #include "db/store/trials.hpp"
@@ -55,9 +56,9 @@ std::string contents(Store& store) {
   std::string out;
   auto read = store.read([&](Reading& tx) -> core::Result<void> {
     for (const char* table :
-         {"accounts", "sessions", "login_failures", "stations", "objects", "cases", "case_parts",
-          "uploads", "trials", "trial_metrics", "jobs", "studies", "study_scenarios",
-          "study_participants", "study_slots", "study_trials", "study_events"}) {
+         {"accounts", "sessions", "sign_in_failures", "known_origins", "stations", "objects",
+          "cases", "case_parts", "uploads", "trials", "trial_metrics", "jobs", "studies",
+          "study_scenarios", "study_participants", "study_slots", "study_trials", "study_events"}) {
       auto rows = tx.query(std::string("select * from ") + table);
       if (!rows) return rows.error();
       out += std::string(table) + ":" + std::to_string(rows->size()) + "\n";
@@ -100,7 +101,9 @@ TEST_P(StoreFaults, ACommittedTrialIsWholeOrAbsent) {
     if (auto done = complete_upload(tx, kTrial); !done) return done;
     return queue_job(tx, "metrics", kTrial, 2);
   });
-  EXPECT_EQ(steps, 6);  // begin, four statements, commit
+  // begin, four statements, the trial's row read for its digest, the trail's end, its new row,
+  // commit
+  EXPECT_EQ(steps, 9);
 }
 
 TEST_P(StoreFaults, APublishedCaseIsWholeOrAbsent) {
@@ -117,10 +120,11 @@ TEST_P(StoreFaults, APublishedCaseIsWholeOrAbsent) {
 /// A study of which a station has a trial, all of whose bytes are here.
 core::Result<void> furnish_study(Writing& tx) {
   const Study study{.id = "study", .title = "", .ordering = "random"};
-  if (auto done = add_study(tx, study, {kCase}, {"ada", 1}); !done) return done;
-  if (auto done = add_participant(tx, "study", {.name = "P1"}, {kCase, kCase}, {"ada", 1}); !done)
+  auto id = add_study(tx, study, {kCase}, {"ada", 1});
+  if (!id) return id.error();
+  if (auto done = add_participant(tx, *id, {.name = "P1"}, {kCase, kCase}, {"ada", 1}); !done)
     return done;
-  auto slots = study_slots(tx, "study");
+  auto slots = study_slots(tx, *id);
   if (!slots) return slots.error();
   return announce_for_slot(tx, kTrial, slots->front().id, 1);
 }
@@ -151,14 +155,16 @@ TEST_P(StoreFaults, AnAssessmentIsWholeOrAbsent) {
 }
 
 TEST_P(StoreFaults, ASignInIsWholeOrAbsent) {
-  EXPECT_GE(fails_cleanly_at_every_step(GetParam(),
-                                        [](Writing& tx) -> core::Result<void> {
-                                          if (auto done = clear_login_failures(tx, "ada", "peer");
-                                              !done)
-                                            return done;
-                                          return add_session(tx, "token", "1", 2);
-                                        }),
-            4);
+  EXPECT_GE(
+      fails_cleanly_at_every_step(GetParam(),
+                                  [](Writing& tx) -> core::Result<void> {
+                                    const Attempt from{Secret::account_password, "ada", "peer"};
+                                    if (auto done = clear_failures(tx, from); !done) return done;
+                                    if (auto done = note_origin(tx, "1", from, 2, 1); !done)
+                                      return done;
+                                    return add_session(tx, "token", "1", 2);
+                                  }),
+      4);
 }
 
 TEST_P(StoreFaults, MigratingIsDoneAgainFromWhereItFailed) {

@@ -10,6 +10,7 @@
 #include "db/store/accounts.hpp"
 #include "db/store/jobs.hpp"
 #include "db/store/migrations.hpp"
+#include "db/store/sign_ins.hpp"
 #include "db/store/store_test_support.hpp"
 #include "tests/support/database/database.hpp"
 
@@ -74,7 +75,9 @@ TEST_P(StoreContract, ATextThatIsNotUtf8OrHoldsAZeroIsRefusedAndNothingElse) {
   // cut short; and the last character there is.
   Opened db(GetParam());
   const auto keep = [&](std::string text) {
-    return db.store.write([&](Writing& tx) { return add_login_failure(tx, text, "p", 1, 0); });
+    return db.store.write([&](Writing& tx) {
+      return set_failures(tx, {Secret::account_password, text, "p"}, Total::pair, {1.0, 1});
+    });
   };
   for (const std::string& bad :
        {std::string("a\0b", 3), std::string("\xc0\xaf"), std::string("\xed\xa0\x80"),
@@ -218,6 +221,35 @@ TEST_P(MigrationSteps, AStepThatBreaksLeavesTheDatabaseAtTheStepBefore) {
   EXPECT_TRUE(connection->query("select y from b", {}));
 }
 
+/// A database from before the column: an assignment is told by its row in `assignments`.
+TEST_P(MigrationSteps, StudiesAndAssignmentsOfAnOlderDatabaseGetTheirKind) {
+  const TestDatabase database(GetParam(), Content::nothing);
+  const auto connection = database.connection(Access::write);
+  auto older = migrations();
+  std::erase_if(older, [](const Migration& step) { return step.version >= 16; });
+  ASSERT_TRUE(migrate(*connection, older));
+  ASSERT_TRUE(
+      connection->query("insert into accounts (id, name, role, password_hash, made_utc_us) "
+                        "values ('fay', 'fay', 'faculty', 'x', 1)",
+                        {}));
+  for (const char* id : {"'a-study'", "'spine'"})
+    ASSERT_TRUE(connection->query(
+        std::string("insert into studies (id, title, state, ordering, repeats, seed, on_invalid, "
+                    "made_utc_us, made_by) values (") +
+            id + ", '', 'running', 'random', 1, 1, 'at_end', 1, 'ada')",
+        {}));
+  ASSERT_TRUE(
+      connection->query("insert into assignments (study_id, release, made_by_id) values ('spine', "
+                        "'held', 'fay')",
+                        {}));
+  ASSERT_TRUE(migrate(*connection, migrations()));
+  const auto rows = connection->query("select id, kind from studies order by id", {});
+  ASSERT_TRUE(rows);
+  ASSERT_EQ(rows->size(), 2u);
+  EXPECT_EQ((*rows)[0].text(1), "study");
+  EXPECT_EQ((*rows)[1].text(1), "assignment");
+}
+
 TEST_P(JobQueue, AreClaimedOnceInTheOrderTheyWereQueued) {
   Opened db(GetParam());
   auto claimed = db.store.write([](Writing& tx) -> core::Result<std::vector<std::string>> {
@@ -283,17 +315,54 @@ TEST_P(JobQueue, AJobLeftOffWaitsAgainAndTheAttemptDoesNotCount) {
   EXPECT_EQ((*again)->attempts, 1u);
 }
 
-TEST_P(Logins, FailuresAreCountedByNameAndAddressSinceATime) {
+TEST_P(Logins, FailuresAreOfAKindOfSecretANameAndAnOrigin) {
   Opened db(GetParam());
-  auto counted = db.store.write([](Writing& tx) -> core::Result<Failures> {
-    for (const auto& [name, peer, at] :
-         {std::tuple{"ada", "a", 10}, {"ada", "a", 20}, {"ada", "b", 30}, {"bob", "a", 30}})
-      if (auto added = add_login_failure(tx, name, peer, at, 0); !added) return added.error();
-    return login_failures(tx, "ada", "a", 15);
+  const Attempt account{Secret::account_password, "102", "10.0.0.1"};
+  auto done = db.store.write([&](Writing& tx) -> core::Result<void> {
+    if (auto set = set_failures(tx, account, Total::pair, {3.5, 20}); !set) return set;
+    if (auto set = set_failures(tx, account, Total::pair, {4.5, 30}); !set) return set;
+    return set_failures(tx, account, Total::origin, {7.0, 30});
   });
-  ASSERT_TRUE(counted) << counted.error().what;
-  EXPECT_EQ(counted->from_peer, 1u);
-  EXPECT_EQ(counted->for_name, 2u);
+  ASSERT_TRUE(done) << done.error().what;
+  const auto count = [&](const Attempt& attempt, Total total) {
+    return db.store.read([&](Reading& tx) { return failures_of(tx, attempt, total); })
+        .value()
+        .count;
+  };
+  EXPECT_EQ(count(account, Total::pair), 4.5);
+  EXPECT_EQ(count(account, Total::name), 0.0);
+  EXPECT_EQ(count({Secret::account_password, "ada", "10.0.0.1"}, Total::origin), 7.0);
+  EXPECT_EQ(count({Secret::badge_pin, "102", "10.0.0.1"}, Total::pair), 0.0);
+  EXPECT_EQ(count({Secret::account_password, "102", "10.0.0.2"}, Total::pair), 0.0);
+  done = db.store.write([&](Writing& tx) -> core::Result<void> {
+    return clear_failures_of_name(tx, Secret::account_password, "102");
+  });
+  ASSERT_TRUE(done);
+  EXPECT_EQ(count(account, Total::pair), 0.0);
+  EXPECT_EQ(count(account, Total::origin), 7.0) << "of all names";
+}
+
+TEST_P(Logins, AnOriginIsKnownByTheAccountThatGotInFromIt) {
+  Opened db(GetParam());
+  const Attempt in{Secret::account_password, "ada", "10.0.0.1"};
+  const auto known = [&](const Attempt& attempt) {
+    return db.store.read([&](Reading& tx) { return is_known_origin(tx, attempt); }).value();
+  };
+  auto done = db.store.write([&](Writing& tx) -> core::Result<void> {
+    for (const auto& [id, name] : {std::pair{"1", "ada"}, {"2", "bob"}})
+      if (auto added = add_account(tx, {id, name, "admin", "hash"}, 0); !added) return added;
+    return note_origin(tx, "1", in, 10, 0);
+  });
+  ASSERT_TRUE(done) << done.error().what;
+  EXPECT_TRUE(known(in));
+  EXPECT_FALSE(known({Secret::account_password, "bob", "10.0.0.1"}));
+  EXPECT_FALSE(known({Secret::account_password, "ada", "10.0.0.2"}));
+  EXPECT_FALSE(known({Secret::badge_pin, "ada", "10.0.0.1"}));
+  done = db.store.write([&](Writing& tx) {
+    return note_origin(tx, "1", {in.secret, "ada", "10.0.0.2"}, 30, 20);
+  });
+  ASSERT_TRUE(done);
+  EXPECT_FALSE(known(in)) << "not seen since 20";
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "db/store/studies.hpp"
 
 #include "core/bytes.hpp"
+#include "core/require.hpp"
 
 namespace store {
 namespace {
@@ -43,25 +44,25 @@ core::Result<void> add_slots(Writing& tx, const std::string& study_id, const std
 
 }  // namespace
 
-core::Result<void> add_study_event(Writing& tx, const std::string& study_id, const Deed& deed,
+core::Result<void> add_study_event(Writing& tx, const std::string& series_id, const Deed& deed,
                                    const std::string& what, const Slot* slot,
                                    const std::string& trial_id, const std::string& participant) {
   return done(tx.query(
       "insert into study_events (study_id, number, at_utc_us, who, what, participant, slot_id, "
       "trial_id, reason) values (?, (select count(*) + 1 from study_events where study_id = ?), ?, "
       "?, ?, ?, ?, ?, ?)",
-      {study_id, study_id, deed.at_utc_us, deed.who, what,
+      {series_id, series_id, deed.at_utc_us, deed.who, what,
        text_or_null(slot ? slot->participant : participant), slot ? Value(slot->id) : Value(),
        text_or_null(trial_id), deed.reason}));
 }
 
-core::Result<void> add_study(Writing& tx, const Study& study,
-                             const std::vector<std::string>& case_ids, const Deed& deed) {
+core::Result<void> add_series(Writing& tx, const Study& study, const std::string& kind,
+                              const std::vector<std::string>& case_ids, const Deed& deed) {
   auto added = tx.query(
       "insert into studies (id, title, state, ordering, repeats, seed, on_invalid, made_utc_us, "
-      "made_by) values (?, ?, ?, ?, ?, ?, ?, ?, ?)",
+      "made_by, kind) values (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
       {study.id, study.title, study.state, study.ordering, study.repeats, study.seed,
-       study.on_invalid, deed.at_utc_us, deed.who});
+       study.on_invalid, deed.at_utc_us, deed.who, kind});
   if (!added) return added.error();
   for (std::size_t i = 0; i < case_ids.size(); ++i) {
     added = tx.query("insert into study_scenarios (study_id, position, case_id) values (?, ?, ?)",
@@ -71,35 +72,39 @@ core::Result<void> add_study(Writing& tx, const Study& study,
   return add_study_event(tx, study.id, deed, "made");
 }
 
-core::Result<void> add_participant(Writing& tx, const std::string& study_id,
-                                   const Participant& participant,
+core::Result<StudyId> add_study(Writing& tx, const Study& study,
+                                const std::vector<std::string>& case_ids, const Deed& deed) {
+  if (auto done = add_series(tx, study, "study", case_ids, deed); !done) return done.error();
+  return find_study(tx, study.id);
+}
+
+core::Result<void> add_participant(Writing& tx, const SeriesId& id, const Participant& participant,
                                    const std::vector<std::string>& case_order, const Deed& deed) {
   auto added = tx.query(
       "insert into study_participants (study_id, name, position, state, level, experience_years, "
       "simulated, enrolled_utc_us) values (?, ?, (select count(*) from study_participants where "
       "study_id = ?), ?, ?, ?, ?, ?)",
-      {study_id, participant.name, study_id, participant.state, participant.level,
+      {id.text(), participant.name, id.text(), participant.state, participant.level,
        or_null(participant.experience_years), bool_value(participant.simulated), deed.at_utc_us});
   if (!added) return added.error();
-  if (auto slots = add_slots(tx, study_id, participant.name, case_order, deed); !slots)
+  if (auto slots = add_slots(tx, id.text(), participant.name, case_order, deed); !slots)
     return slots;
-  return add_study_event(tx, study_id, deed, "enrolled", nullptr, {}, participant.name);
+  return add_study_event(tx, id.text(), deed, "enrolled", nullptr, {}, participant.name);
 }
 
-core::Result<void> set_study_state(Writing& tx, const std::string& id, const std::string& state,
+core::Result<void> set_study_state(Writing& tx, const StudyId& id, const std::string& state,
                                    const Deed& deed) {
-  auto set = tx.query("update studies set state = ? where id = ?", {state, id});
+  auto set = tx.query("update studies set state = ? where id = ?", {state, id.text()});
   if (!set) return set.error();
-  return add_study_event(tx, id, deed, state);
+  return add_study_event(tx, id.text(), deed, state);
 }
 
-core::Result<void> set_participant_state(Writing& tx, const std::string& study_id,
-                                         const std::string& name, const std::string& state,
-                                         const Deed& deed) {
+core::Result<void> set_participant_state(Writing& tx, const StudyId& id, const std::string& name,
+                                         const std::string& state, const Deed& deed) {
   auto set = tx.query("update study_participants set state = ? where study_id = ? and name = ?",
-                      {state, study_id, name});
+                      {state, id.text(), name});
   if (!set) return set.error();
-  return add_study_event(tx, study_id, deed, state, nullptr, {}, name);
+  return add_study_event(tx, id.text(), deed, state, nullptr, {}, name);
 }
 
 core::Result<std::vector<StudySummary>> all_studies(Reading& tx) {
@@ -108,7 +113,7 @@ core::Result<std::vector<StudySummary>> all_studies(Reading& tx) {
       ", (select count(*) from study_participants p where p.study_id = s.id), "
       "(select count(*) from study_slots k where k.study_id = s.id and k.state = 'recorded'), "
       "(select count(*) from study_slots k where k.study_id = s.id and k.state <> 'invalid') "
-      "from studies s where not exists (select 1 from assignments a where a.study_id = s.id) "
+      "from studies s where s.kind = 'study' "
       "order by s.made_utc_us desc, s.id");
   if (!rows) return rows.error();
   std::vector<StudySummary> out;
@@ -117,49 +122,48 @@ core::Result<std::vector<StudySummary>> all_studies(Reading& tx) {
   return out;
 }
 
-core::Result<std::optional<Study>> study_of(Reading& tx, const std::string& id) {
-  auto rows = tx.query(std::string(kStudy) + " from studies s where s.id = ?", {id});
+core::Result<Study> study_of(Reading& tx, const SeriesId& id) {
+  auto rows = tx.query(std::string(kStudy) + " from studies s where s.id = ?", {id.text()});
   if (!rows) return rows.error();
-  if (rows->empty()) return std::optional<Study>();
-  return std::optional(study_from(rows->front()));
+  core::require(!rows->empty(), "who has the id of a series has looked it up");
+  return study_from(rows->front());
 }
 
-core::Result<std::vector<StudyScenario>> study_scenarios(Reading& tx, const std::string& study_id) {
+core::Result<std::vector<StudyScenario>> study_scenarios(Reading& tx, const SeriesId& id) {
   auto rows = tx.query(
       "select k.case_id, c.title from study_scenarios k join cases c on c.id = k.case_id "
       "where k.study_id = ? order by k.position",
-      {study_id});
+      {id.text()});
   if (!rows) return rows.error();
   std::vector<StudyScenario> out;
   for (const Row& row : *rows) out.push_back({row.text(0), row.text(1)});
   return out;
 }
 
-core::Result<std::vector<Participant>> study_participants(Reading& tx,
-                                                          const std::string& study_id) {
+core::Result<std::vector<Participant>> study_participants(Reading& tx, const SeriesId& id) {
   auto rows = tx.query(std::string(kParticipant) + "where study_id = ? order by position, name",
-                       {study_id});
+                       {id.text()});
   if (!rows) return rows.error();
   std::vector<Participant> out;
   for (const Row& row : *rows) out.push_back(participant_from(row));
   return out;
 }
 
-core::Result<std::optional<Participant>> participant_of(Reading& tx, const std::string& study_id,
+core::Result<std::optional<Participant>> participant_of(Reading& tx, const SeriesId& id,
                                                         const std::string& name) {
   auto rows =
-      tx.query(std::string(kParticipant) + "where study_id = ? and name = ?", {study_id, name});
+      tx.query(std::string(kParticipant) + "where study_id = ? and name = ?", {id.text(), name});
   if (!rows) return rows.error();
   if (rows->empty()) return std::optional<Participant>();
   return std::optional(participant_from(rows->front()));
 }
 
-core::Result<std::vector<StudyEvent>> study_events(Reading& tx, const std::string& study_id,
+core::Result<std::vector<StudyEvent>> study_events(Reading& tx, const StudyId& id,
                                                    std::int64_t limit) {
   auto rows = tx.query(
       "select at_utc_us, who, what, participant, slot_id, trial_id, reason from study_events "
       "where study_id = ? order by number desc limit ?",
-      {study_id, limit});
+      {id.text(), limit});
   if (!rows) return rows.error();
   std::vector<StudyEvent> out;
   for (const Row& row : *rows)

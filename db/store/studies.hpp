@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "db/store/store.hpp"
+#include "db/store/series.hpp"
 
 namespace store {
 
@@ -70,32 +70,32 @@ struct StudyEvent {
 };
 
 /// Errors: conflict when the id is taken; not_found is the caller's to exclude (cases must exist).
-core::Result<void> add_study(Writing& tx, const Study& study,
-                             const std::vector<std::string>& case_ids, const Deed& deed);
+core::Result<StudyId> add_study(Writing& tx, const Study& study,
+                                const std::vector<std::string>& case_ids, const Deed& deed);
 /// Enrols a participant, whose slots are these cases in this order. Errors: conflict when the name
 /// is taken.
-core::Result<void> add_participant(Writing& tx, const std::string& study_id,
-                                   const Participant& participant,
+core::Result<void> add_participant(Writing& tx, const SeriesId& id, const Participant& participant,
                                    const std::vector<std::string>& case_order, const Deed& deed);
-core::Result<void> set_study_state(Writing& tx, const std::string& id, const std::string& state,
+core::Result<void> set_study_state(Writing& tx, const StudyId& id, const std::string& state,
                                    const Deed& deed);
-core::Result<void> set_participant_state(Writing& tx, const std::string& study_id,
-                                         const std::string& name, const std::string& state,
-                                         const Deed& deed);
+core::Result<void> set_participant_state(Writing& tx, const StudyId& id, const std::string& name,
+                                         const std::string& state, const Deed& deed);
 
-/// Newest first; assignments (assignments.hpp), which are studies too, are not among them.
+/// Newest first, without assignments.
 core::Result<std::vector<StudySummary>> all_studies(Reading& tx);
-core::Result<std::optional<Study>> study_of(Reading& tx, const std::string& id);
+core::Result<Study> study_of(Reading& tx, const SeriesId& id);
 /// In the order they were named.
-core::Result<std::vector<StudyScenario>> study_scenarios(Reading& tx, const std::string& study_id);
+core::Result<std::vector<StudyScenario>> study_scenarios(Reading& tx, const SeriesId& id);
 /// As enrolled.
-core::Result<std::vector<Participant>> study_participants(Reading& tx, const std::string& study_id);
-core::Result<std::optional<Participant>> participant_of(Reading& tx, const std::string& study_id,
+core::Result<std::vector<Participant>> study_participants(Reading& tx, const SeriesId& id);
+core::Result<std::optional<Participant>> participant_of(Reading& tx, const SeriesId& id,
                                                         const std::string& name);
-core::Result<std::vector<StudyEvent>> study_events(Reading& tx, const std::string& study_id,
+core::Result<std::vector<StudyEvent>> study_events(Reading& tx, const StudyId& id,
                                                    std::int64_t limit);
 /// For the functions of this library that change something.
-core::Result<void> add_study_event(Writing& tx, const std::string& study_id, const Deed& deed,
+core::Result<void> add_series(Writing& tx, const Study& study, const std::string& kind,
+                              const std::vector<std::string>& case_ids, const Deed& deed);
+core::Result<void> add_study_event(Writing& tx, const std::string& series_id, const Deed& deed,
                                    const std::string& what, const Slot* slot = nullptr,
                                    const std::string& trial_id = {},
                                    const std::string& participant = {});

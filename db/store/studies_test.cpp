@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "db/store/accounts.hpp"
+#include "db/store/assignments.hpp"
 #include "db/store/cases.hpp"
 #include "db/store/study_slots.hpp"
 #include "db/store/trials.hpp"
@@ -43,8 +44,9 @@ class Studies : public test_support::BothDatabases {
                         .repeats = 2,
                         .seed = 3,
                         .on_invalid = on_invalid};
-      if (auto done = add_study(tx, study, {kA, kB}, kAda); !done) return done;
-      return add_participant(tx, "study", {.name = "P1"}, {kA, kB, kB}, kAda);
+      if (auto done = add_study(tx, study, {kA, kB}, kAda); !done) return done.error();
+      return add_participant(tx, find_study(tx, "study").value(), {.name = "P1"}, {kA, kB, kB},
+                             kAda);
     });
   }
   /// A trial that drills and one that feels it, then an ordinary one.
@@ -52,14 +54,16 @@ class Studies : public test_support::BothDatabases {
     write([&](Writing& tx) -> core::Result<void> {
       const Study study{
           .id = "study", .title = "Drill", .ordering = "fixed", .on_invalid = on_invalid};
-      if (auto done = add_study(tx, study, {kWhole, kB}, kAda); !done) return done;
-      return add_participant(tx, "study", {.name = "P1"}, {kWhole, kB}, kAda);
+      if (auto done = add_study(tx, study, {kWhole, kB}, kAda); !done) return done.error();
+      return add_participant(tx, find_study(tx, "study").value(), {.name = "P1"}, {kWhole, kB},
+                             kAda);
     });
   }
   core::Result<Taken> take(const std::string& station, std::int64_t ahead) {
     return store_.write([&](Writing& tx) -> core::Result<Taken> {
-      return take_slots(tx, **study_of(tx, "study"), **participant_of(tx, "study", "P1"), station,
-                        ahead, {"station-" + station, 8});
+      return take_slots(tx, find_study(tx, "study").value(),
+                        **participant_of(tx, find_study(tx, "study").value(), "P1"), station, ahead,
+                        {"station-" + station, 8});
     });
   }
   /// A whole trial for a slot, as the station's upload brings it.
@@ -80,7 +84,8 @@ class Studies : public test_support::BothDatabases {
   /// State of each slot in the participant's order and its case, a letter each.
   std::string states() {
     std::string out;
-    const auto found = store_.read([](Reading& tx) { return study_slots(tx, "study"); });
+    const auto found =
+        store_.read([](Reading& tx) { return study_slots(tx, find_study(tx, "study").value()); });
     for (const Slot& slot : found.value()) {
       out += slot.state.front();
       out += slot.case_id.front();
@@ -90,12 +95,14 @@ class Studies : public test_support::BothDatabases {
   }
   std::vector<std::string> happened() {
     std::vector<std::string> out;
-    const auto found = store_.read([](Reading& tx) { return study_events(tx, "study", 100); });
+    const auto found = store_.read(
+        [](Reading& tx) { return study_events(tx, find_study(tx, "study").value(), 100); });
     for (const auto& event : found.value()) out.insert(out.begin(), event.who + " " + event.what);
     return out;
   }
   std::string state_of(const std::string& trial_id) {
-    const auto found = store_.read([](Reading& tx) { return study_trials(tx, "study"); });
+    const auto found =
+        store_.read([](Reading& tx) { return study_trials(tx, find_study(tx, "study").value()); });
     for (const auto& trial : found.value())
       if (trial.trial_id == trial_id) return trial.state;
     return "absent";
@@ -128,7 +135,7 @@ TEST_P(Studies, GiveOneParticipantToOneStationAtATime) {
   EXPECT_EQ(refused.error().code, core::Errc::conflict);
   EXPECT_THAT(refused.error().what, HasSubstr("another station"));
   write([](Writing& tx) -> core::Result<void> {
-    auto freed = release_slots(tx, "study", "P1", kAda);
+    auto freed = release_slots(tx, find_study(tx, "study").value(), "P1", kAda);
     if (!freed) return freed.error();
     EXPECT_EQ(*freed, 2u);
     return {};
@@ -140,8 +147,8 @@ TEST_P(Studies, HandOutNothingWhilePaused) {
   make("at_end");
   const auto set = [&](bool whole, const char* state) {
     write([&](Writing& tx) {
-      return whole ? set_study_state(tx, "study", state, kAda)
-                   : set_participant_state(tx, "study", "P1", state, kAda);
+      return whole ? set_study_state(tx, find_study(tx, "study").value(), state, kAda)
+                   : set_participant_state(tx, find_study(tx, "study").value(), "P1", state, kAda);
     });
   };
   for (const bool whole : {true, false}) {
@@ -157,7 +164,9 @@ TEST_P(Studies, HandOutNothingWhilePaused) {
 TEST_P(Studies, KeepAnInvalidTrialAndRepeatItsSlotAtTheEnd) {
   make("at_end");
   bring("t1", take("s1", 1)->slots[0]);
-  write([](Writing& tx) { return set_trial_invalid(tx, "study", "t1", kAda); });
+  write([](Writing& tx) {
+    return set_trial_invalid(tx, find_study(tx, "study").value(), "t1", kAda);
+  });
   EXPECT_EQ(state_of("t1"), "invalid");
   EXPECT_EQ(states(), "ia wb wb wa ");
 }
@@ -165,13 +174,17 @@ TEST_P(Studies, KeepAnInvalidTrialAndRepeatItsSlotAtTheEnd) {
 TEST_P(Studies, RepeatAnInvalidTrialAtOnceOrNeverWhenTheStudySaysSo) {
   make("at_once");
   bring("t1", take("s1", 1)->slots[0]);
-  write([](Writing& tx) { return set_trial_invalid(tx, "study", "t1", kAda); });
+  write([](Writing& tx) {
+    return set_trial_invalid(tx, find_study(tx, "study").value(), "t1", kAda);
+  });
   EXPECT_EQ(states(), "ia wa wb wb ");
   write([](Writing& tx) {
     return tx.query("update studies set on_invalid = 'never'").value(), core::Result<void>();
   });
   bring("t2", take("s1", 1)->slots[0]);
-  write([](Writing& tx) { return set_trial_invalid(tx, "study", "t2", kAda); });
+  write([](Writing& tx) {
+    return set_trial_invalid(tx, find_study(tx, "study").value(), "t2", kAda);
+  });
   EXPECT_EQ(states(), "ia ia wb wb ");
 }
 
@@ -195,8 +208,14 @@ TEST_P(Studies, ASecondTrialForASlotIsKeptAndDoesNotCount) {
 TEST_P(Studies, OnlyATrialThatCountsOfThisStudyCanBeMarkedInvalid) {
   make("at_end");
   bring("t1", take("s1", 1)->slots[0]);
+  write([](Writing& tx) -> core::Result<void> {
+    auto other = add_study(tx, {.id = "other", .title = "", .ordering = "random"}, {kA}, kAda);
+    return other ? core::Result<void>() : other.error();
+  });
   const auto mark = [&](const char* study, const char* trial) {
-    return store_.write([&](Writing& tx) { return set_trial_invalid(tx, study, trial, kAda); });
+    return store_.write([&](Writing& tx) {
+      return set_trial_invalid(tx, find_study(tx, study).value(), trial, kAda);
+    });
   };
   EXPECT_EQ(mark("other", "t1").error().code, core::Errc::not_found);
   EXPECT_EQ(mark("study", "t9").error().code, core::Errc::not_found);
@@ -204,11 +223,41 @@ TEST_P(Studies, OnlyATrialThatCountsOfThisStudyCanBeMarkedInvalid) {
   EXPECT_EQ(mark("study", "t1").error().code, core::Errc::conflict);
 }
 
+/// The row's kind decides, whatever the id looks like.
+TEST_P(Studies, AStudyAndAnAssignmentAreNotFoundAsEachOther) {
+  write([](Writing& tx) -> core::Result<void> {
+    if (auto done = add_account(tx, {"fay", "fay", "faculty", "x"}, 0); !done) return done;
+    const Study like_an_assignment{.id = "a-study", .title = "", .ordering = "random"};
+    if (auto done = add_study(tx, like_an_assignment, {kA}, kAda); !done) return done.error();
+    const Assignment assignment{.study = {.id = "spine", .title = "", .ordering = "random"},
+                                .made_by_id = "fay"};
+    auto added = add_assignment(tx, assignment, {kA}, kAda);
+    return added ? core::Result<void>() : added.error();
+  });
+  write([](Writing& tx) -> core::Result<void> {
+    EXPECT_TRUE(find_study(tx, "a-study"));
+    EXPECT_TRUE(find_assignment(tx, "spine"));
+    EXPECT_EQ(find_study(tx, "spine").error().code, core::Errc::not_found);
+    EXPECT_EQ(find_assignment(tx, "a-study").error().code, core::Errc::not_found);
+    const auto studies = all_studies(tx);
+    EXPECT_EQ(studies->size(), 1u);
+    EXPECT_EQ(studies->front().study.id, "a-study");
+    return {};
+  });
+}
+static_assert(!std::is_convertible_v<AssignmentId, StudyId>);
+static_assert(!std::is_constructible_v<StudyId, AssignmentId>);
+static_assert(!std::is_constructible_v<StudyId, std::string>);
+
 TEST_P(Studies, NoteEveryChangeWithWhoDidIt) {
   make("at_end");
   bring("t1", take("s1", 1)->slots[0]);
-  write([](Writing& tx) { return set_trial_invalid(tx, "study", "t1", kAda); });
-  write([](Writing& tx) { return set_study_state(tx, "study", "paused", kAda); });
+  write([](Writing& tx) {
+    return set_trial_invalid(tx, find_study(tx, "study").value(), "t1", kAda);
+  });
+  write([](Writing& tx) {
+    return set_study_state(tx, find_study(tx, "study").value(), "paused", kAda);
+  });
   EXPECT_THAT(happened(),
               ElementsAre("ada made", "ada enrolled", "station-s1 taken", "station-s1 recorded",
                           "ada invalid", "ada repeated", "ada paused"));
@@ -262,7 +311,9 @@ TEST_P(Studies, APalpationCutShortOrInvalidIsDoneAgainOnTheChannelThatIsThere) {
   EXPECT_EQ(drilling(), "t1");
   bring("t3", slot, true, feeling("t1"));
   EXPECT_EQ(states(), "rw wb ");
-  write([](Writing& tx) { return set_trial_invalid(tx, "study", "t3", kAda); });
+  write([](Writing& tx) {
+    return set_trial_invalid(tx, find_study(tx, "study").value(), "t3", kAda);
+  });
   EXPECT_EQ(states(), "tw wb ");
   EXPECT_EQ(drilling(), "t1");
 }
@@ -280,7 +331,9 @@ TEST_P(Studies, WithADrillingThatDoesNotCountGoesThePalpationOfItsChannel) {
   const Slot slot = take("s1", 1)->slots[0];
   bring("t1", slot, true, kBurr);
   bring("t2", slot, true, feeling("t1"));
-  write([](Writing& tx) { return set_trial_invalid(tx, "study", "t1", kAda); });
+  write([](Writing& tx) {
+    return set_trial_invalid(tx, find_study(tx, "study").value(), "t1", kAda);
+  });
   EXPECT_EQ(state_of("t1") + " " + state_of("t2"), "invalid invalid");
   EXPECT_EQ(states(), "iw wb ww ");
 }
@@ -289,7 +342,7 @@ TEST_P(Studies, AFreedChannelThatWasNotFeltIsDrilledAnewWherever) {
   make_drilling("at_end");
   bring("t1", take("s1", 1)->slots[0], true, kBurr);
   write([](Writing& tx) -> core::Result<void> {
-    auto freed = release_slots(tx, "study", "P1", kAda);
+    auto freed = release_slots(tx, find_study(tx, "study").value(), "P1", kAda);
     return freed ? core::Result<void>() : freed.error();
   });
   EXPECT_EQ(state_of("t1"), "invalid");

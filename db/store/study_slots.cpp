@@ -78,21 +78,27 @@ core::Result<std::pair<std::int64_t, std::int64_t>> place_of_repetition(
   return std::pair(rows->front().integer(0), rows->front().integer(1));
 }
 
+core::Result<std::string> on_invalid_of(Reading& tx, const std::string& series_id) {
+  auto rows = tx.query("select on_invalid from studies where id = ?", {series_id});
+  if (!rows) return rows.error();
+  core::require(!rows->empty(), "a slot has its study");
+  return rows->front().text(0);
+}
+
 /// The slot did not yield a trial that counts: it is closed, and repeated as the study says. That
 /// of a palpation whose channel is there stays open for the next one.
 core::Result<void> close_and_repeat(Writing& tx, const Slot& slot, const Tool& tool,
                                     const Deed& deed) {
-  auto study = study_of(tx, slot.study_id);
-  if (!study) return study.error();
-  core::require(study->has_value(), "a slot has its study");
-  const bool never = (*study)->on_invalid == "never";
+  auto on_invalid = on_invalid_of(tx, slot.study_id);
+  if (!on_invalid) return on_invalid.error();
+  const bool never = *on_invalid == "never";
   if (slot.planned && !tool.burr && !never)
     return set_slot(tx, slot.id, slot.station_id ? "taken" : "waiting", slot.station_id,
                     deed.at_utc_us);
   if (auto closed = set_slot(tx, slot.id, "invalid", slot.station_id, deed.at_utc_us); !closed)
     return closed;
   if (never) return {};
-  auto place = place_of_repetition(tx, slot, (*study)->on_invalid);
+  auto place = place_of_repetition(tx, slot, *on_invalid);
   if (!place) return place.error();
   Slot again = slot;
   again.id = core::hex(core::random_bytes(32));
@@ -160,23 +166,25 @@ core::Result<std::uint64_t> planned_of(Reading& tx, const std::string& study_id,
 
 }  // namespace
 
-core::Result<std::vector<Slot>> study_slots(Reading& tx, const std::string& study_id) {
+core::Result<std::vector<Slot>> study_slots(Reading& tx, const SeriesId& id) {
   return slots_where(tx,
                      "join study_participants p on p.study_id = k.study_id and "
                      "p.name = k.participant where k.study_id = ? "
                      "order by p.position, k.position, k.attempt",
-                     {study_id});
+                     {id.text()});
 }
 
-core::Result<Taken> take_slots(Writing& tx, const Study& study, const Participant& participant,
+core::Result<Taken> take_slots(Writing& tx, const SeriesId& id, const Participant& participant,
                                const std::string& station_id, std::int64_t ahead,
                                const Deed& deed) {
-  if (study.state == "paused") return paused("study " + study.id);
+  auto study = study_of(tx, id);
+  if (!study) return study.error();
+  if (study->state == "paused") return paused("study " + id.text());
   if (participant.state == "paused") return paused("participant " + participant.name);
   auto open = slots_where(tx,
                           "where k.study_id = ? and k.participant = ? and "
                           "k.state in ('waiting', 'taken') order by k.position, k.attempt",
-                          {study.id, participant.name});
+                          {id.text(), participant.name});
   if (!open) return open.error();
   for (const Slot& slot : *open)
     if (slot.station_id && *slot.station_id != station_id)
@@ -184,7 +192,7 @@ core::Result<Taken> take_slots(Writing& tx, const Study& study, const Participan
                          fmt::format("{} is at another station: end there, or have the trials that "
                                      "it holds released",
                                      participant.name)};
-  auto planned = planned_of(tx, study.id, participant.name);
+  auto planned = planned_of(tx, id.text(), participant.name);
   if (!planned) return planned.error();
   Taken out{.slots = {}, .unfinished = open->size(), .planned = *planned};
   open->resize(std::min<std::size_t>(open->size(), static_cast<std::size_t>(ahead)));
@@ -194,10 +202,10 @@ core::Result<Taken> take_slots(Writing& tx, const Study& study, const Participan
   return out;
 }
 
-core::Result<std::uint64_t> release_slots(Writing& tx, const std::string& study_id,
+core::Result<std::uint64_t> release_slots(Writing& tx, const SeriesId& id,
                                           const std::string& participant, const Deed& deed) {
   auto held = slots_where(tx, "where k.study_id = ? and k.participant = ? and k.state = 'taken'",
-                          {study_id, participant});
+                          {id.text(), participant});
   if (!held) return held.error();
   Deed unfelt = deed;
   unfelt.reason = "freed before its channel was felt";
@@ -205,7 +213,7 @@ core::Result<std::uint64_t> release_slots(Writing& tx, const std::string& study_
     if (auto dropped = discount(tx, slot, unfelt); !dropped) return dropped.error();
     if (auto set = set_slot(tx, slot.id, "waiting", std::nullopt, deed.at_utc_us); !set)
       return set.error();
-    if (auto noted = add_study_event(tx, study_id, deed, "released", &slot); !noted)
+    if (auto noted = add_study_event(tx, id.text(), deed, "released", &slot); !noted)
       return noted.error();
   }
   return held->size();
@@ -272,13 +280,13 @@ core::Result<void> record_for_slot(Writing& tx, const std::string& trial_id, boo
   return set_slot(tx, slot.id, "recorded", slot.station_id, deed.at_utc_us);
 }
 
-core::Result<void> set_trial_invalid(Writing& tx, const std::string& study_id,
-                                     const std::string& trial_id, const Deed& deed) {
+core::Result<void> set_trial_invalid(Writing& tx, const SeriesId& id, const std::string& trial_id,
+                                     const Deed& deed) {
   auto slot = slot_of_trial(tx, trial_id);
   if (!slot) return slot.error();
-  if (!*slot || (*slot)->study_id != study_id)
+  if (!*slot || (*slot)->study_id != id.text())
     return core::Error{core::Errc::not_found,
-                       fmt::format("study {} has no trial {}", study_id, trial_id.substr(0, 32))};
+                       fmt::format("study {} has no trial {}", id.text(), trial_id.substr(0, 32))};
   auto trial = tx.query("select state, tool from study_trials where trial_id = ?", {trial_id});
   if (!trial) return trial.error();
   if (trial->front().text(0) != "counts")
@@ -286,21 +294,21 @@ core::Result<void> set_trial_invalid(Writing& tx, const std::string& study_id,
                        fmt::format("trial {} does not count as it is", trial_id)};
   const Tool tool{.burr = trial->front().text(1) == "burr"};
   if (auto set = set_trial(tx, trial_id, "invalid", deed); !set) return set;
-  if (auto noted = add_study_event(tx, study_id, deed, "invalid", &**slot, trial_id); !noted)
+  if (auto noted = add_study_event(tx, id.text(), deed, "invalid", &**slot, trial_id); !noted)
     return noted;
   if (tool.burr)
     if (auto with_it = discount(tx, **slot, deed); !with_it) return with_it;
   return close_and_repeat(tx, **slot, tool, deed);
 }
 
-core::Result<std::vector<StudyTrial>> study_trials(Reading& tx, const std::string& study_id) {
+core::Result<std::vector<StudyTrial>> study_trials(Reading& tx, const SeriesId& id) {
   auto rows = tx.query(
       "select x.trial_id, x.slot_id, x.state, x.reason, x.changed_utc_us, s.name, t.duration_s, "
       "t.samples, t.started_utc_us, t.sha256, t.correct, t.state, x.tool from study_trials x "
       "join study_slots k on k.id = x.slot_id join uploads u on u.trial_id = x.trial_id "
       "join stations s on s.id = u.station_id left join trials t on t.id = x.trial_id "
       "where k.study_id = ? order by x.changed_utc_us, x.trial_id",
-      {study_id});
+      {id.text()});
   if (!rows) return rows.error();
   std::vector<StudyTrial> out;
   for (const Row& row : *rows) {

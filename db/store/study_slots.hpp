@@ -22,7 +22,7 @@ struct StudyTrial {
 };
 
 /// By participant as enrolled, then in their order.
-core::Result<std::vector<Slot>> study_slots(Reading& tx, const std::string& study_id);
+core::Result<std::vector<Slot>> study_slots(Reading& tx, const SeriesId& id);
 
 /// What a station has of a participant's trials.
 struct Taken {
@@ -33,11 +33,11 @@ struct Taken {
 
 /// The next slots of a participant, at most `ahead`, given to this station: repeating it gives the
 /// same. Errors: conflict when another station has some, or when study or participant is paused.
-core::Result<Taken> take_slots(Writing& tx, const Study& study, const Participant& participant,
+core::Result<Taken> take_slots(Writing& tx, const SeriesId& id, const Participant& participant,
                                const std::string& station_id, std::int64_t ahead, const Deed& deed);
 /// What stations had of a participant waits again: the number of slots. A channel that was drilled
 /// for one and not felt yet is on that station alone: its drilling no longer counts.
-core::Result<std::uint64_t> release_slots(Writing& tx, const std::string& study_id,
+core::Result<std::uint64_t> release_slots(Writing& tx, const SeriesId& id,
                                           const std::string& participant, const Deed& deed);
 
 core::Result<std::optional<Slot>> slot_of(Reading& tx, const std::string& slot_id);
@@ -69,9 +69,9 @@ core::Result<void> record_for_slot(Writing& tx, const std::string& trial_id, boo
 /// A person says that a trial does not count; the reason is the deed's. It stays, and its slot is
 /// repeated as above; with a drilling goes the palpation of its channel. Errors: not_found (no
 /// trial of this study), conflict (it does not count as it is).
-core::Result<void> set_trial_invalid(Writing& tx, const std::string& study_id,
-                                     const std::string& trial_id, const Deed& deed);
+core::Result<void> set_trial_invalid(Writing& tx, const SeriesId& id, const std::string& trial_id,
+                                     const Deed& deed);
 
-core::Result<std::vector<StudyTrial>> study_trials(Reading& tx, const std::string& study_id);
+core::Result<std::vector<StudyTrial>> study_trials(Reading& tx, const SeriesId& id);
 
 }  // namespace store

@@ -1,5 +1,7 @@
 #include "db/store/trials.hpp"
 
+#include "db/store/blinding.hpp"
+
 namespace store {
 namespace {
 
@@ -80,8 +82,8 @@ core::Result<std::vector<TrialSummary>> trials_before(Reading& tx, std::int64_t 
       "exists (select 1 from study_trials st join study_slots sl on sl.id = st.slot_id join "
       "assignment_people p on p.study_id = sl.study_id and p.participant = sl.participant ";
   auto rows = tx.query(
-      std::string(kSummaryColumns) + kFrom + "where t.started_utc_us < ? and (? = '' or " +
-          kAssigned +
+      std::string(kSummaryColumns) + kFrom + "where t.started_utc_us < ? and not " + blinded_sql() +
+          " and (? = '' or " + kAssigned +
           "join cohort_people c on c.account_id = p.account_id and c.part = 'trainee' join "
           "cohort_people f on f.cohort_id = c.cohort_id and f.part = 'faculty' where st.trial_id = "
           "t.id and f.account_id = ?)) and (? = '' or " +

@@ -46,7 +46,8 @@ struct Whose {
   std::string taught_by = {};  ///< those of people whom this account teaches
   std::string seen_by = {};    ///< this account's own, as far as their results are released
 };
-/// Newest first by start, of those started before `before_utc_us`; at most `limit`.
+/// Newest first by start, of those started before `before_utc_us`; at most `limit`. Without those
+/// that are blind (blinding.hpp).
 core::Result<std::vector<TrialSummary>> trials_before(Reading& tx, std::int64_t before_utc_us,
                                                       std::int64_t limit, const Whose& whose = {});
 

@@ -25,7 +25,13 @@ core::Result<std::optional<Upload>> upload_of(Reading& tx, const std::string& tr
 }
 
 core::Result<std::vector<Upload>> open_uploads(Reading& tx) {
-  auto rows = tx.query(std::string(kUpload) + "where state = 'receiving' order by trial_id");
+  return open_uploads_since(tx, INT64_MIN);
+}
+
+core::Result<std::vector<Upload>> open_uploads_since(Reading& tx, std::int64_t utc_us) {
+  auto rows = tx.query(
+      std::string(kUpload) + "where state = 'receiving' and announced_utc_us > ? order by trial_id",
+      {utc_us});
   if (!rows) return rows.error();
   std::vector<Upload> out;
   for (const Row& row : *rows) out.push_back(upload_from(row));

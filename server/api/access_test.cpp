@@ -5,6 +5,7 @@
 #include <regex>
 #include <set>
 
+#include "db/store/invitations.hpp"
 #include "server/api/people_test_support.hpp"
 
 namespace api {
@@ -45,21 +46,29 @@ std::string object_of(const RouteInfo& route, const std::string& trainee) {
       return "c-" + trainee;
     case Object::assignment:
       return "a-" + trainee;
+    case Object::invitation:
+      return trainee == "tom" ? "c-inv" : "c-tia";
     case Object::none:
       return kCase;
+    default:
+      return "";  // the object of no route
   }
-  return "";
 }
 
 class Access : public PeopleTest {
  protected:
+  Access() {
+    EXPECT_TRUE(store_.write([](store::Writing& tx) {
+      return store::add_cohort(tx, {"c-inv", "into which tom and fay are invited", 0, "ann"});
+    }));
+  }
   std::string address(const RouteInfo& route, const std::string& trainee) {
     std::string out = route.path;
     std::string object = object_of(route, trainee);
     if (route.object == Object::trial) object = trial_of(trainee);
     const std::map<std::string, std::string> values{{"{" + route.object_parameter + "}", object},
                                                     {"{trial_id}", std::string(32, 'a')},
-                                                    {"{account_id}", "nobody"},
+                                                    {"{account_id}", trainee},
                                                     {"{trial}", "none"},
                                                     {"{name}", "volume.tvol"}};
     for (const auto& [key, value] : values)
@@ -73,11 +82,20 @@ class Access : public PeopleTest {
     const auto headers = role == Role::station ? station("token-1") : as(someone(role));
     return ask(request(route.method, address(route, trainee), headers));
   }
-  /// What a call before changed of accounts.
+  /// What a call before changed of accounts, cohorts and invitations.
   void mend() {
-    const auto mended = store_.write([](store::Writing& tx) {
-      return tx.query(
-          "update accounts set must_change = 0, state = 'active' where must_change = 1");
+    const auto mended = store_.write([](store::Writing& tx) -> core::Result<void> {
+      if (auto done = tx.query(
+              "update accounts set must_change = 0, state = 'active' where must_change = 1");
+          !done)
+        return done.error();
+      for (const char* who : {"tom", "fay"})
+        if (auto done = store::invite(tx, {"c-inv", who}); !done) return done;
+      for (const char* who : {"tom", "tia"})
+        if (auto done = store::put_into_cohort(tx, std::string("c-") + who, who, "trainee", 0);
+            !done)
+          return done;
+      return {};
     });
     EXPECT_TRUE(mended);
   }
@@ -163,6 +181,9 @@ TEST_F(Access, ATraineeAndAStationReachTheseRoutesAlone) {
                                                          "assignment of own",
                                                          "trainee of own",
                                                          "trialComments of own",
+                                                         "ownInvitations of own",
+                                                         "acceptInvitation of own",
+                                                         "declineInvitation of own",
                                                          "trialReferences of own",
                                                          "referenceWay of own",
                                                          "ownConsent",
@@ -232,8 +253,9 @@ TEST_F(Access, GrantsOfSomeObjectsNameTheObject) {
         return p.name == route.object_parameter;
       })) << route.id;
     }
-  EXPECT_EQ(lists, (std::set<std::string>{"trials", "cohorts", "addCohort", "assignments",
-                                          "addAssignment", "trainees", "trainee"}));
+  EXPECT_EQ(lists,
+            (std::set<std::string>{"trials", "cohorts", "addCohort", "assignments", "addAssignment",
+                                   "trainees", "trainee", "ownInvitations"}));
 }
 
 TEST_F(Access, ListsHoldWhatOneMaySee) {
@@ -253,7 +275,7 @@ TEST_F(Access, ListsHoldWhatOneMaySee) {
   EXPECT_EQ(ids(get("tia", "/cohorts"), "cohorts", "id"), Ids{"c-tia"});
   EXPECT_EQ(ids(get("fay", "/assignments"), "assignments", "id"), Ids{"a-tom"});
   EXPECT_EQ(ids(get("tia", "/assignments"), "assignments", "id"), Ids{"a-tia"});
-  EXPECT_EQ(ids(get("dora", "/cohorts"), "cohorts", "id"), (Ids{"c-tia", "c-tom"}));
+  EXPECT_EQ(ids(get("dora", "/cohorts"), "cohorts", "id"), (Ids{"c-inv", "c-tia", "c-tom"}));
 }
 
 TEST_F(Access, ATraineeSeesNothingOfATrialWhoseResultsAreHeld) {

@@ -6,8 +6,9 @@
 
 namespace api {
 
-/// Who, what, of which object, with which words. Of a JSON body of up to 4 KiB every field but
-/// those that hold a secret (password, pin, code, token …); of any other body its size and SHA-256.
+/// Who, what, of which object, with which words. Of a JSON body of up to 16 KiB the fields that are
+/// known never to hold a secret (acts.cpp has the list) and the names of the others; of any other
+/// body its size and SHA-256.
 store::Act act_of(const RouteInfo& route, const Call& call,
                   const std::map<std::string, std::string>& segments);
 

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include "core/file.hpp"
 #include "db/store/cases.hpp"
+#include "db/store/coverage.hpp"
 #include "db/store/store_test_support.hpp"
 #include "server/api/authentication.hpp"
 #include "server/api/backend.hpp"
@@ -29,6 +31,20 @@ class ApiTest : public ::testing::Test {
       return store::add_case(tx, {kCase, "L3", "made", 1, 0}, {}, 0);
     });
     EXPECT_TRUE(furnished);
+    EXPECT_TRUE(store::begin_coverage(store_));
+  }
+  /// Whatever a test had the server do: the audit trail has it.
+  void TearDown() override {
+    std::vector<std::string> findings;
+    const auto compared = store_.read([&](store::Reading& tx) -> core::Result<void> {
+      store::TrailDigests digests;
+      auto end = store::verify_chain(tx, store_.audit_key(),
+                                     [&](const store::AuditRow& row) { digests.add(row); });
+      if (!end) return end.error();
+      return digests.compare(tx, store_.audit_key(), findings);
+    });
+    EXPECT_TRUE(compared) << compared.error().what;
+    for (const std::string& line : findings) ADD_FAILURE() << line;
   }
 
   /// Hashed once: 64 MiB each time would make the tests slow.
@@ -63,8 +79,10 @@ class ApiTest : public ::testing::Test {
     return {{"authorization", "Bearer " + token}};
   }
   static std::string text(const http::Response& response) {
-    const auto* held = std::get_if<std::string>(&response.body);
-    return held ? *held : std::string();
+    if (const auto* held = std::get_if<std::string>(&response.body)) return *held;
+    const auto& slice = std::get<http::FileSlice>(response.body);
+    const auto bytes = core::read_file(slice.path).value();
+    return std::string(core::text_of(bytes)).substr(slice.offset, slice.size);
   }
   static core::Json json(const http::Response& response) {
     return core::Json::parse(text(response), nullptr, false);

@@ -24,18 +24,18 @@ struct AssignmentPlan {
   static core::Result<AssignmentPlan> from_json(const core::Json& json);
 };
 
-/// Makes it, by the caller: of a cohort that they lead, for people that they teach (an
-/// administrator: for any). Returns its id. Errors: not_found (a case, a cohort, a person, a study
-/// that the caller has none of).
+/// Makes it, by the caller, who may name its cohort, people, cases and protocol (access.hpp).
+/// Returns its id. Errors: not_found (a case, a cohort, a person, a study that there is not).
 core::Result<std::string> make_assignment(const Call& call, const AssignmentPlan& plan);
 
 /// Puts an account into it, with an order of its own. Errors: conflict when it is in it already;
 /// bad_input for one that is no trainee's.
-core::Result<void> assign_to(store::Writing& tx, const std::string& id,
+core::Result<void> assign_to(store::Writing& tx, const store::AssignmentId& id,
                              const store::Account& account, const store::Deed& deed);
-/// A trainee who joins a cohort later gets what it was assigned.
-core::Result<void> assign_what_the_cohort_has(store::Writing& tx, const std::string& cohort_id,
-                                              const store::Account& account,
-                                              const store::Deed& deed);
+/// Puts an account into a cohort: faculty leads it; a trainee learns in it, and gets what it was
+/// assigned. An invitation is settled by it. Errors: not_found (the cohort), bad_input for an
+/// account of another role.
+core::Result<void> join_cohort(store::Writing& tx, const std::string& cohort_id,
+                               const store::Account& account, const store::Deed& deed);
 
 }  // namespace api

@@ -165,15 +165,26 @@ TEST_F(Assignments, TheSameSeedGivesTheSameOrders) {
   EXPECT_NE(order(8), first);
 }
 
-TEST_F(Assignments, AWrongPinLocksTheBadgeAfterFive) {
+TEST_F(Assignments, FiveWrongPinsSlowTheBadgeDownUntilItHasANewPin) {
   for (int i = 0; i < 5; ++i)
-    EXPECT_EQ(
-        work("sign-in", {{"badge", "4711"}, {"pin", "0000"}}, i % 2 ? "token-1" : "token-2").status,
-        401);
+    EXPECT_EQ(work("sign-in", {{"badge", "4711"}, {"pin", "0000"}}).status, 401);
   EXPECT_EQ(work("sign-in", {{"badge", "4711"}, {"pin", "2468"}}).status, 429);
   EXPECT_EQ(post("fay", "/accounts/tom/badge", {{"badge", "4711"}, {"pin", "1357"}}).status, 200);
   EXPECT_EQ(work("sign-in", {{"badge", "4711"}, {"pin", "1357"}}).status, 200) << "a new PIN opens";
   EXPECT_EQ(work("sign-in", {{"badge", "9999"}, {"pin", "2468"}}).status, 401);
+}
+
+TEST_F(Assignments, ATicketEndsWhenTheBadgeOrThePinIsTakenAwayOrChanged) {
+  assigned(two_cases());
+  for (const core::Json& badge :
+       {core::Json{{"badge", "4711"}, {"pin", "1357"}},
+        core::Json{{"badge", "4712"}, {"pin", "2468"}}, core::Json::object()}) {
+    EXPECT_EQ(post("fay", "/accounts/tom/badge", {{"badge", "4711"}, {"pin", "2468"}}).status, 200);
+    const std::string in = ticket("token-1");
+    EXPECT_EQ(work("next", {{"ticket", in}}).status, 200);
+    EXPECT_EQ(post("fay", "/accounts/tom/badge", badge).status, 200);
+    EXPECT_EQ(work("next", {{"ticket", in}}).status, 403) << badge;
+  }
 }
 
 TEST_F(Assignments, ATicketIsOfOneStationAndNoCookie) {
@@ -226,7 +237,7 @@ TEST_F(Assignments, ATrialThatDoesNotCountIsRepeated) {
 
 TEST_F(Assignments, WhoJoinsTheCohortLaterGetsThemToo) {
   const std::string id = assigned(two_cases());
-  EXPECT_EQ(post("fay", "/cohorts/c-tom/people", {{"name", "tia"}}).status, 200);
+  EXPECT_EQ(post("dora", "/cohorts/c-tom/people", {{"name", "tia"}}).status, 200);
   EXPECT_EQ(json(get("fay", "/assignments/" + id))["trainees"].size(), 2u);
 }
 
@@ -271,13 +282,14 @@ TEST_F(Assignments, AreNotAmongTheStudies) {
 TEST_F(Assignments, RubbishIsRefusedByField) {
   for (const core::Json& bad :
        {two_cases({{"ordering", "backwards"}}), two_cases({{"repeats", 0}}),
-        two_cases({{"release", "never"}}), two_cases({{"protocol", "x"}}),
-        two_cases({{"cases", core::Json::array()}}),
+        two_cases({{"release", "never"}}), two_cases({{"cases", core::Json::array()}}),
         two_cases({{"cases", {{{"case", kCase}}, {{"case", kCase}}}}}),
         two_cases({{"cases", {{{"name", "x"}}}}}), two_cases({{"people", "tom"}}),
         two_cases({{"extra", 1}}), core::Json{{"title", "x"}}})
     EXPECT_EQ(post("fay", "/assignments", bad).status, 400) << bad;
   EXPECT_EQ(post("fay", "/assignments", two_cases({{"cases", {{{"case", "none"}}}}})).status, 404);
+  EXPECT_EQ(post("ann", "/assignments", two_cases({{"protocol", "x"}})).status, 400)
+      << "cases and a protocol";
 }
 
 }  // namespace

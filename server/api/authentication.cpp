@@ -4,14 +4,15 @@
 
 #include "db/store/audit.hpp"
 #include "server/api/backend.hpp"
+#include "server/api/throttle.hpp"
 #include "server/api/totp.hpp"
+#include "server/live/hub.hpp"
 
 namespace api {
 namespace {
 
 constexpr std::int64_t kTouch_us = 60ll * 1'000'000;
 constexpr const char* kCodeNeeded = "a one-time code is asked for";
-constexpr const char* kThrottled = "too many failures to sign in: wait a quarter of an hour";
 
 bool matches(const std::string& hash, const std::string& password) {
   return crypto_pwhash_str_verify(hash.c_str(), password.data(), password.size()) == 0;
@@ -59,29 +60,18 @@ core::Result<Caller> by_cookie(Backend& backend, std::string_view token, Presenc
 
 }  // namespace
 
-core::Result<void> check_throttle(Backend& backend, const std::string& name,
-                                  const std::string& peer, std::uint64_t most_from_peer,
-                                  std::uint64_t most_for_name) {
-  const std::int64_t since = backend.now_utc_us() - kThrottleWindow_us;
-  auto failures = backend.store.read(
-      [&](store::Reading& tx) { return store::login_failures(tx, name, peer, since); });
-  if (!failures) return failures.error();
-  if (failures->from_peer >= most_from_peer || failures->for_name >= most_for_name)
-    return core::Error{core::Errc::unavailable, kThrottled};
-  return {};
-}
-
-core::Result<void> note_failure(Backend& backend, const std::string& name,
-                                const std::string& peer) {
-  const std::int64_t now = backend.now_utc_us();
-  return backend.store.write([&](store::Writing& tx) {
-    return store::add_login_failure(tx, name, peer, now, now - kThrottleWindow_us);
-  });
-}
-
 bool password_matches(const std::string& hash, const std::string& password) {
   const std::string& nobodys = nobodys_hash();  // made now, so that no later check takes longer
   return matches(hash.empty() ? nobodys : hash, password) && !hash.empty();
+}
+
+core::Result<void> check_unchanged(store::Reading& tx, const store::Account& checked) {
+  auto now = store::account_of(tx, checked.id);
+  if (!now) return now.error();
+  if (*now && (*now)->password_hash == checked.password_hash && (*now)->badge == checked.badge &&
+      (*now)->pin_hash == checked.pin_hash && (*now)->state == checked.state)
+    return {};
+  return core::Error{core::Errc::unauthorised, "the account was changed just now: try again"};
 }
 
 core::Result<void> use_code(Backend& backend, store::Account& account, const std::string& code) {
@@ -113,10 +103,6 @@ std::string new_token() { return core::hex(core::random_bytes(32)); }
 
 std::string token_hash(std::string_view token) { return core::sha256(core::bytes_of(token)); }
 
-bool is_throttled(const core::Error& error) {
-  return error.code == core::Errc::unavailable && error.what == kThrottled;
-}
-
 namespace {
 
 /// The account that these credentials open, its one-time code used up.
@@ -125,6 +111,7 @@ core::Result<store::Account> account_opened(Backend& backend, const Credentials&
       backend.store.read([&](store::Reading& tx) { return store::account_named(tx, given.name); });
   if (!account) return account.error();
   const bool right = password_matches(*account ? (*account)->password_hash : "", given.password);
+  if (!*account) store::Acting::without_detail();
   if (!*account || !right || (*account)->state != "active")
     return core::Error{core::Errc::unauthorised, "name or password is wrong"};
   if (!(*account)->totp_confirmed) return std::move(**account);
@@ -136,20 +123,20 @@ core::Result<store::Account> account_opened(Backend& backend, const Credentials&
 }  // namespace
 
 core::Result<SignedIn> sign_in(Backend& backend, const Credentials& given,
-                               const std::string& peer) {
-  if (auto open = check_throttle(backend, given.name, peer); !open) return open.error();
+                               const store::Attempt& attempt) {
   auto account = account_opened(backend, given);
   if (!account) {
     if (account.error().code != core::Errc::unauthorised || needs_code(account.error()))
       return account.error();
-    if (auto noted = note_failure(backend, given.name, peer); !noted) return noted.error();
+    if (auto noted = note_failure(backend, attempt); !noted) return noted.error();
     return account.error();
   }
   store::Acting::is_by(account->name, account->role);
   const std::int64_t now = backend.now_utc_us();
   const std::string token = new_token();
   auto made = backend.store.write([&](store::Writing& tx) -> core::Result<void> {
-    if (auto done = store::clear_login_failures(tx, given.name, peer); !done) return done;
+    if (auto same = check_unchanged(tx, *account); !same) return same;
+    if (auto done = note_success(tx, account->id, attempt, now); !done) return done;
     if (auto done = store::remove_old_sessions(tx, now - kSessionIdle_us, now - kSessionAge_us);
         !done)
       return done;
@@ -159,6 +146,10 @@ core::Result<SignedIn> sign_in(Backend& backend, const Credentials& given,
   });
   if (!made) return made.error();
   return SignedIn{std::move(*account), token};
+}
+
+void close_conversations(Backend& backend, const std::string& account_id) {
+  if (backend.live) backend.live->dismiss_viewers(account_id);
 }
 
 core::Result<Caller> authenticate(Backend& backend, const http::RequestHead& head,

@@ -1,7 +1,8 @@
-/// Who is it? Passwords, tokens, sessions and the throttle.
+/// Who is it? Passwords, tokens and sessions.
 #pragma once
 
 #include "db/store/accounts.hpp"
+#include "db/store/sign_ins.hpp"
 #include "server/api/route.hpp"
 #include "server/http/message.hpp"
 
@@ -10,9 +11,6 @@ namespace api {
 inline constexpr const char* kSessionCookie = "tractus_session";
 inline constexpr std::int64_t kSessionIdle_us = 2ll * 3600 * 1'000'000;
 inline constexpr std::int64_t kSessionAge_us = 24ll * 3600 * 1'000'000;
-inline constexpr std::int64_t kThrottleWindow_us = 15ll * 60 * 1'000'000;
-inline constexpr std::uint64_t kThrottleFailures = 10;       ///< of one name from one address
-inline constexpr std::uint64_t kThrottleNameFailures = 100;  ///< of one name from anywhere
 inline constexpr std::size_t kMaxName = 128, kMaxPassword = 1024;
 
 /// Argon2id at libsodium's interactive limits (64 MiB), as text with its salt. Errors: unavailable
@@ -33,24 +31,22 @@ struct SignedIn {
   std::string token;  ///< for the cookie; nobody else keeps it
 };
 /// Checks name and password in the same time whether the name exists or not, then the one-time code
-/// where the account has them; counts failures, makes a session. Errors: unauthorised (see
-/// needs_code); Throttled (see is_throttled) after too many failures.
-core::Result<SignedIn> sign_in(Backend& backend, const Credentials& given, const std::string& peer);
+/// where the account has them; notes failure or success for the throttle, makes a session. Ask
+/// too_early first. Errors: unauthorised (see needs_code).
+core::Result<SignedIn> sign_in(Backend& backend, const Credentials& given,
+                               const store::Attempt& attempt);
 /// Name and password were right, and a one-time code is asked for.
 bool needs_code(const core::Error& error);
-/// Notes a failure of `name` from `peer` for the throttle, in a transaction of its own.
-core::Result<void> note_failure(Backend& backend, const std::string& name, const std::string& peer);
-/// Errors: Throttled when `name` failed too often.
-core::Result<void> check_throttle(Backend& backend, const std::string& name,
-                                  const std::string& peer,
-                                  std::uint64_t most_from_peer = kThrottleFailures,
-                                  std::uint64_t most_for_name = kThrottleNameFailures);
 /// Takes as long for an unknown person as for a known one. @param hash  empty: of nobody
 bool password_matches(const std::string& hash, const std::string& password);
+/// Is the account's password, badge, PIN and state what it was when they were checked? A change
+/// meanwhile ends sessions, and this one is not to begin after it. Errors: unauthorised.
+core::Result<void> check_unchanged(store::Reading& tx, const store::Account& checked);
 /// Uses a one-time code up. Errors: unauthorised.
 core::Result<void> use_code(Backend& backend, store::Account& account, const std::string& code);
-/// The throttle's refusal, which HTTP calls 429.
-bool is_throttled(const core::Error& error);
+/// Closes the conversations (live views) of an account whose sessions were ended: those of this
+/// process at once, others when they are next looked over (http::Conversation::kRecheck).
+void close_conversations(Backend& backend, const std::string& account_id);
 
 /// Does a request show that somebody is there? What a program asks by itself does not.
 enum class Presence { shown, not_shown };

@@ -58,14 +58,12 @@ TEST_F(SigningIn, ASessionEndsWhenItIsIdleAndWhenItIsOld) {
   EXPECT_EQ(who_am_i(busy), 401);
 }
 
-TEST_F(SigningIn, IsThrottledAfterTenFailuresForAQuarterOfAnHour) {
+TEST_F(SigningIn, IsThrottledAfterTenFailuresFromOneAddress) {
   for (int i = 0; i < 10; ++i) EXPECT_EQ(sign_in_as("ada", "guess").status, 401) << i;
   const auto throttled = sign_in_as("ada", kPassword);
   EXPECT_EQ(throttled.status, 429);
   EXPECT_EQ(json(throttled)["code"], "too_many");
   EXPECT_EQ(sign_in_as("eve", "guess").status, 401) << "others are not";
-  now_ += 15 * kMinute_us + 1;
-  EXPECT_EQ(sign_in_as("ada", kPassword).status, 200);
 }
 
 TEST_F(SigningIn, RubbishIsRefusedByField) {

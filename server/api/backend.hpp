@@ -11,6 +11,7 @@
 #include "server/api/secrets.hpp"
 #include "server/api/telemetry.hpp"
 #include "server/api/trial_views.hpp"
+#include "server/http/scratch_space.hpp"
 
 namespace live {
 class Hub;
@@ -42,8 +43,10 @@ struct Backend {
   live::Hub* live = nullptr;                       ///< none: stations have no lines
   Backups* backups = nullptr;                      ///< none: this process makes none
   TakeVolume take_volume = {};                     ///< in a process of its own; none: in this one
-  std::filesystem::path scratch = {};              ///< for large bodies; empty: with the uploads
-  const Oidc* oidc = nullptr;                      ///< who else may vouch for people; none: nobody
+  /// For large bodies and answers.
+  std::shared_ptr<http::ScratchSpace> scratch =
+      std::make_shared<http::ScratchSpace>(std::filesystem::temp_directory_path());
+  const Oidc* oidc = nullptr;  ///< who else may vouch for people; none: nobody
   /// Which pseudonym is whose (export.hpp): kept apart from all else. None: no export.
   std::optional<std::array<std::byte, 32>> pseudonym_key = {};
   RefusalLimit refusals{};

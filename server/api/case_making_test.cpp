@@ -126,7 +126,8 @@ TEST_F(CaseMaking, ABoneLeftWholeIsACaseToBeDrilled) {
   ASSERT_TRUE(facts) << facts.error().what;
   EXPECT_TRUE(facts->definition.planned);
   EXPECT_FALSE(facts->truth->breached);
-  for (const core::Json& one : json(get("fay", "/cases"))["cases"])
+  const core::Json listed = json(get("fay", "/cases"));
+  for (const core::Json& one : listed["cases"])
     EXPECT_EQ(one["planned"], one["id"] == id) << one;
   wish["channel"] = "square";
   EXPECT_EQ(post("fay", "/cases", wish).status, 400);

@@ -1,14 +1,21 @@
 #include "server/api/cohort_questions.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
 #include "assessment/method.hpp"
 #include "assessment/plan.hpp"
 #include "assessment/snapshot.hpp"
 #include "core/bytes.hpp"
 #include "core/clock.hpp"
+#include "core/file.hpp"
 #include "db/store/cases.hpp"
 #include "db/store/jobs.hpp"
+#include "db/store/released.hpp"
 #include "db/store/studies.hpp"
-#include "server/jobs/cohort_table.hpp"
+#include "server/api/export.hpp"
 
 namespace api {
 namespace {
@@ -18,7 +25,7 @@ using core::Error;
 using core::Json;
 using core::Result;
 
-constexpr std::int64_t kMostTrials = 100'000;
+constexpr std::uint64_t kMostData_bytes = 512ull << 20;
 constexpr std::size_t kMaxFormula_bytes = 4096;
 
 Error wrong(std::string what) { return {Errc::bad_input, std::move(what)}; }
@@ -60,7 +67,7 @@ Result<void> take_snapshot(Backend& backend, const std::string& sha256, store::A
     if (before.snapshot == sha256) {
       run.snapshot = before.snapshot;
       run.description = before.description;
-      return {};
+      return check_still_released(backend, run.study, sha256);
     }
   return wrong("body: snapshot: no analysis of this plan is of " + sha256.substr(0, 64));
 }
@@ -85,7 +92,7 @@ Result<void> of_method(Backend& backend, core::Fields& fields, store::AnalysisRu
   if (!plan) return plan.error();
   if (!run.study.empty()) {
     const auto known =
-        backend.store.read([&](store::Reading& tx) { return store::study_of(tx, run.study); });
+        backend.store.read([&](store::Reading& tx) { return store::series_exists(tx, run.study); });
     if (!known) return known.error();
     if (!*known) return wrong("body: study: there is no study " + run.study.substr(0, 32));
   }
@@ -108,9 +115,10 @@ Result<store::AnalysisPlan> locked_plan(Backend& backend, const Json& asked,
   const Json* seen = fields.member("data_seen", false);
   if (seen && !seen->is_boolean()) fields.wrong("data_seen", "should be true or false");
   if (auto done = fields.done(); !done) return done.error();
-  const auto table = jobs::cohort_table(backend.store, out.study, kMostTrials);
-  if (!table) return table.error();
-  out.trials_then = static_cast<std::int64_t>(table->rows);
+  const auto scored =
+      backend.store.read([&](store::Reading& tx) { return store::scored_trials(tx, out.study); });
+  if (!scored) return wrong("body: " + scored.error().what);
+  out.trials_then = *scored;
   out.data_seen = (seen && seen->get<bool>()) || out.trials_then > 0;
   out.id = core::new_id();
   out.made_utc_us = backend.now_utc_us();
@@ -146,6 +154,28 @@ Result<store::AnalysisRun> queued_analysis(Backend& backend, const Json& asked,
   });
   if (!queued) return queued.error();
   return run;
+}
+
+Result<void> check_still_released(Backend& backend, const std::string& study,
+                                  const std::string& data) {
+  const auto released = released_trials(backend, study, store::Tier::metrics);
+  if (!released) return released.error();
+  std::set<std::string, std::less<>> ids;
+  for (const auto& trial : released->all()) ids.insert(trial.id);
+  const auto bytes = core::read_file(backend.objects.path_of(data), kMostData_bytes);
+  if (!bytes) return bytes.error();
+  std::string_view rest(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+  std::size_t gone = 0;
+  for (bool header = true; !rest.empty(); header = false) {
+    const std::string_view row = rest.substr(0, rest.find('\n'));
+    if (!header && !ids.contains(row.substr(0, row.find(',')))) ++gone;
+    rest.remove_prefix(std::min(rest.size(), row.size() + 1));
+  }
+  if (gone == 0) return {};
+  return Error{Errc::forbidden,
+               fmt::format("{} trials of these data may not be had any more: analyse today's data "
+                           "instead",
+                           gone)};
 }
 
 Result<http::Response> dictionary_response(Backend& backend, const store::AnalysisRun& run) {

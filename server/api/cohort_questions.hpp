@@ -19,6 +19,11 @@ core::Result<store::AnalysisPlan> locked_plan(Backend& backend, const core::Json
 core::Result<store::AnalysisRun> queued_analysis(Backend& backend, const core::Json& asked,
                                                  const std::string& who);
 
+/// May all of these data (an object: CSV, a row a trial) be had still? Errors: forbidden when a
+/// trial of them may not: consent was withdrawn, or they were frozen before it was asked.
+core::Result<void> check_still_released(Backend& backend, const std::string& study,
+                                        const std::string& data);
+
 /// The dictionary of a finished run's data.
 core::Result<http::Response> dictionary_response(Backend& backend, const store::AnalysisRun& run);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "db/store/analyses.hpp"
+#include "db/store/pseudonyms.hpp"
 #include "db/store/study_slots.hpp"
 #include "db/store/trials.hpp"
 #include "db/store/uploads.hpp"
@@ -22,28 +23,61 @@ using ::testing::Not;
 class Cohort : public ApiTest {
  protected:
   Cohort() {
+    backend_.pseudonym_key.emplace();
+    backend_.pseudonym_key->fill(std::byte{7});
     const auto made = store_.write([&](store::Writing& tx) -> core::Result<void> {
-      const store::Study study{.id = "spine", .title = "", .ordering = "random"};
-      if (auto done = store::add_study(tx, study, {kCase}, deed_); !done) return done;
+      const store::Study study{
+          .id = "spine", .title = "", .ordering = "random", .on_invalid = "never"};
+      if (auto done = store::add_study(tx, study, {kCase}, deed_); !done) return done.error();
       const std::vector<std::string> cases(4, kCase);
       for (const auto& person :
            {store::Participant{.name = "P1", .level = "resident", .experience_years = 2.5},
             store::Participant{.name = "P2", .level = "senior", .simulated = true}})
-        if (auto done = store::add_participant(tx, "spine", person, cases, deed_); !done)
+        if (auto done = store::add_participant(tx, store::find_study(tx, "spine").value(), person,
+                                               cases, deed_);
+            !done)
           return done;
       return {};
     });
     EXPECT_TRUE(made);
-    const auto slots =
-        store_.read([](store::Reading& tx) { return store::study_slots(tx, "spine"); }).value();
+    const auto slots = store_
+                           .read([](store::Reading& tx) {
+                             return store::study_slots(tx, store::find_study(tx, "spine").value());
+                           })
+                           .value();
     for (int i = 0; i < 8; ++i) add(i, slots[std::size_t(i)].id, values_[std::size_t(i)]);
     add(8, "", 7.5);
     const auto judged = store_.write([&](store::Writing& tx) {
-      return store::set_trial_invalid(tx, "spine", id_of(3), {"ada", 3, "phone rang"});
+      return store::set_trial_invalid(tx, store::find_study(tx, "spine").value(), id_of(3),
+                                      {"ada", 3, "phone rang"});
     });
     EXPECT_TRUE(judged) << judged.error().what;
   }
 
+  store::Pseudonyms names() const { return store::Pseudonyms(*backend_.pseudonym_key); }
+  std::string trial_name(int i) const { return names().trial(id_of(i)); }
+  std::string person_name(const std::string& participant) const {
+    return names().person("participant:spine/" + participant);
+  }
+  /// Of a participant of the study, by a form.
+  void agree(const std::string& participant, const std::string& tier) {
+    const auto noted = ask(request(
+        "POST", "/api/v1/consents", own_,
+        core::Json{
+            {"study", "spine"}, {"participant", participant}, {"tier", tier}, {"basis", "folder 3"}}
+            .dump()));
+    EXPECT_EQ(noted.status, 204) << text(noted);
+  }
+  /// The participant has one more trial to do.
+  void reopen(const std::string& participant) {
+    const auto opened = store_.write([&](store::Writing& tx) {
+      return tx.query(
+          "update study_slots set state = 'waiting' where participant = ? and position "
+          "= 3",
+          {participant});
+    });
+    EXPECT_TRUE(opened);
+  }
   static std::string id_of(int i) { return std::string(31, '0') + std::to_string(i); }
 
   /// One trial; without scores when there is no value.
@@ -53,7 +87,7 @@ class Cohort : public ApiTest {
     trial.summary.id = id;
     trial.summary.case_id = kCase;
     trial.summary.operator_name = "=HYPERLINK(\"x\"), \nEve";
-    trial.summary.simulated = i >= 4 && i < 8;
+    trial.summary.simulated = i >= 4;
     trial.summary.started_utc_us = 10 + i;
     trial.station_id = "s1";
     trial.sha256 = sha;
@@ -88,7 +122,8 @@ class Cohort : public ApiTest {
     EXPECT_EQ(queued.status, 201) << text(queued);
     const std::string id = json(queued).value("id", "");
     EXPECT_EQ(json(get("analyses/" + id))["state"], "queued");
-    const auto done = jobs::analyse(store_, objects_, id, [] { return false; });
+    const auto done =
+        jobs::analyse(store_, objects_, backend_.pseudonym_key, id, [] { return false; });
     if (!done) {
       const auto failed = store_.write(
           [&](store::Writing& tx) { return store::fail_analysis(tx, id, done.error().what, 2); });
@@ -191,7 +226,8 @@ TEST_F(Cohort, ARunOnTheSameSnapshotGivesTheSameDigitsWhateverCameSince) {
   ASSERT_EQ(first["state"], "done") << first.dump();
   EXPECT_EQ(first["repeats"], nullptr);
   const auto judged = store_.write([&](store::Writing& tx) {
-    return store::set_trial_invalid(tx, "spine", id_of(0), {"ada", 4, "wrong probe"});
+    return store::set_trial_invalid(tx, store::find_study(tx, "spine").value(), id_of(0),
+                                    {"ada", 4, "wrong probe"});
   });
   ASSERT_TRUE(judged);
   const auto again = analysed({{"plan", id}, {"snapshot", first["snapshot"]}});
@@ -228,10 +264,12 @@ TEST_F(Cohort, TheTableIsOneRowPerTrialThatCounts) {
   const std::string head =
       "trial,participant,study,number,level,experience_years,case,rig,simulated,correct,score_N\n";
   const std::string csv = table("?study=spine");
-  EXPECT_TRUE(csv.starts_with(head + id_of(0) + ",P1,spine,1,resident,2.5,L3,palpation,0,1,1\n" +
-                              id_of(1) + ",P1,spine,2,resident,2.5,L3,palpation,0,0,2\n"))
+  const std::string p1 = "," + person_name("P1"), p2 = "," + person_name("P2");
+  EXPECT_TRUE(csv.starts_with(head + trial_name(0) + p1 +
+                              ",spine,1,resident,2.5,L3,palpation,0,1,1\n" + trial_name(1) + p1 +
+                              ",spine,2,resident,2.5,L3,palpation,0,0,2\n"))
       << csv;
-  EXPECT_THAT(csv, HasSubstr(id_of(4) + ",P2,spine,1,senior,,L3,palpation,1,1,4\n"));
+  EXPECT_THAT(csv, HasSubstr(trial_name(4) + p2 + ",spine,1,senior,,L3,palpation,1,1,4\n"));
   EXPECT_EQ(std::ranges::count(csv, '\n'), 7);
   EXPECT_EQ(
       analysed(
@@ -243,8 +281,97 @@ TEST_F(Cohort, ANameWithCommasAndLineBreaksStaysOneCell) {
   const std::string csv = table();
   EXPECT_EQ(std::ranges::count(csv, '\n'), 8);
   EXPECT_THAT(csv, Not(HasSubstr("Eve")));
-  EXPECT_THAT(csv, ContainsRegex(id_of(8) + ",P[0-9a-f]+,,,,,L3,palpation,0,1,7.5\n"));
+  EXPECT_THAT(csv, ContainsRegex(trial_name(8) + ",P[0-9a-f]+,,,,,L3,palpation,1,1,7.5\n"));
   EXPECT_EQ(analysed({{"method", "describe"}, {"formula", "score_N ~ rig"}})["data"]["rows"], 7);
+}
+
+TEST_F(Cohort, TheTableNamesNobodyAndNoTrial) {
+  const std::string csv = table();
+  for (int i = 0; i < 9; ++i) EXPECT_THAT(csv, Not(HasSubstr(id_of(i))));
+  EXPECT_THAT(csv, Not(HasSubstr(",P1,")));
+}
+
+/// Simulated P2 needs to agree to nothing; P1 gave scores by taking part, until a form says less.
+TEST_F(Cohort, WhoDoesNotAgreeIsInNoTableAndNoAnalysis) {
+  const core::Json question{{"method", "describe"}, {"formula", "score_N ~ level"}};
+  EXPECT_EQ(std::ranges::count(table("?study=spine"), '\n'), 7);
+  agree("P1", "summary");
+  const std::string csv = table("?study=spine");
+  EXPECT_EQ(std::ranges::count(csv, '\n'), 4);
+  EXPECT_THAT(csv, Not(HasSubstr(person_name("P1"))));
+  const auto answer = analysed(question);
+  EXPECT_EQ(answer["data"]["rows"], 4) << answer.dump();
+  EXPECT_EQ(answer["data"]["left_out"]["without_consent"], 4);
+}
+
+TEST_F(Cohort, WhoseTrialsAreNotDoneIsInNoTableAndNoAnalysis) {
+  reopen("P2");
+  EXPECT_THAT(table(), Not(HasSubstr(person_name("P2"))));
+  const auto answer = analysed({{"method", "describe"}, {"formula", "score_N ~ rig"}});
+  EXPECT_EQ(answer["data"]["rows"], 4) << answer.dump();
+  EXPECT_EQ(answer["data"]["left_out"]["blind"], 4);
+  EXPECT_EQ(get("trainees/P2").status, 404);
+  EXPECT_EQ(json(get("trainees/P1"))["trials"], 3);
+}
+
+TEST_F(Cohort, DataFrozenBeforeAWithdrawalAreHandedOutNoMore) {
+  const std::string id = json(post("plans", {{"plan", plan()}, {"study", "spine"}}))["id"];
+  const auto first = analysed({{"plan", id}});
+  ASSERT_EQ(first["state"], "done") << first.dump();
+  const std::string data = "analyses/" + first["id"].get<std::string>() + "/data.csv";
+  EXPECT_EQ(get(data).status, 200);
+  agree("P1", "none");
+  EXPECT_EQ(get(data).status, 403);
+  const auto again = post("analyses", {{"plan", id}, {"snapshot", first["snapshot"]}});
+  EXPECT_EQ(again.status, 403) << text(again);
+  EXPECT_EQ(get("analyses/" + first["id"].get<std::string>() + "/result.json").status, 200);
+}
+
+TEST_F(Cohort, WithoutTheKeyOfPseudonymsThereIsNoTableAndNoAnalysis) {
+  backend_.pseudonym_key.reset();
+  EXPECT_EQ(get("table").status, 503);
+  EXPECT_EQ(analysed({{"method", "describe"}, {"formula", "score_N ~ rig"}})["state"], "failed");
+}
+
+/// Of a study whose participant is not through, nobody sees a trial, whoever they are.
+TEST_F(Cohort, ABlindTrialIsShownToNobody) {
+  const auto trial = [&](const std::string& tail) {
+    return ask(request("GET", "/api/v1/trials/" + id_of(4) + tail, own_)).status;
+  };
+  const auto listed = [&] {
+    return text(ask(request("GET", "/api/v1/trials", own_))).find(id_of(4)) != std::string::npos;
+  };
+  EXPECT_TRUE(listed());
+  EXPECT_EQ(trial("/comments"), 200);
+  reopen("P2");
+  EXPECT_FALSE(listed());
+  for (const char* tail : {"", "/signals", "/path", "/force-depth", "/comments", "/references"})
+    EXPECT_EQ(trial(tail), 403) << tail;
+  const auto study = json(ask(request("GET", "/api/v1/studies/spine", own_)));
+  for (const auto& person : study["participants"]) {
+    const bool through = person["name"] == "P1";
+    EXPECT_EQ(person["judged"], through ? 3 : 0);
+    if (through) continue;
+    for (const auto& slot : person["slots"])
+      for (const auto& one : slot["trials"]) EXPECT_EQ(one["correct"], nullptr);
+  }
+  EXPECT_EQ(study["seed"], nullptr);
+}
+
+/// An example that was offered before its participant had to go on is not shown meanwhile.
+TEST_F(Cohort, ABlindTrialIsNobodysExample) {
+  const auto offered = [&] {
+    return json(ask(request("GET", "/api/v1/trials/" + id_of(0) + "/references", own_)))["trials"];
+  };
+  const auto offer = ask(request("POST", "/api/v1/trials/" + id_of(4) + "/reference", own_,
+                                 core::Json{{"reference", true}}.dump()));
+  ASSERT_EQ(offer.status, 200) << text(offer);
+  EXPECT_EQ(offered().size(), 1u);
+  reopen("P2");
+  EXPECT_EQ(offered().size(), 0u);
+  EXPECT_EQ(
+      ask(request("GET", "/api/v1/trials/" + id_of(0) + "/references/" + id_of(4), own_)).status,
+      403);
 }
 
 TEST_F(Cohort, RefusesWhatIsWrongAndNamesIt) {
@@ -269,7 +396,7 @@ TEST_F(Cohort, RefusesWhatIsWrongAndNamesIt) {
   EXPECT_THAT(refused({{"plan", "none"}}), HasSubstr("none"));
   EXPECT_THAT(refused({{"plan", "none"}, {"method", "anova"}}), HasSubstr("method"));
   EXPECT_EQ(woken_, 0);
-  EXPECT_EQ(get("table?study=knee").status, 400);
+  EXPECT_EQ(get("table?study=knee").status, 404);
   EXPECT_EQ(get("analyses/none").status, 404);
   EXPECT_EQ(get("plans/none").status, 404);
   // A column that is not there is known when the table is: the run fails and says so.

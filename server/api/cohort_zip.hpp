@@ -7,7 +7,11 @@ namespace api {
 
 /// A zip of summary.csv, trials.csv, scores.csv, dictionary.csv, cohort.json and, from the tier
 /// `reduced` on, samples/TRIAL.npy: of each trial as much as was agreed to, and no more than
-/// `tier`. Errors: those of trials_to_export and of reading; too_large (the zip is over 256 MiB).
-core::Result<std::string> cohort_zip(Backend& backend, const std::string& study, store::Tier tier);
+/// `tier`. It takes room in the scratch space as `client`.
+/// Errors: those of released_trials and of reading; unavailable; too_large (over 256 MiB).
+core::Result<std::shared_ptr<http::ScratchFile>> cohort_zip(Backend& backend,
+                                                            const std::string& client,
+                                                            const std::string& study,
+                                                            store::Tier tier);
 
 }  // namespace api

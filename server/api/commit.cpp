@@ -92,7 +92,7 @@ core::Result<void> check_identity(const store::Upload& upload, const Promised& p
 
 /// With what it was done, as the header says.
 store::Tool tool_of(const store::TrialRecord& trial) {
-  const core::Json header = core::Json::parse(trial.header);  // written by record_of
+  const core::Json header = core::stored_json(trial.header);
   const core::Json extra = header.value("extra", core::Json::object());
   const auto drilled = extra.find("drilled");
   const bool felt = drilled != extra.end() && drilled->is_string();

@@ -1,17 +1,11 @@
 #include "server/api/export.hpp"
 
 #include <fmt/format.h>
-#include <sodium.h>
 
 #include <array>
-#include <bit>
-#include <cmath>
-#include <cstring>
 
 #include "db/store/accounts.hpp"
 #include "metrics/metric.hpp"
-#include "server/api/uploads.hpp"
-#include "trial/trial_file.hpp"
 
 namespace api {
 namespace {
@@ -20,9 +14,6 @@ using core::Errc;
 using core::Error;
 using core::Result;
 
-constexpr std::int64_t kMaxTrials = 1'000'000;
-constexpr std::size_t kMaxArray_bytes = 512u << 20;
-constexpr double kDay_us = 86'400e6;
 
 /// One cell. What begins like a formula is kept from being one (OWASP, CSV injection).
 std::string cell(std::string text) {
@@ -106,157 +97,75 @@ std::string header_of(std::string_view table) {
   return out + "\r\n";
 }
 
-void append_row(std::vector<double>& out, const trial::Sample& s) {
-  out.insert(out.end(), {s.t_s, s.p_VH_m[0], s.p_VH_m[1], s.p_VH_m[2], s.q_VH[0], s.q_VH[1],
-                         s.q_VH[2], s.q_VH[3]});
-  for (const float force : s.force_N) out.push_back(double(force));
-  for (const float torque : s.torque_Nm) out.push_back(double(torque));
-  out.push_back(s.flags);
-}
-
-void append_row(std::vector<double>& out, const trial::ProbingSample& s) {
-  out.insert(out.end(), {s.t_s, s.x_m, s.theta_rad, double(s.fz_N), double(s.tz_Nm),
-                         double(s.speed_m_s), double(s.mode), double(s.flags)});
-}
-
-/// The .npy format 1.0: magic, version, length of the header, a Python literal, padded to 64 bytes.
-std::string npy(const std::vector<double>& values, std::size_t columns) {
-  static_assert(std::endian::native == std::endian::little);
-  std::string header =
-      fmt::format("{{'descr': '<f8', 'fortran_order': False, 'shape': ({}, {}), }}",
-                  values.size() / columns, columns);
-  header.append(63 - (10 + header.size()) % 64, ' ');
-  header += '\n';
-  std::string out("\x93NUMPY\x01\x00", 8);
-  out += static_cast<char>(header.size() & 255u);
-  out += static_cast<char>(header.size() >> 8);
-  out += header;
-  const std::size_t before = out.size();
-  out.resize(before + values.size() * sizeof(double));
-  if (!values.empty())
-    std::memcpy(out.data() + before, values.data(), values.size() * sizeof(double));
-  return out;
-}
-
 }  // namespace
 
-Result<Pseudonyms> Pseudonyms::of(const Backend& backend) {
-  if (backend.pseudonym_key) return Pseudonyms(*backend.pseudonym_key);
-  return Error{Errc::unavailable,
-               "this server has not got the key of its pseudonyms: nothing can be exported"};
-}
-
-std::string Pseudonyms::hashed(char first, const std::string& text) const {
-  std::array<std::byte, 16> hash{};
-  const std::string message = first + text;
-  crypto_generichash(reinterpret_cast<unsigned char*>(hash.data()), hash.size(),
-                     reinterpret_cast<const unsigned char*>(message.data()), message.size(),
-                     reinterpret_cast<const unsigned char*>(key_.data()), key_.size());
-  return first + core::hex(hash).substr(0, 16);
-}
-
-std::string Pseudonyms::trial(const std::string& id) const { return hashed('T', id); }
-std::string Pseudonyms::person(const std::string& id) const { return hashed('P', id); }
-
-Result<std::vector<ExportedTrial>> trials_to_export(Backend& backend, const std::string& study,
-                                                    store::Tier least) {
-  const auto names = Pseudonyms::of(backend);
-  if (!names) return names.error();
-  using Trials = std::vector<ExportedTrial>;
-  return backend.store.read([&](store::Reading& tx) -> Result<Trials> {
-    if (!study.empty()) {
-      auto known = store::study_of(tx, study);
-      if (!known) return known.error();
-      if (!*known) return Error{Errc::not_found, "study: there is no study " + study.substr(0, 32)};
-    }
-    auto trials = store::cohort_trials(tx, study, kMaxTrials);
-    if (!trials) return trials.error();
-    const auto book = store::ConsentBook::read(tx);
-    if (!book) return book.error();
-    Trials out;
-    for (store::CohortTrial& trial : *trials) {
-      const store::Tier tier = book->tier_of(trial);
-      if (tier < least || tier == store::Tier::none) continue;
-      trial.participant = names->person(book->person_of(trial));
-      out.push_back({std::move(trial), tier});
-    }
-    return out;
+Result<store::ReleasedTrials> released_trials(Backend& backend, const std::string& study,
+                                              store::Tier least) {
+  return backend.store.read([&](store::Reading& tx) {
+    return store::ReleasedTrials::read(tx, backend.pseudonym_key, {.study = study, .least = least});
   });
 }
 
-std::string trials_csv(const std::vector<ExportedTrial>& trials, const Pseudonyms& names) {
-  std::map<std::string, std::int64_t> first;
-  for (const auto& [trial, _] : trials)
-    first.try_emplace(trial.participant, trial.summary.started_utc_us);
+std::string trials_csv(const store::ReleasedTrials& trials) {
   std::string out = header_of("trials");
-  for (const auto& [trial, _] : trials) {
-    const auto& s = trial.summary;
-    const bool in_study = !trial.study.empty();
-    const double days = double(s.started_utc_us - first.at(trial.participant)) / kDay_us;
-    out += fmt::format("{},{},{},{},{},{},{},{},{},{:.4f},{},{},{},{},{}\r\n", names.trial(s.id),
-                       cell(trial.participant), cell(trial.study),
-                       in_study ? std::to_string(trial.number) : "", cell(trial.level),
-                       cell(trial.experience_years), cell(s.case_title), cell(trial.rig),
-                       s.simulated ? 1 : 0, days, s.duration_s, s.samples, trial.complete ? 1 : 0,
-                       in_study ? (trial.place == "counts" ? "1" : "0") : "",
-                       s.correct ? (*s.correct ? "1" : "0") : "");
+  for (const store::ReleasedTrial& t : trials.all()) {
+    const bool in_study = !t.study.empty();
+    out += fmt::format("{},{},{},{},{},{},{},{},{},{:.4f},{},{},{},{},{}\r\n", t.id,
+                       cell(t.participant), cell(t.study), in_study ? std::to_string(t.number) : "",
+                       cell(t.level), cell(t.experience_years), cell(t.case_title), cell(t.rig),
+                       t.simulated ? 1 : 0, t.days, t.duration_s, t.samples, t.complete ? 1 : 0,
+                       in_study ? (t.place == "counts" ? "1" : "0") : "",
+                       t.correct ? (*t.correct ? "1" : "0") : "");
   }
   return out;
 }
 
-std::string summary_csv(const std::vector<ExportedTrial>& trials) {
+std::string summary_csv(const store::ReleasedTrials& trials) {
   struct Sum {
-    const store::CohortTrial* first;
+    const store::ReleasedTrial* first;
     int trials = 0, answered = 0, correct = 0;
   };
   std::map<std::array<std::string, 3>, Sum> sums;
-  for (const auto& [trial, _] : trials) {
-    Sum& sum =
-        sums.try_emplace({trial.participant, trial.study, trial.rig}, Sum{&trial}).first->second;
+  for (const store::ReleasedTrial& t : trials.all()) {
+    Sum& sum = sums.try_emplace({t.participant, t.study, t.rig}, Sum{&t}).first->second;
     ++sum.trials;
-    sum.answered += trial.summary.correct.has_value();
-    sum.correct += trial.summary.correct.value_or(false);
+    sum.answered += t.correct.has_value();
+    sum.correct += t.correct.value_or(false);
   }
   std::string out = header_of("summary");
   for (const auto& [key, sum] : sums)
     out += fmt::format("{},{},{},{},{},{},{},{},{}\r\n", cell(key[0]), cell(key[1]), cell(key[2]),
                        cell(sum.first->level), cell(sum.first->experience_years),
-                       sum.first->summary.simulated ? 1 : 0, sum.trials, sum.answered, sum.correct);
+                       sum.first->simulated ? 1 : 0, sum.trials, sum.answered, sum.correct);
   return out;
 }
 
-std::string scores_csv(const std::vector<ExportedTrial>& trials, const Pseudonyms& names) {
+std::string scores_csv(const store::ReleasedTrials& trials) {
   std::map<std::string, std::string> units;
   for (const auto& metric : metrics::all()) units[metric.id] = metric.unit;
   std::string out = "trial,score,value,unit\r\n";
-  for (const auto& [trial, _] : trials)
-    for (const auto& [id, value] : trial.metrics)
-      out += fmt::format("{},{},{},{}\r\n", names.trial(trial.summary.id), cell(id), value,
-                         cell(units[id]));
+  for (const store::ReleasedTrial& t : trials.all())
+    for (const auto& [id, value] : t.metrics)
+      out += fmt::format("{},{},{},{}\r\n", t.id, cell(id), value, cell(units[id]));
   return out;
 }
 
 Result<std::string> key_csv(Backend& backend) {
-  const auto names = Pseudonyms::of(backend);
-  if (!names) return names.error();
   using Lines = std::map<std::string, std::string>;
   auto lines = backend.store.read([&](store::Reading& tx) -> Result<Lines> {
-    auto trials = store::cohort_trials(tx, "", kMaxTrials);
-    if (!trials) return trials.error();
-    const auto book = store::ConsentBook::read(tx);
-    if (!book) return book.error();
+    auto people = store::who_is_who(tx, backend.pseudonym_key);
+    if (!people) return people.error();
     std::map<std::string, std::string> accounts;
     auto all = store::all_accounts(tx);
     if (!all) return all.error();
     for (const auto& account : *all) accounts[account.id] = account.name;
     Lines out;
-    for (const auto& trial : *trials) {
-      const std::string person = book->person_of(trial);
+    for (const auto& [pseudonym, person] : *people) {
       const auto colon = person.find(':');
       const std::string kind = person.substr(0, colon), id = person.substr(colon + 1);
       const auto account = accounts.find(id);
       const bool known = kind == "account" && account != accounts.end();
-      out[names->person(person)] = kind + "," + cell(known ? account->second : id);
+      out[pseudonym] = kind + "," + cell(known ? account->second : id);
     }
     return out;
   });
@@ -280,30 +189,6 @@ std::string dictionary_csv() {
   add(kPalpation);
   add(kProbing);
   return out;
-}
-
-Result<std::string> samples_npy(const std::filesystem::path& trial_file, double rate_Hz) {
-  std::vector<double> values;
-  std::size_t columns = kPalpation.size();
-  double next_s = 0.0;
-  bool full = false;
-  const auto take = [&](const auto& sample) {
-    if (rate_Hz > 0.0 && sample.t_s < next_s) return;
-    // The next row is the first sample of the next interval: no drift over a long trial.
-    if (rate_Hz > 0.0) next_s = (std::floor(sample.t_s * rate_Hz + 1e-9) + 1.0) / rate_Hz;
-    full = full || values.size() * sizeof(double) >= kMaxArray_bytes;
-    if (!full) append_row(values, sample);
-  };
-  auto read = trial::scan_trial(trial_file,
-                                [&](const trial::Block& block) {
-                                  if (!block.probing.empty()) columns = kProbing.size();
-                                  block.each(take);
-                                },
-                                {.max_samples = kMaxTrialSamples, .max_bytes = kMaxTrial_bytes});
-  if (!read) return read.error();
-  if (full)
-    return Error{Errc::too_large, "the array is over 512 MiB: ask for fewer samples a second"};
-  return npy(values, columns);
 }
 
 }  // namespace api

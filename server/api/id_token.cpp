@@ -183,8 +183,8 @@ Result<Identity> checked(const Json& claims, const Expected& expected) {
 Result<Json> part(std::string_view text) {
   const auto bytes = base64url_decoded(text);
   if (!bytes) return refused("is none");
-  Json out = Json::parse(*bytes, nullptr, false);
-  if (!out.is_object()) return refused("is none");
+  auto out = core::parse_json(*bytes, "ID token");
+  if (!out || !out->is_object()) return refused("is none");
   return out;
 }
 

@@ -1,16 +1,12 @@
 /// id_tokens: the standard's own examples, and every way in which one may not hold.
 #include "server/api/id_token.hpp"
 
-#include <gtest/gtest.h>
-#include <openssl/bn.h>
-#include <openssl/core_names.h>
-#include <openssl/ecdsa.h>
-#include <openssl/evp.h>
-#include <openssl/rsa.h>
+#include "server/api/id_token_test_support.hpp"
 
 namespace api {
 namespace {
 using core::Json;
+using testing::Signer;
 
 constexpr std::int64_t kNow_s = 1'000'000;
 
@@ -42,44 +38,6 @@ const Json kStandardKeys = {
        {"crv", "P-256"},
        {"x", "f83OJ3D2xF1Bg8vub9tLe1gHMzV76e8Tus9uPHvRVEU"},
        {"y", "x_FEzRu9m36HLN_tue659LNpXW6pCyStikYjKIWI5a0"}}}}};
-
-/// An RSA key of the test's own.
-class Signer {
- public:
-  Signer() : key_(EVP_RSA_gen(2048)) {}
-  ~Signer() { EVP_PKEY_free(key_); }
-  Signer(const Signer&) = delete;
-  Signer& operator=(const Signer&) = delete;
-
-  Json jwk(const std::string& kid = "k1") const {
-    return {{"kty", "RSA"}, {"use", "sig"},     {"alg", "RS256"},
-            {"kid", kid},   {"n", number("n")}, {"e", number("e")}};
-  }
-  std::string token(const Json& claims,
-                    const Json& header = {{"alg", "RS256"}, {"kid", "k1"}}) const {
-    const std::string text = base64url(header.dump()) + "." + base64url(claims.dump());
-    EVP_MD_CTX* context = EVP_MD_CTX_new();
-    std::string signature(256, '\0');
-    std::size_t size = signature.size();
-    EXPECT_EQ(EVP_DigestSignInit(context, nullptr, EVP_sha256(), nullptr, key_), 1);
-    EXPECT_EQ(EVP_DigestSign(context, reinterpret_cast<unsigned char*>(signature.data()), &size,
-                             reinterpret_cast<const unsigned char*>(text.data()), text.size()),
-              1);
-    EVP_MD_CTX_free(context);
-    return text + "." + base64url(signature);
-  }
-
- private:
-  std::string number(const char* which) const {
-    BIGNUM* value = nullptr;
-    EXPECT_EQ(EVP_PKEY_get_bn_param(key_, which, &value), 1);
-    std::string bytes(std::size_t(BN_num_bytes(value)), '\0');
-    BN_bn2bin(value, reinterpret_cast<unsigned char*>(bytes.data()));
-    BN_free(value);
-    return base64url(bytes);
-  }
-  EVP_PKEY* key_;
-};
 
 class IdToken : public ::testing::Test {
  protected:

@@ -15,7 +15,7 @@ Json or_null(const std::optional<std::string>& text) { return text ? Json(*text)
 
 /// {"add": […], "own": […]} as it was asked.
 Json wish_of(const store::LabRun& run) {
-  Json wish = Json::parse(run.wish, nullptr, false);
+  Json wish = core::stored_json(run.wish);
   if (!wish.is_object()) wish = Json::object();
   for (const char* key : {"add", "own"})
     if (!wish.contains(key)) wish[key] = Json::array();
@@ -93,7 +93,7 @@ Result<Json> whole_run_json(const Call& call, const store::LabRun& run) {
       call.backend.store.read([&](store::Reading& tx) { return store::model_made_by(tx, run.id); });
   if (!published) return published.error();
   Json out = run_json(run, *published);
-  if (run.ranking) out["ranking"] = Json::parse(*run.ranking, nullptr, false);
+  if (run.ranking) out["ranking"] = core::stored_json(*run.ranking);
   if (run.result) {
     auto kept = core::read_json(call.backend.objects.path_of(*run.result));
     if (!kept) return kept.error();

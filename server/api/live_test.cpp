@@ -67,7 +67,9 @@ class LiveRoutes : public PeopleTest {
   }
   /// The slot of tom's assignment, given to station s1.
   std::string toms_slot() {
-    auto slots = store_.read([](store::Reading& tx) { return store::study_slots(tx, "a-tom"); });
+    auto slots = store_.read([](store::Reading& tx) {
+      return store::study_slots(tx, store::find_assignment(tx, "a-tom").value());
+    });
     EXPECT_TRUE(slots);
     const std::string id = slots->front().id;
     EXPECT_TRUE(store_.write([&](store::Writing& tx) {
@@ -214,6 +216,25 @@ TEST_F(LiveRoutes, RefusalsOfAStationAreNotedAndCannotFloodTheTrail) {
   EXPECT_NE(rows.front().act.detail.find("\"refusals_not_noted\":990"), std::string::npos)
       << rows.front().act.detail;
   EXPECT_EQ(rows_of("station-1").size(), 0u) << "of its own allowance";
+}
+
+TEST_F(LiveRoutes, WhoseSessionsEndIsHungUpOnAtOnce) {
+  const core::Json none = core::Json::object();
+  for (const auto& [path, body] :
+       {std::pair<std::string, core::Json>{"role", {{"role", "trainee"}}},
+        {"state", {{"state", "disabled"}}},
+        {"password", none},
+        {"badge", none}}) {
+    const auto watcher = watching("fay"), other = watching("flo");
+    ASSERT_EQ(post("ann", "/accounts/fay/" + path, body).status, 200) << path;
+    EXPECT_TRUE(watcher->ended) << path;
+    EXPECT_FALSE(other->ended) << path;
+    EXPECT_EQ(post("ann", "/accounts/fay/role", {{"role", "faculty"}}).status, 200);
+    EXPECT_EQ(post("ann", "/accounts/fay/state", {{"state", "active"}}).status, 200);
+    ASSERT_TRUE(store_.write([](store::Writing& tx) {
+      return tx.query("update accounts set must_change = 0 where id = 'fay'");
+    }));
+  }
 }
 
 }  // namespace

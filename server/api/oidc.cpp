@@ -1,7 +1,5 @@
 #include "server/api/oidc.hpp"
 
-#include <chrono>
-
 #include "core/bytes.hpp"
 #include "core/file.hpp"
 #include "server/api/web_fetch.hpp"
@@ -15,12 +13,6 @@ using core::Json;
 using core::Result;
 
 constexpr std::int64_t kKept_s = 3600, kAgain_s = 10;
-
-std::int64_t now_s() {
-  return std::chrono::duration_cast<std::chrono::seconds>(
-             std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
 
 std::string random_text() { return base64url(core::text_of(core::random_bytes(32))); }
 
@@ -38,14 +30,13 @@ std::string challenge_of(const std::string& verifier) {
   return base64url(bytes);
 }
 
-Result<Json> json_at(const std::string& url, const std::filesystem::path& authority) {
-  auto got = fetch({.url = url, .authority = authority});
+Result<Json> json_at(const std::string& url, const OidcSettings& settings) {
+  auto got = fetch({.url = url, .authority = settings.authority, .patience = settings.patience});
   if (!got) return got.error();
-  Json out = Json::parse(got->body, nullptr, false);
-  if (got->status != 200 || !out.is_object())
-    return Error{Errc::unavailable,
-                 "the provider does not answer as one: HTTP status " + std::to_string(got->status)};
-  return out;
+  auto out = core::parse_json(got->body, "the provider's answer");
+  if (got->status == 200 && out && out->is_object()) return out;
+  return Error{Errc::unavailable,
+               "the provider does not answer as one: HTTP status " + std::to_string(got->status)};
 }
 
 }  // namespace
@@ -84,11 +75,13 @@ Result<OidcSettings> read_oidc_settings(const std::filesystem::path& path) {
 OidcAttempt new_attempt() { return {random_text(), random_text(), random_text()}; }
 
 Result<Json> Oidc::described() const {
-  const std::lock_guard held(mutex_);
-  if (!description_.is_null() && now_s() - described_s_ < kKept_s) return description_;
+  return description_.at_most(kKept_s, [this] { return fetched_description(); });
+}
+
+Result<Json> Oidc::fetched_description() const {
   std::string at = settings_.issuer;
   while (at.ends_with('/')) at.pop_back();
-  auto json = json_at(at + "/.well-known/openid-configuration", settings_.authority);
+  auto json = json_at(at + "/.well-known/openid-configuration", settings_);
   if (!json) return json.error();
   const auto unfit = [](const std::string& what) {
     return Error{Errc::corrupt, "the provider's description " + what};
@@ -97,22 +90,36 @@ Result<Json> Oidc::described() const {
   for (const char* key : {"authorization_endpoint", "token_endpoint", "jwks_uri"})
     if (!is_safe_address(text_field(*json, key)))
       return unfit(std::string("has no safe address: ") + key);
-  description_ = *json;
-  described_s_ = now_s();
-  return description_;
+  return json;
 }
 
-Result<Json> Oidc::keys(bool again) const {
+Result<Json> Oidc::keys(std::int64_t age_s) const {
   const auto description = described();
   if (!description) return description.error();
-  const std::lock_guard held(mutex_);
-  const std::int64_t age_s = now_s() - keys_s_;
-  if (!keys_.is_null() && age_s < (again ? kAgain_s : kKept_s)) return keys_;
-  auto json = json_at(text_field(*description, "jwks_uri"), settings_.authority);
-  if (!json) return json.error();
-  keys_ = *json;
-  keys_s_ = now_s();
-  return keys_;
+  return keys_.at_most(age_s,
+                       [&] { return json_at(text_field(*description, "jwks_uri"), settings_); });
+}
+
+/// The token endpoint's answer to a code. A refusal is no failure of the provider: who sends it
+/// wrong codes does not keep others from signing in.
+Result<Json> Oidc::tokens(const std::string& code, const OidcAttempt& attempt) const {
+  const auto description = described();
+  if (!description) return description.error();
+  if (auto open = breaker_.check(); !open) return open.error();
+  auto answer = fetch({.url = text_field(*description, "token_endpoint"),
+                       .form = {{{"grant_type", "authorization_code"},
+                                 {"code", code},
+                                 {"redirect_uri", settings_.base + "/api/v1/session/oidc/callback"},
+                                 {"code_verifier", attempt.verifier}}},
+                       .user = percent_encoded(settings_.client_id),
+                       .password = percent_encoded(settings_.client_secret),
+                       .authority = settings_.authority,
+                       .patience = settings_.patience});
+  if (!answer) return breaker_.failed(answer.error()), answer.error();
+  breaker_.succeeded();
+  auto json = core::parse_json(answer->body, "the provider's answer");
+  if (answer->status == 200 && json && json->is_object()) return json;
+  return Error{Errc::unauthorised, "the provider does not take its code back"};
 }
 
 Result<std::string> Oidc::sign_in_address(const OidcAttempt& attempt) const {
@@ -137,27 +144,15 @@ Result<std::string> Oidc::sign_in_address(const OidcAttempt& attempt) const {
 
 Result<Identity> Oidc::redeemed(const std::string& code, const OidcAttempt& attempt,
                                 std::int64_t utc_s) const {
-  const auto description = described();
-  if (!description) return description.error();
-  auto answer = fetch({.url = text_field(*description, "token_endpoint"),
-                       .form = {{{"grant_type", "authorization_code"},
-                                 {"code", code},
-                                 {"redirect_uri", settings_.base + "/api/v1/session/oidc/callback"},
-                                 {"code_verifier", attempt.verifier}}},
-                       .user = percent_encoded(settings_.client_id),
-                       .password = percent_encoded(settings_.client_secret),
-                       .authority = settings_.authority});
-  if (!answer) return answer.error();
-  const Json json = Json::parse(answer->body, nullptr, false);
-  if (answer->status != 200 || !json.is_object())
-    return Error{Errc::unauthorised, "the provider does not take its code back"};
-  const std::string token = text_field(json, "id_token");
+  const auto json = tokens(code, attempt);
+  if (!json) return json.error();
+  const std::string token = text_field(*json, "id_token");
   const Expected expected{settings_.issuer, settings_.client_id, attempt.nonce, utc_s};
-  auto known = keys(false);
+  auto known = keys(kKept_s);
   if (!known) return known.error();
   auto identity = identity_of(token, *known, expected);
   if (identity || identity.error().code != Errc::not_found) return identity;
-  known = keys(true);  // the provider may have a new key
+  known = keys(kAgain_s);  // the provider may have a new key
   if (!known) return known.error();
   identity = identity_of(token, *known, expected);
   if (!identity && identity.error().code == Errc::not_found)

@@ -2,11 +2,12 @@
 /// RFC 9700).
 #pragma once
 
+#include <chrono>
 #include <filesystem>
-#include <mutex>
 #include <string>
 
 #include "server/api/id_token.hpp"
+#include "server/api/kept_document.hpp"
 
 namespace api {
 
@@ -16,6 +17,7 @@ namespace api {
 struct OidcSettings {
   std::string issuer, client_id, client_secret, base, label;
   std::filesystem::path authority;
+  std::chrono::milliseconds patience{5000};  ///< with one answer of the provider, whole
 };
 /// Errors: those of reading; bad_input naming file and field.
 core::Result<OidcSettings> read_oidc_settings(const std::filesystem::path& path);
@@ -27,10 +29,15 @@ struct OidcAttempt {
 OidcAttempt new_attempt();
 
 /// One provider. Its description and keys are fetched when needed and kept for an hour; unknown
-/// keys are asked for again, at most every ten seconds. Safe from several threads.
+/// keys are asked for again, at most every ten seconds. A provider that fails is left alone for a
+/// while (Breaker): each call takes a few `patience` at most. Safe from several threads.
 class Oidc {
  public:
-  explicit Oidc(OidcSettings settings) : settings_(std::move(settings)) {}
+  explicit Oidc(OidcSettings settings, SteadyClock_s now_s = steady_now_s)
+      : settings_(std::move(settings)),
+        breaker_(now_s),
+        description_(breaker_, now_s),
+        keys_(breaker_, now_s) {}
   const OidcSettings& settings() const { return settings_; }
 
   /// Where the browser is sent to. Errors: unavailable, corrupt (the provider's description).
@@ -43,12 +50,13 @@ class Oidc {
 
  private:
   core::Result<core::Json> described() const;
-  core::Result<core::Json> keys(bool again) const;
+  core::Result<core::Json> fetched_description() const;
+  core::Result<core::Json> keys(std::int64_t age_s) const;
+  core::Result<core::Json> tokens(const std::string& code, const OidcAttempt& attempt) const;
 
   OidcSettings settings_;
-  mutable std::mutex mutex_;  ///< guards what was fetched
-  mutable core::Json description_, keys_;
-  mutable std::int64_t described_s_ = 0, keys_s_ = 0;
+  mutable Breaker breaker_;
+  mutable KeptDocument description_, keys_;
 };
 
 }  // namespace api

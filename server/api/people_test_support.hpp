@@ -2,8 +2,7 @@
 /// each trainee in an assignment of its cohort.
 #pragma once
 
-#include "db/store/people.hpp"
-#include "db/store/study_slots.hpp"
+#include "db/store/assignments.hpp"
 #include "db/store/trials.hpp"
 #include "db/store/uploads.hpp"
 #include "server/api/api_test_support.hpp"
@@ -44,21 +43,18 @@ class PeopleTest : public ApiTest {
     if (auto done = store::put_into_cohort(tx, cohort, trainee, "trainee", 0); !done) return done;
     const store::Deed deed{leader, 1};
     const std::string study = "a-" + trainee, who = "P-" + trainee;
-    if (auto done =
-            store::add_study(tx, {.id = study, .title = "", .ordering = "random"}, {kCase}, deed);
-        !done)
-      return done;
-    if (auto done = store::add_participant(tx, study, {.name = who}, {kCase}, deed); !done)
-      return done;
-    auto assigned = tx.query(
-        "insert into assignments (study_id, cohort_id, release, made_by_id) values (?, ?, ?, ?)",
-        {study, cohort, kRelease, leader});
+    auto assigned =
+        store::add_assignment(tx,
+                              {.study = {.id = study, .title = "", .ordering = "random"},
+                               .cohort_id = cohort,
+                               .release = kRelease,
+                               .made_by_id = leader},
+                              {kCase}, deed);
     if (!assigned) return assigned.error();
-    auto noted = tx.query(
-        "insert into assignment_people (study_id, account_id, participant) values (?, ?, ?)",
-        {study, trainee, who});
-    if (!noted) return noted.error();
-    auto slots = store::study_slots(tx, study);
+    if (auto done = store::add_participant(tx, *assigned, {.name = who}, {kCase}, deed); !done)
+      return done;
+    if (auto done = store::add_assigned_person(tx, *assigned, trainee, who); !done) return done;
+    auto slots = store::study_slots(tx, *assigned);
     if (!slots) return slots.error();
     return furnish_trial(tx, trial_of(trainee), slots->front().id);
   }

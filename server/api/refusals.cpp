@@ -40,7 +40,7 @@ bool is_refusal_of_station(const std::string& route, int status) {
 
 std::string words_of(const http::Response& response) {
   const auto* text = std::get_if<std::string>(&response.body);
-  const core::Json json = text ? core::Json::parse(*text, nullptr, false) : core::Json();
+  const core::Json json = text ? core::stored_json(*text) : core::Json();
   return json.is_object() ? core::one_line(json.value("error", ""), 300) : std::string();
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <charconv>
 
+#include "core/file.hpp"
+
 namespace api {
 
 std::string_view name(Role role) {
@@ -123,6 +125,33 @@ http::Response json_response(const core::Json& json, int status) {
                           .headers = {},
                           .body = json.dump(-1, ' ', false, core::Json::error_handler_t::replace)};
   response.with("Content-Type", "application/json").with("Cache-Control", "no-store");
+  return response;
+}
+
+core::Result<std::filesystem::path> body_in(const Call& call, const std::filesystem::path& folder,
+                                            const std::string& name) {
+  const std::filesystem::path path = folder / name;
+  if (call.request.body_file.empty()) {
+    auto written = core::write_file(path, core::bytes_of(call.request.body));
+    return written ? core::Result<std::filesystem::path>(path) : written.error();
+  }
+  std::error_code failure;
+  std::filesystem::create_hard_link(call.request.body_file, path, failure);
+  if (!failure) return path;
+  return core::Error{core::Errc::io, path.string() + ": cannot be made: " + failure.message()};
+}
+
+core::Result<http::Response> scratch_response(std::shared_ptr<http::ScratchFile> file,
+                                              const char* content_type, const char* download_name) {
+  std::error_code failure;
+  const std::uint64_t size = std::filesystem::file_size(file->path, failure);
+  if (failure) return core::Error{core::Errc::io, file->path.string() + ": " + failure.message()};
+  file->share.shrink_to(size);
+  http::Response response{
+      .status = 200, .headers = {}, .body = http::FileSlice{file->path, 0, size, std::move(file)}};
+  response.with("Content-Type", content_type)
+      .with("Content-Disposition", std::string("attachment; filename=\"") + download_name + "\"")
+      .with("Cache-Control", "no-store");
   return response;
 }
 

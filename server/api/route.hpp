@@ -11,7 +11,9 @@
 #include "core/json.hpp"
 #include "core/result.hpp"
 #include "server/http/conversation.hpp"
+#include "server/http/lane.hpp"
 #include "server/http/message.hpp"
+#include "server/http/scratch_space.hpp"
 
 namespace api {
 
@@ -41,7 +43,30 @@ std::vector<Grant> people();
 
 /// What the route's object is, when a grant says less than "all". `none` with such a grant: the
 /// route has no object of its own, and its handler answers by Call::of alone.
-enum class Object { none, trial, published_case, account, cohort, assignment };
+enum class Object {
+  none,
+  trial,
+  published_case,
+  account,
+  person,  ///< an account as a member of cohorts, also one that leads them
+  cohort,
+  invitation,  ///< into a cohort, by the cohort's id
+  assignment,
+  study,  ///< of research; `cohort` of it: its participants are through, nothing of it is blind
+  model,
+  station,
+};
+
+/// One end of a relation that a route makes or changes, beside the route's own object: what the
+/// object is brought together with. Checked before the handler (access.hpp).
+struct End {
+  /// "account_id": the argument of this name. "/people/*": this field of the body, as a JSON
+  /// pointer in which * is every element. An end that is not there is not checked.
+  std::string field;
+  Object object;
+  std::vector<Grant> who;  ///< of which such objects each role may name one; others may name none
+  enum class By { id, account_name } by = By::id;
+};
 
 struct Caller {
   Role role;
@@ -86,6 +111,14 @@ struct NamedSchema {
   core::Json schema;
 };
 
+/// The request's body as a file in `folder`, whether it came as one or is in memory. Errors: io.
+core::Result<std::filesystem::path> body_in(const Call& call, const std::filesystem::path& folder,
+                                            const std::string& name);
+/// A file as a whole answer, which is deleted once it is sent; it takes no more of the scratch
+/// space than it is long. Errors: io.
+core::Result<http::Response> scratch_response(std::shared_ptr<http::ScratchFile> file,
+                                              const char* content_type, const char* download_name);
+
 /// 426: this address is a WebSocket.
 core::Result<http::Response> wants_websocket(const Call& call);
 
@@ -103,8 +136,10 @@ struct RouteInfo {
   bool open = false;       ///< no credentials at all: signing in
   Object object = Object::none;
   std::string object_parameter = "id";  ///< the argument that names the object
+  std::vector<End> ends = {};           ///< every other end of a relation that it makes or changes
   bool before_password_change = false;  ///< also for who must choose a password first
   bool audited = true;                  ///< a change by it is noted in the audit trail
+  http::Lane lane = http::Lane::quick;  ///< on which threads it is handled
   std::vector<Parameter> parameters;
   std::string body;  ///< name of the body's schema, kBytes, or "" for none
   std::uint64_t body_limit_bytes = 0;

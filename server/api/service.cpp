@@ -11,6 +11,7 @@
 #include "server/api/access.hpp"
 #include "server/api/acts.hpp"
 #include "server/api/authentication.hpp"
+#include "server/api/throttle.hpp"
 
 namespace api {
 namespace {
@@ -106,7 +107,7 @@ core::Result<void> check_not_forged(const RouteInfo& route, const Caller& caller
 /// What was asked of whom: for the notes.
 struct Asked {
   const core::Result<Match>& matched;
-  const std::string& allowed;
+  std::string_view allowed;
   std::optional<Caller> caller = std::nullopt;
   bool overstepped = false;  ///< asked for what is not theirs
 };
@@ -146,14 +147,11 @@ core::Result<http::Response> handled(Backend& backend, const Match& matched, con
   return route.handle(call);
 }
 
-http::Response refusal(const core::Error& error, const std::string& allowed) {
+http::Response refusal(const core::Error& error, std::string_view allowed) {
   if (error.code == core::Errc::not_found && !allowed.empty()) {
-    auto response = http::error_response(405, "bad_input", "this address takes " + allowed);
-    return response.with("Allow", allowed), response;
-  }
-  if (is_throttled(error)) {
-    auto response = http::error_response(429, "too_many", error.what);
-    return response.with("Retry-After", std::to_string(kThrottleWindow_us / 1'000'000)), response;
+    const std::string methods(allowed);
+    auto response = http::error_response(405, "bad_input", "this address takes " + methods);
+    return response.with("Allow", methods), response;
   }
   auto response = error_response(error);
   if (error.code == core::Errc::unauthorised) response.with("WWW-Authenticate", "Bearer");
@@ -214,9 +212,10 @@ http::Response answer_to(Backend& backend, Asked& asked, const http::Request& re
                                        request.body.size(), matched->route->body_limit_bytes)});
   auto checked = arguments(*matched, request);
   if (!checked) return error_response(checked.error());
-  if (auto own = check_object(backend, *matched->route, *caller, *checked); !own) {
-    asked.overstepped = own.error().code == core::Errc::not_found;
-    return refusal(own.error(), "");
+  if (auto may = check_access(backend, *matched->route, *caller, *checked, request.body); !may) {
+    asked.overstepped =
+        may.error().code == core::Errc::not_found || may.error().code == core::Errc::forbidden;
+    return refusal(may.error(), "");
   }
   auto response = handled(backend, *matched, *caller, request, std::move(*checked));
   if (response) return std::move(*response);
@@ -267,9 +266,9 @@ http::Response answer(Backend& backend, const std::vector<RouteInfo>& table,
   return response;
 }
 
-std::variant<std::uint64_t, http::Response> admit(Backend& backend,
-                                                  const std::vector<RouteInfo>& table,
-                                                  const http::RequestHead& head) {
+std::variant<http::Admitted, http::Response> admit(Backend& backend,
+                                                   const std::vector<RouteInfo>& table,
+                                                   const http::RequestHead& head) {
   std::string allowed;
   auto matched = match(table, head, &allowed);
   Asked asked{matched, allowed};
@@ -278,14 +277,14 @@ std::variant<std::uint64_t, http::Response> admit(Backend& backend,
     return response;
   };
   if (!matched) return refused(answer_to_nowhere(backend, asked, head));
-  if (auto caller = allowed_caller(backend, *matched->route, head, &asked); !caller)
-    return refused(refusal(caller.error(), ""));
+  const auto caller = allowed_caller(backend, *matched->route, head, &asked);
+  if (!caller) return refused(refusal(caller.error(), ""));
   const std::uint64_t limit = matched->route->body_limit_bytes;
   if (head.body_bytes > limit)
     return refused(error_response(
         {core::Errc::too_large,
          fmt::format("the body has {} bytes, at most {} are taken", head.body_bytes, limit)}));
-  return limit;
+  return http::Admitted{limit, matched->route->body_to_file, caller->id};
 }
 
 namespace {
@@ -310,9 +309,9 @@ core::Result<std::shared_ptr<http::Conversation>> conversation(Backend& backend,
     return core::Error{core::Errc::forbidden, "the page that asks for this WebSocket is not ours"};
   auto checked = arguments(*asked.matched, request);
   if (!checked) return checked.error();
-  if (auto own = check_object(backend, route, *caller, *checked); !own) {
-    asked.overstepped = own.error().code == core::Errc::not_found;
-    return own.error();
+  if (auto may = check_access(backend, route, *caller, *checked, ""); !may) {
+    asked.overstepped = may.error().code == core::Errc::not_found;
+    return may.error();
   }
   const Call call{backend, request, *caller, std::move(*checked),
                   granted(route, caller->role).value_or(Of::own)};
@@ -347,9 +346,44 @@ std::variant<http::Response, std::shared_ptr<http::Conversation>> converse(
   return std::move(*opened);
 }
 
-bool takes_file(const std::vector<RouteInfo>& table, const http::RequestHead& head) {
+http::Lane lane_of(const std::vector<RouteInfo>& table, const http::RequestHead& head) {
   const auto matched = match(table, head);
-  return matched && matched->route->body_to_file;
+  return matched ? matched->route->lane : http::Lane::quick;
+}
+
+namespace {
+
+/// Of an open route, where nobody's credentials are known yet.
+std::variant<http::Standing, http::Response> standing_of_origin(Backend& backend,
+                                                                const RouteInfo& route,
+                                                                const std::string& origin) {
+  constexpr auto kSecret = store::Secret::account_password;
+  auto known = backend.store.read(
+      [&](store::Reading& tx) { return store::is_known_origin(tx, kSecret, origin); });
+  if (!known) return refusal(known.error(), "");
+  if (*known) return http::Standing::familiar;
+  if (route.lane != http::Lane::hashing) return http::Standing::stranger;
+  auto early = too_early_from(backend, kSecret, origin);
+  if (!early) return refusal(early.error(), "");
+  if (*early) return std::move(**early);
+  return http::Standing::stranger;
+}
+
+}  // namespace
+
+std::variant<http::Standing, http::Response> standing(Backend& backend,
+                                                      const std::vector<RouteInfo>& table,
+                                                      const http::RequestHead& head) {
+  const auto matched = match(table, head);
+  if (!matched) return refusal(matched.error(), "");
+  if (matched->route->open)
+    return standing_of_origin(backend, *matched->route, network_of(head.peer));
+  Asked asked{matched, ""};
+  auto caller = allowed_caller(backend, *matched->route, head, &asked);
+  if (caller) return http::Standing::familiar;
+  auto refused = refusal(caller.error(), "");
+  note_if_refused(backend, asked, head, refused);
+  return refused;
 }
 
 }  // namespace api

@@ -25,13 +25,18 @@ core::Result<std::map<std::string, std::string>> arguments(const Match& matched,
 /// Everything under /api by `table`.
 http::Response answer(Backend& backend, const std::vector<RouteInfo>& table,
                       const http::Request& request);
-/// Before the body is read: the same refusals, and how much body the route takes.
-std::variant<std::uint64_t, http::Response> admit(Backend& backend,
-                                                  const std::vector<RouteInfo>& table,
-                                                  const http::RequestHead& head);
+/// Before the body is read: the same refusals, and how the route takes its body.
+std::variant<http::Admitted, http::Response> admit(Backend& backend,
+                                                   const std::vector<RouteInfo>& table,
+                                                   const http::RequestHead& head);
 
-/// Does the request's body go to a file (RouteInfo::body_to_file)?
-bool takes_file(const std::vector<RouteInfo>& table, const http::RequestHead& head);
+/// The lane of the request's route; quick when there is none.
+http::Lane lane_of(const std::vector<RouteInfo>& table, const http::RequestHead& head);
+/// Familiar is who shows good credentials, and an origin from which somebody signed in before.
+/// Refuses who may not call the route, and an origin with too many failures.
+std::variant<http::Standing, http::Response> standing(Backend& backend,
+                                                      const std::vector<RouteInfo>& table,
+                                                      const http::RequestHead& head);
 /// A request for a WebSocket: checked as any, then the route's conversation.
 std::variant<http::Response, std::shared_ptr<http::Conversation>> converse(
     Backend& backend, const std::vector<RouteInfo>& table, const http::RequestHead& head);

@@ -58,6 +58,14 @@ class StudyRoutes : public ApiTest {
     const auto state = commit_upload(backend_, one, trial_id);
     ASSERT_TRUE(state) << state.error().what;
   }
+  /// Every participant is through.
+  void end_all() {
+    const auto ended = store_.write([](store::Writing& tx) {
+      return tx.query(
+          "update study_slots set state = 'recorded' where state in ('waiting', 'taken')");
+    });
+    EXPECT_TRUE(ended);
+  }
   std::string next_slot() {
     return json(take("token-1", "P1"))["trials"][0]["slot"].get<std::string>();
   }
@@ -123,8 +131,9 @@ TEST_F(StudyRoutes, GiveAStationTheLawOfExactlyTheNextTrial) {
   const auto law = study::opened_law(taken["trials"][0]["sealed"].get<std::string>(), slot,
                                      study::StationKey(token_hash("token-1")));
   ASSERT_TRUE(law) << law.error().what;
-  const auto slots =
-      store_.read([](store::Reading& tx) { return store::study_slots(tx, "probing-1"); });
+  const auto slots = store_.read([](store::Reading& tx) {
+    return store::study_slots(tx, store::find_study(tx, "probing-1").value());
+  });
   int fits = 0;
   for (int kind = 0; kind < scenarios::kKinds; ++kind) {
     const auto scenario = scenarios::tuned(scenarios::Kind(kind)).value();
@@ -229,6 +238,9 @@ TEST_F(StudyRoutes, ATrialComesBackUnderItsSlotsNameAndIsOneOfItsScenario) {
   EXPECT_EQ(study["participants"][0]["done"], 1);
   const auto kept = store_.read([&](store::Reading& tx) { return store::trial_of(tx, trial); });
   EXPECT_NE((*kept)->summary.case_id, slot);
+  EXPECT_EQ(place["trials"][0]["correct"], nullptr);
+  EXPECT_EQ(ask(request("GET", "/api/v1/trials/" + trial, own_)).status, 403) << "not through";
+  end_all();
   const auto page = json(ask(request("GET", "/api/v1/trials/" + trial, own_)));
   EXPECT_EQ(page["scenario"]["name"], (*kept)->summary.case_title);
   EXPECT_EQ(page["answer"]["depth_m"], 0.021);
@@ -307,6 +319,7 @@ TEST_F(StudyRoutes, AnInvalidTrialNeedsAReasonStaysAndIsRepeated) {
   EXPECT_EQ(
       post("/probing-1/trials/" + std::string(32, 'b') + "/invalid", {{"reason", "x"}}).status,
       404);
+  end_all();
   const auto kept = ask(request("GET", "/api/v1/trials/" + trial, own_));
   EXPECT_EQ(kept.status, 200) << "nothing is deleted: " << text(kept);
   EXPECT_EQ(json(kept)["study"]["state"], "invalid");
@@ -330,8 +343,9 @@ TEST_F(StudyRoutes, AParticipantEnrolledLaterGetsAnOrderOfTheirOwn) {
   EXPECT_EQ(post("/probing-1/participants", {{"name", "P3"}}).status, 409);
   EXPECT_EQ(post("/nowhere/participants", {{"name", "P3"}}).status, 404);
   std::map<std::string, std::string> orders;
-  const auto slots =
-      store_.read([](store::Reading& tx) { return store::study_slots(tx, "probing-1"); });
+  const auto slots = store_.read([](store::Reading& tx) {
+    return store::study_slots(tx, store::find_study(tx, "probing-1").value());
+  });
   for (const auto& slot : slots.value()) orders[slot.participant] += slot.case_id;
   ASSERT_EQ(orders.size(), 3u);
   EXPECT_EQ(orders["P3"].size(), 12u * 64);

@@ -24,7 +24,8 @@ Json study_fields(const store::Study& study) {
           {"made_by", study.made_by}};
 }
 
-Json trial_json(const store::StudyTrial& trial) {
+/// @param told  may it be said whether the answer was right?
+Json trial_json(const store::StudyTrial& trial, bool told) {
   return {{"id", trial.trial_id},
           {"state", trial.state},
           {"reason", trial.reason},
@@ -35,7 +36,7 @@ Json trial_json(const store::StudyTrial& trial) {
           {"samples", or_null(trial.samples)},
           {"sha256", or_null(trial.sha256)},
           {"assessment", or_null(trial.assessment)},
-          {"correct", or_null(trial.correct)}};
+          {"correct", told ? or_null(trial.correct) : Json()}};
 }
 
 bool unfinished(const store::Slot& slot) {
@@ -59,7 +60,7 @@ struct Index {
 Json slot_json(const store::Slot& slot, const Index& index, bool told) {
   Json trials = Json::array();
   if (const auto found = index.trials.find(slot.id); found != index.trials.end())
-    for (const auto* trial : found->second) trials.push_back(trial_json(*trial));
+    for (const auto* trial : found->second) trials.push_back(trial_json(*trial, told));
   Json repeats;
   if (slot.repeat_of) repeats = index.numbers.at(*slot.repeat_of);
   return {{"number", index.numbers.at(slot.id)},
@@ -120,19 +121,18 @@ Json participant_json(const StudyFacts& facts, const store::Participant& who, co
           {"last_station", station_of(facts, who, index)},
           {"done", tally.done},
           {"planned", tally.planned},
-          {"judged", tally.judged},
-          {"recognised", tally.recognised},
+          {"judged", left ? 0 : tally.judged},
+          {"recognised", left ? 0 : tally.recognised},
           {"slots", slots}};
 }
 
 }  // namespace
 
-core::Result<StudyFacts> study_facts(store::Reading& tx, const std::string& id) {
+core::Result<StudyFacts> study_facts(store::Reading& tx, const store::StudyId& id) {
   auto study = store::study_of(tx, id);
   if (!study) return study.error();
-  if (!*study) return core::Error{core::Errc::not_found, "no study " + id.substr(0, 32)};
   StudyFacts out;
-  out.study = std::move(**study);
+  out.study = std::move(*study);
   auto scenarios = store::study_scenarios(tx, id);
   if (!scenarios) return scenarios.error();
   out.scenarios = std::move(*scenarios);

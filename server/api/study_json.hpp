@@ -15,7 +15,7 @@ struct StudyFacts {
   std::vector<store::StudyTrial> trials;
 };
 /// Errors: not_found.
-core::Result<StudyFacts> study_facts(store::Reading& tx, const std::string& id);
+core::Result<StudyFacts> study_facts(store::Reading& tx, const store::StudyId& id);
 
 core::Json summary_json(const store::StudySummary& summary);
 /// Blind also to who runs the study: which scenario a slot has is told once nothing is left to do

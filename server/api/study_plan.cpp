@@ -190,7 +190,7 @@ Result<void> make_study(Backend& backend, const StudyPlan& plan, const std::stri
   const std::int64_t now = backend.now_utc_us();
   const store::Deed deed{who, now};
   return backend.store.write([&](store::Writing& tx) -> Result<void> {
-    auto taken = store::study_of(tx, plan.study.id);
+    auto taken = store::series_exists(tx, plan.study.id);
     if (!taken) return taken.error();
     if (*taken) return Error{Errc::conflict, "id: there is a study " + plan.study.id + " already"};
     std::vector<std::string> ids;
@@ -201,9 +201,10 @@ Result<void> make_study(Backend& backend, const StudyPlan& plan, const std::stri
       if (auto done = store::add_case(tx, summary, {parts[i]}, now); !done) return done;
       ids.push_back(named[i].case_id);
     }
-    if (auto done = store::add_study(tx, plan.study, ids, deed); !done) return done;
+    auto id = store::add_study(tx, plan.study, ids, deed);
+    if (!id) return id.error();
     for (std::size_t n = 0; n < plan.participants.size(); ++n)
-      if (auto done = store::add_participant(tx, plan.study.id, plan.participants[n],
+      if (auto done = store::add_participant(tx, *id, plan.participants[n],
                                              order_for(plan.study, named, int(n)), deed);
           !done)
         return done;
@@ -214,20 +215,21 @@ Result<void> make_study(Backend& backend, const StudyPlan& plan, const std::stri
 Result<void> enrol(Backend& backend, const std::string& study_id,
                    const store::Participant& participant, const std::string& who) {
   return backend.store.write([&](store::Writing& tx) -> Result<void> {
-    auto study = store::study_of(tx, study_id);
+    auto id = store::find_study(tx, study_id);
+    if (!id) return id.error();
+    auto study = store::study_of(tx, *id);
     if (!study) return study.error();
-    if (!*study) return Error{Errc::not_found, "no study " + study_id.substr(0, kMaxName)};
-    auto there = store::study_participants(tx, study_id);
+    auto there = store::study_participants(tx, *id);
     if (!there) return there.error();
     if (std::ranges::find(*there, participant.name, &store::Participant::name) != there->end())
       return Error{Errc::conflict, "name: " + participant.name + " is enrolled already"};
     if (there->size() >= kMaxParticipants)
       return Error{Errc::conflict,
                    fmt::format("{} participants are enrolled: that is the most", there->size())};
-    auto scenarios = store::study_scenarios(tx, study_id);
+    auto scenarios = store::study_scenarios(tx, *id);
     if (!scenarios) return scenarios.error();
-    return store::add_participant(tx, study_id, participant,
-                                  order_for(**study, *scenarios, int(there->size())),
+    return store::add_participant(tx, *id, participant,
+                                  order_for(*study, *scenarios, int(there->size())),
                                   {who, backend.now_utc_us()});
   });
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <set>
 
 #include "server/api/trial_json.hpp"
 #include "statistics/proportions.hpp"
@@ -36,34 +35,20 @@ const std::string& name_of(const store::CohortTrial& trial) {
   return trial.study.empty() ? trial.summary.operator_name : trial.participant;
 }
 
-/// Ids of the trials that a grant of less than all reaches.
-Result<std::set<std::string>> reached(store::Reading& tx, const Call& call) {
-  store::Whose whose;
-  (call.of == Of::cohort ? whose.taught_by : whose.seen_by) = call.caller.id;
-  const auto found =
-      store::trials_before(tx, std::int64_t{9'000'000'000'000'000}, kMaxTrials, whose);
-  if (!found) return found.error();
-  std::set<std::string> out;
-  for (const auto& trial : *found) out.insert(trial.id);
-  return out;
-}
-
 Result<Trials> trials_for(const Call& call) {
   const std::string study = call.has("study") ? call.text("study") : "";
   return call.backend.store.read([&](store::Reading& tx) -> Result<Trials> {
     if (!study.empty()) {
-      const auto known = store::study_of(tx, study);
+      const auto known = store::series_exists(tx, study);
       if (!known) return known.error();
       if (!*known)
         return core::Error{core::Errc::bad_input,
                            "study: there is no study " + study.substr(0, 32)};
     }
-    auto trials = store::cohort_trials(tx, study, kMaxTrials);
-    if (!trials || call.of == Of::all) return trials;
-    const auto may = reached(tx, call);
-    if (!may) return may.error();
-    std::erase_if(*trials, [&](const auto& trial) { return !may->contains(trial.summary.id); });
-    return trials;
+    store::Whose whose;
+    if (call.of == Of::cohort) whose.taught_by = call.caller.id;
+    if (call.of == Of::own) whose.seen_by = call.caller.id;
+    return store::trials_for_teaching(tx, study, whose, kMaxTrials);
   });
 }
 
@@ -123,7 +108,7 @@ std::optional<double> confidence_of(Backend& backend, const std::string& trial_i
   const auto trial =
       backend.store.read([&](store::Reading& tx) { return store::trial_of(tx, trial_id); });
   if (!trial || !*trial) return std::nullopt;
-  const auto events = core::parse_json((*trial)->events, "events");
+  const auto events = core::parse_json((*trial)->events, "events", core::kStoredJson);
   if (!events) return std::nullopt;
   const Json answer = answer_json(*events);
   if (!answer.is_object() || !answer["confidence"].is_number()) return std::nullopt;

@@ -57,8 +57,8 @@ core::Json scenario_json(const scenarios::Scenario& scenario) {
 }
 
 core::Json study_json(const StudyPlace& place) {
-  return {{"id", place.study.id},
-          {"title", place.study.title},
+  return {{"id", place.slot.study_id},
+          {"title", place.title},
           {"participant", place.slot.participant},
           {"number", place.slot.position + 1},
           {"state", place.state},
@@ -95,9 +95,8 @@ core::Json summary_json(const store::TrialSummary& trial) {
 
 core::Json trial_json(const store::TrialRecord& trial,
                       const std::vector<store::ScoreRecord>& scores, const TrialFacts& facts) {
-  const core::Json header =
-      core::Json::parse(trial.header);  // written by us, as the events and the coverage
-  const core::Json events = core::Json::parse(trial.events);
+  const core::Json header = core::stored_json(trial.header);
+  const core::Json events = core::stored_json(trial.events);
   core::Json out = summary_json(trial.summary);
   out["rig"] = header.value("rig", "palpation");
   out["device"] = header.value("device", "");
@@ -116,7 +115,7 @@ core::Json trial_json(const store::TrialRecord& trial,
   out["tract"] = facts.tract ? tract_json(*facts.tract) : core::Json();
   out["scenario"] = facts.scenario ? scenario_json(*facts.scenario) : core::Json();
   out["study"] = facts.study ? study_json(*facts.study) : core::Json();
-  out["coverage"] = trial.coverage ? core::Json::parse(*trial.coverage) : core::Json();
+  out["coverage"] = trial.coverage ? core::stored_json(*trial.coverage) : core::Json();
   out["probe"] = header.value("probe", core::Json::object());
   return out;
 }

@@ -12,7 +12,7 @@ namespace api {
 
 /// Where a trial stands in a study.
 struct StudyPlace {
-  store::Study study;
+  std::string title;  ///< of the study or assignment
   store::Slot slot;
   std::string state, reason;  ///< as store::StudyTrial
 };

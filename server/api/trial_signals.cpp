@@ -26,7 +26,7 @@ core::Result<trial::Signals> decode(Backend& backend, const store::TrialRecord& 
 }  // namespace
 
 core::Result<trial::Header> header_of(const store::TrialRecord& trial) {
-  auto json = core::parse_json(trial.header, "trial " + trial.summary.id);
+  auto json = core::parse_json(trial.header, "trial " + trial.summary.id, core::kStoredJson);
   if (!json) return json.error();
   return trial::Header::from_json(*json, "trial " + trial.summary.id);
 }

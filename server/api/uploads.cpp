@@ -16,6 +16,46 @@ namespace {
 
 constexpr std::uint64_t kReserve_bytes = 256ull
                                          << 20;  ///< left free for the database and running trials
+constexpr std::int64_t kReserved_us = 3'600'000'000;  ///< for what an upload announced
+
+}  // namespace
+
+std::uint64_t free_bytes(const Backend& backend) {
+  if (backend.free_bytes) return backend.free_bytes();
+  std::error_code failure;
+  const auto space = std::filesystem::space(backend.partials.folder(), failure);
+  return failure ? std::numeric_limits<std::uint64_t>::max() : space.available;
+}
+
+core::Result<void> check_disk(const Backend& backend, std::uint64_t size_bytes) {
+  const std::uint64_t free = free_bytes(backend);
+  if (free >= size_bytes && free - size_bytes >= kReserve_bytes) return {};
+  return core::Error{
+      core::Errc::unavailable,
+      fmt::format("the server's disk has {} bytes left: too few for another trial", free)};
+}
+
+namespace {
+
+core::Result<void> check_room_in(store::Reading& tx, const Backend& backend,
+                                 std::uint64_t size_bytes) {
+  auto open = store::open_uploads_since(tx, backend.now_utc_us() - kReserved_us);
+  if (!open) return open.error();
+  for (const store::Upload& upload : *open) {
+    const std::uint64_t here = backend.partials.size_of(upload.trial_id);
+    size_bytes += upload.size_bytes - std::min(here, upload.size_bytes);
+  }
+  return check_disk(backend, size_bytes);
+}
+
+}  // namespace
+
+core::Result<void> check_room(Backend& backend, std::uint64_t size_bytes) {
+  return backend.store.read(
+      [&](store::Reading& tx) { return check_room_in(tx, backend, size_bytes); });
+}
+
+namespace {
 
 /// The file is the truth: what it holds was flushed before it was acknowledged.
 wire::UploadState state_of(const Backend& backend, const store::Upload& upload) {
@@ -52,8 +92,10 @@ core::Result<std::string> case_meant(store::Reading& tx, const std::string& anno
   return core::Error{core::Errc::not_found, "case_id: no case " + announced + " on this server"};
 }
 
-core::Result<void> insert(store::Writing& tx, const Caller& station, const std::string& trial_id,
-                          const wire::UploadAnnouncement& announced, std::int64_t now_utc_us) {
+core::Result<void> insert(store::Writing& tx, const Backend& backend, const Caller& station,
+                          const std::string& trial_id, const wire::UploadAnnouncement& announced) {
+  if (auto room = check_room_in(tx, backend, announced.size_bytes); !room) return room.error();
+  const std::int64_t now_utc_us = backend.now_utc_us();
   std::optional<store::Slot> slot;
   auto case_id = case_meant(tx, announced.case_id, slot);
   if (!case_id) return case_id.error();
@@ -91,21 +133,6 @@ core::Result<std::optional<store::Upload>> announced_before(
 
 }  // namespace
 
-std::uint64_t free_bytes(const Backend& backend) {
-  if (backend.free_bytes) return backend.free_bytes();
-  std::error_code failure;
-  const auto space = std::filesystem::space(backend.partials.folder(), failure);
-  return failure ? std::numeric_limits<std::uint64_t>::max() : space.available;
-}
-
-core::Result<void> check_room(const Backend& backend, std::uint64_t size_bytes) {
-  const std::uint64_t free = free_bytes(backend);
-  if (free >= size_bytes && free - size_bytes >= kReserve_bytes) return {};
-  return core::Error{
-      core::Errc::unavailable,
-      fmt::format("the server's disk has {} bytes left: too few for another trial", free)};
-}
-
 core::Result<std::unique_ptr<store::NamedLock>> hold_upload(Backend& backend,
                                                             const std::string& trial_id) {
   return backend.store.hold("upload " + trial_id);
@@ -122,7 +149,6 @@ core::Result<wire::UploadState> announce_upload(Backend& backend, const Caller& 
                                    announced.size_bytes, kMaxTrial_bytes)};
   const auto held = hold_upload(backend, trial_id);
   if (!held) return held.error();
-  if (auto room = check_room(backend, announced.size_bytes); !room) return room.error();
   // What is known already changes nothing, and is no row of the audit trail.
   auto known = backend.store.read(
       [&](store::Reading& tx) { return announced_before(tx, station, trial_id, announced); });
@@ -132,7 +158,7 @@ core::Result<wire::UploadState> announce_upload(Backend& backend, const Caller& 
     auto again = announced_before(tx, station, trial_id, announced);
     if (!again) return again.error();
     if (*again) return {};
-    return insert(tx, station, trial_id, announced, backend.now_utc_us());
+    return insert(tx, backend, station, trial_id, announced);
   });
   if (!added) return added.error();
   return wire::UploadState{backend.partials.size_of(trial_id), "receiving"};

@@ -44,8 +44,11 @@ core::Result<wire::UploadState> commit_upload(Backend& backend, const Caller& st
 /// Left on the disk that trials go to.
 std::uint64_t free_bytes(const Backend& backend);
 /// Is there room for `size_bytes` more, with the reserve for what is already running? Errors:
-/// unavailable. A trial is refused before it begins rather than lost when it ends.
-core::Result<void> check_room(const Backend& backend, std::uint64_t size_bytes);
+/// unavailable.
+core::Result<void> check_disk(const Backend& backend, std::uint64_t size_bytes);
+/// The same beside what uploads of the last hour announced and have not sent yet (an older one is
+/// slow or abandoned). A trial is refused before it begins rather than lost when it ends.
+core::Result<void> check_room(Backend& backend, std::uint64_t size_bytes);
 /// What a trial that is about to begin may need: ten minutes at 4 kHz of 160 B.
 inline constexpr std::uint64_t kTrialToCome_bytes = 384ull << 20;
 

@@ -82,6 +82,35 @@ TEST_F(Uploads, TheSameAnnouncementIsTheSameUploadAndAnotherAConflict) {
   EXPECT_EQ(other.error().code, core::Errc::conflict);
 }
 
+TEST_F(Uploads, AnnounceTogetherNoMoreThanTheDiskHas) {
+  constexpr std::uint64_t kMib = 1u << 20;
+  // 256 MiB are left free always: two announcements of 400 MiB fit beside them, three do not.
+  std::uint64_t free = 1100 * kMib;
+  backend_.free_bytes = [&] { return free; };
+  const wire::UploadAnnouncement large{kCase, 400 * kMib, std::string(64, 'e')};
+  const auto announce = [&](char id) {
+    return announce_upload(backend_, id == 'c' ? kTwo : kOne, std::string(32, id), large);
+  };
+  ASSERT_TRUE(announce('a'));
+  ASSERT_TRUE(announce('b'));
+  const auto third = announce('c');
+  ASSERT_FALSE(third);
+  EXPECT_EQ(third.error().code, core::Errc::unavailable);
+  EXPECT_TRUE(announce('a')) << "its room is kept";
+  EXPECT_TRUE(check_disk(backend_, 0)) << "the disk itself is not full";
+  EXPECT_FALSE(check_room(backend_, kTrialToCome_bytes));
+  now_ += 3'601'000'000;  // abandoned
+  EXPECT_TRUE(announce('c'));
+}
+
+TEST_F(Uploads, NeedNoRoomForWhatIsHereAlready) {
+  ASSERT_TRUE(announce_upload(backend_, kOne, kTrial, announcement(bytes_)));
+  ASSERT_TRUE(send(bytes_, 0, bytes_.size()));
+  backend_.free_bytes = [] { return std::uint64_t{256} << 20; };
+  EXPECT_TRUE(check_room(backend_, 0));
+  EXPECT_FALSE(check_room(backend_, 1));
+}
+
 TEST_F(Uploads, OfAnotherStationDoNotExist) {
   sent(bytes_);
   EXPECT_EQ(upload_state(backend_, kTwo, kTrial).error().code, core::Errc::not_found);

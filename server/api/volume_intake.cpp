@@ -31,16 +31,11 @@ Result<TakenVolume> take_in(const Call& call) {
   const std::unique_lock held(one_at_a_time, std::try_to_lock);
   if (!held) return Error{Errc::unavailable, "another volume is being read: try again in a minute"};
   // On the data's disk: what a server that dies in the midst leaves there, the next start removes.
-  const fs::path beside =
-      call.backend.scratch.empty() ? call.backend.partials.folder() : call.backend.scratch;
-  auto scratch = core::ScratchFolder::make(beside / "volume");
+  auto scratch = core::ScratchFolder::make(call.backend.scratch->folder() / "volume");
   if (!scratch) return scratch.error();
-  fs::path upload = call.request.body_file;
-  if (upload.empty()) {
-    upload = scratch->path() / "upload";
-    if (auto written = core::write_file(upload, core::bytes_of(call.request.body)); !written)
-      return written.error();
-  }
+  const auto file = body_in(call, scratch->path(), "upload");
+  if (!file) return file.error();
+  const fs::path& upload = *file;
   const volume_io::UidKey key = call.backend.secrets.uid_key();
   auto answer = call.backend.take_volume ? call.backend.take_volume(upload, scratch->path(), key)
                                          : jobs::take_volume(upload, scratch->path(), key);

@@ -13,7 +13,6 @@ using core::Error;
 using core::Result;
 
 constexpr std::size_t kMost_bytes = 1u << 20;
-constexpr long kPatience_s = 10;
 
 struct Cleans {
   void operator()(CURL* handle) const { curl_easy_cleanup(handle); }
@@ -71,7 +70,7 @@ Result<Fetched> fetch(const Fetch& what) {
   curl_easy_setopt(curl, CURLOPT_URL, what.url.c_str());
   curl_easy_setopt(curl, CURLOPT_PROTOCOLS_STR, "http,https");
   curl_easy_setopt(curl, CURLOPT_FOLLOWLOCATION, 0L);
-  curl_easy_setopt(curl, CURLOPT_TIMEOUT, kPatience_s);
+  curl_easy_setopt(curl, CURLOPT_TIMEOUT_MS, static_cast<long>(what.patience.count()));
   curl_easy_setopt(curl, CURLOPT_NOSIGNAL, 1L);
   curl_easy_setopt(curl, CURLOPT_WRITEFUNCTION, take);
   curl_easy_setopt(curl, CURLOPT_WRITEDATA, &out.body);

@@ -6,6 +6,7 @@
 
 #include "core/clock.hpp"
 #include "core/file.hpp"
+#include "server/app/anchors.hpp"
 
 namespace app {
 namespace fs = std::filesystem;
@@ -40,6 +41,13 @@ bool is_name(const std::string& id) {
 
 BackupFolder::BackupFolder(fs::path data, fs::path folder)
     : data_(std::move(data)), folder_(std::move(folder)) {}
+
+core::Result<void> BackupFolder::tidy(bool alone) const {
+  std::error_code failure;
+  if (!fs::exists(folder_, failure)) return {};
+  remove_left_overs(folder_, alone);
+  return leave_to_owner(folder_);
+}
 
 BackupFolder::~BackupFolder() {
   {
@@ -125,7 +133,7 @@ void BackupFolder::make_now(api::Backup& backup) {
 
 void BackupFolder::verify_now(api::Backup& backup) {
   auto scratch = core::ScratchFolder::make(folder_ / ("trying-" + backup.id));
-  auto found = [&]() -> core::Result<store::Findings> {
+  auto examined = [&]() -> core::Result<Examined> {
     if (!scratch) return scratch.error();
     const fs::path restored = scratch->path() / "data";
     const auto shown = progress();
@@ -134,13 +142,11 @@ void BackupFolder::verify_now(api::Backup& backup) {
     if (!put_back) return put_back.error();
     auto data = open_data(restored, Database::file_in(restored));
     if (!data) return data.error();
-    auto anchors = anchors_of(restored);
-    if (!anchors) return anchors.error();
-    return store::look_over(data->store, data->objects, data->secrets.audit_key(), *anchors,
-                            [&](double share) { return shown(0.5 + 0.5 * share); });
+    return examine(*data, [&](double share) { return shown(0.5 + 0.5 * share); });
   }();
-  if (!found && found.error().code == core::Errc::cancelled) return;
-  backup.findings = found ? std::move(found->lines) : std::vector{found.error().what};
+  if (!examined && examined.error().code == core::Errc::cancelled) return;
+  backup.findings =
+      examined ? std::move(examined->found.lines) : std::vector{examined.error().what};
   if (backup.findings.size() > kMostFindings) backup.findings.resize(kMostFindings);
   backup.holds = backup.findings.empty();
   backup.verified_utc_us = core::utc_us();
@@ -153,7 +159,6 @@ core::Result<api::Backup> BackupFolder::make(const std::string& by) {
     return core::Error{core::Errc::conflict, "another backup is being made or verified"};
   std::error_code failure;
   fs::create_directories(folder_, failure);
-  fs::permissions(folder_, fs::perms::owner_all, failure);
   const std::int64_t now = core::utc_us();
   api::Backup backup{.id = name_of(now), .state = "making", .error = {}, .made_by = by};
   backup.made_utc_us = now;

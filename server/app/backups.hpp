@@ -20,6 +20,8 @@ class BackupFolder final : public api::Backups {
   BackupFolder(std::filesystem::path data, std::filesystem::path folder);
   /// Stops what is under way and waits for it.
   ~BackupFolder() override;
+  /// At the server's start: leaves the folder to its owner, removes what a server that died left.
+  core::Result<void> tidy(bool alone) const;
   core::Result<std::vector<api::Backup>> list() override;
   core::Result<api::Backup> make(const std::string& by) override;
   core::Result<api::Backup> verify(const std::string& id) override;

@@ -35,6 +35,7 @@ Run openapi_command(CLI::App& command);
 Run backup_command(CLI::App& command);
 Run restore_command(CLI::App& command);
 Run verify_command(CLI::App& command);
+Run anchor_command(CLI::App& command);
 Run migrate_command(CLI::App& command);
 
 }  // namespace app

@@ -7,9 +7,11 @@
 #include <unistd.h>
 
 #include <charconv>
+#include <chrono>
 
 #include "core/clock.hpp"
 #include "core/file.hpp"
+#include "server/app/log.hpp"
 
 namespace app {
 namespace fs = std::filesystem;
@@ -68,6 +70,38 @@ core::Result<api::Secrets> secrets_of(const fs::path& folder, store::Store& stor
 }
 }  // namespace
 
+core::Result<void> leave_to_owner(const fs::path& folder) {
+  auto repaired = core::make_private(folder, "objects");
+  if (!repaired) return repaired.error();
+  if (*repaired > 0)
+    log_line({{"what", "others had access to files and folders; now their owner alone has"},
+              {"folder", folder.string()},
+              {"repaired", *repaired}});
+  return {};
+}
+
+namespace {
+
+void remove_parts(const fs::path& folder, bool alone) {
+  constexpr std::chrono::hours kLongest_work{24};
+  std::error_code failure;
+  for (const auto& entry : fs::directory_iterator(folder, failure)) {
+    if (entry.path().extension() != ".part") continue;
+    const auto age = fs::file_time_type::clock::now() - entry.last_write_time(failure);
+    if (alone || age > kLongest_work) fs::remove_all(entry.path(), failure);
+  }
+}
+
+}  // namespace
+
+void remove_left_overs(const fs::path& folder, bool alone) {
+  for (const char* inner : {"", kCertificates, "pseudonyms", "objects"})
+    remove_parts(folder / inner, alone);
+  std::error_code failure;
+  for (const auto& entry : fs::directory_iterator(folder / "objects", failure))
+    remove_parts(entry.path(), alone);
+}
+
 core::Result<DataFolder> open_data(const fs::path& path) {
   auto database = database_of(path);
   if (!database) return database.error();
@@ -84,11 +118,11 @@ core::Result<DataFolder> open_data(const fs::path& path, const Database& databas
   if (database.is_shared())  // nothing is made when it cannot be reached
     if (auto reached = database.open(); !reached) return reached.error();
   std::error_code failure;
-  const bool fresh = fs::create_directories(path, failure);
+  fs::create_directories(path, failure);
   if (failure)
     return core::Error{core::Errc::io,
                        fmt::format("{}: cannot create: {}", path.string(), failure.message())};
-  if (fresh) fs::permissions(path, fs::perms::owner_all, failure);  // trainees' trials are in it
+  if (auto done = leave_to_owner(path); !done) return done.error();
   auto objects = store::Objects::open(path);
   if (!objects) return objects.error();
   auto partials = store::PartialFiles::open(path);
@@ -116,7 +150,7 @@ store::Act command_act(const std::string& command, const core::Json& detail) {
 
 core::Result<ServingLock> ServingLock::take(const fs::path& data, bool shared) {
   const fs::path path = data / "serving.lock";
-  const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0640);
+  const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
   if (fd < 0) return core::system_error(path, "cannot open");
   if (::flock(fd, (shared ? LOCK_SH : LOCK_EX) | LOCK_NB) != 0) {
     ::close(fd);

@@ -29,6 +29,13 @@ core::Result<DataFolder> open_data(const std::filesystem::path& path, const Data
 /// Makes one, or opens what is there (accounts are another matter).
 core::Result<DataFolder> make_data(const std::filesystem::path& path);
 
+/// core::make_private, with a line in the log when something was repaired.
+core::Result<void> leave_to_owner(const std::filesystem::path& folder);
+
+/// Removes what a process that died left half-made (*.part): in the folder, its objects, keys and
+/// certificates. @param alone  no other server works there; else only what is older than a day goes
+void remove_left_overs(const std::filesystem::path& folder, bool alone);
+
 /// Makes a file of a new key, for its owner's eyes; one that is there stays. Errors: io.
 core::Result<void> make_key_file(const std::filesystem::path& path);
 /// Errors: not_found, io, corrupt (64 hexadecimal characters are expected).

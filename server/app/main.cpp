@@ -1,5 +1,6 @@
 /// `tractus-server`: the command line.
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include <cstdio>
 
@@ -59,8 +60,11 @@ constexpr Command kCommands[] = {
      "tractus-server restore --from /backup/tractus-monday --data /srv/tractus",
      app::restore_command},
     {"verify",
-     "Look a data folder over: database, files, audit trail; exit 1 when something is wrong",
-     "tractus-server verify --data /srv/tractus", app::verify_command},
+     "Check a data folder: database, files, audit trail, anchors, the rows that the trail covers; "
+     "exit 1 when something is wrong",
+     "tractus-server verify --data /srv/tractus --anchors /mnt/other/anchors", app::verify_command},
+    {"anchor", "Begin the audit trail's anchors again after they were lost; the trail says so",
+     "tractus-server anchor --data /srv/tractus", app::anchor_command},
     {"migrate", "Bring the database up to this program's schema",
      "tractus-server migrate --data /srv/tractus", app::migrate_command},
     {"openapi", "Print the description of the API, OpenAPI 3.1",
@@ -79,6 +83,7 @@ int ended_by(const CLI::App& commands, const CLI::ParseError& end) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  ::umask(0077);  // whatever it makes is its owner's alone
   CLI::App commands{"Tractus server: cases, trials and their assessment", "tractus-server"};
   commands.require_subcommand(1);
   commands.set_version_flag("--version", TRACTUS_VERSION);

@@ -6,9 +6,7 @@
 
 #include <charconv>
 #include <chrono>
-#include <condition_variable>
 #include <cstdio>
-#include <mutex>
 #include <thread>
 
 #include "core/bytes.hpp"
@@ -20,9 +18,10 @@
 #include "server/api/refusals.hpp"
 #include "server/api/service.hpp"
 #include "server/api/uploads.hpp"
+#include "server/app/anchoring.hpp"
 #include "server/app/backups.hpp"
+#include "server/app/log.hpp"
 #include "server/app/taking.hpp"
-#include "server/app/upkeep.hpp"
 #include "server/http/certificates.hpp"
 #include "server/http/static_files.hpp"
 #include "server/jobs/runner.hpp"
@@ -74,7 +73,7 @@ http::Service service_of(api::Backend& backend, const std::optional<std::filesys
   };
   return {
       .admit = [&backend, is_api](
-                   const http::RequestHead& head) -> std::variant<std::uint64_t, http::Response> {
+                   const http::RequestHead& head) -> std::variant<http::Admitted, http::Response> {
         if (is_api(head)) return api::admit(backend, api::routes(), head);
         return http::error_response(405, "bad_input", "pages take no body");
       },
@@ -86,7 +85,11 @@ http::Service service_of(api::Backend& backend, const std::optional<std::filesys
           [&backend](const http::RequestHead& head) {
             return api::converse(backend, api::routes(), head);
           },
-      .spools = [](const http::RequestHead& head) { return api::takes_file(api::routes(), head); }};
+      .lane = [](const http::RequestHead& head) { return api::lane_of(api::routes(), head); },
+      .standing =
+          [&backend](const http::RequestHead& head) {
+            return api::standing(backend, api::routes(), head);
+          }};
 }
 
 std::string address_of(const ServeOptions& options, std::uint16_t port) {
@@ -124,52 +127,6 @@ core::Result<std::pair<std::string, std::uint16_t>> listening_address(const std:
 
 namespace {
 
-/// One line of JSON on standard error: the time, then what happened.
-void log_line(const core::Json& fields) {
-  core::Json line{{"t", core::utc_text(core::utc_us())}};
-  line.update(fields);
-  fmt::print(stderr, "{}\n", line.dump(-1, ' ', false, core::Json::error_handler_t::replace));
-}
-
-/// Several servers share the file: one at a time adds to it.
-core::Result<void> note_anchor_once(DataFolder& data) {
-  const auto held = data.store.hold("audit anchor");
-  if (!held) return held.error();
-  return note_anchor(data);
-}
-
-/// Notes the audit trail's end outside the database, every ten seconds and at the end.
-class Anchoring {
- public:
-  explicit Anchoring(DataFolder& data) : thread_([this, &data] { run(data); }) {}
-  ~Anchoring() {
-    {
-      const std::lock_guard held(mutex_);
-      ending_ = true;
-    }
-    changed_.notify_all();
-    thread_.join();
-  }
-  Anchoring(const Anchoring&) = delete;
-  Anchoring& operator=(const Anchoring&) = delete;
-
- private:
-  void run(DataFolder& data) {
-    constexpr std::chrono::seconds kBetween{10};
-    std::unique_lock held(mutex_);
-    while (true) {
-      const bool last = changed_.wait_for(held, kBetween, [this] { return ending_; });
-      if (auto noted = note_anchor_once(data); !noted)
-        log_line({{"what", "audit anchor"}, {"error", noted.error().what}});
-      if (last) return;
-    }
-  }
-  std::mutex mutex_;  ///< guards ending_
-  bool ending_ = false;
-  std::condition_variable changed_;
-  std::thread thread_;
-};
-
 bool is_loopback(const std::string& address) {
   return address.starts_with("127.") || address == "::1";
 }
@@ -202,7 +159,8 @@ core::Result<ServeOptions> secured(ServeOptions options) {
 
 namespace {
 
-/// Where this process puts large bodies: a folder of its own below DATA/scratch.
+/// Where this process puts large bodies, answers and temporary files: a folder of its own below
+/// DATA/scratch.
 struct Scratch {
   std::filesystem::path path;
   ServingLock lock;  ///< held as long as the process lives
@@ -214,10 +172,10 @@ core::Result<Scratch> own_scratch(const std::filesystem::path& data) {
   const std::filesystem::path all = data / "scratch", own = all / core::new_id();
   std::error_code failure;
   std::filesystem::create_directories(all, failure);
-  if (!failure) std::filesystem::permissions(all, std::filesystem::perms::owner_all, failure);
   for (const auto& left : std::filesystem::directory_iterator(all, failure))
     if (ServingLock::take(left.path(), false)) std::filesystem::remove_all(left.path(), failure);
   if (!failure) std::filesystem::create_directory(own, failure);
+  if (!failure) std::filesystem::permissions(own, std::filesystem::perms::owner_all, failure);
   if (failure)
     return core::Error{core::Errc::io, own.string() + ": cannot be made: " + failure.message()};
   auto lock = ServingLock::take(own, false);
@@ -243,8 +201,7 @@ core::Result<std::optional<api::Secrets::Key>> pseudonym_key_of(const std::files
     return Maybe();
   }
   if (!there) {
-    if (std::filesystem::create_directories(path.parent_path(), failure))
-      std::filesystem::permissions(path.parent_path(), std::filesystem::perms::owner_all, failure);
+    std::filesystem::create_directories(path.parent_path(), failure);
     if (auto made = make_key_file(path); !made) return made.error();
   }
   auto key = read_key_file(path);
@@ -271,10 +228,13 @@ core::Result<void> serve(const ServeOptions& given) {
   if (!lock) return lock.error();
   const auto secure = secured(given);
   if (!secure) return secure.error();
+  remove_left_overs(given.data, !data->store.shared());
   const auto scratch = own_scratch(given.data);
   if (!scratch) return scratch.error();
+  ::setenv("TMPDIR", scratch->path.c_str(), 1);  // temporary files of every part of this program
+  const auto space = std::make_shared<http::ScratchSpace>(scratch->path);
   ServeOptions options = *secure;
-  options.http.spool = scratch->path;
+  options.http.scratch = space.get();
   if (options.web && !std::filesystem::is_regular_file(*options.web / "index.html"))
     return core::Error{core::Errc::not_found,
                        options.web->string() + ": no index.html there; build the web pages first"};
@@ -288,13 +248,14 @@ core::Result<void> serve(const ServeOptions& given) {
       options.pseudonym_key.value_or(given.data / "pseudonyms" / "key"), data->store);
   if (!pseudonym_key) return pseudonym_key.error();
   auto runner = jobs::Runner::start(
-      data->store, data->objects, data->secrets.case_key(),
+      data->store, data->objects, {data->secrets.case_key(), *pseudonym_key},
       [](const std::string& line) {
         log_line({{"what", "job"}, {"line", line}});
       },
       options.job_lease);
   if (!runner) return runner.error();
   BackupFolder backups(given.data, given.backups.value_or(given.data / "backups"));
+  if (auto fine = backups.tidy(!data->store.shared()); !fine) return fine;
   api::Backend backend{.store = data->store,
                        .objects = data->objects,
                        .partials = data->partials,
@@ -306,7 +267,7 @@ core::Result<void> serve(const ServeOptions& given) {
                        .logs_requests = options.log_requests,
                        .backups = &backups,
                        .take_volume = take_volume_apart,
-                       .scratch = scratch->path,
+                       .scratch = space,
                        .pseudonym_key = *pseudonym_key};
   live::Hub hub({.store = data->store,
                  .now_utc_us = core::utc_us,
@@ -317,6 +278,7 @@ core::Result<void> serve(const ServeOptions& given) {
                      },
                  .log = log_line});
   backend.live = &hub;
+  if (auto begun = begin_trail(*data); !begun) return begun;
   if (auto fine = api::reconcile_uploads(backend); !fine) return fine;
   if (auto started = hub.start(); !started) return started;
   auto server = http::Server::open(options.http, service_of(backend, options.web));
@@ -329,7 +291,7 @@ core::Result<void> serve(const ServeOptions& given) {
   signals.watch(*server);
   say_where(options, server->port());
   {
-    const Anchoring anchoring(*data);
+    const Anchoring anchoring(*data, options.anchor_places);
     log_line({{"what", "serving"}, {"tls", options.http.tls.has_value()}});
     server->run();
   }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/result.hpp"
+#include "server/app/anchoring.hpp"
 #include "server/http/server.hpp"
 
 namespace app {
@@ -22,9 +23,10 @@ struct ServeOptions {
   /// PEM files of an own certificate chain and its key, instead of the house's.
   std::optional<std::pair<std::filesystem::path, std::filesystem::path>> certificate;
   std::chrono::milliseconds job_lease{30'000};  ///< see jobs::Runner
-  std::optional<std::filesystem::path> oidc;  ///< settings of a provider of identities
+  std::optional<std::filesystem::path> oidc;    ///< settings of a provider of identities
   /// The key of exports' pseudonyms; none: DATA/pseudonyms/key.
   std::optional<std::filesystem::path> pseudonym_key;
+  std::vector<AnchorPlace> anchor_places = {};  ///< where anchors of the audit trail go as well
   bool log_requests = false;  ///< a line for every one, not only for those that fail
   bool json = false;          ///< the line that says where it listens
 };

@@ -25,6 +25,10 @@ Run serve_command(CLI::App& command) {
                    "HTTP without TLS, on this machine's own addresses alone: for tests and trials");
   command.add_flag("--behind-proxy", options->http.behind_proxy,
                    "HTTP without TLS: a proxy before it speaks TLS and sets X-Forwarded-For");
+  const auto proxies = std::make_shared<std::vector<std::string>>();
+  command.add_option("--trusted-proxy", *proxies,
+                     "Address or network (ADDRESS/BITS) of a proxy whose X-Forwarded-For is "
+                     "believed, with --behind-proxy; repeat it (default: this machine's own)");
   command.add_option("--host", options->hosts,
                      "Name or address that it is reached by, for its certificate; repeat it");
   command.add_flag("--log-requests", options->log_requests,
@@ -45,6 +49,12 @@ Run serve_command(CLI::App& command) {
   command.add_option("--pseudonym-key", *pseudonyms,
                      "File of the key of exports' pseudonyms, made when it is not there; "
                      "DATA/pseudonyms/key if not given. No backup holds it: copy it by itself");
+  const auto places = std::make_shared<std::vector<std::string>>();
+  command
+      .add_option("--anchors-to", *places,
+                  "Where every anchor of the audit trail goes as well: the absolute path of a file "
+                  "(on another disk), syslog, or an https address that takes it by POST; repeat it")
+      ->type_name("PLACE");
   const auto certificate = std::make_shared<std::filesystem::path>();
   const auto key = std::make_shared<std::filesystem::path>();
   auto* chain = command.add_option("--certificate", *certificate,
@@ -55,10 +65,21 @@ Run serve_command(CLI::App& command) {
     if (!address) return address.error();
     options->data = common->data;
     options->json = common->json;
+    for (const std::string& text : *places) {
+      auto place = anchor_place(text);
+      if (!place) return place.error();
+      options->anchor_places.push_back(std::move(*place));
+    }
     if (!web->empty()) options->web = *web;
     if (!oidc->empty()) options->oidc = *oidc;
     if (!pseudonyms->empty()) options->pseudonym_key = *pseudonyms;
     if (!certificate->empty()) options->certificate.emplace(*certificate, *key);
+    if (!proxies->empty()) {
+      auto networks = http::Networks::parse(*proxies);
+      if (!networks)
+        return core::Error{networks.error().code, "--trusted-proxy " + networks.error().what};
+      options->http.proxies = std::move(*networks);
+    }
     options->http.address = address->first;
     options->http.port = address->second;
     options->http.header_time = std::chrono::milliseconds(std::lround(*header_s * 1000));

@@ -1,11 +1,11 @@
 /// init, enrol, publish: what is done before and beside serving.
 #include <fmt/format.h>
-#include <sys/stat.h>
 
 #include "core/clock.hpp"
 #include "core/file.hpp"
 #include "db/store/accounts.hpp"
 #include "server/api/authentication.hpp"
+#include "server/app/anchors.hpp"
 #include "server/app/command.hpp"
 #include "server/app/data_folder.hpp"
 #include "server/app/publish.hpp"
@@ -58,6 +58,7 @@ Run init_command(CLI::App& command) {
     if (!password) return password.error();
     auto data = make_data(common->data);
     if (!data) return data.error();
+    if (auto begun = begin_trail(*data); !begun) return begun.error();
     if (auto made = make_account(*data, *name, *password); !made) return made.error();
     auto names = http::own_names();
     names.insert(names.end(), hosts->begin(), hosts->end());
@@ -89,10 +90,7 @@ namespace {
 Outcome write_secret(const std::filesystem::path& path, const std::string& text) {
   if (std::filesystem::exists(path))
     return core::Error{core::Errc::conflict, path.string() + ": exists already"};
-  const mode_t before = ::umask(0077);
-  auto written = core::write_file(path, core::bytes_of(text + "\n"));
-  ::umask(before);
-  return written;
+  return core::write_file(path, core::bytes_of(text + "\n"));
 }
 
 }  // namespace

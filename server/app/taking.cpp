@@ -110,7 +110,7 @@ Result<Json> take_volume_apart(const fs::path& upload, const fs::path& folder,
   int status = 0;
   while (::waitpid(*child, &status, 0) < 0 && errno == EINTR) {
   }
-  Json answer = Json::parse(said, nullptr, false);
+  Json answer = core::stored_json(said);
   const bool whole = WIFEXITED(status) && WEXITSTATUS(status) == 0 && answer.is_object();
   if (whole && answer.contains("facts")) return answer;
   if (whole && answer.contains("error"))

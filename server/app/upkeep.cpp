@@ -1,17 +1,12 @@
 #include "server/app/upkeep.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include <charconv>
-#include <fstream>
 
 #include "core/clock.hpp"
 #include "core/file.hpp"
 #include "db/store/copy.hpp"
 #include "db/store/uploads.hpp"
+#include "server/app/anchors.hpp"
 
 namespace app {
 namespace fs = std::filesystem;
@@ -19,14 +14,13 @@ namespace {
 
 constexpr const char* kFormat = "tractus-backup/1";
 constexpr const char* kManifest = "backup.json";
-constexpr const char* kAnchors = "audit.anchor";
 constexpr std::uint64_t kMaxSmall_bytes = 64u << 20;
 
 /// Keys, certificates and the trail's anchors: copied as they are, for their owner alone.
 std::vector<std::string> small_files(const fs::path& folder) {
   std::vector<std::string> out;
   std::error_code failure;
-  for (const char* name : {"secret.key", kAnchors})
+  for (const char* name : {"secret.key", kHighWater, kAnchors})
     if (fs::exists(folder / name, failure)) out.emplace_back(name);
   for (const auto& entry : fs::directory_iterator(folder / kCertificates, failure))
     out.push_back(std::string(kCertificates) + "/" + entry.path().filename().string());
@@ -38,10 +32,17 @@ core::Result<void> copy_small(const fs::path& from, const fs::path& to, const st
   if (!bytes) return bytes.error();
   std::error_code failure;
   fs::create_directories((to / name).parent_path(), failure);
-  const mode_t before = ::umask(0077);
-  auto written = core::write_file(to / name, *bytes);
-  ::umask(before);
-  return written;
+  return core::write_file(to / name, *bytes);
+}
+
+/// Those that are not in `to` yet.
+core::Result<void> copy_small_files(const fs::path& from, const fs::path& to) {
+  std::error_code failure;
+  for (const std::string& name : small_files(from)) {
+    if (fs::exists(to / name, failure)) continue;
+    if (auto done = copy_small(from, to, name); !done) return done;
+  }
+  return {};
 }
 
 /// Objects that the database names, each checked against its name while it is copied.
@@ -117,8 +118,7 @@ core::Result<std::uint64_t> copy_files(const fs::path& from, const fs::path& to,
   auto bytes = copy_objects(from, *names, *objects, shown);
   if (!bytes) return bytes.error();
   if (auto done = copy_partials(from, *names, *partials); !done) return done.error();
-  for (const std::string& name : small_files(from))
-    if (auto done = copy_small(from, to, name); !done) return done.error();
+  if (auto done = copy_small_files(from, to); !done) return done.error();
   return *bytes;
 }
 
@@ -176,9 +176,7 @@ core::Result<core::ScratchFolder> scratch_for(const fs::path& target) {
   std::error_code failure;
   if (fs::exists(target, failure))
     return core::Error{core::Errc::conflict, target.string() + ": exists already"};
-  auto scratch = core::ScratchFolder::make(target);
-  if (scratch) fs::permissions(scratch->path(), fs::perms::owner_all, failure);
-  return scratch;
+  return core::ScratchFolder::make(target);
 }
 
 }  // namespace
@@ -190,6 +188,8 @@ core::Result<core::Json> back_up(const fs::path& data, const fs::path& out,
   auto scratch = scratch_for(out);
   if (!scratch) return scratch.error();
   const fs::path& to = scratch->path();
+  // Anchors before the records: what they note is in the records then.
+  if (auto copied = copy_small_files(data, to); !copied) return copied.error();
   if (auto copied = copy_records(*source, to / kDatabase); !copied) return copied.error();
   auto bytes = copy_files(data, to, shown);
   if (!bytes) return bytes.error();
@@ -234,42 +234,6 @@ core::Result<core::Json> restore(const fs::path& from, const fs::path& data, con
     if (auto moved = move_records(scratch->path(), target); !moved) return moved.error();
   if (auto kept = scratch->keep_as(data); !kept) return kept.error();
   return *manifest;
-}
-
-core::Result<store::Anchors> anchors_of(const fs::path& data) {
-  store::Anchors out;
-  std::ifstream file(data / kAnchors);
-  int number = 0;
-  for (std::string line; std::getline(file, line);) {
-    ++number;
-    store::ChainEnd end;
-    const char* stop = line.data() + line.size();
-    const auto [at, failure] = std::from_chars(line.data(), stop, end.number);
-    end.hash = failure == std::errc() && at != stop ? std::string(at + 1, stop) : "";
-    if (!core::is_sha256(end.hash))
-      return core::Error{core::Errc::corrupt,
-                         fmt::format("{}: line {}: a number and a hash are expected",
-                                     (data / kAnchors).string(), number)};
-    out.push_back(std::move(end));
-  }
-  return out;
-}
-
-core::Result<void> note_anchor(DataFolder& data) {
-  auto end = data.store.read([](store::Reading& tx) { return store::chain_end(tx); });
-  if (!end) return end.error();
-  auto noted = anchors_of(data.path);
-  if (!noted) return noted.error();
-  if (end->number == 0 || (!noted->empty() && noted->back().number == end->number)) return {};
-  const fs::path path = data.path / kAnchors;
-  const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
-  if (fd < 0) return core::system_error(path, "cannot open");
-  const std::string line = fmt::format("{} {}\n", end->number, end->hash);
-  const bool written = ::write(fd, line.data(), line.size()) == static_cast<ssize_t>(line.size()) &&
-                       ::fsync(fd) == 0;
-  ::close(fd);
-  if (!written) return core::system_error(path, "cannot write");
-  return {};
 }
 
 }  // namespace app

@@ -23,9 +23,4 @@ core::Result<core::Json> restore(const std::filesystem::path& from,
                                  const std::filesystem::path& data, const Database& target,
                                  const core::Progress& shown);
 
-/// Ends of the audit trail noted beside the database (audit.anchor). Errors: corrupt with the line.
-core::Result<store::Anchors> anchors_of(const std::filesystem::path& data);
-/// Notes the present end, when it is a new one.
-core::Result<void> note_anchor(DataFolder& data);
-
 }  // namespace app

@@ -80,8 +80,8 @@ std::string pem_of(EVP_PKEY* key) {
 }
 
 /// Called before the server has threads: the mask is the process's.
-core::Result<void> write(const fs::path& path, const std::string& text, mode_t mask) {
-  const mode_t before = ::umask(mask);
+core::Result<void> write(const fs::path& path, const std::string& text) {
+  const mode_t before = ::umask(0077);
   auto written = core::write_file(path, core::bytes_of(text));
   ::umask(before);
   return written;
@@ -136,8 +136,8 @@ core::Result<void> make_authority(const CertificateFiles& files, std::int64_t no
   extend(made.get(), made.get(), NID_key_usage, "critical,keyCertSign,cRLSign");
   extend(made.get(), made.get(), NID_subject_key_identifier, "hash");
   sign(made.get(), made.get(), key.get());
-  if (auto done = write(files.authority_key, pem_of(key.get()), 0077); !done) return done;
-  return write(files.authority, pem_of(made.get()), 0022);
+  if (auto done = write(files.authority_key, pem_of(key.get())); !done) return done;
+  return write(files.authority, pem_of(made.get()));
 }
 
 bool is_address(const std::string& name) {
@@ -166,8 +166,8 @@ core::Result<void> make_server(const CertificateFiles& files, const std::vector<
     also += fmt::format("{}{}:{}", also.empty() ? "" : ",", is_address(name) ? "IP" : "DNS", name);
   extend(made.get(), issuer, NID_subject_alt_name, also);
   sign(made.get(), issuer, authority_key->get());
-  if (auto done = write(files.key, pem_of(key.get()), 0077); !done) return done;
-  return write(files.certificate, pem_of(made.get()) + pem_of(issuer), 0022);
+  if (auto done = write(files.key, pem_of(key.get())); !done) return done;
+  return write(files.certificate, pem_of(made.get()) + pem_of(issuer));
 }
 
 bool covers(X509* certificate, const std::string& name) {

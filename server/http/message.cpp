@@ -7,6 +7,7 @@
 
 #include "core/json.hpp"
 #include "core/words.hpp"
+#include "server/http/networks.hpp"
 
 namespace http {
 namespace {
@@ -158,7 +159,7 @@ std::string forwarded_peer(const RequestHead& head) {
   if (const auto comma = named.rfind(','); comma != std::string_view::npos)
     named.remove_prefix(comma + 1);
   named.remove_prefix(std::min(named.find_first_not_of(' '), named.size()));
-  return named.empty() ? head.peer : std::string(named.substr(0, 64));
+  return ip_address(std::string(named)) ? std::string(named) : head.peer;
 }
 
 }  // namespace http

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -37,7 +38,7 @@ struct RequestHead {
 core::Result<void> read_target(std::string_view target, RequestHead& head);
 
 /// Whom a proxy names last in X-Forwarded-For: what stands before that anybody may have written.
-/// Without the header: the peer itself.
+/// Without the header, or when what it names is no address: the peer itself.
 std::string forwarded_peer(const RequestHead& head);
 
 struct Request : RequestHead {
@@ -51,6 +52,7 @@ struct FileSlice {
   std::filesystem::path path;
   std::uint64_t offset = 0;
   std::uint64_t size = 0;
+  std::shared_ptr<const void> owner = {};  ///< kept until it is sent: as http::ScratchFile
 };
 
 struct Response {

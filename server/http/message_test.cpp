@@ -4,6 +4,8 @@
 
 #include <tuple>
 
+#include "server/http/networks.hpp"
+
 namespace http {
 namespace {
 
@@ -80,6 +82,33 @@ TEST(Forwarding, TakesWhatTheProxyItselfWroteLast) {
   EXPECT_EQ(forwarded_peer(head), "203.0.113.9");
   head.headers["x-forwarded-for"] = "6.6.6.6, 203.0.113.9";
   EXPECT_EQ(forwarded_peer(head), "203.0.113.9");
+  head.headers["x-forwarded-for"] = "203.0.113.9, 2001:db8::1";
+  EXPECT_EQ(forwarded_peer(head), "2001:db8::1");
+  head.headers["x-forwarded-for"] = "203.0.113.9, a name";
+  EXPECT_EQ(forwarded_peer(head), "127.0.0.1") << "no address";
+}
+
+TEST(Networks, ContainAddressesByTheirFirstBits) {
+  const auto networks = Networks::parse({"10.1.0.0/20", "192.0.2.7", "2001:db8::/33", "::1"});
+  ASSERT_TRUE(networks);
+  for (const char* inside : {"10.1.0.1", "10.1.15.255", "192.0.2.7", "::ffff:192.0.2.7",
+                             "2001:db8:7fff::1", "::1", "::1%lo"})
+    EXPECT_TRUE(networks->contain(inside)) << inside;
+  for (const char* outside : {"10.1.16.0", "10.0.255.255", "192.0.2.6", "2001:db8:8000::1", "::2",
+                              "", "localhost", "10.1.0.1.1", "10.1.0.1/32"})
+    EXPECT_FALSE(networks->contain(outside)) << outside;
+}
+
+TEST(Networks, AreLoopbackWhereNoneAreNamed) {
+  for (const char* own : {"127.0.0.1", "127.255.0.1", "::1", "::ffff:127.0.0.1"})
+    EXPECT_TRUE(Networks::loopback().contain(own)) << own;
+  EXPECT_FALSE(Networks::loopback().contain("128.0.0.1"));
+}
+
+TEST(Networks, RefuseWhatIsNoAddress) {
+  for (const char* wrong : {"", "localhost", "10.0.0.0/33", "::/129", "10.0.0.0/", "10.0.0.0/8x",
+                            "10.0.0.0/-1", "/8", "1.2.3.4:80"})
+    EXPECT_FALSE(Networks::parse({wrong})) << wrong;
 }
 
 }  // namespace

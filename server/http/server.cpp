@@ -1,5 +1,4 @@
-/// The one file that includes Asio and Beast (with stream.hpp, which is its own, and
-/// websocket.cpp).
+/// Includes Asio and Beast, as only stream.hpp, head.hpp, spool.hpp and websocket.cpp do beside it.
 #include <utility>  // before Asio: 1.74 uses std::exchange without it
 //
 #include <fmt/format.h>
@@ -17,6 +16,8 @@
 #include <list>
 
 #include "server/http/coroutine.hpp"
+#include "server/http/handling.hpp"
+#include "server/http/head.hpp"
 #include "server/http/pieces.hpp"
 #include "server/http/server.hpp"
 #include "server/http/spool.hpp"
@@ -30,67 +31,26 @@ namespace net = boost::asio;
 namespace beast = boost::beast;
 using boost::system::error_code;
 using net::ip::tcp;
-using Admission = std::variant<std::uint64_t, Response>;
-using Opening = std::variant<Response, std::shared_ptr<Conversation>>;
-using Parser = beast::http::request_parser<beast::http::string_body>;
 
 constexpr std::size_t kLingering_bytes = 16u << 20;
 constexpr std::chrono::seconds kLingering_time{2};
 constexpr std::chrono::milliseconds kFarewell_time{500};
 
-/// A library threw where a handler did not expect it: this request fails, the server goes on.
-Response broken(const std::exception& failure) {
-  fmt::print(stderr, "tractus-server: a request failed: {}\n", failure.what());
-  return error_response(500, "io", "the server could not do this; its log says why");
-}
+/// A lane's threads and its queue. Touched by the input/output thread alone.
+struct Queue {
+  explicit Queue(const LaneLimits& given) : limits(given), threads(given.threads) {}
+  bool has_room(Standing standing) const {
+    const bool stranger = standing == Standing::stranger;
+    return taken < limits.threads + (stranger ? limits.waiting_strangers : limits.waiting);
+  }
+  LaneLimits limits;
+  std::size_t taken = 0;  ///< being handled or waiting
+  net::thread_pool threads;
+};
 
-// What workers do: see on_workers.
-struct Handling {
-  const Service* service;
-  const Request* request;
-  Response operator()() const try {
-    return service->handle(*request);
-  } catch (const std::exception& failure) {
-    return broken(failure);
-  }
-};
-struct Admitting {
-  const Service* service;
-  const RequestHead* head;
-  Admission operator()() const try {
-    return service->admit(*head);
-  } catch (const std::exception& failure) {
-    return broken(failure);
-  }
-};
-struct OpeningConversation {
-  const Service* service;
-  const RequestHead* head;
-  Opening operator()() const try {
-    return service->converse(*head);
-  } catch (const std::exception& failure) {
-    return broken(failure);
-  }
-};
-std::string lower_case(beast::string_view text) {
-  std::string out(text);
-  for (char& c : out)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return out;
-}
-
-core::Result<RequestHead> head_of(const Parser& parser, std::string peer, bool behind_proxy) {
-  const auto& message = parser.get();
-  RequestHead head;
-  head.method = std::string(message.method_string());
-  head.peer = std::move(peer);
-  for (const auto& field : message)
-    head.headers.emplace(lower_case(field.name_string()), std::string(field.value()));
-  if (const auto length = parser.content_length()) head.body_bytes = *length;
-  if (behind_proxy) head.peer = forwarded_peer(head);
-  const auto target = message.target();
-  if (auto read = read_target({target.data(), target.size()}, head); !read) return read.error();
-  return head;
+Response too_many_at_once() {
+  auto response = error_response(503, "unavailable", "too many at once: try again in 2 s");
+  return response.with("Retry-After", "2"), response;
 }
 
 /// What a refused or broken request is answered, or nothing when there is nobody to answer.
@@ -114,7 +74,9 @@ struct Server::State {
   State(ServerOptions given, Service what)
       : options(std::move(given)),
         service(std::move(what)),
-        workers(static_cast<std::size_t>(options.workers)) {}
+        workers(static_cast<std::size_t>(options.workers)),
+        hashing(options.hashing),
+        remote(options.remote) {}
 
   struct Connection {
     Connection(tcp::socket socket, net::ssl::context* tls) : stream(std::move(socket), tls) {}
@@ -133,6 +95,8 @@ struct Server::State {
   net::awaitable<void> serve(std::list<Connection>::iterator connection);
   /// One request and its answer; false when the connection is to be closed.
   net::awaitable<bool> exchange(Connection& connection);
+  net::awaitable<Response> handle(const Request& request);
+  net::awaitable<Response> handle_queued(Queue& queue, const Request& request);
   net::awaitable<bool> converse(Connection& connection, const Parser& parser,
                                 const RequestHead& head);
   bool make_room();
@@ -156,6 +120,7 @@ struct Server::State {
   tcp::acceptor acceptor{io};
   net::steady_timer drained{io};
   net::thread_pool workers;
+  Queue hashing, remote;
   std::list<Connection> connections;  ///< touched by the input/output thread alone
   bool draining = false;
 };
@@ -252,7 +217,7 @@ net::awaitable<bool> Server::State::exchange(Connection& c) {
     if (refusal) co_await refuse(c, nobody, *refusal);
     co_return false;
   }
-  auto head = head_of(parser, c.peer, options.behind_proxy);
+  auto head = head_of(parser, c.peer, options.behind_proxy ? &options.proxies : nullptr);
   if (!head) {
     Response refusal = error_response(400, "bad_input", head.error().what);
     const RequestHead nobody;
@@ -273,11 +238,28 @@ net::awaitable<bool> Server::State::exchange(Connection& c) {
   {
     Request request{*head, std::move(parser.get().body()), spooled.path};
     c.stream.expires_never();
-    response = co_await on_workers(workers, Handling{&service, &request});
+    response = co_await handle(request);
   }
   const bool stays = keep_alive && !draining;
   const bool written = co_await write(c, *head, response, stays);
   co_return written&& stays;
+}
+
+net::awaitable<Response> Server::State::handle(const Request& request) {
+  const Lane lane = service.lane ? service.lane(request) : Lane::quick;
+  if (lane == Lane::quick) co_return co_await on_workers(workers, Handling{&service, &request});
+  co_return co_await handle_queued(lane == Lane::hashing ? hashing : remote, request);
+}
+
+/// Answers 503 at once when the lane's queue is full: whoever waits in it is answered soon.
+net::awaitable<Response> Server::State::handle_queued(Queue& queue, const Request& request) {
+  Ranked ranked = co_await on_workers(workers, Ranking{&service, &request});
+  if (auto* refusal = std::get_if<Response>(&ranked)) co_return std::move(*refusal);
+  if (!queue.has_room(std::get<Standing>(ranked))) co_return too_many_at_once();
+  ++queue.taken;
+  Response response = co_await on_workers(queue.threads, Handling{&service, &request});
+  --queue.taken;
+  co_return response;
 }
 
 net::awaitable<bool> Server::State::converse(Connection& c, const Parser& parser,
@@ -303,11 +285,20 @@ net::awaitable<std::optional<Response>> Server::State::read_body(Connection& c, 
   c.stream.expires_never();
   Admission admitted = co_await on_workers(workers, Admitting{&service, &head});
   if (auto* refusal = std::get_if<Response>(&admitted)) co_return std::move(*refusal);
-  const std::uint64_t limit = std::get<std::uint64_t>(admitted);
+  const Admitted& how = std::get<Admitted>(admitted);
+  const std::uint64_t limit = how.limit_bytes;
   if (head.body_bytes > limit)
     co_return error_response(
         413, "too_large",
         fmt::format("the body has {} bytes, at most {} are taken", head.body_bytes, limit));
+  const bool to_file = how.to_file && options.scratch;
+  if (to_file) {
+    // A body that comes in pieces may be as long as the limit.
+    auto share =
+        options.scratch->reserve(how.client, head.body_bytes > 0 ? head.body_bytes : limit);
+    if (!share) co_return error_response(503, "unavailable", share.error().what);
+    spooled.share = std::move(*share);
+  }
   parser.body_limit(limit);
   error_code failure;
   c.wait_for_peer();
@@ -316,8 +307,8 @@ net::awaitable<std::optional<Response>> Server::State::read_body(Connection& c, 
     static constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
     co_await net::async_write(c.stream, net::buffer(kContinue), into(failure));
   }
-  const bool to_file = service.spools && !options.spool.empty() && service.spools(head);
-  const SpoolLimits spool{options.spool, limit, options.body_time};  // no temporary: see on_workers
+  const SpoolLimits spool{options.scratch, limit,
+                          options.body_time};  // no temporary: see on_workers
   if (!failure && to_file)
     failure = co_await spool_body(c.stream, c.buffer, parser, spool, workers, spooled);
   else if (!failure)
@@ -335,6 +326,7 @@ net::awaitable<bool> Server::State::write(Connection& c, const RequestHead& head
                                           Response& response, bool keep_alive) {
   namespace bh = beast::http;
   add_security_headers(response);
+  if (c.stream.is_tls() || options.behind_proxy) require_tls(response);
   const auto* slice = std::get_if<FileSlice>(&response.body);
   bh::response<bh::string_body> message(bh::int_to_status(static_cast<unsigned>(response.status)),
                                         11);
@@ -452,6 +444,10 @@ void Server::run() {
   net::co_spawn(state_->io, state_->accept_all(), net::detached);
   state_->io.run();
   state_->workers.join();
+  for (Queue* queue : {&state_->hashing, &state_->remote}) {
+    queue->threads.stop();  // who waits in it has no connection any more
+    queue->threads.join();
+  }
 }
 
 void Server::stop() {

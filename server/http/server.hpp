@@ -10,7 +10,10 @@
 #include <string>
 
 #include "server/http/conversation.hpp"
+#include "server/http/lane.hpp"
 #include "server/http/message.hpp"
+#include "server/http/networks.hpp"
+#include "server/http/scratch_space.hpp"
 
 namespace http {
 
@@ -19,8 +22,12 @@ struct ServerOptions {
   std::uint16_t port = 8480;  ///< 0: any free one
   /// PEM files of a certificate chain and its key; none: plain HTTP.
   std::optional<std::pair<std::filesystem::path, std::filesystem::path>> tls;
-  bool behind_proxy = false;  ///< the peer is whom the proxy names last in X-Forwarded-For
-  int workers = 4;            ///< threads on which handlers run
+  bool behind_proxy = false;  ///< browsers reach it by TLS, by way of a proxy
+  /// Behind a proxy: whose X-Forwarded-For is believed; the peer is whom it names last.
+  Networks proxies = Networks::loopback();
+  int workers = 4;            ///< threads on which handlers run, but for those of a lane
+  LaneLimits hashing = hashing_limits();
+  LaneLimits remote{.threads = 4, .waiting_strangers = 8, .waiting = 32};
   int max_connections = 512;  ///< for one more, that which has kept us waiting longest is closed
   std::uint32_t max_header_bytes = 16 * 1024;
   std::chrono::milliseconds header_time{
@@ -29,23 +36,31 @@ struct ServerOptions {
   std::chrono::milliseconds body_time{60'000};   ///< for a whole body
   std::chrono::milliseconds write_time{60'000};  ///< for each piece (256 KiB) of an answer
   std::chrono::milliseconds drain_time{10'000};  ///< for requests under way once told to stop
-  std::filesystem::path spool;  ///< folder for bodies that go to a file; empty: none do
+  ScratchSpace* scratch = nullptr;  ///< for bodies that go to a file; none: all stay in memory
   std::chrono::milliseconds silence_time{30'000};  ///< of a WebSocket, pings unanswered
   std::chrono::milliseconds talk_write_time{
       5'000};  ///< for a WebSocket's listener to take a message
 };
 
+/// How a body is taken.
+struct Admitted {
+  std::uint64_t limit_bytes = 0;
+  bool to_file = false;     ///< into ServerOptions::scratch
+  std::string client = {};  ///< who sends it, by whatever name ScratchSpace shall know it
+};
+
 /// What the server does with requests. All are called on worker threads, several at a time.
 struct Service {
-  /// Sees the head before the body is read: how many bytes of body to take at most, or a refusal.
-  std::function<std::variant<std::uint64_t, Response>(const RequestHead&)> admit;
+  /// Sees the head before the body is read: how to take it, or a refusal.
+  std::function<std::variant<Admitted, Response>(const RequestHead&)> admit;
   std::function<Response(const Request&)> handle;
   /// A request for a WebSocket: a refusal, or who answers in it. Empty: none are held.
   std::function<std::variant<Response, std::shared_ptr<Conversation>>(const RequestHead&)>
       converse = {};
-  /// Is this request's body to go to a file (ServerOptions::spool)? Called on the input/output
-  /// thread. Empty: none is.
-  std::function<bool(const RequestHead&)> spools = {};
+  /// Which threads handle it? Called on the input/output thread. Empty: the workers, always.
+  std::function<Lane(const RequestHead&)> lane = {};
+  /// For a lane with a queue, once the body is there: whose request it is, or a refusal.
+  std::function<std::variant<Standing, Response>(const RequestHead&)> standing = {};
 };
 
 /// One listening socket, HTTP/1.1 with keep-alive. `open` binds; `run` serves in the calling thread

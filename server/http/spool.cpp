@@ -8,7 +8,6 @@
 #include <boost/beast/http/read.hpp>
 #include <cerrno>
 
-#include "core/bytes.hpp"
 #include "server/http/coroutine.hpp"
 
 namespace http {
@@ -21,7 +20,7 @@ struct Opening {
   SpooledFile* file;
   const SpoolLimits* limits;
   bool operator()() const {
-    file->path = limits->folder / ("body-" + core::hex(core::random_bytes(8)) + ".spool");
+    file->path = limits->space->new_name();
     file->fd = ::open(file->path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
     return file->fd >= 0;
   }

@@ -12,11 +12,14 @@
 #include <chrono>
 #include <filesystem>
 
+#include "server/http/scratch_space.hpp"
+
 namespace http {
 
 /// Gone with this.
 struct SpooledFile {
   std::filesystem::path path;  ///< empty: the body did not go to a file
+  ScratchSpace::Share share;   ///< of the space that its folder has
   int fd = -1;
   bool broken = false;  ///< it could not be written
 
@@ -27,7 +30,7 @@ struct SpooledFile {
 };
 
 struct SpoolLimits {
-  std::filesystem::path folder;
+  const ScratchSpace* space;
   std::uint64_t max_bytes;
   std::chrono::milliseconds patience;  ///< for each piece; and all of it at 256 KiB/s at least
 };

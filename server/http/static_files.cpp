@@ -97,7 +97,12 @@ Response StaticFiles::answer(const RequestHead& request) const {
   return std::move(*response);
 }
 
+void require_tls(Response& response) {
+  response.with("Strict-Transport-Security", "max-age=31536000");
+}
+
 void add_security_headers(Response& response) {
+  if (response.header("Cache-Control").empty()) response.with("Cache-Control", "no-store");
   response
       .with("Content-Security-Policy",
             "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self' blob:; "

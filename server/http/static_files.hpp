@@ -22,7 +22,10 @@ class StaticFiles {
 };
 
 /// Headers that every response carries: no sniffing, no framing, no scripts but our own (vtk.js
-/// needs WebAssembly and blob workers).
+/// needs WebAssembly and blob workers). An answer that does not say how long it may be kept is not
+/// kept at all (Cache-Control: no-store).
 void add_security_headers(Response& response);
+/// A browser that was answered by TLS once asks by TLS alone, for a year (RFC 6797).
+void require_tls(Response& response);
 
 }  // namespace http

@@ -76,7 +76,8 @@ class Stream {
   std::optional<boost::asio::ssl::stream<boost::beast::tcp_stream&>> tls_;
 };
 
-/// TLS 1.2 and 1.3, no renegotiation, no compression: what browsers and libcurl speak.
+/// TLS 1.2 (ECDHE with AES-GCM or ChaCha20 alone) and 1.3, no renegotiation, no compression: what
+/// browsers and libcurl speak.
 /// Errors: bad_input, naming the file that is not what it should be.
 core::Result<boost::asio::ssl::context> tls_context(const std::filesystem::path& certificate,
                                                     const std::filesystem::path& key);

@@ -59,23 +59,32 @@ Result<assessment::Snapshot> kept_snapshot(const store::Objects& objects,
   return assessment::Snapshot{std::move(*description), std::move(*data), std::move(*table)};
 }
 
+/// The released trials, frozen.
 Result<assessment::Snapshot> frozen_now(store::Store& store, const store::Objects& objects,
+                                        const std::optional<store::PseudonymKey>& key,
                                         store::AnalysisRun& run) {
-  const auto made = cohort_table(store, run.study, kMostTrials);
-  if (!made) return made.error();
-  if (made->rows == 0) return Error{Errc::bad_input, "there is no scored trial to analyse"};
-  const auto bytes = core::bytes_of(made->csv);
+  const auto released = store.read([&](store::Reading& tx) {
+    return store::ReleasedTrials::read(tx, key, {.study = run.study, .most = kMostTrials});
+  });
+  if (!released) return released.error();
+  const CohortTable made = cohort_table(*released);
+  if (made.rows == 0)
+    return Error{Errc::bad_input, "there is no scored trial to analyse that research may have"};
+  const auto bytes = core::bytes_of(made.csv);
   auto snapshot = assessment::frozen(
       core::Bytes(bytes.begin(), bytes.end()),
       {.name = run.study.empty() ? "all trials of this server" : "study " + run.study,
        .utc = core::utc_text(core::utc_us()),
        .source = "the server's scored trials",
-       .simulated = made->simulated > 0,
-       .meanings = made->meanings});
+       .simulated = made.simulated > 0,
+       .meanings = made.meanings});
   if (!snapshot) return snapshot.error();
-  snapshot->description["rows_simulated"] = made->simulated;
-  snapshot->description["left_out"] = {{"invalid", made->invalid}, {"unscored", made->unscored}};
-  auto data = keep(store, objects, made->csv);
+  snapshot->description["rows_simulated"] = made.simulated;
+  snapshot->description["left_out"] = {{"invalid", made.invalid},
+                                       {"unscored", made.unscored},
+                                       {"without_consent", made.without_consent},
+                                       {"blind", made.blind}};
+  auto data = keep(store, objects, made.csv);
   if (!data) return data.error();
   auto description = keep(store, objects, text_of(snapshot->description));
   if (!description) return description.error();
@@ -116,7 +125,8 @@ Result<void> record(store::Store& store, const store::Objects& objects, store::A
 }  // namespace
 
 Result<void> analyse(store::Store& store, const store::Objects& objects,
-                     const std::string& analysis_id, const std::function<bool()>& ending) {
+                     const std::optional<store::PseudonymKey>& key, const std::string& analysis_id,
+                     const std::function<bool()>& ending) {
   auto run = asked(store, analysis_id);
   if (!run) return run.error();
   if (run->state != "queued" && run->state != "running") return {};
@@ -129,7 +139,7 @@ Result<void> analyse(store::Store& store, const store::Objects& objects,
   const auto plan = plan_of(objects, *run);
   if (!plan) return plan.error();
   const auto snapshot =
-      run->snapshot ? kept_snapshot(objects, *run) : frozen_now(store, objects, *run);
+      run->snapshot ? kept_snapshot(objects, *run) : frozen_now(store, objects, key, *run);
   if (!snapshot) return snapshot.error();
   if (auto noted = note(0.2); !noted) return noted;
   if (ending()) return Error{Errc::cancelled, "stopped"};

@@ -28,7 +28,7 @@ std::optional<cases::Truth> truth_of_channel(const core::Json& beyond_m) {
 std::optional<cases::Truth> truth_of_drilling(const std::optional<store::TrialRecord>& trial,
                                               const std::string& case_id) {
   if (!trial || trial->summary.case_id != case_id) return std::nullopt;
-  const core::Json events = core::Json::parse(trial->events);  // written by us
+  const core::Json events = core::stored_json(trial->events);
   for (const core::Json& event : events) {
     if (event.value("kind", "") != "drilled" || !event.at("detail").is_object()) continue;
     const core::Json& detail = event.at("detail");

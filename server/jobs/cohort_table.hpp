@@ -3,15 +3,14 @@
 
 #include <map>
 
-#include "db/store/store.hpp"
+#include "db/store/released.hpp"
 
 namespace jobs {
 
-/// One row per trial that counts and is scored, oldest first. Columns: trial, participant (a
-/// study's pseudonym, else one made of the operator's name by the server's key: never the name),
-/// study, number (of the trial among the participant's, from 1), level, experience_years, case,
-/// rig, simulated, correct (1, 0), then each metric that any row has, by its id. What is not known
-/// is an empty cell.
+/// One row per trial that counts and is scored, oldest first. Columns: trial and participant (the
+/// pseudonyms of every export), study, number (of the trial among the participant's, from 1),
+/// level, experience_years, case, rig, simulated, correct (1, 0), then each metric that any row
+/// has, by its id. What is not known is an empty cell.
 struct CohortTable {
   std::string csv;  ///< with a header line, LF
   std::string sha256;
@@ -19,12 +18,11 @@ struct CohortTable {
   // Trials left out:
   std::size_t invalid = 0;   ///< a person said so, their place had one already, or cut short
   std::size_t unscored = 0;  ///< not assessed yet, or it failed
+  std::size_t without_consent = 0;
+  std::size_t blind = 0;  ///< of a study, and the participant still has trials to do
   std::map<std::string, std::string> meanings;  ///< by column, with the unit
 };
 
-/// @param study  its trials alone; empty: all.  @param most  more trials are too many.
-/// Errors: bad_input for a study there is not; too_large.
-core::Result<CohortTable> cohort_table(store::Store& store, const std::string& study,
-                                       std::int64_t most);
+CohortTable cohort_table(const store::ReleasedTrials& released);
 
 }  // namespace jobs

@@ -64,7 +64,7 @@ struct Wish {
 
 Wish wish_of(const store::LabRun& run) {
   Wish out;
-  const Json json = Json::parse(run.wish, nullptr, false);
+  const Json json = core::stored_json(run.wish);
   if (!json.is_object()) return out;
   for (const Json& id : json.value("add", Json::array())) out.add.push_back(id.get<std::string>());
   for (const Json& own : json.value("own", Json::array())) out.own.push_back({own, "own effect: "});

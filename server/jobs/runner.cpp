@@ -35,16 +35,15 @@ core::Result<void> show_failure(store::Writing& tx, const store::Job& job,
 }  // namespace
 
 core::Result<std::unique_ptr<Runner>> Runner::start(store::Store& store,
-                                                    const store::Objects& objects,
-                                                    core::KeyPair case_key, Log log,
-                                                    std::chrono::milliseconds lease) {
+                                                    const store::Objects& objects, Keys keys,
+                                                    Log log, std::chrono::milliseconds lease) {
   if (!store.shared()) {
     auto back = store.write(
         [](store::Writing& tx) { return store::requeue_claimed_jobs(tx, core::utc_us()); });
     if (!back) return back.error();
   }
-  auto runner = std::unique_ptr<Runner>(
-      new Runner(store, objects, std::move(case_key), std::move(log), lease));
+  auto runner =
+      std::unique_ptr<Runner>(new Runner(store, objects, std::move(keys), std::move(log), lease));
   auto listening = store.signals().listen(
       store::kJobsChannel, [own = runner.get()](const store::Signal&) { own->wake(); });
   if (!listening) return listening.error();
@@ -52,11 +51,11 @@ core::Result<std::unique_ptr<Runner>> Runner::start(store::Store& store,
   return runner;
 }
 
-Runner::Runner(store::Store& store, const store::Objects& objects, core::KeyPair case_key, Log log,
+Runner::Runner(store::Store& store, const store::Objects& objects, Keys keys, Log log,
                std::chrono::milliseconds lease)
     : store_(store),
       objects_(objects),
-      case_key_(std::move(case_key)),
+      keys_(std::move(keys)),
       log_(std::move(log)),
       worker_{core::new_id(), std::chrono::microseconds(lease).count()} {
   scores_.thread = std::thread([this] { run(scores_); });
@@ -186,9 +185,11 @@ core::Result<void> Runner::work_on(Lane& lane, const store::Job& job) {
   if (job.attempts > kMostAttempts)
     return core::Error{core::Errc::unavailable, "it ended the server before it was done"};
   const auto wants_to_end = [this, &lane] { return ending() || is_lost(lane); };
-  if (job.kind == "case") return make_case(store_, objects_, case_key_, job.subject, wants_to_end);
-  return job.kind == "analysis" ? analyse(store_, objects_, job.subject, wants_to_end)
-                                : run_lab(store_, objects_, job.subject, wants_to_end);
+  if (job.kind == "case")
+    return make_case(store_, objects_, keys_.cases, job.subject, wants_to_end);
+  return job.kind == "analysis"
+             ? analyse(store_, objects_, keys_.pseudonyms, job.subject, wants_to_end)
+             : run_lab(store_, objects_, job.subject, wants_to_end);
 }
 
 core::Result<void> Runner::note_failure(const store::Job& job, const core::Error& error) {

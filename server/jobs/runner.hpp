@@ -10,6 +10,7 @@
 #include "core/signing.hpp"
 #include "db/store/jobs.hpp"
 #include "db/store/objects.hpp"
+#include "db/store/pseudonyms.hpp"
 #include "db/store/store.hpp"
 
 namespace jobs {
@@ -27,11 +28,16 @@ class Runner {
   /// refuses. From any of the threads.
   using Log = std::function<void(const std::string& line)>;
 
+  struct Keys {
+    core::KeyPair cases;  ///< signs the cases that are made here
+    /// Of the names in analyses; none: there are no analyses.
+    std::optional<store::PseudonymKey> pseudonyms = {};
+  };
+
   /// On a database of this process alone, puts jobs that a dead process had claimed back in the
   /// queue; on a shared one they wait until their `lease` is over. Then starts.
-  /// @param case_key  signs the cases that are made here.
   static core::Result<std::unique_ptr<Runner>> start(
-      store::Store& store, const store::Objects& objects, core::KeyPair case_key, Log log,
+      store::Store& store, const store::Objects& objects, Keys keys, Log log,
       std::chrono::milliseconds lease = std::chrono::seconds(30));
   ~Runner();
   Runner(const Runner&) = delete;
@@ -48,7 +54,7 @@ class Runner {
     std::thread thread = {};
   };
 
-  Runner(store::Store& store, const store::Objects& objects, core::KeyPair case_key, Log log,
+  Runner(store::Store& store, const store::Objects& objects, Keys keys, Log log,
          std::chrono::milliseconds lease);
   void run(Lane& lane);
   void keep();
@@ -64,7 +70,7 @@ class Runner {
 
   store::Store& store_;
   const store::Objects& objects_;
-  const core::KeyPair case_key_;
+  const Keys keys_;
   Log log_;
   store::Worker worker_;
   std::mutex mutex_;  ///< guards ending_ and the lanes' woken, job, lost

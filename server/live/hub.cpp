@@ -184,6 +184,12 @@ void Hub::dismiss(const std::string& station_id) {
   if (found != stations_.end() && found->second.line) found->second.line->end();
 }
 
+void Hub::dismiss_viewers(const std::string& account_id) {
+  const std::lock_guard held(mutex_);
+  for (const auto& [_, watching] : viewers_)
+    if (watching.viewer.account_id == account_id) watching.line->end();
+}
+
 void Hub::reported(const StationRef& station, const wire::StationReport& report) {
   const std::lock_guard held(mutex_);
   Known& it = known(station);

@@ -58,6 +58,8 @@ class Hub {
   core::Result<void> command(const std::string& station_id, const wire::StationCommand& command);
   /// Hangs up on a station that was shut out.
   void dismiss(const std::string& station_id);
+  /// Hangs up on those who look on by this account: its sessions were ended.
+  void dismiss_viewers(const std::string& account_id);
   /// What a report said, into the state that is shown.
   void reported(const StationRef& station, const wire::StationReport& report);
 

@@ -156,6 +156,9 @@ void Hub::refresh_names() {
       show(known({entry.station.id, entry.station.name}));
     }
   }
+  // Who teaches whom may have changed: who left a cohort no longer sees its people.
+  for (auto& [_, one] : stations_)
+    if (!one.shown_of.empty()) one.shown_due = due_ = true;
 }
 
 /// States of this process's own stations, several in one message.
@@ -207,8 +210,8 @@ void Hub::forget_silent() {
 
 void Hub::hear_other(const store::Signal& signal) {
   if (signal.from == parts_.store.signals().own_id()) return;
-  const auto json =
-      core::parse_json(signal.payload.empty() ? R"({"ask":true})" : signal.payload, "live signal");
+  const auto json = core::parse_json(signal.payload.empty() ? R"({"ask":true})" : signal.payload,
+                                     "live signal", core::kStoredJson);
   if (!json || !json->is_object()) return;
   const std::lock_guard held(mutex_);
   if (json->contains("ask"))

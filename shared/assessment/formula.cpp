@@ -13,7 +13,7 @@
 namespace assessment {
 namespace {
 
-constexpr std::size_t kMostLevels = 200, kMostColumns = 2000;
+constexpr std::size_t kMostLevels = 200, kMostColumns = 2000, kMostTerms = 200;
 
 core::Error wrong(std::string what) { return {core::Errc::bad_input, std::move(what)}; }
 
@@ -151,8 +151,11 @@ void read_product(Reader& in, Formula& out) {
     }
     made.push_back({{next}});
     made.insert(made.end(), with.begin(), with.end());
+    if (made.size() > kMostTerms) break;  // each '*' doubles them
   }
   for (const auto& term : made) add_term(term, out);
+  if (out.terms.size() > kMostTerms)
+    in.fail(fmt::format("more than {} terms: multiply fewer columns", kMostTerms));
 }
 
 void read_term(Reader& in, Formula& out) {

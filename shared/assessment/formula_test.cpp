@@ -62,6 +62,9 @@ TEST(Formula, NamesThePlaceOfWhatItCannotRead) {
   EXPECT_NE(refusal("y ~ x*x").find("multiplies itself"), std::string::npos);
   EXPECT_NE(refusal("y ~ x + x").find("twice"), std::string::npos);
   EXPECT_NE(refusal("y ~ x x").find("at character 7"), std::string::npos);
+  std::string product = "y ~ x0";
+  for (int i = 1; i < 60; ++i) product += "*x" + std::to_string(i);  // 2^60 terms
+  EXPECT_NE(refusal(product).find("more than 200 terms"), std::string::npos);
   EXPECT_NE(refusal("y ~ y").find("both sides"), std::string::npos);
   const auto parsed = parse_formula("y ~ log(x)");
   const auto model = model_matrix(*parsed, table_of("y,x\n1,1\n2,0\n"));

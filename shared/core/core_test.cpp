@@ -136,6 +136,67 @@ TEST(Json, SaysWhereTheTextBreaks) {
   EXPECT_THAT(json.error().what, testing::HasSubstr("line 1, column 7"));
 }
 
+std::string refusal(const std::string& text, const JsonLimits& limits = kForeignJson) {
+  const auto json = parse_json(text, "t", limits);
+  return json ? "" : json.error().what;
+}
+
+std::string nested(std::size_t depth) { return std::string(depth, '[') + std::string(depth, ']'); }
+
+TEST(Json, IsNestedAtMost32Levels) {
+  EXPECT_EQ(refusal(nested(32)), "");
+  EXPECT_THAT(refusal(nested(33)), testing::HasSubstr("nested deeper than 32 levels"));
+  EXPECT_THAT(refusal(nested(1'000'000)), testing::HasSubstr("nested deeper than 32 levels"));
+  std::string objects;
+  for (int i = 0; i < 33; ++i) objects += "{\"a\":";
+  EXPECT_THAT(refusal(objects), testing::HasSubstr("nested deeper than 32 levels"));
+  EXPECT_EQ(refusal("[" + nested(32) + "]", kStoredJson), "") << "stored within one of our own";
+  EXPECT_EQ(refusal("[\"" + std::string(100, '[') + "\"]"), "")
+      << "brackets in a text nest nothing";
+  EXPECT_TRUE(stored_json(nested(65)).is_null());
+}
+
+TEST(Json, IsBoundedInWidth) {
+  std::string numbers = "[0";
+  for (int i = 0; i < 2'000'000; ++i) numbers += ",0";
+  EXPECT_THAT(refusal(numbers + "]"), testing::HasSubstr("more than 2000000 values"));
+  const auto object = [](int members) {
+    std::string out = "{";
+    for (int i = 0; i < members; ++i) out += (i ? ",\"" : "\"") + std::to_string(i) + "\":0";
+    return out + "}";
+  };
+  EXPECT_EQ(refusal(object(20'000)), "");
+  EXPECT_THAT(refusal(object(20'001)), testing::HasSubstr("an object of more than 20000 members"));
+}
+
+TEST(Json, NamesEveryMemberOnce) {
+  EXPECT_THAT(refusal(R"([{"a": 1, "b": 2, "a": 3}])"),
+              testing::HasSubstr("the name \"a\" stands twice"));
+  EXPECT_EQ(refusal(R"([{"a": 1}, {"a": {"a": 2}}])"), "");
+}
+
+TEST(Json, HoldsNumbersThatADoubleHolds) {
+  for (const char* text : {"1e999", "-1e999", "[1e309]"})
+    EXPECT_THAT(refusal(text), testing::HasSubstr("number overflow")) << text;
+  EXPECT_THAT(refusal("0." + std::string(63, '1')),
+              testing::HasSubstr("a number of 65 characters, at most 64"));
+  EXPECT_EQ(refusal("0." + std::string(62, '1')), "");
+  EXPECT_LT(refusal("1" + std::string(1'000'000, '0')).size(), 400u) << "one bearable line";
+  EXPECT_EQ(*parse_json("-9223372036854775808", "t"), INT64_MIN);
+  EXPECT_EQ(*parse_json("18446744073709551615", "t"), UINT64_MAX);
+}
+
+TEST(Json, IsUtf8) {
+  for (const char* bytes : {"\xff", "\xc0\xaf", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xe2\x82"})
+    EXPECT_THAT(refusal("\"" + std::string(bytes) + "\""), testing::HasSubstr("UTF-8"));
+  EXPECT_EQ(*parse_json("\"\u00e9\"", "t"), "\u00e9");
+}
+
+TEST(Json, KeepsValuesAndTheirOrder) {
+  const std::string text = R"({"z":[1,-2,2.5,true,null,"x\n"],"a":{"b":{}},"m":[]})";
+  EXPECT_EQ(parse_json(text, "t")->dump(), text);
+}
+
 TEST(Clock, FormatsUtc) {
   EXPECT_EQ(utc_text(1'700'000'000'123'456), "2023-11-14T22:13:20.123456Z");
 }

@@ -112,6 +112,47 @@ Result<void> sync_folder(const fs::path& folder) {
   return {};
 }
 
+namespace {
+
+/// Whether others had access.
+Result<bool> made_private(const fs::path& path, const struct stat& info) {
+  constexpr mode_t kOthers = S_IRWXG | S_IRWXO;
+  const bool plain = S_ISDIR(info.st_mode) || S_ISREG(info.st_mode);
+  if (!plain || (info.st_mode & kOthers) == 0) return false;
+  if (::chmod(path.c_str(), info.st_mode & 07777 & ~kOthers) == 0) return true;
+  return system_error(path, "is open to others and cannot be made private");
+}
+
+Result<std::size_t> make_tree_private(const fs::path& path, std::string_view trusted) {
+  struct stat info {};
+  if (::lstat(path.c_str(), &info) != 0) return system_error(path, "cannot look at");
+  auto first = made_private(path, info);
+  if (!first) return first.error();
+  std::size_t repaired = *first ? 1 : 0;
+  if (!S_ISDIR(info.st_mode) || (!*first && path.filename() == trusted)) return repaired;
+  std::error_code failure;
+  for (fs::directory_iterator at(path, failure), end; !failure && at != end;
+       at.increment(failure)) {
+    auto inner = make_tree_private(at->path(), trusted);
+    if (!inner && inner.error().code == Errc::not_found) continue;  // gone meanwhile
+    if (!inner) return inner.error();
+    repaired += *inner;
+  }
+  if (!failure) return repaired;
+  const bool gone = failure == std::errc::no_such_file_or_directory;
+  return Error{gone ? Errc::not_found : Errc::io,
+               fmt::format("{}: {}", path.string(), failure.message())};
+}
+
+}  // namespace
+
+Result<std::size_t> make_private(const fs::path& folder, std::string_view trusted) {
+  std::error_code failure;
+  const fs::path path = fs::canonical(folder, failure);
+  if (!failure) return make_tree_private(path, trusted);
+  return Error{Errc::io, fmt::format("{}: {}", folder.string(), failure.message())};
+}
+
 Result<ScratchFolder> ScratchFolder::make(const fs::path& beside) {
   const fs::path path = parent_of(beside) / fmt::format(".{}.{}.part", beside.filename().string(),
                                                         hex(random_bytes(4)));
@@ -119,7 +160,9 @@ Result<ScratchFolder> ScratchFolder::make(const fs::path& beside) {
   if (!fs::create_directories(path, failure) || failure)
     return Error{Errc::io, fmt::format("{}: cannot create a folder there: {}",
                                        parent_of(beside).string(), failure.message())};
-  return ScratchFolder(path);
+  const fs::perms kept = fs::status(path, failure).permissions();
+  fs::permissions(path, fs::perms::owner_all, failure);
+  return ScratchFolder(path, kept);
 }
 
 ScratchFolder::~ScratchFolder() {
@@ -127,7 +170,8 @@ ScratchFolder::~ScratchFolder() {
   if (!path_.empty()) fs::remove_all(path_, ignored);
 }
 
-ScratchFolder::ScratchFolder(ScratchFolder&& other) noexcept : path_(std::move(other.path_)) {
+ScratchFolder::ScratchFolder(ScratchFolder&& other) noexcept
+    : path_(std::move(other.path_)), kept_(other.kept_) {
   other.path_.clear();
 }
 
@@ -136,6 +180,7 @@ Result<void> ScratchFolder::keep_as(const fs::path& target) {
   if (fs::exists(target, failure))
     return Error{Errc::conflict, fmt::format("{}: exists already; remove it or choose another name",
                                              target.string())};
+  fs::permissions(path_, kept_, failure);
   fs::rename(path_, target, failure);
   if (failure)
     return Error{Errc::io,

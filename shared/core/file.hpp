@@ -31,8 +31,15 @@ Error system_error(const std::filesystem::path& path, const char* what);
 /// fsync of a folder, so that a rename in it lasts.
 Result<void> sync_folder(const std::filesystem::path& folder);
 
-/// A new empty folder beside `beside`, removed with all in it when this goes, unless `keep_as`
-/// renamed it. For results of several files: build inside, then keep.
+/// Leaves a folder and all in it to their owner alone (0700, 0600, or 0700 for a program), and
+/// returns how many files and folders others had access to. Links are not followed. A folder called
+/// `trusted` that was private already is not entered: it may hold millions of files. Errors: io, as
+/// when a file is another user's.
+Result<std::size_t> make_private(const std::filesystem::path& folder,
+                                 std::string_view trusted = "");
+
+/// A new empty folder of mode 0700 beside `beside`, removed with all in it when this goes, unless
+/// `keep_as` renamed it. For results of several files: build inside, then keep.
 class ScratchFolder {
  public:
   static Result<ScratchFolder> make(const std::filesystem::path& beside);
@@ -40,12 +47,15 @@ class ScratchFolder {
   ScratchFolder(ScratchFolder&&) noexcept;
   ScratchFolder& operator=(ScratchFolder&&) = delete;
   const std::filesystem::path& path() const { return path_; }
-  /// Moves it to `target`; an existing `target` of that name is an Error conflict.
+  /// Gives it the mode that a new folder has, and moves it to `target`; an existing `target` of
+  /// that name is an Error conflict.
   Result<void> keep_as(const std::filesystem::path& target);
 
  private:
-  explicit ScratchFolder(std::filesystem::path path) : path_(std::move(path)) {}
+  ScratchFolder(std::filesystem::path path, std::filesystem::perms kept)
+      : path_(std::move(path)), kept_(kept) {}
   std::filesystem::path path_;
+  std::filesystem::perms kept_;  ///< once it is kept: the umask's
 };
 
 }  // namespace core

@@ -6,18 +6,105 @@
 #include <cmath>
 
 #include "core/file.hpp"
+#include "core/words.hpp"
 
 namespace core {
 
-Result<Json> parse_json(std::string_view text, std::string_view name) {
-  try {
-    return Json::parse(text);
-  } catch (const Json::exception& failure) {
-    std::string why =
-        failure.what();  // "[json.exception.parse_error.101] parse error at line 1, column 2: …"
-    if (const auto end = why.find("] "); end != std::string::npos) why.erase(0, end + 2);
-    return Error{Errc::bad_input, fmt::format("{}: not valid JSON: {}", name, why)};
+namespace {
+
+/// Builds the document while nlohmann's lexer reads it, and stops at the first thing refused.
+class Builder final : public nlohmann::json_sax<Json> {
+ public:
+  explicit Builder(const JsonLimits& limits) : limits_(limits) {}
+
+  bool null() override { return add(nullptr) != nullptr; }
+  bool boolean(bool value) override { return add(value) != nullptr; }
+  bool number_integer(number_integer_t value) override { return add(value) != nullptr; }
+  bool number_unsigned(number_unsigned_t value) override { return add(value) != nullptr; }
+  bool number_float(number_float_t value, const string_t& text) override {
+    if (text.size() > limits_.number_characters)
+      return refuse(fmt::format("a number of {} characters, at most {} are read", text.size(),
+                                limits_.number_characters));
+    return add(value) != nullptr;
   }
+  bool string(string_t& value) override { return add(std::move(value)) != nullptr; }
+  bool binary(binary_t&) override { return refuse("binary data"); }  // no part of JSON's text
+  bool start_array(std::size_t) override { return open(Json::array()); }
+  bool start_object(std::size_t) override { return open(Json::object()); }
+  bool end_array() override { return close(); }
+  bool end_object() override { return has_distinct_names() && close(); }
+  bool key(string_t& name) override {
+    name_ = std::move(name);
+    return true;
+  }
+  bool parse_error(std::size_t, const std::string&, const Json::exception& failure) override {
+    std::string_view why = failure.what();  // "[json.exception.parse_error.101] parse error at …"
+    if (const auto end = why.find("] "); end != why.npos) why.remove_prefix(end + 2);
+    return refuse(why);
+  }
+
+  Json& document() { return document_; }
+  const std::string& error() const { return error_; }
+
+ private:
+  bool refuse(std::string_view why) {
+    error_ = one_line(why, 300);
+    return false;
+  }
+  /// Where the value now stands; null when there is no room for it.
+  Json* add(Json value) {
+    if (++values_ > limits_.values)
+      return refuse(fmt::format("more than {} values", limits_.values)), nullptr;
+    if (open_.empty()) return document_ = std::move(value), &document_;
+    if (auto* array = open_.back()->get_ptr<Json::array_t*>())
+      return &array->emplace_back(std::move(value));
+    // Not operator[], which compares the name with every other: end_object finds duplicates.
+    std::vector<Json::object_t::value_type>& members = open_.back()->get_ref<Json::object_t&>();
+    if (members.size() == limits_.members)
+      return refuse(fmt::format("an object of more than {} members", limits_.members)), nullptr;
+    return &members.emplace_back(std::move(name_), std::move(value)).second;
+  }
+  bool open(Json empty) {
+    if (open_.size() == limits_.depth)
+      return refuse(fmt::format("nested deeper than {} levels", limits_.depth));
+    Json* const at = add(std::move(empty));
+    if (at) open_.push_back(at);
+    return at != nullptr;
+  }
+  bool close() {
+    open_.pop_back();
+    return true;
+  }
+  bool has_distinct_names() {
+    std::vector<std::string_view> names;
+    for (const auto& [name, value] : open_.back()->get_ref<const Json::object_t&>())
+      names.push_back(name);
+    std::ranges::sort(names);
+    const auto twice = std::ranges::adjacent_find(names);
+    if (twice == names.end()) return true;
+    return refuse(fmt::format("the name \"{}\" stands twice in one object", one_line(*twice, 80)));
+  }
+
+  JsonLimits limits_;
+  std::size_t values_ = 0;
+  Json document_;
+  std::vector<Json*> open_;  ///< objects and arrays not yet closed, the innermost last
+  std::string name_;         ///< of the member that comes next
+  std::string error_;
+};
+
+}  // namespace
+
+Result<Json> parse_json(std::string_view text, std::string_view name, const JsonLimits& limits) {
+  Builder builder(limits);
+  if (!Json::sax_parse(text, &builder))
+    return Error{Errc::bad_input, fmt::format("{}: not valid JSON: {}", name, builder.error())};
+  return std::move(builder.document());
+}
+
+Json stored_json(std::string_view text) {
+  auto json = parse_json(text, "", kStoredJson);
+  return json ? std::move(*json) : Json();
 }
 
 Result<Json> read_json(const std::filesystem::path& path) {

@@ -12,8 +12,25 @@ namespace core {
 
 using Json = nlohmann::ordered_json;
 
-/// Parses; `name` (a file or a sender) leads the message. Errors: bad_input with line and column.
-Result<Json> parse_json(std::string_view text, std::string_view name);
+/// What is read of one document.
+struct JsonLimits {
+  std::size_t depth;             ///< deeper, and whatever copies it overflows the stack
+  std::size_t values;            ///< objects, arrays, texts and numbers together
+  std::size_t members = 20'000;  ///< of one object
+  std::size_t number_characters = 64;
+};
+/// From outside.
+inline constexpr JsonLimits kForeignJson{.depth = 32, .values = 2'000'000};
+/// Stored by this program: documents from outside within one of its own, as a trial's events.
+inline constexpr JsonLimits kStoredJson{.depth = 64, .values = 6'000'000};
+
+/// Parses; the only JSON parser of the program. `name` (a file or a sender) leads the message.
+/// Errors: bad_input for a text that is not JSON in UTF-8 (with line and column), that goes over
+/// one of the limits, that names a member of an object twice, or holds a number beyond a double.
+Result<Json> parse_json(std::string_view text, std::string_view name,
+                        const JsonLimits& limits = kForeignJson);
+/// A text that this program stored itself, parsed within kStoredJson; null when it is damaged.
+Json stored_json(std::string_view text);
 /// Reads and parses a file of at most 64 MiB.
 Result<Json> read_json(const std::filesystem::path& path);
 /// Writes with two-space indent and a final newline, atomically.

@@ -162,7 +162,7 @@ Json effects_to_json(const std::vector<effects::Use>& uses, FactsOf facts_of) {
       next += param.components;
     }
     Json one = {{"id", use.id}, {"parameters", std::move(parameters)}};
-    if (!use.definition.empty()) one["expression"] = Json::parse(use.definition);
+    if (!use.definition.empty()) one["expression"] = core::stored_json(use.definition);
     list.push_back(std::move(one));
   }
   return list;

@@ -16,7 +16,6 @@ namespace trial {
 namespace {
 static_assert(std::endian::native == std::endian::little, "the file's numbers are little-endian");
 
-constexpr int kMaxDepth = 32;          // of nested JSON
 constexpr std::size_t kMaxLine = 400;  // characters of a message
 
 template <class T>
@@ -47,25 +46,6 @@ bool is_type(std::uint32_t value, bool may_pack) {
 bool all_zero(core::ByteView bytes) {
   return std::ranges::all_of(bytes, [](std::byte b) { return b == std::byte{}; });
 }
-
-int depth_of(std::string_view text) {
-  int depth = 0, deepest = 0;
-  bool quoted = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (quoted) {
-      if (c == '\\') ++i;
-      if (c == '"') quoted = false;
-    } else if (c == '"') {
-      quoted = true;
-    } else if (c == '[' || c == '{') {
-      deepest = std::max(deepest, ++depth);
-    } else if (c == ']' || c == '}') {
-      --depth;
-    }
-  }
-  return deepest;
-}
 }  // namespace
 
 core::Bytes frame_bytes(FrameType type, std::uint32_t sequence, core::ByteView payload) {
@@ -93,15 +73,6 @@ core::Bytes json_payload(const core::Json& json) {
   const auto text = json.dump(-1, ' ', false, core::Json::error_handler_t::replace);
   const auto bytes = core::bytes_of(text);
   return {bytes.begin(), bytes.end()};
-}
-
-core::Result<core::Json> parse_payload(core::ByteView payload, const std::string& where) {
-  const auto text = core::text_of(payload);
-  if (const int depth = depth_of(text); depth > kMaxDepth)
-    return core::Error{
-        core::Errc::corrupt,
-        fmt::format("{}: JSON nested {} deep, at most {} is read", where, depth, kMaxDepth)};
-  return core::parse_json(text, where);
 }
 
 core::Error frame_error(core::Errc code, const std::filesystem::path& path, std::uint64_t offset,

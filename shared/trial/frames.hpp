@@ -44,9 +44,6 @@ core::Bytes frame_bytes(FrameType type, std::uint32_t sequence, core::ByteView p
 core::Bytes end_payload(std::uint64_t samples, const std::string& sha256_hex);
 /// Payload of a JSON frame: no spaces; text that is not UTF-8 is replaced.
 core::Bytes json_payload(const core::Json& json);
-/// Parses a JSON payload; nesting over 32 is refused before it is built. Messages are one line of
-/// bounded length.
-core::Result<core::Json> parse_payload(core::ByteView payload, const std::string& where);
 
 /// One line for a person, "FILE: offset N: WHAT", stripped of control characters and cut to a
 /// bearable length.

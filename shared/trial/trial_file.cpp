@@ -97,7 +97,7 @@ core::Result<core::Json> Scanner::take_json(const char* what) const {
   if (payload.size() > kMaxJson_bytes)
     return wrong(core::Errc::too_large,
                  fmt::format("{} of {} bytes, at most {}", what, payload.size(), kMaxJson_bytes));
-  auto json = parse_payload(payload, what);
+  auto json = core::parse_json(core::text_of(payload), what);
   if (!json) return wrong(json.error().code, json.error().what);
   return json;
 }

@@ -38,8 +38,8 @@ core::Result<TrialWriter> TrialWriter::create(const std::filesystem::path& path,
     return core::Error{core::Errc::too_large,
                        fmt::format("{}: header of {} bytes, at most {}", path.string(),
                                    payload.size(), kMaxJson_bytes)};
-  auto json = parse_payload(payload, path.string() + ": header");
-  if (!json) return core::Error{core::Errc::bad_input, json.error().what};
+  auto json = core::parse_json(core::text_of(payload), path.string() + ": header");
+  if (!json) return json.error();
   if (auto readable = Header::from_json(*json, path.string() + ": header"); !readable)
     return readable.error();
   auto frames = FrameWriter::create(path, payload);
@@ -86,8 +86,8 @@ core::Result<void> TrialWriter::append(const Event& event) {
         fmt::format("event of {} bytes, at most {}", payload.size(), kMaxJson_bytes));
   if (state_->events_bytes + payload.size() > kMaxEvents_bytes)
     return state_->refused(fmt::format("more than {} bytes of events", kMaxEvents_bytes));
-  auto json = parse_payload(payload, state_->name + ": event");
-  if (!json) return core::Error{core::Errc::bad_input, json.error().what};
+  auto json = core::parse_json(core::text_of(payload), state_->name + ": event");
+  if (!json) return json.error();
   auto readable = Event::from_json(*json, state_->name + ": event");
   if (!readable) return readable.error();
   if (readable->t_s < state_->last_event_s)

@@ -1,6 +1,5 @@
 /// enrol: a key of the station's own, known to the server by its hash alone.
 #include <fmt/format.h>
-#include <sys/stat.h>
 
 #include <cstdio>
 
@@ -18,10 +17,7 @@ core::Result<void> write_key(const std::filesystem::path& path, const std::strin
   if (std::filesystem::exists(path, failure))
     return core::Error{core::Errc::conflict,
                        path.string() + ": exists already; a station is enrolled once"};
-  const mode_t before = ::umask(0077);
-  auto written = core::write_file(path, core::bytes_of(key + "\n"));
-  ::umask(before);
-  return written;
+  return core::write_file(path, core::bytes_of(key + "\n"));
 }
 
 /// What the server says of a station it has let in.

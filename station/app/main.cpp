@@ -1,4 +1,6 @@
 /// `tractus-station`: one training station.
+#include <sys/stat.h>
+
 #include <csignal>
 #include <cstdio>
 
@@ -6,6 +8,7 @@
 #include "station/app/deeds.hpp"
 
 int main(int argc, char** argv) {
+  ::umask(0077);  // whatever it makes is its owner's alone
   const app::Parsed parsed = app::parse(argc, argv);
   if (parsed.leave) return *parsed.leave;
   std::signal(SIGINT, [](int) { app::ask_to_stop(); });

@@ -19,7 +19,7 @@ bool is_public_key(const std::string& text) { return core::is_sha256(text); }  /
 }  // namespace
 
 core::Result<FolderLock> FolderLock::take(const fs::path& path, const std::string& who) {
-  const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
   if (fd < 0) return core::system_error(path, "cannot open");
   if (::flock(fd, LOCK_EX | LOCK_NB) != 0) {
     ::close(fd);
@@ -49,6 +49,7 @@ core::Result<StationFolder> StationFolder::open(const fs::path& root) {
       return core::Error{core::Errc::io, fmt::format("{}: cannot make the folder: {}",
                                                      (root / name).string(), failure.message())};
   }
+  if (auto repaired = core::make_private(root, "cases"); !repaired) return repaired.error();
   if (auto read = folder.read_config(); !read) return read.error();
   if (auto read = folder.read_lowered(); !read) return read.error();
   if (auto read = folder.read_trusted(); !read) return read.error();
@@ -129,7 +130,7 @@ core::Result<void> StationFolder::trust(const std::string& signer_public_hex) {
 
 core::Result<void> StationFolder::clear_leftovers() const {
   std::error_code failure;
-  for (const fs::path& folder : {cases(), trials(), root_ / "outbox"})
+  for (const fs::path& folder : {cases(), trials(), root_ / "drilled", root_ / "outbox"})
     for (const auto& entry : fs::directory_iterator(folder, failure))
       if (entry.path().extension() == ".part") fs::remove_all(entry.path(), failure);
   if (failure)

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include <algorithm>
+#include <fstream>
 
 #include "core/file.hpp"
 #include "trial/trial_file.hpp"
@@ -65,6 +66,19 @@ class Sessions : public testing::Test {
   fs::path root_;
   core::KeyPair key_ = core::KeyPair::generate();
 };
+
+TEST_F(Sessions, AFolderThatOthersCouldReadIsMadePrivate) {
+  const fs::path root = root_ / "st";
+  folder();
+  std::ofstream(root / "trials" / "left.ttrial") << "samples";
+  fs::permissions(root, fs::perms(0755));
+  fs::permissions(root / "trials", fs::perms(0755));
+  fs::permissions(root / "trials" / "left.ttrial", fs::perms(0644));
+  folder();
+  EXPECT_EQ(fs::status(root).permissions(), fs::perms(0700));
+  for (const auto& entry : fs::recursive_directory_iterator(root))
+    EXPECT_EQ(entry.status().permissions() & fs::perms(077), fs::perms::none) << entry.path();
+}
 
 TEST_F(Sessions, GoesFromIdleToDoneAndRefusesWhatDoesNotFit) {
   StationFolder where = folder();

@@ -167,6 +167,38 @@ TEST(Architecture, IncludesFollowTheTable) {
   }
 }
 
+/// nlohmann's own entry points limit neither depth nor width: core/json.cpp alone calls them.
+TEST(Architecture, JsonIsParsedByCoreAlone) {
+  const std::regex parser("[Jj]son::(parse|accept|sax_parse|from_[a-z]+) *\\(|nlohmann(::|/)");
+  int calls_in_core = 0;
+  for (const auto& path : sources()) {
+    const std::string relative = fs::relative(path, kRoot).string();
+    if (is_of_tests(relative)) continue;
+    const std::string text = text_of(path);
+    const bool calls = std::regex_search(text, parser);
+    if (relative.starts_with("shared/core/json."))
+      calls_in_core += calls;
+    else
+      EXPECT_FALSE(calls) << relative << " must parse JSON with core::parse_json";
+  }
+  EXPECT_EQ(calls_in_core, 2) << "the expression no longer finds the one place that is allowed";
+}
+
+/// Trials reach research through the filter of db/store/released.hpp alone: the rows with names are
+/// for the page of a trainee, and whoever else includes them is named here after somebody thought
+/// about it.
+TEST(Architecture, RowsOfTrialsWithNamesAreForThoseWhoTeachAlone) {
+  Names readers;
+  for (const auto& path : sources()) {
+    const std::string relative = fs::relative(path, kRoot).string();
+    if (relative.starts_with("db/store/")) continue;
+    const std::string text = text_of(path);
+    for (const char* word : {"db/store/cohort.hpp", "trials_for_teaching", "CohortTrial"})
+      if (text.find(word) != std::string::npos) readers.insert(relative);
+  }
+  EXPECT_EQ(readers, (Names{"server/api/trainees.cpp", "server/api/trainees.hpp"}));
+}
+
 /// The blind generators are a second implementation: what they include must not exist in the
 /// product, and no target of it may be linked.
 TEST(Architecture, BlindGeneratorsShareNothingWithTheProduct) {

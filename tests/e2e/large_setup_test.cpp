@@ -133,6 +133,8 @@ TEST_F(LargeSetup, BothServersServeOneSessionAndOneUpload) {
   const int before_one = answered_by(one_), before_two = answered_by(two_);
   for (int i = 0; i < 20; ++i)
     EXPECT_EQ(client_.ask("GET", "/api/v1/session", admin).status, 200) << proxy_.said();
+  EXPECT_EQ(client_.ask("GET", "/api/v1/session").headers.at("strict-transport-security"),
+            "max-age=31536000");
   const std::string id = hand_over([] {});
   EXPECT_GT(answered_by(one_), before_one + 1);
   EXPECT_GT(answered_by(two_), before_two + 1);

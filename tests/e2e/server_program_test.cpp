@@ -18,8 +18,8 @@ void expect_refused(const Ended& ended, const std::string& about) {
 }
 
 TEST(Program, EveryCommandHelpsWithAnExample) {
-  for (const char* command :
-       {"init", "enrol", "publish", "serve", "openapi", "backup", "restore", "verify", "migrate"}) {
+  for (const char* command : {"init", "enrol", "publish", "serve", "openapi", "backup", "restore",
+                              "verify", "anchor", "migrate"}) {
     const Ended ended = run_program("tractus-server", {command, "--help"});
     EXPECT_EQ(ended.code, 0);
     EXPECT_NE(ended.out.find(std::string("Example: tractus-server ") + command), std::string::npos)

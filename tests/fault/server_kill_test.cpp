@@ -44,6 +44,9 @@ TEST(KilledAtAnyMoment, TheServerLosesNothingItAcknowledgedAndKeepsNoHalfTrial) 
     steps = request;
     killer.join();
   }
+  const Ended verified =
+      run_program("tractus-server", {"verify", "--data", station.world().data.string()});
+  EXPECT_EQ(verified.code, 0) << verified.out;
   ServerProcess last(station.world().data);
   client.speak_to(last.port());
   station.check(client);

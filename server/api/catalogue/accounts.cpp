@@ -9,6 +9,7 @@
 #include "server/api/backend.hpp"
 #include "server/api/people_json.hpp"
 #include "server/api/schema.hpp"
+#include "server/api/throttle.hpp"
 
 namespace api {
 namespace {
@@ -84,20 +85,20 @@ Result<http::Response> add_account_route(const Call& call) {
   return json_response(answer, 201);
 }
 
-/// Changes the account of the path within one transaction and answers with it. `work(account)` may
-/// refuse. Its sessions end when `ends_sessions`.
+/// Changes the account of the path within one transaction, ends its sessions and answers with it.
+/// `work(account)` may refuse.
 template <class Work>
-Result<http::Response> changed(const Call& call, bool ends_sessions, Work work) {
+Result<http::Response> changed(const Call& call, Work work) {
   auto account = call.backend.store.write([&](store::Writing& tx) -> Result<store::Account> {
     auto found = account_of_call(tx, call);
     if (!found) return found;
     if (Result<void> done = work(tx, *found); !done) return done.error();
     if (auto done = store::set_account(tx, *found); !done) return done.error();
-    if (ends_sessions)
-      if (auto done = store::remove_sessions_of(tx, found->id, ""); !done) return done.error();
+    if (auto done = store::remove_sessions_of(tx, found->id, ""); !done) return done.error();
     return found;
   });
   if (!account) return account.error();
+  close_conversations(call.backend, account->id);
   return json_response(account_json(*account));
 }
 
@@ -127,7 +128,7 @@ Result<http::Response> set_state(const Call& call) {
   if (!state) return state.error();
   if (*state != "active" && *state != "disabled")
     return Error{Errc::bad_input, "body: /state: active or disabled is expected"};
-  return changed(call, true, [&](store::Writing& tx, store::Account& account) -> Result<void> {
+  return changed(call, [&](store::Writing& tx, store::Account& account) -> Result<void> {
     if (*state == "disabled" && account.role == name(Role::admin))
       if (auto stays = check_an_admin_stays(tx, account); !stays) return stays;
     account.state = *state;
@@ -138,7 +139,7 @@ Result<http::Response> set_state(const Call& call) {
 Result<http::Response> set_role(const Call& call) {
   auto role = field(call, "role");
   if (!role) return role.error();
-  return changed(call, true, [&](store::Writing& tx, store::Account& account) -> Result<void> {
+  return changed(call, [&](store::Writing& tx, store::Account& account) -> Result<void> {
     if (account.role == name(Role::admin) && *role != name(Role::admin))
       if (auto stays = check_an_admin_stays(tx, account); !stays) return stays;
     account.role = *role;
@@ -146,16 +147,20 @@ Result<http::Response> set_role(const Call& call) {
   });
 }
 
+/// Of another's account: for one's own, the route of one's own account asks for the old password.
 Result<http::Response> reset_password(const Call& call) {
+  if (call.text("id") == call.caller.id)
+    return Error{Errc::forbidden,
+                 "this is your own account: change its password by POST /api/v1/session/password"};
   const std::string password = made_password();
   auto hash = password_hash(password);
   if (!hash) return hash.error();
-  auto response = changed(call, true, [&](store::Writing& tx, store::Account& account) {
+  auto response = changed(call, [&](store::Writing& tx, store::Account& account) {
     account.password_hash = *hash;
     account.must_change = true;
     account.totp_secret.clear();
     account.totp_confirmed = false;
-    return store::clear_login_failures(tx, account.name, "");
+    return start_afresh(tx, account.id, store::Secret::account_password, account.name);
   });
   if (!response) return response.error();
   return json_response({{"password", password}});
@@ -173,10 +178,10 @@ Result<http::Response> set_badge(const Call& call) {
     if (!made) return made.error();
     hash = std::move(*made);
   }
-  return changed(call, false, [&](store::Writing& tx, store::Account& account) {
+  return changed(call, [&](store::Writing& tx, store::Account& account) {
     account.badge = badge;
     account.pin_hash = hash;
-    return store::clear_login_failures(tx, "badge " + badge, "");
+    return start_afresh(tx, account.id, store::Secret::badge_pin, badge);
   });
 }
 
@@ -210,6 +215,7 @@ std::vector<RouteInfo> accounts_routes() {
                   {"Accounts", object({{"accounts", array(ref("Account"), "by name")}})}};
   RouteInfo add = route("", "addAccount", "Make an account; its password must be changed at once",
                         "NewAccountMade", add_account_route);
+  add.lane = http::Lane::hashing;
   add.body = "NewAccount";
   add.schemas = {
       {"NewAccount", object({{"name", text("at most 128 bytes")},
@@ -230,12 +236,16 @@ std::vector<RouteInfo> accounts_routes() {
   role.body = "AccountRole";
   role.schemas = {{"AccountRole", object({{"role", text("from now on")}})}};
   RouteInfo reset = route("/{id}/password", "resetPassword",
-                          "A new password, shown once; ends sessions, one-time codes and lock-out",
+                          "A new password for another's account, shown once; ends its sessions, "
+                          "one-time codes and the wait after failures",
                           "PasswordMade", reset_password);
+  reset.lane = http::Lane::hashing;
   reset.schemas = {{"PasswordMade", object({{"password", text("shown only now")}})}};
   RouteInfo badge = route("/{id}/badge", "setBadge",
-                          "Badge and PIN for stations; without, none; ends a lock-out there",
+                          "Badge and PIN for stations; without, none; ends the account's sessions "
+                          "and the wait after failures",
                           "Account", set_badge);
+  badge.lane = http::Lane::hashing;
   badge.who.push_back({Role::faculty, Of::cohort});
   badge.body = "Badge";
   badge.schemas = {{"Badge", object({{"badge", optional(text("what a station reads"))},

@@ -9,6 +9,7 @@
 #include "server/api/backend.hpp"
 #include "server/api/people_json.hpp"
 #include "server/api/schema.hpp"
+#include "server/api/throttle.hpp"
 #include "server/api/uploads.hpp"
 #include "server/jobs/scenario_facts.hpp"
 #include "study/sealed_law.hpp"
@@ -20,7 +21,7 @@ using core::Errc;
 using core::Error;
 using core::Result;
 
-constexpr std::uint64_t kMaxBody_bytes = 1024, kPinFailures = 5;
+constexpr std::uint64_t kMaxBody_bytes = 1024;
 
 /// A ticket is a session of this trainee at this station: it opens nothing elsewhere, and no
 /// browser's cookie is one.
@@ -28,17 +29,16 @@ std::string ticket_hash(const Call& call, const std::string& ticket) {
   return token_hash("ticket " + call.caller.id + " " + ticket);
 }
 
-Result<store::Account> let_in(const Call& call, const std::string& badge, const std::string& pin) {
-  const std::string throttled = "badge " + badge;
-  if (auto open = check_throttle(call.backend, throttled, "", kPinFailures, kPinFailures); !open)
-    return open.error();
-  auto account = call.backend.store.read(
-      [&](store::Reading& tx) { return store::account_with_badge(tx, badge); });
+Result<store::Account> let_in(Backend& backend, const store::Attempt& attempt,
+                              const std::string& pin) {
+  auto account = backend.store.read(
+      [&](store::Reading& tx) { return store::account_with_badge(tx, attempt.name); });
   if (!account) return account.error();
   const bool right = password_matches(*account ? (*account)->pin_hash : "", pin);
+  if (!*account) store::Acting::without_detail();
   if (right && (*account)->state == "active" && (*account)->role == name(Role::trainee))
     return std::move(**account);
-  if (auto noted = note_failure(call.backend, throttled, ""); !noted) return noted.error();
+  if (auto noted = note_failure(backend, attempt); !noted) return noted.error();
   return Error{Errc::unauthorised, "badge or PIN is wrong"};
 }
 
@@ -48,13 +48,18 @@ Result<http::Response> sign_in_at_station(const Call& call) {
   core::Fields fields(*json, "body");
   const std::string badge = fields.text("badge", kMaxBadge), pin = fields.text("pin", kMaxPin);
   if (auto done = fields.done(); !done) return done.error();
-  auto account = let_in(call, badge, pin);
+  const store::Attempt attempt{store::Secret::badge_pin, badge, call.caller.id};
+  auto early = too_early(call.backend, attempt);
+  if (!early) return early.error();
+  if (*early) return std::move(**early);
+  auto account = let_in(call.backend, attempt, pin);
   if (!account) return account.error();
   const std::string ticket = new_token();
+  const std::int64_t now = call.backend.now_utc_us();
   auto in = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
-    if (auto done = store::clear_login_failures(tx, "badge " + badge, ""); !done) return done;
-    return store::add_session(tx, ticket_hash(call, ticket), account->id,
-                              call.backend.now_utc_us());
+    if (auto same = check_unchanged(tx, *account); !same) return same;
+    if (auto done = note_success(tx, account->id, attempt, now); !done) return done;
+    return store::add_session(tx, ticket_hash(call, ticket), account->id, now);
   });
   if (!in) return in.error();
   return json_response({{"ticket", ticket}, {"name", account->name}});
@@ -93,30 +98,20 @@ struct Given {
   std::string token_hash = {};
 };
 
-/// One assignment's next slot; false when it has none now.
-Result<bool> take_of(store::Writing& tx, const Call& call, const store::Assignment& assignment,
-                     const std::string& participant, Given& given) {
-  const auto& study = assignment.study;
-  if (study.state == "paused") return false;
-  auto person = store::participant_of(tx, study.id, participant);
-  if (!person) return person.error();
-  if (!*person || (*person)->state == "paused") return false;
-  auto taken = store::take_slots(tx, study, **person, call.caller.id, 1,
-                                 {call.caller.name, call.backend.now_utc_us()});
-  if (!taken) return taken.error();
-  given.work.left += taken->unfinished;
-  if (taken->slots.empty()) return false;
-  const store::Slot& slot = taken->slots.front();
-  auto name = store::assigned_name(tx, study.id, slot.case_id);
+/// What the station is told of the trial that is next.
+Result<wire::AssignedTrial> trial_of_slot(store::Reading& tx, const store::AssignmentId& id,
+                                          const std::string& title, const store::Taken& taken) {
+  const store::Slot& slot = taken.slots.front();
+  auto name = store::assigned_name(tx, id, slot.case_id);
   if (!name) return name.error();
   auto of = store::case_of(tx, slot.case_id);
   if (!of) return of.error();
   wire::AssignedTrial trial{.slot = slot.id,
                             .rig = (*of)->kind,
                             .name = *name,
-                            .assignment = study.title,
-                            .number = taken->planned - taken->unfinished + 1,
-                            .planned = taken->planned,
+                            .assignment = title,
+                            .number = taken.planned - taken.unfinished + 1,
+                            .planned = taken.planned,
                             .case_id = "",
                             .sealed = ""};
   if (trial.name.empty()) trial.name = "Trial " + std::to_string(trial.number);
@@ -127,10 +122,31 @@ Result<bool> take_of(store::Writing& tx, const Call& call, const store::Assignme
     trial.drills = drilling->empty();
     trial.drilled = std::move(*drilling);
   }
-  given.work.participant = participant;
-  given.work.trial = std::move(trial);
-  given.slot = slot;
-  return true;
+  return trial;
+}
+
+/// Gives the account's next slot of one assignment, where it has one now.
+Result<void> take_of(store::Writing& tx, const Call& call, const store::Assignment& assignment,
+                     const store::Account& account, Given& given) {
+  if (assignment.study.state == "paused") return {};
+  auto id = store::find_assignment(tx, assignment.study.id);
+  if (!id) return id.error();
+  auto participant = store::participant_for(tx, *id, account.id);
+  if (!participant) return participant.error();
+  auto person = store::participant_of(tx, *id, *participant);
+  if (!person) return person.error();
+  if (!*person || (*person)->state == "paused") return {};
+  auto taken = store::take_slots(tx, *id, **person, call.caller.id, 1,
+                                 {call.caller.name, call.backend.now_utc_us()});
+  if (!taken) return taken.error();
+  given.work.left += taken->unfinished;
+  if (taken->slots.empty()) return {};
+  auto trial = trial_of_slot(tx, *id, assignment.study.title, *taken);
+  if (!trial) return trial.error();
+  given.work.participant = *participant;
+  given.work.trial = std::move(*trial);
+  given.slot = taken->slots.front();
+  return {};
 }
 
 Result<Given> take(store::Writing& tx, const Call& call, const store::Account& account) {
@@ -145,10 +161,7 @@ Result<Given> take(store::Writing& tx, const Call& call, const store::Account& a
       given.work.left += assignment.planned - assignment.done;
       continue;
     }
-    auto participant = store::participant_for(tx, assignment.study.id, account.id);
-    if (!participant) return participant.error();
-    if (auto found = take_of(tx, call, assignment, *participant, given); !found)
-      return found.error();
+    if (auto done = take_of(tx, call, assignment, account, given); !done) return done.error();
   }
   return given;
 }
@@ -198,9 +211,10 @@ RouteInfo route(std::string tail, std::string id, std::string summary, std::stri
 std::vector<RouteInfo> assigned_work_routes() {
   using namespace schema;
   RouteInfo in = route("sign-in", "signInAtStation",
-                       "A trainee by badge and PIN; five failures "
-                       "lock the badge for a quarter of an hour",
+                       "A trainee by badge and PIN; after five failures at a station, one attempt "
+                       "in three minutes",
                        "BadgeAndPin", "Ticket", sign_in_at_station);
+  in.lane = http::Lane::hashing;
   in.schemas = {{"BadgeAndPin", object({{"badge", text("as read")}, {"pin", text("as typed")}})},
                 {"Ticket", object({{"ticket", text("for this station alone")},
                                    {"name", text("of the account, to greet by")}})}};

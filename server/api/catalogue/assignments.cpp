@@ -54,7 +54,8 @@ Result<http::Response> list_assignments(const Call& call) {
 }
 
 /// @param whose  this participant's alone; empty: everybody's.
-Result<Json> trials_json(store::Reading& tx, const std::string& id, const std::string& whose) {
+Result<Json> trials_json(store::Reading& tx, const store::AssignmentId& id,
+                         const std::string& whose) {
   auto slots = store::study_slots(tx, id);
   if (!slots) return slots.error();
   std::map<std::string, const store::Slot*> places;
@@ -81,26 +82,29 @@ Result<Json> trials_json(store::Reading& tx, const std::string& id, const std::s
 }
 
 /// What a trainee has done of it, once the results may be seen.
-Result<Json> own_trials_json(store::Reading& tx, const std::string& id, const std::string& me) {
+Result<Json> own_trials_json(store::Reading& tx, const store::AssignmentId& id,
+                             const std::string& me) {
   auto participant = store::participant_for(tx, id, me);
   if (!participant) return participant.error();
   return trials_json(tx, id, *participant);
 }
 
-Result<Json> whole_json(store::Reading& tx, const std::string& id, Of of, const std::string& me) {
-  auto found = store::assignment_of(tx, id, of == Of::own ? me : "");
+Result<Json> whole_json(store::Reading& tx, const std::string& asked, Of of,
+                        const std::string& me) {
+  auto id = store::find_assignment(tx, asked);
+  if (!id) return id.error();
+  auto found = store::assignment_of(tx, *id, of == Of::own ? me : "");
   if (!found) return found.error();
-  if (!*found) return Error{Errc::not_found, "no assignment " + id.substr(0, 32)};
-  Json out = assignment_json(**found, of);
+  Json out = assignment_json(*found, of);
   if (of == Of::own) {
-    if ((*found)->release == "held") return out;
-    auto own = own_trials_json(tx, id, me);
+    if (found->release == "held") return out;
+    auto own = own_trials_json(tx, *id, me);
     if (!own) return own.error();
     out["trials"] = std::move(*own);
     return out;
   }
   out["trainees"] = Json::array();
-  auto people = store::assigned_people(tx, id);
+  auto people = store::assigned_people(tx, *id);
   if (!people) return people.error();
   for (const auto& person : *people)
     out["trainees"].push_back({{"account_id", person.account_id},
@@ -108,7 +112,7 @@ Result<Json> whole_json(store::Reading& tx, const std::string& id, Of of, const 
                                {"participant", person.participant},
                                {"done", person.done},
                                {"planned", person.planned}});
-  auto trials = trials_json(tx, id, "");
+  auto trials = trials_json(tx, *id, "");
   if (!trials) return trials.error();
   out["trials"] = std::move(*trials);
   return out;
@@ -135,7 +139,7 @@ Result<http::Response> add_assignment_route(const Call& call) {
   return assignment_response(call, *id, 201);
 }
 
-/// Reads the body with `read(fields)`, runs `work(tx, deed)`, answers with the assignment.
+/// Reads the body with `read(fields)`, runs `work(tx, id, deed)`, answers with the assignment.
 template <class Read, class Work>
 Result<http::Response> changed(const Call& call, Read read, Work work) {
   auto json = core::parse_json(call.request.body, "body");
@@ -144,10 +148,9 @@ Result<http::Response> changed(const Call& call, Read read, Work work) {
   read(fields);
   if (auto done = fields.done(); !done) return done.error();
   auto done = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
-    auto there = store::assignment_of(tx, call.text("id"));
-    if (!there) return there.error();
-    if (!*there) return Error{Errc::not_found, "no assignment " + call.text("id").substr(0, 32)};
-    return work(tx, store::Deed{call.caller.name, call.backend.now_utc_us()});
+    auto id = store::find_assignment(tx, call.text("id"));
+    if (!id) return id.error();
+    return work(tx, *id, store::Deed{call.caller.name, call.backend.now_utc_us()});
   });
   if (!done) return done.error();
   return one_assignment(call);
@@ -162,8 +165,8 @@ Result<http::Response> set_release(const Call& call) {
         if (release != "held" && release != "released" && release != "at_once")
           fields.wrong("release", "held, released or at_once is expected");
       },
-      [&](store::Writing& tx, const store::Deed& deed) {
-        return store::set_release(tx, call.text("id"), release, deed);
+      [&](store::Writing& tx, const store::AssignmentId& id, const store::Deed& deed) {
+        return store::set_release(tx, id, release, deed);
       });
 }
 
@@ -175,8 +178,8 @@ Result<http::Response> set_due(const Call& call) {
         const Json* given = fields.member("due_utc_us");
         if (given && !given->is_null()) due = fields.integer("due_utc_us", 0, kMaxTime_us);
       },
-      [&](store::Writing& tx, const store::Deed& deed) {
-        return store::set_due(tx, call.text("id"), due, deed);
+      [&](store::Writing& tx, const store::AssignmentId& id, const store::Deed& deed) {
+        return store::set_due(tx, id, due, deed);
       });
 }
 
@@ -184,15 +187,13 @@ Result<http::Response> assign_person(const Call& call) {
   std::string name;
   return changed(
       call, [&](core::Fields& fields) { name = fields.text("name", kMaxName); },
-      [&](store::Writing& tx, const store::Deed& deed) -> Result<void> {
+      [&](store::Writing& tx, const store::AssignmentId& id,
+          const store::Deed& deed) -> Result<void> {
         auto account = store::account_named(tx, name);
         if (!account) return account.error();
-        auto taught =
-            *account ? store::teaches(tx, call.caller.id, (*account)->id) : Result<bool>(false);
-        if (!taught) return taught.error();
-        if (!*account || (call.of != Of::all && !*taught))
-          return Error{Errc::not_found, "body: /name: there is none of yours by this name"};
-        return assign_to(tx, call.text("id"), **account, deed);
+        if (!*account)
+          return Error{Errc::not_found, "body: /name: there is no account of this name"};
+        return assign_to(tx, id, **account, deed);
       });
 }
 
@@ -205,21 +206,22 @@ Result<http::Response> invalidate(const Call& call) {
         if (reason.find_first_not_of(" \t\r\n") == std::string::npos)
           fields.wrong("reason", "a reason is expected");
       },
-      [&](store::Writing& tx, store::Deed deed) {
+      [&](store::Writing& tx, const store::AssignmentId& id, store::Deed deed) {
         deed.reason = reason;
-        return store::set_trial_invalid(tx, call.text("id"), call.text("trial_id"), deed);
+        return store::set_trial_invalid(tx, id, call.text("trial_id"), deed);
       });
 }
 
 Result<http::Response> free_person(const Call& call) {
   return changed(
       call, [](core::Fields& fields) { fields.skip("reason"); },
-      [&](store::Writing& tx, const store::Deed& deed) -> Result<void> {
-        auto participant = store::participant_for(tx, call.text("id"), call.text("account_id"));
+      [&](store::Writing& tx, const store::AssignmentId& id,
+          const store::Deed& deed) -> Result<void> {
+        auto participant = store::participant_for(tx, id, call.text("account_id"));
         if (!participant) return participant.error();
         if (participant->empty())
           return Error{Errc::not_found, "it is not assigned to this person"};
-        auto freed = store::release_slots(tx, call.text("id"), *participant, deed);
+        auto freed = store::release_slots(tx, id, *participant, deed);
         if (!freed) return freed.error();
         return {};
       });
@@ -316,6 +318,19 @@ std::vector<NamedSchema> plan_schemas() {
                                               "when a trial that does not count is repeated"))}})}};
 }
 
+RouteInfo adding_route() {
+  RouteInfo out = route("POST", "", "addAssignment",
+                        "Assign cases, or a study's protocol, to a cohort and to people",
+                        "NewAssignment", add_assignment_route);
+  out.body_limit_bytes = kMaxPlan_bytes;
+  out.ends = {{"/cohort", Object::cohort, out.who},
+              {"/people/*", Object::account, out.who, End::By::account_name},
+              {"/cases/*/case", Object::published_case, {Role::admin, Role::faculty}},
+              {"/protocol", Object::study, out.who}};
+  out.schemas = plan_schemas();
+  return out;
+}
+
 }  // namespace
 
 std::vector<RouteInfo> assignments_routes() {
@@ -328,11 +343,6 @@ std::vector<RouteInfo> assignments_routes() {
   RouteInfo one =
       route("GET", "/{id}", "assignment", "One, with who has done what", "", one_assignment);
   one.who = list.who;
-  RouteInfo add = route("POST", "", "addAssignment",
-                        "Assign cases, or a study's protocol, to a cohort and to people",
-                        "NewAssignment", add_assignment_route);
-  add.body_limit_bytes = kMaxPlan_bytes;
-  add.schemas = plan_schemas();
   RouteInfo release = route("POST", "/{id}/release", "releaseResults",
                             "May trainees see their results?", "Release", set_release);
   release.schemas = {
@@ -341,6 +351,7 @@ std::vector<RouteInfo> assignments_routes() {
   due.schemas = {{"Due", object({{"due_utc_us", nullable(integer("us", "since 1970, UTC"))}})}};
   RouteInfo person = route("POST", "/{id}/people", "assignPerson", "One more trainee",
                            "PersonNamed", assign_person);
+  person.ends = {{"/name", Object::account, person.who, End::By::account_name}};
   RouteInfo invalid =
       route("POST", "/{id}/trials/{trial_id}/invalid", "markAssignedTrialInvalid",
             "A trial does not count: it stays, and is repeated as asked for", "Reason", invalidate);
@@ -349,8 +360,10 @@ std::vector<RouteInfo> assignments_routes() {
       route("POST", "/{id}/people/{account_id}/free", "freeAssignedPerson",
             "What a station holds of this person's trials waits again", "Nothing", free_person);
   free.parameters.push_back(path_text("account_id", "the person's"));
+  // Whoever it is assigned to, also who has left the cohort since.
+  free.ends = {{"account_id", Object::account, {Role::admin, Role::faculty}}};
   free.schemas = {{"Nothing", object({{"reason", optional(text("why"))}})}};
-  return {list, one, add, release, due, person, invalid, free};
+  return {list, one, adding_route(), release, due, person, invalid, free};
 }
 
 }  // namespace api

@@ -14,7 +14,7 @@ core::Json row_json(const store::AuditRow& row) {
   return {{"number", row.number},     {"at_utc_us", row.act.at_utc_us},
           {"who", row.act.who},       {"role", row.act.role},
           {"peer", row.act.peer},     {"what", row.act.what},
-          {"object", row.act.object}, {"detail", core::Json::parse(row.act.detail, nullptr, false)},
+          {"object", row.act.object}, {"detail", core::stored_json(row.act.detail)},
           {"hash", row.hash}};
 }
 

@@ -141,6 +141,9 @@ Result<http::Response> part_of(const Call& call) {
   if (!page && !json && part != "data.csv") return absent("part of an analysis", part);
   const auto& object = page ? run->report : json ? run->result : run->data;
   if (!object) return absent("finished analysis", run->id);
+  if (!page && !json)
+    if (auto may = check_still_released(call.backend, run->study, *object); !may)
+      return may.error();
   auto response = http::file_response(call.backend.objects.path_of(*object), call.request,
                                       page   ? "text/html; charset=utf-8"
                                       : json ? "application/json"
@@ -152,10 +155,13 @@ Result<http::Response> part_of(const Call& call) {
 }
 
 Result<http::Response> table_of(const Call& call) {
-  auto table = jobs::cohort_table(call.backend.store, call.has("study") ? call.text("study") : "",
-                                  kMostInTable);
-  if (!table) return table.error();
-  http::Response response{.status = 200, .headers = {}, .body = std::move(table->csv)};
+  const auto released = call.backend.store.read([&](store::Reading& tx) {
+    return store::ReleasedTrials::read(
+        tx, call.backend.pseudonym_key,
+        {.study = call.has("study") ? call.text("study") : "", .most = kMostInTable});
+  });
+  if (!released) return released.error();
+  http::Response response{.status = 200, .headers = {}, .body = jobs::cohort_table(*released).csv};
   response.with("Content-Type", "text/csv; charset=utf-8")
       .with("Content-Disposition", "attachment; filename=\"cohort.csv\"")
       .with("Cache-Control", "no-store");

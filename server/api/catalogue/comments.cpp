@@ -1,6 +1,9 @@
 /// Talking about a trial: comments on its moments, and experts' trials on the same case beside it.
+#include <set>
+
 #include "core/bytes.hpp"
 #include "db/store/debriefs.hpp"
+#include "server/api/access.hpp"
 #include "server/api/route.hpp"
 #include "server/api/schema.hpp"
 #include "server/api/trial_signals.hpp"
@@ -75,20 +78,28 @@ Result<http::Response> references_response(const Call& call) {
   struct Found {
     bool own;
     std::vector<store::ReferenceTrial> others;
+    std::set<std::string> named;  ///< trials of people whom the caller may see
   };
   const auto found = call.backend.store.read([&](store::Reading& tx) -> Result<Found> {
     auto own = store::is_reference(tx, call.text("id"));
     if (!own) return own.error();
     auto others = store::references_for(tx, call.text("id"));
     if (!others) return others.error();
-    return Found{*own, std::move(*others)};
+    Found out{*own, std::move(*others), {}};
+    for (const auto& one : out.others) {
+      auto sees = call.of == Of::all
+                      ? Result<bool>(true)
+                      : relates(tx, call.caller, call.of, Object::trial, one.trial_id);
+      if (!sees) return sees.error();
+      if (*sees) out.named.insert(one.trial_id);
+    }
+    return out;
   });
   if (!found) return found.error();
-  const bool named = call.caller.role != Role::trainee;
   Json list = Json::array();
   for (const auto& one : found->others)
     list.push_back({{"id", one.trial_id},
-                    {"operator", named ? one.operator_name : ""},
+                    {"operator", found->named.contains(one.trial_id) ? one.operator_name : ""},
                     {"simulated", one.simulated},
                     {"started_utc_us", one.started_utc_us},
                     {"duration_s", one.duration_s}});
@@ -195,7 +206,7 @@ std::vector<NamedSchema> comment_schemas() {
 std::vector<NamedSchema> reference_schemas() {
   using namespace schema;
   const Json one = object({{"id", text("of the trial")},
-                           {"operator", text("who did it; not told to trainees")},
+                           {"operator", text("who did it; empty: nobody whom you may see")},
                            {"simulated", truth("by no hand")},
                            {"started_utc_us", integer("us", "since 1970, UTC")},
                            {"duration_s", number("s", "")}});
@@ -226,6 +237,9 @@ std::vector<RouteInfo> comments_routes() {
   RouteInfo way = route("GET", "/references/{reference}", "referenceWay", "The way of such a trial",
                         "", "ReferenceWay", reference_way);
   way.parameters.push_back(path_text("reference", "the example's id"));
+  // Whose ever it is: it is offered to all who did a trial on its case.
+  way.ends = {
+      {"reference", Object::trial, {Role::admin, Role::director, Role::faculty, Role::trainee}}};
   return {list,
           route("POST", "/comments", "addComment", "Say something of a trial, or of a moment of it",
                 "NewComment", "TrialComments", add_comment),

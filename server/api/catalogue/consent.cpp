@@ -59,12 +59,6 @@ Result<http::Response> say_own(const Call& call) {
                       .noted_by = call.caller.name};
   if (auto fine = fields.done(); !fine) return fine.error();
   auto answer = call.backend.store.write([&](store::Writing& tx) -> Result<Json> {
-    if (!said.study_id.empty()) {
-      auto participant = store::participant_for(tx, said.study_id, call.caller.id);
-      if (!participant) return participant.error();
-      if (participant->empty())
-        return Error{Errc::not_found, "study: you take part in no study of this name"};
-    }
     if (auto set = store::set_consent(tx, said); !set) return set.error();
     return own_answer(tx, call.caller.id);
   });
@@ -104,17 +98,12 @@ Result<void> resolve(store::Reading& tx, const std::string& account, store::Cons
     said.account_id = (*known)->id;
     return {};
   }
-  auto rows = tx.query("select count(*) from study_participants where study_id = ? and name = ?",
-                       {said.study_id, said.participant});
-  if (!rows) return rows.error();
-  if (rows->front().integer(0) == 0)
+  auto study = store::find_study(tx, said.study_id);
+  if (!study) return study.error();
+  auto participant = store::participant_of(tx, *study, said.participant);
+  if (!participant) return participant.error();
+  if (!*participant)
     return Error{Errc::not_found, "participant: there is none of this name in the study"};
-  auto owned =
-      tx.query("select count(*) from assignment_people where study_id = ? and participant = ?",
-               {said.study_id, said.participant});
-  if (!owned) return owned.error();
-  if (owned->front().integer(0) > 0)
-    return Error{Errc::conflict, "participant: has an account, and speaks for himself"};
   return {};
 }
 
@@ -133,8 +122,6 @@ Result<http::Response> note_consent(const Call& call) {
   if (account.empty() == said.participant.empty())
     fields.wrong("participant", "a participant of a study, or an account, is expected");
   if (auto fine = fields.done(); !fine) return fine.error();
-  if (!account.empty() && call.caller.role != Role::admin)
-    return Error{Errc::forbidden, "for an account only an administrator notes a form"};
   auto noted = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
     if (auto known = resolve(tx, account, said); !known) return known;
     return store::set_consent(tx, said);
@@ -177,6 +164,8 @@ std::vector<RouteInfo> consent_routes() {
                         "Agree, or withdraw (none): in one study, or everywhere, which replaces "
                         "what was said of studies; exports follow at once",
                         people(), say_own);
+  say.ends = {{"/study", Object::assignment, {}}};
+  for (const Grant& grant : people()) say.ends.front().who.push_back({grant.role, Of::own});
   say.body = "ConsentWord";
   say.body_limit_bytes = kMaxBody_bytes;
   say.answer = "OwnConsent";
@@ -200,6 +189,8 @@ std::vector<RouteInfo> consent_routes() {
                          "Note a form that somebody signed: of a study's participant without "
                          "account, or (administrators) of an account",
                          {Role::admin, Role::researcher}, note_consent);
+  note.ends = {{"/account", Object::account, {Role::admin}, End::By::account_name},
+               {"/study", Object::study, note.who}};
   note.body = "ConsentForm";
   note.body_limit_bytes = kMaxBody_bytes;
   note.schemas = {{"ConsentForm", object({{"account", optional(text("name"))},

@@ -2,9 +2,9 @@
 #include "server/api/export.hpp"
 
 #include "db/store/audit.hpp"
-#include "db/store/trials.hpp"
 #include "server/api/cohort_zip.hpp"
 #include "server/api/route.hpp"
+#include "server/api/samples_array.hpp"
 #include "server/api/schema.hpp"
 
 namespace api {
@@ -26,17 +26,16 @@ http::Response csv_response(std::string csv, const char* name) {
 std::string study_of_call(const Call& call) { return call.has("study") ? call.text("study") : ""; }
 
 Result<http::Response> export_summary(const Call& call) {
-  auto trials = trials_to_export(call.backend, study_of_call(call), Tier::summary);
+  auto trials = released_trials(call.backend, study_of_call(call), Tier::summary);
   if (!trials) return trials.error();
   return csv_response(summary_csv(*trials), "summary.csv");
 }
 
 Result<http::Response> table(const Call& call, const char* name,
-                             std::string (*csv)(const std::vector<ExportedTrial>&,
-                                                const Pseudonyms&)) {
-  auto trials = trials_to_export(call.backend, study_of_call(call), Tier::metrics);
+                             std::string (*csv)(const store::ReleasedTrials&)) {
+  auto trials = released_trials(call.backend, study_of_call(call), Tier::metrics);
   if (!trials) return trials.error();
-  return csv_response(csv(*trials, Pseudonyms::of(call.backend).value()), name);
+  return csv_response(csv(*trials), name);
 }
 
 Result<http::Response> export_trials(const Call& call) {
@@ -51,33 +50,27 @@ Result<http::Response> export_dictionary(const Call&) {
   return csv_response(dictionary_csv(), "dictionary.csv");
 }
 
-http::Response bytes_response(std::string bytes, const char* type, const char* name) {
-  http::Response response{.status = 200, .headers = {}, .body = std::move(bytes)};
-  response.with("Content-Type", type)
-      .with("Content-Disposition", std::string("attachment; filename=\"") + name + "\"")
-      .with("Cache-Control", "no-store");
-  return response;
+Result<http::Response> samples_of(const Call& call, const std::string& sha256,
+                                  std::uint64_t samples) {
+  auto file = http::scratch_file(*call.backend.scratch, call.caller.id, samples_npy_bytes(samples));
+  if (!file) return file.error();
+  auto written = write_samples_npy(call.backend.objects.path_of(sha256), call.number("rate_Hz"),
+                                   (*file)->path);
+  if (!written) return written.error();
+  return scratch_response(std::move(*file), "application/octet-stream", "samples.npy");
 }
 
 /// Only the key can tell which trial a pseudonym is: so the key is tried on all of them.
 Result<http::Response> export_samples(const Call& call) {
   const double rate_Hz = call.number("rate_Hz");
   const bool reduced = rate_Hz > 0.0 && rate_Hz <= kReduced_Hz;
-  auto trials = trials_to_export(call.backend, "", Tier::metrics);
+  auto trials = released_trials(call.backend, "", Tier::metrics);
   if (!trials) return trials.error();
-  const Pseudonyms names = Pseudonyms::of(call.backend).value();
-  for (const auto& [trial, tier] : *trials) {
-    if (names.trial(trial.summary.id) != call.text("trial")) continue;
-    if (tier < (reduced ? Tier::reduced : Tier::full))
-      return Error{Errc::forbidden, std::string("who did this trial agreed to ") +
-                                        std::string(store::name(tier)) + ", and this is " +
-                                        (reduced ? "reduced" : "full")};
-    auto record = call.backend.store.read(
-        [&, id = trial.summary.id](store::Reading& tx) { return store::trial_of(tx, id); });
-    if (!record) return record.error();
-    auto array = samples_npy(call.backend.objects.path_of((*record)->sha256), rate_Hz);
-    if (!array) return array.error();
-    return bytes_response(std::move(*array), "application/octet-stream", "samples.npy");
+  for (const store::ReleasedTrial& trial : trials->all()) {
+    if (trial.id != call.text("trial")) continue;
+    const auto file = trial.file(reduced ? Tier::reduced : Tier::full);
+    if (!file) return file.error();
+    return samples_of(call, *file, trial.samples);
   }
   return Error{Errc::not_found, "no trial " + call.text("trial").substr(0, 32)};
 }
@@ -86,9 +79,9 @@ Result<http::Response> export_cohort(const Call& call) {
   const auto tier = store::tier_named(call.text("tier"));
   if (!tier || *tier == Tier::none)
     return Error{Errc::bad_input, "tier: summary, metrics, reduced or full is expected"};
-  auto zip = cohort_zip(call.backend, study_of_call(call), *tier);
+  auto zip = cohort_zip(call.backend, call.caller.id, study_of_call(call), *tier);
   if (!zip) return zip.error();
-  return bytes_response(std::move(*zip), "application/zip", "cohort.zip");
+  return scratch_response(std::move(*zip), "application/zip", "cohort.zip");
 }
 
 /// Looking at it is an act of its own.

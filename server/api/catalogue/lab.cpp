@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <fstream>
+
 #include "core/bytes.hpp"
 #include "core/file.hpp"
 #include "db/store/cases.hpp"
@@ -92,25 +95,27 @@ Result<http::Response> list_sets(const Call& call) {
   return json_response({{"measurements", list}});
 }
 
-/// Written beside the objects and read whole; what is wrong is told before anything is kept.
-Result<lab_io::SetFacts> checked(const std::string& body) {
-  if (!body.starts_with("PK"))
+/// Read whole; what is wrong is told before anything is kept.
+Result<lab_io::SetFacts> checked(const std::filesystem::path& zip) {
+  std::array<char, 2> first{};
+  std::ifstream(zip, std::ios::binary).read(first.data(), first.size());
+  if (std::string_view(first.data(), first.size()) != "PK")
     return Error{Errc::bad_input,
                  "the body is not a zip; a zip of a folder with set.json is expected"};
-  auto scratch =
-      core::ScratchFolder::make(std::filesystem::temp_directory_path() / "tractus-upload");
-  if (!scratch) return scratch.error();
-  const auto path = scratch->path() / "measurements.zip";
-  if (auto written = core::write_file(path, core::bytes_of(body)); !written) return written.error();
-  return lab_io::facts_of_set(path);
+  return lab_io::facts_of_set(zip);
 }
 
 Result<http::Response> add_set(const Call& call) {
-  const std::string& body = call.request.body;
-  const auto facts = checked(body);
+  auto scratch = core::ScratchFolder::make(call.backend.scratch->folder() / "set");
+  if (!scratch) return scratch.error();
+  const auto zip = body_in(call, scratch->path(), "measurements.zip");
+  if (!zip) return zip.error();
+  const auto facts = checked(*zip);
   if (!facts) return facts.error();
-  const auto sha256 = call.backend.objects.put(core::bytes_of(body));
+  const auto sha256 = store::file_sha256(*zip);
   if (!sha256) return sha256.error();
+  if (auto kept = call.backend.objects.copy_in(*zip, *sha256); !kept) return kept.error();
+  const std::uint64_t size_bytes = std::filesystem::file_size(*zip);
   const store::MeasurementSet set{*sha256,
                                   call.text("name").substr(0, kMaxName),
                                   call.backend.now_utc_us(),
@@ -121,7 +126,7 @@ Result<http::Response> add_set(const Call& call) {
                                   facts->samples};
   auto kept = call.backend.store.write(
       [&](store::Writing& tx) -> Result<std::optional<store::MeasurementSet>> {
-        if (auto noted = store::add_object(tx, set.id, body.size(), set.made_utc_us); !noted)
+        if (auto noted = store::add_object(tx, set.id, size_bytes, set.made_utc_us); !noted)
           return noted.error();
         if (auto added = store::add_measurement_set(tx, set); !added) return added.error();
         return store::measurement_set_of(tx, set.id);
@@ -214,6 +219,7 @@ std::vector<RouteInfo> lab_routes() {
   name.required = true;
   name.fallback = std::nullopt;
   keep_set.parameters = {name};
+  keep_set.body_to_file = true;
   RouteInfo keep_model =
       taking(lab_route("POST", "models", "addModel", "Keep a model as a new version",
                        "ModelVersion", add_model),

@@ -37,6 +37,12 @@ Result<const Oidc*> provider(const Call& call) {
   return Error{Errc::not_found, "this server has no provider of identities"};
 }
 
+/// Back to the pages, which say that it did not work.
+http::Response failed(const Call& call, const Error& why) {
+  if (call.backend.log) call.backend.log({{"what", "oidc"}, {"refused", why.what}});
+  return sent_to("/?sign_in=failed");
+}
+
 Result<http::Response> offered(const Call& call) {
   const Oidc* oidc = call.backend.oidc;
   return json_response(
@@ -48,7 +54,7 @@ Result<http::Response> begin(const Call& call) {
   if (!oidc) return oidc.error();
   const OidcAttempt attempt = new_attempt();
   auto address = (*oidc)->sign_in_address(attempt);
-  if (!address) return address.error();
+  if (!address) return failed(call, address.error());
   const Json kept{{"state", attempt.state},
                   {"nonce", attempt.nonce},
                   {"verifier", attempt.verifier},
@@ -66,7 +72,7 @@ Result<OidcAttempt> attempt_of(const Call& call) {
   if (sealed.empty()) return none;
   const auto opened = call.backend.secrets.opened(sealed);
   if (!opened) return none;
-  const Json json = Json::parse(*opened, nullptr, false);
+  const Json json = core::stored_json(*opened);
   if (!json.is_object() || call.backend.now_utc_us() > json.value("until_utc_us", std::int64_t{0}))
     return none;
   OidcAttempt out{json.value("state", ""), json.value("nonce", ""), json.value("verifier", "")};
@@ -107,7 +113,11 @@ Result<std::string> session_for(const Call& call, const Oidc& oidc, const std::s
                               .peer = call.request.peer,
                               .what = "oidcSignIn",
                               .at_utc_us = call.backend.now_utc_us()});
-  auto made = call.backend.store.write([&](store::Writing& tx) {
+  auto made = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
+    auto linked = store::account_of_subject(tx, oidc.settings().issuer, subject);
+    if (!linked) return linked.error();
+    if (!*linked || (*linked)->id != (*account)->id || (*linked)->state != "active")
+      return Error{Errc::unauthorised, "the account was changed just now: try again"};
     return store::add_session(tx, token_hash(token), (*account)->id, call.backend.now_utc_us());
   });
   if (!made) return made.error();
@@ -149,7 +159,7 @@ Result<http::Response> leave(const Call& call) {
   const auto oidc = provider(call);
   if (!oidc) return oidc.error();
   const auto address = (*oidc)->sign_out_address();
-  if (!address) return address.error();
+  if (!address) return failed(call, address.error());
   return sent_to(address->empty() ? "/" : *address);
 }
 
@@ -164,10 +174,14 @@ Result<http::Response> link(const Call& call) {
   auto linked = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
     auto account = account_of_call(tx, call);
     if (!account) return account.error();
-    return store::link_subject(tx, {(*oidc)->settings().issuer, subject, account->id,
-                                    call.backend.now_utc_us(), call.caller.name});
+    if (auto done = store::link_subject(tx, {(*oidc)->settings().issuer, subject, account->id,
+                                             call.backend.now_utc_us(), call.caller.name});
+        !done)
+      return done;
+    return store::remove_sessions_of(tx, account->id, "");
   });
   if (!linked) return linked.error();
+  close_conversations(call.backend, call.text("id"));
   return http::Response{.status = 204, .headers = {}, .body = std::string()};
 }
 
@@ -182,13 +196,14 @@ Parameter answered(std::string name, std::string meaning) {
 }
 
 RouteInfo open_route(std::string tail, std::string id, std::string summary, std::string answer,
-                     Result<http::Response> (*handle)(const Call&)) {
+                     http::Lane lane, Result<http::Response> (*handle)(const Call&)) {
   return {.method = "GET",
           .path = "/api/v1/session/oidc" + tail,
           .id = std::move(id),
           .summary = std::move(summary),
           .who = {},
           .open = true,
+          .lane = lane,
           .parameters = {},
           .body = "",
           .answer = std::move(answer),
@@ -201,11 +216,12 @@ RouteInfo open_route(std::string tail, std::string id, std::string summary, std:
 std::vector<RouteInfo> oidc_routes() {
   using namespace schema;
   RouteInfo offer = open_route("", "oidcOffered", "May people sign in by a provider of identities?",
-                               "OidcOffer", offered);
+                               "OidcOffer", http::Lane::quick, offered);
   offer.schemas = {{"OidcOffer", object({{"offered", truth("there is one")},
                                          {"label", nullable(text("of the button"))}})}};
-  RouteInfo back = open_route("/callback", "oidcCallback",
-                              "Where the provider sends the browser back to", kBytes, come_back);
+  RouteInfo back =
+      open_route("/callback", "oidcCallback", "Where the provider sends the browser back to",
+                 kBytes, http::Lane::remote, come_back);
   back.parameters = {answered("code", "for an identity"),
                      answered("state", "of the attempt"),
                      answered("iss", "RFC 9207"),
@@ -218,7 +234,7 @@ std::vector<RouteInfo> oidc_routes() {
       .method = "POST",
       .path = "/api/v1/accounts/{id}/subject",
       .id = "linkSubject",
-      .summary = "Say which of the provider's people the account is; empty: none",
+      .summary = "Say which of the provider's people the account is; empty: none; its sessions end",
       .who = {Role::admin},
       .parameters = {path_text("id", "of the account")},
       .body = "OidcSubject",
@@ -228,10 +244,11 @@ std::vector<RouteInfo> oidc_routes() {
                    object({{"subject", text("the provider's name for the person, sub")}})}},
       .handle = link};
   return {offer,
-          open_route("/start", "oidcStart", "Send the browser to the provider", kBytes, begin),
+          open_route("/start", "oidcStart", "Send the browser to the provider", kBytes,
+                     http::Lane::remote, begin),
           back,
           open_route("/end", "oidcEnd", "Send the browser to the provider to sign out there too",
-                     kBytes, leave),
+                     kBytes, http::Lane::remote, leave),
           join};
 }
 

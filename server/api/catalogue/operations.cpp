@@ -17,7 +17,7 @@ core::Result<double> counted(store::Reading& tx, const char* sql) {
 core::Result<http::Response> health(const Call& call) {
   auto reads = call.backend.store.read(
       [](store::Reading& tx) { return counted(tx, "select count(*) from schema_versions"); });
-  const bool room = bool(check_room(call.backend, 0));
+  const bool room = bool(check_disk(call.backend, 0));
   const char* state = !reads ? "failing" : room ? "ok" : "disk full";
   return json_response({{"state", state}}, reads && room ? 200 : 503);
 }

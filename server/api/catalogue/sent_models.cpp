@@ -181,6 +181,7 @@ std::vector<RouteInfo> sent_models_routes() {
              {{"SendModel", object({{"stations", optional(array(text("an id"), "these alone"))},
                                     {"all", optional(truth("every station"))}})}});
   post.who.push_back(Role::technician);
+  post.ends = {{"id", Object::model, post.who}, {"/stations/*", Object::station, post.who}};
   RouteInfo list =
       station_route("GET", "", "stationModels", "Versions that the asking station is to have",
                     "StationModels", for_station);

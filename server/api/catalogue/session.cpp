@@ -4,6 +4,7 @@
 #include "server/api/backend.hpp"
 #include "server/api/route.hpp"
 #include "server/api/schema.hpp"
+#include "server/api/throttle.hpp"
 
 namespace api {
 namespace {
@@ -32,7 +33,12 @@ std::string cookie(const Backend& backend, const std::string& token, std::int64_
 core::Result<http::Response> sign_in_route(const Call& call) {
   auto given = credentials(call.request);
   if (!given) return given.error();
-  auto in = sign_in(call.backend, *given, call.request.peer);
+  const store::Attempt attempt{store::Secret::account_password, given->name,
+                               network_of(call.request.peer)};
+  auto early = too_early(call.backend, attempt);
+  if (!early) return early.error();
+  if (*early) return std::move(**early);
+  auto in = sign_in(call.backend, *given, attempt);
   if (!in && needs_code(in.error()))
     return http::error_response(401, "code_needed", in.error().what);
   if (!in) return in.error();
@@ -77,6 +83,7 @@ std::vector<RouteInfo> session_routes() {
            .summary = "Sign in; the answer sets the session's cookie",
            .who = {},
            .open = true,
+           .lane = http::Lane::hashing,
            .parameters = {},
            .body = "Credentials",
            .body_limit_bytes = 8192,

@@ -9,6 +9,7 @@
 #include "server/api/backend.hpp"
 #include "server/api/people_json.hpp"
 #include "server/api/station_state.hpp"
+#include "server/api/throttle.hpp"
 
 namespace api {
 namespace {
@@ -19,7 +20,6 @@ using core::Result;
 
 constexpr std::uint64_t kMaxBody_bytes = 4096;
 constexpr std::int64_t kCodeLife_us = 3600ll * 1'000'000;
-constexpr const char* kEnrolling = "station enrolment";  ///< the throttle's name for codes
 
 constexpr std::uint64_t kMaxReport_bytes = 64 * 1024;
 constexpr std::int64_t kNotesShown = 20;
@@ -114,8 +114,10 @@ Result<http::Response> enrol(const Call& call) {
   const std::string code = fields.text("code", 64), key = fields.text("token_sha256", 64);
   if (!core::is_sha256(key)) fields.wrong("token_sha256", "64 hexadecimal characters are expected");
   if (auto done = fields.done(); !done) return done.error();
-  const std::string& peer = call.request.peer;
-  if (auto open = check_throttle(call.backend, kEnrolling, peer); !open) return open.error();
+  const store::Attempt attempt{store::Secret::enrolment_code, "", network_of(call.request.peer)};
+  auto early = too_early(call.backend, attempt);
+  if (!early) return early.error();
+  if (*early) return std::move(**early);
   const std::int64_t now = call.backend.now_utc_us();
   store::Station station{core::new_id(), ""};
   auto added = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
@@ -126,7 +128,7 @@ Result<http::Response> enrol(const Call& call) {
     return store::add_station(tx, station, key, now);
   });
   if (!added && added.error().code == Errc::unauthorised)
-    if (auto noted = note_failure(call.backend, kEnrolling, peer); !noted) return noted.error();
+    if (auto noted = note_failure(call.backend, attempt); !noted) return noted.error();
   if (!added) return added.error();
   return json_response({{"id", station.id},
                         {"name", station.name},

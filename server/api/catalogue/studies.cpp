@@ -17,7 +17,11 @@ core::Result<http::Response> list_studies(const Call& call) {
 }
 
 core::Result<http::Response> study_response(Backend& backend, const std::string& id) {
-  auto facts = backend.store.read([&](store::Reading& tx) { return study_facts(tx, id); });
+  auto facts = backend.store.read([&](store::Reading& tx) -> core::Result<StudyFacts> {
+    auto study = store::find_study(tx, id);
+    if (!study) return study.error();
+    return study_facts(tx, *study);
+  });
   if (!facts) return facts.error();
   return json_response(study_json(*facts));
 }
@@ -50,10 +54,9 @@ core::Result<http::Response> events_of(const Call& call) {
   const std::string& id = call.text("id");
   auto found = call.backend.store.read(
       [&](store::Reading& tx) -> core::Result<std::vector<store::StudyEvent>> {
-        auto study = store::study_of(tx, id);
+        auto study = store::find_study(tx, id);
         if (!study) return study.error();
-        if (!*study) return core::Error{core::Errc::not_found, "no study " + id.substr(0, 32)};
-        return store::study_events(tx, id, call.integer("limit"));
+        return store::study_events(tx, *study, call.integer("limit"));
       });
   if (!found) return found.error();
   core::Json list = core::Json::array();

@@ -38,12 +38,11 @@ template <class Work>
 core::Result<http::Response> deed(const Call& call, const std::string& reason, Work work) {
   const std::string& id = call.text("id");
   auto facts = call.backend.store.write([&](store::Writing& tx) -> core::Result<StudyFacts> {
-    auto study = store::study_of(tx, id);
+    auto study = store::find_study(tx, id);
     if (!study) return study.error();
-    if (!*study) return core::Error{core::Errc::not_found, "no study " + id.substr(0, 32)};
     const store::Deed done_by{call.caller.name, call.backend.now_utc_us(), reason};
-    if (auto done = work(tx, **study, done_by); !done) return done.error();
-    return study_facts(tx, id);
+    if (auto done = work(tx, *study, done_by); !done) return done.error();
+    return study_facts(tx, *study);
   });
   if (!facts) return facts.error();
   return json_response(study_json(*facts));
@@ -53,10 +52,12 @@ core::Result<http::Response> set_state(const Call& call) {
   auto asked = said(call, true, false);
   if (!asked) return asked.error();
   return deed(call, asked->reason,
-              [&](store::Writing& tx, const store::Study& study,
+              [&](store::Writing& tx, const store::StudyId& study,
                   const store::Deed& by) -> core::Result<void> {
-                if (study.state == asked->state) return {};
-                return store::set_study_state(tx, study.id, asked->state, by);
+                auto now = store::study_of(tx, study);
+                if (!now) return now.error();
+                if (now->state == asked->state) return {};
+                return store::set_study_state(tx, study, asked->state, by);
               });
 }
 
@@ -65,13 +66,13 @@ core::Result<http::Response> set_participant(const Call& call) {
   if (!asked) return asked.error();
   const std::string& name = call.text("name");
   return deed(call, asked->reason,
-              [&](store::Writing& tx, const store::Study& study,
+              [&](store::Writing& tx, const store::StudyId& study,
                   const store::Deed& by) -> core::Result<void> {
-                auto who = store::participant_of(tx, study.id, name);
+                auto who = store::participant_of(tx, study, name);
                 if (!who) return who.error();
                 if (!*who) return no_participant(name);
                 if ((*who)->state == asked->state) return {};
-                return store::set_participant_state(tx, study.id, name, asked->state, by);
+                return store::set_participant_state(tx, study, name, asked->state, by);
               });
 }
 
@@ -80,12 +81,12 @@ core::Result<http::Response> release(const Call& call) {
   if (!asked) return asked.error();
   const std::string& name = call.text("name");
   return deed(call, asked->reason,
-              [&](store::Writing& tx, const store::Study& study,
+              [&](store::Writing& tx, const store::StudyId& study,
                   const store::Deed& by) -> core::Result<void> {
-                auto who = store::participant_of(tx, study.id, name);
+                auto who = store::participant_of(tx, study, name);
                 if (!who) return who.error();
                 if (!*who) return no_participant(name);
-                auto released = store::release_slots(tx, study.id, name, by);
+                auto released = store::release_slots(tx, study, name, by);
                 if (!released) return released.error();
                 return {};
               });
@@ -95,8 +96,8 @@ core::Result<http::Response> invalidate(const Call& call) {
   auto asked = said(call, false, true);
   if (!asked) return asked.error();
   return deed(call, asked->reason,
-              [&](store::Writing& tx, const store::Study& study, const store::Deed& by) {
-                return store::set_trial_invalid(tx, study.id, call.text("trial_id"), by);
+              [&](store::Writing& tx, const store::StudyId& study, const store::Deed& by) {
+                return store::set_trial_invalid(tx, study, call.text("trial_id"), by);
               });
 }
 

@@ -26,17 +26,16 @@ struct Given {
 
 core::Result<Given> take(store::Writing& tx, const Call& call) {
   const std::string &id = call.text("id"), &name = call.text("name");
-  auto study = store::study_of(tx, id);
+  auto study = store::find_study(tx, id);
   if (!study) return study.error();
-  if (!*study) return core::Error{core::Errc::not_found, "no study " + id.substr(0, 32)};
-  auto participant = store::participant_of(tx, id, name);
+  auto participant = store::participant_of(tx, *study, name);
   if (!participant) return participant.error();
   if (!*participant)
     return core::Error{core::Errc::not_found,
                        "no participant " + name.substr(0, 32) + " in this study"};
   auto token = store::station_token_hash(tx, call.caller.id);
   if (!token) return token.error();
-  auto taken = store::take_slots(tx, **study, **participant, call.caller.id, call.integer("ahead"),
+  auto taken = store::take_slots(tx, *study, **participant, call.caller.id, call.integer("ahead"),
                                  {call.caller.name, call.backend.now_utc_us()});
   if (!taken) return taken.error();
   return Given{std::move(**participant), std::move(*taken), std::move(*token)};

@@ -51,7 +51,8 @@ std::vector<Field> standing_fields() {
           {"state", one_of({"learning", "competent", "relapsed"}, "by LC-CUSUM, then CUSUM")},
           {"certified", truth("competence can be said")},
           {"why", text("why it can, or cannot")},
-          {"next", object({{"scenario", text("to do next; empty for the trainee, who is blind")}, {"why", text("that one")}})},
+          {"next", object({{"scenario", text("to do next; empty for the trainee, who is blind")},
+                           {"why", text("that one")}})},
           {"simulated", truth("some of the trials are by a machine")},
           {"last_utc_us", integer("us", "of the last trial, since 1970, UTC")}};
 }

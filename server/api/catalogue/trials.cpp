@@ -68,12 +68,12 @@ core::Result<std::optional<StudyPlace>> study_place(Backend& backend, const std:
     auto slot = store::slot_of_trial(tx, trial_id);
     if (!slot) return slot.error();
     if (!*slot) return Place();
-    auto study = store::study_of(tx, (*slot)->study_id);
-    if (!study) return study.error();
+    auto title = store::series_title(tx, (*slot)->study_id);
+    if (!title) return title.error();
     auto trial = store::study_trial_of(tx, trial_id);
     if (!trial) return trial.error();
-    return Place(StudyPlace{std::move(study->value()), std::move(**slot), (*trial)->state,
-                            (*trial)->reason});
+    return Place(
+        StudyPlace{std::move(*title), std::move(**slot), (*trial)->state, (*trial)->reason});
   });
 }
 

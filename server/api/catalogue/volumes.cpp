@@ -22,7 +22,7 @@ constexpr std::size_t kMaxName = 200, kMaxSource = 1000, kMaxReason = 1000;
 
 Json volume_json(const store::VolumeRecord& v) {
   Json out{{"id", v.id}, {"name", v.name}, {"source", v.source}, {"state", v.state}};
-  const Json facts = Json::parse(v.facts, nullptr, false);
+  const Json facts = core::stored_json(v.facts);
   for (const char* key : {"format", "modality", "dims", "spacing_m", "origin_m", "directions",
                           "range", "notes", "suspicions"})
     out[key] = facts.contains(key) ? facts.at(key) : Json();
@@ -136,7 +136,7 @@ Result<http::Response> refuse(const Call& call) {
 Result<http::Response> report(const Call& call) {
   auto v = volume_of_call(call);
   if (!v) return v.error();
-  return json_response(Json::parse(v->report, nullptr, false));
+  return json_response(core::stored_json(v->report));
 }
 
 std::string three(const volume::Vec3& v) { return fmt::format("{},{},{}", v.x(), v.y(), v.z()); }

@@ -103,6 +103,7 @@ Answer Client::ask(const std::string& method, const std::string& path, const Hea
   curl_easy_reset(curl_);
   curl_easy_setopt(curl_, CURLOPT_URL, url.c_str());
   if (!authority_.empty()) curl_easy_setopt(curl_, CURLOPT_CAINFO, authority_.c_str());
+  if (!from_.empty()) curl_easy_setopt(curl_, CURLOPT_INTERFACE, from_.c_str());
   curl_easy_setopt(curl_, CURLOPT_PATH_AS_IS, 1L);
   curl_easy_setopt(curl_, CURLOPT_CUSTOMREQUEST, method.c_str());
   curl_easy_setopt(curl_, CURLOPT_HTTPHEADER, lines);

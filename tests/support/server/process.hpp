@@ -40,6 +40,8 @@ class Client {
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
   void speak_to(int port) { port_ = port; }
+  /// Connects from another of this machine's own addresses, as "127.0.1.7".
+  void come_from(const std::string& address) { from_ = address; }
   /// By TLS, to a server whose certificate is of this authority.
   void trust(const std::filesystem::path& authority) { authority_ = authority; }
   /// The path is sent as it is, "/../x" too.
@@ -50,6 +52,7 @@ class Client {
   void* curl_;
   int port_ = 0;
   std::filesystem::path authority_;
+  std::string from_;
 };
 
 enum class Transport { plain, tls };

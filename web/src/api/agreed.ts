@@ -6,7 +6,7 @@ import type * as v from 'valibot';
 import type { components } from './generated/schema';
 import type { effectCheckSchema, effectListSchema, labRunListSchema, labSignalsSchema, measurementListSchema, modelListSchema, sentModelSchema } from './lab-schemas';
 import type { backupListSchema } from './backup-queries';
-import type { accountListSchema, auditCheckSchema, auditSchema, cohortListSchema, cohortSchema, stationListSchema } from './network-schemas';
+import type { accountListSchema, auditCheckSchema, auditSchema, cohortListSchema, cohortSchema, invitationListSchema, stationListSchema } from './network-schemas';
 import type { stationPageSchema } from './live-schemas';
 import type { traineeListSchema } from './trainee-queries';
 import type { studyEventsSchema, studyListSchema, studySchema } from './study-schemas';
@@ -35,6 +35,7 @@ export interface Agreed {
   readonly station: Takes<typeof stationPageSchema, Served['Station']>;
   readonly cohorts: Takes<typeof cohortListSchema, Served['Cohorts']>;
   readonly cohort: Takes<typeof cohortSchema, Served['Cohort']>;
+  readonly invitations: Takes<typeof invitationListSchema, Served['Invitations']>;
   readonly audit: Takes<typeof auditSchema, Served['AuditRows']>;
   readonly auditCheck: Takes<typeof auditCheckSchema, Served['AuditCheck']>;
   readonly trainees: Takes<typeof traineeListSchema, Served['TraineeList']>;
@@ -45,5 +46,5 @@ export interface Agreed {
 
 export const kAgreed: Agreed = {
   session: true, trials: true, trial: true, signals: true, path: true, forceDepth: true, studies: true, study: true, studyEvents: true,
-  models: true, measurements: true, effects: true, effectCheck: true, labRuns: true, labSignals: true, accounts: true, stations: true, station: true, cohorts: true, cohort: true, audit: true, auditCheck: true, trainees: true, sentModel: true, backups: true,
+  models: true, measurements: true, effects: true, effectCheck: true, labRuns: true, labSignals: true, accounts: true, stations: true, station: true, cohorts: true, cohort: true, invitations: true, audit: true, auditCheck: true, trainees: true, sentModel: true, backups: true,
 };

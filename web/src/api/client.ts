@@ -8,7 +8,8 @@ export type ApiErrorCode =
   | 'unauthorised' | 'code_needed' | 'forbidden' | 'not_found' | 'too_many' | 'unavailable' | 'unreachable' | 'unreadable' | 'refused';
 
 export class ApiError extends Error {
-  constructor(readonly code: ApiErrorCode, message: string, readonly status = 0) {
+  /** @param retryAfter_s when the server takes the request again; null: it did not say */
+  constructor(readonly code: ApiErrorCode, message: string, readonly status = 0, readonly retryAfter_s: number | null = null) {
     super(message);
     this.name = 'ApiError';
   }
@@ -66,7 +67,8 @@ async function send(path: string, request: Request): Promise<Response> {
   const said = v.safeParse(errorSchema, await response.json().catch(() => undefined));
   const text = said.success ? said.output.error : `The server answered with status ${response.status}.`;
   const needsCode = said.success && said.output.code === 'code_needed';
-  throw new ApiError(needsCode ? 'code_needed' : codeOf(response.status), text, response.status);
+  const retryAfter = response.headers.get('Retry-After');
+  throw new ApiError(needsCode ? 'code_needed' : codeOf(response.status), text, response.status, retryAfter === null ? null : Number(retryAfter));
 }
 
 /** Asks for JSON and checks it against `schema`; an answer of another shape is an error, never a half-filled page. */

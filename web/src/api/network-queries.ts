@@ -3,7 +3,7 @@ import { infiniteQueryOptions, queryOptions } from '@tanstack/react-query';
 import { address } from './address';
 import { ask, tell } from './client';
 import {
-  accountListSchema, accountSchema, auditCheckSchema, auditSchema, codesSchema, cohortListSchema, cohortSchema, enrolmentSchema, newAccountSchema, newPasswordSchema,
+  accountListSchema, accountSchema, auditCheckSchema, auditSchema, codesSchema, cohortListSchema, cohortSchema, enrolmentSchema, invitationListSchema, newAccountSchema, newPasswordSchema,
   stationListSchema, type Role,
 } from './network-schemas';
 
@@ -25,6 +25,11 @@ export const cohortsQuery = queryOptions({
 });
 export const cohortQuery = (id: string) =>
   queryOptions({ queryKey: ['cohorts', id], queryFn: ({ signal }) => ask(address('/api/v1/cohorts/{id}', { id }), cohortSchema, { signal }) });
+
+export const invitationsQuery = queryOptions({
+  queryKey: ['invitations'],
+  queryFn: ({ signal }) => ask(address('/api/v1/session/invitations', {}), invitationListSchema, { signal }),
+});
 
 /** Newest first, a page at a time. */
 export const auditQuery = infiniteQueryOptions({
@@ -52,8 +57,14 @@ export const revokeStation = (id: string) => tell(address('/api/v1/stations/{id}
 export const addCohort = (name: string) => ask(address('/api/v1/cohorts', {}), cohortSchema, { ...posted, body: { name } });
 export const addToCohort = (id: string, name: string) => ask(address('/api/v1/cohorts/{id}/people', { id }), cohortSchema, { ...posted, body: { name } });
 export const takeFromCohort = (id: string, account: string) => ask(address('/api/v1/cohorts/{id}/people/{account_id}', { id, account_id: account }), cohortSchema, { method: 'DELETE' });
+export const inviteIntoCohort = (id: string, name: string) => ask(address('/api/v1/cohorts/{id}/invitations', { id }), cohortSchema, { ...posted, body: { name } });
+export const withdrawInvitation = (id: string, name: string) => ask(address('/api/v1/cohorts/{id}/invitations/{name}', { id, name }), cohortSchema, { method: 'DELETE' });
+export const acceptInvitation = (cohort: string) => ask(address('/api/v1/session/invitations/{cohort}/accept', { cohort }), invitationListSchema, posted);
+export const declineInvitation = (cohort: string) => ask(address('/api/v1/session/invitations/{cohort}/decline', { cohort }), invitationListSchema, posted);
 
-export const changePassword = (old: string, next: string) => tell(address('/api/v1/session/password', {}), { ...posted, body: { old, new: next } });
-export const beginCodes = () => ask(address('/api/v1/session/codes', {}), codesSchema, posted);
+/** @param code one-time, where the account asks for codes */
+export const changePassword = (old: string, next: string, code?: string) =>
+  tell(address('/api/v1/session/password', {}), { ...posted, body: { old, new: next, ...(code === undefined ? {} : { code }) } });
+export const beginCodes = (password: string) => ask(address('/api/v1/session/codes', {}), codesSchema, { ...posted, body: { password } });
 export const confirmCodes = (code: string) => tell(address('/api/v1/session/codes/confirm', {}), { ...posted, body: { code } });
-export const endCodes = (code: string) => tell(address('/api/v1/session/codes/end', {}), { ...posted, body: { code } });
+export const endCodes = (password: string, code: string) => tell(address('/api/v1/session/codes/end', {}), { ...posted, body: { password, code } });

@@ -23,6 +23,11 @@ export const cohortListSchema = v.object({ cohorts: v.array(v.object(cohortField
 export const cohortSchema = v.object({
   ...cohortFields,
   people: v.array(v.object({ account_id: v.string(), name: v.string(), part: v.picklist(['trainee', 'faculty']), state: v.string() })),
+  invitations: v.array(v.object({ name: v.string(), made_utc_us: inUtc, made_by: v.string() })),
+});
+/** Cohorts that the signed-in person is asked into. */
+export const invitationListSchema = v.object({
+  invitations: v.array(v.object({ cohort_id: v.string(), cohort_name: v.string(), made_utc_us: inUtc, made_by: v.string() })),
 });
 
 export const auditSchema = v.object({
@@ -39,6 +44,7 @@ export type Station = v.InferOutput<typeof stationSchema>;
 export type Enrolment = v.InferOutput<typeof enrolmentSchema>;
 export type CohortSummary = v.InferOutput<typeof cohortListSchema>['cohorts'][number];
 export type Cohort = v.InferOutput<typeof cohortSchema>;
+export type Invitation = v.InferOutput<typeof invitationListSchema>['invitations'][number];
 export type AuditRow = v.InferOutput<typeof auditSchema>['rows'][number];
 export type AuditCheck = v.InferOutput<typeof auditCheckSchema>;
 export type Codes = v.InferOutput<typeof codesSchema>;

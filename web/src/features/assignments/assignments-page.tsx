@@ -5,6 +5,7 @@ import { assignmentsQuery, sessionQuery, type AssignmentSummary } from '@/api';
 import { Badge, Card, Notice, Table, useTitle, type Column } from '@/ui';
 import { formatCount } from '@/units';
 import styles from './assignments.module.css';
+import { Invitations } from './invitations';
 import { Done, Drilling, DueDate } from './parts';
 import { kReleaseWords } from './words';
 
@@ -35,6 +36,7 @@ export function AssignmentsPage() {
         {may ? <Link href="/assignments/new" className={styles.solid}>New assignment</Link> : null}
       </div>
       {query.isError ? <Notice tone="bad" title="The assignments could not be loaded." onRetry={() => void query.refetch()}>{query.error.message}</Notice> : null}
+      {own || role === 'faculty' ? <Invitations /> : null}
       {query.isError ? null : own ? (
         <>
           <Card title="To do"><Table<AssignmentSummary> caption="Assignments to do" rows={open} keyOf={({ id }) => id} empty="Nothing is left to do." columns={[name, due, done]} /></Card>

@@ -1,10 +1,11 @@
 import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { useState, type FormEvent } from 'react';
 import { useSearch, Link } from 'wouter';
-import { addCohort, addToCohort, cohortQuery, cohortsQuery, sessionQuery, takeFromCohort, type Cohort, type CohortSummary } from '@/api';
+import { addCohort, addToCohort, cohortQuery, cohortsQuery, inviteIntoCohort, sessionQuery, takeFromCohort, type Cohort, type CohortSummary } from '@/api';
 import { Badge, Button, Card, Field, Notice, Skeleton, Table } from '@/ui';
 import { formatCount, formatDateTime } from '@/units';
 import { Frame } from './frame';
+import { InvitedPeople } from './invited';
 import styles from './network.module.css';
 
 function New() {
@@ -21,9 +22,12 @@ function New() {
   );
 }
 
+const mayChange = (role: string | undefined) => role === 'admin' || role === 'faculty';
+
 type Person = Cohort['people'][number];
 
-function Members({ id, may }: { readonly id: string; readonly may: boolean }) {
+function Members({ id, role }: { readonly id: string; readonly role: string | undefined }) {
+  const may = mayChange(role), mayAdd = may || role === 'director';
   const client = useQueryClient();
   const query = useQuery(cohortQuery(id));
   const [name, setName] = useState('');
@@ -31,27 +35,31 @@ function Members({ id, may }: { readonly id: string; readonly may: boolean }) {
   const keep = async (cohort: Cohort) => { client.setQueryData(cohortQuery(id).queryKey, cohort); await client.invalidateQueries({ queryKey: cohortsQuery.queryKey, exact: true }); };
   const added = useMutation({ mutationFn: (person: string) => addToCohort(id, person), onSuccess: async (cohort) => { setName(''); setLast(null); await keep(cohort); } });
   const taken = useMutation({ mutationFn: (person: Person) => takeFromCohort(id, person.account_id), onSuccess: async (cohort, person) => { setLast(person); await keep(cohort); } });
-  const failed = added.error ?? taken.error;
+  const invited = useMutation({ mutationFn: (person: string) => inviteIntoCohort(id, person), onSuccess: async (cohort) => { setName(''); added.reset(); await keep(cohort); } });
+  const failed = invited.error ?? taken.error;
   if (query.isError) return <Notice tone="bad" title="The cohort could not be loaded." onRetry={() => void query.refetch()}>{query.error.message}</Notice>;
   if (!query.data) return <Card title="People"><Skeleton height="200px" /></Card>;
   const submit = (event: FormEvent) => { event.preventDefault(); added.mutate(name.trim()); };
   return (
     <Card title={query.data.name}>
       <div className={styles.stack}>
-        {may ? (
+        {mayAdd ? (
           <form className={styles.form} onSubmit={submit}>
             <Field label="Name of an account" value={name} required maxLength={100} onChange={(event) => setName(event.target.value)} />
             <Button type="submit" disabled={added.isPending || name.trim() === ''}>Add to the cohort</Button>
+            <Button look="quiet" disabled={invited.isPending || name.trim() === ''} onClick={() => invited.mutate(name.trim())}>Invite instead</Button>
           </form>
         ) : null}
+        {added.isError ? <Notice tone="bad" title="They were not added.">{added.error.message}. Invite people whom you do not teach yet: they decide.</Notice> : null}
         {failed ? <Notice tone="bad" title="That was not done.">{failed.message}</Notice> : null}
-        {last ? <p role="status">{last.name} was taken out. <Button look="quiet" onClick={() => added.mutate(last.name)}>Undo</Button></p> : null}
+        {last ? <p role="status">{last.name} was taken out. {role === 'admin' ? <Button look="quiet" onClick={() => added.mutate(last.name)}>Undo</Button> : null}</p> : null}
         <Table<Person> caption="People of the cohort" rows={query.data.people} keyOf={({ account_id }) => account_id} empty="Nobody is in it yet." columns={[
           { name: 'Name', cell: (one) => one.name },
           { name: 'Part', cell: (one) => (one.part === 'faculty' ? <Badge tone="accent">leads</Badge> : 'trainee') },
           { name: 'State', cell: (one) => one.state },
           { name: <span className="hidden-visually">Decide</span>, cell: (one) => (may ? <span className={styles.buttons}><Button look="quiet" label={`Take out: ${one.name}`} disabled={taken.isPending} onClick={() => taken.mutate(one)}>Take out</Button></span> : null) },
         ]} />
+        {mayAdd ? <InvitedPeople cohort={query.data} onChange={keep} /> : null}
       </div>
     </Card>
   );
@@ -61,7 +69,7 @@ function Members({ id, may }: { readonly id: string; readonly may: boolean }) {
 export function CohortsPage() {
   const query = useQuery(cohortsQuery);
   const role = useQuery({ ...sessionQuery, enabled: false }).data?.role;
-  const may = role === 'admin' || role === 'faculty';
+  const may = mayChange(role);
   const chosen = new URLSearchParams(useSearch()).get('id') ?? query.data?.cohorts[0]?.id;
   return (
     <Frame at="cohorts" lead="Groups of trainees and who leads them. Faculty see the trials of the people in the cohorts that they lead.">
@@ -77,7 +85,7 @@ export function CohortsPage() {
             {may ? <New /> : null}
           </div>
         </Card>
-        {chosen ? <Members key={chosen} id={chosen} may={may} /> : null}
+        {chosen ? <Members key={chosen} id={chosen} role={role} /> : null}
       </div>
     </Frame>
   );

@@ -1,6 +1,6 @@
 import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { useState, type FormEvent } from 'react';
-import { accountsQuery, addAccount, kRoles, resetPassword, setAccountRole, setAccountState, setBadge, type Account, type Role } from '@/api';
+import { accountsQuery, addAccount, kRoles, resetPassword, sessionQuery, setAccountRole, setAccountState, setBadge, type Account, type Role } from '@/api';
 import { AskDialog, Badge, Button, Card, Field, Notice, Select, Table } from '@/ui';
 import { formatDateTime } from '@/units';
 import { Frame } from './frame';
@@ -62,6 +62,7 @@ function BadgeDialog({ account, onDone, onClose }: { readonly account: Account; 
 export function PeoplePage() {
   const client = useQueryClient();
   const query = useQuery(accountsQuery);
+  const own = useQuery({ ...sessionQuery, enabled: false }).data?.id;
   const [deed, setDeed] = useState<Deed | null>(null);
   const [password, setPassword] = useState<{ name: string; secret: string } | null>(null);
   const fresh = () => client.invalidateQueries({ queryKey: accountsQuery.queryKey });
@@ -90,7 +91,7 @@ export function PeoplePage() {
           { name: <span className="hidden-visually">Decide</span>, cell: (one) => (
             <span className={styles.buttons}>
               <Button label={`Badge and PIN of ${one.name}`} onClick={() => setDeed({ kind: 'badge', account: one })}>Badge…</Button>
-              <Button label={`New password for ${one.name}`} onClick={() => setDeed({ kind: 'password', account: one })}>Password…</Button>
+              <Button label={`New password for ${one.name}`} disabled={one.id === own} onClick={() => setDeed({ kind: 'password', account: one })}>Password…</Button>
               <Button label={`${one.state === 'active' ? 'Disable' : 'Enable'} ${one.name}`} disabled={state.isPending} onClick={() => state.mutate(one)}>{one.state === 'active' ? 'Disable' : 'Enable'}</Button>
             </span>) },
         ]} />

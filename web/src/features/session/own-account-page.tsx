@@ -6,9 +6,10 @@ import styles from './own-account.module.css';
 import { PasswordForm } from './password-form';
 
 function Codes() {
-  const begun = useMutation({ mutationFn: beginCodes });
+  const begun = useMutation({ mutationFn: () => beginCodes(password), onSuccess: () => setPassword('') });
   const confirmed = useMutation({ mutationFn: confirmCodes });
-  const ended = useMutation({ mutationFn: endCodes });
+  const ended = useMutation({ mutationFn: () => endCodes(password, code.trim()) });
+  const [password, setPassword] = useState('');
   const [code, setCode] = useState('');
   const submit = (event: FormEvent) => { event.preventDefault(); confirmed.mutate(code.trim()); };
   const failed = begun.error ?? confirmed.error ?? ended.error;
@@ -27,9 +28,10 @@ function Codes() {
             <Button look="solid" type="submit" disabled={confirmed.isPending || code.trim() === ''}>Turn on</Button>
           </form>
         ) : (
-          <form className={styles.form} onSubmit={(event) => { event.preventDefault(); ended.mutate(code.trim()); }}>
-            <Button onClick={() => begun.mutate()} disabled={begun.isPending}>Set up one-time codes</Button>
-            <details><summary>They are on, and I want them off</summary>{field}<p><Button type="submit" disabled={ended.isPending || code.trim() === ''}>Turn off</Button></p></details>
+          <form className={styles.form} onSubmit={(event) => { event.preventDefault(); if (code.trim() !== '') ended.mutate(); else begun.mutate(); }}>
+            <Field label="Your password" type="password" autoComplete="current-password" required value={password} onChange={(event) => setPassword(event.target.value)} />
+            <Button onClick={() => begun.mutate()} disabled={begun.isPending || password === ''}>Set up one-time codes</Button>
+            <details><summary>They are on, and I want them off</summary>{field}<p><Button type="submit" disabled={ended.isPending || password === '' || code.trim() === ''}>Turn off</Button></p></details>
           </form>
         )}
     </div>

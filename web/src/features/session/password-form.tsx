@@ -1,20 +1,23 @@
 import { useMutation, useQueryClient } from '@tanstack/react-query';
 import { useState, type FormEvent } from 'react';
-import { changePassword, sessionQuery } from '@/api';
+import { ApiError, changePassword, sessionQuery } from '@/api';
 import { Button, Field, Notice } from '@/ui';
 import styles from './own-account.module.css';
 
 const kLeast = 12;
 
-/** The old password and a new one, twice. */
+/** The old password and a new one, twice; a one-time code once the server asks for it. */
 export function PasswordForm() {
   const client = useQueryClient();
   const [old, setOld] = useState('');
   const [next, setNext] = useState('');
   const [again, setAgain] = useState('');
+  const [code, setCode] = useState('');
+  const [asked, setAsked] = useState(false);
   const changed = useMutation({
-    mutationFn: () => changePassword(old, next),
-    onSuccess: async () => { setOld(''); setNext(''); setAgain(''); await client.invalidateQueries({ queryKey: sessionQuery.queryKey }); },
+    mutationFn: () => changePassword(old, next, asked ? code.trim() : undefined),
+    onError: (reason) => { if (reason instanceof ApiError && reason.code === 'code_needed') setAsked(true); },
+    onSuccess: async () => { setOld(''); setNext(''); setAgain(''); setCode(''); await client.invalidateQueries({ queryKey: sessionQuery.queryKey }); },
   });
   const fault = next !== '' && next.length < kLeast ? `At least ${kLeast} characters.` : again !== '' && again !== next ? 'The two are not the same.' : '';
   const submit = (event: FormEvent) => { event.preventDefault(); changed.mutate(); };
@@ -23,8 +26,10 @@ export function PasswordForm() {
       <Field label="Password now" type="password" autoComplete="current-password" required value={old} onChange={(event) => setOld(event.target.value)} />
       <Field label="New password" type="password" autoComplete="new-password" required value={next} onChange={(event) => setNext(event.target.value)} />
       <Field label="New password again" type="password" autoComplete="new-password" required value={again} onChange={(event) => setAgain(event.target.value)} />
+      {asked ? <Field label="One-time code" inputMode="numeric" autoComplete="one-time-code" maxLength={8} required value={code} onChange={(event) => setCode(event.target.value)} /> : null}
       <p className={styles.fault} role="status">{fault}</p>
-      {changed.isError ? <Notice tone="bad" title="The password was not changed.">{changed.error.message}</Notice> : null}
+      {changed.error instanceof ApiError && changed.error.code === 'code_needed' ? <Notice title="This account asks for a one-time code too.">Write the code that your app shows, and change the password again.</Notice>
+        : changed.isError ? <Notice tone="bad" title="The password was not changed.">{changed.error.message}</Notice> : null}
       {changed.isSuccess ? <Notice title="The password was changed.">Other sessions of this account have ended.</Notice> : null}
       <Button look="solid" type="submit" disabled={changed.isPending || old === '' || next.length < kLeast || again !== next}>{changed.isPending ? 'Changing…' : 'Change the password'}</Button>
     </form>

@@ -36,7 +36,7 @@ describe('signing in', () => {
 
   it.each([
     [401, 'Name or password is wrong.'],
-    [429, 'Too many failed attempts. Wait 15 minutes and try again.'],
+    [429, 'Too many failed attempts. Try again in a few minutes.'],
     [503, 'the database is away'],
   ])('says after status %d: %s', async (status, sentence) => {
     open(() => json({ error: 'the database is away', code: 'x' }, status));
@@ -44,6 +44,12 @@ describe('signing in', () => {
     await waitFor(() => expect(screen.getByRole('alert').textContent).toBe(sentence));
     expect((screen.getByLabelText('Password') as HTMLInputElement).value, 'the wrong password is gone').toBe('');
     expect(document.activeElement).toBe(screen.getByLabelText('Password'));
+  });
+
+  it('says in how many seconds the server takes another attempt', async () => {
+    open(() => Promise.resolve(new Response(JSON.stringify({ error: 'x', code: 'too_many' }), { status: 429, headers: { 'Retry-After': '90' } })));
+    await attempt();
+    await waitFor(() => expect(screen.getByRole('alert').textContent).toBe('Too many failed attempts. Try again in 90 s.'));
   });
 
   it('offers the provider of identities that the server has, and says how its answer went', async () => {

@@ -10,7 +10,7 @@ function sentence(reason: Error): string {
   switch (reason.code) {
     case 'unauthorised': return 'Name or password is wrong.';
     case 'code_needed': return 'This account asks for a one-time code too.';
-    case 'too_many': return 'Too many failed attempts. Wait 15 minutes and try again.';
+    case 'too_many': return `Too many failed attempts. Try again ${reason.retryAfter_s === null ? 'in a few minutes' : `in ${reason.retryAfter_s} s`}.`;
     default: return reason.message;
   }
 }

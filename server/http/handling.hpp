@@ -1,0 +1,58 @@
+/// What workers do for a connection (see on_workers): each calls one function of the service. For
+/// server.cpp alone.
+#pragma once
+
+#include <fmt/format.h>
+
+#include "server/http/server.hpp"
+
+namespace http {
+
+using Admission = std::variant<Admitted, Response>;
+using Opening = std::variant<Response, std::shared_ptr<Conversation>>;
+using Ranked = std::variant<Standing, Response>;
+
+/// A library threw where a handler did not expect it: this request fails, the server goes on.
+inline Response broken(const std::exception& failure) {
+  fmt::print(stderr, "tractus-server: a request failed: {}\n", failure.what());
+  return error_response(500, "io", "the server could not do this; its log says why");
+}
+
+struct Handling {
+  const Service* service;
+  const Request* request;
+  Response operator()() const try {
+    return service->handle(*request);
+  } catch (const std::exception& failure) {
+    return broken(failure);
+  }
+};
+struct Admitting {
+  const Service* service;
+  const RequestHead* head;
+  Admission operator()() const try {
+    return service->admit(*head);
+  } catch (const std::exception& failure) {
+    return broken(failure);
+  }
+};
+struct Ranking {
+  const Service* service;
+  const RequestHead* head;
+  Ranked operator()() const try {
+    return service->standing(*head);
+  } catch (const std::exception& failure) {
+    return broken(failure);
+  }
+};
+struct OpeningConversation {
+  const Service* service;
+  const RequestHead* head;
+  Opening operator()() const try {
+    return service->converse(*head);
+  } catch (const std::exception& failure) {
+    return broken(failure);
+  }
+};
+
+}  // namespace http
