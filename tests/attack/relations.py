@@ -6,24 +6,19 @@ import time
 from catalogue import plain_value, routes_of, sample
 from report import NotTried, attack, expect
 from trial_file import hand_over, trial_bytes
-from world import PIN, VICTIM, json_text, quoted
+from world import VICTIM, json_text, quoted
 
 
 @attack("2: faculty puts a stranger into a cohort of her own and reads the stranger's trials")
 def stranger_into_cohort(world):
     faculty, theirs = world.ours.faculty, world.theirs
     faculty.ask("POST", f"/cohorts/{world.ours.cohort}/people", {"name": f"{VICTIM} trainee"})
-    try:
-        seen = faculty.ask("GET", f"/trials/{theirs.trial}")
-        listed = faculty.ask("GET", "/trials?limit=500").body.decode()
-        expect(seen.status in (403, 404), f"the stranger's trial: {seen.status}")
-        expect(theirs.trial not in listed, "the stranger's trial is in faculty's list")
-        badge = faculty.ask("POST", f"/accounts/{theirs.ids()['account']}/badge", {"badge": "666", "pin": "6666"})
-        expect(badge.status in (403, 404), f"the stranger's badge is set: {badge.status}")
-    finally:
-        account = theirs.ids()["account"]
-        world.admin.ask("DELETE", f"/cohorts/{world.ours.cohort}/people/{account}")
-        world.admin.ask("POST", f"/accounts/{account}/badge", {"badge": theirs.badge, "pin": PIN})
+    seen = faculty.ask("GET", f"/trials/{theirs.trial}")
+    listed = faculty.ask("GET", "/trials?limit=500").body.decode()
+    expect(seen.status in (403, 404), f"the stranger's trial: {seen.status}")
+    expect(theirs.trial not in listed, "the stranger's trial is in faculty's list")
+    badge = faculty.ask("POST", f"/accounts/{theirs.ids()['account']}/badge", {"badge": "666", "pin": "6666"})
+    expect(badge.status in (403, 404), f"the stranger's badge is set: {badge.status}")
 
 
 @attack("2: faculty takes over a trainee of no cohort, sets badge and PIN, and signs in with them at a station")
@@ -31,12 +26,8 @@ def stranger_by_badge(world):
     faculty, account = world.ours.faculty, world.stranger.identity["id"]
     faculty.ask("POST", f"/cohorts/{world.ours.cohort}/people", {"name": f"{VICTIM} of no cohort"})
     faculty.ask("POST", f"/accounts/{account}/badge", {"badge": "777", "pin": "7777"})
-    try:
-        inside = world.ours.station.ask("POST", "/work/sign-in", {"badge": "777", "pin": "7777"})
-        expect(inside.status != 200, "the badge that faculty chose signs the stranger in")
-    finally:
-        world.admin.ask("DELETE", f"/cohorts/{world.ours.cohort}/people/{account}")
-        world.admin.ask("POST", f"/accounts/{account}/badge", {"badge": "103", "pin": PIN})
+    inside = world.ours.station.ask("POST", "/work/sign-in", {"badge": "777", "pin": "7777"})
+    expect(inside.status != 200, "the badge that faculty chose signs the stranger in")
 
 
 @attack("2: faculty makes another faculty's trainee hers by a new cohort, an assignment or the list of people")
@@ -50,7 +41,6 @@ def stranger_by_assignment(world):
              faculty.ask("POST", f"/assignments/{world.ours.assignment}/people", {"name": f"{VICTIM} trainee"})]
     there = faculty.ask("GET", f"/cohorts/{mine}").body.decode()
     inside = f"{VICTIM} trainee" in there and '"part":"trainee"' in there
-    world.admin.ask("DELETE", f"/cohorts/{mine}/people/{world.theirs.ids()['account']}")
     expect(not inside, "the stranger is a trainee of the new cohort")
     for answer in tried[1:]:
         expect(answer.status >= 400, f"an assignment took the stranger: {answer}")
@@ -307,7 +297,6 @@ def relation_matrix(world):
     told = asked_about_strangers(world)
     after = whole_of_theirs(world)
     told |= {f"{key} changed" for key in before if before[key] != after[key]}
-    world.mend()
     expect(not told, f"{len(told)}: " + "; ".join(sorted(told)[:12]))
 
 

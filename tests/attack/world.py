@@ -131,18 +131,25 @@ class World:
         return self.admin.must("POST", "/scenarios", {"scenario": scenario | {"name": "published"}, "publish": True})["id"]
 
     def mend(self):
-        """Undoes what attacks did to their own family and to the study."""
+        """Makes the world again what attacks expect of it: who is in which cohort, who is signed in, what runs."""
         ours, theirs, admin = self.ours, self.theirs, self.admin
         for cohort in admin.must("GET", "/cohorts")["cohorts"]:
             if cohort["id"] != theirs.cohort:
-                for person in (theirs.ids()["account"], self.stranger.identity["id"]):
-                    admin.ask("DELETE", f"/cohorts/{cohort['id']}/people/{person}")
+                for person in (theirs.trainee, theirs.pupil, self.stranger):
+                    admin.ask("DELETE", f"/cohorts/{cohort['id']}/people/{person.identity['id']}")
         admin.ask("POST", f"/cohorts/{ours.cohort}/people", {"name": f"{ours.name} trainee"})
-        admin.ask("POST", f"/accounts/{ours.ids()['account']}/badge", {"badge": ours.badge, "pin": PIN})
-        for study in (self.study, ours.assignment, theirs.assignment):
-            admin.ask("POST", f"/studies/{study}/state", {"state": "running"})
-        admin.ask("POST", f"/assignments/{ours.assignment}/release", {"release": "at_once"})
-        ours.ticket = ours.sign_in_at_station()
+        admin.ask("POST", f"/studies/{self.study}/state", {"state": "running"})
+        for family in (ours, theirs):
+            admin.ask("POST", f"/assignments/{family.assignment}/release", {"release": "at_once"})
+            family.renew_ticket()
+        for person in {*self.people.values(), ours.faculty, theirs.faculty, theirs.trainee, theirs.pupil, self.stranger}:
+            self.renew(person)
+
+    def renew(self, person):
+        """Signs in again whose session an attack, or what answered it, has ended."""
+        name = person.identity["name"]
+        if name in self.passwords and person.ask("GET", "/session").status == 401:
+            person.credentials = self.signed_in(name, self.passwords[name]).credentials
 
     def wait_for_scores(self):
         end = time.monotonic() + 60
@@ -160,6 +167,7 @@ class World:
     def begin_attack(self):
         if not self.healthy():
             self.restart()
+        self.mend()
         self.before_bytes = self.server.resident_bytes()
 
     def end_attack(self):
@@ -253,6 +261,14 @@ class Family:
 
     def sign_in_at_station(self):
         return self.station.must("POST", "/work/sign-in", {"badge": self.badge, "pin": PIN})["ticket"]
+
+    def renew_ticket(self):
+        if self.station.ask("POST", "/work/next", {"ticket": self.ticket}).status == 200:
+            return
+        badge = {"badge": self.badge, "pin": PIN}
+        if self.station.ask("POST", "/work/sign-in", badge).status != 200:  # an attack has set another one
+            self.world.admin.must("POST", f"/accounts/{self.trainee.identity['id']}/badge", badge)
+        self.ticket = self.sign_in_at_station()
 
     def next_slot(self):
         return self.station.must("POST", "/work/next", {"ticket": self.ticket})["trial"]
