@@ -223,6 +223,14 @@ core::Result<std::optional<Slot>> slot_of(Reading& tx, const std::string& slot_i
   return first(slots_where(tx, "where k.id = ?", {slot_id}));
 }
 
+core::Result<bool> was_handed_to(Reading& tx, const Slot& slot, const std::string& station_name) {
+  auto rows =
+      tx.query("select count(*) from study_events where slot_id = ? and what = 'taken' and who = ?",
+               {slot.id, station_name});
+  if (!rows) return rows.error();
+  return rows->front().integer(0) > 0;
+}
+
 core::Result<std::optional<Slot>> slot_of_trial(Reading& tx, const std::string& trial_id) {
   return first(
       slots_where(tx, "join study_trials t on t.slot_id = k.id where t.trial_id = ?", {trial_id}));

@@ -42,6 +42,9 @@ core::Result<std::uint64_t> release_slots(Writing& tx, const SeriesId& id,
 
 core::Result<std::optional<Slot>> slot_of(Reading& tx, const std::string& slot_id);
 /// The slot that a trial was announced for; none for a trial of no study.
+/// Was the slot ever handed out to the station of this name? Of one that was released and handed
+/// out elsewhere since, both.
+core::Result<bool> was_handed_to(Reading& tx, const Slot& slot, const std::string& station_name);
 core::Result<std::optional<Slot>> slot_of_trial(Reading& tx, const std::string& trial_id);
 /// What became of a trial of a study, without what it holds; none for a trial of no study.
 core::Result<std::optional<StudyTrial>> study_trial_of(Reading& tx, const std::string& trial_id);

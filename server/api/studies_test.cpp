@@ -283,6 +283,19 @@ TEST_F(StudyRoutes, ATrialOfAnotherPlaceIsRefused) {
   EXPECT_EQ(refused.error().code, core::Errc::bad_input);
 }
 
+TEST_F(StudyRoutes, ASlotIsHandedOverByStationsThatTookItAlone) {
+  ASSERT_EQ(post("", plan()).status, 200);
+  const std::string trial(32, 'a'), slot = next_slot();
+  const wire::UploadAnnouncement announced{slot, 10, std::string(64, 'e')};
+  const auto stolen =
+      announce_upload(backend_, {Role::station, "s2", "station-2", ""}, trial, announced);
+  ASSERT_FALSE(stolen);
+  EXPECT_EQ(stolen.error().code, core::Errc::not_found);
+  ASSERT_EQ(post("/probing-1/participants/P1/release", {{"reason", "it broke"}}).status, 200);
+  EXPECT_TRUE(announce_upload(backend_, {Role::station, "s1", "station-1", ""}, trial, announced))
+      << "what was recorded before the release is not lost";
+}
+
 TEST_F(StudyRoutes, PauseKeepsTrialsBackUntilItIsOver) {
   ASSERT_EQ(post("", plan()).status, 200);
   ASSERT_EQ(post("/probing-1/state", {{"state", "paused"}, {"reason", "lunch"}}).status, 200);

@@ -79,17 +79,23 @@ core::Result<store::Upload> own_upload(Backend& backend, const Caller& station,
 }
 
 /// The case that an announcement means: one by its id, or that of a study's slot, which is all that
-/// a station knows of it.
-core::Result<std::string> case_meant(store::Reading& tx, const std::string& announced,
+/// a station knows of it. A slot that was never handed to the station is as if it were not there.
+core::Result<std::string> case_meant(store::Reading& tx, const Caller& station,
+                                     const std::string& announced,
                                      std::optional<store::Slot>& slot) {
+  const core::Error absent{core::Errc::not_found,
+                           "case_id: no case " + announced + " on this server"};
   auto found = store::slot_of(tx, announced);
   if (!found) return found.error();
   slot = std::move(*found);
-  if (slot) return slot->case_id;
+  if (slot) {
+    auto own = store::was_handed_to(tx, *slot, station.name);
+    if (!own) return own.error();
+    return *own ? core::Result<std::string>(slot->case_id) : absent;
+  }
   auto known = store::case_of(tx, announced);
   if (!known) return known.error();
-  if (*known) return announced;
-  return core::Error{core::Errc::not_found, "case_id: no case " + announced + " on this server"};
+  return *known ? core::Result<std::string>(announced) : absent;
 }
 
 core::Result<void> insert(store::Writing& tx, const Backend& backend, const Caller& station,
@@ -97,7 +103,7 @@ core::Result<void> insert(store::Writing& tx, const Backend& backend, const Call
   if (auto room = check_room_in(tx, backend, announced.size_bytes); !room) return room.error();
   const std::int64_t now_utc_us = backend.now_utc_us();
   std::optional<store::Slot> slot;
-  auto case_id = case_meant(tx, announced.case_id, slot);
+  auto case_id = case_meant(tx, station, announced.case_id, slot);
   if (!case_id) return case_id.error();
   auto open = store::open_upload_count(tx, station.id);
   if (!open) return open.error();

@@ -6,7 +6,7 @@ import time
 from catalogue import routes_of
 from nesting import zipped
 from processes import ROOT
-from relations import analysed
+from relations import agree, analysed
 from report import NotTried, attack, expect
 from wire import Client, Line, Target, read_answer, request_bytes
 from world import ROLES, World
@@ -151,6 +151,7 @@ def weak_ciphers(world):
 
 @attack("10: an answer to somebody who signed in, or a report, may be kept by a cache")
 def cache_control(world):
+    agree(world, "metrics")
     analysis = analysed(world)[0]
     reports = [("researcher", f"/lab/runs/{finished_diagnosis(world)}/report"),
                *(("researcher", f"/cohort/analyses/{analysis}/{part}") for part in ("report.html", "result.json", "data.csv"))]

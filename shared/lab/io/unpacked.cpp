@@ -21,6 +21,7 @@ using core::Error;
 using core::Result;
 
 constexpr std::size_t kMostPathBytes = 1024;
+constexpr std::size_t kMostNameBytes = 255;  ///< NAME_MAX of Linux
 constexpr const char* kExpected = "a folder with set.json or a zip of one is expected";
 
 struct Closes {
@@ -36,6 +37,9 @@ std::string refusal(const std::string& name) {
   const fs::path path(name);
   if (path.is_absolute() || std::ranges::find(path, fs::path("..")) != path.end())
     return "leaves the folder";
+  const auto too_long = [](const fs::path& part) { return part.native().size() > kMostNameBytes; };
+  if (std::ranges::any_of(path, too_long))
+    return fmt::format("has a folder or file name of more than {} bytes", kMostNameBytes);
   return {};
 }
 

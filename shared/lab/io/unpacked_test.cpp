@@ -99,6 +99,7 @@ TEST_F(UnpackedTest, RefusesEntriesThatLeaveTheFolder) {
   expect_refused(zip({{"set.json", "{}"}, {"../escaped.csv", "x"}}), "'../escaped.csv' leaves");
   expect_refused(zip({{"set.json", "{}"}, {"a/../../escaped.csv", "x"}}), "leaves the folder");
   expect_refused(zip({{"set.json", "{}"}, {"/escaped.csv", "x"}}), "leaves the folder");
+  expect_refused(zip({{"set.json", "{}"}, {std::string(256, 'a'), "x"}}), "more than 255 bytes");
   EXPECT_FALSE(fs::exists(fs::temp_directory_path() / "escaped.csv"));
 }
 
