@@ -71,8 +71,8 @@ install_node() {
   node_is_new_enough || die "deploy: Node.js 20.19 or newer is needed, $(node --version) is here"
 }
 
-# Ninja's own line says how many steps are done; the estimate beside it is the time left at the speed so far.
-export NINJA_STATUS='[%f of %t, %e s, %P] '
+# How many steps are done, their share, seconds so far, and steps in a second: what is left is easily told from these.
+export NINJA_STATUS='[%f of %t, %p, %e s, %o/s] '
 
 configure() {  # configure [CMAKE-OPTION...]
   cmake --preset $preset "$@" >build/configure.log 2>&1 || { tail -20 build/configure.log >&2; die "deploy: cmake failed"; }
