@@ -1,5 +1,6 @@
 /// `tractus-server`: the command line.
 #include <fmt/format.h>
+#include <malloc.h>
 #include <sys/stat.h>
 
 #include <cstdio>
@@ -84,6 +85,9 @@ int ended_by(const CLI::App& commands, const CLI::ParseError& end) {
 
 int main(int argc, char** argv) {
   ::umask(0077);  // whatever it makes is its owner's alone
+  // A large buffer goes back to the system when it is freed; glibc would raise this bound to 32 MiB
+  // and keep what is below it.
+  ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
   CLI::App commands{"Tractus server: cases, trials and their assessment", "tractus-server"};
   commands.require_subcommand(1);
   commands.set_version_flag("--version", TRACTUS_VERSION);

@@ -306,6 +306,10 @@ def stranger_or_plain(parameter, value):
     return plain_value(parameter)
 
 
+# deploy/large/nginx.conf.template answers 404 itself: a process's figures are not for those who come through the proxy.
+KEPT_BY_NGINX = "/api/v1/server/metrics"
+
+
 @attack("every route is called by every role, by nobody, and with somebody else's kind of credentials")
 def role_matrix(world):
     values, cells, worked = {}, 0, []
@@ -316,19 +320,20 @@ def role_matrix(world):
     for route in routes_of(world):
         if route.open:
             continue
+        kept = world.front == "nginx" and route.path == KEPT_BY_NGINX
         for role, client in world.people.items():
             if role in route.roles:
                 continue
             answer = client.ask(route.method, route.address(values), headers=route.headers())
             cells += 1
-            if answer.status != 403:
+            if answer.status != (404 if kept else 403):
                 worked.append(f"{role}: {route.method} {route.path}: {answer.status}")
         for credentials in [{}] + swapped:
             nobody = world.nobody()
             nobody.credentials = credentials
             answer = nobody.ask(route.method, route.address(values), headers=route.headers())
             cells += 1
-            if answer.status != 401:
+            if answer.status != (404 if kept else 401):
                 worked.append(f"{list(credentials)}: {route.method} {route.path}: {answer.status}")
             nobody.line.close()
     print(f"      {cells} cells", flush=True)
