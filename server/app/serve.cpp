@@ -1,6 +1,7 @@
 #include "server/app/serve.hpp"
 
 #include <fmt/format.h>
+#include <malloc.h>
 #include <pthread.h>
 #include <signal.h>
 
@@ -79,7 +80,11 @@ http::Service service_of(api::Backend& backend, const std::optional<std::filesys
       },
       .handle =
           [&backend, is_api, pages](const http::Request& request) {
-            return is_api(request) ? api::answer(backend, api::routes(), request) : pages(request);
+            if (!is_api(request)) return pages(request);
+            http::Response response = api::answer(backend, api::routes(), request);
+            // What a large body took is not kept for the next one.
+            if (!request.body_file.empty()) ::malloc_trim(0);
+            return response;
           },
       .converse =
           [&backend](const http::RequestHead& head) {
