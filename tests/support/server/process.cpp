@@ -142,7 +142,8 @@ ServerProcess::ServerProcess(const fs::path& data, std::vector<std::string> more
     line += c;
     if (c != '\n') continue;
     if (line.starts_with(before)) port_ = std::stoi(line.substr(before.size()));
-    said_ += std::exchange(line, "");
+    else said_ += line;
+    line.clear();
   }
   EXPECT_NE(port_, 0) << said_ << line;
 }

@@ -69,7 +69,8 @@ class ServerProcess {
   int port() const { return port_; }
   pid_t pid() const { return pid_; }
   void kill_now();
-  /// SIGTERM, then waits; its exit code. All that it printed is then in `output`.
+  /// SIGTERM, then waits; its exit code. All that it printed, but the line
+  /// with the address it listens on, is then in `output`.
   int stop();
   const std::string& output() const { return said_; }
   /// Largest resident memory so far, bytes.
