@@ -1,9 +1,10 @@
 #include "db/store/store.hpp"
 
 #include "core/require.hpp"
-#include "db/store/coverage.hpp"
-#include "db/store/migrations.hpp"
+#include "db/store/database/migrations.hpp"
+#include "db/store/operations/coverage.hpp"
 
+namespace tractus {
 namespace store {
 namespace {
 
@@ -100,3 +101,4 @@ core::Result<void> Store::finish(Writing& tx, Access access, std::vector<Signals
 }
 
 }  // namespace store
+}  // namespace tractus

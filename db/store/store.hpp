@@ -12,11 +12,11 @@
 #include <span>
 #include <type_traits>
 
-#include "db/store/connection.hpp"
-#include "db/store/locks.hpp"
-#include "db/store/signals.hpp"
+#include "db/store/database/connection.hpp"
+#include "db/store/database/locks.hpp"
+#include "db/store/database/signals.hpp"
 
-namespace store {
+namespace tractus::store {
 
 /// A transaction that sees one unchanging state and cannot change it. Lent by Store::read for the
 /// length of a call.
@@ -119,7 +119,7 @@ class Store {
 
   /// Runs `work(Writing&)`, which returns a Result; commits when it and the commit succeed,
   /// otherwise nothing has happened and the Error says why. What is being done by whom
-  /// (store::Acting) is noted in the audit trail, in the same transaction. No other write runs
+  /// (store::AuditScope) is noted in the audit trail, in the same transaction. No other write runs
   /// meanwhile, in any process: what it reads stays so until it is done.
   template <std::invocable<Writing&> Work>
   std::invoke_result_t<Work, Writing&> write(Work&& work) {
@@ -195,4 +195,4 @@ class Store {
   AuditKey audit_key_{};
 };
 
-}  // namespace store
+}  // namespace tractus::store

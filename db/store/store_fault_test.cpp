@@ -4,17 +4,18 @@
 
 #include <functional>
 
-#include "db/store/accounts.hpp"
-#include "db/store/cases.hpp"
-#include "db/store/jobs.hpp"
-#include "db/store/migrations.hpp"
-#include "db/store/sign_ins.hpp"
+#include "db/store/cases/cases.hpp"
+#include "db/store/database/migrations.hpp"
+#include "db/store/operations/jobs.hpp"
+#include "db/store/people/accounts.hpp"
+#include "db/store/people/sign_ins.hpp"
 #include "db/store/store_test_support.hpp"
-#include "db/store/study_slots.hpp"
-#include "db/store/trials.hpp"
-#include "db/store/uploads.hpp"
+#include "db/store/studies/study_slots.hpp"
+#include "db/store/trials/trials.hpp"
+#include "db/store/trials/uploads.hpp"
 #include "tests/support/database/database.hpp"
 
+namespace tractus {
 namespace store {
 namespace {
 using test_support::Content;
@@ -182,3 +183,4 @@ TEST_P(StoreFaults, MigratingIsDoneAgainFromWhereItFailed) {
 
 }  // namespace
 }  // namespace store
+}  // namespace tractus

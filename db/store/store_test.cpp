@@ -7,13 +7,14 @@
 #include <limits>
 #include <type_traits>
 
-#include "db/store/accounts.hpp"
-#include "db/store/jobs.hpp"
-#include "db/store/migrations.hpp"
-#include "db/store/sign_ins.hpp"
+#include "db/store/database/migrations.hpp"
+#include "db/store/operations/jobs.hpp"
+#include "db/store/people/accounts.hpp"
+#include "db/store/people/sign_ins.hpp"
 #include "db/store/store_test_support.hpp"
 #include "tests/support/database/database.hpp"
 
+namespace tractus {
 namespace store {
 namespace {
 using test_support::Content;
@@ -367,3 +368,4 @@ TEST_P(Logins, AnOriginIsKnownByTheAccountThatGotInFromIt) {
 
 }  // namespace
 }  // namespace store
+}  // namespace tractus

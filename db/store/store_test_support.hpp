@@ -8,7 +8,7 @@
 #include "core/bytes.hpp"
 #include "db/store/store.hpp"
 
-namespace store::testing {
+namespace tractus::store::testing {
 
 class TestFolder {
  public:
@@ -69,4 +69,4 @@ class FaultyConnection final : public Connection {
   int step_ = 0;
 };
 
-}  // namespace store::testing
+}  // namespace tractus::store::testing

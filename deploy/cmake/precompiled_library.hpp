@@ -1,10 +1,9 @@
 /// What most files include: read once for all of them (deploy/cmake/Tractus.cmake).
 #pragma once
 
-#include <Eigen/Dense>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -19,6 +18,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <numeric>
 #include <optional>

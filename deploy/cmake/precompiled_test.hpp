@@ -1,12 +1,11 @@
 /// What most tests include: read once for all of them (deploy/cmake/Tractus.cmake).
 #pragma once
 
-#include <Eigen/Dense>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -21,6 +20,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <numeric>
 #include <optional>

@@ -3,10 +3,11 @@
 #include <algorithm>
 
 #include "core/require.hpp"
-#include "db/store/blinding.hpp"
-#include "db/store/invitations.hpp"
+#include "db/store/people/invitations.hpp"
+#include "db/store/studies/blinding.hpp"
 #include "server/api/backend.hpp"
 
+namespace tractus {
 namespace api {
 
 namespace {
@@ -55,9 +56,9 @@ core::Result<void> check_not_blind(store::Reading& tx, Object object, const std:
 }
 
 /// May the caller name this object as this end?
-core::Result<bool> may_name(store::Reading& tx, const Caller& caller, Of of, const End& end,
+core::Result<bool> may_name(store::Reading& tx, const Caller& caller, Scope of, const End& end,
                             const std::string& name) {
-  if (of == Of::all || end.by == End::By::id) return relates(tx, caller, of, end.object, name);
+  if (of == Scope::all || end.by == End::By::id) return relates(tx, caller, of, end.object, name);
   auto account = store::account_named(tx, name);
   if (!account) return account.error();
   if (!*account) return false;
@@ -83,19 +84,19 @@ core::Result<void> check_end(store::Reading& tx, const Caller& caller, const End
 
 }  // namespace
 
-std::optional<Of> granted(const RouteInfo& route, Role role) { return granted(route.who, role); }
+std::optional<Scope> granted(const RouteInfo& route, Role role) { return granted(route.who, role); }
 
-std::optional<Of> granted(const std::vector<Grant>& who, Role role) {
-  std::optional<Of> widest;
+std::optional<Scope> granted(const std::vector<Grant>& who, Role role) {
+  std::optional<Scope> widest;
   for (const Grant& grant : who)
     if (grant.role == role && (!widest || grant.of > *widest)) widest = grant.of;
   return widest;
 }
 
-core::Result<bool> relates(store::Reading& tx, const Caller& caller, Of of, Object object,
+core::Result<bool> relates(store::Reading& tx, const Caller& caller, Scope of, Object object,
                            const std::string& id) {
-  if (of == Of::all) return true;
-  const bool leads = of == Of::cohort;
+  if (of == Scope::all) return true;
+  const bool leads = of == Scope::cohort;
   switch (object) {
     case Object::trial:
       return leads ? store::teaches_trial(tx, caller.id, id)
@@ -165,3 +166,4 @@ core::Result<void> check_access(Backend& backend, const RouteInfo& route, const 
 }
 
 }  // namespace api
+}  // namespace tractus

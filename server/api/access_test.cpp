@@ -5,9 +5,10 @@
 #include <regex>
 #include <set>
 
-#include "db/store/invitations.hpp"
-#include "server/api/people_test_support.hpp"
+#include "db/store/people/invitations.hpp"
+#include "server/api/people/people_test_support.hpp"
 
+namespace tractus {
 namespace api {
 namespace {
 using testing::kCase;
@@ -119,7 +120,7 @@ TEST_F(Access, EveryCellOfRolesTimesRoutesIsAsTheCatalogueSays) {
       EXPECT_EQ(refused.find("not for the role"), std::string::npos) << cell;
       EXPECT_EQ(refused.find(kNotYours), std::string::npos) << cell;
       const bool shared = route.object == Object::none || route.object == Object::published_case;
-      if (*of != Of::all && !shared) {
+      if (*of != Scope::all && !shared) {
         EXPECT_EQ(other.status, 404) << cell << " of another: " << text(other);
         EXPECT_NE(text(other).find(kNotYours), std::string::npos) << cell << text(other);
       }
@@ -160,8 +161,8 @@ TEST_F(Access, ATraineeAndAStationReachTheseRoutesAlone) {
   std::map<Role, std::set<std::string>> reach;
   for (const RouteInfo& route : routes())
     for (const Grant& grant : route.who)
-      reach[grant.role].insert(route.id +
-                               (grant.of == Of::all ? "" : " of " + std::string(name(grant.of))));
+      reach[grant.role].insert(
+          route.id + (grant.of == Scope::all ? "" : " of " + std::string(name(grant.of))));
   EXPECT_EQ(reach[Role::trainee], (std::set<std::string>{"whoAmI",
                                                          "signOut",
                                                          "changePassword",
@@ -244,7 +245,7 @@ TEST_F(Access, GrantsOfSomeObjectsNameTheObject) {
   std::set<std::string> lists;
   for (const RouteInfo& route : routes())
     for (const Grant& grant : route.who) {
-      if (grant.of == Of::all) continue;
+      if (grant.of == Scope::all) continue;
       if (route.object == Object::none) {
         lists.insert(route.id);
         continue;
@@ -291,3 +292,4 @@ TEST_F(Access, ATraineeSeesNothingOfATrialWhoseResultsAreHeld) {
 
 }  // namespace
 }  // namespace api
+}  // namespace tractus

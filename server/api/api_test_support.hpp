@@ -4,16 +4,16 @@
 #include <gtest/gtest.h>
 
 #include "core/file.hpp"
-#include "db/store/cases.hpp"
-#include "db/store/coverage.hpp"
+#include "db/store/cases/cases.hpp"
+#include "db/store/operations/coverage.hpp"
 #include "db/store/store_test_support.hpp"
-#include "server/api/authentication.hpp"
 #include "server/api/backend.hpp"
+#include "server/api/people/authentication.hpp"
 #include "server/api/service.hpp"
 #include "server/live/hub.hpp"
 #include "tests/support/database/database.hpp"
 
-namespace api::testing {
+namespace tractus::api::testing {
 
 inline const std::string kCase(64, 'c');
 inline const std::string kPassword = "correct horse";
@@ -104,4 +104,4 @@ class ApiTest : public ::testing::Test {
                    .live = &hub_};
 };
 
-}  // namespace api::testing
+}  // namespace tractus::api::testing

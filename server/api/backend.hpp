@@ -4,16 +4,16 @@
 #include <functional>
 
 #include "core/json.hpp"
-#include "db/store/objects.hpp"
 #include "db/store/store.hpp"
-#include "server/api/backups.hpp"
+#include "db/store/volumes/objects.hpp"
+#include "server/api/operations/backups.hpp"
+#include "server/api/operations/telemetry.hpp"
+#include "server/api/people/secrets.hpp"
 #include "server/api/refusals.hpp"
-#include "server/api/secrets.hpp"
-#include "server/api/telemetry.hpp"
-#include "server/api/trial_views.hpp"
+#include "server/api/trials/trial_views.hpp"
 #include "server/http/scratch_space.hpp"
 
-namespace live {
+namespace tractus::live {
 class Hub;
 }
 
@@ -22,7 +22,7 @@ namespace api {
 /// What happened, as fields: never a name, an address, or anything that somebody typed.
 using Log = std::function<void(const core::Json& fields)>;
 
-/// jobs::take_volume, wherever it is run.
+/// jobs::import_volume, wherever it is run.
 using TakeVolume = std::function<core::Result<core::Json>(const std::filesystem::path& upload,
                                                           const std::filesystem::path& folder,
                                                           const std::array<std::byte, 32>& key)>;
@@ -42,7 +42,7 @@ struct Backend {
   bool logs_requests = false;                      ///< every one, not only those that fail
   live::Hub* live = nullptr;                       ///< none: stations have no lines
   Backups* backups = nullptr;                      ///< none: this process makes none
-  TakeVolume take_volume = {};                     ///< in a process of its own; none: in this one
+  TakeVolume import_volume = {};                   ///< in a process of its own; none: in this one
   /// For large bodies and answers.
   std::shared_ptr<http::ScratchSpace> scratch =
       std::make_shared<http::ScratchSpace>(std::filesystem::temp_directory_path());

@@ -4,8 +4,9 @@
 
 #include <regex>
 
-#include "server/api/people_test_support.hpp"
+#include "server/api/people/people_test_support.hpp"
 
+namespace tractus {
 namespace api {
 namespace {
 using testing::kCase;
@@ -118,3 +119,4 @@ TEST_F(HostileBodies, AreRefusedByEveryRouteAndTheServerStaysUp) {
 
 }  // namespace
 }  // namespace api
+}  // namespace tractus

@@ -5,6 +5,7 @@
 
 #include "server/api/schema.hpp"
 
+namespace tractus {
 namespace api {
 namespace {
 
@@ -143,3 +144,4 @@ core::Json openapi(const std::vector<RouteInfo>& table) {
 }
 
 }  // namespace api
+}  // namespace tractus

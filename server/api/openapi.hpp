@@ -3,10 +3,10 @@
 
 #include "server/api/route.hpp"
 
-namespace api {
+namespace tractus::api {
 
 /// OpenAPI 3.1: every route with parameters, units (x-unit), bodies, answers, errors and who may
 /// call (x-roles).
 core::Json openapi(const std::vector<RouteInfo>& table);
 
-}  // namespace api
+}  // namespace tractus::api

@@ -3,11 +3,11 @@
 #include <algorithm>
 
 #include "core/words.hpp"
-#include "db/store/audit.hpp"
+#include "db/store/operations/audit.hpp"
 #include "server/api/backend.hpp"
 #include "server/api/route.hpp"
 
-namespace api {
+namespace tractus::api {
 
 bool RefusalLimit::draw(Bucket& bucket, double per_minute, double most, std::int64_t now_utc_us) {
   const double minutes = std::max(0.0, double(now_utc_us - bucket.at_utc_us) / 60e6);
@@ -53,16 +53,17 @@ void note_refusal(Backend& backend, const Caller& caller, const std::string& pee
   core::Json detail{{"why", why}};
   if (status > 0) detail["status"] = status;
   if (*unnoted > 0) detail["refusals_not_noted"] = *unnoted;
-  const store::Act act{.who = caller.name,
-                       .role = std::string(name(caller.role)),
-                       .peer = peer,
-                       .what = "refused: " + route,
-                       .object = object,
-                       .detail = detail.dump(-1, ' ', false, core::Json::error_handler_t::replace),
-                       .at_utc_us = now};
+  const store::AuditedAction act{
+      .who = caller.name,
+      .role = std::string(name(caller.role)),
+      .peer = peer,
+      .what = "refused: " + route,
+      .object = object,
+      .detail = detail.dump(-1, ' ', false, core::Json::error_handler_t::replace),
+      .at_utc_us = now};
   const auto noted = backend.store.write(
       [&](store::Writing& tx) { return store::add_act(tx, backend.store.audit_key(), act); });
   if (!noted && backend.log) backend.log({{"what", "refusal not noted"}});
 }
 
-}  // namespace api
+}  // namespace tractus::api

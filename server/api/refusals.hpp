@@ -10,7 +10,7 @@
 
 #include "server/http/message.hpp"
 
-namespace api {
+namespace tractus::api {
 
 /// Of one caller kBurst refusals are noted at once and kPerMinute from then on, of all callers
 /// together kAllPerMinute; what is not noted is counted, and the next that is says how many.
@@ -52,4 +52,4 @@ void note_refusal(Backend& backend, const Caller& caller, const std::string& pee
                   const std::string& route, const std::string& object, const std::string& why,
                   int status = 0);
 
-}  // namespace api
+}  // namespace tractus::api

@@ -1,8 +1,9 @@
 /// Refusals in the audit trail: noted, and too few to flood it.
 #include "server/api/refusals.hpp"
 
-#include "server/api/people_test_support.hpp"
+#include "server/api/people/people_test_support.hpp"
 
+namespace tractus {
 namespace api {
 namespace {
 using testing::PeopleTest;
@@ -61,3 +62,4 @@ TEST(RefusalLimit, HoldsAllCallersTogetherToOneRateInBoundedMemory) {
 
 }  // namespace
 }  // namespace api
+}  // namespace tractus

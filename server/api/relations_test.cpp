@@ -3,10 +3,11 @@
 #include <cstdio>
 #include <set>
 
-#include "db/store/invitations.hpp"
+#include "db/store/people/invitations.hpp"
 #include "server/api/access.hpp"
-#include "server/api/people_test_support.hpp"
+#include "server/api/people/people_test_support.hpp"
 
+namespace tractus {
 namespace api {
 namespace {
 using core::Json;
@@ -149,9 +150,9 @@ class Relations : public PeopleTest {
     const auto of = granted(route, role), at_end = granted(end.who, role);
     if (!of) return 403;
     const bool object_too = route.object != Object::none && route.object_parameter == end.field;
-    if (object_too && *of != Of::all && !holds(role, route.object, value)) return 404;
+    if (object_too && *of != Scope::all && !holds(role, route.object, value)) return 404;
     if (!at_end) return 403;
-    return *at_end == Of::all || holds(role, end.object, value) ? 0 : 404;
+    return *at_end == Scope::all || holds(role, end.object, value) ? 0 : 404;
   }
   void check_cell(const RouteInfo& route, Role role, const End& end, const Example& example,
                   const std::string& value) {
@@ -220,7 +221,7 @@ TEST_F(Relations, ARouteThatChangesSomethingNamesEveryEndOrIsOfOneObject) {
       "addVolume", "releaseVolume", "refuseVolume", "planTract", "makeCase", "retireCase",
       "checkScenario", "addScenario", "publishScenario", "addModel", "addMeasurements",
       "checkEffect", "startDiagnosis", "startComparison", "startFit", "stopLabRun", "publishLabRun",
-      // released trials alone (db/store/released.hpp)
+      // released trials alone (db/store/cohort/released.hpp)
       "lockAnalysisPlan", "analyseCohort",
       // the server's own
       "makeBackup", "verifyBackup"};
@@ -264,8 +265,8 @@ TEST_F(Relations, WhoIsInvitedDecides) {
   const auto invited = [&](const char* who) {
     return json(get(who, "/session/invitations"))["invitations"];
   };
-  const auto says = [&](const char* who, const std::string& deed) {
-    return ask(request("POST", "/api/v1/session/invitations/c-tom/" + deed, as(who))).status;
+  const auto says = [&](const char* who, const std::string& stamp) {
+    return ask(request("POST", "/api/v1/session/invitations/c-tom/" + stamp, as(who))).status;
   };
   const auto sees = [&] {
     return get("fay", "/trials/" + trial_of("tia") + "/comments").status == 200;
@@ -319,3 +320,4 @@ TEST_F(Relations, AnExampleNamesNobodyToStrangers) {
 
 }  // namespace
 }  // namespace api
+}  // namespace tractus

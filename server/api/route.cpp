@@ -5,7 +5,7 @@
 
 #include "core/file.hpp"
 
-namespace api {
+namespace tractus::api {
 
 std::string_view name(Role role) {
   switch (role) {
@@ -38,13 +38,13 @@ std::vector<Grant> people() {
   return out;
 }
 
-std::string_view name(Of of) {
+std::string_view name(Scope of) {
   switch (of) {
-    case Of::own:
+    case Scope::own:
       return "own";
-    case Of::cohort:
+    case Scope::cohort:
       return "cohort";
-    case Of::all:
+    case Scope::all:
       return "all";
   }
   return "own";
@@ -218,4 +218,4 @@ http::Response error_response(const core::Error& error) {
   return http::error_response(status_of(error.code), name(error.code), error.what);
 }
 
-}  // namespace api
+}  // namespace tractus::api

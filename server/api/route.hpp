@@ -10,12 +10,12 @@
 
 #include "core/json.hpp"
 #include "core/result.hpp"
-#include "server/http/conversation.hpp"
 #include "server/http/lane.hpp"
 #include "server/http/message.hpp"
 #include "server/http/scratch_space.hpp"
+#include "server/http/websocket_handler.hpp"
 
-namespace api {
+namespace tractus::api {
 
 struct Backend;
 
@@ -28,14 +28,14 @@ std::string_view name(Role role);
 std::optional<Role> role_named(std::string_view name);
 
 /// Of which objects a role may ask: its own, those of the people in the cohorts it leads, or all.
-enum class Of { own, cohort, all };
-std::string_view name(Of of);
+enum class Scope { own, cohort, all };
+std::string_view name(Scope of);
 
 /// A role that may call a route; a bare Role means: of all objects.
 struct Grant {
   Role role;
-  Of of;
-  Grant(Role who, Of objects = Of::all) : role(who), of(objects) {}
+  Scope of;
+  Grant(Role who, Scope objects = Scope::all) : role(who), of(objects) {}
 };
 
 /// Every role but a station's, of all objects.
@@ -97,8 +97,8 @@ struct Call {
   const http::Request& request;
   const Caller& caller;  ///< nobody's for an open route
   std::map<std::string, std::string>
-      arguments;    ///< by name; of declared ones alone, fallbacks filled in
-  Of of = Of::own;  ///< the widest that the route grants the caller's role
+      arguments;          ///< by name; of declared ones alone, fallbacks filled in
+  Scope of = Scope::own;  ///< the widest that the route grants the caller's role
 
   bool has(const std::string& name) const { return arguments.contains(name); }
   const std::string& text(const std::string& name) const;
@@ -149,7 +149,7 @@ struct RouteInfo {
   core::Result<http::Response> (*handle)(const Call& call);
   /// Of a route that is a WebSocket: who answers in it, once everything was checked that is checked
   /// of any route, and by cookie the Origin. `handle` then answers those who come without one.
-  core::Result<std::shared_ptr<http::Conversation>> (*converse)(
+  core::Result<std::shared_ptr<http::WebSocketHandler>> (*converse)(
       const Call& call, std::function<bool()> may_stay) = nullptr;
 };
 
@@ -173,4 +173,4 @@ int status_of(core::Errc code);
 std::string_view name(core::Errc code);
 http::Response error_response(const core::Error& error);
 
-}  // namespace api
+}  // namespace tractus::api

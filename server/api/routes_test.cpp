@@ -5,6 +5,7 @@
 #include "server/api/api_test_support.hpp"
 #include "server/api/openapi.hpp"
 
+namespace tractus {
 namespace api {
 namespace {
 using testing::ApiTest;
@@ -157,3 +158,4 @@ TEST_F(Routes, EveryNumberSaysItsUnitAndItsNameEndsInIt) {
 
 }  // namespace
 }  // namespace api
+}  // namespace tractus

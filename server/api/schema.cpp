@@ -1,5 +1,6 @@
 #include "server/api/schema.hpp"
 
+namespace tractus {
 namespace api::schema {
 namespace {
 constexpr const char* kOptional =
@@ -72,3 +73,4 @@ core::Json ref(std::string_view name) {
 }
 
 }  // namespace api::schema
+}  // namespace tractus

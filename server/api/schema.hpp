@@ -9,7 +9,7 @@
 
 #include "core/json.hpp"
 
-namespace api::schema {
+namespace tractus::api::schema {
 
 using Field = std::pair<std::string, core::Json>;
 
@@ -32,4 +32,4 @@ core::Json anything(std::string_view meaning);
 /// A schema named by some route's `schemas`.
 core::Json ref(std::string_view name);
 
-}  // namespace api::schema
+}  // namespace tractus::api::schema

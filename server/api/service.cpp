@@ -9,10 +9,11 @@
 
 #include "core/clock.hpp"
 #include "server/api/access.hpp"
-#include "server/api/acts.hpp"
-#include "server/api/authentication.hpp"
-#include "server/api/throttle.hpp"
+#include "server/api/audit_entry.hpp"
+#include "server/api/people/authentication.hpp"
+#include "server/api/people/throttle.hpp"
 
+namespace tractus {
 namespace api {
 namespace {
 
@@ -141,9 +142,9 @@ core::Result<http::Response> handled(Backend& backend, const Match& matched, con
                                      std::map<std::string, std::string> arguments) {
   const RouteInfo& route = *matched.route;
   const Call call{backend, request, caller, std::move(arguments),
-                  granted(route, caller.role).value_or(Of::own)};
+                  granted(route, caller.role).value_or(Scope::own)};
   if (route.method == "GET" || !route.audited) return route.handle(call);
-  const store::Acting acting(act_of(route, call, matched.segments));
+  const store::AuditScope acting(audited_action(route, call, matched.segments));
   return route.handle(call);
 }
 
@@ -300,8 +301,8 @@ bool is_own_origin(const http::RequestHead& head) {
       [](unsigned char c) { return std::tolower(c); });
 }
 
-core::Result<std::shared_ptr<http::Conversation>> conversation(Backend& backend, Asked& asked,
-                                                               const http::Request& request) {
+core::Result<std::shared_ptr<http::WebSocketHandler>> conversation(Backend& backend, Asked& asked,
+                                                                   const http::Request& request) {
   const RouteInfo& route = *asked.matched->route;
   auto caller = allowed_caller(backend, route, request, &asked);
   if (!caller) return caller.error();
@@ -314,7 +315,7 @@ core::Result<std::shared_ptr<http::Conversation>> conversation(Backend& backend,
     return may.error();
   }
   const Call call{backend, request, *caller, std::move(*checked),
-                  granted(route, caller->role).value_or(Of::own)};
+                  granted(route, caller->role).value_or(Scope::own)};
   return route.converse(call, [&backend, &route, head = http::RequestHead(request)] {
     return bool(allowed_caller(backend, route, head, nullptr, Presence::not_shown));
   });
@@ -322,7 +323,7 @@ core::Result<std::shared_ptr<http::Conversation>> conversation(Backend& backend,
 
 }  // namespace
 
-std::variant<http::Response, std::shared_ptr<http::Conversation>> converse(
+std::variant<http::Response, std::shared_ptr<http::WebSocketHandler>> converse(
     Backend& backend, const std::vector<RouteInfo>& table, const http::RequestHead& head) {
   std::string allowed;
   const auto matched = match(table, head, &allowed);
@@ -387,3 +388,4 @@ std::variant<http::Standing, http::Response> standing(Backend& backend,
 }
 
 }  // namespace api
+}  // namespace tractus

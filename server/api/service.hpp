@@ -5,7 +5,7 @@
 #include "server/api/route.hpp"
 #include "server/http/server.hpp"
 
-namespace api {
+namespace tractus::api {
 
 /// A route and what its path's placeholders stand for.
 struct Match {
@@ -38,7 +38,7 @@ std::variant<http::Standing, http::Response> standing(Backend& backend,
                                                       const std::vector<RouteInfo>& table,
                                                       const http::RequestHead& head);
 /// A request for a WebSocket: checked as any, then the route's conversation.
-std::variant<http::Response, std::shared_ptr<http::Conversation>> converse(
+std::variant<http::Response, std::shared_ptr<http::WebSocketHandler>> converse(
     Backend& backend, const std::vector<RouteInfo>& table, const http::RequestHead& head);
 
-}  // namespace api
+}  // namespace tractus::api

@@ -5,6 +5,7 @@
 #include <memory>
 #include <mutex>
 
+namespace tractus {
 namespace api {
 namespace {
 
@@ -92,3 +93,4 @@ Result<Fetched> fetch(const Fetch& what) {
 }
 
 }  // namespace api
+}  // namespace tractus

@@ -9,7 +9,7 @@
 
 #include "core/result.hpp"
 
-namespace api {
+namespace tractus::api {
 
 struct Fetched {
   int status = 0;
@@ -34,4 +34,4 @@ bool is_safe_address(const std::string& url);
 /// "a b" is "a%20b".
 std::string percent_encoded(const std::string& text);
 
-}  // namespace api
+}  // namespace tractus::api

@@ -11,6 +11,7 @@
 #include "server/api/web_fetch.hpp"
 #include "server/app/log.hpp"
 
+namespace tractus {
 namespace app {
 namespace {
 
@@ -158,3 +159,4 @@ void Anchoring::run() {
 }
 
 }  // namespace app
+}  // namespace tractus

@@ -11,7 +11,7 @@
 
 #include "server/app/anchors.hpp"
 
-namespace app {
+namespace tractus::app {
 
 /// Another place for anchors.
 struct AnchorPlace {
@@ -70,4 +70,4 @@ class Anchoring {
   std::thread thread_;
 };
 
-}  // namespace app
+}  // namespace tractus::app

@@ -11,9 +11,10 @@
 
 #include "core/clock.hpp"
 #include "core/file.hpp"
-#include "db/store/coverage.hpp"
+#include "db/store/operations/coverage.hpp"
 #include "server/app/log.hpp"
 
+namespace tractus {
 namespace app {
 namespace fs = std::filesystem;
 namespace {
@@ -338,3 +339,4 @@ Result<Examined> examine(DataFolder& data, const core::Progress& shown,
 }
 
 }  // namespace app
+}  // namespace tractus

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "core/progress.hpp"
-#include "db/store/backup.hpp"
+#include "db/store/operations/backup.hpp"
 #include "server/app/data_folder.hpp"
 
-namespace app {
+namespace tractus::app {
 
 inline constexpr const char* kAnchors = "audit.anchor";
 inline constexpr const char* kHighWater = "audit.highwater";
@@ -61,4 +61,4 @@ struct Examined {
 core::Result<Examined> examine(DataFolder& data, const core::Progress& shown,
                                const std::optional<std::filesystem::path>& copy = {});
 
-}  // namespace app
+}  // namespace tractus::app

@@ -8,6 +8,7 @@
 #include "core/file.hpp"
 #include "server/app/anchors.hpp"
 
+namespace tractus {
 namespace app {
 namespace fs = std::filesystem;
 namespace {
@@ -183,3 +184,4 @@ core::Result<api::Backup> BackupFolder::verify(const std::string& id) {
 }
 
 }  // namespace app
+}  // namespace tractus

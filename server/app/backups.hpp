@@ -8,10 +8,10 @@
 #include <mutex>
 #include <thread>
 
-#include "server/api/backups.hpp"
-#include "server/app/upkeep.hpp"
+#include "server/api/operations/backups.hpp"
+#include "server/app/maintenance.hpp"
 
-namespace app {
+namespace tractus::app {
 
 /// `folder/ID/` is a backup as `tractus-server backup` makes it, `folder/ID.json` who made it and
 /// what looking over found. What was under way when the server ended has left nothing behind.
@@ -41,4 +41,4 @@ class BackupFolder final : public api::Backups {
   std::thread thread_;
 };
 
-}  // namespace app
+}  // namespace tractus::app

@@ -10,7 +10,7 @@
 #include "core/json.hpp"
 #include "core/result.hpp"
 
-namespace app {
+namespace tractus::app {
 
 using Outcome = core::Result<void>;
 /// What a command does once its options are read. 0: done; 1: the answer is "no".
@@ -38,4 +38,4 @@ Run verify_command(CLI::App& command);
 Run anchor_command(CLI::App& command);
 Run migrate_command(CLI::App& command);
 
-}  // namespace app
+}  // namespace tractus::app

@@ -13,6 +13,7 @@
 #include "core/file.hpp"
 #include "server/app/log.hpp"
 
+namespace tractus {
 namespace app {
 namespace fs = std::filesystem;
 namespace {
@@ -137,7 +138,7 @@ core::Result<DataFolder> open_data(const fs::path& path, const Database& databas
                     std::move(*secrets)};
 }
 
-store::Act command_act(const std::string& command, const core::Json& detail) {
+store::AuditedAction command_act(const std::string& command, const core::Json& detail) {
   const passwd* user = ::getpwuid(::geteuid());
   return {.who = fmt::format("command line: {}", user ? user->pw_name : "unknown"),
           .role = "command line",
@@ -165,3 +166,4 @@ ServingLock::~ServingLock() {
 }
 
 }  // namespace app
+}  // namespace tractus

@@ -4,13 +4,13 @@
 #include <filesystem>
 
 #include "core/json.hpp"
-#include "db/store/audit.hpp"
-#include "db/store/objects.hpp"
+#include "db/store/operations/audit.hpp"
 #include "db/store/store.hpp"
-#include "server/api/secrets.hpp"
+#include "db/store/volumes/objects.hpp"
+#include "server/api/people/secrets.hpp"
 #include "server/app/database.hpp"
 
-namespace app {
+namespace tractus::app {
 
 inline constexpr const char* kCertificates = "tls";  ///< http::certificate_files of this folder
 
@@ -42,7 +42,7 @@ core::Result<void> make_key_file(const std::filesystem::path& path);
 core::Result<api::Secrets::Key> read_key_file(const std::filesystem::path& path);
 
 /// An act of the command line, by the user of this system who typed it.
-store::Act command_act(const std::string& command, const core::Json& detail);
+store::AuditedAction command_act(const std::string& command, const core::Json& detail);
 
 /// Held while a process serves a folder; the system lets go of it when the process ends, however it
 /// ends.
@@ -60,4 +60,4 @@ class ServingLock {
   int fd_;
 };
 
-}  // namespace app
+}  // namespace tractus::app

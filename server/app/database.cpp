@@ -6,6 +6,7 @@
 
 #include "core/file.hpp"
 
+namespace tractus {
 namespace app {
 namespace fs = std::filesystem;
 namespace {
@@ -86,3 +87,4 @@ core::Result<void> use_address(const std::string& address) {
 }
 
 }  // namespace app
+}  // namespace tractus

@@ -6,7 +6,7 @@
 
 #include "db/store/store.hpp"
 
-namespace app {
+namespace tractus::app {
 
 inline constexpr const char* kDatabase = "tractus.db";  ///< SQLite's file, unless it is elsewhere
 /// In a folder whose records are in PostgreSQL: its address, without a password.
@@ -38,4 +38,4 @@ core::Result<void> note_address(const std::filesystem::path& folder, const Datab
 /// holds a password.
 core::Result<void> use_address(const std::string& address);
 
-}  // namespace app
+}  // namespace tractus::app

@@ -6,7 +6,7 @@
 
 #include "core/clock.hpp"
 
-namespace app {
+namespace tractus::app {
 
 void log_line(const core::Json& fields) {
   core::Json line{{"t", core::utc_text(core::utc_us())}};
@@ -14,4 +14,4 @@ void log_line(const core::Json& fields) {
   fmt::print(stderr, "{}\n", line.dump(-1, ' ', false, core::Json::error_handler_t::replace));
 }
 
-}  // namespace app
+}  // namespace tractus::app

@@ -3,9 +3,9 @@
 
 #include "core/json.hpp"
 
-namespace app {
+namespace tractus::app {
 
 /// One line of JSON on standard error: the time, then what happened.
 void log_line(const core::Json& fields);
 
-}  // namespace app
+}  // namespace tractus::app

@@ -8,8 +8,9 @@
 #include "core/words.hpp"
 #include "server/app/command.hpp"
 #include "server/app/database.hpp"
-#include "server/app/taking.hpp"
+#include "server/app/import_process.hpp"
 
+namespace tractus {
 namespace app {
 
 void say(bool json, const core::Json& object, const std::string& line) {
@@ -71,7 +72,7 @@ constexpr Command kCommands[] = {
     {"openapi", "Print the description of the API, OpenAPI 3.1",
      "tractus-server openapi > openapi.json", app::openapi_command},
     {"take-volume", "", "tractus-server take-volume --upload FILE --folder FOLDER",
-     app::take_volume_command},  // the server's own child
+     app::import_volume_command},  // the server's own child
 };
 
 /// Exit code of CLI11's own end: 0 for --help, 2 for bad use, said in one line.
@@ -83,7 +84,10 @@ int ended_by(const CLI::App& commands, const CLI::ParseError& end) {
 
 }  // namespace
 
+}  // namespace tractus
+
 int main(int argc, char** argv) {
+  using namespace tractus;
   ::umask(0077);  // whatever it makes is its owner's alone
   // A large buffer goes back to the system when it is freed; glibc would raise this bound to 32 MiB
   // and keep what is below it.

@@ -3,7 +3,7 @@
 
 #include "server/app/data_folder.hpp"
 
-namespace app {
+namespace tractus::app {
 
 /// Verifies the bundle (signature, every part), copies its files among the objects, then notes the
 /// case and its parts in one transaction. Publishing it again changes nothing. Returns its id.
@@ -11,4 +11,4 @@ namespace app {
 /// can be judged.
 core::Result<std::string> publish(DataFolder& data, const std::filesystem::path& bundle);
 
-}  // namespace app
+}  // namespace tractus::app

@@ -14,6 +14,7 @@
 
 #include "core/file.hpp"
 
+namespace tractus {
 namespace http {
 namespace fs = std::filesystem;
 namespace {
@@ -249,3 +250,4 @@ core::Result<std::string> fingerprint(const fs::path& certificate) {
 }
 
 }  // namespace http
+}  // namespace tractus

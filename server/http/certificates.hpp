@@ -9,7 +9,7 @@
 
 #include "core/result.hpp"
 
-namespace http {
+namespace tractus::http {
 
 /// The files of a folder; keys are for their owner alone.
 struct CertificateFiles {
@@ -34,4 +34,4 @@ core::Result<void> ensure_certificates(const std::filesystem::path& folder,
 /// SHA-256 of the certificate in a PEM file, in pairs with colons, as browsers show it.
 core::Result<std::string> fingerprint(const std::filesystem::path& certificate);
 
-}  // namespace http
+}  // namespace tractus::http

@@ -7,6 +7,7 @@
 #include "core/bytes.hpp"
 #include "core/file.hpp"
 
+namespace tractus {
 namespace http {
 namespace {
 namespace fs = std::filesystem;
@@ -84,3 +85,4 @@ TEST_F(Certificates, ANameThatIsMoreThanANameIsRefused) {
 
 }  // namespace
 }  // namespace http
+}  // namespace tractus

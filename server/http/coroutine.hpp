@@ -9,7 +9,7 @@
 #include <boost/asio/thread_pool.hpp>
 #include <boost/asio/use_awaitable.hpp>
 
-namespace http {
+namespace tractus::http {
 
 inline auto into(boost::system::error_code& failure) {
   return boost::asio::redirect_error(boost::asio::use_awaitable, failure);
@@ -36,4 +36,4 @@ boost::asio::awaitable<std::invoke_result_t<Work>> on_workers(boost::asio::threa
       std::move(start), net::use_awaitable);
 }
 
-}  // namespace http
+}  // namespace tractus::http

@@ -6,10 +6,10 @@
 
 #include "server/http/server.hpp"
 
-namespace http {
+namespace tractus::http {
 
 using Admission = std::variant<Admitted, Response>;
-using Opening = std::variant<Response, std::shared_ptr<Conversation>>;
+using Opening = std::variant<Response, std::shared_ptr<WebSocketHandler>>;
 using Ranked = std::variant<Standing, Response>;
 
 /// A library threw where a handler did not expect it: this request fails, the server goes on.
@@ -45,7 +45,7 @@ struct Ranking {
     return broken(failure);
   }
 };
-struct OpeningConversation {
+struct OpeningWebSocket {
   const Service* service;
   const RequestHead* head;
   Opening operator()() const try {
@@ -55,4 +55,4 @@ struct OpeningConversation {
   }
 };
 
-}  // namespace http
+}  // namespace tractus::http

@@ -1,5 +1,6 @@
 #include "server/http/head.hpp"
 
+namespace tractus {
 namespace http {
 namespace {
 
@@ -46,3 +47,4 @@ core::Result<RequestHead> head_of(const Parser& parser, std::string peer, const 
 }
 
 }  // namespace http
+}  // namespace tractus

@@ -7,7 +7,7 @@
 #include "server/http/message.hpp"
 #include "server/http/networks.hpp"
 
-namespace http {
+namespace tractus::http {
 
 using Parser = boost::beast::http::request_parser<boost::beast::http::string_body>;
 
@@ -20,4 +20,4 @@ std::string lower_case(boost::beast::string_view text);
 /// request.
 core::Result<RequestHead> head_of(const Parser& parser, std::string peer, const Networks* proxies);
 
-}  // namespace http
+}  // namespace tractus::http

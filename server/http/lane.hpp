@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <thread>
 
-namespace http {
+namespace tractus::http {
 
 /// On which threads a request is handled.
 enum class Lane {
@@ -14,7 +14,7 @@ enum class Lane {
   remote,   ///< it waits for another server
 };
 
-/// Whose request it is: strangers may fill only a part of a lane's queue.
+/// TrialFilter request it is: strangers may fill only a part of a lane's queue.
 enum class Standing { stranger, familiar };
 
 /// At most `threads` requests of a lane are handled at once. So many more wait; the next one is
@@ -32,4 +32,4 @@ inline LaneLimits hashing_limits() {
       .threads = std::clamp<std::size_t>(cores / 2, 1, 8), .waiting_strangers = 8, .waiting = 32};
 }
 
-}  // namespace http
+}  // namespace tractus::http

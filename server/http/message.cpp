@@ -9,6 +9,7 @@
 #include "core/words.hpp"
 #include "server/http/networks.hpp"
 
+namespace tractus {
 namespace http {
 namespace {
 
@@ -163,3 +164,4 @@ std::string forwarded_peer(const RequestHead& head) {
 }
 
 }  // namespace http
+}  // namespace tractus

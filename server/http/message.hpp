@@ -14,7 +14,7 @@
 
 #include "core/result.hpp"
 
-namespace http {
+namespace tractus::http {
 
 /// "%2F" and "+" undone. Errors: bad_input for an escape that is none, and for a zero byte.
 core::Result<std::string> percent_decoded(std::string_view text);
@@ -82,4 +82,4 @@ core::Result<std::optional<std::pair<std::uint64_t, std::uint64_t>>> byte_range(
 core::Result<Response> file_response(const std::filesystem::path& path, const RequestHead& request,
                                      std::string content_type);
 
-}  // namespace http
+}  // namespace tractus::http

@@ -6,6 +6,7 @@
 
 #include "server/http/networks.hpp"
 
+namespace tractus {
 namespace http {
 namespace {
 
@@ -113,3 +114,4 @@ TEST(Networks, RefuseWhatIsNoAddress) {
 
 }  // namespace
 }  // namespace http
+}  // namespace tractus

@@ -8,6 +8,7 @@
 
 #include "core/words.hpp"
 
+namespace tractus {
 namespace http {
 namespace {
 
@@ -73,3 +74,4 @@ bool Networks::contain(const std::string& address) const {
 }
 
 }  // namespace http
+}  // namespace tractus

@@ -9,7 +9,7 @@
 
 #include "core/result.hpp"
 
-namespace http {
+namespace tractus::http {
 
 /// An IP address as 16 bytes; IPv4 as ::ffff:a.b.c.d. A zone ("%eth0") is left out. Nothing when
 /// the text is none.
@@ -32,4 +32,4 @@ class Networks {
   std::vector<Network> networks_;
 };
 
-}  // namespace http
+}  // namespace tractus::http

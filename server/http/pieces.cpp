@@ -6,7 +6,7 @@
 
 #include <cerrno>
 
-namespace http {
+namespace tractus::http {
 
 File::File(const std::filesystem::path& path) : fd_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {}
 
@@ -37,4 +37,4 @@ std::optional<std::uint64_t> File::send_to(const File& socket, std::uint64_t off
   return std::nullopt;
 }
 
-}  // namespace http
+}  // namespace tractus::http

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-namespace http {
+namespace tractus::http {
 
 inline constexpr std::size_t kPiece_bytes = 256 * 1024;  ///< read at once
 inline constexpr std::size_t kSent_bytes = 4u << 20;  ///< sent at once, when the kernel takes them
@@ -45,4 +45,4 @@ struct SendingPiece {
   std::optional<std::uint64_t> operator()() const { return file->send_to(*socket, offset, size); }
 };
 
-}  // namespace http
+}  // namespace tractus::http

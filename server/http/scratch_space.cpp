@@ -4,7 +4,7 @@
 
 #include "core/bytes.hpp"
 
-namespace http {
+namespace tractus::http {
 
 ScratchSpace::Share::~Share() {
   if (space_) space_->give_back(client_, bytes_);
@@ -74,4 +74,4 @@ core::Result<std::shared_ptr<ScratchFile>> scratch_file(ScratchSpace& space,
   return std::make_shared<ScratchFile>(space.new_name(), std::move(*share));
 }
 
-}  // namespace http
+}  // namespace tractus::http

@@ -11,7 +11,7 @@
 
 #include "core/result.hpp"
 
-namespace http {
+namespace tractus::http {
 
 /// Bytes under way at the same time.
 struct ScratchLimits {
@@ -80,4 +80,4 @@ core::Result<std::shared_ptr<ScratchFile>> scratch_file(ScratchSpace& space,
                                                         const std::string& client,
                                                         std::uint64_t bytes);
 
-}  // namespace http
+}  // namespace tractus::http

@@ -4,6 +4,7 @@
 
 #include <fstream>
 
+namespace tractus {
 namespace http {
 namespace {
 
@@ -86,3 +87,4 @@ TEST_F(Scratch, AFileGoesWithItsShare) {
 
 }  // namespace
 }  // namespace http
+}  // namespace tractus

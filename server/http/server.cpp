@@ -25,6 +25,7 @@
 #include "server/http/stream.hpp"
 #include "server/http/websocket.hpp"
 
+namespace tractus {
 namespace http {
 namespace {
 namespace net = boost::asio;
@@ -265,7 +266,7 @@ net::awaitable<Response> Server::State::handle_queued(Queue& queue, const Reques
 net::awaitable<bool> Server::State::converse(Connection& c, const Parser& parser,
                                              const RequestHead& head) {
   c.stream.expires_never();
-  Opening opened = co_await on_workers(workers, OpeningConversation{&service, &head});
+  Opening opened = co_await on_workers(workers, OpeningWebSocket{&service, &head});
   if (auto* refusal = std::get_if<Response>(&opened)) {
     co_await refuse(c, head, *refusal);
     co_return false;
@@ -273,8 +274,8 @@ net::awaitable<bool> Server::State::converse(Connection& c, const Parser& parser
   if (c.buffer.size() > 0 || draining) co_return false;  // it spoke before it was let in
   c.idle = c.talking = true;
   co_await hold_conversation(c.stream, parser.get(),
-                             std::move(std::get<std::shared_ptr<Conversation>>(opened)), workers,
-                             {options.silence_time, options.talk_write_time});
+                             std::move(std::get<std::shared_ptr<WebSocketHandler>>(opened)),
+                             workers, {options.silence_time, options.talk_write_time});
   co_return false;
 }
 
@@ -455,3 +456,4 @@ void Server::stop() {
 }
 
 }  // namespace http
+}  // namespace tractus

@@ -9,13 +9,13 @@
 #include <optional>
 #include <string>
 
-#include "server/http/conversation.hpp"
 #include "server/http/lane.hpp"
 #include "server/http/message.hpp"
 #include "server/http/networks.hpp"
 #include "server/http/scratch_space.hpp"
+#include "server/http/websocket_handler.hpp"
 
-namespace http {
+namespace tractus::http {
 
 struct ServerOptions {
   std::string address = "127.0.0.1";
@@ -25,7 +25,7 @@ struct ServerOptions {
   bool behind_proxy = false;  ///< browsers reach it by TLS, by way of a proxy
   /// Behind a proxy: whose X-Forwarded-For is believed; the peer is whom it names last.
   Networks proxies = Networks::loopback();
-  int workers = 4;            ///< threads on which handlers run, but for those of a lane
+  int workers = 4;  ///< threads on which handlers run, but for those of a lane
   LaneLimits hashing = hashing_limits();
   LaneLimits remote{.threads = 4, .waiting_strangers = 8, .waiting = 32};
   int max_connections = 512;  ///< for one more, that which has kept us waiting longest is closed
@@ -55,7 +55,7 @@ struct Service {
   std::function<std::variant<Admitted, Response>(const RequestHead&)> admit;
   std::function<Response(const Request&)> handle;
   /// A request for a WebSocket: a refusal, or who answers in it. Empty: none are held.
-  std::function<std::variant<Response, std::shared_ptr<Conversation>>(const RequestHead&)>
+  std::function<std::variant<Response, std::shared_ptr<WebSocketHandler>>(const RequestHead&)>
       converse = {};
   /// Which threads handle it? Called on the input/output thread. Empty: the workers, always.
   std::function<Lane(const RequestHead&)> lane = {};
@@ -84,4 +84,4 @@ class Server {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace http
+}  // namespace tractus::http

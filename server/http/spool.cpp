@@ -10,6 +10,7 @@
 
 #include "server/http/coroutine.hpp"
 
+namespace tractus {
 namespace http {
 namespace {
 
@@ -85,3 +86,4 @@ boost::asio::awaitable<boost::system::error_code> spool_body(
 }
 
 }  // namespace http
+}  // namespace tractus

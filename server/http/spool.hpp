@@ -14,7 +14,7 @@
 
 #include "server/http/scratch_space.hpp"
 
-namespace http {
+namespace tractus::http {
 
 /// Gone with this.
 struct SpooledFile {
@@ -42,4 +42,4 @@ boost::asio::awaitable<boost::system::error_code> spool_body(
     boost::beast::http::request_parser<boost::beast::http::string_body>& parser,
     const SpoolLimits& limits, boost::asio::thread_pool& workers, SpooledFile& into);
 
-}  // namespace http
+}  // namespace tractus::http

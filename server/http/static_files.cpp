@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+namespace tractus {
 namespace http {
 namespace fs = std::filesystem;
 namespace {
@@ -116,3 +117,4 @@ void add_security_headers(Response& response) {
 }
 
 }  // namespace http
+}  // namespace tractus

@@ -5,7 +5,7 @@
 
 #include "server/http/message.hpp"
 
-namespace http {
+namespace tractus::http {
 
 /// Serves files of one folder and nothing above it: a path is taken apart into names, and a name
 /// that is "..", hidden, or holds a separator is not found. A path without extension is the
@@ -28,4 +28,4 @@ void add_security_headers(Response& response);
 /// A browser that was answered by TLS once asks by TLS alone, for a year (RFC 6797).
 void require_tls(Response& response);
 
-}  // namespace http
+}  // namespace tractus::http

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-namespace http {
+namespace tractus::http {
 
 core::Result<boost::asio::ssl::context> tls_context(const std::filesystem::path& certificate,
                                                     const std::filesystem::path& key) {
@@ -25,4 +25,4 @@ core::Result<boost::asio::ssl::context> tls_context(const std::filesystem::path&
   return out;
 }
 
-}  // namespace http
+}  // namespace tractus::http

@@ -14,7 +14,7 @@
 
 #include "core/result.hpp"
 
-namespace http {
+namespace tractus::http {
 
 /// Meets Asio's AsyncReadStream and AsyncWriteStream. Time-outs are those of Beast's tcp_stream.
 class Stream {
@@ -82,4 +82,4 @@ class Stream {
 core::Result<boost::asio::ssl::context> tls_context(const std::filesystem::path& certificate,
                                                     const std::filesystem::path& key);
 
-}  // namespace http
+}  // namespace tractus::http

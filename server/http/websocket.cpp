@@ -11,25 +11,26 @@
 
 #include "server/http/coroutine.hpp"
 
+namespace tractus {
 namespace http {
 
-std::string_view text_of(Parting parting) {
+std::string_view text_of(CloseReason parting) {
   switch (parting) {
-    case Parting::hung_up:
+    case CloseReason::disconnected:
       return "the other side hung up";
-    case Parting::went_silent:
+    case CloseReason::timed_out:
       return "nothing was heard any more";
-    case Parting::too_large:
+    case CloseReason::too_large:
       return "a message over the limit";
-    case Parting::flood:
+    case CloseReason::flood:
       return "too many messages";
-    case Parting::nonsense:
+    case CloseReason::invalid_message:
       return "a message that makes no sense";
-    case Parting::not_allowed:
+    case CloseReason::no_longer_allowed:
       return "not allowed any more";
-    case Parting::too_slow:
+    case CloseReason::too_slow:
       return "what was said was not taken in time";
-    case Parting::dismissed:
+    case CloseReason::closed_by_server:
       return "dismissed";
   }
   return "";
@@ -92,12 +93,12 @@ class Allowance {
 
 /// What is to be said, and the coroutine that says it. But for `say` and `end`, touched by the
 /// input/output thread alone.
-class Talk final : public Line, public std::enable_shared_from_this<Talk> {
+class Talk final : public WebSocketSender, public std::enable_shared_from_this<Talk> {
  public:
   explicit Talk(const Socket::executor_type& executor)
       : executor_(executor), pulse_(executor), deadline_(executor), gone_(executor) {}
 
-  void say(const std::string& key, Text text) override {
+  void send(const std::string& key, Text text) override {
     {
       const std::lock_guard held(mutex_);
       if (over_) return;
@@ -123,7 +124,7 @@ class Talk final : public Line, public std::enable_shared_from_this<Talk> {
     stir();
   }
 
-  net::awaitable<void> write_all(Socket& socket, Stream& stream, Conversation& with,
+  net::awaitable<void> write_all(Socket& socket, Stream& stream, WebSocketHandler& with,
                                  net::thread_pool& workers, WebSocketTimes times);
   void written_all() {
     writing_ = false;
@@ -136,10 +137,10 @@ class Talk final : public Line, public std::enable_shared_from_this<Talk> {
       co_await gone_.async_wait(into(ignored));
     }
   }
-  void part(Parting why) {
+  void part(CloseReason why) {
     if (!parting_) parting_ = why;
   }
-  std::optional<Parting> parting() const { return parting_; }
+  std::optional<CloseReason> parting() const { return parting_; }
 
  private:
   void wake() {
@@ -169,7 +170,7 @@ class Talk final : public Line, public std::enable_shared_from_this<Talk> {
   Socket::executor_type executor_;
   net::steady_timer pulse_, deadline_, gone_;
   bool sleeping_ = false, writing_ = true;
-  std::optional<Parting> parting_;
+  std::optional<CloseReason> parting_;
 
   std::mutex mutex_;  ///< guards what follows
   std::map<std::string, Text> waiting_;
@@ -178,7 +179,7 @@ class Talk final : public Line, public std::enable_shared_from_this<Talk> {
 
 std::vector<Text> Talk::taken(bool& over, bool& ending) {
   const std::lock_guard held(mutex_);
-  if (overrun_) part(Parting::too_slow), over_ = true;
+  if (overrun_) part(CloseReason::too_slow), over_ = true;
   std::vector<Text> out;
   for (auto& [_, text] : waiting_) out.push_back(std::move(text));
   waiting_.clear();
@@ -192,7 +193,7 @@ net::awaitable<bool> Talk::write(Socket& socket, Stream& stream, Text text,
   deadline_.expires_after(patience);
   deadline_.async_wait([self = shared_from_this(), &stream](error_code stopped) {
     if (stopped) return;
-    self->part(Parting::too_slow);
+    self->part(CloseReason::too_slow);
     hang_up(stream);
   });
   error_code failure;
@@ -202,31 +203,31 @@ net::awaitable<bool> Talk::write(Socket& socket, Stream& stream, Text text,
 }
 
 struct MayStay {
-  Conversation* with;
+  WebSocketHandler* with;
   bool operator()() const try {
-    return with->may_stay();
+    return with->still_allowed();
   } catch (const std::exception&) {  // out of memory: asked again later
     return true;
   }
 };
 
-net::awaitable<void> Talk::write_all(Socket& socket, Stream& stream, Conversation& with,
+net::awaitable<void> Talk::write_all(Socket& socket, Stream& stream, WebSocketHandler& with,
                                      net::thread_pool& workers, WebSocketTimes times) {
   const auto pause = with.limits().pause;
-  auto recheck = Clock::now() + Conversation::kRecheck;
+  auto recheck = Clock::now() + WebSocketHandler::kRecheck;
   for (bool over = false, ending = false; !over;) {
     std::vector<Text> texts = taken(over, ending);
     for (std::size_t i = 0; i < texts.size() && !over; ++i)
       over = !co_await write(socket, stream, std::move(texts[i]), times.write);
     if (over) break;
     if (ending) {
-      part(Parting::dismissed);
+      part(CloseReason::closed_by_server);
       break;
     }
     if (Clock::now() >= recheck) {
-      recheck = Clock::now() + Conversation::kRecheck;
+      recheck = Clock::now() + WebSocketHandler::kRecheck;
       if (!co_await on_workers(workers, MayStay{&with})) {
-        part(Parting::not_allowed);
+        part(CloseReason::no_longer_allowed);
         break;
       }
     }
@@ -247,25 +248,26 @@ net::awaitable<void> Talk::write_all(Socket& socket, Stream& stream, Conversatio
       if (!stopped) hang_up(stream);
     });
     error_code ignored;
-    const auto code = *parting_ == Parting::dismissed ? websocket::close_code::going_away
-                                                      : websocket::close_code::policy_error;
+    const auto code = *parting_ == CloseReason::closed_by_server
+                          ? websocket::close_code::going_away
+                          : websocket::close_code::policy_error;
     co_await socket.async_close({code, std::string(text_of(*parting_))}, into(ignored));
     deadline_.cancel();
   }
   hang_up(stream);
 }
 
-Parting parting_of(error_code failure) {
+CloseReason parting_of(error_code failure) {
   if (failure == websocket::error::message_too_big || failure == websocket::error::buffer_overflow)
-    return Parting::too_large;
-  if (failure == beast::error::timeout) return Parting::went_silent;
-  if (failure == websocket::condition::protocol_violation) return Parting::nonsense;
-  return Parting::hung_up;
+    return CloseReason::too_large;
+  if (failure == beast::error::timeout) return CloseReason::timed_out;
+  if (failure == websocket::condition::protocol_violation) return CloseReason::invalid_message;
+  return CloseReason::disconnected;
 }
 
 /// Words in, until there are none.
-net::awaitable<Parting> hear_all(Socket& socket, Conversation& with) {
-  const ConversationLimits limits = with.limits();
+net::awaitable<CloseReason> hear_all(Socket& socket, WebSocketHandler& with) {
+  const WebSocketLimits limits = with.limits();
   Allowance allowance(limits.messages_per_s);
   bool flooded = false;
   socket.control_callback(
@@ -279,14 +281,15 @@ net::awaitable<Parting> hear_all(Socket& socket, Conversation& with) {
       flooded = flooded || !allowance.take();
     } while (!failure && !flooded && !socket.is_message_done());
     if (failure) co_return parting_of(failure);
-    if (flooded) co_return Parting::flood;
+    if (flooded) co_return CloseReason::flood;
     const auto bytes = buffer.cdata();
-    if (!socket.got_text() || !with.hear({static_cast<const char*>(bytes.data()), bytes.size()}))
-      co_return Parting::nonsense;
+    if (!socket.got_text() ||
+        !with.on_message({static_cast<const char*>(bytes.data()), bytes.size()}))
+      co_return CloseReason::invalid_message;
   }
 }
 
-void configure(Socket& socket, const Conversation& with, WebSocketTimes times) {
+void configure(Socket& socket, const WebSocketHandler& with, WebSocketTimes times) {
   websocket::stream_base::timeout patience;
   patience.handshake_timeout = times.write;
   patience.idle_timeout = times.silence;
@@ -300,7 +303,7 @@ void configure(Socket& socket, const Conversation& with, WebSocketTimes times) {
 
 net::awaitable<void> hold_conversation(
     Stream& stream, const beast::http::request<beast::http::string_body>& upgrade,
-    std::shared_ptr<Conversation> with, net::thread_pool& workers, WebSocketTimes times) {
+    std::shared_ptr<WebSocketHandler> with, net::thread_pool& workers, WebSocketTimes times) {
   Socket socket{Lent{&stream}};
   configure(socket, *with, times);
   stream.expires_never();
@@ -311,7 +314,7 @@ net::awaitable<void> hold_conversation(
   with->begin(talk);
   net::co_spawn(stream.get_executor(), talk->write_all(socket, stream, *with, workers, times),
                 [talk](const std::exception_ptr&) { talk->written_all(); });
-  const Parting heard = co_await hear_all(socket, *with);
+  const CloseReason heard = co_await hear_all(socket, *with);
   talk->part(heard);
   talk->be_over();
   co_await talk->until_written();
@@ -319,3 +322,4 @@ net::awaitable<void> hold_conversation(
 }
 
 }  // namespace http
+}  // namespace tractus

@@ -8,10 +8,10 @@
 #include <boost/beast/http/message.hpp>
 #include <boost/beast/http/string_body.hpp>
 
-#include "server/http/conversation.hpp"
 #include "server/http/stream.hpp"
+#include "server/http/websocket_handler.hpp"
 
-namespace http {
+namespace tractus::http {
 
 struct WebSocketTimes {
   std::chrono::milliseconds silence;  ///< without a byte; a ping is sent at half of it
@@ -21,6 +21,7 @@ struct WebSocketTimes {
 /// Accepts the upgrade and holds the conversation to its end. No compression, text alone.
 boost::asio::awaitable<void> hold_conversation(
     Stream& stream, const boost::beast::http::request<boost::beast::http::string_body>& upgrade,
-    std::shared_ptr<Conversation> with, boost::asio::thread_pool& workers, WebSocketTimes times);
+    std::shared_ptr<WebSocketHandler> with, boost::asio::thread_pool& workers,
+    WebSocketTimes times);
 
-}  // namespace http
+}  // namespace tractus::http

@@ -6,10 +6,11 @@
 #include "core/bytes.hpp"
 #include "core/clock.hpp"
 #include "core/file.hpp"
-#include "db/store/analyses.hpp"
-#include "db/store/cases.hpp"
+#include "db/store/cases/cases.hpp"
+#include "db/store/cohort/analyses.hpp"
 #include "server/jobs/cohort_table.hpp"
 
+namespace tractus {
 namespace jobs {
 namespace {
 
@@ -156,3 +157,4 @@ Result<void> analyse(store::Store& store, const store::Objects& objects,
 }
 
 }  // namespace jobs
+}  // namespace tractus

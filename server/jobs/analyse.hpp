@@ -3,11 +3,11 @@
 
 #include <functional>
 
-#include "db/store/objects.hpp"
-#include "db/store/pseudonyms.hpp"
+#include "db/store/people/pseudonyms.hpp"
 #include "db/store/store.hpp"
+#include "db/store/volumes/objects.hpp"
 
-namespace jobs {
+namespace tractus::jobs {
 
 /// Freezes the cohort's table, unless the run names a snapshot, and runs the plan on it: result,
 /// report and marked data become objects, noted in one transaction. A locked plan must be as it was
@@ -21,4 +21,4 @@ core::Result<void> analyse(store::Store& store, const store::Objects& objects,
                            const std::optional<store::PseudonymKey>& key,
                            const std::string& analysis_id, const std::function<bool()>& ending);
 
-}  // namespace jobs
+}  // namespace tractus::jobs

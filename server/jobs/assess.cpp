@@ -1,12 +1,13 @@
 #include "server/jobs/assess.hpp"
 
 #include "core/json.hpp"
-#include "db/store/trials.hpp"
+#include "db/store/trials/trials.hpp"
 #include "metrics/metric.hpp"
 #include "server/jobs/case_facts.hpp"
 #include "server/jobs/scenario_facts.hpp"
 #include "trial/trial_file.hpp"
 
+namespace tractus {
 namespace jobs {
 namespace {
 
@@ -65,3 +66,4 @@ core::Result<void> assess_trial(store::Store& store, const store::Objects& objec
 }
 
 }  // namespace jobs
+}  // namespace tractus

@@ -1,10 +1,10 @@
 /// Scores a committed trial.
 #pragma once
 
-#include "db/store/objects.hpp"
 #include "db/store/store.hpp"
+#include "db/store/volumes/objects.hpp"
 
-namespace jobs {
+namespace tractus::jobs {
 
 /// Reads the trial and its case, computes every metric and the wall coverage, and stores them in
 /// one transaction: the trial is then "assessed". Doing it again puts the same in place. Errors:
@@ -12,4 +12,4 @@ namespace jobs {
 core::Result<void> assess_trial(store::Store& store, const store::Objects& objects,
                                 const std::string& trial_id);
 
-}  // namespace jobs
+}  // namespace tractus::jobs

@@ -1,9 +1,10 @@
 #include "server/jobs/case_facts.hpp"
 
 #include "core/file.hpp"
-#include "db/store/cases.hpp"
-#include "db/store/trials.hpp"
+#include "db/store/cases/cases.hpp"
+#include "db/store/trials/trials.hpp"
 
+namespace tractus {
 namespace jobs {
 namespace {
 constexpr std::uint64_t kMaxJson_bytes = 16u << 20;
@@ -87,3 +88,4 @@ core::Result<CaseFacts> facts_of_trial(store::Store& store, const store::Objects
 }
 
 }  // namespace jobs
+}  // namespace tractus

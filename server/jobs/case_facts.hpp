@@ -2,11 +2,11 @@
 #pragma once
 
 #include "cases/case.hpp"
-#include "db/store/objects.hpp"
 #include "db/store/store.hpp"
+#include "db/store/volumes/objects.hpp"
 #include "trial/trial.hpp"
 
-namespace jobs {
+namespace tractus::jobs {
 
 struct CaseFacts {
   cases::Case definition;
@@ -29,4 +29,4 @@ core::Result<std::optional<core::Json>> case_json_part(store::Store& store,
                                                        const std::string& case_id,
                                                        const std::string& name);
 
-}  // namespace jobs
+}  // namespace tractus::jobs

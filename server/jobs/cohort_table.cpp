@@ -8,6 +8,7 @@
 #include "core/bytes.hpp"
 #include "metrics/metric.hpp"
 
+namespace tractus {
 namespace jobs {
 namespace {
 
@@ -104,3 +105,4 @@ CohortTable cohort_table(const store::ReleasedTrials& released) {
 }
 
 }  // namespace jobs
+}  // namespace tractus

@@ -3,9 +3,9 @@
 
 #include <map>
 
-#include "db/store/released.hpp"
+#include "db/store/cohort/released.hpp"
 
-namespace jobs {
+namespace tractus::jobs {
 
 /// One row per trial that counts and is scored, oldest first. Columns: trial and participant (the
 /// pseudonyms of every export), study, number (of the trial among the participant's, from 1),
@@ -25,4 +25,4 @@ struct CohortTable {
 
 CohortTable cohort_table(const store::ReleasedTrials& released);
 
-}  // namespace jobs
+}  // namespace tractus::jobs

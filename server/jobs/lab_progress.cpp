@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "core/clock.hpp"
-#include "db/store/lab.hpp"
+#include "db/store/lab/lab.hpp"
 
-namespace jobs {
+namespace tractus::jobs {
 namespace {
 constexpr std::chrono::milliseconds kBetween{500};
 }
@@ -38,4 +38,4 @@ bool LabProgress::note(double share) {
   return !stop || !*stop;  // a database that is busy for once stops nothing
 }
 
-}  // namespace jobs
+}  // namespace tractus::jobs

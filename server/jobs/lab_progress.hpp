@@ -8,7 +8,7 @@
 #include "core/progress.hpp"
 #include "db/store/store.hpp"
 
-namespace jobs {
+namespace tractus::jobs {
 
 /// Notes share and phase about twice a second, a new phase at once. Used from the one thread that
 /// works; outlives the progresses it hands out.
@@ -32,4 +32,4 @@ class LabProgress {
   std::chrono::steady_clock::time_point next_{};  ///< not before this is it noted again
 };
 
-}  // namespace jobs
+}  // namespace tractus::jobs

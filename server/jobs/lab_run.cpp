@@ -6,13 +6,14 @@
 
 #include "core/bytes.hpp"
 #include "core/clock.hpp"
-#include "db/store/cases.hpp"
-#include "db/store/lab.hpp"
-#include "lab/answer.hpp"
+#include "db/store/cases/cases.hpp"
+#include "db/store/lab/lab.hpp"
 #include "lab/io/answers.hpp"
 #include "lab/io/kept_samples.hpp"
+#include "lab/report/answer.hpp"
 #include "server/jobs/lab_progress.hpp"
 
+namespace tractus {
 namespace jobs {
 namespace {
 
@@ -104,7 +105,7 @@ class LabRun {
                              watch_.at("reading the measurements", from, width));
   }
 
-  void keep_sides(const lab_io::Answer& answer, const Json& tract, Outcome& out) const {
+  void keep_sides(const lab_io::LabResult& answer, const Json& tract, Outcome& out) const {
     const auto& content = answer.content;
     const auto* after = content.better ? &*content.better : nullptr;
     out.result["comparisons"] = {{"before", lab::to_json(content.before.comparison)},
@@ -141,7 +142,7 @@ class LabRun {
   Result<Outcome> diagnose() {
     const auto opened_case = opened(of_.model, 0.0, 0.3);
     if (!opened_case) return opened_case.error();
-    lab_io::DiagnoseWish how{.options = {}, .report = true};
+    lab_io::DiagnoseRequest how{.options = {}, .report = true};
     how.options.threads = threads();
     how.options.early = [this](const std::vector<lab::Ranked>& ranking) {
       note_ranking(ranking);
@@ -161,7 +162,7 @@ class LabRun {
   }
 
   Result<Outcome> finished(const char* kind, const lab_io::Case& opened_case,
-                           lab_io::Answer answer) {
+                           lab_io::LabResult answer) {
     watch_.say("writing the report");
     answer.content.set_name = of_.set.name;
     Outcome out;
@@ -217,3 +218,4 @@ Result<void> run_lab(store::Store& store, const store::Objects& objects, const s
 }
 
 }  // namespace jobs
+}  // namespace tractus

@@ -3,10 +3,10 @@
 
 #include <functional>
 
-#include "db/store/objects.hpp"
 #include "db/store/store.hpp"
+#include "db/store/volumes/objects.hpp"
 
-namespace jobs {
+namespace tractus::jobs {
 
 /// Does what was asked of a model and a measurement set (diagnosis, comparison, fit): result,
 /// report, samples and the better model become objects, in one transaction. How far it is is noted
@@ -18,4 +18,4 @@ namespace jobs {
 core::Result<void> run_lab(store::Store& store, const store::Objects& objects,
                            const std::string& run_id, const std::function<bool()>& ending);
 
-}  // namespace jobs
+}  // namespace tractus::jobs

@@ -5,10 +5,11 @@
 #include "cases/case.hpp"
 #include "core/clock.hpp"
 #include "core/file.hpp"
-#include "db/store/case_makings.hpp"
+#include "db/store/cases/case_makings.hpp"
 #include "server/jobs/publish.hpp"
 #include "server/jobs/source_volume.hpp"
 
+namespace tractus {
 namespace jobs {
 namespace {
 
@@ -159,3 +160,4 @@ Result<void> make_case(store::Store& store, const store::Objects& objects, const
 }
 
 }  // namespace jobs
+}  // namespace tractus

@@ -6,10 +6,10 @@
 #include "cases/carving.hpp"
 #include "core/json.hpp"
 #include "core/signing.hpp"
-#include "db/store/objects.hpp"
 #include "db/store/store.hpp"
+#include "db/store/volumes/objects.hpp"
 
-namespace jobs {
+namespace tractus::jobs {
 
 /// {"entry_m", "target_m", "radius_m"?, "breach"?: {"wall", "depth_m"?, "at_m"?} | null}, all in V.
 /// Errors: bad_input, out_of_range, led by the field.
@@ -23,4 +23,4 @@ core::Result<void> make_case(store::Store& store, const store::Objects& objects,
                              const core::KeyPair& key, const std::string& making_id,
                              const std::function<bool()>& ending);
 
-}  // namespace jobs
+}  // namespace tractus::jobs

@@ -3,8 +3,9 @@
 #include "cases/case.hpp"
 #include "core/clock.hpp"
 #include "core/file.hpp"
-#include "db/store/cases.hpp"
+#include "db/store/cases/cases.hpp"
 
+namespace tractus {
 namespace jobs {
 namespace fs = std::filesystem;
 namespace {
@@ -53,3 +54,4 @@ core::Result<std::string> publish_bundle(
 }
 
 }  // namespace jobs
+}  // namespace tractus

@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <functional>
 
-#include "db/store/objects.hpp"
 #include "db/store/store.hpp"
+#include "db/store/volumes/objects.hpp"
 
-namespace jobs {
+namespace tractus::jobs {
 
 /// Verifies the bundle (signature, every part), copies its files among the objects, then notes the
 /// case and its parts in one transaction; `also` runs in the same one. Publishing it again changes
@@ -17,4 +17,4 @@ core::Result<std::string> publish_bundle(
     store::Store& store, const store::Objects& objects, const std::filesystem::path& bundle,
     const std::function<core::Result<void>(store::Writing&, const std::string& id)>& also = {});
 
-}  // namespace jobs
+}  // namespace tractus::jobs

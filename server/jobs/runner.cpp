@@ -7,15 +7,16 @@
 
 #include "core/bytes.hpp"
 #include "core/clock.hpp"
-#include "db/store/analyses.hpp"
-#include "db/store/case_makings.hpp"
-#include "db/store/lab.hpp"
-#include "db/store/trials.hpp"
+#include "db/store/cases/case_makings.hpp"
+#include "db/store/cohort/analyses.hpp"
+#include "db/store/lab/lab.hpp"
+#include "db/store/trials/trials.hpp"
 #include "server/jobs/analyse.hpp"
 #include "server/jobs/assess.hpp"
 #include "server/jobs/lab_run.hpp"
 #include "server/jobs/make_case.hpp"
 
+namespace tractus {
 namespace jobs {
 namespace {
 constexpr std::uint64_t kMostAttempts = 3;  // of what is not a score
@@ -200,3 +201,4 @@ core::Result<void> Runner::note_failure(const store::Job& job, const core::Error
 }
 
 }  // namespace jobs
+}  // namespace tractus

@@ -8,12 +8,12 @@
 #include <thread>
 
 #include "core/signing.hpp"
-#include "db/store/jobs.hpp"
-#include "db/store/objects.hpp"
-#include "db/store/pseudonyms.hpp"
+#include "db/store/operations/jobs.hpp"
+#include "db/store/people/pseudonyms.hpp"
 #include "db/store/store.hpp"
+#include "db/store/volumes/objects.hpp"
 
-namespace jobs {
+namespace tractus::jobs {
 
 /// Threads, each for its kinds of jobs: scores and the making of cases, which someone waits for,
 /// and what takes minutes (the lab, analyses of a cohort) and runs at low priority, so that it
@@ -81,4 +81,4 @@ class Runner {
   std::unique_ptr<store::Listening> listening_;
 };
 
-}  // namespace jobs
+}  // namespace tractus::jobs

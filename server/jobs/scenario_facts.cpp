@@ -2,7 +2,7 @@
 
 #include "server/jobs/case_facts.hpp"
 
-namespace jobs {
+namespace tractus::jobs {
 
 core::Result<scenarios::Scenario> scenario_of(store::Store& store, const store::Objects& objects,
                                               const std::string& case_id) {
@@ -12,4 +12,4 @@ core::Result<scenarios::Scenario> scenario_of(store::Store& store, const store::
   return scenarios::Scenario::from_json(**json, "scenario " + case_id.substr(0, 12) + ": ");
 }
 
-}  // namespace jobs
+}  // namespace tractus::jobs

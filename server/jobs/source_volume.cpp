@@ -1,9 +1,9 @@
 #include "server/jobs/source_volume.hpp"
 
 #include "cases/carving.hpp"
-#include "db/store/volumes.hpp"
+#include "db/store/volumes/volumes.hpp"
 
-namespace jobs {
+namespace tractus::jobs {
 
 core::Result<SourceVolume> released_volume(store::Store& store, const store::Objects& objects,
                                            const std::string& id) {
@@ -27,4 +27,4 @@ core::Result<volume::Volume> read_about(const volume::VolumeFile& file, const ma
   return file.read_box(*box, progress);
 }
 
-}  // namespace jobs
+}  // namespace tractus::jobs

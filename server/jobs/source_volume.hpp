@@ -1,11 +1,11 @@
 /// The volumes that cases may be made of.
 #pragma once
 
-#include "db/store/objects.hpp"
 #include "db/store/store.hpp"
+#include "db/store/volumes/objects.hpp"
 #include "volume/volume_file.hpp"
 
-namespace jobs {
+namespace tractus::jobs {
 
 /// A volume and what people call it.
 struct SourceVolume {
@@ -23,4 +23,4 @@ core::Result<volume::Volume> read_about(const volume::VolumeFile& file, const ma
                                         const math::Vec3& target_m,
                                         const core::Progress& progress = {});
 
-}  // namespace jobs
+}  // namespace tractus::jobs

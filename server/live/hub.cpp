@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+namespace tractus {
 namespace live {
 namespace {
 
@@ -28,7 +29,7 @@ bool Hub::sees_person(const Known& known, const Viewer& viewer) const {
 }
 
 core::Json Hub::json_of(const Known& known, const Viewer& viewer) const {
-  const wire::StationTold& told = known.told;
+  const wire::StationStatus& told = known.told;
   core::Json trial;
   if (known.connected && told.trial) {
     const wire::LiveTrial& t = *told.trial;
@@ -78,7 +79,7 @@ Hub::Known& Hub::known(const StationRef& station) {
 }
 
 /// The state, and what follows from it.
-void Hub::take(Known& known, wire::StationTold told, std::int64_t seen_utc_us) {
+void Hub::take(Known& known, wire::StationStatus told, std::int64_t seen_utc_us) {
   if (told.state != known.told.state) known.since_utc_us = seen_utc_us;
   // A station that does not say keeps what its reports said.
   if (!told.self_test) told.self_test = std::move(known.told.self_test);
@@ -100,11 +101,11 @@ void Hub::show(const Known& known) const {
   for (const auto& [_, watching] : viewers_) {
     auto& text = sees_person(known, watching.viewer) ? texts.with : texts.without;
     if (!text) text = text_of({{"kind", "station"}, {"station", json_of(known, watching.viewer)}});
-    watching.line->say(known.station.id, text);
+    watching.line->send(known.station.id, text);
   }
 }
 
-void Hub::connected(const StationRef& station, std::shared_ptr<http::Line> line) {
+void Hub::connected(const StationRef& station, std::shared_ptr<http::WebSocketSender> line) {
   const std::lock_guard held(mutex_);
   Known& it = known(station);
   if (it.line) it.line->end();
@@ -119,7 +120,7 @@ void Hub::connected(const StationRef& station, std::shared_ptr<http::Line> line)
   changed_.notify_all();
 }
 
-void Hub::told(const StationRef& station, wire::StationTold told) {
+void Hub::told(const StationRef& station, wire::StationStatus told) {
   const std::lock_guard held(mutex_);
   Known& it = known(station);
   it.untold = it.unkept = true;
@@ -127,8 +128,9 @@ void Hub::told(const StationRef& station, wire::StationTold told) {
   show(it);
 }
 
-void Hub::left(const StationRef& station, const http::Line* line, http::Parting why) {
-  using enum http::Parting;
+void Hub::left(const StationRef& station, const http::WebSocketSender* line,
+               http::CloseReason why) {
+  using enum http::CloseReason;
   const std::lock_guard held(mutex_);
   if (why == too_large || why == flood || why == nonsense)
     refusals_.emplace_back(station, std::string(http::text_of(why)));
@@ -144,14 +146,14 @@ void Hub::left(const StationRef& station, const http::Line* line, http::Parting 
   show(it);
 }
 
-void Hub::watches(const void* key, Viewer viewer, std::shared_ptr<http::Line> line) {
+void Hub::watches(const void* key, Viewer viewer, std::shared_ptr<http::WebSocketSender> line) {
   const std::lock_guard held(mutex_);
   core::Json list = core::Json::array();
   std::vector<const Known*> by_name;
   for (const auto& [_, one] : stations_) by_name.push_back(&one);
   std::ranges::sort(by_name, {}, [](const Known* one) { return one->station.name; });
   for (const Known* one : by_name) list.push_back(json_of(*one, viewer));
-  line->say("", text_of({{"kind", "stations"}, {"stations", list}}));
+  line->send("", text_of({{"kind", "stations"}, {"stations", list}}));
   viewers_.insert_or_assign(key, Watching{std::move(viewer), std::move(line)});
 }
 
@@ -168,8 +170,8 @@ core::Result<void> Hub::command(const std::string& station_id,
     const auto found = stations_.find(station_id);
     if (found == stations_.end() || !found->second.connected) return away;
     if (found->second.line) {
-      found->second.line->say(command.kind == wire::StationCommand::Kind::stop ? "stop" : "limits",
-                              text_of(command.to_json()));
+      found->second.line->send(command.kind == wire::StationCommand::Kind::stop ? "stop" : "limits",
+                               text_of(command.to_json()));
       return {};
     }
   }
@@ -209,3 +211,4 @@ void Hub::reported(const StationRef& station, const wire::StationReport& report)
 }
 
 }  // namespace live
+}  // namespace tractus

@@ -8,11 +8,11 @@
 #include <set>
 #include <thread>
 
-#include "db/store/fleet.hpp"
-#include "server/http/conversation.hpp"
+#include "db/store/stations/fleet.hpp"
+#include "server/http/websocket_handler.hpp"
 #include "wire/live.hpp"
 
-namespace live {
+namespace tractus::live {
 
 struct StationRef {
   std::string id, name;
@@ -47,10 +47,11 @@ class Hub {
   core::Result<void> start();
 
   /// A line of a station's; a second one takes the first's place.
-  std::shared_ptr<http::Conversation> station_talk(const StationRef& station, MayStay may_stay);
+  std::shared_ptr<http::WebSocketHandler> station_talk(const StationRef& station,
+                                                       MayStay still_allowed);
   /// Errors: unavailable when too many look on.
-  core::Result<std::shared_ptr<http::Conversation>> viewer_talk(const Viewer& viewer,
-                                                                MayStay may_stay);
+  core::Result<std::shared_ptr<http::WebSocketHandler>> viewer_talk(const Viewer& viewer,
+                                                                    MayStay still_allowed);
 
   /// StationState of the contract. Of a station that was never heard: away.
   core::Json state_json(const StationRef& station, const Viewer& viewer) const;
@@ -75,32 +76,32 @@ class Hub {
     StationRef station;
     bool connected = false;
     std::string held_by;  ///< the process; empty: this one
-    wire::StationTold told;
+    wire::StationStatus told;
     std::int64_t since_utc_us = 0, seen_utc_us = 0;
     store::ShownTrial shown;
     std::string shown_of;  ///< the case id that `shown` is of
     bool shown_due = false;
-    std::shared_ptr<http::Line> line;
+    std::shared_ptr<http::WebSocketSender> line;
     bool untold = false, unkept = false;  ///< to the other processes, on the disk
     std::int64_t told_others_utc_us = 0;
   };
   struct Watching {
     Viewer viewer;
-    std::shared_ptr<http::Line> line;
+    std::shared_ptr<http::WebSocketSender> line;
   };
   /// One state as text, made once for all who see the person and once for the others.
   struct Texts {
     std::shared_ptr<const std::string> with, without;
   };
 
-  void connected(const StationRef& station, std::shared_ptr<http::Line> line);
-  void told(const StationRef& station, wire::StationTold told);
-  void left(const StationRef& station, const http::Line* line, http::Parting why);
-  void watches(const void* key, Viewer viewer, std::shared_ptr<http::Line> line);
+  void connected(const StationRef& station, std::shared_ptr<http::WebSocketSender> line);
+  void told(const StationRef& station, wire::StationStatus told);
+  void left(const StationRef& station, const http::WebSocketSender* line, http::CloseReason why);
+  void watches(const void* key, Viewer viewer, std::shared_ptr<http::WebSocketSender> line);
   void watches_no_more(const void* key);
 
   Known& known(const StationRef& station);
-  void take(Known& known, wire::StationTold told, std::int64_t seen_utc_us);
+  void take(Known& known, wire::StationStatus told, std::int64_t seen_utc_us);
   void show(const Known& known) const;
   core::Json json_of(const Known& known, const Viewer& viewer) const;
   bool sees_person(const Known& known, const Viewer& viewer) const;
@@ -128,4 +129,4 @@ class Hub {
   std::thread thread_;  ///< runs keep()
 };
 
-}  // namespace live
+}  // namespace tractus::live

@@ -4,18 +4,19 @@
 #include <gtest/gtest.h>
 
 #include "core/clock.hpp"
-#include "db/store/accounts.hpp"
+#include "db/store/people/accounts.hpp"
 #include "tests/support/database/database.hpp"
 
+namespace tractus {
 namespace live {
 namespace {
 using test_support::DatabaseKind;
 using test_support::TestDatabase;
 
 /// Keeps what was said last under each key, for a test to wait for.
-class Ear final : public http::Line {
+class Ear final : public http::WebSocketSender {
  public:
-  void say(const std::string& key, std::shared_ptr<const std::string> text) override {
+  void send(const std::string& key, std::shared_ptr<const std::string> text) override {
     const std::lock_guard held(mutex_);
     said_[key] = core::Json::parse(*text, nullptr, false);
     changed_.notify_all();
@@ -54,7 +55,7 @@ class Hubs : public ::testing::Test {
   static MayStay always() {
     return [] { return true; };
   }
-  std::shared_ptr<http::Conversation> wall(Hub& hub, const std::shared_ptr<Ear>& ear) {
+  std::shared_ptr<http::WebSocketHandler> wall(Hub& hub, const std::shared_ptr<Ear>& ear) {
     auto talk = hub.viewer_talk({.account_id = "ann", .sees = Viewer::Sees::everybody}, always());
     EXPECT_TRUE(talk);
     (*talk)->begin(ear);
@@ -73,25 +74,25 @@ TEST_F(Hubs, AWallAtOneServerShowsTheStationsOfAnother) {
   const auto talk = here_.station_talk({"s1", "station-1"}, always());
   talk->begin(std::make_shared<Ear>());
   EXPECT_TRUE(ear->hears("s1", in_state("idle")));
-  ASSERT_TRUE(talk->hear(R"({"kind":"state","state":"preparing","version":"7"})"));
+  ASSERT_TRUE(talk->on_message(R"({"kind":"state","state":"preparing","version":"7"})"));
   EXPECT_TRUE(ear->hears("s1", in_state("preparing")));
-  talk->ended(http::Parting::hung_up);
+  talk->ended(http::CloseReason::disconnected);
   EXPECT_TRUE(ear->hears("s1", in_state("away")));
-  watching->ended(http::Parting::hung_up);
+  watching->ended(http::CloseReason::disconnected);
 }
 
 TEST_F(Hubs, AServerThatComesLaterAsksWhoIsThere) {
   const auto talk = here_.station_talk({"s1", "station-1"}, always());
   talk->begin(std::make_shared<Ear>());
-  ASSERT_TRUE(talk->hear(R"({"kind":"state","state":"questions"})"));
+  ASSERT_TRUE(talk->on_message(R"({"kind":"state","state":"questions"})"));
   store::Store later_store = database_.open();
   Hub later({.store = later_store, .now_utc_us = core::utc_us});
   ASSERT_TRUE(later.start());
   const auto ear = std::make_shared<Ear>();
   const auto watching = wall(later, ear);
   EXPECT_TRUE(ear->hears("s1", in_state("questions")));
-  watching->ended(http::Parting::hung_up);
-  talk->ended(http::Parting::hung_up);
+  watching->ended(http::CloseReason::disconnected);
+  talk->ended(http::CloseReason::disconnected);
 }
 
 TEST_F(Hubs, AStopReachesTheStationWhicheverServerHoldsItsLine) {
@@ -106,9 +107,10 @@ TEST_F(Hubs, AStopReachesTheStationWhicheverServerHoldsItsLine) {
     return said == core::Json{{"kind", "stop"}, {"reason", "look at the hand"}};
   }));
   EXPECT_FALSE(there_.command("s2", {.reason = "nobody"}));
-  talk->ended(http::Parting::hung_up);
-  watching->ended(http::Parting::hung_up);
+  talk->ended(http::CloseReason::disconnected);
+  watching->ended(http::CloseReason::disconnected);
 }
 
 }  // namespace
 }  // namespace live
+}  // namespace tractus

@@ -4,6 +4,7 @@
 
 #include "volume/io/picture.hpp"
 
+namespace tractus {
 namespace commands {
 namespace {
 
@@ -141,3 +142,4 @@ core::Result<void> draw_case(const std::filesystem::path& path, volume::Volume s
 }
 
 }  // namespace commands
+}  // namespace tractus

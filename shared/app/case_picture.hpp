@@ -6,7 +6,7 @@
 
 #include "cases/carving.hpp"
 
-namespace commands {
+namespace tractus::commands {
 
 /// Slices through the tract (along it and across it, at the breach or else where its medial wall is
 /// thinnest), with the channel yellow, the walls' directions cyan, the midline green, the breach
@@ -14,4 +14,4 @@ namespace commands {
 core::Result<void> draw_case(const std::filesystem::path& path, volume::Volume surroundings,
                              const cases::Carved& carved);
 
-}  // namespace commands
+}  // namespace tractus::commands

@@ -9,7 +9,7 @@
 #include "core/json.hpp"
 #include "core/result.hpp"
 
-namespace commands {
+namespace tractus::commands {
 
 /// 0: done. 1: the answer is "no". An Error becomes one line on standard error and exit 2.
 using Outcome = core::Result<int>;
@@ -26,4 +26,4 @@ struct Command {
 /// Every command, in file-name order.
 std::vector<Command> all();
 
-}  // namespace commands
+}  // namespace tractus::commands

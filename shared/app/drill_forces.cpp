@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace commands {
+namespace tractus::commands {
 using math::Vec3;
 
 core::Result<std::unique_ptr<DrillForces>> DrillForces::make(const volume::Volume& bone,
@@ -35,4 +35,4 @@ void DrillForces::follow(const drilling::Change& change, const volume::Volume& d
   field_.compute(drilled, change.box, waiting_.back());
 }
 
-}  // namespace commands
+}  // namespace tractus::commands

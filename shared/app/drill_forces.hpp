@@ -7,7 +7,7 @@
 #include "drilling/redrill.hpp"
 #include "models/palpation_runtime.hpp"
 
-namespace commands {
+namespace tractus::commands {
 
 /// Follows a redrilling (drilling::redrill) with a field and a model: each sample's force is
 /// computed again from its pose, on the bone with as many changes as it says it felt. Exact for a
@@ -36,4 +36,4 @@ class DrillForces {
   bool in_order_ = true;
 };
 
-}  // namespace commands
+}  // namespace tractus::commands

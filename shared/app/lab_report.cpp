@@ -6,8 +6,9 @@
 
 #include "core/file.hpp"
 #include "core/progress.hpp"
-#include "lab/verdict_text.hpp"
+#include "lab/identify/verdict_text.hpp"
 
+namespace tractus {
 namespace commands {
 namespace {
 
@@ -105,7 +106,7 @@ Result<void> writable(const std::filesystem::path& file) {
   return core::may_be_replaced(file);
 }
 
-Result<void> write_files(const lab_io::Answer& answer, const std::filesystem::path& model,
+Result<void> write_files(const lab_io::LabResult& answer, const std::filesystem::path& model,
                          const std::filesystem::path& report) {
   if (!report.empty())
     if (auto done = core::write_file(report, core::bytes_of(lab::report(answer.content))); !done)
@@ -114,7 +115,7 @@ Result<void> write_files(const lab_io::Answer& answer, const std::filesystem::pa
   return {};
 }
 
-std::string printed_comparison(const lab_io::Answer& answer) {
+std::string printed_comparison(const lab_io::LabResult& answer) {
   const lab::Comparison& c = answer.content.before.comparison;
   std::string out = fmt::format(
       "The model is off by {} in {}; the noise floor is {}. Of what could be explained it explains "
@@ -139,7 +140,7 @@ std::string printed_comparison(const lab_io::Answer& answer) {
   return out + notes(answer.content.notes);
 }
 
-std::string printed_diagnosis(const lab_io::Answer& answer) {
+std::string printed_diagnosis(const lab_io::LabResult& answer) {
   const lab::Diagnosis& d = *answer.content.diagnosis;
   const std::string unit = lab::name_and_unit(answer.json.value("primary", std::string())).unit;
   const auto [headline, detail] = lab::sentences(d, unit);
@@ -160,11 +161,12 @@ std::string printed_diagnosis(const lab_io::Answer& answer) {
     out += fmt::format("\nHardly told apart here: {} and {}.", lab::effect_label(a),
                        lab::effect_label(b));
   if (!d.confounded.empty()) out += "\n";
-  if (d.discriminating_experiment) out += fmt::format("\nRecord next: {}.\n", d.discriminating_experiment->recording);
+  if (d.discriminating_experiment)
+    out += fmt::format("\nRecord next: {}.\n", d.discriminating_experiment->recording);
   return out + notes(d.notes);
 }
 
-std::string printed_fit(const lab_io::Answer& answer) {
+std::string printed_fit(const lab_io::LabResult& answer) {
   const lab::Fit& fit = *answer.content.fit;
   const lab::Comparison& given = answer.content.before.comparison;
   std::string out = fmt::format(
@@ -178,3 +180,4 @@ std::string printed_fit(const lab_io::Answer& answer) {
 }
 
 }  // namespace commands
+}  // namespace tractus

@@ -8,7 +8,7 @@
 #include "core/result.hpp"
 #include "lab/io/answers.hpp"
 
-namespace commands {
+namespace tractus::commands {
 
 struct LabOptions {
   lab_io::Sources sources;
@@ -30,12 +30,12 @@ core::Result<lab_io::Case> opened(const LabOptions& options);
 core::Result<void> writable(const std::filesystem::path& file);
 
 /// Writes model and report where they are asked for (empty paths: not), whole or not at all.
-core::Result<void> write_files(const lab_io::Answer& answer, const std::filesystem::path& model,
+core::Result<void> write_files(const lab_io::LabResult& answer, const std::filesystem::path& model,
                                const std::filesystem::path& report);
 
 /// For people: a sentence first, then tables.
-std::string printed_comparison(const lab_io::Answer& answer);
-std::string printed_diagnosis(const lab_io::Answer& answer);
-std::string printed_fit(const lab_io::Answer& answer);
+std::string printed_comparison(const lab_io::LabResult& answer);
+std::string printed_diagnosis(const lab_io::LabResult& answer);
+std::string printed_fit(const lab_io::LabResult& answer);
 
-}  // namespace commands
+}  // namespace tractus::commands

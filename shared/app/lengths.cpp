@@ -7,6 +7,7 @@
 #include <optional>
 #include <string_view>
 
+namespace tractus {
 namespace commands {
 namespace {
 
@@ -67,3 +68,4 @@ core::Result<math::Vec3> point_m(const std::string& text, const std::string& opt
 }
 
 }  // namespace commands
+}  // namespace tractus

@@ -6,6 +6,7 @@
 #include "core/words.hpp"
 
 int main(int argc, char** argv) {
+  using namespace tractus;
   CLI::App app("Tractus: pedicle-screw training and its physics, on files", "tractus");
   app.set_version_flag("--version", TRACTUS_VERSION);
   app.require_subcommand(1);

@@ -6,6 +6,7 @@
 #include "core/progress.hpp"
 #include "replay/probing_replay.hpp"
 
+namespace tractus {
 namespace commands {
 namespace {
 
@@ -129,3 +130,4 @@ Outcome replay_probing(const models::ProbingModel& model, const fs::path& folder
 }
 
 }  // namespace commands
+}  // namespace tractus

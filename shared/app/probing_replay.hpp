@@ -6,7 +6,7 @@
 #include "app/command.hpp"
 #include "models/probing_model.hpp"
 
-namespace commands {
+namespace tractus::commands {
 
 struct ReplayOptions {
   std::filesystem::path model, measurements, out;
@@ -18,4 +18,4 @@ struct ReplayOptions {
 Outcome replay_probing(const models::ProbingModel& model, const std::filesystem::path& folder,
                        const ReplayOptions& options);
 
-}  // namespace commands
+}  // namespace tractus::commands

@@ -4,6 +4,7 @@
 
 #include "scenarios/demand.hpp"
 
+namespace tractus {
 namespace commands {
 namespace {
 
@@ -57,3 +58,4 @@ core::Result<plot::Figure> scenario_picture(const scenarios::Scenario& scenario,
 }
 
 }  // namespace commands
+}  // namespace tractus

@@ -7,11 +7,11 @@
 #include "plot/figure.hpp"
 #include "scenarios/scenario.hpp"
 
-namespace commands {
+namespace tractus::commands {
 
 /// A curve per speed (m/s); layers, resistance intervals and breaches shaded, walls named. Errors:
 /// those of `Scenario::expanded`.
 core::Result<plot::Figure> scenario_picture(const scenarios::Scenario& scenario,
                                             std::span<const double> speeds_m_s);
 
-}  // namespace commands
+}  // namespace tractus::commands

@@ -4,6 +4,7 @@
 
 #include <limits>
 
+namespace tractus {
 namespace app {
 namespace {
 constexpr const char *kForce = "#1b4f8f", *kWay = "#c05a1c";
@@ -48,3 +49,4 @@ plot::Figure taps_figure(const std::vector<ShownTaps>& trials) {
 }
 
 }  // namespace app
+}  // namespace tractus

@@ -7,7 +7,7 @@
 #include "capture/assemble.hpp"
 #include "plot/figure.hpp"
 
-namespace app {
+namespace tractus::app {
 
 struct ShownTaps {
   std::string trial;
@@ -20,4 +20,4 @@ struct ShownTaps {
 /// whose offset was stated has no panel; the note says so.
 plot::Figure taps_figure(const std::vector<ShownTaps>& trials);
 
-}  // namespace app
+}  // namespace tractus::app

@@ -7,6 +7,7 @@
 #include "core/bytes.hpp"
 #include "core/file.hpp"
 
+namespace tractus {
 namespace commands {
 namespace fs = std::filesystem;
 namespace {
@@ -70,3 +71,4 @@ core::Result<void> TrialCsv::finish(trial::Rig rig) {
 }
 
 }  // namespace commands
+}  // namespace tractus

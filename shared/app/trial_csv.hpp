@@ -10,7 +10,7 @@
 #include "core/result.hpp"
 #include "trial/trial.hpp"
 
-namespace commands {
+namespace tractus::commands {
 
 /// One row per sample: the columns of a measurement of its rig first (so that the file can stand in
 /// a measurement set), then what was rendered and how the loop fared. Shortest digits that give the
@@ -36,4 +36,4 @@ class TrialCsv {
   std::unique_ptr<std::FILE, Close> file_;
 };
 
-}  // namespace commands
+}  // namespace tractus::commands

@@ -8,6 +8,7 @@
 #include "trial/probing_set.hpp"
 #include "trial/trial_file.hpp"
 
+namespace tractus {
 namespace commands {
 namespace {
 using core::Errc;
@@ -106,3 +107,4 @@ core::Result<std::size_t> write_trial_set(std::span<const std::string> files,
 }
 
 }  // namespace commands
+}  // namespace tractus

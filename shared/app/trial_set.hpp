@@ -7,7 +7,7 @@
 
 #include "core/result.hpp"
 
-namespace commands {
+namespace tractus::commands {
 
 /// Writes `tractus-measurements/1` into a new folder: a trial each, all of one rig; ids are the
 /// trials' own. Samples without a fresh reading are left out, as are those before a probing trial's
@@ -19,4 +19,4 @@ namespace commands {
 core::Result<std::size_t> write_trial_set(std::span<const std::string> files,
                                           const std::filesystem::path& folder);
 
-}  // namespace commands
+}  // namespace tractus::commands

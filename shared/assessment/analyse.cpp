@@ -8,6 +8,7 @@
 
 #include "assessment/methods_text.hpp"
 
+namespace tractus {
 namespace assessment {
 namespace {
 
@@ -207,3 +208,4 @@ core::Result<Analysed> analyse(const Plan& plan, const Table& table, const Prove
 }
 
 }  // namespace assessment
+}  // namespace tractus

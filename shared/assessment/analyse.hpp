@@ -7,7 +7,7 @@
 #include "assessment/method.hpp"
 #include "assessment/plan.hpp"
 
-namespace assessment {
+namespace tractus::assessment {
 
 /// Where the data come from, for the report; what is not known stays empty.
 struct Provenance {
@@ -42,4 +42,4 @@ std::string worded(const core::Json& test);
 /// "p = 0.0231", "p < 0.001".
 std::string worded_p(double p);
 
-}  // namespace assessment
+}  // namespace tractus::assessment

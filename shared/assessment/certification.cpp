@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+namespace tractus {
 namespace assessment {
 namespace {
 
@@ -47,3 +48,4 @@ Certification certification(const statistics::Rates& rates, double risk, double 
 }
 
 }  // namespace assessment
+}  // namespace tractus

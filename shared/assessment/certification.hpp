@@ -2,12 +2,12 @@
 ///
 /// A rule (threshold h, at most n trials) may certify when somebody who fails at the inadequate
 /// rate is declared competent with a probability of at most `risk`, and somebody who fails at the
-/// adequate rate with at least `power`; both exactly, by statistics/cusum.hpp.
+/// adequate rate with at least `power`; both exactly, by statistics/learning/cusum.hpp.
 #pragma once
 
-#include "statistics/cusum.hpp"
+#include "statistics/learning/cusum.hpp"
 
-namespace assessment {
+namespace tractus::assessment {
 
 struct Certification {
   statistics::Rates rates;
@@ -23,4 +23,4 @@ struct Certification {
 Certification certification(const statistics::Rates& rates, double risk = 0.05,
                             double power = 0.80);
 
-}  // namespace assessment
+}  // namespace tractus::assessment

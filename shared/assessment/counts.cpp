@@ -4,6 +4,7 @@
 
 #include "assessment/report.hpp"
 
+namespace tractus {
 namespace assessment {
 
 core::Result<std::vector<bool>> yes_no(const Table& table, const std::string& column) {
@@ -68,3 +69,4 @@ core::Result<std::vector<Counted>> counted_groups(const Analysis& of) {
 }
 
 }  // namespace assessment
+}  // namespace tractus

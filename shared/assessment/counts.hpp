@@ -2,9 +2,9 @@
 #pragma once
 
 #include "assessment/method.hpp"
-#include "statistics/proportions.hpp"
+#include "statistics/distributions/proportions.hpp"
 
-namespace assessment {
+namespace tractus::assessment {
 
 struct Counted {
   std::string name;  ///< the group's label; "all" where the formula has none
@@ -18,4 +18,4 @@ core::Result<std::vector<Counted>> counted_groups(const Analysis& of);
 /// A column of 0 and 1 (also true/false, yes/no) as such. Errors: bad_input naming FILE:LINE.
 core::Result<std::vector<bool>> yes_no(const Table& table, const std::string& column);
 
-}  // namespace assessment
+}  // namespace tractus::assessment

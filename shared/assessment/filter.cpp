@@ -6,6 +6,7 @@
 
 #include "assessment/report.hpp"
 
+namespace tractus {
 namespace assessment {
 namespace {
 
@@ -92,3 +93,4 @@ core::Result<std::vector<bool>> Filter::rows_of(const Table& table) const {
 }
 
 }  // namespace assessment
+}  // namespace tractus

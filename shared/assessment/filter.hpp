@@ -6,7 +6,7 @@
 
 #include "assessment/table.hpp"
 
-namespace assessment {
+namespace tractus::assessment {
 
 /// COLUMN OP VALUE, joined by "and". OP: = != < <= > >=, the last four for numbers alone. A row
 /// whose cell is empty meets no condition but `COLUMN = missing`.
@@ -29,4 +29,4 @@ class Filter {
   std::vector<std::string> columns_;
 };
 
-}  // namespace assessment
+}  // namespace tractus::assessment

@@ -10,6 +10,7 @@
 
 #include "core/words.hpp"
 
+namespace tractus {
 namespace assessment {
 namespace {
 
@@ -368,3 +369,4 @@ core::Result<ModelMatrix> model_matrix(const Formula& formula, const Table& tabl
 }
 
 }  // namespace assessment
+}  // namespace tractus

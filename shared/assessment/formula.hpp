@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "assessment/table.hpp"
-#include "statistics/design.hpp"
+#include "statistics/regression/design.hpp"
 
-namespace assessment {
+namespace tractus::assessment {
 
 /// A column as it enters a model.
 struct Variable {
@@ -73,4 +73,4 @@ struct ModelMatrix {
 /// not positive, a factor of one level or of more than 200, over 2000 columns.
 core::Result<ModelMatrix> model_matrix(const Formula& formula, const Table& table);
 
-}  // namespace assessment
+}  // namespace tractus::assessment

@@ -5,6 +5,7 @@
 
 #include "assessment/filter.hpp"
 
+namespace tractus {
 namespace assessment {
 namespace {
 
@@ -103,3 +104,4 @@ TEST(Filter, RefusesWhatIsNoCondition) {
 
 }  // namespace
 }  // namespace assessment
+}  // namespace tractus

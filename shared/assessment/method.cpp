@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+namespace tractus {
 namespace assessment {
 namespace {
 
@@ -83,3 +84,4 @@ core::Result<Findings> run(const Method& method,
 }
 
 }  // namespace assessment
+}  // namespace tractus

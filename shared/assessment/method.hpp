@@ -12,6 +12,7 @@
 #include "core/json.hpp"
 #include "plot/figure.hpp"
 
+namespace tractus {
 namespace assessment {
 
 /// Something a method may be told beside its formula.
@@ -75,3 +76,4 @@ core::Result<Findings> run(const Method& method, const Table& table, const std::
 core::Result<Findings> run(const Method& method, const std::map<std::string, std::string>& options);
 
 }  // namespace assessment
+}  // namespace tractus

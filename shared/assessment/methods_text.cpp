@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+namespace tractus {
 namespace assessment {
 namespace {
 
@@ -147,3 +148,4 @@ std::vector<std::string> results_sentences(const Json& result) {
 }
 
 }  // namespace assessment
+}  // namespace tractus

@@ -3,11 +3,11 @@
 
 #include "assessment/analyse.hpp"
 
-namespace assessment {
+namespace tractus::assessment {
 
 /// What was done: sample, exclusions, methods, correction, level, lock.
 std::vector<std::string> methods_sentences(const Plan& plan, const core::Json& result);
 /// What came out: one per test of a family, then one per analysis that could not be done.
 std::vector<std::string> results_sentences(const core::Json& result);
 
-}  // namespace assessment
+}  // namespace tractus::assessment

@@ -7,6 +7,7 @@
 
 #include "plot/text.hpp"
 
+namespace tractus {
 namespace assessment {
 namespace {
 
@@ -112,3 +113,4 @@ std::string Page::html() const {
 }
 
 }  // namespace assessment
+}  // namespace tractus

@@ -7,7 +7,7 @@
 #include "core/json.hpp"
 #include "plot/figure.hpp"
 
-namespace assessment {
+namespace tractus::assessment {
 
 /// Builds a page from top to bottom. Every text is escaped.
 class Page {
@@ -34,4 +34,4 @@ class Page {
 /// A number as people read it: five significant digits; "–" for none.
 std::string readable(const core::Json& value);
 
-}  // namespace assessment
+}  // namespace tractus::assessment

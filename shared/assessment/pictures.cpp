@@ -6,8 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include "statistics/distributions.hpp"
+#include "statistics/distributions/distributions.hpp"
 
+namespace tractus {
 namespace assessment {
 namespace {
 
@@ -106,7 +107,7 @@ plot::Figure residual_picture(const Vector& fitted, const Vector& residuals) {
 }
 
 plot::Figure scatter_picture(const std::string& x_name, const Vector& x, const std::string& y_name,
-                             const Vector& y, const std::vector<Through>& lines) {
+                             const Vector& y, const std::vector<RegressionLines>& lines) {
   plot::Panel panel{"", x_name, y_name, "", {}, {}, {}, {}, {}, false, 300};
   panel.lines.push_back(crosses("observed", x, y));
   const char* colours[] = {kRed, "#2e7d32", "#7b1fa2"};
@@ -165,3 +166,4 @@ plot::Figure profile_picture(const std::vector<std::string>& levels,
 }
 
 }  // namespace assessment
+}  // namespace tractus

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "plot/figure.hpp"
-#include "statistics/anova.hpp"
+#include "statistics/anova/anova.hpp"
 
-namespace assessment {
+namespace tractus::assessment {
 
 /// Points as small crosses. At most 1500 are drawn, evenly taken from all.
 plot::Line crosses(const std::string& label, const statistics::Vector& x,
@@ -18,13 +18,13 @@ plot::Figure residual_picture(const statistics::Vector& fitted,
                               const statistics::Vector& residuals);
 
 /// A response against one predictor, with straight lines laid through: label, intercept, slope.
-struct Through {
+struct RegressionLines {
   std::string label;
   double intercept = 0.0, slope = 0.0;
 };
 plot::Figure scatter_picture(const std::string& x_name, const statistics::Vector& x,
                              const std::string& y_name, const statistics::Vector& y,
-                             const std::vector<Through>& lines);
+                             const std::vector<RegressionLines>& lines);
 
 /// Every value by group, its mean as a bar with a 95 % interval of the mean.
 plot::Figure group_picture(const std::string& x_name, const statistics::Groups& groups,
@@ -34,4 +34,4 @@ plot::Figure group_picture(const std::string& x_name, const statistics::Groups& 
 plot::Figure profile_picture(const std::vector<std::string>& levels,
                              const statistics::Matrix& values, const std::string& y_name);
 
-}  // namespace assessment
+}  // namespace tractus::assessment

@@ -9,6 +9,7 @@
 #include "assessment/report.hpp"
 #include "core/bytes.hpp"
 
+namespace tractus {
 namespace assessment {
 namespace {
 
@@ -272,3 +273,4 @@ Json example_plan() {
 }
 
 }  // namespace assessment
+}  // namespace tractus

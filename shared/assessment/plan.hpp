@@ -21,9 +21,9 @@
 
 #include "assessment/filter.hpp"
 #include "core/json.hpp"
-#include "statistics/p_adjust.hpp"
+#include "statistics/summary/p_adjust.hpp"
 
-namespace assessment {
+namespace tractus::assessment {
 
 struct Exclusion {
   Filter filter;
@@ -89,4 +89,4 @@ core::Json example_plan();
 /// "holm" … as an adjustment; nothing for "none" and unknown words.
 std::optional<statistics::Adjustment> adjustment_named(const std::string& name);
 
-}  // namespace assessment
+}  // namespace tractus::assessment

@@ -4,6 +4,7 @@
 
 #include "assessment/page.hpp"
 
+namespace tractus {
 namespace assessment {
 namespace {
 
@@ -113,3 +114,4 @@ std::string report_page(const Analysed& analysed) {
 }
 
 }  // namespace assessment
+}  // namespace tractus

@@ -6,8 +6,8 @@
 
 #include "assessment/analyse.hpp"
 
-namespace assessment {
+namespace tractus::assessment {
 
 std::string report_page(const Analysed& analysed);
 
-}  // namespace assessment
+}  // namespace tractus::assessment

@@ -8,6 +8,7 @@
 #include "assessment/snapshot.hpp"
 #include "core/file.hpp"
 
+namespace tractus {
 namespace assessment {
 namespace {
 
@@ -203,3 +204,4 @@ TEST(Worded, GivesStatisticsAsPapersPrintThem) {
 
 }  // namespace
 }  // namespace assessment
+}  // namespace tractus

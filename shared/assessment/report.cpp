@@ -6,8 +6,9 @@
 #include <cmath>
 #include <functional>
 
-#include "statistics/shapiro_wilk.hpp"
+#include "statistics/summary/shapiro_wilk.hpp"
 
+namespace tractus {
 namespace assessment {
 namespace {
 
@@ -236,3 +237,4 @@ std::string printed(const Json& report) {
 }
 
 }  // namespace assessment
+}  // namespace tractus

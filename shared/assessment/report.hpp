@@ -2,9 +2,9 @@
 #pragma once
 
 #include "assessment/method.hpp"
-#include "statistics/anova.hpp"
+#include "statistics/anova/anova.hpp"
 
-namespace assessment {
+namespace tractus::assessment {
 
 /// The members every report begins with.
 core::Json report_head(const Analysis& of, const char* method);
@@ -78,4 +78,4 @@ Parts parts_of(const Table& table, const std::string& column);
 /// what stands there and is left out.
 std::string printed(const core::Json& report);
 
-}  // namespace assessment
+}  // namespace tractus::assessment

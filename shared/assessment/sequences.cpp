@@ -6,7 +6,7 @@
 
 #include "assessment/counts.hpp"
 
-namespace assessment {
+namespace tractus::assessment {
 
 core::Result<std::vector<Sequence>> sequences_of(const Analysis& of, const std::string& order) {
   const auto failed = yes_no(of.table, of.formula.response);
@@ -38,4 +38,4 @@ core::Result<std::vector<Sequence>> sequences_of(const Analysis& of, const std::
   return out;
 }
 
-}  // namespace assessment
+}  // namespace tractus::assessment

@@ -3,7 +3,7 @@
 
 #include "assessment/report.hpp"
 
-namespace assessment {
+namespace tractus::assessment {
 
 struct Sequence {
   std::string name;            ///< "all" without (1|person)
@@ -15,4 +15,4 @@ struct Sequence {
 /// and the same place twice.
 core::Result<std::vector<Sequence>> sequences_of(const Analysis& of, const std::string& order);
 
-}  // namespace assessment
+}  // namespace tractus::assessment

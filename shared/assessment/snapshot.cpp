@@ -8,6 +8,7 @@
 #include "assessment/report.hpp"
 #include "core/file.hpp"
 
+namespace tractus {
 namespace assessment {
 namespace {
 
@@ -163,3 +164,4 @@ Json dictionary_of_marked(const Json& description) {
 }
 
 }  // namespace assessment
+}  // namespace tractus

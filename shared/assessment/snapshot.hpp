@@ -16,7 +16,7 @@
 #include "assessment/table.hpp"
 #include "core/json.hpp"
 
-namespace assessment {
+namespace tractus::assessment {
 
 struct Snapshot {
   core::Json description;  ///< snapshot.json
@@ -49,4 +49,4 @@ core::Json dictionary_of_marked(const core::Json& description);
 /// The unit that a column's name ends in: "N" of force_N, "m/s" of velocity_m_s; empty if none.
 std::string unit_of(const std::string& column);
 
-}  // namespace assessment
+}  // namespace tractus::assessment

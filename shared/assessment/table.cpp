@@ -10,6 +10,7 @@
 
 #include "core/file.hpp"
 
+namespace tractus {
 namespace assessment {
 namespace {
 
@@ -215,3 +216,4 @@ core::Result<Table> Table::selected(std::span<const std::string> columns, Missin
 }
 
 }  // namespace assessment
+}  // namespace tractus

@@ -12,9 +12,9 @@
 
 #include "core/bytes.hpp"
 #include "core/result.hpp"
-#include "statistics/design.hpp"
+#include "statistics/regression/design.hpp"
 
-namespace assessment {
+namespace tractus::assessment {
 
 /// What to do with a row that has an empty cell (also NA, NaN) in a column that is used.
 enum class Missing { refuse, drop, keep };
@@ -74,4 +74,4 @@ bool is_missing(std::string_view cell);
 /// The finite number that a cell is, or nothing.
 std::optional<double> number_in(std::string_view cell);
 
-}  // namespace assessment
+}  // namespace tractus::assessment

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "statistics/distributions.hpp"
+#include "statistics/distributions/distributions.hpp"
 
+namespace tractus {
 namespace assessment {
 namespace {
 
@@ -67,3 +68,4 @@ void add_term_tests(const Formula& formula, const ModelMatrix& model, const Fitt
 }
 
 }  // namespace assessment
+}  // namespace tractus

@@ -4,9 +4,9 @@
 #include <functional>
 
 #include "assessment/report.hpp"
-#include "statistics/wald.hpp"
+#include "statistics/regression/wald.hpp"
 
-namespace assessment {
+namespace tractus::assessment {
 
 /// What a fit gives for tests: one entry per column of the design.
 struct Fitted {
@@ -25,4 +25,4 @@ struct Fitted {
 void add_term_tests(const Formula& formula, const ModelMatrix& model, const Fitted& fit,
                     core::Json& out);
 
-}  // namespace assessment
+}  // namespace tractus::assessment

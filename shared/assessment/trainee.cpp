@@ -9,6 +9,7 @@
 #include "assessment/formula.hpp"
 #include "assessment/report.hpp"
 
+namespace tractus {
 namespace assessment {
 namespace {
 
@@ -121,3 +122,4 @@ Standing standing(const std::vector<Attempt>& attempts, const statistics::Rates&
 }
 
 }  // namespace assessment
+}  // namespace tractus

@@ -14,7 +14,7 @@
 #include "core/json.hpp"
 #include "plot/figure.hpp"
 
-namespace assessment {
+namespace tractus::assessment {
 
 /// Which column is what.
 struct TraineeColumns {
@@ -75,4 +75,4 @@ std::string trainee_page(const TraineeReport& of, bool simulated);
 
 const char* name_of(Standing::State state);
 
-}  // namespace assessment
+}  // namespace tractus::assessment

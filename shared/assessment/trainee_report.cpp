@@ -6,10 +6,11 @@
 #include "assessment/page.hpp"
 #include "assessment/pictures.hpp"
 #include "assessment/trainee.hpp"
-#include "statistics/distributions.hpp"
-#include "statistics/learning_curve.hpp"
-#include "statistics/proportions.hpp"
+#include "statistics/distributions/distributions.hpp"
+#include "statistics/distributions/proportions.hpp"
+#include "statistics/learning/learning_curve.hpp"
 
+namespace tractus {
 namespace assessment {
 namespace {
 
@@ -272,3 +273,4 @@ std::string trainee_page(const TraineeReport& of, bool simulated) {
 }
 
 }  // namespace assessment
+}  // namespace tractus

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+namespace tractus {
 namespace assessment {
 namespace {
 
@@ -96,3 +97,4 @@ TEST(Trainee, ThePageHoldsItsPicturesAndEscapesNames) {
 
 }  // namespace
 }  // namespace assessment
+}  // namespace tractus

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+namespace tractus {
 namespace capture {
 namespace {
 using core::Errc;
@@ -252,3 +253,4 @@ core::Result<Assembled> assemble(const Recipe& recipe, const Recording& recordin
 }
 
 }  // namespace capture
+}  // namespace tractus

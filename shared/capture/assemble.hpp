@@ -8,7 +8,7 @@
 #include "capture/recipe.hpp"
 #include "trial/measurement_set.hpp"
 
-namespace capture {
+namespace tractus::capture {
 
 /// A run of taps as both recordings have it, on the motion's clock: for a person to look at.
 struct TapView {
@@ -41,4 +41,4 @@ struct Assembled {
 /// bad_input naming the body, the taps or the file.
 core::Result<Assembled> assemble(const Recipe& recipe, const Recording& recording);
 
-}  // namespace capture
+}  // namespace tractus::capture

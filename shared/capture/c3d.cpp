@@ -10,6 +10,7 @@
 #include "capture/motion.hpp"
 #include "core/file.hpp"
 
+namespace tractus {
 namespace capture {
 namespace {
 using core::Errc;
@@ -180,3 +181,4 @@ core::Result<Motion> detail::read_c3d(const std::filesystem::path& path) {
 }
 
 }  // namespace capture
+}  // namespace tractus

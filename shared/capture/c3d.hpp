@@ -10,7 +10,7 @@
 #include "core/result.hpp"
 #include "math/geometry.hpp"
 
-namespace capture {
+namespace tractus::capture {
 
 struct AnalogChannel {
   std::string name, unit;
@@ -30,4 +30,4 @@ struct C3d {
 /// unknown processor, without a rate, in a unit of length that is none.
 core::Result<C3d> read_c3d_file(const std::filesystem::path& path);
 
-}  // namespace capture
+}  // namespace tractus::capture

@@ -6,7 +6,7 @@
 #include <bit>
 #include <cctype>
 
-namespace capture::detail {
+namespace tractus::capture::detail {
 namespace {
 constexpr int kMostParameters = 10'000;
 }
@@ -99,4 +99,4 @@ std::vector<std::string> C3dParameters::labels(const std::string& name, std::siz
   return out;
 }
 
-}  // namespace capture::detail
+}  // namespace tractus::capture::detail

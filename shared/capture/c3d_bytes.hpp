@@ -9,7 +9,7 @@
 
 #include "core/bytes.hpp"
 
-namespace capture::detail {
+namespace tractus::capture::detail {
 
 /// What stands beyond the end reads as zero: who needs it whole asks `has` first.
 class C3dBytes {
@@ -55,4 +55,4 @@ class C3dParameters {
   std::map<std::string, C3dParameter> all_;
 };
 
-}  // namespace capture::detail
+}  // namespace tractus::capture::detail

@@ -12,6 +12,7 @@
 #include "capture/motion.hpp"
 #include "core/bytes.hpp"
 
+namespace tractus {
 namespace capture {
 namespace {
 namespace fs = std::filesystem;
@@ -168,3 +169,4 @@ TEST(DeviceRate, RefusesClocksThatAreNotOfOneRecording) {
 
 }  // namespace
 }  // namespace capture
+}  // namespace tractus

@@ -8,6 +8,7 @@
 #include "capture/assemble.hpp"
 #include "core/bytes.hpp"
 
+namespace tractus {
 namespace capture {
 namespace {
 namespace fs = std::filesystem;
@@ -366,3 +367,4 @@ TEST_F(Capture, NamesTheFieldThatIsWrongInARecipe) {
 
 }  // namespace
 }  // namespace capture
+}  // namespace tractus

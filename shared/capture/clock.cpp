@@ -8,6 +8,7 @@
 
 #include "math/spline.hpp"
 
+namespace tractus {
 namespace capture {
 namespace {
 constexpr double kRhythm_s = 0.025;  // of peaks, before the fine fit
@@ -242,3 +243,4 @@ core::Result<ClockFit> align(const Tapped& tapped, int count) {
 }
 
 }  // namespace capture
+}  // namespace tractus

@@ -8,7 +8,7 @@
 #include "capture/taps.hpp"
 #include "core/result.hpp"
 
-namespace capture {
+namespace tractus::capture {
 
 /// The same taps in the force and in the motion.
 struct TapPair {
@@ -52,4 +52,4 @@ struct Tapped {
 /// bad_input, what was not found and what to do.
 core::Result<ClockFit> align(const Tapped& tapped, int count);
 
-}  // namespace capture
+}  // namespace tractus::capture

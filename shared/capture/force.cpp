@@ -11,6 +11,7 @@
 #include "capture/c3d.hpp"
 #include "trial/csv.hpp"
 
+namespace tractus {
 namespace capture {
 namespace {
 namespace fs = std::filesystem;
@@ -134,3 +135,4 @@ core::Result<double> device_rate(std::span<const double> t_s, std::span<const do
 }
 
 }  // namespace capture
+}  // namespace tractus

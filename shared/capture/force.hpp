@@ -9,7 +9,7 @@
 #include "core/result.hpp"
 #include "math/geometry.hpp"
 
-namespace capture {
+namespace tractus::capture {
 
 /// In the sensor's frame S, at its origin.
 struct ForceTrack {
@@ -35,4 +35,4 @@ core::Result<ForceTrack> read_force(const std::filesystem::path& path,
 /// Errors: bad_input when both run more than 5 % apart.
 core::Result<double> device_rate(std::span<const double> t_s, std::span<const double> arrived_s);
 
-}  // namespace capture
+}  // namespace tractus::capture

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <set>
 
+namespace tractus {
 namespace capture {
 namespace {
 using core::Errc;
@@ -99,3 +100,4 @@ core::Result<BodyTrack> fit_body(const Motion& motion, const BodyShape& shape, d
 }
 
 }  // namespace capture
+}  // namespace tractus

@@ -9,6 +9,7 @@
 #include "core/result.hpp"
 #include "math/geometry.hpp"
 
+namespace tractus {
 namespace capture {
 
 /// A body's frame B in the capture system's frame C. Frames in which it was not seen are left out.
@@ -54,3 +55,4 @@ core::Result<Motion> read_c3d(const std::filesystem::path& path);
 }  // namespace detail
 
 }  // namespace capture
+}  // namespace tractus

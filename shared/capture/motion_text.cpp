@@ -13,6 +13,7 @@
 #include "core/words.hpp"
 #include "trial/csv.hpp"
 
+namespace tractus {
 namespace capture::detail {
 namespace {
 namespace fs = std::filesystem;
@@ -391,3 +392,4 @@ core::Result<Motion> read_plain(const fs::path& path) {
 }
 
 }  // namespace capture::detail
+}  // namespace tractus

@@ -6,6 +6,7 @@
 
 #include "trial/measurement_set.hpp"
 
+namespace tractus {
 namespace capture {
 namespace {
 using core::Fields;
@@ -149,3 +150,4 @@ core::Result<Recipe> Recipe::read(const std::filesystem::path& file) {
 }
 
 }  // namespace capture
+}  // namespace tractus

@@ -10,7 +10,7 @@
 #include "capture/motion.hpp"
 #include "core/json.hpp"
 
-namespace capture {
+namespace tractus::capture {
 
 /// A body of the capture system and a frame of ours that is fixed to it.
 struct Carrier {
@@ -49,4 +49,4 @@ struct Recipe {
   static core::Result<Recipe> read(const std::filesystem::path& file);
 };
 
-}  // namespace capture
+}  // namespace tractus::capture

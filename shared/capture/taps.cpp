@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+namespace tractus {
 namespace capture {
 namespace {
 using math::Vec3;
@@ -164,3 +165,4 @@ std::vector<TapRun> motion_taps(std::span<const double> t_s, std::span<const Vec
 }
 
 }  // namespace capture
+}  // namespace tractus

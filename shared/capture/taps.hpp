@@ -6,7 +6,7 @@
 
 #include "math/geometry.hpp"
 
-namespace capture {
+namespace tractus::capture {
 
 /// A run of taps in one recording: when each was hardest, or deepest.
 struct TapRun {
@@ -29,4 +29,4 @@ std::vector<TapRun> force_taps(std::span<const double> t_s, std::span<const doub
 std::vector<TapRun> motion_taps(std::span<const double> t_s, std::span<const math::Vec3> tip_m,
                                 int count);
 
-}  // namespace capture
+}  // namespace tractus::capture

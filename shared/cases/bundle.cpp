@@ -9,6 +9,7 @@
 #include "cases/png_salt.hpp"
 #include "core/file.hpp"
 
+namespace tractus {
 namespace cases {
 namespace {
 
@@ -204,3 +205,4 @@ Result<Truth> read_truth(const OpenedCase& opened) {
 }
 
 }  // namespace cases
+}  // namespace tractus

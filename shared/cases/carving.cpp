@@ -7,6 +7,7 @@
 
 #include "volume/resample.hpp"
 
+namespace tractus {
 namespace cases {
 namespace {
 
@@ -180,3 +181,4 @@ core::Result<volume::Volume> drilled_surroundings(const volume::Volume& ct, cons
 }
 
 }  // namespace cases
+}  // namespace tractus

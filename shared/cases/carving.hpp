@@ -9,7 +9,7 @@
 #include "volume/anatomy.hpp"
 #include "volume/carve.hpp"
 
-namespace cases {
+namespace tractus::cases {
 
 /// What a person asks for. Points in V (the patient's LPS), m.
 struct CarvingPlan {
@@ -66,4 +66,4 @@ core::Result<Carved> carve(const volume::Volume& ct, const volume::TransferFunct
 /// coarser), drilled in the same way: for the picture. Errors: too_large.
 core::Result<volume::Volume> drilled_surroundings(const volume::Volume& ct, const Carved& carved);
 
-}  // namespace cases
+}  // namespace tractus::cases

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+namespace tractus {
 namespace cases {
 namespace {
 
@@ -121,3 +122,4 @@ TEST(BoxThatMatters, SaysThatATractElsewhereMeetsNothingOfTheVolume) {
 
 }  // namespace
 }  // namespace cases
+}  // namespace tractus

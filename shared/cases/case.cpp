@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+namespace tractus {
 namespace cases {
 namespace {
 
@@ -197,3 +198,4 @@ core::Result<Truth> Truth::from_json(const Json& json, const std::string& where)
 }
 
 }  // namespace cases
+}  // namespace tractus

@@ -14,7 +14,7 @@
 #include "volume/tract.hpp"
 #include "volume/volume_file.hpp"
 
-namespace cases {
+namespace tractus::cases {
 
 inline constexpr const char* kVolumePart = "volume.tvol";
 inline constexpr const char* kTruthPart = "truth.json";
@@ -92,4 +92,4 @@ core::Result<OpenedCase> open_case(const std::filesystem::path& folder);
 /// bundle has none.
 core::Result<Truth> read_truth(const OpenedCase& opened);
 
-}  // namespace cases
+}  // namespace tractus::cases

@@ -11,6 +11,7 @@
 #include "core/file.hpp"
 #include "volume/anatomy.hpp"
 
+namespace tractus {
 namespace cases {
 namespace {
 
@@ -291,3 +292,4 @@ TEST(SaltedPng, CarriesATextChunkWithItsChecksumBeforeTheEnd) {
 
 }  // namespace
 }  // namespace cases
+}  // namespace tractus

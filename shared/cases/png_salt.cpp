@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+namespace tractus {
 namespace cases {
 namespace {
 
@@ -38,3 +39,4 @@ core::Result<core::Bytes> salted_png(core::ByteView png, std::string_view salt_h
 }
 
 }  // namespace cases
+}  // namespace tractus

@@ -4,7 +4,7 @@
 #include "core/bytes.hpp"
 #include "core/result.hpp"
 
-namespace cases {
+namespace tractus::cases {
 
 /// What the chunk adds beside the salt itself: length, type, keyword and its end, checksum.
 constexpr std::size_t kSaltChunk_bytes = 4 + 4 + 5 + 4;
@@ -14,4 +14,4 @@ constexpr std::size_t kSaltChunk_bytes = 4 + 4 + 5 + 4;
 /// end as a PNG.
 core::Result<core::Bytes> salted_png(core::ByteView png, std::string_view salt_hex);
 
-}  // namespace cases
+}  // namespace tractus::cases

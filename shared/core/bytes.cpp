@@ -10,6 +10,7 @@
 #include "core/clock.hpp"
 #include "core/require.hpp"
 
+namespace tractus {
 namespace core {
 namespace {
 const unsigned char* raw(ByteView bytes) {
@@ -87,3 +88,4 @@ std::string new_id() { return fmt::format("{:012x}{}", utc_us() / 1000, hex(rand
 bool is_id(std::string_view text) noexcept { return text.size() == 32 && all_hex(text); }
 
 }  // namespace core
+}  // namespace tractus

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-namespace core {
+namespace tractus::core {
 
 using Bytes = std::vector<std::byte>;
 using ByteView = std::span<const std::byte>;
@@ -55,4 +55,4 @@ std::string new_id();
 /// Is `text` such a name?
 bool is_id(std::string_view text) noexcept;
 
-}  // namespace core
+}  // namespace tractus::core

@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <ctime>
 
+namespace tractus {
 namespace core {
 namespace {
 constexpr Instant_ns kSecond = 1'000'000'000;
@@ -36,3 +37,4 @@ std::string utc_text(std::int64_t us) {
 }
 
 }  // namespace core
+}  // namespace tractus

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-namespace core {
+namespace tractus::core {
 
 /// Nanoseconds of one monotonic clock. Only differences mean anything.
 using Instant_ns = std::int64_t;
@@ -43,4 +43,4 @@ std::int64_t utc_us() noexcept;
 /// "2026-03-01T12:00:00.123456Z" of such a time.
 std::string utc_text(std::int64_t us);
 
-}  // namespace core
+}  // namespace tractus::core

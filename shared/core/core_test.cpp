@@ -16,6 +16,7 @@
 #include "core/signing.hpp"
 #include "core/words.hpp"
 
+namespace tractus {
 namespace core {
 namespace {
 
@@ -210,3 +211,4 @@ TEST(Words, OneLineKeepsCharactersWholeAndNothingThatMovesACursor) {
 
 }  // namespace
 }  // namespace core
+}  // namespace tractus

@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstring>
 
+namespace tractus {
 namespace core {
 namespace fs = std::filesystem;
 namespace {
@@ -190,3 +191,4 @@ Result<void> ScratchFolder::keep_as(const fs::path& target) {
 }
 
 }  // namespace core
+}  // namespace tractus

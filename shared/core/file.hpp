@@ -7,7 +7,7 @@
 #include "core/bytes.hpp"
 #include "core/result.hpp"
 
-namespace core {
+namespace tractus::core {
 
 /// Reads all of a regular file. Errors: not_found, io, too_large (over `limit_bytes`, checked
 /// before reading).
@@ -58,4 +58,4 @@ class ScratchFolder {
   std::filesystem::perms kept_;  ///< once it is kept: the umask's
 };
 
-}  // namespace core
+}  // namespace tractus::core

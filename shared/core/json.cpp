@@ -8,6 +8,7 @@
 #include "core/file.hpp"
 #include "core/words.hpp"
 
+namespace tractus {
 namespace core {
 
 namespace {
@@ -210,3 +211,4 @@ Result<void> Fields::done() const {
 }
 
 }  // namespace core
+}  // namespace tractus

@@ -8,7 +8,7 @@
 
 #include "core/result.hpp"
 
-namespace core {
+namespace tractus::core {
 
 using Json = nlohmann::ordered_json;
 
@@ -70,4 +70,4 @@ class Fields {
   std::vector<std::string> seen_;
 };
 
-}  // namespace core
+}  // namespace tractus::core

@@ -5,6 +5,7 @@
 #include "core/bytes.hpp"
 #include "core/file.hpp"
 
+namespace tractus {
 namespace core {
 namespace {
 namespace fs = std::filesystem;
@@ -77,3 +78,4 @@ TEST(PrivateScratch, IsItsOwnersAloneUntilItIsKept) {
 
 }  // namespace
 }  // namespace core
+}  // namespace tractus

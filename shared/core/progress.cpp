@@ -6,6 +6,7 @@
 #include <csignal>
 #include <cstdio>
 
+namespace tractus {
 namespace core {
 namespace {
 volatile std::sig_atomic_t stop_asked = 0;
@@ -34,3 +35,4 @@ Progress terminal_progress(std::string label) {
 }
 
 }  // namespace core
+}  // namespace tractus

@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-namespace core {
+namespace tractus::core {
 
 /// Called with 0…1 now and then, from the thread that works; returning false asks it to stop
 /// (Errc::cancelled).
@@ -18,4 +18,4 @@ Progress terminal_progress(std::string label);
 /// second one ends the program at once. For a program's main.
 void stop_on_signals();
 
-}  // namespace core
+}  // namespace tractus::core

@@ -4,6 +4,7 @@
 
 #include <compare>
 
+namespace tractus {
 namespace core {
 
 template <int M, int L, int T>
@@ -57,3 +58,4 @@ constexpr Frequency operator""_Hz(long double v) { return {double(v)}; }
 }  // namespace literals
 
 }  // namespace core
+}  // namespace tractus

@@ -1,7 +1,7 @@
 /// Our own bugs: always on, ends the process with what was believed.
 #pragma once
 
-namespace core {
+namespace tractus::core {
 
 [[noreturn]] void broken_belief(const char* belief, const char* file, int line) noexcept;
 
@@ -12,4 +12,4 @@ inline void require(bool holds, const char* belief, const char* file = __builtin
     broken_belief(belief, file, line);
 }
 
-}  // namespace core
+}  // namespace tractus::core

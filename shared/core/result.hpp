@@ -8,7 +8,7 @@
 
 #include "core/require.hpp"
 
-namespace core {
+namespace tractus::core {
 
 /// The system's one list of causes. The server maps each to an HTTP status (server/api).
 enum class Errc {
@@ -76,4 +76,4 @@ class [[nodiscard]] Result<void> {
   bool ok_ = true;
 };
 
-}  // namespace core
+}  // namespace tractus::core

@@ -5,6 +5,7 @@
 
 #include "core/file.hpp"
 
+namespace tractus {
 namespace core {
 namespace {
 const unsigned char* raw(ByteView bytes) {
@@ -81,3 +82,4 @@ bool verify(ByteView message, std::string_view signature_hex,
 }
 
 }  // namespace core
+}  // namespace tractus

@@ -8,7 +8,7 @@
 #include "core/bytes.hpp"
 #include "core/result.hpp"
 
-namespace core {
+namespace tractus::core {
 
 struct KeyPair {
   std::string public_hex;  ///< 64 hexadecimal characters
@@ -25,4 +25,4 @@ struct KeyPair {
 std::string sign(ByteView message, const KeyPair& key);
 bool verify(ByteView message, std::string_view signature_hex, std::string_view public_hex) noexcept;
 
-}  // namespace core
+}  // namespace tractus::core

@@ -1,6 +1,6 @@
 #include "core/words.hpp"
 
-namespace core {
+namespace tractus::core {
 
 std::string one_line(std::string_view text, std::size_t most) {
   std::size_t end = text.size();
@@ -15,4 +15,4 @@ std::string one_line(std::string_view text, std::size_t most) {
   return out;
 }
 
-}  // namespace core
+}  // namespace tractus::core

@@ -4,10 +4,10 @@
 #include <string>
 #include <string_view>
 
-namespace core {
+namespace tractus::core {
 
 /// `text` as one bearable line: control characters become '?', what is over `most` bytes is cut at
 /// a character's edge and ends in "…". For what somebody else wrote and a message repeats.
 std::string one_line(std::string_view text, std::size_t most = 200);
 
-}  // namespace core
+}  // namespace tractus::core

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace drilling {
+namespace tractus::drilling {
 
 double Burr::rate_at_per_s(double force_N) const noexcept {
   return rate_per_s * std::clamp((force_N - threshold_N) / (full_N - threshold_N), 0.0, 1.0);
@@ -28,4 +28,4 @@ core::Result<Burr> Burr::from_json(const core::Json& json, const std::string& wh
   return burr;
 }
 
-}  // namespace drilling
+}  // namespace tractus::drilling

@@ -5,7 +5,7 @@
 
 #include "core/json.hpp"
 
-namespace drilling {
+namespace tractus::drilling {
 
 ///                 nose
 ///                |<-->|
@@ -43,4 +43,4 @@ struct Burr {
   static core::Result<Burr> from_json(const core::Json& json, const std::string& where);
 };
 
-}  // namespace drilling
+}  // namespace tractus::drilling

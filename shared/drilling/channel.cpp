@@ -7,6 +7,7 @@
 
 #include "volume/carve.hpp"
 
+namespace tractus {
 namespace drilling {
 namespace {
 
@@ -37,7 +38,7 @@ std::vector<Lost> lost_voxels(const Erosion& erosion) {
   return out;
 }
 
-void set_axis(const std::vector<Lost>& voxels, const volume::Tract& tract, Channel& out) {
+void set_axis(const std::vector<Lost>& voxels, const volume::Tract& tract, PilotHole& out) {
   double sum = 0.0;
   Vec3 mean = Vec3::Zero();
   for (const Lost& v : voxels) sum += v.share, mean += v.share * v.at_m;
@@ -75,7 +76,7 @@ class Faces {
       anterior_m_ = found->outer_m;
   }
 
-  void meet(const Vec3& at_m, Channel& out) const {
+  void meet(const Vec3& at_m, PilotHole& out) const {
     const double depth_m = tract_.depth_of(at_m);
     const Vec2 offset = tract_.offset_of(at_m);
     if (depth_m < 0.0) return;
@@ -103,7 +104,7 @@ class Faces {
     }
     return section;
   }
-  static void note(Wall wall, double beyond_m, Channel& out) {
+  static void note(Wall wall, double beyond_m, PilotHole& out) {
     auto& most = out.beyond_m[std::size_t(wall)];
     most = std::max(most.value_or(beyond_m), beyond_m);
   }
@@ -116,7 +117,7 @@ Json json_of(const std::optional<double>& value) { return value ? Json(*value) :
 
 }  // namespace
 
-Json Channel::to_json() const {
+Json PilotHole::to_json() const {
   Json walls = Json::object();
   for (const Wall wall : volume::kWalls)
     walls[std::string(volume::name(wall))] = json_of(beyond_m[std::size_t(wall)]);
@@ -128,9 +129,9 @@ Json Channel::to_json() const {
           {"beyond_m", std::move(walls)}};
 }
 
-Channel channel_of(const Erosion& erosion, const volume::TransferFunction& transfer,
-                   const volume::Tract& tract) {
-  Channel out;
+PilotHole channel_of(const Erosion& erosion, const volume::TransferFunction& transfer,
+                     const volume::Tract& tract) {
+  PilotHole out;
   const std::vector<Lost> voxels = lost_voxels(erosion);
   out.voxels = voxels.size();
   if (voxels.empty()) return out;
@@ -145,3 +146,4 @@ Channel channel_of(const Erosion& erosion, const volume::TransferFunction& trans
 }
 
 }  // namespace drilling
+}  // namespace tractus

@@ -9,7 +9,7 @@
 #include "drilling/erosion.hpp"
 #include "volume/tract.hpp"
 
-namespace drilling {
+namespace tractus::drilling {
 
 /// A channel held against a planned tract. A voxel is of it when it has lost half of itself or
 /// more.
@@ -19,7 +19,7 @@ namespace drilling {
 /// (volume::WallFinder): at every millimetre of the tract that bone encloses, as `thinnest` means
 /// it, the outer face of each side wall, and the anterior one ahead of its end; a wall is seen as
 /// its finder sees it, over the width of the tract. Where no wall is found, nothing is said.
-struct Channel {
+struct PilotHole {
   std::size_t voxels = 0;
   /// Of the axis at the plane of the planned entry: towards medial, towards superior, m. As the
   /// angle, absent for a channel not three times as long as wide.
@@ -35,7 +35,7 @@ struct Channel {
   core::Json to_json() const;
 };
 
-Channel channel_of(const Erosion& erosion, const volume::TransferFunction& transfer,
-                   const volume::Tract& tract);
+PilotHole channel_of(const Erosion& erosion, const volume::TransferFunction& transfer,
+                     const volume::Tract& tract);
 
-}  // namespace drilling
+}  // namespace tractus::drilling

@@ -6,6 +6,7 @@
 
 #include "drilling/drilling_test_support.hpp"
 
+namespace tractus {
 namespace drilling {
 namespace {
 
@@ -35,7 +36,7 @@ const volume::Tract kTract{.entry_m = Vec3(0, 0, -0.010),
                            .superior = Vec3::UnitY()};
 constexpr Burr kFast{.nose_m = 0.0, .rate_per_s = 300.0, .threshold_N = 0.0, .full_N = 1.0};
 
-Channel drilled(const volume::Volume& bone, const Vec3& from, const Vec3& to) {
+PilotHole drilled(const volume::Volume& bone, const Vec3& from, const Vec3& to) {
   const auto made = eroded(bone, kFast, stroke(0, from, to, 8000, 2.0f));
   EXPECT_TRUE(made);
   return channel_of(*made, volume::TransferFunction::bone(), kTract);
@@ -45,8 +46,8 @@ Channel drilled(const volume::Volume& bone, const Vec3& from, const Vec3& to) {
 // inferior of it; deepest 10 mm + 6 mm + the ball's radius, less a voxel and the skin that
 // lost less than half: s from the centre the front's dose is 300/s / (9 mm/s) (r − s − (r³ −
 // s³)/3r²), a half at s = r − 0.16 mm.
-TEST(Channel, OfAParallelPlungeIsOffsetAndNotTurned) {
-  const Channel made = drilled(bar(), Vec3(0.001, -0.0005, -0.012), Vec3(0.001, -0.0005, 0.006));
+TEST(PilotHole, OfAParallelPlungeIsOffsetAndNotTurned) {
+  const PilotHole made = drilled(bar(), Vec3(0.001, -0.0005, -0.012), Vec3(0.001, -0.0005, 0.006));
   ASSERT_TRUE(made.entry_offset_m && made.angle_rad && made.depth_m);
   EXPECT_NEAR(made.entry_offset_m->x(), 0.001, 5e-5);
   EXPECT_NEAR(made.entry_offset_m->y(), -0.0005, 5e-5);
@@ -57,8 +58,8 @@ TEST(Channel, OfAParallelPlungeIsOffsetAndNotTurned) {
 
 // 2 mm aside over 18 mm: atan(1/9) = 6.34°, and where it passes the entry's plane, z = −10 mm, it
 // is 2/9 mm aside.
-TEST(Channel, OfAnObliquePlungeHasItsAngle) {
-  const Channel made = drilled(bar(), Vec3(0, 0, -0.012), Vec3(0.002, 0, 0.006));
+TEST(PilotHole, OfAnObliquePlungeHasItsAngle) {
+  const PilotHole made = drilled(bar(), Vec3(0, 0, -0.012), Vec3(0.002, 0, 0.006));
   ASSERT_TRUE(made.entry_offset_m && made.angle_rad);
   EXPECT_NEAR(*made.angle_rad, std::atan(1.0 / 9.0), 0.01);
   EXPECT_NEAR(made.entry_offset_m->x(), 0.002 / 9.0, 1e-4);
@@ -66,8 +67,8 @@ TEST(Channel, OfAnObliquePlungeHasItsAngle) {
 
 // The bar's faces are 6 and 4 mm from the axis (in the image half a voxel uncertain), its end 4 mm
 // ahead of the tract's.
-TEST(Channel, LeavesTheBoneWhereTheBallReachesBeyondItsFace) {
-  const Channel within = drilled(bar(), Vec3(0, 0, -0.012), Vec3(0, 0, 0.006));
+TEST(PilotHole, LeavesTheBoneWhereTheBallReachesBeyondItsFace) {
+  const PilotHole within = drilled(bar(), Vec3(0, 0, -0.012), Vec3(0, 0, 0.006));
   for (const Wall wall : {Wall::medial, Wall::lateral}) {
     ASSERT_TRUE(within.beyond_m[std::size_t(wall)]);
     EXPECT_NEAR(*within.beyond_m[std::size_t(wall)], 0.0015 - 0.006, 0.0004);
@@ -75,22 +76,23 @@ TEST(Channel, LeavesTheBoneWhereTheBallReachesBeyondItsFace) {
   EXPECT_NEAR(within.beyond_m[std::size_t(Wall::superior)].value_or(0), 0.0015 - 0.004, 0.0004);
   EXPECT_FALSE(within.beyond_m[std::size_t(Wall::anterior)]);  // never ahead of the tract's end
 
-  const Channel aside = drilled(bar(), Vec3(0, 0.0035, -0.012), Vec3(0, 0.0035, 0.006));
+  const PilotHole aside = drilled(bar(), Vec3(0, 0.0035, -0.012), Vec3(0, 0.0035, 0.006));
   EXPECT_NEAR(aside.beyond_m[std::size_t(Wall::superior)].value_or(0), 0.001, 0.0004);
-  const Channel ahead = drilled(bar(), Vec3(0, 0, -0.012), Vec3(0, 0, 0.0125));
+  const PilotHole ahead = drilled(bar(), Vec3(0, 0, -0.012), Vec3(0, 0, 0.0125));
   EXPECT_NEAR(ahead.beyond_m[std::size_t(Wall::anterior)].value_or(0), 0.0125 + 0.0015 - 0.012,
               0.0005);
 }
 
-TEST(Channel, OfAHoleHasNoDirectionAndOfNothingHasNothing) {
-  const Channel hole = drilled(bar(), Vec3(0, 0, 0.000), Vec3(0, 0, 0.001));
+TEST(PilotHole, OfAHoleHasNoDirectionAndOfNothingHasNothing) {
+  const PilotHole hole = drilled(bar(), Vec3(0, 0, 0.000), Vec3(0, 0, 0.001));
   EXPECT_GT(hole.voxels, 100u);
   EXPECT_FALSE(hole.angle_rad);
   EXPECT_TRUE(hole.depth_m);
-  const Channel nothing = drilled(bar(), Vec3(0, 0, -0.019), Vec3(0, 0, -0.0189));
+  const PilotHole nothing = drilled(bar(), Vec3(0, 0, -0.019), Vec3(0, 0, -0.0189));
   EXPECT_FALSE(nothing.depth_m);
   EXPECT_TRUE(nothing.to_json().at("beyond_m").at("medial").is_null());
 }
 
 }  // namespace
 }  // namespace drilling
+}  // namespace tractus

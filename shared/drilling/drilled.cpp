@@ -9,6 +9,7 @@
 #include "core/file.hpp"
 #include "core/require.hpp"
 
+namespace tractus {
 namespace drilling {
 namespace {
 
@@ -170,3 +171,4 @@ core::Result<Drilled> read_drilled(const std::filesystem::path& path, const std:
 }
 
 }  // namespace drilling
+}  // namespace tractus

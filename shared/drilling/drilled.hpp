@@ -8,7 +8,7 @@
 #include "core/json.hpp"
 #include "drilling/erosion.hpp"
 
-namespace drilling {
+namespace tractus::drilling {
 
 /// The file `tractus-drilled/1` (.tdrill):
 ///
@@ -44,4 +44,4 @@ core::Result<void> write_drilled(const std::filesystem::path& path, const Drille
 core::Result<Drilled> read_drilled(const std::filesystem::path& path, const std::string& trial_id,
                                    const std::string& case_id, const std::array<int, 3>& dims);
 
-}  // namespace drilling
+}  // namespace tractus::drilling

@@ -5,7 +5,7 @@
 
 #include "drilling/erosion.hpp"
 
-namespace drilling {
+namespace tractus::drilling {
 
 inline constexpr double kLength_m = 0.13;
 inline const trial::ProbeShape kProbe{.length_m = kLength_m};
@@ -52,4 +52,4 @@ inline core::Result<Erosion> eroded(const volume::Volume& bone, const Burr& burr
   return made;
 }
 
-}  // namespace drilling
+}  // namespace tractus::drilling

@@ -9,6 +9,7 @@
 #include "volume/carve.hpp"
 #include "volume/force_field.hpp"
 
+namespace tractus {
 namespace drilling {
 namespace {
 
@@ -60,8 +61,8 @@ Box united(const Box& a, const Box& b) noexcept {
   return out;
 }
 
-Worn worn_of(const Erosion& erosion) {
-  Worn out{.box = erosion.worn(), .lost = {}, .removed_m3 = erosion.removed_m3()};
+ErodedShares worn_of(const Erosion& erosion) {
+  ErodedShares out{.box = erosion.worn(), .lost = {}, .removed_m3 = erosion.removed_m3()};
   const auto& [begin, end] = out.box;
   out.lost.reserve(std::size_t(end[0] - begin[0]) * std::size_t(end[1] - begin[1]) *
                    std::size_t(end[2] - begin[2]));
@@ -211,3 +212,4 @@ void Erosion::tell(const Take& changed) {
 }
 
 }  // namespace drilling
+}  // namespace tractus

@@ -15,7 +15,7 @@
 #include "volume/transfer_function.hpp"
 #include "volume/volume.hpp"
 
-namespace drilling {
+namespace tractus::drilling {
 
 /// So many ticks, by their number, wear the bone together: 5 ms at 4 kHz.
 inline constexpr std::uint32_t kChunkTicks = 20;
@@ -113,15 +113,15 @@ class Erosion {
 };
 
 /// What is shown of a drilling: the share that each voxel of a box has lost.
-struct Worn {
+struct ErodedShares {
   volume::Box box;          ///< empty (begin = end): nothing was worn
   std::vector<float> lost;  ///< [k][j][i] of the box, Erosion::lost
   double removed_m3 = 0.0;  ///< Erosion::removed_m3
 };
 
-Worn worn_of(const Erosion& erosion);
+ErodedShares worn_of(const Erosion& erosion);
 
 /// The smallest box that holds both; an empty one adds nothing.
 volume::Box united(const volume::Box& a, const volume::Box& b) noexcept;
 
-}  // namespace drilling
+}  // namespace tractus::drilling

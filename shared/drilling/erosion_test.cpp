@@ -8,6 +8,7 @@
 #include "drilling/drilling_test_support.hpp"
 #include "volume/force_field.hpp"
 
+namespace tractus {
 namespace drilling {
 namespace {
 
@@ -220,3 +221,4 @@ TEST(Burr, IsReadAsItIsWrittenAndRefusesWhatNoBurrIs) {
 
 }  // namespace
 }  // namespace drilling
+}  // namespace tractus

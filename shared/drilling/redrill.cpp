@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+namespace tractus {
 namespace drilling {
 namespace {
 
@@ -91,3 +92,4 @@ core::Result<Redrilled> redrill(
 }
 
 }  // namespace drilling
+}  // namespace tractus

@@ -7,7 +7,7 @@
 #include "drilling/drilled.hpp"
 #include "trial/trial_file.hpp"
 
-namespace drilling {
+namespace tractus::drilling {
 
 /// What a trial's header says of its drilling, `extra.drilling`: {"law", "chunk_ticks", "burr",
 /// "transfer": [[value, opacity], …]}. With the samples and the case's volume that is everything.
@@ -41,4 +41,4 @@ core::Result<Redrilled> redrill(
     const std::function<void(const trial::Sample&)>& on_sample = {},
     const std::function<void(const Change&, const volume::Volume&)>& changed = {});
 
-}  // namespace drilling
+}  // namespace tractus::drilling

@@ -6,6 +6,7 @@
 #include "core/file.hpp"
 #include "drilling/drilling_test_support.hpp"
 
+namespace tractus {
 namespace drilling {
 namespace {
 namespace fs = std::filesystem;
@@ -123,3 +124,4 @@ TEST_F(Redrilling, ADamagedFileIsRefused) {
 
 }  // namespace
 }  // namespace drilling
+}  // namespace tractus

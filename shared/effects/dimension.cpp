@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <vector>
 
+namespace tractus {
 namespace effects {
 namespace {
 
@@ -123,3 +124,4 @@ std::string Dimension::text() const {
 }
 
 }  // namespace effects
+}  // namespace tractus

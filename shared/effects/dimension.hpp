@@ -8,7 +8,7 @@
 
 #include "core/result.hpp"
 
-namespace effects {
+namespace tractus::effects {
 
 /// Powers of metre, kilogram and second; an angle has none (rad = 1). Powers may be fractions, as
 /// of a root: they are kept in sixtieths, so halves, thirds, quarters, fifths and tenths are exact.
@@ -35,4 +35,4 @@ class Dimension {
   std::array<int, 3> sixtieths_{};
 };
 
-}  // namespace effects
+}  // namespace tractus::effects

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+namespace tractus {
 namespace effects {
 
 namespace {
@@ -74,3 +75,4 @@ core::Result<void> check(const EffectFacts& facts, std::span<const double> value
 }
 
 }  // namespace effects
+}  // namespace tractus

@@ -11,7 +11,7 @@
 
 #include "core/result.hpp"
 
-namespace effects {
+namespace tractus::effects {
 
 /// Kept apart: what a hand may feel, and what only belongs to how a measurement was made.
 enum class Kind {
@@ -62,7 +62,7 @@ struct EffectFacts {
 };
 
 /// An effect in a model: which, and its numbers in the order of the params, components flattened.
-struct Use {
+struct EffectInstance {
   std::string id;
   std::vector<double> values;
   /// Of a user's own expression ("expression:NAME"): its file's JSON. Empty for the catalogue's.
@@ -75,4 +75,4 @@ core::Result<void> check(const EffectFacts& facts, std::span<const double> value
 /// How many numbers an effect takes: its parameters' components together.
 std::size_t value_count(const EffectFacts& facts);
 
-}  // namespace effects
+}  // namespace tractus::effects

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+namespace tractus {
 namespace effects {
 namespace {
 
@@ -139,7 +140,7 @@ core::Result<Expression> Expression::read(const std::filesystem::path& path,
   return from_json(*json, path.string() + ": ", rig);
 }
 
-core::Result<Expression> Expression::of(const Use& use, const ExpressionRig& rig) {
+core::Result<Expression> Expression::of(const EffectInstance& use, const ExpressionRig& rig) {
   auto json = core::parse_json(use.definition, use.id);
   if (!json) return json.error();
   auto out = from_json(*json, use.id + ": ", rig);
@@ -167,7 +168,7 @@ Json Expression::to_json() const {
           {"parameters", std::move(parameters)}};
 }
 
-Use Expression::use(std::vector<double> values) const {
+EffectInstance Expression::use(std::vector<double> values) const {
   if (values.empty())
     for (const Param& param : facts_.params) values.push_back(param.initial);
   return {facts_.id, std::move(values), to_json().dump()};
@@ -178,3 +179,4 @@ core::Result<FormulaProgram> Expression::program() const {
 }
 
 }  // namespace effects
+}  // namespace tractus

@@ -11,7 +11,7 @@
 #include "effects/effect.hpp"
 #include "effects/formula.hpp"
 
-namespace effects {
+namespace tractus::effects {
 
 inline constexpr std::string_view kEffectFormat = "tractus-effect/1";
 inline constexpr std::string_view kExpressionPrefix = "expression:";
@@ -48,12 +48,12 @@ class Expression {
   static core::Result<Expression> from_json(const core::Json& json, const std::string& where,
                                             const ExpressionRig& rig);
   static core::Result<Expression> read(const std::filesystem::path& path, const ExpressionRig& rig);
-  /// From Use::definition.
-  static core::Result<Expression> of(const Use& use, const ExpressionRig& rig);
+  /// From EffectInstance::definition.
+  static core::Result<Expression> of(const EffectInstance& use, const ExpressionRig& rig);
 
   core::Json to_json() const;
   /// As an effect in a model. @param values  the initial ones where empty.
-  Use use(std::vector<double> values = {}) const;
+  EffectInstance use(std::vector<double> values = {}) const;
   /// As of an entry of the catalogue: off at 0 of a parameter that is a factor of the whole
   /// formula; not declared passive, as nobody knows.
   const EffectFacts& facts() const noexcept { return facts_; }
@@ -71,4 +71,4 @@ class Expression {
 /// Is it the id of a user's expression?
 bool is_expression(std::string_view id);
 
-}  // namespace effects
+}  // namespace tractus::effects

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <optional>
 
+namespace tractus {
 namespace effects {
 namespace {
 
@@ -356,3 +357,4 @@ core::Result<FormulaFacts> check_formula(std::string_view formula,
 }
 
 }  // namespace effects
+}  // namespace tractus

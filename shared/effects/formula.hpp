@@ -11,7 +11,7 @@
 #include "core/result.hpp"
 #include "effects/dimension.hpp"
 
-namespace effects {
+namespace tractus::effects {
 
 /// A name that a formula may use, with its dimension.
 struct Quantity {
@@ -68,4 +68,4 @@ class FormulaProgram {
   std::unique_ptr<Parts> parts_;
 };
 
-}  // namespace effects
+}  // namespace tractus::effects

@@ -7,6 +7,7 @@
 
 #include "effects/formula.hpp"
 
+namespace tractus {
 namespace effects {
 
 namespace {
@@ -59,3 +60,4 @@ double FormulaProgram::value() const noexcept {
 }
 
 }  // namespace effects
+}  // namespace tractus

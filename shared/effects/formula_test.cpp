@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+namespace tractus {
 namespace effects {
 namespace {
 
@@ -132,3 +133,4 @@ TEST(AFormulaProgram, IsZeroWhereItsValueIsNotFinite) {
 
 }  // namespace
 }  // namespace effects
+}  // namespace tractus

@@ -4,6 +4,7 @@
 
 #include "effects/palpation_expression.hpp"
 
+namespace tractus {
 namespace effects {
 namespace palpation {
 std::vector<PalpationEffectInfo> all();  // made by the build from the files of palpation/
@@ -28,7 +29,7 @@ core::Error unknown(std::string_view id) {
 
 }  // namespace
 
-core::Result<EffectFacts> palpation_facts(const Use& use) {
+core::Result<EffectFacts> palpation_facts(const EffectInstance& use) {
   if (is_expression(use.id)) {
     const auto expression = Expression::of(use, palpation_expressions());
     if (!expression) return expression.error();
@@ -39,7 +40,7 @@ core::Result<EffectFacts> palpation_facts(const Use& use) {
   return found->facts;
 }
 
-core::Result<PalpationEffect> make_palpation_effect(const Use& use) {
+core::Result<PalpationEffect> make_palpation_effect(const EffectInstance& use) {
   if (is_expression(use.id)) return make_palpation_expression(use);
   const auto* found = entry_of(use.id);
   if (!found) return unknown(use.id);
@@ -48,3 +49,4 @@ core::Result<PalpationEffect> make_palpation_effect(const Use& use) {
 }
 
 }  // namespace effects
+}  // namespace tractus

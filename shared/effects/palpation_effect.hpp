@@ -33,7 +33,7 @@
 #include "math/geometry.hpp"
 #include "volume/force_field.hpp"
 
-namespace effects {
+namespace tractus::effects {
 
 using math::Mat3;
 using math::Vec3;
@@ -159,10 +159,10 @@ const std::vector<PalpationEffectInfo>& palpation_effects();
 
 /// What is known of an effect in a model, of the catalogue or a user's own; its numbers do not
 /// matter. Errors: not_found naming the id; bad_input naming what is wrong in a definition.
-core::Result<EffectFacts> palpation_facts(const Use& use);
+core::Result<EffectFacts> palpation_facts(const EffectInstance& use);
 
 /// The effect of an id with its numbers. Errors: not_found naming the id; bad_input or out_of_range
 /// naming the parameter, its value and its range.
-core::Result<PalpationEffect> make_palpation_effect(const Use& use);
+core::Result<PalpationEffect> make_palpation_effect(const EffectInstance& use);
 
-}  // namespace effects
+}  // namespace tractus::effects

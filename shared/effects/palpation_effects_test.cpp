@@ -7,6 +7,7 @@
 #include "effects/palpation_effect.hpp"
 #include "laws/palpation_law.hpp"
 
+namespace tractus {
 namespace effects {
 namespace {
 
@@ -251,7 +252,7 @@ TEST(SensorBias, AddsForceAndTorque) {
 }
 
 TEST(PalpationEffects, RefuseWhatLiesOutsideTheirRange) {
-  const auto refusal = [](Use use) {
+  const auto refusal = [](EffectInstance use) {
     const auto effect = make_palpation_effect(use);
     return effect ? "taken" : effect.error().what;
   };
@@ -264,3 +265,4 @@ TEST(PalpationEffects, RefuseWhatLiesOutsideTheirRange) {
 
 }  // namespace
 }  // namespace effects
+}  // namespace tractus

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+namespace tractus {
 namespace effects {
 namespace {
 
@@ -65,7 +66,7 @@ const ExpressionRig& palpation_expressions() {
   return kRig;
 }
 
-core::Result<PalpationEffect> make_palpation_expression(const Use& use) {
+core::Result<PalpationEffect> make_palpation_expression(const EffectInstance& use) {
   auto expression = Expression::of(use, palpation_expressions());
   if (!expression) return expression.error();
   if (auto ok = check(expression->facts(), use.values); !ok) return ok.error();
@@ -76,3 +77,4 @@ core::Result<PalpationEffect> make_palpation_expression(const Use& use) {
 }
 
 }  // namespace effects
+}  // namespace tractus

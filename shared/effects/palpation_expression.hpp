@@ -4,7 +4,7 @@
 #include "effects/expression.hpp"
 #include "effects/palpation_effect.hpp"
 
-namespace effects {
+namespace tractus::effects {
 
 /// f_N, a force at each contact point against its motion, F = −f v/|v|; from v_m_s, v_n_m_s,
 /// v_t_m_s, base_N and opacity of that point.
@@ -12,6 +12,6 @@ const ExpressionRig& palpation_expressions();
 
 /// The formula of a use as a force at the contact points. Errors: bad_input naming what is wrong in
 /// the definition; out_of_range naming the parameter.
-core::Result<PalpationEffect> make_palpation_expression(const Use& use);
+core::Result<PalpationEffect> make_palpation_expression(const EffectInstance& use);
 
-}  // namespace effects
+}  // namespace tractus::effects

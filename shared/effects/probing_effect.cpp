@@ -7,6 +7,7 @@
 
 #include "effects/expression.hpp"
 
+namespace tractus {
 namespace effects {
 namespace probing {
 std::vector<ProbingEffectInfo> all();  // made by the build from the files of probing/
@@ -40,7 +41,7 @@ class ExpressionForce final : public ProbingEffect {
   FormulaProgram program_;
 };
 
-core::Result<std::unique_ptr<ProbingEffect>> make_expression(const Use& use) {
+core::Result<std::unique_ptr<ProbingEffect>> make_expression(const EffectInstance& use) {
   auto expression = Expression::of(use, probing_expressions());
   if (!expression) return expression.error();
   if (auto ok = check(expression->facts(), use.values); !ok) return ok.error();
@@ -67,7 +68,7 @@ const std::vector<ProbingEffectInfo>& probing_effects() {
   return kAll;
 }
 
-core::Result<EffectFacts> probing_facts(const Use& use) {
+core::Result<EffectFacts> probing_facts(const EffectInstance& use) {
   if (is_expression(use.id)) {
     const auto expression = Expression::of(use, probing_expressions());
     if (!expression) return expression.error();
@@ -78,7 +79,7 @@ core::Result<EffectFacts> probing_facts(const Use& use) {
   return found->facts;
 }
 
-core::Result<std::unique_ptr<ProbingEffect>> make_probing_effect(const Use& use) {
+core::Result<std::unique_ptr<ProbingEffect>> make_probing_effect(const EffectInstance& use) {
   if (is_expression(use.id)) return make_expression(use);
   const auto* found = entry_of(use.id);
   if (!found) return unknown(use.id);
@@ -87,3 +88,4 @@ core::Result<std::unique_ptr<ProbingEffect>> make_probing_effect(const Use& use)
 }
 
 }  // namespace effects
+}  // namespace tractus

@@ -11,7 +11,7 @@
 #include "core/result.hpp"
 #include "effects/effect.hpp"
 
-namespace effects {
+namespace tractus::effects {
 
 /// A recorded motion, one entry per sample; the last three may be empty: not recorded.
 struct ProbingMotion {
@@ -122,10 +122,10 @@ const std::vector<ProbingEffectInfo>& probing_effects();
 
 /// What is known of an effect in a model, of the catalogue or a user's own; its numbers do not
 /// matter. Errors: not_found naming the id; bad_input naming what is wrong in a definition.
-core::Result<EffectFacts> probing_facts(const Use& use);
+core::Result<EffectFacts> probing_facts(const EffectInstance& use);
 
 /// The effect of an id with its numbers. Errors: not_found naming the id; bad_input or out_of_range
 /// naming the parameter, its value and its range.
-core::Result<std::unique_ptr<ProbingEffect>> make_probing_effect(const Use& use);
+core::Result<std::unique_ptr<ProbingEffect>> make_probing_effect(const EffectInstance& use);
 
-}  // namespace effects
+}  // namespace tractus::effects

@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <new>
 
-namespace laws {
+namespace tractus::laws {
 namespace {
 std::atomic<long> count{0};
 
@@ -17,11 +17,11 @@ void* counted(std::size_t alignment, std::size_t size) {
 }  // namespace
 
 long allocations() noexcept { return count; }
-}  // namespace laws
+}  // namespace tractus::laws
 
-void* operator new(std::size_t size) { return laws::counted(16, size); }
+void* operator new(std::size_t size) { return tractus::laws::counted(16, size); }
 void* operator new(std::size_t size, std::align_val_t alignment) {
-  return laws::counted(std::size_t(alignment), size);
+  return tractus::laws::counted(std::size_t(alignment), size);
 }
 void operator delete(void* memory) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }

@@ -7,6 +7,7 @@
 
 #include "laws/trust_region.hpp"
 
+namespace tractus {
 namespace laws {
 namespace {
 
@@ -147,3 +148,4 @@ Equilibrium equilibrium(const Beam& beam, const math::Pose& X_VH, const Vec2& st
 }
 
 }  // namespace laws
+}  // namespace tractus

@@ -7,7 +7,7 @@
 #include "math/geometry.hpp"
 #include "volume/force_field.hpp"
 
-namespace laws {
+namespace tractus::laws {
 
 /// A force and how it changes with the point it acts at, both in V.
 struct ForceSample {
@@ -49,4 +49,4 @@ struct Equilibrium {
 Equilibrium equilibrium(const Beam& beam, const math::Pose& X_VH, const math::Vec2& start_m,
                         std::span<math::Vec3> force_H_N) noexcept;
 
-}  // namespace laws
+}  // namespace tractus::laws

@@ -7,6 +7,7 @@
 
 #include "core/require.hpp"
 
+namespace tractus {
 namespace laws {
 namespace {
 
@@ -84,3 +85,4 @@ PalpationStep PalpationLaw::step(const Pose& X_VH, PalpationState& state,
 }
 
 }  // namespace laws
+}  // namespace tractus

@@ -11,7 +11,7 @@
 #include "math/geometry.hpp"
 #include "volume/force_field.hpp"
 
-namespace laws {
+namespace tractus::laws {
 
 using math::Vec2;
 using math::Vec3;
@@ -88,4 +88,4 @@ class PalpationLaw {
   Shank shank_;
 };
 
-}  // namespace laws
+}  // namespace tractus::laws

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+namespace tractus {
 namespace laws {
 
 long allocations() noexcept;  // of this program so far: allocations_test.cpp
@@ -304,3 +305,4 @@ TEST(PalpationLaw, NamesTheFirstParameterOutsideItsRange) {
 
 }  // namespace
 }  // namespace laws
+}  // namespace tractus

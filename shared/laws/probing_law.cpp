@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+namespace tractus {
 namespace laws {
 namespace {
 
@@ -243,3 +244,4 @@ double ProbingLaw::advance(double force_N, double turning_rad_s, double dt_s,
 }
 
 }  // namespace laws
+}  // namespace tractus

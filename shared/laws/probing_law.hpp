@@ -10,7 +10,7 @@
 
 #include "core/result.hpp"
 
-namespace laws {
+namespace tractus::laws {
 
 /// One layer of bone [Probing, Fig. 4]: spring and damper of its own between two depths.
 struct Layer {
@@ -144,4 +144,4 @@ class ProbingLaw {
   std::vector<Stretch> stretches_;  // the first from −∞ on, then one from each border on
 };
 
-}  // namespace laws
+}  // namespace tractus::laws

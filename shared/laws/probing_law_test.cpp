@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+namespace tractus {
 namespace laws {
 namespace {
 
@@ -153,3 +154,4 @@ TEST(ProbingLaw, RefusesByNameWhatCannotBe) {
 
 }  // namespace
 }  // namespace laws
+}  // namespace tractus

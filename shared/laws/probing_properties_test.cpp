@@ -9,6 +9,7 @@
 
 #include "laws/probing_law.hpp"
 
+namespace tractus {
 namespace laws {
 namespace {
 
@@ -209,3 +210,4 @@ TEST_F(EveryLaw, TurningFromTorqueGivesTheTorqueBack) {
 
 }  // namespace
 }  // namespace laws
+}  // namespace tractus

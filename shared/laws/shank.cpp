@@ -5,7 +5,7 @@
 
 #include "laws/palpation_law.hpp"
 
-namespace laws {
+namespace tractus::laws {
 
 Shank Shank::uniform(const PalpationParameters& p) {
   Shank out;
@@ -24,4 +24,4 @@ Shank Shank::uniform(const PalpationParameters& p) {
   return out;
 }
 
-}  // namespace laws
+}  // namespace tractus::laws

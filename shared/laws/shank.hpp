@@ -5,7 +5,7 @@
 
 #include "math/geometry.hpp"
 
-namespace laws {
+namespace tractus::laws {
 
 struct PalpationParameters;
 
@@ -29,4 +29,4 @@ struct Shank {
   static Shank uniform(const PalpationParameters& parameters);
 };
 
-}  // namespace laws
+}  // namespace tractus::laws

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+namespace tractus {
 namespace laws {
 namespace {
 
@@ -62,3 +63,4 @@ Vec2 trust_region_step(const math::Mat2& A, const Vec2& r, double radius) noexce
 }
 
 }  // namespace laws
+}  // namespace tractus

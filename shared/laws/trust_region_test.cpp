@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+namespace tractus {
 namespace laws {
 namespace {
 
@@ -60,3 +61,4 @@ TEST(TrustRegionStep, GoesToTheRimWhereItFallsBothWaysAndNothingPushes) {
 
 }  // namespace
 }  // namespace laws
+}  // namespace tractus

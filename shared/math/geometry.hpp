@@ -4,7 +4,7 @@
 
 #include <Eigen/Geometry>
 
-namespace math {
+namespace tractus::math {
 
 using Vec2 = Eigen::Vector2d;
 using Vec3 = Eigen::Vector3d;
@@ -31,4 +31,4 @@ struct Wrench {
   Vec3 torque_Nm = Vec3::Zero();
 };
 
-}  // namespace math
+}  // namespace tractus::math

@@ -6,7 +6,7 @@
 
 #include "core/require.hpp"
 
-namespace math {
+namespace tractus::math {
 
 SavitzkyGolay::SavitzkyGolay(int window, int order, int derivative)
     : window_(window), derivative_(derivative), weights_(window, window) {
@@ -43,4 +43,4 @@ std::vector<double> SavitzkyGolay::apply(std::span<const double> y, double dt) c
   return out;
 }
 
-}  // namespace math
+}  // namespace tractus::math

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace math {
+namespace tractus::math {
 
 class SavitzkyGolay {
  public:
@@ -28,4 +28,4 @@ class SavitzkyGolay {
   Eigen::MatrixXd weights_;  // [at][sample of the window]
 };
 
-}  // namespace math
+}  // namespace tractus::math

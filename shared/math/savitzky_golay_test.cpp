@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+namespace tractus {
 namespace math {
 namespace {
 
@@ -37,3 +38,4 @@ TEST(SavitzkyGolay, GivesNothingForLessThanAWindow) {
 
 }  // namespace
 }  // namespace math
+}  // namespace tractus

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-namespace math {
+namespace tractus::math {
 
 core::Result<CubicSpline> CubicSpline::make(std::span<const double> t, std::span<const double> y) {
   if (t.size() < 2 || t.size() != y.size())
@@ -108,4 +108,4 @@ Vec3 PoseSpline::angular_acceleration_rad_s2(double t) const noexcept {
   return 2.0 * (ddq * q.conjugate()).vec() / n2 - omega * (2.0 * q.dot(dq) / n2);
 }
 
-}  // namespace math
+}  // namespace tractus::math

@@ -7,7 +7,7 @@
 #include "core/result.hpp"
 #include "math/geometry.hpp"
 
-namespace math {
+namespace tractus::math {
 
 /// The natural cubic spline (second derivative zero at both ends) through (t_k, y_k).
 class CubicSpline {
@@ -45,4 +45,4 @@ class PoseSpline {
   std::vector<CubicSpline> p_, q_;  // x y z; w x y z
 };
 
-}  // namespace math
+}  // namespace tractus::math

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+namespace tractus {
 namespace math {
 namespace {
 
@@ -64,3 +65,4 @@ TEST(PoseSpline, KnowsTheAngularAcceleration) {
 
 }  // namespace
 }  // namespace math
+}  // namespace tractus

@@ -7,6 +7,7 @@
 #include "metrics/metric.hpp"
 #include "trial/signals.hpp"
 
+namespace tractus {
 namespace metrics {
 namespace {
 /// First of the three bins of a side wall's quarter: medial is centred on bin 0.
@@ -64,3 +65,4 @@ std::optional<Coverage> coverage(const Subject& subject) {
 }
 
 }  // namespace metrics
+}  // namespace tractus

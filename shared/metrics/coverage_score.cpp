@@ -1,6 +1,6 @@
 #include "metrics/coverage_score.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 Score coverage_score(const Subject& subject, std::optional<volume::Wall> side) {
   const auto contacts = coverage(subject);
@@ -8,4 +8,4 @@ Score coverage_score(const Subject& subject, std::optional<volume::Wall> side) {
   return {contacts->share(side), ""};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

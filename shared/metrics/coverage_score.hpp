@@ -3,9 +3,9 @@
 
 #include "metrics/metric.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 /// Share of the bins touched, of all side walls or of one; no value when the tip cannot be placed.
 Score coverage_score(const Subject& subject, std::optional<volume::Wall> side);
 
-}  // namespace metrics
+}  // namespace tractus::metrics

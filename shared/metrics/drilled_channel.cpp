@@ -1,6 +1,6 @@
 #include "metrics/drilled_channel.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 bool drills(const trial::Trial& trial) { return trial.header.extra.contains("drilling"); }
 
@@ -23,4 +23,4 @@ Score channel_score(const Subject& subject, const char* key) {
   return {value->get<double>(), ""};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

@@ -4,7 +4,7 @@
 
 #include "metrics/metric.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 /// What the event's detail says; null when the trial was cut short.
 const core::Json* drilled_detail(const Subject& subject);
@@ -17,4 +17,4 @@ inline constexpr const char* kCutShort = "the trial was cut short";
 /// Was the tool a burr?
 bool drills(const trial::Trial& trial);
 
-}  // namespace metrics
+}  // namespace tractus::metrics

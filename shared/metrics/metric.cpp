@@ -1,6 +1,6 @@
 #include "metrics/metric.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 std::vector<std::pair<MetricInfo, Score>> score_all(const Subject& subject) {
   std::vector<std::pair<MetricInfo, Score>> out;
@@ -23,4 +23,4 @@ core::Json to_json(const MetricInfo& info, const Score& score) {
           {"source", info.source}};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

@@ -11,7 +11,7 @@
 #include "trial/trial.hpp"
 #include "volume/tract.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 /// What the case's maker knows.
 struct Truth {
@@ -81,4 +81,4 @@ std::vector<std::pair<MetricInfo, Score>> score_all(const Subject& subject);
 /// it.
 core::Json to_json(const MetricInfo& info, const Score& score);
 
-}  // namespace metrics
+}  // namespace tractus::metrics

@@ -13,6 +13,7 @@
 #include "metrics/path_length.hpp"
 #include "metrics/threshold_statistics.hpp"
 
+namespace tractus {
 namespace metrics {
 namespace {
 const std::string kGolden = std::string(TRACTUS_SOURCE_DIR) + "/tests/golden/statistics/";
@@ -347,3 +348,4 @@ TEST(Metrics, OfADrilledChannelAreOfTrialsThatDrill) {
 
 }  // namespace
 }  // namespace metrics
+}  // namespace tractus

@@ -8,6 +8,7 @@
 
 #include "math/savitzky_golay.hpp"
 
+namespace tractus {
 namespace metrics {
 namespace {
 
@@ -144,3 +145,4 @@ double integral(std::span<const double> x, std::span<const double> y) {
 }
 
 }  // namespace metrics
+}  // namespace tractus

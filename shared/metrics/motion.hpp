@@ -10,7 +10,7 @@
 
 #include "math/geometry.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 /// Spectral arc length of a speed profile [Balasubramanian2015]: the length of the magnitude
 /// spectrum, normalised to its maximum, from the first to the last bin of at least 5 % up to 10 Hz;
@@ -49,4 +49,4 @@ std::optional<Kinematics> kinematics(std::span<const math::Vec3> points_m, doubl
 /// ∫ y dx by the trapezoid rule.
 double integral(std::span<const double> x, std::span<const double> y);
 
-}  // namespace metrics
+}  // namespace tractus::metrics

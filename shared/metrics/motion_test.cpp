@@ -9,6 +9,7 @@
 
 #include "core/json.hpp"
 
+namespace tractus {
 namespace metrics {
 namespace {
 
@@ -107,3 +108,4 @@ TEST(Force, ImpulseAndWorkAgreeWithTheReferenceTrial) {
 
 }  // namespace
 }  // namespace metrics
+}  // namespace tractus

@@ -4,7 +4,7 @@
 
 #include "math/savitzky_golay.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 std::optional<double> smoothed_length_m(std::span<const math::Vec3> points_m, double dt_s) {
   const math::SavitzkyGolay slope(21, 3, 1);
@@ -21,4 +21,4 @@ std::optional<double> smoothed_length_m(std::span<const math::Vec3> points_m, do
   return length_m;
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

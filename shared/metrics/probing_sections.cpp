@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+namespace tractus {
 namespace metrics {
 namespace {
 using trial::ProbingMode;
@@ -107,3 +108,4 @@ Pauses pauses_of(Samples motion, double rate_Hz) {
 }
 
 }  // namespace metrics
+}  // namespace tractus

@@ -5,7 +5,7 @@
 
 #include "metrics/metric.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 /// From the first motion that is let through (the probe turns faster than 10 °/s, so that the mode
 /// is no longer `holding`) to the last sample before the probe stop, or to the last one. Samples
@@ -48,4 +48,4 @@ struct Pauses {
 };
 Pauses pauses_of(std::span<const trial::ProbingSample> motion, double rate_Hz);
 
-}  // namespace metrics
+}  // namespace tractus::metrics

@@ -8,6 +8,7 @@
 #include "core/json.hpp"
 #include "metrics/probing_sections.hpp"
 
+namespace tractus {
 namespace metrics {
 namespace {
 using trial::ProbingMode;
@@ -178,3 +179,4 @@ TEST(ProbingMetrics, TheAnswerIsHeldAgainstTheScenariosWalls) {
 
 }  // namespace
 }  // namespace metrics
+}  // namespace tractus

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+namespace tractus {
 namespace metrics {
 namespace {
 constexpr double kForceFloor_N = 0.01;
@@ -57,3 +58,4 @@ Score wrench_score(const Subject& subject, WrenchPart part, Statistic statistic)
 }
 
 }  // namespace metrics
+}  // namespace tractus

@@ -6,7 +6,7 @@
 
 #include "metrics/metric.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 /// Over the values strictly above `floor` alone; the others do not exist for it.
 ///
@@ -36,4 +36,4 @@ enum class Statistic { mean, sd, max };
 /// N, torques over 0.001 N·m.
 Score wrench_score(const Subject& subject, WrenchPart part, Statistic statistic);
 
-}  // namespace metrics
+}  // namespace tractus::metrics

@@ -5,6 +5,7 @@
 #include "metrics/probing_sections.hpp"
 #include "trial/signals.hpp"
 
+namespace tractus {
 namespace metrics {
 namespace {
 
@@ -65,3 +66,4 @@ Score score_of_kinematics(
 }
 
 }  // namespace metrics
+}  // namespace tractus

@@ -7,7 +7,7 @@
 #include "metrics/metric.hpp"
 #include "metrics/motion.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 inline constexpr double kMotionRate_Hz = 200.0;
 
@@ -25,4 +25,4 @@ Score score_of_kinematics(
     const Subject& subject,
     const std::function<std::optional<double>(const TipMotion&, const Kinematics&)>& score);
 
-}  // namespace metrics
+}  // namespace tractus::metrics

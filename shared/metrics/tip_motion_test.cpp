@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+namespace tractus {
 namespace metrics {
 namespace {
 
@@ -200,3 +201,4 @@ TEST(TipMotion, TooShortOrAtRestHasNoMeasureAndAReason) {
 
 }  // namespace
 }  // namespace metrics
+}  // namespace tractus

@@ -7,6 +7,7 @@
 #include "models/probing_model.hpp"
 #include "models/probing_runtime.hpp"
 
+namespace tractus {
 namespace models {
 namespace {
 
@@ -154,3 +155,4 @@ TEST(UsersOwnEffects, KnowTheirFactsAsTheCatalogueDoes) {
 
 }  // namespace
 }  // namespace models
+}  // namespace tractus

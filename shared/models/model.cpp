@@ -10,6 +10,7 @@
 #include "effects/palpation_effect.hpp"
 #include "models/parts.hpp"
 
+namespace tractus {
 namespace models {
 namespace {
 
@@ -42,13 +43,13 @@ constexpr std::array<BaseNumber, 7> kNumbers{{
     {"radius_m", &Parameters::radius_m, 1e-5, 0.05},
 }};
 
-Fault read_own_identity(Fields& fields, PalpationModel& model) {
+OptionalError read_own_identity(Fields& fields, PalpationModel& model) {
   if (auto fault = read_identity(fields, "palpation", model.name)) return fault;
   model.volume = fields.text_or("volume", "");
   return std::nullopt;
 }
 
-Fault read_transfer(Fields& fields, PalpationModel& model) {
+OptionalError read_transfer(Fields& fields, PalpationModel& model) {
   if (!fields.has("transfer")) return std::nullopt;
   const std::string& where = fields.where();
   const Json& list = *fields.member("transfer");
@@ -68,7 +69,7 @@ Fault read_transfer(Fields& fields, PalpationModel& model) {
   return std::nullopt;
 }
 
-Fault read_field_kind(Fields& base, PalpationModel& model) {
+OptionalError read_field_kind(Fields& base, PalpationModel& model) {
   const auto text = base.text_or("field", "paper");
   const auto known =
       std::ranges::find(kFields, std::string_view(text), &decltype(kFields)::value_type::second);
@@ -79,7 +80,7 @@ Fault read_field_kind(Fields& base, PalpationModel& model) {
   return std::nullopt;
 }
 
-Fault read_base(Fields& fields, PalpationModel& model) {
+OptionalError read_base(Fields& fields, PalpationModel& model) {
   const Json* object = fields.member("base");
   if (!object) return bad(fields.where(), "base", "is missing");
   Fields base(*object, fields.where() + "/base");
@@ -146,3 +147,4 @@ Json PalpationModel::to_json() const {
 }
 
 }  // namespace models
+}  // namespace tractus

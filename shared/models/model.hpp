@@ -12,7 +12,7 @@
 #include "volume/force_field.hpp"
 #include "volume/transfer_function.hpp"
 
-namespace models {
+namespace tractus::models {
 
 /// `tractus-model/1`, rig "palpation". A value: what replay, fit and the live loop all run.
 struct PalpationModel {
@@ -23,7 +23,7 @@ struct PalpationModel {
   laws::PalpationParameters base;
   volume::FieldKind field = volume::FieldKind::paper;
   std::vector<std::string> fixed;  ///< JSON pointers of base parameters that a fit leaves alone
-  std::vector<effects::Use> effects = {};  ///< in the file's order
+  std::vector<effects::EffectInstance> effects = {};  ///< in the file's order
 
   /// @param where  leads every message, as "model.json: ". Errors: bad_input naming the field; a
   /// rig other than palpation and an effect that this build does not know are refused by name.
@@ -32,4 +32,4 @@ struct PalpationModel {
   core::Json to_json() const;
 };
 
-}  // namespace models
+}  // namespace tractus::models

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+namespace tractus {
 namespace models {
 namespace {
 
@@ -158,3 +159,4 @@ TEST(PalpationModel, NamesAFileThatIsNotThere) {
 
 }  // namespace
 }  // namespace models
+}  // namespace tractus

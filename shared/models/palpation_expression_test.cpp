@@ -6,6 +6,7 @@
 #include "effects/probing_effect.hpp"
 #include "volume/force_field.hpp"
 
+namespace tractus {
 namespace models {
 namespace {
 
@@ -26,7 +27,7 @@ volume::Volume half_space() {
   return v;
 }
 
-effects::Use formula(const char* text, const char* unit) {
+effects::EffectInstance formula(const char* text, const char* unit) {
   const core::Json c{{"unit", unit}, {"initial", 7}, {"low", 0}, {"high", 100}};
   const auto own = effects::Expression::from_json(core::Json{{"format", "tractus-effect/1"},
                                                              {"id", "expression:own"},
@@ -39,7 +40,7 @@ effects::Use formula(const char* text, const char* unit) {
   return own->use();
 }
 
-laws::ForceSample added(const effects::Use& use, const Vec3& p_m, const Vec3& v_m_s) {
+laws::ForceSample added(const effects::EffectInstance& use, const Vec3& p_m, const Vec3& v_m_s) {
   static const auto field = volume::ForceField::make(half_space(), volume::TransferFunction::bone(),
                                                      volume::FieldKind::paper);
   auto effect = effects::make_palpation_effect(use);
@@ -84,3 +85,4 @@ TEST(APalpationFormula, IsRefusedWhatTheRigDoesNotKnow) {
 
 }  // namespace
 }  // namespace models
+}  // namespace tractus

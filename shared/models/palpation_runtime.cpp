@@ -6,6 +6,7 @@
 
 #include "math/spline.hpp"
 
+namespace tractus {
 namespace models {
 namespace {
 
@@ -189,14 +190,14 @@ core::Result<PalpationRuntime> PalpationRuntime::make(const PalpationModel& mode
   auto law = laws::PalpationLaw::make(model.base, field);
   if (!law) return law.error();
   PalpationRuntime runtime(field, std::move(*law));
-  std::vector<effects::Use> uses = model.effects;
-  std::ranges::sort(uses, {}, &effects::Use::id);  // the catalogue's order
-  for (const effects::Use& use : uses)
+  std::vector<effects::EffectInstance> uses = model.effects;
+  std::ranges::sort(uses, {}, &effects::EffectInstance::id);  // the catalogue's order
+  for (const effects::EffectInstance& use : uses)
     if (auto added = runtime.add(use); !added) return added.error();
   return runtime;
 }
 
-core::Result<void> PalpationRuntime::add(const effects::Use& use) {
+core::Result<void> PalpationRuntime::add(const effects::EffectInstance& use) {
   auto effect = effects::make_palpation_effect(use);
   if (!effect) return effect.error();
   const auto keep = [this]<class Stage>(Stage stage) {
@@ -410,3 +411,4 @@ math::Vec3 PalpationRuntime::tip_m(const math::Pose& X_VH,
 }
 
 }  // namespace models
+}  // namespace tractus

@@ -12,7 +12,7 @@
 #include "laws/palpation_law.hpp"
 #include "models/model.hpp"
 
-namespace models {
+namespace tractus::models {
 
 /// A recorded motion with its derivatives, one entry per sample.
 struct PalpationMotion {
@@ -122,7 +122,7 @@ class PalpationRuntime {
   };
   PalpationRuntime(const volume::ForceField& field, laws::PalpationLaw law)
       : field_(&field), law_(std::move(law)) {}
-  core::Result<void> add(const effects::Use& use);
+  core::Result<void> add(const effects::EffectInstance& use);
   /// What is felt and does not bend the shank, on top of a step.
   void add_unbending(const Contacts& contacts, const math::Pose& X_VH,
                      laws::PalpationStep& step) const noexcept;
@@ -143,4 +143,4 @@ class PalpationRuntime {
   std::size_t field_samples() const noexcept;  ///< asked for in one evaluation of all points
 };
 
-}  // namespace models
+}  // namespace tractus::models

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+namespace tractus {
 namespace models {
 namespace {
 
@@ -58,7 +59,8 @@ TEST(PalpationRuntime, AddsThePoseOffsetToThePositionInV) {
   EXPECT_EQ(tip, plain->tip_m(pose, by_hand.deflection_m));
 }
 
-PalpationRuntime with(std::vector<effects::Use> uses, laws::PalpationParameters base = {}) {
+PalpationRuntime with(std::vector<effects::EffectInstance> uses,
+                      laws::PalpationParameters base = {}) {
   PalpationModel model;
   model.base = base;
   model.effects = std::move(uses);
@@ -248,3 +250,4 @@ TEST(PalpationRuntime, RefusesWhatTheLawRefuses) {
 
 }  // namespace
 }  // namespace models
+}  // namespace tractus

@@ -8,6 +8,7 @@
 #include "core/require.hpp"
 #include "effects/expression.hpp"
 
+namespace tractus {
 namespace models {
 
 using core::Errc;
@@ -47,7 +48,7 @@ Error bad(const std::string& where, std::string_view key, const std::string& why
   return {Errc::bad_input, fmt::format("{}/{}: {}", where, key, why)};
 }
 
-Fault read_identity(Fields& fields, std::string_view rig, std::string& name) {
+OptionalError read_identity(Fields& fields, std::string_view rig, std::string& name) {
   const std::string& where = fields.where();
   if (const auto format = fields.text_or("format", ""); format != kModelFormat)
     return bad(
@@ -63,7 +64,7 @@ Fault read_identity(Fields& fields, std::string_view rig, std::string& name) {
   return std::nullopt;
 }
 
-Fault read_fixed(Fields& fields, const Json& whole, std::vector<std::string>& fixed) {
+OptionalError read_fixed(Fields& fields, const Json& whole, std::vector<std::string>& fixed) {
   if (!fields.has("fixed")) return std::nullopt;
   const std::string& where = fields.where();
   const Json& list = *fields.member("fixed");
@@ -102,11 +103,12 @@ void read_parameter(Fields& fields, const effects::Param& param, std::vector<dou
   }
 }
 
-core::Result<effects::Use> read_use(const Json& json, const std::string& where, FactsOf facts_of) {
+core::Result<effects::EffectInstance> read_use(const Json& json, const std::string& where,
+                                               FactsOf facts_of) {
   if (!json.is_object() || !json.contains("id") || !json["id"].is_string())
     return Error{Errc::bad_input, where + ": an object with a text \"id\" is expected"};
   Fields fields(json, where);
-  effects::Use use{fields.text("id"), {}};
+  effects::EffectInstance use{fields.text("id"), {}};
   if (effects::is_expression(use.id)) {
     const Json* file = fields.member("expression");
     if (!file) return fields.done().error();
@@ -130,7 +132,8 @@ core::Result<effects::Use> read_use(const Json& json, const std::string& where, 
 
 }  // namespace
 
-Fault read_effects(Fields& fields, FactsOf facts_of, std::vector<effects::Use>& uses) {
+OptionalError read_effects(Fields& fields, FactsOf facts_of,
+                           std::vector<effects::EffectInstance>& uses) {
   const Json* list = fields.member("effects", false);
   if (!list) return std::nullopt;
   const std::string& where = fields.where();
@@ -138,7 +141,7 @@ Fault read_effects(Fields& fields, FactsOf facts_of, std::vector<effects::Use>& 
   for (std::size_t k = 0; k < list->size(); ++k) {
     auto use = read_use((*list)[k], fmt::format("{}/effects/{}", where, k), facts_of);
     if (!use) return use.error();
-    if (std::ranges::find(uses, use->id, &effects::Use::id) != uses.end())
+    if (std::ranges::find(uses, use->id, &effects::EffectInstance::id) != uses.end())
       return bad(where, fmt::format("effects/{}/id", k),
                  fmt::format("'{}' is in the list already", use->id));
     uses.push_back(std::move(*use));
@@ -146,9 +149,9 @@ Fault read_effects(Fields& fields, FactsOf facts_of, std::vector<effects::Use>& 
   return std::nullopt;
 }
 
-Json effects_to_json(const std::vector<effects::Use>& uses, FactsOf facts_of) {
+Json effects_to_json(const std::vector<effects::EffectInstance>& uses, FactsOf facts_of) {
   Json list = Json::array();
-  for (const effects::Use& use : uses) {
+  for (const effects::EffectInstance& use : uses) {
     const auto facts = facts_of(use);
     core::require(facts && use.values.size() == effects::value_count(*facts),
                   "a model's effects are known, with all their numbers");
@@ -169,3 +172,4 @@ Json effects_to_json(const std::vector<effects::Use>& uses, FactsOf facts_of) {
 }
 
 }  // namespace models
+}  // namespace tractus

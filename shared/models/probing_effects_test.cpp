@@ -6,13 +6,14 @@
 
 #include "models/probing_runtime.hpp"
 
+namespace tractus {
 namespace models {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
 
 /// What the effects alone ask for: a model without layers.
-std::vector<double> force_N(std::vector<effects::Use> uses, const ProbingMotion& motion,
+std::vector<double> force_N(std::vector<effects::EffectInstance> uses, const ProbingMotion& motion,
                             std::vector<laws::Layer> layers = {}) {
   ProbingModel model;
   model.layers = std::move(layers);
@@ -49,7 +50,7 @@ TEST(Inertia, IsMassTimesAcceleration) {
 
 TEST(StribeckFriction, FallsFromBreakawayToFrictionAtSpeed) {
   // F_c = 1 N, F_s = 3 N, v_s = 4 mm/s; at v = v_s: 1 + 2/e = 1.73575888 N; at 10 v_s: 1 N.
-  const effects::Use use{"stribeck_friction", {1.0, 3.0, 0.004}};
+  const effects::EffectInstance use{"stribeck_friction", {1.0, 3.0, 0.004}};
   EXPECT_NEAR(force_N({use}, moment(0.01, 0.004))[0], 1.7357588823, 1e-9);
   EXPECT_NEAR(force_N({use}, moment(0.01, -0.004))[0], -1.7357588823, 1e-9);
   EXPECT_NEAR(force_N({use}, moment(0.01, 1e-9))[0], 3.0, 1e-9);
@@ -154,7 +155,7 @@ TEST(RotationCoupling, DividesTheBonesResistanceAlone) {
 }
 
 TEST(ForceRipple, ComesBackAfterItsPeriodOfDepth) {
-  const effects::Use use{"force_ripple", {0.7, 0.002, kPi / 6.0}};
+  const effects::EffectInstance use{"force_ripple", {0.7, 0.002, kPi / 6.0}};
   EXPECT_NEAR(force_N({use}, moment(0.0, 0.0))[0], 0.35, 1e-12);  // sin 30°
   EXPECT_NEAR(force_N({use}, moment(0.0125, 0.0))[0], 0.7 * std::sin(kPi / 2.0 + kPi / 6.0), 1e-12);
 }
@@ -209,3 +210,4 @@ TEST(Direction, HasNoneBelowTheSpeedThatCountsAsRest) {
 
 }  // namespace
 }  // namespace models
+}  // namespace tractus

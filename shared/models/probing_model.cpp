@@ -7,6 +7,7 @@
 #include "effects/probing_effect.hpp"
 #include "models/parts.hpp"
 
+namespace tractus {
 namespace models {
 namespace {
 
@@ -24,7 +25,7 @@ double number(Fields& fields, const char* key) {
   return fields.number(key, -kAny, kAny);
 }
 
-Fault read_layers(Fields& base, ProbingModel& model) {
+OptionalError read_layers(Fields& base, ProbingModel& model) {
   const Json* list = base.member("layers");
   if (!list) return bad(base.where(), "layers", "is missing");
   if (!list->is_array() || list->size() > kMaxLayers)
@@ -40,7 +41,7 @@ Fault read_layers(Fields& base, ProbingModel& model) {
   return std::nullopt;
 }
 
-Fault read_rotary(Fields& base, ProbingModel& model) {
+OptionalError read_rotary(Fields& base, ProbingModel& model) {
   const Json* object = base.member("rotary", false);
   if (!object) return std::nullopt;
   Fields fields(*object, base.where() + "/rotary");
@@ -52,7 +53,7 @@ Fault read_rotary(Fields& base, ProbingModel& model) {
   return std::nullopt;
 }
 
-Fault read_base(Fields& fields, ProbingModel& model) {
+OptionalError read_base(Fields& fields, ProbingModel& model) {
   const Json* object = fields.member("base");
   if (!object) return bad(fields.where(), "base", "is missing");
   Fields base(*object, fields.where() + "/base");
@@ -130,3 +131,4 @@ Result<Model> read_model(const std::filesystem::path& path) {
 }
 
 }  // namespace models
+}  // namespace tractus

@@ -11,7 +11,7 @@
 #include "laws/probing_law.hpp"
 #include "models/model.hpp"
 
-namespace models {
+namespace tractus::models {
 
 /// `tractus-model/1`, rig "probing": layers by depth (one, many or none) and the rotary stage.
 /// Walls and travel are not the model's but the scenario's and the rig's.
@@ -20,7 +20,7 @@ struct ProbingModel {
   std::vector<laws::Layer> layers;  ///< by depth, without overlap
   laws::RotaryStage rotary;
   std::vector<std::string> fixed;  ///< JSON pointers of base parameters that a fit leaves alone
-  std::vector<effects::Use> effects = {};  ///< in the file's order
+  std::vector<effects::EffectInstance> effects = {};  ///< in the file's order
 
   /// @param where  leads every message, as "model.json: ". Errors: bad_input naming the field, the
   /// law's own refusals among them; another rig and every effect are refused by name.
@@ -37,4 +37,4 @@ using Model = std::variant<PalpationModel, ProbingModel>;
 core::Result<Model> model_from_json(const core::Json& json, const std::string& where);
 core::Result<Model> read_model(const std::filesystem::path& path);
 
-}  // namespace models
+}  // namespace tractus::models

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+namespace tractus {
 namespace models {
 namespace {
 
@@ -110,3 +111,4 @@ TEST(AModelFile, SaysWhichRigItIsOf) {
 
 }  // namespace
 }  // namespace models
+}  // namespace tractus

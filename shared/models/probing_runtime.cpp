@@ -6,6 +6,7 @@
 
 #include "models/probing_step.hpp"
 
+namespace tractus {
 namespace models {
 namespace {
 
@@ -79,7 +80,7 @@ core::Result<ProbingRuntime> ProbingRuntime::make(const ProbingModel& model, dou
 }
 
 core::Result<ProbingRuntime> ProbingRuntime::make(laws::ProbingParameters parameters,
-                                                  std::span<const effects::Use> uses) {
+                                                  std::span<const effects::EffectInstance> uses) {
   auto law = laws::ProbingLaw::make(std::move(parameters));
   if (!law) return law.error();
   if (uses.size() > kMaxProbingEffects)
@@ -88,7 +89,7 @@ core::Result<ProbingRuntime> ProbingRuntime::make(laws::ProbingParameters parame
         fmt::format("{} effects where at most {} are expected", uses.size(), kMaxProbingEffects)};
   Effects effects;
   effects.reserve(uses.size());
-  for (const effects::Use& use : uses) {
+  for (const effects::EffectInstance& use : uses) {
     auto effect = effects::make_probing_effect(use);
     if (!effect) return effect.error();
     effects.push_back(std::move(*effect));
@@ -170,3 +171,4 @@ double ProbingRuntime::advance(double force_N, double turning_rad_s, double dt_s
 }
 
 }  // namespace models
+}  // namespace tractus

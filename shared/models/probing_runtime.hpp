@@ -12,7 +12,7 @@
 #include "laws/probing_law.hpp"
 #include "models/probing_model.hpp"
 
-namespace models {
+namespace tractus::models {
 
 using effects::ProbingMotion;
 
@@ -50,7 +50,7 @@ class ProbingRuntime {
   static core::Result<ProbingRuntime> make(const ProbingModel& model, double travel_m);
   /// The same for a law that has walls (a scenario's).
   static core::Result<ProbingRuntime> make(laws::ProbingParameters parameters,
-                                           std::span<const effects::Use> uses);
+                                           std::span<const effects::EffectInstance> uses);
 
   /// Force from motion, measurement effects included. The motion's arrays have one size; the last
   /// three may be empty. A sample's dt is that since the sample before.
@@ -91,4 +91,4 @@ class ProbingRuntime {
                           // recording's
 };
 
-}  // namespace models
+}  // namespace tractus::models

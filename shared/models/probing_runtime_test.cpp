@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+namespace tractus {
 namespace models {
 namespace {
 
@@ -46,7 +47,8 @@ TEST(ProbingRuntime, AddsFrictionAgainstTheMotionAndTheSensorsBias) {
 
 constexpr double kTurning = 0.5;  // rad/s, above 10 °/s
 
-ProbingRuntime live_runtime(std::vector<effects::Use> uses, ProbingModel model = one_layer()) {
+ProbingRuntime live_runtime(std::vector<effects::EffectInstance> uses,
+                            ProbingModel model = one_layer()) {
   model.effects = std::move(uses);
   auto runtime = ProbingRuntime::make(model, 0.05);
   EXPECT_TRUE(runtime) << runtime.error().what;
@@ -113,7 +115,7 @@ TEST(ProbingRuntime, GoesThroughABreachAndToTheStopAsTheLawDoes) {
       .walls = {{0.03, 0.004, 100.0, 0.005, 400.0}},
       .rotary = {},
       .travel_m = 0.05};
-  const std::vector<effects::Use> nearly_nothing{{"inertia", {1e-9}}};
+  const std::vector<effects::EffectInstance> nearly_nothing{{"inertia", {1e-9}}};
   const auto with = ProbingRuntime::make(parameters, nearly_nothing);
   const auto law = ProbingRuntime::make(parameters, {});
   ASSERT_TRUE(with && law);
@@ -148,3 +150,4 @@ TEST(ProbingRuntime, RefusesAnEffectByItsParameter) {
 
 }  // namespace
 }  // namespace models
+}  // namespace tractus

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+namespace tractus {
 namespace models {
 namespace {
 
@@ -180,3 +181,4 @@ double ProbingStep::take(double force_N) noexcept {
 }
 
 }  // namespace models
+}  // namespace tractus

@@ -8,7 +8,7 @@
 #include "laws/probing_law.hpp"
 #include "models/probing_runtime.hpp"
 
-namespace models {
+namespace tractus::models {
 
 /// The tick is cut where the bone's depth crosses a border of the law, so that a stretch's law
 /// never acts beyond its end.
@@ -40,4 +40,4 @@ class ProbingStep {
   ProbingLive& live_;
 };
 
-}  // namespace models
+}  // namespace tractus::models

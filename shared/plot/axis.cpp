@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+namespace tractus {
 namespace plot {
 namespace {
 
@@ -83,3 +84,4 @@ double Axis::share(double value) const {
 }
 
 }  // namespace plot
+}  // namespace tractus

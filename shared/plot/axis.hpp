@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace plot {
+namespace tractus::plot {
 
 struct Tick {
   double at;
@@ -39,4 +39,4 @@ class Axis {
   std::vector<Tick> ticks_;
 };
 
-}  // namespace plot
+}  // namespace tractus::plot

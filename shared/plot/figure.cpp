@@ -11,6 +11,7 @@
 #include "plot/text.hpp"
 #include "plot/trace.hpp"
 
+namespace tractus {
 namespace plot {
 namespace {
 
@@ -351,3 +352,4 @@ std::string svg(const Figure& figure) {
 }
 
 }  // namespace plot
+}  // namespace tractus

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace plot {
+namespace tractus::plot {
 
 /// A curve. A value that is not finite makes a gap. Where `x` does not decrease, more points than
 /// the picture can show are thinned to first, lowest, highest and last of each pixel column, so
@@ -64,4 +64,4 @@ struct Figure {
 /// several may stand in one page.
 std::string svg(const Figure& figure);
 
-}  // namespace plot
+}  // namespace tractus::plot

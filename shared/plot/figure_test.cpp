@@ -11,6 +11,7 @@
 #include "plot/text.hpp"
 #include "plot/trace.hpp"
 
+namespace tractus {
 namespace plot {
 namespace {
 
@@ -131,3 +132,4 @@ TEST(Svg, IsBalancedAndFreeOfNonNumbersWhateverIsShown) {
 
 }  // namespace
 }  // namespace plot
+}  // namespace tractus

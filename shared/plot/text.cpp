@@ -6,6 +6,7 @@
 
 #include "plot/trace.hpp"
 
+namespace tractus {
 namespace plot {
 namespace {
 
@@ -78,3 +79,4 @@ double text_width(std::string_view text, double size_px) {
 }
 
 }  // namespace plot
+}  // namespace tractus

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace plot {
+namespace tractus::plot {
 
 inline constexpr const char* kGrey = "#5b6470";  ///< labels of axes and ticks
 
@@ -27,4 +27,4 @@ std::string written(const Text& at, std::string_view text);
 /// About how wide a text comes out, px; sans-serif letters average 0.56 of the size.
 double text_width(std::string_view text, double size_px);
 
-}  // namespace plot
+}  // namespace tractus::plot

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+namespace tractus {
 namespace plot {
 namespace {
 
@@ -87,3 +88,4 @@ std::string staircase(std::span<const double> edges, std::span<const double> y, 
 }
 
 }  // namespace plot
+}  // namespace tractus

@@ -6,7 +6,7 @@
 
 #include "plot/axis.hpp"
 
-namespace plot {
+namespace tractus::plot {
 
 /// Where a panel's values lie on the picture, px from the plot's own corner.
 struct Frame {
@@ -26,4 +26,4 @@ std::string staircase(std::span<const double> edges, std::span<const double> y, 
 /// A coordinate with at most two decimals.
 std::string px(double value);
 
-}  // namespace plot
+}  // namespace tractus::plot

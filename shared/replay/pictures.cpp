@@ -8,6 +8,7 @@
 
 #include "replay/table.hpp"
 
+namespace tractus {
 namespace replay {
 namespace {
 
@@ -74,7 +75,7 @@ void add_places(plot::Figure& figure, const trial::PalpationMeasurement& recordi
       [&](const math::Pose& pose) { return angle_deg(pose.q * math::Vec3::UnitZ(), tract.axis); });
 }
 
-std::vector<double> densities(std::span<const math::Wrench> wrenches, const Channel& channel,
+std::vector<double> densities(std::span<const math::Wrench> wrenches, const WrenchColumn& channel,
                               double low, double width) {
   std::vector<double> out(kBins, 0.0);
   for (const auto& wrench : wrenches) {
@@ -87,7 +88,7 @@ std::vector<double> densities(std::span<const math::Wrench> wrenches, const Chan
 
 plot::Panel distribution_panel(std::span<const math::Wrench> measured,
                                std::span<const math::Wrench> simulated, std::size_t c) {
-  const Channel& channel = kChannels[c];
+  const WrenchColumn& channel = kChannels[c];
   double low = 0.0, high = channel.floor;
   for (const auto wrenches : {measured, simulated})
     for (const auto& wrench : wrenches) {
@@ -143,3 +144,4 @@ plot::Figure distribution_figure(std::span<const math::Wrench> measured,
 }
 
 }  // namespace replay
+}  // namespace tractus

@@ -8,7 +8,7 @@
 #include "replay/replay.hpp"
 #include "trial/measurement_set.hpp"
 
-namespace replay {
+namespace tractus::replay {
 
 /// The probe as the pictures need it.
 struct ProbePlace {
@@ -28,4 +28,4 @@ plot::Figure trial_figure(const trial::PalpationMeasurement& recording, const Re
 plot::Figure distribution_figure(std::span<const math::Wrench> measured,
                                  std::span<const math::Wrench> simulated);
 
-}  // namespace replay
+}  // namespace tractus::replay

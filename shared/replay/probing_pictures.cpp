@@ -2,6 +2,7 @@
 
 #include "replay/probing_replay.hpp"
 
+namespace tractus {
 namespace replay {
 namespace {
 
@@ -88,3 +89,4 @@ plot::Figure trial_figure(const trial::ProbingMeasurement& recording,
 }
 
 }  // namespace replay
+}  // namespace tractus

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lab/probing_recording.hpp"
+#include "lab/rigs/probing/recording.hpp"
 
+namespace tractus {
 namespace replay {
 namespace {
 
@@ -46,3 +47,4 @@ core::Result<ProbingReplayed> replay(const models::ProbingModel& model,
 }
 
 }  // namespace replay
+}  // namespace tractus

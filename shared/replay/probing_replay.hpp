@@ -11,7 +11,7 @@
 #include "plot/figure.hpp"
 #include "trial/probing_set.hpp"
 
-namespace replay {
+namespace tractus::replay {
 
 /// A model's answer to one recording, at the recording's times.
 struct ProbingReplayed {
@@ -61,4 +61,4 @@ std::string csv(const trial::ProbingMeasurement& recording, const ProbingReplaye
 plot::Figure trial_figure(const trial::ProbingMeasurement& recording,
                           const ProbingReplayed& replayed);
 
-}  // namespace replay
+}  // namespace tractus::replay

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+namespace tractus {
 namespace replay {
 namespace {
 
@@ -113,3 +114,4 @@ TEST(ProbingReplay, TooFewSamplesAreRefusedByName) {
 
 }  // namespace
 }  // namespace replay
+}  // namespace tractus

@@ -6,6 +6,7 @@
 
 #include "replay/probing_replay.hpp"
 
+namespace tractus {
 namespace replay {
 namespace {
 
@@ -162,3 +163,4 @@ std::string csv(const trial::ProbingMeasurement& recording, const ProbingReplaye
 }
 
 }  // namespace replay
+}  // namespace tractus

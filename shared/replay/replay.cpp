@@ -7,6 +7,7 @@
 
 #include "math/spline.hpp"
 
+namespace tractus {
 namespace replay {
 namespace {
 
@@ -123,3 +124,4 @@ core::Result<Replayed> replay(const models::PalpationRuntime& runtime,
 }
 
 }  // namespace replay
+}  // namespace tractus

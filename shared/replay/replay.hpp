@@ -9,7 +9,7 @@
 #include "models/palpation_runtime.hpp"
 #include "trial/measurement_set.hpp"
 
-namespace replay {
+namespace tractus::replay {
 
 /// The published rate of the simulation, Hz: recorded motion is interpolated to it [Zoller2020,
 /// "Parameter tuning"].
@@ -43,4 +43,4 @@ core::Result<Replayed> replay(const models::PalpationRuntime& runtime,
                               const math::Vec3& down = -math::Vec3::UnitZ(),
                               const core::Progress& progress = {});
 
-}  // namespace replay
+}  // namespace tractus::replay

@@ -8,6 +8,7 @@
 #include "replay/pictures.hpp"
 #include "replay/table.hpp"
 
+namespace tractus {
 namespace replay {
 namespace {
 
@@ -202,3 +203,4 @@ TEST(Pictures, HoldEverySampleInTheDistributions) {
 
 }  // namespace
 }  // namespace replay
+}  // namespace tractus

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+namespace tractus {
 namespace replay {
 namespace {
 
@@ -46,7 +47,7 @@ std::string cut(const std::string& text) {
 
 }  // namespace
 
-const std::array<Channel, 4> kChannels{{
+const std::array<WrenchColumn, 4> kChannels{{
     {"force_xy_N", "F_xy", "N", 0.01, [](const math::Wrench& w) { return across(w.force_N); }},
     {"force_z_N", "F_z", "N", 0.01, [](const math::Wrench& w) { return w.force_N.z(); }},
     {"torque_xy_Nm", "T_xy", "N·m", 0.001,
@@ -54,7 +55,7 @@ const std::array<Channel, 4> kChannels{{
     {"torque_z_Nm", "T_z", "N·m", 0.001, [](const math::Wrench& w) { return w.torque_Nm.z(); }},
 }};
 
-Summary summary(std::span<const math::Wrench> wrenches, const Channel& channel) {
+Summary summary(std::span<const math::Wrench> wrenches, const WrenchColumn& channel) {
   Summary out{wrenches.size(), 0, kNone, kNone, kNone};
   double mean = 0.0, squares = 0.0, max = 0.0;  // Welford: no loss where the spread is small
   for (const auto& wrench : wrenches) {
@@ -92,7 +93,7 @@ std::string csv(std::span<const Row> rows) {
 
 std::string printed(std::span<const Row> rows) {
   std::string out = fmt::format("{:<26}{:<11}", "", "");
-  for (const Channel& channel : kChannels)
+  for (const WrenchColumn& channel : kChannels)
     out += fmt::format("  {:<22}", fmt::format("{} [{}]", channel.label, channel.unit));
   out += fmt::format("\n{:<26}{:<11}", "", "");
   for (std::size_t c = 0; c < kChannels.size(); ++c)
@@ -126,3 +127,4 @@ core::Json to_json(const Row& row) {
 }
 
 }  // namespace replay
+}  // namespace tractus

@@ -12,10 +12,10 @@
 #include "core/json.hpp"
 #include "math/geometry.hpp"
 
-namespace replay {
+namespace tractus::replay {
 
 /// A column of the table.
-struct Channel {
+struct WrenchColumn {
   std::string_view id;     ///< "force_xy_N"
   std::string_view label;  ///< "F_xy"
   std::string_view unit;   ///< "N"
@@ -26,7 +26,7 @@ struct Channel {
 
 /// F_xy, F_z, T_xy, T_z [Zoller2020, Table 1]: lengths in the plane across the handle's axis,
 /// values along it; floors 0.01 N and 0.001 N·m.
-extern const std::array<Channel, 4> kChannels;
+extern const std::array<WrenchColumn, 4> kChannels;
 
 /// Over the samples whose amount is above the floor: |F_z| and |T_z| for the axial ones.
 struct Summary {
@@ -35,7 +35,7 @@ struct Summary {
   double mean, sd, max;       ///< sd with n − 1 (the source does not say)
 };
 
-Summary summary(std::span<const math::Wrench> wrenches, const Channel& channel);
+Summary summary(std::span<const math::Wrench> wrenches, const WrenchColumn& channel);
 
 /// One line of the table: who, measured or simulated, a summary per channel.
 struct Row {
@@ -55,4 +55,4 @@ std::string csv(std::span<const Row> rows);
 std::string printed(std::span<const Row> rows);
 core::Json to_json(const Row& row);
 
-}  // namespace replay
+}  // namespace tractus::replay

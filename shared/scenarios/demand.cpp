@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+namespace tractus {
 namespace scenarios {
 namespace {
 
@@ -109,3 +110,4 @@ core::Result<Resistance> resistance(const Scenario& scenario, std::span<const do
 }
 
 }  // namespace scenarios
+}  // namespace tractus

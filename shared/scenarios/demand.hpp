@@ -8,7 +8,7 @@
 #include "core/result.hpp"
 #include "scenarios/scenario.hpp"
 
-namespace scenarios {
+namespace tractus::scenarios {
 
 inline constexpr double kSurgeon_N = 150.0;  ///< "typical force" of a surgeon [Probing, section 3]
 inline constexpr double kTopSpeed_m_s = 0.23;  ///< of the actuator [Probing, section 3]
@@ -55,4 +55,4 @@ struct Resistance {
 /// Errors: those of `Scenario::expanded` and of the law.
 core::Result<Resistance> resistance(const Scenario& scenario, std::span<const double> speeds_m_s);
 
-}  // namespace scenarios
+}  // namespace tractus::scenarios

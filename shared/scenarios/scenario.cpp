@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+namespace tractus {
 namespace scenarios {
 namespace {
 
@@ -76,7 +77,7 @@ Result<void> check_stretches(const Scenario& s) {
   if (s.layers.size() > kMaxStretches) return refused("layers", "are too many");
   double end_m = 0.0;
   for (std::size_t k = 0; k < s.layers.size(); ++k) {
-    const Stretch& stretch = s.layers[k];
+    const DensityRegion& stretch = s.layers[k];
     const std::string at = fmt::format("layers/{}/", k);
     if (auto ok = check({{at + "start_m", stretch.start_m, 0.0, s.travel_m},
                          {at + "thickness_m", stretch.thickness_m, kThinnestLayer_m, s.travel_m},
@@ -96,7 +97,7 @@ Result<void> check_stretches(const Scenario& s) {
 }
 
 double density_at(const Scenario& s, double x_m) {
-  for (const Stretch& stretch : s.layers)
+  for (const DensityRegion& stretch : s.layers)
     if (x_m >= stretch.start_m && x_m < stretch.start_m + stretch.thickness_m)
       return s.density * stretch.density;
   return s.density;
@@ -172,3 +173,4 @@ Result<models::ProbingModel> Scenario::model() const {
 }
 
 }  // namespace scenarios
+}  // namespace tractus

@@ -11,7 +11,7 @@
 #include "laws/probing_law.hpp"
 #include "models/probing_model.hpp"
 
-namespace scenarios {
+namespace tractus::scenarios {
 
 /// The four of the study [Probing, section 4, Fig. 6].
 enum class Kind : unsigned char {
@@ -42,7 +42,7 @@ struct Breach {
 
 /// A stretch of bone that is denser or less dense than the rest: "the spring and damping
 /// coefficient is unique to that layer" [Probing, section 4].
-struct Stretch {
+struct DensityRegion {
   double start_m = 0.0;
   double thickness_m = 0.0;
   double density = 1.0;  ///< multiplies K and D of the layers whose middle lies in it, 0.05 … 20
@@ -67,11 +67,11 @@ struct Scenario {
   std::string name;
   Kind kind = Kind::hard;
   Bone bone;
-  Breach breach;                ///< used where there is a wall
-  std::vector<double> walls_m;  ///< breach thresholds by depth; none for hard and soft
-  double density = 1.0;         ///< 0.05 … 20
-  std::vector<Stretch> layers;  ///< by depth, without overlap; may be empty
-  double travel_m = 0.05;       ///< the probe stop, 5 mm … 0.1 m
+  Breach breach;                      ///< used where there is a wall
+  std::vector<double> walls_m;        ///< breach thresholds by depth; none for hard and soft
+  double density = 1.0;               ///< 0.05 … 20
+  std::vector<DensityRegion> layers;  ///< by depth, without overlap; may be empty
+  double travel_m = 0.05;             ///< the probe stop, 5 mm … 0.1 m
   laws::RotaryStage rotary;
   Origin origin;
 
@@ -93,4 +93,4 @@ struct Scenario {
 /// The tuned scenarios that ship, by kind.
 core::Result<Scenario> tuned(Kind kind);
 
-}  // namespace scenarios
+}  // namespace tractus::scenarios

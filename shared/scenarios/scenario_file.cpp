@@ -7,6 +7,7 @@
 #include "scenarios/scenario.hpp"
 #include "scenarios/tuned.hpp"
 
+namespace tractus {
 namespace scenarios {
 namespace {
 
@@ -53,7 +54,8 @@ Result<void> read_origin(const Json& json, const std::string& where, Origin& ori
   return fields.done();
 }
 
-Result<void> read_stretches(const Json& list, const std::string& where, std::vector<Stretch>& out) {
+Result<void> read_stretches(const Json& list, const std::string& where,
+                            std::vector<DensityRegion>& out) {
   if (!list.is_array() || list.size() > 4096)
     return Error{Errc::bad_input, where + "/layers: an array of layers is expected"};
   for (std::size_t k = 0; k < list.size(); ++k) {
@@ -124,7 +126,7 @@ Result<Scenario> Scenario::read(const std::filesystem::path& path) {
 
 Json Scenario::to_json() const {
   Json stretches = Json::array();
-  for (const Stretch& stretch : layers)
+  for (const DensityRegion& stretch : layers)
     stretches.push_back({{"start_m", stretch.start_m},
                          {"thickness_m", stretch.thickness_m},
                          {"density", stretch.density}});
@@ -165,3 +167,4 @@ Result<Scenario> tuned(Kind kind) {
 }
 
 }  // namespace scenarios
+}  // namespace tractus

@@ -7,6 +7,7 @@
 
 #include "scenarios/demand.hpp"
 
+namespace tractus {
 namespace scenarios {
 namespace {
 
@@ -218,3 +219,4 @@ TEST(Demand, NamesWhatASurgeonCannotDo) {
 
 }  // namespace
 }  // namespace scenarios
+}  // namespace tractus

@@ -3,9 +3,9 @@
 
 #include <string_view>
 
-namespace scenarios {
+namespace tractus::scenarios {
 
 /// The text of tuned/NAME.json; empty if there is none.
 std::string_view tuned_text(std::string_view name);
 
-}  // namespace scenarios
+}  // namespace tractus::scenarios

@@ -5,6 +5,7 @@
 #include "core/clock.hpp"
 #include "core/words.hpp"
 
+namespace tractus {
 namespace scenarios {
 namespace {
 
@@ -54,3 +55,4 @@ Result<Scenario> next_version(const Scenario& parent, std::span<const Change> ch
 }
 
 }  // namespace scenarios
+}  // namespace tractus

@@ -7,7 +7,7 @@
 
 #include "scenarios/scenario.hpp"
 
-namespace scenarios {
+namespace tractus::scenarios {
 
 /// One field and its new value.
 struct Change {
@@ -23,4 +23,4 @@ core::Result<Change> parse_change(const std::string& text);
 core::Result<Scenario> next_version(const Scenario& parent, std::span<const Change> changes,
                                     const std::string& who, std::int64_t when_utc_us);
 
-}  // namespace scenarios
+}  // namespace tractus::scenarios

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+namespace tractus {
 namespace scenarios {
 namespace {
 
@@ -57,3 +58,4 @@ TEST(NextVersion, RefusesWhatIsNoFieldAndWhatCannotBe) {
 
 }  // namespace
 }  // namespace scenarios
+}  // namespace tractus

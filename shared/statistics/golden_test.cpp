@@ -5,6 +5,7 @@
 #include <limits>
 #include <sstream>
 
+namespace tractus {
 namespace statistics::golden {
 namespace {
 
@@ -139,3 +140,4 @@ double digits(double got, double want) {
 }
 
 }  // namespace statistics::golden
+}  // namespace tractus

@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "core/json.hpp"
-#include "statistics/design.hpp"
+#include "statistics/regression/design.hpp"
 
-namespace statistics::golden {
+namespace tractus::statistics::golden {
 
 /// tests/golden/statistics-reference/expected/NAME.json
 core::Json expected(const std::string& name);
@@ -40,4 +40,4 @@ std::vector<double> nist_line(const std::string& path, const std::string& label)
 /// Correct digits: −log10(|got − want| / |want|), of |got| alone where want is 0; at most 15.
 double digits(double got, double want);
 
-}  // namespace statistics::golden
+}  // namespace tractus::statistics::golden

@@ -6,6 +6,7 @@
 
 #include "core/require.hpp"
 
+namespace tractus {
 namespace study {
 namespace {
 
@@ -98,3 +99,4 @@ std::vector<int> order_of(const OrderPlan& plan, int participant) {
 }
 
 }  // namespace study
+}  // namespace tractus

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace study {
+namespace tractus::study {
 
 enum class Ordering : unsigned char {
   random,   ///< every participant a shuffle of all trials of their own [Probing, section 5]
@@ -35,4 +35,4 @@ std::vector<std::vector<int>> williams_square(int k);
 /// takes another row, and which one is a seeded shuffle of its own per block.
 std::vector<int> order_of(const OrderPlan& plan, int participant);
 
-}  // namespace study
+}  // namespace tractus::study

@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+namespace tractus {
 namespace study {
 namespace {
 
@@ -102,3 +103,4 @@ TEST(Ordering, IsReadByTheNameItIsWrittenWith) {
 
 }  // namespace
 }  // namespace study
+}  // namespace tractus

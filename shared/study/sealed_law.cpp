@@ -8,6 +8,7 @@
 #include "core/bytes.hpp"
 #include "core/json.hpp"
 
+namespace tractus {
 namespace study {
 namespace {
 using core::Errc;
@@ -110,3 +111,4 @@ Result<laws::ProbingParameters> opened_law(std::string_view sealed, std::string_
 }
 
 }  // namespace study
+}  // namespace tractus

@@ -7,7 +7,7 @@
 #include "core/result.hpp"
 #include "laws/probing_law.hpp"
 
-namespace study {
+namespace tractus::study {
 
 /// The law's numbers as text of one size, whatever they are: JSON without names, filled up with
 /// zeros, sealed by XChaCha20-Poly1305 (libsodium's secretbox) with a fresh nonce, in base64.
@@ -38,4 +38,4 @@ core::Result<std::string> sealed_law(const laws::ProbingParameters& law, std::st
 core::Result<laws::ProbingParameters> opened_law(std::string_view sealed, std::string_view trial,
                                                  const StationKey& key);
 
-}  // namespace study
+}  // namespace tractus::study

@@ -7,6 +7,7 @@
 #include "core/bytes.hpp"
 #include "scenarios/scenario.hpp"
 
+namespace tractus {
 namespace study {
 namespace {
 
@@ -76,3 +77,4 @@ TEST(SealedLaw, RefusesMoreLayersThanItsSizeHolds) {
 
 }  // namespace
 }  // namespace study
+}  // namespace tractus

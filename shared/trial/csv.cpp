@@ -17,6 +17,7 @@
 
 #include "core/file.hpp"
 
+namespace tractus {
 namespace trial {
 namespace {
 
@@ -251,3 +252,4 @@ Result<std::vector<std::string>> csv_header(const std::filesystem::path& path,
 }
 
 }  // namespace trial
+}  // namespace tractus

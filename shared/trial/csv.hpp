@@ -11,7 +11,7 @@
 
 #include "core/result.hpp"
 
-namespace trial {
+namespace tractus::trial {
 
 struct CsvLimits {
   std::size_t max_rows = 10'000'000;
@@ -43,4 +43,4 @@ core::Result<std::size_t> read_csv(const std::filesystem::path& path,
 core::Result<std::vector<std::string>> csv_header(const std::filesystem::path& path,
                                                   const CsvLimits& limits = {});
 
-}  // namespace trial
+}  // namespace tractus::trial

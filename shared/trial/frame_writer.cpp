@@ -11,6 +11,7 @@
 
 #include "core/file.hpp"
 
+namespace tractus {
 namespace trial {
 namespace fs = std::filesystem;
 
@@ -106,3 +107,4 @@ core::Result<void> FrameWriter::seal(std::uint64_t samples) {
 }
 
 }  // namespace trial
+}  // namespace tractus

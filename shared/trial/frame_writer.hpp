@@ -3,7 +3,7 @@
 
 #include "trial/frames.hpp"
 
-namespace trial {
+namespace tractus::trial {
 
 class FrameWriter {
  public:
@@ -39,4 +39,4 @@ class FrameWriter {
 /// bad_input (not a regular file), conflict (a writer has it).
 core::Result<Descriptor> open_locked(const std::filesystem::path& path);
 
-}  // namespace trial
+}  // namespace tractus::trial

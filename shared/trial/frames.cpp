@@ -12,6 +12,7 @@
 
 #include "core/file.hpp"
 
+namespace tractus {
 namespace trial {
 namespace {
 static_assert(std::endian::native == std::endian::little, "the file's numbers are little-endian");
@@ -196,3 +197,4 @@ core::Result<FrameReader::Step> FrameReader::next() {
 }
 
 }  // namespace trial
+}  // namespace tractus

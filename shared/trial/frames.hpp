@@ -10,7 +10,7 @@
 #include "core/json.hpp"
 #include "core/result.hpp"
 
-namespace trial {
+namespace tractus::trial {
 
 /// First bytes of every file that is written.
 inline constexpr std::string_view kMagic = "tractus-trial/2\n";
@@ -109,4 +109,4 @@ class FrameReader {
   core::Sha256 hash_;
 };
 
-}  // namespace trial
+}  // namespace tractus::trial

@@ -9,6 +9,7 @@
 #include "trial/csv.hpp"
 #include "trial/set_index.hpp"
 
+namespace tractus {
 namespace trial {
 namespace {
 
@@ -153,3 +154,4 @@ Result<void> write_palpation_set(const fs::path& folder, const PalpationSet& set
 }
 
 }  // namespace trial
+}  // namespace tractus

@@ -10,7 +10,7 @@
 #include "core/result.hpp"
 #include "math/geometry.hpp"
 
-namespace trial {
+namespace tractus::trial {
 
 /// A palpation recording: columns t_s,px_m,py_m,pz_m,qw,qx,qy,qz,fx_N,fy_N,fz_N,tx_Nm,ty_Nm,tz_Nm;
 /// more are ignored.
@@ -67,4 +67,4 @@ core::Result<void> write_palpation_set(const std::filesystem::path& folder,
 /// One row of kPalpationColumns, without the line's end.
 std::string palpation_row(double t_s, const math::Pose& X_VH, const math::Wrench& wrench_H);
 
-}  // namespace trial
+}  // namespace tractus::trial

@@ -9,6 +9,7 @@
 
 #include "core/bytes.hpp"
 
+namespace tractus {
 namespace trial {
 namespace {
 
@@ -201,3 +202,4 @@ TEST_F(PalpationSetTest, ReadsBackWhatItWroteToTheSameBits) {
 
 }  // namespace
 }  // namespace trial
+}  // namespace tractus

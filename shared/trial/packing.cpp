@@ -8,6 +8,7 @@
 
 #include "trial/frames.hpp"
 
+namespace tractus {
 namespace trial {
 namespace {
 
@@ -274,3 +275,4 @@ core::Result<void> Packer::unpack(core::ByteView payload, std::vector<ProbingSam
 }
 
 }  // namespace trial
+}  // namespace tractus

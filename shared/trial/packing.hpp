@@ -9,7 +9,7 @@
 #include "core/result.hpp"
 #include "trial/trial.hpp"
 
-namespace trial {
+namespace tractus::trial {
 
 /// Column by column: the bits of a number as an integer, their second difference (of a rendered
 /// force and torque: the difference to the model's), the sign in the lowest bit, the bytes of equal
@@ -50,4 +50,4 @@ class Packer {
 /// Samples that fit one PACK frame whatever they hold, by the size of one.
 std::size_t max_packed_samples(std::size_t sample_bytes);
 
-}  // namespace trial
+}  // namespace tractus::trial

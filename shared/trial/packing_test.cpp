@@ -9,6 +9,7 @@
 
 #include "trial/frames.hpp"
 
+namespace tractus {
 namespace trial {
 namespace {
 using testing::HasSubstr;
@@ -98,3 +99,4 @@ TEST(Packing, AShortBlockOfSmoothMotionTakesLessThanHalf) {
 
 }  // namespace
 }  // namespace trial
+}  // namespace tractus

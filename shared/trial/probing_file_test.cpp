@@ -12,6 +12,7 @@
 #include "trial/signals.hpp"
 #include "trial/trial_file.hpp"
 
+namespace tractus {
 namespace trial {
 namespace {
 namespace fs = std::filesystem;
@@ -207,3 +208,4 @@ TEST(ProbingSignals, ForceAgainstDepthKeepsThePeaksOfEveryStretch) {
 
 }  // namespace
 }  // namespace trial
+}  // namespace tractus

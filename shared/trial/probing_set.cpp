@@ -9,6 +9,7 @@
 #include "trial/csv.hpp"
 #include "trial/set_index.hpp"
 
+namespace tractus {
 namespace trial {
 namespace {
 
@@ -147,3 +148,4 @@ Result<void> write_probing_set(const fs::path& folder, const ProbingSet& set) {
 }
 
 }  // namespace trial
+}  // namespace tractus

@@ -12,7 +12,7 @@
 #include "core/json.hpp"
 #include "core/result.hpp"
 
-namespace trial {
+namespace tractus::trial {
 
 /// A probing recording: columns t_s,x_m,theta_rad,fz_N,tz_Nm; more are ignored. `theta_rad`,
 /// `tz_Nm` and, on a rig that only turns, `x_m` with `fz_N` may be missing: those vectors are then
@@ -57,4 +57,4 @@ core::Result<void> write_probing_set(const std::filesystem::path& folder, const 
 /// readers', for what stands in set.json before the trials.
 core::Result<std::string> rig_of_set(const std::filesystem::path& folder);
 
-}  // namespace trial
+}  // namespace tractus::trial

@@ -9,6 +9,7 @@
 #include "core/bytes.hpp"
 #include "trial/measurement_set.hpp"
 
+namespace tractus {
 namespace trial {
 namespace {
 
@@ -103,3 +104,4 @@ TEST_F(ProbingSetTest, IsReadBackToTheSameBits) {
 
 }  // namespace
 }  // namespace trial
+}  // namespace tractus

@@ -10,6 +10,7 @@
 #include "trial/measurement_set.hpp"
 #include "trial/probing_set.hpp"
 
+namespace tractus {
 namespace trial {
 namespace {
 
@@ -158,3 +159,4 @@ Result<void> write_set_file(const fs::path& folder, const std::string& relative,
 }
 
 }  // namespace trial
+}  // namespace tractus

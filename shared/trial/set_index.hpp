@@ -11,7 +11,7 @@
 #include "core/json.hpp"
 #include "core/result.hpp"
 
-namespace trial {
+namespace tractus::trial {
 
 struct SetEntry {
   std::string id, file, operator_name, notes;
@@ -44,4 +44,4 @@ std::string wrong_time(std::span<const double> before, double t_s);
 core::Result<void> write_set_file(const std::filesystem::path& folder, const std::string& relative,
                                   std::string_view text);
 
-}  // namespace trial
+}  // namespace tractus::trial

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+namespace tractus {
 namespace trial {
 namespace {
 constexpr double kMaxLength_m = 1.0;
@@ -229,3 +230,4 @@ DepthCurve Signals::force_against_depth(std::size_t points) const {
 }
 
 }  // namespace trial
+}  // namespace tractus

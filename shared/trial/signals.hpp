@@ -11,7 +11,7 @@
 
 #include "trial/trial.hpp"
 
-namespace trial {
+namespace tractus::trial {
 
 /// The part of the header's `probe` that places the tip.
 struct ProbeShape {
@@ -109,4 +109,4 @@ class Signals {
   std::vector<float> force_N_;
 };
 
-}  // namespace trial
+}  // namespace tractus::trial

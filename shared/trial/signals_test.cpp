@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+namespace tractus {
 namespace trial {
 namespace {
 using testing::ElementsAre;
@@ -168,3 +169,4 @@ TEST(Signals, ThePathKeepsTheStrongestContactOfEveryStretch) {
 
 }  // namespace
 }  // namespace trial
+}  // namespace tractus

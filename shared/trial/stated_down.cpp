@@ -1,6 +1,6 @@
 #include "trial/measurement_set.hpp"
 
-namespace trial {
+namespace tractus::trial {
 
 core::Result<math::Vec3> stated_down(const PalpationSet& set) {
   const auto it = set.stated.find("down");
@@ -17,4 +17,4 @@ core::Result<math::Vec3> stated_down(const PalpationSet& set) {
   return math::Vec3(down.normalized());
 }
 
-}  // namespace trial
+}  // namespace tractus::trial

@@ -7,6 +7,7 @@
 
 #include "core/bytes.hpp"
 
+namespace tractus {
 namespace trial {
 namespace {
 constexpr std::size_t kMaxName = 200;  // characters of a station, a device, a person
@@ -207,3 +208,4 @@ core::Result<Header> Header::from_json(const core::Json& json, const std::string
 }
 
 }  // namespace trial
+}  // namespace tractus

@@ -12,7 +12,7 @@
 #include "core/json.hpp"
 #include "math/geometry.hpp"
 
-namespace trial {
+namespace tractus::trial {
 
 /// One tick of a palpation trial. 136 bytes, little-endian, no padding: also the layout on disk
 /// (ADR-0004).
@@ -185,4 +185,4 @@ struct TickCounts {
 };
 TickCounts count_ticks(const Block& block);
 
-}  // namespace trial
+}  // namespace tractus::trial

@@ -9,6 +9,7 @@
 #include "trial/frames.hpp"
 #include "trial/packing.hpp"
 
+namespace tractus {
 namespace trial {
 namespace {
 using OnSamples = std::function<void(const Block&)>;
@@ -257,3 +258,4 @@ core::Result<std::uint64_t> recover_trial(const std::filesystem::path& path) {
 }
 
 }  // namespace trial
+}  // namespace tractus

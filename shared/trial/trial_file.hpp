@@ -10,7 +10,7 @@
 #include "core/result.hpp"
 #include "trial/trial.hpp"
 
-namespace trial {
+namespace tractus::trial {
 
 /// Writes one file. Not for the tick: called by the recorder's thread. Every append is one frame
 /// and one write() (more only beyond 1 MiB). What a reader would refuse (fault_of, events
@@ -65,4 +65,4 @@ core::Result<Trial> scan_trial(const std::filesystem::path& path,
 /// io.
 core::Result<std::uint64_t> recover_trial(const std::filesystem::path& path);
 
-}  // namespace trial
+}  // namespace tractus::trial

@@ -15,6 +15,7 @@
 #include "core/file.hpp"
 #include "trial/frames.hpp"
 
+namespace tractus {
 namespace trial {
 namespace {
 namespace fs = std::filesystem;
@@ -490,3 +491,4 @@ TEST_P(ReleasedTrialFile, IsReadForEver) {
 
 }  // namespace
 }  // namespace trial
+}  // namespace tractus

@@ -7,7 +7,7 @@
 #include "trial/packing.hpp"
 #include "trial/trial_file.hpp"
 
-namespace trial {
+namespace tractus::trial {
 struct TrialWriter::State {
   std::string name;
   FrameWriter frames;
@@ -105,4 +105,4 @@ core::Result<void> TrialWriter::finish() { return state_->frames.seal(state_->sa
 
 std::uint64_t TrialWriter::samples_written() const noexcept { return state_->samples; }
 
-}  // namespace trial
+}  // namespace tractus::trial

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <span>
 
+namespace tractus {
 namespace volume {
 namespace {
 
@@ -151,3 +152,4 @@ core::Result<Tract> tract_between(const Vec3& entry_m, const Vec3& target_m, dou
 }
 
 }  // namespace volume
+}  // namespace tractus

@@ -9,7 +9,7 @@
 #include "volume/transfer_function.hpp"
 #include "volume/volume.hpp"
 
-namespace volume {
+namespace tractus::volume {
 
 /// The plane that halves the vertebra. It contains the patient's z; seen from above it may be
 /// turned a little, as patients do not lie straight.
@@ -45,4 +45,4 @@ core::Result<Midline> midline_about(const Volume& volume, const TransferFunction
 core::Result<Tract> tract_between(const Vec3& entry_m, const Vec3& target_m, double length_m,
                                   double radius_m, const Midline& midline);
 
-}  // namespace volume
+}  // namespace tractus::volume

@@ -7,6 +7,7 @@
 
 #include "volume/resample.hpp"
 
+namespace tractus {
 namespace volume {
 namespace {
 
@@ -179,3 +180,4 @@ TEST(BoxAbout, HoldsThePointsWithTheirMarginAndStaysInside) {
 
 }  // namespace
 }  // namespace volume
+}  // namespace tractus

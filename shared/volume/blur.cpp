@@ -10,6 +10,7 @@
 
 #include "volume/blur_kernels.hpp"
 
+namespace tractus {
 namespace volume {
 namespace {
 
@@ -209,3 +210,4 @@ void blur(const Volume& volume, const OpacityRamps& ramps, const Box& box,
 }
 
 }  // namespace volume
+}  // namespace tractus

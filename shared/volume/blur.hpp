@@ -10,7 +10,7 @@
 #include "volume/scalar_grid.hpp"
 #include "volume/volume.hpp"
 
-namespace volume {
+namespace tractus::volume {
 
 /// Half of the published 15 taps: how far a voxel reaches, in voxels per axis.
 inline constexpr int kBlurReach = 7;
@@ -44,4 +44,4 @@ struct BlurTarget {
 void blur(const Volume& volume, const OpacityRamps& ramps, const Box& box,
           const BlurTarget& target);
 
-}  // namespace volume
+}  // namespace tractus::volume

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-namespace volume::blur_kernels {
+namespace tractus::volume::blur_kernels {
 
 inline constexpr int kTaps = 6;  ///< taps each side that are computed (blur.hpp says why not seven)
 
@@ -106,4 +106,4 @@ inline void across_four(const Weights& weights, const float* const* in, int n, f
   }
 }
 
-}  // namespace volume::blur_kernels
+}  // namespace tractus::volume::blur_kernels

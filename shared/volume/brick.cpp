@@ -8,6 +8,7 @@
 
 #include "volume/volume_file.hpp"
 
+namespace tractus {
 namespace volume {
 namespace {
 
@@ -101,3 +102,4 @@ core::Result<std::vector<std::uint16_t>> brick_counts(core::ByteView stored, std
 }
 
 }  // namespace volume
+}  // namespace tractus

@@ -11,7 +11,7 @@
 #include "core/result.hpp"
 #include "volume/volume.hpp"
 
-namespace volume {
+namespace tractus::volume {
 
 /// Bricks along each axis, the last ones smaller where the edge does not divide the volume.
 std::array<int, 3> brick_grid(const std::array<int, 3>& dims);
@@ -36,4 +36,4 @@ core::Result<std::vector<std::uint16_t>> brick_counts(core::ByteView stored, std
 /// The most bytes a brick of so many voxels can take in a file.
 std::size_t stored_brick_limit(std::size_t voxels);
 
-}  // namespace volume
+}  // namespace tractus::volume

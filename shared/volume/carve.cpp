@@ -5,6 +5,7 @@
 
 #include "volume/resample.hpp"
 
+namespace tractus {
 namespace volume {
 namespace {
 
@@ -100,3 +101,4 @@ Box drill(Volume& volume, const Tract& tract, double mouth_m, const std::optiona
 }
 
 }  // namespace volume
+}  // namespace tractus

@@ -14,7 +14,7 @@
 #include "volume/transfer_function.hpp"
 #include "volume/volume.hpp"
 
-namespace volume {
+namespace tractus::volume {
 
 /// What is asked for.
 struct BreachPlan {
@@ -106,4 +106,4 @@ core::Result<double> empty_value(const Volume& volume, const TransferFunction& t
 Box drill(Volume& volume, const Tract& tract, double mouth_m, const std::optional<Breach>& breach,
           double empty);
 
-}  // namespace volume
+}  // namespace tractus::volume

@@ -9,6 +9,7 @@
 #include "volume/anatomy.hpp"
 #include "volume/resample.hpp"
 
+namespace tractus {
 namespace volume {
 namespace {
 
@@ -238,3 +239,4 @@ TEST(Mouth, ReachesAsFarBackAsTheBone) {
 
 }  // namespace
 }  // namespace volume
+}  // namespace tractus

@@ -15,6 +15,7 @@
 
 #include "volume/force_field_grid.hpp"
 
+namespace tractus {
 namespace volume {
 namespace {
 
@@ -382,3 +383,4 @@ FieldSample ForceField::sample(const Vec3& p_V_m) const noexcept {
 }
 
 }  // namespace volume
+}  // namespace tractus

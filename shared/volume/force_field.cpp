@@ -10,6 +10,7 @@
 #include "volume/blur.hpp"
 #include "volume/force_field_grid.hpp"
 
+namespace tractus {
 namespace volume {
 namespace {
 
@@ -127,3 +128,4 @@ FieldKind ForceField::kind() const noexcept { return grid_->kind; }
 const Geometry& ForceField::geometry() const noexcept { return grid_->geometry; }
 
 }  // namespace volume
+}  // namespace tractus

@@ -9,7 +9,7 @@
 #include "volume/transfer_function.hpp"
 #include "volume/volume.hpp"
 
-namespace volume {
+namespace tractus::volume {
 
 /// How the field is had between voxels (design: "The palpation law, made precise").
 enum class FieldKind {
@@ -94,4 +94,4 @@ class ForceField {
   std::unique_ptr<Grid> grid_;
 };
 
-}  // namespace volume
+}  // namespace tractus::volume

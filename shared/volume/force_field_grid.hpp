@@ -8,7 +8,7 @@
 #include "volume/opacity_ramps.hpp"
 #include "volume/scalar_grid.hpp"
 
-namespace volume {
+namespace tractus::volume {
 
 struct ForceField::Grid {
   Grid(const Volume& volume, const TransferFunction& transfer, FieldKind kind_of_field,
@@ -29,4 +29,4 @@ struct ForceField::Grid {
   Column index_at_origin;
 };
 
-}  // namespace volume
+}  // namespace tractus::volume

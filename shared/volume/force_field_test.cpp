@@ -7,6 +7,7 @@
 #include <cmath>
 #include <random>
 
+namespace tractus {
 namespace volume {
 namespace {
 
@@ -384,3 +385,4 @@ TEST(ForceField, TellsHowFarItHasComeUpToAllOfIt) {
 
 }  // namespace
 }  // namespace volume
+}  // namespace tractus

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+namespace tractus {
 namespace volume {
 namespace {
 
@@ -77,3 +78,4 @@ void OpacityRamps::opacities(const std::uint16_t* counts, int n, float* out) con
 }
 
 }  // namespace volume
+}  // namespace tractus

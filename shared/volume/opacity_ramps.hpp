@@ -7,7 +7,7 @@
 #include "volume/transfer_function.hpp"
 #include "volume/volume.hpp"
 
-namespace volume {
+namespace tractus::volume {
 
 /// α of a count c as a sum of ramps, one for each sloping piece of the transfer function:
 ///
@@ -32,4 +32,4 @@ class OpacityRamps {
   std::vector<Ramp> ramps_;
 };
 
-}  // namespace volume
+}  // namespace tractus::volume

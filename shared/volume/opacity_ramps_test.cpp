@@ -4,6 +4,7 @@
 
 #include <vector>
 
+namespace tractus {
 namespace volume {
 namespace {
 
@@ -47,3 +48,4 @@ TEST(OpacityRamps, EqualTheTransferFunctionAtEveryCount) {
 
 }  // namespace
 }  // namespace volume
+}  // namespace tractus

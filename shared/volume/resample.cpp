@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+namespace tractus {
 namespace volume {
 namespace {
 
@@ -155,3 +156,4 @@ core::Result<Volume> resample_finer(const Volume& volume, const Box& box, double
 }
 
 }  // namespace volume
+}  // namespace tractus

@@ -7,7 +7,7 @@
 #include "core/result.hpp"
 #include "volume/volume.hpp"
 
-namespace volume {
+namespace tractus::volume {
 
 inline constexpr std::size_t kMaxResampledVoxels = std::size_t(1) << 28;  ///< 512 MiB of counts
 
@@ -24,4 +24,4 @@ Box box_about(const Geometry& geometry, std::span<const Vec3> points_V_m, double
 core::Result<Volume> resample_finer(const Volume& volume, const Box& box, double spacing_m,
                                     const core::Progress& progress = {});
 
-}  // namespace volume
+}  // namespace tractus::volume

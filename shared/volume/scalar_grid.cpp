@@ -4,6 +4,7 @@
 
 #include <utility>
 
+namespace tractus {
 namespace volume {
 namespace {
 
@@ -52,3 +53,4 @@ ScalarGrid::~ScalarGrid() {
 }
 
 }  // namespace volume
+}  // namespace tractus

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <optional>
 
-namespace volume {
+namespace tractus::volume {
 
 /// Floats [k][j][i]. Rows and slices are an odd number of cache lines apart: with a power of two
 /// between them, the rows of one sample would fall into the same few cache sets and cost half as
@@ -38,4 +38,4 @@ class ScalarGrid {
   float* data_ = nullptr;
 };
 
-}  // namespace volume
+}  // namespace tractus::volume

@@ -8,7 +8,7 @@
 
 #include "math/geometry.hpp"
 
-namespace volume {
+namespace tractus::volume {
 
 using math::Vec3;
 
@@ -54,4 +54,4 @@ struct Tract {
   }
 };
 
-}  // namespace volume
+}  // namespace tractus::volume

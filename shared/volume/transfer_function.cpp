@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace volume {
+namespace tractus::volume {
 
 core::Result<TransferFunction> TransferFunction::make(std::vector<Point> points) {
   const auto bad = [](std::string why) {
@@ -35,4 +35,4 @@ double TransferFunction::opacity(double value) const noexcept {
   return points_.back().opacity;
 }
 
-}  // namespace volume
+}  // namespace tractus::volume

@@ -5,7 +5,7 @@
 
 #include "core/result.hpp"
 
-namespace volume {
+namespace tractus::volume {
 
 /// α(v): piecewise linear through its points, constant beyond the first and the last [Zoller2020,
 /// "Haptic rendering": a transfer function maps grey values to opacity].
@@ -30,4 +30,4 @@ class TransferFunction {
   std::vector<Point> points_;
 };
 
-}  // namespace volume
+}  // namespace tractus::volume

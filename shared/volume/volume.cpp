@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace volume {
+namespace tractus::volume {
 
 std::uint16_t Volume::count_of(double value) const {
   return static_cast<std::uint16_t>(
@@ -32,4 +32,4 @@ double Volume::value_at(const Vec3& p_V_m) const {
   return sum;
 }
 
-}  // namespace volume
+}  // namespace tractus::volume

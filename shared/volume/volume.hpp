@@ -7,7 +7,7 @@
 
 #include "math/geometry.hpp"
 
-namespace volume {
+namespace tractus::volume {
 
 using math::Mat3;
 using math::Vec3;
@@ -66,4 +66,4 @@ struct Volume {
   double value_at(const Vec3& p_V_m) const;
 };
 
-}  // namespace volume
+}  // namespace tractus::volume

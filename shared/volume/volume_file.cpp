@@ -15,6 +15,7 @@
 #include "volume/brick.hpp"
 #include "volume/volume_header.hpp"
 
+namespace tractus {
 namespace volume {
 namespace fs = std::filesystem;
 namespace {
@@ -223,3 +224,4 @@ core::Result<Volume> VolumeFile::read_box(const Box& box, const core::Progress& 
 }
 
 }  // namespace volume
+}  // namespace tractus

@@ -27,7 +27,7 @@
 #include "core/result.hpp"
 #include "volume/volume.hpp"
 
-namespace volume {
+namespace tractus::volume {
 
 inline constexpr int kBrickEdge = 64;  ///< voxels along a brick
 
@@ -93,4 +93,4 @@ class VolumeFile {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace volume
+}  // namespace tractus::volume

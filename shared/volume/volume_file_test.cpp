@@ -10,6 +10,7 @@
 
 #include "core/file.hpp"
 
+namespace tractus {
 namespace {
 namespace fs = std::filesystem;
 using volume::Box;
@@ -225,3 +226,4 @@ TEST(VolumeHistogram, CountsByHand) {
 }
 
 }  // namespace
+}  // namespace tractus

@@ -15,6 +15,7 @@
 #include "volume/volume_file.hpp"
 #include "volume/volume_header.hpp"
 
+namespace tractus {
 namespace volume {
 namespace {
 namespace fs = std::filesystem;
@@ -158,3 +159,4 @@ core::Result<std::string> write_volume(const fs::path& path, const Volume& volum
 }
 
 }  // namespace volume
+}  // namespace tractus

@@ -8,6 +8,7 @@
 
 #include "core/json.hpp"
 
+namespace tractus {
 namespace volume {
 namespace {
 
@@ -175,3 +176,4 @@ core::Result<VolumeHeader> parse_header(std::string_view text, const std::string
 }
 
 }  // namespace volume
+}  // namespace tractus

@@ -7,7 +7,7 @@
 #include "core/result.hpp"
 #include "volume/volume_file.hpp"
 
-namespace volume {
+namespace tractus::volume {
 
 inline constexpr std::string_view kVolumeMagic = "TRACTVOL";
 inline constexpr std::uint32_t kVolumeVersion = 1;
@@ -32,4 +32,4 @@ core::Result<VolumeHeader> parse_header(std::string_view text, const std::string
 /// What no reader would take. Errors: bad_input, led by `where`.
 core::Result<void> check_header(const VolumeHeader& header, const std::string& where);
 
-}  // namespace volume
+}  // namespace tractus::volume

@@ -6,6 +6,7 @@
 
 #include "volume/carve.hpp"
 
+namespace tractus {
 namespace volume {
 namespace {
 
@@ -204,3 +205,4 @@ core::Result<Breach> place_breach(const Volume& volume, const TransferFunction& 
 }
 
 }  // namespace volume
+}  // namespace tractus

@@ -3,6 +3,7 @@
 #include "core/bytes.hpp"
 #include "wire/study_work.hpp"
 
+namespace tractus {
 namespace wire {
 namespace {
 constexpr long kMaxCount = 100'000;
@@ -73,3 +74,4 @@ core::Result<AssignedWork> AssignedWork::from_json(const core::Json& json,
 }
 
 }  // namespace wire
+}  // namespace tractus

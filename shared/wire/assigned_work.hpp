@@ -6,7 +6,7 @@
 
 #include "core/json.hpp"
 
-namespace wire {
+namespace tractus::wire {
 
 /// One trial to be done now. Of a scenario, nothing tells which it is; of a palpation case, its id
 /// alone, so that the station finds it on its disk.
@@ -37,4 +37,4 @@ struct AssignedWork {
   static core::Result<AssignedWork> from_json(const core::Json& json, const std::string& where);
 };
 
-}  // namespace wire
+}  // namespace tractus::wire

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+namespace tractus {
 namespace wire {
 namespace {
 
@@ -53,3 +54,4 @@ TEST(AssignedTrial, RefusesADrillingThatCannotBe) {
 
 }  // namespace
 }  // namespace wire
+}  // namespace tractus

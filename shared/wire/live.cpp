@@ -5,6 +5,7 @@
 
 #include "core/bytes.hpp"
 
+namespace tractus {
 namespace wire {
 namespace {
 constexpr long kMost = std::numeric_limits<long>::max();
@@ -153,7 +154,7 @@ core::Result<SelfTestSummary> SelfTestSummary::from_json(const core::Json& json,
   return out;
 }
 
-core::Json StationTold::to_json() const {
+core::Json StationStatus::to_json() const {
   return {{"kind", "state"},
           {"state", state},
           {"version", version},
@@ -169,9 +170,10 @@ core::Json StationTold::to_json() const {
           {"self_test", object_or_null(self_test)}};
 }
 
-core::Result<StationTold> StationTold::from_json(const core::Json& json, const std::string& where) {
+core::Result<StationStatus> StationStatus::from_json(const core::Json& json,
+                                                     const std::string& where) {
   core::Fields fields(json, where);
-  StationTold out;
+  StationStatus out;
   if (fields.text("kind", 16) != "state") fields.wrong("kind", "state is expected");
   out.state = fields.text("state", 16);
   const auto& states = station_states();
@@ -282,3 +284,4 @@ core::Result<StationReport> StationReport::from_json(const core::Json& json,
 }
 
 }  // namespace wire
+}  // namespace tractus

@@ -9,7 +9,7 @@
 
 #include "core/json.hpp"
 
-namespace wire {
+namespace tractus::wire {
 
 /// The trial that runs, as its loop last left it.
 struct LiveTrial {
@@ -34,7 +34,7 @@ struct SelfTestSummary {
 };
 
 /// {"kind":"state",…}: the whole of it, each time.
-struct StationTold {
+struct StationStatus {
   std::string state = "idle";  ///< one of kStationStates but "away"
   std::string version, device;
   std::optional<bool> simulated;
@@ -49,7 +49,7 @@ struct StationTold {
 
   core::Json to_json() const;
   /// Errors: bad_input naming the field; numbers are finite and within sense, texts short.
-  static core::Result<StationTold> from_json(const core::Json& json, const std::string& where);
+  static core::Result<StationStatus> from_json(const core::Json& json, const std::string& where);
 };
 /// "away", "idle", "preparing", "trial", "questions", "stopped", "fault".
 const std::vector<std::string>& station_states();
@@ -97,4 +97,4 @@ struct StationReport {
   static core::Result<StationReport> from_json(const core::Json& json, const std::string& where);
 };
 
-}  // namespace wire
+}  // namespace tractus::wire

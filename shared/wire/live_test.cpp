@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+namespace tractus {
 namespace wire {
 namespace {
 
@@ -14,24 +15,24 @@ core::Json told() {
     "calibration_due_utc_us":4,"self_test":{"at_utc_us":5,"passed":false,"failed":["a"]}})");
 }
 
-TEST(StationTold, ComesBackAsItWasSaid) {
-  const auto read = StationTold::from_json(told(), "state");
+TEST(StationStatus, ComesBackAsItWasSaid) {
+  const auto read = StationStatus::from_json(told(), "state");
   ASSERT_TRUE(read) << read.error().what;
   EXPECT_EQ(read->to_json(), told());
   EXPECT_FALSE(read->trial->force_N);
 }
 
-TEST(StationTold, OfAStationThatKnowsLittleIsShort) {
-  const auto read = StationTold::from_json({{"kind", "state"}, {"state", "idle"}}, "state");
+TEST(StationStatus, OfAStationThatKnowsLittleIsShort) {
+  const auto read = StationStatus::from_json({{"kind", "state"}, {"state", "idle"}}, "state");
   ASSERT_TRUE(read) << read.error().what;
   EXPECT_FALSE(read->simulated || read->trial || read->free_disk_bytes);
 }
 
-TEST(StationTold, RefusesWhatIsNoStateAndNamesTheField) {
+TEST(StationStatus, RefusesWhatIsNoStateAndNamesTheField) {
   const auto why = [](const char* pointer, const core::Json& value) {
     core::Json json = told();
     json[core::Json::json_pointer(pointer)] = value;
-    const auto read = StationTold::from_json(json, "state");
+    const auto read = StationStatus::from_json(json, "state");
     return read ? std::string("taken") : read.error().what;
   };
   EXPECT_NE(why("/state", "away").find("state"), std::string::npos) << "only the server says that";
@@ -60,3 +61,4 @@ TEST(StationCommand, IsAStopOrALowerLimitAndNothingElse) {
 
 }  // namespace
 }  // namespace wire
+}  // namespace tractus

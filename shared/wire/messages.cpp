@@ -2,7 +2,7 @@
 
 #include "core/bytes.hpp"
 
-namespace wire {
+namespace tractus::wire {
 namespace {
 constexpr long kMaxTrial_bytes = 8l << 30;
 }
@@ -41,4 +41,4 @@ core::Result<UploadAnnouncement> UploadAnnouncement::from_json(const core::Json&
   return out;
 }
 
-}  // namespace wire
+}  // namespace tractus::wire

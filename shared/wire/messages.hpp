@@ -7,7 +7,7 @@
 
 #include "core/json.hpp"
 
-namespace wire {
+namespace tractus::wire {
 
 /// Where an upload stands. `state`: "receiving" until all bytes are there and committed, then
 /// "complete".
@@ -33,4 +33,4 @@ struct UploadAnnouncement {
 /// Largest chunk a server takes in one request.
 inline constexpr std::uint64_t kMaxChunk_bytes = 4u << 20;
 
-}  // namespace wire
+}  // namespace tractus::wire

@@ -4,6 +4,7 @@
 
 #include "core/bytes.hpp"
 
+namespace tractus {
 namespace wire {
 namespace {
 constexpr std::size_t kMaxName = 32, kMaxSealed = 64 * 1024, kMaxTrials = 1000;
@@ -74,3 +75,4 @@ core::Result<StudyWork> StudyWork::from_json(const core::Json& json, const std::
 }
 
 }  // namespace wire
+}  // namespace tractus

@@ -6,7 +6,7 @@
 
 #include "core/json.hpp"
 
-namespace wire {
+namespace tractus::wire {
 
 /// One trial to be done. Nothing of it tells which scenario it is.
 struct SealedTrial {
@@ -34,4 +34,4 @@ struct StudyWork {
 /// Is it a study's id or a participant's pseudonym: 1 to 32 letters, digits, - and _?
 bool is_study_name(std::string_view text) noexcept;
 
-}  // namespace wire
+}  // namespace tractus::wire

@@ -5,13 +5,14 @@
 
 #include <cstdio>
 
-#include "station/app/trial_epilogue.hpp"
-#include "station/app/deeds.hpp"
+#include "station/app/commands.hpp"
 #include "station/app/exchange.hpp"
+#include "station/app/trial_epilogue.hpp"
 #include "station/devices/catalogue.hpp"
 #include "station/headset/touching.hpp"
 #include "station/headset/touching_hand.hpp"
 
+namespace tractus {
 namespace app {
 namespace {
 
@@ -48,7 +49,7 @@ class Enter {
   bool ended_ = false;
 };
 
-headset::TouchTalk talk_of(Enter& enter) {
+headset::TouchExchange talk_of(Enter& enter) {
   return {.ask =
               [](const headset::FixturePoint& next) {
                 fmt::print(
@@ -115,3 +116,4 @@ core::Result<int> align_room(const Options& options) {
 }
 
 }  // namespace app
+}  // namespace tractus

@@ -5,6 +5,7 @@
 #include "station/app/checks.hpp"
 #include "station/view/view.hpp"
 
+namespace tractus {
 namespace app {
 namespace {
 constexpr double kPicture_s = 0.1;  // ten pictures a second
@@ -64,3 +65,4 @@ check::Finding check_display(Show show) {
 }
 
 }  // namespace app
+}  // namespace tractus

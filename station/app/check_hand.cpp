@@ -6,6 +6,7 @@
 #include "station/app/checks.hpp"
 #include "station/devices/catalogue.hpp"
 
+namespace tractus {
 namespace app {
 namespace {
 constexpr double kSimulatedTravel_m = 0.001;  // a simulated hand stays in its channel
@@ -131,3 +132,4 @@ core::Result<void> calibrate_hand(Checked& checked) {
 }
 
 }  // namespace app
+}  // namespace tractus

@@ -9,6 +9,7 @@
 #include "station/devices/rig_process.hpp"
 #include "station/session/rig_entry.hpp"
 
+namespace tractus {
 namespace app {
 namespace {
 constexpr double kPatience_s = 30.0;
@@ -141,3 +142,4 @@ core::Result<void> check_whole_rig(Checked& checked) {
 }
 
 }  // namespace app
+}  // namespace tractus

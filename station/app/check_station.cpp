@@ -8,13 +8,14 @@
 
 #include "core/file.hpp"
 #include "station/app/checks.hpp"
-#include "station/app/deeds.hpp"
+#include "station/app/commands.hpp"
 #include "station/app/exchange.hpp"
 #include "station/app/presence.hpp"
 #include "station/check/machine_check.hpp"
 #include "station/uplink/clock_offset.hpp"
 #include "station/uplink/reports.hpp"
 
+namespace tractus {
 namespace app {
 namespace {
 constexpr std::int64_t kDay_us = 86'400'000'000;
@@ -245,3 +246,4 @@ core::Result<int> calibrate(const Options& options) {
 }
 
 }  // namespace app
+}  // namespace tractus

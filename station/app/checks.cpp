@@ -10,6 +10,7 @@
 #include "station/app/exchange.hpp"
 #include "station/loop/realtime.hpp"
 
+namespace tractus {
 namespace app {
 namespace {
 constexpr auto kShown = std::chrono::milliseconds(30);
@@ -78,7 +79,7 @@ void say_calibration_due(const session::StationFolder& folder, const std::string
 session::ProbingWatch warned(session::ProbingWatch inner, const session::StationFolder& folder,
                              const std::string& device) {
   return [inner = std::move(inner), &folder, device,
-          said = false](const session::ProbingGlimpse& seen) mutable {
+          said = false](const session::ProbingTrialSnapshot& seen) mutable {
     if (!said) say_calibration_due(folder, device);
     said = true;
     return inner(seen);
@@ -86,3 +87,4 @@ session::ProbingWatch warned(session::ProbingWatch inner, const session::Station
 }
 
 }  // namespace app
+}  // namespace tractus

@@ -11,7 +11,7 @@
 #include "station/check/rig_check.hpp"
 #include "station/session/station_folder.hpp"
 
-namespace app {
+namespace tractus::app {
 
 bool is_rig(const std::string& device);
 
@@ -56,4 +56,4 @@ void say_calibration_due(const session::StationFolder& folder, const std::string
 session::ProbingWatch warned(session::ProbingWatch inner, const session::StationFolder& folder,
                              const std::string& device);
 
-}  // namespace app
+}  // namespace tractus::app

@@ -4,10 +4,11 @@
 #include <cstdio>
 
 #include "core/file.hpp"
-#include "station/app/deeds.hpp"
+#include "station/app/commands.hpp"
 #include "station/session/station_folder.hpp"
 #include "station/uplink/http_server.hpp"
 
+namespace tractus {
 namespace app {
 namespace {
 
@@ -80,3 +81,4 @@ core::Result<int> enrol_station(const Options& options) {
 }
 
 }  // namespace app
+}  // namespace tractus

@@ -8,13 +8,14 @@
 #include <cstdio>
 
 #include "core/file.hpp"
-#include "station/app/deeds.hpp"
+#include "station/app/commands.hpp"
 #include "station/uplink/http_server.hpp"
 #include "station/uplink/models.hpp"
 #include "station/uplink/reports.hpp"
 #include "station/uplink/sync.hpp"
 #include "wire/live.hpp"
 
+namespace tractus {
 namespace app {
 namespace {
 std::atomic<bool> stop_asked = false;
@@ -231,3 +232,4 @@ core::Result<int> trust_signer(const Options& options) {
 }
 
 }  // namespace app
+}  // namespace tractus

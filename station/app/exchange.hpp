@@ -10,7 +10,7 @@
 #include "station/uplink/server.hpp"
 #include "station/uplink/upload.hpp"
 
-namespace app {
+namespace tractus::app {
 
 /// The token file's one line. Errors: io, not_found.
 core::Result<std::string> token_of(const Options& options);
@@ -28,4 +28,4 @@ core::Result<uplink::UploadReport> hand_over(const Options& options,
 std::string text_of(const uplink::UploadReport& report);
 bool asked_to_stop() noexcept;
 
-}  // namespace app
+}  // namespace tractus::app

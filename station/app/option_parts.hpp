@@ -8,10 +8,11 @@
 
 #include "station/app/options.hpp"
 
-namespace app {
+namespace tractus::app {
 
 /// A subcommand that is done by `deed`.
-CLI::App* add_deed(CLI::App& app, Options& options, Deed deed, const char* name, const char* what);
+CLI::App* add_command(CLI::App& app, Options& options, CommandFunction command, const char* name,
+                      const char* what);
 void add_data(CLI::App& app, Options& options, bool needed);
 void add_server(CLI::App& app, Options& options, bool needed);
 /// Says why on standard error; the exit code of wrong use.
@@ -51,4 +52,4 @@ void add_technician(CLI::App& app, Options& options);
 /// What does not fit together in those is refused.
 std::optional<int> check_technician(const Options& options);
 
-}  // namespace app
+}  // namespace tractus::app

@@ -5,9 +5,10 @@
 #include <limits>
 #include <map>
 
-#include "station/app/deeds.hpp"
+#include "station/app/commands.hpp"
 #include "station/app/option_parts.hpp"
 
+namespace tractus {
 namespace app {
 namespace {
 constexpr const char* kExamples = R"(Examples:
@@ -227,9 +228,9 @@ void add_trust(CLI::App& app, Options& options) {
 std::optional<int> check_run(const CLI::App& app, Options& options) {
   session::RigSetup& rig = options.rig;
   rig.device = options.setup.device;
-  if (rig.device == "rig" || rig.device == "sim-rig") options.deed = run_probing_trials;
+  if (rig.device == "rig" || rig.device == "sim-rig") options.command = run_probing_trials;
   if (options.data.empty()) return refuse("--data is required");
-  if (options.deed == run_trials) {
+  if (options.command == run_trials) {
     if (!options.scenario.empty()) return refuse("--scenario: --device rig or sim-rig is expected");
     if (!options.burr && !options.burr_file.empty()) return refuse("--burr: needs --tool burr");
     if (options.burr && !options.drilled.empty())
@@ -250,9 +251,10 @@ std::optional<int> check_run(const CLI::App& app, Options& options) {
 }
 }  // namespace
 
-CLI::App* add_deed(CLI::App& app, Options& options, Deed deed, const char* name, const char* what) {
+CLI::App* add_command(CLI::App& app, Options& options, CommandFunction command, const char* name,
+                      const char* what) {
   CLI::App* added = app.add_subcommand(name, what);
-  added->callback([&options, deed] { options.deed = deed; });
+  added->callback([&options, command] { options.command = command; });
   return added;
 }
 
@@ -288,7 +290,7 @@ const std::map<std::string, Show>& shows() {
 Parsed parse(int argc, char** argv) {
   Parsed out;
   Options& options = out.options;
-  options.deed = run_trials;
+  options.command = run_trials;
   CLI::App app("A station: feel a case with a haptic device, record the trial, hand it over",
                "tractus-station");
   app.set_version_flag("--version", TRACTUS_VERSION);
@@ -299,31 +301,33 @@ Parsed parse(int argc, char** argv) {
   add_run(app, options);
 
   CLI::App* sync =
-      add_deed(app, options, sync_cases, "sync", "fetch the cases that the server has");
+      add_command(app, options, sync_cases, "sync", "fetch the cases that the server has");
   add_data(*sync, options, true);
   add_server(*sync, options, true);
   CLI::App* study =
-      add_deed(app, options, run_study, "study", "a participant's trials of a blind study");
+      add_command(app, options, run_study, "study", "a participant's trials of a blind study");
   add_data(*study, options, true);
   add_server(*study, options, true);
   add_study(*study, options);
   CLI::App* upload =
-      add_deed(app, options, upload_trials, "upload", "hand over the trials that wait");
+      add_command(app, options, upload_trials, "upload", "hand over the trials that wait");
   add_data(*upload, options, true);
   add_server(*upload, options, true);
   upload->add_option("--wait", options.wait_s, "s to go on trying when the server does not answer")
       ->check(between(0.0, 1e7));
-  add_assigned(*add_deed(app, options, run_assigned, "assigned",
-                         "sign in with badge and PIN; do what is assigned, in order"),
+  add_assigned(*add_command(app, options, run_assigned, "assigned",
+                            "sign in with badge and PIN; do what is assigned, in order"),
                options);
-  add_enrol(*add_deed(app, options, enrol_station, "enrol",
-                      "make a key for this station and let the server know it, by a one-time code"),
-            options);
-  add_tune(*add_deed(app, options, tune_scenario, "tune",
-                     "feel a scenario and nudge its eight parameters by keys; save new versions"),
-           options);
-  add_trust(*add_deed(app, options, trust_signer, "trust",
-                      "take cases that are signed by this key from now on"),
+  add_enrol(
+      *add_command(app, options, enrol_station, "enrol",
+                   "make a key for this station and let the server know it, by a one-time code"),
+      options);
+  add_tune(
+      *add_command(app, options, tune_scenario, "tune",
+                   "feel a scenario and nudge its eight parameters by keys; save new versions"),
+      options);
+  add_trust(*add_command(app, options, trust_signer, "trust",
+                         "take cases that are signed by this key from now on"),
             options);
   add_technician(app, options);
 
@@ -334,11 +338,13 @@ Parsed parse(int argc, char** argv) {
     return out;
   }
   if (study->parsed()) set_study(*study, options);
-  if (options.deed == trust_signer && options.signer_hex.empty() && options.signer_of_case.empty())
+  if (options.command == trust_signer && options.signer_hex.empty() &&
+      options.signer_of_case.empty())
     out.leave = refuse("trust: --signer or --case is expected");
   if (auto refused = check_technician(options)) out.leave = refused;
-  if (options.deed == run_trials) out.leave = check_run(app, options);
+  if (options.command == run_trials) out.leave = check_run(app, options);
   return out;
 }
 
 }  // namespace app
+}  // namespace tractus

@@ -9,16 +9,16 @@
 #include "station/sensors/record.hpp"
 #include "station/session/probing_trial.hpp"
 
-namespace app {
+namespace tractus::app {
 
 inline constexpr std::int64_t kBetweenTrials_us = 600'000'000;  ///< of simulated dates
 
 struct Options;
 /// What is to be done (deeds.hpp), to its end. An Error becomes one line and exit 2.
-using Deed = core::Result<int> (*)(const Options&);
+using CommandFunction = core::Result<int> (*)(const Options&);
 
 struct Options {
-  Deed deed = nullptr;  ///< set by `parse`
+  CommandFunction command = nullptr;  ///< set by `parse`
   std::filesystem::path data;
   std::string server_url;
   std::filesystem::path token_file;
@@ -89,4 +89,4 @@ struct Parsed {
 };
 Parsed parse(int argc, char** argv);
 
-}  // namespace app
+}  // namespace tractus::app

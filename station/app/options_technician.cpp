@@ -2,9 +2,10 @@
 
 #include <set>
 
-#include "station/app/deeds.hpp"
+#include "station/app/commands.hpp"
 #include "station/app/option_parts.hpp"
 
+namespace tractus {
 namespace app {
 namespace {
 constexpr std::size_t kLongestName = 64;
@@ -122,28 +123,30 @@ std::optional<int> check_record(const Options& options) {
 
 void add_technician(CLI::App& app, Options& options) {
   CLI::App* limits =
-      add_deed(app, options, show_limits, "limits",
-               "how much force a hand gets; --restore takes back what was lowered from afar");
+      add_command(app, options, show_limits, "limits",
+                  "how much force a hand gets; --restore takes back what was lowered from afar");
   add_data(*limits, options, true);
   limits->add_flag("--restore", options.restore, "this station's own limits hold again");
-  add_self_test(*add_deed(app, options, self_test, "self-test",
-                          "device, loop, display, disk and clock put to the question"),
+  add_self_test(*add_command(app, options, self_test, "self-test",
+                             "device, loop, display, disk and clock put to the question"),
                 options);
-  add_calibrate(*add_deed(app, options, calibrate, "calibrate",
-                          "find the device's zero, check it, note it and when it is due again"),
+  add_calibrate(*add_command(app, options, calibrate, "calibrate",
+                             "find the device's zero, check it, note it and when it is due again"),
                 options);
   add_align(
-      *add_deed(app, options, align_room, "align",
-                "touch three points with the handle, so that the headset shows it where it is"),
+      *add_command(app, options, align_room, "align",
+                   "touch three points with the handle, so that the headset shows it where it is"),
       options);
-  add_record(*add_deed(app, options, record_room, "record",
-                       "a force/torque sensor and motion capture at once, for a measurement set"),
-             options);
+  add_record(
+      *add_command(app, options, record_room, "record",
+                   "a force/torque sensor and motion capture at once, for a measurement set"),
+      options);
 }
 
 std::optional<int> check_technician(const Options& options) {
   if (options.who.size() > kLongestName) return refuse("--who: at most 64 bytes");
-  return options.deed == record_room ? check_record(options) : std::nullopt;
+  return options.command == record_room ? check_record(options) : std::nullopt;
 }
 
 }  // namespace app
+}  // namespace tractus

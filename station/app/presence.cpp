@@ -10,13 +10,14 @@
 #include <cstring>
 #include <iostream>
 
-#include "station/app/deeds.hpp"
+#include "station/app/commands.hpp"
 #include "station/app/exchange.hpp"
 #include "station/check/findings.hpp"
 #include "station/loop/live_state.hpp"
 #include "station/uplink/clock_offset.hpp"
 #include "station/uplink/live.hpp"
 
+namespace tractus {
 namespace app {
 namespace {
 namespace fs = std::filesystem;
@@ -25,7 +26,7 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::seconds kDiskEvery{5}, kOutboxEvery{30};
 
 /// The running trial in plain bytes: written by the thread that watches it, read by the uplink's.
-struct Seen {
+struct RunningTrial {
   char trial_id[33] = {}, case_id[65] = {};
   bool probing = false, blind = false;
   double t_s = 0.0, force_N = 0.0, depth_m = 0.0;
@@ -61,7 +62,7 @@ struct Presence::Parts {
   const session::StationFolder& folder;
   session::RemoteSupervisor outside;
   std::atomic<State> state = State::idle;
-  loop::Seqlock<Seen> seen;
+  loop::Seqlock<RunningTrial> seen;
   std::atomic<std::uint64_t> ticks = 0, late = 0;
   std::string device;
   bool simulated = false;
@@ -73,14 +74,14 @@ struct Presence::Parts {
   std::unique_ptr<uplink::LiveUplink> line;  ///< last: ends before what its thread uses
 
   Parts(const Options& given, const session::StationFolder& where) : options(given), folder(where) {
-    const bool rig = given.deed == run_probing_trials || given.deed == run_study;
+    const bool rig = given.command == run_probing_trials || given.command == run_study;
     device = rig ? given.rig.device : given.setup.device;
     simulated = device.starts_with("sim-");
     if (const auto last = check::Calibration::read(where.calibration_file(device)); last && *last)
       calibration_due_utc_us = (*last)->due_utc_us;
     if (where.config().lowered_force_N) outside.lower_force(*where.config().lowered_force_N);
   }
-  wire::StationTold told();
+  wire::StationStatus told();
   void look_around();
   void measure_clock();
   void on_command(const wire::StationCommand& command);
@@ -102,9 +103,9 @@ void Presence::Parts::look_around() {
         *entries, [](const uplink::OutboxEntry& entry) { return entry.state == "queued"; }));
 }
 
-wire::StationTold Presence::Parts::told() {
+wire::StationStatus Presence::Parts::told() {
   look_around();
-  wire::StationTold out;
+  wire::StationStatus out;
   out.state = text_of(state);
   out.version = TRACTUS_VERSION;
   out.device = device;
@@ -158,11 +159,14 @@ Presence::Presence(const Options& options, const session::StationFolder& folder)
   if (!token) return;  // whoever needs the server says why
   std::string url = options.server_url;
   while (url.ends_with('/')) url.pop_back();
-  const uplink::LineTo to{.url = url,
-                          .authorization = "Authorization: Bearer " + *token,
-                          .authority = options.authority};
+  const uplink::ServerAddress to{.url = url,
+                                 .authorization = "Authorization: Bearer " + *token,
+                                 .authority = options.authority};
   p.line = std::make_unique<uplink::LiveUplink>(uplink::LiveUplink::Parts{
-      .open = [to](const std::atomic<bool>& stopped) { return uplink::open_line(to, stopped); },
+      .open =
+          [to](const std::atomic<bool>& stopped) {
+            return uplink::open_server_socket(to, stopped);
+          },
       .told = [&p] { return p.told(); },
       .commanded = [&p](const wire::StationCommand& command) { p.on_command(command); },
       .connected = [&p] { p.measure_clock(); }});
@@ -176,8 +180,8 @@ void Presence::is(State state) noexcept { parts_->state = state; }
 
 session::Watch Presence::watched(session::Watch inner, const std::string& case_id,
                                  const session::PreparedCase& prepared) {
-  return [this, inner = std::move(inner), case_id, &prepared](const session::Glimpse& now) {
-    Seen seen;
+  return [this, inner = std::move(inner), case_id, &prepared](const session::TrialSnapshot& now) {
+    RunningTrial seen;
     put(seen.trial_id, now.trial_id);
     put(seen.case_id, case_id);
     seen.t_s = now.live.t_s;
@@ -195,8 +199,8 @@ session::Watch Presence::watched(session::Watch inner, const std::string& case_i
 session::ProbingWatch Presence::watched(session::ProbingWatch inner,
                                         const session::ProbingTask& task) {
   return [this, inner = std::move(inner), case_id = task.case_id,
-          blind = task.blind](const session::ProbingGlimpse& now) {
-    Seen seen;
+          blind = task.blind](const session::ProbingTrialSnapshot& now) {
+    RunningTrial seen;
     put(seen.trial_id, now.trial_id);
     put(seen.case_id, case_id);
     seen.probing = true;
@@ -236,3 +240,4 @@ bool Presence::may_resume() {
 }
 
 }  // namespace app
+}  // namespace tractus

@@ -8,7 +8,7 @@
 #include "station/session/prepared_case.hpp"
 #include "station/session/station_folder.hpp"
 
-namespace app {
+namespace tractus::app {
 
 class Presence {
  public:
@@ -40,4 +40,4 @@ class Presence {
   std::unique_ptr<Parts> parts_;
 };
 
-}  // namespace app
+}  // namespace tractus::app

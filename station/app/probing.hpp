@@ -5,7 +5,7 @@
 
 #include "station/session/probing_trial.hpp"
 
-namespace app {
+namespace tractus::app {
 
 /// A file, or one of those that ship: hard, soft, lateral_breach, in_out_in. Errors: those of
 /// reading it.
@@ -13,4 +13,4 @@ core::Result<scenarios::Scenario> scenario_named(const std::string& name);
 
 void print_probing_report(const session::TrialReport& report, bool fast);
 
-}  // namespace app
+}  // namespace tractus::app

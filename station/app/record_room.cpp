@@ -2,8 +2,9 @@
 #include <fmt/format.h>
 
 #include "core/progress.hpp"
-#include "station/app/deeds.hpp"
+#include "station/app/commands.hpp"
 
+namespace tractus {
 namespace app {
 namespace {
 std::string words_of(const sensors::Recorded& done, const std::filesystem::path& folder) {
@@ -48,3 +49,4 @@ core::Result<int> record_room(const Options& options) {
 }
 
 }  // namespace app
+}  // namespace tractus

@@ -7,16 +7,17 @@
 #include <cstdlib>
 
 #include "core/file.hpp"
-#include "station/app/trial_epilogue.hpp"
 #include "station/app/checks.hpp"
-#include "station/app/deeds.hpp"
+#include "station/app/commands.hpp"
 #include "station/app/exchange.hpp"
 #include "station/app/presence.hpp"
+#include "station/app/trial_epilogue.hpp"
 #include "station/session/probing_trial.hpp"
 #include "station/session/station.hpp"
 #include "station/uplink/assigned.hpp"
 #include "study/sealed_law.hpp"
 
+namespace tractus {
 namespace app {
 namespace {
 using session::TrialReport;
@@ -84,7 +85,7 @@ core::Result<TrialReport> work_on_bone(const Options& options, Presence& presenc
     return ready.error();
   onlooker->follow(station.trial()->live());
   say_calibration_due(folder, options.setup.device);
-  const auto watch = [&](const session::Glimpse& seen) {
+  const auto watch = [&](const session::TrialSnapshot& seen) {
     return onlooker->look(seen) && !stopped_by_hand();
   };
   if (auto ran = station.run(presence.watched(watch, trial.slot, *prepared)); !ran)
@@ -126,7 +127,7 @@ core::Result<TrialReport> probe(const Options& options, Presence& presence,
   setup.seed = options.setup.seed + trial.number;
   setup.started_utc_us = started_of(options, number);
   setup.outside = presence.outside();
-  const auto watch = [](const session::ProbingGlimpse&) { return !stopped_by_hand(); };
+  const auto watch = [](const session::ProbingTrialSnapshot&) { return !stopped_by_hand(); };
   return session::run_probing_trial(
       folder, task, setup, warned(presence.watched(watch, task), folder, setup.device),
       [&](const session::ProbingTrialRun& run) -> core::Result<std::optional<trial::Answer>> {
@@ -235,3 +236,4 @@ core::Result<int> run_assigned(const Options& options) {
 }
 
 }  // namespace app
+}  // namespace tractus

@@ -4,13 +4,14 @@
 #include <cstdio>
 
 #include "core/progress.hpp"
-#include "station/app/trial_epilogue.hpp"
 #include "station/app/checks.hpp"
-#include "station/app/deeds.hpp"
+#include "station/app/commands.hpp"
 #include "station/app/exchange.hpp"
 #include "station/app/presence.hpp"
 #include "station/app/probing.hpp"
+#include "station/app/trial_epilogue.hpp"
 
+namespace tractus {
 namespace app {
 namespace {
 using session::ProbingTask;
@@ -60,7 +61,8 @@ namespace {
 session::ProbingWatch watch_of(const Options& options, const ProbingTask& task) {
   const double travel_m = task.law.travel_m;
   return [&options, travel_m, blind = task.blind, said = std::uint64_t{0},
-          shown = core::terminal_progress("Trial")](const session::ProbingGlimpse& seen) mutable {
+          shown =
+              core::terminal_progress("Trial")](const session::ProbingTrialSnapshot& seen) mutable {
     if (options.follow && seen.samples_safe != said) {
       said = seen.samples_safe;
       fmt::print(stderr, "{}\n",
@@ -125,3 +127,4 @@ core::Result<int> run_probing_trials(const Options& options) {
 }
 
 }  // namespace app
+}  // namespace tractus

@@ -7,16 +7,17 @@
 #include <iostream>
 
 #include "core/file.hpp"
-#include "station/app/trial_epilogue.hpp"
 #include "station/app/checks.hpp"
-#include "station/app/deeds.hpp"
+#include "station/app/commands.hpp"
 #include "station/app/exchange.hpp"
 #include "station/app/presence.hpp"
+#include "station/app/trial_epilogue.hpp"
 #include "station/rig/surgeon.hpp"
 #include "station/session/study_plan.hpp"
 #include "station/uplink/study.hpp"
 #include "study/sealed_law.hpp"
 
+namespace tractus {
 namespace app {
 namespace {
 using session::TrialReport;
@@ -25,7 +26,7 @@ using wire::StudyWork;
 
 constexpr int kAhead = 400;  // all that is left: the server may be away for the rest of the day
 
-/// What the deed works with.
+/// What the command works with.
 struct Study {
   const Options& options;
   const session::StationFolder& folder;
@@ -104,7 +105,7 @@ std::optional<trial::Answer> asked() {
 }
 
 session::ProbingWatch watch_of(const Options& options) {
-  return [&options, said = std::uint64_t{0}](const session::ProbingGlimpse& seen) mutable {
+  return [&options, said = std::uint64_t{0}](const session::ProbingTrialSnapshot& seen) mutable {
     if (options.follow && seen.samples_safe != said) {
       said = seen.samples_safe;
       fmt::print(stderr, "{}\n",
@@ -230,3 +231,4 @@ core::Result<int> run_study(const Options& options) {
 }
 
 }  // namespace app
+}  // namespace tractus

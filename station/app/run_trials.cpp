@@ -5,13 +5,14 @@
 #include <cstdio>
 #include <iostream>
 
-#include "station/app/trial_epilogue.hpp"
 #include "station/app/checks.hpp"
-#include "station/app/deeds.hpp"
+#include "station/app/commands.hpp"
 #include "station/app/exchange.hpp"
 #include "station/app/presence.hpp"
+#include "station/app/trial_epilogue.hpp"
 #include "station/session/station.hpp"
 
+namespace tractus {
 namespace app {
 namespace {
 using session::TrialReport;
@@ -30,18 +31,19 @@ core::Result<std::shared_ptr<const session::PreparedCase>> prepare(
   return std::shared_ptr<const session::PreparedCase>(std::move(*made));
 }
 
-session::Watch watch_of(const Options& options, const core::Progress& shown, TrialViewer& onlooker) {
-  return
-      [&options, &shown, &onlooker, said = std::uint64_t{0}](const session::Glimpse& seen) mutable {
-        if (options.follow && seen.samples_safe != said) {
-          said = seen.samples_safe;
-          fmt::print(stderr, "{}\n",
-                     core::Json{{"trial_id", seen.trial_id}, {"samples_safe", said}}.dump());
-        }
-        shown(seen.progress);
-        const bool looking = onlooker.look(seen);
-        return looking && !asked_to_stop();
-      };
+session::Watch watch_of(const Options& options, const core::Progress& shown,
+                        TrialViewer& onlooker) {
+  return [&options, &shown, &onlooker,
+          said = std::uint64_t{0}](const session::TrialSnapshot& seen) mutable {
+    if (options.follow && seen.samples_safe != said) {
+      said = seen.samples_safe;
+      fmt::print(stderr, "{}\n",
+                 core::Json{{"trial_id", seen.trial_id}, {"samples_safe", said}}.dump());
+    }
+    shown(seen.progress);
+    const bool looking = onlooker.look(seen);
+    return looking && !asked_to_stop();
+  };
 }
 
 core::Result<TrialReport> one_trial(const Options& options, Presence& presence,
@@ -177,3 +179,4 @@ core::Result<int> run_trials(const Options& options) {
 }
 
 }  // namespace app
+}  // namespace tractus

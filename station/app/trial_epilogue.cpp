@@ -8,7 +8,7 @@
 
 #include "station/app/exchange.hpp"
 
-namespace app {
+namespace tractus::app {
 using session::TrialReport;
 
 core::Result<std::optional<trial::Answer>> answer_of(
@@ -79,4 +79,4 @@ core::Json hand_over_after(const Options& options, const session::StationFolder&
   if (!options.json) fmt::print("{}\n", text_of(*report));
   return report->to_json();
 }
-}  // namespace app
+}  // namespace tractus::app

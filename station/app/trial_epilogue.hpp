@@ -4,7 +4,7 @@
 #include "station/app/options.hpp"
 #include "station/session/scores.hpp"
 
-namespace app {
+namespace tractus::app {
 
 /// To standard error, a line each.
 void say_recovered(const session::Recovered& recovered);
@@ -23,4 +23,4 @@ core::Json json_of(const session::TrialReport& report, const session::Scores& sc
 /// After the trials, never during one. That the server is away is no failure of the station.
 core::Json hand_over_after(const Options& options, const session::StationFolder& folder);
 
-}  // namespace app
+}  // namespace tractus::app

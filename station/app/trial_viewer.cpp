@@ -6,6 +6,7 @@
 #include "station/loop/drilling.hpp"
 #include "station/loop/placement.hpp"
 
+namespace tractus {
 namespace app {
 namespace {
 constexpr int kWidth_px = 1280, kHeight_px = 800;
@@ -47,7 +48,8 @@ core::Result<std::optional<math::Pose>> room_of(const ViewOptions& look) {
 
 }  // namespace
 
-core::Result<TrialViewer> TrialViewer::make(const session::PreparedCase& prepared, const ViewOptions& look) {
+core::Result<TrialViewer> TrialViewer::make(const session::PreparedCase& prepared,
+                                            const ViewOptions& look) {
   TrialViewer made;
   made.prepared_ = &prepared;
   made.picture_ = look.picture;
@@ -125,13 +127,13 @@ core::Result<void> TrialViewer::open_headset(const ViewOptions& look) {
 }
 
 void TrialViewer::tell_headset() {
-  const headset::Seen now = headset_->seen();
+  const headset::DisplayState now = headset_->seen();
   if (now == told_) return;
   told_ = now;
   const char* words = "shows the scene";
-  if (now == headset::Seen::waiting) words = "shows nothing just now; the trial goes on";
-  if (now == headset::Seen::tracking_lost) words = "tracking lost; the trial goes on";
-  if (now == headset::Seen::over) words = "its view is over; the trial goes on";
+  if (now == headset::DisplayState::waiting) words = "shows nothing just now; the trial goes on";
+  if (now == headset::DisplayState::tracking_lost) words = "tracking lost; the trial goes on";
+  if (now == headset::DisplayState::over) words = "its view is over; the trial goes on";
   std::fprintf(stderr, "headset: %s\n", words);
 }
 
@@ -163,7 +165,7 @@ void TrialViewer::look_at_bone(loop::Drilling& drilling) {
       drilling::united(carved.fresh.value_or(volume::Box{}), box.value_or(volume::Box{}));
 }
 
-bool TrialViewer::look(const session::Glimpse& seen) {
+bool TrialViewer::look(const session::TrialSnapshot& seen) {
   if (headset_) tell_headset();
   if (!view_ && !headset_ && picture_.empty()) return true;
   way_ = &seen.way;
@@ -192,3 +194,4 @@ core::Result<void> TrialViewer::leave_picture() {
 }
 
 }  // namespace app
+}  // namespace tractus

@@ -11,7 +11,7 @@
 #include "station/session/trial_run.hpp"
 #include "station/view/view.hpp"
 
-namespace app {
+namespace tractus::app {
 
 enum class Show { none, window, offscreen, headset, headset_or_window };
 
@@ -31,13 +31,14 @@ class TrialViewer {
   /// With a headset this returns when somebody sees the scene, or after a while. `prepared`
   /// outlives this. Errors: unavailable (no display, no OpenGL, no headset), bad_input
   /// (alignment.json).
-  static core::Result<TrialViewer> make(const session::PreparedCase& prepared, const ViewOptions& look);
-  /// Whose state the headset shows, as often as it likes, until `end_headset`.
+  static core::Result<TrialViewer> make(const session::PreparedCase& prepared,
+                                        const ViewOptions& look);
+  /// TrialFilter state the headset shows, as often as it likes, until `end_headset`.
   void follow(const loop::LiveState& live) { live_->store(&live); }
 
   /// Looks at the latest state, draws it when there is a view. False when a person closed the
   /// window.
-  bool look(const session::Glimpse& seen);
+  bool look(const session::TrialSnapshot& seen);
   /// The headset's figures, for the trial's report; null without one. Its view ends here.
   core::Json end_headset();
   /// Leaves the picture: the tip's whole way, and the probe where its tip was deepest; a burr,
@@ -61,20 +62,20 @@ class TrialViewer {
   using Followed = std::atomic<const loop::LiveState*>;
   std::shared_ptr<Followed> live_ = std::make_shared<Followed>(nullptr);  ///< the headset's too
   std::unique_ptr<headset::HeadsetThread> headset_;
-  headset::Seen told_ = headset::Seen::shown;  ///< the last that was said of it
+  headset::DisplayState told_ = headset::DisplayState::shown;  ///< the last that was said of it
   // Of the trial that is looked at.
   const session::TipWay* way_ = nullptr;
-  session::TipWay::Seen path_;
+  session::TipWay::Snapshot path_;
   loop::Drilling* drilling_ = nullptr;
   /// The bone as it is drilled; without a drilling the case's stands.
   struct Carved {
     std::mutex mutex;  ///< this thread writes, the headset's takes over; neither waits long
     std::optional<volume::Volume> bone;
-    drilling::Worn worn;
+    drilling::ErodedShares worn;
     std::optional<volume::Box> fresh;  ///< what the headset has not taken over yet
   };
   std::shared_ptr<Carved> carved_ = std::make_shared<Carved>();
   std::chrono::steady_clock::time_point next_look_at_bone_{};
 };
 
-}  // namespace app
+}  // namespace tractus::app

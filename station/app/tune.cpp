@@ -10,13 +10,14 @@
 
 #include "core/clock.hpp"
 #include "core/file.hpp"
-#include "station/app/trial_epilogue.hpp"
 #include "station/app/checks.hpp"
-#include "station/app/deeds.hpp"
+#include "station/app/commands.hpp"
 #include "station/app/exchange.hpp"
 #include "station/app/probing.hpp"
+#include "station/app/trial_epilogue.hpp"
 #include "station/session/tuning.hpp"
 
+namespace tractus {
 namespace app {
 namespace {
 using session::Tuning;
@@ -113,7 +114,7 @@ core::Result<session::TrialReport> one_trial(const Options& options,
   if (!made) return made.error();
   session::ProbingTrialRun& trial = **made;
   say_calibration_due(folder, options.rig.device);
-  const auto ran = trial.run([&](const session::ProbingGlimpse&) {
+  const auto ran = trial.run([&](const session::ProbingTrialSnapshot&) {
     for (auto c = key(); c; c = key())
       if (!expert.press(*c, trial)) return false;
     return !asked_to_stop();
@@ -155,3 +156,4 @@ core::Result<int> tune_scenario(const Options& options) {
 }
 
 }  // namespace app
+}  // namespace tractus

@@ -8,6 +8,7 @@
 #include "station/check/machine_check.hpp"
 #include "station/devices/catalogue.hpp"
 
+namespace tractus {
 namespace check {
 namespace {
 using devices::Status;
@@ -305,3 +306,4 @@ TEST(Report, EscapesWhatItPrints) {
 
 }  // namespace
 }  // namespace check
+}  // namespace tractus

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+namespace tractus {
 namespace check {
 namespace {
 using devices::Sample;
@@ -289,3 +290,4 @@ core::Result<void> check_forces(Bench bench, const DeviceGoals& goals, std::vect
 }
 
 }  // namespace check
+}  // namespace tractus

@@ -9,7 +9,7 @@
 #include "station/devices/device.hpp"
 #include "station/loop/limiter.hpp"
 
-namespace check {
+namespace tractus::check {
 
 /// What is expected. Plausible bounds of ours, wide enough for any hand on the handle.
 struct DeviceGoals {
@@ -46,4 +46,4 @@ core::Result<void> check_travel(Bench bench, const DeviceGoals& goals, double fo
 /// cancelled.
 core::Result<void> check_forces(Bench bench, const DeviceGoals& goals, std::vector<Finding>& out);
 
-}  // namespace check
+}  // namespace tractus::check

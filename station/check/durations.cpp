@@ -7,7 +7,7 @@
 
 #include "station/check/findings.hpp"
 
-namespace check {
+namespace tractus::check {
 
 double Durations::quantile_s(double share) const {
   if (kept_.empty()) return 0.0;
@@ -23,4 +23,4 @@ std::string Durations::text() const {
   return fmt::format("p50 {}, p99 {}, longest {}", at(0.5), at(0.99), at(1.0));
 }
 
-}  // namespace check
+}  // namespace tractus::check

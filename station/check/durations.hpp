@@ -6,7 +6,7 @@
 
 #include "core/clock.hpp"
 
-namespace check {
+namespace tractus::check {
 
 /// Adding is real-time safe: beyond the room that was asked for nothing is kept.
 class Durations {
@@ -26,4 +26,4 @@ class Durations {
   std::vector<core::Instant_ns> kept_;
 };
 
-}  // namespace check
+}  // namespace tractus::check

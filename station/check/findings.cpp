@@ -10,6 +10,7 @@
 #include "core/file.hpp"
 #include "core/words.hpp"
 
+namespace tractus {
 namespace check {
 namespace {
 constexpr std::size_t kWords = 400;  // that the server takes
@@ -154,3 +155,4 @@ core::Result<std::filesystem::path> Report::leave(const std::filesystem::path& f
 }
 
 }  // namespace check
+}  // namespace tractus

@@ -9,7 +9,7 @@
 
 #include "core/json.hpp"
 
-namespace check {
+namespace tractus::check {
 
 enum class Bound : std::uint8_t { at_most, at_least };
 
@@ -82,4 +82,4 @@ struct Report {
   std::string to_html(const std::string& station) const;
 };
 
-}  // namespace check
+}  // namespace tractus::check

@@ -16,6 +16,7 @@
 #include "core/file.hpp"
 #include "station/check/durations.hpp"
 
+namespace tractus {
 namespace check {
 namespace {
 constexpr double kLateShare = 0.001;
@@ -185,3 +186,4 @@ Finding check_calibration(const std::optional<Calibration>& last, std::int64_t n
 }
 
 }  // namespace check
+}  // namespace tractus

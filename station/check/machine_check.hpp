@@ -7,7 +7,7 @@
 #include "station/check/findings.hpp"
 #include "station/loop/realtime.hpp"
 
-namespace check {
+namespace tractus::check {
 
 /// A thread of the loop's kind that wakes at `rate_Hz` for `for_s` seconds: the share of wake-ups
 /// that came more than a quarter period late, and how late they came.
@@ -32,4 +32,4 @@ Finding check_time_of_day(const std::optional<Offset>& server);
 Finding check_calibration(const std::optional<Calibration>& last, std::int64_t now_utc_us,
                           Tested tested);
 
-}  // namespace check
+}  // namespace tractus::check

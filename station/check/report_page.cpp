@@ -5,6 +5,7 @@
 #include "plot/text.hpp"
 #include "station/check/findings.hpp"
 
+namespace tractus {
 namespace check {
 namespace {
 using plot::escaped;
@@ -87,3 +88,4 @@ std::string Report::to_html(const std::string& station) const {
 }
 
 }  // namespace check
+}  // namespace tractus

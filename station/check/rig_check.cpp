@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+namespace tractus {
 namespace check {
 namespace {
 namespace registers = devices::rig;
@@ -132,7 +133,7 @@ class Driver {
 };
 
 /// How a sensor's channel stands while nothing pulls at it.
-struct Channel {
+struct SignalStatistics {
   double sum = 0.0, squares = 0.0;
   int count = 0;
   void add(double value) { sum += value, squares += value * value, ++count; }
@@ -143,7 +144,7 @@ struct Channel {
 };
 
 struct Rest {
-  Channel push, twist;
+  SignalStatistics push, twist;
   int asked = 0, answered = 0, garbage = 0;
   std::uint16_t status = 0;
   bool gone = false;
@@ -398,3 +399,4 @@ core::Result<Finding> check_emergency_stop(RigBench bench, double patience_s,
 }
 
 }  // namespace check
+}  // namespace tractus

@@ -9,7 +9,7 @@
 #include "station/devices/rig_device.hpp"
 #include "station/loop/probing_guard.hpp"
 
-namespace check {
+namespace tractus::check {
 
 /// What is expected. The zero is the guard's own bound, the stop the machine's own promise; the
 /// rest is plausible, and ours.
@@ -56,4 +56,4 @@ core::Result<void> check_rig_motion(RigBench bench, const RigGoals& goals,
 core::Result<Finding> check_emergency_stop(RigBench bench, double patience_s,
                                            const std::function<void(const char*)>& tell);
 
-}  // namespace check
+}  // namespace tractus::check

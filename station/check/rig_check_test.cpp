@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+namespace tractus {
 namespace check {
 namespace {
 namespace registers = devices::rig;
@@ -166,3 +167,4 @@ TEST_F(RigCheck, WaitsForAPersonToPressAndToReset) {
 
 }  // namespace
 }  // namespace check
+}  // namespace tractus

@@ -10,11 +10,11 @@
 
 #include "station/devices/device.hpp"
 
-namespace devices {
+namespace tractus::devices {
 
 /// The drilled channel as a simulated hand knows it from planning: where to go, not what is wrong
 /// with it. In D.
-struct Channel {
+struct KnownTract {
   math::Vec3 entry_m = math::Vec3::Zero();    ///< centre of the mouth
   math::Vec3 axis = -math::Vec3::UnitX();     ///< unit vector into the bone
   math::Vec3 medial = math::Vec3::UnitY();    ///< unit vector, perpendicular to axis
@@ -37,14 +37,14 @@ struct DeviceOptions {
   std::uint64_t seed = 1;        ///< of everything random in a simulated device
   double duration_s = 30.0;      ///< of a simulated hand's plan
   double probe_length_m = 0.13;  ///< handle's origin to tip
-  Channel channel = {};
+  KnownTract channel = {};
   Tool tool = Tool::probe;         ///< with a burr a simulated hand makes the channel
   std::filesystem::path sdk = {};  ///< the vendor's library or folder; empty: where it installs
   Homing homing = Homing::refuse;
 };
 
 /// What a trainee says afterwards.
-struct Answer {
+struct SimulatedAnswer {
   bool breach = false;
   std::string wall;         ///< "medial", …, "anterior"; empty when there is no breach
   double confidence = 0.0;  ///< 0 … 1
@@ -59,7 +59,7 @@ class SimulatedTrainee {
   virtual std::string name() const = 0;          ///< "simulated hand, seed 7"
   virtual bool done() const noexcept = 0;        ///< the plan is over
   virtual double progress() const noexcept = 0;  ///< 0 … 1
-  virtual Answer answer() const = 0;             ///< after the loop has ended
+  virtual SimulatedAnswer answer() const = 0;    ///< after the loop has ended
 };
 
 /// A device and, when it is simulated, who moves it (owned by the device).
@@ -79,4 +79,4 @@ struct DeviceInfo {
 /// Every device, in file-name order.
 std::vector<DeviceInfo> all();
 
-}  // namespace devices
+}  // namespace tractus::devices

@@ -11,7 +11,7 @@
 #include "core/result.hpp"
 #include "math/geometry.hpp"
 
-namespace devices {
+namespace tractus::devices {
 
 /// How a call in the tick went; the loop decides what follows.
 enum class Status {
@@ -51,4 +51,4 @@ class Device {
   virtual void close() noexcept = 0;  ///< zero force first; may be called twice
 };
 
-}  // namespace devices
+}  // namespace tractus::devices

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <vector>
 
+namespace tractus {
 namespace devices {
 namespace {
 namespace fs = std::filesystem;
@@ -105,3 +106,4 @@ core::Result<void> DhdLibrary::resolve() {
 }
 
 }  // namespace devices
+}  // namespace tractus

@@ -7,7 +7,7 @@
 
 #include "core/result.hpp"
 
-namespace devices {
+namespace tractus::devices {
 
 /// Functions of Force Dimension's SDK (`dhd`, `drd`), as its public documentation names and types
 /// them. Nothing of the SDK is linked or shipped. Answers: 0 or one of the positive words below is
@@ -86,4 +86,4 @@ class DhdLibrary {
   DhdApi api_;
 };
 
-}  // namespace devices
+}  // namespace tractus::devices

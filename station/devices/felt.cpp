@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+namespace tractus {
 namespace devices {
 namespace {
 constexpr double kWeber = 0.1;
@@ -83,7 +84,7 @@ double FeltResistance::side_give_m() const noexcept {
   return usual_of(give);
 }
 
-Answer FeltResistance::answer(std::uint64_t seed) const noexcept {
+SimulatedAnswer FeltResistance::answer(std::uint64_t seed) const noexcept {
   std::uint64_t random = seed ^ 0x5eed0fee1ull;
   const Weakest side = weakest(random);
   if (side.share < kSideThreshold)
@@ -96,3 +97,4 @@ Answer FeltResistance::answer(std::uint64_t seed) const noexcept {
 }
 
 }  // namespace devices
+}  // namespace tractus

@@ -6,7 +6,7 @@
 
 #include "station/devices/palpation_plan.hpp"
 
-namespace devices {
+namespace tractus::devices {
 
 /// Bins of felt resistance. `note` runs in the tick: fixed size, no allocation.
 ///
@@ -25,7 +25,7 @@ class FeltResistance {
   /// @param resistance_N  the device's push against the hand, against the press of a stroke
   void note(const Intent& intent, double share, double lean_m, double resistance_N) noexcept;
 
-  Answer answer(std::uint64_t seed) const noexcept;
+  SimulatedAnswer answer(std::uint64_t seed) const noexcept;
 
  private:
   static constexpr double kMinLean_m = 0.0005;
@@ -46,4 +46,4 @@ class FeltResistance {
   double tap_lean_m_ = 0.0;  ///< farthest beyond the end
 };
 
-}  // namespace devices
+}  // namespace tractus::devices

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 
+namespace tractus {
 namespace devices {
 namespace {
 constexpr double kQuick_s = 0.05, kSlow_s = 1.0;
@@ -42,11 +43,11 @@ double FeltBreach::depth_m() const noexcept {
   return std::clamp(strongest_m_ + off_m, 0.0, kDeepest_m);
 }
 
-Answer FeltBreach::answer() const noexcept {
+SimulatedAnswer FeltBreach::answer() const noexcept {
   std::mt19937_64 random(seed_ ^ 0x9e3779b97f4a7c15ull);
   std::normal_distribution<double> normal;
   const double perceived = strongest_ + std::lerp(kUnskilled, kSkilled, skill_) * normal(random);
-  Answer out;
+  SimulatedAnswer out;
   out.breach = perceived > kThreshold;
   if (out.breach) out.wall = "lateral";
   out.confidence = 1.0 - 0.5 * std::exp(-2.0 * std::abs(perceived - kThreshold));
@@ -54,3 +55,4 @@ Answer FeltBreach::answer() const noexcept {
 }
 
 }  // namespace devices
+}  // namespace tractus

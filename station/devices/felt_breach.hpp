@@ -6,7 +6,7 @@
 
 #include "station/devices/catalogue.hpp"
 
-namespace devices {
+namespace tractus::devices {
 
 /// Fed with what a hand feels on the probe and nothing else: push and speed, never the controller's
 /// mode. A breach is felt as a jump while it pushes: the speed over 50 ms against that of the last
@@ -22,7 +22,7 @@ class FeltBreach {
   /// millimetres, less with skill. Meant where the answer is a breach.
   double depth_m() const noexcept;
   /// The wall is always the lateral one, the only one that a rig without a direction can mean.
-  Answer answer() const noexcept;
+  SimulatedAnswer answer() const noexcept;
 
  private:
   std::uint64_t seed_;
@@ -33,4 +33,4 @@ class FeltBreach {
   double strongest_ = 0.0, strongest_m_ = 0.0;
 };
 
-}  // namespace devices
+}  // namespace tractus::devices

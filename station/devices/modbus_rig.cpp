@@ -14,6 +14,7 @@
 
 #include "station/devices/rig_image.hpp"
 
+namespace tractus {
 namespace devices {
 namespace {
 
@@ -223,3 +224,4 @@ core::Result<std::unique_ptr<RigDevice>> modbus_rig(const std::string& address) 
 }
 
 }  // namespace devices
+}  // namespace tractus

@@ -7,7 +7,7 @@
 
 #include "station/devices/rig_device.hpp"
 
-namespace devices {
+namespace tractus::devices {
 
 /// @param address  "HOST:PORT" (TCP) or a serial line "/dev/ttyUSB0", "/dev/ttyUSB0@115200" (RTU,
 ///                 8E1, 115200 unless said).
@@ -16,4 +16,4 @@ namespace devices {
 /// making: bad_input for an address of neither kind.
 core::Result<std::unique_ptr<RigDevice>> modbus_rig(const std::string& address);
 
-}  // namespace devices
+}  // namespace tractus::devices

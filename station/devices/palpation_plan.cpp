@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+namespace tractus {
 namespace devices {
 namespace {
 constexpr double kPi = std::numbers::pi;
@@ -138,3 +139,4 @@ Intent PalpationPlan::at(double t_s, double lean) const noexcept {
 }
 
 }  // namespace devices
+}  // namespace tractus

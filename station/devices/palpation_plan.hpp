@@ -6,7 +6,7 @@
 
 #include "station/devices/catalogue.hpp"
 
-namespace devices {
+namespace tractus::devices {
 
 enum class Act : std::uint8_t { rest, approach, stroke, tap, drill, withdraw };
 
@@ -61,7 +61,7 @@ class PalpationPlan {
   math::Pose pose_at(double t_s, double lean, Intent& intent) const noexcept;
   double tremor(int axis, double t_s) const noexcept;
 
-  Channel channel_;
+  KnownTract channel_;
   double probe_length_m_, deepest_m_, shallowest_m_;
   std::uint64_t random_;
   std::vector<Key> keys_;
@@ -69,4 +69,4 @@ class PalpationPlan {
   double sweep_phase_rad_ = 0.0;
 };
 
-}  // namespace devices
+}  // namespace tractus::devices

@@ -6,7 +6,7 @@
 #include "core/result.hpp"
 #include "station/devices/rig_registers.hpp"
 
-namespace devices {
+namespace tractus::devices {
 
 /// What the machine says of itself.
 struct RigIdentity {
@@ -28,7 +28,7 @@ struct RigCommand {
 /// A coherent sample of one instant.
 struct RigReading {
   std::uint16_t status = 0;  ///< bits of rig::Status
-  rig::Fault fault = rig::Fault::none;
+  rig::RigFault fault = rig::RigFault::none;
   double x_m = 0.0, speed_m_s = 0.0;
   std::int32_t angle_urad = 0;  ///< wraps
   double turning_rad_s = 0.0;
@@ -60,4 +60,4 @@ class RigDevice {
   static constexpr int kPatient_ms = 5000;
 };
 
-}  // namespace devices
+}  // namespace tractus::devices

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+namespace tractus {
 namespace devices {
 namespace {
 
@@ -14,7 +15,7 @@ std::int32_t whole(double value) {
 bool plausible(const RigReading& r) {
   return std::abs(r.x_m) <= 1.0 && std::abs(r.speed_m_s) <= 5.0 &&
          std::abs(r.turning_rad_s) <= 1000.0 && std::abs(r.fz_N) <= 5000.0 &&
-         std::abs(r.tz_Nm) <= 100.0 && int(r.fault) <= int(rig::Fault::sensor);
+         std::abs(r.tz_Nm) <= 100.0 && int(r.fault) <= int(rig::RigFault::sensor);
 }
 
 }  // namespace
@@ -32,7 +33,7 @@ Exchange take_reading(const std::uint16_t* image, RigReading& out) noexcept {
   const auto at = [&](int address) { return image + (address - rig::kReadingStart); };
   RigReading r;
   r.status = *at(rig::kStatus);
-  r.fault = rig::Fault(r.status >> 8);
+  r.fault = rig::RigFault(r.status >> 8);
   r.x_m = 1e-6 * rig::wide(at(rig::kPosition_um));
   r.speed_m_s = 1e-6 * rig::wide(at(rig::kVelocity_um_s));
   r.angle_urad = rig::wide(at(rig::kAngle_urad));
@@ -54,3 +55,4 @@ RigIdentity identity_of(const std::uint16_t* found) noexcept {
 }
 
 }  // namespace devices
+}  // namespace tractus

@@ -3,7 +3,7 @@
 
 #include "station/devices/rig_device.hpp"
 
-namespace devices {
+namespace tractus::devices {
 
 /// @param at  kCommandCount registers
 void put_command(const RigCommand& command, std::uint16_t sequence, std::uint16_t* at) noexcept;
@@ -15,4 +15,4 @@ Exchange take_reading(const std::uint16_t* image, RigReading& out) noexcept;
 /// @param found  kIdentityCount registers of the known version
 RigIdentity identity_of(const std::uint16_t* found) noexcept;
 
-}  // namespace devices
+}  // namespace tractus::devices

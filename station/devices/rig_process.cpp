@@ -17,6 +17,7 @@
 
 extern char** environ;
 
+namespace tractus {
 namespace devices {
 namespace {
 
@@ -117,3 +118,4 @@ RigProcess::~RigProcess() {
 }
 
 }  // namespace devices
+}  // namespace tractus

@@ -9,7 +9,7 @@
 
 #include "core/result.hpp"
 
-namespace devices {
+namespace tractus::devices {
 
 struct RigProcessOptions {
   std::filesystem::path program;  ///< empty: `tractus-rig` beside this program
@@ -38,4 +38,4 @@ class RigProcess {
   std::string address_;
 };
 
-}  // namespace devices
+}  // namespace tractus::devices

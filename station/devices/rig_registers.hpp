@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-namespace devices::rig {
+namespace tractus::devices::rig {
 
 inline constexpr std::uint16_t kMapVersion = 1;
 inline constexpr int kUnit = 1;         ///< the electronics
@@ -48,7 +48,7 @@ enum Status : std::uint16_t {
   kRotaryPowered = 1u << 5,
   kSimulated = 1u << 7,  ///< always set by the peer that plays the rig
 };
-enum class Fault : std::uint8_t {
+enum class RigFault : std::uint8_t {
   none = 0,
   watchdog = 1,   ///< no command for kWatchdog_ms
   stalled = 2,    ///< the load is above the thrust
@@ -100,4 +100,4 @@ inline void put_wide(std::uint16_t* at, std::int32_t value) noexcept {
   at[1] = static_cast<std::uint16_t>(bits & 0xffffu);
 }
 
-}  // namespace devices::rig
+}  // namespace tractus::devices::rig

@@ -8,6 +8,7 @@
 
 #include "station/devices/catalogue.hpp"
 
+namespace tractus {
 namespace devices {
 namespace {
 using math::Vec3;
@@ -35,7 +36,7 @@ MadeDevice made(const DeviceOptions& options) {
 /// An elastic tube of bone round the channel: 60 N/m against the straight tip beyond the radius (a
 /// bending shank), 3000 N/m beyond the end; a hole gives nothing.
 struct Tube {
-  Channel channel;
+  KnownTract channel;
   std::string hole;
 
   math::Wrench push_on(const math::Pose& X_DH, double probe_m) const {
@@ -58,7 +59,7 @@ struct Tube {
 
 struct Palpation {
   std::vector<Sample> samples;
-  Answer answer;
+  SimulatedAnswer answer;
   double deepest_m = -1.0;
   double hardest_N = 0.0;
 };
@@ -197,3 +198,4 @@ TEST(EveryDevice, IsClosedBeforeItIsOpenedAndMayBeClosedTwice) {
 
 }  // namespace
 }  // namespace devices
+}  // namespace tractus

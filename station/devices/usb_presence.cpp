@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <libusb.h>
 
+namespace tractus {
 namespace devices {
 namespace {
 /// A session with the system's USB.
@@ -109,3 +110,4 @@ void UsbWatch::watch() {
 }
 
 }  // namespace devices
+}  // namespace tractus

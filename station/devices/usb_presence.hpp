@@ -9,7 +9,7 @@
 
 #include "core/result.hpp"
 
-namespace devices {
+namespace tractus::devices {
 
 inline constexpr std::uint16_t kForceDimension = 0x1451;  ///< vendor, as registered
 
@@ -54,4 +54,4 @@ class UsbWatch {
   std::thread thread_;
 };
 
-}  // namespace devices
+}  // namespace tractus::devices

@@ -9,6 +9,7 @@
 #include "core/json.hpp"
 #include "core/words.hpp"
 
+namespace tractus {
 namespace headset {
 namespace {
 constexpr std::size_t kFewest = 3, kMost = 8;
@@ -179,3 +180,4 @@ core::Result<std::optional<KeptAlignment>> kept_alignment(const std::filesystem:
 }
 
 }  // namespace headset
+}  // namespace tractus

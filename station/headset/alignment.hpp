@@ -10,7 +10,7 @@
 #include "core/result.hpp"
 #include "math/geometry.hpp"
 
-namespace headset {
+namespace tractus::headset {
 
 /// A point of a fixture, in the room's frame S (the headset's STAGE: metres, y up).
 struct FixturePoint {
@@ -59,4 +59,4 @@ core::Result<void> keep_alignment(const std::filesystem::path& folder, const Kep
 /// Nothing when the folder has none. Errors: bad_input naming the field.
 core::Result<std::optional<KeptAlignment>> kept_alignment(const std::filesystem::path& folder);
 
-}  // namespace headset
+}  // namespace tractus::headset

@@ -11,6 +11,7 @@
 #include "station/headset/touching.hpp"
 #include "station/headset/touching_hand.hpp"
 
+namespace tractus {
 namespace headset {
 namespace {
 namespace fs = std::filesystem;
@@ -165,10 +166,10 @@ TEST(Touching, AScriptedHandLeadsToWhereTheDeviceStands) {
   ASSERT_TRUE(hand.open());
   core::ManualClock clock;
   int asked = 0;
-  const TouchTalk talk{.ask = [&](const FixturePoint&) { ++asked; },
-                       .moved = [](const FixturePoint&) { FAIL(); },
-                       .enter = [] { return false; },
-                       .stop = [] { return false; }};
+  const TouchExchange talk{.ask = [&](const FixturePoint&) { ++asked; },
+                           .moved = [](const FixturePoint&) { FAIL(); },
+                           .enter = [] { return false; },
+                           .stop = [] { return false; }};
   const auto touched = touch_points(hand, clock, kTable, tip_H, talk);
   ASSERT_TRUE(touched) << touched.error().what;
   EXPECT_EQ(asked, 3);
@@ -198,10 +199,10 @@ TEST(Touching, GoesOnWithADeviceThatTookItsForcesAway) {
   } device;
   ASSERT_TRUE(device.open());
   core::ManualClock clock;
-  const TouchTalk talk{.ask = [](const FixturePoint&) {},
-                       .moved = [](const FixturePoint&) { FAIL(); },
-                       .enter = [] { return false; },
-                       .stop = [] { return false; }};
+  const TouchExchange talk{.ask = [](const FixturePoint&) {},
+                           .moved = [](const FixturePoint&) { FAIL(); },
+                           .enter = [] { return false; },
+                           .stop = [] { return false; }};
   const auto touched = touch_points(device, clock, kTable, math::Vec3::Zero(), talk);
   ASSERT_TRUE(touched) << touched.error().what;
   EXPECT_TRUE(align(*touched, 0.005));
@@ -211,10 +212,10 @@ TEST(Touching, EndsWhenAPersonSaysSoAndWhenTheDeviceIsGone) {
   TouchingHand hand(kTable, math::Vec3::Zero());
   ASSERT_TRUE(hand.open());
   core::ManualClock clock;
-  TouchTalk talk{.ask = [](const FixturePoint&) {},
-                 .moved = [](const FixturePoint&) {},
-                 .enter = [] { return false; },
-                 .stop = [&] { return clock.now() > 100'000'000; }};
+  TouchExchange talk{.ask = [](const FixturePoint&) {},
+                     .moved = [](const FixturePoint&) {},
+                     .enter = [] { return false; },
+                     .stop = [&] { return clock.now() > 100'000'000; }};
   const auto stopped = touch_points(hand, clock, kTable, math::Vec3::Zero(), talk);
   ASSERT_FALSE(stopped);
   EXPECT_EQ(stopped.error().code, core::Errc::cancelled);
@@ -236,3 +237,4 @@ TEST(Touching, EndsWhenAPersonSaysSoAndWhenTheDeviceIsGone) {
 
 }  // namespace
 }  // namespace headset
+}  // namespace tractus

@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-namespace headset {
+namespace tractus::headset {
 
 Controls::Controls(const Instance& instance, const Session& session) {
   hands_ = {instance.path("/user/hand/left"), instance.path("/user/hand/right")};
@@ -82,4 +82,4 @@ Controls::State Controls::look(const Session& session, const Frame& frame) {
   return out;
 }
 
-}  // namespace headset
+}  // namespace tractus::headset

@@ -7,7 +7,7 @@
 #include "station/headset/instance.hpp"
 #include "station/headset/session.hpp"
 
-namespace headset {
+namespace tractus::headset {
 
 class Controls {
  public:
@@ -36,4 +36,4 @@ class Controls {
   bool attached_ = false;
 };
 
-}  // namespace headset
+}  // namespace tractus::headset

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace headset {
+namespace tractus::headset {
 namespace {
 constexpr double kAhead_m = 0.45, kBelow_m = 0.22;
 }
@@ -45,4 +45,4 @@ math::Pose device_ahead_of(const math::Pose& X_SW) {
   return {X_SW.p + kAhead_m * ahead - kBelow_m * math::Vec3::UnitY(), math::Quat(R)};
 }
 
-}  // namespace headset
+}  // namespace tractus::headset

@@ -3,7 +3,7 @@
 
 #include "math/geometry.hpp"
 
-namespace headset {
+namespace tractus::headset {
 
 /// Half angles of a view, signed: left and down are negative when the view reaches to both sides.
 struct Fov {
@@ -33,4 +33,4 @@ math::Vec2 pixel_of(const math::Vec3& p_E_m, const Fov& fov, int width_px, int h
 /// @param X_SW  the head in the room's frame S (y up)
 math::Pose device_ahead_of(const math::Pose& X_SW);
 
-}  // namespace headset
+}  // namespace tractus::headset

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace headset {
+namespace tractus::headset {
 
 double FrameTimes::quantile_ms(double share) const {
   if (work_s_.empty()) return 0.0;
@@ -38,4 +38,4 @@ core::Json Figures::to_json() const {
           {"ended", ended}};
 }
 
-}  // namespace headset
+}  // namespace tractus::headset

@@ -7,7 +7,7 @@
 
 #include "core/json.hpp"
 
-namespace headset {
+namespace tractus::headset {
 
 /// Frames as they were made, and the times they took.
 class FrameTimes {
@@ -50,4 +50,4 @@ struct Figures {
   core::Json to_json() const;
 };
 
-}  // namespace headset
+}  // namespace tractus::headset

@@ -4,7 +4,7 @@
 #include <GL/gl.h>
 #include <GL/glext.h>
 
-namespace headset {
+namespace tractus::headset {
 
 GpuTimer::GpuTimer() {
   for (auto& turn : queries_) glGenQueries(kEyes, turn.data());
@@ -45,4 +45,4 @@ std::optional<double> GpuTimer::frame_s() {
   return sum_s;
 }
 
-}  // namespace headset
+}  // namespace tractus::headset

@@ -4,7 +4,7 @@
 #include <array>
 #include <optional>
 
-namespace headset {
+namespace tractus::headset {
 
 /// Timer queries, in turns: what is asked for after a frame is the frame before. The context is
 /// current wherever this is used.
@@ -28,4 +28,4 @@ class GpuTimer {
   int turn_ = 0;
 };
 
-}  // namespace headset
+}  // namespace tractus::headset

@@ -7,6 +7,7 @@
 #define XR_USE_GRAPHICS_API_OPENGL
 #include <openxr/openxr_platform.h>
 
+namespace tractus {
 namespace headset {
 namespace {
 
@@ -40,3 +41,4 @@ core::Result<std::unique_ptr<Graphics>> Graphics::make(const Instance& instance)
 }
 
 }  // namespace headset
+}  // namespace tractus

@@ -6,7 +6,7 @@
 #include "station/headset/instance.hpp"
 #include "station/view/lent_context.hpp"
 
-namespace headset {
+namespace tractus::headset {
 
 /// A context of ours and the words in which a session is told of it. Current in the thread that
 /// made it.
@@ -25,4 +25,4 @@ class Graphics {
 core::Result<std::unique_ptr<Graphics>> make_egl_graphics();
 core::Result<std::unique_ptr<Graphics>> make_glx_graphics();
 
-}  // namespace headset
+}  // namespace tractus::headset

@@ -7,6 +7,7 @@
 #define XR_USE_PLATFORM_EGL
 #include <openxr/openxr_platform.h>
 
+namespace tractus {
 namespace headset {
 namespace {
 
@@ -36,3 +37,4 @@ core::Result<std::unique_ptr<Graphics>> make_egl_graphics() {
 }
 
 }  // namespace headset
+}  // namespace tractus

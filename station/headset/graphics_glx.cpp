@@ -7,6 +7,7 @@
 #define XR_USE_PLATFORM_XLIB
 #include <openxr/openxr_platform.h>
 
+namespace tractus {
 namespace headset {
 namespace {
 
@@ -38,3 +39,4 @@ core::Result<std::unique_ptr<Graphics>> make_glx_graphics() {
 }
 
 }  // namespace headset
+}  // namespace tractus

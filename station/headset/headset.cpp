@@ -4,6 +4,7 @@
 #include "station/headset/painter.hpp"
 #include "station/headset/session.hpp"
 
+namespace tractus {
 namespace headset {
 namespace {
 constexpr double kPathStep_m = 5e-4;
@@ -23,7 +24,7 @@ struct Headset::Parts {
   std::optional<math::Pose> X_SD;  // fixed at the first frame when the room is not aligned
   bool aligned = false;
   std::vector<math::Vec3> path_m;
-  Seen seen = Seen::waiting;
+  DisplayState seen = DisplayState::waiting;
   FrameTimes work, gpu;
   DueFrames due;
   std::uint64_t untracked = 0;
@@ -73,9 +74,9 @@ bool Headset::step() {
     p.frame();
   else
     p.due.pause();
-  if (!p.session->lifecycle().visible()) p.seen = Seen::waiting;
-  if (p.session->lifecycle().over()) p.seen = Seen::over;
-  return p.seen != Seen::over;
+  if (!p.session->lifecycle().visible()) p.seen = DisplayState::waiting;
+  if (p.session->lifecycle().over()) p.seen = DisplayState::over;
+  return p.seen != DisplayState::over;
 }
 
 void Headset::Parts::frame() {
@@ -91,14 +92,15 @@ void Headset::Parts::frame() {
   if (!drawn) return;
   work.add(1e-9 * double(clock.now() - start));
   if (const auto spent_s = painter->gpu_s()) gpu.add(*spent_s);
-  seen = located->tracked ? Seen::shown : Seen::tracking_lost;
+  seen = located->tracked ? DisplayState::shown : DisplayState::tracking_lost;
   if (!located->tracked) ++untracked;
 }
 
 void Headset::Parts::follow_probe() {
   if (shown.carved)
-    shown.carved([this](const volume::Box& box, const volume::Volume& bone,
-                        const drilling::Worn& worn) { painter->carve_away(box, bone, worn); });
+    shown.carved(
+        [this](const volume::Box& box, const volume::Volume& bone,
+               const drilling::ErodedShares& worn) { painter->carve_away(box, bone, worn); });
   const auto now = shown.latest ? shown.latest() : std::nullopt;
   if (!now) return;
   painter->pose(now->state);
@@ -138,7 +140,7 @@ bool Headset::Parts::paint(const Frame& frame, const Located& located) {
 }
 
 void Headset::ask_to_leave() { parts_->session->ask_to_leave(); }
-Seen Headset::seen() const { return parts_->seen; }
+DisplayState Headset::seen() const { return parts_->seen; }
 bool Headset::running() const { return parts_->session->lifecycle().running(); }
 const std::string& Headset::why() const { return parts_->session->lifecycle().why(); }
 
@@ -160,3 +162,4 @@ Figures Headset::figures() const {
 }
 
 }  // namespace headset
+}  // namespace tractus

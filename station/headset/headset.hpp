@@ -9,7 +9,7 @@
 #include "station/headset/figures.hpp"
 #include "station/view/view.hpp"
 
-namespace headset {
+namespace tractus::headset {
 
 /// Where the probe is just now.
 struct Moment {
@@ -20,7 +20,7 @@ struct Moment {
 /// Takes over the counts of a box of the bone that was drilled, and all that was worn; the volume
 /// is the scene's.
 using TakeBone = std::function<void(const volume::Box& box, const volume::Volume& bone,
-                                    const drilling::Worn& worn)>;
+                                    const drilling::ErodedShares& worn)>;
 
 /// What is to be shown, and where in the room.
 struct Shown {
@@ -33,7 +33,7 @@ struct Shown {
   std::function<void(const TakeBone& take)> carved = {};
 };
 
-enum class Seen {
+enum class DisplayState {
   waiting,        ///< the runtime has not asked for frames yet, or shows something else
   shown,          ///< somebody sees the scene
   tracking_lost,  ///< somebody sees words that say so
@@ -53,7 +53,7 @@ class Headset {
   bool step();
   /// The session is to end; `step` goes on until it has.
   void ask_to_leave();
-  Seen seen() const;
+  DisplayState seen() const;
   bool running() const;
   const std::string& why() const;
   Figures figures() const;
@@ -64,4 +64,4 @@ class Headset {
   std::unique_ptr<Parts> parts_;
 };
 
-}  // namespace headset
+}  // namespace tractus::headset

@@ -9,6 +9,7 @@
 #include "station/headset/session_lifecycle.hpp"
 #include "station/headset/xr.hpp"
 
+namespace tractus {
 namespace headset {
 namespace {
 
@@ -106,3 +107,4 @@ TEST(Words, OfARuntimesAnswersAreTheSpecifications) {
 
 }  // namespace
 }  // namespace headset
+}  // namespace tractus

@@ -2,6 +2,7 @@
 
 #include <future>
 
+namespace tractus {
 namespace headset {
 namespace {
 using std::chrono::steady_clock;
@@ -49,9 +50,9 @@ void HeadsetThread::work(const Shown& shown, Opened& opened) {
 
 bool HeadsetThread::wait_until_seen(std::chrono::milliseconds longest) const {
   const auto until = steady_clock::now() + longest;
-  while (seen() == Seen::waiting && steady_clock::now() < until)
+  while (seen() == DisplayState::waiting && steady_clock::now() < until)
     std::this_thread::sleep_for(kBreath);
-  return seen() == Seen::shown || seen() == Seen::tracking_lost;
+  return seen() == DisplayState::shown || seen() == DisplayState::tracking_lost;
 }
 
 const Figures& HeadsetThread::end() {
@@ -63,3 +64,4 @@ const Figures& HeadsetThread::end() {
 HeadsetThread::~HeadsetThread() { end(); }
 
 }  // namespace headset
+}  // namespace tractus

@@ -7,7 +7,7 @@
 
 #include "station/headset/headset.hpp"
 
-namespace headset {
+namespace tractus::headset {
 
 /// The trial goes on whatever happens here; who wants to know asks `seen`.
 class HeadsetThread {
@@ -16,7 +16,7 @@ class HeadsetThread {
   static core::Result<std::unique_ptr<HeadsetThread>> start(Shown shown);
   ~HeadsetThread();
 
-  Seen seen() const { return seen_.load(); }
+  DisplayState seen() const { return seen_.load(); }
   /// Until somebody sees the scene, or it is over, or so long. Was it seen?
   bool wait_until_seen(std::chrono::milliseconds longest) const;
   /// Ends the session in good order (at most two seconds) and joins. Again: the same figures.
@@ -25,10 +25,10 @@ class HeadsetThread {
  private:
   HeadsetThread() = default;
   void work(const Shown& shown, class Opened& opened);
-  std::atomic<Seen> seen_ = Seen::waiting;
+  std::atomic<DisplayState> seen_ = DisplayState::waiting;
   std::atomic<bool> to_end_ = false;
   Figures figures_;  ///< written by the thread, read after it was joined
   std::thread thread_;
 };
 
-}  // namespace headset
+}  // namespace tractus::headset

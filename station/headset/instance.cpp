@@ -7,6 +7,7 @@
 #include <set>
 #include <vector>
 
+namespace tractus {
 namespace headset {
 namespace {
 constexpr const char* kOpenGl = "XR_KHR_opengl_enable";
@@ -127,3 +128,4 @@ XrPath Instance::path(const char* text) const {
 }
 
 }  // namespace headset
+}  // namespace tractus

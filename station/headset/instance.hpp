@@ -6,7 +6,7 @@
 
 #include "station/headset/xr.hpp"
 
-namespace headset {
+namespace tractus::headset {
 
 /// How OpenGL is handed over.
 enum class Binding {
@@ -53,4 +53,4 @@ class Instance {
   XrEnvironmentBlendMode blend_ = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;
 };
 
-}  // namespace headset
+}  // namespace tractus::headset

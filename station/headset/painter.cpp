@@ -19,6 +19,7 @@
 #include "station/headset/gpu_timer.hpp"
 #include "station/view/scene_parts.hpp"
 
+namespace tractus {
 namespace headset {
 namespace {
 constexpr double kNear_m = 0.03, kFar_m = 10.0;
@@ -95,7 +96,7 @@ core::Result<std::unique_ptr<Painter>> Painter::make(const view::Scene& scene,
 }
 
 void Painter::carve_away(const volume::Box& box, const volume::Volume& volume,
-                         const drilling::Worn& worn) {
+                         const drilling::ErodedShares& worn) {
   parts_->picture.carve_away(box, volume, worn);
 }
 void Painter::pose(const view::ProbeState& state) { parts_->picture.pose(state); }
@@ -173,3 +174,4 @@ core::Result<void> Painter::Parts::copy_to(unsigned texture) {
 std::optional<double> Painter::gpu_s() { return parts_->timer->frame_s(); }
 
 }  // namespace headset
+}  // namespace tractus

@@ -10,7 +10,7 @@
 #include "station/view/lent_context.hpp"
 #include "station/view/view.hpp"
 
-namespace headset {
+namespace tractus::headset {
 
 /// Used by the one thread in which `context` is current. The objects are those of the window
 /// (view::Picture); what is added are the controllers and words that hang before the head.
@@ -23,7 +23,8 @@ class Painter {
   ~Painter();
 
   /// As view::View's.
-  void carve_away(const volume::Box& box, const volume::Volume& volume, const drilling::Worn& worn);
+  void carve_away(const volume::Box& box, const volume::Volume& volume,
+                  const drilling::ErodedShares& worn);
   void pose(const view::ProbeState& state);
   void path(std::span<const math::Vec3> path_m);
   /// Grips in V; what is not there is not drawn.
@@ -43,4 +44,4 @@ class Painter {
   std::unique_ptr<Parts> parts_;
 };
 
-}  // namespace headset
+}  // namespace tractus::headset

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+namespace tractus {
 namespace headset {
 namespace {
 constexpr auto kStereo = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
@@ -193,3 +194,4 @@ void Session::end_frame(const Frame& frame, const Located* drawn) {
 }
 
 }  // namespace headset
+}  // namespace tractus

@@ -10,7 +10,7 @@
 #include "station/headset/session_lifecycle.hpp"
 #include "station/headset/swapchain.hpp"
 
-namespace headset {
+namespace tractus::headset {
 
 /// One frame between `begin_frame` and `end_frame`.
 struct Frame {
@@ -85,4 +85,4 @@ class Session {
 
 math::Pose pose_of(const XrPosef& pose);
 
-}  // namespace headset
+}  // namespace tractus::headset

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace headset {
+namespace tractus::headset {
 
 LifecycleAction SessionLifecycle::on_state_changed(XrSessionState state) {
   if (over_) return LifecycleAction::none;
@@ -38,4 +38,4 @@ bool SessionLifecycle::visible() const {
   return running_ && (state_ == XR_SESSION_STATE_VISIBLE || state_ == XR_SESSION_STATE_FOCUSED);
 }
 
-}  // namespace headset
+}  // namespace tractus::headset

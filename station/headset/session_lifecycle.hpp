@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace headset {
+namespace tractus::headset {
 
 /// The action that a state change requires.
 enum class LifecycleAction { none, begin, end, leave };
@@ -33,4 +33,4 @@ class SessionLifecycle {
   std::string why_;
 };
 
-}  // namespace headset
+}  // namespace tractus::headset

@@ -9,6 +9,7 @@
 #define XR_USE_GRAPHICS_API_OPENGL
 #include <openxr/openxr_platform.h>
 
+namespace tractus {
 namespace headset {
 namespace {
 
@@ -80,3 +81,4 @@ core::Result<void> Swapchain::release() {
 }
 
 }  // namespace headset
+}  // namespace tractus

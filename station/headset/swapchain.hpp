@@ -5,7 +5,7 @@
 
 #include "station/headset/xr.hpp"
 
-namespace headset {
+namespace tractus::headset {
 
 /// OpenGL textures of the runtime's own, taken in turn: acquire, draw, release.
 class Swapchain {
@@ -28,4 +28,4 @@ class Swapchain {
   std::vector<unsigned> textures_;
 };
 
-}  // namespace headset
+}  // namespace tractus::headset

@@ -1,5 +1,6 @@
 #include "station/headset/touching.hpp"
 
+namespace tractus {
 namespace headset {
 namespace {
 constexpr core::Instant_ns kPeriod_ns = 1'000'000;
@@ -32,7 +33,7 @@ bool is_lost(devices::Status status) {
 
 core::Result<Touched> touch_point(devices::Device& device, core::Clock& clock,
                                   const FixturePoint& point, const math::Vec3& tip_H_m,
-                                  const TouchTalk& talk) {
+                                  const TouchExchange& talk) {
   Touch touch;
   const core::Instant_ns start = clock.now();
   bool was_down = true;  // until it was seen up
@@ -60,7 +61,8 @@ core::Result<Touched> touch_point(devices::Device& device, core::Clock& clock,
 
 core::Result<std::vector<Touched>> touch_points(devices::Device& device, core::Clock& clock,
                                                 std::span<const FixturePoint> points,
-                                                const math::Vec3& tip_H_m, const TouchTalk& talk) {
+                                                const math::Vec3& tip_H_m,
+                                                const TouchExchange& talk) {
   std::vector<Touched> out;
   for (const FixturePoint& point : points) {
     talk.ask(point);
@@ -72,3 +74,4 @@ core::Result<std::vector<Touched>> touch_points(devices::Device& device, core::C
 }
 
 }  // namespace headset
+}  // namespace tractus

@@ -9,7 +9,7 @@
 #include "station/devices/device.hpp"
 #include "station/headset/alignment.hpp"
 
-namespace headset {
+namespace tractus::headset {
 
 /// One touch: pressed, then held still for a moment. The mean is what counts.
 class Touch {
@@ -31,7 +31,7 @@ class Touch {
 };
 
 /// How those who ask and answer are reached.
-struct TouchTalk {
+struct TouchExchange {
   std::function<void(const FixturePoint& next)> ask;
   std::function<void(const FixturePoint& again)> moved;  ///< it was not held still
   std::function<bool()> enter;                           ///< Enter was pressed since
@@ -44,6 +44,7 @@ struct TouchTalk {
 /// Errors: cancelled; unavailable (the device stopped answering).
 core::Result<std::vector<Touched>> touch_points(devices::Device& device, core::Clock& clock,
                                                 std::span<const FixturePoint> points,
-                                                const math::Vec3& tip_H_m, const TouchTalk& talk);
+                                                const math::Vec3& tip_H_m,
+                                                const TouchExchange& talk);
 
-}  // namespace headset
+}  // namespace tractus::headset

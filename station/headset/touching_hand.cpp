@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+namespace tractus {
 namespace headset {
 namespace {
 constexpr double kTravel_s = 1.0, kRest_s = 1.0, kPress_s = 0.3;  // of a rest, until it presses
@@ -66,3 +67,4 @@ devices::Status TouchingHand::write(const math::Wrench& on_hand_D) noexcept {
 }
 
 }  // namespace headset
+}  // namespace tractus

@@ -7,7 +7,7 @@
 #include "station/devices/device.hpp"
 #include "station/headset/alignment.hpp"
 
-namespace headset {
+namespace tractus::headset {
 
 /// Goes from point to point (minimum jerk [Flash1985]), comes to rest a fraction of a millimetre
 /// beside it, holds still but for a tremor, presses the button; begins again after the last.
@@ -29,4 +29,4 @@ class TouchingHand final : public devices::Device {
   core::Instant_ns start_ = -1;
 };
 
-}  // namespace headset
+}  // namespace tractus::headset

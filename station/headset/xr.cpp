@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <openxr/openxr_reflection.h>
 
-namespace headset {
+namespace tractus::headset {
 
 std::string name_of(XrResult result) {
   switch (result) {
@@ -20,4 +20,4 @@ core::Error refused(const char* what, XrResult result) {
   return {core::Errc::unavailable, fmt::format("headset: {}: {}", what, name_of(result))};
 }
 
-}  // namespace headset
+}  // namespace tractus::headset

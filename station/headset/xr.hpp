@@ -7,7 +7,7 @@
 
 #include "core/result.hpp"
 
-namespace headset {
+namespace tractus::headset {
 
 /// "XR_ERROR_SESSION_LOST"
 std::string name_of(XrResult result);
@@ -23,4 +23,4 @@ T typed(XrStructureType type) {
   return made;
 }
 
-}  // namespace headset
+}  // namespace tractus::headset

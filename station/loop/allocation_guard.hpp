@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-namespace loop {
+namespace tractus::loop {
 extern thread_local std::uint64_t allocations_of_this_thread;
 
 /// Allocations of this thread since it was made.
@@ -15,4 +15,4 @@ class AllocationGuard {
  private:
   std::uint64_t before_ = allocations_of_this_thread;
 };
-}  // namespace loop
+}  // namespace tractus::loop

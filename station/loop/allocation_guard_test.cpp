@@ -27,6 +27,7 @@
   std::free(memory);
 }
 
+namespace tractus {
 namespace loop {
 thread_local std::uint64_t allocations_of_this_thread = 0;
 
@@ -39,3 +40,4 @@ TEST(AllocationGuard, SeesAnAllocation) {
 }
 }  // namespace
 }  // namespace loop
+}  // namespace tractus

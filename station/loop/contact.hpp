@@ -3,7 +3,7 @@
 
 #include "models/palpation_runtime.hpp"
 
-namespace loop {
+namespace tractus::loop {
 
 class Contact {
  public:
@@ -49,4 +49,4 @@ class PalpationContact final : public Contact {
   math::Vec3 a_m_s2_ = math::Vec3::Zero(), alpha_rad_s2_ = math::Vec3::Zero();
 };
 
-}  // namespace loop
+}  // namespace tractus::loop

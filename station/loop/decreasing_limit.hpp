@@ -4,7 +4,7 @@
 #include <atomic>
 #include <limits>
 
-namespace loop {
+namespace tractus::loop {
 
 /// Infinite until somebody lowers it. From any thread, without a lock; what is no number or
 /// negative changes nothing, nor does what is higher.
@@ -28,4 +28,4 @@ class DecreasingLimit {
   std::atomic<double> value_ = std::numeric_limits<double>::infinity();
 };
 
-}  // namespace loop
+}  // namespace tractus::loop

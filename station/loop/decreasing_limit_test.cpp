@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+namespace tractus {
 namespace loop {
 namespace {
 
@@ -26,3 +27,4 @@ TEST(DecreasingLimit, OnlyFalls) {
 
 }  // namespace
 }  // namespace loop
+}  // namespace tractus

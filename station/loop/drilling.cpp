@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+namespace tractus {
 namespace loop {
 namespace {
 constexpr std::size_t kSlots = 8, kBlock = 256;
@@ -138,10 +139,11 @@ std::optional<volume::Box> Drilling::show(volume::Volume& shown) {
   return box;
 }
 
-std::optional<drilling::Worn> Drilling::worn() {
+std::optional<drilling::ErodedShares> Drilling::worn() {
   const std::unique_lock lock(bone_mutex_, std::try_to_lock);
   if (!lock || !std::exchange(worn_more_, false)) return std::nullopt;
   return drilling::worn_of(erosion_);
 }
 
 }  // namespace loop
+}  // namespace tractus

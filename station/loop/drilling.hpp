@@ -16,7 +16,7 @@
 #include "station/loop/ring.hpp"
 #include "station/loop/tool.hpp"
 
-namespace loop {
+namespace tractus::loop {
 
 /// Owns the bone as it is drilled, its field, and the model on it.
 ///
@@ -63,7 +63,7 @@ class Drilling final : public Tool {
   std::optional<volume::Box> show(volume::Volume& shown);
   /// Likewise: what was worn until now; nothing when the burr was not at work since the last call,
   /// or the worker is at it just now. Never waits.
-  std::optional<drilling::Worn> worn();
+  std::optional<drilling::ErodedShares> worn();
 
  private:
   struct Slot {
@@ -95,4 +95,4 @@ class Drilling final : public Tool {
   std::thread thread_;
 };
 
-}  // namespace loop
+}  // namespace tractus::loop

@@ -7,6 +7,7 @@
 
 #include "station/loop/allocation_guard.hpp"
 
+namespace tractus {
 namespace loop {
 namespace {
 using devices::Status;
@@ -255,3 +256,4 @@ TEST(Drilling, ShowsWhatEachVoxelLostWhenTheBurrWasAtWork) {
 
 }  // namespace
 }  // namespace loop
+}  // namespace tractus

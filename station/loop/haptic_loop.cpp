@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+namespace tractus {
 namespace loop {
 namespace {
 using devices::Status;
@@ -146,3 +147,4 @@ void HapticLoop::record(const trial::Sample& sample) noexcept {
 }
 
 }  // namespace loop
+}  // namespace tractus

@@ -14,7 +14,7 @@
 #include "station/safety/energy.hpp"
 #include "trial/trial.hpp"
 
-namespace loop {
+namespace tractus::loop {
 
 using SampleRing = Ring<trial::Sample>;
 
@@ -103,4 +103,4 @@ class HapticLoop {
   std::atomic<bool> stop_ = false;
 };
 
-}  // namespace loop
+}  // namespace tractus::loop

@@ -10,6 +10,7 @@
 #include "station/loop/allocation_guard.hpp"
 #include "station/loop/placement.hpp"
 
+namespace tractus {
 namespace loop {
 namespace {
 using devices::Status;
@@ -280,3 +281,4 @@ TEST(Placement, PutsTheTipInTheMouthWithTheHandleInTheCentreOfTheWorkspace) {
 
 }  // namespace
 }  // namespace loop
+}  // namespace tractus

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+namespace tractus {
 namespace loop {
 namespace {
 using devices::Sample;
@@ -176,3 +177,4 @@ Limiter::Passed Limiter::pass(core::Instant_ns now, Status status, const Sample&
 }
 
 }  // namespace loop
+}  // namespace tractus

@@ -9,7 +9,7 @@
 #include "station/loop/decreasing_limit.hpp"
 #include "station/safety/machine.hpp"
 
-namespace loop {
+namespace tractus::loop {
 
 /// How much a hand may be given. Local alone: defaults, or the station's own file. A limit from a
 /// server or a case can only lower (`lowered_by`); nothing raises above kCeiling.
@@ -96,4 +96,4 @@ class Limiter {
   bool ticked_ = false;
 };
 
-}  // namespace loop
+}  // namespace tractus::loop

@@ -8,6 +8,7 @@
 #include "station/loop/limiter.hpp"
 #include "station/loop/probing_guard.hpp"
 
+namespace tractus {
 namespace loop {
 namespace {
 using devices::Sample;
@@ -141,7 +142,7 @@ TEST(Limiter, KeepsItsPromisesInEverySequenceOfFiveStimuliFromEveryState) {
 /// The rig: what an exchange may give.
 struct RigStimulus {
   const char* name;
-  RigFault fault = RigFault::none;
+  safety::Fault fault = safety::Fault::none;
   devices::Exchange how = devices::Exchange::ok;
   devices::RigReading reading;
 };
@@ -159,25 +160,26 @@ std::vector<RigStimulus> rig_stimuli() {
   fine.x_m = pushed.x_m = 0.02;
   pushed.fz_N = 185.0;
   emergency.status = reg::kEmergency;
-  return {{"fine", RigFault::none, devices::Exchange::ok, fine},
-          {"pushed", RigFault::none, devices::Exchange::ok, pushed},
-          {"silent", RigFault::none, devices::Exchange::silent, {}},
-          {"garbage", RigFault::garbage, devices::Exchange::garbage, {}},
-          {"gone", RigFault::gone, devices::Exchange::gone, {}},
-          {"emergency", RigFault::emergency, devices::Exchange::ok, emergency},
-          {"watchdog", RigFault::none, devices::Exchange::ok, faulted(reg::Fault::watchdog)},
-          {"stalled", RigFault::stalled, devices::Exchange::ok, faulted(reg::Fault::stalled)},
-          {"drive", RigFault::drive, devices::Exchange::ok, faulted(reg::Fault::drive)},
-          {"sensor", RigFault::sensor, devices::Exchange::ok, faulted(reg::Fault::sensor)}};
+  return {{"fine", safety::Fault::none, devices::Exchange::ok, fine},
+          {"pushed", safety::Fault::none, devices::Exchange::ok, pushed},
+          {"silent", safety::Fault::none, devices::Exchange::silent, {}},
+          {"garbage", safety::Fault::garbage, devices::Exchange::garbage, {}},
+          {"gone", safety::Fault::gone, devices::Exchange::gone, {}},
+          {"emergency", safety::Fault::emergency, devices::Exchange::ok, emergency},
+          {"watchdog", safety::Fault::none, devices::Exchange::ok, faulted(reg::Fault::watchdog)},
+          {"stalled", safety::Fault::stalled, devices::Exchange::ok, faulted(reg::Fault::stalled)},
+          {"drive", safety::Fault::drive, devices::Exchange::ok, faulted(reg::Fault::drive)},
+          {"sensor", safety::Fault::sensor, devices::Exchange::ok, faulted(reg::Fault::sensor)}};
 }
 
 bool take(ProbingGuard& guard, const RigStimulus& s, std::string& why) {
   const bool was_latched = guard.latched();
-  const RigFault was = guard.fault();
-  const ProbingGuard::Seen seen = guard.see(s.how, s.reading);
+  const safety::Fault was = guard.fault();
+  const ProbingGuard::LawInput seen = guard.see(s.how, s.reading);
   const auto out = guard.pass(1.0, 1.0).command;
   const bool moves = out.speed_m_s != 0.0 || out.torque_Nm != 0.0;
-  if (s.fault != RigFault::none && !guard.latched()) return why = "a fault did not latch", false;
+  if (s.fault != safety::Fault::none && !guard.latched())
+    return why = "a fault did not latch", false;
   if (was_latched && guard.fault() != was) return why = "the first fault was lost", false;
   if (guard.latched() && (moves || out.enable || out.rotary_on || out.reset_fault))
     return why = "a command after a fault", false;
@@ -222,3 +224,4 @@ TEST(ProbingGuard, KeepsItsPromisesInEverySequenceOfFiveAnswersFromEveryState) {
 
 }  // namespace
 }  // namespace loop
+}  // namespace tractus

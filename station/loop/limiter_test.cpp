@@ -6,6 +6,7 @@
 #include <limits>
 #include <random>
 
+namespace tractus {
 namespace loop {
 namespace {
 using devices::Sample;
@@ -222,3 +223,4 @@ TEST(Limiter, HoldsItsPromisesOverAMillionRandomTicks) {
 
 }  // namespace
 }  // namespace loop
+}  // namespace tractus

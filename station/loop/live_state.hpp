@@ -9,7 +9,7 @@
 #include <optional>
 #include <type_traits>
 
-namespace loop {
+namespace tractus::loop {
 
 /// One value written by one thread and read by any number, without a lock: a seqlock [Boehm2012].
 /// The writer is wait-free and never sees its readers; a reader that met a write tries again.
@@ -65,4 +65,4 @@ struct Live {
 
 using LiveState = Seqlock<Live>;
 
-}  // namespace loop
+}  // namespace tractus::loop

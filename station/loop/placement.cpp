@@ -1,6 +1,6 @@
 #include "station/loop/placement.hpp"
 
-namespace loop {
+namespace tractus::loop {
 
 math::Pose place_device(const volume::Tract& tract, double probe_length_m,
                         const math::Vec3& pose_offset_m) {
@@ -22,4 +22,4 @@ volume::Tract tract_in_device(const volume::Tract& tract_V, const math::Pose& X_
   return out;
 }
 
-}  // namespace loop
+}  // namespace tractus::loop

@@ -4,7 +4,7 @@
 #include "math/geometry.hpp"
 #include "volume/tract.hpp"
 
-namespace loop {
+namespace tractus::loop {
 
 /// D's origin is the centre of the device's workspace. With the handle there and the probe straight
 /// along the tract, the tip lies in the middle of the tract's mouth:
@@ -21,4 +21,4 @@ math::Pose place_device(const volume::Tract& tract, double probe_length_m,
 volume::Tract tract_in_device(const volume::Tract& tract_V, const math::Pose& X_VD,
                               const math::Vec3& pose_offset_m);
 
-}  // namespace loop
+}  // namespace tractus::loop

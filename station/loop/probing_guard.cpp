@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace loop {
+namespace tractus::loop {
 namespace {
 namespace registers = devices::rig;
 }
@@ -22,7 +22,7 @@ ProbingGuard::ProbingGuard(const RigLimits& limits, double travel_m, double peri
       machine_({.quiet_ticks = 1,
                 .ramp_ns = 0,
                 .stale_latch_ns = core::Instant_ns(1e9 * (kSilent_s - 0.5 * period_s)),
-                .when_stale = RigFault::silent}) {
+                .when_stale = safety::Fault::silent}) {
   const RigLimits ceiling;
   const auto lower = [](double asked, double most) {
     return asked >= 0.0 ? std::min(asked, most) : 0.0;
@@ -34,51 +34,51 @@ ProbingGuard::ProbingGuard(const RigLimits& limits, double travel_m, double peri
 }
 
 // Of the machine's own. Its watchdog's is none yet: the drive is not ready.
-RigFault ProbingGuard::fault_of(const devices::RigReading& r) noexcept {
+safety::Fault ProbingGuard::fault_of(const devices::RigReading& r) noexcept {
   stopped_itself_ = false;
-  if (r.status & registers::kEmergency) return RigFault::emergency;
-  if (!(r.status & registers::kFaulted)) return RigFault::none;
+  if (r.status & registers::kEmergency) return safety::Fault::emergency;
+  if (!(r.status & registers::kFaulted)) return safety::Fault::none;
   switch (r.fault) {
     case registers::Fault::watchdog:
       stopped_itself_ = true;
-      if (enabled() && ++restarts_ > kMostRestarts) return RigFault::watchdog;
-      return RigFault::none;
+      if (enabled() && ++restarts_ > kMostRestarts) return safety::Fault::watchdog;
+      return safety::Fault::none;
     case registers::Fault::stalled:
-      return RigFault::stalled;
+      return safety::Fault::stalled;
     case registers::Fault::sensor:
-      return RigFault::sensor;
+      return safety::Fault::sensor;
     case registers::Fault::emergency:
-      return RigFault::emergency;
+      return safety::Fault::emergency;
     case registers::Fault::drive:
     case registers::Fault::none:
-      return RigFault::drive;
+      return safety::Fault::drive;
   }
-  return RigFault::drive;
+  return safety::Fault::drive;
 }
 
-RigFault ProbingGuard::fault_of(devices::Exchange how) const noexcept {
-  if (how == devices::Exchange::garbage) return RigFault::garbage;
-  return how == devices::Exchange::gone ? RigFault::gone : RigFault::none;
+safety::Fault ProbingGuard::fault_of(devices::Exchange how) const noexcept {
+  if (how == devices::Exchange::garbage) return safety::Fault::garbage;
+  return how == devices::Exchange::gone ? safety::Fault::gone : safety::Fault::none;
 }
 
-RigFault ProbingGuard::tare(const devices::RigReading& r) noexcept {
+safety::Fault ProbingGuard::tare(const devices::RigReading& r) noexcept {
   ++tared_;
   tare_N_ += (r.fz_N - tare_N_) / tared_;
   tare_Nm_ += (r.tz_Nm - tare_Nm_) / tared_;
-  if (tared_ * period_s_ < kTare_s) return RigFault::none;
-  if (std::abs(tare_N_) > kTareMost_N) return RigFault::hand_on;
+  if (tared_ * period_s_ < kTare_s) return safety::Fault::none;
+  if (std::abs(tare_N_) > kTareMost_N) return safety::Fault::hand_on;
   tare_known_ = true;
-  return RigFault::none;
+  return safety::Fault::none;
 }
 
-ProbingGuard::Seen ProbingGuard::see(devices::Exchange how,
-                                     const devices::RigReading& reading) noexcept {
+ProbingGuard::LawInput ProbingGuard::see(devices::Exchange how,
+                                         const devices::RigReading& reading) noexcept {
   fresh_ = how == devices::Exchange::ok;
-  RigFault fault = fault_of(how);
+  safety::Fault fault = fault_of(how);
   if (fresh_) {
     last_ = reading;
     fault = fault_of(reading);
-    if (!tare_known_ && fault == RigFault::none && !latched()) fault = tare(reading);
+    if (!tare_known_ && fault == safety::Fault::none && !latched()) fault = tare(reading);
   }
   share_ =
       machine_.tick(core::Instant_ns(1e9 * period_s_),
@@ -92,7 +92,7 @@ ProbingGuard::Seen ProbingGuard::see(devices::Exchange how,
 bool ProbingGuard::held_by_push() noexcept {
   const bool held = std::abs(last_.fz_N - tare_N_) > std::min(limits_.max_push_N, cap_N_.value());
   pushed_s_ = held ? pushed_s_ + period_s_ : 0.0;
-  if (pushed_s_ >= kPushed_s) machine_.fail(RigFault::pushed);
+  if (pushed_s_ >= kPushed_s) machine_.fail(safety::Fault::pushed);
   return held;
 }
 
@@ -125,4 +125,4 @@ ProbingGuard::Passed ProbingGuard::pass(double speed_m_s, double torque_Nm) noex
   return {.command = out, .limited = limited};
 }
 
-}  // namespace loop
+}  // namespace tractus::loop

@@ -8,7 +8,7 @@
 #include "station/loop/decreasing_limit.hpp"
 #include "station/safety/machine.hpp"
 
-namespace loop {
+namespace tractus::loop {
 
 /// How much a hand on the probing rig may meet. Nothing raises above the defaults.
 struct RigLimits {
@@ -19,7 +19,6 @@ struct RigLimits {
   core::Json to_json() const;
 };
 
-using RigFault = safety::Fault;
 using safety::text_of;
 
 /// Gives every tick's command. It finds what is wrong and speaks the drive's language (enable,
@@ -46,7 +45,7 @@ class ProbingGuard {
   static constexpr int kMostRestarts = 100;
 
   /// What the law is given to see, and what it wanted with it.
-  struct Seen {
+  struct LawInput {
     double fz_N = 0.0, tz_Nm = 0.0;  ///< tared
     bool fresh = false;              ///< the law may be stepped
   };
@@ -59,7 +58,7 @@ class ProbingGuard {
   ProbingGuard(const RigLimits& limits, double travel_m, double period_s);
 
   /// First in the tick: judges what the exchange gave.
-  Seen see(devices::Exchange how, const devices::RigReading& reading) noexcept;
+  LawInput see(devices::Exchange how, const devices::RigReading& reading) noexcept;
   /// Last in the tick: what goes out with the next exchange.
   Passed pass(double speed_m_s, double torque_Nm) noexcept;
 
@@ -69,7 +68,7 @@ class ProbingGuard {
 
   safety::State state() const noexcept { return machine_.state(); }
   bool latched() const noexcept { return state() == safety::State::latched; }
-  RigFault fault() const noexcept { return machine_.fault(); }
+  safety::Fault fault() const noexcept { return machine_.fault(); }
   /// The drive is told to be on.
   bool enabled() const noexcept {
     return state() == safety::State::ramping || state() == safety::State::on;
@@ -79,9 +78,9 @@ class ProbingGuard {
   double tare_Nm() const noexcept { return tare_Nm_; }
 
  private:
-  RigFault fault_of(const devices::RigReading& reading) noexcept;
-  RigFault fault_of(devices::Exchange how) const noexcept;
-  RigFault tare(const devices::RigReading& reading) noexcept;
+  safety::Fault fault_of(const devices::RigReading& reading) noexcept;
+  safety::Fault fault_of(devices::Exchange how) const noexcept;
+  safety::Fault tare(const devices::RigReading& reading) noexcept;
   bool held_by_push() noexcept;
   double within_travel(double speed_m_s) const noexcept;
 
@@ -96,4 +95,4 @@ class ProbingGuard {
   int tared_ = 0, restarts_ = 0;
 };
 
-}  // namespace loop
+}  // namespace tractus::loop

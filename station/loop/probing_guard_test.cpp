@@ -6,6 +6,7 @@
 #include <limits>
 #include <random>
 
+namespace tractus {
 namespace loop {
 namespace {
 namespace registers = devices::rig;
@@ -42,7 +43,7 @@ class TheGuard : public testing::Test {
     ASSERT_TRUE(guard_.enabled());
   }
   ProbingGuard guard_{RigLimits{}, kTravel_m, kPeriod_s};
-  ProbingGuard::Seen seen_;
+  ProbingGuard::LawInput seen_;
 };
 
 TEST_F(TheGuard, NothingIsEnabledBeforeTheSensorIsTared) {
@@ -59,7 +60,7 @@ TEST_F(TheGuard, NothingIsEnabledBeforeTheSensorIsTared) {
 
 TEST_F(TheGuard, AHandOnTheProbeAtTheStartIsAFault) {
   for (int k = 0; k < 300; ++k) tick(at(0.0, 25.0), 0.1);
-  EXPECT_EQ(guard_.fault(), RigFault::hand_on);
+  EXPECT_EQ(guard_.fault(), safety::Fault::hand_on);
 }
 
 TEST_F(TheGuard, SpeedAndTorqueStayWithinTheirLimits) {
@@ -89,7 +90,7 @@ TEST_F(TheGuard, APushAboveItsLimitStopsTheStageAndLatchesWhenItStays) {
   EXPECT_FALSE(guard_.latched());
   EXPECT_GT(tick(at(0.02, 150.0), 0.05).command.speed_m_s, 0.0);
   for (int k = 0; k < 501; ++k) tick(at(0.02, 181.0), 0.05);
-  EXPECT_EQ(guard_.fault(), RigFault::pushed);
+  EXPECT_EQ(guard_.fault(), safety::Fault::pushed);
 }
 
 TEST_F(TheGuard, WithoutAnAnswerNothingMovesAndAfterFiftyMillisecondsItLatches) {
@@ -100,13 +101,13 @@ TEST_F(TheGuard, WithoutAnAnswerNothingMovesAndAfterFiftyMillisecondsItLatches) 
   }
   EXPECT_FALSE(guard_.latched());
   tick(at(0.02), 0.1, 0.0, Exchange::silent);
-  EXPECT_EQ(guard_.fault(), RigFault::silent);
+  EXPECT_EQ(guard_.fault(), safety::Fault::silent);
   EXPECT_FALSE(tick(at(0.02), 0.1).command.enable);  // no way back
 }
 
 TEST_F(TheGuard, RubbishAndAClosedLineLatchAtOnce) {
-  for (const auto& [how, fault] :
-       {std::pair{Exchange::garbage, RigFault::garbage}, {Exchange::gone, RigFault::gone}}) {
+  for (const auto& [how, fault] : {std::pair{Exchange::garbage, safety::Fault::garbage},
+                                   {Exchange::gone, safety::Fault::gone}}) {
     ProbingGuard guard(RigLimits{}, kTravel_m, kPeriod_s);
     guard.see(how, {});
     EXPECT_EQ(guard.fault(), fault);
@@ -129,14 +130,14 @@ TEST_F(TheGuard, TheMachinesOwnWatchdogIsClearedAndTheDriveEnabledAnew) {
     tick(at(0.01), 0.1);
     tick(at(0.01), 0.1);
   }
-  EXPECT_EQ(guard_.fault(), RigFault::watchdog);
+  EXPECT_EQ(guard_.fault(), safety::Fault::watchdog);
 }
 
 TEST_F(TheGuard, EveryOtherFaultOfTheMachineLatches) {
-  for (const auto& [theirs, ours] : {std::pair{registers::Fault::stalled, RigFault::stalled},
-                                     {registers::Fault::drive, RigFault::drive},
-                                     {registers::Fault::sensor, RigFault::sensor},
-                                     {registers::Fault::emergency, RigFault::emergency}}) {
+  for (const auto& [theirs, ours] : {std::pair{registers::Fault::stalled, safety::Fault::stalled},
+                                     {registers::Fault::drive, safety::Fault::drive},
+                                     {registers::Fault::sensor, safety::Fault::sensor},
+                                     {registers::Fault::emergency, safety::Fault::emergency}}) {
     ProbingGuard guard(RigLimits{}, kTravel_m, kPeriod_s);
     guard.see(Exchange::ok, faulted(theirs));
     EXPECT_EQ(guard.fault(), ours);
@@ -180,3 +181,4 @@ TEST_F(TheGuard, NeverLetsThroughMoreThanItsLimits) {
 
 }  // namespace
 }  // namespace loop
+}  // namespace tractus

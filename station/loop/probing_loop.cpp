@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+namespace tractus {
 namespace loop {
 namespace {
 using devices::Exchange;
@@ -65,7 +66,7 @@ void ProbingLoop::follow_energy(double push_N) noexcept {
   last_x_m_ = reading_.x_m;
 }
 
-void ProbingLoop::step_law(const ProbingGuard::Seen& seen, ProbingSample& out,
+void ProbingLoop::step_law(const ProbingGuard::LawInput& seen, ProbingSample& out,
                            double& torque_Nm) noexcept {
   const models::ProbingRuntime& law = *law_.load(std::memory_order_acquire);
   const double x_m = std::clamp(reading_.x_m, 0.0, travel_m_);
@@ -83,7 +84,7 @@ ProbingSample ProbingLoop::tick(core::Instant_ns now, std::uint32_t number, bool
   const core::Instant_ns asked = parts_.wall.now();
   const Exchange how = parts_.device.exchange(command_, reading_);
   const core::Instant_ns round_trip = parts_.wall.now() - asked;
-  const ProbingGuard::Seen seen = parts_.guard.see(how, reading_);
+  const ProbingGuard::LawInput seen = parts_.guard.see(how, reading_);
   ProbingSample out;
   double torque_Nm = 0.0;
   if (seen.fresh) {
@@ -135,3 +136,4 @@ void ProbingLoop::record(ProbingSample& sample, core::Instant_ns deadline) noexc
 }
 
 }  // namespace loop
+}  // namespace tractus

@@ -8,12 +8,12 @@
 #include "station/loop/haptic_loop.hpp"
 #include "station/loop/probing_guard.hpp"
 
-namespace loop {
+namespace tractus::loop {
 
 using ProbingRing = Ring<trial::ProbingSample>;
 
 /// The latest of a running trial.
-struct ProbingSeen {
+struct ProbingLoopSnapshot {
   double t_s = 0.0, x_m = 0.0, speed_m_s = 0.0, fz_N = 0.0, turning_rad_s = 0.0;
   std::uint64_t missed = 0;
   std::uint32_t tick = 0;
@@ -39,7 +39,7 @@ class ProbingLoop {
     devices::RigDevice& device;
     ProbingGuard& guard;
     ProbingRing& ring;
-    Seqlock<ProbingSeen>& live;
+    Seqlock<ProbingLoopSnapshot>& live;
   };
   /// @param law       may be exchanged while running
   /// @param travel_m  the probe stop
@@ -68,7 +68,7 @@ class ProbingLoop {
 
  private:
   trial::ProbingSample tick(core::Instant_ns now, std::uint32_t number, bool late) noexcept;
-  void step_law(const ProbingGuard::Seen& seen, trial::ProbingSample& out,
+  void step_law(const ProbingGuard::LawInput& seen, trial::ProbingSample& out,
                 double& torque_Nm) noexcept;
   void follow_energy(double push_N) noexcept;
   void follow_angle(std::int32_t angle_urad) noexcept;
@@ -90,4 +90,4 @@ class ProbingLoop {
   std::atomic<bool> stop_ = false;
 };
 
-}  // namespace loop
+}  // namespace tractus::loop

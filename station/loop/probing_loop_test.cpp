@@ -6,6 +6,7 @@
 
 #include "station/loop/allocation_guard.hpp"
 
+namespace tractus {
 namespace loop {
 namespace {
 namespace registers = devices::rig;
@@ -71,7 +72,7 @@ struct Bench {
   FakeRig device{clock};
   ProbingGuard guard{RigLimits{}, 0.02, 1e-3};
   ProbingRing ring{4096};
-  Seqlock<ProbingSeen> live;
+  Seqlock<ProbingLoopSnapshot> live;
   models::ProbingRuntime law = runtime();
   ProbingLoop loop{{clock, clock, device, guard, ring, live}, law, 0.02, 1000.0};
   std::vector<trial::ProbingSample> samples;
@@ -158,7 +159,7 @@ TEST(ProbingLoop, EndsWithTheGuardAndLeavesTheDriveOff) {
   bench.device.how.assign(301, Exchange::ok);
   bench.device.how[300] = Exchange::garbage;
   bench.run();
-  EXPECT_EQ(bench.guard.fault(), RigFault::garbage);
+  EXPECT_EQ(bench.guard.fault(), safety::Fault::garbage);
   EXPECT_EQ(bench.samples.size(), 301u);
   EXPECT_FALSE(bench.device.last.enable);
 }
@@ -186,3 +187,4 @@ TEST(ProbingLoop, AllocatesNothing) {
 
 }  // namespace
 }  // namespace loop
+}  // namespace tractus

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <cstring>
 
+namespace tractus {
 namespace loop {
 namespace {
 constexpr int kPriority = 80;
@@ -59,3 +60,4 @@ Realtime::~Realtime() {
 }
 
 }  // namespace loop
+}  // namespace tractus

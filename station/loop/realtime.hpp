@@ -6,7 +6,7 @@
 
 #include "core/json.hpp"
 
-namespace loop {
+namespace tractus::loop {
 
 /// What the system granted to the calling thread. A refusal is no error: the loop runs on, and the
 /// trial says so.
@@ -35,4 +35,4 @@ class Realtime {
   int awake_fd_ = -1;
 };
 
-}  // namespace loop
+}  // namespace tractus::loop

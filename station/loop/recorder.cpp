@@ -1,6 +1,6 @@
 #include "station/loop/recorder.hpp"
 
-namespace loop {
+namespace tractus::loop {
 namespace {
 constexpr std::size_t kBlock = 1024;
 }
@@ -89,4 +89,4 @@ core::Result<void> RecorderOf<S>::finish() {
 template class RecorderOf<trial::Sample>;
 template class RecorderOf<trial::ProbingSample>;
 
-}  // namespace loop
+}  // namespace tractus::loop

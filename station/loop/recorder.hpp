@@ -11,7 +11,7 @@
 #include "station/loop/haptic_loop.hpp"
 #include "trial/trial_file.hpp"
 
-namespace loop {
+namespace tractus::loop {
 
 /// Takes samples out of the ring and appends them to the trial file, as the ring's one consumer.
 /// With `start`, a thread of its own does so every 5 ms and has the file on the disk every 10 ms: a
@@ -68,4 +68,4 @@ class RecorderOf {
 using Recorder = RecorderOf<trial::Sample>;
 using ProbingRecorder = RecorderOf<trial::ProbingSample>;
 
-}  // namespace loop
+}  // namespace tractus::loop

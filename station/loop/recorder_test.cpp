@@ -7,6 +7,7 @@
 
 #include "core/bytes.hpp"
 
+namespace tractus {
 namespace loop {
 namespace {
 namespace fs = std::filesystem;
@@ -123,3 +124,4 @@ TEST(Recorder, KeepsTheFirstErrorAndWritesNothingAfterIt) {
 
 }  // namespace
 }  // namespace loop
+}  // namespace tractus

@@ -11,7 +11,7 @@
 
 #include "core/require.hpp"
 
-namespace loop {
+namespace tractus::loop {
 
 /// Single producer, single consumer, bounded, wait-free on both sides. Memory is taken and touched
 /// at construction; no call afterwards allocates. When it is full `push` refuses: what that means
@@ -52,4 +52,4 @@ class Ring {
   alignas(kLine) std::atomic<std::size_t> tail_ = 0;
 };
 
-}  // namespace loop
+}  // namespace tractus::loop

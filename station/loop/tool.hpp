@@ -5,7 +5,7 @@
 
 #include "trial/trial.hpp"
 
-namespace loop {
+namespace tractus::loop {
 
 /// Both calls come from the loop's thread alone and are under the tick's rules.
 class Tool {
@@ -19,4 +19,4 @@ class Tool {
   virtual void worked(const trial::Sample& sample) noexcept = 0;
 };
 
-}  // namespace loop
+}  // namespace tractus::loop

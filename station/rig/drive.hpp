@@ -5,9 +5,9 @@
 
 #include "station/devices/rig_registers.hpp"
 
-namespace rig {
+namespace tractus::rig {
 
-using devices::rig::Fault;
+using devices::rig::RigFault;
 
 /// What people and breakdowns do to the electronics in one step.
 struct Panel {
@@ -31,14 +31,14 @@ class Drive {
   bool enabled() const noexcept { return enabled_; }
   bool emergency() const noexcept { return emergency_; }
   bool rotary_on() const noexcept { return rotary_on_ && !emergency_; }
-  Fault fault() const noexcept { return fault_; }
+  RigFault fault() const noexcept { return fault_; }
 
  private:
-  void fail(Fault fault) noexcept;
+  void fail(RigFault fault) noexcept;
   std::uint16_t control_ = 0;
   bool enabled_ = false, emergency_ = false, rotary_on_ = false, reset_was_pressed_ = false;
-  Fault fault_ = Fault::none;
+  RigFault fault_ = RigFault::none;
   double silent_s_ = 0.0;
 };
 
-}  // namespace rig
+}  // namespace tractus::rig

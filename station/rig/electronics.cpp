@@ -5,6 +5,7 @@
 
 #include "core/require.hpp"
 
+namespace tractus {
 namespace rig {
 namespace {
 
@@ -146,3 +147,4 @@ void Electronics::read(int unit, std::span<std::uint16_t> image) {
 }
 
 }  // namespace rig
+}  // namespace tractus

@@ -10,7 +10,7 @@
 #include "core/clock.hpp"
 #include "station/rig/machine.hpp"
 
-namespace rig {
+namespace tractus::rig {
 
 class Electronics {
  public:
@@ -46,4 +46,4 @@ class Electronics {
   std::array<std::uint16_t, devices::rig::kIdentityCount> identity_{};
 };
 
-}  // namespace rig
+}  // namespace tractus::rig

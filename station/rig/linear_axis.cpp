@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace rig {
+namespace tractus::rig {
 
 double LinearAxis::thrust_N(double speed_m_s) const noexcept {
   const double speed = std::abs(speed_m_s);
@@ -44,4 +44,4 @@ void LinearAxis::brake(double dt_s) noexcept {
 
 double LinearAxis::counted_m() const noexcept { return p_.step_m * std::round(x_m_ / p_.step_m); }
 
-}  // namespace rig
+}  // namespace tractus::rig

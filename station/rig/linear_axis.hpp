@@ -1,7 +1,7 @@
 /// The linear actuator with its integrated stepper drive.
 #pragma once
 
-namespace rig {
+namespace tractus::rig {
 
 /// Published: thrust and speed [Probing, section 3]. The rest is plausible, and ours.
 struct LinearParameters {
@@ -50,4 +50,4 @@ class LinearAxis {
   double last_dt_s_ = 0.0, caught_up_ = 0.0;  // 1 − exp(−dt/τ), kept while dt stays the same
 };
 
-}  // namespace rig
+}  // namespace tractus::rig

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+namespace tractus {
 namespace rig {
 namespace {
 
@@ -100,3 +101,4 @@ TEST(LinearAxis, CountsWholeSteps) {
 
 }  // namespace
 }  // namespace rig
+}  // namespace tractus

@@ -1,6 +1,6 @@
 #include "station/rig/machine.hpp"
 
-namespace rig {
+namespace tractus::rig {
 
 namespace registers = devices::rig;
 
@@ -33,7 +33,7 @@ void Machine::step() {
 Reading Machine::reading() const noexcept {
   unsigned status = registers::kSimulated;
   if (drive_.enabled()) status |= registers::kEnabled;
-  if (drive_.fault() != Fault::none) status |= registers::kFaulted;
+  if (drive_.fault() != RigFault::none) status |= registers::kFaulted;
   if (drive_.emergency()) status |= registers::kEmergency;
   if (linear_.at_inner_stop()) status |= registers::kAtInnerStop;
   if (linear_.at_outer_stop()) status |= registers::kAtOuterStop;
@@ -50,4 +50,4 @@ Reading Machine::reading() const noexcept {
           sensor_.torque_Nm()};
 }
 
-}  // namespace rig
+}  // namespace tractus::rig

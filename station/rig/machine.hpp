@@ -9,7 +9,7 @@
 #include "station/rig/sensor.hpp"
 #include "station/rig/surgeon.hpp"
 
-namespace rig {
+namespace tractus::rig {
 
 inline constexpr double kStep_s = 1e-4;  ///< 10 kHz
 inline constexpr int kSensorSteps = 5;   ///< the sensor samples at 2 kHz
@@ -66,4 +66,4 @@ class Machine {
   std::uint32_t steps_ = 0;
 };
 
-}  // namespace rig
+}  // namespace tractus::rig

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+namespace tractus {
 namespace rig {
 namespace {
 
@@ -27,7 +28,9 @@ void run_silent(Machine& machine, int milliseconds) {
   for (int step = 0; step < 10 * milliseconds; ++step) machine.step();
 }
 
-Fault fault_of(const Machine& machine) { return static_cast<Fault>(machine.reading().status >> 8); }
+RigFault fault_of(const Machine& machine) {
+  return static_cast<RigFault>(machine.reading().status >> 8);
+}
 
 MachineParameters quiet() {
   MachineParameters p;
@@ -54,7 +57,7 @@ TEST(Machine, StandsStillWithinTenMillisecondsOfTheLastCommand) {
   EXPECT_GT(machine.reading().v_m_s, 0.2);  // a late command is not a lost bus
   run_silent(machine, 4);                   // the last command came 1 ms before
   EXPECT_EQ(machine.reading().v_m_s, 0.0);
-  EXPECT_EQ(fault_of(machine), Fault::watchdog);
+  EXPECT_EQ(fault_of(machine), RigFault::watchdog);
 }
 
 TEST(Machine, StaysStoppedAfterAFaultUntilItIsResetAndEnabledAnew) {
@@ -68,7 +71,7 @@ TEST(Machine, StaysStoppedAfterAFaultUntilItIsResetAndEnabledAnew) {
   run(machine, moving(0.01), 20);  // rising, but the fault is there
   EXPECT_EQ(machine.reading().x_m, x_m);
   run(machine, {registers::kResetFault, 0, 0.0, 0.0}, 2);
-  EXPECT_EQ(fault_of(machine), Fault::none);
+  EXPECT_EQ(fault_of(machine), RigFault::none);
   run(machine, moving(0.01), 20);
   EXPECT_GT(machine.reading().x_m, x_m);
 }
@@ -87,7 +90,7 @@ TEST(Machine, LeavesTheEmergencyStopOnlyToAPerson) {
   for (const std::uint16_t control : std::initializer_list<std::uint16_t>{0, 2, 0, 1, 0, 3, 0, 7})
     run(machine, {control, 0, 0.1, 0}, 3);
   EXPECT_TRUE(machine.reading().status & registers::kEmergency);
-  EXPECT_EQ(fault_of(machine), Fault::emergency);
+  EXPECT_EQ(fault_of(machine), RigFault::emergency);
   EXPECT_EQ(machine.reading().v_m_s, 0.0);
   world.panel.reset_pressed = true;
   machine.set_world(world);
@@ -118,7 +121,7 @@ TEST(Machine, FaultsWhenTheHandIsStrongerThanTheActuator) {
   world.hand_force_N = 700.0;
   machine.set_world(world);
   run(machine, moving(0.001), 10);
-  EXPECT_EQ(fault_of(machine), Fault::stalled);
+  EXPECT_EQ(fault_of(machine), RigFault::stalled);
 }
 
 TEST(Machine, FaultsWithItsDrive) {
@@ -128,7 +131,7 @@ TEST(Machine, FaultsWithItsDrive) {
   world.panel.drive_error = true;
   machine.set_world(world);
   run(machine, moving(0.1), 5);
-  EXPECT_EQ(fault_of(machine), Fault::drive);
+  EXPECT_EQ(fault_of(machine), RigFault::drive);
   EXPECT_EQ(machine.reading().v_m_s, 0.0);
 }
 
@@ -231,3 +234,4 @@ TEST(Surgeon, KeepsItsHandsOffAStageThatIsNotEnabled) {
 
 }  // namespace
 }  // namespace rig
+}  // namespace tractus

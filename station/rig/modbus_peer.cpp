@@ -18,6 +18,7 @@
 
 #include "station/rig/request.hpp"
 
+namespace tractus {
 namespace rig {
 namespace {
 
@@ -279,3 +280,4 @@ core::Result<std::unique_ptr<ModbusPeer>> open_rtu(Electronics& electronics, Tra
 }
 
 }  // namespace rig
+}  // namespace tractus

@@ -10,7 +10,7 @@
 #include "core/result.hpp"
 #include "station/rig/electronics.hpp"
 
-namespace rig {
+namespace tractus::rig {
 
 /// What came over the wire so far.
 struct Traffic {
@@ -37,4 +37,4 @@ core::Result<std::unique_ptr<ModbusPeer>> listen_tcp(Electronics& electronics, T
 core::Result<std::unique_ptr<ModbusPeer>> open_rtu(Electronics& electronics, Traffic& traffic,
                                                    const std::string& device, int baud);
 
-}  // namespace rig
+}  // namespace tractus::rig

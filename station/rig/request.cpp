@@ -1,5 +1,6 @@
 #include "station/rig/request.hpp"
 
+namespace tractus {
 namespace rig {
 namespace {
 
@@ -65,3 +66,4 @@ std::optional<Request> parse_request(std::span<const std::uint8_t> pdu) {
 }
 
 }  // namespace rig
+}  // namespace tractus

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace rig {
+namespace tractus::rig {
 
 /// Reads registers, writes them, or first writes and then reads (FC 3, 6, 16, 23).
 struct Request {
@@ -24,4 +24,4 @@ std::optional<Request> parse_request(std::span<const std::uint8_t> pdu);
 /// Is it a function that the rig offers?
 bool is_offered(std::uint8_t function) noexcept;
 
-}  // namespace rig
+}  // namespace tractus::rig

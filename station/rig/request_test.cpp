@@ -4,6 +4,7 @@
 
 #include <random>
 
+namespace tractus {
 namespace rig {
 namespace {
 
@@ -63,3 +64,4 @@ TEST(Request, SurvivesAnyBytes) {
 
 }  // namespace
 }  // namespace rig
+}  // namespace tractus

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace rig {
+namespace tractus::rig {
 
 void RotaryAxis::step(double motor_Nm, double hand_Nm, double dt_s) noexcept {
   const double wanted = std::clamp(motor_Nm, -p_.peak_Nm, p_.peak_Nm);
@@ -15,4 +15,4 @@ void RotaryAxis::step(double motor_Nm, double hand_Nm, double dt_s) noexcept {
   theta_rad_ += omega_rad_s_ * dt_s;
 }
 
-}  // namespace rig
+}  // namespace tractus::rig

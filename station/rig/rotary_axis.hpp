@@ -1,7 +1,7 @@
 /// The rotary stage: probe, sensor and a servo motor that resists the turning hand.
 #pragma once
 
-namespace rig {
+namespace tractus::rig {
 
 /// Plausible, and ours: the source gives no figure of the stage.
 struct RotaryParameters {
@@ -26,4 +26,4 @@ class RotaryAxis {
   double last_dt_s_ = 0.0, caught_up_ = 0.0;  // 1 − exp(−dt/T), kept while dt stays the same
 };
 
-}  // namespace rig
+}  // namespace tractus::rig

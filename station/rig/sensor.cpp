@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace rig {
+namespace tractus::rig {
 
 Sensor::Sensor(const SensorParameters& parameters, std::uint64_t seed)
     : p_(parameters), random_(seed) {
@@ -16,4 +16,4 @@ void Sensor::sample(double force_N, double torque_Nm) {
   overloaded_ = !(std::abs(force_N_) <= p_.force_range_N);
 }
 
-}  // namespace rig
+}  // namespace tractus::rig

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <random>
 
-namespace rig {
+namespace tractus::rig {
 
 /// Plausible for a sensor of this range, and ours.
 struct SensorParameters {
@@ -33,4 +33,4 @@ class Sensor {
   bool overloaded_ = false;
 };
 
-}  // namespace rig
+}  // namespace tractus::rig

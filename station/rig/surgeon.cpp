@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+namespace tractus {
 namespace rig {
 
 namespace {
@@ -73,3 +74,4 @@ void Surgeon::step(double x_m, double v_m_s, double omega_rad_s, bool enabled, d
 }
 
 }  // namespace rig
+}  // namespace tractus

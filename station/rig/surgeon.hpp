@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <random>
 
-namespace rig {
+namespace tractus::rig {
 
 /// Plausible choices of ours. `of_skill` varies them; a seed varies each attempt by a tenth.
 struct SurgeonParameters {
@@ -49,4 +49,4 @@ class Surgeon {
   double push_N_ = 0.0, turn_Nm_ = 0.0;
 };
 
-}  // namespace rig
+}  // namespace tractus::rig

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+namespace tractus {
 namespace safety {
 namespace {
 using math::Vec3;
@@ -46,3 +47,4 @@ math::Wrench PassivityController::damped(const math::Wrench& wanted, double give
 }
 
 }  // namespace safety
+}  // namespace tractus

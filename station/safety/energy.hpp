@@ -3,7 +3,7 @@
 
 #include "math/geometry.hpp"
 
-namespace safety {
+namespace tractus::safety {
 
 /// Passivity observer [Hannaford2002; exact for a held wrench: Ryu2005]. Between two ticks the
 /// device holds one wrench, so the work it does on the hand is known without any velocity:
@@ -51,4 +51,4 @@ struct PassivityController {
                              double period_s) noexcept;
 };
 
-}  // namespace safety
+}  // namespace tractus::safety

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+namespace tractus {
 namespace safety {
 namespace {
 using math::Vec3;
@@ -104,3 +105,4 @@ TEST(PassivityController, TakesBackMostOfWhatAStiffSampledWallInjects) {
 
 }  // namespace
 }  // namespace safety
+}  // namespace tractus

@@ -2,7 +2,7 @@
 
 #include <array>
 
-namespace safety {
+namespace tractus::safety {
 
 const char* text_of(Fault fault) noexcept {
   static constexpr std::array<const char*, kFaults> kTexts{
@@ -27,4 +27,4 @@ const char* text_of(Fault fault) noexcept {
   return kTexts[static_cast<std::size_t>(fault)];
 }
 
-}  // namespace safety
+}  // namespace tractus::safety

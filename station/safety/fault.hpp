@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace safety {
+namespace tractus::safety {
 
 /// One list for the hand's device and the probing rig. Each latches.
 enum class Fault : std::uint8_t {
@@ -32,4 +32,4 @@ inline constexpr int kFaults = 18;
 /// "the device's pose jumped", …: one line for a person, and what to do.
 const char* text_of(Fault fault) noexcept;
 
-}  // namespace safety
+}  // namespace tractus::safety

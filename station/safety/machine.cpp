@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace safety {
+namespace tractus::safety {
 
 Output Machine::take(Event event) noexcept {
   const Step& step = kTable[std::size_t(memory_.state)][std::size_t(event)];
@@ -23,7 +23,7 @@ void Machine::fail(Fault fault) noexcept {
 }
 
 // Counts, and says what of it this tick comes to.
-Event Machine::event_of(core::Instant_ns elapsed, const Seen& seen) noexcept {
+Event Machine::event_of(core::Instant_ns elapsed, const TickInput& seen) noexcept {
   Memory& m = memory_;
   const core::Instant_ns most = timing_.stale_latch_ns + 1;  // capped: more says nothing new
   m.silent_ns = seen.fresh ? 0 : std::min(m.silent_ns + elapsed, most);
@@ -44,7 +44,7 @@ Event Machine::event_of(core::Instant_ns elapsed, const Seen& seen) noexcept {
   return m.ramped_ns >= timing_.ramp_ns ? Event::ramped : Event::ready;
 }
 
-double Machine::tick(core::Instant_ns elapsed, const Seen& seen) noexcept {
+double Machine::tick(core::Instant_ns elapsed, const TickInput& seen) noexcept {
   const Event event = event_of(std::max(elapsed, core::Instant_ns{0}), seen);
   if (event == Event::fault) {
     fail(seen.fault != Fault::none ? seen.fault : timing_.when_stale);
@@ -61,4 +61,4 @@ double Machine::tick(core::Instant_ns elapsed, const Seen& seen) noexcept {
   return 0.0;
 }
 
-}  // namespace safety
+}  // namespace tractus::safety

@@ -7,7 +7,7 @@
 #include "core/clock.hpp"
 #include "station/safety/fault.hpp"
 
-namespace safety {
+namespace tractus::safety {
 
 enum class State : std::uint8_t {
   off,      ///< zero; waits for a person to arm
@@ -96,7 +96,7 @@ struct Timing {
 };
 
 /// What one tick saw.
-struct Seen {
+struct TickInput {
   Fault fault = Fault::none;
   bool fresh = true;
   bool ready = true;
@@ -116,7 +116,7 @@ class Machine {
   void fail(Fault fault) noexcept;
   /// One tick. @param elapsed  since the last one, >= 0
   /// @returns the share of what is wanted that may leave, 0 … 1
-  double tick(core::Instant_ns elapsed, const Seen& seen) noexcept;
+  double tick(core::Instant_ns elapsed, const TickInput& seen) noexcept;
 
   /// Lengthens the ramp from now on; cannot shorten it.
   void lengthen_ramp(core::Instant_ns ramp_ns) noexcept {
@@ -137,10 +137,10 @@ class Machine {
   const Memory& memory() const noexcept { return memory_; }
 
  private:
-  Event event_of(core::Instant_ns elapsed, const Seen& seen) noexcept;
+  Event event_of(core::Instant_ns elapsed, const TickInput& seen) noexcept;
   Output take(Event event) noexcept;
   Timing timing_;
   Memory memory_;
 };
 
-}  // namespace safety
+}  // namespace tractus::safety

@@ -7,6 +7,7 @@
 #include <set>
 #include <vector>
 
+namespace tractus {
 namespace safety {
 namespace {
 
@@ -19,7 +20,7 @@ constexpr Timing kSmall{
 struct Input {
   enum class Kind { arm, disarm, tick } kind = Kind::tick;
   core::Instant_ns elapsed = kPeriod;
-  Seen seen;
+  TickInput seen;
 };
 
 /// Everything: deeds, and ticks of every fault × fresh or not × ready or not × punctual, late,
@@ -188,3 +189,4 @@ TEST(SafetyFault, EachHasItsOwnLineForAPerson) {
 
 }  // namespace
 }  // namespace safety
+}  // namespace tractus

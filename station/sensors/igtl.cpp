@@ -5,6 +5,7 @@
 #include <array>
 #include <cerrno>
 
+namespace tractus {
 namespace sensors {
 namespace {
 using core::Errc;
@@ -12,7 +13,7 @@ using core::Error;
 }  // namespace
 
 core::Result<std::unique_ptr<IgtlStream>> IgtlStream::open(const std::string& host, int port) {
-  auto socket = Socket::connect("motion capture", host, port, Wire::tcp);
+  auto socket = Socket::connect("motion capture", host, port, Transport::tcp);
   if (!socket) return socket.error();
   std::unique_ptr<IgtlStream> out(new IgtlStream(std::move(*socket)));
   for (const char* type : {"TDATA", "QTDATA"}) {
@@ -39,3 +40,4 @@ core::Result<std::vector<TrackedPose>> IgtlStream::next(int wait_ms) {
 }
 
 }  // namespace sensors
+}  // namespace tractus

@@ -7,7 +7,7 @@
 #include "station/sensors/igtl_reader.hpp"
 #include "station/sensors/socket.hpp"
 
-namespace sensors {
+namespace tractus::sensors {
 
 /// A connection to a server that sends (Plus and the bridges of QTM and Motive do). One thread.
 class IgtlStream {
@@ -31,4 +31,4 @@ class IgtlStream {
   std::uint64_t received_ = 0;
 };
 
-}  // namespace sensors
+}  // namespace tractus::sensors

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 
+namespace tractus {
 namespace sensors {
 namespace {
 using Bytes = std::span<const std::byte>;
@@ -140,3 +141,4 @@ std::vector<std::byte> igtl_request(std::string_view type) {
 }
 
 }  // namespace sensors
+}  // namespace tractus

@@ -13,7 +13,7 @@
 
 #include "math/geometry.hpp"
 
-namespace sensors {
+namespace tractus::sensors {
 
 /// A tracked body in the capture system's frame C.
 struct TrackedPose {
@@ -54,4 +54,4 @@ std::optional<IgtlStatus> parse_igtl_status(const IgtlHeader& header,
 /// be.
 std::vector<std::byte> igtl_request(std::string_view type);
 
-}  // namespace sensors
+}  // namespace tractus::sensors

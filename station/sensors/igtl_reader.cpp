@@ -4,6 +4,7 @@
 #include <array>
 #include <string_view>
 
+namespace tractus {
 namespace sensors {
 namespace {
 using core::Errc;
@@ -50,3 +51,4 @@ core::Result<std::optional<std::vector<TrackedPose>>> IgtlReader::next() {
 }
 
 }  // namespace sensors
+}  // namespace tractus

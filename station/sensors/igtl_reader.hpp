@@ -7,7 +7,7 @@
 #include "core/result.hpp"
 #include "station/sensors/igtl_message.hpp"
 
-namespace sensors {
+namespace tractus::sensors {
 
 /// Takes bytes in pieces of any size and gives back the poses of each whole message. What is of no
 /// use here (pictures, texts: a server may send everything it has) is passed over, however long.
@@ -34,4 +34,4 @@ class IgtlReader {
   std::optional<IgtlStatus> complaint_;
 };
 
-}  // namespace sensors
+}  // namespace tractus::sensors

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace sensors {
+namespace tractus::sensors {
 namespace {
 constexpr std::size_t kMostOthers = 50;
 }
@@ -68,4 +68,4 @@ std::optional<std::string> MotionRows::flush() {
   return row + fmt::format(",{:.7f}\n", arrived_s_);
 }
 
-}  // namespace sensors
+}  // namespace tractus::sensors

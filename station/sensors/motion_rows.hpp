@@ -9,7 +9,7 @@
 
 #include "station/sensors/igtl_message.hpp"
 
-namespace sensors {
+namespace tractus::sensors {
 
 /// Columns `t_s,NAME.px_m … NAME.qz,…,arrived_s`. t_s is the sender's clock from its first stamp,
 /// or when it does not stamp, the same as arrived_s: this computer's. A body that was not seen at a
@@ -40,4 +40,4 @@ class MotionRows {
   std::uint64_t count_ = 0;
 };
 
-}  // namespace sensors
+}  // namespace tractus::sensors

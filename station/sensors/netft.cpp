@@ -12,6 +12,7 @@
 
 #include "core/words.hpp"
 
+namespace tractus {
 namespace sensors {
 namespace {
 using core::Errc;
@@ -162,7 +163,7 @@ math::Wrench wrench_of(const RdtRecord& record, const NetFtCalibration& by) noex
 
 core::Result<std::unique_ptr<NetFtStream>> NetFtStream::open(const std::string& host, int port,
                                                              bool bias) {
-  auto socket = Socket::connect("force sensor", host, port, Wire::udp);
+  auto socket = Socket::connect("force sensor", host, port, Transport::udp);
   if (!socket) return socket.error();
   std::unique_ptr<NetFtStream> out(new NetFtStream(std::move(*socket)));
   if (bias) out->command(kBias);
@@ -208,3 +209,4 @@ core::Result<std::optional<RdtRecord>> NetFtStream::next(int wait_ms) {
 }
 
 }  // namespace sensors
+}  // namespace tractus

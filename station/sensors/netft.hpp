@@ -14,7 +14,7 @@
 #include "math/geometry.hpp"
 #include "station/sensors/socket.hpp"
 
-namespace sensors {
+namespace tractus::sensors {
 
 /// What the bits of a status mean: a Net F/T box and an Ethernet Axia have a table each.
 enum class NetFtStatus { box, axia };
@@ -88,4 +88,4 @@ class NetFtStream {
   std::uint64_t index_ = 0, lost_ = 0, late_ = 0;
 };
 
-}  // namespace sensors
+}  // namespace tractus::sensors

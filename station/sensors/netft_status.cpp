@@ -5,6 +5,7 @@
 
 #include "station/sensors/netft.hpp"
 
+namespace tractus {
 namespace sensors {
 namespace {
 constexpr std::uint32_t kError = 1u << 31, kThreshold = 1u << 16;
@@ -77,3 +78,4 @@ std::string status_words(std::uint32_t status, NetFtStatus of) {
 }
 
 }  // namespace sensors
+}  // namespace tractus

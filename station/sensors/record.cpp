@@ -11,6 +11,7 @@
 #include "station/sensors/motion_rows.hpp"
 #include "station/sensors/row_file.hpp"
 
+namespace tractus {
 namespace sensors {
 namespace {
 using core::Errc;
@@ -306,3 +307,4 @@ core::Result<Recorded> record(const RecordSetup& setup, const std::filesystem::p
 }
 
 }  // namespace sensors
+}  // namespace tractus

@@ -12,7 +12,7 @@
 #include "station/sensors/igtl.hpp"
 #include "station/sensors/netft.hpp"
 
-namespace sensors {
+namespace tractus::sensors {
 
 struct RecordSetup {
   std::string netft_host;  ///< empty: no force sensor
@@ -50,4 +50,4 @@ struct Recorded {
 core::Result<Recorded> record(const RecordSetup& setup, const std::filesystem::path& folder,
                               const std::function<bool(double share)>& progress = {});
 
-}  // namespace sensors
+}  // namespace tractus::sensors

@@ -8,6 +8,7 @@
 
 #include "core/file.hpp"
 
+namespace tractus {
 namespace sensors {
 namespace {
 constexpr core::Instant_ns kEach_ns = 500'000'000;
@@ -70,3 +71,4 @@ core::Result<void> RowFile::finish() {
 }
 
 }  // namespace sensors
+}  // namespace tractus

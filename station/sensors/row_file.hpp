@@ -9,7 +9,7 @@
 #include "core/clock.hpp"
 #include "core/result.hpp"
 
-namespace sensors {
+namespace tractus::sensors {
 
 /// Rows are handed to the system in one write each half second (or 64 KiB), never half a row: when
 /// the program is killed, or the disk is full, the file ends with a whole row.
@@ -38,4 +38,4 @@ class RowFile {
   std::optional<core::Error> error_;
 };
 
-}  // namespace sensors
+}  // namespace tractus::sensors

@@ -15,6 +15,7 @@
 #include "station/sensors/netft.hpp"
 #include "station/sensors/row_file.hpp"
 
+namespace tractus {
 namespace sensors {
 namespace {
 using math::Vec3;
@@ -412,3 +413,4 @@ TEST(Igtl, GivesNothingForWhatIsCutOrNoTurnOrAnotherType) {
 
 }  // namespace
 }  // namespace sensors
+}  // namespace tractus

@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <cstring>
 
+namespace tractus {
 namespace sensors {
 namespace {
 constexpr int kConnect_ms = 5000;
@@ -29,13 +30,13 @@ int connected(int fd, const addrinfo& to) {
 }  // namespace
 
 core::Result<Socket> Socket::connect(const std::string& who, const std::string& host, int port,
-                                     Wire wire) {
+                                     Transport wire) {
   const auto refuse = [&](const char* why) {
     return core::Error{core::Errc::unavailable,
                        fmt::format("{} at {}:{}: {}", who, host, port, why)};
   };
   addrinfo wanted{}, *found = nullptr;
-  wanted.ai_socktype = wire == Wire::udp ? SOCK_DGRAM : SOCK_STREAM;
+  wanted.ai_socktype = wire == Transport::udp ? SOCK_DGRAM : SOCK_STREAM;
   if (const int failed = ::getaddrinfo(host.c_str(), std::to_string(port).c_str(), &wanted, &found))
     return refuse(::gai_strerror(failed));
   int why = EHOSTUNREACH;
@@ -63,3 +64,4 @@ bool Socket::readable(int wait_ms) const noexcept {
 }
 
 }  // namespace sensors
+}  // namespace tractus

@@ -6,15 +6,15 @@
 
 #include "core/result.hpp"
 
-namespace sensors {
+namespace tractus::sensors {
 
-enum class Wire { udp, tcp };
+enum class Transport { udp, tcp };
 
 class Socket {
  public:
   /// Connects, 5 s at most. Errors: unavailable, "WHO at HOST:PORT: why".
   static core::Result<Socket> connect(const std::string& who, const std::string& host, int port,
-                                      Wire wire);
+                                      Transport wire);
   ~Socket();
   Socket(Socket&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
   Socket& operator=(Socket&&) = delete;
@@ -27,4 +27,4 @@ class Socket {
   int fd_;
 };
 
-}  // namespace sensors
+}  // namespace tractus::sensors

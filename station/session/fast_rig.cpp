@@ -5,6 +5,7 @@
 #include "station/devices/rig_image.hpp"
 #include "station/rig/electronics.hpp"
 
+namespace tractus {
 namespace session {
 namespace {
 namespace registers = devices::rig;
@@ -55,3 +56,4 @@ std::unique_ptr<devices::RigDevice> fast_rig(const RigSetup& setup) {
 }
 
 }  // namespace session
+}  // namespace tractus

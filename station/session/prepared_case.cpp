@@ -7,6 +7,7 @@
 #include "station/session/trial_drilling.hpp"
 #include "volume/volume_file.hpp"
 
+namespace tractus {
 namespace session {
 namespace fs = std::filesystem;
 namespace {
@@ -65,7 +66,7 @@ core::Result<std::unique_ptr<PreparedCase>> prepare_case(const StationFolder& fo
   if (!file) return file.error();
   auto voxels = file->read_all(part_of(progress, 0.0, 0.5));
   if (!voxels) return voxels.error();
-  drilling::Worn worn;
+  drilling::ErodedShares worn;
   if (!drilled.empty()) {
     auto put = put_drilled(folder, drilled, opened->id, *voxels);
     if (!put) return put.error();
@@ -80,3 +81,4 @@ core::Result<std::unique_ptr<PreparedCase>> prepare_case(const StationFolder& fo
 }
 
 }  // namespace session
+}  // namespace tractus

@@ -10,7 +10,7 @@
 #include "models/palpation_runtime.hpp"
 #include "station/session/station_folder.hpp"
 
-namespace session {
+namespace tractus::session {
 
 struct PreparedCase {
   cases::OpenedCase opened;
@@ -18,7 +18,7 @@ struct PreparedCase {
   volume::Volume volume;         ///< the case's, with what `drilled` took away
   models::PalpationRuntime runtime;
   std::string drilled = {};  ///< trial that made the channel; empty: the case as it was given
-  drilling::Worn worn = {};  ///< by that trial, where its file is here
+  drilling::ErodedShares worn = {};  ///< by that trial, where its file is here
 };
 
 /// @param which       a case's id (or its first eight characters or more) in the station's folder,
@@ -38,4 +38,4 @@ core::Result<std::unique_ptr<PreparedCase>> prepare_case(const StationFolder& fo
 core::Result<std::filesystem::path> find_case(const StationFolder& folder,
                                               const std::string& which);
 
-}  // namespace session
+}  // namespace tractus::session

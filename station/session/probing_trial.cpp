@@ -17,6 +17,7 @@
 #include "station/session/fast_rig.hpp"
 #include "station/session/rig_entry.hpp"
 
+namespace tractus {
 namespace session {
 namespace {
 constexpr std::size_t kRing = 8192;              // eight seconds
@@ -99,7 +100,7 @@ struct ProbingTrialRun::Parts {
   core::MonotonicClock real_clock;
   core::ManualClock manual_clock;
   loop::ProbingRing ring{kRing};
-  loop::Seqlock<loop::ProbingSeen> live;
+  loop::Seqlock<loop::ProbingLoopSnapshot> live;
   loop::RigLimits limits;
   std::optional<loop::ProbingGuard> guard;
   std::vector<std::unique_ptr<models::ProbingRuntime>> laws;  // all that were ever felt
@@ -122,7 +123,7 @@ struct ProbingTrialRun::Parts {
   core::Result<void> add_law(const laws::ProbingParameters& law);
   void after_tick(const trial::ProbingSample& sample);
   void loop_thread(std::promise<void>& prepared, const std::future<void>& go);
-  ProbingGlimpse glimpse() const;
+  ProbingTrialSnapshot glimpse() const;
   void apply_remote_commands();
   void watch_until(const std::future<void>& done, const ProbingWatch& watch);
   core::Result<void> append_end(const std::optional<trial::Answer>& answer);
@@ -246,12 +247,12 @@ void ProbingTrialRun::Parts::loop_thread(std::promise<void>& prepared,
   loop->run([this](const trial::ProbingSample& sample) { after_tick(sample); });
 }
 
-ProbingGlimpse ProbingTrialRun::Parts::glimpse() const {
-  const auto seen = live.read().value_or(loop::ProbingSeen{});
-  ProbingGlimpse out{.trial_id = header.id,
-                     .t_s = seen.t_s,
-                     .missed = seen.missed,
-                     .samples_safe = recorder->samples_safe()};
+ProbingTrialSnapshot ProbingTrialRun::Parts::glimpse() const {
+  const auto seen = live.read().value_or(loop::ProbingLoopSnapshot{});
+  ProbingTrialSnapshot out{.trial_id = header.id,
+                           .t_s = seen.t_s,
+                           .missed = seen.missed,
+                           .samples_safe = recorder->samples_safe()};
   if (task.blind) return out;
   out.x_m = seen.x_m, out.speed_m_s = seen.speed_m_s, out.push_N = seen.fz_N, out.mode = seen.mode;
   return out;
@@ -296,7 +297,7 @@ core::Result<void> ProbingTrialRun::run(const ProbingWatch& watch) {
 
 std::optional<trial::Answer> ProbingTrialRun::simulated_answer() const {
   if (!parts_->felt) return std::nullopt;
-  const devices::Answer said = parts_->felt->answer();
+  const devices::SimulatedAnswer said = parts_->felt->answer();
   trial::Answer out{.breach = said.breach, .wall = std::nullopt, .confidence = said.confidence};
   if (!said.breach) return out;
   out.wall = said.wall;
@@ -310,7 +311,7 @@ core::Result<void> ProbingTrialRun::retune(const laws::ProbingParameters& law, c
     return wrong("the probe stop cannot be moved while a trial runs");
   if (auto made = p.add_law(law); !made) return made;
   p.loop->exchange_law(*p.laws.back());
-  const auto seen = p.live.read().value_or(loop::ProbingSeen{});
+  const auto seen = p.live.read().value_or(loop::ProbingLoopSnapshot{});
   p.retuned.push_back({seen.t_s, "retuned", std::move(what)});
   return {};
 }
@@ -382,3 +383,4 @@ core::Result<TrialReport> run_probing_trial(
 }
 
 }  // namespace session
+}  // namespace tractus

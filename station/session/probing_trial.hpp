@@ -14,7 +14,7 @@
 #include "station/session/station_folder.hpp"
 #include "station/session/trial_run.hpp"
 
-namespace session {
+namespace tractus::session {
 
 /// Where the rig is, and who is on it.
 struct RigSetup {
@@ -34,10 +34,11 @@ struct RigSetup {
 
 /// What is probed. A value; holds no name of a scenario when the trial is blind.
 struct ProbingTask {
-  std::string case_id;                ///< the scenario's id, or the slot's of a blind study
-  laws::ProbingParameters law;        ///< what a station needs of a scenario
-  std::vector<effects::Use> effects;  ///< of a model that is felt instead of the scenario's bone
-  std::string operator_name;          ///< a pseudonym; empty: the simulated surgeon's own name
+  std::string case_id;          ///< the scenario's id, or the slot's of a blind study
+  laws::ProbingParameters law;  ///< what a station needs of a scenario
+  std::vector<effects::EffectInstance>
+      effects;                ///< of a model that is felt instead of the scenario's bone
+  std::string operator_name;  ///< a pseudonym; empty: the simulated surgeon's own name
   core::Json extra = core::Json::object();  ///< goes into the header's extra as it is
   /// Nothing that tells one scenario from another is written into the header or handed to `watch`.
   bool blind = false;
@@ -52,7 +53,7 @@ core::Result<ProbingTask> task_of(const models::ProbingModel& model, double trav
 
 /// What is told while a trial runs. In a blind trial `mode` is always holding and `x_m`,
 /// `speed_m_s` and `push_N` are 0: a screen has nothing to show.
-struct ProbingGlimpse {
+struct ProbingTrialSnapshot {
   const std::string& trial_id;
   double t_s = 0.0;
   double x_m = 0.0, speed_m_s = 0.0, push_N = 0.0;
@@ -62,7 +63,7 @@ struct ProbingGlimpse {
 };
 /// Called from the thread that called `run`, about thirty times a second; false ends the trial in
 /// good order.
-using ProbingWatch = std::function<bool(const ProbingGlimpse&)>;
+using ProbingWatch = std::function<bool(const ProbingTrialSnapshot&)>;
 
 /// make → run → finish. Whatever happens in `run`, `finish` seals the file and queues it for the
 /// upload, marked with the fault if there was one.
@@ -105,4 +106,4 @@ core::Result<TrialReport> run_probing_trial(
     const std::function<core::Result<std::optional<trial::Answer>>(const ProbingTrialRun&)>& ask =
         {});
 
-}  // namespace session
+}  // namespace tractus::session

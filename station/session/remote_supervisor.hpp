@@ -8,7 +8,7 @@
 
 #include "station/loop/decreasing_limit.hpp"
 
-namespace session {
+namespace tractus::session {
 
 /// Safe from several threads. The haptic loop never waits for it: the thread that watches the trial
 /// hands on what it says.
@@ -51,4 +51,4 @@ inline std::string stop_message(const RemoteSupervisor& outside) {
   return "stopped by a supervisor: " + outside.reason();
 }
 
-}  // namespace session
+}  // namespace tractus::session

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+namespace tractus {
 namespace session {
 namespace {
 namespace registers = devices::rig;
@@ -89,3 +90,4 @@ core::Result<void> bring_to_entry(devices::RigDevice& device, core::Clock& clock
 }
 
 }  // namespace session
+}  // namespace tractus

@@ -4,7 +4,7 @@
 #include "core/clock.hpp"
 #include "station/devices/rig_device.hpp"
 
-namespace session {
+namespace tractus::session {
 
 /// Clears a fault that an earlier trial left, and moves the stage slowly out to x = 0 if it is not
 /// there, ten seconds at most; the drive is off afterwards. Not in the tick.
@@ -13,4 +13,4 @@ namespace session {
 /// probe, a stage that does not arrive.
 core::Result<void> bring_to_entry(devices::RigDevice& device, core::Clock& clock, double rate_Hz);
 
-}  // namespace session
+}  // namespace tractus::session

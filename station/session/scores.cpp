@@ -2,7 +2,7 @@
 
 #include "trial/trial_file.hpp"
 
-namespace session {
+namespace tractus::session {
 
 core::Result<Scores> scores_of(const std::filesystem::path& trial_file,
                                const volume::Tract* tract) {
@@ -11,4 +11,4 @@ core::Result<Scores> scores_of(const std::filesystem::path& trial_file,
   return metrics::score_all({.trial = *trial, .tract = tract, .truth = std::nullopt});
 }
 
-}  // namespace session
+}  // namespace tractus::session

@@ -7,7 +7,7 @@
 
 #include "metrics/metric.hpp"
 
-namespace session {
+namespace tractus::session {
 
 using Scores = std::vector<std::pair<metrics::MetricInfo, metrics::Score>>;
 
@@ -16,4 +16,4 @@ using Scores = std::vector<std::pair<metrics::MetricInfo, metrics::Score>>;
 core::Result<Scores> scores_of(const std::filesystem::path& trial_file,
                                const volume::Tract* tract = nullptr);
 
-}  // namespace session
+}  // namespace tractus::session

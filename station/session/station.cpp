@@ -4,7 +4,7 @@
 
 #include <array>
 
-namespace session {
+namespace tractus::session {
 
 std::string_view name(State state) {
   constexpr std::array<std::string_view, 6> names{"idle",      "ready", "running",
@@ -12,9 +12,9 @@ std::string_view name(State state) {
   return names[std::size_t(state)];
 }
 
-core::Error Station::not_now(const char* deed) const {
+core::Error Station::not_now(const char* action) const {
   return {core::Errc::conflict,
-          fmt::format("the station is {}: it cannot {} now", name(state_), deed)};
+          fmt::format("the station is {}: it cannot {} now", name(state_), action)};
 }
 
 core::Result<void> Station::prepare(std::shared_ptr<const PreparedCase> prepared,
@@ -58,4 +58,4 @@ core::Result<TrialReport> Station::answer(const std::optional<trial::Answer>& an
   return report;
 }
 
-}  // namespace session
+}  // namespace tractus::session

@@ -7,7 +7,7 @@
 
 #include "station/session/trial_run.hpp"
 
-namespace session {
+namespace tractus::session {
 
 enum class State { idle, ready, running, answering, done, fault };
 std::string_view name(State state);
@@ -35,7 +35,7 @@ class Station {
   const TrialRun* trial() const { return trial_.get(); }
 
  private:
-  core::Error not_now(const char* deed) const;
+  core::Error not_now(const char* action) const;
   const StationFolder& folder_;
   TrialSetup setup_;
   State state_ = State::idle;
@@ -43,4 +43,4 @@ class Station {
   std::unique_ptr<TrialRun> trial_;
 };
 
-}  // namespace session
+}  // namespace tractus::session

@@ -10,6 +10,7 @@
 #include "core/file.hpp"
 #include "trial/trial_file.hpp"
 
+namespace tractus {
 namespace session {
 namespace fs = std::filesystem;
 namespace {
@@ -187,3 +188,4 @@ core::Result<void> StationFolder::check_room(std::uint64_t bytes) const {
 }
 
 }  // namespace session
+}  // namespace tractus

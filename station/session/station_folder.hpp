@@ -10,7 +10,7 @@
 #include "station/loop/limiter.hpp"
 #include "station/uplink/outbox.hpp"
 
-namespace session {
+namespace tractus::session {
 
 /// A lock on a file, held while this lives; the system lets go of it when the process dies.
 class FolderLock {
@@ -98,4 +98,4 @@ class StationFolder {
   std::vector<std::string> trusted_;
 };
 
-}  // namespace session
+}  // namespace tractus::session

@@ -9,6 +9,7 @@
 #include "core/file.hpp"
 #include "trial/trial_file.hpp"
 
+namespace tractus {
 namespace session {
 namespace {
 namespace fs = std::filesystem;
@@ -243,7 +244,8 @@ TEST_F(Sessions, ADrillingThatTookNothingAwayIsFeltAsWholeBone) {
   StationFolder where = folder();
   const auto bone = prepared(where);
   // Ended in the first seconds of ten minutes, on the way to the bone.
-  const TrialReport nothing = drilled(where, *bone, 600.0, [](const Glimpse&) { return false; });
+  const TrialReport nothing =
+      drilled(where, *bone, 600.0, [](const TrialSnapshot&) { return false; });
   ASSERT_EQ(nothing.drilled->detail["changes"], 0);
   const auto felt = prepare_case(where, root_ / "case", {}, {}, nothing.trial_id);
   ASSERT_TRUE(felt) << felt.error().what;
@@ -287,3 +289,4 @@ TEST_F(Sessions, NamesTheFieldThatIsWrongInItsConfiguration) {
 
 }  // namespace
 }  // namespace session
+}  // namespace tractus

@@ -6,6 +6,7 @@
 
 #include "core/file.hpp"
 
+namespace tractus {
 namespace session {
 namespace fs = std::filesystem;
 namespace {
@@ -46,3 +47,4 @@ core::Result<std::vector<wire::SealedTrial>> still_to_do(const StationFolder& fo
 }
 
 }  // namespace session
+}  // namespace tractus

@@ -4,7 +4,7 @@
 #include "station/session/station_folder.hpp"
 #include "wire/study_work.hpp"
 
-namespace session {
+namespace tractus::session {
 
 /// Keeps it as `studies/<study>/<participant>.json`, in place of what was there: the server's
 /// answer holds all that is still to be done. Sealed as it came. Errors: io.
@@ -18,4 +18,4 @@ core::Result<wire::StudyWork> kept_work(const StationFolder& folder, const std::
 core::Result<std::vector<wire::SealedTrial>> still_to_do(const StationFolder& folder,
                                                          const wire::StudyWork& work);
 
-}  // namespace session
+}  // namespace tractus::session

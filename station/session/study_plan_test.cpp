@@ -7,6 +7,7 @@
 
 #include "station/uplink/study.hpp"
 
+namespace tractus {
 namespace session {
 namespace {
 namespace fs = std::filesystem;
@@ -66,10 +67,10 @@ TEST_F(StudyPlans, ThatAreRubbishAreRefusedByTheirFilesName) {
 class OneAnswer final : public uplink::Server {
  public:
   OneAnswer(int status, const core::Json& json) : status_(status), text_(json.dump()) {}
-  core::Result<uplink::Answer> send(const uplink::Request& request) override {
+  core::Result<uplink::HttpResponse> send(const uplink::Request& request) override {
     asked = request.method + " " + request.path;
     const auto bytes = core::bytes_of(text_);
-    return uplink::Answer{status_, core::Bytes(bytes.begin(), bytes.end())};
+    return uplink::HttpResponse{status_, core::Bytes(bytes.begin(), bytes.end())};
   }
   std::string asked;
 
@@ -114,3 +115,4 @@ TEST_F(StudyPlans, KeepTheServersWordsWhenItSaysNo) {
 
 }  // namespace
 }  // namespace session
+}  // namespace tractus

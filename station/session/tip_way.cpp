@@ -1,6 +1,6 @@
 #include "station/session/tip_way.hpp"
 
-namespace session {
+namespace tractus::session {
 
 void TipWay::add(std::span<const trial::Sample> samples) {
   const std::lock_guard held(mutex_);
@@ -26,11 +26,11 @@ void TipWay::add_point(const math::Vec3& tip_m) {
   step_m_ *= 2.0;
 }
 
-void TipWay::show(Seen& seen) const {
+void TipWay::show(Snapshot& seen) const {
   const std::unique_lock held(mutex_, std::try_to_lock);
   if (!held) return;
   seen = seen_;
   if (!seen.points_m.empty()) seen.points_m.push_back(last_m_);
 }
 
-}  // namespace session
+}  // namespace tractus::session

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+namespace tractus {
 namespace session {
 namespace {
 using math::Vec3;
@@ -27,7 +28,7 @@ std::vector<trial::Sample> in_and_out(int samples) {
 TEST(TipWay, IsKeptInStepsOfAQuarterOfAMillimetreToWhereTheTipIs) {
   TipWay way(kProbe, {});
   way.add(in_and_out(120'000));
-  TipWay::Seen seen;
+  TipWay::Snapshot seen;
   way.show(seen);
   // 140 mm in steps of 0.25 mm and what a sample goes beyond one: 1.2 µm.
   EXPECT_NEAR(double(seen.points_m.size()), 140 / 0.25, 5);
@@ -41,7 +42,7 @@ TEST(TipWay, IsKeptInStepsOfAQuarterOfAMillimetreToWhereTheTipIs) {
 
 TEST(TipWay, StaysBoundedAndWholeHoweverLongTheTrialIs) {
   TipWay way(kProbe, {});
-  TipWay::Seen seen;
+  TipWay::Snapshot seen;
   for (int time = 0; time < 40; ++time) way.add(in_and_out(10'000));  // 5.6 m
   way.show(seen);
   EXPECT_LE(seen.points_m.size(), TipWay::kPoints + 1);
@@ -60,7 +61,7 @@ TEST(TipWay, OfAToolThatWasNeverWithdrawnEndsInTheBone) {
   auto samples = in_and_out(1000);
   samples.resize(600);
   way.add(samples);
-  TipWay::Seen seen;
+  TipWay::Snapshot seen;
   way.show(seen);
   ASSERT_TRUE(seen.withdrawn);
   EXPECT_EQ(seen.withdrawn->p_VH_m, samples.back().p_VH_m);
@@ -68,3 +69,4 @@ TEST(TipWay, OfAToolThatWasNeverWithdrawnEndsInTheBone) {
 
 }  // namespace
 }  // namespace session
+}  // namespace tractus

@@ -4,6 +4,7 @@
 
 #include "drilling/channel.hpp"
 
+namespace tractus {
 namespace session {
 namespace fs = std::filesystem;
 namespace {
@@ -34,8 +35,9 @@ core::Result<void> keep_drilled(const StationFolder& folder, const loop::Drillin
                                  drilling::drilled_of(drilling.erosion()), trial_id, case_id);
 }
 
-core::Result<drilling::Worn> put_drilled(const StationFolder& folder, const std::string& trial_id,
-                                         const std::string& case_id, volume::Volume& bone) {
+core::Result<drilling::ErodedShares> put_drilled(const StationFolder& folder,
+                                                 const std::string& trial_id,
+                                                 const std::string& case_id, volume::Volume& bone) {
   if (!core::is_id(trial_id))
     return core::Error{core::Errc::bad_input,
                        fmt::format("--drilled {}: a trial's id is expected", trial_id)};
@@ -45,7 +47,7 @@ core::Result<drilling::Worn> put_drilled(const StationFolder& folder, const std:
   if (!recorded && !kept)
     return core::Error{core::Errc::not_found, fmt::format("--drilled {}: neither {} nor {} is here",
                                                           trial_id, state.string(), file.string())};
-  drilling::Worn worn;
+  drilling::ErodedShares worn;
   drilling::Drilled left;
   if (recorded) {
     auto again = redrilled(file, trial_id, case_id, bone);
@@ -63,3 +65,4 @@ core::Result<drilling::Worn> put_drilled(const StationFolder& folder, const std:
 }
 
 }  // namespace session
+}  // namespace tractus

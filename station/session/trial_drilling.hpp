@@ -4,7 +4,7 @@
 #include "station/loop/drilling.hpp"
 #include "station/session/prepared_case.hpp"
 
-namespace session {
+namespace tractus::session {
 
 /// What it came to: the detail of the trial's "drilled" event.
 core::Json drilled_detail(const loop::Drilling& drilling, const PreparedCase& prepared);
@@ -18,7 +18,8 @@ core::Result<void> keep_drilled(const StationFolder& folder, const loop::Drillin
 /// it says it left. Returns what was worn, also where that left no trace in the counts (marrow like
 /// water): only the file knows that; nothing without it. Errors: not_found (neither is here),
 /// bad_input (a trial of another case, or one that drilled nothing), corrupt, io.
-core::Result<drilling::Worn> put_drilled(const StationFolder& folder, const std::string& trial_id,
-                                         const std::string& case_id, volume::Volume& bone);
+core::Result<drilling::ErodedShares> put_drilled(const StationFolder& folder,
+                                                 const std::string& trial_id,
+                                                 const std::string& case_id, volume::Volume& bone);
 
-}  // namespace session
+}  // namespace tractus::session

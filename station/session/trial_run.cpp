@@ -9,6 +9,7 @@
 #include "station/loop/recorder.hpp"
 #include "station/session/trial_drilling.hpp"
 
+namespace tractus {
 namespace session {
 namespace {
 constexpr std::size_t kRing = 16384;            // four seconds
@@ -26,7 +27,7 @@ core::Json probe_of(const laws::PalpationParameters& base) {
           {"pose_offset_m", array_of(base.pose_offset_m)}};
 }
 
-devices::Channel channel_of(const volume::Tract& in_D) {
+devices::KnownTract channel_of(const volume::Tract& in_D) {
   return {.entry_m = in_D.entry_m,
           .axis = in_D.axis,
           .medial = in_D.medial,
@@ -116,7 +117,7 @@ struct TrialRun::Parts {
     return static_cast<double>(loop->counts().ticks + loop->counts().skipped) / setup.rate_Hz;
   }
   double elapsed_s() { return static_cast<double>(clock().now() - loop->started()) * 1e-9; }
-  Glimpse glimpse() const;
+  TrialSnapshot glimpse() const;
   core::Result<void> open_device(const devices::DeviceInfo& info, const math::Pose& X_VD);
   core::Result<void> take_tool();
   core::Result<void> make_file(const devices::DeviceInfo& info);
@@ -128,7 +129,7 @@ struct TrialRun::Parts {
   core::Result<void> append_end(const TrialReport& report);
 };
 
-Glimpse TrialRun::Parts::glimpse() const {
+TrialSnapshot TrialRun::Parts::glimpse() const {
   const auto seen = live.read().value_or(loop::Live{});
   const double share = static_cast<double>(seen.tick) / (setup.duration_s * setup.rate_Hz);
   return {.trial_id = header.id,
@@ -319,7 +320,7 @@ void TrialRun::Parts::finish_drilling() {
 std::optional<trial::Answer> TrialRun::simulated_answer() const {
   if (parts_->drilling) return std::nullopt;  // it made the channel, and felt no walls
   if (!parts_->made.trainee || !parts_->made.trainee->done()) return std::nullopt;
-  const devices::Answer said = parts_->made.trainee->answer();
+  const devices::SimulatedAnswer said = parts_->made.trainee->answer();
   trial::Answer out{.breach = said.breach, .wall = std::nullopt, .confidence = said.confidence};
   if (said.breach) out.wall = said.wall;
   return out;
@@ -374,3 +375,4 @@ core::Result<TrialReport> TrialRun::finish(const std::optional<trial::Answer>& a
 }
 
 }  // namespace session
+}  // namespace tractus

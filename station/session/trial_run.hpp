@@ -9,11 +9,11 @@
 #include "station/devices/catalogue.hpp"
 #include "station/loop/haptic_loop.hpp"
 #include "station/loop/realtime.hpp"
-#include "station/session/remote_supervisor.hpp"
 #include "station/session/prepared_case.hpp"
+#include "station/session/remote_supervisor.hpp"
 #include "station/session/tip_way.hpp"
 
-namespace loop {
+namespace tractus::loop {
 class Drilling;
 }
 
@@ -73,7 +73,7 @@ struct TrialReport {
 };
 
 /// What is told while a trial runs.
-struct Glimpse {
+struct TrialSnapshot {
   const std::string& trial_id;
   loop::Live live;
   double progress = 0.0;               ///< 0 … 1
@@ -82,7 +82,7 @@ struct Glimpse {
   loop::Drilling* drilling = nullptr;  ///< of a trial with a burr: for `show`; lives as the trial
 };
 /// Called from the thread that called `run`, about thirty times a second; false stops the trial.
-using Watch = std::function<bool(const Glimpse&)>;
+using Watch = std::function<bool(const TrialSnapshot&)>;
 
 class TrialRun {
  public:

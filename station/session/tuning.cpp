@@ -5,6 +5,7 @@
 
 #include "core/require.hpp"
 
+namespace tractus {
 namespace session {
 namespace {
 using scenarios::Scenario;
@@ -82,3 +83,4 @@ core::Result<Scenario> Tuning::save(const std::string& who, std::int64_t when_ut
 }
 
 }  // namespace session
+}  // namespace tractus

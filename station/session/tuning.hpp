@@ -8,7 +8,7 @@
 
 #include "scenarios/version.hpp"
 
-namespace session {
+namespace tractus::session {
 
 /// One of the eight [Probing, Table 1], as a person sees it.
 struct TunedParameter {
@@ -44,4 +44,4 @@ class Tuning {
   std::vector<scenarios::Scenario> before_;
 };
 
-}  // namespace session
+}  // namespace tractus::session

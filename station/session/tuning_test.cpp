@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+namespace tractus {
 namespace session {
 namespace {
 using scenarios::Kind;
@@ -65,3 +66,4 @@ TEST(Tuning, SavesANewVersionWithWhoWhenAndTheParent) {
 
 }  // namespace
 }  // namespace session
+}  // namespace tractus

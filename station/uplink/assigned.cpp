@@ -1,5 +1,6 @@
 #include "station/uplink/assigned.hpp"
 
+namespace tractus {
 namespace uplink {
 namespace {
 
@@ -37,3 +38,4 @@ void sign_out(Server& server, const Ticket& ticket) {
 }
 
 }  // namespace uplink
+}  // namespace tractus

@@ -4,7 +4,7 @@
 #include "station/uplink/server.hpp"
 #include "wire/assigned_work.hpp"
 
-namespace uplink {
+namespace tractus::uplink {
 
 struct Ticket {
   std::string text;  ///< opens the trainee's assignments to this station alone
@@ -18,4 +18,4 @@ core::Result<wire::AssignedWork> next_trial(Server& server, const Ticket& ticket
 /// What cannot be said now ends by itself.
 void sign_out(Server& server, const Ticket& ticket);
 
-}  // namespace uplink
+}  // namespace tractus::uplink

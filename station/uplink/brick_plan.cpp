@@ -7,6 +7,7 @@
 #include "core/json.hpp"
 #include "volume/brick.hpp"
 
+namespace tractus {
 namespace uplink {
 namespace fs = std::filesystem;
 namespace {
@@ -130,3 +131,4 @@ std::vector<Segment> LocalParts::plan(core::ByteView head, std::uint64_t size) c
 }
 
 }  // namespace uplink
+}  // namespace tractus

@@ -9,7 +9,7 @@
 
 #include "core/bytes.hpp"
 
-namespace uplink {
+namespace tractus::uplink {
 
 /// Bytes of a part, in their order: from a file here, or to be fetched.
 struct Segment {
@@ -59,4 +59,4 @@ std::optional<std::uint64_t> index_end(core::ByteView head);
 /// Nothing when `head`, which goes to index_end, is not one.
 std::optional<BrickIndex> brick_index(core::ByteView head);
 
-}  // namespace uplink
+}  // namespace tractus::uplink

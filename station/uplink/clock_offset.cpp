@@ -2,7 +2,7 @@
 
 #include <limits>
 
-namespace uplink {
+namespace tractus::uplink {
 
 core::Json ClockOffset::to_json() const {
   return {{"offset_s", offset_s}, {"error_s", error_s}, {"at_utc_us", at_utc_us}};
@@ -47,4 +47,4 @@ std::optional<ClockOffset> kept_clock(const std::filesystem::path& file, std::in
   return out;
 }
 
-}  // namespace uplink
+}  // namespace tractus::uplink

@@ -8,7 +8,7 @@
 #include "core/clock.hpp"
 #include "station/uplink/server.hpp"
 
-namespace uplink {
+namespace tractus::uplink {
 
 struct ClockOffset {
   double offset_s = 0.0;  ///< server's clock less the station's
@@ -32,4 +32,4 @@ void keep_clock(const std::filesystem::path& file, const ClockOffset& offset);
 std::optional<ClockOffset> kept_clock(const std::filesystem::path& file, std::int64_t now_utc_us,
                                       std::int64_t most_age_us);
 
-}  // namespace uplink
+}  // namespace tractus::uplink

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+namespace tractus {
 namespace uplink {
 namespace {
 
@@ -9,13 +10,13 @@ namespace {
 class Distant final : public Server {
  public:
   explicit Distant(core::ManualClock& clock) : clock_(clock) {}
-  core::Result<Answer> send(const Request&) override {
+  core::Result<HttpResponse> send(const Request&) override {
     const auto [there_ms, back_ms] = ways_ms[std::size_t(asked++) % ways_ms.size()];
     clock_.advance(there_ms * 1'000'000);
     const std::string text = core::Json{{"server_utc_us", clock_.now() / 1000 + 2'500'000}}.dump();
     clock_.advance(back_ms * 1'000'000);
     const auto bytes = core::bytes_of(text);
-    return Answer{200, core::Bytes(bytes.begin(), bytes.end())};
+    return HttpResponse{200, core::Bytes(bytes.begin(), bytes.end())};
   }
   std::vector<std::pair<int, int>> ways_ms{{5, 5}};
   int asked = 0;
@@ -52,3 +53,4 @@ TEST_F(ClockOffsets, AreTakenFromTheShortestRoundTripAndLieWithinTheirBound) {
 
 }  // namespace
 }  // namespace uplink
+}  // namespace tractus

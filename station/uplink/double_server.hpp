@@ -9,29 +9,29 @@
 #include "station/uplink/server.hpp"
 #include "wire/messages.hpp"
 
-namespace uplink {
+namespace tractus::uplink {
 
 /// Keeps uploads as the contract says: announce, chunks at the offset it stands at with their
 /// CRC-32C, commit of the whole with its SHA-256. Serves files by path.
 class DoubleServer final : public Server {
  public:
-  enum class Fault {
+  enum class InjectedFault {
     before,
     after
   };                ///< the request is lost; it took effect and the answer is lost
   int fail_at = 0;  ///< the n-th request from now, 1 …; 0: none
-  Fault fault = Fault::before;
+  InjectedFault fault = InjectedFault::before;
   std::map<std::string, core::Bytes> files;      ///< path → bytes; Range is honoured
   std::map<std::string, core::Bytes> committed;  ///< trial id → bytes
   std::map<std::string, int> commits;            ///< how often a trial became complete
   std::vector<std::string> log;                  ///< "METHOD path"
 
-  core::Result<Answer> send(const Request& request) override {
+  core::Result<HttpResponse> send(const Request& request) override {
     const bool fails = fail_at > 0 && --fail_at == 0;
     const core::Error lost{core::Errc::unavailable, "the line is cut"};
-    if (fails && fault == Fault::before) return lost;
+    if (fails && fault == InjectedFault::before) return lost;
     log.push_back(request.method + " " + request.path);
-    Answer answer = take(request);
+    HttpResponse answer = take(request);
     if (fails) return lost;
     return answer;
   }
@@ -41,20 +41,20 @@ class DoubleServer final : public Server {
     wire::UploadAnnouncement said;
     core::Bytes bytes;
   };
-  static Answer reply(int status, const core::Json& json) {
+  static HttpResponse reply(int status, const core::Json& json) {
     const std::string text = json.dump();
     const auto bytes = core::bytes_of(text);
     return {status, core::Bytes(bytes.begin(), bytes.end())};
   }
-  static Answer refuse(int status, const char* why) {
+  static HttpResponse refuse(int status, const char* why) {
     return reply(status, {{"error", why}, {"code", "x"}});
   }
-  Answer state_of(const std::string& id) {
+  HttpResponse state_of(const std::string& id) {
     const bool complete = committed.contains(id);
     const auto size = complete ? committed[id].size() : uploads_[id].bytes.size();
     return reply(200, {{"offset_bytes", size}, {"state", complete ? "complete" : "receiving"}});
   }
-  Answer take(const Request& request) {
+  HttpResponse take(const Request& request) {
     if (request.method == "GET") return file(request);
     if (request.path.ends_with("/there")) return {204, {}};
     const std::string rest = request.path.substr(std::string("/api/v1/uploads/").size());
@@ -64,7 +64,7 @@ class DoubleServer final : public Server {
     if (request.method == "PATCH") return chunk(id, rest, request);
     return commit(id);
   }
-  Answer file(const Request& request) {
+  HttpResponse file(const Request& request) {
     const auto found = files.find(request.path);
     if (found == files.end()) return refuse(404, "no such thing");
     for (const auto& [name, value] : request.headers) {
@@ -78,7 +78,7 @@ class DoubleServer final : public Server {
     }
     return {200, found->second};
   }
-  Answer announce(const std::string& id, const Request& request) {
+  HttpResponse announce(const std::string& id, const Request& request) {
     const auto json = core::parse_json(core::text_of(request.body), "body");
     auto said = wire::UploadAnnouncement::from_json(*json, "body");
     if (!said) return refuse(400, "no announcement");
@@ -86,7 +86,7 @@ class DoubleServer final : public Server {
     if (!fresh && it->second.said.sha256 != said->sha256) return refuse(409, "announced otherwise");
     return state_of(id);
   }
-  Answer chunk(const std::string& id, const std::string& rest, const Request& request) {
+  HttpResponse chunk(const std::string& id, const std::string& rest, const Request& request) {
     Upload& upload = uploads_[id];
     const auto offset = std::stoul(rest.substr(rest.find('=') + 1));
     if (committed.contains(id) || offset != upload.bytes.size())
@@ -100,7 +100,7 @@ class DoubleServer final : public Server {
     upload.bytes.insert(upload.bytes.end(), request.body.begin(), request.body.end());
     return state_of(id);
   }
-  Answer commit(const std::string& id) {
+  HttpResponse commit(const std::string& id) {
     Upload& upload = uploads_[id];
     if (committed.contains(id)) return state_of(id);
     if (upload.bytes.size() != upload.said.size_bytes ||
@@ -113,4 +113,4 @@ class DoubleServer final : public Server {
   std::map<std::string, Upload> uploads_;
 };
 
-}  // namespace uplink
+}  // namespace tractus::uplink

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 
+namespace tractus {
 namespace uplink {
 namespace {
 constexpr long kConnect_s = 5, kStall_s = 30, kAll_s = 120;
@@ -124,7 +125,7 @@ void HttpServer::Connection::prepare(const Request& request, Received& into) {
   failure[0] = 0;
 }
 
-core::Result<Answer> HttpServer::send(const Request& request) {
+core::Result<HttpResponse> HttpServer::send(const Request& request) {
   Received received{.bytes = {}, .limit = request.max_answer_bytes};
   connection_->prepare(request, received);
   const CURLcode code = curl_easy_perform(connection_->handle);
@@ -143,7 +144,8 @@ core::Result<Answer> HttpServer::send(const Request& request) {
     return core::Error{core::Errc::bad_input,
                        fmt::format("{} {}: the server redirects; redirects are refused",
                                    request.method, request.path)};
-  return Answer{static_cast<int>(status), std::move(received.bytes)};
+  return HttpResponse{static_cast<int>(status), std::move(received.bytes)};
 }
 
 }  // namespace uplink
+}  // namespace tractus

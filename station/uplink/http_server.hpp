@@ -7,7 +7,7 @@
 
 #include "station/uplink/server.hpp"
 
-namespace uplink {
+namespace tractus::uplink {
 
 /// Only http and https; redirects are refused (a token is for one server); 5 s to connect, 30 s
 /// without a byte, 120 s in all; answers no larger than asked for. The certificate is checked.
@@ -25,7 +25,7 @@ class HttpServer final : public Server {
   static core::Result<std::unique_ptr<HttpServer>> make_nameless(
       const std::string& url, const std::filesystem::path& authority = {});
   ~HttpServer() override;
-  core::Result<Answer> send(const Request& request) override;
+  core::Result<HttpResponse> send(const Request& request) override;
 
  private:
   struct Connection;
@@ -33,4 +33,4 @@ class HttpServer final : public Server {
   std::unique_ptr<Connection> connection_;
 };
 
-}  // namespace uplink
+}  // namespace tractus::uplink

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <random>
 
+namespace tractus {
 namespace uplink {
 namespace {
 using Clock = std::chrono::steady_clock;
@@ -49,20 +50,20 @@ void LiveUplink::run() {
   }
 }
 
-void LiveUplink::hold(Line& line) {
+void LiveUplink::hold(ServerSocket& line) {
   std::string said;
   Clock::time_point when;
   while (!stop_) {
     const std::string now = parts_.told().to_json().dump();
     if (now != said || Clock::now() - when > std::chrono::milliseconds(kAlive_ms)) {
-      if (!line.say(now)) return;
+      if (!line.send(now)) return;
       said = now;
       when = Clock::now();
     }
     const auto next = Clock::now() + std::chrono::milliseconds(kBetween_ms);
     while (!stop_ && Clock::now() < next) {
       const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(next - Clock::now());
-      auto heard = line.hear(std::max(1, static_cast<int>(left.count())));
+      auto heard = line.receive(std::max(1, static_cast<int>(left.count())));
       if (!heard) return;
       if (!*heard) continue;
       const auto json = core::parse_json(**heard, "command");
@@ -72,8 +73,9 @@ void LiveUplink::hold(Line& line) {
     }
   }
   // Whoever stopped this station waits to see that it did: long enough for a wall to be told.
-  if (const std::string last = parts_.told().to_json().dump(); last != said && line.say(last))
+  if (const std::string last = parts_.told().to_json().dump(); last != said && line.send(last))
     std::this_thread::sleep_for(std::chrono::milliseconds(3 * kBetween_ms));
 }
 
 }  // namespace uplink
+}  // namespace tractus

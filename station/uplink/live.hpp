@@ -7,18 +7,19 @@
 #include <thread>
 
 #include "core/clock.hpp"
-#include "station/uplink/line.hpp"
+#include "station/uplink/server_socket.hpp"
 #include "wire/live.hpp"
 
-namespace uplink {
+namespace tractus::uplink {
 
 class LiveUplink {
  public:
   struct Parts {
     /// Opens a line; called again after each end of one.
-    std::function<core::Result<std::unique_ptr<Line>>(const std::atomic<bool>& stopped)> open;
+    std::function<core::Result<std::unique_ptr<ServerSocket>>(const std::atomic<bool>& stopped)>
+        open;
     /// The present state; called from the uplink's thread up to 20 times a second.
-    std::function<wire::StationTold()> told;
+    std::function<wire::StationStatus()> told;
     /// A command; called from the uplink's thread.
     std::function<void(const wire::StationCommand&)> commanded;
     /// After a line was opened, before the first state: may take its time.
@@ -39,7 +40,7 @@ class LiveUplink {
  private:
   void run();
   /// To the end of one line; how long it held.
-  void hold(Line& line);
+  void hold(ServerSocket& line);
   void pause(int ms) const;
 
   Parts parts_;
@@ -52,4 +53,4 @@ class LiveUplink {
 /// back in one moment. @param chance  0 … 1
 int wait_before_ms(int attempt, double chance);
 
-}  // namespace uplink
+}  // namespace tractus::uplink

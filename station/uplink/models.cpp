@@ -6,6 +6,7 @@
 
 #include "core/file.hpp"
 
+namespace tractus {
 namespace uplink {
 namespace fs = std::filesystem;
 namespace {
@@ -140,3 +141,4 @@ core::Result<fs::path> model_named(const fs::path& folder, const std::string& na
 }
 
 }  // namespace uplink
+}  // namespace tractus

@@ -5,7 +5,7 @@
 
 #include "station/uplink/server.hpp"
 
-namespace uplink {
+namespace tractus::uplink {
 
 /// A version on the disk: `models/<id>.json`, with its name in `models/names.json`.
 struct KeptModel {
@@ -29,4 +29,4 @@ core::Result<ModelReport> sync_models(Server& server, const std::filesystem::pat
 core::Result<std::filesystem::path> model_named(const std::filesystem::path& folder,
                                                 const std::string& name);
 
-}  // namespace uplink
+}  // namespace tractus::uplink

@@ -6,6 +6,7 @@
 #include "core/file.hpp"
 #include "station/uplink/double_server.hpp"
 
+namespace tractus {
 namespace uplink {
 namespace {
 namespace fs = std::filesystem;
@@ -68,3 +69,4 @@ TEST_F(SyncingModels, SaysWhatThereIsWhenANameIsUnknown) {
 
 }  // namespace
 }  // namespace uplink
+}  // namespace tractus

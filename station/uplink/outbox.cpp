@@ -7,6 +7,7 @@
 
 #include "core/file.hpp"
 
+namespace tractus {
 namespace uplink {
 namespace fs = std::filesystem;
 namespace {
@@ -102,3 +103,4 @@ core::Result<FileDigest> digest_of(const fs::path& path) {
 }
 
 }  // namespace uplink
+}  // namespace tractus

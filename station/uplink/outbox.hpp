@@ -7,7 +7,7 @@
 
 #include "core/json.hpp"
 
-namespace uplink {
+namespace tractus::uplink {
 
 /// One finished trial on its way: `outbox/<trial id>.json`.
 struct OutboxEntry {
@@ -46,4 +46,4 @@ struct FileDigest {
 };
 core::Result<FileDigest> digest_of(const std::filesystem::path& path);
 
-}  // namespace uplink
+}  // namespace tractus::uplink

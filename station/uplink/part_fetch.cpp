@@ -10,6 +10,7 @@
 #include "core/file.hpp"
 #include "station/uplink/outbox.hpp"
 
+namespace tractus {
 namespace uplink {
 namespace fs = std::filesystem;
 namespace {
@@ -162,3 +163,4 @@ core::Result<void> fetch_part(Server& server, const std::string& case_id, const 
 }
 
 }  // namespace uplink
+}  // namespace tractus

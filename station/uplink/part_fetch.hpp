@@ -6,7 +6,7 @@
 #include "station/uplink/brick_plan.hpp"
 #include "station/uplink/server.hpp"
 
-namespace uplink {
+namespace tractus::uplink {
 
 /// Appends to `target` what it lacks, in pieces; a target that a cut left is gone on with. At the
 /// end it is on the disk and its SHA-256 is the part's: one that was gone on with, or put together
@@ -18,4 +18,4 @@ core::Result<void> fetch_part(Server& server, const std::string& case_id, const 
                               const LocalParts& local, const std::filesystem::path& target,
                               std::uint64_t& fetched_bytes);
 
-}  // namespace uplink
+}  // namespace tractus::uplink

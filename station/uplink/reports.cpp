@@ -4,6 +4,7 @@
 
 #include "core/file.hpp"
 
+namespace tractus {
 namespace uplink {
 namespace fs = std::filesystem;
 
@@ -56,3 +57,4 @@ core::Result<ReportsHanded> hand_over_reports(Server& server, const fs::path& fo
 }
 
 }  // namespace uplink
+}  // namespace tractus

@@ -6,7 +6,7 @@
 
 #include "station/uplink/server.hpp"
 
-namespace uplink {
+namespace tractus::uplink {
 
 struct ReportsHanded {
   int handed_over = 0;
@@ -16,4 +16,4 @@ struct ReportsHanded {
 /// when the server has it. Repeating is harmless. Errors: the server's, when it does not answer.
 core::Result<ReportsHanded> hand_over_reports(Server& server, const std::filesystem::path& folder);
 
-}  // namespace uplink
+}  // namespace tractus::uplink

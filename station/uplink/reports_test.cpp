@@ -5,6 +5,7 @@
 
 #include "core/file.hpp"
 
+namespace tractus {
 namespace uplink {
 namespace {
 namespace fs = std::filesystem;
@@ -12,10 +13,10 @@ namespace fs = std::filesystem;
 /// Takes what holds "good", refuses what holds "bad", is away for the rest.
 class Taking final : public Server {
  public:
-  core::Result<Answer> send(const Request& request) override {
+  core::Result<HttpResponse> send(const Request& request) override {
     const std::string body(core::text_of(request.body));
-    if (body.find("good") != std::string::npos) return taken.push_back(body), Answer{204, {}};
-    if (body.find("bad") != std::string::npos) return Answer{400, {}};
+    if (body.find("good") != std::string::npos) return taken.push_back(body), HttpResponse{204, {}};
+    if (body.find("bad") != std::string::npos) return HttpResponse{400, {}};
     return core::Error{core::Errc::unavailable, "nobody there"};
   }
   std::vector<std::string> taken;
@@ -64,3 +65,4 @@ TEST_F(Reports, StayWhileTheServerIsAway) {
 
 }  // namespace
 }  // namespace uplink
+}  // namespace tractus

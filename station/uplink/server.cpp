@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+namespace tractus {
 namespace uplink {
 namespace {
 core::Errc code_of(int status) {
@@ -24,7 +25,7 @@ core::Errc code_of(int status) {
 }
 }  // namespace
 
-core::Error error_of(const Request& request, const Answer& answer) {
+core::Error error_of(const Request& request, const HttpResponse& answer) {
   std::string why = "no reason given";
   if (const auto json = core::parse_json(core::text_of(answer.body), "answer");
       json && json->is_object())
@@ -34,10 +35,11 @@ core::Error error_of(const Request& request, const Answer& answer) {
                                               request.path, answer.status, why)};
 }
 
-core::Result<core::Json> json_of(const Request& request, const Answer& answer) {
+core::Result<core::Json> json_of(const Request& request, const HttpResponse& answer) {
   if (answer.status / 100 != 2) return error_of(request, answer);
   return core::parse_json(core::text_of(answer.body),
                           fmt::format("answer to {} {}", request.method, request.path));
 }
 
 }  // namespace uplink
+}  // namespace tractus

@@ -11,7 +11,7 @@
 #include "core/json.hpp"
 #include "core/result.hpp"
 
-namespace uplink {
+namespace tractus::uplink {
 
 struct Request {
   std::string method;  ///< "GET", "PUT", "PATCH", "POST"
@@ -21,7 +21,7 @@ struct Request {
   std::uint64_t max_answer_bytes = 1u << 20;
 };
 
-struct Answer {
+struct HttpResponse {
   int status = 0;
   core::Bytes body;
 };
@@ -31,13 +31,13 @@ class Server {
   virtual ~Server() = default;
   /// Errors: unavailable (no connection, no answer in time), too_large (the answer), bad_input (no
   /// HTTP). An answer of any status is an answer.
-  virtual core::Result<Answer> send(const Request& request) = 0;
+  virtual core::Result<HttpResponse> send(const Request& request) = 0;
 };
 
 /// The answer's body as JSON when the status is 2xx; else the server's own one line as an Error of
 /// the status' kind (5xx and 429: unavailable).
-core::Result<core::Json> json_of(const Request& request, const Answer& answer);
+core::Result<core::Json> json_of(const Request& request, const HttpResponse& answer);
 /// The Error that a status outside 2xx means.
-core::Error error_of(const Request& request, const Answer& answer);
+core::Error error_of(const Request& request, const HttpResponse& answer);
 
-}  // namespace uplink
+}  // namespace tractus::uplink

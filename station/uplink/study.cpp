@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-namespace uplink {
+namespace tractus::uplink {
 
 core::Result<wire::StudyWork> take_trials(Server& server, const std::string& study,
                                           const std::string& participant, int ahead) {
@@ -26,4 +26,4 @@ core::Result<wire::StudyWork> take_trials(Server& server, const std::string& stu
   return work;
 }
 
-}  // namespace uplink
+}  // namespace tractus::uplink

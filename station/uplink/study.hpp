@@ -4,7 +4,7 @@
 #include "station/uplink/server.hpp"
 #include "wire/study_work.hpp"
 
-namespace uplink {
+namespace tractus::uplink {
 
 /// The next trials of a participant, at most `ahead`; asking again gives the same. Errors:
 /// bad_input (a name that is none, an answer that is not what was agreed), conflict (paused, or at
@@ -12,4 +12,4 @@ namespace uplink {
 core::Result<wire::StudyWork> take_trials(Server& server, const std::string& study,
                                           const std::string& participant, int ahead);
 
-}  // namespace uplink
+}  // namespace tractus::uplink

@@ -8,6 +8,7 @@
 #include "core/file.hpp"
 #include "station/uplink/part_fetch.hpp"
 
+namespace tractus {
 namespace uplink {
 namespace fs = std::filesystem;
 namespace {
@@ -173,3 +174,4 @@ core::Result<SyncReport> sync_cases(Server& server, const fs::path& cases_folder
 }
 
 }  // namespace uplink
+}  // namespace tractus

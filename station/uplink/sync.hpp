@@ -9,7 +9,7 @@
 #include "core/progress.hpp"
 #include "station/uplink/server.hpp"
 
-namespace uplink {
+namespace tractus::uplink {
 
 struct SyncReport {
   std::vector<std::string> fetched;  ///< case ids
@@ -40,4 +40,4 @@ core::Result<SyncReport> sync_cases(Server& server, const std::filesystem::path&
                                     const core::Progress& progress = {},
                                     const SyncLimits& limits = {});
 
-}  // namespace uplink
+}  // namespace tractus::uplink

@@ -9,6 +9,7 @@
 #include "core/file.hpp"
 #include "station/uplink/double_server.hpp"
 
+namespace tractus {
 namespace uplink {
 namespace {
 namespace fs = std::filesystem;
@@ -228,3 +229,4 @@ TEST_F(SyncingMuch, IsRefusedBeforeAnythingIsFetchedWhereTheDiskHasNoRoom) {
 
 }  // namespace
 }  // namespace uplink
+}  // namespace tractus

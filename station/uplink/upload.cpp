@@ -7,6 +7,7 @@
 
 #include "wire/messages.hpp"
 
+namespace tractus {
 namespace uplink {
 namespace fs = std::filesystem;
 namespace {
@@ -16,7 +17,7 @@ constexpr int kMaxCorrections =
     5;  // wrong offsets in a row before the server is not believed any more
 
 core::Result<wire::UploadState> state_of(const Request& request,
-                                         const core::Result<Answer>& answer) {
+                                         const core::Result<HttpResponse>& answer) {
   if (!answer) return answer.error();
   auto json = json_of(request, *answer);
   if (!json) return json.error();
@@ -35,7 +36,7 @@ core::Result<wire::UploadState> announce(Server& server, const std::string& path
 }
 
 /// A chunk was sent at a place the server does not stand at: where it does.
-std::optional<std::uint64_t> corrected_offset(const core::Result<Answer>& answer) {
+std::optional<std::uint64_t> corrected_offset(const core::Result<HttpResponse>& answer) {
   if (!answer || answer->status != 409) return std::nullopt;
   const auto json = core::parse_json(core::text_of(answer->body), "answer");
   if (!json || !json->is_object() || !json->contains("offset_bytes") ||
@@ -56,8 +57,8 @@ core::Result<core::Bytes> read_piece(std::ifstream& file, const fs::path& path,
   return piece;
 }
 
-core::Result<Answer> send_chunk(Server& server, const std::string& path, std::uint64_t offset,
-                                core::ByteView chunk, Request& request) {
+core::Result<HttpResponse> send_chunk(Server& server, const std::string& path, std::uint64_t offset,
+                                      core::ByteView chunk, Request& request) {
   request = {.method = "PATCH",
              .path = fmt::format("{}?offset_bytes={}", path, offset),
              .headers = {{"Content-Type", "application/octet-stream"},
@@ -184,3 +185,4 @@ core::Result<UploadReport> upload_all(Server& server, const Outbox& outbox,
 }
 
 }  // namespace uplink
+}  // namespace tractus

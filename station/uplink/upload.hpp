@@ -9,7 +9,7 @@
 #include "station/uplink/outbox.hpp"
 #include "station/uplink/server.hpp"
 
-namespace uplink {
+namespace tractus::uplink {
 
 /// One trial, from wherever the server says it stands: announce → chunks, each with its CRC-32C →
 /// commit. `entry` follows what the server acknowledged. May be repeated at will: a trial that the
@@ -44,4 +44,4 @@ core::Result<UploadReport> upload_all(Server& server, const Outbox& outbox,
                                       const core::Progress& progress = {},
                                       const std::optional<ClockOffset>& offset = {});
 
-}  // namespace uplink
+}  // namespace tractus::uplink

@@ -7,6 +7,7 @@
 #include "station/uplink/double_server.hpp"
 #include "station/uplink/http_server.hpp"
 
+namespace tractus {
 namespace uplink {
 namespace {
 namespace fs = std::filesystem;
@@ -80,7 +81,8 @@ TEST_F(Uploading, SendsNothingTwiceWhenAllIsHandedOver) {
 }
 
 TEST_F(Uploading, ArrivesOnceWhicheverRequestIsCutBeforeOrAfterItTookEffect) {
-  for (const auto fault : {DoubleServer::Fault::before, DoubleServer::Fault::after}) {
+  for (const auto fault :
+       {DoubleServer::InjectedFault::before, DoubleServer::InjectedFault::after}) {
     bool cut = true;
     for (int n = 1; cut; ++n) {
       ASSERT_LT(n, 50);
@@ -115,7 +117,7 @@ TEST_F(Uploading, WaitsLongerAndLongerUntilItsPatienceEnds) {
   class Away final : public Server {
    public:
     explicit Away(core::ManualClock& clock) : clock_(clock) {}
-    core::Result<Answer> send(const Request&) override {
+    core::Result<HttpResponse> send(const Request&) override {
       at_s.push_back(static_cast<int>(clock_.now() / 1'000'000'000));
       return core::Error{core::Errc::unavailable, "nobody there"};
     }
@@ -133,11 +135,11 @@ TEST_F(Uploading, WaitsLongerAndLongerUntilItsPatienceEnds) {
 TEST_F(Uploading, KeepsATrialThatTheServerRefusesAndTakesTheNext) {
   class Strict final : public Server {
    public:
-    core::Result<Answer> send(const Request& request) override {
+    core::Result<HttpResponse> send(const Request& request) override {
       if (request.path.find(kFirst) != std::string::npos) {
         const auto bytes =
             core::bytes_of(R"({"error":"another trial has this id","code":"conflict"})");
-        return Answer{409, core::Bytes(bytes.begin(), bytes.end())};
+        return HttpResponse{409, core::Bytes(bytes.begin(), bytes.end())};
       }
       return inner.send(request);
     }
@@ -157,9 +159,9 @@ TEST_F(Uploading, KeepsATrialThatTheServerRefusesAndTakesTheNext) {
 TEST_F(Uploading, DoesNotBelieveAServerWithAnImpossibleOffset) {
   class Liar final : public Server {
    public:
-    core::Result<Answer> send(const Request&) override {
+    core::Result<HttpResponse> send(const Request&) override {
       const auto bytes = core::bytes_of(R"({"offset_bytes":99999999,"state":"receiving"})");
-      return Answer{200, core::Bytes(bytes.begin(), bytes.end())};
+      return HttpResponse{200, core::Bytes(bytes.begin(), bytes.end())};
     }
   } liar;
   const auto report = upload(liar);
@@ -178,3 +180,4 @@ TEST(HttpServer, RefusesOtherSchemesPathsAndOddTokens) {
 
 }  // namespace
 }  // namespace uplink
+}  // namespace tractus

@@ -7,6 +7,7 @@
 
 #include "core/require.hpp"
 
+namespace tractus {
 namespace uplink {
 namespace {
 
@@ -149,3 +150,4 @@ core::Result<std::optional<WebSocketEvent>> WebSocketReader::next() {
 }
 
 }  // namespace uplink
+}  // namespace tractus

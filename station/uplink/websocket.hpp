@@ -9,7 +9,7 @@
 #include "core/bytes.hpp"
 #include "core/result.hpp"
 
-namespace uplink {
+namespace tractus::uplink {
 
 enum class Opcode : std::uint8_t { text = 0x1, close = 0x8, ping = 0x9, pong = 0xA };
 
@@ -52,4 +52,4 @@ class WebSocketReader {
   bool within_ = false;  ///< a text whose end has not come
 };
 
-}  // namespace uplink
+}  // namespace tractus::uplink

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+namespace tractus {
 namespace uplink {
 namespace {
 
@@ -91,3 +92,4 @@ TEST(WebSocketReader, DoesNotWaitForWhatIsTooLong) {
 
 }  // namespace
 }  // namespace uplink
+}  // namespace tractus

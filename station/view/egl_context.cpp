@@ -22,7 +22,7 @@ extern "C" __attribute__((visibility("default"))) unsigned glewInit() {
   return outcome == kGlewErrorNoGlxDisplay && surfaceless_contexts > 0 ? 0 : outcome;
 }
 
-namespace view {
+namespace tractus::view {
 
 struct EglContext::Handles {
   EGLDisplay display = EGL_NO_DISPLAY;
@@ -78,4 +78,4 @@ void* EglContext::display() const { return handles_->display; }
 void* EglContext::config() const { return handles_->config; }
 void* EglContext::context() const { return handles_->context; }
 
-}  // namespace view
+}  // namespace tractus::view

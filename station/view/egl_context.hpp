@@ -6,7 +6,7 @@
 #include "core/result.hpp"
 #include "station/view/lent_context.hpp"
 
-namespace view {
+namespace tractus::view {
 
 /// Makes and holds the context; current in the thread that made it.
 /// Debian's GLEW knows only GLX and calls a missing X display an error although all entry points
@@ -31,4 +31,4 @@ class EglContext final : public LentContext {
   std::unique_ptr<Handles> handles_;
 };
 
-}  // namespace view
+}  // namespace tractus::view

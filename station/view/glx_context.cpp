@@ -5,6 +5,7 @@
 
 #include <string>
 
+namespace tractus {
 namespace view {
 namespace {
 
@@ -87,3 +88,4 @@ bool GlxContext::make_current() const {
 }
 
 }  // namespace view
+}  // namespace tractus

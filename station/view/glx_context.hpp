@@ -6,7 +6,7 @@
 #include "core/result.hpp"
 #include "station/view/lent_context.hpp"
 
-namespace view {
+namespace tractus::view {
 
 /// Makes and holds the context, its pixel buffer and its connection to the display ($DISPLAY);
 /// current in the thread that made it. For OpenXR runtimes, which take GLX on X11.
@@ -35,4 +35,4 @@ class GlxContext final : public LentContext {
   Handles handles_;
 };
 
-}  // namespace view
+}  // namespace tractus::view

@@ -4,7 +4,7 @@
 #include <vtkGenericOpenGLRenderWindow.h>
 #include <vtkNew.h>
 
-namespace view {
+namespace tractus::view {
 
 void lend_context(vtkGenericOpenGLRenderWindow& window, const LentContext& context) {
   vtkNew<vtkCallbackCommand> current;
@@ -17,4 +17,4 @@ void lend_context(vtkGenericOpenGLRenderWindow& window, const LentContext& conte
   window.AddObserver(vtkCommand::WindowIsCurrentEvent, current);
 }
 
-}  // namespace view
+}  // namespace tractus::view

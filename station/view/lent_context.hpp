@@ -3,7 +3,7 @@
 
 class vtkGenericOpenGLRenderWindow;
 
-namespace view {
+namespace tractus::view {
 
 /// Used by one thread at a time: the one in which it is current.
 class LentContext {
@@ -16,4 +16,4 @@ class LentContext {
 /// Answers what VTK asks of a context that is not its own. `context` outlives `window`.
 void lend_context(vtkGenericOpenGLRenderWindow& window, const LentContext& context);
 
-}  // namespace view
+}  // namespace tractus::view

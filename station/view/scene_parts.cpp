@@ -23,6 +23,7 @@
 
 #include <cmath>
 
+namespace tractus {
 namespace view {
 namespace {
 
@@ -148,7 +149,7 @@ void Bone::carve_away(const volume::Box& box, const volume::Volume& volume) {
   image_->Modified();
 }
 
-void Channel::add(vtkRenderer& renderer, const Scene& scene) {
+void PilotHoleSurface::add(vtkRenderer& renderer, const Scene& scene) {
   geometry_ = scene.volume.geometry;
   lost_ = vtkSmartPointer<vtkImageData>::New();
   vtkNew<vtkFlyingEdges3D> surface;
@@ -160,10 +161,10 @@ void Channel::add(vtkRenderer& renderer, const Scene& scene) {
   actor_->GetProperty()->SetAmbient(0.25);
   actor_->GetProperty()->SetDiffuse(0.75);
   renderer.AddActor(actor_);
-  show(scene.worn ? *scene.worn : drilling::Worn{});
+  show(scene.worn ? *scene.worn : drilling::ErodedShares{});
 }
 
-void Channel::show(const drilling::Worn& worn) {
+void PilotHoleSurface::show(const drilling::ErodedShares& worn) {
   actor_->SetVisibility(!worn.lost.empty());
   if (worn.lost.empty()) return;
   // A voxel without loss all about, so that the surface is closed. The frame is made right-handed:
@@ -278,3 +279,4 @@ void Picture::add(vtkRenderer& renderer, const Scene& scene) {
 }
 
 }  // namespace view
+}  // namespace tractus

@@ -17,7 +17,7 @@
 class vtkActor;
 class vtkImageData;
 
-namespace view {
+namespace tractus::view {
 
 // Told apart from bone, from the dark behind it and from one another by the colour-blind too: a
 // light blue, a purple, a yellow and a red that differ in lightness.
@@ -37,10 +37,10 @@ class Bone {
 
 /// What a burr has taken: the surface about the voxels that lost half of themselves or more, marrow
 /// without opacity too. The side towards the eye is left out, so that one looks in.
-class Channel {
+class PilotHoleSurface {
  public:
   void add(vtkRenderer& renderer, const Scene& scene);
-  void show(const drilling::Worn& worn);
+  void show(const drilling::ErodedShares& worn);
 
  private:
   vtkSmartPointer<vtkImageData> lost_;
@@ -85,17 +85,17 @@ class Picture {
   void pose(const ProbeState& state) { shank_.pose(state); }
   void path(std::span<const math::Vec3> path_m) { path_.points(path_m); }
   void carve_away(const volume::Box& box, const volume::Volume& volume,
-                  const drilling::Worn& worn) {
+                  const drilling::ErodedShares& worn) {
     bone_.carve_away(box, volume);
     channel_.show(worn);
   }
 
  private:
   Bone bone_;
-  Channel channel_;
+  PilotHoleSurface channel_;
   TractOutline outline_;
   Shank shank_;
   TipPath path_;
 };
 
-}  // namespace view
+}  // namespace tractus::view

@@ -21,6 +21,7 @@
 #include "station/view/lent_context.hpp"
 #include "station/view/scene_parts.hpp"
 
+namespace tractus {
 namespace view {
 
 struct View::Parts {
@@ -33,7 +34,7 @@ struct View::Parts {
   double removed_m3 = 0.0;
   bool closed = false;
 
-  void say_drilled(const drilling::Worn& worn) {
+  void say_drilled(const drilling::ErodedShares& worn) {
     removed_m3 = worn.removed_m3;
     drilled->SetVisibility(!worn.lost.empty());
   }
@@ -122,7 +123,7 @@ core::Result<std::unique_ptr<View>> View::make(const Scene& scene, Mode mode, in
   for (const auto& line : {parts->caption, parts->drilled, words("way of the tip", kWay, 1),
                            words("planned tract", kPlanned, 2)})
     parts->renderer->AddActor2D(line);
-  parts->say_drilled(scene.worn ? *scene.worn : drilling::Worn{});
+  parts->say_drilled(scene.worn ? *scene.worn : drilling::ErodedShares{});
   look_at(*parts->renderer, scene.tract);
   if (parts->interactor) parts->interactor->Initialize();
   return std::unique_ptr<View>(new View(std::move(parts)));
@@ -143,7 +144,7 @@ void View::draw(const ProbeState& state, std::span<const math::Vec3> path_m) {
 }
 
 void View::carve_away(const volume::Box& box, const volume::Volume& volume,
-                      const drilling::Worn& worn) {
+                      const drilling::ErodedShares& worn) {
   parts_->picture.carve_away(box, volume, worn);
   parts_->say_drilled(worn);
 }
@@ -170,3 +171,4 @@ core::Result<void> View::save_png(const std::filesystem::path& path) const {
 bool View::closed() const { return parts_->closed; }
 
 }  // namespace view
+}  // namespace tractus

@@ -13,7 +13,7 @@
 #include "volume/transfer_function.hpp"
 #include "volume/volume.hpp"
 
-namespace view {
+namespace tractus::view {
 
 enum class Mode { window, offscreen };
 
@@ -23,8 +23,8 @@ struct Scene {
   const volume::TransferFunction& transfer;
   volume::Tract tract;
   laws::PalpationParameters probe;
-  std::optional<drilling::Burr> burr = {};  ///< at the shank's end; none: the probe's points
-  const drilling::Worn* worn = nullptr;     ///< by an earlier drilling; copied
+  std::optional<drilling::Burr> burr = {};       ///< at the shank's end; none: the probe's points
+  const drilling::ErodedShares* worn = nullptr;  ///< by an earlier drilling; copied
 };
 
 /// What moves.
@@ -48,7 +48,8 @@ class View {
   void draw(const ProbeState& state, std::span<const math::Vec3> path_m);
   /// The bone has changed within `box` (empty: nowhere): `volume` is the scene's as it is now, and
   /// `worn` all that was worn. Seen from the next picture on.
-  void carve_away(const volume::Box& box, const volume::Volume& volume, const drilling::Worn& worn);
+  void carve_away(const volume::Box& box, const volume::Volume& volume,
+                  const drilling::ErodedShares& worn);
   /// The last picture as PNG.
   core::Result<void> save_png(const std::filesystem::path& path) const;
   /// Did a person close the window?
@@ -60,4 +61,4 @@ class View {
   std::unique_ptr<Parts> parts_;
 };
 
-}  // namespace view
+}  // namespace tractus::view

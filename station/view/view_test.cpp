@@ -16,6 +16,7 @@
 #include "core/bytes.hpp"
 #include "station/view/scene_parts.hpp"
 
+namespace tractus {
 namespace view {
 namespace {
 
@@ -41,9 +42,9 @@ const volume::Box kAll{{0, 0, 0}, {40, 40, 40}}, kNowhere;
 
 /// Lost by the distance from something: so much at `radius_m`, a quarter more each millimetre
 /// inwards.
-drilling::Worn worn(const volume::Geometry& geometry, double radius_m, double at_radius,
-                    const std::function<double(const Vec3&)>& distance_m) {
-  drilling::Worn out{.box = kAll, .lost = {}, .removed_m3 = 3e-8};
+drilling::ErodedShares worn(const volume::Geometry& geometry, double radius_m, double at_radius,
+                            const std::function<double(const Vec3&)>& distance_m) {
+  drilling::ErodedShares out{.box = kAll, .lost = {}, .removed_m3 = 3e-8};
   for (int k = 0; k < 40; ++k)
     for (int j = 0; j < 40; ++j)
       for (int i = 0; i < 40; ++i) {
@@ -235,7 +236,7 @@ TEST_F(ViewTest, AWindowWithoutADisplayIsRefusedInWords) {
 
 // A ball of 6 mm: 4/3 π 6³ = 905 mm³, its faces turned outwards (the divergence theorem), in a
 // volume of either hand.
-TEST(Channel, IsClosedLiesWhereTheVoxelsDoAndFacesOutwards) {
+TEST(PilotHoleSurface, IsClosedLiesWhereTheVoxelsDoAndFacesOutwards) {
   const Vec3 middle_m(0.003, -0.002, 0.004);
   const auto transfer = volume::TransferFunction::bone();
   for (const double hand : {1.0, -1.0}) {
@@ -245,7 +246,7 @@ TEST(Channel, IsClosedLiesWhereTheVoxelsDoAndFacesOutwards) {
     const auto ball =
         worn(bone.geometry, 0.006, 0.5, [&](const Vec3& p) { return (p - middle_m).norm(); });
     vtkNew<vtkRenderer> renderer;
-    Channel channel;
+    PilotHoleSurface channel;
     channel.add(*renderer,
                 {.volume = bone, .transfer = transfer, .tract = {}, .probe = {}, .worn = &ball});
     vtkActor* actor = renderer->GetActors()->GetLastActor();
@@ -275,3 +276,4 @@ TEST(Channel, IsClosedLiesWhereTheVoxelsDoAndFacesOutwards) {
 
 }  // namespace
 }  // namespace view
+}  // namespace tractus

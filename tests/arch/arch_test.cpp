@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+namespace tractus {
 namespace {
 namespace fs = std::filesystem;
 using Names = std::set<std::string>;
@@ -184,7 +185,7 @@ TEST(Architecture, JsonIsParsedByCoreAlone) {
   EXPECT_EQ(calls_in_core, 2) << "the expression no longer finds the one place that is allowed";
 }
 
-/// Trials reach research through the filter of db/store/released.hpp alone: the rows with names are
+/// Trials reach research through the filter of db/store/cohort/released.hpp alone: the rows with names are
 /// for the page of a trainee, and whoever else includes them is named here after somebody thought
 /// about it.
 TEST(Architecture, RowsOfTrialsWithNamesAreForThoseWhoTeachAlone) {
@@ -193,10 +194,10 @@ TEST(Architecture, RowsOfTrialsWithNamesAreForThoseWhoTeachAlone) {
     const std::string relative = fs::relative(path, kRoot).string();
     if (relative.starts_with("db/store/")) continue;
     const std::string text = text_of(path);
-    for (const char* word : {"db/store/cohort.hpp", "trials_for_teaching", "CohortTrial"})
+    for (const char* word : {"db/store/cohort/cohort.hpp", "trials_for_teaching", "CohortTrial"})
       if (text.find(word) != std::string::npos) readers.insert(relative);
   }
-  EXPECT_EQ(readers, (Names{"server/api/trainees.cpp", "server/api/trainees.hpp"}));
+  EXPECT_EQ(readers, (Names{"server/api/studies/trainees.cpp", "server/api/studies/trainees.hpp"}));
 }
 
 /// The blind generators are a second implementation: what they include must not exist in the
@@ -263,3 +264,4 @@ TEST(Architecture, PrintsTheTenLargestSources) {
 }
 
 }  // namespace
+}  // namespace tractus

@@ -12,6 +12,7 @@
 #include "cases/case.hpp"
 #include "core/file.hpp"
 
+namespace tractus {
 namespace {
 
 namespace fs = std::filesystem;
@@ -184,3 +185,4 @@ TEST_F(Carve, IsVerifiedUntilSomebodyTouchesIt) {
 }
 
 }  // namespace
+}  // namespace tractus

@@ -7,6 +7,7 @@
 #include "cases/carving.hpp"
 #include "volume/io/read_volume.hpp"
 
+namespace tractus {
 namespace {
 
 using volume::Vec3;
@@ -92,3 +93,4 @@ INSTANTIATE_TEST_SUITE_P(OfL3, EitherPedicle, testing::Bool(),
                          [](const auto& side) { return side.param ? "Left" : "Right"; });
 
 }  // namespace
+}  // namespace tractus

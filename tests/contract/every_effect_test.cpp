@@ -10,6 +10,7 @@
 #include "models/probing_runtime.hpp"
 #include "station/loop/allocation_guard.hpp"
 
+namespace tractus {
 namespace {
 
 using effects::Kind;
@@ -32,8 +33,8 @@ const ProbingEffectInfo& entry(const std::string& id) {
 enum class At { off, initial, low, high };
 
 /// The effect with all its numbers at one place of their ranges; off, those of shape stay initial.
-effects::Use use_of(const ProbingEffectInfo& info, At at) {
-  effects::Use use{info.facts.id, {}};
+effects::EffectInstance use_of(const ProbingEffectInfo& info, At at) {
+  effects::EffectInstance use{info.facts.id, {}};
   for (const Param& p : info.facts.params) {
     double value = p.initial;
     if (at == At::low) value = p.low;
@@ -51,7 +52,7 @@ ProbingModel bone() {
   return model;
 }
 
-ProbingRuntime runtime_of(ProbingModel model, std::vector<effects::Use> uses) {
+ProbingRuntime runtime_of(ProbingModel model, std::vector<effects::EffectInstance> uses) {
   model.effects = std::move(uses);
   auto runtime = ProbingRuntime::make(model, kTravel_m);
   EXPECT_TRUE(runtime) << runtime.error().what;
@@ -253,7 +254,7 @@ TEST_P(EveryRenderedEffect, GivesBackNoMoreWorkThanItGotUnlessItSaysSo) {
 }
 
 /// A user's own formula keeps to what its kind of effect keeps to.
-effects::Use users_own(const char* formula, const char* unit) {
+effects::EffectInstance users_own(const char* formula, const char* unit) {
   const auto own = effects::Expression::from_json(
       core::Json{
           {"format", "tractus-effect/1"},
@@ -326,3 +327,4 @@ TEST(TheCatalogue, HoldsTheFourteenEffectsOfTheDesign) {
 }
 
 }  // namespace
+}  // namespace tractus

@@ -8,6 +8,7 @@
 #include "models/palpation_runtime.hpp"
 #include "station/loop/allocation_guard.hpp"
 
+namespace tractus {
 namespace {
 
 using effects::Kind;
@@ -28,8 +29,8 @@ enum class At { off, some, low, high };
 
 /// The effect with all its numbers at one place of their ranges. Off, those of shape stay initial;
 /// a taper is off where both radii are the base's. `some` is initial, or a little off zero.
-effects::Use use_of(const PalpationEffectInfo& info, At at) {
-  effects::Use use{info.facts.id, {}};
+effects::EffectInstance use_of(const PalpationEffectInfo& info, At at) {
+  effects::EffectInstance use{info.facts.id, {}};
   for (const Param& p : info.facts.params) {
     double value = p.initial;
     if (at == At::low) value = p.low;
@@ -64,7 +65,7 @@ const volume::ForceField& field() {
   return *kField;
 }
 
-PalpationRuntime runtime_of(std::vector<effects::Use> uses) {
+PalpationRuntime runtime_of(std::vector<effects::EffectInstance> uses) {
   PalpationModel model;
   model.field = volume::FieldKind::potential;
   model.effects = std::move(uses);
@@ -219,3 +220,4 @@ TEST(TheCatalogueOfPalpation, HoldsTheThirteenEffectsOfTheDesign) {
 }
 
 }  // namespace
+}  // namespace tractus

@@ -8,6 +8,7 @@
 #include "models/probing_runtime.hpp"
 #include "station/loop/allocation_guard.hpp"
 
+namespace tractus {
 namespace {
 
 using effects::Kind;
@@ -52,7 +53,7 @@ class EveryRotaryEffect : public testing::TestWithParam<std::string> {
   }
   enum class At { off, initial, high };
   ProbingRuntime with(At at) const {
-    effects::Use use{info_.facts.id, {}};
+    effects::EffectInstance use{info_.facts.id, {}};
     for (const auto& p : info_.facts.params)
       use.values.push_back(at == At::off ? p.off : at == At::initial ? p.initial : p.high);
     auto made = ProbingRuntime::make(bone(), std::vector{use});
@@ -161,11 +162,12 @@ TEST(RotaryEffects, AddUpAsByHand) {
                                .rotary = {.viscous_Nms_per_rad = 0.0, .detent_Nm = 0.0},
                                .travel_m = kTravel_m};
   const auto runtime = ProbingRuntime::make(
-      free,
-      std::vector<effects::Use>{{"rotary_coulomb_friction", {0.05}}, {"rotary_stiffness", {0.2}}});
+      free, std::vector<effects::EffectInstance>{{"rotary_coulomb_friction", {0.05}},
+                                                 {"rotary_stiffness", {0.2}}});
   ASSERT_TRUE(runtime) << runtime.error().what;
   EXPECT_NEAR(runtime->torque_Nm(0.0, 0.3, 1.0), 0.11, 1e-12);
   EXPECT_NEAR(runtime->torque_Nm(0.0, 0.3, -1.0), 0.01, 1e-12);
 }
 
 }  // namespace
+}  // namespace tractus

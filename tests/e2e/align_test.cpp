@@ -14,6 +14,7 @@
 #include "core/json.hpp"
 #include "tests/support/dhd/control.hpp"
 
+namespace tractus {
 namespace {
 namespace fs = std::filesystem;
 using Point = std::array<double, 3>;
@@ -88,3 +89,4 @@ TEST_F(AlignLambda6, FindsWhereTheDeviceStandsFromThreeTouches) {
 }
 
 }  // namespace
+}  // namespace tractus

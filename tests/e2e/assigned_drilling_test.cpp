@@ -16,6 +16,7 @@
 #include "tests/support/server/world.hpp"
 #include "trial/trial_file.hpp"
 
+namespace tractus {
 namespace {
 using namespace world;
 namespace fs = std::filesystem;
@@ -223,3 +224,4 @@ TEST_F(AssignedDrilling, ADrillingThatWasKilledIsDoneAgain) {
 }
 
 }  // namespace
+}  // namespace tractus

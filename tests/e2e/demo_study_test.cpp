@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <string>
 
+namespace tractus {
 namespace {
 
 int exit_of_demo(const std::string& options) {
@@ -24,3 +25,4 @@ TEST(DemoStudy, EndsSoThoughTheServerIsKilledTooAndStationsGoOnWithoutIt) {
 }
 
 }  // namespace
+}  // namespace tractus

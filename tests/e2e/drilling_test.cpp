@@ -19,6 +19,7 @@
 #include "trial/trial_file.hpp"
 #include "volume/volume_file.hpp"
 
+namespace tractus {
 namespace {
 
 namespace fs = std::filesystem;
@@ -260,3 +261,4 @@ TEST_F(DrillingLive, WhatDoesNotFitIsRefusedInOneLine) {
 }
 
 }  // namespace
+}  // namespace tractus

@@ -10,6 +10,7 @@
 
 #include "core/json.hpp"
 
+namespace tractus {
 namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
@@ -79,3 +80,4 @@ TEST_F(EffectsCommand, ChecksAUsersOwnEffect) {
 }
 
 }  // namespace
+}  // namespace tractus

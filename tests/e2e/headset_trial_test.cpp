@@ -13,6 +13,7 @@
 #include "core/json.hpp"
 #include "tests/support/openxr/control.hpp"
 
+namespace tractus {
 namespace {
 
 namespace fs = std::filesystem;
@@ -173,3 +174,4 @@ TEST_F(HeadsetTrial, ABadFixtureIsRefusedInOneLineAndKeepsTheOldAlignment) {
 }
 
 }  // namespace
+}  // namespace tractus

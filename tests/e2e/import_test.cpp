@@ -16,6 +16,7 @@
 #include "tests/support/scratch.hpp"
 #include "volume/volume_file.hpp"
 
+namespace tractus {
 namespace {
 using test_support::put;
 using test_support::Scratch;
@@ -327,3 +328,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& named) { return std::string(named.param.name); });
 
 }  // namespace
+}  // namespace tractus

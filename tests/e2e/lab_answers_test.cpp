@@ -14,6 +14,7 @@
 #include "core/bytes.hpp"
 #include "core/json.hpp"
 
+namespace tractus {
 namespace {
 
 namespace fs = std::filesystem;
@@ -170,3 +171,4 @@ TEST_F(LabAnswers, AReplayHasTheFieldsThatAreWrittenDown) {
 }
 
 }  // namespace
+}  // namespace tractus

@@ -16,6 +16,7 @@
 #include "core/file.hpp"
 #include "core/json.hpp"
 
+namespace tractus {
 namespace {
 
 namespace fs = std::filesystem;
@@ -324,3 +325,4 @@ TEST_F(Lab, RefusesBadInputInOneLine) {
 }
 
 }  // namespace
+}  // namespace tractus

@@ -10,6 +10,7 @@
 #include "core/file.hpp"
 #include "core/json.hpp"
 
+namespace tractus {
 namespace {
 namespace fs = std::filesystem;
 
@@ -70,3 +71,4 @@ TEST_F(Lambda6Trial, WithoutTheDeviceOnTheUsbIsRefusedInOneLine) {
 }
 
 }  // namespace
+}  // namespace tractus

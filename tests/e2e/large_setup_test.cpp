@@ -19,6 +19,7 @@
 
 extern char** environ;
 
+namespace tractus {
 namespace {
 using namespace world;
 namespace fs = std::filesystem;
@@ -167,3 +168,4 @@ TEST_F(LargeSetup, TheProxyKeepsAServersOwnFiguresAndForgedAddressesOut) {
 }
 
 }  // namespace
+}  // namespace tractus

@@ -14,6 +14,7 @@
 #include "tests/support/server/process.hpp"
 #include "tests/support/server/world.hpp"
 
+namespace tractus {
 namespace {
 using namespace world;
 namespace fs = std::filesystem;
@@ -22,7 +23,7 @@ namespace fs = std::filesystem;
 class Mortal final : public uplink::Server {
  public:
   Mortal(const ServedWorld& world, int lives_for) : world_(world), left_(lives_for) { live(); }
-  core::Result<uplink::Answer> send(const uplink::Request& request) override {
+  core::Result<uplink::HttpResponse> send(const uplink::Request& request) override {
     if (--left_ == 0) {
       process_->kill_now();
       live();
@@ -145,3 +146,4 @@ TEST(Outage, AStationThatIsKilledWhileItFetchesACaseHasItWholeOrNotAtAll) {
 }
 
 }  // namespace
+}  // namespace tractus

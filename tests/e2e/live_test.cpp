@@ -9,17 +9,18 @@
 #include <thread>
 
 #include "core/clock.hpp"
-#include "station/uplink/line.hpp"
+#include "station/uplink/server_socket.hpp"
 #include "tests/support/server/web_socket.hpp"
 #include "tests/support/server/world.hpp"
 #include "trial/trial_file.hpp"
 
+namespace tractus {
 namespace {
 using namespace world;
 namespace fs = std::filesystem;
 
-wire::StationTold at_work(double t_s) {
-  wire::StationTold told;
+wire::StationStatus at_work(double t_s) {
+  wire::StationStatus told;
   told.state = "trial";
   told.version = "test";
   told.device = "sim-lambda6";
@@ -328,10 +329,10 @@ TEST(LiveOverTls, AStationsLineWorksAndATamperedAuthorityOpensNone) {
   client.speak_to(server.port());
   const Headers admin = world.admin(client);
   const std::atomic<bool> stopped = false;
-  uplink::LineTo to{.url = "https://127.0.0.1:" + std::to_string(server.port()),
-                    .authorization = "Authorization: " + world.station_1.at("Authorization"),
-                    .authority = world.data / "tls/authority.pem"};
-  auto line = uplink::open_line(to, stopped);
+  uplink::ServerAddress to{.url = "https://127.0.0.1:" + std::to_string(server.port()),
+                           .authorization = "Authorization: " + world.station_1.at("Authorization"),
+                           .authority = world.data / "tls/authority.pem"};
+  auto line = uplink::open_server_socket(to, stopped);
   ASSERT_TRUE(line) << line.error().what;
   ASSERT_TRUE((*line)->say(at_work(3).to_json().dump()));
   std::string state;
@@ -341,12 +342,14 @@ TEST(LiveOverTls, AStationsLineWorksAndATamperedAuthorityOpensNone) {
   }
   EXPECT_EQ(state, "trial");
   to.authority.clear();
-  EXPECT_FALSE(uplink::open_line(to, stopped)) << "an authority nobody named is not trusted";
+  EXPECT_FALSE(uplink::open_server_socket(to, stopped))
+      << "an authority nobody named is not trusted";
   to.authority = world.data / "tls/authority.pem";
   to.authorization = "Authorization: Bearer wrong";
-  const auto refused = uplink::open_line(to, stopped);
+  const auto refused = uplink::open_server_socket(to, stopped);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, core::Errc::unauthorised);
 }
 
 }  // namespace
+}  // namespace tractus

@@ -11,6 +11,7 @@
 #include <array>
 #include <random>
 
+namespace tractus {
 namespace lying {
 namespace {
 
@@ -135,3 +136,4 @@ bool Peer::lie(int client, std::span<std::uint8_t> answer) {
 }
 
 }  // namespace lying
+}  // namespace tractus

@@ -8,7 +8,7 @@
 
 #include "station/rig/modbus_peer.hpp"
 
-namespace lying {
+namespace tractus::lying {
 
 /// What becomes of the answers once it lies.
 enum class Lie {
@@ -52,4 +52,4 @@ class Peer {
   std::jthread thread_;
 };
 
-}  // namespace lying
+}  // namespace tractus::lying

@@ -18,6 +18,7 @@
 #include "tests/support/server/world.hpp"
 #include "trial/frames.hpp"
 
+namespace tractus {
 namespace {
 using namespace world;
 namespace fs = std::filesystem;
@@ -338,3 +339,4 @@ TEST_F(Lying, AnHonestStationBesideItIsNotSlowed) {
 }
 
 }  // namespace
+}  // namespace tractus

@@ -9,6 +9,7 @@
 #include "tests/support/server/process.hpp"
 #include "tests/support/server/world.hpp"
 
+namespace tractus {
 namespace {
 using namespace world;
 namespace fs = std::filesystem;
@@ -205,3 +206,4 @@ TEST_F(Network, LogAndMetricsHoldNothingThatSomebodyTyped) {
 }
 
 }  // namespace
+}  // namespace tractus

@@ -12,6 +12,7 @@
 #include "core/file.hpp"
 #include "tests/support/server/process.hpp"
 
+namespace tractus {
 namespace {
 using namespace world;
 namespace fs = std::filesystem;
@@ -196,3 +197,4 @@ INSTANTIATE_TEST_SUITE_P(By, Oidc, ::testing::Values("RS256", "ES256"),
                          [](const auto& named) { return std::string(named.param); });
 
 }  // namespace
+}  // namespace tractus

@@ -9,6 +9,7 @@
 #include "core/json.hpp"
 #include "tests/support/server/process.hpp"
 
+namespace tractus {
 namespace {
 namespace fs = std::filesystem;
 
@@ -63,3 +64,4 @@ TEST_F(OpenApi, TheLinterFindsWhatIsPlanted) {
 }
 
 }  // namespace
+}  // namespace tractus

@@ -16,6 +16,7 @@
 #include "tests/support/server/process.hpp"
 #include "volume/volume_file.hpp"
 
+namespace tractus {
 namespace {
 using namespace world;
 namespace fs = std::filesystem;
@@ -252,3 +253,4 @@ TEST_F(PlantedPatient, IsFoundInNothingThatTheServerKeepsLogsOrAnswers) {
 }
 
 }  // namespace
+}  // namespace tractus

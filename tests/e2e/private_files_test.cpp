@@ -14,6 +14,7 @@
 #include "tests/support/server/process.hpp"
 #include "tests/support/server/world.hpp"
 
+namespace tractus {
 namespace {
 using namespace world;
 namespace fs = std::filesystem;
@@ -181,3 +182,4 @@ TEST_F(PrivateFiles, OneAccountCannotFillTheScratchFolder) {
 }
 
 }  // namespace
+}  // namespace tractus

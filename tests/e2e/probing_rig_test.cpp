@@ -9,6 +9,7 @@
 #include "scenarios/scenario.hpp"
 #include "station/rig/machine.hpp"
 
+namespace tractus {
 namespace {
 
 namespace registers = devices::rig;
@@ -97,3 +98,4 @@ TEST(HardBone, TakesAboutTwiceThePushOfSoftBone) {
 }
 
 }  // namespace
+}  // namespace tractus

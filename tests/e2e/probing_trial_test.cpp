@@ -19,6 +19,7 @@
 #include "tests/e2e/lying_peer.hpp"
 #include "trial/trial_file.hpp"
 
+namespace tractus {
 namespace {
 namespace fs = std::filesystem;
 namespace registers = devices::rig;
@@ -265,3 +266,4 @@ TEST_F(ProbingTrial, SurvivesAKillOfTheStationAndSoDoesNotTheSimulatedRig) {
 }
 
 }  // namespace
+}  // namespace tractus

@@ -14,6 +14,7 @@
 #include "core/json.hpp"
 #include "trial/csv.hpp"
 
+namespace tractus {
 namespace {
 
 namespace fs = std::filesystem;
@@ -104,3 +105,4 @@ TEST_F(RecordedTrial, IsFeltTheSameByTheStationAndByAReplay) {
 }
 
 }  // namespace
+}  // namespace tractus

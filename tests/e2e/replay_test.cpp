@@ -13,6 +13,7 @@
 #include "core/file.hpp"
 #include "core/json.hpp"
 
+namespace tractus {
 namespace {
 
 namespace fs = std::filesystem;
@@ -180,3 +181,4 @@ TEST_F(Replay, LeavesAnExistingFolderAlone) {
 }
 
 }  // namespace
+}  // namespace tractus

@@ -19,6 +19,7 @@
 #include "core/json.hpp"
 #include "station/rig/modbus_peer.hpp"
 
+namespace tractus {
 namespace {
 
 namespace registers = devices::rig;
@@ -344,3 +345,4 @@ TEST(RigProgram, AnswersOnTcpAndOnASerialLineAtOnce) {
 }
 
 }  // namespace
+}  // namespace tractus

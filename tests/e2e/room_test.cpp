@@ -24,6 +24,7 @@
 #include "trial/csv.hpp"
 #include "trial/measurement_set.hpp"
 
+namespace tractus {
 namespace {
 namespace fs = std::filesystem;
 using core::Json;
@@ -385,3 +386,4 @@ TEST_F(Room, TheToolSaysWhereToRecordWhenTheStationIsNotBesideIt) {
 }
 
 }  // namespace
+}  // namespace tractus

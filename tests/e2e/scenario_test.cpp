@@ -11,6 +11,7 @@
 
 #include "core/json.hpp"
 
+namespace tractus {
 namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
@@ -90,3 +91,4 @@ TEST_F(ScenarioCommand, RefusesInOneLineAndLeavesNothingBehind) {
 }
 
 }  // namespace
+}  // namespace tractus

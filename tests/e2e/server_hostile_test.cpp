@@ -8,6 +8,7 @@
 
 #include "tests/support/server/process.hpp"
 
+namespace tractus {
 namespace {
 using namespace world;
 namespace fs = std::filesystem;
@@ -199,3 +200,4 @@ TEST_F(Hostile, PlainHttpAsksForNoTls) {
 }
 
 }  // namespace
+}  // namespace tractus

@@ -7,6 +7,7 @@
 #include "core/bytes.hpp"
 #include "tests/support/server/process.hpp"
 
+namespace tractus {
 namespace {
 using namespace world;
 namespace fs = std::filesystem;
@@ -123,3 +124,4 @@ TEST(Program, StopsInOrderWhenToldTo) {
 }
 
 }  // namespace
+}  // namespace tractus

@@ -7,6 +7,7 @@
 
 #include "tests/support/server/process.hpp"
 
+namespace tractus {
 namespace {
 using namespace world;
 namespace fs = std::filesystem;
@@ -205,3 +206,4 @@ TEST_F(Transport, ManyAtOnceAreAllAnswered) {
 }
 
 }  // namespace
+}  // namespace tractus

@@ -7,6 +7,7 @@
 #include "tests/support/server/process.hpp"
 #include "tests/support/server/world.hpp"
 
+namespace tractus {
 namespace {
 using namespace world;
 
@@ -238,3 +239,4 @@ TEST(Memory, StaysFlatOverTrialsOfAMinute) {
 }
 
 }  // namespace
+}  // namespace tractus

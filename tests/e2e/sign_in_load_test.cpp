@@ -15,6 +15,7 @@
 
 #include "tests/support/server/process.hpp"
 
+namespace tractus {
 namespace {
 using namespace world;
 using namespace std::chrono_literals;
@@ -182,3 +183,4 @@ TEST(SignInLoad, AProviderThatHangsHoldsUpNeitherHealthNorPasswords) {
 }
 
 }  // namespace
+}  // namespace tractus

@@ -17,6 +17,7 @@
 #include "tests/support/server/process.hpp"
 #include "tests/support/server/world.hpp"
 
+namespace tractus {
 namespace {
 using namespace world;
 namespace fs = std::filesystem;
@@ -323,3 +324,4 @@ TEST_F(Tampering, AServerThatWasKilledIsClean) {
 }
 
 }  // namespace
+}  // namespace tractus

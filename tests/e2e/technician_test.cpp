@@ -22,6 +22,7 @@
 
 extern char** environ;
 
+namespace tractus {
 namespace {
 namespace fs = std::filesystem;
 using world::Headers;
@@ -346,3 +347,4 @@ TEST_F(Technician, IsToldOfBadUseInOneLine) {
   EXPECT_FALSE(fs::exists(folder_ / "st")) << "nothing is left behind";
 }
 }  // namespace
+}  // namespace tractus

@@ -8,7 +8,7 @@
 #include "tests/support/server/process.hpp"
 #include "tests/support/server/world.hpp"
 
-namespace fault {
+namespace tractus::fault {
 using namespace world;
 
 constexpr std::uint32_t kSamples = 400;
@@ -126,4 +126,4 @@ class KilledServer {
   int done_ = 0;
 };
 
-}  // namespace fault
+}  // namespace tractus::fault

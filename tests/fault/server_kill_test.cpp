@@ -13,6 +13,7 @@
 #include "kills.hpp"
 #include "tests/fault/hand_over.hpp"
 
+namespace tractus {
 namespace {
 using namespace fault;
 
@@ -56,3 +57,4 @@ TEST(KilledAtAnyMoment, TheServerLosesNothingItAcknowledgedAndKeepsNoHalfTrial) 
 }
 
 }  // namespace
+}  // namespace tractus

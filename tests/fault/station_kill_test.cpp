@@ -19,6 +19,7 @@
 #include "tests/support/server/process.hpp"
 #include "tests/support/server/world.hpp"
 
+namespace tractus {
 namespace {
 namespace fs = std::filesystem;
 using namespace world;
@@ -47,8 +48,8 @@ class KilledStation {
             "--server",     "http://127.0.0.1:" + std::to_string(port),
             "--token-file", world_.folder / "st.token"};
   }
-  Ended ask(const std::string& deed, int port) const {
-    return run_program("tractus-station", {deed, "--data", data(), "--server",
+  Ended ask(const std::string& stamp, int port) const {
+    return run_program("tractus-station", {stamp, "--data", data(), "--server",
                                            "http://127.0.0.1:" + std::to_string(port),
                                            "--token-file", world_.folder / "st.token"});
   }
@@ -183,3 +184,4 @@ TEST(KilledAtAnyMoment, TheStationLosesNothingItPromisedAndEveryTrialArrivesOnce
 }
 
 }  // namespace
+}  // namespace tractus

@@ -14,6 +14,7 @@
 #include "kills.hpp"
 #include "trial/trial_file.hpp"
 
+namespace tractus {
 namespace trial {
 namespace {
 namespace fs = std::filesystem;
@@ -147,3 +148,4 @@ TEST(TrialKill, NoAcknowledgedSampleIsLostAndNoneIsHalf) {
 
 }  // namespace
 }  // namespace trial
+}  // namespace tractus

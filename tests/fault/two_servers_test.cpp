@@ -15,6 +15,7 @@
 #include "tests/fault/hand_over.hpp"
 #include "tests/support/postgres/postgres_server.hpp"
 
+namespace tractus {
 namespace {
 using namespace fault;
 using test_support::Durable;
@@ -136,3 +137,4 @@ TEST(TwoServers, OneKilledInAJobLeavesItToTheOtherWhichDoesItOnce) {
 }
 
 }  // namespace
+}  // namespace tractus

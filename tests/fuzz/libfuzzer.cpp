@@ -4,6 +4,7 @@
 
 #include "target.hpp"
 
+namespace tractus {
 namespace {
 const fuzz::Target* chosen() {
   static const auto targets = fuzz::all();
@@ -16,8 +17,10 @@ const fuzz::Target* chosen() {
   std::exit(2);
 }
 }  // namespace
+}  // namespace tractus
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace tractus;
   static const fuzz::Target& target = *chosen();
   target.run(std::as_bytes(std::span(data, size)));
   return 0;

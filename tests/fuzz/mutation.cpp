@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace fuzz {
+namespace tractus::fuzz {
 
 core::Bytes mutated(core::Bytes bytes, std::mt19937& random, Texts texts) {
   static const std::vector<std::string> kExtremes{"-1",
@@ -56,4 +56,4 @@ core::Bytes mutated(core::Bytes bytes, std::mt19937& random, Texts texts) {
   return bytes;
 }
 
-}  // namespace fuzz
+}  // namespace tractus::fuzz

@@ -5,7 +5,7 @@
 
 #include "core/bytes.hpp"
 
-namespace fuzz {
+namespace tractus::fuzz {
 
 /// Are texts put in that parsers stumble over? They break every frame of a binary file.
 enum class Texts { too, none };
@@ -14,4 +14,4 @@ enum class Texts { too, none };
 /// extreme, a text put in.
 core::Bytes mutated(core::Bytes bytes, std::mt19937& random, Texts texts);
 
-}  // namespace fuzz
+}  // namespace tractus::fuzz

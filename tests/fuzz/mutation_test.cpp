@@ -8,6 +8,7 @@
 
 #include "target.hpp"
 
+namespace tractus {
 namespace fuzz {
 
 void PrintTo(const Target& target, std::ostream* out) { *out << target.faces; }
@@ -35,3 +36,4 @@ TEST_P(Parser, TakesWhatIsRightAndKeepsItsPromisesOnWhatIsNot) {
 
 }  // namespace
 }  // namespace fuzz
+}  // namespace tractus

@@ -7,6 +7,7 @@
 
 #include "tests/fuzz/safety_scenarios.hpp"
 
+namespace tractus {
 namespace {
 struct Tally {
   const char* what;
@@ -31,7 +32,10 @@ struct Tally {
 };
 }  // namespace
 
+}  // namespace tractus
+
 int main(int argc, char** argv) {
+  using namespace tractus;
   const auto count = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 1'000'000ull;
   const auto first = argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 1ull;
   const fuzz::Palpation palpation;

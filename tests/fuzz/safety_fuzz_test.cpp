@@ -4,6 +4,7 @@
 
 #include "tests/fuzz/safety_scenarios.hpp"
 
+namespace tractus {
 namespace fuzz {
 namespace {
 
@@ -36,3 +37,4 @@ TEST(Safety, NoFuzzedPalpationModelExceedsTheClampOrTheSlew) {
 
 }  // namespace
 }  // namespace fuzz
+}  // namespace tractus

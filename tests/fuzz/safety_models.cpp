@@ -7,6 +7,7 @@
 #include "station/loop/haptic_loop.hpp"
 #include "tests/fuzz/safety_scenarios.hpp"
 
+namespace tractus {
 namespace fuzz {
 namespace {
 using devices::Status;
@@ -65,7 +66,7 @@ models::PalpationModel draw_model(Dice& dice) {
             .pose_offset_m = dice.vector(0.005)};
   for (const effects::PalpationEffectInfo& info : effects::palpation_effects()) {
     if (!dice.rarely(0.15)) continue;
-    effects::Use use{.id = info.facts.id, .values = {}};
+    effects::EffectInstance use{.id = info.facts.id, .values = {}};
     for (const effects::Param& p : info.facts.params)
       for (int c = 0; c < p.components; ++c) use.values.push_back(dice.anywhere(p.low, p.high));
     m.effects.push_back(std::move(use));
@@ -197,3 +198,4 @@ Outcome Palpation::run(std::uint64_t seed) const {
 }
 
 }  // namespace fuzz
+}  // namespace tractus

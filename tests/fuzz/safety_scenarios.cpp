@@ -7,6 +7,7 @@
 #include "scenarios/scenario.hpp"
 #include "station/loop/probing_loop.hpp"
 
+namespace tractus {
 namespace fuzz {
 namespace {
 namespace registers = devices::rig;
@@ -55,11 +56,11 @@ scenarios::Scenario draw_scenario(Dice& dice) {
   return s;
 }
 
-std::vector<effects::Use> draw_effects(Dice& dice) {
-  std::vector<effects::Use> out;
+std::vector<effects::EffectInstance> draw_effects(Dice& dice) {
+  std::vector<effects::EffectInstance> out;
   for (const effects::ProbingEffectInfo& info : effects::probing_effects()) {
     if (!dice.rarely(0.15)) continue;
-    effects::Use use{.id = info.facts.id, .values = {}};
+    effects::EffectInstance use{.id = info.facts.id, .values = {}};
     for (const effects::Param& p : info.facts.params)
       for (int c = 0; c < p.components; ++c) use.values.push_back(dice.anywhere(p.low, p.high));
     out.push_back(std::move(use));
@@ -135,7 +136,7 @@ Outcome run_probing(std::uint64_t seed) {
       1.0 / kRate_Hz);
   WildRig rig(dice, guard, clock, out);
   loop::ProbingRing ring(256);
-  loop::Seqlock<loop::ProbingSeen> live;
+  loop::Seqlock<loop::ProbingLoopSnapshot> live;
   loop::ProbingLoop loop({clock, clock, rig, guard, ring, live}, *law, kTravel_m, kRate_Hz);
   int left = kTicks;
   loop.run([&](const trial::ProbingSample&) {
@@ -145,3 +146,4 @@ Outcome run_probing(std::uint64_t seed) {
 }
 
 }  // namespace fuzz
+}  // namespace tractus

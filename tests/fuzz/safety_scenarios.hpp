@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-namespace fuzz {
+namespace tractus::fuzz {
 
 /// What one run came to; `broken` is empty when every promise was kept.
 struct Outcome {
@@ -35,4 +35,4 @@ class Palpation {
   std::unique_ptr<Fields> fields_;
 };
 
-}  // namespace fuzz
+}  // namespace tractus::fuzz

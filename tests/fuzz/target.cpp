@@ -7,7 +7,7 @@
 
 #include "core/file.hpp"
 
-namespace fuzz {
+namespace tractus::fuzz {
 namespace fs = std::filesystem;
 
 std::vector<core::Bytes> seeds_of(const Target& target) {
@@ -44,4 +44,4 @@ fs::path placed(const std::string& name, core::ByteView bytes) {
   return path;
 }
 
-}  // namespace fuzz
+}  // namespace tractus::fuzz

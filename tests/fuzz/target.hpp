@@ -11,7 +11,7 @@
 #include "core/require.hpp"
 #include "core/result.hpp"
 
-namespace fuzz {
+namespace tractus::fuzz {
 
 struct Target {
   std::string name;                ///< of its file, and of its folder under corpora/
@@ -51,4 +51,4 @@ const std::filesystem::path& scratch();
 /// Writes a file there and returns its path.
 std::filesystem::path placed(const std::string& name, core::ByteView bytes);
 
-}  // namespace fuzz
+}  // namespace tractus::fuzz

@@ -10,6 +10,7 @@
 #include "trial/frames.hpp"
 #include "trial/trial_file.hpp"
 
+namespace tractus {
 namespace fuzz {
 namespace {
 using core::require;
@@ -114,3 +115,4 @@ bool try_trial(core::ByteView bytes) {
 }
 
 }  // namespace fuzz
+}  // namespace tractus

@@ -3,7 +3,7 @@
 
 #include "core/bytes.hpp"
 
-namespace fuzz {
+namespace tractus::fuzz {
 
 /// Makes checksums, sequence numbers, magic and the hash of the end frame true, frame by frame, so
 /// that a mutation reaches what lies behind them.
@@ -13,4 +13,4 @@ core::Bytes repaired(core::Bytes bytes);
 /// promise of trial_file.hpp is broken. Returns whether they were read.
 bool try_trial(core::ByteView bytes);
 
-}  // namespace fuzz
+}  // namespace tractus::fuzz

@@ -7,6 +7,7 @@
 #include "fuzz/mutation.hpp"
 #include "fuzz/trial_bytes.hpp"
 
+namespace tractus {
 namespace fuzz {
 namespace {
 
@@ -61,3 +62,4 @@ TEST_P(TrialMutation, NoMutationWithTrueChecksumsBreaksAPromise) {
 
 }  // namespace
 }  // namespace fuzz
+}  // namespace tractus

@@ -10,6 +10,7 @@
 #include "core/file.hpp"
 #include "core/json.hpp"
 
+namespace tractus {
 namespace {
 
 namespace fs = std::filesystem;
@@ -98,3 +99,4 @@ TEST_F(Analyse, ATraineesPageSaysThatTwelveTrialsAreTooFew) {
 }
 
 }  // namespace
+}  // namespace tractus

@@ -12,6 +12,7 @@
 #include "core/file.hpp"
 #include "core/json.hpp"
 
+namespace tractus {
 namespace {
 
 namespace fs = std::filesystem;
@@ -317,3 +318,4 @@ TEST_F(Stats, WaldsTestAndHotellingsRunFromFiles) {
 }
 
 }  // namespace
+}  // namespace tractus

@@ -14,6 +14,7 @@
 
 #include "core/require.hpp"
 
+namespace tractus {
 namespace test_support {
 namespace fs = std::filesystem;
 using volume::Vec3;
@@ -147,3 +148,4 @@ std::vector<fs::path> write_dicom_series(const fs::path& folder, const Volume& v
 }
 
 }  // namespace test_support
+}  // namespace tractus

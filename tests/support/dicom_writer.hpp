@@ -8,7 +8,7 @@
 
 #include "volume/volume.hpp"
 
-namespace test_support {
+namespace tractus::test_support {
 
 /// Every text planted: none may be found in what de-identification or import leaves.
 inline const std::vector<std::string> kPlantedTexts = {
@@ -45,4 +45,4 @@ std::vector<std::filesystem::path> write_dicom_series(const std::filesystem::pat
                                                       const volume::Volume& volume,
                                                       const DicomSeries& series = {});
 
-}  // namespace test_support
+}  // namespace tractus::test_support

@@ -8,7 +8,7 @@
 #include <new>
 #include <string>
 
-namespace support {
+namespace tractus::support {
 
 /// A T in the file (made when it is not there). Null when that fails.
 template <class T>
@@ -24,4 +24,4 @@ T* mapped_in(const std::string& path) {
   return fresh ? new (at) T : static_cast<T*>(at);
 }
 
-}  // namespace support
+}  // namespace tractus::support

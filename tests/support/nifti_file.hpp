@@ -8,7 +8,7 @@
 #include "core/bytes.hpp"
 #include "volume/volume.hpp"
 
-namespace test_support {
+namespace tractus::test_support {
 
 inline constexpr std::array kNiftiDims{5, 4, 3};
 
@@ -66,4 +66,4 @@ inline NiftiFile plain_nifti() {
   return file;
 }
 
-}  // namespace test_support
+}  // namespace tractus::test_support

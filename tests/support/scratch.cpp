@@ -7,6 +7,7 @@
 
 #include "core/require.hpp"
 
+namespace tractus {
 namespace test_support {
 namespace fs = std::filesystem;
 namespace {
@@ -60,3 +61,4 @@ void put_gzip_of_zeros(const fs::path& path, core::ByteView start, std::uint64_t
 }
 
 }  // namespace test_support
+}  // namespace tractus

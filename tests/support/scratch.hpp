@@ -5,7 +5,7 @@
 
 #include "core/bytes.hpp"
 
-namespace test_support {
+namespace tractus::test_support {
 
 class Scratch {
  public:
@@ -29,4 +29,4 @@ void put_gzip(const std::filesystem::path& path, core::ByteView bytes);
 /// A gzip file that inflates to `size` zero bytes after `start`; takes little memory to make.
 void put_gzip_of_zeros(const std::filesystem::path& path, core::ByteView start, std::uint64_t size);
 
-}  // namespace test_support
+}  // namespace tractus::test_support

@@ -12,6 +12,7 @@
 #include "core/clock.hpp"
 #include "core/file.hpp"
 
+namespace tractus {
 namespace commands {
 namespace {
 
@@ -217,3 +218,4 @@ Command analyse_command() {
 }
 
 }  // namespace commands
+}  // namespace tractus

@@ -12,6 +12,7 @@
 #include "core/file.hpp"
 #include "core/progress.hpp"
 
+namespace tractus {
 namespace commands {
 namespace {
 using core::Errc;
@@ -162,3 +163,4 @@ Command assemble_command() {
 }
 
 }  // namespace commands
+}  // namespace tractus

@@ -14,6 +14,7 @@
 #include "core/file.hpp"
 #include "volume/io/read_volume.hpp"
 
+namespace tractus {
 namespace commands {
 namespace {
 
@@ -279,3 +280,4 @@ Command carve_command() {
 }
 
 }  // namespace commands
+}  // namespace tractus

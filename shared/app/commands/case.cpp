@@ -9,6 +9,7 @@
 #include "app/command.hpp"
 #include "core/clock.hpp"
 
+namespace tractus {
 namespace commands {
 namespace {
 
@@ -94,3 +95,4 @@ Command case_command() {
 }
 
 }  // namespace commands
+}  // namespace tractus

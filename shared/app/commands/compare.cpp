@@ -6,6 +6,7 @@
 #include "app/command.hpp"
 #include "app/lab_report.hpp"
 
+namespace tractus {
 namespace commands {
 namespace {
 
@@ -35,3 +36,4 @@ Command compare_command() {
 }
 
 }  // namespace commands
+}  // namespace tractus

@@ -7,6 +7,7 @@
 #include "app/lab_report.hpp"
 #include "core/progress.hpp"
 
+namespace tractus {
 namespace commands {
 namespace {
 
@@ -19,7 +20,7 @@ Outcome run(const Options& options) {
     if (auto ready = writable(file); !ready) return ready.error();
   const auto opened_case = opened(options);
   if (!opened_case) return opened_case.error();
-  lab_io::DiagnoseWish wish{.options = {}, .report = !options.report.empty()};
+  lab_io::DiagnoseRequest wish{.options = {}, .report = !options.report.empty()};
   wish.options.threads = options.sources.threads;
   const auto bar = core::terminal_progress("trying effects");
   const auto answer = lab_io::diagnosed(*opened_case, wish, bar);
@@ -50,3 +51,4 @@ Command diagnose_command() {
 }
 
 }  // namespace commands
+}  // namespace tractus

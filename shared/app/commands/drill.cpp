@@ -13,6 +13,7 @@
 #include "drilling/channel.hpp"
 #include "volume/volume_file.hpp"
 
+namespace tractus {
 namespace commands {
 namespace {
 
@@ -122,7 +123,7 @@ Outcome replay(const Options& o) {
   return again->agrees().value_or(true) && felt ? 0 : 1;
 }
 
-void print_channel(const drilling::Channel& made, const volume::Tract& tract) {
+void print_channel(const drilling::PilotHole& made, const volume::Tract& tract) {
   if (!made.depth_m) {
     fmt::print("no voxel has lost half of itself: there is no channel\n");
     return;
@@ -158,7 +159,7 @@ Outcome report(const Options& o) {
   const auto again = drilling::redrill(o.trial, bone->volume);
   if (!again) return again.error();
   const cases::Case& definition = bone->opened->definition;
-  const drilling::Channel made =
+  const drilling::PilotHole made =
       drilling::channel_of(again->erosion, definition.model.transfer, definition.tract);
   Json told = json_of(*again, nullptr);
   told["channel"] = made.to_json();
@@ -199,3 +200,4 @@ Command drill_command() {
 }
 
 }  // namespace commands
+}  // namespace tractus

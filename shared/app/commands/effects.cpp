@@ -11,6 +11,7 @@
 #include "effects/probing_effect.hpp"
 #include "lab/io/catalogue.hpp"
 
+namespace tractus {
 namespace commands {
 namespace {
 using core::Json;
@@ -127,3 +128,4 @@ Command effects_command() {
 }
 
 }  // namespace commands
+}  // namespace tractus

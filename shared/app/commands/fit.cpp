@@ -7,6 +7,7 @@
 #include "app/lab_report.hpp"
 #include "core/progress.hpp"
 
+namespace tractus {
 namespace commands {
 namespace {
 
@@ -52,3 +53,4 @@ Command fit_command() {
 }
 
 }  // namespace commands
+}  // namespace tractus

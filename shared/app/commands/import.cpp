@@ -10,6 +10,7 @@
 #include "volume/io/read_volume.hpp"
 #include "volume/volume_file.hpp"
 
+namespace tractus {
 namespace commands {
 namespace {
 
@@ -82,3 +83,4 @@ Command import_command() {
 }
 
 }  // namespace commands
+}  // namespace tractus

@@ -11,6 +11,7 @@
 #include "volume/io/read_volume.hpp"
 #include "volume/volume_file.hpp"
 
+namespace tractus {
 namespace commands {
 namespace {
 
@@ -175,3 +176,4 @@ Command info_command() {
 }
 
 }  // namespace commands
+}  // namespace tractus

@@ -9,6 +9,7 @@
 
 #include "app/command.hpp"
 
+namespace tractus {
 namespace commands {
 namespace {
 Outcome become_station(const std::vector<std::string>& arguments) {
@@ -43,3 +44,4 @@ Command record_command() {
 }
 
 }  // namespace commands
+}  // namespace tractus

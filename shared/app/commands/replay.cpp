@@ -17,6 +17,7 @@
 #include "trial/probing_set.hpp"
 #include "volume/io/read_volume.hpp"
 
+namespace tractus {
 namespace commands {
 namespace {
 
@@ -276,3 +277,4 @@ Command replay_command() {
 }
 
 }  // namespace commands
+}  // namespace tractus

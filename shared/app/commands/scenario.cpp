@@ -13,6 +13,7 @@
 #include "scenarios/demand.hpp"
 #include "scenarios/version.hpp"
 
+namespace tractus {
 namespace commands {
 namespace {
 using core::Errc;
@@ -158,3 +159,4 @@ Command scenario_command() {
 }
 
 }  // namespace commands
+}  // namespace tractus

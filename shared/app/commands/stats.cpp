@@ -10,6 +10,7 @@
 #include "assessment/report.hpp"
 #include "core/file.hpp"
 
+namespace tractus {
 namespace commands {
 namespace {
 
@@ -118,3 +119,4 @@ Command stats_command() {
 }
 
 }  // namespace commands
+}  // namespace tractus

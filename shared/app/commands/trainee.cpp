@@ -10,6 +10,7 @@
 #include "app/command.hpp"
 #include "core/file.hpp"
 
+namespace tractus {
 namespace commands {
 namespace {
 
@@ -132,3 +133,4 @@ Command trainee_command() {
 }
 
 }  // namespace commands
+}  // namespace tractus

@@ -18,6 +18,7 @@
 #include "scenarios/scenario.hpp"
 #include "trial/trial_file.hpp"
 
+namespace tractus {
 namespace commands {
 namespace {
 using core::Json;
@@ -250,3 +251,4 @@ Command trial_command() {
 }
 
 }  // namespace commands
+}  // namespace tractus

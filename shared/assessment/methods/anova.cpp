@@ -1,11 +1,12 @@
 /// One-way analysis of variance, as published, with what does not need its assumptions beside it.
-#include "statistics/anova.hpp"
+#include "statistics/anova/anova.hpp"
 
 #include <fmt/format.h>
 
 #include "assessment/pictures.hpp"
 #include "assessment/report.hpp"
 
+namespace tractus {
 namespace assessment {
 namespace {
 
@@ -114,3 +115,4 @@ Method anova_method() {
 }
 }  // namespace methods
 }  // namespace assessment
+}  // namespace tractus

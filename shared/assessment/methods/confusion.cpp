@@ -1,5 +1,5 @@
 /// What was there against what was said.
-#include "statistics/confusion.hpp"
+#include "statistics/agreement/confusion.hpp"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,9 @@
 #include <cmath>
 
 #include "assessment/report.hpp"
-#include "statistics/distributions.hpp"
+#include "statistics/distributions/distributions.hpp"
 
+namespace tractus {
 namespace assessment {
 namespace {
 
@@ -95,3 +96,4 @@ Method confusion_method() {
 }
 }  // namespace methods
 }  // namespace assessment
+}  // namespace tractus

@@ -5,10 +5,11 @@
 
 #include "assessment/pictures.hpp"
 #include "assessment/report.hpp"
-#include "statistics/modified_z.hpp"
-#include "statistics/shapiro_wilk.hpp"
-#include "statistics/summary.hpp"
+#include "statistics/summary/modified_z.hpp"
+#include "statistics/summary/shapiro_wilk.hpp"
+#include "statistics/summary/summary.hpp"
 
+namespace tractus {
 namespace assessment {
 namespace {
 
@@ -73,3 +74,4 @@ Method describe_method() {
 }
 }  // namespace methods
 }  // namespace assessment
+}  // namespace tractus

@@ -1,12 +1,13 @@
 /// Two groups or two levels: the difference with its size.
-#include "statistics/effect_size.hpp"
+#include "statistics/summary/effect_size.hpp"
 
 #include <fmt/format.h>
 
 #include "assessment/pictures.hpp"
 #include "assessment/report.hpp"
-#include "statistics/rank_tests.hpp"
+#include "statistics/ranks/rank_tests.hpp"
 
+namespace tractus {
 namespace assessment {
 namespace {
 
@@ -104,3 +105,4 @@ Method effect_size_method() {
 }
 }  // namespace methods
 }  // namespace assessment
+}  // namespace tractus

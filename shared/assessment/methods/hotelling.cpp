@@ -1,11 +1,12 @@
 /// Several responses at once: two groups, or the levels of a repeated measure.
-#include "statistics/hotelling.hpp"
+#include "statistics/anova/hotelling.hpp"
 
 #include <fmt/format.h>
 
 #include "assessment/pictures.hpp"
 #include "assessment/report.hpp"
 
+namespace tractus {
 namespace assessment {
 namespace {
 
@@ -103,3 +104,4 @@ Method hotelling_method() {
 }
 }  // namespace methods
 }  // namespace assessment
+}  // namespace tractus

@@ -1,11 +1,12 @@
 /// Reliability of repeated measurements.
-#include "statistics/icc.hpp"
+#include "statistics/agreement/icc.hpp"
 
 #include <cmath>
 
 #include "assessment/pictures.hpp"
 #include "assessment/report.hpp"
 
+namespace tractus {
 namespace assessment {
 namespace {
 
@@ -60,3 +61,4 @@ Method icc_method() {
 }
 }  // namespace methods
 }  // namespace assessment
+}  // namespace tractus

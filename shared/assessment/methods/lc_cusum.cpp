@@ -6,8 +6,9 @@
 
 #include "assessment/report.hpp"
 #include "assessment/sequences.hpp"
-#include "statistics/cusum.hpp"
+#include "statistics/learning/cusum.hpp"
 
+namespace tractus {
 namespace assessment {
 namespace {
 
@@ -103,3 +104,4 @@ Method lc_cusum_method() {
 }
 }  // namespace methods
 }  // namespace assessment
+}  // namespace tractus

@@ -1,5 +1,5 @@
 /// How fast a score changes over trials, and to what level.
-#include "statistics/learning_curve.hpp"
+#include "statistics/learning/learning_curve.hpp"
 
 #include <fmt/format.h>
 
@@ -8,6 +8,7 @@
 #include "assessment/pictures.hpp"
 #include "assessment/report.hpp"
 
+namespace tractus {
 namespace assessment {
 namespace {
 
@@ -112,3 +113,4 @@ Method learning_curve_method() {
 }
 }  // namespace methods
 }  // namespace assessment
+}  // namespace tractus

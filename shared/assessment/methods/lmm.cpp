@@ -4,8 +4,9 @@
 #include "assessment/pictures.hpp"
 #include "assessment/report.hpp"
 #include "assessment/terms.hpp"
-#include "statistics/lmm_tests.hpp"
+#include "statistics/mixed/lmm_tests.hpp"
 
+namespace tractus {
 namespace assessment {
 namespace {
 
@@ -96,3 +97,4 @@ Method lmm_method() {
 }
 }  // namespace methods
 }  // namespace assessment
+}  // namespace tractus

@@ -1,12 +1,13 @@
 /// Logistic regression: plain, Firth's where outcomes are separated, mixed with (1|group).
-#include "statistics/logistic.hpp"
+#include "statistics/regression/logistic.hpp"
 
 #include <fmt/format.h>
 
 #include "assessment/report.hpp"
 #include "assessment/terms.hpp"
-#include "statistics/glmm.hpp"
+#include "statistics/mixed/glmm.hpp"
 
+namespace tractus {
 namespace assessment {
 namespace {
 
@@ -160,3 +161,4 @@ Method logistic_method() {
 }
 }  // namespace methods
 }  // namespace assessment
+}  // namespace tractus

@@ -1,5 +1,5 @@
 /// Ordinary least squares.
-#include "statistics/ols.hpp"
+#include "statistics/regression/ols.hpp"
 
 #include <fmt/format.h>
 
@@ -7,6 +7,7 @@
 #include "assessment/report.hpp"
 #include "assessment/terms.hpp"
 
+namespace tractus {
 namespace assessment {
 namespace {
 
@@ -103,3 +104,4 @@ Method ols_method() {
 }
 }  // namespace methods
 }  // namespace assessment
+}  // namespace tractus

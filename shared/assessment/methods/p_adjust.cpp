@@ -1,10 +1,11 @@
 /// Several p-values of one question.
-#include "statistics/p_adjust.hpp"
+#include "statistics/summary/p_adjust.hpp"
 
 #include <fmt/format.h>
 
 #include "assessment/report.hpp"
 
+namespace tractus {
 namespace assessment {
 namespace {
 
@@ -60,3 +61,4 @@ Method p_adjust_method() {
 }
 }  // namespace methods
 }  // namespace assessment
+}  // namespace tractus

@@ -1,5 +1,5 @@
 /// Exact tests by counting every arrangement.
-#include "statistics/permutation.hpp"
+#include "statistics/ranks/permutation.hpp"
 
 #include <fmt/format.h>
 
@@ -7,6 +7,7 @@
 
 #include "assessment/report.hpp"
 
+namespace tractus {
 namespace assessment {
 namespace {
 
@@ -74,3 +75,4 @@ Method permutation_method() {
 }
 }  // namespace methods
 }  // namespace assessment
+}  // namespace tractus

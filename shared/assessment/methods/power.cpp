@@ -1,5 +1,5 @@
 /// Power of a planned test, or the number of people it needs.
-#include "statistics/power.hpp"
+#include "statistics/summary/power.hpp"
 
 #include <fmt/format.h>
 
@@ -7,6 +7,7 @@
 
 #include "assessment/report.hpp"
 
+namespace tractus {
 namespace assessment {
 namespace {
 
@@ -104,3 +105,4 @@ Method power_method() {
 }
 }  // namespace methods
 }  // namespace assessment
+}  // namespace tractus

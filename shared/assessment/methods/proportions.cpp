@@ -1,11 +1,12 @@
 /// Proportions with intervals, by group; differences of pairs.
-#include "statistics/proportions.hpp"
+#include "statistics/distributions/proportions.hpp"
 
 #include <fmt/format.h>
 
 #include "assessment/counts.hpp"
 #include "assessment/report.hpp"
 
+namespace tractus {
 namespace assessment {
 namespace {
 
@@ -92,3 +93,4 @@ Method proportions_method() {
 }
 }  // namespace methods
 }  // namespace assessment
+}  // namespace tractus

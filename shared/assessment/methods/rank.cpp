@@ -3,9 +3,10 @@
 
 #include "assessment/pictures.hpp"
 #include "assessment/report.hpp"
-#include "statistics/effect_size.hpp"
-#include "statistics/rank_tests.hpp"
+#include "statistics/ranks/rank_tests.hpp"
+#include "statistics/summary/effect_size.hpp"
 
+namespace tractus {
 namespace assessment {
 namespace {
 
@@ -138,3 +139,4 @@ Method rank_method() {
 }
 }  // namespace methods
 }  // namespace assessment
+}  // namespace tractus

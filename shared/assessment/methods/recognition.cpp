@@ -5,9 +5,10 @@
 
 #include "assessment/counts.hpp"
 #include "assessment/report.hpp"
-#include "statistics/distributions.hpp"
-#include "statistics/signal_detection.hpp"
+#include "statistics/agreement/signal_detection.hpp"
+#include "statistics/distributions/distributions.hpp"
 
+namespace tractus {
 namespace assessment {
 namespace {
 
@@ -151,3 +152,4 @@ Method recognition_method() {
 }
 }  // namespace methods
 }  // namespace assessment
+}  // namespace tractus

@@ -1,5 +1,5 @@
 /// Repeated-measures analysis of variance: within factors, and at most one between subjects.
-#include "statistics/rm_anova.hpp"
+#include "statistics/anova/rm_anova.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -8,9 +8,10 @@
 
 #include "assessment/pictures.hpp"
 #include "assessment/report.hpp"
-#include "statistics/p_adjust.hpp"
-#include "statistics/rm_factorial.hpp"
+#include "statistics/anova/rm_factorial.hpp"
+#include "statistics/summary/p_adjust.hpp"
 
+namespace tractus {
 namespace assessment {
 namespace {
 
@@ -212,3 +213,4 @@ Method rm_anova_method() {
 }
 }  // namespace methods
 }  // namespace assessment
+}  // namespace tractus

@@ -4,8 +4,9 @@
 #include "assessment/pictures.hpp"
 #include "assessment/report.hpp"
 #include "assessment/terms.hpp"
-#include "statistics/bisquare.hpp"
+#include "statistics/regression/bisquare.hpp"
 
+namespace tractus {
 namespace assessment {
 namespace {
 
@@ -86,3 +87,4 @@ Method robust_method() {
 }
 }  // namespace methods
 }  // namespace assessment
+}  // namespace tractus

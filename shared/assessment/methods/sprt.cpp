@@ -5,8 +5,9 @@
 
 #include "assessment/report.hpp"
 #include "assessment/sequences.hpp"
-#include "statistics/cusum.hpp"
+#include "statistics/learning/cusum.hpp"
 
+namespace tractus {
 namespace assessment {
 namespace {
 
@@ -104,3 +105,4 @@ Method sprt_method() {
 }
 }  // namespace methods
 }  // namespace assessment
+}  // namespace tractus

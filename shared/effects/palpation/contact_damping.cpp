@@ -1,6 +1,7 @@
 /// Viscous resistance of what the probe moves through:  F = −c (ω∗α)(p) v  at each contact point.
 #include "effects/palpation_effect.hpp"
 
+namespace tractus {
 namespace effects {
 namespace {
 
@@ -45,3 +46,4 @@ PalpationEffectInfo contact_damping() {
 }  // namespace palpation
 
 }  // namespace effects
+}  // namespace tractus

@@ -9,6 +9,7 @@
 
 #include "effects/palpation_effect.hpp"
 
+namespace tractus {
 namespace effects {
 namespace {
 
@@ -65,3 +66,4 @@ PalpationEffectInfo contact_friction() {
 }  // namespace palpation
 
 }  // namespace effects
+}  // namespace tractus

@@ -8,6 +8,7 @@
 
 #include "effects/palpation_effect.hpp"
 
+namespace tractus {
 namespace effects {
 namespace {
 
@@ -57,3 +58,4 @@ PalpationEffectInfo contact_hysteresis() {
 }  // namespace palpation
 
 }  // namespace effects
+}  // namespace tractus

@@ -3,6 +3,7 @@
 
 #include "effects/palpation_effect.hpp"
 
+namespace tractus {
 namespace effects {
 namespace {
 
@@ -62,3 +63,4 @@ PalpationEffectInfo contact_nonlinearity() {
 }  // namespace palpation
 
 }  // namespace effects
+}  // namespace tractus

@@ -5,7 +5,7 @@
 
 #include "effects/palpation_effect.hpp"
 
-namespace effects {
+namespace tractus::effects {
 
 struct MassOnAxis {
   double mass_kg = 0.0;
@@ -34,4 +34,4 @@ struct MassOnAxis {
   }
 };
 
-}  // namespace effects
+}  // namespace tractus::effects

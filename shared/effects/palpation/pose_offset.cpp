@@ -2,6 +2,7 @@
 /// every recorded position. It mends a comparison and is never rendered.
 #include "effects/palpation_effect.hpp"
 
+namespace tractus {
 namespace effects {
 namespace {
 
@@ -37,3 +38,4 @@ PalpationEffectInfo pose_offset() {
 }  // namespace palpation
 
 }  // namespace effects
+}  // namespace tractus

@@ -6,6 +6,7 @@
 /// A point mass: its own moment of inertia is left out.
 #include "effects/palpation/mass_on_axis.hpp"
 
+namespace tractus {
 namespace effects {
 namespace {
 
@@ -40,3 +41,4 @@ PalpationEffectInfo probe_inertia() {
 }  // namespace palpation
 
 }  // namespace effects
+}  // namespace tractus

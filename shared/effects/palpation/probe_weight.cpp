@@ -3,6 +3,7 @@
 ///     F = m g d,   τ = c ẑ × F   (in H),   d down as the measurements state it, −z of V else
 #include "effects/palpation/mass_on_axis.hpp"
 
+namespace tractus {
 namespace effects {
 namespace {
 
@@ -37,3 +38,4 @@ PalpationEffectInfo probe_weight() {
 }  // namespace palpation
 
 }  // namespace effects
+}  // namespace tractus

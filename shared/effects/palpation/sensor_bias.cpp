@@ -1,6 +1,7 @@
 /// A sensor that says something while nothing pulls: a constant force and torque in its own frame.
 #include "effects/palpation_effect.hpp"
 
+namespace tractus {
 namespace effects {
 namespace {
 
@@ -45,3 +46,4 @@ PalpationEffectInfo sensor_bias() {
 }  // namespace palpation
 
 }  // namespace effects
+}  // namespace tractus

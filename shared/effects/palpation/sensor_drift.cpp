@@ -3,7 +3,7 @@
 /// and reports how far it went.
 #include "effects/palpation_effect.hpp"
 
-namespace effects::palpation {
+namespace tractus::effects::palpation {
 
 PalpationEffectInfo sensor_drift() {
   return {.facts = {.id = "sensor_drift",
@@ -21,4 +21,4 @@ PalpationEffectInfo sensor_drift() {
           .make = [](std::span<const double>) -> PalpationEffect { return FreePerTrial{}; }};
 }
 
-}  // namespace effects::palpation
+}  // namespace tractus::effects::palpation

@@ -5,6 +5,7 @@
 
 #include "effects/palpation_effect.hpp"
 
+namespace tractus {
 namespace effects {
 namespace {
 
@@ -52,3 +53,4 @@ PalpationEffectInfo shank_curvature() {
 }  // namespace palpation
 
 }  // namespace effects
+}  // namespace tractus

@@ -9,6 +9,7 @@
 
 #include "effects/palpation_effect.hpp"
 
+namespace tractus {
 namespace effects {
 namespace {
 
@@ -85,3 +86,4 @@ PalpationEffectInfo shank_taper() {
 }  // namespace palpation
 
 }  // namespace effects
+}  // namespace tractus

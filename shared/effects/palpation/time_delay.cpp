@@ -2,6 +2,7 @@
 /// recorded at t is the force of the motion at t − delay, all of it, weight and inertia too.
 #include "effects/palpation_effect.hpp"
 
+namespace tractus {
 namespace effects {
 namespace {
 
@@ -35,3 +36,4 @@ PalpationEffectInfo time_delay() {
 }  // namespace palpation
 
 }  // namespace effects
+}  // namespace tractus

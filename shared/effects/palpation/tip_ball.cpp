@@ -13,6 +13,7 @@
 
 #include "effects/palpation_effect.hpp"
 
+namespace tractus {
 namespace effects {
 namespace {
 
@@ -106,3 +107,4 @@ PalpationEffectInfo tip_ball() {
 }  // namespace palpation
 
 }  // namespace effects
+}  // namespace tractus

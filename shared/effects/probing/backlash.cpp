@@ -4,6 +4,7 @@
 
 #include "effects/probing_effect.hpp"
 
+namespace tractus {
 namespace effects::probing {
 namespace {
 
@@ -63,3 +64,4 @@ ProbingEffectInfo backlash() {
 }
 
 }  // namespace effects::probing
+}  // namespace tractus

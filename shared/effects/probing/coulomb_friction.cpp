@@ -1,6 +1,7 @@
 /// Dry friction of constant size: F = F_c sgn v.
 #include "effects/probing_effect.hpp"
 
+namespace tractus {
 namespace effects::probing {
 namespace {
 
@@ -33,3 +34,4 @@ ProbingEffectInfo coulomb_friction() {
 }
 
 }  // namespace effects::probing
+}  // namespace tractus

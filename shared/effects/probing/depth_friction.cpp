@@ -1,6 +1,7 @@
 /// Dry friction along the shank that grows with the contact length: F = μ x sgn v.
 #include "effects/probing_effect.hpp"
 
+namespace tractus {
 namespace effects::probing {
 namespace {
 
@@ -35,3 +36,4 @@ ProbingEffectInfo depth_friction() {
 }
 
 }  // namespace effects::probing
+}  // namespace tractus

@@ -5,6 +5,7 @@
 
 #include "effects/probing_effect.hpp"
 
+namespace tractus {
 namespace effects::probing {
 namespace {
 
@@ -50,3 +51,4 @@ ProbingEffectInfo force_ripple() {
 }
 
 }  // namespace effects::probing
+}  // namespace tractus

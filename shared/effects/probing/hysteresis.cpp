@@ -3,6 +3,7 @@
 
 #include "effects/probing_effect.hpp"
 
+namespace tractus {
 namespace effects::probing {
 namespace {
 
@@ -65,3 +66,4 @@ ProbingEffectInfo hysteresis() {
 }
 
 }  // namespace effects::probing
+}  // namespace tractus

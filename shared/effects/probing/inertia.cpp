@@ -1,6 +1,7 @@
 /// Mass that moves with the probe: F = m a.
 #include "effects/probing_effect.hpp"
 
+namespace tractus {
 namespace effects::probing {
 namespace {
 
@@ -33,3 +34,4 @@ ProbingEffectInfo inertia() {
 }
 
 }  // namespace effects::probing
+}  // namespace tractus

@@ -3,6 +3,7 @@
 
 #include "effects/probing_effect.hpp"
 
+namespace tractus {
 namespace effects::probing {
 namespace {
 
@@ -35,3 +36,4 @@ ProbingEffectInfo quadratic_drag() {
 }
 
 }  // namespace effects::probing
+}  // namespace tractus

@@ -1,6 +1,7 @@
 /// The torque sensor is off by a constant: τ = T_0.
 #include "effects/probing_effect.hpp"
 
+namespace tractus {
 namespace effects::probing {
 namespace {
 
@@ -34,3 +35,4 @@ ProbingEffectInfo rotary_bias() {
 }
 
 }  // namespace effects::probing
+}  // namespace tractus

@@ -1,6 +1,7 @@
 /// Dry friction of the turning stage, of constant size: τ = T_c sgn ω.
 #include "effects/probing_effect.hpp"
 
+namespace tractus {
 namespace effects::probing {
 namespace {
 
@@ -34,3 +35,4 @@ ProbingEffectInfo rotary_coulomb_friction() {
 }
 
 }  // namespace effects::probing
+}  // namespace tractus

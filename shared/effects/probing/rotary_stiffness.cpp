@@ -1,6 +1,7 @@
 /// The turning stage is held by a spring, as by cables that reach on: τ = k θ.
 #include "effects/probing_effect.hpp"
 
+namespace tractus {
 namespace effects::probing {
 namespace {
 
@@ -34,3 +35,4 @@ ProbingEffectInfo rotary_stiffness() {
 }
 
 }  // namespace effects::probing
+}  // namespace tractus

@@ -3,6 +3,7 @@
 
 #include "effects/probing_effect.hpp"
 
+namespace tractus {
 namespace effects::probing {
 namespace {
 
@@ -37,3 +38,4 @@ ProbingEffectInfo rotation_coupling() {
 }
 
 }  // namespace effects::probing
+}  // namespace tractus

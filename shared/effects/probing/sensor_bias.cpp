@@ -1,6 +1,7 @@
 /// A constant that the force sensor adds: F_0.
 #include "effects/probing_effect.hpp"
 
+namespace tractus {
 namespace effects::probing {
 namespace {
 
@@ -33,3 +34,4 @@ ProbingEffectInfo sensor_bias() {
 }
 
 }  // namespace effects::probing
+}  // namespace tractus

@@ -1,6 +1,7 @@
 /// A slow trend of the force sensor over a trial.
 #include "effects/probing_effect.hpp"
 
+namespace tractus {
 namespace effects::probing {
 namespace {
 
@@ -44,3 +45,4 @@ ProbingEffectInfo sensor_drift() {
 }
 
 }  // namespace effects::probing
+}  // namespace tractus

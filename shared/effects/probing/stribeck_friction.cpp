@@ -3,6 +3,7 @@
 
 #include "effects/probing_effect.hpp"
 
+namespace tractus {
 namespace effects::probing {
 namespace {
 
@@ -53,3 +54,4 @@ ProbingEffectInfo stribeck_friction() {
 }
 
 }  // namespace effects::probing
+}  // namespace tractus

@@ -4,6 +4,7 @@
 
 #include "effects/probing_effect.hpp"
 
+namespace tractus {
 namespace effects::probing {
 namespace {
 
@@ -59,3 +60,4 @@ ProbingEffectInfo time_delay() {
 }
 
 }  // namespace effects::probing
+}  // namespace tractus

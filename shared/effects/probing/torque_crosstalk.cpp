@@ -1,6 +1,7 @@
 /// The sensor shows a part of the torque as force: F = c t_z, t_z as recorded.
 #include "effects/probing_effect.hpp"
 
+namespace tractus {
 namespace effects::probing {
 namespace {
 
@@ -36,3 +37,4 @@ ProbingEffectInfo torque_crosstalk() {
 }
 
 }  // namespace effects::probing
+}  // namespace tractus

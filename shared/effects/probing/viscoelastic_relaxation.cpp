@@ -3,6 +3,7 @@
 
 #include "effects/probing_effect.hpp"
 
+namespace tractus {
 namespace effects::probing {
 namespace {
 
@@ -74,3 +75,4 @@ ProbingEffectInfo viscoelastic_relaxation() {
 }
 
 }  // namespace effects::probing
+}  // namespace tractus

@@ -5,10 +5,11 @@
 
 #include <algorithm>
 
-#include "lab/answer.hpp"
-#include "lab/user_effect_checks.hpp"
-#include "lab/verdict_text.hpp"
+#include "lab/identify/user_effect_checks.hpp"
+#include "lab/identify/verdict_text.hpp"
+#include "lab/report/answer.hpp"
 
+namespace tractus {
 namespace lab_io {
 namespace {
 
@@ -22,8 +23,8 @@ lab::Side side(lab::Samples samples) {
   return out;
 }
 
-Answer begun(const Case& opened) {
-  Answer out;
+LabResult begun(const Case& opened) {
+  LabResult out;
   out.content.model_name = opened.model_name;
   out.content.set_name = opened.set_name;
   out.content.simulated = opened.simulated;
@@ -32,20 +33,20 @@ Answer begun(const Case& opened) {
   return out;
 }
 
-void compare_given(const Case& opened, Answer& answer) {
+void compare_given(const Case& opened, LabResult& answer) {
   answer.content.before = side(lab::samples_as_given(*opened.problem, opened.recorded));
   answer.content.given_rmse = answer.content.before.comparison.rmse;
   answer.content.map = lab::tract_map(answer.content.before.samples);
 }
 
-void compare_better(const Case& opened, const lab::Fit& fit, Answer& answer) {
+void compare_better(const Case& opened, const lab::Fit& fit, LabResult& answer) {
   answer.content.better =
       side(lab::samples_of(*opened.problem, fit.structure, fit.values, opened.recorded));
   answer.content.start = opened.problem->parameters(fit.structure);
 }
 
 /// What is then held against the better model: its own numbers fitted, and still wrong.
-void compare_refitted(const Case& opened, const lab::Fit& fit, Answer& answer) {
+void compare_refitted(const Case& opened, const lab::Fit& fit, LabResult& answer) {
   answer.content.before =
       side(lab::samples_of(*opened.problem, fit.structure, fit.values, opened.recorded));
   answer.content.before_name = "refitted";
@@ -98,8 +99,8 @@ Result<void> known(const lab::Problem& problem, const std::string& id) {
 
 }  // namespace
 
-Answer compared(const Case& opened) {
-  Answer out = begun(opened);
+LabResult compared(const Case& opened) {
+  LabResult out = begun(opened);
   compare_given(opened, out);
   out.json = lab::to_json(out.content.before.comparison);
   out.json["model"] = opened.model_name;
@@ -107,12 +108,12 @@ Answer compared(const Case& opened) {
   return out;
 }
 
-Result<Answer> diagnosed(const Case& opened, const DiagnoseWish& wish,
-                         const core::Progress& progress) {
+Result<LabResult> diagnosed(const Case& opened, const DiagnoseRequest& wish,
+                            const core::Progress& progress) {
   auto diagnosis =
       lab::diagnose(*opened.problem, wish.options, part_of(progress, 0.0, wish.report ? 0.9 : 1.0));
   if (!diagnosis) return diagnosis.error();
-  Answer out = begun(opened);
+  LabResult out = begun(opened);
   if (auto edge = at_their_edge(diagnosis->final_fit); !edge.empty())
     diagnosis->notes.insert(diagnosis->notes.begin(), std::move(edge));
   if (auto blind = not_excited(*diagnosis); !blind.empty())
@@ -134,8 +135,8 @@ Result<Answer> diagnosed(const Case& opened, const DiagnoseWish& wish,
   return out;
 }
 
-Result<Answer> fitted(const Case& opened, std::vector<std::string> effects, int threads,
-                      const core::Progress& progress) {
+Result<LabResult> fitted(const Case& opened, std::vector<std::string> effects, int threads,
+                         const core::Progress& progress) {
   effects.insert(effects.end(), opened.own.begin(), opened.own.end());
   for (const std::string& id : effects)
     if (auto found = known(*opened.problem, id); !found) return found.error();
@@ -144,7 +145,7 @@ Result<Answer> fitted(const Case& opened, std::vector<std::string> effects, int 
   auto fit =
       lab::fit(*opened.problem, {effects}, {.threads = threads}, part_of(progress, 0.0, 0.9));
   if (!fit) return fit.error();
-  Answer out = begun(opened);
+  LabResult out = begun(opened);
   compare_given(opened, out);
   compare_better(opened, *fit, out);
   if (!opened.own.empty())
@@ -160,3 +161,4 @@ Result<Answer> fitted(const Case& opened, std::vector<std::string> effects, int 
 }
 
 }  // namespace lab_io
+}  // namespace tractus

@@ -6,32 +6,32 @@
 #include <vector>
 
 #include "core/json.hpp"
-#include "lab/diagnosis.hpp"
+#include "lab/identify/diagnosis.hpp"
 #include "lab/io/case.hpp"
-#include "lab/report.hpp"
+#include "lab/report/report.hpp"
 
-namespace lab_io {
+namespace tractus::lab_io {
 
-struct Answer {
+struct LabResult {
   core::Json json;                  ///< as design and formats say
   lab::ReportContent content;       ///< filled as far as it was asked for
   std::optional<core::Json> model;  ///< the better model, as a model file
 };
 
 /// The model as it is given, beside the measurements.
-Answer compared(const Case& opened);
+LabResult compared(const Case& opened);
 
-struct DiagnoseWish {
+struct DiagnoseRequest {
   lab::DiagnoseOptions options;
   bool report = false;  ///< also compare before and after, for the page
 };
 /// Which effect is missing. Errors: those of lab::diagnose.
-core::Result<Answer> diagnosed(const Case& opened, const DiagnoseWish& wish,
-                               const core::Progress& progress = {});
+core::Result<LabResult> diagnosed(const Case& opened, const DiagnoseRequest& wish,
+                                  const core::Progress& progress = {});
 
 /// Refits with effects added by hand and the user's own. Errors: those of lab::fit; not_found for
 /// an id that is not in this rig's catalogue, with its reason if the recording cannot show it.
-core::Result<Answer> fitted(const Case& opened, std::vector<std::string> effects, int threads,
-                            const core::Progress& progress = {});
+core::Result<LabResult> fitted(const Case& opened, std::vector<std::string> effects, int threads,
+                               const core::Progress& progress = {});
 
-}  // namespace lab_io
+}  // namespace tractus::lab_io

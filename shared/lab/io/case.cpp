@@ -7,14 +7,15 @@
 
 #include "effects/expression.hpp"
 #include "effects/palpation_expression.hpp"
+#include "lab/identify/user_effect_checks.hpp"
 #include "lab/io/unpacked.hpp"
-#include "lab/user_effect_checks.hpp"
-#include "lab/palpation_problem.hpp"
-#include "lab/probing_problem.hpp"
+#include "lab/rigs/palpation/problem.hpp"
+#include "lab/rigs/probing/problem.hpp"
 #include "models/probing_model.hpp"
 #include "trial/probing_set.hpp"
 #include "volume/io/read_volume.hpp"
 
+namespace tractus {
 namespace lab_io {
 namespace {
 
@@ -47,12 +48,12 @@ core::Json json_of(const trial::StatedTract& tract) {
 
 /// The user's own effects, to be tried as the catalogue's are.
 Result<lab::UserEffects> take_own(const Sources& sources, const effects::ExpressionRig& rig,
-                              const std::vector<effects::Use>& in_model) {
-  std::vector<std::pair<effects::Use, effects::EffectFacts>> user_effects;
+                                  const std::vector<effects::EffectInstance>& in_model) {
+  std::vector<std::pair<effects::EffectInstance, effects::EffectFacts>> user_effects;
   for (const OwnEffect& one : sources.own) {
     const auto expression = effects::Expression::from_json(one.definition, one.where, rig);
     if (!expression) return expression.error();
-    effects::Use use = expression->use();
+    effects::EffectInstance use = expression->use();
     const auto same = [&](const auto& other) { return other.id == use.id; };
     if (std::ranges::any_of(in_model, same))
       return Error{Errc::bad_input,
@@ -153,9 +154,9 @@ Result<Case> open_probing(models::ProbingModel model, const Sources& sources,
   if (auto fits = check_reach(model, *set); !fits) return fits.error();
   Case opened = begun(model.name, *set, sources);
   return with(std::move(opened),
-              lab::make_probing_problem(model, std::move(*set),
-                                        {.threads = sources.threads, .user_effects = std::move(*own)},
-                                        progress));
+              lab::make_probing_problem(
+                  model, std::move(*set),
+                  {.threads = sources.threads, .user_effects = std::move(*own)}, progress));
 }
 
 Result<Case> open_palpation(models::PalpationModel model, const Sources& sources,
@@ -174,10 +175,10 @@ Result<Case> open_palpation(models::PalpationModel model, const Sources& sources
   if (!imported) return imported.error();
   Case opened = begun(model.name, *set, sources);
   if (set->tract) opened.tract = json_of(*set->tract);
-  return with(std::move(opened),
-              lab::make_palpation_problem(model, std::move(*set), imported->volume,
-                                          {.threads = sources.threads, .user_effects = std::move(*own)},
-                                          part_of(progress, 0.2, 0.8)));
+  return with(std::move(opened), lab::make_palpation_problem(
+                                     model, std::move(*set), imported->volume,
+                                     {.threads = sources.threads, .user_effects = std::move(*own)},
+                                     part_of(progress, 0.2, 0.8)));
 }
 
 }  // namespace
@@ -228,3 +229,4 @@ Result<SetFacts> facts_of_set(const fs::path& path) {
 }
 
 }  // namespace lab_io
+}  // namespace tractus

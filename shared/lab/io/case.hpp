@@ -8,11 +8,11 @@
 
 #include "core/progress.hpp"
 #include "core/result.hpp"
-#include "lab/describe.hpp"
+#include "lab/compare/describe.hpp"
+#include "lab/identify/problem.hpp"
 #include "lab/io/own_effect.hpp"
-#include "lab/problem.hpp"
 
-namespace lab_io {
+namespace tractus::lab_io {
 
 struct Sources {
   std::filesystem::path model;         ///< tractus-model/1
@@ -49,4 +49,4 @@ core::Result<SetFacts> facts_of_set(const std::filesystem::path& path);
 /// A bar over several pieces of work, each with its share.
 core::Progress part_of(const core::Progress& whole, double from, double width);
 
-}  // namespace lab_io
+}  // namespace tractus::lab_io

@@ -7,6 +7,7 @@
 #include "effects/palpation_expression.hpp"
 #include "effects/probing_effect.hpp"
 
+namespace tractus {
 namespace lab_io {
 namespace {
 
@@ -75,3 +76,4 @@ core::Result<Json> own_effect_json(const OwnEffect& own) {
 }
 
 }  // namespace lab_io
+}  // namespace tractus

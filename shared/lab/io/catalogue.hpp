@@ -9,7 +9,7 @@
 #include "effects/effect.hpp"
 #include "lab/io/own_effect.hpp"
 
-namespace lab_io {
+namespace tractus::lab_io {
 
 /// {"id", "rig", "kind", "summary", "equation", "source", "needs", "contains", "free_per_trial",
 /// "passive", "parameters":[{name, unit, meaning, components, initial, low, high, off, if_missing,
@@ -24,4 +24,4 @@ core::Json catalogue_json(std::string_view rig);
 /// naming what is wrong, in the formula the part whose units do not fit.
 core::Result<core::Json> own_effect_json(const OwnEffect& own);
 
-}  // namespace lab_io
+}  // namespace tractus::lab_io

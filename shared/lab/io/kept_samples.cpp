@@ -9,6 +9,7 @@
 
 #include "core/json.hpp"
 
+namespace tractus {
 namespace lab_io {
 namespace {
 
@@ -58,8 +59,9 @@ void append_side(std::string& out, const lab::Side& side, std::size_t every) {
       append(out, thinned<float>(trial.measured[c], every));
       append(out, thinned<float>(trial.simulated[c], every));
     }
-    append(out, thinned<std::int8_t>(
-                    lab::regions_by_sample(side.samples, trial, side.comparison.error_regions.regions), every));
+    append(out, thinned<std::int8_t>(lab::regions_by_sample(side.samples, trial,
+                                                            side.comparison.error_regions.regions),
+                                     every));
   }
 }
 
@@ -86,7 +88,7 @@ Result<Json> read_header(std::ifstream& file, const std::filesystem::path& path)
   return core::parse_json(text, "samples");
 }
 
-Result<Place> place_of(const Json& header, const SampleWish& wish, std::uint64_t data_at) {
+Result<Place> place_of(const Json& header, const SampleQuery& wish, std::uint64_t data_at) {
   const Json& sides = header["sides"];
   if (wish.after && sides.size() < 2)
     return Error{Errc::not_found, "side: there is no 'after' here, only 'before'"};
@@ -156,7 +158,7 @@ std::string kept_samples(const lab::Side& before, const lab::Side* after) {
   return out;
 }
 
-Result<SampleView> view_samples(const std::filesystem::path& path, const SampleWish& wish) {
+Result<SampleView> view_samples(const std::filesystem::path& path, const SampleQuery& wish) {
   std::ifstream file(path, std::ios::binary);
   const auto header = read_header(file, path);
   if (!header) return header.error();
@@ -198,3 +200,4 @@ Result<SampleView> view_samples(const std::filesystem::path& path, const SampleW
 }
 
 }  // namespace lab_io
+}  // namespace tractus

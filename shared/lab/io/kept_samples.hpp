@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "core/result.hpp"
-#include "lab/report.hpp"
+#include "lab/report/report.hpp"
 
-namespace lab_io {
+namespace tractus::lab_io {
 
 /// The bytes of a file that holds both sides (`after` may be null). Long recordings are thinned to
 /// some 10⁶ samples together. Little endian:
@@ -32,7 +32,7 @@ struct SampleView {
   std::vector<std::vector<std::pair<double, double>>> regions;
 };
 
-struct SampleWish {
+struct SampleQuery {
   std::string trial, channel;
   bool after = false;
   double from_s = 0.0, to_s = 0.0;
@@ -41,6 +41,6 @@ struct SampleWish {
 
 /// Reads of the file what is asked for and no more. Errors: not_found naming a trial, channel or
 /// side that is not there; corrupt; those of the system.
-core::Result<SampleView> view_samples(const std::filesystem::path& file, const SampleWish& wish);
+core::Result<SampleView> view_samples(const std::filesystem::path& file, const SampleQuery& wish);
 
-}  // namespace lab_io
+}  // namespace tractus::lab_io

@@ -4,6 +4,7 @@
 
 #include "effects/palpation_expression.hpp"
 
+namespace tractus {
 namespace lab_io {
 namespace {
 
@@ -40,3 +41,4 @@ Result<std::vector<std::string>> ids_of(const std::vector<OwnEffect>& own, const
 }
 
 }  // namespace lab_io
+}  // namespace tractus

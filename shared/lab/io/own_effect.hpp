@@ -8,7 +8,7 @@
 #include "core/json.hpp"
 #include "core/result.hpp"
 
-namespace lab_io {
+namespace tractus::lab_io {
 
 struct OwnEffect {
   core::Json definition;  ///< tractus-effect/1
@@ -23,4 +23,4 @@ core::Result<OwnEffect> read_own(const std::filesystem::path& path);
 core::Result<std::vector<std::string>> ids_of(const std::vector<OwnEffect>& own,
                                               const std::string& rig);
 
-}  // namespace lab_io
+}  // namespace tractus::lab_io

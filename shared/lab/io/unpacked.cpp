@@ -12,6 +12,7 @@
 #include <memory>
 #include <string>
 
+namespace tractus {
 namespace lab_io {
 namespace {
 
@@ -172,3 +173,4 @@ Result<Unpacked> Unpacked::open(const fs::path& path, const UnpackLimits& limits
 }
 
 }  // namespace lab_io
+}  // namespace tractus

@@ -9,7 +9,7 @@
 #include "core/progress.hpp"
 #include "core/result.hpp"
 
-namespace lab_io {
+namespace tractus::lab_io {
 
 struct UnpackLimits {
   std::uint64_t max_bytes = 4ull << 30;  ///< of all files unpacked
@@ -38,4 +38,4 @@ class Unpacked {
   std::optional<core::ScratchFolder> scratch_;
 };
 
-}  // namespace lab_io
+}  // namespace tractus::lab_io

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <fstream>
 
+namespace tractus {
 namespace lab_io {
 namespace {
 
@@ -127,3 +128,4 @@ TEST_F(UnpackedTest, RefusesWhatIsNoSet) {
 
 }  // namespace
 }  // namespace lab_io
+}  // namespace tractus

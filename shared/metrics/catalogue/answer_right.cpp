@@ -1,5 +1,6 @@
 #include "metrics/metric.hpp"
 
+namespace tractus {
 namespace metrics {
 namespace {
 Score judged_probing(const trial::Answer& answer, int walls) {
@@ -34,3 +35,4 @@ MetricInfo answer_right() {
 }
 
 }  // namespace metrics
+}  // namespace tractus

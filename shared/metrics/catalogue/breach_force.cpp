@@ -1,6 +1,6 @@
 #include "metrics/probing_sections.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 MetricInfo breach_force() {
   return {"breach_force",
@@ -19,4 +19,4 @@ MetricInfo breach_force() {
           trial::Rig::probing};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

@@ -1,6 +1,6 @@
 #include "metrics/probing_sections.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 MetricInfo breach_time() {
   return {
@@ -17,4 +17,4 @@ MetricInfo breach_time() {
       trial::Rig::probing};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

@@ -1,6 +1,6 @@
 #include "metrics/probing_sections.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 MetricInfo breach_velocity_onset() {
   return {
@@ -17,4 +17,4 @@ MetricInfo breach_velocity_onset() {
       trial::Rig::probing};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

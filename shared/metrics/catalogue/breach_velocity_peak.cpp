@@ -3,7 +3,7 @@
 
 #include "metrics/probing_sections.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 MetricInfo breach_velocity_peak() {
   return {"breach_velocity_peak",
@@ -22,4 +22,4 @@ MetricInfo breach_velocity_peak() {
           trial::Rig::probing};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

@@ -1,6 +1,6 @@
 #include "metrics/probing_sections.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 MetricInfo breach_velocity_variance() {
   return {"breach_velocity_variance",
@@ -18,4 +18,4 @@ MetricInfo breach_velocity_variance() {
           trial::Rig::probing};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

@@ -1,6 +1,6 @@
 #include "metrics/drilled_channel.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 MetricInfo channel_angle() {
   return {"channel_angle",
@@ -14,4 +14,4 @@ MetricInfo channel_angle() {
           drills};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

@@ -1,5 +1,6 @@
 #include "metrics/drilled_channel.hpp"
 
+namespace tractus {
 namespace metrics {
 namespace {
 Score beyond(const Subject& subject) {
@@ -24,3 +25,4 @@ MetricInfo channel_beyond_end() {
 }
 
 }  // namespace metrics
+}  // namespace tractus

@@ -4,6 +4,7 @@
 
 #include "metrics/drilled_channel.hpp"
 
+namespace tractus {
 namespace metrics {
 namespace {
 /// The farthest reach beyond a wall's outer face.
@@ -40,3 +41,4 @@ MetricInfo channel_breach() {
 }
 
 }  // namespace metrics
+}  // namespace tractus

@@ -2,6 +2,7 @@
 
 #include "metrics/drilled_channel.hpp"
 
+namespace tractus {
 namespace metrics {
 namespace {
 Score offset(const Subject& subject) {
@@ -31,3 +32,4 @@ MetricInfo channel_entry_offset() {
 }
 
 }  // namespace metrics
+}  // namespace tractus

@@ -3,6 +3,7 @@
 
 #include "metrics/metric.hpp"
 
+namespace tractus {
 namespace metrics {
 namespace {
 bool touches(const trial::Sample& sample) {
@@ -25,3 +26,4 @@ MetricInfo contact_share() {
 }
 
 }  // namespace metrics
+}  // namespace tractus

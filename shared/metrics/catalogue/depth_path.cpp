@@ -3,7 +3,7 @@
 #include "math/savitzky_golay.hpp"
 #include "metrics/tip_motion.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 MetricInfo depth_path() {
   return {"depth_path",
@@ -27,4 +27,4 @@ MetricInfo depth_path() {
           }};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

@@ -1,5 +1,6 @@
 #include "metrics/drilled_channel.hpp"
 
+namespace tractus {
 namespace metrics {
 namespace {
 Score removed(const Subject& subject) {
@@ -23,3 +24,4 @@ MetricInfo drilled_volume() {
 }
 
 }  // namespace metrics
+}  // namespace tractus

@@ -1,6 +1,6 @@
 #include "metrics/tip_motion.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 MetricInfo economy_of_motion() {
   return {"economy_of_motion",
@@ -19,4 +19,4 @@ MetricInfo economy_of_motion() {
           std::nullopt};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

@@ -1,6 +1,6 @@
 #include "metrics/tip_motion.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 MetricInfo force_impulse() {
   return {"force_impulse",
@@ -20,4 +20,4 @@ MetricInfo force_impulse() {
           std::nullopt};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

@@ -4,7 +4,7 @@
 #include "math/savitzky_golay.hpp"
 #include "metrics/tip_motion.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 MetricInfo force_rate_max() {
   return {"force_rate_max",
@@ -26,4 +26,4 @@ MetricInfo force_rate_max() {
           std::nullopt};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

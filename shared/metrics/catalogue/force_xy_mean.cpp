@@ -1,6 +1,6 @@
 #include "metrics/threshold_statistics.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 MetricInfo force_xy_mean() {
   return {"force_xy_mean",
@@ -14,4 +14,4 @@ MetricInfo force_xy_mean() {
           }};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

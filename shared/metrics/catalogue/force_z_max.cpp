@@ -1,6 +1,6 @@
 #include "metrics/threshold_statistics.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 MetricInfo force_z_max() {
   return {"force_z_max",
@@ -14,4 +14,4 @@ MetricInfo force_z_max() {
           }};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

@@ -1,6 +1,6 @@
 #include "metrics/threshold_statistics.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 MetricInfo force_z_mean() {
   return {"force_z_mean",
@@ -14,4 +14,4 @@ MetricInfo force_z_mean() {
           }};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

@@ -1,6 +1,6 @@
 #include "metrics/threshold_statistics.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 MetricInfo force_z_sd() {
   return {"force_z_sd",
@@ -14,4 +14,4 @@ MetricInfo force_z_sd() {
           }};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

@@ -2,7 +2,7 @@
 
 #include "metrics/metric.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 MetricInfo late_ticks() {
   return {"late_ticks",
@@ -17,4 +17,4 @@ MetricInfo late_ticks() {
           {}};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

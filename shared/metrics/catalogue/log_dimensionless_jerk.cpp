@@ -1,6 +1,6 @@
 #include "metrics/tip_motion.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 MetricInfo log_dimensionless_jerk() {
   return {"log_dimensionless_jerk",
@@ -18,4 +18,4 @@ MetricInfo log_dimensionless_jerk() {
           std::nullopt};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

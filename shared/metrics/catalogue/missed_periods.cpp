@@ -2,7 +2,7 @@
 
 #include "metrics/probing_sections.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 MetricInfo missed_periods() {
   return {"missed_periods",
@@ -22,4 +22,4 @@ MetricInfo missed_periods() {
           trial::Rig::probing};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

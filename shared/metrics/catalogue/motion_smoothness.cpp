@@ -1,6 +1,6 @@
 #include "metrics/tip_motion.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 MetricInfo motion_smoothness() {
   return {"motion_smoothness",
@@ -19,4 +19,4 @@ MetricInfo motion_smoothness() {
           std::nullopt};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

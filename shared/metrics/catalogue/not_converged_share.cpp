@@ -1,6 +1,6 @@
 #include "metrics/metric.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 MetricInfo not_converged_share() {
   return {"not_converged_share",
@@ -16,4 +16,4 @@ MetricInfo not_converged_share() {
           }};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

@@ -1,6 +1,6 @@
 #include "metrics/metric.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 MetricInfo operation_time() {
   return {"operation_time",
@@ -17,4 +17,4 @@ MetricInfo operation_time() {
           }};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

@@ -5,6 +5,7 @@
 #include "metrics/metric.hpp"
 #include "trial/signals.hpp"
 
+namespace tractus {
 namespace metrics {
 namespace {
 constexpr double kRate_Hz = 200.0;
@@ -55,3 +56,4 @@ MetricInfo path_length() {
 }
 
 }  // namespace metrics
+}  // namespace tractus

@@ -1,6 +1,6 @@
 #include "metrics/probing_sections.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 MetricInfo pauses() {
   return {"pauses",
@@ -17,4 +17,4 @@ MetricInfo pauses() {
           trial::Rig::probing};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

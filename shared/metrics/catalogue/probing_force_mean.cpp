@@ -1,6 +1,6 @@
 #include "metrics/probing_sections.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 MetricInfo probing_force_mean() {
   return {"probing_force_mean",
@@ -17,4 +17,4 @@ MetricInfo probing_force_mean() {
           trial::Rig::probing};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

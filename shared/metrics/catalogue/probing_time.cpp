@@ -1,6 +1,6 @@
 #include "metrics/probing_sections.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 MetricInfo probing_time() {
   return {"probing_time",
@@ -18,4 +18,4 @@ MetricInfo probing_time() {
           trial::Rig::probing};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

@@ -1,6 +1,6 @@
 #include "metrics/probing_sections.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 MetricInfo probing_velocity_variance() {
   return {"probing_velocity_variance",
@@ -17,4 +17,4 @@ MetricInfo probing_velocity_variance() {
           trial::Rig::probing};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

@@ -1,7 +1,7 @@
 #include "metrics/motion.hpp"
 #include "metrics/probing_sections.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 MetricInfo probing_work() {
   return {"probing_work",
@@ -22,4 +22,4 @@ MetricInfo probing_work() {
           trial::Rig::probing};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

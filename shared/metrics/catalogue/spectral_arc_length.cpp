@@ -1,6 +1,6 @@
 #include "metrics/tip_motion.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 MetricInfo spectral_arc_length() {
   return {"spectral_arc_length",
@@ -18,4 +18,4 @@ MetricInfo spectral_arc_length() {
           std::nullopt};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

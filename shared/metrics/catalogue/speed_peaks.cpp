@@ -1,6 +1,6 @@
 #include "metrics/tip_motion.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 MetricInfo speed_peaks() {
   return {"speed_peaks",
@@ -17,4 +17,4 @@ MetricInfo speed_peaks() {
           std::nullopt};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

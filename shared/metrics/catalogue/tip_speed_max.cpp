@@ -2,7 +2,7 @@
 
 #include "metrics/tip_motion.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 MetricInfo tip_speed_max() {
   return {"tip_speed_max",
@@ -19,4 +19,4 @@ MetricInfo tip_speed_max() {
           std::nullopt};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

@@ -1,6 +1,6 @@
 #include "metrics/tip_motion.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 MetricInfo tip_speed_mean() {
   return {"tip_speed_mean",
@@ -17,4 +17,4 @@ MetricInfo tip_speed_mean() {
           std::nullopt};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

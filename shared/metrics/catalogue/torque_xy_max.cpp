@@ -1,6 +1,6 @@
 #include "metrics/threshold_statistics.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 MetricInfo torque_xy_max() {
   return {"torque_xy_max",
@@ -14,4 +14,4 @@ MetricInfo torque_xy_max() {
           }};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

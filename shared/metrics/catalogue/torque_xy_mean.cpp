@@ -1,6 +1,6 @@
 #include "metrics/threshold_statistics.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 MetricInfo torque_xy_mean() {
   return {"torque_xy_mean",
@@ -14,4 +14,4 @@ MetricInfo torque_xy_mean() {
           }};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

@@ -1,6 +1,6 @@
 #include "metrics/threshold_statistics.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 MetricInfo torque_xy_sd() {
   return {
@@ -15,4 +15,4 @@ MetricInfo torque_xy_sd() {
       }};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

@@ -1,6 +1,6 @@
 #include "metrics/threshold_statistics.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 MetricInfo torque_z_max() {
   return {"torque_z_max",
@@ -14,4 +14,4 @@ MetricInfo torque_z_max() {
           }};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

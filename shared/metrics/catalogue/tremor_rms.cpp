@@ -2,7 +2,7 @@
 
 #include "metrics/tip_motion.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 MetricInfo tremor_rms() {
   return {"tremor_rms",
@@ -28,4 +28,4 @@ MetricInfo tremor_rms() {
           std::nullopt};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

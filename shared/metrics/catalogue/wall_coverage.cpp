@@ -1,6 +1,6 @@
 #include "metrics/coverage_score.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 MetricInfo wall_coverage() {
   return {"wall_coverage",
@@ -12,4 +12,4 @@ MetricInfo wall_coverage() {
           [](const Subject& subject) { return coverage_score(subject, std::nullopt); }};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

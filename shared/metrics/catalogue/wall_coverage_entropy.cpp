@@ -2,7 +2,7 @@
 
 #include "metrics/metric.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 MetricInfo wall_coverage_entropy() {
   return {"wall_coverage_entropy",
@@ -24,4 +24,4 @@ MetricInfo wall_coverage_entropy() {
           }};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

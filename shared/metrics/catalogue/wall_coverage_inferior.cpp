@@ -1,6 +1,6 @@
 #include "metrics/coverage_score.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 MetricInfo wall_coverage_inferior() {
   return {"wall_coverage_inferior",
@@ -12,4 +12,4 @@ MetricInfo wall_coverage_inferior() {
           [](const Subject& subject) { return coverage_score(subject, volume::Wall::inferior); }};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

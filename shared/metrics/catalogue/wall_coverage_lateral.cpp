@@ -1,6 +1,6 @@
 #include "metrics/coverage_score.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 MetricInfo wall_coverage_lateral() {
   return {"wall_coverage_lateral",
@@ -12,4 +12,4 @@ MetricInfo wall_coverage_lateral() {
           [](const Subject& subject) { return coverage_score(subject, volume::Wall::lateral); }};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

@@ -1,6 +1,6 @@
 #include "metrics/coverage_score.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 MetricInfo wall_coverage_medial() {
   return {"wall_coverage_medial",
@@ -12,4 +12,4 @@ MetricInfo wall_coverage_medial() {
           [](const Subject& subject) { return coverage_score(subject, volume::Wall::medial); }};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

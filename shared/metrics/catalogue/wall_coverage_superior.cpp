@@ -1,6 +1,6 @@
 #include "metrics/coverage_score.hpp"
 
-namespace metrics {
+namespace tractus::metrics {
 
 MetricInfo wall_coverage_superior() {
   return {"wall_coverage_superior",
@@ -12,4 +12,4 @@ MetricInfo wall_coverage_superior() {
           [](const Subject& subject) { return coverage_score(subject, volume::Wall::superior); }};
 }
 
-}  // namespace metrics
+}  // namespace tractus::metrics

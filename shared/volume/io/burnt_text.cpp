@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <map>
 
+namespace tractus {
 namespace volume_io {
 namespace {
 
@@ -136,3 +137,4 @@ std::vector<std::string> text_suspicions(const volume::Volume& v) {
 }
 
 }  // namespace volume_io
+}  // namespace tractus

@@ -6,7 +6,7 @@
 
 #include "volume/volume.hpp"
 
-namespace volume_io {
+namespace tractus::volume_io {
 
 /// Looks for lines of text in the upper and the lower third of slices, where scanners and viewers
 /// burn them in: four or more pieces of like height on one line, close together, each as large as a
@@ -15,4 +15,4 @@ namespace volume_io {
 /// person, and what is not found may still be there (slanted or vertical writing, other planes).
 std::vector<std::string> text_suspicions(const volume::Volume& volume);
 
-}  // namespace volume_io
+}  // namespace tractus::volume_io

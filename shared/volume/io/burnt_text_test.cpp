@@ -11,6 +11,7 @@
 
 #include "volume/io/read_volume.hpp"
 
+namespace tractus {
 namespace {
 using volume::Volume;
 
@@ -110,3 +111,4 @@ TEST(BurntText, IsNotFoundInTheRealScansOfTheTests) {
 }
 
 }  // namespace
+}  // namespace tractus

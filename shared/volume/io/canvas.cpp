@@ -14,6 +14,7 @@
 
 #include "core/file.hpp"
 
+namespace tractus {
 namespace volume_io {
 using math::Vec2;
 namespace {
@@ -143,3 +144,4 @@ core::Result<void> Canvas::write_png(const std::filesystem::path& path) const {
 }
 
 }  // namespace volume_io
+}  // namespace tractus

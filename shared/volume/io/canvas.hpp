@@ -11,7 +11,7 @@
 #include "math/geometry.hpp"
 #include "volume/io/picture.hpp"
 
-namespace volume_io {
+namespace tractus::volume_io {
 
 /// Drawing outside of this rectangle does nothing.
 struct Frame {
@@ -47,4 +47,4 @@ class Canvas {
   std::vector<std::uint8_t> rgb_;  // [y][x][channel]
 };
 
-}  // namespace volume_io
+}  // namespace tractus::volume_io

@@ -12,6 +12,7 @@
 
 #include "core/file.hpp"
 
+namespace tractus {
 namespace volume_io {
 namespace fs = std::filesystem;
 namespace {
@@ -137,3 +138,4 @@ std::string printable(std::string text) {
 }
 
 }  // namespace volume_io
+}  // namespace tractus

@@ -12,7 +12,7 @@
 #include "core/result.hpp"
 #include "math/geometry.hpp"
 
-namespace volume_io {
+namespace tractus::volume_io {
 
 core::Error bad(const std::filesystem::path& path, const std::string& why);
 
@@ -46,4 +46,4 @@ core::Result<math::Mat3> straightened(const math::Mat3& columns, const std::file
 /// Text of a file's field, safe to print: one line, no control characters, shortened.
 std::string printable(std::string text);
 
-}  // namespace volume_io
+}  // namespace tractus::volume_io

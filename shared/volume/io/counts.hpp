@@ -13,7 +13,7 @@
 
 #include "core/result.hpp"
 
-namespace volume_io {
+namespace tractus::volume_io {
 
 /// CT value = intercept + slope · count.
 struct Counts {
@@ -77,4 +77,4 @@ core::Result<Counts> counts_of(std::span<const T> raw, double scale, double offs
   return out;
 }
 
-}  // namespace volume_io
+}  // namespace tractus::volume_io

@@ -10,6 +10,7 @@
 #include "volume/io/claims.hpp"
 #include "volume/io/dicom_profile.hpp"
 
+namespace tractus {
 namespace volume_io {
 namespace fs = std::filesystem;
 namespace {
@@ -258,3 +259,4 @@ core::Json Deidentifier::report() const {
 }
 
 }  // namespace volume_io
+}  // namespace tractus

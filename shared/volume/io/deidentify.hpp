@@ -13,7 +13,7 @@
 #include "volume/io/dicom_layout.hpp"
 #include "volume/io/uid_key.hpp"
 
-namespace volume_io {
+namespace tractus::volume_io {
 
 /// Cleans the files of one import and keeps account of what it did, by attribute, never with a
 /// value. What is kept is `kept_row`; faces and text in the pixels are not touched (see
@@ -57,4 +57,4 @@ class Deidentifier {
 /// the key's owner can tie to the old one.
 std::string replaced_uid(std::string_view uid, const UidKey& key);
 
-}  // namespace volume_io
+}  // namespace tractus::volume_io

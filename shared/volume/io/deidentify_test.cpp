@@ -11,6 +11,7 @@
 #include "volume/io/dicom_profile.hpp"
 #include "volume/io/read_volume.hpp"
 
+namespace tractus {
 namespace {
 using core::Json;
 using volume_io::Deidentifier;
@@ -139,3 +140,4 @@ TEST(Deidentified, ImportSaysWhatItDidAndWhatItSuspects) {
 }
 
 }  // namespace
+}  // namespace tractus

@@ -13,10 +13,11 @@
 #include "volume/io/deidentify.hpp"
 #include "volume/io/dicom_slices.hpp"
 #include "volume/io/formats.hpp"
-#include "volume/io/isolated.hpp"
 #include "volume/io/gantry_tilt.hpp"
+#include "volume/io/isolated.hpp"
 #include "volume/io/vtk_quiet.hpp"
 
+namespace tractus {
 namespace volume_io {
 namespace fs = std::filesystem;
 namespace {
@@ -145,3 +146,4 @@ core::Result<Imported> read_dicom(const fs::path& folder, const ReadOptions& opt
 }
 
 }  // namespace volume_io
+}  // namespace tractus

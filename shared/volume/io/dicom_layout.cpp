@@ -7,6 +7,7 @@
 
 #include "volume/io/claims.hpp"
 
+namespace tractus {
 namespace volume_io {
 namespace fs = std::filesystem;
 namespace {
@@ -267,3 +268,4 @@ std::pair<std::uint32_t, std::uint32_t> codestream_extent(core::ByteView s) {
 }
 
 }  // namespace volume_io
+}  // namespace tractus

@@ -9,7 +9,7 @@
 #include "core/bytes.hpp"
 #include "core/result.hpp"
 
-namespace volume_io {
+namespace tractus::volume_io {
 
 /// Where the pixels of a file lie. PS3.5 section 7.1 (elements), 7.5 (sequences), A.4 (fragments).
 struct DicomLayout {
@@ -47,4 +47,4 @@ core::Result<DicomLayout> parse_dicom_layout(core::ByteView file, const std::fil
 /// none of these.
 std::pair<std::uint32_t, std::uint32_t> codestream_extent(core::ByteView stream);
 
-}  // namespace volume_io
+}  // namespace tractus::volume_io

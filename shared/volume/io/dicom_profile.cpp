@@ -4,6 +4,7 @@
 #include <array>
 #include <span>
 
+namespace tractus {
 namespace volume_io {
 namespace {
 
@@ -179,3 +180,4 @@ std::optional<KeptRow> kept_row(std::uint32_t tag) {
 }
 
 }  // namespace volume_io
+}  // namespace tractus

@@ -12,7 +12,7 @@
 #include <optional>
 #include <string_view>
 
-namespace volume_io {
+namespace tractus::volume_io {
 
 /// The edition that the rows were taken from, for reports.
 inline constexpr std::string_view kProfile =
@@ -38,4 +38,4 @@ struct KeptRow {
 /// Nothing for what is removed.
 std::optional<KeptRow> kept_row(std::uint32_t tag);
 
-}  // namespace volume_io
+}  // namespace tractus::volume_io

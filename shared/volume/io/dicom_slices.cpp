@@ -10,6 +10,7 @@
 #include "volume/io/dicom_tags.hpp"
 #include "volume/volume_file.hpp"
 
+namespace tractus {
 namespace volume_io {
 namespace fs = std::filesystem;
 using volume::Vec3;
@@ -167,3 +168,4 @@ core::Result<Series> scan_series(const fs::path& folder, const core::Progress& p
 }
 
 }  // namespace volume_io
+}  // namespace tractus

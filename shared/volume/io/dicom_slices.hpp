@@ -9,7 +9,7 @@
 #include "core/result.hpp"
 #include "volume/volume.hpp"
 
-namespace volume_io {
+namespace tractus::volume_io {
 
 /// One file of a series.
 struct Slice {
@@ -51,4 +51,4 @@ core::Result<Listing> list_series(const std::filesystem::path& folder);
 core::Result<Series> scan_series(const std::filesystem::path& folder,
                                  const core::Progress& progress);
 
-}  // namespace volume_io
+}  // namespace tractus::volume_io

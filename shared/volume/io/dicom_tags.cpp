@@ -17,6 +17,7 @@
 #include "volume/io/claims.hpp"
 #include "volume/io/dicom_layout.hpp"
 
+namespace tractus {
 namespace volume_io {
 namespace fs = std::filesystem;
 using volume::Vec3;
@@ -184,3 +185,4 @@ core::Result<Slice> read_slice_tags(const fs::path& path) {
 }
 
 }  // namespace volume_io
+}  // namespace tractus

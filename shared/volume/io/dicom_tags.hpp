@@ -3,7 +3,7 @@
 
 #include "volume/io/dicom_slices.hpp"
 
-namespace volume_io {
+namespace tractus::volume_io {
 
 /// Checks the file's structure and reads what a slice needs. Errors: bad_input naming the file and
 /// the attribute.
@@ -12,4 +12,4 @@ core::Result<Slice> read_slice_tags(const std::filesystem::path& path);
 /// Does the file open as DICOM does?
 bool is_dicom_file(const std::filesystem::path& path);
 
-}  // namespace volume_io
+}  // namespace tractus::volume_io

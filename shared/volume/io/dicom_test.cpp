@@ -13,6 +13,7 @@
 #include "volume/io/dicom_layout.hpp"
 #include "volume/io/read_volume.hpp"
 
+namespace tractus {
 namespace {
 using test_support::DicomSeries;
 using test_support::Scratch;
@@ -312,3 +313,4 @@ TEST(Dicom, CodestreamsStateTheirOwnSize) {
 }
 
 }  // namespace
+}  // namespace tractus

@@ -6,7 +6,7 @@
 #include "core/bytes.hpp"
 #include "volume/io/read_volume.hpp"
 
-namespace volume_io {
+namespace tractus::volume_io {
 
 /// Do these first bytes open a NIfTI-1 or -2 header?
 bool looks_like_nifti(core::ByteView first);
@@ -18,4 +18,4 @@ core::Result<Imported> read_nrrd(const std::filesystem::path& path, const core::
 /// folder below the system's for temporary files while they are read.
 core::Result<Imported> read_dicom(const std::filesystem::path& folder, const ReadOptions& options);
 
-}  // namespace volume_io
+}  // namespace tractus::volume_io

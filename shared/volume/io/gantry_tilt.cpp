@@ -5,6 +5,7 @@
 
 #include "volume/volume_file.hpp"
 
+namespace tractus {
 namespace volume_io {
 using volume::Vec3;
 using volume::Volume;
@@ -39,7 +40,8 @@ double sample(const Volume& v, double x, double y, int k) {
 
 }  // namespace
 
-core::Result<Volume> correct_gantry_tilt(const Volume& tilted, const Vec3& shear_m, const std::string& where) {
+core::Result<Volume> correct_gantry_tilt(const Volume& tilted, const Vec3& shear_m,
+                                         const std::string& where) {
   const auto& g = tilted.geometry;
   const Vec3 in_plane = g.directions.transpose() * shear_m;
   const Axis x = axis_of(in_plane.x(), g.spacing_m.x(), g.dims[2]);
@@ -59,3 +61,4 @@ core::Result<Volume> correct_gantry_tilt(const Volume& tilted, const Vec3& shear
 }
 
 }  // namespace volume_io
+}  // namespace tractus

@@ -14,6 +14,7 @@
 #include "core/json.hpp"
 #include "volume/io/claims.hpp"
 
+namespace tractus {
 namespace volume_io {
 namespace fs = std::filesystem;
 namespace {
@@ -180,3 +181,4 @@ core::Result<Imported> isolated(
 }
 
 }  // namespace volume_io
+}  // namespace tractus

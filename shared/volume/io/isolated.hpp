@@ -6,7 +6,7 @@
 
 #include "volume/io/read_volume.hpp"
 
-namespace volume_io {
+namespace tractus::volume_io {
 
 /// Runs `read` in a child process and hands over what it returns; a child that ends otherwise (an
 /// assertion in a codec, out of memory) is an Error bad_input naming `path`. The child prints
@@ -17,4 +17,4 @@ core::Result<Imported> isolated(
     const std::function<core::Result<Imported>(const core::Progress&)>& read,
     const core::Progress& progress);
 
-}  // namespace volume_io
+}  // namespace tractus::volume_io

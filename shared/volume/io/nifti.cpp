@@ -9,6 +9,7 @@
 #include "volume/io/nifti_header.hpp"
 #include "volume/io/vtk_quiet.hpp"
 
+namespace tractus {
 namespace volume_io {
 namespace fs = std::filesystem;
 namespace {
@@ -81,3 +82,4 @@ core::Result<Imported> read_nifti(const fs::path& path, const core::Progress& pr
 }
 
 }  // namespace volume_io
+}  // namespace tractus

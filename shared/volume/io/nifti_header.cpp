@@ -10,6 +10,7 @@
 #include "volume/io/formats.hpp"
 #include "volume/volume_file.hpp"
 
+namespace tractus {
 namespace volume_io {
 namespace fs = std::filesystem;
 using volume::Mat3;
@@ -255,3 +256,4 @@ core::Result<NiftiHeader> parse_nifti(core::ByteView first, const fs::path& path
 }
 
 }  // namespace volume_io
+}  // namespace tractus

@@ -11,7 +11,7 @@
 #include "core/result.hpp"
 #include "volume/volume.hpp"
 
-namespace volume_io {
+namespace tractus::volume_io {
 
 /// What of the header a CT needs. Geometry is LPS, metres.
 struct NiftiHeader {
@@ -25,4 +25,4 @@ struct NiftiHeader {
 /// Errors: bad_input naming the field and its byte.
 core::Result<NiftiHeader> parse_nifti(core::ByteView first, const std::filesystem::path& path);
 
-}  // namespace volume_io
+}  // namespace tractus::volume_io

@@ -9,6 +9,7 @@
 #include "tests/support/scratch.hpp"
 #include "volume/io/read_volume.hpp"
 
+namespace tractus {
 namespace {
 using File = test_support::NiftiFile;
 using test_support::plain_nifti;
@@ -144,3 +145,4 @@ TEST(Nifti, RandomDamageIsReadOrRefusedAndNothingElse) {
 }
 
 }  // namespace
+}  // namespace tractus

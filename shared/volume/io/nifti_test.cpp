@@ -9,6 +9,7 @@
 #include "tests/support/scratch.hpp"
 #include "volume/io/read_volume.hpp"
 
+namespace tractus {
 namespace {
 using File = test_support::NiftiFile;
 using test_support::kNiftiDims;
@@ -265,3 +266,4 @@ TEST(Nifti, ImportsTheThreeRealCtsWhereTheirHeadersSay) {
 }
 
 }  // namespace
+}  // namespace tractus

@@ -10,6 +10,7 @@
 #include "volume/io/formats.hpp"
 #include "volume/io/nrrd_header.hpp"
 
+namespace tractus {
 namespace volume_io {
 namespace fs = std::filesystem;
 namespace {
@@ -110,3 +111,4 @@ core::Result<Imported> read_nrrd(const fs::path& path, const core::Progress& pro
 }
 
 }  // namespace volume_io
+}  // namespace tractus

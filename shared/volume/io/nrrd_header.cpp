@@ -13,6 +13,7 @@
 #include "volume/io/claims.hpp"
 #include "volume/volume_file.hpp"
 
+namespace tractus {
 namespace volume_io {
 namespace fs = std::filesystem;
 using volume::Mat3;
@@ -318,3 +319,4 @@ core::Result<NrrdHeader> parse_nrrd(std::string_view text, const fs::path& path)
 }
 
 }  // namespace volume_io
+}  // namespace tractus

@@ -10,7 +10,7 @@
 #include "core/result.hpp"
 #include "volume/volume.hpp"
 
-namespace volume_io {
+namespace tractus::volume_io {
 
 /// What of the header a CT needs. Geometry is LPS, metres.
 struct NrrdHeader {
@@ -26,4 +26,4 @@ struct NrrdHeader {
 /// `text` is the start of the file, at least its header. Errors: bad_input naming line or field.
 core::Result<NrrdHeader> parse_nrrd(std::string_view text, const std::filesystem::path& path);
 
-}  // namespace volume_io
+}  // namespace tractus::volume_io

@@ -10,6 +10,7 @@
 #include "tests/support/scratch.hpp"
 #include "volume/io/read_volume.hpp"
 
+namespace tractus {
 namespace {
 using test_support::Scratch;
 using volume::Vec3;
@@ -211,3 +212,4 @@ TEST(Nrrd, GzipThatInflatesToMoreThanDeclaredIsRefused) {
 }
 
 }  // namespace
+}  // namespace tractus

@@ -9,6 +9,7 @@
 
 #include "volume/io/canvas.hpp"
 
+namespace tractus {
 namespace volume_io {
 using math::Vec2;
 namespace {
@@ -228,3 +229,4 @@ core::Result<void> write_slices_png(const std::filesystem::path& path, const vol
 }
 
 }  // namespace volume_io
+}  // namespace tractus

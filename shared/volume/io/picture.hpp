@@ -10,7 +10,7 @@
 #include "core/result.hpp"
 #include "volume/volume.hpp"
 
-namespace volume_io {
+namespace tractus::volume_io {
 
 using volume::Vec3;
 
@@ -61,4 +61,4 @@ core::Result<void> write_slices_png(const std::filesystem::path& path, const vol
 /// The centre of the volume's box, in V.
 Vec3 centre_of(const volume::Geometry& geometry);
 
-}  // namespace volume_io
+}  // namespace tractus::volume_io

@@ -9,6 +9,7 @@
 
 #include "tests/support/scratch.hpp"
 
+namespace tractus {
 namespace {
 using test_support::Scratch;
 using volume::Vec3;
@@ -158,3 +159,4 @@ TEST(Picture, APointOutsideIsRefusedAndNothingIsWritten) {
 }
 
 }  // namespace
+}  // namespace tractus

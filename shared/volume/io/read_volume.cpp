@@ -6,6 +6,7 @@
 #include "volume/io/formats.hpp"
 #include "volume/volume_file.hpp"
 
+namespace tractus {
 namespace volume_io {
 namespace fs = std::filesystem;
 namespace {
@@ -45,3 +46,4 @@ core::Result<Imported> read_volume(const fs::path& path, const ReadOptions& opti
 }
 
 }  // namespace volume_io
+}  // namespace tractus

@@ -11,7 +11,7 @@
 #include "volume/io/uid_key.hpp"
 #include "volume/volume.hpp"
 
-namespace volume_io {
+namespace tractus::volume_io {
 
 /// A volume read, and what a person should know of how.
 struct Imported {
@@ -43,4 +43,4 @@ core::Result<Imported> read_volume(const std::filesystem::path& path,
 core::Result<Imported> read_volume(const std::filesystem::path& path,
                                    const core::Progress& progress);
 
-}  // namespace volume_io
+}  // namespace tractus::volume_io

@@ -4,10 +4,10 @@
 #include <array>
 #include <cstddef>
 
-namespace volume_io {
+namespace tractus::volume_io {
 
 /// The same key gives the same replacement for the same identifier, and nobody without it can tell
 /// which it was.
 using UidKey = std::array<std::byte, 32>;
 
-}  // namespace volume_io
+}  // namespace tractus::volume_io

@@ -7,6 +7,7 @@
 
 #include "volume/io/claims.hpp"
 
+namespace tractus {
 namespace volume_io {
 namespace {
 
@@ -32,3 +33,4 @@ VtkErrors::~VtkErrors() {
 }
 
 }  // namespace volume_io
+}  // namespace tractus

@@ -5,7 +5,7 @@
 
 class vtkObject;
 
-namespace volume_io {
+namespace tractus::volume_io {
 
 /// While this lives, the object's errors are kept (the first one), and nothing of VTK's is printed.
 class VtkErrors {
@@ -24,4 +24,4 @@ class VtkErrors {
   std::string first_;
 };
 
-}  // namespace volume_io
+}  // namespace tractus::volume_io

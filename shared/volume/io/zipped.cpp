@@ -15,6 +15,7 @@
 #include "volume/io/claims.hpp"
 #include "volume/io/dicom_layout.hpp"
 
+namespace tractus {
 namespace volume_io {
 namespace fs = std::filesystem;
 namespace {
@@ -124,3 +125,4 @@ Result<void> unpack_slices(const fs::path& zip, const fs::path& into) {
 }
 
 }  // namespace volume_io
+}  // namespace tractus

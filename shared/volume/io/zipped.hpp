@@ -5,7 +5,7 @@
 
 #include "core/result.hpp"
 
-namespace volume_io {
+namespace tractus::volume_io {
 
 /// By its first bytes.
 bool is_zip(const std::filesystem::path& path);
@@ -19,4 +19,4 @@ bool is_zip(const std::filesystem::path& path);
 core::Result<void> unpack_slices(const std::filesystem::path& zip,
                                  const std::filesystem::path& into);
 
-}  // namespace volume_io
+}  // namespace tractus::volume_io

@@ -9,6 +9,7 @@
 #include "station/devices/dhd_library.hpp"
 #include "station/devices/usb_presence.hpp"
 
+namespace tractus {
 namespace devices {
 namespace {
 using math::Vec3;
@@ -218,3 +219,4 @@ DeviceInfo lambda6() {
 }
 
 }  // namespace devices
+}  // namespace tractus

@@ -11,6 +11,7 @@
 #include "station/devices/felt.hpp"
 #include "station/devices/palpation_plan.hpp"
 
+namespace tractus {
 namespace devices {
 namespace {
 using math::Quat;
@@ -94,7 +95,7 @@ class SimLambda6 final : public Device, public SimulatedTrainee {
   }
   bool done() const noexcept override { return done_; }
   double progress() const noexcept override { return progress_; }
-  Answer answer() const override { return felt_.answer(options_.seed); }
+  SimulatedAnswer answer() const override { return felt_.answer(options_.seed); }
 
  private:
   void advance(double gap_s) noexcept {
@@ -138,7 +139,7 @@ class SimLambda6 final : public Device, public SimulatedTrainee {
   }
 
   void feel(const Intent& intent) noexcept {
-    const Channel& channel = options_.channel;
+    const KnownTract& channel = options_.channel;
     const Vec3 tip = X_DH_ * Vec3(0.0, 0.0, options_.probe_length_m) - channel.entry_m;
     const double depth_m = tip.dot(channel.axis);
     if (intent.act == Act::tap) {
@@ -195,3 +196,4 @@ DeviceInfo sim_lambda6() {
 }
 
 }  // namespace devices
+}  // namespace tractus

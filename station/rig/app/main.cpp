@@ -13,6 +13,7 @@
 #include "core/json.hpp"
 #include "station/rig/modbus_peer.hpp"
 
+namespace tractus {
 namespace {
 
 constexpr const char* kExamples = R"(Examples:
@@ -133,7 +134,10 @@ core::Result<int> run(const Options& o) {
 
 }  // namespace
 
+}  // namespace tractus
+
 int main(int argc, char** argv) {
+  using namespace tractus;
   Options options;
   CLI::App app("The probing rig's electronics as a real Modbus peer, with physics of its own",
                "tractus-rig");

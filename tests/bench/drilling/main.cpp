@@ -8,6 +8,7 @@
 #include "drilling/erosion.hpp"
 #include "volume/force_field.hpp"
 
+namespace tractus {
 namespace {
 
 constexpr double kTick_s = 0.00025, kFeed_m_s = 0.003;
@@ -25,7 +26,10 @@ trial::Sample feed(std::uint32_t tick) {
 
 }  // namespace
 
+}  // namespace tractus
+
 int main(int argc, char** argv) {
+  using namespace tractus;
   bench::Report report("drilling, burr of 1.5 mm radius in voxels of 0.35 mm");
   const auto transfer = volume::TransferFunction::bone();
   volume::Volume placed = bench::noise_block(200, 200, 240);

@@ -4,7 +4,7 @@
 #include "bench/support/report.hpp"
 #include "volume/scalar_grid.hpp"
 
-namespace bench {
+namespace tractus::bench {
 
 double copy_bound_s(std::span<const std::uint16_t> counts, int times) {
   const int n = int(counts.size());
@@ -22,4 +22,4 @@ double copy_bound_s(std::span<const std::uint16_t> counts, int times) {
   return seconds(times, process_s, copy);
 }
 
-}  // namespace bench
+}  // namespace tractus::bench

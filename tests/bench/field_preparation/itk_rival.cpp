@@ -7,7 +7,7 @@
 #include "bench/field_preparation/rivals.hpp"
 #include "bench/support/report.hpp"
 
-namespace bench {
+namespace tractus::bench {
 
 Prepared itk_rival(const Opacities& opacities) {
   using Image = itk::Image<float, 3>;
@@ -34,4 +34,4 @@ Prepared itk_rival(const Opacities& opacities) {
           }};
 }
 
-}  // namespace bench
+}  // namespace tractus::bench

@@ -12,6 +12,7 @@
 #include "bench/support/scene.hpp"
 #include "volume/force_field.hpp"
 
+namespace tractus {
 namespace {
 
 constexpr double kVtkAgrees = 2e-6, kItkAgrees = 0.05;
@@ -51,7 +52,10 @@ void judge(bench::Report& report, const std::string& name, const volume::ForceFi
 
 }  // namespace
 
+}  // namespace tractus
+
 int main(int argc, char** argv) {
+  using namespace tractus;
   bench::Report report("field_preparation, 512 x 512 x 300");
   const volume::Volume block = bench::noise_block(512, 512, 300);
   const volume::Box whole{{0, 0, 0}, block.geometry.dims};

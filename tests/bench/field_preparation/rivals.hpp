@@ -8,7 +8,7 @@
 
 #include "volume/volume.hpp"
 
-namespace bench {
+namespace tractus::bench {
 
 /// The bound: counts read, as many floats written past the caches, nothing computed. Least of
 /// `times`.
@@ -34,4 +34,4 @@ Prepared vtk_rival(const Opacities& opacities);
 /// opacity where opacity jumps.
 Prepared itk_rival(const Opacities& opacities);
 
-}  // namespace bench
+}  // namespace tractus::bench

@@ -10,7 +10,7 @@
 #include "bench/field_preparation/rivals.hpp"
 #include "bench/support/report.hpp"
 
-namespace bench {
+namespace tractus::bench {
 
 Prepared vtk_rival(const Opacities& opacities) {
   vtkMultiThreader::SetGlobalMaximumNumberOfThreads(1);
@@ -36,4 +36,4 @@ Prepared vtk_rival(const Opacities& opacities) {
           }};
 }
 
-}  // namespace bench
+}  // namespace tractus::bench

@@ -8,6 +8,7 @@
 #include "bench/support/report.hpp"
 #include "bench/support/scene.hpp"
 
+namespace tractus {
 namespace {
 
 using bench::Report;
@@ -78,7 +79,10 @@ struct Limit {
 
 }  // namespace
 
+}  // namespace tractus
+
 int main(int argc, char** argv) {
+  using namespace tractus;
   Report report("haptic_step");
   const volume::Volume block = bench::tract_block();
   const auto transfer = volume::TransferFunction::bone();

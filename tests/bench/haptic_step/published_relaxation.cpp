@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace bench {
+namespace tractus::bench {
 
 using math::Vec2;
 using math::Vec3;
@@ -81,4 +81,4 @@ laws::PalpationStep PublishedRelaxation::step(const math::Pose& X_VH,
   return out;
 }
 
-}  // namespace bench
+}  // namespace tractus::bench

@@ -6,7 +6,7 @@
 #include "laws/palpation_law.hpp"
 #include "volume/volume.hpp"
 
-namespace bench {
+namespace tractus::bench {
 
 /// g at every voxel as three floats, Catmull–Rom over 64 neighbours in plain loops, and relaxation
 /// of the bending with a fixed gain [Zoller2020, "Iterative pedicle probe bending"], i_max = 1000.
@@ -29,4 +29,4 @@ class PublishedRelaxation {
   std::vector<Vector> g_;  // [k][j][i], 1/m
 };
 
-}  // namespace bench
+}  // namespace tractus::bench

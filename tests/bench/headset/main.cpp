@@ -19,6 +19,7 @@
 #include "station/headset/painter.hpp"
 #include "station/view/egl_context.hpp"
 
+namespace tractus {
 namespace {
 
 /// A cube of 120 mm: a ball of bone with a shell, a tract through its middle.
@@ -69,7 +70,10 @@ int refuse(const core::Error& error) {
 
 }  // namespace
 
+}  // namespace tractus
+
 int main(int argc, char** argv) {
+  using namespace tractus;
   const auto number = [&](int i, int fallback) { return argc > i ? std::atoi(argv[i]) : fallback; };
   const int voxels = std::clamp(number(1, 512), 16, 1024),
             px = std::clamp(number(2, 1024), 16, 4096);

@@ -12,16 +12,17 @@
 
 #include "bench/support/report.hpp"
 #include "core/bytes.hpp"
-#include "db/store/accounts.hpp"
-#include "db/store/cases.hpp"
-#include "db/store/objects.hpp"
-#include "db/store/uploads.hpp"
+#include "db/store/cases/cases.hpp"
+#include "db/store/people/accounts.hpp"
+#include "db/store/trials/uploads.hpp"
+#include "db/store/volumes/objects.hpp"
 #include "server/api/backend.hpp"
-#include "server/api/uploads.hpp"
+#include "server/api/trials/uploads.hpp"
 #include "tests/bench/ingest/postgres_copy.hpp"
 #include "tests/support/postgres/postgres_server.hpp"
 #include "trial/trial_file.hpp"
 
+namespace tractus {
 namespace {
 namespace fs = std::filesystem;
 using Batch = std::span<const trial::Sample>;
@@ -182,7 +183,10 @@ void run(const Wanted& wanted, const fs::path& folder, test_support::PostgresSer
 
 }  // namespace
 
+}  // namespace tractus
+
 int main(int argc, char** argv) {
+  using namespace tractus;
   bench::Report report("ingest: samples of 136 bytes, each commit on the disk");
   const fs::path folder = fs::temp_directory_path() / ("tractus-ingest-" + core::new_id());
   test_support::PostgresServer postgres(test_support::Durable::yes);

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <cstring>
 
+namespace tractus {
 namespace bench {
 namespace {
 
@@ -94,3 +95,4 @@ long PostgresCopy::rows() const {
 }
 
 }  // namespace bench
+}  // namespace tractus

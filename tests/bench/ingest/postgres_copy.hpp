@@ -7,7 +7,7 @@
 
 #include "trial/trial.hpp"
 
-namespace bench {
+namespace tractus::bench {
 
 /// One connection, one table of 24 columns (t_s and the pose in double precision, what is float in
 /// a sample in real). Every batch is a transaction, on the disk when it returns.
@@ -25,4 +25,4 @@ class PostgresCopy {
   std::unique_ptr<Connection> connection_;
 };
 
-}  // namespace bench
+}  // namespace tractus::bench

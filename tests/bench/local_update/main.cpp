@@ -9,6 +9,7 @@
 #include "bench/support/scene.hpp"
 #include "volume/force_field.hpp"
 
+namespace tractus {
 namespace {
 
 using math::Vec3;
@@ -48,7 +49,10 @@ double difference(const volume::ForceField& a, const volume::ForceField& b,
 
 }  // namespace
 
+}  // namespace tractus
+
 int main(int argc, char** argv) {
+  using namespace tractus;
   bench::Report report("local_update, 512 x 512 x 300, drill of 1.5 mm radius");
   volume::Volume block = bench::noise_block(512, 512, 300);
   const auto transfer = volume::TransferFunction::bone();

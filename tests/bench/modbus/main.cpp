@@ -12,6 +12,7 @@
 #include "station/devices/modbus_rig.hpp"
 #include "station/rig/modbus_peer.hpp"
 
+namespace tractus {
 namespace {
 
 namespace registers = devices::rig;
@@ -57,7 +58,10 @@ void compare(bench::Report& report, const Cycle& modbus, const Cycle& raw, bool 
 
 }  // namespace
 
+}  // namespace tractus
+
 int main(int argc, char** argv) {
+  using namespace tractus;
   bench::Report report("modbus");
   core::MonotonicClock clock;
   rig::Electronics electronics({}, {}, clock);

@@ -8,6 +8,7 @@
 #include <thread>
 #include <vector>
 
+namespace tractus {
 namespace bench {
 namespace {
 
@@ -64,3 +65,4 @@ std::unique_ptr<RawPingPong> RawPingPong::open(int request_bytes, int reply_byte
 }
 
 }  // namespace bench
+}  // namespace tractus

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-namespace bench {
+namespace tractus::bench {
 
 class RawPingPong {
  public:
@@ -15,4 +15,4 @@ class RawPingPong {
   virtual int cycle() = 0;
 };
 
-}  // namespace bench
+}  // namespace tractus::bench

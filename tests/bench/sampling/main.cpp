@@ -6,6 +6,7 @@
 #include "bench/support/report.hpp"
 #include "bench/support/scene.hpp"
 
+namespace tractus {
 namespace {
 
 constexpr int kSamples = 2000000;
@@ -32,7 +33,10 @@ double sample_ns(Sample sample) {
 
 }  // namespace
 
+}  // namespace tractus
+
 int main(int argc, char** argv) {
+  using namespace tractus;
   bench::Report report("sampling");
   const volume::Volume block = bench::noise_block(512, 512, 100);
   for (const auto kind : {volume::FieldKind::paper, volume::FieldKind::potential}) {

@@ -7,6 +7,7 @@
 #include "tests/bench/stations_load/station.hpp"
 #include "wire/messages.hpp"
 
+namespace tractus {
 namespace load {
 namespace fs = std::filesystem;
 namespace {
@@ -72,3 +73,4 @@ void judge_backlog(bench::Report& report, const Server& server, int trials,
 }
 
 }  // namespace load
+}  // namespace tractus

@@ -4,11 +4,11 @@
 #include "tests/bench/stations_load/server.hpp"
 #include "tests/bench/support/report.hpp"
 
-namespace load {
+namespace tractus::load {
 
 /// `trials` of ten seconds at 1 kHz, by the product's own uplink; the rival sends one stream of the
 /// same bytes in the largest pieces the server takes and checks nothing.
 void judge_backlog(bench::Report& report, const Server& server, int trials,
                    const std::filesystem::path& folder);
 
-}  // namespace load
+}  // namespace tractus::load

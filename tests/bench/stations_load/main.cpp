@@ -10,6 +10,7 @@
 #include "tests/bench/stations_load/station.hpp"
 #include "tests/bench/support/report.hpp"
 
+namespace tractus {
 namespace {
 namespace fs = std::filesystem;
 
@@ -40,11 +41,12 @@ class Wall {
   Wall(const load::Server& server, const std::string& cookie)
       : thread_([this, &server, cookie](std::stop_token stop) {
           const std::atomic<bool> stopped = false;
-          auto line = uplink::open_line({.url = server.url(),
-                                         .authorization = cookie + "\r\nOrigin: " + server.url(),
-                                         .authority = server.authority(),
-                                         .path = "/api/v1/live"},
-                                        stopped);
+          auto line =
+              uplink::open_server_socket({.url = server.url(),
+                                          .authorization = cookie + "\r\nOrigin: " + server.url(),
+                                          .authority = server.authority(),
+                                          .path = "/api/v1/live"},
+                                         stopped);
           while (line && !stop.stop_requested()) {
             auto heard = (*line)->hear(200);
             if (!heard) return;
@@ -128,7 +130,10 @@ void judge_load(bench::Report& report, const load::Server& server, const Options
 
 }  // namespace
 
+}  // namespace tractus
+
 int main(int argc, char** argv) {
+  using namespace tractus;
   const Options options = options_of(argc, argv);
   const fs::path folder = fs::temp_directory_path() / ("stations-load-" + core::new_id());
   bench::Report report("stations_load");

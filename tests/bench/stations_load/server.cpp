@@ -18,6 +18,7 @@
 
 extern char** environ;
 
+namespace tractus {
 namespace load {
 namespace fs = std::filesystem;
 namespace {
@@ -188,3 +189,4 @@ double Server::processor_s() const {
 }
 
 }  // namespace load
+}  // namespace tractus

@@ -9,7 +9,7 @@
 
 #include "core/result.hpp"
 
-namespace load {
+namespace tractus::load {
 
 class Server {
  public:
@@ -38,4 +38,4 @@ class Server {
   int output_ = -1;
 };
 
-}  // namespace load
+}  // namespace tractus::load

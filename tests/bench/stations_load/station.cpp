@@ -11,6 +11,7 @@
 #include "wire/live.hpp"
 #include "wire/messages.hpp"
 
+namespace tractus {
 namespace load {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
@@ -144,11 +145,11 @@ void Station::send_trial() {
 
 void Station::say_states(const std::stop_token& stop) {
   const std::atomic<bool> stopped = false;
-  const uplink::LineTo to{.url = server_.url(),
-                          .authorization = "Authorization: Bearer " + server_.token(number_),
-                          .authority = server_.authority()};
-  auto line = uplink::open_line(to, stopped);
-  wire::StationTold told;
+  const uplink::ServerAddress to{.url = server_.url(),
+                                 .authorization = "Authorization: Bearer " + server_.token(number_),
+                                 .authority = server_.authority()};
+  auto line = uplink::open_server_socket(to, stopped);
+  wire::StationStatus told;
   told.state = "trial";
   told.version = "load";
   told.device = "sim-lambda6";
@@ -171,3 +172,4 @@ void Station::say_states(const std::stop_token& stop) {
 }
 
 }  // namespace load
+}  // namespace tractus

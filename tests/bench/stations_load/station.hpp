@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "station/uplink/http_server.hpp"
-#include "station/uplink/line.hpp"
+#include "station/uplink/server_socket.hpp"
 #include "tests/bench/stations_load/server.hpp"
 
-namespace load {
+namespace tractus::load {
 
 /// A trial of `seconds` at `rate_Hz` of palpation samples with noise as a sensor has, packed as a
 /// station's recorder packs it. SIMULATED.
@@ -45,4 +45,4 @@ class Station {
   std::jthread live_, sending_;
 };
 
-}  // namespace load
+}  // namespace tractus::load

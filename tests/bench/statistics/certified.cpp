@@ -5,10 +5,11 @@
 #include <cmath>
 
 #include "bench/statistics/exact.hpp"
-#include "statistics/anova.hpp"
-#include "statistics/ols.hpp"
-#include "statistics/summary.hpp"
+#include "statistics/anova/anova.hpp"
+#include "statistics/regression/ols.hpp"
+#include "statistics/summary/summary.hpp"
 
+namespace tractus {
 namespace bench {
 namespace {
 
@@ -135,3 +136,4 @@ void certified(Report& report, const Answers& r) {
 }
 
 }  // namespace bench
+}  // namespace tractus

@@ -4,10 +4,10 @@
 #include "bench/statistics/r_peer.hpp"
 #include "bench/support/report.hpp"
 
-namespace bench {
+namespace tractus::bench {
 
 /// Prints the table. On each problem ours must have R's digits, or those that exact arithmetic on
 /// the same doubles has: beyond these more is luck.
 void certified(Report& report, const Answers& r);
 
-}  // namespace bench
+}  // namespace tractus::bench

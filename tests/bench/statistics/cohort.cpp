@@ -9,6 +9,7 @@
 #include "assessment/trainee.hpp"
 #include "bench/support/report.hpp"
 
+namespace tractus {
 namespace bench {
 
 std::string simulated_cohort(int trainees, int trials) {
@@ -108,3 +109,4 @@ bool analyse_cohort(const std::string& csv, std::string& failed) {
 }
 
 }  // namespace bench
+}  // namespace tractus

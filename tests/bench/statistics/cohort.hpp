@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace bench {
+namespace tractus::bench {
 
 /// `trainees` × `trials` rows as CSV: simulated answers and times with learning.
 std::string simulated_cohort(int trainees, int trials);
@@ -11,4 +11,4 @@ std::string simulated_cohort(int trainees, int trials);
 /// Every standard analysis on it; false, naming the first that failed.
 bool analyse_cohort(const std::string& csv, std::string& failed);
 
-}  // namespace bench
+}  // namespace tractus::bench

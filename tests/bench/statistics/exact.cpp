@@ -4,6 +4,7 @@
 #include <map>
 #include <utility>
 
+namespace tractus {
 namespace bench {
 namespace {
 
@@ -73,3 +74,4 @@ ExactSummary exact_summary(const std::vector<double>& values) {
 }
 
 }  // namespace bench
+}  // namespace tractus

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace bench {
+namespace tractus::bench {
 
 /// Least-squares coefficients by the normal equations. @param rows  [observation][column]
 std::vector<double> exact_coefficients(const std::vector<std::vector<double>>& rows,
@@ -18,4 +18,4 @@ struct ExactSummary {
 };
 ExactSummary exact_summary(const std::vector<double>& values);
 
-}  // namespace bench
+}  // namespace tractus::bench

@@ -11,10 +11,11 @@
 #include "bench/statistics/r_peer.hpp"
 #include "bench/support/report.hpp"
 #include "core/file.hpp"
-#include "statistics/anova.hpp"
-#include "statistics/bisquare.hpp"
-#include "statistics/ols.hpp"
+#include "statistics/anova/anova.hpp"
+#include "statistics/regression/bisquare.hpp"
+#include "statistics/regression/ols.hpp"
 
+namespace tractus {
 namespace {
 
 using statistics::Matrix;
@@ -130,8 +131,11 @@ void cohort(bench::Report& report, bool small) {
 
 }  // namespace
 
+}  // namespace tractus
+
 /// `--small`: a tenth of the rows; `--only rows|digits|cohort`: one part.
 int main(int argc, char** argv) {
+  using namespace tractus;
   bool small = false;
   std::string only;
   for (int i = 1; i < argc; ++i) {

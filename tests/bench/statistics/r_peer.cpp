@@ -6,7 +6,7 @@
 #include <fstream>
 #include <sstream>
 
-namespace bench {
+namespace tractus::bench {
 namespace {
 const std::string kSource = TRACTUS_SOURCE_DIR;
 }
@@ -69,4 +69,4 @@ double digits(double got, double want) {
   return std::isfinite(error) ? std::clamp(-std::log10(error), 0.0, 15.0) : 0.0;
 }
 
-}  // namespace bench
+}  // namespace tractus::bench

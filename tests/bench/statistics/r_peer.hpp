@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace bench {
+namespace tractus::bench {
 
 using Answers = std::map<std::string, std::vector<double>>;
 
@@ -19,4 +19,4 @@ std::vector<double> nist_line(const std::string& path, const std::string& label)
 /// Correct digits of `got`, at most 15.
 double digits(double got, double want);
 
-}  // namespace bench
+}  // namespace tractus::bench

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <string_view>
 
+namespace tractus {
 namespace bench {
 namespace {
 
@@ -78,3 +79,4 @@ int Report::finish(int argc, char** argv) const {
 }
 
 }  // namespace bench
+}  // namespace tractus

@@ -7,7 +7,7 @@
 
 #include "core/json.hpp"
 
-namespace bench {
+namespace tractus::bench {
 
 /// Seconds of processor time of this thread: what others do on the machine does not count.
 double thread_s();
@@ -54,4 +54,4 @@ class Report {
   bool met_ = true;
 };
 
-}  // namespace bench
+}  // namespace tractus::bench

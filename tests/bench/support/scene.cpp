@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+namespace tractus {
 namespace bench {
 namespace {
 
@@ -94,3 +95,4 @@ volume::Volume noise_block(int nx, int ny, int nz) {
 }
 
 }  // namespace bench
+}  // namespace tractus

@@ -4,7 +4,7 @@
 #include "math/geometry.hpp"
 #include "volume/volume.hpp"
 
-namespace bench {
+namespace tractus::bench {
 
 /// A block of simulated bone, 56 × 56 × 70 mm at 0.35 mm, with porous texture and a drilled tract
 /// of 3 mm diameter and 40 mm length that is closed at its end.
@@ -16,4 +16,4 @@ math::Pose palpating_hand(double t);
 /// Counts of a soft noise, every value different from its neighbours'.
 volume::Volume noise_block(int nx, int ny, int nz);
 
-}  // namespace bench
+}  // namespace tractus::bench

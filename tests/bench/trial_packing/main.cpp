@@ -9,6 +9,7 @@
 #include "trial/packing.hpp"
 #include "trial/trial_file.hpp"
 
+namespace tractus {
 namespace {
 
 constexpr double kFrame_s = 0.02;
@@ -99,7 +100,10 @@ void judge(bench::Report& report, const std::string& name, const std::vector<S>&
 
 }  // namespace
 
+}  // namespace tractus
+
 int main(int argc, char** argv) {
+  using namespace tractus;
   bench::Report report("trial_packing");
   for (int i = 1; i < argc && std::string_view(argv[i]) != "--json"; ++i) {
     const auto trial = trial::read_trial(argv[i]);

@@ -2,6 +2,7 @@
 #include "assessment/plan.hpp"
 #include "fuzz/target.hpp"
 
+namespace tractus {
 namespace fuzz {
 namespace {
 bool run(core::ByteView bytes) {
@@ -20,3 +21,4 @@ Target analysis_plan() {
 }
 
 }  // namespace fuzz
+}  // namespace tractus

@@ -1,7 +1,7 @@
 #include "assessment/snapshot.hpp"
 #include "fuzz/target.hpp"
 
-namespace fuzz {
+namespace tractus::fuzz {
 
 Target analysis_table() {
   return {"analysis_table",
@@ -13,4 +13,4 @@ Target analysis_table() {
           }};
 }
 
-}  // namespace fuzz
+}  // namespace tractus::fuzz

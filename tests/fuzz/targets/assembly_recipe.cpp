@@ -1,6 +1,7 @@
 #include "capture/recipe.hpp"
 #include "fuzz/target.hpp"
 
+namespace tractus {
 namespace fuzz {
 namespace {
 bool run(core::ByteView bytes) {
@@ -18,3 +19,4 @@ Target assembly_recipe() {
 }
 
 }  // namespace fuzz
+}  // namespace tractus

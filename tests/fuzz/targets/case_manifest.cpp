@@ -1,6 +1,7 @@
 #include "cases/case.hpp"
 #include "fuzz/target.hpp"
 
+namespace tractus {
 namespace fuzz {
 namespace {
 bool run(core::ByteView bytes) {
@@ -17,3 +18,4 @@ Target case_manifest() {
 }
 
 }  // namespace fuzz
+}  // namespace tractus

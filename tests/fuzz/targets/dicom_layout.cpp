@@ -2,7 +2,7 @@
 
 #include "fuzz/target.hpp"
 
-namespace fuzz {
+namespace tractus::fuzz {
 
 Target dicom_layout() {
   return {"dicom_layout", "a DICOM file, from a person", {}, [](core::ByteView bytes) {
@@ -11,4 +11,4 @@ Target dicom_layout() {
           }};
 }
 
-}  // namespace fuzz
+}  // namespace tractus::fuzz

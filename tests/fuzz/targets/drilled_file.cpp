@@ -2,7 +2,7 @@
 #include "drilling/drilled.hpp"
 #include "fuzz/target.hpp"
 
-namespace fuzz {
+namespace tractus::fuzz {
 
 Target drilled_file() {
   return {"drilled_file",
@@ -22,4 +22,4 @@ Target drilled_file() {
           }};
 }
 
-}  // namespace fuzz
+}  // namespace tractus::fuzz

@@ -1,7 +1,7 @@
 #include "drilling/redrill.hpp"
 #include "fuzz/target.hpp"
 
-namespace fuzz {
+namespace tractus::fuzz {
 
 Target drilling_setup() {
   return {"drilling_setup", "a trial's burr, from its header", {}, [](core::ByteView bytes) {
@@ -13,4 +13,4 @@ Target drilling_setup() {
           }};
 }
 
-}  // namespace fuzz
+}  // namespace tractus::fuzz

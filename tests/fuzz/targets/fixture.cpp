@@ -1,6 +1,7 @@
 #include "fuzz/target.hpp"
 #include "station/headset/alignment.hpp"
 
+namespace tractus {
 namespace fuzz {
 namespace {
 bool run(core::ByteView bytes) {
@@ -21,3 +22,4 @@ Target fixture() {
 }
 
 }  // namespace fuzz
+}  // namespace tractus

@@ -1,6 +1,7 @@
 #include "capture/force.hpp"
 #include "fuzz/target.hpp"
 
+namespace tractus {
 namespace fuzz {
 namespace {
 bool run(core::ByteView bytes) {
@@ -22,3 +23,4 @@ Target force_file() {
 }
 
 }  // namespace fuzz
+}  // namespace tractus

@@ -1,6 +1,7 @@
 #include "fuzz/target.hpp"
 #include "server/http/message.hpp"
 
+namespace tractus {
 namespace fuzz {
 namespace {
 bool run(core::ByteView bytes) {
@@ -24,3 +25,4 @@ Target http_target() {
 }
 
 }  // namespace fuzz
+}  // namespace tractus

@@ -4,6 +4,7 @@
 #include "station/sensors/igtl_reader.hpp"
 #include "station/sensors/motion_rows.hpp"
 
+namespace tractus {
 namespace fuzz {
 namespace {
 /// How many poses a connection gives that sends these bytes twice, in pieces of this size.
@@ -47,3 +48,4 @@ Target igtl_message() {
 }
 
 }  // namespace fuzz
+}  // namespace tractus

@@ -1,5 +1,6 @@
 #include "fuzz/target.hpp"
 
+namespace tractus {
 namespace fuzz {
 namespace {
 
@@ -24,3 +25,4 @@ bool run(core::ByteView bytes) {
 Target json() { return {"json", "JSON from anybody", {}, run}; }
 
 }  // namespace fuzz
+}  // namespace tractus

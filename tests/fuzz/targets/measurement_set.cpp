@@ -3,6 +3,7 @@
 #include "fuzz/target.hpp"
 #include "trial/probing_set.hpp"
 
+namespace tractus {
 namespace fuzz {
 namespace {
 bool run(core::ByteView bytes) {
@@ -23,3 +24,4 @@ Target measurement_set() {
 }
 
 }  // namespace fuzz
+}  // namespace tractus

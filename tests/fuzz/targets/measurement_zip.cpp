@@ -1,7 +1,7 @@
 #include "fuzz/target.hpp"
 #include "lab/io/unpacked.hpp"
 
-namespace fuzz {
+namespace tractus::fuzz {
 
 Target measurement_zip() {
   return {"measurement_zip",
@@ -14,4 +14,4 @@ Target measurement_zip() {
           300};
 }
 
-}  // namespace fuzz
+}  // namespace tractus::fuzz

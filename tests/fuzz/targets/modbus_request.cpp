@@ -1,6 +1,7 @@
 #include "fuzz/target.hpp"
 #include "station/rig/request.hpp"
 
+namespace tractus {
 namespace fuzz {
 namespace {
 bool run(core::ByteView bytes) {
@@ -19,3 +20,4 @@ Target modbus_request() {
 }
 
 }  // namespace fuzz
+}  // namespace tractus

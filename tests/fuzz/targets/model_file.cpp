@@ -1,7 +1,7 @@
 #include "fuzz/target.hpp"
 #include "models/probing_model.hpp"
 
-namespace fuzz {
+namespace tractus::fuzz {
 
 Target model_file() {
   return {"model_file",
@@ -13,4 +13,4 @@ Target model_file() {
           }};
 }
 
-}  // namespace fuzz
+}  // namespace tractus::fuzz

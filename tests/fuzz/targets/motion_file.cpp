@@ -1,6 +1,7 @@
 #include "capture/motion.hpp"
 #include "fuzz/target.hpp"
 
+namespace tractus {
 namespace fuzz {
 namespace {
 bool run(core::ByteView bytes) {
@@ -29,3 +30,4 @@ Target motion_file() {
 }
 
 }  // namespace fuzz
+}  // namespace tractus

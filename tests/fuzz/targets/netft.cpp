@@ -2,6 +2,7 @@
 
 #include "fuzz/target.hpp"
 
+namespace tractus {
 namespace fuzz {
 namespace {
 bool run(core::ByteView bytes) {
@@ -24,3 +25,4 @@ Target netft() {
 }
 
 }  // namespace fuzz
+}  // namespace tractus

@@ -2,7 +2,7 @@
 
 #include "fuzz/target.hpp"
 
-namespace fuzz {
+namespace tractus::fuzz {
 
 Target nifti_header() {
   return {"nifti_header", "the head of a NIfTI file, from a person", {}, [](core::ByteView bytes) {
@@ -10,4 +10,4 @@ Target nifti_header() {
           }};
 }
 
-}  // namespace fuzz
+}  // namespace tractus::fuzz

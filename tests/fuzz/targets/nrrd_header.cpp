@@ -2,7 +2,7 @@
 
 #include "fuzz/target.hpp"
 
-namespace fuzz {
+namespace tractus::fuzz {
 
 Target nrrd_header() {
   return {"nrrd_header", "the head of an NRRD file, from a person", {}, [](core::ByteView bytes) {
@@ -10,4 +10,4 @@ Target nrrd_header() {
           }};
 }
 
-}  // namespace fuzz
+}  // namespace tractus::fuzz

@@ -2,6 +2,7 @@
 
 #include "fuzz/target.hpp"
 
+namespace tractus {
 namespace fuzz {
 namespace {
 bool run(core::ByteView bytes) {
@@ -18,3 +19,4 @@ Target own_effect() {
 }
 
 }  // namespace fuzz
+}  // namespace tractus

@@ -1,6 +1,7 @@
 #include "fuzz/target.hpp"
 #include "trial/measurement_set.hpp"
 
+namespace tractus {
 namespace fuzz {
 namespace {
 bool run(core::ByteView bytes) {
@@ -14,3 +15,4 @@ bool run(core::ByteView bytes) {
 Target palpation_csv() { return {"palpation_csv", "a palpation as CSV, from a person", {}, run}; }
 
 }  // namespace fuzz
+}  // namespace tractus

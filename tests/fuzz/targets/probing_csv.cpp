@@ -1,6 +1,7 @@
 #include "fuzz/target.hpp"
 #include "trial/probing_set.hpp"
 
+namespace tractus {
 namespace fuzz {
 namespace {
 bool run(core::ByteView bytes) {
@@ -16,3 +17,4 @@ Target probing_csv() {
 }
 
 }  // namespace fuzz
+}  // namespace tractus

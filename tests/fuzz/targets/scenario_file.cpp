@@ -2,6 +2,7 @@
 #include "scenarios/scenario.hpp"
 #include "scenarios/version.hpp"
 
+namespace tractus {
 namespace fuzz {
 namespace {
 bool run(core::ByteView bytes) {
@@ -19,3 +20,4 @@ Target scenario_file() {
 }
 
 }  // namespace fuzz
+}  // namespace tractus

@@ -4,6 +4,7 @@
 #include "wire/messages.hpp"
 #include "wire/study_work.hpp"
 
+namespace tractus {
 namespace fuzz {
 namespace {
 bool run(core::ByteView bytes) {
@@ -24,3 +25,4 @@ Target station_messages() {
 }
 
 }  // namespace fuzz
+}  // namespace tractus

@@ -2,6 +2,7 @@
 #include "station/check/findings.hpp"
 #include "station/headset/alignment.hpp"
 
+namespace tractus {
 namespace fuzz {
 namespace {
 bool run(core::ByteView bytes) {
@@ -27,3 +28,4 @@ Target station_notes() {
 }
 
 }  // namespace fuzz
+}  // namespace tractus

@@ -1,7 +1,7 @@
 #include "fuzz/target.hpp"
 #include "fuzz/trial_bytes.hpp"
 
-namespace fuzz {
+namespace tractus::fuzz {
 
 Target trial_file() {
   return {"trial_file",
@@ -17,4 +17,4 @@ Target trial_file() {
           }};
 }
 
-}  // namespace fuzz
+}  // namespace tractus::fuzz

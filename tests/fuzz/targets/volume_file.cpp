@@ -2,7 +2,7 @@
 
 #include "fuzz/target.hpp"
 
-namespace fuzz {
+namespace tractus::fuzz {
 
 Target volume_file() {
   return {
@@ -12,4 +12,4 @@ Target volume_file() {
       }};
 }
 
-}  // namespace fuzz
+}  // namespace tractus::fuzz

@@ -5,6 +5,7 @@
 #include "core/bytes.hpp"
 #include "tests/support/postgres/postgres_server.hpp"
 
+namespace tractus {
 namespace test_support {
 namespace {
 
@@ -62,3 +63,4 @@ std::unique_ptr<store::Connection> TestDatabase::connection(store::Access access
 }
 
 }  // namespace test_support
+}  // namespace tractus

@@ -9,6 +9,7 @@
 
 #include "db/store/store.hpp"
 
+namespace tractus {
 namespace test_support {
 
 enum class DatabaseKind { sqlite, postgresql };
@@ -50,3 +51,4 @@ class BothDatabases : public ::testing::TestWithParam<DatabaseKind> {};
   INSTANTIATE_TEST_SUITE_P(SQLite, Suite, ::testing::Values(test_support::DatabaseKind::sqlite)); \
   INSTANTIATE_TEST_SUITE_P(PostgreSQL, Suite,                                                     \
                            ::testing::Values(test_support::DatabaseKind::postgresql))
+}  // namespace tractus

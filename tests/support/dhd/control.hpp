@@ -6,7 +6,7 @@
 
 #include "tests/support/mapped_page.hpp"  // how both come by it
 
-namespace standin {
+namespace tractus::standin {
 
 struct Control {
   // Commands.
@@ -34,4 +34,4 @@ struct Control {
   std::atomic<std::uint64_t> reads{0}, writes{0};
 };
 
-}  // namespace standin
+}  // namespace tractus::standin

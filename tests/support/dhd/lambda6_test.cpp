@@ -20,6 +20,7 @@
 #include "station/loop/haptic_loop.hpp"
 #include "tests/support/dhd/control.hpp"
 
+namespace tractus {
 namespace devices {
 namespace {
 using math::Vec3;
@@ -387,3 +388,4 @@ TEST_F(Lambda6, PrintsTheRoundTripThroughTheStandIn) {
 
 }  // namespace
 }  // namespace devices
+}  // namespace tractus

@@ -8,6 +8,8 @@
 
 #include "tests/support/dhd/control.hpp"
 
+namespace standin = tractus::standin;
+
 namespace {
 using standin::Control;
 
@@ -21,7 +23,7 @@ Control& control() {
   static Control own;
   static Control* const at = [] {
     const char* path = std::getenv("TRACTUS_DHD_STANDIN");
-    Control* mapped = path ? support::mapped_in<standin::Control>(path) : nullptr;
+    Control* mapped = path ? tractus::support::mapped_in<standin::Control>(path) : nullptr;
     return mapped ? mapped : &own;
   }();
   return *at;

@@ -29,6 +29,7 @@
 #include <thread>
 #include <vector>
 
+namespace tractus {
 namespace {
 constexpr double kEpoch_s = 1000.25;
 
@@ -134,7 +135,10 @@ void say_busy(Room& room, igtl::Socket* socket) {
 }
 }  // namespace
 
+}  // namespace tractus
+
 int main(int argc, char** argv) {
+  using namespace tractus;
   if (argc < 3) return 2;
   Room room = read(argv[1]);
   room.type = argv[2];

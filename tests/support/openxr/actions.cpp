@@ -3,6 +3,7 @@
 
 #include "tests/support/openxr/runtime.hpp"
 
+namespace tractus {
 namespace fakexr {
 namespace {
 const XrActionSet kSet = reinterpret_cast<XrActionSet>(0xac7);
@@ -110,3 +111,4 @@ PFN_xrVoidFunction action_function(const std::string& name) {
 }
 
 }  // namespace fakexr
+}  // namespace tractus

@@ -6,7 +6,7 @@
 
 #include "tests/support/mapped_page.hpp"  // how both come by it
 
-namespace fakexr {
+namespace tractus::fakexr {
 
 struct Control {
   // What is offered.
@@ -37,4 +37,4 @@ struct Control {
   char words[8192] = {};  ///< a line each
 };
 
-}  // namespace fakexr
+}  // namespace tractus::fakexr

@@ -13,7 +13,7 @@
 #include "station/headset/xr.hpp"
 #include "tests/support/openxr/control.hpp"
 
-namespace headset {
+namespace tractus::headset {
 
 /// What test and runtime share; of this process, gone with it.
 struct ControlFile {
@@ -110,4 +110,4 @@ class WithRuntime : public testing::Test {
       std::filesystem::temp_directory_path() / ("tractus_eyes_" + core::new_id());
 };
 
-}  // namespace headset
+}  // namespace tractus::headset

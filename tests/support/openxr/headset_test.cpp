@@ -3,6 +3,7 @@
 #include "station/headset/headset_thread.hpp"
 #include "tests/support/openxr/headset_fixture.hpp"
 
+namespace tractus {
 namespace headset {
 namespace {
 
@@ -162,3 +163,4 @@ TEST_F(WithRuntime, InAThreadOfItsOwnItSaysWhyItEndedBefore) {
 
 }  // namespace
 }  // namespace headset
+}  // namespace tractus

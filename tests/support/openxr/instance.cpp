@@ -5,6 +5,7 @@
 
 #include "tests/support/openxr/runtime.hpp"
 
+namespace tractus {
 namespace fakexr {
 namespace {
 
@@ -187,3 +188,4 @@ PFN_xrVoidFunction instance_function(const std::string& name) {
 }
 
 }  // namespace fakexr
+}  // namespace tractus

@@ -5,7 +5,7 @@
 
 #include "tests/support/openxr/runtime.hpp"
 
-namespace fakexr {
+namespace tractus::fakexr {
 
 World& world() {
   static World one;
@@ -58,7 +58,9 @@ struct RuntimeRequest {
 };
 constexpr int kLoaderInfo = 1, kRuntimeRequest = 3;
 }  // namespace
-}  // namespace fakexr
+}  // namespace tractus::fakexr
+
+namespace fakexr = tractus::fakexr;
 
 extern "C" __attribute__((visibility("default"))) XrResult xrNegotiateLoaderRuntimeInterface(
     const fakexr::LoaderInfo* loader, fakexr::RuntimeRequest* request) {

@@ -8,6 +8,7 @@
 
 #include "tests/support/openxr/runtime.hpp"
 
+namespace tractus {
 namespace fakexr {
 namespace {
 constexpr int kImages = 3;
@@ -169,3 +170,4 @@ PFN_xrVoidFunction picture_function(const std::string& name) {
 }
 
 }  // namespace fakexr
+}  // namespace tractus

@@ -8,6 +8,7 @@
 
 #include "tests/support/openxr/headset_fixture.hpp"
 
+namespace tractus {
 namespace headset {
 namespace {
 
@@ -187,3 +188,4 @@ TEST_F(Pictures, WhatABurrTookIsSeenByBothEyesWithoutATraceInTheBone) {
 
 }  // namespace
 }  // namespace headset
+}  // namespace tractus

@@ -5,6 +5,7 @@
 
 #include "tests/support/openxr/runtime.hpp"
 
+namespace tractus {
 namespace fakexr {
 namespace {
 
@@ -50,3 +51,4 @@ bool write_png(const std::string& path, const std::vector<unsigned char>& rgba, 
 }
 
 }  // namespace fakexr
+}  // namespace tractus

@@ -20,7 +20,7 @@
 
 #include "tests/support/openxr/control.hpp"
 
-namespace fakexr {
+namespace tractus::fakexr {
 
 struct Swapchain {
   std::vector<unsigned> textures;
@@ -124,4 +124,4 @@ PFN_xrVoidFunction as_void(F function) {
   return reinterpret_cast<PFN_xrVoidFunction>(function);
 }
 
-}  // namespace fakexr
+}  // namespace tractus::fakexr

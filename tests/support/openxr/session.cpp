@@ -6,6 +6,7 @@
 
 #include "tests/support/openxr/runtime.hpp"
 
+namespace tractus {
 namespace fakexr {
 
 void change(XrSessionState state) {
@@ -307,3 +308,4 @@ PFN_xrVoidFunction session_function(const std::string& name) {
 }
 
 }  // namespace fakexr
+}  // namespace tractus

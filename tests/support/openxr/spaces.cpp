@@ -4,6 +4,7 @@
 
 #include "tests/support/openxr/runtime.hpp"
 
+namespace tractus {
 namespace fakexr {
 namespace {
 
@@ -149,3 +150,4 @@ PFN_xrVoidFunction space_function(const std::string& name) {
 }
 
 }  // namespace fakexr
+}  // namespace tractus

@@ -15,8 +15,9 @@
 #include <thread>
 
 #include "core/bytes.hpp"
-#include "db/store/connection.hpp"
+#include "db/store/database/connection.hpp"
 
+namespace tractus {
 namespace test_support {
 namespace fs = std::filesystem;
 namespace {
@@ -182,3 +183,4 @@ PostgresServer& postgres_server() {
 }
 
 }  // namespace test_support
+}  // namespace tractus

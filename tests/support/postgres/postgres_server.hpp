@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace test_support {
+namespace tractus::test_support {
 
 /// Whether what is committed must outlast the server's death: only then does it flush to the disk.
 enum class Durable { no, yes };
@@ -46,4 +46,4 @@ class PostgresServer {
 /// The one of this test program, made when first asked for; not durable.
 PostgresServer& postgres_server();
 
-}  // namespace test_support
+}  // namespace tractus::test_support

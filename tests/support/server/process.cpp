@@ -19,6 +19,7 @@
 
 extern char** environ;
 
+namespace tractus {
 namespace world {
 namespace fs = std::filesystem;
 namespace {
@@ -141,8 +142,10 @@ ServerProcess::ServerProcess(const fs::path& data, std::vector<std::string> more
   while (port_ == 0 && ::read(output_, &c, 1) == 1) {
     line += c;
     if (c != '\n') continue;
-    if (line.starts_with(before)) port_ = std::stoi(line.substr(before.size()));
-    else said_ += line;
+    if (line.starts_with(before))
+      port_ = std::stoi(line.substr(before.size()));
+    else
+      said_ += line;
     line.clear();
   }
   EXPECT_NE(port_, 0) << said_ << line;
@@ -279,3 +282,4 @@ Answer commit(Client& client, const Headers& station, const std::string& trial_i
 }
 
 }  // namespace world
+}  // namespace tractus

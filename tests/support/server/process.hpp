@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "core/json.hpp"
-#include "db/store/connection.hpp"
+#include "db/store/database/connection.hpp"
 #include "tests/support/database/database.hpp"
 
-namespace world {
+namespace tractus::world {
 
 struct Ended {
   int code;         ///< exit code; -1 when a signal ended it
@@ -128,4 +128,4 @@ Answer send_piece(Client& client, const Headers& station, const std::string& tri
                   std::uint64_t offset, const std::string& piece);
 Answer commit(Client& client, const Headers& station, const std::string& trial_id);
 
-}  // namespace world
+}  // namespace tractus::world

@@ -8,7 +8,7 @@
 
 #include <chrono>
 
-namespace world {
+namespace tractus::world {
 namespace {
 constexpr std::array<std::byte, 4> kMask{std::byte{1}, std::byte{2}, std::byte{3}, std::byte{4}};
 }
@@ -100,4 +100,4 @@ Headers from_our_page(const Headers& signed_in, int port) {
   return out;
 }
 
-}  // namespace world
+}  // namespace tractus::world

@@ -7,7 +7,7 @@
 #include "station/uplink/websocket.hpp"
 #include "tests/support/server/process.hpp"
 
-namespace world {
+namespace tractus::world {
 
 class WebSocket {
  public:
@@ -51,4 +51,4 @@ class WebSocket {
 /// What a browser sends along: its cookie, and the page it is on.
 Headers from_our_page(const Headers& signed_in, int port);
 
-}  // namespace world
+}  // namespace tractus::world

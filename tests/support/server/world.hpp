@@ -14,7 +14,7 @@
 #include "core/file.hpp"
 #include "trial/trial_file.hpp"
 
-namespace world {
+namespace tractus::world {
 
 inline constexpr std::int64_t kStarted_utc_us = 1'770'000'000'000'000;
 
@@ -172,4 +172,4 @@ inline std::string make_case(const std::filesystem::path& folder) {
   return opened ? opened->id : std::string();
 }
 
-}  // namespace world
+}  // namespace tractus::world

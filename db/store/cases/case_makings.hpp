@@ -1,0 +1,37 @@
+/// Cases that are made of volumes: what was asked, how far it is, what came of it.
+#pragma once
+
+#include <vector>
+
+#include "db/store/store.hpp"
+
+namespace tractus::store {
+
+/// State: "queued", "running", "done" or "failed".
+struct CaseMaking {
+  std::string id;
+  std::string volume_id;
+  std::string title;
+  std::string plan;  ///< JSON, as jobs::plan_from reads it
+  std::string state = "queued";
+  double share = 0.0;                  ///< of the work, 0 … 1
+  std::string phase;                   ///< what it is at, in words
+  std::string error;                   ///< why it failed
+  std::optional<std::string> case_id;  ///< once done
+  std::int64_t made_utc_us = 0;
+  std::string made_by;
+};
+
+core::Result<void> add_case_making(Writing& tx, const CaseMaking& making);
+core::Result<std::optional<CaseMaking>> case_making_of(Reading& tx, const std::string& id);
+/// Newest first.
+core::Result<std::vector<CaseMaking>> case_makings(Reading& tx, std::int64_t limit);
+
+core::Result<void> note_making(Writing& tx, const std::string& id, double share,
+                               const std::string& phase, std::int64_t now_utc_us);
+core::Result<void> finish_making(Writing& tx, const std::string& id, const std::string& case_id,
+                                 std::int64_t now_utc_us);
+core::Result<void> fail_making(Writing& tx, const std::string& id, const std::string& why,
+                               std::int64_t now_utc_us);
+
+}  // namespace tractus::store

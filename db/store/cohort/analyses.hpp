@@ -1,0 +1,59 @@
+/// Locked analysis plans and their runs on frozen snapshots of the cohort.
+#pragma once
+
+#include <vector>
+
+#include "db/store/store.hpp"
+
+namespace tractus::store {
+
+/// Never changed: another plan is another row.
+struct AnalysisPlan {
+  std::string id, title;
+  std::string study;             ///< whose trials it is of; empty: all
+  std::string plan;              ///< object: tractus-plan/1 with its lock
+  bool data_seen = false;        ///< as the lock says
+  std::int64_t trials_then = 0;  ///< scored trials of it that the server held when it was locked
+  std::int64_t made_utc_us = 0;
+  std::string made_by;
+};
+
+/// "queued", "running", "done" or "failed".
+struct AnalysisRun {
+  std::string id;
+  std::optional<std::string> plan_id;  ///< none: one method, not planned beforehand
+  std::string study;
+  std::string plan;  ///< object: what is asked
+  std::string state = "queued";
+  double share = 0.0;                                ///< of the work, 0 … 1
+  std::optional<std::string> snapshot, description;  ///< objects: the frozen CSV, snapshot.json
+  std::optional<std::string> result, report, data;   ///< objects, once done
+  std::string error;
+  std::int64_t made_utc_us = 0;
+  std::string made_by;
+};
+
+core::Result<void> add_analysis_plan(Writing& tx, const AnalysisPlan& plan);
+core::Result<std::optional<AnalysisPlan>> analysis_plan_of(Reading& tx, const std::string& id);
+/// Newest first.
+core::Result<std::vector<AnalysisPlan>> all_analysis_plans(Reading& tx);
+
+core::Result<void> add_analysis(Writing& tx, const AnalysisRun& run);
+core::Result<std::optional<AnalysisRun>> analysis_of(Reading& tx, const std::string& id);
+/// Newest first.
+core::Result<std::vector<AnalysisRun>> analyses_of_plan(Reading& tx, const std::string& plan_id);
+/// The first run of the same question on the same data that was done before this one.
+core::Result<std::optional<AnalysisRun>> analysis_repeated_by(Reading& tx, const AnalysisRun& run);
+
+core::Result<void> note_analysis_share(Writing& tx, const std::string& id, double share,
+                                       std::int64_t now_utc_us);
+/// The data the run is of, from now on.
+core::Result<void> note_analysis_snapshot(Writing& tx, const std::string& id,
+                                          const std::string& snapshot,
+                                          const std::string& description, std::int64_t now_utc_us);
+/// `done` as in AnalysisRun: result, report, data.
+core::Result<void> finish_analysis(Writing& tx, const AnalysisRun& done, std::int64_t now_utc_us);
+core::Result<void> fail_analysis(Writing& tx, const std::string& id, const std::string& why,
+                                 std::int64_t now_utc_us);
+
+}  // namespace tractus::store

@@ -1,0 +1,91 @@
+#include "db/store/cohort/cohort.hpp"
+
+#include <set>
+
+#include "db/store/studies/blinding.hpp"
+
+namespace tractus {
+namespace store {
+namespace {
+
+const std::string& kTrials() {
+  static const std::string sql =
+      "select t.id, t.case_id, c.title, s.name, t.operator_name, t.simulated, t.started_utc_us, "
+      "t.duration_s, t.samples, t.state, t.correct, t.complete, c.kind, l.study_id, l.participant, "
+      "p.level, l.position, p.experience_years, m.state, u.name, t.sha256, case when " +
+      blinded_sql() +
+      " then 1 else 0 end from trials t "
+      "join cases c on c.id = t.case_id join stations s on s.id = t.station_id "
+      "left join study_trials m on m.trial_id = t.id left join study_slots l on l.id = m.slot_id "
+      "left join assignment_people a on a.study_id = l.study_id and a.participant = l.participant "
+      "left join accounts u on u.id = a.account_id "
+      "left join study_participants p on p.study_id = l.study_id and p.name = l.participant "
+      "where ? = '' or l.study_id = ? order by t.started_utc_us, t.id limit ?";
+  return sql;
+}
+
+CohortTrial trial_from(const Row& row) {
+  CohortTrial out{.summary = {.id = row.text(0),
+                              .case_id = row.text(1),
+                              .case_title = row.text(2),
+                              .station = row.text(3),
+                              .operator_name = row.text(4),
+                              .simulated = row.truth(5),
+                              .started_utc_us = row.integer(6),
+                              .duration_s = row.number(7),
+                              .samples = row.count(8),
+                              .state = row.text(9),
+                              .correct = row.truth_or_null(10)},
+                  .complete = row.truth(11),
+                  .rig = row.text(12),
+                  .study = row.text_or_null(13).value_or(""),
+                  .participant = row.text_or_null(14).value_or(""),
+                  .level = row.text_or_null(15).value_or(""),
+                  .person = row.text_or_null(19).value_or(""),
+                  .experience_years = row.number_or_null(17),
+                  .place = row.text_or_null(18).value_or(""),
+                  .metrics = {},
+                  .sha256 = row.text(20),
+                  .blind = row.truth(21)};
+  if (!out.study.empty()) out.number = row.integer(16) + 1;
+  return out;
+}
+
+}  // namespace
+
+core::Result<std::vector<CohortTrial>> CohortRows::read(Reading& tx, const std::string& study_id,
+                                                        std::int64_t limit) {
+  auto rows = tx.query(kTrials(), {study_id, study_id, limit + 1});
+  if (!rows) return rows.error();
+  if (rows->size() > static_cast<std::size_t>(limit))
+    return core::Error{core::Errc::too_large, "the cohort has more than " + std::to_string(limit) +
+                                                  " trials: ask for one study"};
+  std::vector<CohortTrial> out;
+  for (const Row& row : *rows) {
+    out.push_back(trial_from(row));
+    auto scores = scores_of(tx, out.back().summary.id);
+    if (!scores) return scores.error();
+    for (const ScoreRecord& score : *scores)
+      if (score.value) out.back().metrics.emplace(score.metric_id, *score.value);
+  }
+  return out;
+}
+
+core::Result<std::vector<CohortTrial>> trials_for_teaching(Reading& tx, const std::string& study_id,
+                                                           const TrialFilter& whose,
+                                                           std::int64_t limit) {
+  constexpr std::int64_t kAnyTime_utc_us = 9'000'000'000'000'000;
+  auto trials = CohortRows::read(tx, study_id, limit);
+  if (!trials) return trials.error();
+  std::erase_if(*trials, [](const CohortTrial& trial) { return trial.blind; });
+  if (whose.taught_by.empty() && whose.seen_by.empty()) return trials;
+  const auto reached = trials_before(tx, kAnyTime_utc_us, limit, whose);
+  if (!reached) return reached.error();
+  std::set<std::string> ids;
+  for (const TrialSummary& trial : *reached) ids.insert(trial.id);
+  std::erase_if(*trials, [&](const CohortTrial& trial) { return !ids.contains(trial.summary.id); });
+  return trials;
+}
+
+}  // namespace store
+}  // namespace tractus

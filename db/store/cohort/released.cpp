@@ -1,0 +1,122 @@
+#include "db/store/cohort/released.hpp"
+
+#include <algorithm>
+
+namespace tractus {
+namespace store {
+namespace {
+
+constexpr double kDay_us = 86'400e6;
+constexpr std::int64_t kMostKnown = 1'000'000;
+
+core::Result<void> check_there(Reading& tx, const std::string& study) {
+  if (study.empty()) return {};
+  auto known = series_exists(tx, study);
+  if (!known) return known.error();
+  if (*known) return {};
+  return core::Error{core::Errc::not_found, "study: there is no study " + study.substr(0, 32)};
+}
+
+}  // namespace
+
+ReleasedTrial::ReleasedTrial(CohortTrial trial, Tier released, const std::string& person,
+                             const Pseudonyms& names)
+    : id(names.trial(trial.summary.id)),
+      participant(names.person(person)),
+      study(std::move(trial.study)),
+      level(std::move(trial.level)),
+      case_title(std::move(trial.summary.case_title)),
+      rig(std::move(trial.rig)),
+      number(trial.number),
+      experience_years(trial.experience_years),
+      duration_s(trial.summary.duration_s),
+      samples(trial.summary.samples),
+      simulated(trial.summary.simulated),
+      complete(trial.complete),
+      place(std::move(trial.place)),
+      assessed(trial.summary.state == "assessed"),
+      correct(trial.summary.correct),
+      metrics(std::move(trial.metrics)),
+      tier(released),
+      sha256_(std::move(trial.sha256)),
+      started_utc_us_(trial.summary.started_utc_us) {}
+
+core::Result<std::string> ReleasedTrial::file(Tier wanted) const {
+  if (tier >= wanted) return sha256_;
+  return core::Error{core::Errc::forbidden, "who did this trial agreed to " +
+                                                std::string(name(tier)) + ", and this is " +
+                                                std::string(name(wanted))};
+}
+
+core::Result<ReleasedTrials> ReleasedTrials::read(Reading& tx,
+                                                  const std::optional<PseudonymKey>& key,
+                                                  const Wish& wish) {
+  const auto names = Pseudonyms::of(key);
+  if (!names) return names.error();
+  if (auto there = check_there(tx, wish.study); !there) return there.error();
+  auto trials = CohortRows::read(tx, wish.study, wish.most);
+  if (!trials) return trials.error();
+  const auto book = ConsentBook::read(tx);
+  if (!book) return book.error();
+  ReleasedTrials out;
+  out.take(std::move(*trials), *book, *names, wish.least);
+  out.count_days();
+  return out;
+}
+
+void ReleasedTrials::take(std::vector<CohortTrial> trials, const ConsentBook& book,
+                          const Pseudonyms& names, Tier least) {
+  for (CohortTrial& trial : trials) {
+    const Tier tier = book.tier_of(trial);
+    const bool agreed = tier >= least && tier != Tier::none;
+    if (trial.blind) ++blind_;
+    if (!trial.blind && !agreed) ++without_consent_;
+    if (trial.blind || !agreed) continue;
+    const std::string person = book.person_of(trial);
+    trials_.push_back(ReleasedTrial(std::move(trial), tier, person, names));
+  }
+}
+
+void ReleasedTrials::count_days() {
+  std::map<std::string, std::int64_t> first;
+  for (ReleasedTrial& trial : trials_) {
+    const auto at = first.try_emplace(trial.participant, trial.started_utc_us_).first;
+    trial.days = double(trial.started_utc_us_ - at->second) / kDay_us;
+  }
+}
+
+ReleasedTrials ReleasedTrials::at_least(Tier tier) const {
+  ReleasedTrials out = *this;
+  std::erase_if(out.trials_, [&](const ReleasedTrial& trial) { return trial.tier < tier; });
+  return out;
+}
+
+core::Result<std::map<std::string, std::string>> who_is_who(
+    Reading& tx, const std::optional<PseudonymKey>& key) {
+  const auto names = Pseudonyms::of(key);
+  if (!names) return names.error();
+  auto trials = CohortRows::read(tx, "", kMostKnown);
+  if (!trials) return trials.error();
+  const auto book = ConsentBook::read(tx);
+  if (!book) return book.error();
+  std::map<std::string, std::string> out;
+  for (const CohortTrial& trial : *trials) {
+    const std::string person = book->person_of(trial);
+    out[names->person(person)] = person;
+  }
+  return out;
+}
+
+core::Result<std::int64_t> scored_trials(Reading& tx, const std::string& study) {
+  if (auto there = check_there(tx, study); !there) return there.error();
+  auto rows = tx.query(
+      "select count(*) from trials t left join study_trials m on m.trial_id = t.id left join "
+      "study_slots l on l.id = m.slot_id where t.complete = 1 and t.state = 'assessed' and "
+      "(m.state is null or m.state = 'counts') and (? = '' or l.study_id = ?)",
+      {study, study});
+  if (!rows) return rows.error();
+  return rows->front().integer(0);
+}
+
+}  // namespace store
+}  // namespace tractus

@@ -1,0 +1,25 @@
+/// The schema's steps, db/migrations/NNNN_name.sql, as they were when this program was built.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "db/store/database/connection.hpp"
+
+namespace tractus::store {
+
+struct Migration {
+  std::int64_t version;  ///< NNNN, from 1 without gaps
+  std::string name;
+  std::string sql;
+};
+
+/// In order of version.
+std::vector<Migration> migrations();
+
+/// Brings the database to the last of `steps`, each step in its own transaction with the note that
+/// it was done. Errors: conflict when the database is newer than the steps (a newer program made
+/// it); those of the connection.
+core::Result<void> migrate(Connection& connection, const std::vector<Migration>& steps);
+
+}  // namespace tractus::store

@@ -1,0 +1,74 @@
+/// One line to a PostgreSQL server, with what libpq needs known in one place. For the driver, the
+/// signals and the locks on it; nobody else includes this.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/result.hpp"
+#include "db/store/database/value.hpp"
+
+struct pg_conn;
+struct pg_result;
+
+namespace tractus::store {
+
+/// Used by one thread at a time. Connects when first asked to, and again when the connection broke.
+class PostgresLink {
+ public:
+  explicit PostgresLink(std::string address);
+  ~PostgresLink();
+  PostgresLink(const PostgresLink&) = delete;
+  PostgresLink& operator=(const PostgresLink&) = delete;
+
+  /// Connects if need be. Errors: unavailable, bad_input.
+  core::Result<void> connect();
+  /// False: never connected, or the connection is known to be broken.
+  bool connected() const;
+  /// How often it connected: what a session holds (locks, LISTEN) is gone when this has changed.
+  unsigned session() const { return session_; }
+
+  /// One prepared statement with `?` placeholders; statements are kept for the session.
+  core::Result<void> each(std::string_view sql, std::span<const Value> values,
+                          const std::function<core::Result<void>(Row)>& seen);
+  core::Result<Rows> query(std::string_view sql, std::span<const Value> values);
+  /// Statements as they are; the answer is the last one's tag, as "COMMIT".
+  core::Result<std::string> script(const std::string& sql);
+  bool in_transaction() const;
+
+  struct Notification {
+    std::string channel, payload;
+  };
+  /// Waits for notifications until some came or `wake_fd` can be read. Errors: unavailable: it
+  /// broke.
+  core::Result<std::vector<Notification>> notifications(int wake_fd);
+
+ private:
+  struct Closer {
+    void operator()(pg_conn* connection) const;
+    void operator()(pg_result* result) const;
+  };
+  using Result = std::unique_ptr<pg_result, Closer>;
+
+  core::Result<void> set_up();
+  core::Result<std::string> prepared(std::string_view sql, std::span<const Value> values);
+  core::Result<void> take_rows(const std::function<core::Result<void>(Row)>& seen);
+  core::Error failure(const pg_result* result) const;
+
+  std::string address_;
+  std::unique_ptr<pg_conn, Closer> connection_;
+  std::map<std::string, std::string, std::less<>> statements_;  ///< types and text → name
+  unsigned session_ = 0;
+};
+
+/// A statement as PostgreSQL reads it: `?` outside of quotes becomes $1, $2, …, and what stands in
+/// `/*pg: … */` is laid open.
+std::string postgres_text(std::string_view sql);
+
+}  // namespace tractus::store

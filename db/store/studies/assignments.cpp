@@ -1,0 +1,176 @@
+#include "db/store/studies/assignments.hpp"
+
+#include "core/require.hpp"
+
+namespace tractus {
+namespace store {
+namespace {
+
+core::Result<void> done(const core::Result<Rows>& rows) {
+  if (!rows) return rows.error();
+  return {};
+}
+
+/// Columns as assignment_from reads them; the one placeholder six times: whose counts (empty: all).
+constexpr const char* kAssignment =
+    "select a.study_id, s.title, s.state, s.ordering, s.repeats, s.seed, s.on_invalid, "
+    "s.made_utc_us, s.made_by, a.cohort_id, a.due_utc_us, a.release, a.made_by_id, "
+    "coalesce(c.name, ''), (select count(*) from assignment_people p where p.study_id = "
+    "a.study_id), (select count(*) from study_slots k join assignment_people p on p.study_id = "
+    "k.study_id and p.participant = k.participant where k.study_id = a.study_id and k.state = "
+    "'recorded' and (? = '' or p.account_id = ?)), (select count(*) from study_slots k join "
+    "assignment_people p on p.study_id = k.study_id and p.participant = k.participant where "
+    "k.study_id = a.study_id and k.state <> 'invalid' and (? = '' or p.account_id = ?)), (select "
+    "count(*) from study_slots k join cases d on d.id = k.case_id join assignment_people p on "
+    "p.study_id = k.study_id and p.participant = k.participant where k.study_id = a.study_id and "
+    "k.state <> 'invalid' and d.planned = 1 and (? = '' or p.account_id = ?)) "
+    "from assignments a join studies s on s.id = a.study_id left join cohorts c on c.id = "
+    "a.cohort_id ";
+
+std::optional<std::int64_t> integer_or_null(const Row& row, std::size_t column) {
+  const auto* held = std::get_if<std::int64_t>(&row.value(column));
+  return held ? std::optional(*held) : std::nullopt;
+}
+
+Assignment assignment_from(const Row& row) {
+  return {.study = {.id = row.text(0),
+                    .title = row.text(1),
+                    .state = row.text(2),
+                    .ordering = row.text(3),
+                    .repeats = row.integer(4),
+                    .seed = row.integer(5),
+                    .on_invalid = row.text(6),
+                    .made_utc_us = row.integer(7),
+                    .made_by = row.text(8)},
+          .cohort_id = row.text_or_null(9),
+          .due_utc_us = integer_or_null(row, 10),
+          .release = row.text(11),
+          .made_by_id = row.text(12),
+          .cohort_name = row.text(13),
+          .people = row.count(14),
+          .done = row.count(15),
+          .planned = row.count(16),
+          .to_drill = row.count(17)};
+}
+
+}  // namespace
+
+core::Result<AssignmentId> add_assignment(Writing& tx, const Assignment& a,
+                                          const std::vector<std::string>& case_ids,
+                                          const AuditStamp& stamp) {
+  if (auto added = add_series(tx, a.study, "assignment", case_ids, stamp); !added)
+    return added.error();
+  auto added = done(tx.query(
+      "insert into assignments (study_id, cohort_id, due_utc_us, release, made_by_id) values "
+      "(?, ?, ?, ?, ?)",
+      {a.study.id, or_null(a.cohort_id), or_null(a.due_utc_us), a.release, a.made_by_id}));
+  if (!added) return added.error();
+  return find_assignment(tx, a.study.id);
+}
+
+core::Result<void> set_assigned_name(Writing& tx, const AssignmentId& id,
+                                     const std::string& case_id, const std::string& name) {
+  return done(tx.query(
+      "insert into assignment_names (study_id, case_id, name) values (?, ?, ?) on conflict "
+      "(study_id, case_id) do update set name = ?",
+      {id.text(), case_id, name, name}));
+}
+
+core::Result<std::string> assigned_name(Reading& tx, const AssignmentId& id,
+                                        const std::string& case_id) {
+  auto rows = tx.query("select name from assignment_names where study_id = ? and case_id = ?",
+                       {id.text(), case_id});
+  if (!rows) return rows.error();
+  return rows->empty() ? std::string() : rows->front().text(0);
+}
+
+core::Result<void> add_assigned_person(Writing& tx, const AssignmentId& id,
+                                       const std::string& account_id,
+                                       const std::string& participant) {
+  auto added = done(
+      tx.query("insert into assignment_people (study_id, account_id, participant) values (?, ?, ?)",
+               {id.text(), account_id, participant}));
+  if (!added && added.error().code == core::Errc::conflict)
+    return core::Error{core::Errc::conflict, "it is assigned to this person already"};
+  return added;
+}
+
+core::Result<void> set_release(Writing& tx, const AssignmentId& id, const std::string& release,
+                               const AuditStamp& stamp) {
+  auto set =
+      done(tx.query("update assignments set release = ? where study_id = ?", {release, id.text()}));
+  if (!set) return set;
+  return add_study_event(tx, id.text(), stamp, "results " + release);
+}
+
+core::Result<void> set_due(Writing& tx, const AssignmentId& id,
+                           const std::optional<std::int64_t>& due_utc_us, const AuditStamp& stamp) {
+  auto set = done(tx.query("update assignments set due_utc_us = ? where study_id = ?",
+                           {or_null(due_utc_us), id.text()}));
+  if (!set) return set;
+  return add_study_event(tx, id.text(), stamp, "due date changed");
+}
+
+core::Result<std::vector<Assignment>> assignments_of(Reading& tx, const AssignmentFilter& whose) {
+  const std::string &me = whose.done_by, &leader = whose.led_by;
+  auto rows = tx.query(
+      std::string(kAssignment) +
+          "where (? = '' or a.made_by_id = ? or exists (select 1 from cohort_people f where "
+          "f.cohort_id = a.cohort_id and f.account_id = ? and f.part = 'faculty')) and (? = '' or "
+          "exists (select 1 from assignment_people p where p.study_id = a.study_id and "
+          "p.account_id = ?)) order by a.due_utc_us is null, a.due_utc_us, s.made_utc_us, s.id",
+      {me, me, me, me, me, me, leader, leader, leader, me, me});
+  if (!rows) return rows.error();
+  std::vector<Assignment> out;
+  for (const Row& row : *rows) out.push_back(assignment_from(row));
+  return out;
+}
+
+core::Result<Assignment> assignment_of(Reading& tx, const AssignmentId& id,
+                                       const std::string& done_by) {
+  auto rows = tx.query(std::string(kAssignment) + "where a.study_id = ?",
+                       {done_by, done_by, done_by, done_by, done_by, done_by, id.text()});
+  if (!rows) return rows.error();
+  core::require(!rows->empty(), "who has an assignment's id has looked it up");
+  return assignment_from(rows->front());
+}
+
+core::Result<std::vector<AssignmentId>> assignments_of_cohort(Reading& tx,
+                                                              const std::string& cohort_id) {
+  auto rows = tx.query("select study_id from assignments where cohort_id = ?", {cohort_id});
+  if (!rows) return rows.error();
+  std::vector<AssignmentId> out;
+  for (const Row& row : *rows) {
+    auto id = find_assignment(tx, row.text(0));
+    if (!id) return id.error();
+    out.push_back(std::move(*id));
+  }
+  return out;
+}
+
+core::Result<std::vector<AssignedPerson>> assigned_people(Reading& tx, const AssignmentId& id) {
+  auto rows = tx.query(
+      "select p.account_id, u.name, p.participant, (select count(*) from study_slots k where "
+      "k.study_id = p.study_id and k.participant = p.participant and k.state = 'recorded'), "
+      "(select count(*) from study_slots k where k.study_id = p.study_id and k.participant = "
+      "p.participant and k.state <> 'invalid') from assignment_people p join accounts u on u.id = "
+      "p.account_id where p.study_id = ? order by u.name",
+      {id.text()});
+  if (!rows) return rows.error();
+  std::vector<AssignedPerson> out;
+  for (const Row& row : *rows)
+    out.push_back({row.text(0), row.text(1), row.text(2), row.count(3), row.count(4)});
+  return out;
+}
+
+core::Result<std::string> participant_for(Reading& tx, const AssignmentId& id,
+                                          const std::string& account_id) {
+  auto rows =
+      tx.query("select participant from assignment_people where study_id = ? and account_id = ?",
+               {id.text(), account_id});
+  if (!rows) return rows.error();
+  return rows->empty() ? std::string() : rows->front().text(0);
+}
+
+}  // namespace store
+}  // namespace tractus

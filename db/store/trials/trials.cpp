@@ -1,0 +1,132 @@
+#include "db/store/trials/trials.hpp"
+
+#include "db/store/studies/blinding.hpp"
+
+namespace tractus {
+namespace store {
+namespace {
+
+/// Columns 0–10, as summary_from reads them.
+constexpr const char* kSummaryColumns =
+    "select t.id, t.case_id, c.title, s.name, t.operator_name, t.simulated, t.started_utc_us, "
+    "t.duration_s, t.samples, t.state, t.correct";
+constexpr const char* kFrom =
+    " from trials t join cases c on c.id = t.case_id join stations s on s.id = t.station_id ";
+
+TrialSummary summary_from(const Row& row) {
+  return {.id = row.text(0),
+          .case_id = row.text(1),
+          .case_title = row.text(2),
+          .station = row.text(3),
+          .operator_name = row.text(4),
+          .simulated = row.truth(5),
+          .started_utc_us = row.integer(6),
+          .duration_s = row.number(7),
+          .samples = row.count(8),
+          .state = row.text(9),
+          .correct = row.truth_or_null(10)};
+}
+
+core::Result<void> done(const core::Result<Rows>& rows) {
+  if (!rows) return rows.error();
+  return {};
+}
+
+core::Result<void> add_score(Writing& tx, const std::string& trial_id, std::int64_t position,
+                             const ScoreRecord& score) {
+  return done(
+      tx.query("insert into trial_metrics (trial_id, metric_id, position, value, note) "
+               "values (?, ?, ?, ?, ?)",
+               {trial_id, score.metric_id, position, or_null(score.value), score.note}));
+}
+
+}  // namespace
+
+core::Result<void> add_trial(Writing& tx, const TrialRecord& trial, std::int64_t now_utc_us) {
+  const TrialSummary& s = trial.summary;
+  return done(tx.query(
+      "insert into trials (id, case_id, station_id, sha256, operator_name, simulated, "
+      "started_utc_us, received_utc_us, duration_s, samples, complete, late_ticks, not_converged, "
+      "skipped_ticks, header, events, state, failure) "
+      "values (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, 'assessing', '')",
+      {s.id, s.case_id, trial.station_id, trial.sha256, s.operator_name, bool_value(s.simulated),
+       s.started_utc_us, now_utc_us, s.duration_s, count_value(s.samples),
+       bool_value(trial.complete), count_value(trial.late_ticks), count_value(trial.not_converged),
+       count_value(trial.skipped_ticks), trial.header, trial.events}));
+}
+
+core::Result<std::optional<TrialRecord>> trial_of(Reading& tx, const std::string& id) {
+  auto rows = tx.query(std::string(kSummaryColumns) +
+                           ", t.station_id, t.sha256, t.complete, t.late_ticks, t.not_converged, "
+                           "t.skipped_ticks, t.header, t.events, t.failure, t.coverage" +
+                           kFrom + "where t.id = ?",
+                       {id});
+  if (!rows) return rows.error();
+  if (rows->empty()) return std::optional<TrialRecord>();
+  const Row& row = rows->front();
+  return std::optional(TrialRecord{.summary = summary_from(row),
+                                   .station_id = row.text(11),
+                                   .sha256 = row.text(12),
+                                   .complete = row.truth(13),
+                                   .late_ticks = row.count(14),
+                                   .not_converged = row.count(15),
+                                   .skipped_ticks = row.count(16),
+                                   .header = row.text(17),
+                                   .events = row.text(18),
+                                   .failure = row.text(19),
+                                   .coverage = row.text_or_null(20)});
+}
+
+core::Result<std::vector<TrialSummary>> trials_before(Reading& tx, std::int64_t before_utc_us,
+                                                      std::int64_t limit,
+                                                      const TrialFilter& whose) {
+  constexpr const char* kAssigned =
+      "exists (select 1 from study_trials st join study_slots sl on sl.id = st.slot_id join "
+      "assignment_people p on p.study_id = sl.study_id and p.participant = sl.participant ";
+  auto rows = tx.query(
+      std::string(kSummaryColumns) + kFrom + "where t.started_utc_us < ? and not " + blinded_sql() +
+          " and (? = '' or " + kAssigned +
+          "join cohort_people c on c.account_id = p.account_id and c.part = 'trainee' join "
+          "cohort_people f on f.cohort_id = c.cohort_id and f.part = 'faculty' where st.trial_id = "
+          "t.id and f.account_id = ?)) and (? = '' or " +
+          kAssigned +
+          "join assignments a on a.study_id = sl.study_id where st.trial_id = t.id and "
+          "p.account_id = ? and a.release <> 'held')) order by t.started_utc_us desc, t.id desc "
+          "limit ?",
+      {before_utc_us, whose.taught_by, whose.taught_by, whose.seen_by, whose.seen_by, limit});
+  if (!rows) return rows.error();
+  std::vector<TrialSummary> out;
+  for (const Row& row : *rows) out.push_back(summary_from(row));
+  return out;
+}
+
+core::Result<void> set_assessment(Writing& tx, const std::string& id,
+                                  const std::vector<ScoreRecord>& scores,
+                                  std::optional<bool> correct, const std::string& coverage) {
+  if (auto cleared = tx.query("delete from trial_metrics where trial_id = ?", {id}); !cleared)
+    return cleared.error();
+  for (std::size_t i = 0; i < scores.size(); ++i)
+    if (auto added = add_score(tx, id, static_cast<std::int64_t>(i), scores[i]); !added)
+      return added;
+  return done(tx.query(
+      "update trials set state = 'assessed', failure = '', correct = ?, coverage = ? where id = ?",
+      {correct ? bool_value(*correct) : Value(), coverage, id}));
+}
+
+core::Result<void> set_assessment_failed(Writing& tx, const std::string& id,
+                                         const std::string& why) {
+  return done(tx.query("update trials set state = 'failed', failure = ? where id = ?", {why, id}));
+}
+
+core::Result<std::vector<ScoreRecord>> scores_of(Reading& tx, const std::string& trial_id) {
+  auto rows = tx.query(
+      "select metric_id, value, note from trial_metrics where trial_id = ? order by position",
+      {trial_id});
+  if (!rows) return rows.error();
+  std::vector<ScoreRecord> out;
+  for (const Row& row : *rows) out.push_back({row.text(0), row.number_or_null(1), row.text(2)});
+  return out;
+}
+
+}  // namespace store
+}  // namespace tractus

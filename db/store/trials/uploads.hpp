@@ -1,0 +1,29 @@
+/// Uploads under way: what a station announced. How much of it is here, its file says
+/// (PartialFiles).
+#pragma once
+
+#include <vector>
+
+#include "db/store/store.hpp"
+
+namespace tractus::store {
+
+struct Upload {
+  std::string trial_id;
+  std::string station_id;
+  std::string case_id;
+  std::uint64_t size_bytes = 0;
+  std::string sha256;
+  std::string state;  ///< "receiving" or "complete"
+};
+
+core::Result<std::optional<Upload>> upload_of(Reading& tx, const std::string& trial_id);
+/// All that are still receiving.
+core::Result<std::vector<Upload>> open_uploads(Reading& tx);
+/// Those of them that were announced after `utc_us`.
+core::Result<std::vector<Upload>> open_uploads_since(Reading& tx, std::int64_t utc_us);
+core::Result<std::uint64_t> open_upload_count(Reading& tx, const std::string& station_id);
+core::Result<void> add_upload(Writing& tx, const Upload& upload, std::int64_t now_utc_us);
+core::Result<void> complete_upload(Writing& tx, const std::string& trial_id);
+
+}  // namespace tractus::store

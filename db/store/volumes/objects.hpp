@@ -1,0 +1,65 @@
+/// Files of the data folder: objects named by their content, and the partial files of uploads.
+#pragma once
+
+#include <filesystem>
+
+#include "core/bytes.hpp"
+#include "core/result.hpp"
+
+namespace tractus::store {
+
+/// DATA/objects/ab/cdef…: a file is there whole or not at all, never changes, and its name is its
+/// SHA-256.
+class Objects {
+ public:
+  /// @param data  the data folder; `objects` in it is made when it is not there.
+  static core::Result<Objects> open(const std::filesystem::path& data);
+
+  /// @pre is_sha256(sha256)
+  std::filesystem::path path_of(const std::string& sha256) const;
+  bool has(const std::string& sha256) const;
+
+  core::Result<std::string> put(core::ByteView bytes) const;
+  /// Copies a file in, in bounded memory, and checks that it is what it is said to be. Errors:
+  /// corrupt when it is not.
+  core::Result<void> copy_in(const std::filesystem::path& file, const std::string& sha256) const;
+  /// Gives a finished file, whose content was checked, a second name among the objects. The first
+  /// name stays.
+  core::Result<void> link_in(const std::filesystem::path& file, const std::string& sha256) const;
+
+ private:
+  explicit Objects(std::filesystem::path root) : root_(std::move(root)) {}
+  core::Result<void> folder_for(const std::string& sha256) const;
+  std::filesystem::path root_;
+};
+
+/// DATA/uploads/TRIAL.part: grows by acknowledged pieces.
+class PartialFiles {
+ public:
+  static core::Result<PartialFiles> open(const std::filesystem::path& data);
+
+  /// @pre is_id(trial_id)
+  std::filesystem::path path_of(const std::string& trial_id) const;
+  /// How much of an upload is here; 0 when there is no file. What it counts was flushed, unless a
+  /// process died within `append` (`flush` then).
+  std::uint64_t size_of(const std::string& trial_id) const;
+  /// Writes at the end, which is at `offset`, and returns once the disk has it (fdatasync; for a
+  /// new file its folder too). Errors: io; the file is then as long as before.
+  core::Result<void> append(const std::string& trial_id, std::uint64_t offset,
+                            core::ByteView bytes) const;
+  core::Result<void> flush(const std::string& trial_id) const;
+  void remove(const std::string& trial_id) const noexcept;
+  /// Trials that have one.
+  std::vector<std::string> ids() const;
+  const std::filesystem::path& folder() const { return root_; }
+
+ private:
+  explicit PartialFiles(std::filesystem::path root) : root_(std::move(root)) {}
+  std::filesystem::path root_;
+};
+
+/// Reads a file from its start in pieces of at most 1 MiB; `size` bytes of it.
+/// Errors: those of the system; corrupt when it is shorter.
+core::Result<std::string> file_sha256(const std::filesystem::path& path);
+
+}  // namespace tractus::store

@@ -1,0 +1,139 @@
+#include "server/api/audit_entry.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "server/api/backend.hpp"
+
+namespace tractus {
+namespace api {
+namespace {
+
+constexpr std::size_t kMaxRead_bytes = 16 * 1024;  // bodies with a secret have lower limits
+constexpr std::size_t kMaxDetail_bytes = 4096;
+
+/// The fields of bodies that are kept as they came, sorted. None of them may ever hold a secret:
+/// what a new route calls otherwise is not kept until it is named here.
+constexpr std::array<std::string_view, 71> kKept{"account",
+                                                 "add",
+                                                 "against",
+                                                 "all",
+                                                 "assignment",
+                                                 "at_m",
+                                                 "at_s",
+                                                 "at_utc_us",
+                                                 "badge",
+                                                 "basis",
+                                                 "breach",
+                                                 "calibration",
+                                                 "case",
+                                                 "case_id",
+                                                 "cases",
+                                                 "channel",
+                                                 "cohort",
+                                                 "complete",
+                                                 "data_seen",
+                                                 "depth_m",
+                                                 "due_utc_us",
+                                                 "entry_m",
+                                                 "experience_years",
+                                                 "force_N",
+                                                 "format",
+                                                 "free_disk_bytes",
+                                                 "id",
+                                                 "kind",
+                                                 "level",
+                                                 "looked_at",
+                                                 "made_utc_us",
+                                                 "measurements",
+                                                 "model",
+                                                 "name",
+                                                 "note",
+                                                 "on_invalid",
+                                                 "ordering",
+                                                 "participant",
+                                                 "participants",
+                                                 "passed",
+                                                 "people",
+                                                 "plan",
+                                                 "protocol",
+                                                 "published",
+                                                 "radius_m",
+                                                 "reason",
+                                                 "reference",
+                                                 "refused",
+                                                 "release",
+                                                 "repeats",
+                                                 "retired",
+                                                 "rig",
+                                                 "role",
+                                                 "scenarios",
+                                                 "self_test",
+                                                 "sha256",
+                                                 "simulated",
+                                                 "size_bytes",
+                                                 "state",
+                                                 "stations",
+                                                 "study",
+                                                 "subject",
+                                                 "target_m",
+                                                 "tier",
+                                                 "title",
+                                                 "trial_id",
+                                                 "tuned",
+                                                 "version",
+                                                 "volume",
+                                                 "wall",
+                                                 "words"};
+
+bool is_kept(std::string_view field) { return std::ranges::binary_search(kKept, field); }
+
+/// Without the values of fields that are not kept, at any depth.
+core::Json kept(const core::Json& json) {
+  if (!json.is_structured()) return json;
+  core::Json out = json.is_array() ? core::Json::array() : core::Json::object();
+  if (json.is_array())
+    for (const auto& inner : json) out.push_back(kept(inner));
+  else
+    for (const auto& [field, value] : json.items())
+      out[field] = is_kept(field) ? kept(value) : core::Json("(not kept)");
+  return out;
+}
+
+core::Json detail_of(const http::Request& request) {
+  if (request.body.empty()) return core::Json::object();
+  if (request.body.size() <= kMaxRead_bytes) {
+    const auto json = core::parse_json(request.body, "body");
+    if (json && json->is_object()) {
+      core::Json out = kept(*json);
+      if (out.dump(-1, ' ', false, core::Json::error_handler_t::replace).size() <= kMaxDetail_bytes)
+        return out;
+    }
+  }
+  return {{"size_bytes", request.body.size()},
+          {"sha256", core::sha256(core::bytes_of(request.body))}};
+}
+
+}  // namespace
+
+std::string object_text(const std::map<std::string, std::string>& segments) {
+  std::string out;
+  for (const auto& [key, value] : segments)
+    out += (out.empty() ? "" : " ") + key + "=" + value.substr(0, 128);
+  return out;
+}
+
+store::AuditedAction audited_action(const RouteInfo& route, const Call& call,
+                                    const std::map<std::string, std::string>& segments) {
+  return {
+      .who = call.caller.name,
+      .role = route.open ? "" : std::string(name(call.caller.role)),
+      .peer = call.request.peer,
+      .what = route.id,
+      .object = object_text(segments),
+      .detail = detail_of(call.request).dump(-1, ' ', false, core::Json::error_handler_t::replace),
+      .at_utc_us = call.backend.now_utc_us()};
+}
+
+}  // namespace api
+}  // namespace tractus

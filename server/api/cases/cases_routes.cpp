@@ -1,0 +1,148 @@
+/// Published cases: their list, manifest, parts and a small picture in voxels.
+#include <fmt/format.h>
+
+#include "db/store/cases/cases.hpp"
+#include "server/api/backend.hpp"
+#include "server/api/cases/preview.hpp"
+#include "server/api/route.hpp"
+#include "server/api/schema.hpp"
+
+namespace tractus {
+namespace api {
+namespace {
+
+constexpr const char* kForEver = "private, max-age=31536000, immutable";  // named by content
+
+core::Result<http::Response> list_cases(const Call& call) {
+  auto known = call.backend.store.read([](store::Reading& tx) { return store::all_cases(tx); });
+  if (!known) return known.error();
+  core::Json list = core::Json::array();
+  for (const store::CaseSummary& c : *known)
+    list.push_back({{"id", c.id},
+                    {"title", c.title},
+                    {"source", c.source},
+                    {"made_utc_us", c.made_utc_us},
+                    {"trials", c.trials},
+                    {"retired", c.retired},
+                    {"planned", c.planned}});
+  return json_response({{"cases", list}});
+}
+
+core::Result<http::Response> part_named(const Call& call, const std::string& part_name) {
+  const std::string& id = call.text("id");
+  auto part = call.backend.store.read(
+      [&](store::Reading& tx) { return store::case_part(tx, id, part_name); });
+  if (!part) return part.error();
+  const core::Error absent{
+      core::Errc::not_found,
+      fmt::format("case {} has no part {} here", id.substr(0, 64), part_name.substr(0, 64))};
+  if (!*part) return absent;
+  const Role role = call.caller.role;
+  const bool may_know = role == Role::admin || role == Role::faculty || role == Role::researcher;
+  if ((*part)->secret && !may_know) {
+    auto known =
+        call.backend.store.read([&](store::Reading& tx) { return store::case_of(tx, id); });
+    if (!known) return known.error();
+    // Of a scenario not even that it is here: versions of scenarios are no secret.
+    if (*known && (*known)->kind == store::kProbing) return absent;
+    return core::Error{core::Errc::forbidden, "this part is secret"};
+  }
+  const bool json = part_name.ends_with(".json");
+  auto response = http::file_response(call.backend.objects.path_of((*part)->sha256), call.request,
+                                      json ? "application/json" : "application/octet-stream");
+  if (response)
+    response->with("Cache-Control", (*part)->secret ? "no-store" : kForEver)
+        .with("ETag", "\"" + (*part)->sha256 + "\"");
+  return response;
+}
+
+core::Result<http::Response> manifest(const Call& call) { return part_named(call, "case.json"); }
+core::Result<http::Response> part(const Call& call) { return part_named(call, call.text("name")); }
+
+std::string numbers(std::span<const double> values) {
+  return fmt::format("{}", fmt::join(values, ","));
+}
+
+core::Result<http::Response> preview_of_case(const Call& call) {
+  auto preview =
+      case_preview(call.backend, call.text("id"), static_cast<int>(call.integer("max_side")));
+  if (!preview) return preview.error();
+  const volume::Geometry& g = preview->geometry;
+  const math::Mat3 rows = g.directions.transpose();  // Eigen stores by column
+  http::Response response;
+  response.with("Content-Type", "application/octet-stream")
+      .with("Cache-Control", kForEver)
+      .with("X-Dims", fmt::format("{},{},{}", g.dims[0], g.dims[1], g.dims[2]))
+      .with("X-Spacing-m", numbers({g.spacing_m.data(), 3}))
+      .with("X-Origin-m", numbers({g.origin_m.data(), 3}))
+      .with("X-Directions", numbers({rows.data(), 9}));
+  response.body = std::move(preview->opacity);
+  return response;
+}
+
+RouteInfo read_route(std::string path, std::string id, std::string summary, std::string answer) {
+  return {.method = "GET",
+          .path = "/api/v1/cases" + path,
+          .id = std::move(id),
+          .summary = std::move(summary),
+          .who = {Role::admin, Role::director, Role::faculty, Role::researcher, Role::station},
+          .parameters = {},
+          .body = "",
+          .answer = std::move(answer),
+          .schemas = {},
+          .handle = nullptr};
+}
+
+}  // namespace
+
+std::vector<RouteInfo> cases_routes() {
+  const Parameter id = path_text("id", "SHA-256 of case.json");
+  RouteInfo list = read_route("", "cases", "Published cases, newest first", "CaseList");
+  list.schemas = {
+      {"CaseSummary",
+       schema::object({{"id", schema::text("SHA-256 of case.json")},
+                       {"title", schema::text("for people")},
+                       {"source", schema::text("where the volume came from, licence")},
+                       {"made_utc_us", schema::integer("us", "since 1970, UTC")},
+                       {"trials", schema::integer("1", "on this server")},
+                       {"retired", schema::truth("offered no more")},
+                       {"planned", schema::truth("the bone is whole: its channel is drilled "
+                                                 "first, and felt then")}})},
+      {"CaseList",
+       schema::object({{"cases", schema::array(schema::ref("CaseSummary"), "newest first")}})}};
+  list.handle = list_cases;
+
+  RouteInfo one =
+      read_route("/{id}", "case", "The signed manifest case.json, byte for byte", "CaseManifest");
+  one.parameters = {id};
+  one.schemas = {{"CaseManifest", schema::anything("tractus-case/1")}};
+  one.handle = manifest;
+
+  RouteInfo bytes =
+      read_route("/{id}/parts/{name}", "casePart",
+                 "A part's bytes; Range is honoured; secret parts never to a station", kBytes);
+  bytes.parameters = {id, path_text("name", "as in the manifest, or case.json, case.sig")};
+  bytes.handle = part;
+
+  RouteInfo small = read_route(
+      "/{id}/preview", "casePreview",
+      "Opacity round the tract as bytes 0 … 255, [k][j][i]; X-Dims, X-Spacing-m, X-Origin-m and "
+      "X-Directions (row-major) place them",
+      kBytes);
+  small.parameters = {id,
+                      {.in = Parameter::In::query,
+                       .name = "max_side",
+                       .kind = Parameter::Kind::integer,
+                       .unit = "1",
+                       .meaning = "voxels along the longest side, at most",
+                       .low = 8,
+                       .high = 256,
+                       .fallback = "64"}};
+  small.who.push_back({Role::trainee, Scope::own});
+  small.object = Object::published_case;
+  small.handle = preview_of_case;
+  return {list, one, bytes, small};
+}
+
+}  // namespace api
+}  // namespace tractus

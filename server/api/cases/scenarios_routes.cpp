@@ -1,0 +1,294 @@
+/// Probing scenarios that people write here: checked as they type, kept as versions, offered for
+/// assignments.
+#include <fmt/format.h>
+
+#include "core/clock.hpp"
+#include "core/file.hpp"
+#include "db/store/cases/cases.hpp"
+#include "db/store/cases/scenarios.hpp"
+#include "scenarios/demand.hpp"
+#include "server/api/route.hpp"
+#include "server/api/schema.hpp"
+#include "server/api/studies/study_plan.hpp"
+
+namespace tractus {
+namespace api {
+namespace {
+
+using core::Errc;
+using core::Error;
+using core::Json;
+using core::Result;
+using scenarios::Scenario;
+
+constexpr std::uint64_t kMaxBody_bytes = 256u << 10;
+constexpr std::array kSpeeds_m_s{0.002, 0.005, 0.010};
+
+/// A draft has no origin yet: what it will be is written by this server.
+Result<Scenario> drafted(Json json, const scenarios::Origin& origin) {
+  if (!json.is_object()) return Error{Errc::bad_input, ": an object is expected"};
+  json["origin"] = {{"who", origin.who}, {"when", origin.when}, {"parent", origin.parent}};
+  return scenario_from(json, "");
+}
+
+Json curve_json(const scenarios::Resistance& found) {
+  Json at = Json::array(), layers = Json::array(), walls = Json::array();
+  for (std::size_t k = 0; k < found.speeds_m_s.size(); ++k)
+    at.push_back({{"speed_m_s", found.speeds_m_s[k]}, {"force_N", found.force_N[k]}});
+  for (const auto& layer : found.parameters.layers)
+    layers.push_back({{"from_m", layer.start_m}, {"to_m", layer.start_m + layer.thickness_m}});
+  for (const auto& wall : found.parameters.walls)
+    walls.push_back({{"from_m", wall.position_m - wall.resistance_interval_m},
+                     {"at_m", wall.position_m},
+                     {"to_m", wall.position_m + wall.breach_interval_m}});
+  return {{"depth_m", found.depth_m}, {"at", at}, {"layers", layers}, {"walls", walls}};
+}
+
+/// "/bone/stiffness_N_per_m: -1 is outside 0 … 200000" → the pointer, and the sentence.
+std::pair<std::string, std::string> field_and_words(std::string what) {
+  while (what.starts_with(": ")) what.erase(0, 2);
+  const auto colon = what.find(": ");
+  if (!what.starts_with('/') || colon == std::string::npos) return {"", what};
+  return {what.substr(0, colon), what.substr(colon + 2)};
+}
+
+Result<http::Response> check(const Call& call) {
+  auto json = core::parse_json(call.request.body, "body");
+  if (!json) return json.error();
+  const auto scenario = drafted(*json, {call.caller.name, "now", ""});
+  Json out{{"ok", bool(scenario)},
+           {"field", ""},
+           {"error", ""},
+           {"curve", Json()},
+           {"excessive", Json::array()}};
+  if (!scenario) {
+    std::tie(out["field"], out["error"]) = field_and_words(scenario.error().what);
+    return json_response(out);
+  }
+  const auto found = scenarios::resistance(*scenario, kSpeeds_m_s);
+  if (!found) return found.error();
+  const auto demand = scenarios::demand(*scenario);
+  if (!demand) return demand.error();
+  out["curve"] = curve_json(*found);
+  out["excessive"] = demand->excessive;
+  return json_response(out);
+}
+
+Json version_json(const store::ScenarioVersion& version) {
+  return {{"id", version.id},
+          {"name", version.name},
+          {"kind", version.kind},
+          {"parent", version.parent ? Json(*version.parent) : Json()},
+          {"published", version.published},
+          {"made_utc_us", version.made_utc_us},
+          {"made_by", version.made_by}};
+}
+
+Result<http::Response> list(const Call& call) {
+  const auto found =
+      call.backend.store.read([](store::Reading& tx) { return store::all_scenario_versions(tx); });
+  if (!found) return found.error();
+  Json versions = Json::array(), tuned = Json::array();
+  for (const auto& version : *found) versions.push_back(version_json(version));
+  for (int kind = 0; kind < scenarios::kKinds; ++kind) {
+    const auto one = scenarios::tuned(static_cast<scenarios::Kind>(kind));
+    if (!one) return one.error();
+    tuned.push_back({{"kind", scenarios::name(one->kind)}, {"name", one->name}, {"id", one->id()}});
+  }
+  return json_response({{"scenarios", versions}, {"tuned", tuned}});
+}
+
+Error absent(const std::string& id) { return {Errc::not_found, "no scenario " + id.substr(0, 64)}; }
+
+/// A version's contents; a kind's name is the tuned one's.
+Result<Scenario> contents(Backend& backend, const std::string& id) {
+  if (const auto kind = scenarios::kind_of(id)) return scenarios::tuned(*kind);
+  const auto version =
+      backend.store.read([&](store::Reading& tx) { return store::scenario_version_of(tx, id); });
+  if (!version) return version.error();
+  if (!*version) return absent(id);
+  auto json = core::read_json(backend.objects.path_of((*version)->sha256));
+  if (!json) return json.error();
+  return Scenario::from_json(*json, "scenario " + id.substr(0, 12) + ": ");
+}
+
+Result<http::Response> one(const Call& call) {
+  const auto scenario = contents(call.backend, call.text("id"));
+  if (!scenario) return scenario.error();
+  return json_response(scenario->to_json());
+}
+
+struct Draft {
+  Scenario scenario;
+  bool publish = false;
+};
+
+Result<Draft> draft_from(const Call& call) {
+  auto json = core::parse_json(call.request.body, "body");
+  if (!json) return json.error();
+  core::Fields fields(*json, "body");
+  const Json* scenario = fields.member("scenario");
+  const std::string parent = fields.text_or("parent", "", 64);
+  const Json* publish = fields.member("publish", false);
+  if (publish && !publish->is_boolean()) fields.wrong("publish", "true or false is expected");
+  if (auto done = fields.done(); !done) return done.error();
+  scenarios::Origin origin{call.caller.name, core::utc_text(call.backend.now_utc_us()), ""};
+  if (!parent.empty()) {
+    const auto from = contents(call.backend, parent);
+    if (!from) return from.error();
+    origin.parent = from->id();
+  }
+  auto read = drafted(*scenario, origin);
+  if (!read) return Error{read.error().code, "/scenario" + read.error().what};
+  return Draft{std::move(*read), publish && publish->get<bool>()};
+}
+
+/// Published, it is a case that an assignment may name; its one part is secret.
+Result<void> offer(store::Writing& tx, const store::ScenarioVersion& version,
+                   const store::CasePart& part, std::int64_t now_utc_us) {
+  const store::CaseSummary summary{version.id, version.name,   version.made_by, now_utc_us,
+                                   0,          store::kProbing};
+  if (auto done = store::add_case(tx, summary, {part}, now_utc_us); !done) return done;
+  return store::set_case_retired(tx, version.id, false, now_utc_us);
+}
+
+Result<http::Response> add(const Call& call) {
+  const auto draft = draft_from(call);
+  if (!draft) return draft.error();
+  const Scenario& scenario = draft->scenario;
+  const auto part = put_scenario(call.backend, scenario);
+  if (!part) return part.error();
+  const std::int64_t now = call.backend.now_utc_us();
+  store::ScenarioVersion version{.id = scenario.id(),
+                                 .sha256 = part->sha256,
+                                 .name = scenario.name,
+                                 .kind = std::string(scenarios::name(scenario.kind)),
+                                 .parent = {},
+                                 .published = draft->publish,
+                                 .made_utc_us = now,
+                                 .made_by = call.caller.name};
+  if (!scenario.origin.parent.empty()) version.parent = scenario.origin.parent;
+  auto added = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
+    if (auto noted = store::add_object(tx, part->sha256, part->size_bytes, now); !noted)
+      return noted;
+    if (auto done = store::add_scenario_version(tx, version); !done) return done;
+    return version.published ? offer(tx, version, *part, now) : Result<void>();
+  });
+  if (!added) return added.error();
+  return json_response(version_json(version), 201);
+}
+
+Result<http::Response> publish(const Call& call) {
+  auto json = core::parse_json(call.request.body, "body");
+  if (!json) return json.error();
+  core::Fields fields(*json, "body");
+  const Json* published = fields.member("published");
+  if (published && !published->is_boolean()) fields.wrong("published", "true or false is expected");
+  if (auto done = fields.done(); !done) return done.error();
+  const std::string& id = call.text("id");
+  const auto scenario = contents(call.backend, id);
+  if (!scenario) return scenario.error();
+  const auto part = put_scenario(call.backend, *scenario);
+  if (!part) return part.error();
+  const std::int64_t now = call.backend.now_utc_us();
+  auto version = call.backend.store.write(
+      [&](store::Writing& tx) -> Result<std::optional<store::ScenarioVersion>> {
+        const bool offered = published->get<bool>();
+        if (auto set = store::set_scenario_published(tx, id, offered); !set) return set.error();
+        auto now_is = store::scenario_version_of(tx, id);
+        if (!now_is) return now_is;
+        auto done =
+            offered ? offer(tx, **now_is, *part, now) : store::set_case_retired(tx, id, true, now);
+        if (!done) return done.error();
+        return now_is;
+      });
+  if (!version) return version.error();
+  return json_response(version_json(**version));
+}
+
+std::vector<NamedSchema> curve_schemas() {
+  using namespace schema;
+  const Json at = object({{"speed_m_s", number("m/s", "steady, into the bone")},
+                          {"force_N", array(number("N", "push"), "by depth")}});
+  const Json layer = object({{"from_m", number("m", "depth")}, {"to_m", number("m", "depth")}});
+  const Json wall = object({{"from_m", number("m", "from here resistance grows")},
+                            {"at_m", number("m", "where it gives way")},
+                            {"to_m", number("m", "so far soft tissue goes")}});
+  return {{"ScenarioCurve", object({{"depth_m", array(number("m", "of the tip"), "from the entry")},
+                                    {"at", array(at, "a curve a speed, slowest first")},
+                                    {"layers", array(layer, "of bone")},
+                                    {"walls", array(wall, "by depth")}})},
+          {"ScenarioCheck",
+           object({{"ok", truth("it can be kept and handed out")},
+                   {"field", text("JSON pointer of what is wrong; empty: all of it, or nothing")},
+                   {"error", text("what is wrong; else empty")},
+                   {"curve", nullable(ref("ScenarioCurve"))},
+                   {"excessive", array(text("a sentence"),
+                                       "what a surgeon or the actuator "
+                                       "cannot do")}})}};
+}
+
+std::vector<NamedSchema> version_schemas() {
+  using namespace schema;
+  const Json kind = one_of({"hard", "soft", "lateral_breach", "in_out_in"}, "of the four");
+  const Json tuned =
+      object({{"kind", kind}, {"name", text("for people")}, {"id", text("its own")}});
+  return {{"ScenarioVersion", object({{"id", text("of its contents, 64 hexadecimal characters")},
+                                      {"name", text("for those who teach")},
+                                      {"kind", kind},
+                                      {"parent", nullable(text("the version it was made from"))},
+                                      {"published", truth("offered for assignments")},
+                                      {"made_utc_us", integer("us", "since 1970, UTC")},
+                                      {"made_by", text("who")}})},
+          {"ScenarioVersions",
+           object({{"scenarios", array(ref("ScenarioVersion"), "newest first")},
+                   {"tuned", array(tuned, "that ship; their kind is their name here")}})},
+          {"ScenarioFile", anything("tractus-scenario/1")},
+          {"ScenarioDraft", anything("tractus-scenario/1, without an origin")},
+          {"NewScenario", object({{"scenario", ref("ScenarioDraft")},
+                                  {"parent", optional(text("a version's id, or a tuned kind"))},
+                                  {"publish", optional(truth("offer it at once"))}})},
+          {"Publication", object({{"published", truth("offered for assignments")}})}};
+}
+
+RouteInfo route(std::string method, std::string tail, std::string id, std::string summary,
+                std::string body, std::string answer,
+                Result<http::Response> (*handle)(const Call&)) {
+  RouteInfo out{.method = std::move(method),
+                .path = "/api/v1/scenarios" + tail,
+                .id = std::move(id),
+                .summary = std::move(summary),
+                .who = {Role::admin, Role::faculty},
+                .parameters = {},
+                .body = std::move(body),
+                .body_limit_bytes = kMaxBody_bytes,
+                .answer = std::move(answer),
+                .schemas = {},
+                .handle = handle};
+  if (tail.starts_with("/{id}")) out.parameters = {path_text("id", "a version's, or a tuned kind")};
+  return out;
+}
+
+}  // namespace
+
+std::vector<RouteInfo> scenarios_routes() {
+  RouteInfo look = route("POST", "/check", "checkScenario",
+                         "Is a draft well formed, what does it ask for over depth?",
+                         "ScenarioDraft", "ScenarioCheck", check);
+  look.audited = false;  // it changes nothing
+  look.schemas = curve_schemas();
+  RouteInfo all = route("GET", "", "scenarios",
+                        "Versions written here, newest first, and those "
+                        "that ship",
+                        "", "ScenarioVersions", list);
+  all.schemas = version_schemas();
+  return {look, all, route("GET", "/{id}", "scenario", "A version's file", "", "ScenarioFile", one),
+          route("POST", "", "addScenario", "Keep a draft as a version", "NewScenario",
+                "ScenarioVersion", add),
+          route("POST", "/{id}/publish", "publishScenario",
+                "Offer a version for assignments, or no longer", "Publication", "ScenarioVersion",
+                publish)};
+}
+
+}  // namespace api
+}  // namespace tractus

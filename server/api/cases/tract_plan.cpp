@@ -1,0 +1,82 @@
+#include "server/api/cases/tract_plan.hpp"
+
+namespace tractus {
+namespace api {
+namespace {
+
+using core::Json;
+
+Json numbers(const math::Vec3& p) { return Json::array({p.x(), p.y(), p.z()}); }
+
+Json tract_of(const volume::Tract& tract) {
+  return {{"entry_m", numbers(tract.entry_m)}, {"axis", numbers(tract.axis)},
+          {"length_m", tract.length_m},        {"radius_m", tract.radius_m},
+          {"medial", numbers(tract.medial)},   {"superior", numbers(tract.superior)}};
+}
+
+/// One wall along the tract: null where it cannot be found.
+Json wall_json(const volume::WallFinder& finder, const volume::Tract& tract, volume::Wall wall,
+               const core::Result<volume::WallFound>& thinnest) {
+  Json depths = Json::array(), inner = Json::array(), thickness = Json::array();
+  const auto add = [&](double at_m) {
+    const auto found = finder.wall_at(tract, wall, at_m);
+    depths.push_back(at_m);
+    inner.push_back(found ? Json(found->inner_m) : Json());
+    thickness.push_back(found ? Json(found->thickness_m()) : Json());
+  };
+  if (wall == volume::Wall::anterior)
+    add(tract.length_m);
+  else
+    for (double at = 0.0; at <= tract.length_m; at += kWallStep_m) add(at);
+  return {{"wall", volume::name(wall)},
+          {"depth_m", depths},
+          {"inner_m", inner},
+          {"thickness_m", thickness},
+          {"thinnest", thinnest ? Json{{"at_m", thinnest->at_m},
+                                       {"inner_m", thinnest->inner_m},
+                                       {"thickness_m", thinnest->thickness_m()}}
+                                : Json()}};
+}
+
+Json breach_json(const volume::Breach& breach) {
+  return {
+      {"wall", volume::name(breach.wall.wall)}, {"at_m", breach.wall.at_m},
+      {"breach_m", numbers(breach.centre_m)},   {"from_m", numbers(breach.from_m)},
+      {"tip_m", numbers(breach.tip_m)},         {"depth_m", breach.depth_m},
+      {"inner_m", breach.wall.inner_m},         {"wall_thickness_m", breach.wall.thickness_m()}};
+}
+
+}  // namespace
+
+Json no_tract_json(const cases::CarvingPlan& plan, const std::string& problem) {
+  return {{"length_m", (plan.target_m - plan.entry_m).norm()},
+          {"side", Json()},
+          {"tract", Json()},
+          {"walls", Json::array()},
+          {"breach", Json()},
+          {"problems", Json::array({problem})}};
+}
+
+Json tract_json(const volume::Volume& ct, const volume::TransferFunction& transfer,
+                cases::CarvingPlan plan) {
+  const auto asked = std::exchange(plan.breach, std::nullopt);
+  const auto placed = cases::place(ct, transfer, plan);
+  if (!placed) return no_tract_json(plan, placed.error().what);
+  Json out = no_tract_json(plan, "");
+  out["problems"] = Json::array();
+  out["side"] = placed->left_side() ? "left" : "right";
+  out["tract"] = tract_of(placed->tract);
+  const volume::WallFinder finder(ct, transfer);
+  for (std::size_t k = 0; k < volume::kWalls.size(); ++k)
+    out["walls"].push_back(wall_json(finder, placed->tract, volume::kWalls[k], placed->walls[k]));
+  if (!asked) return out;
+  const auto breach = volume::place_breach(ct, transfer, placed->tract, *asked);
+  if (breach)
+    out["breach"] = breach_json(*breach);
+  else
+    out["problems"].push_back(breach.error().what);
+  return out;
+}
+
+}  // namespace api
+}  // namespace tractus

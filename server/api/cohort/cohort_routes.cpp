@@ -1,0 +1,272 @@
+/// A cohort: its scored trials as a table, locked plans, and analyses of it as jobs.
+#include <fmt/format.h>
+
+#include "db/store/cohort/analyses.hpp"
+#include "server/api/cohort/cohort_questions.hpp"
+#include "server/api/route.hpp"
+#include "server/api/schema.hpp"
+#include "server/jobs/cohort_table.hpp"
+
+namespace tractus {
+namespace api {
+namespace {
+
+using core::Errc;
+using core::Error;
+using core::Json;
+using core::Result;
+using namespace schema;
+
+constexpr std::uint64_t kMaxAsk_bytes = 16384, kMaxPlan_bytes = 1 << 20;
+constexpr std::int64_t kMostInTable = 20'000;
+
+Json or_null(const std::optional<std::string>& text) { return text ? Json(*text) : Json(); }
+Json or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
+
+Error absent(const char* what, const std::string& id) {
+  return {Errc::not_found, fmt::format("no {} {} here", what, id.substr(0, 64))};
+}
+
+Json run_summary(const store::AnalysisRun& run) {
+  return {{"id", run.id},
+          {"plan", or_null(run.plan_id)},
+          {"study", or_null(run.study)},
+          {"state", run.state},
+          {"share", run.share},
+          {"error", run.error},
+          {"snapshot", or_null(run.snapshot)},
+          {"made_utc_us", run.made_utc_us},
+          {"made_by", run.made_by}};
+}
+
+/// With the result, the data's description, and whether an earlier run gave the same digits.
+Result<Json> run_json(const Call& call, const store::AnalysisRun& run) {
+  Json out = run_summary(run);
+  for (const auto& [key, object] :
+       {std::pair{"data", &run.description}, std::pair{"result", &run.result}}) {
+    out[key] = nullptr;
+    if (!*object) continue;
+    auto read = core::read_json(call.backend.objects.path_of(**object));
+    if (!read) return read.error();
+    out[key] = std::move(*read);
+  }
+  const auto before = call.backend.store.read(
+      [&](store::Reading& tx) { return store::analysis_repeated_by(tx, run); });
+  if (!before) return before.error();
+  out["repeats"] = *before ? Json((*before)->id) : Json();
+  out["same_digits"] = *before && run.result ? Json((*before)->result == run.result) : Json();
+  return out;
+}
+
+Json plan_json(const store::AnalysisPlan& plan) {
+  return {{"id", plan.id},
+          {"title", plan.title},
+          {"study", or_null(plan.study)},
+          {"data_seen", plan.data_seen},
+          {"trials_then", plan.trials_then},
+          {"made_utc_us", plan.made_utc_us},
+          {"made_by", plan.made_by}};
+}
+
+Result<http::Response> lock_plan(const Call& call) {
+  const auto asked = core::parse_json(call.request.body, "body");
+  if (!asked) return asked.error();
+  const auto plan = locked_plan(call.backend, *asked, call.caller.name);
+  if (!plan) return plan.error();
+  return json_response(plan_json(*plan), 201);
+}
+
+Result<http::Response> list_plans(const Call& call) {
+  const auto plans =
+      call.backend.store.read([](store::Reading& tx) { return store::all_analysis_plans(tx); });
+  if (!plans) return plans.error();
+  Json list = Json::array();
+  for (const auto& plan : *plans) list.push_back(plan_json(plan));
+  return json_response({{"plans", list}});
+}
+
+Result<http::Response> plan_of(const Call& call) {
+  using Runs = std::vector<store::AnalysisRun>;
+  const std::string& id = call.text("id");
+  const auto plan =
+      call.backend.store.read([&](store::Reading& tx) { return store::analysis_plan_of(tx, id); });
+  if (!plan) return plan.error();
+  if (!*plan) return absent("plan", id);
+  const auto runs = call.backend.store.read(
+      [&](store::Reading& tx) -> Result<Runs> { return store::analyses_of_plan(tx, id); });
+  if (!runs) return runs.error();
+  auto file = core::read_json(call.backend.objects.path_of((*plan)->plan));
+  if (!file) return file.error();
+  Json out = plan_json(**plan);
+  out["plan"] = std::move(*file);
+  out["analyses"] = Json::array();
+  for (const auto& run : *runs) out["analyses"].push_back(run_summary(run));
+  return json_response(out);
+}
+
+Result<http::Response> analyse_cohort(const Call& call) {
+  const auto asked = core::parse_json(call.request.body, "body");
+  if (!asked) return asked.error();
+  const auto run = queued_analysis(call.backend, *asked, call.caller.name);
+  if (!run) return run.error();
+  call.backend.work_waits();
+  return json_response(run_summary(*run), 201);
+}
+
+Result<store::AnalysisRun> run_of(const Call& call) {
+  const auto run = call.backend.store.read(
+      [&](store::Reading& tx) { return store::analysis_of(tx, call.text("id")); });
+  if (!run) return run.error();
+  if (!*run) return absent("analysis", call.text("id"));
+  return **run;
+}
+
+Result<http::Response> analysis(const Call& call) {
+  const auto run = run_of(call);
+  if (!run) return run.error();
+  const auto json = run_json(call, *run);
+  if (!json) return json.error();
+  return json_response(*json);
+}
+
+/// One of a finished run's files.
+Result<http::Response> part_of(const Call& call) {
+  const auto run = run_of(call);
+  if (!run) return run.error();
+  const std::string& part = call.text("part");
+  if (part == "dictionary.json") {
+    if (!run->description || !run->data) return absent("dictionary of the analysis", run->id);
+    return dictionary_response(call.backend, *run);
+  }
+  const bool page = part == "report.html", json = part == "result.json";
+  if (!page && !json && part != "data.csv") return absent("part of an analysis", part);
+  const auto& object = page ? run->report : json ? run->result : run->data;
+  if (!object) return absent("finished analysis", run->id);
+  if (!page && !json)
+    if (auto may = check_still_released(call.backend, run->study, *object); !may)
+      return may.error();
+  auto response = http::file_response(call.backend.objects.path_of(*object), call.request,
+                                      page   ? "text/html; charset=utf-8"
+                                      : json ? "application/json"
+                                             : "text/csv; charset=utf-8");
+  if (response && page) *response = as_report(std::move(*response));
+  if (response && !page)
+    response->with("Content-Disposition", fmt::format("attachment; filename=\"{}\"", part));
+  return response;
+}
+
+Result<http::Response> table_of(const Call& call) {
+  const auto released = call.backend.store.read([&](store::Reading& tx) {
+    return store::ReleasedTrials::read(
+        tx, call.backend.pseudonym_key,
+        {.study = call.has("study") ? call.text("study") : "", .most = kMostInTable});
+  });
+  if (!released) return released.error();
+  http::Response response{.status = 200, .headers = {}, .body = jobs::cohort_table(*released).csv};
+  response.with("Content-Type", "text/csv; charset=utf-8")
+      .with("Content-Disposition", "attachment; filename=\"cohort.csv\"")
+      .with("Cache-Control", "no-store");
+  return response;
+}
+
+RouteInfo route(std::string method, std::string tail, std::string id, std::string summary,
+                std::string answer, Result<http::Response> (*handle)(const Call&)) {
+  return research_route(std::move(method), "cohort/" + tail, std::move(id), std::move(summary),
+                        std::move(answer), handle);
+}
+
+std::vector<NamedSchema> plan_schemas() {
+  return {{"PlanToLock",
+           object({{"plan", anything("tractus-plan/1 without a lock")},
+                   {"study", optional(text("of this study's trials alone"))},
+                   {"data_seen", optional(truth("the data are known already: a reanalysis"))}})},
+          {"LockedPlan",
+           object({{"id", text("of this plan, which never changes")},
+                   {"title", text("the plan's")},
+                   {"study", nullable(text("whose trials it is of; null: all"))},
+                   {"data_seen", truth("it confirms nothing: the data could be seen before")},
+                   {"trials_then", integer("1", "scored trials of it here when it was locked")},
+                   {"made_utc_us", integer("us", "since 1970, UTC")},
+                   {"made_by", text("who locked it")}})}};
+}
+
+std::vector<NamedSchema> run_schemas() {
+  return {{"CohortQuestion",
+           object({{"plan", optional(text("a locked plan's id; then no method"))},
+                   {"snapshot", optional(text("with a plan: of an earlier analysis; none: now's"))},
+                   {"method", optional(text("as of `tractus stats`: anova, ols, lmm, …"))},
+                   {"formula", optional(text("of the table's columns: correct ~ level"))},
+                   {"options", optional(anything("the method's, by name: texts or numbers"))},
+                   {"study", optional(text("with a method: trials of this study alone"))}})},
+          {"CohortAnalysis",
+           object({{"id", text("of this run")},
+                   {"plan", nullable(text("null: not planned beforehand"))},
+                   {"study", nullable(text("null: all trials"))},
+                   {"state", one_of({"queued", "running", "done", "failed"}, "how it stands")},
+                   {"share", number("1", "of the work done")},
+                   {"error", text("why it failed; else empty")},
+                   {"snapshot", nullable(text("SHA-256 of the frozen data"))},
+                   {"made_utc_us", integer("us", "since 1970, UTC")},
+                   {"made_by", text("who")}})}};
+}
+
+std::vector<NamedSchema> answer_schemas() {
+  return {
+      {"CohortAnswer",
+       object({{"id", text("of this run")},
+               {"plan", nullable(text("null: not planned beforehand"))},
+               {"study", nullable(text("null: all trials"))},
+               {"state", one_of({"queued", "running", "done", "failed"}, "how it stands")},
+               {"share", number("1", "of the work done")},
+               {"error", text("why it failed; else empty")},
+               {"snapshot", nullable(text("SHA-256 of the frozen data"))},
+               {"made_utc_us", integer("us", "since 1970, UTC")},
+               {"made_by", text("who")},
+               {"data", nullable(anything("tractus-snapshot/1: rows, dictionary, left_out"))},
+               {"result", nullable(anything("tractus-result/1, once done"))},
+               {"repeats", nullable(text("the first analysis of this plan on these data"))},
+               {"same_digits", nullable(truth("its result was the same to the last digit"))}})}};
+}
+
+}  // namespace
+
+std::vector<RouteInfo> cohort_routes() {
+  RouteInfo list =
+      route("GET", "plans", "analysisPlans", "Locked plans, newest first", "PlanList", list_plans);
+  list.schemas = {{"PlanList", object({{"plans", array(ref("LockedPlan"), "newest first")}})}};
+  RouteInfo one = route("GET", "plans/{id}", "analysisPlan",
+                        "A locked plan, every word, and its analyses", "PlanAnswer", plan_of);
+  one.schemas = {{"PlanAnswer", anything("LockedPlan with plan: tractus-plan/1 and analyses: "
+                                         "CohortAnalysis, newest first")}};
+  RouteInfo answered = route("GET", "analyses/{id}", "cohortAnalysis",
+                             "How far it is, and the result once done", "CohortAnswer", analysis);
+  answered.schemas = answer_schemas();
+  RouteInfo part = route("GET", "analyses/{id}/{part}", "cohortAnalysisPart",
+                         "A file of a finished analysis", kBytes, part_of);
+  part.parameters.push_back(
+      path_text("part", "report.html, result.json, data.csv or dictionary.json"));
+  RouteInfo table = route("GET", "table", "cohortTable", "The scored trials as CSV, one row each",
+                          kBytes, table_of);
+  table.parameters = {{.in = Parameter::In::query,
+                       .name = "study",
+                       .kind = Parameter::Kind::text,
+                       .unit = "",
+                       .meaning = "trials of this study alone",
+                       .required = false,
+                       .fallback = std::nullopt}};
+  return {taking(route("POST", "plans", "lockAnalysisPlan",
+                       "Lock an analysis plan before its data are seen", "LockedPlan", lock_plan),
+                 "PlanToLock", kMaxPlan_bytes, plan_schemas()),
+          list,
+          one,
+          taking(route("POST", "analyses", "analyseCohort",
+                       "Run a locked plan, or one method, on the scored trials; done as a job",
+                       "CohortAnalysis", analyse_cohort),
+                 "CohortQuestion", kMaxAsk_bytes, run_schemas()),
+          answered,
+          part,
+          table};
+}
+
+}  // namespace api
+}  // namespace tractus

@@ -1,0 +1,140 @@
+#include "server/api/cohort/cohort_zip.hpp"
+
+#include <archive.h>
+#include <archive_entry.h>
+
+#include <fstream>
+#include <memory>
+
+#include "core/json.hpp"
+#include "server/api/trials/samples_array.hpp"
+
+namespace tractus {
+namespace api {
+namespace {
+
+using core::Errc;
+using core::Error;
+using core::Result;
+using store::Tier;
+
+constexpr std::uint64_t kMostZip_bytes = 256u << 20;
+constexpr std::streamsize kPiece_bytes = 256 << 10;
+
+struct Frees {
+  void operator()(archive* writer) const { archive_write_free(writer); }
+};
+
+struct Output {
+  std::ofstream file;
+  std::uint64_t size = 0;
+};
+
+la_ssize_t append(archive*, void* into, const void* bytes, size_t size) {
+  auto& out = *static_cast<Output*>(into);
+  out.size += size;
+  if (out.size > kMostZip_bytes) return -1;
+  out.file.write(static_cast<const char*>(bytes), static_cast<std::streamsize>(size));
+  return out.file ? static_cast<la_ssize_t>(size) : -1;
+}
+
+class Zip {
+ public:
+  explicit Zip(const std::filesystem::path& path)
+      : out_{std::ofstream(path, std::ios::binary)}, writer_(archive_write_new()) {
+    archive_write_set_format_zip(writer_.get());
+    archive_write_set_bytes_in_last_block(writer_.get(), 1);
+    archive_write_open(writer_.get(), &out_, nullptr, append, nullptr);
+  }
+  /// No times are written: the same cohort is the same bytes.
+  Result<void> add(const std::string& name, const std::string& content) {
+    if (begin(name, content.size()) && write(content)) return {};
+    return failure();
+  }
+  Result<void> add(const std::string& name, const std::filesystem::path& content) {
+    std::ifstream in(content, std::ios::binary);
+    bool added = begin(name, std::filesystem::file_size(content));
+    for (std::string piece(kPiece_bytes, 0); added && in;) {
+      in.read(piece.data(), kPiece_bytes);
+      added = write(std::string_view(piece).substr(0, static_cast<std::size_t>(in.gcount())));
+    }
+    if (added) return {};
+    return failure();
+  }
+  Result<void> finish() {
+    if (archive_write_close(writer_.get()) != ARCHIVE_OK) return failure();
+    out_.file.close();
+    if (out_.file) return {};
+    return failure();
+  }
+
+ private:
+  bool begin(const std::string& name, std::uint64_t size) {
+    archive_entry* entry = archive_entry_new();
+    archive_entry_set_pathname(entry, name.c_str());
+    archive_entry_set_size(entry, static_cast<la_int64_t>(size));
+    archive_entry_set_filetype(entry, AE_IFREG);
+    archive_entry_set_perm(entry, 0644);
+    const bool begun = archive_write_header(writer_.get(), entry) == ARCHIVE_OK;
+    archive_entry_free(entry);
+    return begun;
+  }
+  bool write(std::string_view bytes) {
+    return archive_write_data(writer_.get(), bytes.data(), bytes.size()) ==
+           static_cast<la_ssize_t>(bytes.size());
+  }
+  Error failure() const {
+    if (out_.size <= kMostZip_bytes)
+      return {Errc::io, "the cohort's zip cannot be written: is the disk full?"};
+    return {Errc::too_large, "the cohort's zip is over 256 MiB: ask for one study or a lower tier"};
+  }
+  Output out_;
+  std::unique_ptr<archive, Frees> writer_;
+};
+
+Result<void> add_samples(Zip& zip, Backend& backend, const std::string& client,
+                         const store::ReleasedTrial& trial, Tier tier) {
+  const Tier allowed = std::min(tier, trial.tier);
+  if (allowed < Tier::reduced) return {};
+  const auto file = trial.file(allowed);
+  if (!file) return file.error();
+  auto array = http::scratch_file(*backend.scratch, client, samples_npy_bytes(trial.samples));
+  if (!array) return array.error();
+  auto written = write_samples_npy(backend.objects.path_of(*file),
+                                   allowed == Tier::full ? 0.0 : kReduced_Hz, (*array)->path);
+  if (!written) return written;
+  return zip.add("samples/" + trial.id + ".npy", (*array)->path);
+}
+
+}  // namespace
+
+Result<std::shared_ptr<http::ScratchFile>> cohort_zip(Backend& backend, const std::string& client,
+                                                      const std::string& study, Tier tier) {
+  const auto counted = released_trials(backend, study, Tier::summary);
+  if (!counted) return counted.error();
+  // A zip of summaries lists nobody's trials.
+  const auto listed =
+      tier < Tier::metrics ? store::ReleasedTrials() : counted->at_least(Tier::metrics);
+  auto file = http::scratch_file(*backend.scratch, client, kMostZip_bytes);
+  if (!file) return file.error();
+  Zip zip((*file)->path);
+  const core::Json about{{"format", "tractus-cohort/1"},
+                         {"study", study.empty() ? core::Json() : core::Json(study)},
+                         {"tier", store::name(tier)},
+                         {"trials_counted", counted->all().size()},
+                         {"trials_listed", listed.all().size()}};
+  for (const auto& [name, content] :
+       std::vector<std::pair<std::string, std::string>>{{"cohort.json", about.dump(2) + "\n"},
+                                                        {"dictionary.csv", dictionary_csv()},
+                                                        {"summary.csv", summary_csv(*counted)},
+                                                        {"trials.csv", trials_csv(listed)},
+                                                        {"scores.csv", scores_csv(listed)}})
+    if (auto added = zip.add(name, content); !added) return added.error();
+  for (const auto& one : listed.all())
+    if (auto added = add_samples(zip, backend, client, one, tier); !added) return added.error();
+  if (auto done = zip.finish(); !done) return done.error();
+  return *file;
+}
+
+}  // namespace api
+}  // namespace tractus

@@ -1,0 +1,238 @@
+/// Cohorts: who learns with whom, and who teaches them.
+#include "core/bytes.hpp"
+#include "db/store/people/invitations.hpp"
+#include "server/api/backend.hpp"
+#include "server/api/people/authentication.hpp"
+#include "server/api/people/people_json.hpp"
+#include "server/api/schema.hpp"
+#include "server/api/studies/assignment_plan.hpp"
+
+namespace tractus {
+namespace api {
+namespace {
+
+using core::Errc;
+using core::Error;
+using core::Result;
+
+constexpr std::uint64_t kMaxBody_bytes = 4096;
+
+core::Json summary_json(const store::Cohort& cohort) {
+  return {{"id", cohort.id},
+          {"name", cohort.name},
+          {"trainees", cohort.trainees},
+          {"made_utc_us", cohort.made_utc_us},
+          {"made_by", cohort.made_by}};
+}
+
+Result<http::Response> list_cohorts(const Call& call) {
+  auto found = call.backend.store.read([&](store::Reading& tx) {
+    return store::cohorts_of(tx, call.of == Scope::all ? "" : call.caller.id);
+  });
+  if (!found) return found.error();
+  core::Json list = core::Json::array();
+  for (const auto& cohort : *found) list.push_back(summary_json(cohort));
+  return json_response({{"cohorts", list}});
+}
+
+Result<http::Response> cohort_response(store::Store& store, const std::string& id, int status) {
+  auto answer = store.read([&](store::Reading& tx) -> Result<core::Json> {
+    auto cohort = store::cohort_of(tx, id);
+    if (!cohort) return cohort.error();
+    if (!*cohort) return Error{Errc::not_found, "no cohort " + id.substr(0, 32)};
+    auto people = store::people_of(tx, id);
+    if (!people) return people.error();
+    core::Json out = summary_json(**cohort);
+    out["people"] = core::Json::array();
+    auto invited = store::invitations_into(tx, id);
+    if (!invited) return invited.error();
+    out["invitations"] = core::Json::array();
+    for (const auto& one : *invited)
+      out["invitations"].push_back(
+          {{"name", one.account_name}, {"made_utc_us", one.made_utc_us}, {"made_by", one.made_by}});
+    for (const auto& person : *people)
+      out["people"].push_back({{"account_id", person.account_id},
+                               {"name", person.name},
+                               {"part", person.part},
+                               {"state", person.state}});
+    return out;
+  });
+  if (!answer) return answer.error();
+  return json_response(*answer, status);
+}
+
+Result<http::Response> one_cohort(const Call& call) {
+  return cohort_response(call.backend.store, call.text("id"), 200);
+}
+
+/// Whoever of the faculty makes a cohort leads it.
+Result<http::Response> add_cohort_route(const Call& call) {
+  auto json = core::parse_json(call.request.body, "body");
+  if (!json) return json.error();
+  core::Fields fields(*json, "body");
+  store::Cohort cohort{core::new_id(), fields.text("name", kMaxName), call.backend.now_utc_us(),
+                       call.caller.name};
+  if (cohort.name.find_first_not_of(" \t\r\n") == std::string::npos)
+    fields.wrong("name", "a name is expected");
+  if (auto done = fields.done(); !done) return done.error();
+  auto added = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
+    if (auto done = store::add_cohort(tx, cohort); !done) return done;
+    if (call.caller.role != Role::faculty) return {};
+    return store::put_into_cohort(tx, cohort.id, call.caller.id, "faculty", cohort.made_utc_us);
+  });
+  if (!added) return added.error();
+  return cohort_response(call.backend.store, cohort.id, 201);
+}
+
+Result<void> put(store::Writing& tx, const Call& call, const std::string& account_name) {
+  auto account = store::account_named(tx, account_name);
+  if (!account) return account.error();
+  if (!*account) return Error{Errc::bad_input, "body: /name: there is no account of this name"};
+  return join_cohort(tx, call.text("id"), **account, {call.caller.name, call.backend.now_utc_us()});
+}
+
+Result<http::Response> put_person(const Call& call) {
+  auto json = core::parse_json(call.request.body, "body");
+  if (!json) return json.error();
+  core::Fields fields(*json, "body");
+  const std::string name = fields.text("name", kMaxName);
+  if (auto done = fields.done(); !done) return done.error();
+  auto added = call.backend.store.write([&](store::Writing& tx) { return put(tx, call, name); });
+  if (!added) return added.error();
+  return cohort_response(call.backend.store, call.text("id"), 200);
+}
+
+Result<http::Response> invite_person(const Call& call) {
+  auto json = core::parse_json(call.request.body, "body");
+  if (!json) return json.error();
+  core::Fields fields(*json, "body");
+  const store::Invitation invitation{.cohort_id = call.text("id"),
+                                     .account_name = fields.text("name", kMaxName),
+                                     .made_utc_us = call.backend.now_utc_us(),
+                                     .made_by = call.caller.name};
+  if (invitation.account_name.find_first_not_of(" \t\r\n") == std::string::npos)
+    fields.wrong("name", "a name is expected");
+  if (auto done = fields.done(); !done) return done.error();
+  auto invited = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
+    auto cohort = store::cohort_of(tx, invitation.cohort_id);
+    if (!cohort) return cohort.error();
+    if (!*cohort) return Error{Errc::not_found, "no cohort " + invitation.cohort_id.substr(0, 32)};
+    return store::invite(tx, invitation);
+  });
+  if (!invited) return invited.error();
+  return cohort_response(call.backend.store, call.text("id"), 201);
+}
+
+Result<http::Response> withdraw_invitation(const Call& call) {
+  auto removed = call.backend.store.write([&](store::Writing& tx) {
+    return store::remove_invitation(tx, call.text("id"), call.text("name"));
+  });
+  if (!removed) return removed.error();
+  return cohort_response(call.backend.store, call.text("id"), 200);
+}
+
+Result<http::Response> take_person(const Call& call) {
+  auto taken = call.backend.store.write([&](store::Writing& tx) {
+    return store::take_from_cohort(tx, call.text("id"), call.text("account_id"));
+  });
+  if (!taken) return taken.error();
+  return cohort_response(call.backend.store, call.text("id"), 200);
+}
+
+RouteInfo route(std::string method, std::string tail, std::string id, std::string summary,
+                Result<http::Response> (*handle)(const Call&)) {
+  RouteInfo out{.method = std::move(method),
+                .path = "/api/v1/cohorts" + tail,
+                .id = std::move(id),
+                .summary = std::move(summary),
+                .who = {Role::admin, {Role::faculty, Scope::cohort}},
+                .object = tail.empty() ? Object::none : Object::cohort,
+                .parameters = {},
+                .body = "",
+                .body_limit_bytes = kMaxBody_bytes,
+                .answer = "Cohort",
+                .schemas = {},
+                .handle = handle};
+  if (!tail.empty()) out.parameters.push_back(path_text("id", "the cohort's"));
+  return out;
+}
+
+std::vector<NamedSchema> cohort_schemas() {
+  using namespace schema;
+  const std::vector<Field> summary{{"id", text("never changes")},
+                                   {"name", text("for people")},
+                                   {"trainees", integer("1", "in it")},
+                                   {"made_utc_us", integer("us", "since 1970, UTC")},
+                                   {"made_by", text("who")}};
+  std::vector<Field> whole = summary;
+  whole.emplace_back("people", array(ref("CohortPerson"), "by name"));
+  whole.emplace_back("invitations", array(object({{"name", text("as it was typed")},
+                                                  {"made_utc_us", integer("us", "since 1970, UTC")},
+                                                  {"made_by", text("who")}}),
+                                          "that wait for an answer, by name"));
+  return {{"CohortSummary", object(summary)},
+          {"Cohorts", object({{"cohorts", array(ref("CohortSummary"), "by name")}})},
+          {"CohortPerson", object({{"account_id", text("of the person")},
+                                   {"name", text("of the account")},
+                                   {"part", one_of({"trainee", "faculty"}, "faculty leads it")},
+                                   {"state", one_of({"active", "disabled"}, "of the account")}})},
+          {"Cohort", object(whole)}};
+}
+
+RouteInfo putting_route() {
+  RouteInfo out = route("POST", "/{id}/people", "putIntoCohort",
+                        "A trainee learns in it from now on, faculty leads it", put_person);
+  out.who.push_back(Role::director);
+  out.ends = {{"/name", Object::person, out.who, End::By::account_name}};
+  out.body = "PersonNamed";
+  out.schemas = {{"PersonNamed", schema::object({{"name", schema::text("of the account")}})}};
+  return out;
+}
+
+RouteInfo taking_route() {
+  RouteInfo out = route("DELETE", "/{id}/people/{account_id}", "takeFromCohort",
+                        "No longer in it; what was done stays", take_person);
+  out.parameters.push_back(path_text("account_id", "the person's"));
+  out.ends = {{"account_id", Object::person, out.who}};
+  return out;
+}
+
+/// Anybody may be invited: the person decides.
+std::vector<RouteInfo> inviting_routes() {
+  const std::vector<Grant> inviting{Role::admin, Role::director, Role::faculty};
+  RouteInfo ask = route("POST", "/{id}/invitations", "inviteIntoCohort",
+                        "Invite somebody into it whom one may not put there; the person decides",
+                        invite_person);
+  ask.who.push_back(Role::director);
+  ask.ends = {{"/name", Object::person, inviting, End::By::account_name}};
+  ask.body = "PersonNamed";
+  RouteInfo withdraw = route("DELETE", "/{id}/invitations/{name}", "withdrawInvitation",
+                             "Withdraw an invitation", withdraw_invitation);
+  withdraw.who.push_back(Role::director);
+  withdraw.parameters.push_back(path_text("name", "as it was typed"));
+  withdraw.ends = {{"name", Object::person, inviting, End::By::account_name}};
+  return {ask, withdraw};
+}
+
+}  // namespace
+
+std::vector<RouteInfo> cohorts_routes() {
+  RouteInfo list = route("GET", "", "cohorts", "Cohorts by name: all, or those one leads or is in",
+                         list_cohorts);
+  list.answer = "Cohorts";
+  list.who = {
+      Role::admin, Role::director, {Role::faculty, Scope::cohort}, {Role::trainee, Scope::own}};
+  list.schemas = cohort_schemas();
+  RouteInfo one = route("GET", "/{id}", "cohort", "One cohort with its people", one_cohort);
+  one.who.push_back(Role::director);
+  RouteInfo add = route("POST", "", "addCohort", "Make a cohort; faculty who makes it leads it",
+                        add_cohort_route);
+  add.body = "NewCohort";
+  add.schemas = {{"NewCohort", schema::object({{"name", schema::text("nobody else's")}})}};
+  std::vector<RouteInfo> out{list, one, add, putting_route(), taking_route()};
+  for (RouteInfo& inviting : inviting_routes()) out.push_back(std::move(inviting));
+  return out;
+}
+
+}  // namespace api
+}  // namespace tractus

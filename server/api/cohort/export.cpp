@@ -1,0 +1,195 @@
+#include "server/api/cohort/export.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+
+#include "db/store/people/accounts.hpp"
+#include "metrics/metric.hpp"
+
+namespace tractus {
+namespace api {
+namespace {
+
+using core::Errc;
+using core::Error;
+using core::Result;
+
+/// One cell. What begins like a formula is kept from being one (OWASP, CSV injection).
+std::string cell(std::string text) {
+  if (!text.empty() && std::string_view("=+-@\t\r").find(text.front()) != std::string_view::npos)
+    text.insert(text.begin(), '\'');
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + '"';
+}
+
+std::string cell(const std::optional<double>& number) {
+  return number ? fmt::format("{}", *number) : "";
+}
+
+struct Column {
+  const char *table, *column, *type, *unit, *meaning;
+};
+constexpr std::array kColumns{
+    Column{"summary", "participant", "text", "", "as in trials"},
+    Column{"summary", "study", "text", "", "as in trials"},
+    Column{"summary", "rig", "text", "", "as in trials"},
+    Column{"summary", "level", "text", "", "as in trials"},
+    Column{"summary", "experience_years", "number", "a", "as in trials"},
+    Column{"summary", "simulated", "truth", "", "as in trials"},
+    Column{"summary", "trials", "integer", "1", "of the participant in the study on the rig"},
+    Column{"summary", "answered", "integer", "1", "of them with an answer"},
+    Column{"summary", "correct", "integer", "1", "of them with the right one"},
+    Column{"trials", "trial", "text", "", "pseudonym of the trial, the same in every export"},
+    Column{"trials", "participant", "text", "", "pseudonym of the person, or of the machine"},
+    Column{"trials", "study", "text", "", "study or assignment; empty: none"},
+    Column{"trials", "number", "integer", "1", "place in the participant's order, from 1"},
+    Column{"trials", "level", "text", "", "of training, as the study states it"},
+    Column{"trials", "experience_years", "number", "a", "as the study states it"},
+    Column{"trials", "case", "text", "", "title of the case or scenario"},
+    Column{"trials", "rig", "text", "", "palpation or probing"},
+    Column{"trials", "simulated", "truth", "", "1: a simulated hand or machine"},
+    Column{"trials", "days", "number", "d", "since the participant's first trial here"},
+    Column{"trials", "duration_s", "number", "s", "first to last sample"},
+    Column{"trials", "samples", "integer", "1", "in the trial's file"},
+    Column{"trials", "complete", "truth", "", "1: it was not cut short"},
+    Column{"trials", "counts", "truth", "", "1: it counts for its study; empty: of none"},
+    Column{"trials", "correct", "truth", "", "1: the answer is the truth; empty: no answer"},
+    Column{"scores", "trial", "text", "", "as in trials"},
+    Column{"scores", "score", "text", "", "id of the score; defined below"},
+    Column{"scores", "value", "number", "by score", "its value"},
+    Column{"scores", "unit", "text", "", "of the value"},
+};
+constexpr std::array kPalpation{
+    Column{"palpation", "t_s", "number", "s", "since the trial's start"},
+    Column{"palpation", "px_m", "number", "m", "handle's origin in the volume's frame (LPS)"},
+    Column{"palpation", "py_m", "number", "m", "likewise"},
+    Column{"palpation", "pz_m", "number", "m", "likewise"},
+    Column{"palpation", "qw", "number", "1", "handle's orientation, quaternion w x y z"},
+    Column{"palpation", "qx", "number", "1", "likewise"},
+    Column{"palpation", "qy", "number", "1", "likewise"},
+    Column{"palpation", "qz", "number", "1", "likewise"},
+    Column{"palpation", "fx_N", "number", "N", "bone on probe at the origin, handle frame"},
+    Column{"palpation", "fy_N", "number", "N", "likewise"},
+    Column{"palpation", "fz_N", "number", "N", "likewise"},
+    Column{"palpation", "tx_Nm", "number", "N m", "likewise"},
+    Column{"palpation", "ty_Nm", "number", "N m", "likewise"},
+    Column{"palpation", "tz_Nm", "number", "N m", "likewise"},
+    Column{"palpation", "flags", "integer", "1", "bits of tractus-trial/2: late, limited, …"},
+};
+constexpr std::array kProbing{
+    Column{"probing", "t_s", "number", "s", "since the trial's start"},
+    Column{"probing", "x_m", "number", "m", "depth of the tip from the entry, into the bone"},
+    Column{"probing", "theta_rad", "number", "rad", "angle about x, unwrapped"},
+    Column{"probing", "fz_N", "number", "N", "push of the hand along x, into the bone"},
+    Column{"probing", "tz_Nm", "number", "N m", "torque of the hand about x"},
+    Column{"probing", "speed_m_s", "number", "m/s", "of the depth, the actuator's own"},
+    Column{"probing", "mode", "integer", "1", "of the controller, by tractus-trial/2"},
+    Column{"probing", "flags", "integer", "1", "bits of tractus-trial/2: late, limited, …"},
+};
+
+std::string header_of(std::string_view table) {
+  std::string out;
+  for (const Column& column : kColumns)
+    if (column.table == table) out += (out.empty() ? "" : ",") + std::string(column.column);
+  return out + "\r\n";
+}
+
+}  // namespace
+
+Result<store::ReleasedTrials> released_trials(Backend& backend, const std::string& study,
+                                              store::Tier least) {
+  return backend.store.read([&](store::Reading& tx) {
+    return store::ReleasedTrials::read(tx, backend.pseudonym_key, {.study = study, .least = least});
+  });
+}
+
+std::string trials_csv(const store::ReleasedTrials& trials) {
+  std::string out = header_of("trials");
+  for (const store::ReleasedTrial& t : trials.all()) {
+    const bool in_study = !t.study.empty();
+    out += fmt::format("{},{},{},{},{},{},{},{},{},{:.4f},{},{},{},{},{}\r\n", t.id,
+                       cell(t.participant), cell(t.study), in_study ? std::to_string(t.number) : "",
+                       cell(t.level), cell(t.experience_years), cell(t.case_title), cell(t.rig),
+                       t.simulated ? 1 : 0, t.days, t.duration_s, t.samples, t.complete ? 1 : 0,
+                       in_study ? (t.place == "counts" ? "1" : "0") : "",
+                       t.correct ? (*t.correct ? "1" : "0") : "");
+  }
+  return out;
+}
+
+std::string summary_csv(const store::ReleasedTrials& trials) {
+  struct Sum {
+    const store::ReleasedTrial* first;
+    int trials = 0, answered = 0, correct = 0;
+  };
+  std::map<std::array<std::string, 3>, Sum> sums;
+  for (const store::ReleasedTrial& t : trials.all()) {
+    Sum& sum = sums.try_emplace({t.participant, t.study, t.rig}, Sum{&t}).first->second;
+    ++sum.trials;
+    sum.answered += t.correct.has_value();
+    sum.correct += t.correct.value_or(false);
+  }
+  std::string out = header_of("summary");
+  for (const auto& [key, sum] : sums)
+    out += fmt::format("{},{},{},{},{},{},{},{},{}\r\n", cell(key[0]), cell(key[1]), cell(key[2]),
+                       cell(sum.first->level), cell(sum.first->experience_years),
+                       sum.first->simulated ? 1 : 0, sum.trials, sum.answered, sum.correct);
+  return out;
+}
+
+std::string scores_csv(const store::ReleasedTrials& trials) {
+  std::map<std::string, std::string> units;
+  for (const auto& metric : metrics::all()) units[metric.id] = metric.unit;
+  std::string out = "trial,score,value,unit\r\n";
+  for (const store::ReleasedTrial& t : trials.all())
+    for (const auto& [id, value] : t.metrics)
+      out += fmt::format("{},{},{},{}\r\n", t.id, cell(id), value, cell(units[id]));
+  return out;
+}
+
+Result<std::string> key_csv(Backend& backend) {
+  using Lines = std::map<std::string, std::string>;
+  auto lines = backend.store.read([&](store::Reading& tx) -> Result<Lines> {
+    auto people = store::who_is_who(tx, backend.pseudonym_key);
+    if (!people) return people.error();
+    std::map<std::string, std::string> accounts;
+    auto all = store::all_accounts(tx);
+    if (!all) return all.error();
+    for (const auto& account : *all) accounts[account.id] = account.name;
+    Lines out;
+    for (const auto& [pseudonym, person] : *people) {
+      const auto colon = person.find(':');
+      const std::string kind = person.substr(0, colon), id = person.substr(colon + 1);
+      const auto account = accounts.find(id);
+      const bool known = kind == "account" && account != accounts.end();
+      out[pseudonym] = kind + "," + cell(known ? account->second : id);
+    }
+    return out;
+  });
+  if (!lines) return lines.error();
+  std::string out = "participant,kind,name\r\n";
+  for (const auto& [pseudonym, rest] : *lines) out += pseudonym + "," + rest + "\r\n";
+  return out;
+}
+
+std::string dictionary_csv() {
+  std::string out = "table,column,type,unit,meaning\r\n";
+  const auto add = [&](const auto& columns) {
+    for (const Column& c : columns)
+      out += fmt::format("{},{},{},{},{}\r\n", c.table, c.column, c.type, cell(c.unit),
+                         cell(c.meaning));
+  };
+  add(kColumns);
+  for (const auto& metric : metrics::all())
+    out += fmt::format("scores,{},number,{},{}\r\n", cell(metric.id), cell(metric.unit),
+                       cell(metric.definition));
+  add(kPalpation);
+  add(kProbing);
+  return out;
+}
+
+}  // namespace api
+}  // namespace tractus

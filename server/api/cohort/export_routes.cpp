@@ -1,0 +1,169 @@
+/// Research takes its data from here: tables and arrays by pseudonym.
+#include "db/store/operations/audit.hpp"
+#include "server/api/cohort/cohort_zip.hpp"
+#include "server/api/cohort/export.hpp"
+#include "server/api/route.hpp"
+#include "server/api/schema.hpp"
+#include "server/api/trials/samples_array.hpp"
+
+namespace tractus {
+namespace api {
+namespace {
+
+using core::Errc;
+using core::Error;
+using core::Result;
+using store::Tier;
+
+http::Response csv_response(std::string csv, const char* name) {
+  http::Response response{.status = 200, .headers = {}, .body = std::move(csv)};
+  response.with("Content-Type", "text/csv; charset=utf-8")
+      .with("Content-Disposition", std::string("attachment; filename=\"") + name + "\"")
+      .with("Cache-Control", "no-store");
+  return response;
+}
+
+std::string study_of_call(const Call& call) { return call.has("study") ? call.text("study") : ""; }
+
+Result<http::Response> export_summary(const Call& call) {
+  auto trials = released_trials(call.backend, study_of_call(call), Tier::summary);
+  if (!trials) return trials.error();
+  return csv_response(summary_csv(*trials), "summary.csv");
+}
+
+Result<http::Response> table(const Call& call, const char* name,
+                             std::string (*csv)(const store::ReleasedTrials&)) {
+  auto trials = released_trials(call.backend, study_of_call(call), Tier::metrics);
+  if (!trials) return trials.error();
+  return csv_response(csv(*trials), name);
+}
+
+Result<http::Response> export_trials(const Call& call) {
+  return table(call, "trials.csv", trials_csv);
+}
+
+Result<http::Response> export_scores(const Call& call) {
+  return table(call, "scores.csv", scores_csv);
+}
+
+Result<http::Response> export_dictionary(const Call&) {
+  return csv_response(dictionary_csv(), "dictionary.csv");
+}
+
+Result<http::Response> samples_of(const Call& call, const std::string& sha256,
+                                  std::uint64_t samples) {
+  auto file = http::scratch_file(*call.backend.scratch, call.caller.id, samples_npy_bytes(samples));
+  if (!file) return file.error();
+  auto written = write_samples_npy(call.backend.objects.path_of(sha256), call.number("rate_Hz"),
+                                   (*file)->path);
+  if (!written) return written.error();
+  return scratch_response(std::move(*file), "application/octet-stream", "samples.npy");
+}
+
+/// Only the key can tell which trial a pseudonym is: so the key is tried on all of them.
+Result<http::Response> export_samples(const Call& call) {
+  const double rate_Hz = call.number("rate_Hz");
+  const bool reduced = rate_Hz > 0.0 && rate_Hz <= kReduced_Hz;
+  auto trials = released_trials(call.backend, "", Tier::metrics);
+  if (!trials) return trials.error();
+  for (const store::ReleasedTrial& trial : trials->all()) {
+    if (trial.id != call.text("trial")) continue;
+    const auto file = trial.file(reduced ? Tier::reduced : Tier::full);
+    if (!file) return file.error();
+    return samples_of(call, *file, trial.samples);
+  }
+  return Error{Errc::not_found, "no trial " + call.text("trial").substr(0, 32)};
+}
+
+Result<http::Response> export_cohort(const Call& call) {
+  const auto tier = store::tier_named(call.text("tier"));
+  if (!tier || *tier == Tier::none)
+    return Error{Errc::bad_input, "tier: summary, metrics, reduced or full is expected"};
+  auto zip = cohort_zip(call.backend, call.caller.id, study_of_call(call), *tier);
+  if (!zip) return zip.error();
+  return scratch_response(std::move(*zip), "application/zip", "cohort.zip");
+}
+
+/// Looking at it is an act of its own.
+Result<http::Response> export_key(const Call& call) {
+  auto csv = key_csv(call.backend);
+  if (!csv) return csv.error();
+  const store::AuditedAction act{.who = call.caller.name,
+                                 .role = std::string(name(call.caller.role)),
+                                 .peer = call.request.peer,
+                                 .what = "exportKey",
+                                 .at_utc_us = call.backend.now_utc_us()};
+  auto noted = call.backend.store.write(
+      [&](store::Writing& tx) { return store::add_act(tx, call.backend.store.audit_key(), act); });
+  if (!noted) return noted.error();
+  return csv_response(std::move(*csv), "key.csv");
+}
+
+RouteInfo route(std::string tail, std::string id, std::string summary,
+                Result<http::Response> (*handle)(const Call&)) {
+  return {.method = "GET",
+          .path = "/api/v1/export/" + tail,
+          .id = std::move(id),
+          .summary = std::move(summary),
+          .who = {Role::admin, Role::researcher},
+          .parameters = {},
+          .body = "",
+          .answer = kBytes,
+          .schemas = {},
+          .handle = handle};
+}
+
+}  // namespace
+
+std::vector<RouteInfo> export_routes() {
+  const Parameter study{.in = Parameter::In::query,
+                        .name = "study",
+                        .kind = Parameter::Kind::text,
+                        .unit = "",
+                        .meaning = "trials of this study or assignment alone",
+                        .required = false,
+                        .fallback = std::nullopt};
+  RouteInfo trials = route("trials.csv", "exportTrials",
+                           "Trials as a tidy table, one row each, by pseudonym", export_trials);
+  trials.parameters = {study};
+  RouteInfo scores =
+      route("scores.csv", "exportScores", "Scores as a tidy table, one row each", export_scores);
+  scores.parameters = {study};
+  RouteInfo dictionary =
+      route("dictionary.csv", "exportDictionary",
+            "Every column of the tables and arrays: type, unit, what it is", export_dictionary);
+  RouteInfo samples =
+      route("trials/{trial}/samples.npy", "exportSamples",
+            "A trial's samples as an array of doubles (NumPy's .npy)", export_samples);
+  samples.parameters = {path_text("trial", "as in trials.csv"),
+                        {.in = Parameter::In::query,
+                         .name = "rate_Hz",
+                         .kind = Parameter::Kind::number,
+                         .unit = "Hz",
+                         .meaning = "rows a second; 0: every sample",
+                         .low = 0,
+                         .high = 10'000,
+                         .fallback = "100"}};
+  RouteInfo summary =
+      route("summary.csv", "exportSummary", "Counts per person, study and rig", export_summary);
+  summary.parameters = {study};
+  RouteInfo cohort =
+      route("cohort.zip", "exportCohort",
+            "All of it in one file: tables, dictionary, and samples where they were agreed to",
+            export_cohort);
+  cohort.parameters = {study,
+                       {.in = Parameter::In::query,
+                        .name = "tier",
+                        .kind = Parameter::Kind::text,
+                        .unit = "",
+                        .meaning = "summary, metrics, reduced (samples at 100 Hz) or full",
+                        .required = false,
+                        .fallback = "metrics"}};
+  RouteInfo key = route("key.csv", "exportKey",
+                        "Who is who in the exports; that somebody looked is noted", export_key);
+  key.who = {Role::admin};
+  return {summary, trials, scores, dictionary, samples, cohort, key};
+}
+
+}  // namespace api
+}  // namespace tractus

@@ -1,0 +1,254 @@
+#include "server/api/cohort/export.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+
+#include "core/file.hpp"
+#include "server/api/people/people_test_support.hpp"
+#include "trial/trial_file.hpp"
+
+namespace tractus {
+namespace api {
+namespace {
+using testing::PeopleTest;
+
+class Export : public PeopleTest {
+ protected:
+  Export() {
+    backend_.pseudonym_key.emplace();
+    backend_.pseudonym_key->fill(std::byte{7});
+    agree("tom", "full");
+  }
+  /// By the trainee's own word, of everywhere.
+  void agree(const std::string& account, const std::string& tier) {
+    const auto said = post(account, "/session/consent", {{"tier", tier}});
+    ASSERT_EQ(said.status, 200) << text(said);
+    EXPECT_EQ(json(said)["everywhere"], tier);
+  }
+  std::string toms_name() const {
+    return store::Pseudonyms(*backend_.pseudonym_key).trial(trial_of("tom"));
+  }
+  int rows(const std::string& name) {
+    const std::string all = csv(name);
+    return static_cast<int>(std::ranges::count(all, '\n')) - 1;
+  }
+  /// A trial file of 1 kHz whose depth is 1e-6 m a tick, in place of tom's.
+  void write_toms_trial(std::uint32_t samples) {
+    const auto path = folder_.path() / "trial";
+    trial::Header header;
+    header.id = trial_of("tom");
+    header.case_id = testing::kCase;
+    header.station = "station-1";
+    header.operator_name = "Mustermann^Erika";
+    header.rig = trial::Rig::probing;
+    header.device = "rig";
+    header.started_utc_us = 1;
+    header.rate_Hz = 1000.0;
+    auto writer = trial::TrialWriter::create(path, header);
+    ASSERT_TRUE(writer) << writer.error().what;
+    std::vector<trial::ProbingSample> all(samples);
+    for (std::uint32_t i = 0; i < samples; ++i) {
+      all[i].t_s = i * 1e-3;
+      all[i].x_m = i * 1e-6;
+      all[i].fz_N = 2.5F;
+      all[i].tick = i;
+    }
+    ASSERT_TRUE(writer->append(std::span<const trial::ProbingSample>(all)));
+    ASSERT_TRUE(writer->append(trial::Event{samples * 1e-3, "end"}));
+    ASSERT_TRUE(writer->finish());
+    const auto bytes = core::read_file(path).value();
+    const std::string sha256 = objects_.put(bytes).value();
+    ASSERT_TRUE(store_.write([&](store::Writing& tx) -> core::Result<void> {
+      if (auto done = store::add_object(tx, sha256, bytes.size(), 1); !done) return done;
+      auto set = tx.query("update trials set sha256 = ?, operator_name = ? where id = ?",
+                          {sha256, std::string("Mustermann^Erika"), trial_of("tom")});
+      if (!set) return set.error();
+      return store::set_assessment(tx, trial_of("tom"), {{"force_mean", 2.5, ""}}, true, "{}");
+    }));
+  }
+  std::string csv(const std::string& name) {
+    const auto response = get("rex", "/export/" + name);
+    EXPECT_EQ(response.status, 200) << text(response);
+    return text(response);
+  }
+};
+
+TEST_F(Export, NamesNobodyAndNoTimeOfDay) {
+  write_toms_trial(10);
+  const std::string all = csv("trials.csv") + csv("scores.csv");
+  for (const std::string& secret :
+       {std::string("Mustermann"), std::string("tom"), trial_of("tom"), std::string("fay")})
+    EXPECT_EQ(all.find("," + secret + ","), std::string::npos) << secret << all;
+  EXPECT_EQ(all.find("Mustermann"), std::string::npos) << all;
+  EXPECT_EQ(all.find(trial_of("tom")), std::string::npos) << all;
+  EXPECT_EQ(all.find("P-tom"), std::string::npos) << "that one stands in the database";
+  const store::Pseudonyms names(*backend_.pseudonym_key);
+  EXPECT_NE(all.find("," + names.person("account:tom") + ","), std::string::npos) << all;
+}
+
+TEST_F(Export, APseudonymIsTheSameAgainAndAnotherWithAnotherKey) {
+  const Secrets::Key one{std::byte{1}}, two{std::byte{2}};
+  const store::Pseudonyms here(one), elsewhere(two);
+  EXPECT_EQ(here.person("Erika"), store::Pseudonyms(one).person("Erika"));
+  EXPECT_NE(here.person("Erika"), elsewhere.person("Erika"));
+  EXPECT_NE(here.person("Erika"), here.person("Eva"));
+}
+
+TEST_F(Export, EveryColumnStandsInTheDictionary) {
+  const std::string dictionary = csv("dictionary.csv"), trials = csv("trials.csv");
+  std::string head = trials.substr(0, trials.find('\r'));
+  int columns = 0;
+  while (!head.empty()) {
+    const std::string one = head.substr(0, head.find(','));
+    head.erase(0, std::min(head.size(), one.size() + 1));
+    EXPECT_NE(dictionary.find("trials," + one + ","), std::string::npos) << one;
+    ++columns;
+  }
+  EXPECT_EQ(columns, 15);
+}
+
+TEST_F(Export, AFormulaAndAQuoteAreHarmless) {
+  ASSERT_TRUE(store_.write([](store::Writing& tx) {
+    return tx.query("update cases set title = '=HYPERLINK(\"http://evil\"),x'");
+  }));
+  EXPECT_NE(csv("trials.csv").find(",\"'=HYPERLINK(\"\"http://evil\"\"),x\","), std::string::npos)
+      << csv("trials.csv");
+}
+
+/// The .npy format by NumPy's own description (NEP 1): magic, version 1.0, header length, header
+/// that ends in a newline at a multiple of 64.
+TEST_F(Export, SamplesAreAnArrayThatNumpyReads) {
+  write_toms_trial(1000);
+  const std::string name = toms_name();
+  const auto response = get("rex", "/export/trials/" + name + "/samples.npy?rate_Hz=100");
+  ASSERT_EQ(response.status, 200) << text(response);
+  const std::string array = text(response);
+  ASSERT_EQ(array.substr(0, 8), std::string("\x93NUMPY\x01\x00", 8));
+  const std::size_t length =
+      static_cast<unsigned char>(array[8]) + 256u * static_cast<unsigned char>(array[9]);
+  EXPECT_EQ((10 + length) % 64, 0u);
+  EXPECT_EQ(array[10 + length - 1], '\n');
+  EXPECT_NE(array.find("'descr': '<f8', 'fortran_order': False, 'shape': (100, 8)"),
+            std::string::npos)
+      << array.substr(0, 128);
+  ASSERT_EQ(array.size(), 10 + length + 100 * 8 * 8);
+  std::array<double, 8> row{};
+  std::memcpy(row.data(), array.data() + 10 + length + 50 * 64, 64);
+  EXPECT_NEAR(row[0], 0.5, 1e-12) << "row 50 of 100 Hz";
+  EXPECT_NEAR(row[1], 500e-6, 1e-12);
+  EXPECT_EQ(row[3], 2.5);
+  const auto full = text(get("rex", "/export/trials/" + name + "/samples.npy?rate_Hz=0"));
+  EXPECT_NE(full.find("'shape': (1000, 8)"), std::string::npos);
+}
+
+TEST_F(Export, GivesOfEachPersonWhatTheyAgreedToAndNoMore) {
+  write_toms_trial(1000);
+  const std::string samples = "/export/trials/" + toms_name() + "/samples.npy?rate_Hz=";
+  // tier, rows of summary, of trials (header and file aside), samples at 100 Hz, all samples
+  struct Case {
+    const char* tier;
+    int summary, trials, reduced, full;
+  };
+  for (const Case& c : {Case{"full", 1, 1, 200, 200}, Case{"reduced", 1, 1, 200, 403},
+                        Case{"metrics", 1, 1, 403, 403}, Case{"summary", 1, 0, 404, 404},
+                        Case{"none", 0, 0, 404, 404}}) {
+    agree("tom", c.tier);  // tia never said a word: nothing of hers is ever there
+    EXPECT_EQ(rows("summary.csv"), c.summary) << c.tier;
+    EXPECT_EQ(rows("trials.csv"), c.trials) << c.tier;
+    EXPECT_EQ(get("rex", samples + "100").status, c.reduced) << c.tier;
+    EXPECT_EQ(get("rex", samples + "0").status, c.full) << c.tier;
+    EXPECT_EQ(get("rex", samples + "101").status, c.full) << c.tier;
+  }
+}
+
+TEST_F(Export, ConsentOfOneStudyIsOfThatStudyAlone) {
+  agree("tom", "none");
+  EXPECT_EQ(post("tom", "/session/consent", {{"tier", "metrics"}, {"study", "a-tia"}}).status, 404);
+  EXPECT_EQ(post("tom", "/session/consent", {{"tier", "metrics"}, {"study", "a-tom"}}).status, 200);
+  EXPECT_EQ(rows("trials.csv"), 1);
+  EXPECT_EQ(post("tom", "/session/consent", {{"tier", "everything"}}).status, 400);
+  // For somebody with an account nobody but an administrator notes a form.
+  const core::Json form{{"account", "tia"}, {"tier", "full"}, {"basis", "form 3"}};
+  EXPECT_EQ(post("rex", "/consents", form).status, 403);
+  EXPECT_EQ(post("rex", "/consents",
+                 {{"study", "a-tia"}, {"participant", "P-tia"}, {"tier", "full"}, {"basis", "x"}})
+                .status,
+            404);
+  EXPECT_EQ(post("ann", "/consents", form).status, 204);
+  EXPECT_EQ(rows("trials.csv"), 2);
+}
+
+TEST_F(Export, TheWholeCohortIsOneZipOfTheSameTables) {
+  write_toms_trial(1000);
+  const auto zip = get("rex", "/export/cohort.zip?tier=full");
+  ASSERT_EQ(zip.status, 200) << text(zip);
+  const std::string bytes = text(zip);
+  EXPECT_EQ(bytes.substr(0, 4), "PK\x03\x04");
+  for (const std::string& name :
+       {std::string("cohort.json"), std::string("trials.csv"), std::string("scores.csv"),
+        std::string("dictionary.csv"), "samples/" + toms_name() + ".npy"})
+    EXPECT_NE(bytes.find(name), std::string::npos) << name;
+  EXPECT_EQ(text(get("rex", "/export/cohort.zip?tier=metrics")).find("samples/"),
+            std::string::npos);
+  EXPECT_EQ(get("rex", "/export/cohort.zip?tier=none").status, 400);
+}
+
+/// deploy/examples, as a researcher would run them: nothing but Python, nothing but R.
+TEST_F(Export, TheExamplesInPythonAndRReadTheZip) {
+  write_toms_trial(1000);
+  const auto zip = get("rex", "/export/cohort.zip?tier=reduced");
+  ASSERT_EQ(zip.status, 200) << text(zip);
+  const auto path = folder_.path() / "cohort.zip";
+  std::ofstream(path, std::ios::binary) << text(zip);
+  // Tom's one trial, with its one score; 1 s at 1 kHz is 100 rows at 100 Hz, the last at 0.99 s;
+  // of probing trials eight columns.
+  const std::string expected = "trials 1 participants 1 scores 1\nsamples " + toms_name() +
+                               " rows 100 columns 8 last_t_s 0.990000\n";
+  int ran = 0;
+  for (const auto& [program, script] :
+       {std::pair("python3", "read_cohort.py"), std::pair("Rscript", "read_cohort.R")}) {
+    if (std::system((std::string(program) + " --version > /dev/null 2>&1").c_str()) != 0) {
+      std::printf("not run, %s is not installed: %s\n", program, script);
+      continue;
+    }
+    const std::string command = std::string(program) + " " TRACTUS_SOURCE_DIR "/deploy/examples/" +
+                                script + " " + path.string() + " 2>&1";
+    std::FILE* out = ::popen(command.c_str(), "r");
+    std::string said;
+    std::array<char, 4096> piece{};
+    while (const std::size_t n = std::fread(piece.data(), 1, piece.size(), out))
+      said.append(piece.data(), n);
+    EXPECT_EQ(::pclose(out), 0) << said;
+    EXPECT_EQ(said, expected) << script;
+    ++ran;
+  }
+  if (ran == 0) GTEST_SKIP() << "the examples: neither python3 nor R is installed";
+}
+
+TEST_F(Export, TheKeyIsAnAdministratorsAndLookingAtItIsNoted) {
+  write_toms_trial(10);
+  EXPECT_EQ(get("rex", "/export/key.csv").status, 403);
+  const auto key = get("ann", "/export/key.csv");
+  ASSERT_EQ(key.status, 200);
+  const store::Pseudonyms names(*backend_.pseudonym_key);
+  EXPECT_NE(text(key).find(names.person("account:tom") + ",account,tom\r\n"), std::string::npos)
+      << text(key);
+  const auto rows = json(get("ann", "/audit"))["rows"];
+  EXPECT_EQ(rows[0]["what"], "exportKey");
+  EXPECT_EQ(rows[0]["who"], "ann");
+  EXPECT_EQ(rows[1]["what"], "refused: exportKey");
+  EXPECT_EQ(rows[1]["who"], "rex");
+  backend_.pseudonym_key.reset();
+  EXPECT_EQ(get("rex", "/export/trials.csv").status, 503);
+}
+
+TEST_F(Export, AnIdOfTheServersOwnOpensNothing) {
+  write_toms_trial(10);
+  EXPECT_EQ(get("rex", "/export/trials/" + trial_of("tom") + "/samples.npy").status, 404);
+}
+
+}  // namespace
+}  // namespace api
+}  // namespace tractus

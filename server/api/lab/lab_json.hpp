@@ -1,0 +1,31 @@
+/// The model lab's records as they are shown.
+#pragma once
+
+#include "db/store/lab/lab.hpp"
+#include "server/api/route.hpp"
+
+namespace tractus::api {
+
+core::Json model_json(const store::ModelVersion& model);
+core::Json set_json(const store::MeasurementSet& set);
+
+/// A run without what it found, for lists: `ranking`, `diagnosis`, `fit`, `comparisons` and
+/// `tract_map` are null.
+core::Json run_json(const store::LabRun& run, const std::optional<store::ModelVersion>& published);
+/// With it, read from its objects. Errors: those of reading.
+core::Result<core::Json> whole_run_json(const Call& call, const store::LabRun& run);
+
+/// A run's own effects, as they were sent.
+core::Json own_effects(const store::LabRun& run);
+
+std::vector<NamedSchema> lab_model_schemas();
+std::vector<NamedSchema> lab_run_schemas();
+
+/// research_route under /api/v1/lab.
+RouteInfo lab_route(std::string method, std::string tail, std::string id, std::string summary,
+                    std::string answer, core::Result<http::Response> (*handle)(const Call&));
+/// An argument in the query that may be left out.
+Parameter optional_text(std::string name, std::string meaning);
+core::Error absent(const char* what, const std::string& id);
+
+}  // namespace tractus::api

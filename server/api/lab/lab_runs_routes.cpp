@@ -1,0 +1,394 @@
+/// What is asked of the model lab: diagnoses, comparisons and fits as jobs, and what came of them.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/bytes.hpp"
+#include "db/store/cases/cases.hpp"
+#include "db/store/lab/lab.hpp"
+#include "db/store/operations/jobs.hpp"
+#include "lab/io/kept_samples.hpp"
+#include "lab/io/own_effect.hpp"
+#include "server/api/backend.hpp"
+#include "server/api/lab/lab_json.hpp"
+#include "server/api/schema.hpp"
+
+namespace tractus {
+namespace api {
+namespace {
+
+using core::Errc;
+using core::Error;
+using core::Json;
+using core::Result;
+
+constexpr std::uint64_t kMaxAsk_bytes = 256 << 10;
+constexpr std::size_t kMostOwn = 8, kMostAdded = 16;
+constexpr double kLongest_s = 1e6;
+
+/// The user's own effects and those added by hand, if the kind of run takes them.
+Result<void> read_wish(core::Fields& fields, store::LabRun& run) {
+  Json wish{{"add", Json::array()}, {"own", Json::array()}};
+  if (run.kind == "fit" && fields.has("add")) wish["add"] = *fields.member("add");
+  if (run.kind != "comparison" && fields.has("own")) wish["own"] = *fields.member("own");
+  const auto texts = [](const Json& all) {
+    return all.is_array() && all.size() <= kMostAdded &&
+           std::ranges::all_of(all, [](const Json& one) { return one.is_string(); });
+  };
+  if (!texts(wish["add"]))
+    return Error{Errc::bad_input, fmt::format("add: at most {} ids are expected", kMostAdded)};
+  if (!wish["own"].is_array() || wish["own"].size() > kMostOwn)
+    return Error{Errc::bad_input, fmt::format("own: at most {} effects are expected", kMostOwn)};
+  run.wish = wish.dump();
+  return {};
+}
+
+Result<store::LabRun> wanted(const Call& call, const char* kind) {
+  const auto json = core::parse_json(call.request.body, "body");
+  if (!json) return json.error();
+  core::Fields fields(*json, "");
+  store::LabRun run;
+  run.id = core::new_id();
+  run.kind = kind;
+  run.model_id = fields.text("model", 64);
+  run.set_id = fields.text("measurements", 64);
+  run.made_utc_us = call.backend.now_utc_us();
+  run.made_by = call.caller.name;
+  if (run.kind == "comparison" && fields.has("against")) {
+    if ((*json)["against"].is_null())
+      fields.skip("against");
+    else
+      run.against_id = fields.text("against", 64);
+  }
+  if (auto read = read_wish(fields, run); !read) return read.error();
+  if (auto done = fields.done(); !done) return done.error();
+  return run;
+}
+
+/// Both models and the set are here and of one rig; own effects are in order.
+Result<void> check(store::Reading& tx, const store::LabRun& run) {
+  const auto set = store::measurement_set_of(tx, run.set_id);
+  if (!set) return set.error();
+  if (!*set) return absent("measurement set", run.set_id);
+  std::string rig;
+  for (const std::string& id : {run.model_id, run.against_id.value_or("")}) {
+    if (id.empty()) continue;
+    const auto model = store::model_of(tx, id);
+    if (!model) return model.error();
+    if (!*model) return absent("model", id);
+    rig = (*model)->rig;
+    if ((*set)->rig && *(*set)->rig != rig)
+      return Error{
+          Errc::bad_input,
+          fmt::format("a model of the {} rig, but measurements of the {} rig", rig, *(*set)->rig)};
+  }
+  std::vector<lab_io::OwnEffect> own;
+  for (const Json& one : own_effects(run))
+    own.push_back({one, fmt::format("own[{}]: ", own.size())});
+  const auto ids = lab_io::ids_of(own, rig);
+  if (!ids) return ids.error();
+  return {};
+}
+
+Result<http::Response> start(const Call& call, const char* kind) {
+  const auto run = wanted(call, kind);
+  if (!run) return run.error();
+  auto queued = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
+    if (auto fine = check(tx, *run); !fine) return fine;
+    if (auto added = store::add_lab_run(tx, *run); !added) return added;
+    return store::queue_job(tx, "lab", run->id, run->made_utc_us);
+  });
+  if (!queued) return queued.error();
+  call.backend.work_waits();
+  return json_response(run_json(*run, std::nullopt), 201);
+}
+
+Result<http::Response> start_diagnosis(const Call& call) { return start(call, "diagnosis"); }
+Result<http::Response> start_comparison(const Call& call) { return start(call, "comparison"); }
+Result<http::Response> start_fit(const Call& call) { return start(call, "fit"); }
+
+Result<http::Response> list_runs(const Call& call) {
+  using Runs = std::vector<std::pair<store::LabRun, std::optional<store::ModelVersion>>>;
+  const auto runs = call.backend.store.read([&](store::Reading& tx) -> Result<Runs> {
+    const auto found = store::lab_runs(tx, {.kind = call.text("kind"),
+                                            .model_id = call.text("model"),
+                                            .set_id = call.text("measurements"),
+                                            .limit = call.integer("limit")});
+    if (!found) return found.error();
+    Runs out;
+    for (const auto& run : *found) {
+      auto published = store::model_made_by(tx, run.id);
+      if (!published) return published.error();
+      out.emplace_back(run, std::move(*published));
+    }
+    return out;
+  });
+  if (!runs) return runs.error();
+  Json list = Json::array();
+  for (const auto& [run, published] : *runs) list.push_back(run_json(run, published));
+  return json_response({{"runs", list}});
+}
+
+Result<store::LabRun> run_of(const Call& call) {
+  const auto run = call.backend.store.read(
+      [&](store::Reading& tx) { return store::lab_run_of(tx, call.text("id")); });
+  if (!run) return run.error();
+  if (!*run) return absent("run of the lab", call.text("id"));
+  return **run;
+}
+
+Result<http::Response> one_run(const Call& call) {
+  const auto run = run_of(call);
+  if (!run) return run.error();
+  const auto json = whole_run_json(call, *run);
+  if (!json) return json.error();
+  return json_response(*json);
+}
+
+Result<http::Response> report_of(const Call& call) {
+  const auto run = run_of(call);
+  if (!run) return run.error();
+  if (!run->report) return absent("report of the run", run->id);
+  auto response = http::file_response(call.backend.objects.path_of(*run->report), call.request,
+                                      "text/html; charset=utf-8");
+  if (!response) return response;
+  return as_report(std::move(*response));
+}
+
+Result<http::Response> better_model(const Call& call) {
+  const auto run = run_of(call);
+  if (!run) return run.error();
+  if (!run->model) return absent("model of the run", run->id);
+  return http::file_response(call.backend.objects.path_of(*run->model), call.request,
+                             "application/json");
+}
+
+Result<http::Response> stop(const Call& call) {
+  const auto run = run_of(call);
+  if (!run) return run.error();
+  auto asked = call.backend.store.write([&](store::Writing& tx) {
+    return store::ask_to_stop(tx, run->id, call.backend.now_utc_us());
+  });
+  if (!asked) return asked.error();
+  return one_run(call);
+}
+
+Json envelope(const lab_io::Envelope& e) { return {{"min", e.least}, {"max", e.most}}; }
+
+Result<http::Response> signals(const Call& call) {
+  const auto run = run_of(call);
+  if (!run) return run.error();
+  if (!run->samples) return absent("samples of the run", run->id);
+  const std::string& side = call.text("side");
+  if (side != "before" && side != "after")
+    return Error{Errc::bad_input, "side: before or after is expected"};
+  const auto view = lab_io::view_samples(call.backend.objects.path_of(*run->samples),
+                                         {.trial = call.text("trial"),
+                                          .channel = call.text("channel"),
+                                          .after = side == "after",
+                                          .from_s = call.number("from_s"),
+                                          .to_s = call.number("to_s"),
+                                          .points = std::size_t(call.integer("points"))});
+  if (!view) return view.error();
+  Json regions = Json::array();
+  for (const auto& spans : view->regions) {
+    regions.push_back(Json::array());
+    for (const auto& [from, to] : spans) regions.back().push_back({from, to});
+  }
+  return json_response({{"trial", call.text("trial")},
+                        {"channel", call.text("channel")},
+                        {"side", side},
+                        {"duration_s", view->duration_s},
+                        {"t_s", view->t_s},
+                        {"measured", envelope(view->measured)},
+                        {"simulated", envelope(view->simulated)},
+                        {"residual", envelope(view->residual)},
+                        {"noise_floor", view->noise_floor},
+                        {"samples_per_point", view->samples_per_point},
+                        {"regions", regions}});
+}
+
+struct Words {
+  std::string name, note;
+};
+
+Result<Words> words_of(const Call& call) {
+  if (call.request.body.empty()) return Words{};
+  const auto json = core::parse_json(call.request.body, "body");
+  if (!json) return json.error();
+  core::Fields fields(*json, "");
+  Words out;
+  if (fields.has("name")) out.name = fields.text("name", 200);
+  if (fields.has("note")) out.note = fields.text("note", 2000);
+  if (auto done = fields.done(); !done) return done.error();
+  return out;
+}
+
+/// The better model under the name it shall have; its bytes as they were if that is its name.
+Result<std::pair<std::string, std::uint64_t>> named_model(const Call& call,
+                                                          const store::LabRun& run,
+                                                          std::string& name) {
+  auto json = core::read_json(call.backend.objects.path_of(*run.model));
+  if (!json) return json.error();
+  if (name.empty()) name = json->value("name", "");
+  (*json)["name"] = name;
+  const std::string text = json->dump(2) + "\n";
+  auto sha256 = call.backend.objects.put(core::bytes_of(text));
+  if (!sha256) return sha256.error();
+  return std::pair(*sha256, std::uint64_t(text.size()));
+}
+
+Result<http::Response> publish(const Call& call) {
+  const auto run = run_of(call);
+  if (!run) return run.error();
+  auto words = words_of(call);
+  if (!words) return words.error();
+  if (!run->model)
+    return Error{Errc::conflict,
+                 fmt::format("this {} has no model to publish: it is {}", run->kind, run->state)};
+  const auto file = named_model(call, *run, words->name);
+  if (!file) return file.error();
+  bool made = false;
+  auto version = call.backend.store.write([&](store::Writing& tx) -> Result<store::ModelVersion> {
+    auto already = store::model_made_by(tx, run->id);
+    if (!already) return already.error();
+    if (*already) return **already;
+    const auto parent = store::model_of(tx, run->model_id);
+    if (!parent) return parent.error();
+    if (!*parent) return absent("model", run->model_id);
+    const std::int64_t now = call.backend.now_utc_us();
+    if (auto noted = store::add_object(tx, file->first, file->second, now); !noted)
+      return noted.error();
+    store::ModelVersion out{
+        core::new_id(), words->name, (*parent)->rig,   file->first, (*parent)->id,
+        run->id,        now,         call.caller.name, words->note};
+    if (auto added = store::add_model(tx, out); !added) return added.error();
+    made = true;
+    return out;
+  });
+  if (!version) return version.error();
+  return json_response(model_json(*version), made ? 201 : 200);
+}
+
+Parameter numeric(std::string name, Parameter::Kind kind, std::string unit, std::string meaning,
+                  double low, double high, std::string fallback) {
+  return {.in = Parameter::In::query,
+          .name = std::move(name),
+          .kind = kind,
+          .unit = std::move(unit),
+          .meaning = std::move(meaning),
+          .required = false,
+          .low = low,
+          .high = high,
+          .fallback = std::move(fallback)};
+}
+
+Parameter required_text(std::string name, std::string meaning) {
+  Parameter out = optional_text(std::move(name), std::move(meaning));
+  out.required = true;
+  out.fallback = std::nullopt;
+  return out;
+}
+
+RouteInfo asking(const char* tail, const char* id, const char* summary, const char* body,
+                 core::Json schema, Result<http::Response> (*handle)(const Call&)) {
+  return taking(lab_route("POST", tail, id, summary, "LabRun", handle), body, kMaxAsk_bytes,
+                {{body, std::move(schema)}});
+}
+
+std::vector<RouteInfo> asking_routes() {
+  using namespace schema;
+  const Json model = text("a version's id"), set = text("a set's id");
+  const Json own =
+      schema::optional(array(anything("tractus-effect/1"), "the user's own, at most 8"));
+  return {asking("diagnoses", "startDiagnosis",
+                 "Ask which effect a model lacks by a measurement set; done as a job",
+                 "DiagnosisWanted", object({{"model", model}, {"measurements", set}, {"own", own}}),
+                 start_diagnosis),
+          asking("comparisons", "startComparison",
+                 "Hold one or two versions of a model beside a measurement set; done as a job",
+                 "ComparisonWanted",
+                 object({{"model", model},
+                         {"measurements", set},
+                         {"against", schema::optional(nullable(text("the other version's id")))}}),
+                 start_comparison),
+          asking("fits", "startFit",
+                 "Fit a model to a measurement set, with effects added by hand; done as a job",
+                 "FitWanted",
+                 object({{"model", model},
+                         {"measurements", set},
+                         {"add", schema::optional(array(text("an effect's id"), "at most 16"))},
+                         {"own", own}}),
+                 start_fit)};
+}
+
+RouteInfo signals_route() {
+  using namespace schema;
+  using Kind = Parameter::Kind;
+  RouteInfo out = lab_route("GET", "runs/{id}/signals", "runSignals",
+                            "A trial measured and simulated, least and greatest of the samples "
+                            "behind each point, and when it is in which region",
+                            "RunSignals", signals);
+  for (Parameter p : {required_text("trial", "its id in the set"),
+                      required_text("channel", "as fz_N"), optional_text("side", "before or after"),
+                      numeric("from_s", Kind::number, "s", "from this time", 0, kLongest_s, "0"),
+                      numeric("to_s", Kind::number, "s", "to this time", 0, kLongest_s, "1000000"),
+                      numeric("points", Kind::integer, "1", "at most so many", 1, 20000, "1000")})
+    out.parameters.push_back(std::move(p));
+  out.parameters[3].fallback = "before";
+  const Json spans = tuple(number("s", "from, to"), 2, "a stretch of time");
+  const Json both = object({{"min", array(number("its channel's", "least"), "by point")},
+                            {"max", array(number("its channel's", "greatest"), "by point")}});
+  out.schemas = {
+      {"RunSignals", object({{"trial", text("its id")},
+                             {"channel", text("its name")},
+                             {"side", one_of({"before", "after"}, "which model")},
+                             {"duration_s", number("s", "of the trial")},
+                             {"t_s", array(number("s", "since its start"), "by point")},
+                             {"measured", both},
+                             {"simulated", both},
+                             {"residual", both},
+                             {"noise_floor", number("its channel's", "rms of a true model")},
+                             {"samples_per_point", integer("1", "behind each point")},
+                             {"regions", array(array(spans, "in order of time"),
+                                               "by region of the comparison")}})}};
+  return out;
+}
+
+}  // namespace
+
+std::vector<RouteInfo> lab_runs_routes() {
+  using namespace schema;
+  RouteInfo list = lab_route("GET", "runs", "labRuns",
+                             "What was asked of the lab, newest first, without what was found",
+                             "LabRunList", list_runs);
+  list.parameters = {
+      optional_text("kind", "diagnosis, comparison or fit"),
+      optional_text("model", "of this version"), optional_text("measurements", "by this set"),
+      numeric("limit", Parameter::Kind::integer, "1", "at most so many", 1, 500, "50")};
+  list.schemas = lab_run_schemas();
+  list.schemas.push_back({"LabRunList", object({{"runs", array(ref("LabRun"), "newest first")}})});
+  std::vector<RouteInfo> out = asking_routes();
+  out.push_back(std::move(list));
+  out.push_back(lab_route("GET", "runs/{id}", "labRun", "How far it is, and what it found",
+                          "LabRun", one_run));
+  out.push_back(lab_route("POST", "runs/{id}/stop", "stopLabRun",
+                          "Stop it; one that ended stays as it is", "LabRun", stop));
+  out.push_back(lab_route("GET", "runs/{id}/report", "labRunReport", "The page of a finished one",
+                          kBytes, report_of));
+  out.push_back(lab_route("GET", "runs/{id}/model", "labRunModel", "The model it made, as a file",
+                          "ModelFile", better_model));
+  out.push_back(taking(
+      lab_route("POST", "runs/{id}/publish", "publishLabRun",
+                "Make its model a version, with the judged one as parent; again: the same version",
+                "ModelVersion", publish),
+      "PublishWanted", kMaxAsk_bytes,
+      {{"PublishWanted",
+        object({{"name", schema::optional(text("of the version; else the model's own"))},
+                {"note", schema::optional(text("why, for people"))}})}}));
+  out.push_back(signals_route());
+  return out;
+}
+
+}  // namespace api
+}  // namespace tractus

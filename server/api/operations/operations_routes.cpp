@@ -1,0 +1,91 @@
+/// For those who keep the server running: is it well, and what does it do?
+#include "server/api/backend.hpp"
+#include "server/api/route.hpp"
+#include "server/api/schema.hpp"
+#include "server/api/trials/uploads.hpp"
+
+namespace tractus {
+namespace api {
+namespace {
+
+core::Result<double> counted(store::Reading& tx, const char* sql) {
+  auto rows = tx.query(sql);
+  if (!rows) return rows.error();
+  return static_cast<double>(rows->front().count(0));
+}
+
+/// Anybody may ask, so it tells no more than whether trials can be taken.
+core::Result<http::Response> health(const Call& call) {
+  auto reads = call.backend.store.read(
+      [](store::Reading& tx) { return counted(tx, "select count(*) from schema_versions"); });
+  const bool room = bool(check_disk(call.backend, 0));
+  const char* state = !reads ? "failing" : room ? "ok" : "disk full";
+  return json_response({{"state", state}}, reads && room ? 200 : 503);
+}
+
+struct Gauge {
+  const char *name, *help, *sql;
+};
+constexpr Gauge kGauges[] = {
+    {"tractus_trials", "Trials stored.", "select count(*) from trials"},
+    {"tractus_uploads_open", "Uploads under way.",
+     "select count(*) from uploads where state = 'receiving'"},
+    {"tractus_jobs_waiting", "Jobs queued or running.",
+     "select count(*) from jobs where state in ('queued', 'running')"},
+    {"tractus_jobs_failed", "Jobs given up.", "select count(*) from jobs where state = 'failed'"},
+    {"tractus_stations", "Stations that may come in.",
+     "select count(*) from stations where revoked_utc_us is null"},
+    {"tractus_sessions", "People signed in.", "select count(*) from sessions"},
+    {"tractus_audit_rows", "Rows of the audit trail.",
+     "select coalesce(max(number), 0) from audit"},
+};
+
+core::Result<http::Response> metrics_text(const Call& call) {
+  std::string out = call.backend.telemetry.text();
+  auto read = call.backend.store.read([&](store::Reading& tx) -> core::Result<void> {
+    for (const Gauge& gauge : kGauges) {
+      auto value = counted(tx, gauge.sql);
+      if (!value) return value.error();
+      out += Telemetry::gauge(gauge.name, gauge.help, *value);
+    }
+    return {};
+  });
+  if (!read) return read.error();
+  out += Telemetry::gauge("tractus_disk_free_bytes", "Left on the data folder's disk.",
+                          static_cast<double>(free_bytes(call.backend)));
+  http::Response response{.status = 200, .headers = {}, .body = std::move(out)};
+  response.with("Content-Type", "text/plain; version=0.0.4").with("Cache-Control", "no-store");
+  return response;
+}
+
+}  // namespace
+
+std::vector<RouteInfo> operations_routes() {
+  using namespace schema;
+  return {
+      {.method = "GET",
+       .path = "/api/v1/health",
+       .id = "health",
+       .summary = "200 when the server works and has room for trials; 503 when not",
+       .who = {},
+       .open = true,
+       .parameters = {},
+       .body = "",
+       .answer = "Health",
+       .schemas = {{"Health",
+                    object({{"state", one_of({"ok", "disk full", "failing"}, "of the server")}})}},
+       .handle = health},
+      {.method = "GET",
+       .path = "/api/v1/server/metrics",
+       .id = "serverMetrics",
+       .summary = "Counters, times and gauges in Prometheus' text form, without anybody's name",
+       .who = {Role::admin, Role::technician, Role::station},
+       .parameters = {},
+       .body = "",
+       .answer = kBytes,
+       .schemas = {},
+       .handle = metrics_text}};
+}
+
+}  // namespace api
+}  // namespace tractus

@@ -1,0 +1,258 @@
+/// Accounts: made, switched off, given a role, a badge, a new password. By administrators; badge
+/// and PIN of their trainees by those who teach them.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/bytes.hpp"
+#include "server/api/backend.hpp"
+#include "server/api/people/authentication.hpp"
+#include "server/api/people/people_json.hpp"
+#include "server/api/people/throttle.hpp"
+#include "server/api/schema.hpp"
+
+namespace tractus {
+namespace api {
+namespace {
+
+using core::Errc;
+using core::Error;
+using core::Result;
+
+constexpr std::uint64_t kMaxBody_bytes = 8192;
+
+Result<http::Response> list_accounts(const Call& call) {
+  auto found = call.backend.store.read([](store::Reading& tx) { return store::all_accounts(tx); });
+  if (!found) return found.error();
+  core::Json list = core::Json::array();
+  for (const auto& account : *found) list.push_back(account_json(account));
+  return json_response({{"accounts", list}});
+}
+
+std::string role_field(core::Fields& fields) {
+  std::string out = fields.text("role", 32);
+  const auto role = role_named(out);
+  if (!role || *role == Role::station)
+    fields.wrong("role", "admin, director, faculty, researcher, technician or trainee is expected");
+  return out;
+}
+
+/// What a body asks of a new account; without a password one is made.
+struct Wanted {
+  store::Account account;
+  std::string password, pin;
+  bool made = false;
+};
+
+Result<Wanted> wanted(const core::Json& json, const std::string& where) {
+  core::Fields fields(json, where);
+  Wanted out;
+  out.account.id = core::new_id();
+  out.account.name = fields.text("name", kMaxName);
+  if (out.account.name.find_first_not_of(" \t\r\n") == std::string::npos)
+    fields.wrong("name", "a name is expected");
+  out.account.role = role_field(fields);
+  out.password = password_field(fields, "password", false);
+  out.account.badge = badge_field(fields);
+  out.pin = pin_field(fields);
+  if (auto done = fields.done(); !done) return done.error();
+  out.made = out.password.empty();
+  if (out.made) out.password = made_password();
+  out.account.must_change = true;
+  out.account.pseudonym = new_pseudonym();
+  return out;
+}
+
+Result<http::Response> add_account_route(const Call& call) {
+  auto json = core::parse_json(call.request.body, "body");
+  if (!json) return json.error();
+  auto asked = wanted(*json, "body");
+  if (!asked) return asked.error();
+  auto hash = password_hash(asked->password);
+  if (!hash) return hash.error();
+  asked->account.password_hash = *hash;
+  if (!asked->pin.empty()) {
+    auto pin = password_hash(asked->pin);
+    if (!pin) return pin.error();
+    asked->account.pin_hash = *pin;
+  }
+  asked->account.made_utc_us = call.backend.now_utc_us();
+  auto added = call.backend.store.write([&](store::Writing& tx) {
+    return store::add_account(tx, asked->account, asked->account.made_utc_us);
+  });
+  if (!added) return added.error();
+  core::Json answer{{"account", account_json(asked->account)}};
+  answer["password"] = asked->made ? core::Json(asked->password) : core::Json();
+  return json_response(answer, 201);
+}
+
+/// Changes the account of the path within one transaction, ends its sessions and answers with it.
+/// `work(account)` may refuse.
+template <class Work>
+Result<http::Response> changed(const Call& call, Work work) {
+  auto account = call.backend.store.write([&](store::Writing& tx) -> Result<store::Account> {
+    auto found = account_of_call(tx, call);
+    if (!found) return found;
+    if (Result<void> done = work(tx, *found); !done) return done.error();
+    if (auto done = store::set_account(tx, *found); !done) return done.error();
+    if (auto done = store::remove_sessions_of(tx, found->id, ""); !done) return done.error();
+    return found;
+  });
+  if (!account) return account.error();
+  close_conversations(call.backend, account->id);
+  return json_response(account_json(*account));
+}
+
+/// Somebody must be left who can undo this.
+Result<void> check_an_admin_stays(store::Reading& tx, const store::Account& changing) {
+  auto all = store::all_accounts(tx);
+  if (!all) return all.error();
+  const bool stays = std::ranges::any_of(*all, [&](const store::Account& other) {
+    return other.id != changing.id && other.role == name(Role::admin) && other.state == "active";
+  });
+  if (stays) return {};
+  return Error{Errc::conflict, "this is the last active administrator: make another one first"};
+}
+
+/// One text field of the body.
+Result<std::string> field(const Call& call, const char* key) {
+  auto json = core::parse_json(call.request.body, "body");
+  if (!json) return json.error();
+  core::Fields fields(*json, "body");
+  std::string out = std::string(key) == "role" ? role_field(fields) : fields.text(key, 32);
+  if (auto done = fields.done(); !done) return done.error();
+  return out;
+}
+
+Result<http::Response> set_state(const Call& call) {
+  auto state = field(call, "state");
+  if (!state) return state.error();
+  if (*state != "active" && *state != "disabled")
+    return Error{Errc::bad_input, "body: /state: active or disabled is expected"};
+  return changed(call, [&](store::Writing& tx, store::Account& account) -> Result<void> {
+    if (*state == "disabled" && account.role == name(Role::admin))
+      if (auto stays = check_an_admin_stays(tx, account); !stays) return stays;
+    account.state = *state;
+    return {};
+  });
+}
+
+Result<http::Response> set_role(const Call& call) {
+  auto role = field(call, "role");
+  if (!role) return role.error();
+  return changed(call, [&](store::Writing& tx, store::Account& account) -> Result<void> {
+    if (account.role == name(Role::admin) && *role != name(Role::admin))
+      if (auto stays = check_an_admin_stays(tx, account); !stays) return stays;
+    account.role = *role;
+    return {};
+  });
+}
+
+/// Of another's account: for one's own, the route of one's own account asks for the old password.
+Result<http::Response> reset_password(const Call& call) {
+  if (call.text("id") == call.caller.id)
+    return Error{Errc::forbidden,
+                 "this is your own account: change its password by POST /api/v1/session/password"};
+  const std::string password = made_password();
+  auto hash = password_hash(password);
+  if (!hash) return hash.error();
+  auto response = changed(call, [&](store::Writing& tx, store::Account& account) {
+    account.password_hash = *hash;
+    account.must_change = true;
+    account.totp_secret.clear();
+    account.totp_confirmed = false;
+    return start_afresh(tx, account.id, store::Secret::account_password, account.name);
+  });
+  if (!response) return response.error();
+  return json_response({{"password", password}});
+}
+
+Result<http::Response> set_badge(const Call& call) {
+  auto json = core::parse_json(call.request.body, "body");
+  if (!json) return json.error();
+  core::Fields fields(*json, "body");
+  const std::string badge = badge_field(fields), pin = pin_field(fields);
+  if (auto done = fields.done(); !done) return done.error();
+  std::string hash;
+  if (!pin.empty()) {
+    auto made = password_hash(pin);
+    if (!made) return made.error();
+    hash = std::move(*made);
+  }
+  return changed(call, [&](store::Writing& tx, store::Account& account) {
+    account.badge = badge;
+    account.pin_hash = hash;
+    return start_afresh(tx, account.id, store::Secret::badge_pin, badge);
+  });
+}
+
+RouteInfo route(std::string tail, std::string id, std::string summary, std::string answer,
+                Result<http::Response> (*handle)(const Call&)) {
+  RouteInfo out{.method = "POST",
+                .path = "/api/v1/accounts" + tail,
+                .id = std::move(id),
+                .summary = std::move(summary),
+                .who = {Role::admin},
+                .object = tail.empty() ? Object::none : Object::account,
+                .parameters = {},
+                .body = "",
+                .body_limit_bytes = kMaxBody_bytes,
+                .answer = std::move(answer),
+                .schemas = {},
+                .handle = handle};
+  if (!tail.empty()) out.parameters.push_back(path_text("id", "the account's"));
+  return out;
+}
+
+}  // namespace
+
+std::vector<RouteInfo> accounts_routes() {
+  using namespace schema;
+  RouteInfo list = route("", "accounts", "Accounts by name; never a hash or a secret", "Accounts",
+                         list_accounts);
+  list.method = "GET";
+  list.body_limit_bytes = 0;
+  list.schemas = {{"Account", account_schema()},
+                  {"Accounts", object({{"accounts", array(ref("Account"), "by name")}})}};
+  RouteInfo add = route("", "addAccount", "Make an account; its password must be changed at once",
+                        "NewAccountMade", add_account_route);
+  add.lane = http::Lane::hashing;
+  add.body = "NewAccount";
+  add.schemas = {
+      {"NewAccount", object({{"name", text("at most 128 bytes")},
+                             {"role", text("what it may do")},
+                             {"password", optional(text("12 to 1024 bytes; without, one is made"))},
+                             {"badge", optional(text("what a station reads"))},
+                             {"pin", optional(text("4 to 12 digits, for stations"))}})},
+      {"NewAccountMade", object({{"account", ref("Account")},
+                                 {"password", nullable(text("the one made, shown only now"))}})}};
+  RouteInfo state =
+      route("/{id}/state", "setAccountState",
+            "Switch an account off, or on again; its sessions end", "Account", set_state);
+  state.body = "AccountState";
+  state.schemas = {
+      {"AccountState", object({{"state", one_of({"active", "disabled"}, "from now on")}})}};
+  RouteInfo role = route("/{id}/role", "setAccountRole", "Give another role; its sessions end",
+                         "Account", set_role);
+  role.body = "AccountRole";
+  role.schemas = {{"AccountRole", object({{"role", text("from now on")}})}};
+  RouteInfo reset = route("/{id}/password", "resetPassword",
+                          "A new password for another's account, shown once; ends its sessions, "
+                          "one-time codes and the wait after failures",
+                          "PasswordMade", reset_password);
+  reset.lane = http::Lane::hashing;
+  reset.schemas = {{"PasswordMade", object({{"password", text("shown only now")}})}};
+  RouteInfo badge = route("/{id}/badge", "setBadge",
+                          "Badge and PIN for stations; without, none; ends the account's sessions "
+                          "and the wait after failures",
+                          "Account", set_badge);
+  badge.lane = http::Lane::hashing;
+  badge.who.push_back({Role::faculty, Scope::cohort});
+  badge.body = "Badge";
+  badge.schemas = {{"Badge", object({{"badge", optional(text("what a station reads"))},
+                                     {"pin", optional(text("4 to 12 digits"))}})}};
+  return {list, add, state, role, reset, badge};
+}
+
+}  // namespace api
+}  // namespace tractus

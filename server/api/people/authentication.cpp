@@ -1,0 +1,168 @@
+#include "server/api/people/authentication.hpp"
+
+#include <sodium.h>
+
+#include "db/store/operations/audit.hpp"
+#include "server/api/backend.hpp"
+#include "server/api/people/throttle.hpp"
+#include "server/api/people/totp.hpp"
+#include "server/live/hub.hpp"
+
+namespace tractus {
+namespace api {
+namespace {
+
+constexpr std::int64_t kTouch_us = 60ll * 1'000'000;
+constexpr const char* kCodeNeeded = "a one-time code is asked for";
+
+bool matches(const std::string& hash, const std::string& password) {
+  return crypto_pwhash_str_verify(hash.c_str(), password.data(), password.size()) == 0;
+}
+
+/// The hash of a password nobody has: what an unknown name is checked against, so that it takes as
+/// long as a known one.
+const std::string& nobodys_hash() {
+  static const std::string hash = [] {
+    auto made = password_hash(new_token());
+    core::require(bool(made), "64 MiB for a password's hash can be had at the start");
+    return *made;
+  }();
+  return hash;
+}
+
+core::Result<Caller> by_token(Backend& backend, std::string_view token) {
+  auto station = backend.store.read(
+      [&](store::Reading& tx) { return store::station_of(tx, token_hash(token)); });
+  if (!station) return station.error();
+  if (!*station) return core::Error{core::Errc::unauthorised, "this token is not known"};
+  return Caller{Role::station, (*station)->id, (*station)->name, ""};
+}
+
+core::Result<Caller> by_cookie(Backend& backend, std::string_view token, Presence presence) {
+  const std::string hash = token_hash(token);
+  auto session =
+      backend.store.read([&](store::Reading& tx) { return store::session_of(tx, hash); });
+  if (!session) return session.error();
+  const std::int64_t now = backend.now_utc_us();
+  const bool over = !*session || now - (*session)->seen_utc_us > kSessionIdle_us ||
+                    now - (*session)->made_utc_us > kSessionAge_us;
+  if (over) return core::Error{core::Errc::unauthorised, "sign in first: the session is over"};
+  if (presence == Presence::shown && now - (*session)->seen_utc_us > kTouch_us) {
+    auto touched = backend.store.write_beside(
+        [&](store::Writing& tx) { return store::touch_session(tx, hash, now); });
+    if (!touched) return touched.error();
+  }
+  const store::Account& account = (*session)->account;
+  const auto role = role_named(account.role);
+  if (!role || *role == Role::station || account.state != "active")
+    return core::Error{core::Errc::unauthorised, "the account is switched off"};
+  return Caller{*role, account.id, account.name, hash, account.must_change};
+}
+
+}  // namespace
+
+bool password_matches(const std::string& hash, const std::string& password) {
+  const std::string& nobodys = nobodys_hash();  // made now, so that no later check takes longer
+  return matches(hash.empty() ? nobodys : hash, password) && !hash.empty();
+}
+
+core::Result<void> check_unchanged(store::Reading& tx, const store::Account& checked) {
+  auto now = store::account_of(tx, checked.id);
+  if (!now) return now.error();
+  if (*now && (*now)->password_hash == checked.password_hash && (*now)->badge == checked.badge &&
+      (*now)->pin_hash == checked.pin_hash && (*now)->state == checked.state)
+    return {};
+  return core::Error{core::Errc::unauthorised, "the account was changed just now: try again"};
+}
+
+core::Result<void> use_code(Backend& backend, store::Account& account, const std::string& code) {
+  auto secret = backend.secrets.opened(account.totp_secret);
+  if (!secret) return secret.error();
+  const auto step =
+      totp_step(core::bytes_of(*secret), code, backend.now_utc_us(), account.totp_step);
+  if (!step) return core::Error{core::Errc::unauthorised, "the one-time code is wrong"};
+  account.totp_step = *step;
+  return {};
+}
+
+bool needs_code(const core::Error& error) {
+  return error.code == core::Errc::unauthorised && error.what == kCodeNeeded;
+}
+
+core::Result<std::string> password_hash(const std::string& password) {
+  core::require(sodium_init() >= 0, "libsodium starts");
+  std::string out(crypto_pwhash_STRBYTES, '\0');
+  if (crypto_pwhash_str(out.data(), password.data(), password.size(),
+                        crypto_pwhash_OPSLIMIT_INTERACTIVE,
+                        crypto_pwhash_MEMLIMIT_INTERACTIVE) != 0)
+    return core::Error{core::Errc::unavailable, "no memory to hash a password"};
+  out.resize(out.find('\0'));
+  return out;
+}
+
+std::string new_token() { return core::hex(core::random_bytes(32)); }
+
+std::string token_hash(std::string_view token) { return core::sha256(core::bytes_of(token)); }
+
+namespace {
+
+/// The account that these credentials open, its one-time code used up.
+core::Result<store::Account> account_opened(Backend& backend, const Credentials& given) {
+  auto account =
+      backend.store.read([&](store::Reading& tx) { return store::account_named(tx, given.name); });
+  if (!account) return account.error();
+  const bool right = password_matches(*account ? (*account)->password_hash : "", given.password);
+  if (!*account) store::AuditScope::without_detail();
+  if (!*account || !right || (*account)->state != "active")
+    return core::Error{core::Errc::unauthorised, "name or password is wrong"};
+  if (!(*account)->totp_confirmed) return std::move(**account);
+  if (given.code.empty()) return core::Error{core::Errc::unauthorised, kCodeNeeded};
+  if (auto used = use_code(backend, **account, given.code); !used) return used.error();
+  return std::move(**account);
+}
+
+}  // namespace
+
+core::Result<SignedIn> sign_in(Backend& backend, const Credentials& given,
+                               const store::Attempt& attempt) {
+  auto account = account_opened(backend, given);
+  if (!account) {
+    if (account.error().code != core::Errc::unauthorised || needs_code(account.error()))
+      return account.error();
+    if (auto noted = note_failure(backend, attempt); !noted) return noted.error();
+    return account.error();
+  }
+  store::AuditScope::is_by(account->name, account->role);
+  const std::int64_t now = backend.now_utc_us();
+  const std::string token = new_token();
+  auto made = backend.store.write([&](store::Writing& tx) -> core::Result<void> {
+    if (auto same = check_unchanged(tx, *account); !same) return same;
+    if (auto done = note_success(tx, account->id, attempt, now); !done) return done;
+    if (auto done = store::remove_old_sessions(tx, now - kSessionIdle_us, now - kSessionAge_us);
+        !done)
+      return done;
+    if (account->totp_confirmed)
+      if (auto done = store::use_totp_step(tx, account->id, account->totp_step); !done) return done;
+    return store::add_session(tx, token_hash(token), account->id, now);
+  });
+  if (!made) return made.error();
+  return SignedIn{std::move(*account), token};
+}
+
+void close_conversations(Backend& backend, const std::string& account_id) {
+  if (backend.live) backend.live->dismiss_viewers(account_id);
+}
+
+core::Result<Caller> authenticate(Backend& backend, const http::RequestHead& head,
+                                  Presence presence) {
+  constexpr std::string_view kBearer = "Bearer ";
+  const std::string_view authorization = head.header("authorization");
+  if (authorization.starts_with(kBearer))
+    return by_token(backend, authorization.substr(kBearer.size()));
+  if (const std::string_view cookie = head.cookie(kSessionCookie); !cookie.empty())
+    return by_cookie(backend, cookie, presence);
+  return core::Error{core::Errc::unauthorised, "sign in first"};
+}
+
+}  // namespace api
+}  // namespace tractus

@@ -1,0 +1,205 @@
+/// What people agree that research may have of their trials.
+#include "db/store/people/consent.hpp"
+#include "db/store/studies/assignments.hpp"
+#include "server/api/backend.hpp"
+#include "server/api/route.hpp"
+#include "server/api/schema.hpp"
+
+namespace tractus {
+namespace api {
+namespace {
+
+using core::Errc;
+using core::Error;
+using core::Json;
+using core::Result;
+using store::Tier;
+
+constexpr std::uint64_t kMaxBody_bytes = 4096;
+constexpr std::size_t kMaxBasis = 500;
+
+Tier tier_field(core::Fields& fields) {
+  const std::string word = fields.text("tier", 16);
+  const auto tier = store::tier_named(word);
+  if (!word.empty() && !tier)
+    fields.wrong("tier", "none, summary, metrics, reduced or full is expected");
+  return tier.value_or(Tier::none);
+}
+
+Result<Json> own_answer(store::Reading& tx, const std::string& account) {
+  const auto book = store::ConsentBook::read(tx);
+  if (!book) return book.error();
+  auto assigned = store::assignments_of(tx, {.done_by = account});
+  if (!assigned) return assigned.error();
+  Json studies = Json::array();
+  for (const auto& a : *assigned)
+    studies.push_back({{"study", a.study.id},
+                       {"title", a.study.title},
+                       {"tier", store::name(book->tier_of(account, a.study.id))}});
+  return Json{{"everywhere", store::name(book->tier_of(account, ""))}, {"studies", studies}};
+}
+
+Result<http::Response> own_consent(const Call& call) {
+  auto answer =
+      call.backend.store.read([&](store::Reading& tx) { return own_answer(tx, call.caller.id); });
+  if (!answer) return answer.error();
+  return json_response(*answer);
+}
+
+Result<http::Response> say_own(const Call& call) {
+  auto json = core::parse_json(call.request.body, "body");
+  if (!json) return json.error();
+  core::Fields fields(*json, "body");
+  store::Consent said{.account_id = call.caller.id,
+                      .study_id = fields.text_or("study", "", 64),
+                      .participant = "",
+                      .tier = tier_field(fields),
+                      .basis = "own word",
+                      .noted_utc_us = call.backend.now_utc_us(),
+                      .noted_by = call.caller.name};
+  if (auto fine = fields.done(); !fine) return fine.error();
+  auto answer = call.backend.store.write([&](store::Writing& tx) -> Result<Json> {
+    if (auto set = store::set_consent(tx, said); !set) return set.error();
+    return own_answer(tx, call.caller.id);
+  });
+  if (!answer) return answer.error();
+  return json_response(*answer);
+}
+
+Result<http::Response> list_consents(const Call& call) {
+  using Names = std::map<std::string, std::string>;
+  Names names;
+  auto all =
+      call.backend.store.read([&](store::Reading& tx) -> Result<std::vector<store::Consent>> {
+        auto accounts = store::all_accounts(tx);
+        if (!accounts) return accounts.error();
+        for (const auto& account : *accounts) names[account.id] = account.name;
+        return store::all_consents(tx);
+      });
+  if (!all) return all.error();
+  Json list = Json::array();
+  for (const auto& c : *all)
+    list.push_back({{"account", c.account_id.empty() ? Json() : Json(names[c.account_id])},
+                    {"study", c.study_id.empty() ? Json() : Json(c.study_id)},
+                    {"participant", c.participant.empty() ? Json() : Json(c.participant)},
+                    {"tier", store::name(c.tier)},
+                    {"basis", c.basis},
+                    {"noted_utc_us", c.noted_utc_us},
+                    {"noted_by", c.noted_by}});
+  return json_response({{"consents", list}});
+}
+
+/// Whom the body names: an account, or a participant that is nobody's account.
+Result<void> resolve(store::Reading& tx, const std::string& account, store::Consent& said) {
+  if (!account.empty()) {
+    auto known = store::account_named(tx, account);
+    if (!known) return known.error();
+    if (!*known) return Error{Errc::not_found, "account: there is none of this name"};
+    said.account_id = (*known)->id;
+    return {};
+  }
+  auto study = store::find_study(tx, said.study_id);
+  if (!study) return study.error();
+  auto participant = store::participant_of(tx, *study, said.participant);
+  if (!participant) return participant.error();
+  if (!*participant)
+    return Error{Errc::not_found, "participant: there is none of this name in the study"};
+  return {};
+}
+
+Result<http::Response> note_consent(const Call& call) {
+  auto json = core::parse_json(call.request.body, "body");
+  if (!json) return json.error();
+  core::Fields fields(*json, "body");
+  const std::string account = fields.text_or("account", "", 128);
+  store::Consent said{.account_id = "",
+                      .study_id = fields.text_or("study", "", 64),
+                      .participant = fields.text_or("participant", "", 128),
+                      .tier = tier_field(fields),
+                      .basis = fields.text("basis", kMaxBasis),
+                      .noted_utc_us = call.backend.now_utc_us(),
+                      .noted_by = call.caller.name};
+  if (account.empty() == said.participant.empty())
+    fields.wrong("participant", "a participant of a study, or an account, is expected");
+  if (auto fine = fields.done(); !fine) return fine.error();
+  auto noted = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
+    if (auto known = resolve(tx, account, said); !known) return known;
+    return store::set_consent(tx, said);
+  });
+  if (!noted) return noted.error();
+  return http::Response{.status = 204, .headers = {}, .body = std::string()};
+}
+
+RouteInfo route(std::string method, std::string path, std::string id, std::string summary,
+                std::vector<Grant> who, Result<http::Response> (*handle)(const Call&)) {
+  return {.method = std::move(method),
+          .path = "/api/v1/" + path,
+          .id = std::move(id),
+          .summary = std::move(summary),
+          .who = std::move(who),
+          .parameters = {},
+          .body = "",
+          .answer = "",
+          .schemas = {},
+          .handle = handle};
+}
+
+}  // namespace
+
+std::vector<RouteInfo> consent_routes() {
+  using namespace schema;
+  const Json tier = one_of({"none", "summary", "metrics", "reduced", "full"},
+                           "the most that research may have: nothing, counts, scores, samples at "
+                           "100 Hz, every sample");
+  RouteInfo own = route("GET", "session/consent", "ownConsent",
+                        "What I agreed that research may have of my trials", people(), own_consent);
+  own.answer = "OwnConsent";
+  own.schemas = {{"OwnConsent",
+                  object({{"everywhere", tier},
+                          {"studies", array(object({{"study", text("id of an assignment of mine")},
+                                                    {"title", text("for people")},
+                                                    {"tier", tier}}),
+                                            "what holds in each")}})}};
+  RouteInfo say = route("POST", "session/consent", "sayConsent",
+                        "Agree, or withdraw (none): in one study, or everywhere, which replaces "
+                        "what was said of studies; exports follow at once",
+                        people(), say_own);
+  say.ends = {{"/study", Object::assignment, {}}};
+  for (const Grant& grant : people()) say.ends.front().who.push_back({grant.role, Scope::own});
+  say.body = "ConsentWord";
+  say.body_limit_bytes = kMaxBody_bytes;
+  say.answer = "OwnConsent";
+  say.schemas = {{"ConsentWord",
+                  object({{"study", optional(text("id; missing: everywhere"))}, {"tier", tier}})}};
+  RouteInfo list =
+      route("GET", "consents", "consents", "Who agreed to what", {Role::admin}, list_consents);
+  list.answer = "ConsentList";
+  list.schemas = {
+      {"ConsentList",
+       object(
+           {{"consents", array(object({{"account", nullable(text("name"))},
+                                       {"study", nullable(text("id; null: everywhere"))},
+                                       {"participant", nullable(text("where there is no account"))},
+                                       {"tier", tier},
+                                       {"basis", text("own word, or where the form lies")},
+                                       {"noted_utc_us", integer("us", "since 1970, UTC")},
+                                       {"noted_by", text("who")}}),
+                               "by account, study")}})}};
+  RouteInfo note = route("POST", "consents", "noteConsent",
+                         "Note a form that somebody signed: of a study's participant without "
+                         "account, or (administrators) of an account",
+                         {Role::admin, Role::researcher}, note_consent);
+  note.ends = {{"/account", Object::account, {Role::admin}, End::By::account_name},
+               {"/study", Object::study, note.who}};
+  note.body = "ConsentForm";
+  note.body_limit_bytes = kMaxBody_bytes;
+  note.schemas = {{"ConsentForm", object({{"account", optional(text("name"))},
+                                          {"study", optional(text("id"))},
+                                          {"participant", optional(text("of the study"))},
+                                          {"tier", tier},
+                                          {"basis", text("where the form lies")}})}};
+  return {own, say, list, note};
+}
+
+}  // namespace api
+}  // namespace tractus

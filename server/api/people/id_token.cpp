@@ -1,0 +1,249 @@
+#include "server/api/people/id_token.hpp"
+
+#include <openssl/bn.h>
+#include <openssl/core_names.h>
+#include <openssl/ecdsa.h>
+#include <openssl/evp.h>
+#include <openssl/param_build.h>
+
+#include <array>
+#include <memory>
+
+namespace tractus {
+namespace api {
+namespace {
+
+using core::Errc;
+using core::Error;
+using core::Json;
+using core::Result;
+
+constexpr std::size_t kMostToken_bytes = 16 * 1024, kMostSubject = 255;
+
+template <class T, void (*kFree)(T*)>
+struct Frees {
+  void operator()(T* held) const { kFree(held); }
+};
+using Key = std::unique_ptr<EVP_PKEY, Frees<EVP_PKEY, EVP_PKEY_free>>;
+using KeyContext = std::unique_ptr<EVP_PKEY_CTX, Frees<EVP_PKEY_CTX, EVP_PKEY_CTX_free>>;
+using Digest = std::unique_ptr<EVP_MD_CTX, Frees<EVP_MD_CTX, EVP_MD_CTX_free>>;
+using Number = std::unique_ptr<BIGNUM, Frees<BIGNUM, BN_free>>;
+using Builder = std::unique_ptr<OSSL_PARAM_BLD, Frees<OSSL_PARAM_BLD, OSSL_PARAM_BLD_free>>;
+using Parameters = std::unique_ptr<OSSL_PARAM, Frees<OSSL_PARAM, OSSL_PARAM_free>>;
+using Signature = std::unique_ptr<ECDSA_SIG, Frees<ECDSA_SIG, ECDSA_SIG_free>>;
+
+Error refused(const std::string& why) {
+  return {Errc::unauthorised, "the provider's id_token " + why};
+}
+
+const unsigned char* raw(const std::string& bytes) {
+  return reinterpret_cast<const unsigned char*>(bytes.data());
+}
+
+std::string text_field(const Json& object, const char* key) {
+  const auto at = object.find(key);
+  return at != object.end() && at->is_string() ? at->get<std::string>() : std::string();
+}
+
+Key made(const char* kind, OSSL_PARAM_BLD* builder) {
+  const Parameters parameters(OSSL_PARAM_BLD_to_param(builder));
+  const KeyContext context(EVP_PKEY_CTX_new_from_name(nullptr, kind, nullptr));
+  EVP_PKEY* key = nullptr;
+  if (!parameters || !context || EVP_PKEY_fromdata_init(context.get()) <= 0 ||
+      EVP_PKEY_fromdata(context.get(), &key, EVP_PKEY_PUBLIC_KEY, parameters.get()) <= 0)
+    return nullptr;
+  return Key(key);
+}
+
+/// RFC 7518 section 6.3.1. Keys under 2048 bits are none (section 3.3).
+Key rsa_key(const Json& jwk) {
+  const auto n = base64url_decoded(text_field(jwk, "n")),
+             e = base64url_decoded(text_field(jwk, "e"));
+  if (!n || !e || n->empty() || e->empty() || n->size() > 1024 || e->size() > 8) return nullptr;
+  const Number modulus(BN_bin2bn(raw(*n), int(n->size()), nullptr)),
+      exponent(BN_bin2bn(raw(*e), int(e->size()), nullptr));
+  if (!modulus || !exponent || BN_num_bits(modulus.get()) < 2048) return nullptr;
+  const Builder builder(OSSL_PARAM_BLD_new());
+  OSSL_PARAM_BLD_push_BN(builder.get(), OSSL_PKEY_PARAM_RSA_N, modulus.get());
+  OSSL_PARAM_BLD_push_BN(builder.get(), OSSL_PKEY_PARAM_RSA_E, exponent.get());
+  return made("RSA", builder.get());
+}
+
+/// RFC 7518 section 6.2.1, P-256 alone.
+Key ec_key(const Json& jwk) {
+  const auto x = base64url_decoded(text_field(jwk, "x")),
+             y = base64url_decoded(text_field(jwk, "y"));
+  if (text_field(jwk, "crv") != "P-256" || !x || !y || x->size() != 32 || y->size() != 32)
+    return nullptr;
+  const std::string point = std::string(1, '\x04') + *x + *y;  // uncompressed, SEC 1 section 2.3.3
+  const Builder builder(OSSL_PARAM_BLD_new());
+  OSSL_PARAM_BLD_push_utf8_string(builder.get(), OSSL_PKEY_PARAM_GROUP_NAME, "prime256v1", 0);
+  OSSL_PARAM_BLD_push_octet_string(builder.get(), OSSL_PKEY_PARAM_PUB_KEY, point.data(),
+                                   point.size());
+  return made("EC", builder.get());
+}
+
+/// The two numbers of 32 bytes (RFC 7518 section 3.4) as OpenSSL takes them.
+Result<std::string> der_of(const std::string& both) {
+  if (both.size() != 64) return refused("has a signature of the wrong length");
+  const Signature signature(ECDSA_SIG_new());
+  ECDSA_SIG_set0(signature.get(), BN_bin2bn(raw(both), 32, nullptr),
+                 BN_bin2bn(raw(both) + 32, 32, nullptr));
+  unsigned char* der = nullptr;
+  const int size = i2d_ECDSA_SIG(signature.get(), &der);
+  if (size <= 0) return refused("has a signature that is none");
+  std::string out(reinterpret_cast<char*>(der), std::size_t(size));
+  OPENSSL_free(der);
+  return out;
+}
+
+bool verifies(EVP_PKEY* key, std::string_view message, const std::string& signature) {
+  const Digest digest(EVP_MD_CTX_new());
+  return digest && EVP_DigestVerifyInit(digest.get(), nullptr, EVP_sha256(), nullptr, key) == 1 &&
+         EVP_DigestVerify(digest.get(), raw(signature), signature.size(),
+                          reinterpret_cast<const unsigned char*>(message.data()),
+                          message.size()) == 1;
+}
+
+/// The set's keys that may have signed: of the kind, for signatures, by the name if one is given.
+std::vector<const Json*> candidates(const Json& keys, const std::string& kind,
+                                    const std::string& algorithm, const std::string& kid) {
+  std::vector<const Json*> out;
+  const auto list = keys.find("keys");
+  if (list == keys.end() || !list->is_array()) return out;
+  for (const Json& key : *list) {
+    if (!key.is_object() || text_field(key, "kty") != kind) continue;
+    const std::string use = text_field(key, "use"), alg = text_field(key, "alg");
+    if ((use.empty() || use == "sig") && (alg.empty() || alg == algorithm) &&
+        (kid.empty() || text_field(key, "kid") == kid))
+      out.push_back(&key);
+  }
+  return out;
+}
+
+Result<void> check_signature(std::string_view signed_part, const std::string& signature,
+                             const Json& header, const Json& keys) {
+  const std::string algorithm = text_field(header, "alg");
+  if (algorithm != "RS256" && algorithm != "ES256")
+    return refused("is signed by another method than RS256 or ES256");
+  if (header.contains("crit")) return refused("asks for extensions");
+  const bool rsa = algorithm == "RS256";
+  const auto fitting = candidates(keys, rsa ? "RSA" : "EC", algorithm, text_field(header, "kid"));
+  if (fitting.empty())
+    return Error{Errc::not_found, "the provider's id_token is signed by a key that is not known"};
+  if (fitting.size() > 1 && text_field(header, "kid").empty())
+    return refused("does not say by which of the provider's keys it is signed");
+  const Key key = rsa ? rsa_key(*fitting.front()) : ec_key(*fitting.front());
+  if (!key) return refused("is signed by a key that is none");
+  if (rsa)
+    return verifies(key.get(), signed_part, signature) ? Result<void>()
+                                                       : refused("is not signed by the provider");
+  const auto der = der_of(signature);
+  if (!der) return der.error();
+  return verifies(key.get(), signed_part, *der) ? Result<void>()
+                                                : refused("is not signed by the provider");
+}
+
+std::int64_t seconds_field(const Json& claims, const char* key) {
+  const auto at = claims.find(key);
+  if (at == claims.end() || !at->is_number()) return -1;
+  const double seconds = at->get<double>();
+  return seconds >= 0.0 && seconds < 1e12 ? static_cast<std::int64_t>(seconds) : -1;
+}
+
+Result<void> check_audience(const Json& claims, const std::string& client_id) {
+  const Json audience = claims.value("aud", Json());
+  const bool one = audience == Json(client_id);
+  bool among = false;
+  if (audience.is_array())
+    for (const Json& each : audience) among = among || each == Json(client_id);
+  if (!one && !among) return refused("is for another client");
+  const std::string party = text_field(claims, "azp");
+  if (audience.is_array() && audience.size() > 1 && party.empty())
+    return refused("is for several and does not say which asked");
+  if (!party.empty() && party != client_id) return refused("was asked for by another client");
+  return {};
+}
+
+Result<Identity> checked(const Json& claims, const Expected& expected) {
+  if (text_field(claims, "iss") != expected.issuer) return refused("is of another issuer");
+  if (auto fine = check_audience(claims, expected.client_id); !fine) return fine.error();
+  const std::int64_t expires = seconds_field(claims, "exp"), made_at = seconds_field(claims, "iat");
+  if (expires < 0 || expected.now_s > expires + kSkew_s) return refused("has expired");
+  if (made_at < 0 || made_at > expected.now_s + kSkew_s) return refused("is of the future");
+  if (expected.now_s - made_at > kMostAge_s) return refused("is too old");
+  if (const std::int64_t from = seconds_field(claims, "nbf"); from > expected.now_s + kSkew_s)
+    return refused("does not hold yet");
+  if (expected.nonce.empty() || text_field(claims, "nonce") != expected.nonce)
+    return refused("is not the answer to this sign-in");
+  Identity out{text_field(claims, "sub"), text_field(claims, "sid")};
+  if (out.subject.empty() || out.subject.size() > kMostSubject) return refused("names nobody");
+  return out;
+}
+
+Result<Json> part(std::string_view text) {
+  const auto bytes = base64url_decoded(text);
+  if (!bytes) return refused("is none");
+  auto out = core::parse_json(*bytes, "ID token");
+  if (!out || !out->is_object()) return refused("is none");
+  return out;
+}
+
+}  // namespace
+
+std::string base64url(std::string_view bytes) {
+  constexpr std::string_view kLetters =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
+  std::string out;
+  std::uint32_t held = 0;
+  int bits = 0;
+  for (const char c : bytes) {
+    held = held << 8 | static_cast<unsigned char>(c);
+    bits += 8;
+    while (bits >= 6) bits -= 6, out += kLetters[held >> bits & 63];
+  }
+  if (bits > 0) out += kLetters[held << (6 - bits) & 63];
+  return out;
+}
+
+Result<std::string> base64url_decoded(std::string_view text) {
+  const Error wrong{Errc::bad_input, "is not base64url"};
+  if (text.size() % 4 == 1) return wrong;
+  std::string out;
+  std::uint32_t held = 0;
+  int bits = 0;
+  for (const char c : text) {
+    const int value = c >= 'A' && c <= 'Z'   ? c - 'A'
+                      : c >= 'a' && c <= 'z' ? c - 'a' + 26
+                      : c >= '0' && c <= '9' ? c - '0' + 52
+                      : c == '-'             ? 62
+                      : c == '_'             ? 63
+                                             : -1;
+    if (value < 0) return wrong;
+    held = held << 6 | static_cast<std::uint32_t>(value);
+    bits += 6;
+    if (bits >= 8) bits -= 8, out += static_cast<char>(held >> bits & 255);
+  }
+  if ((held & ((1u << bits) - 1)) != 0) return wrong;  // another text for the same bytes
+  return out;
+}
+
+Result<Identity> identity_of(std::string_view token, const Json& keys, const Expected& expected) {
+  if (token.size() > kMostToken_bytes) return refused("is too long");
+  const auto first = token.find('.'), last = token.rfind('.');
+  if (first == std::string_view::npos || first == last || token.find('.', first + 1) != last)
+    return refused("is none");
+  const auto header = part(token.substr(0, first));
+  if (!header) return header.error();
+  const auto signature = base64url_decoded(token.substr(last + 1));
+  if (!signature) return refused("is none");
+  if (auto signed_by = check_signature(token.substr(0, last), *signature, *header, keys);
+      !signed_by)
+    return signed_by.error();
+  const auto claims = part(token.substr(first + 1, last - first - 1));
+  if (!claims) return claims.error();
+  return checked(*claims, expected);
+}
+
+}  // namespace api
+}  // namespace tractus

@@ -1,0 +1,88 @@
+/// Invitations into cohorts as those who are invited see them: who accepts one joins the cohort.
+#include "db/store/people/invitations.hpp"
+#include "server/api/backend.hpp"
+#include "server/api/schema.hpp"
+#include "server/api/studies/assignment_plan.hpp"
+
+namespace tractus {
+namespace api {
+namespace {
+
+using core::Error;
+using core::Result;
+
+Result<http::Response> own_invitations(const Call& call) {
+  auto found = call.backend.store.read(
+      [&](store::Reading& tx) { return store::invitations_for(tx, call.caller.name); });
+  if (!found) return found.error();
+  core::Json list = core::Json::array();
+  for (const auto& one : *found)
+    list.push_back({{"cohort_id", one.cohort_id},
+                    {"cohort_name", one.cohort_name},
+                    {"made_utc_us", one.made_utc_us},
+                    {"made_by", one.made_by}});
+  return json_response({{"invitations", list}});
+}
+
+Result<http::Response> accept(const Call& call) {
+  auto joined = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
+    auto account = store::account_of(tx, call.caller.id);
+    if (!account) return account.error();
+    core::require(account->has_value(), "who calls has an account");
+    return join_cohort(tx, call.text("cohort"), **account,
+                       {call.caller.name, call.backend.now_utc_us()});
+  });
+  if (!joined) return joined.error();
+  return own_invitations(call);
+}
+
+Result<http::Response> decline(const Call& call) {
+  auto removed = call.backend.store.write([&](store::Writing& tx) {
+    return store::remove_invitation(tx, call.text("cohort"), call.caller.name);
+  });
+  if (!removed) return removed.error();
+  return own_invitations(call);
+}
+
+RouteInfo route(std::string method, std::string tail, std::string id, std::string summary,
+                Result<http::Response> (*handle)(const Call&)) {
+  RouteInfo out{.method = std::move(method),
+                .path = "/api/v1/session/invitations" + tail,
+                .id = std::move(id),
+                .summary = std::move(summary),
+                .who = {{Role::trainee, Scope::own}, {Role::faculty, Scope::own}},
+                .object = tail.empty() ? Object::none : Object::invitation,
+                .object_parameter = "cohort",
+                .parameters = {},
+                .body = "",
+                .answer = "Invitations",
+                .schemas = {},
+                .handle = handle};
+  if (!tail.empty()) out.parameters.push_back(path_text("cohort", "the cohort's id"));
+  return out;
+}
+
+}  // namespace
+
+std::vector<RouteInfo> invitations_routes() {
+  using namespace schema;
+  RouteInfo list = route("GET", "", "ownInvitations", "Cohorts that I am asked into, oldest first",
+                         own_invitations);
+  list.schemas = {
+      {"Invitation", object({{"cohort_id", text("of the cohort")},
+                             {"cohort_name", text("for people")},
+                             {"made_utc_us", integer("us", "since 1970, UTC")},
+                             {"made_by", text("who asks")}})},
+      {"Invitations", object({{"invitations", array(ref("Invitation"), "oldest first")}})}};
+  RouteInfo yes = route("POST", "/{cohort}/accept", "acceptInvitation",
+                        "Join: those who lead the cohort see my trials from now on", accept);
+  // The invitation stands for the caller's right to this cohort.
+  yes.ends = {{"cohort", Object::cohort, {Role::trainee, Role::faculty}}};
+  RouteInfo no =
+      route("POST", "/{cohort}/decline", "declineInvitation", "The invitation is gone", decline);
+  no.ends = yes.ends;
+  return {list, yes, no};
+}
+
+}  // namespace api
+}  // namespace tractus

@@ -1,0 +1,175 @@
+#include "server/api/people/oidc.hpp"
+
+#include "core/bytes.hpp"
+#include "core/file.hpp"
+#include "server/api/web_fetch.hpp"
+
+namespace tractus {
+namespace api {
+namespace {
+
+using core::Errc;
+using core::Error;
+using core::Json;
+using core::Result;
+
+constexpr std::int64_t kKept_s = 3600, kAgain_s = 10;
+
+std::string random_text() { return base64url(core::text_of(core::random_bytes(32))); }
+
+std::string text_field(const Json& object, const char* key) {
+  const auto at = object.find(key);
+  return at != object.end() && at->is_string() ? at->get<std::string>() : std::string();
+}
+
+/// RFC 7636 section 4.2, S256.
+std::string challenge_of(const std::string& verifier) {
+  const std::string hex = core::sha256(core::bytes_of(verifier));
+  std::string bytes;
+  for (std::size_t i = 0; i < hex.size(); i += 2)
+    bytes += static_cast<char>(std::stoi(hex.substr(i, 2), nullptr, 16));
+  return base64url(bytes);
+}
+
+Result<Json> json_at(const std::string& url, const OidcSettings& settings) {
+  auto got = fetch({.url = url, .authority = settings.authority, .patience = settings.patience});
+  if (!got) return got.error();
+  auto out = core::parse_json(got->body, "the provider's answer");
+  if (got->status == 200 && out && out->is_object()) return out;
+  return Error{Errc::unavailable,
+               "the provider does not answer as one: HTTP status " + std::to_string(got->status)};
+}
+
+}  // namespace
+
+Result<OidcSettings> read_oidc_settings(const std::filesystem::path& path) {
+  const auto json = core::read_json(path);
+  if (!json) return json.error();
+  core::Fields fields(*json, path.string());
+  const std::string format = fields.text("format");
+  if (!format.empty() && format != "tractus-oidc/1")
+    fields.wrong("format", "tractus-oidc/1 is expected");
+  OidcSettings out;
+  out.issuer = fields.text("issuer");
+  out.client_id = fields.text("client_id");
+  const std::string secret = fields.text("client_secret_file");
+  out.base = fields.text_or("base", "");
+  out.label = fields.text_or("label", "Sign in with your institution", 80);
+  out.authority = fields.text_or("authority", "");
+  while (out.base.ends_with('/')) out.base.pop_back();
+  if (!is_safe_address(out.issuer)) fields.wrong("issuer", "an https address is expected");
+  if (!out.base.empty() && !is_safe_address(out.base))
+    fields.wrong("base", "an https address is expected");
+  if (auto fine = fields.done(); !fine) return fine.error();
+  const auto folder = path.parent_path();
+  if (!out.authority.empty()) out.authority = folder / out.authority;
+  auto held = core::read_file(folder / secret, 4096);
+  if (!held) return held.error();
+  out.client_secret = core::text_of(*held);
+  while (!out.client_secret.empty() && out.client_secret.back() <= ' ')
+    out.client_secret.pop_back();
+  if (out.client_secret.empty())
+    return Error{Errc::bad_input, (folder / secret).string() + ": is empty"};
+  return out;
+}
+
+OidcAttempt new_attempt() { return {random_text(), random_text(), random_text()}; }
+
+Result<Json> Oidc::described() const {
+  return description_.at_most(kKept_s, [this] { return fetched_description(); });
+}
+
+Result<Json> Oidc::fetched_description() const {
+  std::string at = settings_.issuer;
+  while (at.ends_with('/')) at.pop_back();
+  auto json = json_at(at + "/.well-known/openid-configuration", settings_);
+  if (!json) return json.error();
+  const auto unfit = [](const std::string& what) {
+    return Error{Errc::corrupt, "the provider's description " + what};
+  };
+  if (text_field(*json, "issuer") != settings_.issuer) return unfit("is of another issuer");
+  for (const char* key : {"authorization_endpoint", "token_endpoint", "jwks_uri"})
+    if (!is_safe_address(text_field(*json, key)))
+      return unfit(std::string("has no safe address: ") + key);
+  return json;
+}
+
+Result<Json> Oidc::keys(std::int64_t age_s) const {
+  const auto description = described();
+  if (!description) return description.error();
+  return keys_.at_most(age_s,
+                       [&] { return json_at(text_field(*description, "jwks_uri"), settings_); });
+}
+
+/// The token endpoint's answer to a code. A refusal is no failure of the provider: who sends it
+/// wrong codes does not keep others from signing in.
+Result<Json> Oidc::tokens(const std::string& code, const OidcAttempt& attempt) const {
+  const auto description = described();
+  if (!description) return description.error();
+  if (auto open = breaker_.check(); !open) return open.error();
+  auto answer = fetch({.url = text_field(*description, "token_endpoint"),
+                       .form = {{{"grant_type", "authorization_code"},
+                                 {"code", code},
+                                 {"redirect_uri", settings_.base + "/api/v1/session/oidc/callback"},
+                                 {"code_verifier", attempt.verifier}}},
+                       .user = percent_encoded(settings_.client_id),
+                       .password = percent_encoded(settings_.client_secret),
+                       .authority = settings_.authority,
+                       .patience = settings_.patience});
+  if (!answer) return breaker_.failed(answer.error()), answer.error();
+  breaker_.succeeded();
+  auto json = core::parse_json(answer->body, "the provider's answer");
+  if (answer->status == 200 && json && json->is_object()) return json;
+  return Error{Errc::unauthorised, "the provider does not take its code back"};
+}
+
+Result<std::string> Oidc::sign_in_address(const OidcAttempt& attempt) const {
+  const auto description = described();
+  if (!description) return description.error();
+  const std::string endpoint = text_field(*description, "authorization_endpoint");
+  std::string out = endpoint + (endpoint.find('?') == std::string::npos ? "?" : "&");
+  const std::pair<const char*, std::string> asked[] = {
+      {"response_type", "code"},
+      {"client_id", settings_.client_id},
+      {"redirect_uri", settings_.base + "/api/v1/session/oidc/callback"},
+      {"scope", "openid"},
+      {"state", attempt.state},
+      {"nonce", attempt.nonce},
+      {"code_challenge", challenge_of(attempt.verifier)},
+      {"code_challenge_method", "S256"}};
+  for (const auto& [key, value] : asked)
+    out += (out.back() == '?' || out.back() == '&' ? "" : "&") + std::string(key) + "=" +
+           percent_encoded(value);
+  return out;
+}
+
+Result<Identity> Oidc::redeemed(const std::string& code, const OidcAttempt& attempt,
+                                std::int64_t utc_s) const {
+  const auto json = tokens(code, attempt);
+  if (!json) return json.error();
+  const std::string token = text_field(*json, "id_token");
+  const Expected expected{settings_.issuer, settings_.client_id, attempt.nonce, utc_s};
+  auto known = keys(kKept_s);
+  if (!known) return known.error();
+  auto identity = identity_of(token, *known, expected);
+  if (identity || identity.error().code != Errc::not_found) return identity;
+  known = keys(kAgain_s);  // the provider may have a new key
+  if (!known) return known.error();
+  identity = identity_of(token, *known, expected);
+  if (!identity && identity.error().code == Errc::not_found)
+    return Error{Errc::unauthorised, identity.error().what};
+  return identity;
+}
+
+Result<std::string> Oidc::sign_out_address() const {
+  const auto description = described();
+  if (!description) return description.error();
+  const std::string endpoint = text_field(*description, "end_session_endpoint");
+  if (!is_safe_address(endpoint)) return std::string();
+  return endpoint + (endpoint.find('?') == std::string::npos ? "?" : "&") +
+         "client_id=" + percent_encoded(settings_.client_id) +
+         "&post_logout_redirect_uri=" + percent_encoded(settings_.base + "/");
+}
+
+}  // namespace api
+}  // namespace tractus

@@ -1,0 +1,256 @@
+/// Signing in by a provider of identities. Whom it vouches for gets no account by that: an
+/// administrator says which one is whose.
+#include "db/store/operations/audit.hpp"
+#include "db/store/people/subjects.hpp"
+#include "server/api/backend.hpp"
+#include "server/api/people/authentication.hpp"
+#include "server/api/people/oidc.hpp"
+#include "server/api/people/people_json.hpp"
+#include "server/api/schema.hpp"
+
+namespace tractus {
+namespace api {
+namespace {
+
+using core::Errc;
+using core::Error;
+using core::Json;
+using core::Result;
+
+constexpr const char* kAttemptCookie = "tractus_oidc";
+constexpr std::int64_t kAttempt_us = 10ll * 60 * 1'000'000;
+
+http::Response sent_to(const std::string& address) {
+  http::Response out{.status = 302, .headers = {}, .body = std::string()};
+  return out.with("Location", address).with("Cache-Control", "no-store"), out;
+}
+
+/// Of one sign-in. Lax: the browser comes back from another site.
+std::string attempt_cookie(const Backend& backend, const std::string& value, std::int64_t seconds) {
+  return std::string(kAttemptCookie) + "=" + value +
+         "; Path=/api/v1/session/oidc; HttpOnly; SameSite=Lax; Max-Age=" + std::to_string(seconds) +
+         (backend.secure_cookies ? "; Secure" : "");
+}
+
+Result<const Oidc*> provider(const Call& call) {
+  if (call.backend.oidc) return call.backend.oidc;
+  return Error{Errc::not_found, "this server has no provider of identities"};
+}
+
+/// Back to the pages, which say that it did not work.
+http::Response failed(const Call& call, const Error& why) {
+  if (call.backend.log) call.backend.log({{"what", "oidc"}, {"refused", why.what}});
+  return sent_to("/?sign_in=failed");
+}
+
+Result<http::Response> offered(const Call& call) {
+  const Oidc* oidc = call.backend.oidc;
+  return json_response(
+      {{"offered", oidc != nullptr}, {"label", oidc ? Json(oidc->settings().label) : Json()}});
+}
+
+Result<http::Response> begin(const Call& call) {
+  const auto oidc = provider(call);
+  if (!oidc) return oidc.error();
+  const OidcAttempt attempt = new_attempt();
+  auto address = (*oidc)->sign_in_address(attempt);
+  if (!address) return failed(call, address.error());
+  const Json kept{{"state", attempt.state},
+                  {"nonce", attempt.nonce},
+                  {"verifier", attempt.verifier},
+                  {"until_utc_us", call.backend.now_utc_us() + kAttempt_us}};
+  auto out = sent_to(*address);
+  out.with("Set-Cookie", attempt_cookie(call.backend, call.backend.secrets.sealed(kept.dump()),
+                                        kAttempt_us / 1'000'000));
+  return out;
+}
+
+/// The attempt that this browser began, if this is its answer.
+Result<OidcAttempt> attempt_of(const Call& call) {
+  const Error none{Errc::unauthorised, "this browser began no such sign-in, or too long ago"};
+  const std::string sealed(call.request.cookie(kAttemptCookie));
+  if (sealed.empty()) return none;
+  const auto opened = call.backend.secrets.opened(sealed);
+  if (!opened) return none;
+  const Json json = core::stored_json(*opened);
+  if (!json.is_object() || call.backend.now_utc_us() > json.value("until_utc_us", std::int64_t{0}))
+    return none;
+  OidcAttempt out{json.value("state", ""), json.value("nonce", ""), json.value("verifier", "")};
+  if (out.state.empty() || out.state != call.text("state")) return none;
+  return out;
+}
+
+/// What an administrator needs to link somebody: noted, as rarely as refusals.
+void note_unknown(const Call& call, const std::string& subject) {
+  if (!call.backend.refusals.turn("oidc", call.backend.now_utc_us())) return;
+  const store::AuditedAction act{
+      .who = "",
+      .role = "",
+      .peer = call.request.peer,
+      .what = "refused: oidcCallback",
+      .object = "",
+      .detail = Json{{"why", "no account has this subject"}, {"subject", subject}}.dump(
+          -1, ' ', false, Json::error_handler_t::replace),
+      .at_utc_us = call.backend.now_utc_us()};
+  const auto noted = call.backend.store.write(
+      [&](store::Writing& tx) { return store::add_act(tx, call.backend.store.audit_key(), act); });
+  if (!noted && call.backend.log) call.backend.log({{"what", "refusal not noted"}});
+}
+
+/// The session's token. Errors: unauthorised when nobody's account has the subject, or it is off.
+Result<std::string> session_for(const Call& call, const Oidc& oidc, const std::string& subject) {
+  auto account = call.backend.store.read([&](store::Reading& tx) {
+    return store::account_of_subject(tx, oidc.settings().issuer, subject);
+  });
+  if (!account) return account.error();
+  if (!*account || (*account)->state != "active") {
+    note_unknown(call, subject);
+    return Error{Errc::unauthorised, "no account here is linked with this identity"};
+  }
+  const std::string token = new_token();
+  const store::AuditScope acting({.who = (*account)->name,
+                                  .role = (*account)->role,
+                                  .peer = call.request.peer,
+                                  .what = "oidcSignIn",
+                                  .at_utc_us = call.backend.now_utc_us()});
+  auto made = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
+    auto linked = store::account_of_subject(tx, oidc.settings().issuer, subject);
+    if (!linked) return linked.error();
+    if (!*linked || (*linked)->id != (*account)->id || (*linked)->state != "active")
+      return Error{Errc::unauthorised, "the account was changed just now: try again"};
+    return store::add_session(tx, token_hash(token), (*account)->id, call.backend.now_utc_us());
+  });
+  if (!made) return made.error();
+  return token;
+}
+
+Result<std::string> signed_in(const Call& call, const Oidc& oidc) {
+  if (call.has("error") || !call.has("code"))
+    return Error{Errc::unauthorised, "the provider did not sign anybody in"};
+  if (call.has("iss") && call.text("iss") != oidc.settings().issuer)  // RFC 9207
+    return Error{Errc::unauthorised, "this is another provider's answer"};
+  const auto attempt = attempt_of(call);
+  if (!attempt) return attempt.error();
+  const auto identity =
+      oidc.redeemed(call.text("code"), *attempt, call.backend.now_utc_us() / 1'000'000);
+  if (!identity) return identity.error();
+  return session_for(call, oidc, identity->subject);
+}
+
+/// The browser is sent to the pages in any case: they say what happened.
+Result<http::Response> come_back(const Call& call) {
+  const auto oidc = provider(call);
+  if (!oidc) return oidc.error();
+  const auto token = signed_in(call, **oidc);
+  if (!token && call.backend.log)
+    call.backend.log({{"what", "oidc"}, {"refused", token.error().what}});
+  const bool unknown = !token && token.error().what.starts_with("no account");
+  auto out = sent_to(token ? "/" : unknown ? "/?sign_in=unknown" : "/?sign_in=failed");
+  out.with("Set-Cookie", attempt_cookie(call.backend, "", 0));
+  if (token)
+    out.with("Set-Cookie", std::string(kSessionCookie) + "=" + *token +
+                               "; Path=/; HttpOnly; SameSite=Strict; Max-Age=" +
+                               std::to_string(kSessionAge_us / 1'000'000) +
+                               (call.backend.secure_cookies ? "; Secure" : ""));
+  return out;
+}
+
+Result<http::Response> leave(const Call& call) {
+  const auto oidc = provider(call);
+  if (!oidc) return oidc.error();
+  const auto address = (*oidc)->sign_out_address();
+  if (!address) return failed(call, address.error());
+  return sent_to(address->empty() ? "/" : *address);
+}
+
+Result<http::Response> link(const Call& call) {
+  const auto oidc = provider(call);
+  if (!oidc) return oidc.error();
+  auto json = core::parse_json(call.request.body, "body");
+  if (!json) return json.error();
+  core::Fields fields(*json, "body");
+  const std::string subject = fields.text_or("subject", "", 255);
+  if (auto fine = fields.done(); !fine) return fine.error();
+  auto linked = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
+    auto account = account_of_call(tx, call);
+    if (!account) return account.error();
+    if (auto done = store::link_subject(tx, {(*oidc)->settings().issuer, subject, account->id,
+                                             call.backend.now_utc_us(), call.caller.name});
+        !done)
+      return done;
+    return store::remove_sessions_of(tx, account->id, "");
+  });
+  if (!linked) return linked.error();
+  close_conversations(call.backend, call.text("id"));
+  return http::Response{.status = 204, .headers = {}, .body = std::string()};
+}
+
+Parameter answered(std::string name, std::string meaning) {
+  return {.in = Parameter::In::query,
+          .name = std::move(name),
+          .kind = Parameter::Kind::text,
+          .unit = "",
+          .meaning = std::move(meaning),
+          .required = false,
+          .fallback = std::nullopt};
+}
+
+RouteInfo open_route(std::string tail, std::string id, std::string summary, std::string answer,
+                     http::Lane lane, Result<http::Response> (*handle)(const Call&)) {
+  return {.method = "GET",
+          .path = "/api/v1/session/oidc" + tail,
+          .id = std::move(id),
+          .summary = std::move(summary),
+          .who = {},
+          .open = true,
+          .lane = lane,
+          .parameters = {},
+          .body = "",
+          .answer = std::move(answer),
+          .schemas = {},
+          .handle = handle};
+}
+
+}  // namespace
+
+std::vector<RouteInfo> oidc_routes() {
+  using namespace schema;
+  RouteInfo offer = open_route("", "oidcOffered", "May people sign in by a provider of identities?",
+                               "OidcOffer", http::Lane::quick, offered);
+  offer.schemas = {{"OidcOffer", object({{"offered", truth("there is one")},
+                                         {"label", nullable(text("of the button"))}})}};
+  RouteInfo back =
+      open_route("/callback", "oidcCallback", "Where the provider sends the browser back to",
+                 kBytes, http::Lane::remote, come_back);
+  back.parameters = {answered("code", "for an identity"),
+                     answered("state", "of the attempt"),
+                     answered("iss", "RFC 9207"),
+                     answered("error", "why not"),
+                     answered("error_description", "for people"),
+                     answered("error_uri", "for people"),
+                     answered("session_state", "of the provider"),
+                     answered("scope", "what was granted")};
+  RouteInfo join{
+      .method = "POST",
+      .path = "/api/v1/accounts/{id}/subject",
+      .id = "linkSubject",
+      .summary = "Say which of the provider's people the account is; empty: none; its sessions end",
+      .who = {Role::admin},
+      .parameters = {path_text("id", "of the account")},
+      .body = "OidcSubject",
+      .body_limit_bytes = 4096,
+      .answer = "",
+      .schemas = {{"OidcSubject",
+                   object({{"subject", text("the provider's name for the person, sub")}})}},
+      .handle = link};
+  return {offer,
+          open_route("/start", "oidcStart", "Send the browser to the provider", kBytes,
+                     http::Lane::remote, begin),
+          back,
+          open_route("/end", "oidcEnd", "Send the browser to the provider to sign out there too",
+                     kBytes, http::Lane::remote, leave),
+          join};
+}
+
+}  // namespace api
+}  // namespace tractus

@@ -1,0 +1,242 @@
+/// What people do with their own account: password and one-time codes. A session alone changes
+/// neither: the password is asked for again, and a one-time code where the account has them.
+#include <functional>
+
+#include "server/api/backend.hpp"
+#include "server/api/people/authentication.hpp"
+#include "server/api/people/people_json.hpp"
+#include "server/api/people/throttle.hpp"
+#include "server/api/people/totp.hpp"
+#include "server/api/schema.hpp"
+
+namespace tractus {
+namespace api {
+namespace {
+
+using core::Errc;
+using core::Error;
+using core::Result;
+
+constexpr std::uint64_t kMaxBody_bytes = 8192;
+constexpr const char* kCodesAreOn = "one-time codes are asked for already: end them first";
+constexpr std::size_t kTotpKey_bytes = 20;  // RFC 4226 section 4, R6: as long as SHA-1's output
+
+Result<store::Account> own_account(store::Reading& tx, const Call& call) {
+  auto account = store::account_of(tx, call.caller.id);
+  if (!account) return account.error();
+  core::require(account->has_value(), "who is signed in has an account");
+  return std::move(**account);
+}
+
+http::Response done() { return {.status = 204, .headers = {}, .body = std::string()}; }
+
+store::Attempt attempt_of(const Call& call) {
+  return {store::Secret::own_password, call.caller.id, call.caller.session_hash};
+}
+
+/// What shows that it is the account's owner who asks, and not whoever found the browser open.
+struct Proof {
+  const char* field;  ///< of the body, that holds the password
+  std::string password, code;
+};
+
+using Change = std::function<Result<void>(store::Writing&, store::Account&)>;
+
+/// The own account, while the session that asks still lasts: a reset by an administrator ends it.
+Result<store::Account> account_of_session(store::Writing& tx, const Call& call) {
+  auto session = store::session_of(tx, call.caller.session_hash);
+  if (!session) return session.error();
+  if (!*session) return Error{Errc::unauthorised, "sign in first: the session is over"};
+  return std::move((*session)->account);
+}
+
+/// Changes the own account in one transaction and ends its other sessions.
+Result<void> changed(const Call& call, const Change& change) {
+  auto done = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
+    auto account = account_of_session(tx, call);
+    if (!account) return account.error();
+    if (auto made = change(tx, *account); !made) return made;
+    if (auto set = store::set_account(tx, *account); !set) return set;
+    if (auto cleared = store::clear_failures(tx, attempt_of(call)); !cleared) return cleared;
+    return store::remove_sessions_of(tx, account->id, call.caller.session_hash);
+  });
+  if (done) close_conversations(call.backend, call.caller.id);
+  return done;
+}
+
+/// Uses the code up, within a change.
+Result<void> take_code(const Call& call, store::Account& account, const std::string& code,
+                       bool& wrong) {
+  wrong = !use_code(call.backend, account, code);
+  if (wrong) return Error{Errc::forbidden, "body: /code: is wrong"};
+  return {};
+}
+
+/// Runs `change`, which may find a one-time code wrong: that is noted for the throttle.
+Result<http::Response> changed_by_code(const Call& call, const bool& wrong, const Change& change) {
+  auto made = changed(call, change);
+  if (wrong)
+    if (auto noted = note_failure(call.backend, attempt_of(call)); !noted) return noted.error();
+  if (!made) return made.error();
+  return done();
+}
+
+/// What is answered to who does not show the password, or no code where the account has them.
+Result<std::optional<http::Response>> refusal_of(const Call& call, const Proof& proof) {
+  auto early = too_early(call.backend, attempt_of(call));
+  if (!early || *early) return early;
+  auto account = call.backend.store.read([&](store::Reading& tx) { return own_account(tx, call); });
+  if (!account) return account.error();
+  if (!password_matches(account->password_hash, proof.password)) {
+    if (auto noted = note_failure(call.backend, attempt_of(call)); !noted) return noted.error();
+    return Error{Errc::forbidden, std::string("body: /") + proof.field + ": is not the password"};
+  }
+  if (!account->totp_confirmed || !proof.code.empty()) return std::optional<http::Response>();
+  return std::optional(
+      http::error_response(403, "code_needed", "body: /code: a one-time code is asked for"));
+}
+
+/// Runs `change` for an owner whom refusal_of let pass, the code used up.
+Result<http::Response> changed_by_owner(const Call& call, const Proof& proof,
+                                        const Change& change) {
+  bool wrong = false;
+  return changed_by_code(call, wrong, [&](store::Writing& tx, store::Account& own) -> Result<void> {
+    if (own.totp_confirmed)
+      if (auto used = take_code(call, own, proof.code, wrong); !used) return used;
+    return change(tx, own);
+  });
+}
+
+Result<http::Response> change_password(const Call& call) {
+  auto json = core::parse_json(call.request.body, "body");
+  if (!json) return json.error();
+  core::Fields fields(*json, "body");
+  const Proof proof{"old", fields.text("old", kMaxPassword), fields.text_or("code", "", 16)};
+  const std::string after = password_field(fields, "new", true);
+  if (proof.password == after) fields.wrong("new", "another password than before is expected");
+  if (auto fine = fields.done(); !fine) return fine.error();
+  auto refusal = refusal_of(call, proof);
+  if (!refusal) return refusal.error();
+  if (*refusal) return std::move(**refusal);
+  auto hash = password_hash(after);
+  if (!hash) return hash.error();
+  return changed_by_owner(call, proof, [&](store::Writing&, store::Account& own) -> Result<void> {
+    own.password_hash = *hash;
+    own.must_change = false;
+    return {};
+  });
+}
+
+Result<http::Response> begin_codes(const Call& call) {
+  auto json = core::parse_json(call.request.body, "body");
+  if (!json) return json.error();
+  core::Fields fields(*json, "body");
+  const Proof proof{"password", fields.text("password", kMaxPassword), ""};
+  if (auto fine = fields.done(); !fine) return fine.error();
+  auto account = call.backend.store.read([&](store::Reading& tx) { return own_account(tx, call); });
+  if (!account) return account.error();
+  if (account->totp_confirmed) return Error{Errc::conflict, kCodesAreOn};
+  auto refusal = refusal_of(call, proof);
+  if (!refusal) return refusal.error();
+  if (*refusal) return std::move(**refusal);
+  const core::Bytes secret = core::random_bytes(kTotpKey_bytes);
+  auto begun = changed(call, [&](store::Writing&, store::Account& own) -> Result<void> {
+    if (own.totp_confirmed) return Error{Errc::conflict, kCodesAreOn};
+    own.totp_secret = call.backend.secrets.sealed(core::text_of(secret));
+    return {};
+  });
+  if (!begun) return begun.error();
+  return json_response({{"secret", base32(secret)}, {"uri", totp_uri(secret, call.caller.name)}});
+}
+
+Result<http::Response> confirm_codes(const Call& call) {
+  auto json = core::parse_json(call.request.body, "body");
+  if (!json) return json.error();
+  core::Fields fields(*json, "body");
+  const std::string code = fields.text("code", 16);
+  if (auto fine = fields.done(); !fine) return fine.error();
+  auto early = too_early(call.backend, attempt_of(call));
+  if (!early) return early.error();
+  if (*early) return std::move(**early);
+  bool wrong = false;
+  return changed_by_code(call, wrong, [&](store::Writing&, store::Account& own) -> Result<void> {
+    if (own.totp_secret.empty() || own.totp_confirmed)
+      return Error{Errc::conflict, "ask for a secret first"};
+    if (auto used = take_code(call, own, code, wrong); !used) return used;
+    own.totp_confirmed = true;
+    return {};
+  });
+}
+
+Result<http::Response> end_codes(const Call& call) {
+  auto json = core::parse_json(call.request.body, "body");
+  if (!json) return json.error();
+  core::Fields fields(*json, "body");
+  const Proof proof{"password", fields.text("password", kMaxPassword), fields.text("code", 16)};
+  if (auto fine = fields.done(); !fine) return fine.error();
+  auto refusal = refusal_of(call, proof);
+  if (!refusal) return refusal.error();
+  if (*refusal) return std::move(**refusal);
+  return changed_by_owner(call, proof, [](store::Writing&, store::Account& own) -> Result<void> {
+    if (!own.totp_confirmed) return Error{Errc::conflict, "no codes are asked for"};
+    own.totp_confirmed = false;
+    own.totp_secret.clear();
+    return {};
+  });
+}
+
+RouteInfo route(std::string method, std::string tail, std::string id, std::string summary,
+                Result<http::Response> (*handle)(const Call&)) {
+  return {.method = std::move(method),
+          .path = "/api/v1/session/" + tail,
+          .id = std::move(id),
+          .summary = std::move(summary),
+          .who = people(),
+          .parameters = {},
+          .body = "",
+          .body_limit_bytes = kMaxBody_bytes,
+          .answer = "",
+          .schemas = {},
+          .handle = handle};
+}
+
+}  // namespace
+
+std::vector<RouteInfo> own_account_routes() {
+  using namespace schema;
+  const core::Json code_where_asked =
+      optional(text("one-time, where the account asks for them: six digits"));
+  RouteInfo password = route("POST", "password", "changePassword",
+                             "Choose another password; the other sessions end", change_password);
+  password.before_password_change = true;
+  password.lane = http::Lane::hashing;
+  password.body = "PasswordChange";
+  password.schemas = {{"PasswordChange", object({{"old", text("the password until now")},
+                                                 {"new", text("12 to 1024 bytes")},
+                                                 {"code", code_where_asked}})}};
+  RouteInfo begin =
+      route("POST", "codes", "beginCodes",
+            "A secret for an authenticator (RFC 6238); asked for once confirmed", begin_codes);
+  begin.lane = http::Lane::hashing;
+  begin.body = "PasswordShown";
+  begin.answer = "CodesBegun";
+  begin.schemas = {{"PasswordShown", object({{"password", text("of the account")}})},
+                   {"CodesBegun", object({{"secret", text("base32, shown only now")},
+                                          {"uri", text("otpauth://…, to scan")}})}};
+  RouteInfo confirm =
+      route("POST", "codes/confirm", "confirmCodes",
+            "From now on a one-time code is asked for at signing in; the other sessions end",
+            confirm_codes);
+  confirm.body = "OneTimeCode";
+  confirm.schemas = {{"OneTimeCode", object({{"code", text("six digits")}})}};
+  RouteInfo end = route("POST", "codes/end", "endCodes",
+                        "No longer ask for one-time codes; the other sessions end", end_codes);
+  end.lane = http::Lane::hashing;
+  end.body = "PasswordAndCode";
+  end.schemas = {{"PasswordAndCode", object({{"password", text("of the account")},
+                                             {"code", text("one-time: six digits")}})}};
+  return {password, begin, confirm, end};
+}
+
+}  // namespace api
+}  // namespace tractus

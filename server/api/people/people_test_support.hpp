@@ -1,0 +1,107 @@
+/// Two cohorts of one trainee each, their faculty, one account of every other role, and a trial of
+/// each trainee in an assignment of its cohort.
+#pragma once
+
+#include "db/store/studies/assignments.hpp"
+#include "db/store/trials/trials.hpp"
+#include "db/store/trials/uploads.hpp"
+#include "server/api/api_test_support.hpp"
+
+namespace tractus::api::testing {
+
+class PeopleTest : public ApiTest {
+ protected:
+  static constexpr const char* kRelease = "released";
+
+  PeopleTest() {
+    const auto furnished = store_.write([&](store::Writing& tx) -> core::Result<void> {
+      for (const auto& [name, role] :
+           std::vector<std::pair<std::string, std::string>>{{"dora", "director"},
+                                                            {"fay", "faculty"},
+                                                            {"flo", "faculty"},
+                                                            {"rex", "researcher"},
+                                                            {"ted", "technician"},
+                                                            {"tom", "trainee"},
+                                                            {"tia", "trainee"},
+                                                            {"ann", "admin"}}) {
+        store::Account account{
+            .id = name, .name = name, .role = role, .password_hash = quick_hash()};
+        account.pseudonym = "P-" + name;
+        if (auto done = store::add_account(tx, account, 0); !done) return done;
+      }
+      if (auto done = furnish_cohort(tx, "c-tom", "fay", "tom"); !done) return done;
+      return furnish_cohort(tx, "c-tia", "flo", "tia");
+    });
+    EXPECT_TRUE(furnished) << furnished.error().what;
+  }
+
+  /// A cohort, its assignment "a-NAME" of one case, and the trial that its trainee did.
+  static core::Result<void> furnish_cohort(store::Writing& tx, const std::string& cohort,
+                                           const std::string& leader, const std::string& trainee) {
+    if (auto done = store::add_cohort(tx, {cohort, cohort, 0, leader}); !done) return done;
+    if (auto done = store::put_into_cohort(tx, cohort, leader, "faculty", 0); !done) return done;
+    if (auto done = store::put_into_cohort(tx, cohort, trainee, "trainee", 0); !done) return done;
+    const store::AuditStamp stamp{leader, 1};
+    const std::string study = "a-" + trainee, who = "P-" + trainee;
+    auto assigned =
+        store::add_assignment(tx,
+                              {.study = {.id = study, .title = "", .ordering = "random"},
+                               .cohort_id = cohort,
+                               .release = kRelease,
+                               .made_by_id = leader},
+                              {kCase}, stamp);
+    if (!assigned) return assigned.error();
+    if (auto done = store::add_participant(tx, *assigned, {.name = who}, {kCase}, stamp); !done)
+      return done;
+    if (auto done = store::add_assigned_person(tx, *assigned, trainee, who); !done) return done;
+    auto slots = store::study_slots(tx, *assigned);
+    if (!slots) return slots.error();
+    return furnish_trial(tx, trial_of(trainee), slots->front().id);
+  }
+
+  static core::Result<void> furnish_trial(store::Writing& tx, const std::string& id,
+                                          const std::string& slot, const store::Tool& tool = {}) {
+    const std::string sha = core::sha256(core::bytes_of(id));
+    store::TrialRecord trial;
+    trial.summary.id = id;
+    trial.summary.case_id = kCase;
+    trial.summary.started_utc_us = 10;
+    trial.station_id = "s1";
+    trial.sha256 = sha;
+    trial.complete = true;
+    trial.header = trial.events = "{}";
+    if (auto done = store::add_upload(tx, {id, "s1", kCase, 1, sha, "receiving"}, 1); !done)
+      return done;
+    if (auto done = store::announce_for_slot(tx, id, slot, 1); !done) return done;
+    if (auto done = store::add_object(tx, sha, 1, 1); !done) return done;
+    if (auto done = store::add_trial(tx, trial, 1); !done) return done;
+    return store::record_for_slot(tx, id, true, {"s1", 1}, tool);
+  }
+
+  static std::string trial_of(const std::string& trainee) {
+    return core::sha256(core::bytes_of(trainee)).substr(0, 32);
+  }
+
+  /// Headers of a new session, without the time that a password takes.
+  std::map<std::string, std::string> as(const std::string& account) {
+    const std::string token = "session-" + std::to_string(++sessions_);
+    const auto added = store_.write([&](store::Writing& tx) {
+      return store::add_session(tx, token_hash(token), account, now_);
+    });
+    EXPECT_TRUE(added);
+    return {{"cookie", std::string(kSessionCookie) + "=" + token},
+            {"x-tractus", "1"},
+            {"content-type", "application/json"}};
+  }
+  http::Response get(const std::string& account, const std::string& path) {
+    return ask(request("GET", "/api/v1" + path, as(account)));
+  }
+  http::Response post(const std::string& account, const std::string& path,
+                      const core::Json& body = core::Json::object()) {
+    return ask(request("POST", "/api/v1" + path, as(account), body.dump()));
+  }
+
+  int sessions_ = 0;
+};
+
+}  // namespace tractus::api::testing

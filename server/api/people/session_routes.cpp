@@ -1,0 +1,119 @@
+/// Signing in and out.
+#include "core/require.hpp"
+#include "server/api/backend.hpp"
+#include "server/api/people/authentication.hpp"
+#include "server/api/people/throttle.hpp"
+#include "server/api/route.hpp"
+#include "server/api/schema.hpp"
+
+namespace tractus {
+namespace api {
+namespace {
+
+core::Result<Credentials> credentials(const http::Request& request) {
+  auto json = core::parse_json(request.body, "body");
+  if (!json) return json.error();
+  core::Fields fields(*json, "body");
+  Credentials out{fields.text("name", kMaxName), fields.text("password", kMaxPassword),
+                  fields.text_or("code", "", 16)};
+  if (auto fine = fields.done(); !fine) return fine.error();
+  return out;
+}
+
+core::Json identity_json(const std::string& id, const std::string& name, std::string_view role,
+                         bool must_change) {
+  return {{"name", name}, {"role", role}, {"id", id}, {"must_change", must_change}};
+}
+
+std::string cookie(const Backend& backend, const std::string& token, std::int64_t seconds) {
+  return std::string(kSessionCookie) + "=" + token +
+         "; Path=/; HttpOnly; SameSite=Strict; Max-Age=" + std::to_string(seconds) +
+         (backend.secure_cookies ? "; Secure" : "");
+}
+
+core::Result<http::Response> sign_in_route(const Call& call) {
+  auto given = credentials(call.request);
+  if (!given) return given.error();
+  const store::Attempt attempt{store::Secret::account_password, given->name,
+                               network_of(call.request.peer)};
+  auto early = too_early(call.backend, attempt);
+  if (!early) return early.error();
+  if (*early) return std::move(**early);
+  auto in = sign_in(call.backend, *given, attempt);
+  if (!in && needs_code(in.error()))
+    return http::error_response(401, "code_needed", in.error().what);
+  if (!in) return in.error();
+  const store::Account& account = in->account;
+  auto response =
+      json_response(identity_json(account.id, account.name, account.role, account.must_change));
+  response.with("Set-Cookie", cookie(call.backend, in->token, kSessionAge_us / 1'000'000));
+  return response;
+}
+
+core::Result<http::Response> who_am_i(const Call& call) {
+  return json_response(identity_json(call.caller.id, call.caller.name, name(call.caller.role),
+                                     call.caller.must_change));
+}
+
+core::Result<http::Response> sign_out_route(const Call& call) {
+  auto done = call.backend.store.write(
+      [&](store::Writing& tx) { return store::remove_session(tx, call.caller.session_hash); });
+  if (!done) return done.error();
+  http::Response response{.status = 204, .headers = {}, .body = std::string()};
+  return response.with("Set-Cookie", cookie(call.backend, "", 0)), response;
+}
+
+}  // namespace
+
+std::vector<RouteInfo> session_routes() {
+  const std::string path = "/api/v1/session";
+  std::vector<std::string> roles;
+  for (const Role role : kRoles) roles.emplace_back(name(role));
+  const core::Json identity = schema::object(
+      {{"name", schema::text("of the account or the station")},
+       {"role", schema::one_of(roles, "what it may do")},
+       {"id", schema::text("of the account or the station")},
+       {"must_change", schema::truth("a password of its own must be chosen first")}});
+  const core::Json sent = schema::object(
+      {{"name", schema::text("of the account")},
+       {"password", schema::text("at most 1024 bytes")},
+       {"code", schema::optional(schema::text("one-time, when the answer was code_needed"))}});
+  return {{.method = "POST",
+           .path = path,
+           .id = "signIn",
+           .summary = "Sign in; the answer sets the session's cookie",
+           .who = {},
+           .open = true,
+           .lane = http::Lane::hashing,
+           .parameters = {},
+           .body = "Credentials",
+           .body_limit_bytes = 8192,
+           .answer = "Identity",
+           .schemas = {{"Credentials", sent}, {"Identity", identity}},
+           .handle = sign_in_route},
+          {.method = "GET",
+           .path = path,
+           .id = "whoAmI",
+           .summary = "Whose credentials these are",
+           .who = {kRoles.begin(), kRoles.end()},
+           .before_password_change = true,
+           .parameters = {},
+           .body = "",
+           .answer = "Identity",
+           .schemas = {},
+           .handle = who_am_i},
+          {.method = "DELETE",
+           .path = path,
+           .id = "signOut",
+           .summary = "Sign out; the session is over everywhere",
+           .who = people(),
+           .before_password_change = true,
+           .parameters = {},
+           .body = "",
+           .answer = "",
+           .schemas = {},
+           .handle = sign_out_route}};
+}
+
+}  // namespace api
+}  // namespace tractus

@@ -1,0 +1,143 @@
+/// Stations at work: the wall of those who look on, the line of each station, and what may be asked
+/// of one from afar: to stop, to give less force. Never more.
+#include "server/api/stations/station_state.hpp"
+
+namespace tractus {
+namespace api {
+namespace {
+
+using core::Result;
+
+constexpr std::uint64_t kMaxBody_bytes = 4096;
+constexpr std::size_t kMaxReason = 300;
+
+using Conversing = Result<std::shared_ptr<http::WebSocketHandler>>;
+
+Conversing look_on(const Call& call, std::function<bool()> may_stay) {
+  auto hub = hub_of(call.backend);
+  if (!hub) return hub.error();
+  return (*hub)->viewer_talk(viewer_of(call.caller), std::move(may_stay));
+}
+
+Conversing station_line(const Call& call, std::function<bool()> may_stay) {
+  auto hub = hub_of(call.backend);
+  if (!hub) return hub.error();
+  return (*hub)->station_talk({call.caller.id, call.caller.name}, std::move(may_stay));
+}
+
+Result<http::Response> time_now(const Call& call) {
+  return json_response({{"server_utc_us", call.backend.now_utc_us()}});
+}
+
+/// Notes it in the audit trail first, then says it to the station.
+Result<http::Response> commanded(const Call& call, const wire::StationCommand& command) {
+  auto hub = hub_of(call.backend);
+  if (!hub) return hub.error();
+  const std::string& id = call.text("id");
+  if (auto known = station_entry(call.backend, id); !known) return known.error();
+  auto noted = call.backend.store.write([](store::Writing&) { return Result<void>(); });
+  if (!noted) return noted.error();
+  if (auto said = (*hub)->command(id, command); !said) return said.error();
+  return json_response({{"sent", true}}, 202);
+}
+
+Result<http::Response> stop(const Call& call) {
+  auto json = core::parse_json(call.request.body, "body");
+  if (!json) return json.error();
+  core::Fields fields(*json, "body");
+  wire::StationCommand command;
+  command.reason = fields.text("reason", kMaxReason);
+  if (command.reason.find_first_not_of(" \t\r\n") == std::string::npos)
+    fields.wrong("reason", "the person at the station reads it: a few words are expected");
+  if (auto done = fields.done(); !done) return done.error();
+  return commanded(call, command);
+}
+
+Result<http::Response> limit(const Call& call) {
+  auto json = core::parse_json(call.request.body, "body");
+  if (!json) return json.error();
+  core::Fields fields(*json, "body");
+  wire::StationCommand command{.kind = wire::StationCommand::Kind::limits, .reason = {}};
+  command.force_N = fields.number("force_N", 0.0, 1000.0);
+  if (auto done = fields.done(); !done) return done.error();
+  return commanded(call, command);
+}
+
+RouteInfo line(std::string tail, std::string id, std::string summary, std::vector<Grant> who,
+               std::string frames,
+               Conversing (*converse)(const Call&, std::function<bool()> may_stay)) {
+  return {.method = "GET",
+          .path = "/api/v1/live" + tail,
+          .id = std::move(id),
+          .summary = std::move(summary),
+          .who = std::move(who),
+          .parameters = {},
+          .body = "",
+          .answer = std::move(frames),
+          .schemas = {},
+          .handle = wants_websocket,
+          .converse = converse};
+}
+
+RouteInfo command(std::string tail, std::string id, std::string summary, std::vector<Grant> who,
+                  std::string body, Result<http::Response> (*handle)(const Call&)) {
+  return {.method = "POST",
+          .path = "/api/v1/stations/{id}/" + tail,
+          .id = std::move(id),
+          .summary = std::move(summary),
+          .who = std::move(who),
+          .parameters = {path_text("id", "the station's")},
+          .body = std::move(body),
+          .body_limit_bytes = kMaxBody_bytes,
+          .answer = "CommandSent",
+          .schemas = {},
+          .handle = handle};
+}
+
+}  // namespace
+
+std::vector<RouteInfo> live_routes() {
+  using namespace schema;
+  RouteInfo wall =
+      line("", "live",
+           "WebSocket: every station at once, then each that changes, at most 20 times a second",
+           {Role::admin, Role::director, Role::faculty, Role::technician}, "LiveFrame", look_on);
+  wall.schemas = {
+      {"StationState", object(station_state_fields())},
+      {"LiveFrame", object({{"kind", one_of({"stations", "station"}, "which of the two is there")},
+                            {"stations", optional(array(ref("StationState"), "all, by name"))},
+                            {"station", optional(ref("StationState"))}})}};
+  RouteInfo own =
+      line("/station", "liveStation", "WebSocket of a station: says its state, hears commands",
+           {Role::station}, "StationCommand", station_line);
+  own.schemas = {
+      {"StationCommand",
+       object({{"kind", one_of({"stop", "limits"}, "what is asked")},
+               {"reason", optional(text("of a stop, for the person at the station"))},
+               {"force_N", optional(number("N", "at most so much on the hand, from now on"))}})}};
+  const std::vector<Grant> watching{Role::admin, Role::director, Role::faculty, Role::technician};
+  RouteInfo halt = command("stop", "stopStation",
+                           "End the running trial with zero force; a person at the station goes on",
+                           watching, "StopStation", stop);
+  halt.schemas = {{"StopStation", object({{"reason", text("shown at the station")}})},
+                  {"CommandSent", object({{"sent", truth("to the station's line")}})}};
+  RouteInfo less = command("limits", "limitStation",
+                           "Lower the force that a station gives a hand; it never rises by this",
+                           {Role::admin, Role::technician}, "LimitStation", limit);
+  less.schemas = {{"LimitStation", object({{"force_N", number("N", "at most")}})}};
+  RouteInfo time{
+      .method = "GET",
+      .path = "/api/v1/time",
+      .id = "time",
+      .summary = "The server's clock, for a station to compare its own with",
+      .who = {Role::station},
+      .parameters = {},
+      .body = "",
+      .answer = "ServerTime",
+      .schemas = {{"ServerTime", object({{"server_utc_us", integer("us", "since 1970, UTC")}})}},
+      .handle = time_now};
+  return {wall, own, halt, less, time};
+}
+
+}  // namespace api
+}  // namespace tractus

@@ -1,0 +1,202 @@
+/// A version of a model on its way to stations: who is to have it, and what a station asks.
+#include <set>
+
+#include "db/store/people/accounts.hpp"
+#include "db/store/stations/sent_models.hpp"
+#include "server/api/backend.hpp"
+#include "server/api/lab/lab_json.hpp"
+#include "server/api/schema.hpp"
+
+namespace tractus {
+namespace api {
+namespace {
+
+using core::Errc;
+using core::Error;
+using core::Json;
+using core::Result;
+
+constexpr std::uint64_t kMaxBody_bytes = 16384;
+constexpr std::size_t kMaxStations = 200;
+
+Result<store::ModelVersion> version_of(store::Reading& tx, const std::string& id) {
+  auto model = store::model_of(tx, id);
+  if (!model) return model.error();
+  if (!*model) return absent("model", id);
+  return std::move(**model);
+}
+
+const char* state_of(const store::SentModel& one) {
+  if (one.there_utc_us) return "there";
+  return one.asked_utc_us ? "waiting" : "not_sent";
+}
+
+Json time_or_null(const std::optional<std::int64_t>& time) { return time ? Json(*time) : Json(); }
+
+Json sent_json(const std::vector<store::SentModel>& sent) {
+  Json list = Json::array();
+  for (const auto& one : sent)
+    list.push_back({{"id", one.station_id},
+                    {"name", one.station_name},
+                    {"state", state_of(one)},
+                    {"asked_utc_us", time_or_null(one.asked_utc_us)},
+                    {"asked_by", one.asked_by},
+                    {"there_utc_us", time_or_null(one.there_utc_us)}});
+  return {{"stations", list}};
+}
+
+Result<http::Response> where_sent(const Call& call) {
+  auto sent =
+      call.backend.store.read([&](store::Reading& tx) -> Result<std::vector<store::SentModel>> {
+        auto model = version_of(tx, call.text("id"));
+        if (!model) return model.error();
+        return store::sent_to(tx, model->id);
+      });
+  if (!sent) return sent.error();
+  return json_response(sent_json(*sent));
+}
+
+/// The stations that a body names; nothing: all of them.
+Result<std::optional<std::set<std::string>>> stations_asked(const Json& json) {
+  core::Fields fields(json, "body");
+  const Json* named = fields.member("stations", false);
+  const Json* every = fields.member("all", false);
+  const bool all = every && every->is_boolean() && every->get<bool>();
+  const bool list = named && named->is_array() && !named->empty() &&
+                    named->size() <= kMaxStations &&
+                    std::ranges::all_of(*named, [](const Json& one) { return one.is_string(); });
+  if (all == list) fields.wrong("stations", "ids of stations, or \"all\": true, are expected");
+  if (auto done = fields.done(); !done) return done.error();
+  if (all) return std::optional<std::set<std::string>>();
+  std::set<std::string> out;
+  for (const Json& one : *named) out.insert(one.get<std::string>().substr(0, 64));
+  return std::optional(std::move(out));
+}
+
+Result<std::set<std::string>> every_station(store::Reading& tx) {
+  auto stations = store::all_stations(tx);
+  if (!stations) return stations.error();
+  std::set<std::string> out;
+  for (const auto& one : *stations)
+    if (!one.revoked_utc_us) out.insert(one.station.id);
+  return out;
+}
+
+Result<http::Response> send(const Call& call) {
+  auto json = core::parse_json(call.request.body, "body");
+  if (!json) return json.error();
+  auto asked = stations_asked(*json);
+  if (!asked) return asked.error();
+  auto sent =
+      call.backend.store.write([&](store::Writing& tx) -> Result<std::vector<store::SentModel>> {
+        auto model = version_of(tx, call.text("id"));
+        if (!model) return model.error();
+        auto ids = *asked ? Result<std::set<std::string>>(**asked) : every_station(tx);
+        if (!ids) return ids.error();
+        for (const std::string& id : *ids)
+          if (auto done =
+                  store::send_model(tx, model->id, id, call.caller.name, call.backend.now_utc_us());
+              !done)
+            return done.error();
+        return store::sent_to(tx, model->id);
+      });
+  if (!sent) return sent.error();
+  return json_response(sent_json(*sent));
+}
+
+Result<http::Response> for_station(const Call& call) {
+  auto models = call.backend.store.read(
+      [&](store::Reading& tx) { return store::models_for(tx, call.caller.id); });
+  if (!models) return models.error();
+  Json list = Json::array();
+  for (const auto& model : *models)
+    list.push_back(
+        {{"id", model.id}, {"name", model.name}, {"rig", model.rig}, {"sha256", model.sha256}});
+  return json_response({{"models", list}});
+}
+
+/// Of those that were sent to the caller; another is as if it were not there.
+Result<store::ModelVersion> own_model(const Call& call) {
+  return call.backend.store.read([&](store::Reading& tx) -> Result<store::ModelVersion> {
+    auto models = store::models_for(tx, call.caller.id);
+    if (!models) return models.error();
+    for (auto& model : *models)
+      if (model.id == call.text("id")) return std::move(model);
+    return absent("model", call.text("id"));
+  });
+}
+
+Result<http::Response> file_for_station(const Call& call) {
+  auto model = own_model(call);
+  if (!model) return model.error();
+  return http::file_response(call.backend.objects.path_of(model->sha256), call.request,
+                             "application/json");
+}
+
+Result<http::Response> is_there(const Call& call) {
+  auto noted = call.backend.store.write([&](store::Writing& tx) {
+    return store::note_model_there(tx, call.text("id"), call.caller.id, call.backend.now_utc_us());
+  });
+  if (!noted) return noted.error();
+  return http::Response{.status = 204, .headers = {}, .body = std::string()};
+}
+
+RouteInfo station_route(std::string method, std::string tail, std::string id, std::string summary,
+                        std::string answer, Result<http::Response> (*handle)(const Call&)) {
+  RouteInfo out{.method = std::move(method),
+                .path = "/api/v1/station/models" + tail,
+                .id = std::move(id),
+                .summary = std::move(summary),
+                .who = {Role::station},
+                .parameters = {},
+                .body = "",
+                .answer = std::move(answer),
+                .schemas = {},
+                .handle = handle};
+  if (!tail.empty()) out.parameters.push_back(path_text("id", "the version's"));
+  return out;
+}
+
+}  // namespace
+
+std::vector<RouteInfo> sent_models_routes() {
+  using namespace schema;
+  RouteInfo where =
+      lab_route("GET", "models/{id}/stations", "sentModel",
+                "Every station, and whether a version was sent there", "SentModel", where_sent);
+  where.who.push_back(Role::technician);
+  where.schemas = {
+      {"SentModelStation", object({{"id", text("the station's")},
+                                   {"name", text("of the station")},
+                                   {"state", one_of({"not_sent", "waiting", "there"},
+                                                    "there: it has said that it has it")},
+                                   {"asked_utc_us", nullable(integer("us", "since 1970, UTC"))},
+                                   {"asked_by", text("who; empty: it was not sent there")},
+                                   {"there_utc_us", nullable(integer("us", "since 1970, UTC"))}})},
+      {"SentModel", object({{"stations", array(ref("SentModelStation"), "by name")}})}};
+  RouteInfo post =
+      taking(lab_route("POST", "models/{id}/send", "sendModel",
+                       "Stations fetch a version when they next ask", "SentModel", send),
+             "SendModel", kMaxBody_bytes,
+             {{"SendModel", object({{"stations", optional(array(text("an id"), "these alone"))},
+                                    {"all", optional(truth("every station"))}})}});
+  post.who.push_back(Role::technician);
+  post.ends = {{"id", Object::model, post.who}, {"/stations/*", Object::station, post.who}};
+  RouteInfo list =
+      station_route("GET", "", "stationModels", "Versions that the asking station is to have",
+                    "StationModels", for_station);
+  list.schemas = {
+      {"StationModel", object({{"id", text("never changes")},
+                               {"name", text("for people")},
+                               {"rig", one_of({"probing", "palpation"}, "that it is of")},
+                               {"sha256", text("of its file")}})},
+      {"StationModels", object({{"models", array(ref("StationModel"), "first sent, first")}})}};
+  return {where, post, list,
+          station_route("GET", "/{id}", "stationModelFile", "One of them, byte for byte",
+                        "ModelFile", file_for_station),
+          station_route("POST", "/{id}/there", "stationModelThere",
+                        "The asking station has it on its disk", "", is_there)};
+}
+
+}  // namespace api
+}  // namespace tractus

@@ -1,0 +1,258 @@
+/// The fleet: which stations there are and how they are, letting one in by a one-time code,
+/// shutting one out, and what a station reports of itself.
+#include <fmt/format.h>
+
+#include "core/bytes.hpp"
+#include "db/store/operations/audit.hpp"
+#include "db/store/stations/fleet.hpp"
+#include "server/api/backend.hpp"
+#include "server/api/people/authentication.hpp"
+#include "server/api/people/people_json.hpp"
+#include "server/api/people/throttle.hpp"
+#include "server/api/stations/station_state.hpp"
+
+namespace tractus {
+namespace api {
+namespace {
+
+using core::Errc;
+using core::Error;
+using core::Result;
+
+constexpr std::uint64_t kMaxBody_bytes = 4096;
+constexpr std::int64_t kCodeLife_us = 3600ll * 1'000'000;
+
+constexpr std::uint64_t kMaxReport_bytes = 64 * 1024;
+constexpr std::int64_t kNotesShown = 20;
+constexpr const char* kSelfTest = "self_test";
+constexpr const char* kCalibration = "calibration";
+
+Result<http::Response> list_stations(const Call& call) {
+  auto found = call.backend.store.read([](store::Reading& tx) { return store::all_stations(tx); });
+  if (!found) return found.error();
+  core::Json list = core::Json::array();
+  for (const auto& entry : *found) list.push_back(station_json(call.backend, entry, call.caller));
+  return json_response({{"stations", list}});
+}
+
+/// The newest reports of a kind, as they came.
+Result<core::Json> notes(store::Reading& tx, const std::string& id, const char* kind) {
+  auto found = store::station_notes(tx, id, kind, kNotesShown);
+  if (!found) return found.error();
+  core::Json out = core::Json::array();
+  for (const store::StationNote& note : *found) {
+    auto json = core::parse_json(note.body, "station_reports");
+    if (!json) return json.error();
+    out.push_back(std::move(*json));
+  }
+  return out;
+}
+
+Result<http::Response> one_station(const Call& call) {
+  const std::string& id = call.text("id");
+  auto entry = station_entry(call.backend, id);
+  if (!entry) return entry.error();
+  core::Json out = station_json(call.backend, *entry, call.caller);
+  for (const auto& [field, kind] :
+       {std::pair("self_tests", kSelfTest), std::pair("calibrations", kCalibration)}) {
+    auto list = call.backend.store.read(
+        [&, kind = kind](store::Reading& tx) { return notes(tx, id, kind); });
+    if (!list) return list.error();
+    out[field] = std::move(*list);
+  }
+  return json_response(out);
+}
+
+/// Repeating a report is harmless: a station that did not hear the answer sends it again.
+Result<http::Response> report(const Call& call) {
+  auto json = core::parse_json(call.request.body, "body");
+  if (!json) return json.error();
+  auto said = wire::StationReport::from_json(*json, "body");
+  if (!said) return said.error();
+  const std::int64_t now = call.backend.now_utc_us();
+  const std::string& id = call.caller.id;
+  auto kept = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
+    if (said->self_test)
+      if (auto done = store::add_station_note(
+              tx, {id, kSelfTest, said->self_test->at_utc_us, said->self_test->to_json().dump()},
+              now);
+          !done)
+        return done;
+    if (!said->calibration) return {};
+    return store::add_station_note(
+        tx, {id, kCalibration, said->calibration->at_utc_us, said->calibration->to_json().dump()},
+        now);
+  });
+  if (!kept) return kept.error();
+  if (call.backend.live) call.backend.live->reported({id, call.caller.name}, *said);
+  return http::Response{.status = 204, .headers = {}, .body = std::string()};
+}
+
+Result<http::Response> make_code(const Call& call) {
+  auto json = core::parse_json(call.request.body, "body");
+  if (!json) return json.error();
+  core::Fields fields(*json, "body");
+  const std::string name = fields.text("name", kMaxName);
+  if (name.find_first_not_of(" \t\r\n") == std::string::npos)
+    fields.wrong("name", "a name is expected");
+  if (auto done = fields.done(); !done) return done.error();
+  const std::string code = made_password();
+  const std::int64_t now = call.backend.now_utc_us();
+  auto added = call.backend.store.write([&](store::Writing& tx) {
+    return store::add_enrolment_code(tx, token_hash(code), name, now, now + kCodeLife_us);
+  });
+  if (!added) return added.error();
+  return json_response({{"name", name}, {"code", code}, {"expires_utc_us", now + kCodeLife_us}},
+                       201);
+}
+
+/// The station has made a key of its own; its SHA-256 comes here, the key itself is first sent with
+/// the station's next request, to a server that knows it.
+Result<http::Response> enrol(const Call& call) {
+  auto json = core::parse_json(call.request.body, "body");
+  if (!json) return json.error();
+  core::Fields fields(*json, "body");
+  const std::string code = fields.text("code", 64), key = fields.text("token_sha256", 64);
+  if (!core::is_sha256(key)) fields.wrong("token_sha256", "64 hexadecimal characters are expected");
+  if (auto done = fields.done(); !done) return done.error();
+  const store::Attempt attempt{store::Secret::enrolment_code, "", network_of(call.request.peer)};
+  auto early = too_early(call.backend, attempt);
+  if (!early) return early.error();
+  if (*early) return std::move(**early);
+  const std::int64_t now = call.backend.now_utc_us();
+  store::Station station{core::new_id(), ""};
+  auto added = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
+    auto name = store::use_enrolment_code(tx, token_hash(code), now);
+    if (!name) return name.error();
+    station.name = *name;
+    store::AuditScope::is_by(*name, std::string(api::name(Role::station)));
+    return store::add_station(tx, station, key, now);
+  });
+  if (!added && added.error().code == Errc::unauthorised)
+    if (auto noted = note_failure(call.backend, attempt); !noted) return noted.error();
+  if (!added) return added.error();
+  return json_response({{"id", station.id},
+                        {"name", station.name},
+                        {"case_signer", call.backend.secrets.case_key().public_hex}},
+                       201);
+}
+
+Result<http::Response> revoke(const Call& call) {
+  auto done = call.backend.store.write([&](store::Writing& tx) {
+    return store::revoke_station(tx, call.text("id"), call.backend.now_utc_us());
+  });
+  if (!done) return done.error();
+  if (call.backend.live) call.backend.live->dismiss(call.text("id"));
+  return http::Response{.status = 204, .headers = {}, .body = std::string()};
+}
+
+/// What a fleet's entry has besides its state.
+std::vector<schema::Field> entry_fields() {
+  using namespace schema;
+  std::vector<Field> out = station_state_fields();
+  out.emplace_back("enrolled_utc_us", integer("us", "since 1970, UTC"));
+  out.emplace_back("revoked_utc_us", nullable(integer("us", "shut out since; null: it is not")));
+  return out;
+}
+
+std::vector<NamedSchema> report_schemas() {
+  using namespace schema;
+  const core::Json check = object({{"name", text("of the check")},
+                                   {"passed", truth("")},
+                                   {"value", nullable(number("as in unit", "measured"))},
+                                   {"unit", text("of value and limit; empty: none")},
+                                   {"limit", nullable(number("as in unit", "of the value"))},
+                                   {"words", text("for a person")}});
+  return {
+      {"SelfTest", object({{"at_utc_us", integer("us", "since 1970, UTC")},
+                           {"passed", truth("every check")},
+                           {"checks", array(check, "in their order")}})},
+      {"Calibration", object({{"at_utc_us", integer("us", "since 1970, UTC")},
+                              {"due_utc_us", nullable(integer("us", "the next one is due, UTC"))},
+                              {"kind", text("what was calibrated")},
+                              {"words", text("for a person")}})}};
+}
+
+RouteInfo route(std::string method, std::string tail, std::string id, std::string summary,
+                std::string answer, Result<http::Response> (*handle)(const Call&)) {
+  return {.method = std::move(method),
+          .path = "/api/v1/stations" + tail,
+          .id = std::move(id),
+          .summary = std::move(summary),
+          .who = {Role::admin, Role::technician},
+          .parameters = {},
+          .body = "",
+          .body_limit_bytes = kMaxBody_bytes,
+          .answer = std::move(answer),
+          .schemas = {},
+          .handle = handle};
+}
+
+}  // namespace
+
+std::vector<RouteInfo> stations_routes() {
+  using namespace schema;
+  RouteInfo list = route("GET", "", "stations", "Stations by name, and how they are just now",
+                         "Stations", list_stations);
+  list.who.push_back(Role::faculty);
+  list.who.push_back(Role::director);
+  list.schemas = {{"StationEntry", object(entry_fields())},
+                  {"Stations", object({{"stations", array(ref("StationEntry"), "by name")}})}};
+  RouteInfo one =
+      route("GET", "/{id}", "station", "A station, its newest self-tests and calibrations",
+            "Station", one_station);
+  one.who = list.who;
+  one.parameters = {path_text("id", "the station's")};
+  one.schemas = report_schemas();
+  std::vector<Field> whole = entry_fields();
+  whole.emplace_back("self_tests", array(ref("SelfTest"), "newest first, at most 20"));
+  whole.emplace_back("calibrations", array(ref("Calibration"), "newest first, at most 20"));
+  one.schemas.push_back({"Station", object(whole)});
+  RouteInfo said{
+      .method = "POST",
+      .path = "/api/v1/station/report",
+      .id = "reportStation",
+      .summary = "A station's self-test or calibration; repeating it is harmless",
+      .who = {Role::station},
+      .parameters = {},
+      .body = "StationReport",
+      .body_limit_bytes = kMaxReport_bytes,
+      .answer = "",
+      .schemas = {{"StationReport",
+                   object({{"self_test", optional(nullable(ref("SelfTest")))},
+                           {"calibration", optional(nullable(ref("Calibration")))},
+                           {"refused",
+                            optional(array(text("one line of a case"), "cases it would not take"))},
+                           {"version", optional(nullable(text("of its program")))},
+                           {"free_disk_bytes", optional(nullable(integer("B", "on its disk")))}})}},
+      .handle = report};
+  RouteInfo code =
+      route("POST", "/codes", "makeEnrolmentCode",
+            "A code that lets one station in, once, within an hour", "EnrolmentCode", make_code);
+  code.body = "NewStation";
+  code.schemas = {
+      {"NewStation", object({{"name", text("of the station to come")}})},
+      {"EnrolmentCode", object({{"name", text("of the station")},
+                                {"code", text("shown only now")},
+                                {"expires_utc_us", integer("us", "since 1970, UTC")}})}};
+  RouteInfo in = route("POST", "/enrol", "enrolStation",
+                       "A station with a code says what its key hashes to; the key stays there",
+                       "Enrolled", enrol);
+  in.who = {};
+  in.open = true;
+  in.body = "Enrolment";
+  in.schemas = {
+      {"Enrolment", object({{"code", text("from makeEnrolmentCode")},
+                            {"token_sha256", text("of the station's own key, 64 hexadecimal")}})},
+      {"Enrolled",
+       object({{"id", text("never changes")},
+               {"name", text("as in the code")},
+               {"case_signer", text("public key that this server signs cases with")}})}};
+  RouteInfo out = route("POST", "/{id}/revoke", "revokeStation",
+                        "Shut a station out for good; its trials stay", "", revoke);
+  out.parameters = {path_text("id", "the station's")};
+  return {list, one, code, in, out, said};
+}
+
+}  // namespace api
+}  // namespace tractus

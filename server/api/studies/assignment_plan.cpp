@@ -1,0 +1,281 @@
+#include "server/api/studies/assignment_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "core/bytes.hpp"
+#include "db/store/cases/cases.hpp"
+#include "db/store/people/invitations.hpp"
+#include "server/api/backend.hpp"
+#include "server/api/studies/study_plan.hpp"
+#include "study/order.hpp"
+
+namespace tractus {
+namespace api {
+namespace {
+
+using core::Errc;
+using core::Error;
+using core::Json;
+using core::Result;
+
+constexpr std::size_t kMaxCases = 64, kMaxPeople = 500, kMaxTitle = 200, kMaxText = 128;
+constexpr long kMaxRepeats = 20, kMaxTime_us = 9'000'000'000'000'000, kMaxSeed = 1L << 53;
+
+bool is_one_of(const std::string& text, std::initializer_list<const char*> words) {
+  return std::ranges::any_of(words, [&](const char* word) { return text == word; });
+}
+
+Result<AssignedCase> case_from(const Json& json, const std::string& where) {
+  core::Fields fields(json, where);
+  AssignedCase out;
+  out.name = fields.text_or("name", "", kMaxText);
+  out.case_id = fields.text_or("case", "", 64);
+  const Json* scenario = fields.member("scenario", false);
+  if (out.case_id.empty() == (scenario == nullptr))
+    fields.wrong("case", "a case's id, or /scenario, is expected");
+  if (auto done = fields.done(); !done) return done.error();
+  if (!scenario) return out;
+  auto read = scenario_from(*scenario, where + "/scenario");
+  if (!read) return read.error();
+  out.case_id = read->id();
+  out.scenario = std::move(*read);
+  return out;
+}
+
+Result<std::vector<AssignedCase>> cases_from(const Json* json) {
+  std::vector<AssignedCase> out;
+  if (!json) return out;
+  if (!json->is_array() || json->empty() || json->size() > kMaxCases)
+    return Error{Errc::bad_input,
+                 fmt::format("/cases: an array of 1 to {} is expected", kMaxCases)};
+  std::set<std::string> ids;
+  for (const Json& one : *json) {
+    const std::string where = fmt::format("/cases/{}", out.size());
+    auto read = case_from(one, where);
+    if (!read) return read.error();
+    if (!ids.insert(read->case_id).second)
+      return Error{Errc::bad_input, where + ": is there twice; repeats are for that"};
+    out.push_back(std::move(*read));
+  }
+  return out;
+}
+
+Result<std::vector<std::string>> names_from(const Json* json) {
+  std::vector<std::string> out;
+  if (!json) return out;
+  const bool fits = json->is_array() && json->size() <= kMaxPeople &&
+                    std::ranges::all_of(*json, [](const Json& one) { return one.is_string(); });
+  if (!fits) return Error{Errc::bad_input, "/people: an array of names is expected"};
+  for (const Json& one : *json) out.push_back(one.get<std::string>().substr(0, kMaxText));
+  return out;
+}
+
+store::Assignment assignment_from(core::Fields& fields) {
+  store::Assignment out;
+  out.study.id = "a-" + core::new_id().substr(0, 24);
+  out.study.title = fields.text("title", kMaxTitle);
+  out.study.ordering = fields.text_or("ordering", "random", 16);
+  if (!is_one_of(out.study.ordering, {"fixed", "random", "balanced"}))
+    fields.wrong("ordering", "fixed, random or balanced is expected");
+  out.study.repeats = fields.integer_or("repeats", 1, 1, kMaxRepeats);
+  out.study.on_invalid = fields.text_or("on_invalid", "at_end", 16);
+  if (!is_one_of(out.study.on_invalid, {"at_end", "at_once", "never"}))
+    fields.wrong("on_invalid", "at_end, at_once or never is expected");
+  long drawn = 0;
+  for (const std::byte b : core::random_bytes(4)) drawn = drawn * 256 + std::to_integer<long>(b);
+  out.study.seed = fields.integer_or("seed", drawn, 0, kMaxSeed);
+  if (fields.has("due_utc_us")) out.due_utc_us = fields.integer("due_utc_us", 0, kMaxTime_us);
+  out.release = fields.text_or("release", "held", 16);
+  if (!is_one_of(out.release, {"held", "released", "at_once"}))
+    fields.wrong("release", "held, released or at_once is expected");
+  if (fields.has("cohort")) out.cohort_id = fields.text("cohort", 64);
+  return out;
+}
+
+Error absent(const char* what, const std::string& name) {
+  return {Errc::not_found, fmt::format("{}: there is none named {}", what, name.substr(0, 64))};
+}
+
+/// The cohort's trainees and the people named.
+Result<std::vector<store::Account>> people_meant(store::Reading& tx, const AssignmentPlan& plan) {
+  std::vector<store::Account> out;
+  if (plan.assignment.cohort_id) {
+    const std::string& cohort = *plan.assignment.cohort_id;
+    auto there = store::cohort_of(tx, cohort);
+    if (!there) return there.error();
+    if (!*there) return absent("/cohort", cohort);
+    auto people = store::people_of(tx, cohort);
+    if (!people) return people.error();
+    for (const auto& person : *people) {
+      if (person.part != "trainee") continue;
+      auto account = store::account_of(tx, person.account_id);
+      if (!account) return account.error();
+      out.push_back(std::move(**account));
+    }
+  }
+  for (const std::string& name : plan.people) {
+    auto account = store::account_named(tx, name);
+    if (!account) return account.error();
+    if (!*account) return absent("/people", name);
+    if (std::ranges::find(out, (*account)->id, &store::Account::id) == out.end())
+      out.push_back(std::move(**account));
+  }
+  return out;
+}
+
+/// The cases' ids; scenarios that come with the plan are noted as cases.
+Result<std::vector<std::string>> note_cases(store::Writing& tx, const AssignmentPlan& plan,
+                                            const std::vector<store::CasePart>& parts,
+                                            const store::AuditStamp& stamp) {
+  std::vector<std::string> out;
+  std::size_t part = 0;
+  for (const AssignedCase& one : plan.cases) {
+    if (one.scenario) {
+      const store::CaseSummary summary{
+          one.case_id, one.scenario->name, one.scenario->origin.who, stamp.at_utc_us,
+          0,           store::kProbing};
+      if (auto done = store::add_case(tx, summary, {parts[part++]}, stamp.at_utc_us); !done)
+        return done.error();
+    } else {
+      auto known = store::case_of(tx, one.case_id);
+      if (!known) return known.error();
+      if (!*known) return absent("/cases", one.case_id);
+      if ((*known)->retired)
+        return Error{Errc::conflict, "/cases: " + (*known)->title + " is retired"};
+    }
+    out.push_back(one.case_id);
+  }
+  return out;
+}
+
+/// Scenarios, order and repeats of the study that is the protocol.
+Result<std::vector<std::string>> protocol_cases(store::Reading& tx, const std::string& protocol,
+                                                store::Assignment& into) {
+  auto id = store::find_study(tx, protocol);
+  if (!id) return id.error();
+  auto study = store::study_of(tx, *id);
+  if (!study) return study.error();
+  auto scenarios = store::study_scenarios(tx, *id);
+  if (!scenarios) return scenarios.error();
+  into.study.ordering = study->ordering;
+  into.study.repeats = study->repeats;
+  into.study.on_invalid = study->on_invalid;
+  std::vector<std::string> out;
+  for (const auto& scenario : *scenarios) out.push_back(scenario.case_id);
+  return out;
+}
+
+Result<void> make(store::Writing& tx, const Call& call, const AssignmentPlan& plan,
+                  const std::vector<store::CasePart>& parts) {
+  const store::AuditStamp stamp{call.caller.name, call.backend.now_utc_us()};
+  store::Assignment assignment = plan.assignment;
+  assignment.made_by_id = call.caller.id;
+  auto cases = plan.protocol.empty() ? note_cases(tx, plan, parts, stamp)
+                                     : protocol_cases(tx, plan.protocol, assignment);
+  if (!cases) return cases.error();
+  auto people = people_meant(tx, plan);
+  if (!people) return people.error();
+  auto id = store::add_assignment(tx, assignment, *cases, stamp);
+  if (!id) return id.error();
+  for (const AssignedCase& one : plan.cases)
+    if (!one.name.empty())
+      if (auto done = store::set_assigned_name(tx, *id, one.case_id, one.name); !done) return done;
+  for (const store::Account& person : *people)
+    if (auto done = assign_to(tx, *id, person, stamp); !done) return done;
+  return {};
+}
+
+}  // namespace
+
+Result<AssignmentPlan> AssignmentPlan::from_json(const Json& json) {
+  core::Fields fields(json, "");
+  AssignmentPlan out;
+  out.assignment = assignment_from(fields);
+  out.protocol = fields.text_or("protocol", "", 32);
+  const Json* cases = fields.member("cases", false);
+  const Json* people = fields.member("people", false);
+  if (out.protocol.empty() == (cases == nullptr))
+    fields.wrong("cases", "cases, or a protocol, are expected");
+  if (auto done = fields.done(); !done) return done.error();
+  auto read = cases_from(cases);
+  if (!read) return read.error();
+  out.cases = std::move(*read);
+  auto names = names_from(people);
+  if (!names) return names.error();
+  out.people = std::move(*names);
+  return out;
+}
+
+Result<std::string> make_assignment(const Call& call, const AssignmentPlan& plan) {
+  std::vector<store::CasePart> parts;
+  for (const AssignedCase& one : plan.cases) {
+    if (!one.scenario) continue;
+    auto part = put_scenario(call.backend, *one.scenario);
+    if (!part) return part.error();
+    parts.push_back(std::move(*part));
+  }
+  auto made =
+      call.backend.store.write([&](store::Writing& tx) { return make(tx, call, plan, parts); });
+  if (!made) return made.error();
+  return plan.assignment.study.id;
+}
+
+Result<void> assign_to(store::Writing& tx, const store::AssignmentId& id,
+                       const store::Account& account, const store::AuditStamp& stamp) {
+  if (account.role != name(Role::trainee))
+    return Error{Errc::bad_input, account.name + ": is no trainee"};
+  auto study = store::study_of(tx, id);
+  if (!study) return study.error();
+  auto scenarios = store::study_scenarios(tx, id);
+  if (!scenarios) return scenarios.error();
+  auto there = store::study_participants(tx, id);
+  if (!there) return there.error();
+  const std::string participant =
+      account.pseudonym.empty() ? "P" + account.id.substr(0, 24) : account.pseudonym;
+  if (std::ranges::find(*there, participant, &store::Participant::name) != there->end())
+    return Error{Errc::conflict, account.name + ": it is assigned to this person already"};
+  if (auto done = store::add_participant(tx, id, {.name = participant},
+                                         order_for(*study, *scenarios, int(there->size())), stamp);
+      !done)
+    return done;
+  return store::add_assigned_person(tx, id, account.id, participant);
+}
+
+namespace {
+
+Result<void> assign_what_the_cohort_has(store::Writing& tx, const std::string& cohort_id,
+                                        const store::Account& account,
+                                        const store::AuditStamp& stamp) {
+  auto ids = store::assignments_of_cohort(tx, cohort_id);
+  if (!ids) return ids.error();
+  for (const store::AssignmentId& id : *ids) {
+    auto there = store::has_assignment(tx, account.id, id.text());
+    if (!there) return there.error();
+    if (*there) continue;
+    if (auto done = assign_to(tx, id, account, stamp); !done) return done;
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<void> join_cohort(store::Writing& tx, const std::string& cohort_id,
+                         const store::Account& account, const store::AuditStamp& stamp) {
+  auto cohort = store::cohort_of(tx, cohort_id);
+  if (!cohort) return cohort.error();
+  if (!*cohort) return Error{Errc::not_found, "no cohort " + cohort_id.substr(0, 32)};
+  const bool learns = account.role == name(Role::trainee);
+  if (!learns && account.role != name(Role::faculty))
+    return Error{Errc::bad_input, account.name + ": is neither a trainee nor of the faculty"};
+  if (auto done = store::put_into_cohort(tx, cohort_id, account.id, account.role, stamp.at_utc_us);
+      !done)
+    return done;
+  if (auto done = store::remove_invitation(tx, cohort_id, account.name); !done) return done;
+  return learns ? assign_what_the_cohort_has(tx, cohort_id, account, stamp) : Result<void>();
+}
+
+}  // namespace api
+}  // namespace tractus

@@ -1,0 +1,98 @@
+/// Studies: their list, one whole, what happened; making one and enrolling participants.
+#include "server/api/backend.hpp"
+#include "server/api/studies/study_json.hpp"
+#include "server/api/studies/study_plan.hpp"
+
+namespace tractus {
+namespace api {
+namespace {
+
+constexpr std::uint64_t kMaxPlan_bytes = 4u << 20, kMaxParticipant_bytes = 4096;
+
+core::Result<http::Response> list_studies(const Call& call) {
+  auto found = call.backend.store.read([](store::Reading& tx) { return store::all_studies(tx); });
+  if (!found) return found.error();
+  core::Json list = core::Json::array();
+  for (const auto& study : *found) list.push_back(summary_json(study));
+  return json_response({{"studies", list}});
+}
+
+core::Result<http::Response> study_response(Backend& backend, const std::string& id) {
+  auto facts = backend.store.read([&](store::Reading& tx) -> core::Result<StudyFacts> {
+    auto study = store::find_study(tx, id);
+    if (!study) return study.error();
+    return study_facts(tx, *study);
+  });
+  if (!facts) return facts.error();
+  return json_response(study_json(*facts));
+}
+
+core::Result<http::Response> one_study(const Call& call) {
+  return study_response(call.backend, call.text("id"));
+}
+
+core::Result<http::Response> new_study(const Call& call) {
+  auto json = core::parse_json(call.request.body, "body");
+  if (!json) return json.error();
+  auto plan = StudyPlan::from_json(*json);
+  if (!plan) return plan.error();
+  if (auto made = make_study(call.backend, *plan, call.caller.name); !made) return made.error();
+  return study_response(call.backend, plan->study.id);
+}
+
+core::Result<http::Response> new_participant(const Call& call) {
+  auto json = core::parse_json(call.request.body, "body");
+  if (!json) return json.error();
+  auto participant = participant_from(*json, "");
+  if (!participant) return participant.error();
+  const std::string& id = call.text("id");
+  if (auto done = enrol(call.backend, id, *participant, call.caller.name); !done)
+    return done.error();
+  return study_response(call.backend, id);
+}
+
+core::Result<http::Response> events_of(const Call& call) {
+  const std::string& id = call.text("id");
+  auto found = call.backend.store.read(
+      [&](store::Reading& tx) -> core::Result<std::vector<store::StudyEvent>> {
+        auto study = store::find_study(tx, id);
+        if (!study) return study.error();
+        return store::study_events(tx, *study, call.integer("limit"));
+      });
+  if (!found) return found.error();
+  core::Json list = core::Json::array();
+  for (const auto& event : *found) list.push_back(event_json(event));
+  return json_response({{"events", list}});
+}
+
+}  // namespace
+
+std::vector<RouteInfo> studies_routes() {
+  RouteInfo list = research_route("GET", "studies", "studies", "Studies, newest first", "StudyList",
+                                  list_studies);
+  list.schemas = study_schemas();
+  const RouteInfo make = taking(
+      research_route("POST", "studies", "makeStudy",
+                     "Make a study: scenarios, repeats, order, participants", "Study", new_study),
+      "NewStudy", kMaxPlan_bytes, study_deed_schemas());
+  const RouteInfo one =
+      research_route("GET", "studies/{id}", "study", "Who has done what", "Study", one_study);
+  RouteInfo events = research_route("GET", "studies/{id}/events", "studyEvents",
+                                    "Every change, who and when", "StudyEvents", events_of);
+  events.parameters.push_back({.in = Parameter::In::query,
+                               .name = "limit",
+                               .kind = Parameter::Kind::integer,
+                               .unit = "1",
+                               .meaning = "at most so many",
+                               .low = 1,
+                               .high = 10000,
+                               .fallback = "200"});
+  const RouteInfo add =
+      taking(research_route("POST", "studies/{id}/participants", "enrolParticipant",
+                            "Enrol one more participant", "Study", new_participant),
+             "NewParticipant", kMaxParticipant_bytes, {});
+  return {list, make, one, events, add};
+}
+
+}  // namespace api
+}  // namespace tractus

@@ -1,0 +1,149 @@
+/// What a person decides in a running study: pause and go on, give back what a station holds, say
+/// that a trial does not count. Each is kept with who, when and why.
+#include "server/api/backend.hpp"
+#include "server/api/schema.hpp"
+#include "server/api/studies/study_json.hpp"
+
+namespace tractus {
+namespace api {
+namespace {
+
+constexpr std::uint64_t kMaxDeed_bytes = 4096;
+constexpr std::size_t kMaxReason = 500;
+
+core::Error no_participant(const std::string& name) {
+  return {core::Errc::not_found, "no participant " + name.substr(0, 32) + " in this study"};
+}
+
+/// Reads the body's "reason" (and "state", where there is one).
+struct Said {
+  std::string reason, state;
+};
+core::Result<Said> said(const Call& call, bool with_state, bool needs_reason) {
+  auto json = core::parse_json(call.request.body, "body");
+  if (!json) return json.error();
+  core::Fields fields(*json, "");
+  Said out;
+  out.reason = fields.text_or("reason", "", kMaxReason);
+  if (needs_reason && out.reason.find_first_not_of(" \t\n") == std::string::npos)
+    fields.wrong("reason", "a reason is expected");
+  if (with_state) out.state = fields.text("state", 32);
+  if (with_state && out.state != "running" && out.state != "paused")
+    fields.wrong("state", "running or paused is expected");
+  if (auto done = fields.done(); !done) return done.error();
+  return out;
+}
+
+/// Runs `work(tx, study, stamp)` in one transaction and answers with the study as it then is.
+template <class Work>
+core::Result<http::Response> act_on_study(const Call& call, const std::string& reason, Work work) {
+  const std::string& id = call.text("id");
+  auto facts = call.backend.store.write([&](store::Writing& tx) -> core::Result<StudyFacts> {
+    auto study = store::find_study(tx, id);
+    if (!study) return study.error();
+    const store::AuditStamp done_by{call.caller.name, call.backend.now_utc_us(), reason};
+    if (auto done = work(tx, *study, done_by); !done) return done.error();
+    return study_facts(tx, *study);
+  });
+  if (!facts) return facts.error();
+  return json_response(study_json(*facts));
+}
+
+core::Result<http::Response> set_state(const Call& call) {
+  auto asked = said(call, true, false);
+  if (!asked) return asked.error();
+  return act_on_study(call, asked->reason,
+                      [&](store::Writing& tx, const store::StudyId& study,
+                          const store::AuditStamp& by) -> core::Result<void> {
+                        auto now = store::study_of(tx, study);
+                        if (!now) return now.error();
+                        if (now->state == asked->state) return {};
+                        return store::set_study_state(tx, study, asked->state, by);
+                      });
+}
+
+core::Result<http::Response> set_participant(const Call& call) {
+  auto asked = said(call, true, false);
+  if (!asked) return asked.error();
+  const std::string& name = call.text("name");
+  return act_on_study(call, asked->reason,
+                      [&](store::Writing& tx, const store::StudyId& study,
+                          const store::AuditStamp& by) -> core::Result<void> {
+                        auto who = store::participant_of(tx, study, name);
+                        if (!who) return who.error();
+                        if (!*who) return no_participant(name);
+                        if ((*who)->state == asked->state) return {};
+                        return store::set_participant_state(tx, study, name, asked->state, by);
+                      });
+}
+
+core::Result<http::Response> release(const Call& call) {
+  auto asked = said(call, false, true);
+  if (!asked) return asked.error();
+  const std::string& name = call.text("name");
+  return act_on_study(call, asked->reason,
+                      [&](store::Writing& tx, const store::StudyId& study,
+                          const store::AuditStamp& by) -> core::Result<void> {
+                        auto who = store::participant_of(tx, study, name);
+                        if (!who) return who.error();
+                        if (!*who) return no_participant(name);
+                        auto released = store::release_slots(tx, study, name, by);
+                        if (!released) return released.error();
+                        return {};
+                      });
+}
+
+core::Result<http::Response> invalidate(const Call& call) {
+  auto asked = said(call, false, true);
+  if (!asked) return asked.error();
+  return act_on_study(
+      call, asked->reason,
+      [&](store::Writing& tx, const store::StudyId& study, const store::AuditStamp& by) {
+        return store::set_trial_invalid(tx, study, call.text("trial_id"), by);
+      });
+}
+
+RouteInfo route(std::string tail, std::string id, std::string summary, std::string body) {
+  return {.method = "POST",
+          .path = "/api/v1/studies/{id}" + tail,
+          .id = std::move(id),
+          .summary = std::move(summary),
+          .who = {Role::admin, Role::researcher},
+          .parameters = {path_text("id", "the study's")},
+          .body = std::move(body),
+          .body_limit_bytes = kMaxDeed_bytes,
+          .answer = "Study",
+          .schemas = {},
+          .handle = nullptr};
+}
+
+}  // namespace
+
+std::vector<RouteInfo> study_actions_routes() {
+  using namespace schema;
+  const core::Json reason = text("for those who read it later; at most 500 characters");
+  const Parameter name = path_text("name", "the participant's pseudonym");
+  RouteInfo whole = route("/state", "setStudyState", "Pause the study, or go on", "StateChange");
+  whole.schemas = {{"StateChange", object({{"state", one_of({"running", "paused"}, "from now on")},
+                                           {"reason", optional(reason)}})},
+                   {"Reason", object({{"reason", reason}})}};
+  whole.handle = set_state;
+  RouteInfo one = route("/participants/{name}/state", "setParticipantState",
+                        "Pause a participant, or go on", "StateChange");
+  one.parameters.push_back(name);
+  one.handle = set_participant;
+  RouteInfo free = route("/participants/{name}/release", "releaseParticipant",
+                         "What a station holds of a participant's trials waits again", "Reason");
+  free.parameters.push_back(name);
+  free.handle = release;
+  RouteInfo invalid = route("/trials/{trial_id}/invalid", "markTrialInvalid",
+                            "A trial does not count: it stays, and its place is repeated as the "
+                            "study says",
+                            "Reason");
+  invalid.parameters.push_back(path_text("trial_id", "32 hexadecimal characters"));
+  invalid.handle = invalidate;
+  return {whole, one, free, invalid};
+}
+
+}  // namespace api
+}  // namespace tractus

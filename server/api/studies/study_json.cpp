@@ -1,0 +1,184 @@
+#include "server/api/studies/study_json.hpp"
+
+#include <algorithm>
+#include <map>
+
+namespace tractus {
+namespace api {
+namespace {
+
+using core::Json;
+
+template <class T>
+Json or_null(const std::optional<T>& value) {
+  return value ? Json(*value) : Json();
+}
+
+Json study_fields(const store::Study& study) {
+  return {{"id", study.id},
+          {"title", study.title},
+          {"state", study.state},
+          {"ordering", study.ordering},
+          {"repeats", study.repeats},
+          {"on_invalid", study.on_invalid},
+          {"made_utc_us", study.made_utc_us},
+          {"made_by", study.made_by}};
+}
+
+/// @param told  may it be said whether the answer was right?
+Json trial_json(const store::StudyTrial& trial, bool told) {
+  return {{"id", trial.trial_id},
+          {"state", trial.state},
+          {"reason", trial.reason},
+          {"station", trial.station},
+          {"changed_utc_us", trial.changed_utc_us},
+          {"started_utc_us", or_null(trial.started_utc_us)},
+          {"duration_s", or_null(trial.duration_s)},
+          {"samples", or_null(trial.samples)},
+          {"sha256", or_null(trial.sha256)},
+          {"assessment", or_null(trial.assessment)},
+          {"correct", told ? or_null(trial.correct) : Json()}};
+}
+
+bool unfinished(const store::Slot& slot) {
+  return slot.state == "waiting" || slot.state == "taken";
+}
+
+/// What the participants' rows are made from.
+struct Index {
+  std::map<std::string, std::vector<const store::StudyTrial*>> trials;  // by slot
+  std::map<std::string, std::string> titles;                            // by case
+  std::map<std::string, int> numbers;                                   // of slots, from 1
+
+  explicit Index(const StudyFacts& facts) {
+    for (const auto& trial : facts.trials) trials[trial.slot_id].push_back(&trial);
+    for (const auto& scenario : facts.scenarios) titles[scenario.case_id] = scenario.title;
+    std::map<std::string, int> seen;
+    for (const auto& slot : facts.slots) numbers[slot.id] = ++seen[slot.participant];
+  }
+};
+
+Json slot_json(const store::Slot& slot, const Index& index, bool told) {
+  Json trials = Json::array();
+  if (const auto found = index.trials.find(slot.id); found != index.trials.end())
+    for (const auto* trial : found->second) trials.push_back(trial_json(*trial, told));
+  Json repeats;
+  if (slot.repeat_of) repeats = index.numbers.at(*slot.repeat_of);
+  return {{"number", index.numbers.at(slot.id)},
+          {"state", slot.state},
+          {"repeat_of", repeats},
+          {"scenario", told ? Json(index.titles.at(slot.case_id)) : Json()},
+          {"trials", trials}};
+}
+
+struct Tally {
+  int done = 0, planned = 0, judged = 0, recognised = 0;
+
+  void add(const store::Slot& slot, const Index& index) {
+    planned += slot.state != "invalid";
+    done += slot.state == "recorded";
+    const auto found = index.trials.find(slot.id);
+    if (found == index.trials.end()) return;
+    for (const auto* trial : found->second) {
+      if (trial->state != "counts" || !trial->correct) continue;
+      ++judged;
+      recognised += *trial->correct;
+    }
+  }
+};
+
+/// The station that has the participant's next trials, or brought the last one.
+Json station_of(const StudyFacts& facts, const store::Participant& who, const Index& index) {
+  const store::StudyTrial* last = nullptr;
+  for (const auto& slot : facts.slots) {
+    if (slot.participant != who.name) continue;
+    const auto found = index.trials.find(slot.id);
+    if (found == index.trials.end()) continue;
+    for (const auto* trial : found->second)
+      if (!last || trial->changed_utc_us > last->changed_utc_us) last = trial;
+  }
+  return last ? Json(last->station) : Json();
+}
+
+Json participant_json(const StudyFacts& facts, const store::Participant& who, const Index& index) {
+  bool left = false, at_station = false;
+  for (const auto& slot : facts.slots) {
+    left = left || (slot.participant == who.name && unfinished(slot));
+    at_station = at_station || (slot.participant == who.name && slot.state == "taken");
+  }
+  Tally tally;
+  Json slots = Json::array();
+  for (const auto& slot : facts.slots) {
+    if (slot.participant != who.name) continue;
+    tally.add(slot, index);
+    slots.push_back(slot_json(slot, index, !left));
+  }
+  return {{"name", who.name},
+          {"state", who.state},
+          {"level", who.level},
+          {"experience_years", or_null(who.experience_years)},
+          {"simulated", who.simulated},
+          {"at_station", at_station},
+          {"last_station", station_of(facts, who, index)},
+          {"done", tally.done},
+          {"planned", tally.planned},
+          {"judged", left ? 0 : tally.judged},
+          {"recognised", left ? 0 : tally.recognised},
+          {"slots", slots}};
+}
+
+}  // namespace
+
+core::Result<StudyFacts> study_facts(store::Reading& tx, const store::StudyId& id) {
+  auto study = store::study_of(tx, id);
+  if (!study) return study.error();
+  StudyFacts out;
+  out.study = std::move(*study);
+  auto scenarios = store::study_scenarios(tx, id);
+  if (!scenarios) return scenarios.error();
+  out.scenarios = std::move(*scenarios);
+  auto participants = store::study_participants(tx, id);
+  if (!participants) return participants.error();
+  out.participants = std::move(*participants);
+  auto slots = store::study_slots(tx, id);
+  if (!slots) return slots.error();
+  out.slots = std::move(*slots);
+  auto trials = store::study_trials(tx, id);
+  if (!trials) return trials.error();
+  out.trials = std::move(*trials);
+  return out;
+}
+
+Json summary_json(const store::StudySummary& summary) {
+  Json out = study_fields(summary.study);
+  out["participants"] = summary.participants;
+  out["done"] = summary.done;
+  out["planned"] = summary.planned;
+  return out;
+}
+
+Json study_json(const StudyFacts& facts) {
+  const Index index(facts);
+  Json out = study_fields(facts.study);
+  const bool left = std::ranges::any_of(facts.slots, unfinished);
+  out["seed"] = left || facts.slots.empty() ? Json() : Json(facts.study.seed);
+  out["scenarios"] = Json::array();
+  for (const auto& scenario : facts.scenarios)
+    out["scenarios"].push_back({{"case_id", scenario.case_id}, {"title", scenario.title}});
+  out["participants"] = Json::array();
+  for (const auto& who : facts.participants)
+    out["participants"].push_back(participant_json(facts, who, index));
+  return out;
+}
+
+Json event_json(const store::StudyEvent& event) {
+  return {{"at_utc_us", event.at_utc_us},
+          {"who", event.who},
+          {"what", event.what},
+          {"participant", or_null(event.participant)},
+          {"trial_id", or_null(event.trial_id)},
+          {"reason", event.reason}};
+}
+
+}  // namespace api
+}  // namespace tractus

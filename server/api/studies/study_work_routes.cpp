@@ -1,0 +1,114 @@
+/// A station's part of a study: the next trials of a participant, sealed.
+#include <fmt/format.h>
+
+#include "db/store/people/accounts.hpp"
+#include "db/store/studies/study_slots.hpp"
+#include "server/api/backend.hpp"
+#include "server/api/route.hpp"
+#include "server/api/schema.hpp"
+#include "server/api/trials/uploads.hpp"
+#include "server/jobs/scenario_facts.hpp"
+#include "study/sealed_law.hpp"
+#include "wire/study_work.hpp"
+
+namespace tractus {
+namespace api {
+namespace {
+
+constexpr int kMaxAhead = 400;
+
+/// What one transaction of a station's question yields.
+struct Given {
+  store::Participant participant;
+  store::Taken taken;
+  std::string token_hash;
+};
+
+core::Result<Given> take(store::Writing& tx, const Call& call) {
+  const std::string &id = call.text("id"), &name = call.text("name");
+  auto study = store::find_study(tx, id);
+  if (!study) return study.error();
+  auto participant = store::participant_of(tx, *study, name);
+  if (!participant) return participant.error();
+  if (!*participant)
+    return core::Error{core::Errc::not_found,
+                       "no participant " + name.substr(0, 32) + " in this study"};
+  auto token = store::station_token_hash(tx, call.caller.id);
+  if (!token) return token.error();
+  auto taken = store::take_slots(tx, *study, **participant, call.caller.id, call.integer("ahead"),
+                                 {call.caller.name, call.backend.now_utc_us()});
+  if (!taken) return taken.error();
+  return Given{std::move(**participant), std::move(*taken), std::move(*token)};
+}
+
+core::Result<std::vector<wire::SealedTrial>> sealed_trials(Backend& backend, const Given& given) {
+  const study::StationKey key(given.token_hash);
+  std::vector<wire::SealedTrial> out;
+  std::uint64_t number = given.taken.planned - given.taken.unfinished;
+  for (const store::Slot& slot : given.taken.slots) {
+    auto scenario = jobs::scenario_of(backend.store, backend.objects, slot.case_id);
+    if (!scenario) return scenario.error();
+    auto law = scenario->expanded();
+    if (!law) return law.error();
+    auto sealed = study::sealed_law(*law, slot.id, key);
+    if (!sealed) return sealed.error();
+    out.push_back({slot.id, ++number, std::move(*sealed)});
+  }
+  return out;
+}
+
+core::Result<http::Response> take_trials(const Call& call) {
+  if (auto room = check_room(call.backend, kTrialToCome_bytes); !room) return room.error();
+  auto given = call.backend.store.write(
+      [&](store::Writing& tx) -> core::Result<Given> { return take(tx, call); });
+  if (!given) return given.error();
+  auto trials = sealed_trials(call.backend, *given);
+  if (!trials) return trials.error();
+  const auto& who = given->participant;
+  const wire::StudyWork work{call.text("id"),         who.name,
+                             who.simulated,           who.experience_years,
+                             given->taken.unfinished, given->taken.planned,
+                             std::move(*trials)};
+  return json_response(work.to_json());
+}
+
+}  // namespace
+
+std::vector<RouteInfo> study_work_routes() {
+  using namespace schema;
+  const core::Json trial = object(
+      {{"slot", text("64 hexadecimal characters: the trial's case_id in its file and upload")},
+       {"number", integer("1", "of the participant's trials, from 1")},
+       {"sealed", text("the law's numbers, for this station alone")}});
+  const core::Json answer =
+      object({{"study", text("its id")},
+              {"participant", text("a pseudonym")},
+              {"simulated", truth("a simulated surgeon")},
+              {"experience_years", nullable(number("a", "in years"))},
+              {"unfinished", integer("1", "still to be done; 0: the participant is through")},
+              {"planned", integer("1", "in all")},
+              {"trials", array(ref("SealedTrial"), "in the order to be done")}});
+  RouteInfo take{.method = "POST",
+                 .path = "/api/v1/studies/{id}/participants/{name}/take",
+                 .id = "takeTrials",
+                 .summary = "The next trials of a participant; the same when asked again",
+                 .who = {Role::station},
+                 .parameters = {path_text("id", "the study's"),
+                                path_text("name", "the participant's pseudonym"),
+                                {.in = Parameter::In::query,
+                                 .name = "ahead",
+                                 .kind = Parameter::Kind::integer,
+                                 .unit = "1",
+                                 .meaning = "at most so many; more than 1 to work without a server",
+                                 .low = 1,
+                                 .high = kMaxAhead,
+                                 .fallback = "1"}},
+                 .body = "",
+                 .answer = "TakenTrials",
+                 .schemas = {{"SealedTrial", trial}, {"TakenTrials", answer}},
+                 .handle = take_trials};
+  return {take};
+}
+
+}  // namespace api
+}  // namespace tractus

@@ -1,0 +1,256 @@
+/// Talking about a trial: comments on its moments, and experts' trials on the same case beside it.
+#include <set>
+
+#include "core/bytes.hpp"
+#include "db/store/trials/debriefs.hpp"
+#include "server/api/access.hpp"
+#include "server/api/route.hpp"
+#include "server/api/schema.hpp"
+#include "server/api/trials/trial_signals.hpp"
+#include "server/jobs/case_facts.hpp"
+
+namespace tractus {
+namespace api {
+namespace {
+
+using core::Errc;
+using core::Error;
+using core::Json;
+using core::Result;
+
+constexpr std::uint64_t kMaxBody_bytes = 16384;
+constexpr std::size_t kMaxComment = 4000;
+constexpr double kLongest_s = 1e6;
+constexpr std::size_t kPoints = 2000;
+
+Json comment_json(const store::Comment& comment, const std::string& me) {
+  return {{"id", comment.id},           {"at_s", comment.at_s ? Json(*comment.at_s) : Json()},
+          {"text", comment.text},       {"by", comment.by_name},
+          {"own", comment.by_id == me}, {"made_utc_us", comment.made_utc_us}};
+}
+
+Result<http::Response> comments_response(const Call& call, int status) {
+  const auto found = call.backend.store.read(
+      [&](store::Reading& tx) { return store::comments_of(tx, call.text("id")); });
+  if (!found) return found.error();
+  Json list = Json::array();
+  for (const auto& comment : *found) list.push_back(comment_json(comment, call.caller.id));
+  return json_response({{"comments", list}}, status);
+}
+
+Result<http::Response> list_comments(const Call& call) { return comments_response(call, 200); }
+
+Result<http::Response> add_comment(const Call& call) {
+  auto json = core::parse_json(call.request.body, "body");
+  if (!json) return json.error();
+  core::Fields fields(*json, "body");
+  store::Comment comment{.id = core::new_id(),
+                         .trial_id = call.text("id"),
+                         .at_s = {},
+                         .text = fields.text("text", kMaxComment),
+                         .by_id = call.caller.id,
+                         .by_name = call.caller.name,
+                         .made_utc_us = call.backend.now_utc_us()};
+  if (comment.text.find_first_not_of(" \t\r\n") == std::string::npos)
+    fields.wrong("text", "a comment is expected");
+  const Json* at = fields.member("at_s", false);
+  if (at && !at->is_null()) comment.at_s = fields.number("at_s", 0.0, kLongest_s);
+  if (auto done = fields.done(); !done) return done.error();
+  auto added = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
+    auto trial = store::trial_of(tx, comment.trial_id);
+    if (!trial) return trial.error();
+    if (!*trial) return Error{Errc::not_found, "no trial " + comment.trial_id.substr(0, 32)};
+    return store::add_comment(tx, comment);
+  });
+  if (!added) return added.error();
+  return comments_response(call, 201);
+}
+
+Result<http::Response> remove_comment(const Call& call) {
+  auto removed = call.backend.store.write([&](store::Writing& tx) {
+    return store::remove_comment(tx, call.text("id"), call.text("comment"), call.caller.id);
+  });
+  if (!removed) return removed.error();
+  return comments_response(call, 200);
+}
+
+/// A trainee is not told whose they are.
+Result<http::Response> references_response(const Call& call) {
+  struct Found {
+    bool own;
+    std::vector<store::ReferenceTrial> others;
+    std::set<std::string> named;  ///< trials of people whom the caller may see
+  };
+  const auto found = call.backend.store.read([&](store::Reading& tx) -> Result<Found> {
+    auto own = store::is_reference(tx, call.text("id"));
+    if (!own) return own.error();
+    auto others = store::references_for(tx, call.text("id"));
+    if (!others) return others.error();
+    Found out{*own, std::move(*others), {}};
+    for (const auto& one : out.others) {
+      auto sees = call.of == Scope::all
+                      ? Result<bool>(true)
+                      : relates(tx, call.caller, call.of, Object::trial, one.trial_id);
+      if (!sees) return sees.error();
+      if (*sees) out.named.insert(one.trial_id);
+    }
+    return out;
+  });
+  if (!found) return found.error();
+  Json list = Json::array();
+  for (const auto& one : found->others)
+    list.push_back({{"id", one.trial_id},
+                    {"operator", found->named.contains(one.trial_id) ? one.operator_name : ""},
+                    {"simulated", one.simulated},
+                    {"started_utc_us", one.started_utc_us},
+                    {"duration_s", one.duration_s}});
+  return json_response({{"reference", found->own}, {"trials", list}});
+}
+
+Result<http::Response> set_reference(const Call& call) {
+  auto json = core::parse_json(call.request.body, "body");
+  if (!json) return json.error();
+  core::Fields fields(*json, "body");
+  const Json* reference = fields.member("reference");
+  if (reference && !reference->is_boolean()) fields.wrong("reference", "true or false is expected");
+  if (auto done = fields.done(); !done) return done.error();
+  auto set = call.backend.store.write([&](store::Writing& tx) {
+    return store::set_reference(tx, call.text("id"), reference->get<bool>(), call.caller.name,
+                                call.backend.now_utc_us());
+  });
+  if (!set) return set.error();
+  return references_response(call);
+}
+
+Json tips_json(const trial::Path& path) {
+  Json out = Json::array();
+  for (const math::Vec3& tip : path.tip_m) out.push_back({tip.x(), tip.y(), tip.z()});
+  return out;
+}
+
+Result<Json> palpated(Backend& backend, const trial::Signals& signals, const std::string& case_id) {
+  auto facts = jobs::case_facts(backend.store, backend.objects, case_id);
+  if (!facts) return facts.error();
+  const trial::Path path = signals.path(kPoints);
+  Json depths = Json::array();
+  for (const math::Vec3& tip : path.tip_m) depths.push_back(facts->definition.tract.depth_of(tip));
+  return Json{{"t_s", path.t_s},
+              {"depth_m", depths},
+              {"force_N", path.force_N},
+              {"tip_m", tips_json(path)}};
+}
+
+/// The way of a trial that is offered as an example on the case of this one.
+Result<http::Response> reference_way(const Call& call) {
+  const std::string& id = call.text("reference");
+  auto record =
+      call.backend.store.read([&](store::Reading& tx) -> Result<std::optional<store::TrialRecord>> {
+        auto offered = store::references_for(tx, call.text("id"));
+        if (!offered) return offered.error();
+        for (const auto& one : *offered)
+          if (one.trial_id == id) return store::trial_of(tx, id);
+        return std::optional<store::TrialRecord>();
+      });
+  if (!record) return record.error();
+  if (!*record)
+    return Error{Errc::not_found, "no such trial is offered as an example on this case"};
+  auto signals = signals_of(call.backend, id);
+  if (!signals) return signals.error();
+  if ((*signals)->rig() == trial::Rig::palpation) {
+    auto way = palpated(call.backend, **signals, (*record)->summary.case_id);
+    if (!way) return way.error();
+    return json_response(*way);
+  }
+  const auto curve = (*signals)->force_against_depth(kPoints);
+  return json_response({{"t_s", curve.t_s},
+                        {"depth_m", curve.depth_m},
+                        {"force_N", curve.force_N},
+                        {"tip_m", Json()}});
+}
+
+RouteInfo route(std::string method, std::string tail, std::string id, std::string summary,
+                std::string body, std::string answer,
+                Result<http::Response> (*handle)(const Call&)) {
+  RouteInfo out{.method = method,
+                .path = "/api/v1/trials/{id}" + tail,
+                .id = std::move(id),
+                .summary = std::move(summary),
+                .who = {Role::admin, {Role::faculty, Scope::cohort}},
+                .object = Object::trial,
+                .parameters = {path_text("id", "the trial's")},
+                .body = std::move(body),
+                .body_limit_bytes = kMaxBody_bytes,
+                .answer = std::move(answer),
+                .schemas = {},
+                .handle = handle};
+  if (method != "GET") return out;
+  out.who.push_back(Role::director);
+  out.who.push_back({Role::trainee, Scope::own});
+  return out;
+}
+
+std::vector<NamedSchema> comment_schemas() {
+  using namespace schema;
+  return {
+      {"TrialComment",
+       object({{"id", text("never changes")},
+               {"at_s", nullable(number("s", "of this moment; null: of the whole trial"))},
+               {"text", text("what was said")},
+               {"by", text("who")},
+               {"own", truth("by who asks: it may be taken back")},
+               {"made_utc_us", integer("us", "since 1970, UTC")}})},
+      {"TrialComments", object({{"comments", array(ref("TrialComment"), "by moment")}})},
+      {"NewComment", object({{"at_s", optional(nullable(number("s", "since the trial's start")))},
+                             {"text", text("up to 4000 characters")}})}};
+}
+
+std::vector<NamedSchema> reference_schemas() {
+  using namespace schema;
+  const Json one = object({{"id", text("of the trial")},
+                           {"operator", text("who did it; empty: nobody whom you may see")},
+                           {"simulated", truth("by no hand")},
+                           {"started_utc_us", integer("us", "since 1970, UTC")},
+                           {"duration_s", number("s", "")}});
+  const Json tip = tuple(number("m", "x, y or z"), 3, "LPS");
+  return {{"ReferenceTrials", object({{"reference", truth("this trial is offered itself")},
+                                      {"trials", array(one, "on the same case, newest first")}})},
+          {"ReferenceWish", object({{"reference", truth("offer it")}})},
+          {"ReferenceWay",
+           object({{"t_s", array(number("s", "since its start"), "rising")},
+                   {"depth_m", array(number("m", "of the tip along the tract"), "at each")},
+                   {"force_N", array(number("N", "magnitude; probing: the push"), "at each")},
+                   {"tip_m", nullable(array(tip, "at each; palpation alone"))}})}};
+}
+
+}  // namespace
+
+std::vector<RouteInfo> comments_routes() {
+  RouteInfo list = route("GET", "/comments", "trialComments", "What was said of a trial", "",
+                         "TrialComments", list_comments);
+  list.schemas = comment_schemas();
+  RouteInfo take = route("DELETE", "/comments/{comment}", "removeComment",
+                         "Take a comment of one's own back", "", "TrialComments", remove_comment);
+  take.parameters.push_back(path_text("comment", "its id"));
+  RouteInfo offered = route("GET", "/references", "trialReferences",
+                            "Trials on the same case that are offered as examples", "",
+                            "ReferenceTrials", references_response);
+  offered.schemas = reference_schemas();
+  RouteInfo way = route("GET", "/references/{reference}", "referenceWay", "The way of such a trial",
+                        "", "ReferenceWay", reference_way);
+  way.parameters.push_back(path_text("reference", "the example's id"));
+  // TrialFilter ever it is: it is offered to all who did a trial on its case.
+  way.ends = {
+      {"reference", Object::trial, {Role::admin, Role::director, Role::faculty, Role::trainee}}};
+  return {list,
+          route("POST", "/comments", "addComment", "Say something of a trial, or of a moment of it",
+                "NewComment", "TrialComments", add_comment),
+          take,
+          offered,
+          route("POST", "/reference", "setReference",
+                "Offer a trial as an example on its case, or no longer", "ReferenceWish",
+                "ReferenceTrials", set_reference),
+          way};
+}
+
+}  // namespace api
+}  // namespace tractus

@@ -1,0 +1,42 @@
+/// Trials as the pages get them.
+#pragma once
+
+#include "db/store/stations/fleet.hpp"
+#include "db/store/studies/study_slots.hpp"
+#include "db/store/trials/trials.hpp"
+#include "scenarios/scenario.hpp"
+#include "server/api/route.hpp"
+#include "volume/tract.hpp"
+
+namespace tractus::api {
+
+/// Where a trial stands in a study.
+struct StudyPlace {
+  std::string title;  ///< of the study or assignment
+  store::Slot slot;
+  std::string state, reason;  ///< as store::StudyTrial
+};
+
+/// What the server knows beside the recording.
+struct TrialFacts {
+  std::optional<volume::Tract> tract = {};           ///< palpation
+  core::Json truth = {};                             ///< palpation: null where it is not known
+  std::optional<scenarios::Scenario> scenario = {};  ///< probing: the truth, too
+  std::optional<StudyPlace> study = {};
+  std::optional<store::TrialClock> clock = {};
+};
+
+core::Json summary_json(const store::TrialSummary& trial);
+core::Json trial_json(const store::TrialRecord& trial,
+                      const std::vector<store::ScoreRecord>& scores, const TrialFacts& facts);
+
+/// Their schemas: TrialSummary, TrialList, Trial, Score, TrialEvent, Tract, Coverage, Truth,
+/// Answer, ProbingScenario, StudyPlace.
+std::vector<NamedSchema> trial_schemas();
+/// TrialSignals, Envelope, TrialPath.
+std::vector<NamedSchema> curve_schemas();
+
+/// The last answer of a trial's events: {"breach", "wall", "confidence", "depth_m"}, or null.
+core::Json answer_json(const core::Json& events);
+
+}  // namespace tractus::api

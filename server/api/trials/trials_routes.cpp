@@ -1,0 +1,242 @@
+/// Trials: the list, one whole, its curves and its path.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "server/api/backend.hpp"
+#include "server/api/schema.hpp"
+#include "server/api/trials/trial_json.hpp"
+#include "server/api/trials/trial_signals.hpp"
+#include "server/api/trials/uploads.hpp"
+#include "server/jobs/case_facts.hpp"
+#include "server/jobs/scenario_facts.hpp"
+#include "trial/trial_file.hpp"
+
+namespace tractus {
+namespace api {
+namespace {
+
+constexpr double kEndOfTime_us = 9e15;  // exact in a double; the year 2255
+constexpr double kLongest_s = 1e6;
+
+core::Result<http::Response> list_trials(const Call& call) {
+  const std::int64_t limit = call.integer("limit");
+  store::TrialFilter whose;
+  if (call.of == Scope::cohort) whose.taught_by = call.caller.id;
+  if (call.of == Scope::own) whose.seen_by = call.caller.id;
+  auto found = call.backend.store.read([&](store::Reading& tx) {
+    return store::trials_before(tx, call.integer("before_utc_us"), limit + 1, whose);
+  });
+  if (!found) return found.error();
+  const bool more = found->size() > static_cast<std::size_t>(limit);
+  if (more) found->pop_back();
+  core::Json list = core::Json::array();
+  for (const store::TrialSummary& trial : *found) list.push_back(summary_json(trial));
+  return json_response({{"trials", list}, {"more", more}});
+}
+
+struct Found {
+  store::TrialRecord trial;
+  std::vector<store::ScoreRecord> scores;
+};
+
+core::Result<Found> find_trial(const Call& call) {
+  const std::string& id = call.text("id");
+  return call.backend.store.read([&](store::Reading& tx) -> core::Result<Found> {
+    auto trial = store::trial_of(tx, id);
+    if (!trial) return trial.error();
+    if (!*trial) return core::Error{core::Errc::not_found, "no trial " + id.substr(0, 32)};
+    auto scores = store::scores_of(tx, id);
+    if (!scores) return scores.error();
+    return Found{std::move(**trial), std::move(*scores)};
+  });
+}
+
+core::Json truth_json(const std::optional<cases::Truth>& truth) {
+  if (!truth) return {};
+  core::Json out = truth->to_json();
+  core::Json shown = core::Json::object();  // without the salt
+  for (const char* field : {"breached", "breach_m", "breach_depth_m", "wall_thickness_m"})
+    shown[field] = out.contains(field) ? out[field] : core::Json();
+  if (truth->breached && !truth->breach_m) shown["wall_thickness_m"] = nullptr;  // a trainee's hole
+  return shown;
+}
+
+/// Where the trial stands in a study, if it is of one.
+core::Result<std::optional<StudyPlace>> study_place(Backend& backend, const std::string& trial_id) {
+  using Place = std::optional<StudyPlace>;
+  return backend.store.read([&](store::Reading& tx) -> core::Result<Place> {
+    auto slot = store::slot_of_trial(tx, trial_id);
+    if (!slot) return slot.error();
+    if (!*slot) return Place();
+    auto title = store::series_title(tx, (*slot)->study_id);
+    if (!title) return title.error();
+    auto trial = store::study_trial_of(tx, trial_id);
+    if (!trial) return trial.error();
+    return Place(
+        StudyPlace{std::move(*title), std::move(**slot), (*trial)->state, (*trial)->reason});
+  });
+}
+
+core::Result<TrialFacts> trial_facts(Backend& backend, const store::TrialRecord& trial) {
+  auto header = header_of(trial);
+  if (!header) return header.error();
+  const std::string& case_id = trial.summary.case_id;
+  TrialFacts out;
+  auto study = study_place(backend, trial.summary.id);
+  if (!study) return study.error();
+  out.study = std::move(*study);
+  auto clock = backend.store.read(
+      [&](store::Reading& tx) { return store::trial_clock_of(tx, trial.summary.id); });
+  if (!clock) return clock.error();
+  out.clock = *clock;
+  if (header->rig == trial::Rig::probing) {
+    auto scenario = jobs::scenario_of(backend.store, backend.objects, case_id);
+    if (!scenario) return scenario.error();
+    out.scenario = std::move(*scenario);
+    return out;
+  }
+  auto facts = jobs::facts_of_trial(backend.store, backend.objects, case_id, *header);
+  if (!facts) return facts.error();
+  out.tract = facts->definition.tract;
+  out.truth = truth_json(facts->truth);
+  return out;
+}
+
+core::Result<http::Response> one_trial(const Call& call) {
+  auto found = find_trial(call);
+  if (!found) return found.error();
+  auto facts = trial_facts(call.backend, found->trial);
+  if (!facts) return facts.error();
+  return json_response(trial_json(found->trial, found->scores, *facts));
+}
+
+std::vector<std::string> channels_of(const Call& call, const trial::Signals& signals) {
+  if (call.text("channels") == "all") return signals.channels();
+  std::vector<std::string> out;
+  std::string_view rest = call.text("channels");
+  while (!rest.empty()) {
+    const auto end = std::min(rest.find(','), rest.size());
+    out.emplace_back(rest.substr(0, end));
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  return out;
+}
+
+core::Result<http::Response> trial_signals(const Call& call) {
+  auto signals = signals_of(call.backend, call.text("id"));
+  if (!signals) return signals.error();
+  const auto channels = channels_of(call, **signals);
+  if (channels.size() > trial::kChannels.size())
+    return core::Error{core::Errc::bad_input, "channels: each may be asked for once"};
+  auto view = (*signals)->view(channels, call.number("from_s"), call.number("to_s"),
+                               static_cast<std::size_t>(call.integer("points")));
+  if (!view) return view.error();
+  core::Json shown = core::Json::object();
+  for (const auto& [name, envelope] : view->channels)
+    shown[name] = {{"min", envelope.min}, {"max", envelope.max}};
+  return json_response({{"t_s", view->t_s},
+                        {"channels", shown},
+                        {"from_s", view->from_s},
+                        {"to_s", view->to_s},
+                        {"samples_per_point", view->samples_per_point}});
+}
+
+core::Result<http::Response> trial_path(const Call& call) {
+  auto signals = signals_of(call.backend, call.text("id"));
+  if (!signals) return signals.error();
+  const trial::Path path = (*signals)->path(static_cast<std::size_t>(call.integer("points")));
+  core::Json tips = core::Json::array();
+  for (const math::Vec3& tip : path.tip_m) tips.push_back({tip.x(), tip.y(), tip.z()});
+  return json_response({{"t_s", path.t_s}, {"tip_m", tips}, {"force_N", path.force_N}});
+}
+
+core::Result<http::Response> trial_force_depth(const Call& call) {
+  auto signals = signals_of(call.backend, call.text("id"));
+  if (!signals) return signals.error();
+  if ((*signals)->rig() != trial::Rig::probing)
+    return core::Error{core::Errc::not_found, "force against depth: not a probing trial"};
+  const auto curve =
+      (*signals)->force_against_depth(static_cast<std::size_t>(call.integer("points")));
+  core::Json modes = core::Json::array();
+  for (const trial::ProbingMode mode : curve.mode) modes.push_back(trial::name(mode));
+  return json_response({{"t_s", curve.t_s},
+                        {"depth_m", curve.depth_m},
+                        {"force_N", curve.force_N},
+                        {"mode", modes}});
+}
+
+Parameter query(std::string name, Parameter::Kind kind, std::string unit, std::string meaning,
+                double low, double high, std::string fallback) {
+  return {.in = Parameter::In::query,
+          .name = std::move(name),
+          .kind = kind,
+          .unit = std::move(unit),
+          .meaning = std::move(meaning),
+          .low = low,
+          .high = high,
+          .fallback = std::move(fallback)};
+}
+
+RouteInfo trial_route(std::string tail, std::string id, std::string summary, std::string answer) {
+  return {.method = "GET",
+          .path = "/api/v1/trials" + tail,
+          .id = std::move(id),
+          .summary = std::move(summary),
+          .who = {Role::admin,
+                  Role::director,
+                  {Role::faculty, Scope::cohort},
+                  {Role::trainee, Scope::own}},
+          .object = tail.empty() ? Object::none : Object::trial,
+          .parameters = {},
+          .body = "",
+          .answer = std::move(answer),
+          .schemas = {},
+          .handle = nullptr};
+}
+
+}  // namespace
+
+std::vector<RouteInfo> trials_routes() {
+  using Kind = Parameter::Kind;
+  const Parameter id = path_text("id", "32 hexadecimal characters");
+  RouteInfo list = trial_route("", "trials", "Trials, newest first", "TrialList");
+  list.parameters = {query("limit", Kind::integer, "1", "at most so many", 1, 500, "50"),
+                     query("before_utc_us", Kind::integer, "us", "started before this time, UTC", 0,
+                           kEndOfTime_us, "9000000000000000")};
+  list.schemas = trial_schemas();
+  list.handle = list_trials;
+
+  RouteInfo one = trial_route("/{id}", "trial", "One trial with its scores and the truth", "Trial");
+  one.parameters = {id};
+  one.handle = one_trial;
+
+  RouteInfo curves = trial_route(
+      "/{id}/signals", "trialSignals",
+      "Channels over time, least and greatest of the samples behind each point", "TrialSignals");
+  curves.parameters = {
+      id,
+      query("channels", Kind::text, "",
+            "names, separated by commas; all: every one that this trial has", 0, 0, "all"),
+      query("from_s", Kind::number, "s", "from this time", 0, kLongest_s, "0"),
+      query("to_s", Kind::number, "s", "to this time", 0, kLongest_s, "1000000"),
+      query("points", Kind::integer, "1", "at most so many", 1, 20000, "1000")};
+  curves.schemas = curve_schemas();
+  curves.handle = trial_signals;
+
+  RouteInfo path =
+      trial_route("/{id}/path", "trialPath", "The path of the probe's tip", "TrialPath");
+  path.parameters = {id, query("points", Kind::integer, "1", "at most so many", 1, 20000, "2000")};
+  path.handle = trial_path;
+
+  RouteInfo depths =
+      trial_route("/{id}/force-depth", "trialForceDepth",
+                  "Force against depth of a probing trial, in order of time", "TrialForceDepth");
+  depths.parameters = {id,
+                       query("points", Kind::integer, "1", "at most so many", 2, 20000, "2000")};
+  depths.handle = trial_force_depth;
+  return {list, one, curves, path, depths};
+}
+
+}  // namespace api
+}  // namespace tractus

@@ -1,0 +1,145 @@
+/// A station hands over its trials, in pieces, each acknowledged once it is on the disk.
+#include <charconv>
+
+#include "db/store/stations/fleet.hpp"
+#include "server/api/backend.hpp"
+#include "server/api/schema.hpp"
+#include "server/api/trials/uploads.hpp"
+
+namespace tractus {
+namespace api {
+namespace {
+
+core::Result<http::Response> as_response(const core::Result<wire::UploadState>& state) {
+  if (!state) return state.error();
+  return json_response(state->to_json());
+}
+
+core::Result<http::Response> announce(const Call& call) {
+  auto json = core::parse_json(call.request.body, "body");
+  if (!json) return json.error();
+  auto announced = wire::UploadAnnouncement::from_json(*json, "body");
+  if (!announced) return announced.error();
+  return as_response(announce_upload(call.backend, call.caller, call.text("trial_id"), *announced));
+}
+
+core::Result<http::Response> state(const Call& call) {
+  return as_response(upload_state(call.backend, call.caller, call.text("trial_id")));
+}
+
+core::Result<std::uint32_t> checksum(const std::string& text) {
+  std::uint32_t value = 0;
+  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value, 16);
+  if (text.size() != 8 || failure != std::errc() || end != text.data() + 8)
+    return core::Error{core::Errc::bad_input, "X-Crc32c: 8 hexadecimal characters are expected"};
+  return value;
+}
+
+core::Result<http::Response> append(const Call& call) {
+  auto crc32c = checksum(call.text("X-Crc32c"));
+  if (!crc32c) return crc32c.error();
+  auto appended = append_upload(call.backend, call.caller, call.text("trial_id"),
+                                static_cast<std::uint64_t>(call.integer("offset_bytes")), *crc32c,
+                                core::bytes_of(call.request.body));
+  if (!appended) return appended.error();
+  if (appended->taken) return json_response(appended->state.to_json());
+  return json_response({{"error", "the upload stands elsewhere: go on from offset_bytes"},
+                        {"code", name(core::Errc::conflict)},
+                        {"offset_bytes", appended->state.offset_bytes}},
+                       409);
+}
+
+/// What a station may add when it commits: how its clock stands.
+core::Result<std::optional<store::TrialClock>> clock_of(const std::string& body) {
+  if (body.empty()) return std::optional<store::TrialClock>();
+  auto json = core::parse_json(body, "body");
+  if (!json) return json.error();
+  core::Fields fields(*json, "body");
+  constexpr double kMost_s = 1e10;
+  const store::TrialClock clock{fields.number("clock_offset_s", -kMost_s, kMost_s),
+                                fields.number("clock_error_s", 0.0, kMost_s)};
+  if (auto done = fields.done(); !done) return done.error();
+  return std::optional(clock);
+}
+
+core::Result<http::Response> commit(const Call& call) {
+  auto clock = clock_of(call.request.body);
+  if (!clock) return clock.error();
+  const std::string& id = call.text("trial_id");
+  auto state = commit_upload(call.backend, call.caller, id);
+  if (!state || !*clock) return as_response(state);
+  auto kept = call.backend.store.write(
+      [&](store::Writing& tx) { return store::add_trial_clock(tx, id, **clock); });
+  if (!kept) return kept.error();
+  return as_response(state);
+}
+
+RouteInfo upload_route(std::string method, std::string tail, std::string id, std::string summary) {
+  return {.method = std::move(method),
+          .path = "/api/v1/uploads/{trial_id}" + tail,
+          .id = std::move(id),
+          .summary = std::move(summary),
+          .who = {Role::station},
+          .parameters = {path_text("trial_id", "32 hexadecimal characters, the station's choice")},
+          .body = "",
+          .answer = "UploadState",
+          .schemas = {},
+          .handle = nullptr};
+}
+
+}  // namespace
+
+std::vector<RouteInfo> uploads_routes() {
+  RouteInfo put = upload_route("PUT", "", "announceUpload",
+                               "Announce a trial; the same announcement again is the same upload");
+  put.body = "UploadAnnouncement";
+  put.body_limit_bytes = 4096;
+  put.schemas = {
+      {"UploadAnnouncement", schema::object({{"case_id", schema::text("SHA-256 of case.json")},
+                                             {"size_bytes", schema::integer("B", "of the file")},
+                                             {"sha256", schema::text("of the file")}})},
+      {"UploadState",
+       schema::object({{"offset_bytes", schema::integer("B", "on the server's disk")},
+                       {"state", schema::one_of({"receiving", "complete"}, "")}})}};
+  put.handle = announce;
+
+  RouteInfo read = upload_route("GET", "", "uploadState", "Where an upload stands");
+  read.handle = state;
+
+  RouteInfo patch = upload_route(
+      "PATCH", "", "appendUpload",
+      "The next piece, at most 4 MiB; 409 with offset_bytes when the upload stands elsewhere");
+  patch.parameters.push_back({.in = Parameter::In::query,
+                              .name = "offset_bytes",
+                              .kind = Parameter::Kind::integer,
+                              .unit = "B",
+                              .meaning = "where the piece begins",
+                              .low = 0,
+                              .high = double(kMaxTrial_bytes),
+                              .fallback = std::nullopt});
+  patch.parameters.push_back({.in = Parameter::In::header,
+                              .name = "X-Crc32c",
+                              .kind = Parameter::Kind::text,
+                              .unit = "",
+                              .meaning = "CRC-32C of the body, 8 hexadecimal characters",
+                              .fallback = std::nullopt});
+  patch.body = kBytes;
+  patch.body_limit_bytes = wire::kMaxChunk_bytes;
+  patch.audited = false;  // announcing and committing are
+  patch.handle = append;
+
+  RouteInfo post = upload_route(
+      "POST", "/commit", "commitUpload",
+      "Check all of it and make it a trial; repeating it is harmless, and so is an empty body");
+  post.body = "CommitUpload";
+  post.body_limit_bytes = 4096;
+  post.schemas = {
+      {"CommitUpload",
+       schema::object({{"clock_offset_s", schema::number("s", "server's clock less the station's")},
+                       {"clock_error_s", schema::number("s", "bound of its error")}})}};
+  post.handle = commit;
+  return {put, read, patch, post};
+}
+
+}  // namespace api
+}  // namespace tractus

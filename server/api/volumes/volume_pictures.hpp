@@ -1,0 +1,45 @@
+/// Pictures of a volume for a page: a plane of the patient, and all of it coarsely.
+#pragma once
+
+#include "server/api/cases/preview.hpp"
+#include "volume/volume_file.hpp"
+
+namespace tractus::api {
+
+/// CT values from `low` to `high` become 0 … 255.
+struct Window {
+  double low, high;
+};
+
+enum class Plane { axial, coronal, sagittal };
+
+/// A picture as radiologists hang it: axial with the patient's left at the right and the front at
+/// the top, coronal with left at the right and the head at the top, sagittal with the back at the
+/// right and the head at the top.
+struct SlicePicture {
+  std::array<int, 2> dims{};                         ///< width, height
+  double spacing_m = 0.0;                            ///< of pixels, square
+  volume::Vec3 origin_m = volume::Vec3::Zero();      ///< LPS, centre of the first pixel
+  volume::Vec3 along_row = volume::Vec3::Zero();     ///< LPS, towards growing columns
+  volume::Vec3 along_column = volume::Vec3::Zero();  ///< LPS, towards growing rows
+  std::string pixels;                                ///< [row][column], 0 outside the volume
+};
+
+/// The corners of the box of voxel centres along the patient's axes, LPS.
+struct Bounds {
+  volume::Vec3 low_m, high_m;
+};
+Bounds bounds_of(const volume::Geometry& geometry);
+
+/// The plane at `at_m` along its normal (axial: z, coronal: y, sagittal: x), linear between voxels;
+/// no side has over `max_side` pixels, none is finer than the voxels. Reads the bricks it needs.
+/// Errors: out_of_range when the plane misses the volume; those of reading.
+core::Result<SlicePicture> slice_picture(const volume::VolumeFile& file, Plane plane, double at_m,
+                                         int max_side, const Window& window);
+
+/// The whole volume by means of equal blocks of voxels, none of its sides over `max_side`; reads it
+/// slab by slab.
+core::Result<Preview> whole_preview(const volume::VolumeFile& file, int max_side,
+                                    const Window& window);
+
+}  // namespace tractus::api

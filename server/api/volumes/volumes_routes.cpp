@@ -1,0 +1,355 @@
+/// CT volumes that people bring in: held until somebody has looked at them, then ready for cases.
+#include <fmt/format.h>
+
+#include "core/file.hpp"
+#include "db/store/cases/cases.hpp"
+#include "db/store/volumes/volumes.hpp"
+#include "server/api/backend.hpp"
+#include "server/api/schema.hpp"
+#include "server/api/volumes/volume_intake.hpp"
+#include "server/api/volumes/volume_pictures.hpp"
+
+namespace tractus {
+namespace api {
+namespace {
+
+using core::Errc;
+using core::Error;
+using core::Json;
+using core::Result;
+
+constexpr std::size_t kMaxName = 200, kMaxSource = 1000, kMaxReason = 1000;
+
+Json volume_json(const store::VolumeRecord& v) {
+  Json out{{"id", v.id}, {"name", v.name}, {"source", v.source}, {"state", v.state}};
+  const Json facts = core::stored_json(v.facts);
+  for (const char* key : {"format", "modality", "dims", "spacing_m", "origin_m", "directions",
+                          "range", "notes", "suspicions"})
+    out[key] = facts.contains(key) ? facts.at(key) : Json();
+  out["size_bytes"] = v.size_bytes;
+  out["made_utc_us"] = v.made_utc_us;
+  out["made_by"] = v.made_by;
+  out["released_by"] = v.state == "released" ? Json(v.decided_by.value_or("")) : Json();
+  out["decided_utc_us"] = v.decided_utc_us ? Json(*v.decided_utc_us) : Json();
+  out["reason"] = v.reason;
+  return out;
+}
+
+Result<store::VolumeRecord> volume_of_call(const Call& call) {
+  auto known = call.backend.store.read(
+      [&](store::Reading& tx) { return store::volume_of(tx, call.text("id")); });
+  if (!known) return known.error();
+  if (!*known) return Error{Errc::not_found, "there is no volume " + call.text("id").substr(0, 64)};
+  return **known;
+}
+
+/// Who decides looks at what is held, and so does who brought it; everybody else sees released
+/// ones.
+Result<volume::VolumeFile> pictured(const Call& call) {
+  auto v = volume_of_call(call);
+  if (!v) return v.error();
+  const bool decides = call.caller.role == Role::admin || call.caller.role == Role::director;
+  if (v->state == "refused")
+    return Error{Errc::conflict, "this volume was refused: its voxels are no longer here"};
+  if (v->state == "held" && !decides && call.caller.id != v->made_by_id)
+    return Error{Errc::forbidden, "this volume is held until somebody has looked at it"};
+  return volume::VolumeFile::open(call.backend.objects.path_of(v->sha256));
+}
+
+Result<http::Response> list_volumes(const Call& call) {
+  auto known = call.backend.store.read([](store::Reading& tx) { return store::all_volumes(tx); });
+  if (!known) return known.error();
+  Json list = Json::array();
+  for (const auto& v : *known) list.push_back(volume_json(v));
+  return json_response({{"volumes", list}});
+}
+
+Result<http::Response> one_volume(const Call& call) {
+  auto v = volume_of_call(call);
+  if (!v) return v.error();
+  return json_response(volume_json(*v));
+}
+
+Result<http::Response> add(const Call& call) {
+  auto taken = take_in(call);
+  if (!taken) return taken.error();
+  store::VolumeRecord v;
+  v.id = core::new_id();
+  v.name = call.text("name").substr(0, kMaxName);
+  v.source = call.text("source").substr(0, kMaxSource);
+  v.sha256 = taken->sha256;
+  v.size_bytes = taken->size_bytes;
+  v.facts = taken->facts.dump();
+  v.report = taken->report.dump();
+  v.made_utc_us = call.backend.now_utc_us();
+  v.made_by = call.caller.name;
+  v.made_by_id = call.caller.id;
+  auto added = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
+    if (auto noted = store::add_object(tx, v.sha256, v.size_bytes, v.made_utc_us); !noted)
+      return noted;
+    return store::add_volume(tx, v);
+  });
+  if (!added) return added.error();
+  return json_response(volume_json(v), 201);
+}
+
+Result<http::Response> decided(const Call& call, const store::Decision& decision) {
+  std::string to_remove;
+  auto done = call.backend.store.write(
+      [&](store::Writing& tx) -> Result<std::optional<store::VolumeRecord>> {
+        auto gone = store::decide_volume(tx, call.text("id"), decision);
+        if (!gone) return gone.error();
+        to_remove = *gone;
+        return store::volume_of(tx, call.text("id"));
+      });
+  if (!done) return done.error();
+  if (!to_remove.empty()) {
+    std::error_code failure;
+    std::filesystem::remove(call.backend.objects.path_of(to_remove), failure);
+    if (failure)
+      return Error{Errc::io,
+                   "the volume was refused, but its file cannot be removed: " + failure.message()};
+  }
+  return json_response(volume_json((*done).value()));
+}
+
+Result<http::Response> release(const Call& call) {
+  auto json = core::parse_json(call.request.body, "body");
+  if (!json) return json.error();
+  core::Fields fields(*json, "body");
+  const Json* looked = fields.member("looked_at");
+  if (looked && *looked != Json(true))
+    fields.wrong("looked_at", "true is expected: look at its pictures first, no text, no face");
+  if (auto fine = fields.done(); !fine) return fine.error();
+  return decided(call, {"released", call.caller.name, "", call.backend.now_utc_us()});
+}
+
+Result<http::Response> refuse(const Call& call) {
+  auto json = core::parse_json(call.request.body, "body");
+  if (!json) return json.error();
+  core::Fields fields(*json, "body");
+  const std::string reason = fields.text("reason", kMaxReason);
+  if (auto fine = fields.done(); !fine) return fine.error();
+  return decided(call, {"refused", call.caller.name, reason, call.backend.now_utc_us()});
+}
+
+Result<http::Response> report(const Call& call) {
+  auto v = volume_of_call(call);
+  if (!v) return v.error();
+  return json_response(core::stored_json(v->report));
+}
+
+std::string three(const volume::Vec3& v) { return fmt::format("{},{},{}", v.x(), v.y(), v.z()); }
+
+Result<Window> window_of(const Call& call) {
+  const Window out{call.number("low"), call.number("high")};
+  if (out.low < out.high) return out;
+  return Error{Errc::out_of_range, "low: less than high is expected"};
+}
+
+http::Response bytes_response(std::string bytes) {
+  http::Response out{.status = 200, .headers = {}, .body = std::move(bytes)};
+  out.with("Content-Type", "application/octet-stream")
+      .with("Cache-Control", "private, max-age=3600");
+  return out;
+}
+
+Result<http::Response> slice(const Call& call) {
+  const std::string& axis = call.text("axis");
+  const Plane plane = axis == "axial"     ? Plane::axial
+                      : axis == "coronal" ? Plane::coronal
+                                          : Plane::sagittal;
+  if (axis != "axial" && axis != "coronal" && axis != "sagittal")
+    return Error{Errc::bad_input, "axis: axial, coronal or sagittal is expected"};
+  auto window = window_of(call);
+  if (!window) return window.error();
+  auto file = pictured(call);
+  if (!file) return file.error();
+  const Bounds bounds = bounds_of(file->geometry());
+  const int normal = plane == Plane::axial ? 2 : plane == Plane::coronal ? 1 : 0;
+  const double at_m =
+      call.has("at_m") ? call.number("at_m") : 0.5 * (bounds.low_m[normal] + bounds.high_m[normal]);
+  auto picture =
+      slice_picture(*file, plane, at_m, static_cast<int>(call.integer("max_side")), *window);
+  if (!picture) return picture.error();
+  auto response = bytes_response(std::move(picture->pixels));
+  response.with("X-Dims", fmt::format("{},{}", picture->dims[0], picture->dims[1]))
+      .with("X-Spacing-m", fmt::format("{0},{0}", picture->spacing_m))
+      .with("X-Origin-m", three(picture->origin_m))
+      .with("X-Directions", three(picture->along_row) + "," + three(picture->along_column));
+  return response;
+}
+
+Result<http::Response> preview(const Call& call) {
+  auto window = window_of(call);
+  if (!window) return window.error();
+  auto file = pictured(call);
+  if (!file) return file.error();
+  auto block = whole_preview(*file, static_cast<int>(call.integer("max_side")), *window);
+  if (!block) return block.error();
+  const volume::Geometry& g = block->geometry;
+  const math::Mat3 rows = g.directions.transpose();  // Eigen stores by column
+  auto response = bytes_response(std::move(block->opacity));
+  response.with("X-Dims", fmt::format("{},{},{}", g.dims[0], g.dims[1], g.dims[2]))
+      .with("X-Spacing-m", three(g.spacing_m))
+      .with("X-Origin-m", three(g.origin_m))
+      .with("X-Directions", fmt::format("{}", fmt::join(std::span(rows.data(), 9), ",")));
+  return response;
+}
+
+Parameter text_in_query(std::string name, std::string meaning, bool required = true) {
+  return {.in = Parameter::In::query,
+          .name = std::move(name),
+          .kind = Parameter::Kind::text,
+          .unit = "",
+          .meaning = std::move(meaning),
+          .required = required,
+          .fallback = required ? std::nullopt : std::optional<std::string>("")};
+}
+
+Parameter value_in_query(std::string name, std::string fallback, std::string meaning) {
+  return {.in = Parameter::In::query,
+          .name = std::move(name),
+          .kind = Parameter::Kind::number,
+          .unit = "CT value",
+          .meaning = std::move(meaning),
+          .low = -1e6,
+          .high = 1e6,
+          .fallback = std::move(fallback)};
+}
+
+Parameter side_in_query(std::string fallback, double most) {
+  return {.in = Parameter::In::query,
+          .name = "max_side",
+          .kind = Parameter::Kind::integer,
+          .unit = "1",
+          .meaning = "pixels or voxels along the longest side, at most",
+          .low = 8,
+          .high = most,
+          .fallback = std::move(fallback)};
+}
+
+RouteInfo route(std::string method, std::string tail, std::string id, std::string summary,
+                std::string answer, Result<http::Response> (*handle)(const Call&)) {
+  RouteInfo out{.method = std::move(method),
+                .path = "/api/v1/volumes" + tail,
+                .id = std::move(id),
+                .summary = std::move(summary),
+                .who = {Role::admin, Role::director, Role::faculty, Role::researcher},
+                .parameters = {},
+                .body = "",
+                .answer = std::move(answer),
+                .schemas = {},
+                .handle = handle};
+  if (tail.starts_with("/{id}")) out.parameters = {path_text("id", "of the volume")};
+  return out;
+}
+
+std::vector<NamedSchema> schemas() {
+  using namespace schema;
+  const Json volume = object(
+      {{"id", text("32 hexadecimal characters")},
+       {"name", text("for people")},
+       {"source", text("where it came from, licence")},
+       {"state", one_of({"held", "released", "refused"}, "held and refused ones are not used")},
+       {"format", text("that it was read from")},
+       {"modality", nullable(text("of DICOM"))},
+       {"dims", tuple(integer("1", "voxels"), 3, "along i, j, k")},
+       {"spacing_m", tuple(number("m", "between voxels"), 3, "along i, j, k")},
+       {"origin_m", tuple(number("m", "LPS"), 3, "centre of the first voxel")},
+       {"directions", tuple(number("1", ""), 9, "row-major; columns are i, j, k in LPS")},
+       {"range", tuple(number("CT value", ""), 2, "least and greatest")},
+       {"notes", array(text("one line"), "assumptions made and losses taken on reading")},
+       {"suspicions", array(text("one line"), "of text or a face in the pixels")},
+       {"size_bytes", integer("B", "stored")},
+       {"made_utc_us", integer("us", "since 1970, UTC")},
+       {"made_by", text("who brought it")},
+       {"released_by", nullable(text("who looked at it"))},
+       {"decided_utc_us", nullable(integer("us", "since 1970, UTC: released or refused"))},
+       {"reason", text("of a refusal")}});
+  const Json attribute =
+      object({{"tag", text("(gggg,eeee); of private ones the group")},
+              {"name", text("by the standard's dictionary")},
+              {"vr", text("value representation, where the file states it")},
+              {"profile", text("action of PS3.15 Table E.1-1; empty: not in it")},
+              {"done", text("removed, replaced, kept or new identifier")},
+              {"count", integer("1", "in the files' data sets")},
+              {"nested", integer("1", "within sequences")}});
+  return {
+      {"Volume", volume},
+      {"VolumeList", object({{"volumes", array(ref("Volume"), "newest first")}})},
+      {"VolumeRelease", object({{"looked_at", truth("true: somebody looked, no text, no face")}})},
+      {"VolumeRefusal", object({{"reason", text("why")}})},
+      {"DeidentifiedAttribute", attribute},
+      {"VolumeReport",
+       object({{"format", optional(text("tractus-deidentification/1"))},
+               {"profile", optional(text("what it went by"))},
+               {"codes", optional(array(text("of PS3.16 CID 7050"), "its options"))},
+               {"files", optional(integer("1", "read"))},
+               {"attributes", optional(array(ref("DeidentifiedAttribute"), "without values"))},
+               {"text_in_pixels", optional(text("what was done about it"))},
+               {"faces", optional(text("what was done about them"))}})}};
+}
+
+}  // namespace
+
+std::vector<RouteInfo> volumes_routes() {
+  RouteInfo list =
+      route("GET", "", "volumes", "CT volumes, newest first", "VolumeList", list_volumes);
+  list.schemas = schemas();
+  RouteInfo take = route("POST", "", "addVolume",
+                         "Read a CT, de-identify it and hold it: a zip of one DICOM series, or a "
+                         ".nii.gz, .nrrd or .tvol file",
+                         "Volume", add);
+  take.parameters = {text_in_query("name", "for people; no patient's"),
+                     text_in_query("source", "where it came from, licence", false)};
+  take.body = kBytes;
+  take.body_limit_bytes = kMaxVolume_bytes;
+  take.body_to_file = true;
+  RouteInfo out =
+      route("POST", "/{id}/release", "releaseVolume",
+            "Let a held volume be used: a person has looked at its pictures", "Volume", release);
+  out.who = {Role::admin, Role::director};
+  out.body = "VolumeRelease";
+  out.body_limit_bytes = 4096;
+  RouteInfo no =
+      route("POST", "/{id}/refuse", "refuseVolume",
+            "Refuse a held volume: its voxels are removed, the record stays", "Volume", refuse);
+  no.who = {Role::admin, Role::director};
+  no.body = "VolumeRefusal";
+  no.body_limit_bytes = 8192;
+  RouteInfo plane = route("GET", "/{id}/slice", "volumeSlice",
+                          "A plane of the patient as bytes 0 … 255, row after row; X-Dims, "
+                          "X-Spacing-m, X-Origin-m (LPS, first pixel) and X-Directions (along a "
+                          "row, along a column) place it",
+                          kBytes, slice);
+  plane.parameters.push_back(text_in_query("axis", "axial, coronal or sagittal"));
+  Parameter at = value_in_query("at_m", "", "along the axis, LPS; the middle when it is missing");
+  at.unit = "m";
+  at.required = false;
+  at.fallback = std::nullopt;
+  plane.parameters.push_back(at);
+  plane.parameters.push_back(side_in_query("512", 2048));
+  RouteInfo block = route("GET", "/{id}/preview", "volumePreview",
+                          "The whole volume coarsely as bytes 0 … 255, [k][j][i]; X-Dims, "
+                          "X-Spacing-m, X-Origin-m and X-Directions (row-major) place it",
+                          kBytes, preview);
+  block.parameters.push_back(side_in_query("128", 256));
+  for (RouteInfo* picture : {&plane, &block}) {
+    picture->parameters.push_back(value_in_query("low", "-200", "shown black"));
+    picture->parameters.push_back(value_in_query("high", "1200", "shown white"));
+  }
+  return {list,
+          take,
+          route("GET", "/{id}", "volume", "One volume", "Volume", one_volume),
+          out,
+          no,
+          route("GET", "/{id}/report", "volumeReport",
+                "What de-identification removed, replaced and kept, by attribute", "VolumeReport",
+                report),
+          plane,
+          block};
+}
+
+}  // namespace api
+}  // namespace tractus

@@ -1,0 +1,26 @@
+/// Backup, restore, looking over: what keeps a data folder through years.
+#pragma once
+
+#include "core/progress.hpp"
+#include "db/store/operations/backup.hpp"
+#include "server/app/data_folder.hpp"
+
+namespace tractus::app {
+
+/// Copies a folder, served or not, to a new folder `out`: the records as they stand at one moment
+/// (those of a PostgreSQL database too, as a SQLite file, so that a backup is whole by itself),
+/// every object it names (checked on the way), what of unfinished uploads is acknowledged, keys and
+/// certificates, and backup.json with what is in it. `out` appears whole or not at all.
+/// Errors: conflict (`out` exists), corrupt (an object is not what its name says), io, cancelled.
+core::Result<core::Json> back_up(const std::filesystem::path& data,
+                                 const std::filesystem::path& out, const core::Progress& shown);
+
+/// Makes a new data folder of a backup, every file checked against backup.json and its name. Its
+/// records go into `target`: a PostgreSQL database, which must be empty, or the folder's own file:
+/// so a server moves from one to the other.
+/// Errors: as above; bad_input when `from` is no backup.
+core::Result<core::Json> restore(const std::filesystem::path& from,
+                                 const std::filesystem::path& data, const Database& target,
+                                 const core::Progress& shown);
+
+}  // namespace tractus::app

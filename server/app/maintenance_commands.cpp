@@ -1,0 +1,164 @@
+/// backup, restore, verify, migrate.
+#include <fmt/format.h>
+
+#include "core/clock.hpp"
+#include "db/store/database/migrations.hpp"
+#include "server/app/anchors.hpp"
+#include "server/app/command.hpp"
+#include "server/app/maintenance.hpp"
+
+namespace tractus {
+namespace app {
+namespace {
+
+constexpr std::size_t kShown = 20;
+
+/// Without bringing it up to date.
+core::Result<std::int64_t> schema_of(const Database& database) {
+  std::unique_ptr<store::Connection> connection;
+  if (database.is_shared()) {
+    connection = store::postgres_connection(database.address, store::Access::read);
+  } else {
+    auto opened = store::open_sqlite(database.file, store::Access::read);
+    if (!opened) return opened.error();
+    connection = std::move(*opened);
+  }
+  if (auto begun = connection->begin(store::Access::read); !begun) return begun.error();
+  auto rows = connection->query("select coalesce(max(version), 0) from schema_versions", {});
+  if (!rows) return rows.error();
+  return rows->front().integer(0);
+}
+
+std::string coverage_text(const Examined& e) {
+  if (e.found.covered_since_utc_us == 0)
+    return "the trail does not cover the rows of tables yet: that begins when this program serves "
+           "the folder";
+  return fmt::format(
+      "the trail covers the rows of {} tables since {}; {} anchors, the newest of {}",
+      e.found.covered_tables, core::utc_text(e.found.covered_since_utc_us), e.anchors.anchors,
+      core::utc_text(e.anchors.newest_utc_us));
+}
+
+std::string findings_text(const std::vector<std::string>& lines) {
+  if (lines.empty()) return "nothing is wrong";
+  std::string out;
+  for (std::size_t i = 0; i < std::min(kShown, lines.size()); ++i)
+    out += (i ? "\n" : "") + lines[i];
+  if (lines.size() > kShown) out += fmt::format("\nand {} more", lines.size() - kShown);
+  return out;
+}
+
+/// 0: nothing is wrong; 1: something is.
+int say_examined(const Common& common, const Examined& examined) {
+  const store::Findings& found = examined.found;
+  const bool fine = found.lines.empty();
+  say(common.json,
+      {{"holds", fine},
+       {"findings", found.lines},
+       {"objects", found.objects},
+       {"bytes", found.bytes},
+       {"audit_rows", found.audit.number},
+       {"audit_hash", found.audit.hash},
+       {"anchors", examined.anchors.anchors},
+       {"covered_since_utc_us", found.covered_since_utc_us}},
+      fmt::format("{}\n{} objects, {} bytes, {} rows of the audit trail{}\n{}",
+                  findings_text(found.lines), found.objects, found.bytes, found.audit.number,
+                  fine ? "; it ends with " + found.audit.hash.substr(0, 16) : "",
+                  coverage_text(examined)));
+  return fine ? 0 : 1;
+}
+
+/// Rows that are not covered are a finding, but not of a backup that is from before they were.
+enum class Covered { must_be, may_be };
+
+core::Result<int> verified(const Common& common, Covered covered,
+                           const std::optional<std::filesystem::path>& anchors = {}) {
+  auto data = open_data(common.data);
+  if (!data) return data.error();
+  auto examined = examine(*data, core::terminal_progress("Looking over"), anchors);
+  if (!examined) return examined.error();
+  if (covered == Covered::must_be && examined->found.covered_since_utc_us == 0)
+    examined->found.lines.push_back("audit trail: does not cover the rows of tables");
+  return say_examined(common, *examined);
+}
+
+}  // namespace
+
+Run backup_command(CLI::App& command) {
+  const auto common = common_options(command);
+  const auto out = std::make_shared<std::filesystem::path>();
+  command.add_option("--out", *out, "The new folder; it must not exist")->required();
+  return [=]() -> core::Result<int> {
+    auto made = back_up(common->data, *out, core::terminal_progress("Backup"));
+    if (!made) return made.error();
+    say(common->json, {{"backup", out->string()}, {"rows", (*made)["rows"]}},
+        fmt::format("{}: {} trials, {} objects, {} bytes", out->string(),
+                    (*made)["rows"]["trials"].dump(), (*made)["rows"]["objects"].dump(),
+                    (*made)["object_bytes"].dump()));
+    return 0;
+  };
+}
+
+Run restore_command(CLI::App& command) {
+  const auto common = common_options(command);
+  const auto from = std::make_shared<std::filesystem::path>();
+  command.add_option("--from", *from, "The backup's folder")->required();
+  return [=]() -> core::Result<int> {
+    auto target = new_database(common->data);
+    if (!target) return target.error();
+    auto made = restore(*from, common->data, *target, core::terminal_progress("Restore"));
+    if (!made) return made.error();
+    return verified(*common, Covered::may_be);
+  };
+}
+
+Run verify_command(CLI::App& command) {
+  const auto common = common_options(command);
+  const auto anchors = std::make_shared<std::filesystem::path>();
+  command.add_option("--anchors", *anchors,
+                     "Copy of the anchors from elsewhere (serve --anchors-to): a file, or lines of "
+                     "a system's journal");
+  return [=]() {
+    return verified(*common, Covered::must_be,
+                    anchors->empty() ? std::nullopt : std::optional(*anchors));
+  };
+}
+
+Run anchor_command(CLI::App& command) {
+  const auto common = common_options(command);
+  return [=]() -> core::Result<int> {
+    auto data = open_data(common->data);
+    if (!data) return data.error();
+    auto wrong = check_anchors(common->data, data->secrets.audit_key());
+    if (!wrong) return wrong.error();
+    const auto act = command_act("anchor", {{"findings", wrong->findings}});
+    auto noted = data->store.write(
+        [&](store::Writing& tx) { return store::add_act(tx, data->store.audit_key(), act); });
+    if (!noted) return noted.error();
+    if (auto begun = begin_anchors_again(*data); !begun) return begun.error();
+    say(common->json, {{"findings", wrong->findings}},
+        "the anchors begin again with the trail's present end; the trail says so");
+    return 0;
+  };
+}
+
+Run migrate_command(CLI::App& command) {
+  const auto common = common_options(command);
+  return [=]() -> core::Result<int> {
+    const auto database = database_of(common->data);
+    if (!database) return database.error();
+    auto before = schema_of(*database);
+    if (!before) return before.error();
+    auto data = open_data(common->data);
+    if (!data) return data.error();
+    auto after = schema_of(*database);
+    if (!after) return after.error();
+    say(common->json, {{"before", *before}, {"after", *after}},
+        *before == *after ? fmt::format("the database has schema {}: it is up to date", *after)
+                          : fmt::format("the database went from schema {} to {}", *before, *after));
+    return 0;
+  };
+}
+
+}  // namespace app
+}  // namespace tractus

@@ -1,0 +1,309 @@
+#include "server/app/running_server.hpp"
+
+#include <fmt/format.h>
+#include <malloc.h>
+#include <pthread.h>
+#include <signal.h>
+
+#include <charconv>
+#include <chrono>
+#include <cstdio>
+#include <thread>
+
+#include "core/bytes.hpp"
+#include "core/clock.hpp"
+#include "core/json.hpp"
+#include "db/store/people/consent.hpp"
+#include "server/api/backend.hpp"
+#include "server/api/people/oidc.hpp"
+#include "server/api/refusals.hpp"
+#include "server/api/service.hpp"
+#include "server/api/trials/uploads.hpp"
+#include "server/app/anchoring.hpp"
+#include "server/app/backups.hpp"
+#include "server/app/import_process.hpp"
+#include "server/app/log.hpp"
+#include "server/http/certificates.hpp"
+#include "server/http/static_files.hpp"
+#include "server/jobs/runner.hpp"
+#include "server/live/hub.hpp"
+
+namespace tractus {
+namespace app {
+namespace {
+
+/// SIGTERM and SIGINT are kept from every thread (call before any starts) and taken by one that
+/// waits for them.
+class StopSignals {
+ public:
+  StopSignals() {
+    sigemptyset(&signals_);
+    sigaddset(&signals_, SIGTERM);
+    sigaddset(&signals_, SIGINT);
+    sigaddset(&signals_, SIGUSR1);  // our own, to end the waiting
+    pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
+    signal(SIGPIPE, SIG_IGN);
+  }
+  void watch(http::Server& server) {
+    thread_ = std::thread([this, &server] {
+      int which = 0;
+      sigwait(&signals_, &which);
+      server.stop();
+    });
+  }
+  ~StopSignals() {
+    if (!thread_.joinable()) return;
+    pthread_kill(thread_.native_handle(), SIGUSR1);
+    thread_.join();
+  }
+  StopSignals(const StopSignals&) = delete;
+  StopSignals& operator=(const StopSignals&) = delete;
+
+ private:
+  sigset_t signals_;
+  std::thread thread_;
+};
+
+http::Service service_of(api::Backend& backend, const std::optional<std::filesystem::path>& web) {
+  const auto is_api = [](const http::RequestHead& head) {
+    return head.path == "/api" || head.path.starts_with("/api/");
+  };
+  const auto pages = [web](const http::RequestHead& head) {
+    if (web) return http::StaticFiles(*web).answer(head);
+    return http::error_response(404, "not_found",
+                                "this server has no pages; see /api/openapi.json");
+  };
+  return {
+      .admit = [&backend, is_api](
+                   const http::RequestHead& head) -> std::variant<http::Admitted, http::Response> {
+        if (is_api(head)) return api::admit(backend, api::routes(), head);
+        return http::error_response(405, "bad_input", "pages take no body");
+      },
+      .handle =
+          [&backend, is_api, pages](const http::Request& request) {
+            if (!is_api(request)) return pages(request);
+            http::Response response = api::answer(backend, api::routes(), request);
+            // What a large body took is not kept for the next one.
+            if (!request.body_file.empty()) ::malloc_trim(0);
+            return response;
+          },
+      .converse =
+          [&backend](const http::RequestHead& head) {
+            return api::converse(backend, api::routes(), head);
+          },
+      .lane = [](const http::RequestHead& head) { return api::lane_of(api::routes(), head); },
+      .standing =
+          [&backend](const http::RequestHead& head) {
+            return api::standing(backend, api::routes(), head);
+          }};
+}
+
+std::string address_of(const ServeOptions& options, std::uint16_t port) {
+  const bool six = options.http.address.find(':') != std::string::npos;
+  const std::string address = six ? "[" + options.http.address + "]" : options.http.address;
+  return fmt::format("{}://{}:{}", options.http.tls ? "https" : "http", address, port);
+}
+
+void say_where(const ServeOptions& options, std::uint16_t port) {
+  const std::string url = address_of(options, port) + "/";
+  if (options.json)
+    fmt::print("{}\n", core::Json{{"listening", url}}.dump());
+  else
+    fmt::print("listening on {}\n", url);
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+core::Result<std::pair<std::string, std::uint16_t>> listening_address(const std::string& text) {
+  const core::Error wrong{
+      core::Errc::bad_input,
+      fmt::format("--listen {}: ADDRESS:PORT is expected, as 127.0.0.1:8480", text)};
+  const auto colon = text.rfind(':');
+  if (colon == std::string::npos || colon == 0) return wrong;
+  std::string address = text.substr(0, colon);
+  if (address.front() == '[' && address.back() == ']')
+    address = address.substr(1, address.size() - 2);
+  std::uint16_t port = 0;
+  const char* end = text.data() + text.size();
+  const auto [stopped, failure] = std::from_chars(text.data() + colon + 1, end, port);
+  if (failure != std::errc() || stopped != end) return wrong;
+  return std::pair(address, port);
+}
+
+namespace {
+
+bool is_loopback(const std::string& address) {
+  return address.starts_with("127.") || address == "::1";
+}
+
+/// With the certificate to serve by, unless it goes plain.
+core::Result<ServeOptions> secured(ServeOptions options) {
+  if (options.http.behind_proxy) return options;
+  if (options.plain) {
+    if (is_loopback(options.http.address)) return options;
+    return core::Error{core::Errc::bad_input,
+                       fmt::format("--plain: {} is reached by others; passwords and trials would "
+                                   "go unprotected. Leave --plain out, or use --behind-proxy",
+                                   options.http.address)};
+  }
+  if (options.certificate) {
+    options.http.tls = options.certificate;
+    return options;
+  }
+  const auto folder = options.data / kCertificates;
+  auto names = http::own_names();
+  names.insert(names.end(), options.hosts.begin(), options.hosts.end());
+  if (auto made = http::ensure_certificates(folder, names, core::utc_us() / 1'000'000); !made)
+    return made.error();
+  const auto files = http::certificate_files(folder);
+  options.http.tls.emplace(files.certificate, files.key);
+  return options;
+}
+
+}  // namespace
+
+namespace {
+
+/// Where this process puts large bodies, answers and temporary files: a folder of its own below
+/// DATA/scratch.
+struct Scratch {
+  std::filesystem::path path;
+  ServingLock lock;  ///< held as long as the process lives
+};
+
+/// Takes a new folder and removes those of processes that died: what they left may hold a patient's
+/// scan.
+core::Result<Scratch> own_scratch(const std::filesystem::path& data) {
+  const std::filesystem::path all = data / "scratch", own = all / core::new_id();
+  std::error_code failure;
+  std::filesystem::create_directories(all, failure);
+  for (const auto& left : std::filesystem::directory_iterator(all, failure))
+    if (ServingLock::take(left.path(), false)) std::filesystem::remove_all(left.path(), failure);
+  if (!failure) std::filesystem::create_directory(own, failure);
+  if (!failure) std::filesystem::permissions(own, std::filesystem::perms::owner_all, failure);
+  if (failure)
+    return core::Error{core::Errc::io, own.string() + ": cannot be made: " + failure.message()};
+  auto lock = ServingLock::take(own, false);
+  if (!lock) return lock.error();
+  return Scratch{own, std::move(*lock)};
+}
+
+std::string fingerprint_of(const api::Secrets::Key& key) {
+  return core::sha256(core::bytes_of("key of pseudonyms " + core::hex(key))).substr(0, 32);
+}
+
+/// The key of pseudonyms, made where there never was one. Where the one that was is not there,
+/// nothing is exported, and the log says so: another key would give everybody another name.
+core::Result<std::optional<api::Secrets::Key>> pseudonym_key_of(const std::filesystem::path& path,
+                                                                store::Store& store) {
+  using Maybe = std::optional<api::Secrets::Key>;
+  auto known = store.read([](store::Reading& tx) { return store::pseudonym_key_known(tx); });
+  if (!known) return known.error();
+  std::error_code failure;
+  const bool there = std::filesystem::exists(path, failure);
+  if (!there && !known->empty()) {
+    log_line({{"what", "the key of pseudonyms is missing: nothing can be exported"}});
+    return Maybe();
+  }
+  if (!there) {
+    std::filesystem::create_directories(path.parent_path(), failure);
+    if (auto made = make_key_file(path); !made) return made.error();
+  }
+  auto key = read_key_file(path);
+  if (!key) return key.error();
+  if (known->empty()) {
+    auto noted = store.write([&](store::Writing& tx) {
+      return store::note_pseudonym_key(tx, fingerprint_of(*key), core::utc_us());
+    });
+    if (!noted) return noted.error();
+  } else if (*known != fingerprint_of(*key)) {
+    log_line({{"what", "another key of pseudonyms lies there: nothing can be exported"}});
+    return Maybe();
+  }
+  return Maybe(*key);
+}
+
+}  // namespace
+
+core::Result<void> serve(const ServeOptions& given) {
+  StopSignals signals;
+  auto data = open_data(given.data);
+  if (!data) return data.error();
+  auto lock = ServingLock::take(given.data, data->store.shared());
+  if (!lock) return lock.error();
+  const auto secure = secured(given);
+  if (!secure) return secure.error();
+  remove_left_overs(given.data, !data->store.shared());
+  const auto scratch = own_scratch(given.data);
+  if (!scratch) return scratch.error();
+  ::setenv("TMPDIR", scratch->path.c_str(), 1);  // temporary files of every part of this program
+  const auto space = std::make_shared<http::ScratchSpace>(scratch->path);
+  ServeOptions options = *secure;
+  options.http.scratch = space.get();
+  if (options.web && !std::filesystem::is_regular_file(*options.web / "index.html"))
+    return core::Error{core::Errc::not_found,
+                       options.web->string() + ": no index.html there; build the web pages first"};
+  std::optional<api::OidcSettings> oidc_settings;
+  if (options.oidc) {
+    auto settings = api::read_oidc_settings(*options.oidc);
+    if (!settings) return settings.error();
+    oidc_settings = std::move(*settings);
+  }
+  const auto pseudonym_key = pseudonym_key_of(
+      options.pseudonym_key.value_or(given.data / "pseudonyms" / "key"), data->store);
+  if (!pseudonym_key) return pseudonym_key.error();
+  auto runner = jobs::Runner::start(
+      data->store, data->objects, {data->secrets.case_key(), *pseudonym_key},
+      [](const std::string& line) {
+        log_line({{"what", "job"}, {"line", line}});
+      },
+      options.job_lease);
+  if (!runner) return runner.error();
+  BackupFolder backups(given.data, given.backups.value_or(given.data / "backups"));
+  if (auto fine = backups.tidy(!data->store.shared()); !fine) return fine;
+  api::Backend backend{.store = data->store,
+                       .objects = data->objects,
+                       .partials = data->partials,
+                       .now_utc_us = core::utc_us,
+                       .work_waits = [&runner] { (*runner)->wake(); },
+                       .secrets = data->secrets,
+                       .secure_cookies = options.http.tls || options.http.behind_proxy,
+                       .log = log_line,
+                       .logs_requests = options.log_requests,
+                       .backups = &backups,
+                       .import_volume = import_volume_in_subprocess,
+                       .scratch = space,
+                       .pseudonym_key = *pseudonym_key};
+  live::Hub hub({.store = data->store,
+                 .now_utc_us = core::utc_us,
+                 .refused =
+                     [&backend](const live::StationRef& station, const std::string& why) {
+                       const api::Caller caller{api::Role::station, station.id, station.name, ""};
+                       api::note_refusal(backend, caller, "", "liveStation", "", why);
+                     },
+                 .log = log_line});
+  backend.live = &hub;
+  if (auto begun = begin_trail(*data); !begun) return begun;
+  if (auto fine = api::reconcile_uploads(backend); !fine) return fine;
+  if (auto started = hub.start(); !started) return started;
+  auto server = http::Server::open(options.http, service_of(backend, options.web));
+  if (!server) return server.error();
+  std::optional<api::Oidc> oidc;
+  if (oidc_settings) {
+    if (oidc_settings->base.empty()) oidc_settings->base = address_of(options, server->port());
+    backend.oidc = &oidc.emplace(std::move(*oidc_settings));
+  }
+  signals.watch(*server);
+  say_where(options, server->port());
+  {
+    const Anchoring anchoring(*data, options.anchor_places);
+    log_line({{"what", "serving"}, {"tls", options.http.tls.has_value()}});
+    server->run();
+  }
+  log_line({{"what", "stopped"}});
+  return {};
+}
+
+}  // namespace app
+}  // namespace tractus

@@ -1,0 +1,147 @@
+/// init, enrol, publish: what is done before and beside serving.
+#include <fmt/format.h>
+
+#include "core/clock.hpp"
+#include "core/file.hpp"
+#include "db/store/people/accounts.hpp"
+#include "server/api/people/authentication.hpp"
+#include "server/app/anchors.hpp"
+#include "server/app/command.hpp"
+#include "server/app/data_folder.hpp"
+#include "server/app/publish.hpp"
+#include "server/http/certificates.hpp"
+
+namespace tractus {
+namespace app {
+namespace {
+
+/// The first line of a file, or a generated one.
+core::Result<std::string> password_from(const std::string& file) {
+  if (file.empty()) return core::hex(core::random_bytes(12));
+  auto bytes = core::read_file(file, 4096);
+  if (!bytes) return bytes.error();
+  std::string line(core::text_of(*bytes));
+  line = line.substr(0, line.find_first_of("\r\n"));
+  if (line.size() < 12 || line.size() > api::kMaxPassword)
+    return core::Error{core::Errc::bad_input,
+                       fmt::format("{}: line 1: {} characters, 12 to {} are expected", file,
+                                   line.size(), api::kMaxPassword)};
+  return line;
+}
+
+Outcome make_account(DataFolder& data, const std::string& name, const std::string& password) {
+  auto hash = api::password_hash(password);
+  if (!hash) return hash.error();
+  const store::AuditScope acting(command_act("init", {{"name", name}}));
+  return data.store.write([&](store::Writing& tx) {
+    return store::add_account(tx, {core::new_id(), name, "admin", *hash}, core::utc_us());
+  });
+}
+
+}  // namespace
+
+Run init_command(CLI::App& command) {
+  const auto common = common_options(command);
+  const auto name = std::make_shared<std::string>("admin");
+  const auto file = std::make_shared<std::string>();
+  command.add_option("--admin-name", *name, "The first account")->capture_default_str();
+  const auto hosts = std::make_shared<std::vector<std::string>>();
+  command.add_option("--host", *hosts,
+                     "Name or address that stations and browsers reach the server by; repeat it");
+  command.add_option("--password-file", *file,
+                     "Its password is the first line; without, one is made and printed once");
+  return [=]() -> core::Result<int> {
+    if (name->empty() || name->size() > api::kMaxName)
+      return core::Error{
+          core::Errc::bad_input,
+          fmt::format("--admin-name: 1 to {} characters are expected", api::kMaxName)};
+    auto password = password_from(*file);
+    if (!password) return password.error();
+    auto data = make_data(common->data);
+    if (!data) return data.error();
+    if (auto begun = begin_trail(*data); !begun) return begun.error();
+    if (auto made = make_account(*data, *name, *password); !made) return made.error();
+    auto names = http::own_names();
+    names.insert(names.end(), hosts->begin(), hosts->end());
+    const auto tls = common->data / kCertificates;
+    if (auto made = http::ensure_certificates(tls, names, core::utc_us() / 1'000'000); !made)
+      return made.error();
+    const auto authority = http::certificate_files(tls).authority;
+    auto print = http::fingerprint(authority);
+    if (!print) return print.error();
+    core::Json said{{"data", common->data.string()},
+                    {"name", *name},
+                    {"authority", authority.string()},
+                    {"authority_sha256", *print}};
+    std::string line =
+        fmt::format("{}: account {} is ready; stations and browsers trust {} (SHA-256 {})",
+                    common->data.string(), *name, authority.string(), *print);
+    if (file->empty()) {
+      said["password"] = *password;
+      line += fmt::format("; its password, shown only now: {}", *password);
+    }
+    say(common->json, said, line);
+    return 0;
+  };
+}
+
+namespace {
+
+/// A new file that only its owner reads.
+Outcome write_secret(const std::filesystem::path& path, const std::string& text) {
+  if (std::filesystem::exists(path))
+    return core::Error{core::Errc::conflict, path.string() + ": exists already"};
+  return core::write_file(path, core::bytes_of(text + "\n"));
+}
+
+}  // namespace
+
+Run enrol_command(CLI::App& command) {
+  const auto common = common_options(command);
+  const auto name = std::make_shared<std::string>();
+  const auto out = std::make_shared<std::filesystem::path>();
+  command.add_option("--name", *name, "The station's name")->required();
+  command.add_option("--out", *out, "File for its token; must not exist")->required();
+  return [=]() -> core::Result<int> {
+    if (name->empty() || name->size() > api::kMaxName)
+      return core::Error{core::Errc::bad_input,
+                         fmt::format("--name: 1 to {} characters are expected", api::kMaxName)};
+    auto data = open_data(common->data);
+    if (!data) return data.error();
+    const std::string token = api::new_token();
+    if (auto written = write_secret(*out, token); !written) return written.error();
+    const store::AuditScope acting(command_act("enrol", {{"name", *name}}));
+    auto added = data->store.write([&](store::Writing& tx) {
+      return store::add_station(tx, {core::new_id(), *name}, api::token_hash(token),
+                                core::utc_us());
+    });
+    if (!added) {
+      std::filesystem::remove(*out);
+      return added.error();
+    }
+    const std::string signer = data->secrets.case_key().public_hex;
+    say(common->json, {{"station", *name}, {"token_file", out->string()}, {"case_signer", signer}},
+        fmt::format("station {} is enrolled; its token is in {}; to take cases made on this "
+                    "server: tractus-station trust --signer {}",
+                    *name, out->string(), signer));
+    return 0;
+  };
+}
+
+Run publish_command(CLI::App& command) {
+  const auto common = common_options(command);
+  const auto bundle = std::make_shared<std::filesystem::path>();
+  command.add_option("bundle", *bundle, "The case's folder, as `tractus carve` made it")
+      ->required();
+  return [=]() -> core::Result<int> {
+    auto data = open_data(common->data);
+    if (!data) return data.error();
+    auto id = publish(*data, *bundle);
+    if (!id) return id.error();
+    say(common->json, {{"case_id", *id}}, "published case " + *id);
+    return 0;
+  };
+}
+
+}  // namespace app
+}  // namespace tractus

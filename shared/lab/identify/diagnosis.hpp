@@ -1,0 +1,88 @@
+/// Which effect is missing from a model: the answer of the lab's engine.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lab/identify/fit.hpp"
+
+namespace tractus::lab {
+
+enum class Verdict {
+  complete,     ///< the model is at the noise floor: nothing is missing, nothing is added
+  missing,      ///< the effects found explain the rest
+  partly,       ///< effects found, more remains
+  unexplained,  ///< something is missing that is not in the catalogue
+};
+std::string_view name(Verdict verdict);
+
+struct FoundParameter {
+  std::string name;               ///< as in a model file: "friction_N"
+  std::vector<double> value, sd;  ///< one per component
+};
+
+struct FoundEffect {
+  std::string id;
+  double probability = 0.0;
+  std::vector<FoundParameter> parameters;
+};
+
+/// An effect of the catalogue by itself on top of the base (or, once some were found, on top of
+/// the others found).
+struct Ranked {
+  std::string id;
+  double probability = 0.0;
+  std::optional<double> held_out_rmse;  ///< nothing when it was not tried
+  std::string note;  ///< "not excited: …", "at the edge of its range", or empty
+};
+
+/// The error as effects are added one by one, in the order of what they bring.
+struct Step {
+  std::string model;  ///< "base", "+ coulomb_friction"
+  double rmse = 0.0, held_out_rmse = 0.0;
+};
+
+struct DiscriminatingExperiment {
+  std::vector<std::string> between;  ///< two effects, or one and "nothing"
+  std::string recording;             ///< what to record, in words
+  double expected_gain = 0.0;        ///< in the probability of the right answer, 0 … 1
+};
+
+struct Diagnosis {
+  Verdict verdict = Verdict::complete;
+  /// That the set of effects named (or none) is right; of `unexplained`, that it is in no
+  /// catalogue.
+  double probability = 0.0;
+  struct {
+    double rmse = 0.0, held_out_rmse = 0.0, noise_floor = 0.0;
+  } base;
+  std::vector<FoundEffect> effects;
+  std::vector<Ranked> ranking;  ///< most probable first; the whole catalogue
+  std::vector<Step> steps;
+  std::vector<std::pair<std::string, std::string>> confounded;
+  std::optional<DiscriminatingExperiment> discriminating_experiment;
+  std::string depends_on;  ///< what an unexplained rest varies with, in words; else empty
+  double dependence_explained =
+      0.0;  ///< share of the rest over the floor that recorded signals predict
+  std::vector<std::string> notes;  ///< on the recording and on how the answer was reached
+  Fit base_fit;                    ///< of the model as given
+  Fit final_fit;                   ///< with the effects named; the base's when nothing is
+};
+
+struct DiagnoseOptions {
+  int threads = 2;
+  int max_effects = 3;
+  std::vector<std::string> only;  ///< if not empty: try these effects alone
+  /// Told the ranking once, early: every effect by itself was tried, none together.
+  std::function<void(const std::vector<Ranked>&)> early = {};
+};
+
+/// Errors: bad_input when there is nothing to judge by (no residuals, an unknown effect asked for);
+/// cancelled.
+core::Result<Diagnosis> diagnose(const Problem& problem, const DiagnoseOptions& options = {},
+                                 const core::Progress& progress = {});
+
+}  // namespace tractus::lab

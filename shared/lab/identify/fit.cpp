@@ -1,0 +1,282 @@
+#include "lab/identify/fit.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "lab/identify/effect_screen.hpp"
+#include "lab/identify/fit_report.hpp"
+#include "lab/identify/parallel.hpp"
+
+namespace tractus {
+namespace lab {
+namespace {
+
+using core::Errc;
+using core::Error;
+using core::Result;
+
+constexpr int kFewestTrials = 4;  // fewer: stretches of time are held out
+constexpr int kStretches = 8;     // over all trials
+constexpr double kKnownTogether = 0.98;
+constexpr double kMostOfOneFold = 0.9;
+constexpr double kFewClusters = 3.0;  // Student's 95 % point over the normal's, squared, to 1/k
+constexpr double kUninformed = 0.95;  // of what was believed beforehand is left
+
+/// Which residuals a fold holds out.
+struct Fold {
+  int trial;
+  double from_s, to_s;  // of the trial's time at the full rate
+  Eigen::Index first, count;
+};
+
+std::vector<Fold> folds_of(const Residual& residual) {
+  const Problem& problem = residual.problem();
+  std::vector<Fold> out;
+  const int pieces = residual.trials() >= kFewestTrials ? 1 : kStretches / residual.trials();
+  for (int k = 0; k < residual.trials(); ++k) {
+    const Eigen::Index first = residual.offset(k), all = residual.offset(k + 1) - first;
+    for (int p = 0; p < pieces; ++p) {
+      const Eigen::Index from = all * p / pieces, to = all * (p + 1) / pieces;
+      const double length = problem.seconds(k);
+      out.push_back({k, length * p / pieces, length * (p + 1) / pieces, first + from, to - from});
+    }
+  }
+  return out;
+}
+
+/// Values without a fold: one step of Newton's from the whole's, in the directions that the rest
+/// informs too. (A number that one trial alone informs, as a layer that only it entered, cannot be
+/// predicted from the others; it stays. So does the place of a border: the loss has no slope in it,
+/// and every trial that crosses it tells it alike.)
+std::vector<double> without(const Solution& at, const Gram& whole, const Gram& fold) {
+  std::vector<double> values = at.values;
+  std::vector<Eigen::Index> moved;
+  for (std::size_t k = 0; k < values.size(); ++k)
+    if (!(at.parameters[k].rough > 0.0)) moved.push_back(Eigen::Index(k));
+  if (moved.empty()) return values;
+  const Eigen::MatrixXd all = whole.a(moved, moved), part = fold.a(moved, moved);
+  const Eigen::VectorXd unit = all.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  Eigen::MatrixXd a = unit.asDiagonal() * all * unit.asDiagonal();
+  a.diagonal().array() += 1e-12;
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
+      unit.asDiagonal() * part * unit.asDiagonal(), a);
+  Eigen::VectorXd along = eigen.eigenvectors().transpose() * (unit.asDiagonal() * fold.b(moved));
+  for (Eigen::Index k = 0; k < along.size(); ++k) {
+    const double share = eigen.eigenvalues()(k);  // of what is known of this direction
+    along(k) = share > kMostOfOneFold ? 0.0 : along(k) / (1.0 - share);
+  }
+  const Eigen::VectorXd step = unit.asDiagonal() * (eigen.eigenvectors() * along);
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    const auto k = std::size_t(moved[i]);
+    const Parameter& p = at.parameters[k];
+    values[k] =
+        std::clamp(value_at(p, coordinate(p, values[k]) + step(Eigen::Index(i))), p.low, p.high);
+  }
+  return values;
+}
+
+struct Squares {
+  double trusted = 0.0, trusted_count = 0.0, all = 0.0, all_count = 0.0;
+  std::vector<double> channels;
+};
+
+/// Sums of squares at the full rate between two times of a trial.
+Squares squares(const Problem& problem, const Structure& structure, std::span<const double> values,
+                int trial, double from_s, double to_s) {
+  const Residuals r = problem.full_rate(structure, values, trial);
+  Squares out;
+  out.channels.assign(r.channels.size(), 0.0);
+  for (std::size_t k = 0; k < r.t_s.size(); ++k) {
+    const double t = r.t_s[k] - r.t_s.front();
+    if (t < from_s || t > to_s) continue;
+    for (std::size_t c = 0; c < r.channels.size(); ++c)
+      out.channels[c] += r.channels[c][k] * r.channels[c][k];
+    const double square = r.channels[0][k] * r.channels[0][k];
+    out.all += square;
+    out.all_count += 1.0;
+    if (r.trusted[k] > 0.0) out.trusted += square, out.trusted_count += 1.0;
+  }
+  return out;
+}
+
+double root_mean(double sum, double count) { return count > 0.0 ? std::sqrt(sum / count) : 0.0; }
+
+/// Variances of the numbers from how far the trials (or stretches of time) disagree on them, which
+/// counts what neighbouring residuals have in common: the cluster-robust estimate of [Liang1986],
+/// widened for few clusters.
+Eigen::VectorXd disagreement(const Residual& residual, const Solution& at,
+                             const Eigen::VectorXd& weights, const Eigen::MatrixXd& covariance) {
+  const auto folds = folds_of(residual);
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(covariance.rows());
+  if (folds.size() < 2) return out;
+  for (const Fold& fold : folds)
+    out += (covariance * gram(at, weights, fold.first, fold.count).b).cwiseAbs2();
+  const double k = double(folds.size());
+  return out * (k / (k - 1.0)) * (1.0 + kFewClusters / k);
+}
+
+/// Standard errors, correlation and their words.
+void inform(const Residual& residual, const Solution& at, const Eigen::VectorXd& weights,
+            const Gram& whole, Fit& fit) {
+  const auto n = Eigen::Index(at.values.size());
+  Eigen::MatrixXd covariance(n, n);
+  for (Eigen::Index k = 0; k < n; ++k)
+    covariance.col(k) = solve(whole.a, Eigen::VectorXd::Unit(n, k));
+  const Eigen::VectorXd robust = disagreement(residual, at, weights, covariance);
+  const double inflation = std::max(1.0, at.mean_square());
+  fit.correlation = Eigen::MatrixXd::Zero(n, n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const Parameter& p = at.parameters[std::size_t(k)];
+    Estimate e{p.pointer, at.values[std::size_t(k)], 0.0, true, false};
+    const double own =
+        whole.a(k, k) - (std::isfinite(p.prior_sd) ? 1.0 / (p.prior_sd * p.prior_sd) : 0.0);
+    const double sd = std::sqrt(std::max({0.0, covariance(k, k) * inflation, robust(k)}));
+    e.informed = own > 0.0 && covariance(k, k) > 0.0 &&
+                 !(std::sqrt(covariance(k, k)) > kUninformed * p.prior_sd);
+    e.sd = !e.informed     ? std::numeric_limits<double>::infinity()
+           : p.logarithmic ? sd * e.value
+                           : sd;
+    const double u = coordinate(p, e.value), low = coordinate(p, p.low),
+                 high = coordinate(p, p.high);
+    e.at_bound = u - low < 1e-6 * (high - low) || high - u < 1e-6 * (high - low);
+    for (Eigen::Index j = 0; j < n; ++j)
+      if (covariance(k, k) > 0.0 && covariance(j, j) > 0.0)
+        fit.correlation(k, j) = covariance(k, j) / std::sqrt(covariance(k, k) * covariance(j, j));
+    if (!e.informed)
+      fit.remarks.push_back(fmt::format(
+          "{}: these recordings say nothing of it; it stays near {:.4g}", e.pointer, p.start));
+    else if (e.at_bound)
+      fit.remarks.push_back(
+          fmt::format("{}: ends at {:.4g}, the edge of its range", e.pointer, e.value));
+    fit.estimates.push_back(std::move(e));
+  }
+  for (Eigen::Index k = 0; k < n; ++k)
+    for (Eigen::Index j = k + 1; j < n; ++j)
+      if (std::abs(fit.correlation(k, j)) > kKnownTogether)
+        fit.remarks.push_back(fmt::format("{} and {}: known only together (correlation {:.3f})",
+                                          fit.estimates[std::size_t(k)].pointer,
+                                          fit.estimates[std::size_t(j)].pointer,
+                                          fit.correlation(k, j)));
+}
+
+void hold_out(const Residual& residual, const Solution& at, const Gram& whole,
+              const Eigen::VectorXd& weights, Fit& fit) {
+  const Problem& problem = residual.problem();
+  const auto folds = folds_of(residual);
+  fit.folds = residual.trials() >= kFewestTrials ? "trials" : "stretches of time";
+  fit.trial_score.resize(Eigen::Index(folds.size()));
+  std::vector<Squares> held(folds.size());
+  parallel(int(folds.size()), residual.threads(), [&](int f) {
+    const Fold& fold = folds[std::size_t(f)];
+    const auto values = without(at, whole, gram(at, weights, fold.first, fold.count));
+    held[std::size_t(f)] =
+        squares(problem, at.structure, values, fold.trial, fold.from_s, fold.to_s);
+    Eigen::VectorXd r(problem.residual_size(fold.trial));
+    problem.residuals(at.structure, values, fold.trial, r);
+    fit.trial_score(f) =
+        robust_loss(r.segment(fold.first - residual.offset(fold.trial), fold.count), at.scale) /
+        double(std::max<Eigen::Index>(1, fold.count));
+  });
+  double sum = 0.0, count = 0.0;
+  std::vector<double> by_trial(std::size_t(residual.trials()), 0.0), counts = by_trial;
+  for (std::size_t f = 0; f < folds.size(); ++f) {
+    sum += held[f].trusted, count += held[f].trusted_count;
+    by_trial[std::size_t(folds[f].trial)] += held[f].trusted;
+    counts[std::size_t(folds[f].trial)] += held[f].trusted_count;
+  }
+  fit.held_out_rmse = root_mean(sum, count);
+  for (std::size_t k = 0; k < by_trial.size(); ++k)
+    fit.trials[k].held_out_rmse = root_mean(by_trial[k], counts[k]);
+}
+
+}  // namespace
+
+Fit report(const Residual& residual, Solution& at, bool held_out) {
+  const Problem& problem = residual.problem();
+  differentiate(residual, at);
+  Fit fit;
+  fit.structure = at.structure;
+  fit.values = at.values;
+  fit.converged = at.converged;
+  fit.noise_floor = problem.channels().front().noise_floor;
+  fit.whitened_rms = std::sqrt(at.mean_square());
+  const Eigen::VectorXd weights = robust_weights(at.residual, at.scale);
+  Gram whole = gram(at, weights, 0, residual.size());
+  add_prior(at, whole);
+  inform(residual, at, weights, whole, fit);
+  std::vector<Squares> sums(std::size_t(residual.trials()));
+  parallel(residual.trials(), residual.threads(), [&](int k) {
+    sums[std::size_t(k)] = squares(problem, at.structure, at.values, k, -1.0, 1e18);
+  });
+  Squares total;
+  total.channels.assign(problem.channels().size(), 0.0);
+  for (int k = 0; k < residual.trials(); ++k) {
+    const Squares& s = sums[std::size_t(k)];
+    fit.trials.push_back({problem.trial_id(k), root_mean(s.trusted, s.trusted_count),
+                          std::numeric_limits<double>::quiet_NaN()});
+    total.trusted += s.trusted, total.trusted_count += s.trusted_count;
+    total.all += s.all, total.all_count += s.all_count;
+    for (std::size_t c = 0; c < s.channels.size(); ++c) total.channels[c] += s.channels[c];
+  }
+  fit.rmse = root_mean(total.trusted, total.trusted_count);
+  fit.rmse_all = root_mean(total.all, total.all_count);
+  for (const double c : total.channels) fit.channel_rmse.push_back(root_mean(c, total.all_count));
+  fit.held_out_rmse = std::numeric_limits<double>::quiet_NaN();
+  if (held_out) hold_out(residual, at, whole, weights, fit);
+  return fit;
+}
+
+double held_out_rmse(const Residual& residual, const Solution& at) {
+  const Eigen::VectorXd weights = robust_weights(at.residual, at.scale);
+  Gram whole = gram(at, weights, 0, residual.size());
+  add_prior(at, whole);
+  Fit fit;
+  fit.trials.resize(std::size_t(residual.trials()));
+  hold_out(residual, at, whole, weights, fit);
+  return fit.held_out_rmse;
+}
+
+Solution fit_base(const Residual& residual) {
+  std::vector<double> start;
+  for (const Parameter& p : residual.problem().parameters({})) start.push_back(p.start);
+  Solution at = search(residual, {}, std::move(start), nullptr, {.max_iterations = 40});
+  differentiate(residual, at);
+  return polish(residual, std::move(at));
+}
+
+Result<Fit> fit(const Problem& problem, const Structure& structure, const FitOptions& options,
+                const core::Progress& progress) {
+  for (const std::string& id : structure.effects) {
+    const auto& all = problem.candidates();
+    const auto it = std::ranges::find_if(all, [&](const auto& c) { return c.facts.id == id; });
+    if (it == all.end())
+      return Error{Errc::bad_input,
+                   fmt::format("effect '{}': the catalogue of the {} rig has none of that name, "
+                               "or the model has it already",
+                               id, problem.rig())};
+    if (!it->possible)
+      return Error{Errc::bad_input, fmt::format("effect '{}': {}", id, it->why_not)};
+  }
+  const Residual residual(problem, options.threads);
+  if (residual.size() == 0)
+    return Error{Errc::bad_input, "the recordings are too short to compare"};
+  Solution at = fit_base(residual);
+  for (std::size_t k = 0; k < structure.effects.size(); ++k) {
+    if (progress && !progress(double(k) / double(structure.effects.size() + 1)))
+      return Error{Errc::cancelled, "stopped"};
+    const std::string& id = structure.effects[k];
+    at = extend(residual, at, linear_screen(residual, at, id), id, 3);
+    differentiate(residual, at);
+  }
+  at =
+      search(residual, at.structure, at.values, nullptr,
+             {.max_iterations = options.max_iterations, .tolerance = 1e-7, .fresh_jacobian = true});
+  if (progress && !progress(0.9)) return Error{Errc::cancelled, "stopped"};
+  return report(residual, at, options.held_out);
+}
+
+}  // namespace lab
+}  // namespace tractus

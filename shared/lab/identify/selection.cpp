@@ -1,0 +1,347 @@
+#include "lab/identify/selection.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "lab/identify/drift_on_motion.hpp"
+#include "lab/identify/fit_report.hpp"
+
+namespace tractus {
+namespace lab {
+namespace {
+
+/// A further effect must lower the whitened mean square by so much, in units of chance: 2·nats per
+/// number added.
+constexpr double kClearLoss = 30.0;
+/// Singles that are grown into pairs, pairs into triples; effects tried on each.
+constexpr std::size_t kGrown = 4, kTriedOnEach = 6;
+constexpr int kTries = 2;
+/// So many of the best of a size are fitted to the end before they are compared.
+constexpr std::size_t kRefined = 3;
+/// Above this the best of a size is begun anew from other shapes, so many of each effect.
+constexpr double kReshaped = 0.9;
+constexpr int kReshapeTries = 8;
+/// Shifts of all layers that one constant of the sensor explains: so much is left of them, where
+/// there are two and where there are more; what counts as a shift.
+constexpr double kBackOfTwo = 0.05, kBack = 0.15, kShifted_m = 5e-5, kNoWorse = 1.1;
+constexpr std::string_view kBias = "sensor_bias";
+
+/// The price of a number, in nats.
+constexpr double kPrice = 5.0;
+/// Below this a mean square says nothing more: the noise is known no better.
+constexpr double kLeastSquare = 0.02;
+
+double numbers_beyond(const Residual& residual, const Solution& larger, const Solution& smaller) {
+  const Problem& problem = residual.problem();
+  return double(larger.values.size()) - double(smaller.values.size()) +
+         problem.free_per_trial(larger.structure) - problem.free_per_trial(smaller.structure);
+}
+
+/// Mean squares of two structures over what both judge.
+std::pair<double, double> mean_squares(const Solution& a, const Solution& b) {
+  double of_a = 0.0, of_b = 0.0, count = 0.0;
+  for (Eigen::Index k = 0; k < a.residual.size(); ++k) {
+    if (a.residual(k) == 0.0 || b.residual(k) == 0.0) continue;
+    of_a += robust_loss(a.residual.segment(k, 1), a.scale);
+    of_b += robust_loss(b.residual.segment(k, 1), b.scale);
+    count += 1.0;
+  }
+  return {of_a / std::max(1.0, count), of_b / std::max(1.0, count)};
+}
+
+}  // namespace
+
+double cost(const Residual& residual, const Solution& s, const Solution& base) {
+  return 0.5 * residual.problem().selection_thresholds().observations_per_trial *
+             double(residual.trials()) * std::log(std::max(kLeastSquare, s.mean_square())) +
+         0.5 * (s.prior - base.prior) + kPrice * numbers_beyond(residual, s, base);
+}
+
+std::string name(const Structure& structure) {
+  return fmt::format("{}", fmt::join(structure.effects, " + "));
+}
+
+double excess(double mean_square) { return std::max(mean_square - 1.0, 1e-3); }
+
+Selection::Selection(const Residual& residual, const DiagnoseOptions& options,
+                     const core::Progress& progress)
+    : residual_(residual), options_(options), progress_(progress) {}
+
+bool Selection::go_on(double share) {
+  if (progress_ && !progress_(share)) stopped_ = true;
+  return !stopped_;
+}
+
+Solution& Selection::fitted(const Solution& from, const std::string& effect, int tries) {
+  const std::string key = name(plus(from.structure, effect));
+  const auto known = tried_.find(key);
+  Solution found = extend(residual_, from, linear_screen(residual_, from, effect), effect, tries);
+  if (known != tried_.end() && known->second.mean_square() <= found.mean_square())
+    return known->second;
+  return tried_[key] = std::move(found);
+}
+
+bool Selection::clearly_better(const Solution& larger, const Solution& smaller,
+                               double share) const {
+  const auto [after, before] = mean_squares(larger, smaller);
+  const double numbers = std::max(1.0, numbers_beyond(residual_, larger, smaller));
+  const double gained = double(residual_.size()) * (before - after) / std::max(1.0, after) +
+                        smaller.prior - larger.prior;
+  return gained > kClearLoss * numbers &&
+         before - after > residual_.problem().selection_thresholds().least_gain_share * before &&
+         before - after > share * excess(base().mean_square());
+}
+
+bool Selection::clearly_better(const Solution& larger, const Solution& smaller) const {
+  return clearly_better(larger, smaller,
+                        residual_.problem().selection_thresholds().least_gain_of_excess);
+}
+
+bool Selection::admissible(const Solution& at) const {
+  for (const Candidate& candidate : residual_.problem().candidates()) {
+    if (candidate.facts.admissible == nullptr || !contains(at.structure, candidate.facts.id))
+      continue;
+    std::vector<double> own;
+    for (std::size_t k = 0; k < at.parameters.size(); ++k)
+      if (at.parameters[k].pointer.starts_with(candidate.facts.id + "/"))
+        own.push_back(at.values[k]);
+    if (!candidate.facts.admissible(own)) return false;
+  }
+  return true;
+}
+
+std::vector<const Solution*> Selection::best_of(std::size_t effects, std::size_t most) const {
+  std::vector<const Solution*> out;
+  for (const auto& [key, solution] : tried_)
+    if (solution.structure.effects.size() == effects && admissible(solution))
+      out.push_back(&solution);
+  std::ranges::stable_sort(out, {}, [&](const Solution* s) { return cost(residual_, *s, base()); });
+  if (out.size() > most) out.resize(most);
+  return out;
+}
+
+void Selection::singles() {
+  const auto& candidates = residual_.problem().candidates();
+  double done = 0.0;
+  for (const Candidate& candidate : candidates) {
+    if (!go_on(0.1 + 0.4 * done++ / double(candidates.size()))) return;
+    const std::string& id = candidate.facts.id;
+    if (!candidate.possible) continue;
+    if (!options_.only.empty() && std::ranges::find(options_.only, id) == options_.only.end())
+      continue;
+    LinearScreen seen = linear_screen(residual_, base(), id);
+    if (seen.excited) tried_[id] = extend(residual_, base(), seen, id, kTries);
+    screens_[id] = std::move(seen);
+  }
+}
+
+void Selection::refine(std::size_t effects) {
+  for (const Solution* s : best_of(effects, kRefined)) {
+    Solution& at = tried_[name(s->structure)];
+    at = polish(residual_, search(residual_, at.structure, at.values, nullptr,
+                                  {.max_iterations = 8, .tolerance = 1e-5}));
+  }
+}
+
+/// A pair was fitted from the shapes that suited its effects alone: the best of a size is begun
+/// anew from all shapes of each of its effects, if it is not at the floor.
+void Selection::reshape(std::size_t effects) {
+  const auto best = best_of(effects, 1);
+  if (best.empty() || effects < 2 || best.front()->mean_square() < kReshaped) return;
+  const Structure structure = best.front()->structure;
+  for (const std::string& id : structure.effects) {
+    const auto part = tried_.find(name(minus(structure, id)));
+    if (part == tried_.end()) continue;
+    Solution from = part->second;
+    from = polish(residual_, search(residual_, from.structure, from.values, nullptr,
+                                    {.max_iterations = 8, .tolerance = 1e-4}));
+    differentiate(residual_, from);
+    fitted(from, id, kReshapeTries);
+  }
+}
+
+void Selection::grow() {
+  refine(1);
+  const SelectionThresholds sharp = residual_.problem().selection_thresholds();
+  const auto first = best_of(1, 1);
+  if (base().mean_square() < sharp.stop_if_given_below && !first.empty() &&
+      !clearly_better(*first.front(), base()))
+    return;
+  for (int size = 1; size < options_.max_effects; ++size) {
+    const auto best = best_of(std::size_t(size), kGrown);
+    if (best.empty() || best.front()->mean_square() < sharp.stop_below) return;
+    std::vector<std::pair<const Solution*, std::string>> todo;
+    for (const Solution* from : best) {
+      std::vector<std::pair<double, std::string>> gains;
+      Solution at = *from;
+      differentiate(residual_, at);
+      tried_[name(at.structure)] = at;
+      for (const auto& [id, seen] : screens_) {
+        if (!seen.excited || contains(at.structure, id)) continue;
+        if (!go_on(0.5 + 0.15 * size)) return;
+        const LinearScreen now = linear_screen(residual_, at, id);
+        gains.emplace_back(now.starts.front().gain, id);
+      }
+      std::ranges::sort(gains, std::greater<>());
+      if (gains.size() > kTriedOnEach) gains.resize(kTriedOnEach);
+      for (const auto& [gain, id] : gains)
+        if (gain > kClearLoss) todo.emplace_back(&tried_[name(at.structure)], id);
+    }
+    for (const auto& [from, id] : todo) {
+      if (!go_on(0.6 + 0.15 * size)) return;
+      fitted(*from, id, 1);
+    }
+    refine(std::size_t(size + 1));
+    reshape(std::size_t(size + 1));
+    const auto larger = best_of(std::size_t(size + 1), 1);
+    if (larger.empty() || !clearly_better(*larger.front(), *best_of(std::size_t(size), 1).front()))
+      return;
+  }
+}
+
+/// A part of a structure fitted from where the whole of it stands, which may be a better place than
+/// where its own search ended.
+void Selection::part(const Solution& at, const Structure& less) {
+  Solution found = search(residual_, less, carried(residual_.problem().parameters(less), at), &at);
+  const auto known = tried_.find(name(less));
+  if (known == tried_.end() || found.mean_square() < known->second.mean_square())
+    tried_[name(less)] = std::move(found);
+}
+
+void Selection::prune() {
+  for (bool dropped = true; dropped && !chosen_.empty();) {
+    dropped = false;
+    const Structure now = chosen().structure;
+    for (const std::string& id : now.effects) {
+      const Structure less = minus(now, id);
+      const std::string key = name(less);
+      part(Solution(chosen()), less);
+      if (clearly_better(chosen(), tried_.at(key))) continue;
+      chosen_ = key;
+      dropped = true;
+      break;
+    }
+  }
+}
+
+void Selection::prefer_parents() {
+  for (const Candidate& candidate : residual_.problem().candidates()) {
+    const std::string& id = candidate.facts.id;
+    if (chosen_.empty() || !contains(chosen().structure, id)) continue;
+    for (const std::string& parent : candidate.facts.parents) {
+      if (contains(chosen().structure, parent) || !screens_.contains(parent) ||
+          !screens_.at(parent).excited)
+        continue;
+      const Structure less = minus(chosen().structure, id);
+      if (!tried_.contains(name(less))) continue;
+      Solution from = tried_.at(name(less));
+      differentiate(residual_, from);
+      const Solution& simpler = fitted(from, parent, kTries);
+      if (!clearly_better(chosen(), simpler, kLeastGainOverParent))
+        chosen_ = name(simpler.structure);
+    }
+  }
+}
+
+/// A trend that is free in every trial can stand in for any slow law. Where it follows the motion
+/// it is no sensor's: what it stood in for is left unexplained instead.
+void Selection::refuse_trends() {
+  for (const Candidate& candidate : residual_.problem().candidates()) {
+    const std::string& id = candidate.facts.id;
+    if (!candidate.facts.free_per_trial || !contains(chosen().structure, id)) continue;
+    if (drift_r2_on_motion(residual_, chosen(), id) <
+        residual_.problem().selection_thresholds().drift_r2_on_motion)
+      continue;
+    const Structure less = minus(chosen().structure, id);
+    part(Solution(chosen()), less);
+    chosen_ = name(less);
+    refused_ = id;
+  }
+}
+
+/// How far the places of rest of the base's layers have moved from the model's, root mean square.
+/// `count`: of how many.
+double moved(const Solution& at, int& count) {
+  double sum = 0.0;
+  count = 0;
+  for (std::size_t k = 0; k < at.values.size(); ++k) {
+    const Parameter& p = at.parameters[k];
+    if (!p.pointer.starts_with('/') || !p.pointer.ends_with("/equilibrium_m")) continue;
+    sum += (at.values[k] - p.start) * (at.values[k] - p.start);
+    ++count;
+  }
+  return count > 0 ? std::sqrt(sum / count) : 0.0;
+}
+
+/// What a sensor adds looks, in contact alone, as if every layer were shifted: each by the constant
+/// over its stiffness. One constant that brings all of them back to where the model has them is the
+/// simpler reading.
+void Selection::explain_shifts() {
+  const auto seen = screens_.find(std::string(kBias));
+  if (seen == screens_.end() || !seen->second.excited || contains(chosen().structure, kBias))
+    return;
+  int layers = 0;
+  const double before_m = moved(chosen(), layers);
+  if (layers < 2 || before_m < kShifted_m) return;
+  Solution from = chosen();
+  differentiate(residual_, from);
+  const Solution& with = fitted(from, std::string(kBias), 1);
+  const double after_m = moved(with, layers);
+  if (after_m < (layers == 2 ? kBackOfTwo : kBack) * before_m &&
+      with.mean_square() < kNoWorse * from.mean_square())
+    chosen_ = name(with.structure);
+}
+
+const Solution& Selection::leading() const {
+  const auto price = [&](const auto& entry) { return cost(residual_, entry.second, base()); };
+  return std::ranges::min_element(tried_, {}, price)->second;
+}
+
+bool Selection::run(const std::function<void()>& after_singles) {
+  if (!go_on(0.0)) return false;
+  tried_[""] = fit_base(residual_);
+  singles();
+  if (stopped_) return false;
+  if (after_singles) after_singles();
+  grow();
+  if (stopped_) return false;
+  for (const Solution* pair : best_of(2, kRefined))
+    for (const std::string& id : pair->structure.effects)
+      part(Solution(*pair), minus(pair->structure, id));
+  refine(1);
+  for (int size = 1; size <= options_.max_effects; ++size)
+    for (const Solution* larger : best_of(std::size_t(size), 1))
+      if (clearly_better(*larger, chosen())) chosen_ = name(larger->structure);
+  prune();
+  prefer_parents();
+  prune();
+  refuse_trends();
+  explain_shifts();
+  // In which order they brought most: the best single of them first.
+  Structure sum;
+  for (std::size_t k = 0; k < chosen().structure.effects.size(); ++k) {
+    std::string best;
+    for (const std::string& id : chosen().structure.effects) {
+      if (contains(sum, id)) continue;
+      const std::string key = name(plus(sum, id));
+      if (!tried_.contains(key)) {
+        const Solution& at = chosen();
+        const Structure part = plus(sum, id);
+        tried_[key] =
+            search(residual_, part, carried(residual_.problem().parameters(part), at), &at);
+      }
+      if (best.empty() ||
+          tried_.at(key).mean_square() < tried_.at(name(plus(sum, best))).mean_square())
+        best = id;
+    }
+    order_.push_back(best);
+    sum = plus(sum, best);
+  }
+  return go_on(0.95);
+}
+
+}  // namespace lab
+}  // namespace tractus

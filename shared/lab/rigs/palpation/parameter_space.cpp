@@ -1,0 +1,196 @@
+#include "lab/rigs/palpation/parameter_space.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/require.hpp"
+#include "effects/palpation_effect.hpp"
+
+namespace tractus {
+namespace lab {
+namespace {
+
+using laws::PalpationParameters;
+
+// How well the numbers of a model file are believed before the data speak. They decide only what a
+// recording leaves open: force_factor_Nm and the scales are felt in two products, modulus and
+// radius in one.
+constexpr double kFactorSd = 0.25;    // of the logarithm
+constexpr double kRadiusSd = 0.1;     // of the logarithm; it counts four times
+constexpr double kLengthSd_m = 5e-4;  // of what a ruler measures
+constexpr double kReferenceSd = 3.0;  // of the logarithm of the reference of an exponent
+constexpr double kMostFactor = 20.0;  // a factor is found within this factor
+
+Parameter factor(double start, double prior_sd) {
+  Parameter p{};
+  p.start = start;
+  p.low = start / kMostFactor;
+  p.high = start * kMostFactor;
+  p.step = 2e-2;
+  p.logarithmic = true;
+  p.prior_sd = prior_sd;
+  return p;
+}
+
+Parameter length(double start, double low, double high) {
+  Parameter p{};
+  p.start = start;
+  p.low = low;
+  p.high = high;
+  p.step = 2e-5;
+  p.prior_sd = kLengthSd_m;
+  return p;
+}
+
+/// One JSON pointer with `*` for every element against another without.
+bool covers(std::string_view pattern, std::string_view pointer) {
+  return pointer == pattern || (pointer.starts_with(pattern) && pointer[pattern.size()] == '/');
+}
+
+/// Steps that are felt but small, by the parameters' names. Not too small: where a step takes a
+/// sample's shank from one rest to another, the derivative there is the jump over the step.
+double step_of(std::string_view pointer, double fallback) {
+  struct Step {
+    std::string_view in;
+    double step;
+  };
+  static constexpr Step kSteps[] = {
+      {"pose_offset/offset_m", 2e-5},
+      {"tip_ball/radius_m", 3e-5},
+      {"shank_curvature/bow_m", 2e-5},
+      {"shank_curvature/direction_rad", 5e-2},
+      {"sensor_bias/force_N", 1e-2},
+      {"sensor_bias/torque_Nm", 1e-3},
+      {"/mass_kg", 5e-3},
+      {"/centre_m", 5e-3},
+      {"time_delay/delay_s", 5e-4},
+      {"contact_nonlinearity/exponent", 2e-2},
+      {"coefficient", 2e-2},
+      {"loss", 2e-2},
+      {"contact_damping/damping", 1.0},
+      {"/bends_shank", 5e-2},
+  };
+  for (const Step& each : kSteps)
+    if (pointer.find(each.in) != std::string_view::npos) return each.step;
+  return fallback;
+}
+
+}  // namespace
+
+const effects::EffectFacts& PalpationParameterSpace::facts_of(std::string_view id) const {
+  if (const auto* facts = user_effects_.facts(id)) return *facts;
+  for (const auto& info : effects::palpation_effects())
+    if (info.facts.id == id) return info.facts;
+  core::require(false, "an effect of a structure is in the catalogue");
+  std::abort();
+}
+
+PalpationParameterSpace::PalpationParameterSpace(models::PalpationModel model, double field_per_m,
+                                                 UserEffects user_effects)
+    : model_(std::move(model)), user_effects_(std::move(user_effects)), field_per_m_(field_per_m) {
+  for (const effects::EffectInstance& use : model_.effects) {
+    auto facts = effects::palpation_facts(use);
+    core::require(bool(facts), "a model's effects are known");
+    own_.push_back(std::move(*facts));
+  }
+  const PalpationParameters& p = model_.base;
+  const auto add = [this](const char* name, double PalpationParameters::*held,
+                          Parameter parameter) {
+    parameter.pointer = fmt::format("/base/{}", name);
+    if (fixed(parameter.pointer) || !(parameter.start > 0.0)) return;
+    slots_.push_back({name, held, std::move(parameter)});
+  };
+  add("force_factor_Nm", &PalpationParameters::force_factor_Nm,
+      factor(p.force_factor_Nm, kFactorSd));
+  add("force_scale", &PalpationParameters::force_scale, factor(p.force_scale, kFactorSd));
+  add("torque_scale", &PalpationParameters::torque_scale, factor(p.torque_scale, kFactorSd));
+  if (p.points > 1)
+    add("point_spacing_m", &PalpationParameters::point_spacing_m,
+        length(p.point_spacing_m, 0.3 * p.point_spacing_m,
+               std::min(3.0 * p.point_spacing_m, 0.95 * p.length_m / (p.points - 1))));
+  const bool tapers =
+      std::ranges::any_of(model_.effects, [](const auto& use) { return use.id == "shank_taper"; });
+  add("youngs_modulus_Pa", &PalpationParameters::youngs_modulus_Pa,
+      factor(p.youngs_modulus_Pa, kFactorSd));
+  add("length_m", &PalpationParameters::length_m,
+      length(p.length_m, std::max(0.8 * p.length_m, 1.01 * (p.points - 1) * p.point_spacing_m),
+             1.2 * p.length_m));
+  if (!tapers) add("radius_m", &PalpationParameters::radius_m, factor(p.radius_m, kRadiusSd));
+}
+
+bool PalpationParameterSpace::fixed(const std::string& pointer) const {
+  return std::ranges::any_of(model_.fixed, [&](const auto& p) { return covers(p, pointer); });
+}
+
+std::vector<Parameter> PalpationParameterSpace::of_effect(const effects::EffectFacts& facts) const {
+  const std::string& id = facts.id;
+  auto out = parameters_of(facts);
+  for (Parameter& p : out) {
+    p.step = p.logarithmic ? 2e-2 : step_of(p.pointer, p.step);
+    if (p.pointer == "contact_nonlinearity/reference_gradient_per_m") {
+      p.start = std::clamp(field_per_m_, p.low, p.high);
+      p.prior_sd = kReferenceSd;
+    }
+    if (id == "shank_taper") {  // equal radii are the base's shank
+      p.shape = false;
+      p.start = p.off = model_.base.radius_m;
+    }
+  }
+  return out;
+}
+
+std::vector<Parameter> PalpationParameterSpace::parameters(const Structure& structure) const {
+  std::vector<Parameter> out;
+  for (const Slot& slot : slots_) out.push_back(slot.parameter);
+  for (std::size_t e = 0; e < own_.size(); ++e) {
+    auto own = of_effect(own_[e]);
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      own[k].start = model_.effects[e].values[k];
+      own[k].shape = false;
+      out.push_back(own[k]);
+    }
+  }
+  for (const std::string& id : structure.effects)
+    for (auto& p : of_effect(facts_of(id))) out.push_back(p);
+  return out;
+}
+
+std::vector<std::vector<double>> PalpationParameterSpace::starts(std::string_view effect) const {
+  const double r = model_.base.radius_m;
+  if (effect == "shank_taper") return {{1.02 * r, 1.02 * r}};
+  if (effect == "shank_curvature")
+    return {{3e-4, 0.0}, {3e-4, M_PI_2}, {3e-4, -M_PI_2}, {3e-4, M_PI}};
+  if (effect == "contact_nonlinearity") return {{1.05, field_per_m_}};
+  if (effect == "tip_ball") return {{5e-4}};
+  if (effect == "contact_friction") return {{0.1, 1.0}, {0.1, 0.0}};
+  if (effect == "contact_damping") return {{10.0, 1.0}, {10.0, 0.0}};
+  if (effect == "pose_offset") return {{1e-5, 1e-5, 1e-5}};
+  if (effect == "sensor_bias") return {{1e-2, 1e-2, 1e-2, 1e-3, 1e-3, 1e-3}};
+  if (effect == "probe_weight" || effect == "probe_inertia") return {{0.01, 0.05}};
+  return {};
+}
+
+models::PalpationModel PalpationParameterSpace::with(const Structure& structure,
+                                                     std::span<const double> values) const {
+  models::PalpationModel out = model_;
+  std::size_t at = 0;
+  for (const Slot& slot : slots_) out.base.*slot.held = values[at++];
+  for (std::size_t e = 0; e < own_.size(); ++e)
+    if (!own_[e].free_per_trial)
+      for (double& value : out.effects[e].values) value = values[at++];
+  for (const std::string& id : structure.effects) {
+    const effects::EffectFacts& facts = facts_of(id);
+    if (facts.free_per_trial) continue;
+    effects::EffectInstance use = user_effects_.use(id, {});
+    for (std::size_t k = 0; k < effects::value_count(facts); ++k)
+      use.values.push_back(values[at++]);
+    out.effects.push_back(std::move(use));
+  }
+  core::require(at == values.size(), "a structure has as many values as parameters");
+  return out;
+}
+
+}  // namespace lab
+}  // namespace tractus

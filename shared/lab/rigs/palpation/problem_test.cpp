@@ -1,0 +1,164 @@
+#include "lab/rigs/palpation/problem.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "lab/identify/fit.hpp"
+#include "models/palpation_runtime.hpp"
+
+namespace tractus {
+namespace lab {
+namespace {
+
+using math::Vec3;
+using testing::HasSubstr;
+
+/// Bone below z = 10 mm and beyond 9 mm along x and y: a floor and two walls, so that every way of
+/// the probe meets one.
+volume::Volume corner() {
+  volume::Volume v;
+  v.geometry.dims = {34, 34, 72};
+  v.geometry.spacing_m = Vec3::Constant(0.5e-3);
+  v.counts.assign(v.geometry.voxel_count(), 0);
+  for (int k = 0; k < 72; ++k)
+    for (int j = 0; j < 34; ++j)
+      for (int i = 0; i < 34; ++i)
+        if (k < 20 || i > 18 || j > 18) v.counts[v.offset(i, j, k)] = 1000;
+  return v;
+}
+
+models::PalpationModel model(std::vector<effects::EffectInstance> uses = {}) {
+  models::PalpationModel out;
+  out.name = "corner";
+  out.fixed = {"/base/length_m", "/base/point_spacing_m", "/base/youngs_modulus_Pa"};
+  out.effects = std::move(uses);
+  return out;
+}
+
+/// Simulated recordings of a model: presses and slides that differ from trial to trial, 200 Hz,
+/// 5 µm, 0.01 N and 0.5 mN·m of noise.
+trial::PalpationSet recordings(const models::PalpationModel& truth, int trials, int samples) {
+  const auto runtime = models::PalpationRuntime::make(truth, corner());
+  EXPECT_TRUE(runtime);
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal;
+  const auto noise = [&](double sd) -> Vec3 {
+    return sd * Vec3(normal(random), normal(random), normal(random));
+  };
+  trial::PalpationSet set;
+  set.folder = "set";
+  for (int n = 0; n < trials; ++n) {
+    trial::PalpationMeasurement m;
+    m.id = "t" + std::to_string(n);
+    m.file = m.id + ".csv";
+    std::vector<math::Pose> poses;
+    for (int k = 0; k < samples; ++k) {
+      const double t = k / 200.0, w = (2.0 + 0.3 * n) * t;
+      const math::Quat down(
+          Eigen::AngleAxisd(M_PI - 0.15 + 0.1 * std::sin(0.7 * w + n), Vec3::UnitX()));
+      const Vec3 tip(6e-3 + 2.6e-3 * std::sin(w), 6e-3 + 2.6e-3 * std::cos(1.3 * w),
+                     10.9e-3 + 0.9e-3 * std::cos(2.1 * w));
+      m.t_s.push_back(t);
+      poses.push_back({tip - 0.13 * (down * Vec3::UnitZ()), down});
+    }
+    const auto motion = models::PalpationMotion::through(m.t_s, poses);
+    EXPECT_TRUE(motion);
+    models::PalpationAnswer answer;
+    runtime->predict(*motion, answer);
+    for (int k = 0; k < samples; ++k) {
+      const auto at = std::size_t(k);
+      m.X_VH.push_back({poses[at].p + noise(5e-6), poses[at].q});
+      m.wrench_H.push_back(
+          {answer.wrench_H[at].force_N + noise(0.01), answer.wrench_H[at].torque_Nm + noise(5e-4)});
+    }
+    set.trials.push_back(std::move(m));
+  }
+  return set;
+}
+
+std::unique_ptr<Problem> problem_of(const models::PalpationModel& truth,
+                                    const models::PalpationModel& given) {
+  auto problem = make_palpation_problem(given, recordings(truth, 4, 500), corner(), {.threads = 1});
+  EXPECT_TRUE(problem) << problem.error().what;
+  return std::move(*problem);
+}
+
+const Estimate& estimate(const Fit& fit, const std::string& pointer) {
+  return *std::ranges::find(fit.estimates, pointer, &Estimate::pointer);
+}
+
+TEST(PalpationProblem, LeavesVarianceOneWhereTheModelIsTrue) {
+  const auto problem = problem_of(model(), model());
+  const auto found = fit(*problem, {}, {.threads = 1, .held_out = false});
+  ASSERT_TRUE(found) << found.error().what;
+  EXPECT_NEAR(found->whitened_rms, 1.0, 0.06);
+  EXPECT_NEAR(found->rmse / found->noise_floor, 1.0, 0.08);
+  EXPECT_NEAR(found->noise_floor, std::sqrt(3.0) * 0.01, 0.003);  // the sensor's, and a little
+}
+
+TEST(PalpationProblem, FindsBackTheNumbersOfTheBase) {
+  models::PalpationModel wrong = model();
+  wrong.base.torque_scale *= 1.2;
+  wrong.base.radius_m *= 0.95;
+  const auto problem = problem_of(model(), wrong);
+  const auto found = fit(*problem, {}, {.threads = 1, .held_out = false});
+  ASSERT_TRUE(found) << found.error().what;
+  // c_f and s_f are felt as a product, s_t with c_f, r with c_f: the ratios are what is known.
+  const double product =
+      estimate(*found, "/base/force_factor_Nm").value * estimate(*found, "/base/force_scale").value;
+  EXPECT_NEAR(product / (0.005 * 0.3), 1.0, 0.01);
+  EXPECT_NEAR(
+      estimate(*found, "/base/torque_scale").value / estimate(*found, "/base/force_scale").value,
+      1.0, 0.01);
+}
+
+class AHiddenEffect : public testing::TestWithParam<effects::EffectInstance> {};
+
+TEST_P(AHiddenEffect, IsFoundBackWithItsNumbers) {
+  const effects::EffectInstance& use = GetParam();
+  const auto problem = problem_of(model({use}), model());
+  const auto base = fit(*problem, {}, {.threads = 1, .held_out = false});
+  const auto found = fit(*problem, {{use.id}}, {.threads = 1, .held_out = false});
+  ASSERT_TRUE(base && found) << found.error().what;
+  EXPECT_GT(base->whitened_rms, found->whitened_rms + 0.02);
+  EXPECT_NEAR(found->whitened_rms, 1.0, 0.06);
+  std::size_t next = 0;
+  for (const Estimate& e : found->estimates) {
+    if (e.pointer.starts_with("/") || e.pointer.ends_with("bends_shank")) continue;
+    EXPECT_NEAR(e.value, use.values[next], std::max(0.05 * std::abs(use.values[next]), 3.0 * e.sd))
+        << e.pointer;
+    EXPECT_LT(e.sd, 0.25 * std::abs(use.values[next])) << e.pointer;
+    ++next;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Palpation, AHiddenEffect,
+                         testing::Values(effects::EffectInstance{"probe_weight", {0.02, 0.06}},
+                                         effects::EffectInstance{"pose_offset",
+                                                                 {2e-4, -1.5e-4, 1e-4}},
+                                         effects::EffectInstance{"contact_friction", {0.15, 1.0}},
+                                         effects::EffectInstance{"time_delay", {0.012}},
+                                         effects::EffectInstance{"tip_ball", {6e-4}},
+                                         effects::EffectInstance{"shank_curvature", {6e-4, 0.8}}),
+                         [](const auto& one) { return one.param.id; });
+
+TEST(PalpationProblem, RefusesWhatCannotBeJudged) {
+  const auto refusal = [](trial::PalpationSet set) {
+    const auto problem = make_palpation_problem(model(), std::move(set), corner(), {.threads = 1});
+    return problem ? "taken" : problem.error().what;
+  };
+  EXPECT_THAT(refusal(recordings(model(), 1, 20)), HasSubstr("set/t0.csv: 20 samples"));
+  auto far = recordings(model(), 1, 300);
+  for (auto& pose : far.trials[0].X_VH) pose.p += Vec3(-0.2, -0.2, 0.2);
+  EXPECT_THAT(refusal(std::move(far)), HasSubstr("touch bone"));
+  auto slow = recordings(model(), 1, 300);
+  for (double& t : slow.trials[0].t_s) t *= 10.0;
+  EXPECT_THAT(refusal(std::move(slow)), HasSubstr("20 samples per second"));
+}
+
+}  // namespace
+}  // namespace lab
+}  // namespace tractus

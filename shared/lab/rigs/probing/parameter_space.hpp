@@ -1,0 +1,57 @@
+/// The parameters of a probing model that a fit may move, and the model that a set of values makes.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "lab/identify/problem.hpp"
+#include "lab/identify/user_effects.hpp"
+#include "models/probing_model.hpp"
+
+namespace tractus::lab {
+
+/// How far recordings of a set reached, for what they can inform.
+struct Reach {
+  double least_m = 0.0, most_m = 0.0;
+  bool slides = true;  ///< else only the rotary stage's numbers move
+};
+
+/// Which numbers of the base are free: those not fixed, of layers that the recordings entered,
+/// borders that they came near.
+class ProbingParameterSpace {
+ public:
+  ProbingParameterSpace(models::ProbingModel model, const Reach& reach,
+                        UserEffects user_effects = {});
+
+  /// Base, then the model's own effects, then those added.
+  std::vector<Parameter> parameters(const Structure& structure) const;
+  /// The model with these values. What is free per trial (`sensor_drift`) is left out of it.
+  models::ProbingModel with(const Structure& structure, std::span<const double> values) const;
+  const models::ProbingModel& model() const { return model_; }
+  /// Does the given model have an effect of that id already?
+  bool has(std::string_view effect) const;
+  /// Layers that no recording entered, in words.
+  const std::vector<std::string>& notes() const { return notes_; }
+  const UserEffects& user_effects() const { return user_effects_; }
+
+ private:
+  const effects::EffectFacts& facts_of(std::string_view id) const;
+  enum class Kind { stiffness, damping, equilibrium, start, end, viscous, detent, pitch };
+  struct Slot {
+    Kind kind;
+    std::size_t layer;
+  };
+  void add(Kind kind, std::size_t layer, const char* name, const Parameter& parameter);
+  void add_layer(std::size_t layer, const Reach& reach);
+  bool fixed(const std::string& pointer) const;
+
+  models::ProbingModel model_;
+  UserEffects user_effects_;
+  std::vector<effects::EffectFacts> own_;  // of the model's effects, a user's formulas among them
+  std::vector<Slot> slots_;
+  std::vector<Parameter> base_;
+  std::vector<std::string> notes_;
+};
+
+}  // namespace tractus::lab

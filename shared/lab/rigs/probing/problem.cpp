@@ -1,0 +1,382 @@
+#include "lab/rigs/probing/problem.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/require.hpp"
+#include "lab/identify/fit_report.hpp"
+#include "lab/identify/least_squares.hpp"
+#include "lab/identify/parallel.hpp"
+#include "lab/rigs/probing/experiments.hpp"
+#include "lab/rigs/probing/parameter_space.hpp"
+#include "lab/rigs/probing/recording.hpp"
+#include "lab/signal/drift.hpp"
+#include "models/probing_runtime.hpp"
+
+namespace tractus {
+namespace lab {
+namespace {
+
+using core::Errc;
+using core::Error;
+using core::Result;
+
+constexpr double kTravel_m = 1.0;  // the longest a model may have: a recording says how far it went
+/// Samples of a set that are looked at: memory and time stay bounded, and more would tell no more.
+constexpr std::size_t kMostSamples = 600'000, kLeastKept = 200;
+constexpr std::string_view kDrift = "sensor_drift", kRotary = "rotary_";
+
+/// Friction whose direction is that of the motion. At rest it takes whatever value within its size
+/// holds the probe (Coulomb's law is set-valued there), so a residual counts from there on.
+bool is_dry(std::string_view effect) {
+  return effect == "coulomb_friction" || effect == "stribeck_friction" ||
+         effect == "depth_friction" || effect == "rotary_coulomb_friction" ||
+         effect.starts_with("expression:");
+}
+
+class ProbingProblem final : public Problem {
+ public:
+  ProbingProblem(ProbingParameterSpace numbers, std::vector<ProbingRecording> trials, bool turns)
+      : numbers_(std::move(numbers)), trials_(std::move(trials)), turns_(turns) {
+    for (const auto& r : trials_) drifts_.push_back(drift_of(r));
+    set_candidates();
+    set_channels();
+    notes_ = numbers_.notes();
+  }
+
+  std::string_view rig() const override { return "probing"; }
+  int trials() const override { return int(trials_.size()); }
+  std::string trial_id(int k) const override { return trial(k).id; }
+  double seconds(int k) const override { return trial(k).seconds(); }
+  const std::vector<Channel>& channels() const override { return channels_; }
+  const std::vector<Candidate>& candidates() const override { return candidates_; }
+  const std::vector<std::string>& notes() const override { return notes_; }
+  std::vector<Parameter> parameters(const Structure& structure) const override {
+    return numbers_.parameters(structure);
+  }
+  std::vector<std::vector<double>> starts(std::string_view effect,
+                                          const Eigen::VectorXd& residual) const override;
+
+  Eigen::Index residual_size(int k) const override {
+    return Eigen::Index(trial(k).measured_thin.size());
+  }
+  void residuals(const Structure& structure, std::span<const double> values, int k,
+                 Eigen::Ref<Eigen::VectorXd> out) const override {
+    raw_residuals(structure, values, k, out);
+    if (!has_drift(structure)) return;
+    const Eigen::VectorXd before = out;
+    drifts_[std::size_t(k)].remove(out);
+    out = (before.array() == 0.0).select(0.0, out);
+  }
+  int free_per_trial(const Structure& structure) const override {
+    return has_drift(structure) ? Drift::kOrders : 0;
+  }
+
+  Residuals full_rate(const Structure& structure, std::span<const double> values,
+                      int k) const override;
+  States states(int k) const override;
+  std::vector<Derived> derived(const Structure& structure, std::span<const double> values,
+                               std::string_view effect) const override;
+  std::string recording(std::string_view a, std::string_view b) const override {
+    return probing_recording(a, b);
+  }
+  core::Json model(const Structure& structure, std::span<const double> values) const override;
+
+  void note(std::string words) { notes_.push_back(std::move(words)); }
+
+  /// Weighs the residuals anew with the borders and dampings that these values have.
+  void focus(std::span<const double> values) {
+    if (turns_) return;
+    const auto law = numbers_.with({}, values).law(kTravel_m);
+    core::require(bool(law), "a fitted model runs");
+    for (std::size_t k = 0; k < trials_.size(); ++k) {
+      weigh(*law, trials_[k]);
+      drifts_[k] = drift_of(trials_[k]);
+    }
+    set_channels();
+  }
+
+ private:
+  bool has_drift(const Structure& structure) const {
+    return numbers_.has(kDrift) ||
+           std::ranges::find(structure.effects, kDrift) != structure.effects.end();
+  }
+  const ProbingRecording& trial(int k) const { return trials_[std::size_t(k)]; }
+  static Drift drift_of(const ProbingRecording& r);
+  void set_candidates();
+  void set_channels();
+
+  /// What the law says, and by how much dry friction at rest may differ from it.
+  struct Predicted {
+    models::ProbingForces forces;
+    std::vector<double> at_rest_N;  // (or N·m) one per sample of `rest`; empty without dry friction
+  };
+  static std::vector<double> dry_at_rest(const models::ProbingModel& model,
+                                         const ProbingRecording& r);
+  Predicted forces(const Structure& structure, std::span<const double> values,
+                   const ProbingRecording& r) const {
+    const models::ProbingModel model = numbers_.with(structure, values);
+    const auto runtime = models::ProbingRuntime::make(model, kTravel_m);
+    core::require(bool(runtime), "values within their bounds make a model that runs");
+    Predicted out;
+    runtime->predict(r.motion, out.forces);
+    out.at_rest_N = dry_at_rest(model, r);
+    for (std::size_t i = 0; i < out.at_rest_N.size(); ++i) {  // the middle of what it may be
+      const std::size_t k = r.rest[i];
+      if (turns_)
+        out.forces.tz_Nm[k] -=
+            out.at_rest_N[i] * effects::direction(r.motion.omega_rad_s[k], r.motion.rest_rad_s);
+      else
+        out.forces.fz_N[k] -=
+            out.at_rest_N[i] * effects::direction(r.motion.v_m_s[k], r.motion.rest_m_s);
+    }
+    return out;
+  }
+  void raw_residuals(const Structure& structure, std::span<const double> values, int k,
+                     Eigen::Ref<Eigen::VectorXd> out) const {
+    const ProbingRecording& r = trial(k);
+    const auto predicted = forces(structure, values, r);
+    std::vector<double> thin(r.measured_thin.size());
+    r.decimator.apply(turns_ ? predicted.forces.tz_Nm : predicted.forces.fz_N, thin);
+    std::vector<double> either_way(thin.size(), 0.0);
+    if (!predicted.at_rest_N.empty())
+      r.decimator.apply_sizes(r.rest, predicted.at_rest_N, either_way);
+    for (std::size_t j = 0; j < thin.size(); ++j)
+      out(Eigen::Index(j)) = beyond(r.measured_thin[j] - thin[j], either_way[j]) / r.sd_thin[j];
+  }
+  /// The fitted trend of a trial at its full rate, N.
+  Eigen::VectorXd drift(const Structure& structure, std::span<const double> values, int k) const {
+    Eigen::VectorXd residual(residual_size(k));
+    raw_residuals(structure, values, k, residual);
+    const Drift& d = drifts_[std::size_t(k)];
+    return d.at(trial(k).motion.t_s, d.fit(residual));
+  }
+
+  ProbingParameterSpace numbers_;
+  std::vector<ProbingRecording> trials_;
+  std::vector<Drift> drifts_;
+  std::vector<Candidate> candidates_;
+  std::vector<Channel> channels_;
+  std::vector<std::string> notes_;
+  bool turns_;
+};
+
+std::vector<double> ProbingProblem::dry_at_rest(const models::ProbingModel& model,
+                                                const ProbingRecording& r) {
+  models::ProbingModel dry;
+  dry.rotary.viscous_Nms_per_rad = dry.rotary.detent_Nm = 0.0;
+  for (const effects::EffectInstance& use : model.effects)
+    if (is_dry(use.id)) dry.effects.push_back(use);
+  if (dry.effects.empty() || r.rest.empty()) return {};
+  const auto runtime = models::ProbingRuntime::make(dry, kTravel_m);
+  core::require(bool(runtime), "values within their bounds make a model that runs");
+  effects::ProbingMotion back = r.at_rest;
+  for (double& v : back.v_m_s) v = -v;
+  for (double& omega : back.omega_rad_s) omega = -omega;
+  models::ProbingForces in, out;
+  runtime->predict(r.at_rest, in);
+  runtime->predict(back, out);
+  // A rig that only turns has an angle at rest, one that slides has not.
+  std::vector<double>& size = in.tz_Nm.empty() ? in.fz_N : in.tz_Nm;
+  const std::vector<double>& other = in.tz_Nm.empty() ? out.fz_N : out.tz_Nm;
+  for (std::size_t k = 0; k < size.size(); ++k) size[k] = 0.5 * std::abs(size[k] - other[k]);
+  return size;
+}
+
+Drift ProbingProblem::drift_of(const ProbingRecording& r) {
+  std::vector<double> t_s;
+  for (std::size_t j = 0; j < r.measured_thin.size(); ++j)
+    t_s.push_back(r.motion.t_s[r.decimator.middle(j)]);
+  return Drift(t_s, r.sd_thin);
+}
+
+void ProbingProblem::set_candidates() {
+  const auto every = [&](auto member) {
+    return std::ranges::none_of(trials_, [&](const auto& r) { return (r.motion.*member).empty(); });
+  };
+  const bool angle = every(&effects::ProbingMotion::omega_rad_s),
+             torque = every(&effects::ProbingMotion::tz_Nm);
+  std::vector<effects::EffectFacts> all;
+  for (const auto& info : effects::probing_effects()) all.push_back(info.facts);
+  for (const auto& [use, facts] : numbers_.user_effects().all()) all.push_back(facts);
+  for (const effects::EffectFacts& facts : all) {
+    // What acts about the axis shows in the torque, which is judged where the rig only turns.
+    if (numbers_.has(facts.id) || (!turns_ && facts.id.starts_with(kRotary))) continue;
+    Candidate candidate{facts, true, ""};
+    const auto lacks = [&](const std::string& why) {
+      candidate.possible = false;
+      candidate.why_not = why;
+    };
+    if (turns_ && !facts.id.starts_with(kRotary)) lacks("depth and force were not recorded");
+    for (const std::string& need : facts.needs) {
+      if (!angle && (need == "omega_rad_s" || need == "theta_rad"))
+        lacks("theta_rad was not recorded in every trial");
+      if (!torque && need == "tz_Nm") lacks("tz_Nm was not recorded in every trial");
+    }
+    candidates_.push_back(std::move(candidate));
+  }
+}
+
+void ProbingProblem::set_channels() {
+  double sum = 0.0, count = 0.0, other = 0.0;
+  bool both = true;
+  for (const auto& r : trials_) {
+    sum += r.floor * r.floor * double(r.size());
+    other += r.other_noise_sd * r.other_noise_sd * double(r.size());
+    count += double(r.size());
+    both = both && !r.other.empty() && !r.motion.theta_rad.empty();
+  }
+  channels_ = {{turns_ ? "tz_Nm" : "fz_N", std::sqrt(sum / count)}};
+  if (both) channels_.push_back({"tz_Nm", std::sqrt(other / count)});
+}
+
+std::vector<std::vector<double>> ProbingProblem::starts(std::string_view effect,
+                                                        const Eigen::VectorXd& residual) const {
+  auto own = probing_starts(effect, trials_, residual);
+  return own.empty() ? Problem::starts(effect, residual) : own;
+}
+
+Residuals ProbingProblem::full_rate(const Structure& structure, std::span<const double> values,
+                                    int k) const {
+  const ProbingRecording& r = trial(k);
+  const auto predicted = forces(structure, values, r);
+  const auto minus = [](const std::vector<double>& a, const std::vector<double>& b) {
+    std::vector<double> out(a.size());
+    for (std::size_t i = 0; i < a.size(); ++i) out[i] = a[i] - b[i];
+    return out;
+  };
+  Residuals out{r.motion.t_s,
+                {minus(r.measured, turns_ ? predicted.forces.tz_Nm : predicted.forces.fz_N)},
+                r.trusted};
+  if (has_drift(structure)) {
+    const Eigen::VectorXd trend = drift(structure, values, k);
+    for (std::size_t i = 0; i < r.size(); ++i) out.channels[0][i] -= trend(Eigen::Index(i));
+  }
+  for (std::size_t i = 0; i < predicted.at_rest_N.size(); ++i) {
+    double& residual = out.channels[0][r.rest[i]];
+    residual = beyond(residual, predicted.at_rest_N[i]);
+    if (residual == 0.0) out.trusted[r.rest[i]] = 0.0;  // says nothing
+  }
+  if (channels_.size() > 1) out.channels.push_back(minus(r.other, predicted.forces.tz_Nm));
+  return out;
+}
+
+States ProbingProblem::states(int k) const {
+  const effects::ProbingMotion& m = trial(k).motion;
+  States out{{"time_s"}, {{}}};
+  for (const double t : m.t_s) out.values[0].push_back(t - m.t_s.front());
+  const auto add = [&](const char* name, const std::vector<double>& values) {
+    if (values.empty()) return;
+    out.names.emplace_back(name);
+    out.values.push_back(values);
+  };
+  if (!turns_) {
+    add("depth_m", m.x_m);
+    add("velocity_m_s", m.v_m_s);
+    add("acceleration_m_s2", m.a_m_s2);
+  }
+  add("theta_rad", m.theta_rad);
+  add("omega_rad_s", m.omega_rad_s);
+  if (!turns_) add("tz_Nm", m.tz_Nm);
+  return out;
+}
+
+std::vector<Derived> ProbingProblem::derived(const Structure& structure,
+                                             std::span<const double> values,
+                                             std::string_view effect) const {
+  if (effect != kDrift || !has_drift(structure)) return {};
+  double sum = 0.0, variance = 0.0;
+  for (int k = 0; k < trials(); ++k) {
+    const Eigen::VectorXd trend = drift(structure, values, k);
+    const auto& t_s = trial(k).motion.t_s;
+    Eigen::Index high = 0, low = 0;
+    sum += trend.maxCoeff(&high) - trend.minCoeff(&low);
+    variance +=
+        drifts_[std::size_t(k)].variance_between(t_s[std::size_t(high)], t_s[std::size_t(low)]);
+  }
+  const double n = trials();
+  return {{"range_N", sum / n, std::sqrt(variance) / n}};
+}
+
+core::Json ProbingProblem::model(const Structure& structure, std::span<const double> values) const {
+  models::ProbingModel model = numbers_.with(structure, values);
+  for (const Derived& range : derived(structure, values, kDrift))
+    model.effects.push_back({std::string(kDrift), {range.value}});
+  return model.to_json();
+}
+
+/// Cuts the ends of the trials of a set that is longer than it need be; says so.
+std::string shorten(trial::ProbingSet& set) {
+  std::size_t total = 0;
+  for (const auto& t : set.trials) total += t.t_s.size();
+  if (total <= kMostSamples) return {};
+  const double share = double(kMostSamples) / double(total);
+  for (auto& t : set.trials) {
+    const auto kept =
+        std::min(t.t_s.size(), kLeastKept + std::size_t(share * double(t.t_s.size())));
+    for (auto* all : {&t.t_s, &t.x_m, &t.theta_rad, &t.fz_N, &t.tz_Nm}) {
+      if (all->empty()) continue;
+      all->resize(kept);
+      all->shrink_to_fit();
+    }
+  }
+  return fmt::format(
+      "{} samples are more than are needed: the first {:.3g} % of each trial were used", total,
+      100.0 * share);
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Problem>> make_probing_problem(const models::ProbingModel& model,
+                                                      trial::ProbingSet set,
+                                                      const ProbingOptions& options,
+                                                      const core::Progress& progress) {
+  const bool turns = std::ranges::any_of(set.trials, [](const auto& t) { return t.x_m.empty(); });
+  if (turns && std::ranges::any_of(set.trials, [](const auto& t) { return t.theta_rad.empty(); }))
+    return Error{Errc::bad_input, fmt::format("{}: some trials slide only and others turn only; "
+                                              "a set of one kind is expected",
+                                              set.folder.string())};
+  const std::string shortened = shorten(set);
+  std::vector<ProbingRecording> recordings(set.trials.size());
+  std::vector<std::string> wrong(set.trials.size());
+  parallel(int(set.trials.size()), options.threads, [&](int k) {
+    auto& t = set.trials[std::size_t(k)];
+    auto ready = prepare(std::move(t), set.noise, turns, (set.folder / t.file).string());
+    if (ready)
+      recordings[std::size_t(k)] = std::move(*ready);
+    else
+      wrong[std::size_t(k)] = ready.error().what;
+  });
+  for (const std::string& what : wrong)
+    if (!what.empty()) return Error{Errc::bad_input, what};
+  if (progress && !progress(0.5)) return Error{Errc::cancelled, "stopped"};
+  Reach reach{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
+              !turns};
+  for (const auto& r : recordings) {
+    const auto [least, most] = std::ranges::minmax(r.motion.x_m);
+    reach.least_m = std::min(reach.least_m, least);
+    reach.most_m = std::max(reach.most_m, most);
+  }
+  if (!turns && !(reach.most_m - reach.least_m > 1e-5))
+    return Error{Errc::bad_input,
+                 fmt::format("{}: the probe moves by {:.2g} m in all; nothing can be told from "
+                             "that",
+                             set.folder.string(), reach.most_m - reach.least_m)};
+  auto problem = std::make_unique<ProbingProblem>(
+      ProbingParameterSpace(model, reach, options.user_effects), std::move(recordings), turns);
+  if (!shortened.empty()) problem->note(shortened);
+  // Twice: borders and dampings of the file first, then those of a first fit.
+  std::vector<double> values;
+  for (const Parameter& p : problem->parameters({})) values.push_back(p.start);
+  problem->focus(values);
+  if (!values.empty()) {
+    const Residual residual(*problem, options.threads);
+    problem->focus(fit_base(residual).values);
+  }
+  return std::unique_ptr<Problem>(std::move(problem));
+}
+
+}  // namespace lab
+}  // namespace tractus

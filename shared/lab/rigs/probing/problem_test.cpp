@@ -1,0 +1,191 @@
+/// A probing set made here by hand: one layer or two, a prescribed motion, known noise. The forces
+/// are written out, not taken from the product's law.
+#include "lab/rigs/probing/problem.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <random>
+
+#include "lab/identify/diagnosis.hpp"
+
+namespace tractus {
+namespace lab {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr double kStiffness = 3000.0, kDamping = 1200.0, kNoise_N = 0.05, kNoise_m = 5e-7;
+
+struct Moment {
+  double t_s, x_m, v_m_s, omega_rad_s;
+};
+
+/// In and out by sines of two periods, so that speeds and depths mix.
+Moment moment(int trial, double t) {
+  const double a = 2.0 * std::numbers::pi * (0.25 + 0.03 * trial), b = 2.7 * a;
+  return {t, 0.012 + 0.008 * std::sin(a * t) + 0.002 * std::sin(b * t + trial),
+          0.008 * a * std::cos(a * t) + 0.002 * b * std::cos(b * t + trial), 2.0 + trial % 3};
+}
+
+trial::ProbingSet set_of(const std::function<double(const Moment&)>& hidden_N, int trials = 6,
+                         double rate_Hz = 500.0) {
+  std::mt19937_64 random(5);
+  std::normal_distribution<> normal;
+  trial::ProbingSet set;
+  set.folder = "made";
+  for (int k = 0; k < trials; ++k) {
+    trial::ProbingMeasurement m;
+    m.id = "t" + std::to_string(k);
+    m.file = m.id + ".csv";
+    for (int i = 0; i < int(6.0 * rate_Hz); ++i) {
+      const Moment at = moment(k, i / rate_Hz);
+      m.t_s.push_back(at.t_s);
+      m.x_m.push_back(at.x_m + kNoise_m * normal(random));
+      m.fz_N.push_back(kStiffness * at.x_m + kDamping * at.v_m_s + hidden_N(at) +
+                       kNoise_N * normal(random));
+    }
+    set.trials.push_back(std::move(m));
+  }
+  return set;
+}
+
+models::ProbingModel model_of(double stiffness = 3600.0, double damping = 1000.0) {
+  models::ProbingModel model;
+  model.name = "one layer";
+  model.layers = {{0.0, 0.04, stiffness, damping, 0.0}};
+  return model;
+}
+
+std::unique_ptr<Problem> made(trial::ProbingSet set,
+                              const models::ProbingModel& model = model_of()) {
+  auto problem = make_probing_problem(model, std::move(set));
+  EXPECT_TRUE(problem) << problem.error().what;
+  return problem ? std::move(*problem) : nullptr;
+}
+
+TEST(ProbingProblem, AModelThatIsRightIsAtTheFloorAndItsNumbersAreFound) {
+  const auto problem = made(set_of([](const Moment&) { return 0.0; }));
+  const auto f = fit(*problem, {});
+  ASSERT_TRUE(f) << f.error().what;
+  for (const Estimate& e : f->estimates) {
+    if (e.pointer.ends_with("stiffness_N_per_m")) {
+      EXPECT_NEAR(e.value, kStiffness, 3.0);
+    }
+    if (e.pointer.ends_with("damping_Ns_per_m")) {
+      EXPECT_NEAR(e.value, kDamping, 2.0);
+    }
+  }
+  EXPECT_NEAR(f->rmse, kNoise_N, 0.1 * kNoise_N);
+  EXPECT_NEAR(f->noise_floor, kNoise_N, 0.15 * kNoise_N);
+  EXPECT_LT(f->held_out_rmse, 1.1 * kNoise_N);
+}
+
+TEST(ProbingProblem, HiddenFrictionIsNamedFromAModelThatIsOffByAFifth) {
+  const auto problem =
+      made(set_of([](const Moment& m) { return 1.5 * (m.v_m_s > 0 ? 1.0 : -1.0); }));
+  const auto d = diagnose(*problem);
+  ASSERT_TRUE(d) << d.error().what;
+  EXPECT_EQ(d->verdict, Verdict::missing);
+  ASSERT_EQ(d->effects.size(), 1u);
+  EXPECT_EQ(d->effects[0].id, "coulomb_friction");
+  EXPECT_NEAR(d->effects[0].parameters[0].value[0], 1.5, 0.03);
+}
+
+TEST(ProbingProblem, WhatNeedsAChannelThatWasNotRecordedIsLeftOutAndSaidSo) {
+  const auto problem = made(set_of([](const Moment&) { return 0.0; }));
+  for (const Candidate& c : problem->candidates()) {
+    if (c.facts.id == "rotation_coupling") {
+      EXPECT_FALSE(c.possible);
+      EXPECT_THAT(c.why_not, HasSubstr("theta_rad"));
+    }
+    if (c.facts.id == "torque_crosstalk") {
+      EXPECT_THAT(c.why_not, HasSubstr("tz_Nm"));
+    }
+  }
+}
+
+TEST(ProbingProblem, FixedNumbersAndLayersNeverEnteredStay) {
+  models::ProbingModel model = model_of(3000.0, 1200.0);
+  model.layers.push_back({0.04, 0.01, 8000.0, 900.0, 0.0});
+  model.fixed = {"/base/layers/*/damping_Ns_per_m"};
+  const auto problem = made(set_of([](const Moment&) { return 0.0; }), model);
+  for (const Parameter& p : problem->parameters({})) {
+    EXPECT_EQ(p.pointer.find("damping"), std::string::npos);
+    EXPECT_EQ(p.pointer.find("layers/1"), std::string::npos);
+  }
+  ASSERT_FALSE(problem->notes().empty());
+  EXPECT_THAT(problem->notes()[0], HasSubstr("layer 1"));
+}
+
+TEST(ProbingProblem, NoBorderPassesAnotherWhereverAFitMovesThem) {
+  auto model = model_of();
+  model.layers = {{0.0, 0.006, 3000.0, 1000.0, 0.0},
+                  {0.006, 0.004, 3000.0, 1000.0, 0.0},
+                  {0.010, 0.004, 3000.0, 1000.0, 0.0},
+                  {0.014, 0.02, 3000.0, 1000.0, 0.0}};
+  const auto problem = made(set_of([](const Moment&) { return 0.0; }), model);
+  ASSERT_TRUE(problem);
+  const auto all = problem->parameters({});
+  for (unsigned corner = 0; corner < 8; ++corner) {  // each of three borders at either end
+    std::vector<double> values;
+    unsigned border = 0;
+    for (const Parameter& p : all)
+      values.push_back(!p.pointer.ends_with("start_m") ? p.start
+                       : corner >> border++ & 1u       ? p.high
+                                                       : p.low);
+    ASSERT_EQ(border, 3u);
+    const auto layers = problem->model({}, values).at("base").at("layers");
+    for (std::size_t k = 0; k < layers.size(); ++k)
+      EXPECT_GT(layers[k].at("thickness_m").get<double>(), 0.0) << corner;
+  }
+}
+
+TEST(ProbingProblem, RefusesRecordingsThatTellNothing) {
+  const auto still = [] {
+    auto set = set_of([](const Moment&) { return 0.0; }, 1);
+    for (double& x : set.trials[0].x_m) x = 0.01;
+    return set;
+  };
+  EXPECT_THAT(make_probing_problem(model_of(), still()).error().what, HasSubstr("moves by"));
+  auto few = set_of([](const Moment&) { return 0.0; }, 1);
+  for (auto* all : {&few.trials[0].t_s, &few.trials[0].x_m, &few.trials[0].fz_N}) all->resize(20);
+  EXPECT_THAT(make_probing_problem(model_of(), std::move(few)).error().what,
+              HasSubstr("t0.csv: 20 samples"));
+  EXPECT_THAT(make_probing_problem(model_of(), set_of([](const Moment&) { return 0.0; }, 1, 20.0))
+                  .error()
+                  .what,
+              HasSubstr("samples per second"));
+}
+
+TEST(ProbingProblem, TheExtendedModelHoldsTheEffectWithItsNumbers) {
+  const auto problem =
+      made(set_of([](const Moment& m) { return 40'000.0 * m.v_m_s * std::abs(m.v_m_s); }));
+  const auto d = diagnose(*problem);
+  ASSERT_TRUE(d) << d.error().what;
+  const core::Json json = problem->model(d->final_fit.structure, d->final_fit.values);
+  const auto back = models::ProbingModel::from_json(json, "extended: ");
+  ASSERT_TRUE(back) << back.error().what;
+  ASSERT_EQ(back->effects.size(), 1u);
+  EXPECT_EQ(back->effects[0].id, "quadratic_drag");
+  EXPECT_NEAR(back->effects[0].values[0], 40'000.0, 400.0);
+}
+
+TEST(ProbingProblem, AModelWithoutLayersIsFittedByEffectsAlone) {
+  auto set = set_of([](const Moment& m) {
+    return 1.5 * (m.v_m_s > 0 ? 1.0 : -1.0) - kStiffness * m.x_m - kDamping * m.v_m_s;
+  });
+  models::ProbingModel empty;
+  empty.name = "air";
+  const auto d = diagnose(*made(std::move(set), empty));
+  ASSERT_TRUE(d) << d.error().what;
+  ASSERT_EQ(d->effects.size(), 1u);
+  EXPECT_EQ(d->effects[0].id, "coulomb_friction");
+}
+
+}  // namespace
+}  // namespace lab
+}  // namespace tractus

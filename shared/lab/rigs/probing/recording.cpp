@@ -1,0 +1,309 @@
+#include "lab/rigs/probing/recording.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "lab/signal/smoother.hpp"
+
+namespace tractus {
+namespace lab {
+namespace {
+
+using core::Errc;
+using core::Error;
+using core::Result;
+
+constexpr std::size_t kFewestSamples = 60;
+constexpr double kSlowestRate_Hz = 50.0;
+constexpr double kThinRate_Hz = 100.0;
+/// A sample counts as at rest below so many standard errors of its speed.
+constexpr double kRestErrors = 3.0;
+/// Round a border so much is not trusted at the full rate.
+constexpr double kBorder_s = 0.005;
+constexpr std::size_t kBorderSamples = 3;
+/// How well the place of a border can be told.
+constexpr double kOnBorder_m = 2e-6;
+/// Within this a probe stands; after so long it is looked at ever more rarely.
+constexpr double kSamePlace_m = 3e-5, kLongStand_s = 2.0;
+/// The motion is well known where its noise makes less than this share of the sensor's.
+constexpr double kWellKnown = 0.5, kLeastTrusted = 0.3;
+
+/// The smallest difference of two neighbours that are not equal, if all others are multiples of it;
+/// else 0: how coarsely a channel was written down.
+double quantum(std::span<const double> y) {
+  constexpr std::size_t kLook = 20'000;
+  const std::size_t n = std::min(y.size(), kLook);
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 1; k < n; ++k)
+    if (const double d = std::abs(y[k] - y[k - 1]); d > 0.0) least = std::min(least, d);
+  if (!std::isfinite(least)) return 0.0;
+  for (std::size_t k = 1; k < n; ++k) {
+    const double steps = std::abs(y[k] - y[k - 1]) / least;
+    if (std::abs(steps - std::round(steps)) > 0.05) return 0.0;
+  }
+  return least;
+}
+
+struct Noise {
+  double sd = 0.0;          ///< of a sample
+  double correlated = 0.0;  ///< sd of the part that filtering does not average away
+};
+
+/// Noise of a channel. Rounding that is not drowned by noise stays where it is for long: its first
+/// harmonic has the power q²/(2π²) e^(−4π²σ²/q²) for noise σ before rounding to q.
+Noise noise_of(std::span<const double> y, std::optional<double> stated) {
+  const double q = quantum(y);
+  double sd = noise_sd(y);
+  if (!(sd > 0.0)) sd = stated.value_or(0.0);
+  sd = std::max(sd, q / std::sqrt(12.0));
+  if (!(sd > 0.0)) {
+    double most = 0.0;
+    for (const double v : y) most = std::max(most, std::abs(v));
+    sd = std::max(1e-9 * most, 1e-12);
+  }
+  if (q <= 0.0) return {sd, 0.0};
+  const double before = std::max(0.0, sd * sd - q * q / 12.0);
+  const double pi = std::numbers::pi;
+  return {sd, q / (pi * std::numbers::sqrt2) * std::exp(-2.0 * pi * pi * before / (q * q))};
+}
+
+/// The noise's level at low frequency as seen after averaging 2 and 4 samples: more than the white
+/// level of single samples where the sensor has smoothed them.
+double colour(std::span<const double> y, double white_sd) {
+  double most = 1.0;
+  std::vector<double> means;
+  for (const std::size_t m : {2u, 4u}) {
+    means.clear();
+    for (std::size_t k = 0; k + m <= y.size(); k += m) {
+      double sum = 0.0;
+      for (std::size_t i = 0; i < m; ++i) sum += y[k + i];
+      means.push_back(sum / double(m));
+    }
+    most = std::max(most, std::sqrt(double(m)) * noise_sd(means) / white_sd);
+  }
+  return most;
+}
+
+Error wrong(const std::string& where, const std::string& why) {
+  return {Errc::bad_input, fmt::format("{}: {}", where, why)};
+}
+
+double middle_of(std::vector<double> values) {
+  const auto at = values.begin() + std::ptrdiff_t(values.size() / 2);
+  std::ranges::nth_element(values, at);
+  return *at;
+}
+
+/// Angle and torque, where recorded.
+void prepare_turning(trial::ProbingMeasurement& trial, const trial::StatedNoise& stated,
+                     ProbingRecording& out) {
+  effects::ProbingMotion& motion = out.motion;
+  if (!trial.theta_rad.empty()) {
+    Smoothed theta =
+        smooth(trial.t_s, trial.theta_rad, noise_of(trial.theta_rad, stated.theta_rad).sd);
+    motion.theta_rad = std::move(theta.value);
+    motion.omega_rad_s = std::move(theta.rate);
+    out.omega_sd_rad_s = std::move(theta.rate_sd);
+    motion.rest_rad_s = kRestErrors * middle_of(out.omega_sd_rad_s);
+  }
+  motion.tz_Nm = std::move(trial.tz_Nm);
+}
+
+void prepare_sliding(trial::ProbingMeasurement& trial, const trial::StatedNoise& stated,
+                     ProbingRecording& out) {
+  effects::ProbingMotion& motion = out.motion;
+  const std::size_t n = trial.t_s.size();
+  if (trial.x_m.empty()) {
+    for (auto* all : {&motion.x_m, &motion.v_m_s, &motion.a_m_s2, &out.x_sd_m, &out.v_sd_m_s})
+      all->assign(n, 0.0);
+    return;
+  }
+  const Noise noise = noise_of(trial.x_m, stated.x_m);
+  Smoothed x = smooth(trial.t_s, trial.x_m, noise.sd);
+  motion.x_m = std::move(x.value);
+  motion.v_m_s = std::move(x.rate);
+  motion.a_m_s2 = std::move(x.acceleration);
+  out.x_sd_m = std::move(x.value_sd);
+  for (double& sd : out.x_sd_m) sd = std::hypot(sd, noise.correlated);
+  out.v_sd_m_s = std::move(x.rate_sd);
+  motion.rest_m_s = kRestErrors * middle_of(out.v_sd_m_s);
+}
+
+/// Outputs that say something new: while the probe stands, the longer it stands the rarer, as what
+/// still changes then (relaxation) does so over ever longer times.
+std::vector<std::size_t> informative(const ProbingRecording& r) {
+  std::vector<std::size_t> out;
+  const effects::ProbingMotion& m = r.motion;
+  double place_m = m.x_m.front(), since_s = m.t_s.front(), next_s = since_s;
+  for (std::size_t j = 0; j < r.decimator.size(r.size()); ++j) {
+    const std::size_t k = r.decimator.middle(j);
+    if (std::abs(m.x_m[k] - place_m) > kSamePlace_m) place_m = m.x_m[k], since_s = m.t_s[k];
+    const double stood_s = m.t_s[k] - since_s;
+    if (stood_s > kLongStand_s && m.t_s[k] < next_s) continue;
+    out.push_back(j);
+    next_s = m.t_s[k] + stood_s / (kLongStand_s * kThinRate_Hz);
+  }
+  return out;
+}
+
+/// The samples at rest with the least speed that would be told from it.
+void find_rest(ProbingRecording& r) {
+  const effects::ProbingMotion& m = r.motion;
+  effects::ProbingMotion& out = r.at_rest;
+  out.rest_m_s = 0.0;
+  for (std::size_t k = 0; k < r.size(); ++k) {
+    const double told_m_s = std::max(2.0 * m.rest_m_s, kRestErrors * r.v_sd_m_s[k]);
+    if (std::abs(m.v_m_s[k]) >= told_m_s) continue;
+    r.rest.push_back(k);
+    out.t_s.push_back(m.t_s[k]);
+    out.x_m.push_back(m.x_m[k]);
+    out.v_m_s.push_back(told_m_s);
+    out.a_m_s2.push_back(0.0);
+  }
+}
+
+/// The same of a rig that only turns.
+void find_turning_rest(ProbingRecording& r) {
+  const effects::ProbingMotion& m = r.motion;
+  effects::ProbingMotion& out = r.at_rest;
+  out.rest_rad_s = 0.0;
+  for (std::size_t k = 0; k < r.size(); ++k) {
+    const double told_rad_s = std::max(2.0 * m.rest_rad_s, kRestErrors * r.omega_sd_rad_s[k]);
+    if (std::abs(m.omega_rad_s[k]) >= told_rad_s) continue;
+    r.rest.push_back(k);
+    out.t_s.push_back(m.t_s[k]);
+    for (auto* all : {&out.x_m, &out.v_m_s, &out.a_m_s2}) all->push_back(0.0);
+    out.theta_rad.push_back(m.theta_rad[k]);
+    out.omega_rad_s.push_back(told_rad_s);
+  }
+}
+
+/// Where the force jumps between neighbouring samples because a border lies between them: the
+/// second of the two, and by how much.
+struct Jump {
+  std::size_t sample;
+  double size_N;
+};
+
+std::vector<double> borders_of(const laws::ProbingLaw& law) {
+  std::vector<double> out;
+  for (const laws::Layer& layer : law.parameters().layers)
+    out.insert(out.end(), {layer.start_m, layer.start_m + layer.thickness_m});
+  return out;
+}
+
+std::vector<Jump> jumps(const laws::ProbingLaw& law, const ProbingRecording& r) {
+  const std::vector<double> borders = borders_of(law);
+  std::vector<Jump> out;
+  const auto& x = r.motion.x_m;
+  for (std::size_t k = 1; k < x.size(); ++k)
+    for (const double border : borders)
+      if ((x[k - 1] < border) != (x[k] < border)) {
+        const double v = r.motion.v_m_s[k];
+        out.push_back({k, std::abs(law.force_N(border + 1e-9, v) - law.force_N(border - 1e-9, v))});
+        break;
+      }
+  return out;
+}
+
+}  // namespace
+
+Result<ProbingRecording> prepare(trial::ProbingMeasurement&& trial,
+                                 const trial::StatedNoise& stated, bool turns,
+                                 const std::string& where) {
+  const std::size_t n = trial.t_s.size();
+  if (n < kFewestSamples)
+    return wrong(where, fmt::format("{} samples, at least {} are expected", n, kFewestSamples));
+  const double spacing_s = (trial.t_s.back() - trial.t_s.front()) / double(n - 1);
+  if (spacing_s * kSlowestRate_Hz > 1.001)
+    return wrong(where, fmt::format("{:.3g} samples per second, at least {} are expected",
+                                    1.0 / spacing_s, kSlowestRate_Hz));
+  ProbingRecording out;
+  out.id = trial.id;
+  out.motion.t_s = std::move(trial.t_s);
+  trial.t_s = out.motion.t_s;
+  out.measured = turns ? trial.tz_Nm : std::move(trial.fz_N);
+  if (!turns) out.other = trial.tz_Nm;
+  const Noise noise = noise_of(out.measured, turns ? stated.tz_Nm : stated.fz_N);
+  out.noise_sd = noise.sd;
+  out.decimator = Decimator(spacing_s, kThinRate_Hz);
+  out.slow_noise_sd =
+      std::hypot(noise.sd * std::sqrt(out.decimator.noise_gain()) *
+                     (out.decimator.stride() > 1 ? colour(out.measured, noise.sd) : 1.0),
+                 noise.correlated);
+  if (!out.other.empty()) out.other_noise_sd = noise_of(out.other, stated.tz_Nm).sd;
+  prepare_sliding(trial, stated, out);
+  if (!turns) find_rest(out);
+  prepare_turning(trial, stated, out);
+  if (turns)
+    find_turning_rest(out);
+  else
+    out.decimator.choose(informative(out));
+  out.measured_thin.resize(out.decimator.size(n));
+  out.decimator.apply(out.measured, out.measured_thin);
+  out.trusted.assign(n, 1.0);
+  out.sd_thin.assign(out.measured_thin.size(), out.slow_noise_sd);
+  out.floor = out.noise_sd;
+  return out;
+}
+
+void weigh(const laws::ProbingLaw& law, ProbingRecording& r) {
+  const std::size_t n = r.size();
+  std::vector<double> motion_variance(n);
+  const auto& m = r.motion;
+  for (std::size_t k = 0; k < n; ++k) {
+    // The law is linear in depth and speed but for its borders: differences are its derivatives.
+    const double f = law.force_N(m.x_m[k], m.v_m_s[k]);
+    const double by_speed = law.force_N(m.x_m[k], m.v_m_s[k] + r.v_sd_m_s[k]) - f;
+    const double by_depth = law.force_N(m.x_m[k], 0.0) - law.force_N(m.x_m[k] - r.x_sd_m[k], 0.0);
+    const double border = std::abs(by_depth) > 0.5 * std::abs(f) ? 0.0 : by_depth;
+    motion_variance[k] = by_speed * by_speed + border * border;
+  }
+  const auto found = jumps(law, r);
+  r.trusted.assign(n, 1.0);
+  const auto reach =
+      std::max(kBorderSamples, std::size_t(kBorder_s / (r.seconds() / double(n - 1))));
+  // What the motion's noise makes of the force must stay well under the sensor's own noise, at the
+  // least in the better half of the samples.
+  std::vector<double> ordered = motion_variance;
+  const auto half_way = ordered.begin() + std::ptrdiff_t(kLeastTrusted * double(n));
+  std::ranges::nth_element(ordered, half_way);
+  const double most = std::max(*half_way, kWellKnown * kWellKnown * r.noise_sd * r.noise_sd);
+  for (std::size_t k = 0; k < n; ++k)
+    if (motion_variance[k] > most) r.trusted[k] = 0.0;
+  for (const double border : borders_of(law))
+    for (std::size_t k = 0; k < n; ++k)  // on which side is nobody's to tell
+      if (std::abs(m.x_m[k] - border) < kOnBorder_m + 3.0 * r.x_sd_m[k]) r.trusted[k] = 0.0;
+  for (const Jump& jump : found)
+    for (std::size_t k = jump.sample < reach ? 0 : jump.sample - reach;
+         k < std::min(n, jump.sample + reach); ++k)
+      r.trusted[k] = 0.0;
+  std::vector<double> jump_variance(r.sd_thin.size(), 0.0);
+  const std::size_t half = r.decimator.half() + 1;
+  std::size_t begin = 0;
+  for (const Jump& jump : found) {
+    const double error_N = r.decimator.largest_tap() * jump.size_N;
+    for (std::size_t j = begin; j < jump_variance.size(); ++j) {
+      const std::size_t middle = r.decimator.middle(j);
+      if (middle + half < jump.sample) {
+        begin = j;
+        continue;
+      }
+      if (middle > jump.sample + half) break;
+      jump_variance[j] += error_N * error_N;
+    }
+  }
+  for (std::size_t j = 0; j < r.sd_thin.size(); ++j)
+    r.sd_thin[j] = std::sqrt(r.slow_noise_sd * r.slow_noise_sd +
+                             motion_variance[r.decimator.middle(j)] + jump_variance[j]);
+  double sum = 0.0, count = 0.0;
+  for (std::size_t k = 0; k < n; ++k)
+    if (r.trusted[k] > 0.0) sum += r.noise_sd * r.noise_sd + motion_variance[k], count += 1.0;
+  r.floor = count > 0.0 ? std::sqrt(sum / count) : r.noise_sd;
+}
+
+}  // namespace lab
+}  // namespace tractus

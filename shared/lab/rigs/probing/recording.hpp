@@ -1,0 +1,60 @@
+/// One trial of the probing rig made ready to be compared: motion smoothed and differentiated,
+/// noise estimated, force filtered and thinned.
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/result.hpp"
+#include "effects/probing_effect.hpp"
+#include "lab/signal/decimator.hpp"
+#include "laws/probing_law.hpp"
+#include "trial/probing_set.hpp"
+
+namespace tractus::lab {
+
+struct ProbingRecording {
+  std::string id;
+  effects::ProbingMotion motion;
+  std::vector<double> x_sd_m, v_sd_m_s;  ///< standard errors of the smoothed motion
+  std::vector<double> omega_sd_rad_s;    ///< the same of the turning; empty without an angle
+  std::vector<double> measured;          ///< of the primary channel (fz_N, or tz_Nm), full rate
+  std::vector<double> other;             ///< tz_Nm beside fz_N, or empty
+  double noise_sd = 0.0;                 ///< of one sample of `measured`
+  double slow_noise_sd = 0.0;            ///< of one sample after filter and thinning
+  double other_noise_sd = 0.0;
+  Decimator decimator{1.0, 1.0};
+  std::vector<double> measured_thin;  ///< filtered and thinned
+  /// Where the speed is too small to tell its direction: the samples, and the motion there with the
+  /// least speed that would be told. Dry friction may then push either way, or not at all.
+  std::vector<std::size_t> rest;
+  effects::ProbingMotion at_rest;
+  // What a border or a poorly known motion makes of an output; set by weigh().
+  std::vector<double> sd_thin;  ///< expected of each output under a true model
+  std::vector<double> trusted;  ///< 0 or 1, full rate
+  double floor = 0.0;           ///< rmse of the trusted samples under a true model
+
+  double seconds() const { return motion.t_s.back() - motion.t_s.front(); }
+  std::size_t size() const { return motion.t_s.size(); }
+};
+
+/// Prepares a trial, which is used up. @param turns  compare the torque of the turning stage (a rig
+/// that does not slide). Errors: bad_input naming the trial: too few samples, too slow, no motion.
+core::Result<ProbingRecording> prepare(trial::ProbingMeasurement&& trial,
+                                       const trial::StatedNoise& stated, bool turns,
+                                       const std::string& where);
+
+/// What lies outside ± of what dry friction at rest may do: exactly 0 within.
+inline double beyond(double residual, double half_width) {
+  const double size = std::abs(residual) - half_width;
+  return size <= 0.0 ? 0.0 : residual < 0.0 ? -size : size;
+}
+
+/// What is expected of each output if `law` were true: the sensor's noise, the motion's noise as
+/// the law passes it on, and near a border of layers the error of a sample that is taken on the
+/// wrong side.
+void weigh(const laws::ProbingLaw& law, ProbingRecording& recording);
+
+}  // namespace tractus::lab

@@ -1,0 +1,74 @@
+#include "lab/signal/decimator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/require.hpp"
+
+namespace tractus {
+namespace lab {
+namespace {
+
+constexpr double kCutoff = 0.35;      // of the rate after thinning
+constexpr double kHalfPeriods = 2.2;  // of the rate after thinning, on each side
+constexpr double kWorthThinning = 1.5;
+
+double blackman(double share) {  // share −1 … 1 of the half width
+  const double a = std::numbers::pi * share;
+  return 0.42 + 0.5 * std::cos(a) + 0.08 * std::cos(2.0 * a);
+}
+
+}  // namespace
+
+Decimator::Decimator(double spacing_s, double rate_Hz) {
+  const double factor = 1.0 / (spacing_s * rate_Hz);
+  if (factor < kWorthThinning) {
+    taps_ = {1.0};
+    return;
+  }
+  stride_ = std::size_t(std::lround(factor));
+  const auto half = std::size_t(std::ceil(kHalfPeriods * double(stride_)));
+  double sum = 0.0;
+  for (std::size_t k = 0; k <= 2 * half; ++k) {
+    const double at = double(k) - double(half);
+    const double phase = 2.0 * std::numbers::pi * kCutoff / double(stride_) * at;
+    taps_.push_back((at == 0.0 ? 1.0 : std::sin(phase) / phase) * blackman(at / double(half + 1)));
+    sum += taps_.back();
+  }
+  noise_gain_ = 0.0;
+  for (double& tap : taps_) {
+    tap /= sum;
+    noise_gain_ += tap * tap;
+  }
+}
+
+std::size_t Decimator::size(std::size_t samples) const {
+  if (!chosen_.empty()) return chosen_.size();
+  return samples < taps_.size() ? 0 : 1 + (samples - taps_.size()) / stride_;
+}
+
+void Decimator::apply(std::span<const double> in, std::span<double> out) const {
+  core::require(out.size() == size(in.size()), "a decimator's output has its own size");
+  for (std::size_t j = 0; j < out.size(); ++j) {
+    const double* at = in.data() + first(j);
+    double sum = 0.0;
+    for (std::size_t k = 0; k < taps_.size(); ++k) sum += taps_[k] * at[k];
+    out[j] = sum;
+  }
+}
+
+void Decimator::apply_sizes(std::span<const std::size_t> samples, std::span<const double> values,
+                            std::span<double> out) const {
+  std::ranges::fill(out, 0.0);
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const std::size_t k = samples[i], width = taps_.size();
+    while (begin < out.size() && first(begin) + width <= k) ++begin;
+    for (std::size_t j = begin; j < out.size() && first(j) <= k; ++j)
+      out[j] += std::abs(taps_[k - first(j)]) * values[i];
+  }
+}
+
+}  // namespace lab
+}  // namespace tractus

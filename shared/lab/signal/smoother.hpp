@@ -1,0 +1,37 @@
+/// A recorded motion made smooth and differentiated, with what is not known of it.
+#pragma once
+
+#include <span>
+#include <vector>
+
+namespace tractus::lab {
+
+/// A signal with its first two derivatives, one entry per sample, and their standard errors.
+struct Smoothed {
+  std::vector<double> value, rate, acceleration;
+  std::vector<double> value_sd, rate_sd, acceleration_sd;
+  double noise_sd = 0.0;  ///< of one recorded sample, as estimated or stated
+};
+
+/// Standard deviation of the white noise on a smooth signal: from third differences, which a
+/// quadratic does not pass; a low quantile over short stretches, so that kinks and impacts do not count,
+/// not even one every twentieth of a second. Quantisation counts as noise. Fewer than 8 samples: 0.
+double noise_sd(std::span<const double> y);
+
+/// How much less a sample that repeats its neighbours says than one of its own, as the variance of
+/// its noise over that of others: rounding hides in all of them what it hides in one. 1 where
+/// neighbours differ.
+std::vector<double> rounding_variance(std::span<const double> y);
+
+/// Fixed-interval Kalman smoothing (Rauch–Tung–Striebel in the adjoint form of [deJong1989]) of a
+/// value whose third derivative is white noise, which for evenly spaced samples is the quintic
+/// smoothing spline: gain 1/(1 + (f/f0)⁶), no phase. The cut-off f0 is not given but estimated
+/// along the signal: of a bank of cut-offs, at each moment the one that best predicts the samples
+/// left out round it. Samples that repeat one rounded value count as one. So a pause is smoothed
+/// much and a kink (a border of layers, a stop) little, and the standard errors say so. Time stamps
+/// need not be even.
+///
+/// @param t_s  strictly increasing. @param y  as many. @param noise_sd  of one sample, > 0.
+Smoothed smooth(std::span<const double> t_s, std::span<const double> y, double noise_sd);
+
+}  // namespace tractus::lab

@@ -1,0 +1,30 @@
+/// What the logistic models share: their likelihood's parts, and rows that are alike added up.
+#pragma once
+
+#include <optional>
+
+#include "statistics/regression/logistic.hpp"
+
+namespace tractus::statistics::binomial {
+
+/// π = 1/(1 + e^−η) and ln(1 + e^η), both without overflow and from one exponential.
+template <class Derived>
+void parts(const Eigen::ArrayBase<Derived>& eta, typename Derived::PlainObject& pi,
+           typename Derived::PlainObject& softplus) {
+  using Array = typename Derived::PlainObject;
+  const Array e = (-eta.abs()).exp(), u = 1.0 + e;
+  pi = (eta > 0.0).select(1.0 / u, e / u);
+  // ln(1 + e) after Kahan: the quotient takes back what rounding 1 + e lost.
+  softplus = eta.cwiseMax(0.0) + (u == 1.0).select(e, u.log() * e / (u - 1.0));
+}
+
+/// Rows of the same columns as one row of more trials, in order of first appearance: the likelihood
+/// keeps its shape, its maximum its place.
+struct Merged {
+  Matrix columns;
+  Counts counts;
+};
+/// Nothing where it would save less than half of the rows.
+std::optional<Merged> merged(const Matrix& columns, const Counts& counts);
+
+}  // namespace tractus::statistics::binomial

@@ -1,0 +1,114 @@
+#include "statistics/mixed/lmm_tests.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "statistics/distributions/distributions.hpp"
+
+namespace tractus {
+namespace statistics {
+namespace {
+
+Matrix adjusted_covariance(const Lmm& fit) {
+  return fit.covariance + 2.0 * fit.covariance * fit.curvature.bias * fit.covariance;
+}
+
+JointTest satterthwaite(const Lmm& fit, const std::vector<Eigen::Index>& columns) {
+  const auto& bend = fit.curvature;
+  const Vector b = fit.coefficients(columns);
+  // Directions are those of the covariance as it stands, so that a contrast's unit counts as in the
+  // source.
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(Matrix(fit.covariance(columns, columns)));
+  const double q = static_cast<double>(columns.size());
+  double squares = 0.0, expectation = 0.0;
+  for (Eigen::Index m = 0; m < b.size(); ++m) {
+    const Vector direction = eigen.eigenvectors().col(m);
+    const double d = eigen.eigenvalues()[m];
+    squares += std::pow(direction.dot(b), 2) / d;
+    Eigen::Vector2d g;
+    for (std::size_t a = 0; a < 2; ++a)
+      g[static_cast<Eigen::Index>(a)] =
+          direction.dot(Matrix(bend.covariance_slope[a](columns, columns)) * direction);
+    const double nu = 2.0 * d * d / g.dot(bend.variance_covariance * g);
+    if (columns.size() == 1) return {squares, 1.0, nu, f_upper(squares, 1.0, nu)};
+    if (nu > 2.0) expectation += nu / (nu - 2.0);
+  }
+  JointTest out{squares / q, q, 0.0, 0.0};
+  // Fewer directions than coefficients with an expectation: no more can be said than 2 df.
+  out.df2 = expectation > q ? 2.0 * expectation / (expectation - q) : 2.0;
+  out.p = f_upper(out.statistic, out.df1, out.df2);
+  return out;
+}
+
+/// λ and m of the scaled F, from A_1 and A_2 (Kenward & Roger 1997, section 2.3).
+struct Scaling {
+  double scale = 1.0, df = 0.0;
+};
+
+Scaling scaling(double a1, double a2, double q) {
+  const double b = (a1 + 6.0 * a2) / (2.0 * q);
+  const double g = ((q + 1.0) * a1 - (q + 4.0) * a2) / ((q + 2.0) * a2);
+  const double below = 3.0 * q + 2.0 * (1.0 - g);
+  const double c1 = g / below, c2 = (q - g) / below, c3 = (q + 2.0 - g) / below;
+  const double mean = 1.0 / (1.0 - a2 / q);
+  const double variance = 2.0 / q * (1.0 + c1 * b) / (std::pow(1.0 - c2 * b, 2) * (1.0 - c3 * b));
+  const double rho = variance / (2.0 * mean * mean);
+  const double m = 4.0 + (q + 2.0) / (q * rho - 1.0);
+  return {m / (mean * (m - 2.0)), m};
+}
+
+JointTest kenward_roger_of(const Lmm& fit, const Matrix& adjusted,
+                           const std::vector<Eigen::Index>& columns) {
+  const auto& bend = fit.curvature;
+  const auto p = fit.coefficients.size();
+  const double q = static_cast<double>(columns.size());
+  Matrix theta = Matrix::Zero(p, p);
+  const auto size = std::ssize(columns);
+  const Matrix inverse =
+      Matrix(fit.covariance(columns, columns)).ldlt().solve(Matrix::Identity(size, size));
+  theta(columns, columns) = inverse;
+  std::array<Matrix, 2> turned;  // Θ Φ D_a Φ
+  for (std::size_t a = 0; a < 2; ++a) turned[a] = theta * bend.covariance_slope[a];
+  double a1 = 0.0, a2 = 0.0;
+  for (std::size_t a = 0; a < 2; ++a)
+    for (std::size_t b = 0; b < 2; ++b) {
+      const double w =
+          bend.expected_covariance(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
+      a1 += w * turned[a].trace() * turned[b].trace();
+      a2 += w * (turned[a] * turned[b]).trace();
+    }
+  const Scaling scaled = scaling(a1, a2, q);
+  const Vector b = fit.coefficients(columns);
+  JointTest out{0.0, q, scaled.df, 0.0};
+  out.statistic = scaled.scale / q * b.dot(Matrix(adjusted(columns, columns)).ldlt().solve(b));
+  out.p = f_upper(out.statistic, out.df1, out.df2);
+  return out;
+}
+
+}  // namespace
+
+JointTest joint_test(const Lmm& fit, const std::vector<Eigen::Index>& columns, SmallSample how) {
+  core::require(!columns.empty(), "a joint test is of one coefficient or more");
+  if (how == SmallSample::kenward_roger)
+    return kenward_roger_of(fit, adjusted_covariance(fit), columns);
+  if (fit.tau_squared > 0.0) return satterthwaite(fit, columns);
+  return joint_test(fit.coefficients, fit.covariance, columns, fit.df[columns[0]]);
+}
+
+KenwardRoger kenward_roger(const Lmm& fit) {
+  KenwardRoger out;
+  out.covariance = adjusted_covariance(fit);
+  out.standard_errors = out.covariance.diagonal().cwiseSqrt();
+  out.t = fit.coefficients.cwiseQuotient(out.standard_errors);
+  out.df.resize(out.t.size());
+  out.p.resize(out.t.size());
+  for (Eigen::Index j = 0; j < out.t.size(); ++j) {
+    out.df[j] = kenward_roger_of(fit, out.covariance, {j}).df2;
+    out.p[j] = student_t_two_sided(out.t[j], out.df[j]);
+  }
+  return out;
+}
+
+}  // namespace statistics
+}  // namespace tractus

@@ -1,0 +1,19 @@
+/// Several coefficients at once: are they all 0?
+///
+///     F = bᵀ V⁻¹ b / q on q and df2 degrees of freedom; without df2, q F is χ² on q
+#pragma once
+
+#include "statistics/regression/design.hpp"
+
+namespace tractus::statistics {
+
+struct JointTest {
+  double statistic = 0.0, df1 = 0.0, df2 = 0.0, p = 0.0;  ///< df2 = 0: a χ²
+};
+
+/// @param columns  which coefficients, at least one; their covariance must be positive definite
+///   (a fit that was not refused has such).
+JointTest joint_test(const Vector& coefficients, const Matrix& covariance,
+                     const std::vector<Eigen::Index>& columns, double df2);
+
+}  // namespace tractus::statistics

@@ -1,0 +1,33 @@
+/// A WebSocket to the server, as the live uplink sees it.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <memory>
+
+#include "station/uplink/websocket.hpp"
+
+namespace tractus::uplink {
+
+class ServerSocket {
+ public:
+  virtual ~ServerSocket() = default;
+  /// Errors: unavailable when the line is broken, or the other side does not read.
+  virtual core::Result<void> send(const std::string& text) = 0;
+  /// The next text, or nothing when none came within `patience_ms`. Pings are answered within.
+  /// Errors: unavailable when the line is broken or closed; bad_input, too_large.
+  virtual core::Result<std::optional<std::string>> receive(int patience_ms) = 0;
+};
+
+struct ServerAddress {
+  std::string url;            ///< "https://host:port"
+  std::string authorization;  ///< header line, "Authorization: Bearer TOKEN"
+  std::filesystem::path authority = {};
+  std::string path = "/api/v1/live/station";
+};
+/// By libcurl, certificate checked as HttpServer does. @param stopped  ends the waiting early
+/// Errors: unavailable, unauthorised, bad_input.
+core::Result<std::unique_ptr<ServerSocket>> open_server_socket(const ServerAddress& to,
+                                                               const std::atomic<bool>& stopped);
+
+}  // namespace tractus::uplink
