@@ -1,6 +1,7 @@
 #include "db/store/store.hpp"
 
 #include "core/require.hpp"
+#include "core/try.hpp"
 #include "db/store/database/migrations.hpp"
 #include "db/store/operations/coverage.hpp"
 
@@ -68,19 +69,17 @@ Store::Store(std::unique_ptr<Connection> reader, std::unique_ptr<Connection> wri
     : readers_(pool_of(std::move(reader))), writers_(pool_of(std::move(writer))) {}
 
 core::Result<Store> Store::open(const std::filesystem::path& path) {
-  auto writer = open_sqlite(path, Access::write);
-  if (!writer) return writer.error();
-  if (auto done = migrate(**writer, migrations()); !done)
+  auto writer = TRY(open_sqlite(path, Access::write));
+  if (auto done = migrate(*writer, migrations()); !done)
     return core::Error{done.error().code, path.string() + ": " + done.error().what};
-  auto reader = open_sqlite(path, Access::read);
-  if (!reader) return reader.error();
-  return Store(std::move(*reader), std::move(*writer));
+  auto reader = TRY(open_sqlite(path, Access::read));
+  return Store(std::move(reader), std::move(writer));
 }
 
 core::Result<Store> Store::open_postgres(const std::string& address) {
   constexpr int kReaders = 4, kBesides = 2;  // the threads that handle requests are four
   auto writer = postgres_connection(address, Access::write);
-  if (auto done = migrate(*writer, migrations()); !done) return done.error();
+  TRY(migrate(*writer, migrations()));
   Store out(postgres_connection(address, Access::read), std::move(writer));
   out.readers_ = pool_of(address, Access::read, kReaders);
   out.besides_ = pool_of(address, Access::beside, kBesides);
@@ -92,9 +91,8 @@ core::Result<Store> Store::open_postgres(const std::string& address) {
 core::Result<void> Store::finish(Writing& tx, Access access, std::vector<Signals::Noted>& said) {
   core::require(access == Access::write || tx.changed_.empty(),
                 "rows that the audit trail covers are changed by Store::write");
-  auto changes = changes_text(tx, audit_key_, tx.changed_);
-  if (!changes) return changes.error();
-  if (auto noted = note_act(tx, audit_key_, *changes); !noted) return noted;
+  auto changes = TRY(changes_text(tx, audit_key_, tx.changed_));
+  TRY(note_act(tx, audit_key_, changes));
   if (tx.noted_.empty()) return {};
   said = std::move(tx.noted_);
   return signals_->committing(tx, said);

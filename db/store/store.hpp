@@ -12,6 +12,7 @@
 #include <span>
 #include <type_traits>
 
+#include "core/try.hpp"
 #include "db/store/database/connection.hpp"
 #include "db/store/database/locks.hpp"
 #include "db/store/database/signals.hpp"
@@ -162,7 +163,7 @@ class Store {
     auto answer = in_transaction<Writing>(*lent, access, [&](Writing& tx) -> Answer {
       auto done = work(tx);
       if (!done) return done;
-      if (auto ready = finish(tx, access, said); !ready) return ready.error();
+      TRY(finish(tx, access, said));
       return done;
     });
     if (!answer) return answer;
@@ -174,7 +175,7 @@ class Store {
   template <class Transaction, class Work>
   static std::invoke_result_t<Work, Transaction&> in_transaction(Connection& connection,
                                                                  Access access, Work&& work) {
-    if (auto begun = connection.begin(access); !begun) return begun.error();
+    TRY(connection.begin(access));
     Transaction transaction(connection);
     auto answer = work(transaction);
     if (!answer) {

@@ -4,6 +4,7 @@
 
 #include <functional>
 
+#include "core/try.hpp"
 #include "db/store/cases/cases.hpp"
 #include "db/store/database/migrations.hpp"
 #include "db/store/operations/jobs.hpp"
@@ -34,11 +35,9 @@ using Work = std::function<core::Result<void>(Writing&)>;
 
 /// A database in which a station has uploaded all bytes of a trial of a published case.
 core::Result<void> furnish(Writing& tx) {
-  if (auto done = add_account(tx, {"1", "ada", "admin", "hash"}, 1); !done) return done;
-  if (auto done = add_station(tx, {"s", "station-1"}, "token", 1); !done) return done;
-  if (auto done = add_case(tx, {kCase, "L3", "made", 1, 0}, {{"case.json", kCase, 9, false}}, 1);
-      !done)
-    return done;
+  TRY(add_account(tx, {"1", "ada", "admin", "hash"}, 1));
+  TRY(add_station(tx, {"s", "station-1"}, "token", 1));
+  TRY(add_case(tx, {kCase, "L3", "made", 1, 0}, {{"case.json", kCase, 9, false}}, 1));
   return add_upload(tx, {kTrial, "s", kCase, 10, kSha, "receiving"}, 1);
 }
 
@@ -60,10 +59,9 @@ std::string contents(Store& store) {
          {"accounts", "sessions", "sign_in_failures", "known_origins", "stations", "objects",
           "cases", "case_parts", "uploads", "trials", "trial_metrics", "jobs", "studies",
           "study_scenarios", "study_participants", "study_slots", "study_trials", "study_events"}) {
-      auto rows = tx.query(std::string("select * from ") + table);
-      if (!rows) return rows.error();
-      out += std::string(table) + ":" + std::to_string(rows->size()) + "\n";
-      for (const Row& row : *rows)
+      auto rows = TRY(tx.query(std::string("select * from ") + table));
+      out += std::string(table) + ":" + std::to_string(rows.size()) + "\n";
+      for (const Row& row : rows)
         for (std::size_t i = 0; i < row.size(); ++i)
           if (const auto* text = std::get_if<std::string>(&row.value(i))) out += *text + ",";
     }
@@ -97,9 +95,9 @@ int fails_cleanly_at_every_step(DatabaseKind kind, const Work& work) {
 
 TEST_P(StoreFaults, ACommittedTrialIsWholeOrAbsent) {
   const int steps = fails_cleanly_at_every_step(GetParam(), [](Writing& tx) -> core::Result<void> {
-    if (auto done = add_object(tx, kSha, 10, 2); !done) return done;
-    if (auto done = add_trial(tx, trial(), 2); !done) return done;
-    if (auto done = complete_upload(tx, kTrial); !done) return done;
+    TRY(add_object(tx, kSha, 10, 2));
+    TRY(add_trial(tx, trial(), 2));
+    TRY(complete_upload(tx, kTrial));
     return queue_job(tx, "metrics", kTrial, 2);
   });
   // begin, four statements, the trial's row read for its digest, the trail's end, its new row,
@@ -121,22 +119,19 @@ TEST_P(StoreFaults, APublishedCaseIsWholeOrAbsent) {
 /// A study of which a station has a trial, all of whose bytes are here.
 core::Result<void> furnish_study(Writing& tx) {
   const Study study{.id = "study", .title = "", .ordering = "random"};
-  auto id = add_study(tx, study, {kCase}, {"ada", 1});
-  if (!id) return id.error();
-  if (auto done = add_participant(tx, *id, {.name = "P1"}, {kCase, kCase}, {"ada", 1}); !done)
-    return done;
-  auto slots = study_slots(tx, *id);
-  if (!slots) return slots.error();
-  return announce_for_slot(tx, kTrial, slots->front().id, 1);
+  auto id = TRY(add_study(tx, study, {kCase}, {"ada", 1}));
+  TRY(add_participant(tx, id, {.name = "P1"}, {kCase, kCase}, {"ada", 1}));
+  auto slots = TRY(study_slots(tx, id));
+  return announce_for_slot(tx, kTrial, slots.front().id, 1);
 }
 
 TEST_P(StoreFaults, ATrialOfAStudyAndItsPlaceInTheStudyAreThereTogetherOrNot) {
   for (const bool complete : {true, false}) {
     const int steps =
         fails_cleanly_at_every_step(GetParam(), [&](Writing& tx) -> core::Result<void> {
-          if (auto done = furnish_study(tx); !done) return done;
-          if (auto done = add_object(tx, kSha, 10, 2); !done) return done;
-          if (auto done = add_trial(tx, trial(), 2); !done) return done;
+          TRY(furnish_study(tx));
+          TRY(add_object(tx, kSha, 10, 2));
+          TRY(add_trial(tx, trial(), 2));
           return record_for_slot(tx, kTrial, complete, {"station-1", 2});
         });
     EXPECT_GE(steps, 17);  // begin, 15 statements, commit; more when it is repeated
@@ -147,8 +142,8 @@ TEST_P(StoreFaults, AnAssessmentIsWholeOrAbsent) {
   EXPECT_GE(fails_cleanly_at_every_step(
                 GetParam(),
                 [](Writing& tx) -> core::Result<void> {
-                  if (auto done = add_object(tx, kSha, 10, 2); !done) return done;
-                  if (auto done = add_trial(tx, trial(), 2); !done) return done;
+                  TRY(add_object(tx, kSha, 10, 2));
+                  TRY(add_trial(tx, trial(), 2));
                   return set_assessment(
                       tx, kTrial, {{"a", 1.5, ""}, {"b", std::nullopt, "no contact"}}, true, "{}");
                 }),
@@ -160,9 +155,8 @@ TEST_P(StoreFaults, ASignInIsWholeOrAbsent) {
       fails_cleanly_at_every_step(GetParam(),
                                   [](Writing& tx) -> core::Result<void> {
                                     const Attempt from{Secret::account_password, "ada", "peer"};
-                                    if (auto done = clear_failures(tx, from); !done) return done;
-                                    if (auto done = note_origin(tx, "1", from, 2, 1); !done)
-                                      return done;
+                                    TRY(clear_failures(tx, from));
+                                    TRY(note_origin(tx, "1", from, 2, 1));
                                     return add_session(tx, "token", "1", 2);
                                   }),
       4);

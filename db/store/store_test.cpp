@@ -7,6 +7,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "core/try.hpp"
 #include "db/store/database/migrations.hpp"
 #include "db/store/operations/jobs.hpp"
 #include "db/store/people/accounts.hpp"
@@ -41,9 +42,8 @@ TRACTUS_ON_BOTH_DATABASES(JobQueue);
 TRACTUS_ON_BOTH_DATABASES(Logins);
 
 core::Result<std::uint64_t> rows_in(Reading& tx, const std::string& table) {
-  auto rows = tx.query("select count(*) from " + table);
-  if (!rows) return rows.error();
-  return rows->front().count(0);
+  auto rows = TRY(tx.query("select count(*) from " + table));
+  return rows.front().count(0);
 }
 
 TEST_P(StoreContract, KeepsEveryValueToTheBit) {
@@ -52,15 +52,13 @@ TEST_P(StoreContract, KeepsEveryValueToTheBit) {
   const double third = 1.0 / 3.0, tiny = std::numeric_limits<double>::denorm_min();
   const std::string text("quoted ' and ? and \xc3\xa9 \xf0\x9f\xa6\xb4");
   auto kept = db.store.write([&](Writing& tx) -> core::Result<Row> {
-    auto made = tx.query(
-        "create table v (a bigint, b double precision, c text, d bytea, e text, f double "
-        "precision)");
-    if (!made) return made.error();
-    auto rows = tx.query(
+    TRY(
+        tx.query("create table v (a bigint, b double precision, c text, d bytea, e text, f double "
+                 "precision)"));
+    auto rows = TRY(tx.query(
         "insert into v (a, b, c, d, e, f) values (?, ?, ?, ?, ?, ?) returning a, b, c, d, e, f",
-        {std::int64_t{INT64_MIN}, third, text, blob, Value(), tiny});
-    if (!rows) return rows.error();
-    return rows->front();
+        {std::int64_t{INT64_MIN}, third, text, blob, Value(), tiny}));
+    return rows.front();
   });
   ASSERT_TRUE(kept) << kept.error().what;
   EXPECT_EQ(kept->integer(0), INT64_MIN);
@@ -93,10 +91,9 @@ TEST_P(StoreContract, ATextThatIsNotUtf8OrHoldsAZeroIsRefusedAndNothingElse) {
 TEST_P(StoreContract, AWholeNumberInADoubleColumnComesBackAsADouble) {
   Opened db(GetParam());
   auto kept = db.store.write([](Writing& tx) -> core::Result<Row> {
-    if (auto made = tx.query("create table v (b double precision)"); !made) return made.error();
-    auto rows = tx.query("insert into v (b) values (?) returning b", {2.0});
-    if (!rows) return rows.error();
-    return rows->front();
+    TRY(tx.query("create table v (b double precision)"));
+    auto rows = TRY(tx.query("insert into v (b) values (?) returning b", {2.0}));
+    return rows.front();
   });
   ASSERT_TRUE(kept) << kept.error().what;
   EXPECT_EQ(kept->number(0), 2.0);
@@ -105,7 +102,7 @@ TEST_P(StoreContract, AWholeNumberInADoubleColumnComesBackAsADouble) {
 TEST_P(StoreContract, AWriteThatFailsLeavesNothing) {
   Opened db(GetParam());
   auto outcome = db.store.write([](Writing& tx) -> core::Result<void> {
-    if (auto added = add_account(tx, {"1", "ada", "admin", "hash"}, 5); !added) return added;
+    TRY(add_account(tx, {"1", "ada", "admin", "hash"}, 5));
     return core::Error{core::Errc::cancelled, "changed my mind"};
   });
   ASSERT_FALSE(outcome);
@@ -116,8 +113,7 @@ TEST_P(StoreContract, AWriteThatFailsLeavesNothing) {
 TEST_P(StoreContract, AReadingConnectionIsRefusedWritesByTheDatabase) {
   Opened db(GetParam());
   auto outcome = db.store.read([](Reading& tx) -> core::Result<void> {
-    auto done = tx.query("delete from accounts");
-    if (!done) return done.error();
+    TRY(tx.query("delete from accounts"));
     return {};
   });
   ASSERT_FALSE(outcome);
@@ -130,10 +126,9 @@ TEST_P(StoreContract, AReaderSeesOneStateWhileAWriterCommits) {
   auto counts =
       db.store.read([&](Reading& tx) -> core::Result<std::pair<std::uint64_t, std::uint64_t>> {
         const auto before = rows_in(tx, "accounts").value();
-        auto added = db.store.write([](Writing& w) {
+        TRY(db.store.write([](Writing& w) {
           return add_account(w, {"1", "ada", "admin", "hash"}, 5);
-        });
-        if (!added) return added.error();
+        }));
         return std::pair(before, rows_in(tx, "accounts").value());
       });
   ASSERT_TRUE(counts) << counts.error().what;
@@ -254,14 +249,13 @@ TEST_P(MigrationSteps, StudiesAndAssignmentsOfAnOlderDatabaseGetTheirKind) {
 TEST_P(JobQueue, AreClaimedOnceInTheOrderTheyWereQueued) {
   Opened db(GetParam());
   auto claimed = db.store.write([](Writing& tx) -> core::Result<std::vector<std::string>> {
-    if (auto q = queue_job(tx, "metrics", "later", 20); !q) return q.error();
-    if (auto q = queue_job(tx, "metrics", "sooner", 10); !q) return q.error();
+    TRY(queue_job(tx, "metrics", "later", 20));
+    TRY(queue_job(tx, "metrics", "sooner", 10));
     std::vector<std::string> subjects;
     while (true) {
-      auto job = claim_job(tx, {"metrics"}, 30);
-      if (!job) return job.error();
-      if (!job->has_value()) return subjects;
-      subjects.push_back((*job)->subject);
+      auto job = TRY(claim_job(tx, {"metrics"}, 30));
+      if (!job.has_value()) return subjects;
+      subjects.push_back(job->subject);
     }
   });
   ASSERT_TRUE(claimed) << claimed.error().what;
@@ -271,9 +265,9 @@ TEST_P(JobQueue, AreClaimedOnceInTheOrderTheyWereQueued) {
 TEST_P(JobQueue, WhatADeadProcessHadClaimedWaitsAgainAndCountsItsAttempts) {
   Opened db(GetParam());
   auto again = db.store.write([](Writing& tx) -> core::Result<std::optional<Job>> {
-    if (auto q = queue_job(tx, "metrics", "t", 10); !q) return q.error();
-    if (auto first = claim_job(tx, {"metrics"}, 20); !first) return first.error();
-    if (auto back = requeue_claimed_jobs(tx, 30); !back) return back.error();
+    TRY(queue_job(tx, "metrics", "t", 10));
+    TRY(claim_job(tx, {"metrics"}, 20));
+    TRY(requeue_claimed_jobs(tx, 30));
     return claim_job(tx, {"metrics"}, 40);
   });
   ASSERT_TRUE(again) << again.error().what;
@@ -285,20 +279,18 @@ TEST_P(JobQueue, AJobWhoseLeaseIsOverWaitsAgainAndIsItsFormerOwnersNoMore) {
   Opened db(GetParam());
   const Worker slow{"slow", 100}, quick{"quick", 100};
   auto outcome = db.store.write([&](Writing& tx) -> core::Result<void> {
-    if (auto q = queue_job(tx, "metrics", "t", 10); !q) return q;
-    auto first = claim_job(tx, {"metrics"}, 20, slow);
-    if (!first) return first.error();
+    TRY(queue_job(tx, "metrics", "t", 10));
+    auto first = TRY(claim_job(tx, {"metrics"}, 20, slow));
     EXPECT_EQ(requeue_lapsed_jobs(tx, 119).value(), 0u) << "the lease holds until 120";
-    EXPECT_EQ(renew_claims(tx, slow, 50).value(), std::vector<std::string>{(*first)->id});
+    EXPECT_EQ(renew_claims(tx, slow, 50).value(), std::vector<std::string>{first->id});
     EXPECT_EQ(requeue_lapsed_jobs(tx, 150).value(), 0u) << "renewed at 50, until 150";
     EXPECT_EQ(requeue_lapsed_jobs(tx, 151).value(), 1u);
-    auto second = claim_job(tx, {"metrics"}, 160, quick);
-    if (!second) return second.error();
-    EXPECT_EQ((*second)->attempts, 2u);
+    auto second = TRY(claim_job(tx, {"metrics"}, 160, quick));
+    EXPECT_EQ(second->attempts, 2u);
     EXPECT_TRUE(renew_claims(tx, slow, 170).value().empty());
-    auto late = finish_job(tx, **first, 180);
+    auto late = finish_job(tx, *first, 180);
     EXPECT_TRUE(!late && late.error().code == core::Errc::conflict);
-    return finish_job(tx, **second, 190);
+    return finish_job(tx, *second, 190);
   });
   EXPECT_TRUE(outcome) << outcome.error().what;
 }
@@ -306,10 +298,9 @@ TEST_P(JobQueue, AJobWhoseLeaseIsOverWaitsAgainAndIsItsFormerOwnersNoMore) {
 TEST_P(JobQueue, AJobLeftOffWaitsAgainAndTheAttemptDoesNotCount) {
   Opened db(GetParam());
   auto again = db.store.write([](Writing& tx) -> core::Result<std::optional<Job>> {
-    if (auto q = queue_job(tx, "lab", "t", 10); !q) return q.error();
-    auto first = claim_job(tx, {"lab"}, 20);
-    if (!first) return first.error();
-    if (auto back = give_back_job(tx, **first, 30); !back) return back.error();
+    TRY(queue_job(tx, "lab", "t", 10));
+    auto first = TRY(claim_job(tx, {"lab"}, 20));
+    TRY(give_back_job(tx, *first, 30));
     return claim_job(tx, {"lab"}, 40);
   });
   ASSERT_TRUE(again && again->has_value());
@@ -320,8 +311,8 @@ TEST_P(Logins, FailuresAreOfAKindOfSecretANameAndAnOrigin) {
   Opened db(GetParam());
   const Attempt account{Secret::account_password, "102", "10.0.0.1"};
   auto done = db.store.write([&](Writing& tx) -> core::Result<void> {
-    if (auto set = set_failures(tx, account, Total::pair, {3.5, 20}); !set) return set;
-    if (auto set = set_failures(tx, account, Total::pair, {4.5, 30}); !set) return set;
+    TRY(set_failures(tx, account, Total::pair, {3.5, 20}));
+    TRY(set_failures(tx, account, Total::pair, {4.5, 30}));
     return set_failures(tx, account, Total::origin, {7.0, 30});
   });
   ASSERT_TRUE(done) << done.error().what;
@@ -351,7 +342,7 @@ TEST_P(Logins, AnOriginIsKnownByTheAccountThatGotInFromIt) {
   };
   auto done = db.store.write([&](Writing& tx) -> core::Result<void> {
     for (const auto& [id, name] : {std::pair{"1", "ada"}, {"2", "bob"}})
-      if (auto added = add_account(tx, {id, name, "admin", "hash"}, 0); !added) return added;
+      TRY(add_account(tx, {id, name, "admin", "hash"}, 0));
     return note_origin(tx, "1", in, 10, 0);
   });
   ASSERT_TRUE(done) << done.error().what;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/require.hpp"
+#include "core/try.hpp"
 #include "db/store/people/invitations.hpp"
 #include "db/store/studies/blinding.hpp"
 #include "server/api/backend.hpp"
@@ -47,9 +48,8 @@ std::vector<std::string> named(const End& end, const std::map<std::string, std::
 /// Errors: forbidden for a trial that is blind still.
 core::Result<void> check_not_blind(store::Reading& tx, Object object, const std::string& id) {
   if (object != Object::trial) return {};
-  auto blind = store::is_blinded(tx, id);
-  if (!blind) return blind.error();
-  if (!*blind) return {};
+  auto blind = TRY(store::is_blinded(tx, id));
+  if (!blind) return {};
   return core::Error{core::Errc::forbidden,
                      "this trial is of a study whose participant still has trials to do: it is "
                      "shown when they are done"};
@@ -59,10 +59,9 @@ core::Result<void> check_not_blind(store::Reading& tx, Object object, const std:
 core::Result<bool> may_name(store::Reading& tx, const Caller& caller, Scope of, const End& end,
                             const std::string& name) {
   if (of == Scope::all || end.by == End::By::id) return relates(tx, caller, of, end.object, name);
-  auto account = store::account_named(tx, name);
-  if (!account) return account.error();
-  if (!*account) return false;
-  return relates(tx, caller, of, end.object, (*account)->id);
+  auto account = TRY(store::account_named(tx, name));
+  if (!account) return false;
+  return relates(tx, caller, of, end.object, account->id);
 }
 
 core::Result<void> check_end(store::Reading& tx, const Caller& caller, const End& end,
@@ -74,10 +73,9 @@ core::Result<void> check_end(store::Reading& tx, const Caller& caller, const End
     return core::Error{core::Errc::forbidden,
                        where + ": this is not for the role " + std::string(name(caller.role))};
   for (const std::string& one : names) {
-    auto may = may_name(tx, caller, *of, end, one);
-    if (!may) return may.error();
-    if (!*may) return core::Error{core::Errc::not_found, where + ": " + kNotYours};
-    if (auto open = check_not_blind(tx, end.object, one); !open) return open;
+    auto may = TRY(may_name(tx, caller, *of, end, one));
+    if (!may) return core::Error{core::Errc::not_found, where + ": " + kNotYours};
+    TRY(check_not_blind(tx, end.object, one));
   }
   return {};
 }
@@ -139,9 +137,8 @@ core::Result<void> check_object(store::Reading& tx, const RouteInfo& route, cons
   if (!of || route.object == Object::none) return {};
   const auto id = arguments.find(route.object_parameter);
   core::require(id != arguments.end(), "a route names its object by one of its arguments");
-  auto stands = relates(tx, caller, *of, route.object, id->second);
-  if (!stands) return stands.error();
-  if (!*stands) return core::Error{core::Errc::not_found, kNotYours};
+  auto stands = TRY(relates(tx, caller, *of, route.object, id->second));
+  if (!stands) return core::Error{core::Errc::not_found, kNotYours};
   return check_not_blind(tx, route.object, id->second);
 }
 
@@ -152,15 +149,13 @@ core::Result<void> check_access(Backend& backend, const RouteInfo& route, const 
                                 const std::string& body) {
   if (route.object == Object::none && route.ends.empty()) return {};
   return backend.store.read([&](store::Reading& tx) -> core::Result<void> {
-    if (auto own = check_object(tx, route, caller, arguments); !own) return own;
+    TRY(check_object(tx, route, caller, arguments));
     core::Json json;
     if (std::ranges::any_of(route.ends, is_in_body)) {
-      auto parsed = core::parse_json(body, "body");
-      if (!parsed) return parsed.error();
-      json = std::move(*parsed);
+      auto parsed = TRY(core::parse_json(body, "body"));
+      json = std::move(parsed);
     }
-    for (const End& end : route.ends)
-      if (auto fine = check_end(tx, caller, end, named(end, arguments, json)); !fine) return fine;
+    for (const End& end : route.ends) TRY(check_end(tx, caller, end, named(end, arguments, json)));
     return {};
   });
 }

@@ -5,6 +5,7 @@
 #include <regex>
 #include <set>
 
+#include "core/try.hpp"
 #include "db/store/people/invitations.hpp"
 #include "server/api/people/people_test_support.hpp"
 
@@ -86,16 +87,10 @@ class Access : public PeopleTest {
   /// What a call before changed of accounts, cohorts and invitations.
   void mend() {
     const auto mended = store_.write([](store::Writing& tx) -> core::Result<void> {
-      if (auto done = tx.query(
-              "update accounts set must_change = 0, state = 'active' where must_change = 1");
-          !done)
-        return done.error();
-      for (const char* who : {"tom", "fay"})
-        if (auto done = store::invite(tx, {"c-inv", who}); !done) return done;
+      TRY(tx.query("update accounts set must_change = 0, state = 'active' where must_change = 1"));
+      for (const char* who : {"tom", "fay"}) TRY(store::invite(tx, {"c-inv", who}));
       for (const char* who : {"tom", "tia"})
-        if (auto done = store::put_into_cohort(tx, std::string("c-") + who, who, "trainee", 0);
-            !done)
-          return done;
+        TRY(store::put_into_cohort(tx, std::string("c-") + who, who, "trainee", 0));
       return {};
     });
     EXPECT_TRUE(mended);

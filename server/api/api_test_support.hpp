@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "db/store/cases/cases.hpp"
 #include "db/store/operations/coverage.hpp"
 #include "db/store/store_test_support.hpp"
@@ -23,11 +24,9 @@ class ApiTest : public ::testing::Test {
   ApiTest() {
     const std::string hash = quick_hash();
     auto furnished = store_.write([&](store::Writing& tx) -> core::Result<void> {
-      if (auto done = store::add_account(tx, {"1", "ada", "admin", hash}, 0); !done) return done;
-      if (auto done = store::add_station(tx, {"s1", "station-1"}, token_hash("token-1"), 0); !done)
-        return done;
-      if (auto done = store::add_station(tx, {"s2", "station-2"}, token_hash("token-2"), 0); !done)
-        return done;
+      TRY(store::add_account(tx, {"1", "ada", "admin", hash}, 0));
+      TRY(store::add_station(tx, {"s1", "station-1"}, token_hash("token-1"), 0));
+      TRY(store::add_station(tx, {"s2", "station-2"}, token_hash("token-2"), 0));
       return store::add_case(tx, {kCase, "L3", "made", 1, 0}, {}, 0);
     });
     EXPECT_TRUE(furnished);
@@ -38,9 +37,8 @@ class ApiTest : public ::testing::Test {
     std::vector<std::string> findings;
     const auto compared = store_.read([&](store::Reading& tx) -> core::Result<void> {
       store::TrailDigests digests;
-      auto end = store::verify_chain(tx, store_.audit_key(),
-                                     [&](const store::AuditRow& row) { digests.add(row); });
-      if (!end) return end.error();
+      TRY(store::verify_chain(tx, store_.audit_key(),
+                              [&](const store::AuditRow& row) { digests.add(row); }));
       return digests.compare(tx, store_.audit_key(), findings);
     });
     EXPECT_TRUE(compared) << compared.error().what;

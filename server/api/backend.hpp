@@ -17,7 +17,7 @@ namespace tractus::live {
 class Hub;
 }
 
-namespace api {
+namespace tractus::api {
 
 /// What happened, as fields: never a name, an address, or anything that somebody typed.
 using Log = std::function<void(const core::Json& fields)>;
@@ -54,4 +54,4 @@ struct Backend {
   TrialViews trial_views{};
 };
 
-}  // namespace api
+}  // namespace tractus::api

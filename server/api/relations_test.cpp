@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <set>
 
+#include "core/try.hpp"
 #include "db/store/people/invitations.hpp"
 #include "server/api/access.hpp"
 #include "server/api/people/people_test_support.hpp"
@@ -36,14 +37,11 @@ class Relations : public PeopleTest {
  protected:
   Relations() {
     const auto made = store_.write([](store::Writing& tx) -> core::Result<void> {
-      if (auto done = store::add_cohort(tx, {"c-inv", "inviting", 0, "ann"}); !done) return done;
+      TRY(store::add_cohort(tx, {"c-inv", "inviting", 0, "ann"}));
       for (const char* id : {"through", "running"}) {
         const store::Study study{.id = id, .title = "", .ordering = "random"};
-        auto added = store::add_study(tx, study, {kCase}, {"rex", 1});
-        if (!added) return added.error();
-        if (auto done = store::add_participant(tx, *added, {.name = "P1"}, {kCase}, {"rex", 1});
-            !done)
-          return done;
+        auto added = TRY(store::add_study(tx, study, {kCase}, {"rex", 1}));
+        TRY(store::add_participant(tx, added, {.name = "P1"}, {kCase}, {"rex", 1}));
       }
       auto done = tx.query("update study_slots set state = 'recorded' where study_id = 'through'");
       return done ? core::Result<void>() : done.error();
@@ -54,14 +52,13 @@ class Relations : public PeopleTest {
   void mend() {
     const auto mended = store_.write([](store::Writing& tx) -> core::Result<void> {
       for (const char* sql : {"delete from cohort_people", "delete from cohort_invitations"})
-        if (auto done = tx.query(sql); !done) return done.error();
+        TRY(tx.query(sql));
       for (const auto& [cohort, who, part] : {std::array{"c-tom", "fay", "faculty"},
                                               {"c-tom", "tom", "trainee"},
                                               {"c-tia", "flo", "faculty"},
                                               {"c-tia", "tia", "trainee"}})
-        if (auto done = store::put_into_cohort(tx, cohort, who, part, 0); !done) return done;
-      for (const char* who : {"tom", "fay"})
-        if (auto done = store::invite(tx, {"c-inv", who}); !done) return done;
+        TRY(store::put_into_cohort(tx, cohort, who, part, 0));
+      for (const char* who : {"tom", "fay"}) TRY(store::invite(tx, {"c-inv", who}));
       return {};
     });
     EXPECT_TRUE(mended);

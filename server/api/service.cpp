@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "core/clock.hpp"
+#include "core/try.hpp"
 #include "server/api/access.hpp"
 #include "server/api/audit_entry.hpp"
 #include "server/api/people/authentication.hpp"
@@ -45,9 +46,8 @@ core::Result<Match> bound(const RouteInfo& route, const std::vector<std::string_
   Match out{&route, {}};
   for (std::size_t i = 0; i < pattern.size(); ++i) {
     if (!is_placeholder(pattern[i])) continue;
-    auto value = http::percent_decoded(path[i]);
-    if (!value) return value.error();
-    out.segments.emplace(pattern[i].substr(1, pattern[i].size() - 2), std::move(*value));
+    auto value = TRY(http::percent_decoded(path[i]));
+    out.segments.emplace(pattern[i].substr(1, pattern[i].size() - 2), std::move(value));
   }
   return out;
 }
@@ -119,9 +119,8 @@ core::Result<Caller> allowed_caller(Backend& backend, const RouteInfo& route,
                                     Presence presence = Presence::shown) {
   Caller caller{Role::station, "", "", ""};
   if (!route.open) {
-    auto authenticated = authenticate(backend, head, presence);
-    if (!authenticated) return authenticated.error();
-    caller = std::move(*authenticated);
+    auto authenticated = TRY(authenticate(backend, head, presence));
+    caller = std::move(authenticated);
     if (asked) asked->caller = caller;
     if (!granted(route, caller.role)) {
       if (asked) asked->overstepped = true;
@@ -132,7 +131,7 @@ core::Result<Caller> allowed_caller(Backend& backend, const RouteInfo& route,
       return core::Error{core::Errc::forbidden,
                          "choose a password of your own first: POST /api/v1/session/password"};
   }
-  if (auto own = check_not_forged(route, caller, head); !own) return own.error();
+  TRY(check_not_forged(route, caller, head));
   return caller;
 }
 
@@ -177,8 +176,7 @@ core::Result<Match> match(const std::vector<RouteInfo>& table, const http::Reque
 
 core::Result<std::map<std::string, std::string>> arguments(const Match& matched,
                                                            const http::RequestHead& head) {
-  if (auto declared = check_query_is_declared(*matched.route, head); !declared)
-    return declared.error();
+  TRY(check_query_is_declared(*matched.route, head));
   std::map<std::string, std::string> out;
   for (const Parameter& p : matched.route->parameters) {
     auto value = given(p, matched, head);
@@ -186,7 +184,7 @@ core::Result<std::map<std::string, std::string>> arguments(const Match& matched,
     if (!value && p.required)
       return core::Error{core::Errc::bad_input, p.name + ": is missing (" + p.meaning + ")"};
     if (!value) continue;
-    if (auto fine = check(p, *value); !fine) return fine.error();
+    TRY(check(p, *value));
     out.emplace(p.name, std::move(*value));
   }
   return out;
@@ -304,18 +302,16 @@ bool is_own_origin(const http::RequestHead& head) {
 core::Result<std::shared_ptr<http::WebSocketHandler>> conversation(Backend& backend, Asked& asked,
                                                                    const http::Request& request) {
   const RouteInfo& route = *asked.matched->route;
-  auto caller = allowed_caller(backend, route, request, &asked);
-  if (!caller) return caller.error();
-  if (!caller->session_hash.empty() && !is_own_origin(request))
+  auto caller = TRY(allowed_caller(backend, route, request, &asked));
+  if (!caller.session_hash.empty() && !is_own_origin(request))
     return core::Error{core::Errc::forbidden, "the page that asks for this WebSocket is not ours"};
-  auto checked = arguments(*asked.matched, request);
-  if (!checked) return checked.error();
-  if (auto may = check_access(backend, route, *caller, *checked, ""); !may) {
+  auto checked = TRY(arguments(*asked.matched, request));
+  if (auto may = check_access(backend, route, caller, checked, ""); !may) {
     asked.overstepped = may.error().code == core::Errc::not_found;
     return may.error();
   }
-  const Call call{backend, request, *caller, std::move(*checked),
-                  granted(route, caller->role).value_or(Scope::own)};
+  const Call call{backend, request, caller, std::move(checked),
+                  granted(route, caller.role).value_or(Scope::own)};
   return route.converse(call, [&backend, &route, head = http::RequestHead(request)] {
     return bool(allowed_caller(backend, route, head, nullptr, Presence::not_shown));
   });

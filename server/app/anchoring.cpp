@@ -8,6 +8,7 @@
 #include <chrono>
 
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "server/api/web_fetch.hpp"
 #include "server/app/log.hpp"
 
@@ -34,10 +35,9 @@ Result<void> add_to_file(const std::string& path, const std::string& line) {
 
 Result<void> post(const std::string& url, const std::string& line) {
   auto answer =
-      api::fetch({.url = url, .form = std::map<std::string, std::string>{{"anchor", line}}});
-  if (!answer) return answer.error();
-  if (answer->status >= 200 && answer->status < 300) return {};
-  return core::Error{core::Errc::unavailable, fmt::format("{}: answers {}", url, answer->status)};
+      TRY(api::fetch({.url = url, .form = std::map<std::string, std::string>{{"anchor", line}}}));
+  if (answer.status >= 200 && answer.status < 300) return {};
+  return core::Error{core::Errc::unavailable, fmt::format("{}: answers {}", url, answer.status)};
 }
 
 Result<void> send_to(const AnchorPlace& place, const std::string& line) {

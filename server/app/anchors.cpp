@@ -11,6 +11,7 @@
 
 #include "core/clock.hpp"
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "db/store/operations/coverage.hpp"
 #include "server/app/log.hpp"
 
@@ -149,15 +150,12 @@ struct TrailState {
 
 Result<TrailState> trail_state(store::Store& store, std::int64_t noted) {
   return store.read([&](store::Reading& tx) -> Result<TrailState> {
-    auto end = store::chain_end(tx);
-    if (!end) return end.error();
-    if (end->number == 0) end->hash = kNoHash;
-    auto row = tx.query("select number, hash from audit where number = ?", {noted});
-    if (!row) return row.error();
-    auto covered = tx.query("select count(*) from audit where what = 'beginCoverage'");
-    if (!covered) return covered.error();
-    TrailState out{*end, {}, covered->front().integer(0) > 0};
-    if (!row->empty()) out.noted = {row->front().integer(0), row->front().text(1)};
+    auto end = TRY(store::chain_end(tx));
+    if (end.number == 0) end.hash = kNoHash;
+    auto row = TRY(tx.query("select number, hash from audit where number = ?", {noted}));
+    auto covered = TRY(tx.query("select count(*) from audit where what = 'beginCoverage'"));
+    TrailState out{end, {}, covered.front().integer(0) > 0};
+    if (!row.empty()) out.noted = {row.front().integer(0), row.front().text(1)};
     return out;
   });
 }
@@ -168,14 +166,12 @@ struct Newest {
 };
 
 Result<Newest> newest_anchor(const fs::path& data, const store::AuditKey& key) {
-  auto high = high_water_of(data, key);
-  if (!high) return high.error();
-  auto line = newest_line(data / kAnchors, key);
-  if (!line) return line.error();
-  const Newest out{*line, *high ? (*high)->count : 0};
-  if (out.high_water > line->count)
-    return broken(data / kAnchors, fmt::format("ends with anchor {}, but {} were made", line->count,
-                                               out.high_water));
+  auto high = TRY(high_water_of(data, key));
+  auto line = TRY(newest_line(data / kAnchors, key));
+  const Newest out{line, high ? high->count : 0};
+  if (out.high_water > line.count)
+    return broken(data / kAnchors,
+                  fmt::format("ends with anchor {}, but {} were made", line.count, out.high_water));
   return out;
 }
 
@@ -205,19 +201,17 @@ Result<std::optional<Anchor>> note_anchor(DataFolder& data) {
   const auto held = data.store.hold("audit anchor");  // several servers share the file
   if (!held) return held.error();
   const store::AuditKey& key = data.store.audit_key();
-  auto newest = newest_anchor(data.path, key);
-  if (!newest) return newest.error();
-  auto trail = trail_state(data.store, newest->anchor.end.number);
-  if (!trail) return trail.error();
-  if (auto fine = check_against(data, *newest, *trail); !fine) return fine.error();
-  Anchor anchor = newest->anchor;
-  if (anchor.count == 0 || anchor.end.number != trail->end.number) {
-    anchor = {trail->end, anchor.count + 1, core::utc_us()};
+  auto newest = TRY(newest_anchor(data.path, key));
+  auto trail = TRY(trail_state(data.store, newest.anchor.end.number));
+  TRY(check_against(data, newest, trail));
+  Anchor anchor = newest.anchor;
+  if (anchor.count == 0 || anchor.end.number != trail.end.number) {
+    anchor = {trail.end, anchor.count + 1, core::utc_us()};
     anchor.mac = mac_of(key, kAnchorLabel, anchor);
-    if (auto added = append_line(data.path / kAnchors, anchor.line()); !added) return added.error();
+    TRY(append_line(data.path / kAnchors, anchor.line()));
   }
-  if (anchor.count == newest->high_water) return Maybe();
-  if (auto kept = write_high_water(data.path, key, anchor); !kept) return kept.error();
+  if (anchor.count == newest.high_water) return Maybe();
+  TRY(write_high_water(data.path, key, anchor));
   return Maybe(anchor);
 }
 
@@ -262,13 +256,12 @@ void check_high_water(const Anchor& high, AnchorReport& out) {
 
 Result<void> check_copy(const fs::path& path, const store::AuditKey& key, AnchorReport& out) {
   std::int64_t newest = 0;
-  auto read = each_line(path, [&](const std::string& line) {
+  TRY(each_line(path, [&](const std::string& line) {
     const auto anchor = anchor_of(line);
     if (!anchor || anchor->count == 0 || anchor->mac != mac_of(key, kAnchorLabel, *anchor)) return;
     newest = std::max(newest, anchor->count);
     if (anchor->end.number > 0) out.ends.push_back(anchor->end);
-  });
-  if (!read) return read;
+  }));
   if (newest == 0)
     return Error{Errc::bad_input,
                  path.string() + ": has no anchor that was made with this server's key"};
@@ -290,8 +283,7 @@ Result<AnchorReport> check_anchors(const fs::path& data, const store::AuditKey& 
   if (!read && read.error().code != Errc::not_found) return read.error();
   if (!high) out.findings.push_back(high.error().what);
   if (high && *high) check_high_water(**high, out);
-  if (copy)
-    if (auto checked = check_copy(*copy, key, out); !checked) return checked.error();
+  if (copy) TRY(check_copy(*copy, key, out));
   return out;
 }
 
@@ -299,11 +291,10 @@ Result<void> begin_anchors_again(DataFolder& data) {
   const std::string when = std::to_string(core::utc_us());
   std::error_code failure;
   fs::rename(data.path / kAnchors, data.path / fmt::format("{}.{}", kAnchors, when), failure);
-  auto trail = trail_state(data.store, 0);
-  if (!trail) return trail.error();
-  Anchor anchor{trail->end, 1, core::utc_us()};
+  auto trail = TRY(trail_state(data.store, 0));
+  Anchor anchor{trail.end, 1, core::utc_us()};
   anchor.mac = mac_of(data.store.audit_key(), kAnchorLabel, anchor);
-  if (auto added = append_line(data.path / kAnchors, anchor.line()); !added) return added;
+  TRY(append_line(data.path / kAnchors, anchor.line()));
   return write_high_water(data.path, data.store.audit_key(), anchor);
 }
 
@@ -313,9 +304,8 @@ Result<void> begin_trail(DataFolder& data) {
       log_line({{"what", "audit anchor"}, {"error", noted.error().what}});
   };
   anchored();  // before rows are covered: a covered trail without an anchor is a finding
-  auto began = store::begin_coverage(data.store);
-  if (!began) return began.error();
-  if (!*began) return {};
+  auto began = TRY(store::begin_coverage(data.store));
+  if (!began) return {};
   log_line({{"what", "audit trail"},
             {"covers_rows_of_tables", store::covered_tables().size()},
             {"since", core::utc_text(core::utc_us())}});
@@ -326,16 +316,14 @@ Result<void> begin_trail(DataFolder& data) {
 Result<Examined> examine(DataFolder& data, const core::Progress& shown,
                          const std::optional<fs::path>& copy) {
   // Anchors first: what is noted after them is in the database all the more.
-  auto anchors = check_anchors(data.path, data.secrets.audit_key(), copy);
-  if (!anchors) return anchors.error();
-  auto found =
-      store::look_over(data.store, data.objects, data.secrets.audit_key(), anchors->ends, shown);
-  if (!found) return found.error();
-  found->lines.insert(found->lines.end(), anchors->findings.begin(), anchors->findings.end());
-  if (found->covered_since_utc_us > 0 && !anchors->has_high_water)
-    found->lines.push_back(fmt::format(
+  auto anchors = TRY(check_anchors(data.path, data.secrets.audit_key(), copy));
+  auto found = TRY(
+      store::look_over(data.store, data.objects, data.secrets.audit_key(), anchors.ends, shown));
+  found.lines.insert(found.lines.end(), anchors.findings.begin(), anchors.findings.end());
+  if (found.covered_since_utc_us > 0 && !anchors.has_high_water)
+    found.lines.push_back(fmt::format(
         "{}: is missing: whether the newest rows were cut off cannot be told", kHighWater));
-  return Examined{std::move(*found), std::move(*anchors)};
+  return Examined{std::move(found), std::move(anchors)};
 }
 
 }  // namespace app

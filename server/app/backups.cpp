@@ -6,6 +6,7 @@
 
 #include "core/clock.hpp"
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "server/app/anchors.hpp"
 
 namespace tractus {
@@ -59,13 +60,12 @@ BackupFolder::~BackupFolder() {
 }
 
 core::Result<api::Backup> BackupFolder::read(const std::string& id) const {
-  auto manifest = core::read_json(folder_ / id / kManifest);
-  if (!manifest) return manifest.error();
+  auto manifest = TRY(core::read_json(folder_ / id / kManifest));
   api::Backup out{.id = id, .state = "done", .error = {}, .made_by = {}};
-  out.made_utc_us = manifest->value("made_utc_us", std::int64_t{0});
+  out.made_utc_us = manifest.value("made_utc_us", std::int64_t{0});
   out.size_bytes = size_of(folder_ / id);
-  if (manifest->contains("rows") && (*manifest)["rows"].is_object())
-    out.trials = (*manifest)["rows"].value("trials", std::uint64_t{0});
+  if (manifest.contains("rows") && manifest["rows"].is_object())
+    out.trials = manifest["rows"].value("trials", std::uint64_t{0});
   const auto note = core::read_json(folder_ / (id + ".json"));
   if (!note || !note->is_object()) return out;  // made by the command line
   out.made_by = note->value("made_by", "");
@@ -138,12 +138,10 @@ void BackupFolder::verify_now(api::Backup& backup) {
     if (!scratch) return scratch.error();
     const fs::path restored = scratch->path() / "data";
     const auto shown = progress();
-    auto put_back = restore(folder_ / backup.id, restored, Database::file_in(restored),
-                            [&](double share) { return shown(0.5 * share); });
-    if (!put_back) return put_back.error();
-    auto data = open_data(restored, Database::file_in(restored));
-    if (!data) return data.error();
-    return examine(*data, [&](double share) { return shown(0.5 + 0.5 * share); });
+    TRY(restore(folder_ / backup.id, restored, Database::file_in(restored),
+                [&](double share) { return shown(0.5 * share); }));
+    auto data = TRY(open_data(restored, Database::file_in(restored)));
+    return examine(data, [&](double share) { return shown(0.5 + 0.5 * share); });
   }();
   if (!examined && examined.error().code == core::Errc::cancelled) return;
   backup.findings =
@@ -176,11 +174,10 @@ core::Result<api::Backup> BackupFolder::verify(const std::string& id) {
   std::error_code failure;
   if (!is_name(id) || !fs::exists(folder_ / id / kManifest, failure))
     return core::Error{core::Errc::not_found, "no backup " + id.substr(0, 64)};
-  auto backup = read(id);
-  if (!backup) return backup.error();
-  backup->state = "verifying";
-  start(*backup, [this](api::Backup& one) { verify_now(one); });
-  return *backup;
+  auto backup = TRY(read(id));
+  backup.state = "verifying";
+  start(backup, [this](api::Backup& one) { verify_now(one); });
+  return backup;
 }
 
 }  // namespace app

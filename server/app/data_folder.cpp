@@ -11,6 +11,7 @@
 
 #include "core/clock.hpp"
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "server/app/log.hpp"
 
 namespace tractus {
@@ -34,9 +35,8 @@ core::Result<void> make_key_file(const fs::path& path) {
 }
 
 core::Result<api::Secrets::Key> read_key_file(const fs::path& path) {
-  auto bytes = core::read_file(path, 4096);
-  if (!bytes) return bytes.error();
-  std::string_view text = core::text_of(*bytes);
+  auto bytes = TRY(core::read_file(path, 4096));
+  std::string_view text = core::text_of(bytes);
   text = text.substr(0, text.find('\n'));
   api::Secrets::Key key{};
   if (!core::is_sha256(text))
@@ -56,28 +56,25 @@ namespace {
 core::Result<api::Secrets> secrets_of(const fs::path& folder, store::Store& store) {
   std::error_code failure;
   if (!fs::exists(folder / kSecret, failure)) {
-    auto end = store.read([](store::Reading& tx) { return store::chain_end(tx); });
-    if (!end) return end.error();
-    if (end->number > 0)
+    auto end = TRY(store.read([](store::Reading& tx) { return store::chain_end(tx); }));
+    if (end.number > 0)
       return core::Error{core::Errc::not_found,
                          (folder / kSecret).string() +
                              ": is missing; the audit trail was made with it: bring it back from "
                              "a backup"};
-    if (auto made = make_key_file(folder / kSecret); !made) return made.error();
+    TRY(make_key_file(folder / kSecret));
   }
-  auto key = read_key_file(folder / kSecret);
-  if (!key) return key.error();
-  return api::Secrets(*key);
+  auto key = TRY(read_key_file(folder / kSecret));
+  return api::Secrets(key);
 }
 }  // namespace
 
 core::Result<void> leave_to_owner(const fs::path& folder) {
-  auto repaired = core::make_private(folder, "objects");
-  if (!repaired) return repaired.error();
-  if (*repaired > 0)
+  auto repaired = TRY(core::make_private(folder, "objects"));
+  if (repaired > 0)
     log_line({{"what", "others had access to files and folders; now their owner alone has"},
               {"folder", folder.string()},
-              {"repaired", *repaired}});
+              {"repaired", repaired}});
   return {};
 }
 
@@ -104,38 +101,32 @@ void remove_left_overs(const fs::path& folder, bool alone) {
 }
 
 core::Result<DataFolder> open_data(const fs::path& path) {
-  auto database = database_of(path);
-  if (!database) return database.error();
-  return open_data(path, *database);
+  auto database = TRY(database_of(path));
+  return open_data(path, database);
 }
 
 core::Result<DataFolder> make_data(const fs::path& path) {
-  auto database = new_database(path);
-  if (!database) return database.error();
-  return open_data(path, *database);
+  auto database = TRY(new_database(path));
+  return open_data(path, database);
 }
 
 core::Result<DataFolder> open_data(const fs::path& path, const Database& database) {
   if (database.is_shared())  // nothing is made when it cannot be reached
-    if (auto reached = database.open(); !reached) return reached.error();
+    TRY(database.open());
   std::error_code failure;
   fs::create_directories(path, failure);
   if (failure)
     return core::Error{core::Errc::io,
                        fmt::format("{}: cannot create: {}", path.string(), failure.message())};
-  if (auto done = leave_to_owner(path); !done) return done.error();
-  auto objects = store::Objects::open(path);
-  if (!objects) return objects.error();
-  auto partials = store::PartialFiles::open(path);
-  if (!partials) return partials.error();
-  auto opened = database.open();
-  if (!opened) return opened.error();
-  if (auto noted = note_address(path, database); !noted) return noted.error();
-  auto secrets = secrets_of(path, *opened);
-  if (!secrets) return secrets.error();
-  opened->set_audit_key(secrets->audit_key());
-  return DataFolder{path, std::move(*opened), std::move(*objects), std::move(*partials),
-                    std::move(*secrets)};
+  TRY(leave_to_owner(path));
+  auto objects = TRY(store::Objects::open(path));
+  auto partials = TRY(store::PartialFiles::open(path));
+  auto opened = TRY(database.open());
+  TRY(note_address(path, database));
+  auto secrets = TRY(secrets_of(path, opened));
+  opened.set_audit_key(secrets.audit_key());
+  return DataFolder{path, std::move(opened), std::move(objects), std::move(partials),
+                    std::move(secrets)};
 }
 
 store::AuditedAction command_act(const std::string& command, const core::Json& detail) {

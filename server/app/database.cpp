@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "core/file.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace app {
@@ -22,9 +23,8 @@ bool is_there(const fs::path& path) {
 }
 
 core::Result<std::string> noted_address(const fs::path& folder) {
-  auto bytes = core::read_file(folder / kAddressFile, 4096);
-  if (!bytes) return bytes.error();
-  std::string address(core::text_of(*bytes));
+  auto bytes = TRY(core::read_file(folder / kAddressFile, 4096));
+  std::string address(core::text_of(bytes));
   address = address.substr(0, address.find_first_of("\r\n"));
   if (!address.empty()) return address;
   return core::Error{core::Errc::bad_input,
@@ -49,9 +49,8 @@ core::Result<Database> new_database(const fs::path& folder) {
                                    "named; to move them: backup, then restore --database",
                                    out.file.string())};
   if (!out.is_shared() && is_there(folder / kAddressFile)) {
-    auto noted = noted_address(folder);
-    if (!noted) return noted.error();
-    out.address = std::move(*noted);
+    auto noted = TRY(noted_address(folder));
+    out.address = std::move(noted);
   }
   return out;
 }

@@ -13,6 +13,7 @@
 #include <cstdio>
 
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "server/jobs/import_volume.hpp"
 
 namespace tractus {
@@ -100,8 +101,7 @@ Result<Json> import_volume_in_subprocess(const fs::path& upload, const fs::path&
                                          const std::array<std::byte, 32>& key) {
   Pipe in, out;
   if (!in.open() || !out.open()) return core::system_error("take-volume", "cannot open a pipe");
-  auto child = start(upload, folder, in, out);
-  if (!child) return child.error();
+  auto child = TRY(start(upload, folder, in, out));
   in.shut(0), out.shut(1);
   const std::string text = core::hex(key);
   const bool told = ::write(in.ends[1], text.data(), text.size()) == ssize_t(text.size());
@@ -109,7 +109,7 @@ Result<Json> import_volume_in_subprocess(const fs::path& upload, const fs::path&
   const std::string said = told ? all_of(out.ends[0]) : "";
   out.shut(0);
   int status = 0;
-  while (::waitpid(*child, &status, 0) < 0 && errno == EINTR) {
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   Json answer = core::stored_json(said);
   const bool whole = WIFEXITED(status) && WEXITSTATUS(status) == 0 && answer.is_object();

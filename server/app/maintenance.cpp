@@ -4,6 +4,7 @@
 
 #include "core/clock.hpp"
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "db/store/database/copy.hpp"
 #include "db/store/trials/uploads.hpp"
 #include "server/app/anchors.hpp"
@@ -29,11 +30,10 @@ std::vector<std::string> small_files(const fs::path& folder) {
 }
 
 core::Result<void> copy_small(const fs::path& from, const fs::path& to, const std::string& name) {
-  auto bytes = core::read_file(from / name, kMaxSmall_bytes);
-  if (!bytes) return bytes.error();
+  auto bytes = TRY(core::read_file(from / name, kMaxSmall_bytes));
   std::error_code failure;
   fs::create_directories((to / name).parent_path(), failure);
-  return core::write_file(to / name, *bytes);
+  return core::write_file(to / name, bytes);
 }
 
 /// Those that are not in `to` yet.
@@ -41,7 +41,7 @@ core::Result<void> copy_small_files(const fs::path& from, const fs::path& to) {
   std::error_code failure;
   for (const std::string& name : small_files(from)) {
     if (fs::exists(to / name, failure)) continue;
-    if (auto done = copy_small(from, to, name); !done) return done;
+    TRY(copy_small(from, to, name));
   }
   return {};
 }
@@ -49,17 +49,15 @@ core::Result<void> copy_small_files(const fs::path& from, const fs::path& to) {
 /// Objects that the database names, each checked against its name while it is copied.
 core::Result<std::uint64_t> copy_objects(const fs::path& from, store::Store& names,
                                          const store::Objects& into, const core::Progress& shown) {
-  auto source = store::Objects::open(from);
-  if (!source) return source.error();
-  auto entries = names.read([](store::Reading& tx) { return store::all_objects(tx); });
-  if (!entries) return entries.error();
+  auto source = TRY(store::Objects::open(from));
+  auto entries = TRY(names.read([](store::Reading& tx) { return store::all_objects(tx); }));
   std::uint64_t bytes = 0, done = 0;
-  for (const store::ObjectEntry& entry : *entries) {
-    if (auto in = into.copy_in(source->path_of(entry.sha256), entry.sha256); !in)
+  for (const store::ObjectEntry& entry : entries) {
+    if (auto in = into.copy_in(source.path_of(entry.sha256), entry.sha256); !in)
       return core::Error{in.error().code,
                          fmt::format("object {}: {}", entry.sha256, in.error().what)};
     bytes += entry.size_bytes;
-    if (!shown(double(++done) / double(entries->size())))
+    if (!shown(double(++done) / double(entries.size())))
       return core::Error{core::Errc::cancelled, "stopped; nothing is left behind"};
   }
   return bytes;
@@ -69,69 +67,57 @@ core::Result<std::uint64_t> copy_objects(const fs::path& from, store::Store& nam
 /// hands it over again.
 core::Result<void> copy_partials(const fs::path& from, store::Store& names,
                                  const store::PartialFiles& into) {
-  auto source = store::PartialFiles::open(from);
-  if (!source) return source.error();
-  auto open = names.read([](store::Reading& tx) { return store::open_uploads(tx); });
-  if (!open) return open.error();
-  for (const store::Upload& upload : *open) {
-    if (source->size_of(upload.trial_id) == 0) continue;
-    auto bytes = core::read_file(source->path_of(upload.trial_id), 1u << 30);
+  auto source = TRY(store::PartialFiles::open(from));
+  auto open = TRY(names.read([](store::Reading& tx) { return store::open_uploads(tx); }));
+  for (const store::Upload& upload : open) {
+    if (source.size_of(upload.trial_id) == 0) continue;
+    auto bytes = core::read_file(source.path_of(upload.trial_id), 1u << 30);
     if (!bytes) continue;  // it ended just now
-    if (auto written = into.append(upload.trial_id, 0, *bytes); !written) return written;
+    TRY(into.append(upload.trial_id, 0, *bytes));
   }
   return {};
 }
 
 core::Result<core::Json> manifest_of(const fs::path& folder, store::Store& store,
                                      std::uint64_t object_bytes) {
-  auto counts = store.read([](store::Reading& tx) -> core::Result<core::Json> {
+  auto counts = TRY(store.read([](store::Reading& tx) -> core::Result<core::Json> {
     core::Json out = core::Json::object();
     for (const char* table : {"objects", "trials", "accounts", "audit"}) {
-      auto rows = tx.query(std::string("select count(*) from ") + table);
-      if (!rows) return rows.error();
-      out[table] = rows->front().count(0);
+      auto rows = TRY(tx.query(std::string("select count(*) from ") + table));
+      out[table] = rows.front().count(0);
     }
     return out;
-  });
-  if (!counts) return counts.error();
-  auto database = store::file_sha256(folder / kDatabase);
-  if (!database) return database.error();
+  }));
+  auto database = TRY(store::file_sha256(folder / kDatabase));
   core::Json files = core::Json::object();
   for (const std::string& name : small_files(folder)) {
-    auto sha256 = store::file_sha256(folder / name);
-    if (!sha256) return sha256.error();
-    files[name] = *sha256;
+    auto sha256 = TRY(store::file_sha256(folder / name));
+    files[name] = sha256;
   }
   return core::Json{
-      {"format", kFormat}, {"made_utc_us", core::utc_us()}, {"database_sha256", *database},
-      {"files", files},    {"object_bytes", object_bytes},  {"rows", *counts}};
+      {"format", kFormat}, {"made_utc_us", core::utc_us()}, {"database_sha256", database},
+      {"files", files},    {"object_bytes", object_bytes},  {"rows", counts}};
 }
 
 /// Objects and partial files beside a database that is in `to` already.
 core::Result<std::uint64_t> copy_files(const fs::path& from, const fs::path& to,
                                        const core::Progress& shown) {
-  auto names = store::Store::open(to / kDatabase);
-  if (!names) return names.error();
-  auto objects = store::Objects::open(to);
-  if (!objects) return objects.error();
-  auto partials = store::PartialFiles::open(to);
-  if (!partials) return partials.error();
-  auto bytes = copy_objects(from, *names, *objects, shown);
-  if (!bytes) return bytes.error();
-  if (auto done = copy_partials(from, *names, *partials); !done) return done.error();
-  if (auto done = copy_small_files(from, to); !done) return done.error();
-  return *bytes;
+  auto names = TRY(store::Store::open(to / kDatabase));
+  auto objects = TRY(store::Objects::open(to));
+  auto partials = TRY(store::PartialFiles::open(to));
+  auto bytes = TRY(copy_objects(from, names, objects, shown));
+  TRY(copy_partials(from, names, partials));
+  TRY(copy_small_files(from, to));
+  return bytes;
 }
 
 /// The records as they stand at one moment, in a SQLite file: a backup is read without a server.
 core::Result<void> copy_records(const Database& source, const fs::path& file) {
   if (!source.is_shared()) return store::copy_database(source.file, file);
-  auto from = source.open();
-  if (!from) return from.error();
-  auto to = store::Store::open(file);
-  if (!to) return to.error();
-  auto copied = from->read([&](store::Reading& reading) {
-    return to->write([&](store::Writing& writing) { return store::copy_rows(reading, writing); });
+  auto from = TRY(source.open());
+  auto to = TRY(store::Store::open(file));
+  auto copied = from.read([&](store::Reading& reading) {
+    return to.write([&](store::Writing& writing) { return store::copy_rows(reading, writing); });
   });
   if (!copied) return core::Error{copied.error().code, "backup: " + copied.error().what};
   return {};
@@ -140,12 +126,10 @@ core::Result<void> copy_records(const Database& source, const fs::path& file) {
 /// The records of a restored folder into the database it shall have: all of them or none.
 core::Result<void> move_records(const fs::path& folder, const Database& target) {
   {
-    auto from = store::Store::open(folder / kDatabase);
-    if (!from) return from.error();
-    auto to = target.open();
-    if (!to) return to.error();
-    auto copied = from->read([&](store::Reading& reading) {
-      return to->write([&](store::Writing& writing) { return store::copy_rows(reading, writing); });
+    auto from = TRY(store::Store::open(folder / kDatabase));
+    auto to = TRY(target.open());
+    auto copied = from.read([&](store::Reading& reading) {
+      return to.write([&](store::Writing& writing) { return store::copy_rows(reading, writing); });
     });
     if (!copied) return core::Error{copied.error().code, "restore: " + copied.error().what};
   }
@@ -167,9 +151,8 @@ core::Result<core::Json> read_manifest(const fs::path& from) {
 }
 
 core::Result<void> check_file(const fs::path& path, const core::Json& expected) {
-  auto sha256 = store::file_sha256(path);
-  if (!sha256) return sha256.error();
-  if (expected.is_string() && *sha256 == expected.get<std::string>()) return {};
+  auto sha256 = TRY(store::file_sha256(path));
+  if (expected.is_string() && sha256 == expected.get<std::string>()) return {};
   return core::Error{core::Errc::corrupt, path.string() + ": is not what backup.json says it is"};
 }
 
@@ -184,57 +167,46 @@ core::Result<core::ScratchFolder> scratch_for(const fs::path& target) {
 
 core::Result<core::Json> back_up(const fs::path& data, const fs::path& out,
                                  const core::Progress& shown) {
-  auto source = database_of(data);
-  if (!source) return source.error();
-  auto scratch = scratch_for(out);
-  if (!scratch) return scratch.error();
-  const fs::path& to = scratch->path();
+  auto source = TRY(database_of(data));
+  auto scratch = TRY(scratch_for(out));
+  const fs::path& to = scratch.path();
   // Anchors before the records: what they note is in the records then.
-  if (auto copied = copy_small_files(data, to); !copied) return copied.error();
-  if (auto copied = copy_records(*source, to / kDatabase); !copied) return copied.error();
-  auto bytes = copy_files(data, to, shown);
-  if (!bytes) return bytes.error();
+  TRY(copy_small_files(data, to));
+  TRY(copy_records(source, to / kDatabase));
+  auto bytes = TRY(copy_files(data, to, shown));
   core::Json manifest;
   {
-    auto store = store::Store::open(to / kDatabase);
-    if (!store) return store.error();
-    auto made = manifest_of(to, *store, *bytes);
-    if (!made) return made.error();
-    manifest = std::move(*made);
+    auto store = TRY(store::Store::open(to / kDatabase));
+    auto made = TRY(manifest_of(to, store, bytes));
+    manifest = std::move(made);
   }
   // Closing folds the log into the database's file: its hash is that of the file as it lies there.
-  auto database = store::file_sha256(to / kDatabase);
-  if (!database) return database.error();
-  manifest["database_sha256"] = *database;
-  if (auto written = core::write_json(to / kManifest, manifest); !written) return written.error();
-  if (auto kept = scratch->keep_as(out); !kept) return kept.error();
+  auto database = TRY(store::file_sha256(to / kDatabase));
+  manifest["database_sha256"] = database;
+  TRY(core::write_json(to / kManifest, manifest));
+  TRY(scratch.keep_as(out));
   return manifest;
 }
 
 core::Result<core::Json> restore(const fs::path& from, const fs::path& data, const Database& target,
                                  const core::Progress& shown) {
-  auto manifest = read_manifest(from);
-  if (!manifest) return manifest.error();
-  if (auto fine = check_file(from / kDatabase, manifest->value("database_sha256", core::Json()));
-      !fine)
-    return fine.error();
-  for (const auto& [name, sha256] : (*manifest)["files"].items()) {
+  auto manifest = TRY(read_manifest(from));
+  TRY(check_file(from / kDatabase, manifest.value("database_sha256", core::Json())));
+  for (const auto& [name, sha256] : manifest["files"].items()) {
     if (fs::path(name).is_absolute() || name.find("..") != std::string::npos)
       return core::Error{core::Errc::bad_input, (from / kManifest).string() + ": odd name " + name};
-    if (auto fine = check_file(from / name, sha256); !fine) return fine.error();
+    TRY(check_file(from / name, sha256));
   }
-  auto scratch = scratch_for(data);
-  if (!scratch) return scratch.error();
+  auto scratch = TRY(scratch_for(data));
   std::error_code failure;
-  fs::copy_file(from / kDatabase, scratch->path() / kDatabase, failure);
+  fs::copy_file(from / kDatabase, scratch.path() / kDatabase, failure);
   if (failure)
     return core::Error{core::Errc::io, fmt::format("{}: cannot copy: {}",
                                                    (from / kDatabase).string(), failure.message())};
-  if (auto copied = copy_files(from, scratch->path(), shown); !copied) return copied.error();
-  if (target.is_shared())
-    if (auto moved = move_records(scratch->path(), target); !moved) return moved.error();
-  if (auto kept = scratch->keep_as(data); !kept) return kept.error();
-  return *manifest;
+  TRY(copy_files(from, scratch.path(), shown));
+  if (target.is_shared()) TRY(move_records(scratch.path(), target));
+  TRY(scratch.keep_as(data));
+  return manifest;
 }
 
 }  // namespace app

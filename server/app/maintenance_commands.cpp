@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "core/clock.hpp"
+#include "core/try.hpp"
 #include "db/store/database/migrations.hpp"
 #include "server/app/anchors.hpp"
 #include "server/app/command.hpp"
@@ -19,14 +20,12 @@ core::Result<std::int64_t> schema_of(const Database& database) {
   if (database.is_shared()) {
     connection = store::postgres_connection(database.address, store::Access::read);
   } else {
-    auto opened = store::open_sqlite(database.file, store::Access::read);
-    if (!opened) return opened.error();
-    connection = std::move(*opened);
+    auto opened = TRY(store::open_sqlite(database.file, store::Access::read));
+    connection = std::move(opened);
   }
-  if (auto begun = connection->begin(store::Access::read); !begun) return begun.error();
-  auto rows = connection->query("select coalesce(max(version), 0) from schema_versions", {});
-  if (!rows) return rows.error();
-  return rows->front().integer(0);
+  TRY(connection->begin(store::Access::read));
+  auto rows = TRY(connection->query("select coalesce(max(version), 0) from schema_versions", {}));
+  return rows.front().integer(0);
 }
 
 std::string coverage_text(const Examined& e) {
@@ -73,13 +72,11 @@ enum class Covered { must_be, may_be };
 
 core::Result<int> verified(const Common& common, Covered covered,
                            const std::optional<std::filesystem::path>& anchors = {}) {
-  auto data = open_data(common.data);
-  if (!data) return data.error();
-  auto examined = examine(*data, core::terminal_progress("Looking over"), anchors);
-  if (!examined) return examined.error();
-  if (covered == Covered::must_be && examined->found.covered_since_utc_us == 0)
-    examined->found.lines.push_back("audit trail: does not cover the rows of tables");
-  return say_examined(common, *examined);
+  auto data = TRY(open_data(common.data));
+  auto examined = TRY(examine(data, core::terminal_progress("Looking over"), anchors));
+  if (covered == Covered::must_be && examined.found.covered_since_utc_us == 0)
+    examined.found.lines.push_back("audit trail: does not cover the rows of tables");
+  return say_examined(common, examined);
 }
 
 }  // namespace
@@ -89,12 +86,11 @@ Run backup_command(CLI::App& command) {
   const auto out = std::make_shared<std::filesystem::path>();
   command.add_option("--out", *out, "The new folder; it must not exist")->required();
   return [=]() -> core::Result<int> {
-    auto made = back_up(common->data, *out, core::terminal_progress("Backup"));
-    if (!made) return made.error();
-    say(common->json, {{"backup", out->string()}, {"rows", (*made)["rows"]}},
+    auto made = TRY(back_up(common->data, *out, core::terminal_progress("Backup")));
+    say(common->json, {{"backup", out->string()}, {"rows", made["rows"]}},
         fmt::format("{}: {} trials, {} objects, {} bytes", out->string(),
-                    (*made)["rows"]["trials"].dump(), (*made)["rows"]["objects"].dump(),
-                    (*made)["object_bytes"].dump()));
+                    made["rows"]["trials"].dump(), made["rows"]["objects"].dump(),
+                    made["object_bytes"].dump()));
     return 0;
   };
 }
@@ -104,10 +100,8 @@ Run restore_command(CLI::App& command) {
   const auto from = std::make_shared<std::filesystem::path>();
   command.add_option("--from", *from, "The backup's folder")->required();
   return [=]() -> core::Result<int> {
-    auto target = new_database(common->data);
-    if (!target) return target.error();
-    auto made = restore(*from, common->data, *target, core::terminal_progress("Restore"));
-    if (!made) return made.error();
+    auto target = TRY(new_database(common->data));
+    TRY(restore(*from, common->data, target, core::terminal_progress("Restore")));
     return verified(*common, Covered::may_be);
   };
 }
@@ -127,16 +121,13 @@ Run verify_command(CLI::App& command) {
 Run anchor_command(CLI::App& command) {
   const auto common = common_options(command);
   return [=]() -> core::Result<int> {
-    auto data = open_data(common->data);
-    if (!data) return data.error();
-    auto wrong = check_anchors(common->data, data->secrets.audit_key());
-    if (!wrong) return wrong.error();
-    const auto act = command_act("anchor", {{"findings", wrong->findings}});
-    auto noted = data->store.write(
-        [&](store::Writing& tx) { return store::add_act(tx, data->store.audit_key(), act); });
-    if (!noted) return noted.error();
-    if (auto begun = begin_anchors_again(*data); !begun) return begun.error();
-    say(common->json, {{"findings", wrong->findings}},
+    auto data = TRY(open_data(common->data));
+    auto wrong = TRY(check_anchors(common->data, data.secrets.audit_key()));
+    const auto act = command_act("anchor", {{"findings", wrong.findings}});
+    TRY(data.store.write(
+        [&](store::Writing& tx) { return store::add_act(tx, data.store.audit_key(), act); }));
+    TRY(begin_anchors_again(data));
+    say(common->json, {{"findings", wrong.findings}},
         "the anchors begin again with the trail's present end; the trail says so");
     return 0;
   };
@@ -145,17 +136,13 @@ Run anchor_command(CLI::App& command) {
 Run migrate_command(CLI::App& command) {
   const auto common = common_options(command);
   return [=]() -> core::Result<int> {
-    const auto database = database_of(common->data);
-    if (!database) return database.error();
-    auto before = schema_of(*database);
-    if (!before) return before.error();
-    auto data = open_data(common->data);
-    if (!data) return data.error();
-    auto after = schema_of(*database);
-    if (!after) return after.error();
-    say(common->json, {{"before", *before}, {"after", *after}},
-        *before == *after ? fmt::format("the database has schema {}: it is up to date", *after)
-                          : fmt::format("the database went from schema {} to {}", *before, *after));
+    const auto database = TRY(database_of(common->data));
+    auto before = TRY(schema_of(database));
+    TRY(open_data(common->data));
+    auto after = TRY(schema_of(database));
+    say(common->json, {{"before", before}, {"after", after}},
+        before == after ? fmt::format("the database has schema {}: it is up to date", after)
+                        : fmt::format("the database went from schema {} to {}", before, after));
     return 0;
   };
 }

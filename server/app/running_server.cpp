@@ -13,6 +13,7 @@
 #include "core/bytes.hpp"
 #include "core/clock.hpp"
 #include "core/json.hpp"
+#include "core/try.hpp"
 #include "db/store/people/consent.hpp"
 #include "server/api/backend.hpp"
 #include "server/api/people/oidc.hpp"
@@ -154,8 +155,7 @@ core::Result<ServeOptions> secured(ServeOptions options) {
   const auto folder = options.data / kCertificates;
   auto names = http::own_names();
   names.insert(names.end(), options.hosts.begin(), options.hosts.end());
-  if (auto made = http::ensure_certificates(folder, names, core::utc_us() / 1'000'000); !made)
-    return made.error();
+  TRY(http::ensure_certificates(folder, names, core::utc_us() / 1'000'000));
   const auto files = http::certificate_files(folder);
   options.http.tls.emplace(files.certificate, files.key);
   return options;
@@ -184,9 +184,8 @@ core::Result<Scratch> own_scratch(const std::filesystem::path& data) {
   if (!failure) std::filesystem::permissions(own, std::filesystem::perms::owner_all, failure);
   if (failure)
     return core::Error{core::Errc::io, own.string() + ": cannot be made: " + failure.message()};
-  auto lock = ServingLock::take(own, false);
-  if (!lock) return lock.error();
-  return Scratch{own, std::move(*lock)};
+  auto lock = TRY(ServingLock::take(own, false));
+  return Scratch{own, std::move(lock)};
 }
 
 std::string fingerprint_of(const api::Secrets::Key& key) {
@@ -198,84 +197,75 @@ std::string fingerprint_of(const api::Secrets::Key& key) {
 core::Result<std::optional<api::Secrets::Key>> pseudonym_key_of(const std::filesystem::path& path,
                                                                 store::Store& store) {
   using Maybe = std::optional<api::Secrets::Key>;
-  auto known = store.read([](store::Reading& tx) { return store::pseudonym_key_known(tx); });
-  if (!known) return known.error();
+  auto known = TRY(store.read([](store::Reading& tx) { return store::pseudonym_key_known(tx); }));
   std::error_code failure;
   const bool there = std::filesystem::exists(path, failure);
-  if (!there && !known->empty()) {
+  if (!there && !known.empty()) {
     log_line({{"what", "the key of pseudonyms is missing: nothing can be exported"}});
     return Maybe();
   }
   if (!there) {
     std::filesystem::create_directories(path.parent_path(), failure);
-    if (auto made = make_key_file(path); !made) return made.error();
+    TRY(make_key_file(path));
   }
-  auto key = read_key_file(path);
-  if (!key) return key.error();
-  if (known->empty()) {
-    auto noted = store.write([&](store::Writing& tx) {
-      return store::note_pseudonym_key(tx, fingerprint_of(*key), core::utc_us());
-    });
-    if (!noted) return noted.error();
-  } else if (*known != fingerprint_of(*key)) {
+  auto key = TRY(read_key_file(path));
+  if (known.empty()) {
+    TRY(store.write([&](store::Writing& tx) {
+      return store::note_pseudonym_key(tx, fingerprint_of(key), core::utc_us());
+    }));
+  } else if (known != fingerprint_of(key)) {
     log_line({{"what", "another key of pseudonyms lies there: nothing can be exported"}});
     return Maybe();
   }
-  return Maybe(*key);
+  return Maybe(key);
 }
 
 }  // namespace
 
 core::Result<void> serve(const ServeOptions& given) {
   StopSignals signals;
-  auto data = open_data(given.data);
-  if (!data) return data.error();
-  auto lock = ServingLock::take(given.data, data->store.shared());
-  if (!lock) return lock.error();
-  const auto secure = secured(given);
-  if (!secure) return secure.error();
-  remove_left_overs(given.data, !data->store.shared());
-  const auto scratch = own_scratch(given.data);
-  if (!scratch) return scratch.error();
-  ::setenv("TMPDIR", scratch->path.c_str(), 1);  // temporary files of every part of this program
-  const auto space = std::make_shared<http::ScratchSpace>(scratch->path);
-  ServeOptions options = *secure;
+  auto data = TRY(open_data(given.data));
+  auto lock = TRY(ServingLock::take(given.data, data.store.shared()));
+  const auto secure = TRY(secured(given));
+  remove_left_overs(given.data, !data.store.shared());
+  const auto scratch = TRY(own_scratch(given.data));
+  ::setenv("TMPDIR", scratch.path.c_str(), 1);  // temporary files of every part of this program
+  const auto space = std::make_shared<http::ScratchSpace>(scratch.path);
+  ServeOptions options = secure;
   options.http.scratch = space.get();
   if (options.web && !std::filesystem::is_regular_file(*options.web / "index.html"))
     return core::Error{core::Errc::not_found,
                        options.web->string() + ": no index.html there; build the web pages first"};
   std::optional<api::OidcSettings> oidc_settings;
   if (options.oidc) {
-    auto settings = api::read_oidc_settings(*options.oidc);
-    if (!settings) return settings.error();
-    oidc_settings = std::move(*settings);
+    auto settings = TRY(api::read_oidc_settings(*options.oidc));
+    oidc_settings = std::move(settings);
   }
-  const auto pseudonym_key = pseudonym_key_of(
-      options.pseudonym_key.value_or(given.data / "pseudonyms" / "key"), data->store);
-  if (!pseudonym_key) return pseudonym_key.error();
+  const auto pseudonym_key = TRY(pseudonym_key_of(
+      options.pseudonym_key.value_or(given.data / "pseudonyms" / "key"), data.store));
   auto runner = jobs::Runner::start(
-      data->store, data->objects, {data->secrets.case_key(), *pseudonym_key},
+      data.store, data.objects, {data.secrets.case_key(), pseudonym_key},
       [](const std::string& line) {
         log_line({{"what", "job"}, {"line", line}});
       },
       options.job_lease);
   if (!runner) return runner.error();
   BackupFolder backups(given.data, given.backups.value_or(given.data / "backups"));
-  if (auto fine = backups.tidy(!data->store.shared()); !fine) return fine;
-  api::Backend backend{.store = data->store,
-                       .objects = data->objects,
-                       .partials = data->partials,
+  TRY(backups.tidy(!data.store.shared()));
+  api::Backend backend{.store = data.store,
+                       .objects = data.objects,
+                       .partials = data.partials,
                        .now_utc_us = core::utc_us,
                        .work_waits = [&runner] { (*runner)->wake(); },
-                       .secrets = data->secrets,
+                       .secrets = data.secrets,
                        .secure_cookies = options.http.tls || options.http.behind_proxy,
                        .log = log_line,
                        .logs_requests = options.log_requests,
                        .backups = &backups,
                        .import_volume = import_volume_in_subprocess,
                        .scratch = space,
-                       .pseudonym_key = *pseudonym_key};
-  live::Hub hub({.store = data->store,
+                       .pseudonym_key = pseudonym_key};
+  live::Hub hub({.store = data.store,
                  .now_utc_us = core::utc_us,
                  .refused =
                      [&backend](const live::StationRef& station, const std::string& why) {
@@ -284,22 +274,21 @@ core::Result<void> serve(const ServeOptions& given) {
                      },
                  .log = log_line});
   backend.live = &hub;
-  if (auto begun = begin_trail(*data); !begun) return begun;
-  if (auto fine = api::reconcile_uploads(backend); !fine) return fine;
-  if (auto started = hub.start(); !started) return started;
-  auto server = http::Server::open(options.http, service_of(backend, options.web));
-  if (!server) return server.error();
+  TRY(begin_trail(data));
+  TRY(api::reconcile_uploads(backend));
+  TRY(hub.start());
+  auto server = TRY(http::Server::open(options.http, service_of(backend, options.web)));
   std::optional<api::Oidc> oidc;
   if (oidc_settings) {
-    if (oidc_settings->base.empty()) oidc_settings->base = address_of(options, server->port());
+    if (oidc_settings->base.empty()) oidc_settings->base = address_of(options, server.port());
     backend.oidc = &oidc.emplace(std::move(*oidc_settings));
   }
-  signals.watch(*server);
-  say_where(options, server->port());
+  signals.watch(server);
+  say_where(options, server.port());
   {
-    const Anchoring anchoring(*data, options.anchor_places);
+    const Anchoring anchoring(data, options.anchor_places);
     log_line({{"what", "serving"}, {"tls", options.http.tls.has_value()}});
-    server->run();
+    server.run();
   }
   log_line({{"what", "stopped"}});
   return {};

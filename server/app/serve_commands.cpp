@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/try.hpp"
 #include "server/api/openapi.hpp"
 #include "server/app/command.hpp"
 #include "server/app/running_server.hpp"
@@ -61,14 +62,12 @@ Run serve_command(CLI::App& command) {
                                    "PEM file of an own certificate chain, instead of the house's");
   chain->needs(command.add_option("--key", *key, "PEM file of its key"));
   return [=]() -> core::Result<int> {
-    auto address = listening_address(*listen);
-    if (!address) return address.error();
+    auto address = TRY(listening_address(*listen));
     options->data = common->data;
     options->json = common->json;
     for (const std::string& text : *places) {
-      auto place = anchor_place(text);
-      if (!place) return place.error();
-      options->anchor_places.push_back(std::move(*place));
+      auto place = TRY(anchor_place(text));
+      options->anchor_places.push_back(std::move(place));
     }
     if (!web->empty()) options->web = *web;
     if (!oidc->empty()) options->oidc = *oidc;
@@ -80,11 +79,11 @@ Run serve_command(CLI::App& command) {
         return core::Error{networks.error().code, "--trusted-proxy " + networks.error().what};
       options->http.proxies = std::move(*networks);
     }
-    options->http.address = address->first;
-    options->http.port = address->second;
+    options->http.address = address.first;
+    options->http.port = address.second;
     options->http.header_time = std::chrono::milliseconds(std::lround(*header_s * 1000));
     options->job_lease = std::chrono::milliseconds(std::lround(*lease_s * 1000));
-    if (auto served = serve(*options); !served) return served.error();
+    TRY(serve(*options));
     return 0;
   };
 }

@@ -3,6 +3,7 @@
 
 #include "core/clock.hpp"
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "db/store/people/accounts.hpp"
 #include "server/api/people/authentication.hpp"
 #include "server/app/anchors.hpp"
@@ -18,9 +19,8 @@ namespace {
 /// The first line of a file, or a generated one.
 core::Result<std::string> password_from(const std::string& file) {
   if (file.empty()) return core::hex(core::random_bytes(12));
-  auto bytes = core::read_file(file, 4096);
-  if (!bytes) return bytes.error();
-  std::string line(core::text_of(*bytes));
+  auto bytes = TRY(core::read_file(file, 4096));
+  std::string line(core::text_of(bytes));
   line = line.substr(0, line.find_first_of("\r\n"));
   if (line.size() < 12 || line.size() > api::kMaxPassword)
     return core::Error{core::Errc::bad_input,
@@ -30,11 +30,10 @@ core::Result<std::string> password_from(const std::string& file) {
 }
 
 Outcome make_account(DataFolder& data, const std::string& name, const std::string& password) {
-  auto hash = api::password_hash(password);
-  if (!hash) return hash.error();
+  auto hash = TRY(api::password_hash(password));
   const store::AuditScope acting(command_act("init", {{"name", name}}));
   return data.store.write([&](store::Writing& tx) {
-    return store::add_account(tx, {core::new_id(), name, "admin", *hash}, core::utc_us());
+    return store::add_account(tx, {core::new_id(), name, "admin", hash}, core::utc_us());
   });
 }
 
@@ -55,30 +54,26 @@ Run init_command(CLI::App& command) {
       return core::Error{
           core::Errc::bad_input,
           fmt::format("--admin-name: 1 to {} characters are expected", api::kMaxName)};
-    auto password = password_from(*file);
-    if (!password) return password.error();
-    auto data = make_data(common->data);
-    if (!data) return data.error();
-    if (auto begun = begin_trail(*data); !begun) return begun.error();
-    if (auto made = make_account(*data, *name, *password); !made) return made.error();
+    auto password = TRY(password_from(*file));
+    auto data = TRY(make_data(common->data));
+    TRY(begin_trail(data));
+    TRY(make_account(data, *name, password));
     auto names = http::own_names();
     names.insert(names.end(), hosts->begin(), hosts->end());
     const auto tls = common->data / kCertificates;
-    if (auto made = http::ensure_certificates(tls, names, core::utc_us() / 1'000'000); !made)
-      return made.error();
+    TRY(http::ensure_certificates(tls, names, core::utc_us() / 1'000'000));
     const auto authority = http::certificate_files(tls).authority;
-    auto print = http::fingerprint(authority);
-    if (!print) return print.error();
+    auto print = TRY(http::fingerprint(authority));
     core::Json said{{"data", common->data.string()},
                     {"name", *name},
                     {"authority", authority.string()},
-                    {"authority_sha256", *print}};
+                    {"authority_sha256", print}};
     std::string line =
         fmt::format("{}: account {} is ready; stations and browsers trust {} (SHA-256 {})",
-                    common->data.string(), *name, authority.string(), *print);
+                    common->data.string(), *name, authority.string(), print);
     if (file->empty()) {
-      said["password"] = *password;
-      line += fmt::format("; its password, shown only now: {}", *password);
+      said["password"] = password;
+      line += fmt::format("; its password, shown only now: {}", password);
     }
     say(common->json, said, line);
     return 0;
@@ -106,12 +101,11 @@ Run enrol_command(CLI::App& command) {
     if (name->empty() || name->size() > api::kMaxName)
       return core::Error{core::Errc::bad_input,
                          fmt::format("--name: 1 to {} characters are expected", api::kMaxName)};
-    auto data = open_data(common->data);
-    if (!data) return data.error();
+    auto data = TRY(open_data(common->data));
     const std::string token = api::new_token();
-    if (auto written = write_secret(*out, token); !written) return written.error();
+    TRY(write_secret(*out, token));
     const store::AuditScope acting(command_act("enrol", {{"name", *name}}));
-    auto added = data->store.write([&](store::Writing& tx) {
+    auto added = data.store.write([&](store::Writing& tx) {
       return store::add_station(tx, {core::new_id(), *name}, api::token_hash(token),
                                 core::utc_us());
     });
@@ -119,7 +113,7 @@ Run enrol_command(CLI::App& command) {
       std::filesystem::remove(*out);
       return added.error();
     }
-    const std::string signer = data->secrets.case_key().public_hex;
+    const std::string signer = data.secrets.case_key().public_hex;
     say(common->json, {{"station", *name}, {"token_file", out->string()}, {"case_signer", signer}},
         fmt::format("station {} is enrolled; its token is in {}; to take cases made on this "
                     "server: tractus-station trust --signer {}",
@@ -134,11 +128,9 @@ Run publish_command(CLI::App& command) {
   command.add_option("bundle", *bundle, "The case's folder, as `tractus carve` made it")
       ->required();
   return [=]() -> core::Result<int> {
-    auto data = open_data(common->data);
-    if (!data) return data.error();
-    auto id = publish(*data, *bundle);
-    if (!id) return id.error();
-    say(common->json, {{"case_id", *id}}, "published case " + *id);
+    auto data = TRY(open_data(common->data));
+    auto id = TRY(publish(data, *bundle));
+    say(common->json, {{"case_id", id}}, "published case " + id);
     return 0;
   };
 }

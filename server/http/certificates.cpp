@@ -13,6 +13,7 @@
 #include <memory>
 
 #include "core/file.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace http {
@@ -35,27 +36,24 @@ using Certificate = std::unique_ptr<X509, With<X509_free>>;
 using Memory = std::unique_ptr<BIO, With<BIO_free_all>>;
 
 core::Result<Memory> opened(const fs::path& path) {
-  auto bytes = core::read_file(path, kMaxPem_bytes);
-  if (!bytes) return bytes.error();
+  auto bytes = TRY(core::read_file(path, kMaxPem_bytes));
   Memory out(BIO_new(BIO_s_mem()));
-  core::require(out && BIO_write(out.get(), bytes->data(), static_cast<int>(bytes->size())) ==
-                           static_cast<int>(bytes->size()),
+  core::require(out && BIO_write(out.get(), bytes.data(), static_cast<int>(bytes.size())) ==
+                           static_cast<int>(bytes.size()),
                 "memory takes a small file");
   return out;
 }
 
 core::Result<Certificate> read_certificate(const fs::path& path) {
-  auto file = opened(path);
-  if (!file) return file.error();
-  Certificate out(PEM_read_bio_X509(file->get(), nullptr, nullptr, nullptr));
+  auto file = TRY(opened(path));
+  Certificate out(PEM_read_bio_X509(file.get(), nullptr, nullptr, nullptr));
   if (!out) return core::Error{core::Errc::corrupt, path.string() + ": no certificate in PEM"};
   return out;
 }
 
 core::Result<Key> read_key(const fs::path& path) {
-  auto file = opened(path);
-  if (!file) return file.error();
-  Key out(PEM_read_bio_PrivateKey(file->get(), nullptr, nullptr, nullptr));
+  auto file = TRY(opened(path));
+  Key out(PEM_read_bio_PrivateKey(file.get(), nullptr, nullptr, nullptr));
   if (!out) return core::Error{core::Errc::corrupt, path.string() + ": no key in PEM"};
   return out;
 }
@@ -137,7 +135,7 @@ core::Result<void> make_authority(const CertificateFiles& files, std::int64_t no
   extend(made.get(), made.get(), NID_key_usage, "critical,keyCertSign,cRLSign");
   extend(made.get(), made.get(), NID_subject_key_identifier, "hash");
   sign(made.get(), made.get(), key.get());
-  if (auto done = write(files.authority_key, pem_of(key.get())); !done) return done;
+  TRY(write(files.authority_key, pem_of(key.get())));
   return write(files.authority, pem_of(made.get()));
 }
 
@@ -150,13 +148,11 @@ bool is_address(const std::string& name) {
 
 core::Result<void> make_server(const CertificateFiles& files, const std::vector<std::string>& names,
                                std::int64_t now_utc_s) {
-  auto authority = read_certificate(files.authority);
-  if (!authority) return authority.error();
-  auto authority_key = read_key(files.authority_key);
-  if (!authority_key) return authority_key.error();
+  auto authority = TRY(read_certificate(files.authority));
+  auto authority_key = TRY(read_key(files.authority_key));
   const Key key = new_key();
   const Certificate made = blank(key.get(), names.front().substr(0, 60), now_utc_s, kServerDays);
-  X509* issuer = authority->get();
+  X509* issuer = authority.get();
   extend(made.get(), issuer, NID_basic_constraints, "critical,CA:FALSE");
   extend(made.get(), issuer, NID_key_usage, "critical,digitalSignature");
   extend(made.get(), issuer, NID_ext_key_usage, "serverAuth");
@@ -166,8 +162,8 @@ core::Result<void> make_server(const CertificateFiles& files, const std::vector<
   for (const std::string& name : names)
     also += fmt::format("{}{}:{}", also.empty() ? "" : ",", is_address(name) ? "IP" : "DNS", name);
   extend(made.get(), issuer, NID_subject_alt_name, also);
-  sign(made.get(), issuer, authority_key->get());
-  if (auto done = write(files.key, pem_of(key.get())); !done) return done;
+  sign(made.get(), issuer, authority_key.get());
+  TRY(write(files.key, pem_of(key.get())));
   return write(files.certificate, pem_of(made.get()) + pem_of(issuer));
 }
 
@@ -224,7 +220,7 @@ std::vector<std::string> own_names() {
 core::Result<void> ensure_certificates(const fs::path& folder,
                                        const std::vector<std::string>& names,
                                        std::int64_t now_utc_s) {
-  if (auto fine = check_names(names); !fine) return fine;
+  TRY(check_names(names));
   const CertificateFiles files = certificate_files(folder);
   if (serves(files, names, now_utc_s)) return {};
   std::error_code failure;
@@ -232,18 +228,15 @@ core::Result<void> ensure_certificates(const fs::path& folder,
   if (failure)
     return core::Error{core::Errc::io,
                        fmt::format("{}: cannot create: {}", folder.string(), failure.message())};
-  if (!fs::exists(files.authority, failure))
-    if (auto made = make_authority(files, now_utc_s); !made) return made;
+  if (!fs::exists(files.authority, failure)) TRY(make_authority(files, now_utc_s));
   return make_server(files, names, now_utc_s);
 }
 
 core::Result<std::string> fingerprint(const fs::path& certificate) {
-  auto held = read_certificate(certificate);
-  if (!held) return held.error();
+  auto held = TRY(read_certificate(certificate));
   std::array<unsigned char, EVP_MAX_MD_SIZE> hash{};
   unsigned size = 0;
-  core::require(X509_digest(held->get(), EVP_sha256(), hash.data(), &size) == 1,
-                "SHA-256 is there");
+  core::require(X509_digest(held.get(), EVP_sha256(), hash.data(), &size) == 1, "SHA-256 is there");
   std::string out;
   for (unsigned i = 0; i < size; ++i) out += fmt::format("{}{:02X}", i ? ":" : "", hash[i]);
   return out;

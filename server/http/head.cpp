@@ -1,5 +1,7 @@
 #include "server/http/head.hpp"
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace http {
 namespace {
@@ -38,11 +40,11 @@ core::Result<RequestHead> head_of(const Parser& parser, std::string peer, const 
   head.peer = std::move(peer);
   for (const auto& field : message)
     add_header(head, lower_case(field.name_string()), std::string(field.value()));
-  if (auto sound = check_framing(parser, head); !sound) return sound.error();
+  TRY(check_framing(parser, head));
   if (const auto length = parser.content_length()) head.body_bytes = *length;
   if (proxies && proxies->contain(head.peer)) head.peer = forwarded_peer(head);
   const auto target = message.target();
-  if (auto read = read_target({target.data(), target.size()}, head); !read) return read.error();
+  TRY(read_target({target.data(), target.size()}, head));
   return head;
 }
 

@@ -14,7 +14,7 @@ enum class Lane {
   remote,   ///< it waits for another server
 };
 
-/// TrialFilter request it is: strangers may fill only a part of a lane's queue.
+/// Whose request it is: strangers may fill only a part of a lane's queue.
 enum class Standing { stranger, familiar };
 
 /// At most `threads` requests of a lane are handled at once. So many more wait; the next one is

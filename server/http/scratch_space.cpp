@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/bytes.hpp"
+#include "core/try.hpp"
 
 namespace tractus::http {
 
@@ -69,9 +70,8 @@ ScratchFile::~ScratchFile() {
 core::Result<std::shared_ptr<ScratchFile>> scratch_file(ScratchSpace& space,
                                                         const std::string& client,
                                                         std::uint64_t bytes) {
-  auto share = space.reserve(client, bytes);
-  if (!share) return share.error();
-  return std::make_shared<ScratchFile>(space.new_name(), std::move(*share));
+  auto share = TRY(space.reserve(client, bytes));
+  return std::make_shared<ScratchFile>(space.new_name(), std::move(share));
 }
 
 }  // namespace tractus::http

@@ -6,6 +6,7 @@
 #include "core/bytes.hpp"
 #include "core/clock.hpp"
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "db/store/cases/cases.hpp"
 #include "db/store/cohort/analyses.hpp"
 #include "server/jobs/cohort_table.hpp"
@@ -23,22 +24,19 @@ constexpr std::int64_t kMostTrials = 100'000;
 constexpr std::uint64_t kMostData_bytes = 512ull << 20;
 
 Result<store::AnalysisRun> asked(store::Store& store, const std::string& id) {
-  const auto run = store.read([&](store::Reading& tx) { return store::analysis_of(tx, id); });
-  if (!run) return run.error();
-  if (!*run) return Error{Errc::not_found, "no analysis " + id.substr(0, 64)};
-  return **run;
+  const auto run = TRY(store.read([&](store::Reading& tx) { return store::analysis_of(tx, id); }));
+  if (!run) return Error{Errc::not_found, "no analysis " + id.substr(0, 64)};
+  return *run;
 }
 
 /// Puts a text among the objects and notes it there.
 Result<std::string> keep(store::Store& store, const store::Objects& objects,
                          const std::string& text) {
-  auto sha256 = objects.put(core::bytes_of(text));
-  if (!sha256) return sha256.error();
-  auto noted = store.write([&](store::Writing& tx) {
-    return store::add_object(tx, *sha256, text.size(), core::utc_us());
-  });
-  if (!noted) return noted.error();
-  return *sha256;
+  auto sha256 = TRY(objects.put(core::bytes_of(text)));
+  TRY(store.write([&](store::Writing& tx) {
+    return store::add_object(tx, sha256, text.size(), core::utc_us());
+  }));
+  return sha256;
 }
 
 std::string text_of(const Json& json) {
@@ -48,27 +46,23 @@ std::string text_of(const Json& json) {
 /// The snapshot of an earlier run, as it was frozen.
 Result<assessment::Snapshot> kept_snapshot(const store::Objects& objects,
                                            const store::AnalysisRun& run) {
-  auto description = core::read_json(objects.path_of(*run.description));
-  if (!description) return description.error();
-  auto data = core::read_file(objects.path_of(*run.snapshot), kMostData_bytes);
-  if (!data) return data.error();
-  if (core::sha256(*data) != *run.snapshot)
+  auto description = TRY(core::read_json(objects.path_of(*run.description)));
+  auto data = TRY(core::read_file(objects.path_of(*run.snapshot), kMostData_bytes));
+  if (core::sha256(data) != *run.snapshot)
     return Error{Errc::corrupt, "the frozen data are not what was frozen"};
-  auto table = assessment::Table::parse(*data, (*description)["name"].get<std::string>(), {},
-                                        assessment::Missing::keep);
-  if (!table) return table.error();
-  return assessment::Snapshot{std::move(*description), std::move(*data), std::move(*table)};
+  auto table = TRY(assessment::Table::parse(data, description["name"].get<std::string>(), {},
+                                            assessment::Missing::keep));
+  return assessment::Snapshot{std::move(description), std::move(data), std::move(table)};
 }
 
 /// The released trials, frozen.
 Result<assessment::Snapshot> frozen_now(store::Store& store, const store::Objects& objects,
                                         const std::optional<store::PseudonymKey>& key,
                                         store::AnalysisRun& run) {
-  const auto released = store.read([&](store::Reading& tx) {
+  const auto released = TRY(store.read([&](store::Reading& tx) {
     return store::ReleasedTrials::read(tx, key, {.study = run.study, .most = kMostTrials});
-  });
-  if (!released) return released.error();
-  const CohortTable made = cohort_table(*released);
+  }));
+  const CohortTable made = cohort_table(released);
   if (made.rows == 0)
     return Error{Errc::bad_input, "there is no scored trial to analyse that research may have"};
   const auto bytes = core::bytes_of(made.csv);
@@ -85,40 +79,33 @@ Result<assessment::Snapshot> frozen_now(store::Store& store, const store::Object
                                        {"unscored", made.unscored},
                                        {"without_consent", made.without_consent},
                                        {"blind", made.blind}};
-  auto data = keep(store, objects, made.csv);
-  if (!data) return data.error();
-  auto description = keep(store, objects, text_of(snapshot->description));
-  if (!description) return description.error();
-  run.snapshot = *data;
-  run.description = *description;
-  auto noted = store.write([&](store::Writing& tx) {
-    return store::note_analysis_snapshot(tx, run.id, *data, *description, core::utc_us());
-  });
-  if (!noted) return noted.error();
+  auto data = TRY(keep(store, objects, made.csv));
+  auto description = TRY(keep(store, objects, text_of(snapshot->description)));
+  run.snapshot = data;
+  run.description = description;
+  TRY(store.write([&](store::Writing& tx) {
+    return store::note_analysis_snapshot(tx, run.id, data, description, core::utc_us());
+  }));
   return snapshot;
 }
 
 Result<assessment::Plan> plan_of(const store::Objects& objects, const store::AnalysisRun& run) {
-  const auto json = core::read_json(objects.path_of(run.plan));
-  if (!json) return json.error();
-  auto plan = assessment::Plan::from_json(*json, "plan");
+  const auto json = TRY(core::read_json(objects.path_of(run.plan)));
+  auto plan = assessment::Plan::from_json(json, "plan");
   if (!plan) return plan.error();
-  if (run.plan_id)
-    if (auto fine = assessment::check_lock(*plan, "plan"); !fine) return fine.error();
+  if (run.plan_id) TRY(assessment::check_lock(*plan, "plan"));
   return plan;
 }
 
 Result<void> record(store::Store& store, const store::Objects& objects, store::AnalysisRun run,
                     const assessment::Snapshot& snapshot, const assessment::Analysed& analysed) {
-  auto result = keep(store, objects, text_of(analysed.result));
-  if (!result) return result.error();
-  auto report = keep(store, objects, assessment::report_page(analysed));
-  if (!report) return report.error();
-  auto data = keep(store, objects, assessment::marked(snapshot.table, analysed.excluded_because));
-  if (!data) return data.error();
-  run.result = *result;
-  run.report = *report;
-  run.data = *data;
+  auto result = TRY(keep(store, objects, text_of(analysed.result)));
+  auto report = TRY(keep(store, objects, assessment::report_page(analysed)));
+  auto data =
+      TRY(keep(store, objects, assessment::marked(snapshot.table, analysed.excluded_because)));
+  run.result = result;
+  run.report = report;
+  run.data = data;
   return store.write(
       [&](store::Writing& tx) { return store::finish_analysis(tx, run, core::utc_us()); });
 }
@@ -128,32 +115,29 @@ Result<void> record(store::Store& store, const store::Objects& objects, store::A
 Result<void> analyse(store::Store& store, const store::Objects& objects,
                      const std::optional<store::PseudonymKey>& key, const std::string& analysis_id,
                      const std::function<bool()>& ending) {
-  auto run = asked(store, analysis_id);
-  if (!run) return run.error();
-  if (run->state != "queued" && run->state != "running") return {};
+  auto run = TRY(asked(store, analysis_id));
+  if (run.state != "queued" && run.state != "running") return {};
   const auto note = [&](double share) {
     return store.write([&](store::Writing& tx) {
-      return store::note_analysis_share(tx, run->id, share, core::utc_us());
+      return store::note_analysis_share(tx, run.id, share, core::utc_us());
     });
   };
-  if (auto noted = note(0.0); !noted) return noted;
-  const auto plan = plan_of(objects, *run);
-  if (!plan) return plan.error();
+  TRY(note(0.0));
+  const auto plan = TRY(plan_of(objects, run));
   const auto snapshot =
-      run->snapshot ? kept_snapshot(objects, *run) : frozen_now(store, objects, key, *run);
-  if (!snapshot) return snapshot.error();
-  if (auto noted = note(0.2); !noted) return noted;
+      TRY(run.snapshot ? kept_snapshot(objects, run) : frozen_now(store, objects, key, run));
+  TRY(note(0.2));
   if (ending()) return Error{Errc::cancelled, "stopped"};
-  const auto& d = snapshot->description;
-  const auto analysed = assessment::analyse(*plan, snapshot->table,
-                                            {d["name"], *run->snapshot, d["frozen_utc"],
-                                             d.value("source", ""), d.value("simulated", false)});
-  if (!analysed) return analysed.error();
+  const auto& d = snapshot.description;
+  const auto analysed =
+      TRY(assessment::analyse(plan, snapshot.table,
+                              {d["name"], *run.snapshot, d["frozen_utc"], d.value("source", ""),
+                               d.value("simulated", false)}));
   // A plan goes on where one of its analyses cannot be done; a single question has no answer then.
-  if (const auto& first = analysed->result["analyses"][0]; !run->plan_id && first.contains("error"))
+  if (const auto& first = analysed.result["analyses"][0]; !run.plan_id && first.contains("error"))
     return Error{Errc::bad_input, first["error"].get<std::string>()};
-  if (auto noted = note(0.9); !noted) return noted;
-  return record(store, objects, *run, *snapshot, *analysed);
+  TRY(note(0.9));
+  return record(store, objects, run, snapshot, analysed);
 }
 
 }  // namespace jobs

@@ -1,6 +1,7 @@
 #include "server/jobs/assess.hpp"
 
 #include "core/json.hpp"
+#include "core/try.hpp"
 #include "db/store/trials/trials.hpp"
 #include "metrics/metric.hpp"
 #include "server/jobs/case_facts.hpp"
@@ -30,7 +31,8 @@ Assessment assessment(const metrics::Subject& subject) {
   Assessment out;
   for (const auto& [info, score] : metrics::score_all(subject)) {
     out.scores.push_back({info.id, score.value, score.note});
-    if (info.id == "answer_right" && score.value) out.correct = *score.value > 0.5;
+    if (info.shown_as == metrics::ShownAs::right_or_wrong && score.value)
+      out.correct = *score.value > 0.5;
   }
   out.coverage = coverage_text(subject);
   return out;
@@ -40,24 +42,21 @@ Assessment assessment(const metrics::Subject& subject) {
 
 core::Result<void> assess_trial(store::Store& store, const store::Objects& objects,
                                 const std::string& trial_id) {
-  auto record = store.read([&](store::Reading& tx) { return store::trial_of(tx, trial_id); });
-  if (!record) return record.error();
-  if (!*record) return core::Error{core::Errc::not_found, "no trial " + trial_id};
-  auto trial = trial::read_trial(objects.path_of((*record)->sha256));
+  auto record = TRY(store.read([&](store::Reading& tx) { return store::trial_of(tx, trial_id); }));
+  if (!record) return core::Error{core::Errc::not_found, "no trial " + trial_id};
+  auto trial = trial::read_trial(objects.path_of(record->sha256));
   if (!trial) return trial.error();
   metrics::Subject subject{.trial = *trial};
   std::optional<CaseFacts> facts;
   if (trial->header.rig == trial::Rig::palpation) {
-    auto known = facts_of_trial(store, objects, (*record)->summary.case_id, trial->header);
-    if (!known) return known.error();
-    facts = std::move(*known);
+    auto known = TRY(facts_of_trial(store, objects, record->summary.case_id, trial->header));
+    facts = std::move(known);
     subject.tract = &facts->definition.tract;
     if (facts->truth) subject.truth = metrics::Truth{.breached = facts->truth->breached};
   } else {
-    auto scenario = scenario_of(store, objects, (*record)->summary.case_id);
-    if (!scenario) return scenario.error();
+    auto scenario = TRY(scenario_of(store, objects, record->summary.case_id));
     subject.truth =
-        metrics::Truth{.breached = {}, .walls = static_cast<int>(scenario->walls_m.size())};
+        metrics::Truth{.breached = {}, .walls = static_cast<int>(scenario.walls_m.size())};
   }
   const Assessment done = assessment(subject);
   return store.write([&](store::Writing& tx) {

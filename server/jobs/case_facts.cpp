@@ -1,6 +1,7 @@
 #include "server/jobs/case_facts.hpp"
 
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "db/store/cases/cases.hpp"
 #include "db/store/trials/trials.hpp"
 
@@ -46,30 +47,24 @@ core::Result<std::optional<core::Json>> case_json_part(store::Store& store,
                                                        const store::Objects& objects,
                                                        const std::string& case_id,
                                                        const std::string& name) {
-  auto part = store.read([&](store::Reading& tx) { return store::case_part(tx, case_id, name); });
-  if (!part) return part.error();
-  if (!*part) return std::optional<core::Json>();
-  auto bytes = core::read_file(objects.path_of((*part)->sha256), kMaxJson_bytes);
-  if (!bytes) return bytes.error();
-  auto json = core::parse_json(core::text_of(*bytes), "case " + case_id + ": " + name);
-  if (!json) return json.error();
-  return std::optional(std::move(*json));
+  auto part =
+      TRY(store.read([&](store::Reading& tx) { return store::case_part(tx, case_id, name); }));
+  if (!part) return std::optional<core::Json>();
+  auto bytes = TRY(core::read_file(objects.path_of(part->sha256), kMaxJson_bytes));
+  auto json = TRY(core::parse_json(core::text_of(bytes), "case " + case_id + ": " + name));
+  return std::optional(std::move(json));
 }
 
 core::Result<CaseFacts> case_facts(store::Store& store, const store::Objects& objects,
                                    const std::string& case_id) {
-  auto manifest = case_json_part(store, objects, case_id, "case.json");
-  if (!manifest) return manifest.error();
-  if (!*manifest) return core::Error{core::Errc::not_found, "no case " + case_id};
-  auto definition = cases::Case::from_json(**manifest, "case " + case_id);
-  if (!definition) return definition.error();
-  CaseFacts out{std::move(*definition), std::nullopt};
-  auto truth = case_json_part(store, objects, case_id, "truth.json");
-  if (!truth) return truth.error();
-  if (!*truth) return out;
-  auto known = cases::Truth::from_json(**truth, "case " + case_id + ": truth.json");
-  if (!known) return known.error();
-  out.truth = std::move(*known);
+  auto manifest = TRY(case_json_part(store, objects, case_id, "case.json"));
+  if (!manifest) return core::Error{core::Errc::not_found, "no case " + case_id};
+  auto definition = TRY(cases::Case::from_json(*manifest, "case " + case_id));
+  CaseFacts out{std::move(definition), std::nullopt};
+  auto truth = TRY(case_json_part(store, objects, case_id, "truth.json"));
+  if (!truth) return out;
+  auto known = TRY(cases::Truth::from_json(*truth, "case " + case_id + ": truth.json"));
+  out.truth = std::move(known);
   return out;
 }
 
@@ -80,10 +75,9 @@ core::Result<CaseFacts> facts_of_trial(store::Store& store, const store::Objects
   if (!facts || drilled == header.extra.end()) return facts;
   facts->truth.reset();
   if (!drilled->is_string()) return facts;
-  auto trial = store.read(
-      [&](store::Reading& tx) { return store::trial_of(tx, drilled->get<std::string>()); });
-  if (!trial) return trial.error();
-  facts->truth = truth_of_drilling(*trial, case_id);
+  auto trial = TRY(store.read(
+      [&](store::Reading& tx) { return store::trial_of(tx, drilled->get<std::string>()); }));
+  facts->truth = truth_of_drilling(trial, case_id);
   return facts;
 }
 

@@ -1,5 +1,6 @@
 #include "server/jobs/import_volume.hpp"
 
+#include "core/try.hpp"
 #include "volume/io/burnt_text.hpp"
 #include "volume/io/read_volume.hpp"
 #include "volume/io/zipped.hpp"
@@ -52,7 +53,7 @@ Result<volume_io::Imported> read(const fs::path& upload, const fs::path& folder,
   if (!volume_io::is_zip(upload))
     return volume_io::read_volume(upload, volume_io::ReadOptions{.uid_key = key});
   const fs::path slices = folder / "slices";
-  if (auto done = volume_io::unpack_slices(upload, slices); !done) return done.error();
+  TRY(volume_io::unpack_slices(upload, slices));
   return volume_io::read_volume(slices, volume_io::ReadOptions{.uid_key = key});
 }
 

@@ -6,6 +6,7 @@
 
 #include "core/bytes.hpp"
 #include "core/clock.hpp"
+#include "core/try.hpp"
 #include "db/store/cases/cases.hpp"
 #include "db/store/lab/lab.hpp"
 #include "lab/io/answers.hpp"
@@ -30,27 +31,22 @@ struct Asked {
 };
 
 Result<store::ModelVersion> version_of(store::Reading& tx, const std::string& id) {
-  auto model = store::model_of(tx, id);
-  if (!model) return model.error();
-  if (!*model) return Error{Errc::not_found, "the model is gone"};
-  return **model;
+  auto model = TRY(store::model_of(tx, id));
+  if (!model) return Error{Errc::not_found, "the model is gone"};
+  return *model;
 }
 
 Result<Asked> asked(store::Store& store, const std::string& id) {
   return store.read([&](store::Reading& tx) -> Result<Asked> {
-    const auto run = store::lab_run_of(tx, id);
-    if (!run) return run.error();
-    if (!*run) return Error{Errc::not_found, "no run " + id.substr(0, 64)};
-    const auto model = version_of(tx, (*run)->model_id);
-    if (!model) return model.error();
-    const auto set = store::measurement_set_of(tx, (*run)->set_id);
-    if (!set) return set.error();
-    if (!*set) return Error{Errc::not_found, "the measurements are gone"};
-    Asked out{**run, *model, std::nullopt, **set};
+    const auto run = TRY(store::lab_run_of(tx, id));
+    if (!run) return Error{Errc::not_found, "no run " + id.substr(0, 64)};
+    const auto model = TRY(version_of(tx, run->model_id));
+    const auto set = TRY(store::measurement_set_of(tx, run->set_id));
+    if (!set) return Error{Errc::not_found, "the measurements are gone"};
+    Asked out{*run, model, std::nullopt, *set};
     if (!out.run.against_id) return out;
-    auto against = version_of(tx, *out.run.against_id);
-    if (!against) return against.error();
-    out.against = std::move(*against);
+    auto against = TRY(version_of(tx, *out.run.against_id));
+    out.against = std::move(against);
     return out;
   });
 }
@@ -117,41 +113,35 @@ class LabRun {
 
   Result<Outcome> compare() {
     const double half = of_.against ? 0.5 : 1.0;
-    const auto first = opened(of_.model, 0.0, 0.9 * half);
-    if (!first) return first.error();
-    auto answer = lab_io::compared(*first);
+    const auto first = TRY(opened(of_.model, 0.0, 0.9 * half));
+    auto answer = lab_io::compared(first);
     if (of_.against) {
-      const auto second = opened(*of_.against, half, 0.9 * half);
-      if (!second) return second.error();
-      answer.content.better = lab_io::compared(*second).content.before;
+      const auto second = TRY(opened(*of_.against, half, 0.9 * half));
+      answer.content.better = lab_io::compared(second).content.before;
     }
     Outcome out;
-    keep_sides(answer, first->tract, out);
+    keep_sides(answer, first.tract, out);
     return out;
   }
 
   Result<Outcome> fit() {
-    const auto opened_case = opened(of_.model, 0.0, 0.3);
-    if (!opened_case) return opened_case.error();
+    const auto opened_case = TRY(opened(of_.model, 0.0, 0.3));
     auto answer =
-        lab_io::fitted(*opened_case, wish_.add, threads(), watch_.at("fitting", 0.3, 0.65));
-    if (!answer) return answer.error();
-    return finished("fit", *opened_case, std::move(*answer));
+        TRY(lab_io::fitted(opened_case, wish_.add, threads(), watch_.at("fitting", 0.3, 0.65)));
+    return finished("fit", opened_case, std::move(answer));
   }
 
   Result<Outcome> diagnose() {
-    const auto opened_case = opened(of_.model, 0.0, 0.3);
-    if (!opened_case) return opened_case.error();
+    const auto opened_case = TRY(opened(of_.model, 0.0, 0.3));
     lab_io::DiagnoseRequest how{.options = {}, .report = true};
     how.options.threads = threads();
     how.options.early = [this](const std::vector<lab::Ranked>& ranking) {
       note_ranking(ranking);
       watch_.say("trying effects together");
     };
-    auto answer =
-        lab_io::diagnosed(*opened_case, how, watch_.at("trying each effect by itself", 0.3, 0.65));
-    if (!answer) return answer.error();
-    return finished("diagnosis", *opened_case, std::move(*answer));
+    auto answer = TRY(
+        lab_io::diagnosed(opened_case, how, watch_.at("trying each effect by itself", 0.3, 0.65)));
+    return finished("diagnosis", opened_case, std::move(answer));
   }
 
   void note_ranking(const std::vector<lab::Ranked>& ranking) {
@@ -185,10 +175,9 @@ Result<void> keep(store::Store& store, const store::Objects& objects, store::Lab
   std::vector<std::pair<std::string, std::uint64_t>> kept;
   const auto put = [&](const std::string& text, std::optional<std::string>& as) -> Result<void> {
     if (text.empty()) return {};
-    auto sha256 = objects.put(core::bytes_of(text));
-    if (!sha256) return sha256.error();
-    kept.emplace_back(*sha256, text.size());
-    as = *sha256;
+    auto sha256 = TRY(objects.put(core::bytes_of(text)));
+    kept.emplace_back(sha256, text.size());
+    as = sha256;
     return {};
   };
   const std::string model = outcome.model ? outcome.model->dump(2) + "\n" : "";
@@ -196,11 +185,10 @@ Result<void> keep(store::Store& store, const store::Objects& objects, store::Lab
        {std::pair{outcome.result.dump() + "\n", &run.result},
         std::pair{outcome.report, &run.report}, std::pair{outcome.samples, &run.samples},
         std::pair{model, &run.model}})
-    if (auto done = put(text, *as); !done) return done;
+    TRY(put(text, *as));
   return store.write([&](store::Writing& tx) -> Result<void> {
     const std::int64_t now = core::utc_us();
-    for (const auto& [sha256, size] : kept)
-      if (auto added = store::add_object(tx, sha256, size, now); !added) return added;
+    for (const auto& [sha256, size] : kept) TRY(store::add_object(tx, sha256, size, now));
     return store::finish_lab_run(tx, run, now);
   });
 }
@@ -209,12 +197,10 @@ Result<void> keep(store::Store& store, const store::Objects& objects, store::Lab
 
 Result<void> run_lab(store::Store& store, const store::Objects& objects, const std::string& run_id,
                      const std::function<bool()>& ending) {
-  const auto of = asked(store, run_id);
-  if (!of) return of.error();
-  if (of->run.state != "queued" && of->run.state != "running") return {};
-  const auto outcome = LabRun(store, objects, *of, ending).work();
-  if (!outcome) return outcome.error();
-  return keep(store, objects, of->run, *outcome);
+  const auto of = TRY(asked(store, run_id));
+  if (of.run.state != "queued" && of.run.state != "running") return {};
+  const auto outcome = TRY(LabRun(store, objects, of, ending).work());
+  return keep(store, objects, of.run, outcome);
 }
 
 }  // namespace jobs

@@ -5,6 +5,7 @@
 #include "cases/case.hpp"
 #include "core/clock.hpp"
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "db/store/cases/case_makings.hpp"
 #include "server/jobs/publish.hpp"
 #include "server/jobs/source_volume.hpp"
@@ -36,7 +37,7 @@ Result<volume::BreachPlan> breach_from(const Json& json, const std::string& wher
     fields.wrong("wall", "medial, lateral, superior, inferior or anterior is expected");
   out.depth_m = fields.number_or("depth_m", out.depth_m, -kAny_m, kAny_m);
   if (fields.has("at_m")) out.at_m = fields.number("at_m", -kAny_m, kAny_m);
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   return out;
 }
 
@@ -103,9 +104,8 @@ Result<cases::CarvingPlan> plan_from(core::Fields& fields) {
   const Json* breach = fields.member("breach", false);
   if (!breach || breach->is_null()) return out;
   if (!out.drilled) fields.wrong("breach", "whole bone has none: null, or no such field");
-  auto read = breach_from(*breach, fields.where() + "/breach");
-  if (!read) return read.error();
-  out.breach = *read;
+  auto read = TRY(breach_from(*breach, fields.where() + "/breach"));
+  out.breach = read;
   return out;
 }
 
@@ -125,37 +125,28 @@ Json plan_json(const cases::CarvingPlan& plan) {
 Result<void> make_case(store::Store& store, const store::Objects& objects, const core::KeyPair& key,
                        const std::string& making_id, const std::function<bool()>& ending) {
   auto making =
-      store.read([&](store::Reading& tx) { return store::case_making_of(tx, making_id); });
-  if (!making) return making.error();
-  if (!*making) return core::Error{core::Errc::not_found, "no making of a case " + making_id};
-  if ((*making)->state == "done") return {};
-  auto json = core::parse_json((*making)->plan, "plan");
-  if (!json) return json.error();
-  core::Fields fields(*json, "plan");
-  const auto plan = plan_from(fields);
-  if (!plan) return plan.error();
-  const auto source = released_volume(store, objects, (*making)->volume_id);
-  if (!source) return source.error();
+      TRY(store.read([&](store::Reading& tx) { return store::case_making_of(tx, making_id); }));
+  if (!making) return core::Error{core::Errc::not_found, "no making of a case " + making_id};
+  if (making->state == "done") return {};
+  auto json = TRY(core::parse_json(making->plan, "plan"));
+  core::Fields fields(json, "plan");
+  const auto plan = TRY(plan_from(fields));
+  const auto source = TRY(released_volume(store, objects, making->volume_id));
   Noting noting(store, making_id, ending);
-  const auto ct = read_about(source->file, plan->entry_m, plan->target_m,
-                             noting.at("reading the volume", 0.0, kCarving));
-  if (!ct) return ct.error();
+  const auto ct = TRY(read_about(source.file, plan.entry_m, plan.target_m,
+                                 noting.at("reading the volume", 0.0, kCarving)));
   models::PalpationModel model;
   model.name = "uniform cantilever";
-  const auto carved =
-      cases::carve(*ct, model.transfer, *plan, noting.at("drilling the tract", kCarving, kWriting));
-  if (!carved) return carved.error();
-  auto scratch = core::ScratchFolder::make(std::filesystem::temp_directory_path() / "tractus-case");
-  if (!scratch) return scratch.error();
-  const auto bundle = scratch->path() / "case";
-  const auto written = cases::write_case(bundle, new_case(**making, *source, model, *carved), key,
-                                         noting.at("writing and signing", kWriting, 1.0));
-  if (!written) return written.error();
-  auto published =
-      publish_bundle(store, objects, bundle, [&](store::Writing& tx, const std::string& id) {
-        return store::finish_making(tx, making_id, id, core::utc_us());
-      });
-  if (!published) return published.error();
+  const auto carved = TRY(
+      cases::carve(ct, model.transfer, plan, noting.at("drilling the tract", kCarving, kWriting)));
+  auto scratch =
+      TRY(core::ScratchFolder::make(std::filesystem::temp_directory_path() / "tractus-case"));
+  const auto bundle = scratch.path() / "case";
+  TRY(cases::write_case(bundle, new_case(*making, source, model, carved), key,
+                        noting.at("writing and signing", kWriting, 1.0)));
+  TRY(publish_bundle(store, objects, bundle, [&](store::Writing& tx, const std::string& id) {
+    return store::finish_making(tx, making_id, id, core::utc_us());
+  }));
   return {};
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/bytes.hpp"
 #include "core/clock.hpp"
+#include "core/try.hpp"
 #include "db/store/cases/case_makings.hpp"
 #include "db/store/cohort/analyses.hpp"
 #include "db/store/lab/lab.hpp"
@@ -39,16 +40,14 @@ core::Result<std::unique_ptr<Runner>> Runner::start(store::Store& store,
                                                     const store::Objects& objects, Keys keys,
                                                     Log log, std::chrono::milliseconds lease) {
   if (!store.shared()) {
-    auto back = store.write(
-        [](store::Writing& tx) { return store::requeue_claimed_jobs(tx, core::utc_us()); });
-    if (!back) return back.error();
+    TRY(store.write(
+        [](store::Writing& tx) { return store::requeue_claimed_jobs(tx, core::utc_us()); }));
   }
   auto runner =
       std::unique_ptr<Runner>(new Runner(store, objects, std::move(keys), std::move(log), lease));
-  auto listening = store.signals().listen(
-      store::kJobsChannel, [own = runner.get()](const store::Signal&) { own->wake(); });
-  if (!listening) return listening.error();
-  runner->listening_ = std::move(*listening);
+  auto listening = TRY(store.signals().listen(
+      store::kJobsChannel, [own = runner.get()](const store::Signal&) { own->wake(); }));
+  runner->listening_ = std::move(listening);
   return runner;
 }
 
@@ -195,7 +194,7 @@ core::Result<void> Runner::work_on(Lane& lane, const store::Job& job) {
 
 core::Result<void> Runner::note_failure(const store::Job& job, const core::Error& error) {
   return store_.write([&](store::Writing& tx) -> core::Result<void> {
-    if (auto failed = store::fail_job(tx, job, error.what, core::utc_us()); !failed) return failed;
+    TRY(store::fail_job(tx, job, error.what, core::utc_us()));
     return show_failure(tx, job, error);
   });
 }

@@ -132,7 +132,7 @@ void Hub::left(const StationRef& station, const http::WebSocketSender* line,
                http::CloseReason why) {
   using enum http::CloseReason;
   const std::lock_guard held(mutex_);
-  if (why == too_large || why == flood || why == nonsense)
+  if (why == too_large || why == flood || why == invalid_message)
     refusals_.emplace_back(station, std::string(http::text_of(why)));
   due_ = true;
   changed_.notify_all();

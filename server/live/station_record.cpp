@@ -1,4 +1,5 @@
 /// The hub's own thread: what waits for the database, and for the other processes.
+#include "core/try.hpp"
 #include "db/store/people/accounts.hpp"
 #include "server/live/hub.hpp"
 
@@ -23,12 +24,11 @@ core::Json for_others(const StationRef& station, bool connected, std::int64_t si
 }  // namespace
 
 core::Result<void> Hub::start() {
-  auto kept = parts_.store.read([](store::Reading& tx) { return store::stations_last(tx); });
-  if (!kept) return kept.error();
+  auto kept = TRY(parts_.store.read([](store::Reading& tx) { return store::stations_last(tx); }));
   refresh_names();
   {
     const std::lock_guard held(mutex_);
-    for (const store::StationLast& last : *kept) {
+    for (const store::StationLast& last : kept) {
       const auto found = stations_.find(last.station_id);
       if (found == stations_.end()) continue;
       const auto json = core::parse_json(last.told, "station_states");
@@ -40,10 +40,9 @@ core::Result<void> Hub::start() {
       found->second.since_utc_us = found->second.seen_utc_us = last.seen_utc_us;
     }
   }
-  auto listening = parts_.store.signals().listen(
-      kChannel, [this](const store::Signal& signal) { hear_other(signal); });
-  if (!listening) return listening.error();
-  listening_ = std::move(*listening);
+  auto listening = TRY(parts_.store.signals().listen(
+      kChannel, [this](const store::Signal& signal) { hear_other(signal); }));
+  listening_ = std::move(listening);
   send({{"ask", true}});
   thread_ = std::thread([this] { keep(); });
   return {};
@@ -126,8 +125,7 @@ void Hub::keep_states() {
   }
   if (states.empty()) return;
   const auto kept = parts_.store.write([&](store::Writing& tx) -> core::Result<void> {
-    for (const auto& state : states)
-      if (auto done = store::set_station_last(tx, state); !done) return done;
+    for (const auto& state : states) TRY(store::set_station_last(tx, state));
     return {};
   });
   if (!kept) note(kept.error());

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "assessment/methods_text.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace assessment {
@@ -20,14 +21,12 @@ struct Run {
 };
 
 core::Result<Findings> found_by(const PlannedAnalysis& one, const Table& table) {
-  const auto method = method_named(one.method);
-  if (!method) return method.error();
-  if (method->formula.empty()) return run(*method, one.options);
-  if (!one.filter) return run(*method, table, one.formula, one.options, Missing::drop);
-  const auto keeps = one.filter->rows_of(table);
-  if (!keeps) return keeps.error();
-  return run(*method, table.filtered([&](std::size_t row) { return bool((*keeps)[row]); }),
-             one.formula, one.options, Missing::drop);
+  const auto method = TRY(method_named(one.method));
+  if (method.formula.empty()) return run(method, one.options);
+  if (!one.filter) return run(method, table, one.formula, one.options, Missing::drop);
+  const auto keeps = TRY(one.filter->rows_of(table));
+  return run(method, table.filtered([&](std::size_t row) { return bool(keeps[row]); }), one.formula,
+             one.options, Missing::drop);
 }
 
 Run run_one(const PlannedAnalysis& one, const Table& table) {
@@ -56,11 +55,10 @@ core::Result<std::vector<std::string>> exclusions_of(const Plan& plan, const Tab
                                                      Json& counted) {
   std::vector<std::string> because(table.rows());
   for (const auto& exclusion : plan.exclusions) {
-    const auto meets = exclusion.filter.rows_of(table);
-    if (!meets) return meets.error();
+    const auto meets = TRY(exclusion.filter.rows_of(table));
     std::size_t rows = 0;
     for (std::size_t i = 0; i < because.size(); ++i)
-      if ((*meets)[i] && because[i].empty()) {
+      if (meets[i] && because[i].empty()) {
         because[i] = exclusion.reason;
         ++rows;
       }
@@ -177,9 +175,8 @@ Json head_of(const Plan& plan) {
 
 core::Result<Analysed> analyse(const Plan& plan, const Table& table, const Provenance& provenance) {
   Json counted = Json::array();
-  auto because = exclusions_of(plan, table, counted);
-  if (!because) return because.error();
-  const Table used = table.filtered([&](std::size_t row) { return (*because)[row].empty(); });
+  auto because = TRY(exclusions_of(plan, table, counted));
+  const Table used = table.filtered([&](std::size_t row) { return because[row].empty(); });
   Analysed out{{{"format", "tractus-result/1"},
                 {"plan", head_of(plan)},
                 {"data",
@@ -194,7 +191,7 @@ core::Result<Analysed> analyse(const Plan& plan, const Table& table, const Prove
                   {"exclusions", counted}}},
                 {"analyses", Json::array()}},
                {},
-               std::move(*because)};
+               std::move(because)};
   for (const auto& one : plan.analyses) {
     auto run = run_one(one, used);
     out.result["analyses"].push_back(std::move(run.entry));

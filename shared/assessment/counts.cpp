@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "assessment/report.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace assessment {
@@ -38,10 +39,8 @@ core::Result<std::vector<Counted>> counted_groups(const Analysis& of) {
     return bad_input(
         "proportions are of all rows (y ~ 1) or by one column (y ~ column); with (1|person) or "
         "more columns use logistic");
-  const auto y = of.table.numbers(of.formula.response);
-  if (!y) return y.error();
-  const auto trials = trials_of(of, y->size());
-  if (!trials) return trials.error();
+  const auto y = TRY(of.table.numbers(of.formula.response));
+  const auto trials = TRY(trials_of(of, y.size()));
   Parts parts{{"all"}, {{}}};
   if (!of.formula.terms.empty()) {
     const auto column = single_column({of.formula, of.table, "", {}}, "proportions");
@@ -54,12 +53,12 @@ core::Result<std::vector<Counted>> counted_groups(const Analysis& of) {
     Counted group{parts.names[j], {}};
     for (const std::size_t i : parts.rows[j]) {
       const auto row = static_cast<Eigen::Index>(i);
-      const auto one = statistics::Proportion::make((*y)[row], (*trials)[row]);
+      const auto one = statistics::Proportion::make(y[row], trials[row]);
       if (!one)
         return bad_input(
             fmt::format("{}:{}: {} of {} is no count of successes: whole numbers, 0 to "
                         "the trials, are expected",
-                        of.table.name(), of.table.line(i), (*y)[row], (*trials)[row]));
+                        of.table.name(), of.table.line(i), y[row], trials[row]));
       group.of.successes += one->successes;
       group.of.trials += one->trials;
     }

@@ -8,6 +8,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "core/try.hpp"
 #include "core/words.hpp"
 
 namespace tractus {
@@ -208,12 +209,10 @@ bool is_factor(const Variable& of, const Table& table) {
 }
 
 core::Result<Columns> columns_of(const Table& table, const Variable& of, bool all_levels) {
-  if (of.as == Variable::As::itself)
-    if (const auto known = table.holds_numbers(of.column); !known) return known.error();
+  if (of.as == Variable::As::itself) TRY(table.holds_numbers(of.column));
   if (is_factor(of, table)) return factor_columns(table, of, all_levels);
-  auto numbers = table.numbers(of.column);
-  if (!numbers) return numbers.error();
-  Columns out{{std::move(*numbers)}, {of.name()}};
+  auto numbers = TRY(table.numbers(of.column));
+  Columns out{{std::move(numbers)}, {of.name()}};
   auto values = out.values[0].array();
   if (of.as == Variable::As::power) values = values.pow(of.exponent).eval();
   if (of.as == Variable::As::log) {
@@ -240,17 +239,16 @@ core::Result<Columns> term_columns(const Formula& formula, const Table& table, c
   for (std::size_t v = 0; v < term.variables.size(); ++v) {
     const bool lone = term.variables.size() == 1;
     const bool all = lone ? cell_means : !has_without(formula, term, v);
-    auto next = columns_of(table, term.variables[v], all);
-    if (!next) return next.error();
+    auto next = TRY(columns_of(table, term.variables[v], all));
     if (v == 0) {
-      out = std::move(*next);
+      out = std::move(next);
       continue;
     }
     Columns product;
-    for (std::size_t b = 0; b < next->values.size(); ++b)
+    for (std::size_t b = 0; b < next.values.size(); ++b)
       for (std::size_t a = 0; a < out.values.size(); ++a) {
-        product.values.push_back(out.values[a].cwiseProduct(next->values[b]));
-        product.names.push_back(out.names[a] + ":" + next->names[b]);
+        product.values.push_back(out.values[a].cwiseProduct(next.values[b]));
+        product.names.push_back(out.names[a] + ":" + next.names[b]);
       }
     out = std::move(product);
   }
@@ -349,14 +347,13 @@ core::Result<ModelMatrix> model_matrix(const Formula& formula, const Table& tabl
   // Without an intercept the first factor gets a column for every level, as a cell mean.
   bool cell_means = !formula.intercept;
   for (std::size_t t = 0; t < formula.terms.size(); ++t) {
-    auto next = term_columns(formula, table, formula.terms[t], cell_means);
-    if (!next) return next.error();
+    auto next = TRY(term_columns(formula, table, formula.terms[t], cell_means));
     if (is_factor(formula.terms[t].variables[0], table)) cell_means = false;
-    if (all.values.size() + next->values.size() > kMostColumns)
+    if (all.values.size() + next.values.size() > kMostColumns)
       return wrong(fmt::format("the formula makes over {} columns", kMostColumns));
-    for (std::size_t j = 0; j < next->values.size(); ++j) {
-      all.values.push_back(std::move(next->values[j]));
-      all.names.push_back(std::move(next->names[j]));
+    for (std::size_t j = 0; j < next.values.size(); ++j) {
+      all.values.push_back(std::move(next.values[j]));
+      all.names.push_back(std::move(next.names[j]));
       out.term_of.push_back(static_cast<int>(t));
     }
   }

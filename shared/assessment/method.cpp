@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace assessment {
 namespace {
@@ -67,20 +69,16 @@ core::Result<std::map<std::string, std::string>> complete(
 
 core::Result<Findings> run(const Method& method, const Table& table, const std::string& formula,
                            const std::map<std::string, std::string>& options, Missing missing) {
-  const auto parsed = parse_formula(formula);
-  if (!parsed) return parsed.error();
-  const auto completed = complete(method, options);
-  if (!completed) return completed.error();
-  const auto selected = table.selected(parsed->columns(), missing);
-  if (!selected) return selected.error();
-  return method.run({*parsed, *selected, formula, *completed});
+  const auto parsed = TRY(parse_formula(formula));
+  const auto completed = TRY(complete(method, options));
+  const auto selected = TRY(table.selected(parsed.columns(), missing));
+  return method.run({parsed, selected, formula, completed});
 }
 
 core::Result<Findings> run(const Method& method,
                            const std::map<std::string, std::string>& options) {
-  const auto completed = complete(method, options);
-  if (!completed) return completed.error();
-  return method.run({Formula{}, Table{}, "", *completed});
+  const auto completed = TRY(complete(method, options));
+  return method.run({Formula{}, Table{}, "", completed});
 }
 
 }  // namespace assessment

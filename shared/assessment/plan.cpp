@@ -8,6 +8,7 @@
 #include "assessment/method.hpp"
 #include "assessment/report.hpp"
 #include "core/bytes.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace assessment {
@@ -41,7 +42,7 @@ core::Result<Exclusion> exclusion_of(const Json& json, const std::string& where)
   Fields fields(json, where);
   const std::string condition = fields.text("where"), reason = fields.text("reason");
   if (reason.empty() && fields.has("reason")) fields.wrong("reason", "should say why");
-  if (auto fine = fields.done(); !fine) return fine.error();
+  TRY(fields.done());
   auto filter = Filter::parse(condition);
   if (!filter) return bad_input(where + "/where: " + filter.error().what);
   return Exclusion{std::move(*filter), condition, reason};
@@ -94,11 +95,10 @@ core::Result<PlannedAnalysis> analysis_of(const Json& json, const std::string& w
   out.formula = fields.text_or("formula", "");
   out.term = fields.text_or("term", "");
   out.where = fields.text_or("where", "");
-  auto options = options_of(fields.member("options", false), where);
-  if (!options) return options.error();
-  out.options = std::move(*options);
-  if (auto fine = fields.done(); !fine) return fine.error();
-  if (auto fine = check_analysis(out, where); !fine) return fine.error();
+  auto options = TRY(options_of(fields.member("options", false), where));
+  out.options = std::move(options);
+  TRY(fields.done());
+  TRY(check_analysis(out, where));
   return out;
 }
 
@@ -117,9 +117,9 @@ core::Result<Published> published_of(const Json& json, const std::string& where)
     Fields one(*number, where + "/numbers");
     const std::string analysis = one.text("analysis"), at = one.text("at");
     out.numbers.emplace_back(analysis, at);
-    if (auto fine = one.done(); !fine) return fine.error();
+    TRY(one.done());
   }
-  if (auto fine = fields.done(); !fine) return fine.error();
+  TRY(fields.done());
   return out;
 }
 
@@ -130,7 +130,7 @@ core::Result<std::optional<Lock>> lock_of(const Json* json, const std::string& w
   Lock out{fields.text("who"), fields.text("utc"), false, fields.text("sha256")};
   const Json* seen = fields.member("data_seen");
   if (seen && !seen->is_boolean()) fields.wrong("data_seen", "should be true or false");
-  if (auto fine = fields.done(); !fine) return fine.error();
+  TRY(fields.done());
   out.data_seen = seen->get<bool>();
   return std::optional<Lock>(out);
 }
@@ -141,9 +141,8 @@ core::Result<void> read_all(const std::vector<const Json*>& from, const std::str
                             core::Result<T> (*read)(const Json&, const std::string&),
                             std::vector<T>& out) {
   for (std::size_t i = 0; i < from.size(); ++i) {
-    auto one = read(*from[i], fmt::format("{}/{}", where, i));
-    if (!one) return one.error();
-    out.push_back(std::move(*one));
+    auto one = TRY(read(*from[i], fmt::format("{}/{}", where, i)));
+    out.push_back(std::move(one));
   }
   return {};
 }
@@ -199,16 +198,13 @@ core::Result<Plan> Plan::from_json(const Json& json, const std::string& name) {
              published = elements(fields, "published");
   if (analyses.empty()) fields.wrong("analyses", "should hold one analysis at least");
   auto lock = lock_of(fields.member("lock", false), name + ": ");
-  if (auto fine = fields.done(); !fine) return fine.error();
+  TRY(fields.done());
   if (!lock) return lock.error();
   out.lock = std::move(*lock);
-  if (auto fine = read_all(exclusions, name + ": /exclusions", exclusion_of, out.exclusions); !fine)
-    return fine.error();
-  if (auto fine = read_all(analyses, name + ": /analyses", analysis_of, out.analyses); !fine)
-    return fine.error();
-  if (auto fine = read_all(published, name + ": /published", published_of, out.published); !fine)
-    return fine.error();
-  if (auto fine = check_names(out, name); !fine) return fine.error();
+  TRY(read_all(exclusions, name + ": /exclusions", exclusion_of, out.exclusions));
+  TRY(read_all(analyses, name + ": /analyses", analysis_of, out.analyses));
+  TRY(read_all(published, name + ": /published", published_of, out.published));
+  TRY(check_names(out, name));
   out.sha256 = plan_sha256(json);
   return out;
 }
@@ -220,16 +216,15 @@ std::string plan_sha256(Json plan) {
 }
 
 core::Result<Json> locked(const Json& plan, const std::string& name, const Lock& by) {
-  const auto parsed = Plan::from_json(plan, name);
-  if (!parsed) return parsed.error();
-  if (parsed->lock)
+  const auto parsed = TRY(Plan::from_json(plan, name));
+  if (parsed.lock)
     return core::Error{core::Errc::conflict,
                        fmt::format("{}: {} locked it on {}; a changed plan is a new plan", name,
-                                   parsed->lock->who, parsed->lock->utc)};
+                                   parsed.lock->who, parsed.lock->utc)};
   if (by.who.empty()) return bad_input("a lock needs the name of whoever makes it");
   Json out = plan;
   out["lock"] = {
-      {"who", by.who}, {"utc", by.utc}, {"data_seen", by.data_seen}, {"sha256", parsed->sha256}};
+      {"who", by.who}, {"utc", by.utc}, {"data_seen", by.data_seen}, {"sha256", parsed.sha256}};
   return out;
 }
 

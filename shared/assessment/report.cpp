@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 
+#include "core/try.hpp"
 #include "statistics/summary/shapiro_wilk.hpp"
 
 namespace tractus {
@@ -126,11 +127,9 @@ core::Result<Problem> problem_of(const Analysis& of, bool grouped) {
     return bad_input("(1|" + of.formula.group + ") needs 'lmm': this method knows no groups");
   if (!of.formula.trials.empty() || of.formula.trials_number != 1)
     return bad_input("successes/trials on the left is for counts, as 'logistic' takes them");
-  auto model = model_matrix(of.formula, of.table);
-  if (!model) return model.error();
-  auto y = of.table.numbers(of.formula.response);
-  if (!y) return y.error();
-  return Problem{std::move(*model), std::move(*y)};
+  auto model = TRY(model_matrix(of.formula, of.table));
+  auto y = TRY(of.table.numbers(of.formula.response));
+  return Problem{std::move(model), std::move(y)};
 }
 
 std::vector<std::string> group_labels(const Analysis& of) {

@@ -7,6 +7,7 @@
 #include "assessment/formula.hpp"
 #include "assessment/report.hpp"
 #include "core/file.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace assessment {
@@ -85,8 +86,7 @@ std::string unit_of(const std::string& column) {
 }
 
 core::Result<Snapshot> frozen(core::Bytes data, const Freezing& by) {
-  auto table = Table::parse(data, by.name, {}, Missing::keep);
-  if (!table) return table.error();
+  auto table = TRY(Table::parse(data, by.name, {}, Missing::keep));
   Snapshot out{{{"format", "tractus-snapshot/1"},
                 {"name", by.name},
                 {"frozen_utc", by.utc},
@@ -94,10 +94,10 @@ core::Result<Snapshot> frozen(core::Bytes data, const Freezing& by) {
                 {"source", by.source},
                 {"file", "data.csv"},
                 {"sha256", core::sha256(data)},
-                {"rows", table->rows()},
+                {"rows", table.rows()},
                 {"dictionary", Json::array()}},
                std::move(data),
-               std::move(*table)};
+               std::move(table)};
   for (const auto& [column, _] : by.meanings)
     if (!out.table.has(column))
       return bad_input(
@@ -112,31 +112,26 @@ core::Result<Snapshot> frozen(core::Bytes data, const Freezing& by) {
 
 core::Result<Snapshot> Snapshot::read(const std::filesystem::path& folder) {
   const auto path = folder / "snapshot.json";
-  auto description = core::read_json(path);
-  if (!description) return description.error();
+  auto description = TRY(core::read_json(path));
   for (const char* key : {"format", "name", "frozen_utc", "sha256"})
-    if (auto text = text_member(*description, key, path.string()); !text) return text.error();
-  if ((*description)["format"] != "tractus-snapshot/1")
+    TRY(text_member(description, key, path.string()));
+  if (description["format"] != "tractus-snapshot/1")
     return bad_input(path.string() + ": /format: should be \"tractus-snapshot/1\"");
-  auto data = core::read_file(folder / "data.csv", 512ull << 20);
-  if (!data) return data.error();
-  if (core::sha256(*data) != (*description)["sha256"].get<std::string>())
-    return core::Error{core::Errc::conflict,
-                       fmt::format("{}: the data were changed after they were frozen on {}",
-                                   (folder / "data.csv").string(),
-                                   (*description)["frozen_utc"].get<std::string>())};
-  auto table = Table::parse(*data, "data.csv", {}, Missing::keep);
-  if (!table) return table.error();
-  return Snapshot{std::move(*description), std::move(*data), std::move(*table)};
+  auto data = TRY(core::read_file(folder / "data.csv", 512ull << 20));
+  if (core::sha256(data) != description["sha256"].get<std::string>())
+    return core::Error{
+        core::Errc::conflict,
+        fmt::format("{}: the data were changed after they were frozen on {}",
+                    (folder / "data.csv").string(), description["frozen_utc"].get<std::string>())};
+  auto table = TRY(Table::parse(data, "data.csv", {}, Missing::keep));
+  return Snapshot{std::move(description), std::move(data), std::move(table)};
 }
 
 core::Result<void> write(const Snapshot& snapshot, const std::filesystem::path& folder) {
-  auto scratch = core::ScratchFolder::make(folder);
-  if (!scratch) return scratch.error();
-  if (auto fine = core::write_file(scratch->path() / "data.csv", snapshot.data); !fine) return fine;
-  if (auto fine = core::write_json(scratch->path() / "snapshot.json", snapshot.description); !fine)
-    return fine;
-  return scratch->keep_as(folder);
+  auto scratch = TRY(core::ScratchFolder::make(folder));
+  TRY(core::write_file(scratch.path() / "data.csv", snapshot.data));
+  TRY(core::write_json(scratch.path() / "snapshot.json", snapshot.description));
+  return scratch.keep_as(folder);
 }
 
 std::string marked(const Table& table, const std::vector<std::string>& excluded_because) {

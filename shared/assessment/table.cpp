@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "core/file.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace assessment {
@@ -112,9 +113,8 @@ core::Result<void> Table::read_header(std::string_view line,
 
 core::Result<Table> Table::read(const std::filesystem::path& path,
                                 std::span<const std::string> columns, Missing missing) {
-  auto bytes = core::read_file(path, kLargest);
-  if (!bytes) return bytes.error();
-  return parse(std::move(*bytes), path.string(), columns, missing);
+  auto bytes = TRY(core::read_file(path, kLargest));
+  return parse(std::move(bytes), path.string(), columns, missing);
 }
 
 core::Result<Table> Table::parse(core::Bytes bytes, const std::string& name,
@@ -126,7 +126,7 @@ core::Result<Table> Table::parse(core::Bytes bytes, const std::string& name,
   std::string_view rest = core::text_of(*out.bytes_);
   if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
   std::vector<std::string_view> header, cells;
-  if (auto fine = out.read_header(next_line(rest), header); !fine) return fine.error();
+  TRY(out.read_header(next_line(rest), header));
   out.cells_.resize(out.wanted_.size());
   for (std::size_t line = 2; !rest.empty(); ++line) {
     const auto text = next_line(rest);

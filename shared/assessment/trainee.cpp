@@ -8,6 +8,7 @@
 #include "assessment/counts.hpp"
 #include "assessment/formula.hpp"
 #include "assessment/report.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace assessment {
@@ -69,12 +70,9 @@ const char* name_of(Standing::State state) {
 }
 
 core::Result<Cohort> cohort_of(const Table& table, const TraineeColumns& columns) {
-  const auto right = yes_no(table, columns.right);
-  if (!right) return right.error();
-  const auto order = table.numbers(columns.order);
-  if (!order) return order.error();
-  const auto scores = scores_of(table, columns.scores);
-  if (!scores) return scores.error();
+  const auto right = TRY(yes_no(table, columns.right));
+  const auto order = TRY(table.numbers(columns.order));
+  const auto scores = TRY(scores_of(table, columns.scores));
   Cohort out;
   out.scores = columns.scores;
   out.scenarios = levels_of(table, columns.scenario);
@@ -83,7 +81,7 @@ core::Result<Cohort> cohort_of(const Table& table, const TraineeColumns& columns
   out.trainees = parts.names;
   for (std::size_t j = 0; j < parts.names.size(); ++j) {
     auto rows = parts.rows[j];
-    const auto when = [&](std::size_t i) { return (*order)[static_cast<Eigen::Index>(i)]; };
+    const auto when = [&](std::size_t i) { return order[static_cast<Eigen::Index>(i)]; };
     std::ranges::stable_sort(rows, {}, when);
     std::vector<Attempt> attempts;
     for (const std::size_t i : rows) {
@@ -92,8 +90,8 @@ core::Result<Cohort> cohort_of(const Table& table, const TraineeColumns& columns
             fmt::format("{}:{}: '{}' is {} twice for '{}': the order of trials is not "
                         "known",
                         table.name(), table.line(i), columns.order, when(i), parts.names[j]));
-      Attempt one{when(i), (*right)[i], scenario[i], {}};
-      for (const auto& values : *scores) one.scores.push_back(values[i]);
+      Attempt one{when(i), right[i], scenario[i], {}};
+      for (const auto& values : scores) one.scores.push_back(values[i]);
       attempts.push_back(std::move(one));
     }
     out.attempts.push_back(std::move(attempts));

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace capture {
 namespace {
@@ -140,10 +142,9 @@ core::Result<ClockFit> clock_of(const Recipe& recipe, const Recording& recording
   stated.offset_s = recording.offset_s.value_or(0.0);
   if (recording.offset_s || recording.motion == recording.force) return stated;
   // A first zero from the start is good enough to see the taps.
-  const auto zero = zero_of(force, force.t_s.front(), recipe.tare_s);
-  if (!zero) return zero.error();
+  const auto zero = TRY(zero_of(force, force.t_s.front(), recipe.tare_s));
   const auto tip = tips(recipe, probe);
-  const auto pull = norms(force, *zero);
+  const auto pull = norms(force, zero);
   const Tapped tapped{force.t_s, pull, probe.t_s, tip};
   auto clock = align(tapped, recipe.taps);
   if (!clock) return clock;
@@ -214,19 +215,15 @@ double rate_of(const std::vector<double>& t_s) {
 
 core::Result<Assembled> assemble(const Recipe& recipe, const Recording& recording) {
   const auto motion_file = recipe.folder / recording.motion;
-  const auto motion = read_motion(motion_file);
-  if (!motion) return motion.error();
-  const auto force = read_force(recipe.folder / recording.force, recipe.sensor.channels);
-  if (!force) return force.error();
-  const auto tool = track_of(*motion, recipe.tool, motion_file.string());
-  if (!tool) return tool.error();
+  const auto motion = TRY(read_motion(motion_file));
+  const auto force = TRY(read_force(recipe.folder / recording.force, recipe.sensor.channels));
+  const auto tool = TRY(track_of(motion, recipe.tool, motion_file.string()));
   std::optional<BodyTrack> bone;
   if (recipe.bone) {
-    auto found = track_of(*motion, *recipe.bone, motion_file.string());
-    if (!found) return found.error();
-    bone = std::move(*found);
+    auto found = TRY(track_of(motion, *recipe.bone, motion_file.string()));
+    bone = std::move(found);
   }
-  const Probe probe = probe_of(recipe, *tool, bone ? &*bone : nullptr, recording.rate_Hz);
+  const Probe probe = probe_of(recipe, tool, bone ? &*bone : nullptr, recording.rate_Hz);
   const auto named = [&](const Error& error) {
     return Error{error.code, fmt::format("{}: {}", recording.id, error.what)};
   };
@@ -234,17 +231,17 @@ core::Result<Assembled> assemble(const Recipe& recipe, const Recording& recordin
     return named({Errc::bad_input, "tool and bone are never seen together"});
   Assembled out;
   out.rate_Hz = recording.rate_Hz > 0.0 ? recording.rate_Hz : rate_of(probe.t_s);
-  auto clock = clock_of(recipe, recording, *force, probe, out);
+  auto clock = clock_of(recipe, recording, force, probe, out);
   if (!clock) return named(clock.error());
   out.clock = std::move(*clock);
   const auto& runs = out.clock.runs;
   const double first_tap_s =
-      runs.empty() ? force->t_s.front() : out.clock.force_time(runs.front().taps_s.front());
-  const auto zero = zero_of(*force, first_tap_s, recipe.tare_s);
+      runs.empty() ? force.t_s.front() : out.clock.force_time(runs.front().taps_s.front());
+  const auto zero = zero_of(force, first_tap_s, recipe.tare_s);
   if (!zero) return named(zero.error());
   out.zero_S = *zero;
-  out.push_off_rad = push_off(recipe, *force, probe, out.clock, *zero);
-  keep_rows(recipe, recording, *force, probe, out);
+  out.push_off_rad = push_off(recipe, force, probe, out.clock, *zero);
+  keep_rows(recipe, recording, force, probe, out);
   if (out.trial.t_s.size() < 2)
     return named({Errc::bad_input,
                   "nothing is left after the taps where force and motion are both "

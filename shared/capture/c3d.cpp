@@ -9,6 +9,7 @@
 #include "capture/c3d_bytes.hpp"
 #include "capture/motion.hpp"
 #include "core/file.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace capture {
@@ -129,12 +130,11 @@ void read_analog(const C3dBytes& file, const C3dParameters& all, const Layout& a
 }  // namespace
 
 core::Result<C3d> read_c3d_file(const std::filesystem::path& path) {
-  auto bytes = core::read_file(path, kMostBytes);
-  if (!bytes) return bytes.error();
+  auto bytes = TRY(core::read_file(path, kMostBytes));
   const auto wrong = [&](const std::string& what) {
     return Error{Errc::bad_input, fmt::format("{}: {}", path.string(), what)};
   };
-  C3dBytes file(std::move(*bytes));
+  C3dBytes file(std::move(bytes));
   if (!file.has(0, kBlock)) return wrong("too short for a C3D file");
   const std::size_t first = file.byte(0);
   if (first == 0 || !file.has((first - 1) * kBlock, 4))
@@ -161,18 +161,17 @@ core::Result<C3d> read_c3d_file(const std::filesystem::path& path) {
 }
 
 core::Result<Motion> detail::read_c3d(const std::filesystem::path& path) {
-  const auto file = read_c3d_file(path);
-  if (!file) return file.error();
-  if (file->points.empty())
+  const auto file = TRY(read_c3d_file(path));
+  if (file.points.empty())
     return Error{Errc::bad_input, fmt::format("{}: no points in it", path.string())};
   Motion out;
-  out.rate_Hz = file->rate_Hz;
-  for (std::size_t f = 0; f < file->frames; ++f)
-    for (std::size_t p = 0; p < file->points.size(); ++p) {
-      const math::Vec3& seen = file->p_C_m[f * file->points.size() + p];
+  out.rate_Hz = file.rate_Hz;
+  for (std::size_t f = 0; f < file.frames; ++f)
+    for (std::size_t p = 0; p < file.points.size(); ++p) {
+      const math::Vec3& seen = file.p_C_m[f * file.points.size() + p];
       if (!seen.allFinite()) continue;
-      MarkerTrack& track = out.markers[file->points[p]];
-      const double t_s = double(f) / file->rate_Hz;
+      MarkerTrack& track = out.markers[file.points[p]];
+      const double t_s = double(f) / file.rate_Hz;
       if (!track.t_s.empty() && track.t_s.back() >= t_s) continue;  // two of one name: the first
       track.t_s.push_back(t_s);
       track.p_C_m.push_back(seen);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/try.hpp"
 #include "math/spline.hpp"
 
 namespace tractus {
@@ -225,15 +226,14 @@ core::Result<std::vector<TapPair>> pairs_of(const Tapped& tapped, int count) {
 }  // namespace
 
 core::Result<ClockFit> align(const Tapped& tapped, int count) {
-  const auto pairs = pairs_of(tapped, count);
-  if (!pairs) return pairs.error();
+  const auto pairs = TRY(pairs_of(tapped, count));
   std::vector<TapPair> best;
-  for (const TapPair& one : *pairs)
-    if (auto runs = agreeing(*pairs, one); score(runs) > score(best)) best = std::move(runs);
-  for (const TapPair& one : *pairs) {
+  for (const TapPair& one : pairs)
+    if (auto runs = agreeing(pairs, one); score(runs) > score(best)) best = std::move(runs);
+  for (const TapPair& one : pairs) {
     const double apart_s = std::abs(one.taps_s.front() - best.front().taps_s.front());
     if (std::abs(one.offset_s - best.front().offset_s) > 2.0 * kAgree_s + kMostDrift * apart_s &&
-        score(agreeing(*pairs, one)) > kRival * score(best))
+        score(agreeing(pairs, one)) > kRival * score(best))
       return wrong(
           fmt::format("two offsets fit the taps as well, {:.3f} s and {:.3f} s: tap with "
                       "an uneven rhythm, or state offset_s",

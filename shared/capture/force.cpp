@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "capture/c3d.hpp"
+#include "core/try.hpp"
 #include "trial/csv.hpp"
 
 namespace tractus {
@@ -30,18 +31,17 @@ std::optional<double> si_of(const std::string& unit, bool torque) {
 }
 
 core::Result<ForceTrack> from_c3d(const fs::path& path, const ForceChannels& names) {
-  const auto file = read_c3d_file(path);
-  if (!file) return file.error();
+  const auto file = TRY(read_c3d_file(path));
   const auto wrong = [&](const std::string& what) {
     return Error{Errc::bad_input, fmt::format("{}: {}", path.string(), what)};
   };
   std::array<const AnalogChannel*, 6> at{};
   std::array<double, 6> si{};
   for (std::size_t k = 0; k < 6; ++k) {
-    const auto found = std::ranges::find(file->analog, names[k], &AnalogChannel::name);
-    if (found == file->analog.end()) {
+    const auto found = std::ranges::find(file.analog, names[k], &AnalogChannel::name);
+    if (found == file.analog.end()) {
       std::string known;
-      for (const auto& channel : file->analog) known += fmt::format(" '{}'", channel.name);
+      for (const auto& channel : file.analog) known += fmt::format(" '{}'", channel.name);
       return wrong(fmt::format("no analog channel '{}'; there {}", names[k],
                                known.empty() ? "is none" : "are" + known));
     }
@@ -58,28 +58,26 @@ core::Result<ForceTrack> from_c3d(const fs::path& path, const ForceChannels& nam
     for (std::size_t k = 0; k < 6; ++k) v[k] = si[k] * at[k]->values[s];
     if (!std::ranges::all_of(v, [](double x) { return std::isfinite(x); }))
       return wrong(fmt::format("analog sample {} is not finite", s + 1));
-    out.t_s.push_back(double(s) / file->analog_rate_Hz);
+    out.t_s.push_back(double(s) / file.analog_rate_Hz);
     out.wrench_S.push_back({{v[0], v[1], v[2]}, {v[3], v[4], v[5]}});
   }
   return out;
 }
 
 core::Result<ForceTrack> from_csv(const fs::path& path) {
-  const auto header = trial::csv_header(path);
-  if (!header) return header.error();
+  const auto header = TRY(trial::csv_header(path));
   std::vector<std::string_view> columns{"t_s", "fx_N", "fy_N", "fz_N", "tx_Nm", "ty_Nm", "tz_Nm"};
-  const bool stamped = std::ranges::find(*header, "arrived_s") != header->end();
+  const bool stamped = std::ranges::find(header, "arrived_s") != header.end();
   if (stamped) columns.emplace_back("arrived_s");
   ForceTrack out;
   std::vector<double> arrived_s;
-  auto read = trial::read_csv(path, columns, [&](std::size_t, std::span<const double> v) {
+  TRY(trial::read_csv(path, columns, [&](std::size_t, std::span<const double> v) {
     if (!out.t_s.empty() && v[0] <= out.t_s.back()) return std::string("time does not run forward");
     out.t_s.push_back(v[0]);
     out.wrench_S.push_back({{v[1], v[2], v[3]}, {v[4], v[5], v[6]}});
     if (stamped) arrived_s.push_back(v[7]);
     return std::string();
-  });
-  if (!read) return read.error();
+  }));
   if (stamped) {
     const auto rate = device_rate(out.t_s, arrived_s);
     if (!rate)

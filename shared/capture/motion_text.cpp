@@ -10,6 +10,7 @@
 
 #include "capture/force.hpp"
 #include "capture/motion.hpp"
+#include "core/try.hpp"
 #include "core/words.hpp"
 #include "trial/csv.hpp"
 
@@ -314,11 +315,10 @@ core::Result<MotiveHeader> motive_header(Lines& lines) {
 core::Result<Motion> read_motive(const fs::path& path) {
   Lines lines(path);
   if (!lines.next()) return Error{Errc::bad_input, fmt::format("{}: is empty", path.string())};
-  const auto header = motive_header(lines);
-  if (!header) return header.error();
-  const MotiveColumns& columns = header->columns;
+  const auto header = TRY(motive_header(lines));
+  const MotiveColumns& columns = header.columns;
   Motion out;
-  out.rate_Hz = header->rate_Hz;
+  out.rate_Hz = header.rate_Hz;
   double last_s = -1e300;
   for (std::size_t frame = 0; lines.next(); ++frame) {
     if (frame == kMaxFrames) return lines.too_many();
@@ -328,10 +328,10 @@ core::Result<Motion> read_motive(const fs::path& path) {
     if (!t_s || *t_s <= last_s) return lines.wrong("a time that runs forward is expected");
     last_s = *t_s;
     for (const auto& [name, at] : columns.bodies)
-      if (const auto pose = motive_pose(cells, at, header->unit_m))
+      if (const auto pose = motive_pose(cells, at, header.unit_m))
         add(out.bodies[name], *t_s, *pose);
     for (const auto& [name, at] : columns.markers)
-      if (const auto point = motive_point(cells, at, header->unit_m)) {
+      if (const auto point = motive_point(cells, at, header.unit_m)) {
         out.markers[name].t_s.push_back(*t_s);
         out.markers[name].p_C_m.push_back(*point);
       }
@@ -351,9 +351,8 @@ std::vector<std::string> plain_bodies(const std::vector<std::string>& header) {
 }  // namespace
 
 core::Result<Motion> read_plain(const fs::path& path) {
-  const auto header = trial::csv_header(path);
-  if (!header) return header.error();
-  const std::vector<std::string> bodies = plain_bodies(*header);
+  const auto header = TRY(trial::csv_header(path));
+  const std::vector<std::string> bodies = plain_bodies(header);
   std::vector<std::string> columns{"t_s"};
   if (bodies.empty())
     return Error{
@@ -362,13 +361,13 @@ core::Result<Motion> read_plain(const fs::path& path) {
   for (const std::string& body : bodies)
     for (const char* what : {"px_m", "py_m", "pz_m", "qw", "qx", "qy", "qz"})
       columns.push_back(body + "." + what);
-  const bool stamped = std::ranges::find(*header, "arrived_s") != header->end();
+  const bool stamped = std::ranges::find(header, "arrived_s") != header.end();
   if (stamped) columns.emplace_back("arrived_s");
   const std::vector<std::string_view> views(columns.begin(), columns.end());
   Motion out;
   double last_s = -1e300;
   std::vector<double> times_s, arrived_s;
-  auto read = trial::read_csv(path, views, [&](std::size_t, std::span<const double> v) {
+  TRY(trial::read_csv(path, views, [&](std::size_t, std::span<const double> v) {
     if (!(v[0] > last_s)) return std::string("time does not run forward");
     last_s = v[0];
     if (stamped) times_s.push_back(v[0]), arrived_s.push_back(v.back());
@@ -381,8 +380,7 @@ core::Result<Motion> read_plain(const fs::path& path) {
       add(out.bodies[bodies[b]], v[0], {Vec3(at[0], at[1], at[2]), q.normalized()});
     }
     return std::string();
-  });
-  if (!read) return read.error();
+  }));
   const auto rate = device_rate(times_s, arrived_s);
   if (!rate)
     return Error{rate.error().code, fmt::format("{}: {}", path.string(), rate.error().what)};

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/try.hpp"
 #include "trial/measurement_set.hpp"
 
 namespace tractus {
@@ -102,15 +103,14 @@ core::Result<Recording> recording_of(const Json& json, const std::string& where)
   out.from_s = maybe(fields, "from_s");
   out.to_s = maybe(fields, "to_s");
   if (out.id.empty()) fields.wrong("id", "is empty");
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   return out;
 }
 }  // namespace
 
 core::Result<Recipe> Recipe::read(const std::filesystem::path& file) {
-  auto json = core::read_json(file);
-  if (!json) return json.error();
-  Fields fields(*json, file.string() + ": ");
+  auto json = TRY(core::read_json(file));
+  Fields fields(json, file.string() + ": ");
   Recipe out;
   out.folder = file.parent_path();
   if (fields.text("format") != "tractus-assembly/1")
@@ -137,14 +137,13 @@ core::Result<Recipe> Recipe::read(const std::filesystem::path& file) {
   const Json* trials = fields.member("trials");
   if (trials && (!trials->is_array() || trials->empty()))
     fields.wrong("trials", "an array of recordings is expected");
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   for (std::size_t k = 0; k < trials->size(); ++k) {
-    auto one = recording_of((*trials)[k], fmt::format("{}/trials/{}", fields.where(), k));
-    if (!one) return one.error();
-    if (std::ranges::find(out.recordings, one->id, &Recording::id) != out.recordings.end())
+    auto one = TRY(recording_of((*trials)[k], fmt::format("{}/trials/{}", fields.where(), k)));
+    if (std::ranges::find(out.recordings, one.id, &Recording::id) != out.recordings.end())
       return core::Error{core::Errc::bad_input, fmt::format("{}/trials/{}/id: '{}' is there twice",
-                                                            fields.where(), k, one->id)};
-    out.recordings.push_back(std::move(*one));
+                                                            fields.where(), k, one.id)};
+    out.recordings.push_back(std::move(one));
   }
   return out;
 }

@@ -8,6 +8,7 @@
 #include "cases/case.hpp"
 #include "cases/png_salt.hpp"
 #include "core/file.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace cases {
@@ -87,9 +88,8 @@ Result<void> check_part(const fs::path& folder, const Part& part) {
   if (status.type() != fs::file_type::regular) return corrupt(path, "is not a regular file");
   if (const auto size = fs::file_size(path, failure); failure || size != part.size_bytes)
     return corrupt(path, fmt::format("has {} bytes, the case says {}", size, part.size_bytes));
-  const auto found = measured(path, part.secret);
-  if (!found) return found.error();
-  if (found->sha256 != part.sha256)
+  const auto found = TRY(measured(path, part.secret));
+  if (found.sha256 != part.sha256)
     return corrupt(path, "its content is not what the case says (SHA-256)");
   return {};
 }
@@ -118,31 +118,26 @@ Result<void> write_truth(const fs::path& folder, const Truth& truth) {
 /// Zeros after the salt bring pictures of much the same size to the same.
 Result<void> write_picture(const fs::path& folder, const NewCase& made) {
   const fs::path path = folder / kPicturePart;
-  if (auto drawn = made.draw(path); !drawn) return drawn.error();
-  const auto bytes = core::read_file(path);
-  if (!bytes) return bytes.error();
+  TRY(made.draw(path));
+  const auto bytes = TRY(core::read_file(path));
   std::string salt = core::hex(core::random_bytes(32));
-  const std::size_t least = bytes->size() + kSaltChunk_bytes + salt.size();
+  const std::size_t least = bytes.size() + kSaltChunk_bytes + salt.size();
   salt.append((kPictureStep_bytes - least % kPictureStep_bytes) % kPictureStep_bytes, '0');
-  const auto salted = salted_png(*bytes, salt);
-  if (!salted) return salted.error();
-  return core::write_file(path, *salted);
+  const auto salted = TRY(salted_png(bytes, salt));
+  return core::write_file(path, salted);
 }
 
 Result<std::vector<Part>> write_parts(const fs::path& folder, const NewCase& made,
                                       const core::Progress& progress) {
-  if (auto id = volume::write_volume(folder / kVolumePart, made.volume, made.meta, progress); !id)
-    return id.error();
-  if (auto written = write_truth(folder, made.truth); !written) return written.error();
-  if (made.draw)
-    if (auto drawn = write_picture(folder, made); !drawn) return drawn.error();
+  TRY(volume::write_volume(folder / kVolumePart, made.volume, made.meta, progress));
+  TRY(write_truth(folder, made.truth));
+  if (made.draw) TRY(write_picture(folder, made));
   std::vector<Part> parts;
   for (const auto& [name, secret] : {std::pair(kVolumePart, false), std::pair(kTruthPart, true),
                                      std::pair(kPicturePart, true)}) {
     if (name == std::string_view(kPicturePart) && !made.draw) continue;
-    auto part = measured(folder / name, secret);
-    if (!part) return part.error();
-    parts.push_back(std::move(*part));
+    auto part = TRY(measured(folder / name, secret));
+    parts.push_back(std::move(part));
   }
   return parts;
 }
@@ -154,54 +149,40 @@ Result<OpenedCase> write_case(const fs::path& folder, NewCase made, const core::
   if (std::error_code failure; fs::exists(folder, failure))
     return Error{Errc::conflict, fmt::format("{}: exists already; remove it or choose another name",
                                              folder.string())};
-  auto scratch = core::ScratchFolder::make(folder);
-  if (!scratch) return scratch.error();
+  auto scratch = TRY(core::ScratchFolder::make(folder));
   made.truth.salt_hex = core::hex(core::random_bytes(32));
-  auto parts = write_parts(scratch->path(), made, progress);
-  if (!parts) return parts.error();
-  made.definition.parts = std::move(*parts);
+  auto parts = TRY(write_parts(scratch.path(), made, progress));
+  made.definition.parts = std::move(parts);
   const std::string manifest = made.definition.to_json().dump(2) + "\n";
-  if (auto written = core::write_file(scratch->path() / kManifest, core::bytes_of(manifest));
-      !written)
-    return written.error();
-  if (auto signed_ = write_signature(scratch->path() / kSignature, core::bytes_of(manifest), key);
-      !signed_)
-    return signed_.error();
-  if (auto opened = open_case(scratch->path()); !opened) return opened.error();
+  TRY(core::write_file(scratch.path() / kManifest, core::bytes_of(manifest)));
+  TRY(write_signature(scratch.path() / kSignature, core::bytes_of(manifest), key));
+  TRY(open_case(scratch.path()));
   if (progress && !progress(1.0)) return Error{Errc::cancelled, "writing the case was stopped"};
-  if (auto kept = scratch->keep_as(folder); !kept) return kept.error();
+  TRY(scratch.keep_as(folder));
   return OpenedCase{core::sha256(core::bytes_of(manifest)), std::move(made.definition),
                     key.public_hex, folder};
 }
 
 Result<OpenedCase> open_case(const fs::path& folder) {
   const fs::path path = folder / kManifest;
-  auto bytes = core::read_file(path, kMaxManifest_bytes);
-  if (!bytes) return bytes.error();
-  auto signer = checked_signature(folder, *bytes);
-  if (!signer) return signer.error();
-  auto json = core::parse_json(core::text_of(*bytes), path.string());
-  if (!json) return json.error();
-  auto definition = Case::from_json(*json, path.string() + ": ");
-  if (!definition) return definition.error();
-  for (const Part& part : definition->parts)
-    if (auto checked = check_part(folder, part); !checked) return checked.error();
-  if (auto checked = check_nothing_else(folder, definition->parts); !checked)
-    return checked.error();
-  return OpenedCase{core::sha256(*bytes), std::move(*definition), std::move(*signer), folder};
+  auto bytes = TRY(core::read_file(path, kMaxManifest_bytes));
+  auto signer = TRY(checked_signature(folder, bytes));
+  auto json = TRY(core::parse_json(core::text_of(bytes), path.string()));
+  auto definition = TRY(Case::from_json(json, path.string() + ": "));
+  for (const Part& part : definition.parts) TRY(check_part(folder, part));
+  TRY(check_nothing_else(folder, definition.parts));
+  return OpenedCase{core::sha256(bytes), std::move(definition), std::move(signer), folder};
 }
 
 Result<Truth> read_truth(const OpenedCase& opened) {
   const fs::path path = opened.folder / kTruthPart;
-  auto bytes = core::read_file(path, kMaxManifest_bytes);
-  if (!bytes) return bytes.error();
+  auto bytes = TRY(core::read_file(path, kMaxManifest_bytes));
   const auto& parts = opened.definition.parts;
   const auto part = std::ranges::find(parts, kTruthPart, &Part::name);
-  if (part == parts.end() || part->sha256 != core::sha256(*bytes))
+  if (part == parts.end() || part->sha256 != core::sha256(bytes))
     return corrupt(path, "its content is not what the case says (SHA-256)");
-  auto json = core::parse_json(core::text_of(*bytes), path.string());
-  if (!json) return json.error();
-  return Truth::from_json(*json, path.string() + ": ");
+  auto json = TRY(core::parse_json(core::text_of(bytes), path.string()));
+  return Truth::from_json(json, path.string() + ": ");
 }
 
 }  // namespace cases

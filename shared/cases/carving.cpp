@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/try.hpp"
 #include "volume/resample.hpp"
 
 namespace tractus {
@@ -51,10 +52,10 @@ core::Result<void> check(const CarvingPlan& plan, double length_m,
     return Error{Errc::bad_input, "entry and target must be finite numbers"};
   if (plan.breach && !plan.drilled)
     return Error{Errc::bad_input, "a bone that is not drilled has no breach"};
-  if (auto ok = within("a length", length_m, 1e-4, kLongest_m); !ok) return ok;
-  if (auto ok = within("a radius", plan.radius_m, kThinnest_m, kWidest_m); !ok) return ok;
-  if (auto ok = within("a margin", plan.margin_m, 1e-3, 0.1); !ok) return ok;
-  if (auto ok = within("a spacing", plan.spacing_m, 5e-5, 5e-3); !ok) return ok;
+  TRY(within("a length", length_m, 1e-4, kLongest_m));
+  TRY(within("a radius", plan.radius_m, kThinnest_m, kWidest_m));
+  TRY(within("a margin", plan.margin_m, 1e-3, 0.1));
+  TRY(within("a spacing", plan.spacing_m, 5e-5, 5e-3));
   if (!geometry.contains(plan.entry_m)) return outside("the entry", plan.entry_m, geometry);
   return {};
 }
@@ -64,8 +65,7 @@ core::Result<volume::Midline> midline_of(const volume::Volume& ct,
                                          const CarvingPlan& plan) {
   if (plan.midline_x_m) {
     const double aside_m = std::abs(plan.entry_m.x() - *plan.midline_x_m);
-    if (auto ok = within("a distance from entry to midline", aside_m, 0.0, kFarthestMidline_m); !ok)
-      return ok.error();
+    TRY(within("a distance from entry to midline", aside_m, 0.0, kFarthestMidline_m));
     return volume::stated_midline(*plan.midline_x_m, plan.entry_m);
   }
   return volume::midline_about(ct, transfer, plan.entry_m, plan.target_m);
@@ -138,35 +138,29 @@ Truth Placed::truth() const {
 core::Result<Placed> place(const volume::Volume& ct, const volume::TransferFunction& transfer,
                            const CarvingPlan& plan) {
   const double length_m = plan.length_m.value_or((plan.target_m - plan.entry_m).norm());
-  if (auto ok = check(plan, length_m, ct.geometry); !ok) return ok.error();
-  const auto empty = volume::empty_value(ct, transfer);
-  if (!empty) return empty.error();
-  const auto midline = midline_of(ct, transfer, plan);
-  if (!midline) return midline.error();
-  const auto tract = tract_of(ct, transfer, plan, length_m, *midline);
-  if (!tract) return tract.error();
+  TRY(check(plan, length_m, ct.geometry));
+  const auto empty = TRY(volume::empty_value(ct, transfer));
+  const auto midline = TRY(midline_of(ct, transfer, plan));
+  const auto tract = TRY(tract_of(ct, transfer, plan, length_m, midline));
   const volume::WallFinder finder(ct, transfer);
   Placed placed{
-      .tract = *tract, .midline = *midline, .empty_value = *empty, .breach = {}, .walls = {}};
+      .tract = tract, .midline = midline, .empty_value = empty, .breach = {}, .walls = {}};
   placed.drilled = plan.drilled;
-  placed.mouth_m = finder.behind_entry_m(*tract) + kOpenAir_m;
-  for (const auto wall : volume::kWalls) placed.walls.push_back(finder.thinnest(*tract, wall));
+  placed.mouth_m = finder.behind_entry_m(tract) + kOpenAir_m;
+  for (const auto wall : volume::kWalls) placed.walls.push_back(finder.thinnest(tract, wall));
   if (!plan.breach) return placed;
-  auto breach = volume::place_breach(ct, transfer, *tract, *plan.breach);
-  if (!breach) return breach.error();
-  placed.breach = *breach;
+  auto breach = TRY(volume::place_breach(ct, transfer, tract, *plan.breach));
+  placed.breach = breach;
   return placed;
 }
 
 core::Result<Carved> carve(const volume::Volume& ct, const volume::TransferFunction& transfer,
                            const CarvingPlan& plan, const core::Progress& progress) {
-  auto placed = place(ct, transfer, plan);
-  if (!placed) return placed.error();
-  Carved carved{std::move(*placed), {}};
-  auto part = volume::resample_finer(ct, region_of(ct.geometry, carved, plan.margin_m),
-                                     plan.spacing_m, progress);
-  if (!part) return part.error();
-  carved.volume = std::move(*part);
+  auto placed = TRY(place(ct, transfer, plan));
+  Carved carved{std::move(placed), {}};
+  auto part = TRY(volume::resample_finer(ct, region_of(ct.geometry, carved, plan.margin_m),
+                                         plan.spacing_m, progress));
+  carved.volume = std::move(part);
   if (carved.drilled)
     volume::drill(carved.volume, carved.tract, carved.mouth_m, carved.breach, carved.empty_value);
   return carved;

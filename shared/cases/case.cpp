@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace cases {
 namespace {
@@ -55,7 +57,7 @@ core::Result<volume::Tract> read_tract(const Json& json, const std::string& wher
     fields.wrong("medial", "must be perpendicular to the axis");
   if (!square(tract.superior, tract.axis) || !square(tract.superior, tract.medial))
     fields.wrong("superior", "must be perpendicular to the axis and to medial");
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   return tract;
 }
 
@@ -84,7 +86,7 @@ core::Result<Part> read_part(const Json& json, const std::string& where) {
   if (!is_part_name(part.name))
     fields.wrong("name", fmt::format("'{}' is not the name of a part", part.name));
   if (!core::is_sha256(part.sha256)) fields.wrong("sha256", "64 characters 0-9a-f are expected");
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   return part;
 }
 
@@ -94,12 +96,11 @@ core::Result<std::vector<Part>> read_parts(const Json& list, const std::string& 
                  fmt::format("{}: an array of at most {} parts is expected", where, kMaxParts)};
   std::vector<Part> parts;
   for (std::size_t k = 0; k < list.size(); ++k) {
-    auto part = read_part(list[k], fmt::format("{}/{}", where, k));
-    if (!part) return part.error();
-    if (std::ranges::any_of(parts, [&](const Part& other) { return other.name == part->name; }))
+    auto part = TRY(read_part(list[k], fmt::format("{}/{}", where, k)));
+    if (std::ranges::any_of(parts, [&](const Part& other) { return other.name == part.name; }))
       return Error{Errc::bad_input,
-                   fmt::format("{}/{}/name: '{}' is there twice", where, k, part->name)};
-    parts.push_back(std::move(*part));
+                   fmt::format("{}/{}/name: '{}' is there twice", where, k, part.name)};
+    parts.push_back(std::move(part));
   }
   const auto has = [&](const char* name, bool secret) {
     return std::ranges::any_of(
@@ -152,16 +153,13 @@ core::Result<Case> Case::from_json(const Json& json, const std::string& where) {
   made.planned = fields.has("channel");
   if (made.planned && fields.text("channel") != kPlanned)
     fields.wrong("channel", "\"planned\" is expected, or no such field: then it is drilled");
-  if (auto done = fields.done(); !done) return done.error();
-  auto tract_read = read_tract(*tract, where + "/tract");
-  if (!tract_read) return tract_read.error();
-  auto model_read = models::PalpationModel::from_json(*model, where + "/model");
-  if (!model_read) return model_read.error();
-  auto parts_read = read_parts(*parts, where + "/parts");
-  if (!parts_read) return parts_read.error();
-  made.tract = *tract_read;
-  made.model = std::move(*model_read);
-  made.parts = std::move(*parts_read);
+  TRY(fields.done());
+  auto tract_read = TRY(read_tract(*tract, where + "/tract"));
+  auto model_read = TRY(models::PalpationModel::from_json(*model, where + "/model"));
+  auto parts_read = TRY(read_parts(*parts, where + "/parts"));
+  made.tract = tract_read;
+  made.model = std::move(model_read);
+  made.parts = std::move(parts_read);
   return made;
 }
 
@@ -193,7 +191,7 @@ core::Result<Truth> Truth::from_json(const Json& json, const std::string& where)
   truth.wall_thickness_m = fields.number("wall_thickness_m", 0.0, 1.0);
   truth.salt_hex = fields.text("salt", 64);
   if (!core::is_sha256(truth.salt_hex)) fields.wrong("salt", "64 characters 0-9a-f are expected");
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   return truth;
 }
 

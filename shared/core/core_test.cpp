@@ -12,7 +12,6 @@
 #include "core/file.hpp"
 #include "core/json.hpp"
 #include "core/progress.hpp"
-#include "core/quantity.hpp"
 #include "core/signing.hpp"
 #include "core/words.hpp"
 
@@ -46,19 +45,6 @@ TEST(Signature, HoldsForTheMessageAndForNothingElse) {
   EXPECT_FALSE(verify(bytes_of("cast"), signature, key.public_hex));
   EXPECT_FALSE(verify(bytes_of("case"), signature, KeyPair::generate().public_hex));
   EXPECT_FALSE(verify(bytes_of("case"), "zz", key.public_hex));
-}
-
-template <class A, class B>
-concept addable = requires(A a, B b) {
-  a + b;
-};
-
-TEST(Quantity, MultipliesDimensions) {
-  using namespace literals;
-  const Force f = 50.0_N_per_m * 2.0_mm;
-  EXPECT_DOUBLE_EQ(f.si, 0.1);
-  static_assert(addable<Force, Force>);
-  static_assert(!addable<Force, Pressure>);
 }
 
 class FileTest : public testing::Test {

@@ -8,6 +8,8 @@
 #include <cerrno>
 #include <cstring>
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace core {
 namespace fs = std::filesystem;
@@ -80,14 +82,14 @@ Result<void> may_be_replaced(const fs::path& path) {
 }
 
 Result<void> may_be_written(const fs::path& path) {
-  if (auto free = may_be_replaced(path); !free) return free;
+  TRY(may_be_replaced(path));
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   if (::access(folder.c_str(), W_OK | X_OK) != 0) return system_error(path, "cannot create");
   return {};
 }
 
 Result<void> write_file(const fs::path& path, ByteView bytes) {
-  if (auto free = may_be_replaced(path); !free) return free;
+  TRY(may_be_replaced(path));
   const fs::path beside = path.string() + fmt::format(".{}.part", hex(random_bytes(4)));
   {
     const Descriptor file(::open(beside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644));
@@ -127,10 +129,9 @@ Result<bool> made_private(const fs::path& path, const struct stat& info) {
 Result<std::size_t> make_tree_private(const fs::path& path, std::string_view trusted) {
   struct stat info {};
   if (::lstat(path.c_str(), &info) != 0) return system_error(path, "cannot look at");
-  auto first = made_private(path, info);
-  if (!first) return first.error();
-  std::size_t repaired = *first ? 1 : 0;
-  if (!S_ISDIR(info.st_mode) || (!*first && path.filename() == trusted)) return repaired;
+  auto first = TRY(made_private(path, info));
+  std::size_t repaired = first ? 1 : 0;
+  if (!S_ISDIR(info.st_mode) || (!first && path.filename() == trusted)) return repaired;
   std::error_code failure;
   for (fs::directory_iterator at(path, failure), end; !failure && at != end;
        at.increment(failure)) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "core/words.hpp"
 
 namespace tractus {
@@ -109,9 +110,8 @@ Json stored_json(std::string_view text) {
 }
 
 Result<Json> read_json(const std::filesystem::path& path) {
-  auto bytes = read_file(path, 64u << 20);
-  if (!bytes) return bytes.error();
-  return parse_json(text_of(*bytes), path.string());
+  auto bytes = TRY(read_file(path, 64u << 20));
+  return parse_json(text_of(bytes), path.string());
 }
 
 Result<void> write_json(const std::filesystem::path& path, const Json& json) {

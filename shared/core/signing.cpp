@@ -4,6 +4,7 @@
 #include <sodium.h>
 
 #include "core/file.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace core {
@@ -52,17 +53,16 @@ Result<KeyPair> KeyPair::open_or_make(const std::filesystem::path& path) {
     KeyPair pair = generate();
     std::error_code failure;
     if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), failure);
-    if (auto written = write_file(path, pair.secret); !written) return written.error();
+    TRY(write_file(path, pair.secret));
     std::filesystem::permissions(
         path, std::filesystem::perms::owner_read | std::filesystem::perms::owner_write, failure);
     return pair;
   }
-  auto secret = read_file(path, 4096);
-  if (!secret) return secret.error();
-  if (secret->size() != crypto_sign_SECRETKEYBYTES)
+  auto secret = TRY(read_file(path, 4096));
+  if (secret.size() != crypto_sign_SECRETKEYBYTES)
     return Error{Errc::corrupt, fmt::format("{}: {} bytes, a signing key has {}", path.string(),
-                                            secret->size(), crypto_sign_SECRETKEYBYTES)};
-  return KeyPair{public_part(*secret), std::move(*secret)};
+                                            secret.size(), crypto_sign_SECRETKEYBYTES)};
+  return KeyPair{public_part(secret), std::move(secret)};
 }
 
 std::string sign(ByteView message, const KeyPair& key) {

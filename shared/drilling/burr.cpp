@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/try.hpp"
+
 namespace tractus::drilling {
 
 double Burr::rate_at_per_s(double force_N) const noexcept {
@@ -24,7 +26,7 @@ core::Result<Burr> Burr::from_json(const core::Json& json, const std::string& wh
   burr.shank_radius_m = fields.number("shank_radius_m", 3e-4, 5e-3);
   if (burr.full_N <= burr.threshold_N)
     fields.wrong("full_N", "a force above threshold_N is expected");
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   return burr;
 }
 

@@ -8,6 +8,7 @@
 
 #include "core/file.hpp"
 #include "core/require.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace drilling {
@@ -76,7 +77,7 @@ core::Result<void> read_header(const Json& json, const std::string& where,
     core::Fields box(*found, where + "/box");
     out.box.begin = ints(box, "begin", dims);
     out.box.end = ints(box, "end", dims);
-    if (auto done = box.done(); !done) return done;
+    TRY(box.done());
   }
   return fields.done();
 }
@@ -142,24 +143,21 @@ core::Result<void> write_drilled(const std::filesystem::path& path, const Drille
 
 core::Result<Drilled> read_drilled(const std::filesystem::path& path, const std::string& trial_id,
                                    const std::string& case_id, const std::array<int, 3>& dims) {
-  const auto bytes = core::read_file(path, kMostBytes);
-  if (!bytes) return bytes.error();
+  const auto bytes = TRY(core::read_file(path, kMostBytes));
   std::uint32_t length = 0;
   constexpr std::size_t kFront = kMagic.size() + sizeof(length);
-  if (!core::text_of(*bytes).starts_with(kMagic) || bytes->size() < kFront)
+  if (!core::text_of(bytes).starts_with(kMagic) || bytes.size() < kFront)
     return about(path, Errc::bad_input, "is no tractus-drilled/1 file");
-  std::memcpy(&length, bytes->data() + kMagic.size(), sizeof(length));
-  if (length > kMostHeader || length > bytes->size() - kFront)
+  std::memcpy(&length, bytes.data() + kMagic.size(), sizeof(length));
+  if (length > kMostHeader || length > bytes.size() - kFront)
     return about(path, Errc::corrupt,
-                 fmt::format("a header of {} bytes in a file of {}", length, bytes->size()));
-  const auto json =
-      core::parse_json(core::text_of(*bytes).substr(kFront, length), path.string() + ": header");
-  if (!json) return json.error();
+                 fmt::format("a header of {} bytes in a file of {}", length, bytes.size()));
+  const auto json = TRY(
+      core::parse_json(core::text_of(bytes).substr(kFront, length), path.string() + ": header"));
   Drilled out;
   std::string sha256;
-  if (auto read = read_header(*json, path.string(), trial_id, case_id, dims, out, sha256); !read)
-    return read.error();
-  const auto rest = core::ByteView(*bytes).subspan(kFront + length);
+  TRY(read_header(json, path.string(), trial_id, case_id, dims, out, sha256));
+  const auto rest = core::ByteView(bytes).subspan(kFront + length);
   const std::size_t want = voxels_of(out.box) * sizeof(std::uint16_t);
   if (ZSTD_getFrameContentSize(rest.data(), rest.size()) != want)
     return about(path, Errc::corrupt, fmt::format("does not hold the {} bytes of its box", want));

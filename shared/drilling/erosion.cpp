@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/require.hpp"
+#include "core/try.hpp"
 #include "volume/carve.hpp"
 #include "volume/force_field.hpp"
 
@@ -77,14 +78,13 @@ core::Result<Erosion> Erosion::make(const volume::Volume& bone,
                                     const trial::ProbeShape& probe) {
   core::require(bone.slope > 0.0 && bone.counts.size() == bone.geometry.voxel_count(),
                 "a volume's values grow with its counts, and it holds all of them");
-  const auto empty = volume::empty_value(bone, transfer);
-  if (!empty) return empty.error();
+  const auto empty = TRY(volume::empty_value(bone, transfer));
   if (floats_of_ball(bone.geometry, burr.radius_m) > kMostPatchFloats)
     return core::Error{core::Errc::out_of_range,
                        fmt::format("a burr of {:.2f} mm radius is too large for voxels of {:.3g} "
                                    "mm: what it changes at once could not be felt in time",
                                    burr.radius_m * 1e3, bone.geometry.spacing_m.minCoeff() * 1e3)};
-  Erosion made(bone, burr, probe, bone.count_of(*empty));
+  Erosion made(bone, burr, probe, bone.count_of(empty));
   if (!made.lost_)
     return core::Error{core::Errc::too_large, "drilling: there is not enough memory"};
   for (std::size_t count = 0; count < made.opacity_.size(); ++count)

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace drilling {
 namespace {
@@ -44,12 +46,10 @@ core::Result<Setup> Setup::of(const trial::Header& header) {
     fields.wrong("law", std::string(kLaw) + " is expected: no other law is known");
   fields.integer("chunk_ticks", kChunkTicks, kChunkTicks);
   const Json *burr = fields.member("burr"), *points = fields.member("transfer");
-  if (auto done = fields.done(); !done) return done.error();
-  auto made = Burr::from_json(*burr, where + "/burr");
-  if (!made) return made.error();
-  auto transfer = transfer_of(*points, where + "/transfer");
-  if (!transfer) return transfer.error();
-  return Setup{*made, std::move(*transfer)};
+  TRY(fields.done());
+  auto made = TRY(Burr::from_json(*burr, where + "/burr"));
+  auto transfer = TRY(transfer_of(*points, where + "/transfer"));
+  return Setup{made, std::move(transfer)};
 }
 
 std::optional<bool> Redrilled::agrees() const {
@@ -62,14 +62,13 @@ core::Result<Redrilled> redrill(
     const std::filesystem::path& trial_file, const volume::Volume& bone,
     const std::function<void(const trial::Sample&)>& on_sample,
     const std::function<void(const Change&, const volume::Volume&)>& changed) {
-  const auto scanned = trial::scan_trial(trial_file, [](const trial::Block&) {});
-  if (!scanned) return scanned.error();
+  const auto scanned = TRY(trial::scan_trial(trial_file, [](const trial::Block&) {}));
   const auto named = [&](const Error& error) {
     return Error{error.code, trial_file.string() + ": " + error.what};
   };
-  const auto setup = Setup::of(scanned->header);
+  const auto setup = Setup::of(scanned.header);
   if (!setup) return named(setup.error());
-  const auto probe = trial::probe_shape(scanned->header);
+  const auto probe = trial::probe_shape(scanned.header);
   if (!probe) return named({Errc::bad_input, "the header's probe has no length"});
   auto erosion = Erosion::make(bone, setup->transfer, setup->burr, *probe);
   if (!erosion) return named(erosion.error());
@@ -77,16 +76,15 @@ core::Result<Redrilled> redrill(
   const Erosion::Take take = [&](const Change& change) {
     if (changed) changed(change, erosion->volume());
   };
-  const auto read = trial::scan_trial(trial_file, [&](const trial::Block& block) {
+  const auto read = TRY(trial::scan_trial(trial_file, [&](const trial::Block& block) {
     for (const trial::Sample& sample : block.palpation) {
       if (on_sample) on_sample(sample);
       erosion->add(sample, take);
     }
-  });
-  if (!read) return read.error();
+  }));
   erosion->finish(take);
-  Redrilled out{read->header, std::move(*erosion), Json()};
-  for (const trial::Event& event : read->events)
+  Redrilled out{read.header, std::move(*erosion), Json()};
+  for (const trial::Event& event : read.events)
     if (event.kind == "drilled") out.said = event.detail;
   return out;
 }

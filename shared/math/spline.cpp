@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 
+#include "core/try.hpp"
+
 namespace tractus::math {
 
 core::Result<CubicSpline> CubicSpline::make(std::span<const double> t, std::span<const double> y) {
@@ -69,9 +71,8 @@ core::Result<PoseSpline> PoseSpline::make(std::span<const double> t, std::span<c
   }
   PoseSpline out;
   for (std::size_t c = 0; c < 7; ++c) {
-    auto spline = CubicSpline::make(t, columns[c]);
-    if (!spline) return spline.error();
-    (c < 3 ? out.p_ : out.q_).push_back(std::move(*spline));
+    auto spline = TRY(CubicSpline::make(t, columns[c]));
+    (c < 3 ? out.p_ : out.q_).push_back(std::move(spline));
   }
   return out;
 }

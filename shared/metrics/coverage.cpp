@@ -48,7 +48,9 @@ double Coverage::share(std::optional<volume::Wall> side) const {
   return double(touched) / double(depth_bins * width);
 }
 
-std::optional<Coverage> coverage(const Subject& subject) {
+namespace {
+
+std::optional<Coverage> computed(const Subject& subject) {
   const auto probe = trial::probe_shape(subject.trial.header);
   if (!probe || !subject.tract) return std::nullopt;
   const volume::Tract& tract = *subject.tract;
@@ -62,6 +64,14 @@ std::optional<Coverage> coverage(const Subject& subject) {
     out.add(depth_m / tract.length_m, std::atan2(towards.y(), towards.x()));
   }
   return out;
+}
+
+}  // namespace
+
+const std::optional<Coverage>& coverage(const Subject& subject) {
+  auto& kept = subject.derived.coverage;
+  if (!kept) kept = std::make_shared<const std::optional<Coverage>>(computed(subject));
+  return *kept;
 }
 
 }  // namespace metrics

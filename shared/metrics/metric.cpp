@@ -13,14 +13,36 @@ std::vector<std::pair<MetricInfo, Score>> score_all(const Subject& subject) {
   return out;
 }
 
-core::Json to_json(const MetricInfo& info, const Score& score) {
+std::string_view name(ShownAs shown_as) {
+  switch (shown_as) {
+    case ShownAs::number:
+      return "number";
+    case ShownAs::share:
+      return "share";
+    case ShownAs::right_or_wrong:
+      break;
+  }
+  return "right_or_wrong";
+}
+
+core::Json to_json(const MetricInfo& info) {
   return {{"id", info.id},
           {"label", info.label},
           {"unit", info.unit},
-          {"value", score.value ? core::Json(*score.value) : core::Json(nullptr)},
-          {"note", score.note},
           {"definition", info.definition},
-          {"source", info.source}};
+          {"source", info.source},
+          {"shown_as", name(info.shown_as)},
+          {"cell", info.cell ? core::Json{{"row", info.cell->row},
+                                          {"symbol", info.cell->symbol},
+                                          {"column", info.cell->column}}
+                             : core::Json()}};
+}
+
+core::Json to_json(const MetricInfo& info, const Score& score) {
+  core::Json out = to_json(info);
+  out["value"] = score.value ? core::Json(*score.value) : core::Json();
+  out["note"] = score.note;
+  return out;
 }
 
 }  // namespace tractus::metrics

@@ -1,7 +1,9 @@
 /// One score of a trial: a number with its unit and what it means. One file each in catalogue/.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -19,11 +21,26 @@ struct Truth {
   int walls = 0;                         ///< probing: how many walls the scenario lets give way
 };
 
+class ThresholdStatistics;
+struct TipMotion;
+struct Kinematics;
+struct Coverage;
+
+/// Signals that several scores are made from: computed when the first score asks for one, and kept
+/// for the others. One thread at a time.
+struct DerivedSignals {
+  std::shared_ptr<const std::array<ThresholdStatistics, 4>> wrench;  ///< wrench_score
+  std::shared_ptr<const TipMotion> tip_motion;                       ///< tip_motion
+  std::shared_ptr<const std::optional<Kinematics>> kinematics;       ///< score_of_kinematics
+  std::shared_ptr<const std::optional<Coverage>> coverage;           ///< coverage
+};
+
 /// What a score may be made from. The same for station, server and tool.
 struct Subject {
   const trial::Trial& trial;
   const volume::Tract* tract = nullptr;  ///< of palpation; what needs it has no value without
   std::optional<Truth> truth = {};       ///< absent where the scorer must not know
+  mutable DerivedSignals derived = {};
 };
 
 /// `value` is empty where the score does not exist for this trial (no contact, no answer, truth
@@ -31,6 +48,21 @@ struct Subject {
 struct Score {
   std::optional<double> value;
   std::string note;  ///< one line why, when there is no value or something is to be known about it
+};
+
+/// How a page writes a value.
+enum class ShownAs {
+  number,         ///< with its unit
+  share,          ///< as a percentage
+  right_or_wrong  ///< 1: "right", 0: "wrong"; such a metric judges the trainee's answer
+};
+std::string_view name(ShownAs shown_as);
+
+/// Place in a table of statistics: one row for each quantity, one column for each statistic.
+struct TableCell {
+  std::string row;     ///< "Transverse force"
+  std::string symbol;  ///< "F_xy"
+  std::string column;  ///< "Mean"
 };
 
 struct MetricInfo {
@@ -42,6 +74,11 @@ struct MetricInfo {
   Score (*compute)(const Subject& subject);
   std::optional<trial::Rig> rig = trial::Rig::palpation;  ///< whose trials it is of; nothing: both
   bool (*is_of)(const trial::Trial& trial) = nullptr;     ///< of which of them; null: of all
+  ShownAs shown_as = ShownAs::number;
+  std::optional<TableCell> cell = {};  ///< nothing: the value stands by itself
+  /// Place among the scores that a trainee's page follows from trial to trial, 1 first; 0: not
+  /// followed.
+  int followed = 0;
 };
 
 /// Every metric, in file-name order.
@@ -72,13 +109,15 @@ inline constexpr double kContact_N = 0.01;
 inline constexpr int kDepthBins = 10, kAngleBins = 12;
 
 /// Nothing when there is no tract or the trial's header does not place the tip.
-std::optional<Coverage> coverage(const Subject& subject);
+const std::optional<Coverage>& coverage(const Subject& subject);
 
 /// All scores that apply to the trial's rig, in the order of all().
 std::vector<std::pair<MetricInfo, Score>> score_all(const Subject& subject);
 
-/// {"id","label","unit","value"|null,"note","definition","source"}: as files, tool and server say
-/// it.
+/// {"id", "label", "unit", "definition", "source", "shown_as", "cell": {"row", "symbol",
+/// "column"}|null}
+core::Json to_json(const MetricInfo& info);
+/// The same with {"value"|null, "note"}: as files, tool and server write a score.
 core::Json to_json(const MetricInfo& info, const Score& score);
 
 }  // namespace tractus::metrics

@@ -20,6 +20,20 @@ double value_of(const trial::Sample& sample, WrenchPart part) {
   if (part == WrenchPart::force_z || part == WrenchPart::torque_z) return std::abs(double{v[2]});
   return std::hypot(double{v[0]}, double{v[1]});
 }
+
+/// All four parts in one pass over the samples.
+const ThresholdStatistics& statistics_of(const Subject& subject, WrenchPart part) {
+  auto& kept = subject.derived.wrench;
+  if (!kept) {
+    std::array<ThresholdStatistics, 4> parts{
+        ThresholdStatistics(kForceFloor_N), ThresholdStatistics(kForceFloor_N),
+        ThresholdStatistics(kTorqueFloor_Nm), ThresholdStatistics(kTorqueFloor_Nm)};
+    for (const auto& sample : subject.trial.samples)
+      for (const WrenchPart of : kWrenchParts) parts[std::size_t(of)].add(value_of(sample, of));
+    kept = std::make_shared<const std::array<ThresholdStatistics, 4>>(parts);
+  }
+  return (*kept)[std::size_t(part)];
+}
 }  // namespace
 
 void ThresholdStatistics::add(double value) noexcept {
@@ -44,8 +58,7 @@ std::optional<double> ThresholdStatistics::max() const noexcept {
 }
 
 Score wrench_score(const Subject& subject, WrenchPart part, Statistic statistic) {
-  ThresholdStatistics values(is_force(part) ? kForceFloor_N : kTorqueFloor_Nm);
-  for (const auto& sample : subject.trial.samples) values.add(value_of(sample, part));
+  const ThresholdStatistics& values = statistics_of(subject, part);
   Score score{statistic == Statistic::mean ? values.mean()
               : statistic == Statistic::sd ? values.sd()
                                            : values.max(),
@@ -55,6 +68,14 @@ Score wrench_score(const Subject& subject, WrenchPart part, Statistic statistic)
                      ? (is_force(part) ? "no sample is over 0.01 N" : "no sample is over 0.001 N·m")
                      : "a single sample is over the floor";
   return score;
+}
+
+TableCell wrench_cell(WrenchPart part, Statistic statistic) {
+  constexpr std::array<const char*, 4> kRows{"Transverse force", "Axial force", "Bending torque",
+                                             "Twisting torque"};
+  constexpr std::array<const char*, 4> kSymbols{"F_xy", "F_z", "T_xy", "T_z"};
+  constexpr std::array<const char*, 3> kColumns{"Mean", "SD", "Max"};
+  return {kRows[std::size_t(part)], kSymbols[std::size_t(part)], kColumns[std::size_t(statistic)]};
 }
 
 }  // namespace metrics

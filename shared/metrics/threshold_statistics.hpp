@@ -1,6 +1,7 @@
 /// Mean, standard deviation and largest value over a floor: the rule of the published tables.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 
@@ -29,11 +30,15 @@ class ThresholdStatistics {
 };
 
 enum class WrenchPart { force_xy, force_z, torque_xy, torque_z };
+inline constexpr std::array kWrenchParts{WrenchPart::force_xy, WrenchPart::force_z,
+                                         WrenchPart::torque_xy, WrenchPart::torque_z};
 enum class Statistic { mean, sd, max };
 
 /// One cell of [Zoller2020, Tables 1 and 2] for a trial: the model's wrench (what the bone does to
 /// the probe, in H), F_xy = hypot(F_x, F_y), |F_z|, T_xy = hypot(T_x, T_y), |T_z|; forces over 0.01
 /// N, torques over 0.001 N·m.
 Score wrench_score(const Subject& subject, WrenchPart part, Statistic statistic);
+/// Its place in those tables.
+TableCell wrench_cell(WrenchPart part, Statistic statistic);
 
 }  // namespace tractus::metrics

@@ -35,9 +35,7 @@ TipMotion even(const Samples& samples, const Point& point, const Force& force) {
   return out;
 }
 
-}  // namespace
-
-TipMotion tip_motion(const Subject& subject) {
+TipMotion computed(const Subject& subject) {
   if (subject.trial.header.rig == trial::Rig::probing) {
     const auto motion = probing_motion(subject.trial);
     if (motion.empty()) return {{}, {}, "the probe never turned fast enough to move"};
@@ -54,12 +52,24 @@ TipMotion tip_motion(const Subject& subject) {
       });
 }
 
+}  // namespace
+
+const TipMotion& tip_motion(const Subject& subject) {
+  auto& kept = subject.derived.tip_motion;
+  if (!kept) kept = std::make_shared<const TipMotion>(computed(subject));
+  return *kept;
+}
+
 Score score_of_kinematics(
     const Subject& subject,
     const std::function<std::optional<double>(const TipMotion&, const Kinematics&)>& score) {
-  const TipMotion motion = tip_motion(subject);
+  const TipMotion& motion = tip_motion(subject);
   if (!motion.why_not.empty()) return {{}, motion.why_not};
-  const auto k = kinematics(motion.points_m, 1.0 / kMotionRate_Hz);
+  auto& kept = subject.derived.kinematics;
+  if (!kept)
+    kept = std::make_shared<const std::optional<Kinematics>>(
+        kinematics(motion.points_m, 1.0 / kMotionRate_Hz));
+  const std::optional<Kinematics>& k = *kept;
   if (!k) return {{}, "the trial is shorter than 0.2 s"};
   const auto value = score(motion, *k);
   return {value, value ? "" : "the tip did not move, or not for long enough"};

@@ -18,7 +18,7 @@ struct TipMotion {
   std::vector<double> force_N;
   std::string why_not;  ///< set when there is none
 };
-TipMotion tip_motion(const Subject& subject);
+const TipMotion& tip_motion(const Subject& subject);
 
 /// A score made from the tip's kinematics; no value, and why, for a trial too short for them.
 Score score_of_kinematics(

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/try.hpp"
 #include "lab/rigs/probing/recording.hpp"
 
 namespace tractus {
@@ -31,18 +32,16 @@ std::vector<double> driven(const models::ProbingRuntime& runtime,
 core::Result<ProbingReplayed> replay(const models::ProbingModel& model,
                                      const trial::ProbingMeasurement& recording,
                                      const trial::StatedNoise& noise, const std::string& where) {
-  const auto runtime = models::ProbingRuntime::make(model, kTravel_m);
-  if (!runtime) return runtime.error();
+  const auto runtime = TRY(models::ProbingRuntime::make(model, kTravel_m));
   const bool turns = recording.x_m.empty();
-  auto ready = lab::prepare(trial::ProbingMeasurement(recording), noise, turns, where);
-  if (!ready) return ready.error();
+  auto ready = TRY(lab::prepare(trial::ProbingMeasurement(recording), noise, turns, where));
   ProbingReplayed out;
-  out.motion = std::move(ready->motion);
-  runtime->predict(out.motion, out.forces);
+  out.motion = std::move(ready.motion);
+  runtime.predict(out.motion, out.forces);
   if (turns)
     out.forces.fz_N.clear();
   else if (!recording.fz_N.empty())
-    out.live_x_m = driven(*runtime, out.motion, recording.fz_N);
+    out.live_x_m = driven(runtime, out.motion, recording.fz_N);
   return out;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/try.hpp"
 #include "math/spline.hpp"
 
 namespace tractus {
@@ -105,7 +106,7 @@ class Motion {
 core::Result<Replayed> replay(const models::PalpationRuntime& runtime,
                               const trial::PalpationMeasurement& recording, const math::Vec3& down,
                               const core::Progress& progress) {
-  if (const auto steps = steps_of(recording); !steps) return steps.error();
+  TRY(steps_of(recording));
   const auto spline = math::PoseSpline::make(recording.t_s, recording.X_VH);
   if (!spline) return Error{spline.error().code, recording.file + ": " + spline.error().what};
   const Motion motion(recording, *spline, down, runtime.delay_s());

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace scenarios {
 namespace {
@@ -68,20 +70,18 @@ std::vector<double> depths_m(const laws::ProbingParameters& p) {
 }
 
 core::Result<Demand> demand(const Scenario& scenario) {
-  auto parameters = scenario.expanded();
-  if (!parameters) return parameters.error();
-  auto law = laws::ProbingLaw::make(*parameters);
-  if (!law) return law.error();
+  auto parameters = TRY(scenario.expanded());
+  auto law = TRY(laws::ProbingLaw::make(parameters));
   Demand out;
-  const auto depths = depths_m(*parameters);
+  const auto depths = depths_m(parameters);
   for (const double speed_m_s : {kSlow_m_s, kFast_m_s})
-    out.pushes.push_back(push_at(*law, depths, speed_m_s));
+    out.pushes.push_back(push_at(law, depths, speed_m_s));
   if (const Push& slow = out.pushes.front(); slow.peak_N > kSurgeon_N)
     out.excessive.push_back(
         fmt::format("the bone takes up to {:.0f} N at {:.0f} mm/s; a surgeon pushes about {:.0f} N",
                     slow.peak_N, 1e3 * slow.speed_m_s, kSurgeon_N));
-  for (const laws::CorticalWall& wall : parameters->walls) {
-    const WallDemand at = wall_at(*law, wall);
+  for (const laws::CorticalWall& wall : parameters.walls) {
+    const WallDemand at = wall_at(law, wall);
     if (at.threshold_N > kSurgeon_N)
       out.excessive.push_back(fmt::format(
           "the wall at {:.4g} m gives way at {:.0f} N only; a surgeon pushes about {:.0f} N",
@@ -97,14 +97,12 @@ core::Result<Demand> demand(const Scenario& scenario) {
 }
 
 core::Result<Resistance> resistance(const Scenario& scenario, std::span<const double> speeds_m_s) {
-  auto parameters = scenario.expanded();
-  if (!parameters) return parameters.error();
-  auto law = laws::ProbingLaw::make(*parameters);
-  if (!law) return law.error();
-  Resistance out{depths_m(*parameters), {speeds_m_s.begin(), speeds_m_s.end()}, {}, *parameters};
+  auto parameters = TRY(scenario.expanded());
+  auto law = TRY(laws::ProbingLaw::make(parameters));
+  Resistance out{depths_m(parameters), {speeds_m_s.begin(), speeds_m_s.end()}, {}, parameters};
   for (const double speed_m_s : speeds_m_s) {
     std::vector<double>& line = out.force_N.emplace_back();
-    for (const double x_m : out.depth_m) line.push_back(law->force_N(x_m, speed_m_s));
+    for (const double x_m : out.depth_m) line.push_back(law.force_N(x_m, speed_m_s));
   }
   return out;
 }

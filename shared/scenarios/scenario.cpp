@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace scenarios {
 namespace {
@@ -79,11 +81,9 @@ Result<void> check_stretches(const Scenario& s) {
   for (std::size_t k = 0; k < s.layers.size(); ++k) {
     const DensityRegion& stretch = s.layers[k];
     const std::string at = fmt::format("layers/{}/", k);
-    if (auto ok = check({{at + "start_m", stretch.start_m, 0.0, s.travel_m},
-                         {at + "thickness_m", stretch.thickness_m, kThinnestLayer_m, s.travel_m},
-                         {at + "density", stretch.density, 0.05, 20.0}});
-        !ok)
-      return ok;
+    TRY(check({{at + "start_m", stretch.start_m, 0.0, s.travel_m},
+               {at + "thickness_m", stretch.thickness_m, kThinnestLayer_m, s.travel_m},
+               {at + "density", stretch.density, 0.05, 20.0}}));
     if (stretch.start_m < end_m - kNearly_m)
       return refused(at + "start_m", fmt::format("{} lies inside the layer before it, which ends "
                                                  "at {} m",
@@ -127,28 +127,26 @@ std::optional<Kind> kind_of(std::string_view name) {
 }
 
 Result<void> Scenario::check() const {
-  if (auto ok = scenarios::check(
-          {{"travel_m", travel_m, 0.005, 0.1},
-           {"density", density, 0.05, 20.0},
-           {"bone/stiffness_N_per_m", bone.stiffness_N_per_m, 0.0, 2e5},
-           {"bone/damping_Ns_per_m", bone.damping_Ns_per_m, 1.0, 1e6},
-           {"bone/interval_m", bone.interval_m, kThinnestLayer_m, travel_m},
-           {"bone/equilibrium_m", bone.equilibrium_m, -travel_m, 0.0},
-           {"breach/resistance_interval_m", breach.resistance_interval_m, 0.0, travel_m},
-           {"breach/resistance_factor_per_m", breach.resistance_factor_per_m, 0.0, 1e5},
-           {"breach/breach_interval_m", breach.breach_interval_m, kThinnestLayer_m, travel_m},
-           {"breach/breach_damping_Ns_per_m", breach.breach_damping_Ns_per_m, 1.0, 1e6},
-           {"rotary/viscous_Nms_per_rad", rotary.viscous_Nms_per_rad, 0.0, 10.0},
-           {"rotary/detent_Nm", rotary.detent_Nm, 0.0, 10.0},
-           {"rotary/detent_pitch_rad", rotary.detent_pitch_rad, 1e-3, 7.0}});
-      !ok)
-    return ok;
-  if (auto ok = check_stretches(*this); !ok) return ok;
+  TRY(scenarios::check(
+      {{"travel_m", travel_m, 0.005, 0.1},
+       {"density", density, 0.05, 20.0},
+       {"bone/stiffness_N_per_m", bone.stiffness_N_per_m, 0.0, 2e5},
+       {"bone/damping_Ns_per_m", bone.damping_Ns_per_m, 1.0, 1e6},
+       {"bone/interval_m", bone.interval_m, kThinnestLayer_m, travel_m},
+       {"bone/equilibrium_m", bone.equilibrium_m, -travel_m, 0.0},
+       {"breach/resistance_interval_m", breach.resistance_interval_m, 0.0, travel_m},
+       {"breach/resistance_factor_per_m", breach.resistance_factor_per_m, 0.0, 1e5},
+       {"breach/breach_interval_m", breach.breach_interval_m, kThinnestLayer_m, travel_m},
+       {"breach/breach_damping_Ns_per_m", breach.breach_damping_Ns_per_m, 1.0, 1e6},
+       {"rotary/viscous_Nms_per_rad", rotary.viscous_Nms_per_rad, 0.0, 10.0},
+       {"rotary/detent_Nm", rotary.detent_Nm, 0.0, 10.0},
+       {"rotary/detent_pitch_rad", rotary.detent_pitch_rad, 1e-3, 7.0}}));
+  TRY(check_stretches(*this));
   return check_walls(*this);
 }
 
 Result<laws::ProbingParameters> Scenario::expanded() const {
-  if (auto ok = check(); !ok) return ok.error();
+  TRY(check());
   laws::ProbingParameters out;
   out.travel_m = travel_m;
   out.rotary = rotary;
@@ -167,9 +165,8 @@ Result<laws::ProbingParameters> Scenario::expanded() const {
 }
 
 Result<models::ProbingModel> Scenario::model() const {
-  auto parameters = expanded();
-  if (!parameters) return parameters.error();
-  return models::ProbingModel{name, std::move(parameters->layers), rotary, {}, {}};
+  auto parameters = TRY(expanded());
+  return models::ProbingModel{name, std::move(parameters.layers), rotary, {}, {}};
 }
 
 }  // namespace scenarios

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "core/bytes.hpp"
+#include "core/try.hpp"
 #include "scenarios/scenario.hpp"
 #include "scenarios/tuned.hpp"
 
@@ -62,7 +63,7 @@ Result<void> read_stretches(const Json& list, const std::string& where,
     Fields fields(list[k], fmt::format("{}/layers/{}", where, k));
     out.push_back(
         {number(fields, "start_m"), number(fields, "thickness_m"), number(fields, "density")});
-    if (auto done = fields.done(); !done) return done;
+    TRY(fields.done());
   }
   return {};
 }
@@ -80,16 +81,13 @@ Result<void> read_walls(const Json& list, const std::string& where, std::vector<
 /// The parts that are objects or lists, those of them that are there.
 Result<void> read_parts(Fields& fields, Scenario& s) {
   const std::string& where = fields.where();
-  if (const Json* json = fields.member("bone"))
-    if (auto ok = read_bone(*json, where, s.bone); !ok) return ok;
+  if (const Json* json = fields.member("bone")) TRY(read_bone(*json, where, s.bone));
   if (const Json* json = fields.member("breach", !s.walls_m.empty()))
-    if (auto ok = read_breach(*json, where, s.breach); !ok) return ok;
+    TRY(read_breach(*json, where, s.breach));
   if (const Json* json = fields.member("layers", false))
-    if (auto ok = read_stretches(*json, where, s.layers); !ok) return ok;
-  if (const Json* json = fields.member("rotary", false))
-    if (auto ok = read_rotary(*json, where, s.rotary); !ok) return ok;
-  if (const Json* json = fields.member("origin"))
-    if (auto ok = read_origin(*json, where, s.origin); !ok) return ok;
+    TRY(read_stretches(*json, where, s.layers));
+  if (const Json* json = fields.member("rotary", false)) TRY(read_rotary(*json, where, s.rotary));
+  if (const Json* json = fields.member("origin")) TRY(read_origin(*json, where, s.origin));
   return {};
 }
 
@@ -111,17 +109,16 @@ Result<Scenario> Scenario::from_json(const Json& json, const std::string& where)
   s.density = number(fields, "density", 1.0);
   s.travel_m = number(fields, "travel_m");
   if (const Json* walls = fields.member("walls_m", false))
-    if (auto ok = read_walls(*walls, where, s.walls_m); !ok) return ok.error();
-  if (auto ok = read_parts(fields, s); !ok) return ok.error();
-  if (auto done = fields.done(); !done) return done.error();
+    TRY(read_walls(*walls, where, s.walls_m));
+  TRY(read_parts(fields, s));
+  TRY(fields.done());
   if (auto ok = s.expanded(); !ok) return Error{Errc::bad_input, where + ok.error().what};
   return s;
 }
 
 Result<Scenario> Scenario::read(const std::filesystem::path& path) {
-  auto json = core::read_json(path);
-  if (!json) return json.error();
-  return from_json(*json, path.string() + ": ");
+  auto json = TRY(core::read_json(path));
+  return from_json(json, path.string() + ": ");
 }
 
 Json Scenario::to_json() const {
@@ -161,9 +158,8 @@ std::string Scenario::id() const {
 
 Result<Scenario> tuned(Kind kind) {
   const std::string file = fmt::format("tuned/{}.json", name(kind));
-  auto json = core::parse_json(tuned_text(name(kind)), file);
-  if (!json) return json.error();
-  return Scenario::from_json(*json, file + ": ");
+  auto json = TRY(core::parse_json(tuned_text(name(kind)), file));
+  return Scenario::from_json(json, file + ": ");
 }
 
 }  // namespace scenarios

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/clock.hpp"
+#include "core/try.hpp"
 #include "core/words.hpp"
 
 namespace tractus {
@@ -48,8 +49,7 @@ Result<Change> parse_change(const std::string& text) {
 Result<Scenario> next_version(const Scenario& parent, std::span<const Change> changes,
                               const std::string& who, std::int64_t when_utc_us) {
   Json json = parent.to_json();
-  for (const Change& change : changes)
-    if (auto ok = apply(json, change); !ok) return ok.error();
+  for (const Change& change : changes) TRY(apply(json, change));
   json["origin"] = {{"who", who}, {"when", core::utc_text(when_utc_us)}, {"parent", parent.id()}};
   return Scenario::from_json(json, "");
 }

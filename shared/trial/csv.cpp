@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "core/file.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace trial {
@@ -64,7 +65,7 @@ class Lines {
         begin_ = end_;
         return taken(line);
       }
-      if (auto more = fill(); !more) return more.error();
+      TRY(fill());
     }
   }
   std::size_t line() const { return line_; }
@@ -196,8 +197,7 @@ std::string find_columns(std::string_view header, std::span<const std::string_vi
 Result<std::size_t> read_csv(const std::filesystem::path& path,
                              std::span<const std::string_view> columns, const CsvRow& on_row,
                              const CsvLimits& limits) {
-  auto lines = Lines::open(path, limits.max_line_bytes);
-  if (!lines) return lines.error();
+  auto lines = TRY(Lines::open(path, limits.max_line_bytes));
   const auto wrong = [&](std::size_t line, const std::string& why, Errc code = Errc::bad_input) {
     return Error{code, fmt::format("{}:{}: {}", path.string(), line, why)};
   };
@@ -206,45 +206,42 @@ Result<std::size_t> read_csv(const std::filesystem::path& path,
   std::vector<double> values(columns.size());
   std::size_t rows = 0, width = 0, empty_line = 0;
   for (;;) {
-    const auto line = lines->next();
-    if (!line) return line.error();
-    if (!*line) break;
-    std::string_view text = **line;
-    if (lines->line() == 1) {
+    const auto line = TRY(lines.next());
+    if (!line) break;
+    std::string_view text = *line;
+    if (lines.line() == 1) {
       if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
       if (auto why = find_columns(text, columns, places, width); !why.empty()) return wrong(1, why);
       continue;
     }
     if (trimmed(text).empty()) {
-      if (empty_line == 0) empty_line = lines->line();
+      if (empty_line == 0) empty_line = lines.line();
       continue;
     }
     if (empty_line != 0) return wrong(empty_line, "the line is empty, a row is expected");
     if (++rows > limits.max_rows)
-      return wrong(lines->line(), fmt::format("more than {} rows", limits.max_rows),
+      return wrong(lines.line(), fmt::format("more than {} rows", limits.max_rows),
                    Errc::too_large);
     split(text, cells);
     if (cells.size() != width)
-      return wrong(lines->line(), fmt::format("{} cells, the header has {}", cells.size(), width));
+      return wrong(lines.line(), fmt::format("{} cells, the header has {}", cells.size(), width));
     for (std::size_t c = 0; c < places.size(); ++c)
       if (auto why = parsed(cells[places[c]], values[c]); !why.empty())
-        return wrong(lines->line(), fmt::format("column {}: {}", columns[c], why));
-    if (auto why = on_row(lines->line(), values); !why.empty()) return wrong(lines->line(), why);
+        return wrong(lines.line(), fmt::format("column {}: {}", columns[c], why));
+    if (auto why = on_row(lines.line(), values); !why.empty()) return wrong(lines.line(), why);
   }
-  if (lines->line() == 0) return wrong(1, "the file is empty, a header is expected");
+  if (lines.line() == 0) return wrong(1, "the file is empty, a header is expected");
   return rows;
 }
 
 Result<std::vector<std::string>> csv_header(const std::filesystem::path& path,
                                             const CsvLimits& limits) {
-  auto lines = Lines::open(path, limits.max_line_bytes);
-  if (!lines) return lines.error();
-  const auto line = lines->next();
-  if (!line) return line.error();
-  if (!*line)
+  auto lines = TRY(Lines::open(path, limits.max_line_bytes));
+  const auto line = TRY(lines.next());
+  if (!line)
     return Error{Errc::bad_input,
                  fmt::format("{}:1: the file is empty, a header is expected", path.string())};
-  std::string_view text = **line;
+  std::string_view text = *line;
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   std::vector<std::string_view> names;
   split(text, names);

@@ -10,6 +10,7 @@
 #include <cstdio>
 
 #include "core/file.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace trial {
@@ -54,7 +55,7 @@ core::Result<FrameWriter> FrameWriter::create(const fs::path& path, core::ByteVi
                          fmt::format("{}: exists already; choose another name", path.string())};
     return error;
   }
-  if (auto synced = core::sync_folder(folder_of(path)); !synced) return synced.error();
+  TRY(core::sync_folder(folder_of(path)));
   out.hash_.add(bytes);
   out.position_ = bytes.size();
   out.sequence_ = 1;
@@ -101,7 +102,7 @@ core::Result<void> FrameWriter::seal(std::uint64_t samples) {
   core::Sha256 so_far = std::move(hash_);
   hash_ = core::Sha256();
   const auto payload = end_payload(samples, so_far.hex());
-  if (auto done = append(FrameType::end, payload); !done) return done;
+  TRY(append(FrameType::end, payload));
   sealed_ = true;
   return flush();
 }

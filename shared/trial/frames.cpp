@@ -11,6 +11,7 @@
 #include <cstring>
 
 #include "core/file.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace trial {
@@ -122,8 +123,7 @@ core::Result<FrameReader> FrameReader::open(const std::filesystem::path& path,
   std::string magic(kMagic.size(), '\0');
   const bool long_enough = size >= magic.size();
   if (long_enough) {
-    auto read = reader.read(reinterpret_cast<std::byte*>(magic.data()), magic.size());
-    if (!read) return read.error();
+    TRY(reader.read(reinterpret_cast<std::byte*>(magic.data()), magic.size()));
   }
   if (!long_enough || (magic != kMagic && magic != kMagicOne))
     return frame_error(core::Errc::corrupt, path, 0,
@@ -155,7 +155,7 @@ core::Result<FrameReader::Step> FrameReader::rest_of_zeros() {
   while (position_ < size_) {
     const auto part =
         std::span(block).first(std::min<std::uint64_t>(block.size(), size_ - position_));
-    if (auto done = read(part.data(), part.size()); !done) return done.error();
+    TRY(read(part.data(), part.size()));
     if (!all_zero(part)) return corrupt("zeros where a frame is expected");
   }
   return Step::torn;
@@ -167,7 +167,7 @@ core::Result<FrameReader::Step> FrameReader::next() {
   if (left == 0) return Step::end;
   if (left < kFrameHeader_bytes) return Step::torn;
   std::array<std::byte, kFrameHeader_bytes> head{};
-  if (auto done = read(head.data(), head.size()); !done) return done.error();
+  TRY(read(head.data(), head.size()));
   if (all_zero(head)) return rest_of_zeros();
   if (take<std::uint32_t>(&head[16]) != core::crc32c(core::ByteView(head).first(16)))
     return corrupt("the checksum of a frame's header does not hold");
@@ -183,7 +183,7 @@ core::Result<FrameReader::Step> FrameReader::next() {
   type_ = FrameType(type);
   if (left - kFrameHeader_bytes < length) return Step::torn;
   payload_.resize(length);
-  if (auto done = read(payload_.data(), length); !done) return done.error();
+  TRY(read(payload_.data(), length));
   if (take<std::uint32_t>(&head[12]) != core::crc32c(payload_)) {
     if (position_ == size_) return Step::damaged;
     return corrupt("the checksum of a frame's payload does not hold");

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "trial/csv.hpp"
 #include "trial/set_index.hpp"
 
@@ -30,7 +31,7 @@ Result<StatedTract> read_tract(const Json& object, const std::string& where) {
   if (!(std::abs(tract.axis.norm() - 1.0) <= 0.01))
     fields.wrong("axis",
                  fmt::format("has length {:.4g}, a unit vector is expected", tract.axis.norm()));
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   tract.axis.normalize();
   return tract;
 }
@@ -38,21 +39,19 @@ Result<StatedTract> read_tract(const Json& object, const std::string& where) {
 Result<PalpationSet> read_index(const fs::path& folder) {
   PalpationSet set;
   set.folder = folder;
-  auto index = read_set_index(folder, "palpation", [&](core::Fields& fields) -> Result<void> {
+  auto index = TRY(read_set_index(folder, "palpation", [&](core::Fields& fields) -> Result<void> {
     if (fields.has("volume")) {
       set.volume = fields.text("volume");
       if (auto why = leaves_folder(folder, set.volume); !why.empty()) fields.wrong("volume", why);
     }
     if (const Json* object = fields.member("tract", false)) {
-      const auto tract = read_tract(*object, fields.where() + "/tract");
-      if (!tract) return tract.error();
-      set.tract = *tract;
+      const auto tract = TRY(read_tract(*object, fields.where() + "/tract"));
+      set.tract = tract;
     }
     return {};
-  });
-  if (!index) return index.error();
-  set.stated = std::move(index->stated);
-  for (SetEntry& entry : index->entries)
+  }));
+  set.stated = std::move(index.stated);
+  for (SetEntry& entry : index.entries)
     set.trials.push_back({std::move(entry.id),
                           std::move(entry.file),
                           std::move(entry.operator_name),
@@ -131,9 +130,8 @@ Result<PalpationSet> read_palpation_set(const fs::path& folder) {
   if (!set) return set;
   std::size_t total = 0;
   for (auto& trial : set->trials) {
-    const auto rows = read_rows(folder / trial.file, trial);
-    if (!rows) return rows.error();
-    total += *rows;
+    const auto rows = TRY(read_rows(folder / trial.file, trial));
+    total += rows;
     if (total > kMaxRowsOfSet)
       return Error{Errc::too_large,
                    fmt::format("{}: more than {} rows in the set", folder.string(), kMaxRowsOfSet)};
@@ -142,15 +140,12 @@ Result<PalpationSet> read_palpation_set(const fs::path& folder) {
 }
 
 Result<void> write_palpation_set(const fs::path& folder, const PalpationSet& set) {
-  auto scratch = core::ScratchFolder::make(folder);
-  if (!scratch) return scratch.error();
+  auto scratch = TRY(core::ScratchFolder::make(folder));
   for (const auto& trial : set.trials) {
-    if (auto written = write_set_file(scratch->path(), trial.file, csv_of(trial)); !written)
-      return written;
+    TRY(write_set_file(scratch.path(), trial.file, csv_of(trial)));
   }
-  if (auto written = core::write_json(scratch->path() / "set.json", index_of(set)); !written)
-    return written;
-  return scratch->keep_as(folder);
+  TRY(core::write_json(scratch.path() / "set.json", index_of(set)));
+  return scratch.keep_as(folder);
 }
 
 }  // namespace trial

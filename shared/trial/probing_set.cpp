@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "trial/csv.hpp"
 #include "trial/set_index.hpp"
 
@@ -35,10 +36,9 @@ constexpr std::array kColumns{
 
 /// The columns of a file that are ours, or what it lacks.
 Result<std::vector<Column>> columns_of(const fs::path& path) {
-  const auto header = csv_header(path);
-  if (!header) return header.error();
+  const auto header = TRY(csv_header(path));
   const auto there = [&](std::string_view name) {
-    return std::ranges::find(*header, name) != header->end();
+    return std::ranges::find(header, name) != header.end();
   };
   const bool slides = there("x_m") && there("fz_N");
   const bool turns = there("theta_rad") && there("tz_Nm");
@@ -54,19 +54,18 @@ Result<std::vector<Column>> columns_of(const fs::path& path) {
 }
 
 Result<std::size_t> read_rows(const fs::path& path, ProbingMeasurement& trial) {
-  const auto columns = columns_of(path);
-  if (!columns) return columns.error();
+  const auto columns = TRY(columns_of(path));
   std::vector<std::string_view> names{"t_s"};
-  for (const Column& column : *columns) names.push_back(column.name);
+  for (const Column& column : columns) names.push_back(column.name);
   const auto rows = read_csv(path, names, [&](std::size_t, std::span<const double> v) {
     if (auto why = wrong_time(trial.t_s, v[0]); !why.empty()) return why;
-    for (std::size_t c = 0; c < columns->size(); ++c)
-      if (std::abs(v[c + 1]) > (*columns)[c].largest)
+    for (std::size_t c = 0; c < columns.size(); ++c)
+      if (std::abs(v[c + 1]) > columns[c].largest)
         return fmt::format("column {}: {} is over {} {}", names[c + 1], v[c + 1],
-                           (*columns)[c].largest, (*columns)[c].unit);
+                           columns[c].largest, columns[c].unit);
     trial.t_s.push_back(v[0]);
-    for (std::size_t c = 0; c < columns->size(); ++c)
-      (trial.*(*columns)[c].numbers).push_back(v[c + 1]);
+    for (std::size_t c = 0; c < columns.size(); ++c)
+      (trial.*columns[c].numbers).push_back(v[c + 1]);
     return std::string();
   });
   if (rows && *rows < 2)
@@ -109,22 +108,20 @@ std::string csv_of(const ProbingMeasurement& trial) {
 }  // namespace
 
 Result<ProbingSet> read_probing_set(const fs::path& folder) {
-  auto index = read_set_index(folder, "probing");
-  if (!index) return index.error();
+  auto index = TRY(read_set_index(folder, "probing"));
   ProbingSet set;
   set.folder = folder;
-  set.stated = std::move(index->stated);
+  set.stated = std::move(index.stated);
   set.noise = noise_of(set.stated);
   std::size_t total = 0;
-  for (SetEntry& entry : index->entries) {
+  for (SetEntry& entry : index.entries) {
     ProbingMeasurement trial;
     trial.id = std::move(entry.id);
     trial.file = std::move(entry.file);
     trial.operator_name = std::move(entry.operator_name);
     trial.notes = std::move(entry.notes);
-    const auto rows = read_rows(folder / trial.file, trial);
-    if (!rows) return rows.error();
-    total += *rows;
+    const auto rows = TRY(read_rows(folder / trial.file, trial));
+    total += rows;
     if (total > kMaxRowsOfSet)
       return Error{Errc::too_large,
                    fmt::format("{}: more than {} rows in the set", folder.string(), kMaxRowsOfSet)};
@@ -134,17 +131,15 @@ Result<ProbingSet> read_probing_set(const fs::path& folder) {
 }
 
 Result<void> write_probing_set(const fs::path& folder, const ProbingSet& set) {
-  auto scratch = core::ScratchFolder::make(folder);
-  if (!scratch) return scratch.error();
+  auto scratch = TRY(core::ScratchFolder::make(folder));
   std::vector<SetEntry> entries;
   for (const auto& trial : set.trials) {
-    if (auto written = write_set_file(scratch->path(), trial.file, csv_of(trial)); !written)
-      return written;
+    TRY(write_set_file(scratch.path(), trial.file, csv_of(trial)));
     entries.push_back({trial.id, trial.file, trial.operator_name, trial.notes});
   }
   const Json json = set_json("probing", set.stated, entries);
-  if (auto written = core::write_json(scratch->path() / "set.json", json); !written) return written;
-  return scratch->keep_as(folder);
+  TRY(core::write_json(scratch.path() / "set.json", json));
+  return scratch.keep_as(folder);
 }
 
 }  // namespace trial

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "trial/measurement_set.hpp"
 #include "trial/probing_set.hpp"
 
@@ -46,7 +47,7 @@ Result<SetEntry> read_entry(const Json& object, const std::string& where, const 
   if (!ids.insert(trial.id).second)
     fields.wrong("id", fmt::format("'{}' is there twice", trial.id));
   if (auto why = leaves_folder(folder, trial.file); !why.empty()) fields.wrong("file", why);
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   return trial;
 }
 
@@ -56,9 +57,8 @@ Result<std::vector<SetEntry>> read_entries(const Json& list, const fs::path& fol
   std::vector<SetEntry> entries;
   std::set<std::string> ids;
   for (std::size_t k = 0; k < list.size(); ++k) {
-    auto entry = read_entry(list[k], fmt::format("{}: /trials/{}", path, k), folder, ids);
-    if (!entry) return entry.error();
-    entries.push_back(std::move(*entry));
+    auto entry = TRY(read_entry(list[k], fmt::format("{}: /trials/{}", path, k), folder, ids));
+    entries.push_back(std::move(entry));
   }
   return entries;
 }
@@ -103,39 +103,35 @@ std::string wrong_time(std::span<const double> before, double t_s) {
 
 Result<SetIndex> read_set_index(const fs::path& folder, std::string_view rig,
                                 const std::function<Result<void>(core::Fields&)>& more) {
-  const auto json = read_set_json(folder);
-  if (!json) return json.error();
+  const auto json = TRY(read_set_json(folder));
   const std::string path = (folder / "set.json").string();
-  core::Fields fields(*json, path + ": ");
+  core::Fields fields(json, path + ": ");
   SetIndex index;
   if (const auto format = fields.text("format", 64); format != "tractus-measurements/1")
     fields.wrong("format", fmt::format("'{}', \"tractus-measurements/1\" is expected", format));
   if (const auto stated = fields.text("rig", 64); stated != rig)
     fields.wrong("rig", fmt::format("'{}', \"{}\" is expected here", stated, rig));
-  if (more)
-    if (auto read = more(fields); !read) return read.error();
+  if (more) TRY(more(fields));
   for (const char* key : kStatedFields)
     if (const Json* value = fields.member(key, false)) index.stated[key] = *value;
   const Json* trials = fields.member("trials");
   if (trials && (!trials->is_array() || trials->empty() || trials->size() > kMaxTrials))
     fields.wrong("trials", fmt::format("an array of 1 to {} trials is expected", kMaxTrials));
-  if (auto done = fields.done(); !done) return done.error();
-  auto entries = read_entries(*trials, folder, path);
-  if (!entries) return entries.error();
-  index.entries = std::move(*entries);
+  TRY(fields.done());
+  auto entries = TRY(read_entries(*trials, folder, path));
+  index.entries = std::move(entries);
   return index;
 }
 
 Result<std::string> rig_of_set(const fs::path& folder) {
-  const auto json = read_set_json(folder);
-  if (!json) return json.error();
-  core::Fields fields(*json, (folder / "set.json").string() + ": ");
+  const auto json = TRY(read_set_json(folder));
+  core::Fields fields(json, (folder / "set.json").string() + ": ");
   const auto rig = fields.text("rig", 64);
   if (rig != "probing" && rig != "palpation")
     fields.wrong("rig", fmt::format("'{}', \"probing\" or \"palpation\" is expected", rig));
-  if (json->is_object())
-    for (const auto& [key, value] : json->items()) fields.skip(key.c_str());
-  if (auto done = fields.done(); !done) return done.error();
+  if (json.is_object())
+    for (const auto& [key, value] : json.items()) fields.skip(key.c_str());
+  TRY(fields.done());
   return rig;
 }
 

@@ -1,3 +1,4 @@
+#include "core/try.hpp"
 #include "trial/measurement_set.hpp"
 
 namespace tractus::trial {
@@ -9,7 +10,7 @@ core::Result<math::Vec3> stated_down(const PalpationSet& set) {
   object["down"] = *it;
   core::Fields fields(object, "set.json: ");
   const auto numbers = fields.numbers("down", 3);
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   const math::Vec3 down(numbers[0], numbers[1], numbers[2]);
   if (!(down.norm() > 1e-9))
     return core::Error{core::Errc::bad_input,

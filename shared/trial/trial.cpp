@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/bytes.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace trial {
@@ -99,7 +100,7 @@ core::Result<Event> Event::from_json(const core::Json& json, const std::string& 
   event.kind = fields.text("kind", 64);
   if (fields.has("kind") && event.kind.empty()) fields.wrong("kind", "a word is expected");
   event.detail = object_of(fields, "detail");
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   return event;
 }
 
@@ -128,7 +129,7 @@ core::Result<Answer> Answer::from_json(const core::Json& json, const std::string
     answer.depth_m = fields.number("depth_m", 0.0, kDeepest_m);
     if (!answer.breach) fields.wrong("depth_m", "a depth is named without a breach");
   }
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   return answer;
 }
 
@@ -203,7 +204,7 @@ core::Result<Header> Header::from_json(const core::Json& json, const std::string
     fields.wrong("rig", "\"palpation\" or \"probing\" is expected");
   header.probe = object_of(fields, "probe");
   header.extra = object_of(fields, "extra");
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   return header;
 }
 

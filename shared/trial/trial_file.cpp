@@ -5,6 +5,7 @@
 #include <cstring>
 #include <optional>
 
+#include "core/try.hpp"
 #include "trial/frame_writer.hpp"
 #include "trial/frames.hpp"
 #include "trial/packing.hpp"
@@ -68,7 +69,7 @@ core::Result<FrameReader::Step> Scanner::run() {
       if (!has_header_) return wrong(core::Errc::corrupt, "the file holds no whole header");
       return step;
     }
-    if (auto taken = take_frame(); !taken) return taken.error();
+    TRY(take_frame());
     if (!trial_.sealed) continue;
     if (const auto rest = reader_.size() - reader_.position(); rest > 0)
       return wrong(core::Errc::corrupt, fmt::format("{} bytes after the end frame", rest));
@@ -104,9 +105,8 @@ core::Result<core::Json> Scanner::take_json(const char* what) const {
 }
 
 core::Result<void> Scanner::take_header() {
-  auto json = take_json("header");
-  if (!json) return json.error();
-  auto header = Header::from_json(*json, "header");
+  auto json = TRY(take_json("header"));
+  auto header = Header::from_json(json, "header");
   if (!header) return wrong(header.error().code, header.error().what);
   trial_.header = std::move(header).value();
   has_header_ = true;
@@ -115,10 +115,10 @@ core::Result<void> Scanner::take_header() {
 
 core::Result<void> Scanner::take_samples() {
   if (trial_.header.rig == Rig::palpation) {
-    if (auto taken = take_samples_of(block_, last_); !taken) return taken;
+    TRY(take_samples_of(block_, last_));
     on_samples_({block_, {}});
   } else {
-    if (auto taken = take_samples_of(probing_, last_probing_); !taken) return taken;
+    TRY(take_samples_of(probing_, last_probing_));
     on_samples_({{}, probing_});
   }
   return {};
@@ -160,9 +160,8 @@ core::Result<void> Scanner::take_samples_of(std::vector<S>& block, std::optional
 }
 
 core::Result<void> Scanner::take_event() {
-  auto json = take_json("event");
-  if (!json) return json.error();
-  auto event = Event::from_json(*json, "event");
+  auto json = TRY(take_json("event"));
+  auto event = Event::from_json(json, "event");
   if (!event) return wrong(event.error().code, event.error().what);
   events_bytes_ += reader_.payload().size();
   if (events_bytes_ > kMaxEvents_bytes)
@@ -196,13 +195,11 @@ core::Result<void> Scanner::take_end() {
 
 core::Result<Trial> scan(const std::filesystem::path& path, const OnSamples& on_samples,
                          const ReadLimits& limits) {
-  auto reader = FrameReader::open(path, limits.max_bytes);
-  if (!reader) return reader.error();
-  Scanner scanner(*reader, on_samples, limits);
-  auto step = scanner.run();
-  if (!step) return step.error();
-  if (*step == FrameReader::Step::damaged)
-    return frame_error(core::Errc::corrupt, path, reader->offset(),
+  auto reader = TRY(FrameReader::open(path, limits.max_bytes));
+  Scanner scanner(reader, on_samples, limits);
+  auto step = TRY(scanner.run());
+  if (step == FrameReader::Step::damaged)
+    return frame_error(core::Errc::corrupt, path, reader.offset(),
                        "the checksum of a frame's payload does not hold");
   return scanner.take_trial();
 }
@@ -233,27 +230,23 @@ core::Result<std::uint64_t> recover_trial(const std::filesystem::path& path) {
   const ReadLimits limits;
   auto locked = open_locked(path);
   if (!locked) return locked.error();
-  auto reader = FrameReader::open(path, limits.max_bytes);
-  if (!reader) return reader.error();
+  auto reader = TRY(FrameReader::open(path, limits.max_bytes));
   const OnSamples ignore = [](const Block&) {};
-  Scanner scanner(*reader, ignore, limits);
-  auto step = scanner.run();
-  if (!step) return step.error();
+  Scanner scanner(reader, ignore, limits);
+  auto step = TRY(scanner.run());
   if (scanner.trial().sealed) return scanner.samples();
-  if (*step == FrameReader::Step::damaged && reader->type() == FrameType::end)
-    return frame_error(core::Errc::corrupt, path, reader->offset(),
+  if (step == FrameReader::Step::damaged && reader.type() == FrameType::end)
+    return frame_error(core::Errc::corrupt, path, reader.offset(),
                        "the checksum of the end frame does not hold");
   const double last_s = scanner.last_s();
   const auto& events = scanner.trial().events;
   const bool said = !events.empty() && events.back().kind == "interrupted";
-  auto frames = FrameWriter::resume(std::move(locked).value(), *reader);
-  if (!frames) return frames.error();
+  auto frames = TRY(FrameWriter::resume(std::move(locked).value(), reader));
   if (!said) {
     const Event event{last_s, "interrupted", core::Json::object()};
-    auto written = frames->append(FrameType::event, json_payload(event.to_json()));
-    if (!written) return written.error();
+    TRY(frames.append(FrameType::event, json_payload(event.to_json())));
   }
-  if (auto sealed = frames->seal(scanner.samples()); !sealed) return sealed.error();
+  TRY(frames.seal(scanner.samples()));
   return scanner.samples();
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "core/try.hpp"
 #include "trial/frame_writer.hpp"
 #include "trial/packing.hpp"
 #include "trial/trial_file.hpp"
@@ -38,10 +39,8 @@ core::Result<TrialWriter> TrialWriter::create(const std::filesystem::path& path,
     return core::Error{core::Errc::too_large,
                        fmt::format("{}: header of {} bytes, at most {}", path.string(),
                                    payload.size(), kMaxJson_bytes)};
-  auto json = core::parse_json(core::text_of(payload), path.string() + ": header");
-  if (!json) return json.error();
-  if (auto readable = Header::from_json(*json, path.string() + ": header"); !readable)
-    return readable.error();
+  auto json = TRY(core::parse_json(core::text_of(payload), path.string() + ": header"));
+  TRY(Header::from_json(json, path.string() + ": header"));
   auto frames = FrameWriter::create(path, payload);
   if (!frames) return frames.error();
   return TrialWriter(std::unique_ptr<State>(
@@ -61,8 +60,7 @@ core::Result<void> TrialWriter::State::append(std::span<const S> block, Rig kind
   }
   while (!block.empty()) {
     const auto part = block.first(std::min(block.size(), max_packed_samples(sizeof(S))));
-    if (auto written = frames.append(FrameType::packed, packer.pack(part)); !written)
-      return written;
+    TRY(frames.append(FrameType::packed, packer.pack(part)));
     packer.follow(part);
     last = part.back();
     samples += part.size();
@@ -86,15 +84,13 @@ core::Result<void> TrialWriter::append(const Event& event) {
         fmt::format("event of {} bytes, at most {}", payload.size(), kMaxJson_bytes));
   if (state_->events_bytes + payload.size() > kMaxEvents_bytes)
     return state_->refused(fmt::format("more than {} bytes of events", kMaxEvents_bytes));
-  auto json = core::parse_json(core::text_of(payload), state_->name + ": event");
-  if (!json) return json.error();
-  auto readable = Event::from_json(*json, state_->name + ": event");
-  if (!readable) return readable.error();
-  if (readable->t_s < state_->last_event_s)
-    return state_->refused(fmt::format("event \"{}\" at {} s after one at {} s", readable->kind,
-                                       readable->t_s, state_->last_event_s));
-  if (auto written = state_->frames.append(FrameType::event, payload); !written) return written;
-  state_->last_event_s = readable->t_s;
+  auto json = TRY(core::parse_json(core::text_of(payload), state_->name + ": event"));
+  auto readable = TRY(Event::from_json(json, state_->name + ": event"));
+  if (readable.t_s < state_->last_event_s)
+    return state_->refused(fmt::format("event \"{}\" at {} s after one at {} s", readable.kind,
+                                       readable.t_s, state_->last_event_s));
+  TRY(state_->frames.append(FrameType::event, payload));
+  state_->last_event_s = readable.t_s;
   state_->events_bytes += payload.size();
   return {};
 }

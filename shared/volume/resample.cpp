@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace volume {
 namespace {
@@ -117,7 +119,7 @@ Box box_about(const Geometry& geometry, std::span<const Vec3> points_V_m, double
 
 core::Result<Volume> resample_finer(const Volume& volume, const Box& box, double spacing_m,
                                     const core::Progress& progress) {
-  if (auto fine = check(volume, box, spacing_m); !fine) return fine.error();
+  TRY(check(volume, box, spacing_m));
   const Geometry& source = volume.geometry;
   std::vector<Axis> axes;
   for (std::size_t a = 0; a < 3; ++a)

@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "volume/brick.hpp"
 #include "volume/volume_header.hpp"
 
@@ -87,25 +88,22 @@ core::Result<void> VolumeFile::State::read_header() {
   if (length > kHeaderLimitBytes)
     return corrupt(
         path, fmt::format("header of {} bytes, at most {} are taken", length, kHeaderLimitBytes));
-  auto json = read(kPreambleBytes, length, "header");
-  if (!json) return json.error();
-  auto parsed = parse_header(core::text_of(*json), path.string() + ": header");
-  if (!parsed) return parsed.error();
-  header = std::move(*parsed);
-  return read_index(kPreambleBytes + length, core::text_of(*json));
+  auto json = TRY(read(kPreambleBytes, length, "header"));
+  auto parsed = TRY(parse_header(core::text_of(json), path.string() + ": header"));
+  header = std::move(parsed);
+  return read_index(kPreambleBytes + length, core::text_of(json));
 }
 
 core::Result<void> VolumeFile::State::read_index(std::size_t at, std::string_view header_json) {
   const auto grid = brick_grid(header.geometry.dims);
   const auto count = static_cast<std::size_t>(grid[0]) * static_cast<std::size_t>(grid[1]) *
                      static_cast<std::size_t>(grid[2]);
-  auto index = read(at, count * kIndexEntryBytes, "index");
-  if (!index) return index.error();
+  auto index = TRY(read(at, count * kIndexEntryBytes, "index"));
   core::Sha256 name;
   name.add(core::bytes_of(header_json));
   std::uint64_t offset = at + count * kIndexEntryBytes;
   for (std::size_t b = 0; b < count; ++b) {
-    const auto entry = core::ByteView(*index).subspan(b * kIndexEntryBytes, kIndexEntryBytes);
+    const auto entry = core::ByteView(index).subspan(b * kIndexEntryBytes, kIndexEntryBytes);
     const auto digest = entry.subspan(4);
     bricks.push_back({offset, u32_at(entry, 0), core::Bytes(digest.begin(), digest.end())});
     const auto limit = stored_brick_limit(voxels_in(brick_box(header.geometry.dims, b)));
@@ -125,9 +123,8 @@ core::Result<void> VolumeFile::State::copy_brick(std::size_t brick, const Box& b
                                                  Volume& out) const {
   const BrickEntry& entry = bricks[brick];
   const Box from = brick_box(header.geometry.dims, brick);
-  auto stored = read(entry.offset, entry.length, "brick");
-  if (!stored) return stored.error();
-  auto counts = brick_counts(*stored, voxels_in(from), entry.digest);
+  auto stored = TRY(read(entry.offset, entry.length, "brick"));
+  auto counts = brick_counts(stored, voxels_in(from), entry.digest);
   if (!counts)
     return corrupt(path,
                    fmt::format("brick {} of {}: {}", brick, bricks.size(), counts.error().what));
@@ -167,7 +164,7 @@ core::Result<VolumeFile> VolumeFile::open(const fs::path& path) {
   if (!S_ISREG(info.st_mode))
     return core::Error{core::Errc::bad_input, fmt::format("{}: not a regular file", path.string())};
   state->size = static_cast<std::uint64_t>(info.st_size);
-  if (auto good = state->read_header(); !good) return good.error();
+  TRY(state->read_header());
   return VolumeFile(std::move(state));
 }
 

@@ -11,6 +11,7 @@
 #include <cstring>
 
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "volume/brick.hpp"
 #include "volume/volume_file.hpp"
 #include "volume/volume_header.hpp"
@@ -37,7 +38,7 @@ class FileBeside {
   FileBeside& operator=(const FileBeside&) = delete;
 
   core::Result<void> opened() const {
-    if (auto free = core::may_be_replaced(path_); !free) return free;
+    TRY(core::may_be_replaced(path_));
     if (fd_ < 0) return core::system_error(path_, "cannot create");
     return {};
   }
@@ -94,7 +95,7 @@ core::Result<Index> write_bricks(FileBeside& file, const Volume& volume, std::si
       batch[b] = stored_brick(volume, brick_box(volume.geometry.dims, first + b));
     });
     for (std::size_t b = 0; b < count; ++b) {
-      if (auto written = file.write_at(offset, batch[b].bytes); !written) return written.error();
+      TRY(file.write_at(offset, batch[b].bytes));
       offset += batch[b].bytes.size();
       append_u32(index.entries, static_cast<std::uint32_t>(batch[b].bytes.size()));
       index.entries.insert(index.entries.end(), batch[b].digest.begin(), batch[b].digest.end());
@@ -133,28 +134,27 @@ core::Result<std::string> write_volume(const fs::path& path, const Volume& volum
                                        const VolumeMeta& meta, const core::Progress& progress) {
   core::require(volume.counts.size() == volume.geometry.voxel_count(),
                 "a volume holds a count per voxel");
-  if (auto good = check_geometry(volume.geometry, path.string()); !good) return good.error();
+  TRY(check_geometry(volume.geometry, path.string()));
   const VolumeHeader header = header_of(volume, meta);
-  if (auto good = check_header(header, path.string()); !good) return good.error();
+  TRY(check_header(header, path.string()));
   const std::string text = header_text(header);
   const auto grid = brick_grid(volume.geometry.dims);
   const auto bricks = static_cast<std::size_t>(grid[0]) * static_cast<std::size_t>(grid[1]) *
                       static_cast<std::size_t>(grid[2]);
   FileBeside file(path);
-  if (auto opened = file.opened(); !opened) return opened.error();
+  TRY(file.opened());
   const std::size_t bricks_at = kPreambleBytes + text.size() + bricks * kIndexEntryBytes;
-  auto index = write_bricks(file, volume, bricks, bricks_at, progress);
-  if (!index) return index.error();
+  auto index = TRY(write_bricks(file, volume, bricks, bricks_at, progress));
   core::Sha256 id;
   id.add(core::bytes_of(text));
   for (std::size_t b = 0; b < bricks; ++b)
-    id.add(core::ByteView(index->entries).subspan(b * kIndexEntryBytes + 4, 32));
+    id.add(core::ByteView(index.entries).subspan(b * kIndexEntryBytes + 4, 32));
   core::Bytes front = preamble(text.size());
   const auto json = core::bytes_of(text);
   front.insert(front.end(), json.begin(), json.end());
-  front.insert(front.end(), index->entries.begin(), index->entries.end());
-  if (auto written = file.write_at(0, front); !written) return written.error();
-  if (auto kept = file.keep(); !kept) return kept.error();
+  front.insert(front.end(), index.entries.begin(), index.entries.end());
+  TRY(file.write_at(0, front));
+  TRY(file.keep());
   return id.hex();
 }
 

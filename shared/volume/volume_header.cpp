@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "core/json.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace volume {
@@ -114,7 +115,7 @@ core::Result<void> check_geometry(const Geometry& geometry, const std::string& w
 }
 
 core::Result<void> check_header(const VolumeHeader& header, const std::string& where) {
-  if (auto good = check_geometry(header.geometry, where); !good) return good;
+  TRY(check_geometry(header.geometry, where));
   if (!(header.slope > 0.0 && header.slope <= 1e9) || !(std::abs(header.intercept) <= 1e12))
     return bad(where,
                fmt::format("slope {} and intercept {} must be finite, the slope greater than 0",
@@ -169,9 +170,9 @@ core::Result<VolumeHeader> parse_header(std::string_view text, const std::string
     fields.wrong("brick_edge", fmt::format("{} is expected", kBrickEdge));
   if (fields.text("codec") != "zstd of byte planes") fields.wrong("codec", "is not known");
   out.meta = {fields.text("source", 1024), fields.text("note", 16384)};
-  if (const auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   if (!histogram_error.empty()) return core::Error{core::Errc::bad_input, histogram_error};
-  if (const auto good = check_header(out, where); !good) return good.error();
+  TRY(check_header(out, where));
   return out;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/try.hpp"
 #include "volume/carve.hpp"
 
 namespace tractus {
@@ -192,13 +193,12 @@ core::Result<Breach> place_breach(const Volume& volume, const TransferFunction& 
         fmt::format("the breach's place {:.3g} mm is not along the tract of {:.3g} mm",
                     *plan.at_m * 1e3, tract.length_m * 1e3)};
   const WallFinder finder(volume, transfer);
-  const auto found =
-      plan.at_m ? finder.wall_at(tract, plan.wall, *plan.at_m) : finder.thinnest(tract, plan.wall);
-  if (!found) return found.error();
-  const Vec3 out = outwards(tract, plan.wall), from = tract.entry_m + found->at_m * tract.axis;
-  Breach breach{.wall = *found, .depth_m = plan.depth_m, .from_m = from};
-  breach.tip_m = from + (found->outer_m + plan.depth_m) * out;
-  breach.centre_m = from + (found->inner_m + found->outer_m) / 2 * out;
+  const auto found = TRY(plan.at_m ? finder.wall_at(tract, plan.wall, *plan.at_m)
+                                   : finder.thinnest(tract, plan.wall));
+  const Vec3 out = outwards(tract, plan.wall), from = tract.entry_m + found.at_m * tract.axis;
+  Breach breach{.wall = found, .depth_m = plan.depth_m, .from_m = from};
+  breach.tip_m = from + (found.outer_m + plan.depth_m) * out;
+  breach.centre_m = from + (found.inner_m + found.outer_m) / 2 * out;
   if (!volume.geometry.contains(breach.tip_m))
     return refused(fmt::format("{}: the breach leaves the volume", name(plan.wall)));
   return breach;

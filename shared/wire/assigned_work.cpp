@@ -1,6 +1,7 @@
 #include "wire/assigned_work.hpp"
 
 #include "core/bytes.hpp"
+#include "core/try.hpp"
 #include "wire/study_work.hpp"
 
 namespace tractus {
@@ -46,7 +47,7 @@ core::Result<AssignedTrial> AssignedTrial::from_json(const core::Json& json,
     fields.wrong("rig", "palpation is expected: the other rig drills nothing");
   if (out.drills && !out.drilled.empty())
     fields.wrong("drilled", "is felt with the probe: a burr begins on whole bone");
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   return out;
 }
 
@@ -65,11 +66,10 @@ core::Result<AssignedWork> AssignedWork::from_json(const core::Json& json,
     fields.wrong("participant", "a pseudonym is expected");
   out.left = static_cast<std::uint64_t>(fields.integer("left", 0, kMaxCount));
   const core::Json* trial = fields.member("trial");
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   if (trial->is_null()) return out;
-  auto read = AssignedTrial::from_json(*trial, where + "/trial");
-  if (!read) return read.error();
-  out.trial = std::move(*read);
+  auto read = TRY(AssignedTrial::from_json(*trial, where + "/trial"));
+  out.trial = std::move(read);
   return out;
 }
 

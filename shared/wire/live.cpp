@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "core/bytes.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace wire {
@@ -84,7 +85,7 @@ core::Result<LiveTrial> trial_from(const core::Json& json, const std::string& wh
     fields.wrong("case_id", "64 hexadecimal characters are expected");
   if (out.rig != "palpation" && out.rig != "probing")
     fields.wrong("rig", "palpation or probing is expected");
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   return out;
 }
 
@@ -97,7 +98,7 @@ core::Result<StationReport::Check> check_from(const core::Json& json, const std:
   out.limit = number_in(fields, "limit", -1e300, 1e300);
   out.unit = text_in(fields, "unit", 16);
   out.words = text_in(fields, "words", kWords);
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   return out;
 }
 
@@ -110,11 +111,10 @@ core::Result<StationReport::SelfTest> self_test_from(const core::Json& json,
   const core::Json* checks = fields.member("checks");
   const bool list = checks && checks->is_array() && checks->size() <= kMostChecks;
   if (!list) fields.wrong("checks", "a list of at most 128 is expected");
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   for (const core::Json& one : *checks) {
-    auto check = check_from(one, where + "/checks");
-    if (!check) return check.error();
-    out.checks.push_back(std::move(*check));
+    auto check = TRY(check_from(one, where + "/checks"));
+    out.checks.push_back(std::move(check));
   }
   return out;
 }
@@ -127,7 +127,7 @@ core::Result<StationReport::Calibration> calibration_from(const core::Json& json
   out.due_utc_us = whole_in<std::int64_t>(fields, "due_utc_us");
   out.kind = fields.text("kind", kName);
   out.words = text_in(fields, "words", kWords);
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   return out;
 }
 
@@ -150,7 +150,7 @@ core::Result<SelfTestSummary> SelfTestSummary::from_json(const core::Json& json,
   out.at_utc_us = fields.integer("at_utc_us", 0, kMost);
   out.passed = truth_in(fields, "passed");
   out.failed = lines_in(fields, "failed", kName);
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   return out;
 }
 
@@ -190,16 +190,14 @@ core::Result<StationStatus> StationStatus::from_json(const core::Json& json,
   out.calibration_due_utc_us = whole_in<std::int64_t>(fields, "calibration_due_utc_us");
   const core::Json* trial = given(fields, "trial") ? fields.member("trial") : nullptr;
   const core::Json* test = given(fields, "self_test") ? fields.member("self_test") : nullptr;
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   if (trial) {
-    auto read = trial_from(*trial, where + "/trial");
-    if (!read) return read.error();
-    out.trial = std::move(*read);
+    auto read = TRY(trial_from(*trial, where + "/trial"));
+    out.trial = std::move(read);
   }
   if (test) {
-    auto read = SelfTestSummary::from_json(*test, where + "/self_test");
-    if (!read) return read.error();
-    out.self_test = std::move(*read);
+    auto read = TRY(SelfTestSummary::from_json(*test, where + "/self_test"));
+    out.self_test = std::move(read);
   }
   return out;
 }
@@ -222,7 +220,7 @@ core::Result<StationCommand> StationCommand::from_json(const core::Json& json,
   } else {
     fields.wrong("kind", "stop or limits is expected");
   }
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   return out;
 }
 
@@ -269,16 +267,14 @@ core::Result<StationReport> StationReport::from_json(const core::Json& json,
   const core::Json* test = given(fields, "self_test") ? fields.member("self_test") : nullptr;
   const core::Json* made = given(fields, "calibration") ? fields.member("calibration") : nullptr;
   if (given(fields, "refused")) out.refused = lines_in(fields, "refused", kWords);
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   if (test) {
-    auto read = self_test_from(*test, where + "/self_test");
-    if (!read) return read.error();
-    out.self_test = std::move(*read);
+    auto read = TRY(self_test_from(*test, where + "/self_test"));
+    out.self_test = std::move(read);
   }
   if (made) {
-    auto read = calibration_from(*made, where + "/calibration");
-    if (!read) return read.error();
-    out.calibration = std::move(*read);
+    auto read = TRY(calibration_from(*made, where + "/calibration"));
+    out.calibration = std::move(read);
   }
   return out;
 }

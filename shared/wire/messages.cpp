@@ -1,6 +1,7 @@
 #include "wire/messages.hpp"
 
 #include "core/bytes.hpp"
+#include "core/try.hpp"
 
 namespace tractus::wire {
 namespace {
@@ -18,7 +19,7 @@ core::Result<UploadState> UploadState::from_json(const core::Json& json, const s
   out.state = fields.text("state", 32);
   if (out.state != "receiving" && out.state != "complete")
     fields.wrong("state", "receiving or complete is expected");
-  if (auto checked = fields.done(); !checked) return checked.error();
+  TRY(fields.done());
   return out;
 }
 
@@ -37,7 +38,7 @@ core::Result<UploadAnnouncement> UploadAnnouncement::from_json(const core::Json&
     fields.wrong("case_id", "64 hexadecimal characters are expected");
   if (!core::is_sha256(out.sha256))
     fields.wrong("sha256", "64 hexadecimal characters are expected");
-  if (auto checked = fields.done(); !checked) return checked.error();
+  TRY(fields.done());
   return out;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/bytes.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace wire {
@@ -35,7 +36,7 @@ core::Result<SealedTrial> SealedTrial::from_json(const core::Json& json, const s
   if (!core::is_sha256(out.slot)) fields.wrong("slot", "64 hexadecimal characters are expected");
   out.number = static_cast<std::uint64_t>(fields.integer("number", 1, kMaxCount));
   out.sealed = fields.text("sealed", kMaxSealed);
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   return out;
 }
 
@@ -65,11 +66,10 @@ core::Result<StudyWork> StudyWork::from_json(const core::Json& json, const std::
   const core::Json* list = fields.member("trials");
   if (list && (!list->is_array() || list->size() > kMaxTrials))
     fields.wrong("trials", "an array is expected");
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   for (const core::Json& one : *list) {
-    auto trial = SealedTrial::from_json(one, where + "/trials");
-    if (!trial) return trial.error();
-    out.trials.push_back(std::move(*trial));
+    auto trial = TRY(SealedTrial::from_json(one, where + "/trials"));
+    out.trials.push_back(std::move(trial));
   }
   return out;
 }

@@ -33,7 +33,7 @@ class TrialViewer {
   /// (alignment.json).
   static core::Result<TrialViewer> make(const session::PreparedCase& prepared,
                                         const ViewOptions& look);
-  /// TrialFilter state the headset shows, as often as it likes, until `end_headset`.
+  /// Whose state the headset shows, as often as it likes, until `end_headset`.
   void follow(const loop::LiveState& live) { live_->store(&live); }
 
   /// Looks at the latest state, draws it when there is a view. False when a person closed the

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace check {
 namespace {
@@ -58,9 +60,8 @@ class Driver {
   core::Result<void> run(double for_s, const Wrench& wanted, const Each& each) {
     const int ticks = int(for_s * bench_.rate_Hz), shown = std::max(1, int(bench_.rate_Hz / 30.0));
     for (int k = 0; k < ticks; ++k) {
-      auto sample = tick(wanted);
-      if (!sample) return sample.error();
-      each(double(k) / bench_.rate_Hz, *sample);
+      auto sample = TRY(tick(wanted));
+      each(double(k) / bench_.rate_Hz, sample);
       elapsed_s_ += 1.0 / bench_.rate_Hz;
       if (k % shown == 0 && bench_.progress &&
           !bench_.progress(std::min(1.0, elapsed_s_ / plan_s_)))
@@ -77,13 +78,12 @@ class Driver {
     Vec3 sum = Vec3::Zero();
     Eigen::Vector4d turn = Eigen::Vector4d::Zero();
     int count = 0;
-    auto ran = run(for_s, wanted, [&](double, const Sample& sample) {
+    TRY(run(for_s, wanted, [&](double, const Sample& sample) {
       const Eigen::Vector4d q = sample.X_DH.q.coeffs();
       turn += turn.dot(q) < 0.0 ? -q : q;
       sum += sample.X_DH.p;
       ++count;
-    });
-    if (!ran) return ran.error();
+    }));
     return math::Pose{sum / count, math::Quat(Eigen::Vector4d(turn.normalized()))};
   }
 
@@ -103,12 +103,10 @@ Vec3 turn_between(const math::Quat& from, const math::Quat& to) {
 }
 
 core::Result<void> check_rest(Driver& driver, const DeviceGoals& goals, std::vector<Finding>& out) {
-  auto from = driver.mean_pose(kMoment_s, {});
-  if (!from) return from.error();
-  if (auto waited = driver.run(kAtRest_s - kMoment_s, {}); !waited) return waited;
-  auto at = driver.mean_pose(kMoment_s, {});
-  if (!at) return at.error();
-  const double drift = (at->p - from->p).norm();
+  auto from = TRY(driver.mean_pose(kMoment_s, {}));
+  TRY(driver.run(kAtRest_s - kMoment_s, {}));
+  auto at = TRY(driver.mean_pose(kMoment_s, {}));
+  const double drift = (at.p - from.p).norm();
   const bool still = drift <= goals.rest_m;
   out.push_back({.name = "rest at zero force",
                  .passed = still,
@@ -164,13 +162,11 @@ core::Result<void> check_directions(Driver& driver, const DeviceGoals& goals,
   for (int axis = 0; axis < 6; ++axis) {
     Wrench push;
     (axis < 3 ? push.force_N : push.torque_Nm)[axis % 3] = axis < 3 ? goals.push_N : goals.turn_Nm;
-    auto before = driver.mean_pose(kMoment_s, {});
-    if (!before) return before.error();
-    if (auto settled = driver.run(kMoment_s, push); !settled) return settled;
-    auto after = driver.mean_pose(kMoment_s, push);
-    if (!after) return after.error();
-    if (auto back = driver.run(kMoment_s, {}); !back) return back;
-    out.push_back(direction_of(*before, *after, axis, goals));
+    auto before = TRY(driver.mean_pose(kMoment_s, {}));
+    TRY(driver.run(kMoment_s, push));
+    auto after = TRY(driver.mean_pose(kMoment_s, push));
+    TRY(driver.run(kMoment_s, {}));
+    out.push_back(direction_of(before, after, axis, goals));
   }
   return {};
 }
@@ -227,14 +223,12 @@ void judge_step(const Way& way, const DeviceGoals& goals, std::vector<Finding>& 
 
 core::Result<void> check_step(Driver& driver, const DeviceGoals& goals, std::vector<Finding>& out) {
   const Wrench push{{goals.push_N, 0, 0}, Vec3::Zero()};
-  auto before = driver.mean_pose(kMoment_s, {});
-  if (!before) return before.error();
+  auto before = TRY(driver.mean_pose(kMoment_s, {}));
   Way way;
   way.reserve(kTrips);
-  auto ran = driver.run(kStep_s, push, [&](double t_s, const Sample& sample) {
-    way.emplace_back(t_s, sample.X_DH.p.x() - before->p.x());
-  });
-  if (!ran) return ran;
+  TRY(driver.run(kStep_s, push, [&](double t_s, const Sample& sample) {
+    way.emplace_back(t_s, sample.X_DH.p.x() - before.p.x());
+  }));
   judge_step(way, goals, out);
   return {};
 }
@@ -259,8 +253,7 @@ core::Result<void> check_travel(Bench bench, const DeviceGoals& goals, double fo
   Driver driver(bench);
   driver.plan(for_s);
   Eigen::AlignedBox3d seen;
-  auto ran = driver.run(for_s, {}, [&](double, const Sample& s) { seen.extend(s.X_DH.p); });
-  if (!ran) return ran;
+  TRY(driver.run(for_s, {}, [&](double, const Sample& s) { seen.extend(s.X_DH.p); }));
   const Vec3 range = seen.sizes();
   const bool far = range.minCoeff() >= goals.travel_m;
   out.push_back({.name = "travel",
@@ -282,9 +275,8 @@ core::Result<void> check_forces(Bench bench, const DeviceGoals& goals, std::vect
   // The quiet moment and the ramp, with nothing wanted yet.
   const double ramp_s = bench.limiter.limits().ramp_s + kAfterRamp_s;
   driver.plan(ramp_s + kAtRest_s + 6 * 4 * kMoment_s + 2 * kMoment_s + kStep_s);
-  if (auto ready = driver.run(ramp_s, {}); !ready) return ready;
-  for (auto* part : {&check_rest, &check_directions, &check_step})
-    if (auto done = (*part)(driver, goals, out); !done) return done;
+  TRY(driver.run(ramp_s, {}));
+  for (auto* part : {&check_rest, &check_directions, &check_step}) TRY((*part)(driver, goals, out));
   out.push_back(round_trip(driver.trips(), 1.0 / bench.rate_Hz));
   return {};
 }

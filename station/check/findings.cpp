@@ -8,6 +8,7 @@
 #include "core/bytes.hpp"
 #include "core/clock.hpp"
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "core/words.hpp"
 
 namespace tractus {
@@ -114,7 +115,7 @@ core::Result<Calibration> Calibration::from_json(const core::Json& json, const s
   const core::Json* simulated = fields.member("simulated", false);  // older ones do not say
   if (simulated && !simulated->is_boolean()) fields.wrong("simulated", "true or false is expected");
   out.simulated = simulated && simulated->is_boolean() && simulated->get<bool>();
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   return out;
 }
 
@@ -122,9 +123,8 @@ core::Result<std::optional<Calibration>> Calibration::read(const std::filesystem
   auto json = core::read_json(file);
   if (!json && json.error().code == core::Errc::not_found) return std::optional<Calibration>();
   if (!json) return json.error();
-  auto read = from_json(*json, file.string() + ": ");
-  if (!read) return read.error();
-  return std::optional(*read);
+  auto read = TRY(from_json(*json, file.string() + ": "));
+  return std::optional(read);
 }
 
 std::string due_warning(const Calibration& last, std::int64_t now_utc_us) {
@@ -150,7 +150,7 @@ core::Result<std::filesystem::path> Report::leave(const std::filesystem::path& f
   const std::int64_t at = self_test ? self_test->at_utc_us : calibration->at_utc_us;
   const std::filesystem::path file =
       folder / fmt::format("{:016}-{}.json", at, core::new_id().substr(0, 8));
-  if (auto written = core::write_json(file, to_json()); !written) return written.error();
+  TRY(core::write_json(file, to_json()));
   return file;
 }
 

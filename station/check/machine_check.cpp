@@ -14,6 +14,7 @@
 #include "core/bytes.hpp"
 #include "core/clock.hpp"
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "station/check/durations.hpp"
 
 namespace tractus {
@@ -100,16 +101,15 @@ Finding check_wake_ups(double rate_Hz, double for_s, const std::function<bool(do
 }
 
 core::Result<void> check_disk(const std::filesystem::path& folder, std::vector<Finding>& out) {
-  auto took = flushes(folder / (core::new_id() + ".part"));
-  if (!took) return took.error();
-  const double slow_s = took->quantile_s(0.99);
+  auto took = TRY(flushes(folder / (core::new_id() + ".part")));
+  const double slow_s = took.quantile_s(0.99);
   const bool fast = slow_s <= kFlush_s;
   out.push_back({.name = "disk, to be safe",
                  .passed = fast,
                  .value = slow_s,
                  .limit = kFlush_s,
                  .unit = "s",
-                 .words = fmt::format("4 KiB written and flushed: {}{}", took->text(),
+                 .words = fmt::format("4 KiB written and flushed: {}{}", took.text(),
                                       fast ? "" : "; another disk, or less that writes to it")});
   std::error_code failed;
   const auto space = std::filesystem::space(folder, failed);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace check {
 namespace {
@@ -86,7 +88,7 @@ class Driver {
     if (guard_.latched())
       return core::Error{core::Errc::unavailable,
                          fmt::format("stopped: {}", safety::text_of(guard_.fault()))};
-    if (auto on = shown_.tick(); !on) return on.error();
+    TRY(shown_.tick());
     return reading_;
   }
   /// For so long; `each` sees every reading and the time since the start of it.
@@ -94,9 +96,8 @@ class Driver {
   core::Result<void> run(double for_s, double speed_m_s, double torque_Nm, const Each& each) {
     const int ticks = int(for_s * bench_.rate_Hz);
     for (int k = 0; k < ticks; ++k) {
-      auto reading = tick(speed_m_s, torque_Nm);
-      if (!reading) return reading.error();
-      each(double(k) / bench_.rate_Hz, *reading);
+      auto reading = TRY(tick(speed_m_s, torque_Nm));
+      each(double(k) / bench_.rate_Hz, reading);
     }
     return {};
   }
@@ -105,9 +106,8 @@ class Driver {
   }
   core::Result<void> enable() {
     for (int k = 0; k < int(kEnable_s * bench_.rate_Hz); ++k) {
-      auto reading = tick(0.0);
-      if (!reading) return reading.error();
-      if (reading->status & registers::kEnabled) return {};
+      auto reading = TRY(tick(0.0));
+      if (reading.status & registers::kEnabled) return {};
     }
     return core::Error{core::Errc::unavailable, "the rig's drive does not enable"};
   }
@@ -239,11 +239,9 @@ core::Result<void> check_travel_in(Driver& driver, const RigGoals& goals,
                                    std::vector<Finding>& out) {
   const double from_m = driver.reading().x_m, asked_before_m = driver.asked_m();
   std::vector<std::pair<double, double>> speeds;
-  auto there =
-      driver.run(goals.way_m / goals.speed_m_s, goals.speed_m_s, 0.0,
-                 [&](double t_s, const RigReading& r) { speeds.emplace_back(t_s, r.speed_m_s); });
-  if (!there) return there;
-  if (auto still = driver.run(kSettle_s, 0.0); !still) return still;
+  TRY(driver.run(goals.way_m / goals.speed_m_s, goals.speed_m_s, 0.0,
+                 [&](double t_s, const RigReading& r) { speeds.emplace_back(t_s, r.speed_m_s); }));
+  TRY(driver.run(kSettle_s, 0.0));
   judge_travel(driver.reading().x_m - from_m, driver.asked_m() - asked_before_m, goals, out);
   judge_rise(speeds, goals, out);
   return {};
@@ -253,12 +251,12 @@ core::Result<void> check_travel_in(Driver& driver, const RigGoals& goals,
 core::Result<void> check_watchdog(Driver& driver, const RigGoals& goals,
                                   std::vector<Finding>& out) {
   const double speed_m_s = 0.5 * goals.speed_m_s;
-  if (auto moving = driver.run(kMoving_s, -speed_m_s); !moving) return moving;
+  TRY(driver.run(kMoving_s, -speed_m_s));
   const double last_m = driver.reading().x_m;
   RigReading after;
   const Exchange how = driver.after_silence(kSilence_s, after);
   const bool said = how == Exchange::ok && (after.status & registers::kFaulted) != 0 &&
-                    after.fault == registers::Fault::watchdog;
+                    after.fault == registers::RigFault::watchdog;
   const double went_s = std::abs(after.x_m - last_m) / speed_m_s;
   out.push_back({.name = "watchdog of the rig",
                  .passed = said && went_s <= goals.stop_s,
@@ -275,11 +273,11 @@ core::Result<void> check_watchdog(Driver& driver, const RigGoals& goals,
 
 core::Result<void> check_return(Driver& driver, const RigBench& bench, const RigGoals& goals,
                                 std::vector<Finding>& out) {
-  if (auto on = driver.enable(); !on) return on;
+  TRY(driver.enable());
   for (int k = 0; k < int(kReturn_s * bench.rate_Hz) && driver.reading().x_m > 0.25 * goals.home_m;
        ++k)
-    if (auto went = driver.tick(-goals.speed_m_s); !went) return went.error();
-  if (auto still = driver.run(kSettle_s, 0.0); !still) return still;
+    TRY(driver.tick(-goals.speed_m_s));
+  TRY(driver.run(kSettle_s, 0.0));
   const double left_m = driver.reading().x_m;
   out.push_back({.name = "return to the entry",
                  .passed = std::abs(left_m) <= goals.home_m,
@@ -295,9 +293,9 @@ core::Result<void> check_return(Driver& driver, const RigBench& bench, const Rig
 /// A pulse, and one back that stops it.
 core::Result<void> check_turn(Driver& driver, const RigGoals& goals, std::vector<Finding>& out) {
   const std::int32_t from = driver.reading().angle_urad;
-  if (auto there = driver.run(kPulse_s, 0.0, goals.turn_Nm); !there) return there;
-  if (auto back = driver.run(kPulse_s, 0.0, -goals.turn_Nm); !back) return back;
-  if (auto still = driver.run(kSettle_s, 0.0); !still) return still;
+  TRY(driver.run(kPulse_s, 0.0, goals.turn_Nm));
+  TRY(driver.run(kPulse_s, 0.0, -goals.turn_Nm));
+  TRY(driver.run(kSettle_s, 0.0));
   const auto turned =
       static_cast<std::int32_t>(static_cast<std::uint32_t>(driver.reading().angle_urad) -
                                 static_cast<std::uint32_t>(from));  // it wraps
@@ -326,7 +324,7 @@ core::Result<bool> await(Pace& pace, Shown& shown, const RigBench& bench, double
       return core::Error{core::Errc::unavailable, "the line to the rig was closed"};
     if (how == Exchange::ok && ((reading.status & registers::kEmergency) != 0) == pressed)
       return true;
-    if (auto on = shown.tick(); !on) return on.error();
+    TRY(shown.tick());
   }
   return false;
 }
@@ -345,7 +343,7 @@ core::Result<bool> check_rig_at_rest(RigBench bench, const RigGoals& goals,
     trips.add(pace.took());
     rest.gone = how == Exchange::gone;
     rest.garbage += how == Exchange::garbage;
-    if (auto on = shown.tick(); !on) return on.error();
+    TRY(shown.tick());
     if (how != Exchange::ok) continue;
     ++rest.answered;
     rest.status = reading.status;
@@ -370,10 +368,10 @@ core::Result<bool> check_rig_at_rest(RigBench bench, const RigGoals& goals,
 core::Result<void> check_rig_motion(RigBench bench, const RigGoals& goals,
                                     std::vector<Finding>& out) {
   Driver driver(bench);
-  if (auto on = driver.enable(); !on) return on;
-  if (auto done = check_travel_in(driver, goals, out); !done) return done;
-  if (auto done = check_watchdog(driver, goals, out); !done) return done;
-  if (auto done = check_return(driver, bench, goals, out); !done) return done;
+  TRY(driver.enable());
+  TRY(check_travel_in(driver, goals, out));
+  TRY(check_watchdog(driver, goals, out));
+  TRY(check_return(driver, bench, goals, out));
   return check_turn(driver, goals, out);
 }
 
@@ -383,18 +381,16 @@ core::Result<Finding> check_emergency_stop(RigBench bench, double patience_s,
   Pace pace(bench);
   Shown shown(bench, 2.0 * patience_s);
   tell("Press the emergency stop now.");
-  auto pressed = await(pace, shown, bench, patience_s, true);
-  if (!pressed) return pressed.error();
-  if (!*pressed) {
+  auto pressed = TRY(await(pace, shown, bench, patience_s, true));
+  if (!pressed) {
     out.words = "the rig did not notice it: do not use it";
     return out;
   }
   tell("Release it, and press reset at the rig.");
-  auto released = await(pace, shown, bench, patience_s, false);
-  if (!released) return released.error();
-  out.passed = *released;
-  out.words = *released ? "noticed when a person pressed it, and released by the reset alone"
-                        : "it does not come off: press reset at the rig's panel";
+  auto released = TRY(await(pace, shown, bench, patience_s, false));
+  out.passed = released;
+  out.words = released ? "noticed when a person pressed it, and released by the reset alone"
+                       : "it does not come off: press reset at the rig's panel";
   return out;
 }
 

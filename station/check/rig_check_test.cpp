@@ -25,7 +25,7 @@ class Trolley final : public devices::RigDevice {
     last_ = clock_.now();
     if (++asked % 10 < lost_of_ten) return Exchange::silent;
     out = {.x_m = x_, .speed_m_s = v_, .angle_urad = std::int32_t(1e6 * theta_), .fz_N = zero_N};
-    out.fault = fault_ ? registers::Fault::watchdog : registers::Fault::none;
+    out.fault = fault_ ? registers::RigFault::watchdog : registers::RigFault::none;
     out.status = static_cast<std::uint16_t>((on_ ? registers::kEnabled : 0) |
                                             (fault_ ? registers::kFaulted : 0) |
                                             (emergency ? registers::kEmergency : 0));

@@ -7,6 +7,7 @@
 
 #include "core/clock.hpp"
 #include "core/json.hpp"
+#include "core/try.hpp"
 #include "core/words.hpp"
 
 namespace tractus {
@@ -76,9 +77,8 @@ core::Result<void> check_fixture(const std::string& where, std::span<const Fixtu
 }  // namespace
 
 core::Result<std::vector<FixturePoint>> read_fixture(const std::filesystem::path& path) {
-  auto json = core::read_json(path);
-  if (!json) return json.error();
-  core::Fields fields(*json, path.string() + ": ");
+  auto json = TRY(core::read_json(path));
+  core::Fields fields(json, path.string() + ": ");
   if (fields.text("format") != "tractus-fixture/1")
     fields.wrong("format", "\"tractus-fixture/1\" is expected");
   fields.text_or("name", "");
@@ -91,10 +91,10 @@ core::Result<std::vector<FixturePoint>> read_fixture(const std::filesystem::path
     points.push_back({one.text("name", 64), point_of(one, "stage_m")});
     if (std::ranges::count(points, points.back().name, &FixturePoint::name) > 1)
       one.wrong("name", fmt::format("'{}' is there twice", core::one_line(points.back().name)));
-    if (auto done = one.done(); !done) return done.error();
+    TRY(one.done());
   }
-  if (auto done = fields.done(); !done) return done.error();
-  if (auto checked = check_fixture(path.string(), points); !checked) return checked.error();
+  TRY(fields.done());
+  TRY(check_fixture(path.string(), points));
   return points;
 }
 
@@ -154,9 +154,8 @@ core::Result<void> keep_alignment(const std::filesystem::path& folder, const Kep
 core::Result<std::optional<KeptAlignment>> kept_alignment(const std::filesystem::path& folder) {
   const auto path = folder / "alignment.json";
   if (!std::filesystem::exists(path)) return std::optional<KeptAlignment>{};
-  auto json = core::read_json(path);
-  if (!json) return json.error();
-  core::Fields fields(*json, path.string() + ": ");
+  auto json = TRY(core::read_json(path));
+  core::Fields fields(json, path.string() + ": ");
   KeptAlignment out;
   if (fields.text("format") != "tractus-alignment/1")
     fields.wrong("format", "\"tractus-alignment/1\" is expected");
@@ -175,7 +174,7 @@ core::Result<std::optional<KeptAlignment>> kept_alignment(const std::filesystem:
   out.alignment.worst_m = fields.number("residual_worst_m", 0.0, 1.0);
   out.alignment.worst = fields.text_or("worst", "");
   fields.skip("points");
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   return std::optional(out);
 }
 

@@ -7,6 +7,8 @@
 #define XR_USE_GRAPHICS_API_OPENGL
 #include <openxr/openxr_platform.h>
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace headset {
 namespace {
@@ -36,7 +38,7 @@ core::Result<void> check_version(const Instance& instance) {
 core::Result<std::unique_ptr<Graphics>> Graphics::make(const Instance& instance) {
   auto made = instance.binding() == Binding::egl ? make_egl_graphics() : make_glx_graphics();
   if (!made) return made.error();
-  if (auto checked = check_version(instance); !checked) return checked.error();
+  TRY(check_version(instance));
   return made;
 }
 

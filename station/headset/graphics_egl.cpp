@@ -1,5 +1,6 @@
 #include <EGL/egl.h>
 
+#include "core/try.hpp"
 #include "station/headset/graphics.hpp"
 #include "station/view/egl_context.hpp"
 
@@ -31,9 +32,8 @@ class EglGraphics final : public Graphics {
 }  // namespace
 
 core::Result<std::unique_ptr<Graphics>> make_egl_graphics() {
-  auto context = view::EglContext::make();
-  if (!context) return context.error();
-  return std::unique_ptr<Graphics>(new EglGraphics(std::move(*context)));
+  auto context = TRY(view::EglContext::make());
+  return std::unique_ptr<Graphics>(new EglGraphics(std::move(context)));
 }
 
 }  // namespace headset

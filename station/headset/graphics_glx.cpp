@@ -1,5 +1,6 @@
 #include <GL/glx.h>
 
+#include "core/try.hpp"
 #include "station/headset/graphics.hpp"
 #include "station/view/glx_context.hpp"
 
@@ -33,9 +34,8 @@ class GlxGraphics final : public Graphics {
 }  // namespace
 
 core::Result<std::unique_ptr<Graphics>> make_glx_graphics() {
-  auto context = view::GlxContext::make();
-  if (!context) return context.error();
-  return std::unique_ptr<Graphics>(new GlxGraphics(std::move(*context)));
+  auto context = TRY(view::GlxContext::make());
+  return std::unique_ptr<Graphics>(new GlxGraphics(std::move(context)));
 }
 
 }  // namespace headset

@@ -1,5 +1,6 @@
 #include "station/headset/headset.hpp"
 
+#include "core/try.hpp"
 #include "station/headset/controls.hpp"
 #include "station/headset/painter.hpp"
 #include "station/headset/session.hpp"
@@ -43,24 +44,20 @@ Headset::~Headset() = default;
 
 core::Result<std::unique_ptr<Headset>> Headset::make(const Shown& shown, const core::Clock& clock) {
   auto parts = std::make_unique<Parts>(shown, clock);
-  if (auto opened = parts->open(); !opened) return opened.error();
+  TRY(parts->open());
   return std::unique_ptr<Headset>(new Headset(std::move(parts)));
 }
 
 core::Result<void> Headset::Parts::open() {
-  auto found = Instance::make();
-  if (!found) return found.error();
-  instance = std::move(*found);
-  auto context = Graphics::make(*instance);
-  if (!context) return context.error();
-  graphics = std::move(*context);
-  auto opened = Session::make(*instance, *graphics);
-  if (!opened) return opened.error();
-  session = std::move(*opened);
-  auto made =
-      Painter::make(shown.scene, graphics->context(), session->width_px(), session->height_px());
-  if (!made) return made.error();
-  painter = std::move(*made);
+  auto found = TRY(Instance::make());
+  instance = std::move(found);
+  auto context = TRY(Graphics::make(*instance));
+  graphics = std::move(context);
+  auto opened = TRY(Session::make(*instance, *graphics));
+  session = std::move(opened);
+  auto made = TRY(
+      Painter::make(shown.scene, graphics->context(), session->width_px(), session->height_px()));
+  painter = std::move(made);
   controls = std::make_unique<Controls>(*instance, *session);
   aligned = shown.X_SD && session->in_stage();
   if (aligned) X_SD = shown.X_SD;

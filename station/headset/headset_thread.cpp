@@ -2,6 +2,8 @@
 
 #include <future>
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace headset {
 namespace {
@@ -22,7 +24,7 @@ core::Result<std::unique_ptr<HeadsetThread>> HeadsetThread::start(Shown shown) {
   auto outcome = opened.said.get_future();
   made->thread_ = std::thread(
       [&opened, self = made.get(), shown = std::move(shown)] { self->work(shown, opened); });
-  if (auto open = outcome.get(); !open) return open.error();
+  TRY(outcome.get());
   return made;
 }
 

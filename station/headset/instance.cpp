@@ -7,6 +7,8 @@
 #include <set>
 #include <vector>
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace headset {
 namespace {
@@ -37,7 +39,7 @@ core::Result<std::unique_ptr<Instance>> Instance::make() {
   std::unique_ptr<Instance> made(new Instance);
   for (auto step :
        {&Instance::choose_binding, &Instance::create, &Instance::find_system, &Instance::find_eyes})
-    if (auto done = (*made.*step)(); !done) return done.error();
+    TRY((*made.*step)());
   return made;
 }
 
@@ -46,15 +48,14 @@ Instance::~Instance() {
 }
 
 core::Result<void> Instance::choose_binding() {
-  auto names = offered();
-  if (!names) return names.error();
-  if (!names->contains(kOpenGl))
+  auto names = TRY(offered());
+  if (!names.contains(kOpenGl))
     return core::Error{
         core::Errc::unavailable,
         fmt::format("headset: the runtime takes no OpenGL ({} is missing)", kOpenGl)};
   const char* display = std::getenv("DISPLAY");
   const bool on_x = display && *display;
-  binding_ = on_x || !names->contains(kEgl) ? Binding::glx : Binding::egl;
+  binding_ = on_x || !names.contains(kEgl) ? Binding::glx : Binding::egl;
   if (binding_ == Binding::glx && !on_x)
     return core::Error{core::Errc::unavailable,
                        "headset: the runtime takes OpenGL on X alone; set DISPLAY"};

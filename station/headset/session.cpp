@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace headset {
 namespace {
@@ -36,9 +38,9 @@ math::Pose pose_of(const XrPosef& pose) {
 core::Result<std::unique_ptr<Session>> Session::make(const Instance& instance,
                                                      const Graphics& graphics) {
   std::unique_ptr<Session> made(new Session(instance));
-  if (auto opened = made->open(graphics); !opened) return opened.error();
-  if (auto spaces = made->make_spaces(); !spaces) return spaces.error();
-  if (auto pictures = made->make_pictures(); !pictures) return pictures.error();
+  TRY(made->open(graphics));
+  TRY(made->make_spaces());
+  TRY(made->make_pictures());
   return made;
 }
 
@@ -66,13 +68,11 @@ core::Result<void> Session::make_spaces() {
   if (XR_FAILED(result)) return refused("no frames of reference", result);
   in_stage_ = std::find(types.begin(), types.begin() + count, XR_REFERENCE_SPACE_TYPE_STAGE) !=
               types.begin() + count;
-  auto room =
-      space_of(handle_, in_stage_ ? XR_REFERENCE_SPACE_TYPE_STAGE : XR_REFERENCE_SPACE_TYPE_LOCAL);
-  if (!room) return room.error();
-  room_ = *room;
-  auto head = space_of(handle_, XR_REFERENCE_SPACE_TYPE_VIEW);
-  if (!head) return head.error();
-  head_ = *head;
+  auto room = TRY(
+      space_of(handle_, in_stage_ ? XR_REFERENCE_SPACE_TYPE_STAGE : XR_REFERENCE_SPACE_TYPE_LOCAL));
+  room_ = room;
+  auto head = TRY(space_of(handle_, XR_REFERENCE_SPACE_TYPE_VIEW));
+  head_ = head;
   return {};
 }
 
@@ -83,9 +83,8 @@ core::Result<void> Session::make_pictures() {
   }
   pictures_.reserve(2);
   for (int eye = 0; eye < 2; ++eye) {
-    auto made = Swapchain::make(handle_, width_px_, height_px_);
-    if (!made) return made.error();
-    pictures_.push_back(std::move(*made));
+    auto made = TRY(Swapchain::make(handle_, width_px_, height_px_));
+    pictures_.push_back(std::move(made));
   }
   return {};
 }

@@ -9,6 +9,8 @@
 #define XR_USE_GRAPHICS_API_OPENGL
 #include <openxr/openxr_platform.h>
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace headset {
 namespace {
@@ -29,11 +31,10 @@ core::Result<std::int64_t> format_of(XrSession session) {
 }  // namespace
 
 core::Result<Swapchain> Swapchain::make(XrSession session, int width_px, int height_px) {
-  auto format = format_of(session);
-  if (!format) return format.error();
+  auto format = TRY(format_of(session));
   auto info = typed<XrSwapchainCreateInfo>(XR_TYPE_SWAPCHAIN_CREATE_INFO);
   info.usageFlags = XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT | XR_SWAPCHAIN_USAGE_SAMPLED_BIT;
-  info.format = *format;
+  info.format = format;
   info.sampleCount = info.faceCount = info.arraySize = info.mipCount = 1;
   info.width = static_cast<std::uint32_t>(width_px);
   info.height = static_cast<std::uint32_t>(height_px);

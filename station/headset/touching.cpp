@@ -1,5 +1,7 @@
 #include "station/headset/touching.hpp"
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace headset {
 namespace {
@@ -66,9 +68,8 @@ core::Result<std::vector<Touched>> touch_points(devices::Device& device, core::C
   std::vector<Touched> out;
   for (const FixturePoint& point : points) {
     talk.ask(point);
-    auto touched = touch_point(device, clock, point, tip_H_m, talk);
-    if (!touched) return touched.error();
-    out.push_back(std::move(*touched));
+    auto touched = TRY(touch_point(device, clock, point, tip_H_m, talk));
+    out.push_back(std::move(touched));
   }
   return out;
 }

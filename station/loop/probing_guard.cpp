@@ -39,18 +39,18 @@ safety::Fault ProbingGuard::fault_of(const devices::RigReading& r) noexcept {
   if (r.status & registers::kEmergency) return safety::Fault::emergency;
   if (!(r.status & registers::kFaulted)) return safety::Fault::none;
   switch (r.fault) {
-    case registers::Fault::watchdog:
+    case registers::RigFault::watchdog:
       stopped_itself_ = true;
       if (enabled() && ++restarts_ > kMostRestarts) return safety::Fault::watchdog;
       return safety::Fault::none;
-    case registers::Fault::stalled:
+    case registers::RigFault::stalled:
       return safety::Fault::stalled;
-    case registers::Fault::sensor:
+    case registers::RigFault::sensor:
       return safety::Fault::sensor;
-    case registers::Fault::emergency:
+    case registers::RigFault::emergency:
       return safety::Fault::emergency;
-    case registers::Fault::drive:
-    case registers::Fault::none:
+    case registers::RigFault::drive:
+    case registers::RigFault::none:
       return safety::Fault::drive;
   }
   return safety::Fault::drive;

@@ -23,7 +23,7 @@ RigReading at(double x_m, double fz_N = 0.0) {
   return r;
 }
 
-RigReading faulted(registers::Fault fault) {
+RigReading faulted(registers::RigFault fault) {
   RigReading r = at(0.01);
   r.status = static_cast<std::uint16_t>(registers::kFaulted | unsigned(fault) << 8);
   r.fault = fault;
@@ -117,7 +117,7 @@ TEST_F(TheGuard, RubbishAndAClosedLineLatchAtOnce) {
 
 TEST_F(TheGuard, TheMachinesOwnWatchdogIsClearedAndTheDriveEnabledAnew) {
   enable();
-  const auto reset = tick(faulted(registers::Fault::watchdog), 0.1);
+  const auto reset = tick(faulted(registers::RigFault::watchdog), 0.1);
   EXPECT_TRUE(reset.command.reset_fault);
   EXPECT_FALSE(reset.command.enable);
   const auto again = tick(at(0.01), 0.1);
@@ -126,7 +126,7 @@ TEST_F(TheGuard, TheMachinesOwnWatchdogIsClearedAndTheDriveEnabledAnew) {
   EXPECT_GT(tick(at(0.01), 0.1).command.speed_m_s, 0.0);
   EXPECT_EQ(guard_.restarts(), 1);
   for (int k = 0; k < 2 * ProbingGuard::kMostRestarts + 2 && !guard_.latched(); ++k) {
-    tick(faulted(registers::Fault::watchdog), 0.1);
+    tick(faulted(registers::RigFault::watchdog), 0.1);
     tick(at(0.01), 0.1);
     tick(at(0.01), 0.1);
   }
@@ -134,10 +134,11 @@ TEST_F(TheGuard, TheMachinesOwnWatchdogIsClearedAndTheDriveEnabledAnew) {
 }
 
 TEST_F(TheGuard, EveryOtherFaultOfTheMachineLatches) {
-  for (const auto& [theirs, ours] : {std::pair{registers::Fault::stalled, safety::Fault::stalled},
-                                     {registers::Fault::drive, safety::Fault::drive},
-                                     {registers::Fault::sensor, safety::Fault::sensor},
-                                     {registers::Fault::emergency, safety::Fault::emergency}}) {
+  for (const auto& [theirs, ours] :
+       {std::pair{registers::RigFault::stalled, safety::Fault::stalled},
+        {registers::RigFault::drive, safety::Fault::drive},
+        {registers::RigFault::sensor, safety::Fault::sensor},
+        {registers::RigFault::emergency, safety::Fault::emergency}}) {
     ProbingGuard guard(RigLimits{}, kTravel_m, kPeriod_s);
     guard.see(Exchange::ok, faulted(theirs));
     EXPECT_EQ(guard.fault(), ours);
@@ -153,7 +154,7 @@ TEST_F(TheGuard, NeverLetsThroughMoreThanItsLimits) {
     bool latched = false;
     for (int k = 0; k < 2000; ++k) {
       const RigReading reading =
-          random() % 500 == 0 ? faulted(registers::Fault(random() % 6))
+          random() % 500 == 0 ? faulted(registers::RigFault(random() % 6))
                               : at(0.025 + 0.04 * any(random), k < 250 ? 0.0 : 190.0 * any(random));
       const auto how = random() % 50 == 0 ? Exchange::silent : Exchange::ok;
       const auto seen = guard.see(how, reading);

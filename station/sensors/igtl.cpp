@@ -5,6 +5,8 @@
 #include <array>
 #include <cerrno>
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace sensors {
 namespace {
@@ -13,9 +15,8 @@ using core::Error;
 }  // namespace
 
 core::Result<std::unique_ptr<IgtlStream>> IgtlStream::open(const std::string& host, int port) {
-  auto socket = Socket::connect("motion capture", host, port, Transport::tcp);
-  if (!socket) return socket.error();
-  std::unique_ptr<IgtlStream> out(new IgtlStream(std::move(*socket)));
+  auto socket = TRY(Socket::connect("motion capture", host, port, Transport::tcp));
+  std::unique_ptr<IgtlStream> out(new IgtlStream(std::move(socket)));
   for (const char* type : {"TDATA", "QTDATA"}) {
     const auto ask = igtl_request(type);
     static_cast<void>(::send(out->socket_.fd(), ask.data(), ask.size(), MSG_NOSIGNAL));
@@ -25,9 +26,8 @@ core::Result<std::unique_ptr<IgtlStream>> IgtlStream::open(const std::string& ho
 
 core::Result<std::vector<TrackedPose>> IgtlStream::next(int wait_ms) {
   for (;;) {
-    auto message = reader_.next();
-    if (!message) return message.error();
-    if (*message) return std::move(**message);
+    auto message = TRY(reader_.next());
+    if (message) return std::move(*message);
     if (!socket_.readable(wait_ms)) return std::vector<TrackedPose>();
     std::array<std::byte, 65536> chunk;
     const ssize_t size = ::recv(socket_.fd(), chunk.data(), chunk.size(), 0);

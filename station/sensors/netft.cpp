@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "core/try.hpp"
 #include "core/words.hpp"
 
 namespace tractus {
@@ -93,17 +94,14 @@ std::size_t take(char* data, std::size_t one, std::size_t count, void* into) {
 }  // namespace
 
 core::Result<NetFtCalibration> parse_netft_xml(std::string_view xml, const std::string& where) {
-  const auto per_force = positive(xml, "cfgcpf", where);
-  if (!per_force) return per_force.error();
-  const auto per_torque = positive(xml, "cfgcpt", where);
-  if (!per_torque) return per_torque.error();
+  const auto per_force = TRY(positive(xml, "cfgcpf", where));
+  const auto per_torque = TRY(positive(xml, "cfgcpt", where));
   if (inside(xml, "comrdte").value_or("Enabled") == "Disabled")
     return Error{Errc::bad_input,
                  fmt::format("{}: RDT is switched off; enable it on the sensor's page "
                              "Communications",
                              where)};
-  const auto rate = positive(xml, "comrdtrate", where);
-  if (!rate) return rate.error();
+  const auto rate = TRY(positive(xml, "comrdtrate", where));
   const auto force = inside(xml, "scfgfu"), torque = inside(xml, "scfgtu");
   const auto force_si = si_of(kForces, force.value_or("")),
              torque_si = si_of(kTorques, torque.value_or(""));
@@ -116,9 +114,9 @@ core::Result<NetFtCalibration> parse_netft_xml(std::string_view xml, const std::
   const auto product = inside(xml, "prodname").value_or("");
   const bool axia = product.find("Axia") != std::string_view::npos || inside(xml, "setrate");
   return NetFtCalibration{
-      .counts_per_N = *per_force / *force_si,
-      .counts_per_Nm = *per_torque / *torque_si,
-      .rate_Hz = *rate,
+      .counts_per_N = per_force / *force_si,
+      .counts_per_Nm = per_torque / *torque_si,
+      .rate_Hz = rate,
       .serial = core::one_line(serial ? *serial : inside(xml, "calsn").value_or(""), 64),
       .product = core::one_line(product, 64),
       .status = axia ? NetFtStatus::axia : NetFtStatus::box};
@@ -163,9 +161,8 @@ math::Wrench wrench_of(const RdtRecord& record, const NetFtCalibration& by) noex
 
 core::Result<std::unique_ptr<NetFtStream>> NetFtStream::open(const std::string& host, int port,
                                                              bool bias) {
-  auto socket = Socket::connect("force sensor", host, port, Transport::udp);
-  if (!socket) return socket.error();
-  std::unique_ptr<NetFtStream> out(new NetFtStream(std::move(*socket)));
+  auto socket = TRY(Socket::connect("force sensor", host, port, Transport::udp));
+  std::unique_ptr<NetFtStream> out(new NetFtStream(std::move(socket)));
   if (bias) out->command(kBias);
   out->command(kStart);
   return out;

@@ -8,6 +8,7 @@
 
 #include "core/clock.hpp"
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "station/sensors/motion_rows.hpp"
 #include "station/sensors/row_file.hpp"
 
@@ -166,34 +167,28 @@ core::Result<Room> open_room(const RecordSetup& setup, const std::filesystem::pa
   std::unique_ptr<NetFtStream> force;
   std::unique_ptr<IgtlStream> motion;
   if (!setup.netft_host.empty()) {
-    auto asked = ask_calibration(setup.netft_host, setup.http_port);
-    if (!asked) return asked.error();
-    calibration = *asked;
+    auto asked = TRY(ask_calibration(setup.netft_host, setup.http_port));
+    calibration = asked;
   }
   if (!setup.igtl_host.empty()) {
-    auto opened = IgtlStream::open(setup.igtl_host, setup.igtl_port);
-    if (!opened) return opened.error();
-    motion = std::move(*opened);
+    auto opened = TRY(IgtlStream::open(setup.igtl_host, setup.igtl_port));
+    motion = std::move(opened);
   }
   if (calibration) {
-    auto opened = NetFtStream::open(setup.netft_host, setup.netft_port, setup.bias);
-    if (!opened) return opened.error();
-    force = std::move(*opened);
+    auto opened = TRY(NetFtStream::open(setup.netft_host, setup.netft_port, setup.bias));
+    force = std::move(opened);
   }
-  auto scratch = core::ScratchFolder::make(folder);
-  if (!scratch) return scratch.error();
-  out.scratch.emplace(std::move(*scratch));
+  auto scratch = TRY(core::ScratchFolder::make(folder));
+  out.scratch.emplace(std::move(scratch));
   if (force) {
-    auto file = RowFile::make(out.scratch->path() / "force.csv",
-                              "t_s,fx_N,fy_N,fz_N,tx_Nm,ty_Nm,tz_Nm,arrived_s\n");
-    if (!file) return file.error();
-    out.force = std::make_unique<Force>(std::move(*file), std::move(force), *calibration);
+    auto file = TRY(RowFile::make(out.scratch->path() / "force.csv",
+                                  "t_s,fx_N,fy_N,fz_N,tx_Nm,ty_Nm,tz_Nm,arrived_s\n"));
+    out.force = std::make_unique<Force>(std::move(file), std::move(force), *calibration);
   }
   if (motion) {
     MotionRows rows(setup.bodies);
-    auto file = RowFile::make(out.scratch->path() / "motion.csv", rows.header());
-    if (!file) return file.error();
-    out.motion = std::make_unique<Motion>(std::move(*file), std::move(motion), std::move(rows));
+    auto file = TRY(RowFile::make(out.scratch->path() / "motion.csv", rows.header()));
+    out.motion = std::make_unique<Motion>(std::move(file), std::move(motion), std::move(rows));
   }
   return out;
 }
@@ -228,9 +223,9 @@ core::Result<void> begin(const RecordSetup& setup, const std::filesystem::path& 
     return not_begun(setup, room, shared.ended_by());
   }
   const auto& at = room.scratch->path();
-  if (auto done = core::write_json(at / "assembly.json", recipe_of(setup)); !done) return done;
+  TRY(core::write_json(at / "assembly.json", recipe_of(setup)));
   const core::Json state = {{"format", "tractus-recording/1"}, {"state", "recording"}};
-  if (auto done = core::write_json(at / "recording.json", state); !done) return done;
+  TRY(core::write_json(at / "recording.json", state));
   return room.scratch->keep_as(folder);
 }
 
@@ -290,20 +285,19 @@ core::Result<Recorded> record(const RecordSetup& setup, const std::filesystem::p
   core::require(!setup.netft_host.empty() || !setup.igtl_host.empty(), "something is recorded");
   if (std::filesystem::exists(folder))
     return Error{Errc::conflict, fmt::format("{}: is there already", folder.string())};
-  auto room = open_room(setup, folder);
-  if (!room) return room.error();
+  auto room = TRY(open_room(setup, folder));
   Shared shared;
-  room->start(shared);
-  const auto begun = begin(setup, folder, *room, shared);
+  room.start(shared);
+  const auto begun = begin(setup, folder, room, shared);
   core::MonotonicClock clock;
   while (begun && !shared.stop && shared.seconds() < setup.for_s) {
     clock.sleep_until(clock.now() + 30'000'000);
     if (progress && !progress(shared.seconds() / setup.for_s)) break;
   }
   shared.stop = true;
-  room->join();
+  room.join();
   if (!begun) return begun.error();
-  return finished(*room, shared, folder);
+  return finished(room, shared, folder);
 }
 
 }  // namespace sensors

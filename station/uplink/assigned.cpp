@@ -1,5 +1,7 @@
 #include "station/uplink/assigned.hpp"
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace uplink {
 namespace {
@@ -10,27 +12,24 @@ core::Result<core::Json> asked(Server& server, const std::string& tail, const co
                         .path = "/api/v1/work/" + tail,
                         .headers = {{"Content-Type", "application/json"}},
                         .body = core::bytes_of(text)};
-  auto answer = server.send(request);
-  if (!answer) return answer.error();
-  if (answer->status == 204) return core::Json::object();
-  return json_of(request, *answer);
+  auto answer = TRY(server.send(request));
+  if (answer.status == 204) return core::Json::object();
+  return json_of(request, answer);
 }
 
 }  // namespace
 
 core::Result<Ticket> sign_in(Server& server, const std::string& badge, const std::string& pin) {
-  auto json = asked(server, "sign-in", {{"badge", badge}, {"pin", pin}});
-  if (!json) return json.error();
-  core::Fields fields(*json, "the server's ticket: ");
+  auto json = TRY(asked(server, "sign-in", {{"badge", badge}, {"pin", pin}}));
+  core::Fields fields(json, "the server's ticket: ");
   Ticket out{fields.text("ticket", 64), fields.text("name", 200)};
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   return out;
 }
 
 core::Result<wire::AssignedWork> next_trial(Server& server, const Ticket& ticket) {
-  auto json = asked(server, "next", {{"ticket", ticket.text}});
-  if (!json) return json.error();
-  return wire::AssignedWork::from_json(*json, "the server's trial: ");
+  auto json = TRY(asked(server, "next", {{"ticket", ticket.text}}));
+  return wire::AssignedWork::from_json(json, "the server's trial: ");
 }
 
 void sign_out(Server& server, const Ticket& ticket) {

@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "core/try.hpp"
+
 namespace tractus::uplink {
 
 core::Json ClockOffset::to_json() const {
@@ -19,11 +21,10 @@ core::Result<ClockOffset> measure_clock(Server& server, core::Clock& clock,
     auto answer = server.send(request);
     const core::Instant_ns took = clock.now() - begun;
     if (!answer) return answer.error();
-    auto json = json_of(request, *answer);
-    if (!json) return json.error();
-    core::Fields fields(*json, "the server's time: ");
+    auto json = TRY(json_of(request, *answer));
+    core::Fields fields(json, "the server's time: ");
     const std::int64_t server_us = fields.integer("server_utc_us", 0, INT64_MAX);
-    if (auto done = fields.done(); !done) return done.error();
+    TRY(fields.done());
     if (took >= shortest) continue;
     shortest = took;
     const double half_s = static_cast<double>(took) * 0.5e-9;

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/file.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace uplink {
@@ -29,22 +30,20 @@ bool is_id(const std::string& id) {
 
 core::Result<std::vector<Offered>> offered(Server& server) {
   const Request request{.method = "GET", .path = kPath};
-  auto answer = server.send(request);
-  if (!answer) return answer.error();
-  if (answer->status == 404) return std::vector<Offered>();
-  auto json = json_of(request, *answer);
-  if (!json) return json.error();
+  auto answer = TRY(server.send(request));
+  if (answer.status == 404) return std::vector<Offered>();
+  auto json = TRY(json_of(request, answer));
   const core::Error odd{core::Errc::bad_input,
                         "the server's list of models is not what was agreed"};
-  if (!json->is_object() || !json->contains("models") || !(*json)["models"].is_array() ||
-      (*json)["models"].size() > kMaxModels)
+  if (!json.is_object() || !json.contains("models") || !json["models"].is_array() ||
+      json["models"].size() > kMaxModels)
     return odd;
   std::vector<Offered> out;
-  for (const core::Json& one : (*json)["models"]) {
+  for (const core::Json& one : json["models"]) {
     core::Fields fields(one, "the server's model: ");
     Offered read{{fields.text("id", 32), fields.text("name", 400), fields.text("rig", 16)},
                  fields.text("sha256", 64)};
-    if (auto done = fields.done(); !done) return done.error();
+    TRY(fields.done());
     if (!is_id(read.model.id) || !core::is_sha256(read.sha256)) return odd;
     out.push_back(std::move(read));
   }
@@ -55,20 +54,18 @@ core::Result<void> fetch(Server& server, const Offered& one, const fs::path& tar
   const Request request{.method = "GET",
                         .path = fmt::format("{}/{}", kPath, one.model.id),
                         .max_answer_bytes = kMaxModel_bytes};
-  auto answer = server.send(request);
-  if (!answer) return answer.error();
-  if (answer->status != 200) return error_of(request, *answer);
-  if (core::sha256(answer->body) != one.sha256)
+  auto answer = TRY(server.send(request));
+  if (answer.status != 200) return error_of(request, answer);
+  if (core::sha256(answer.body) != one.sha256)
     return core::Error{core::Errc::corrupt,
                        fmt::format("model {}: is not what the server named", one.model.name)};
-  return core::write_file(target, answer->body);
+  return core::write_file(target, answer.body);
 }
 
 core::Result<void> say_there(Server& server, const std::string& id) {
   const Request request{.method = "POST", .path = fmt::format("{}/{}/there", kPath, id)};
-  auto answer = server.send(request);
-  if (!answer) return answer.error();
-  if (answer->status / 100 != 2) return error_of(request, *answer);
+  auto answer = TRY(server.send(request));
+  if (answer.status / 100 != 2) return error_of(request, answer);
   return {};
 }
 
@@ -76,14 +73,13 @@ core::Result<std::vector<KeptModel>> kept(const fs::path& folder) {
   std::vector<KeptModel> out;
   std::error_code failure;
   if (!fs::exists(folder / kNames, failure)) return out;
-  auto json = core::read_json(folder / kNames);
-  if (!json) return json.error();
-  if (!json->is_array())
+  auto json = TRY(core::read_json(folder / kNames));
+  if (!json.is_array())
     return core::Error{core::Errc::corrupt, (folder / kNames).string() + ": an array is expected"};
-  for (const core::Json& one : *json) {
+  for (const core::Json& one : json) {
     core::Fields fields(one, (folder / kNames).string() + ": ");
     out.push_back({fields.text("id", 32), fields.text("name", 400), fields.text("rig", 16)});
-    if (auto done = fields.done(); !done) return done.error();
+    TRY(fields.done());
   }
   return out;
 }
@@ -102,12 +98,11 @@ core::Json ModelReport::to_json() const {
 }
 
 core::Result<ModelReport> sync_models(Server& server, const fs::path& folder) {
-  auto models = offered(server);
-  if (!models) return models.error();
+  auto models = TRY(offered(server));
   ModelReport report;
   std::error_code failure;
   fs::create_directories(folder, failure);
-  for (const Offered& one : *models) {
+  for (const Offered& one : models) {
     const fs::path target = folder / (one.model.id + ".json");
     const bool here = fs::exists(target, failure);
     auto got = here ? core::Result<void>() : fetch(server, one, target);
@@ -117,18 +112,17 @@ core::Result<ModelReport> sync_models(Server& server, const fs::path& folder) {
       continue;
     }
     (here ? report.present : report.fetched).push_back(one.model.name);
-    if (auto said = say_there(server, one.model.id); !said) return said.error();
+    TRY(say_there(server, one.model.id));
   }
-  if (models->empty()) return report;
-  if (auto noted = keep_names(folder, *models); !noted) return noted.error();
+  if (models.empty()) return report;
+  TRY(keep_names(folder, models));
   return report;
 }
 
 core::Result<fs::path> model_named(const fs::path& folder, const std::string& name) {
-  auto models = kept(folder);
-  if (!models) return models.error();
+  auto models = TRY(kept(folder));
   std::string there;
-  for (auto at = models->rbegin(); at != models->rend(); ++at) {
+  for (auto at = models.rbegin(); at != models.rend(); ++at) {
     const bool by_id = name.size() >= kLeastOfId && at->id.starts_with(name);
     if (at->name == name || by_id) return folder / (at->id + ".json");
     there += (there.empty() ? "" : ", ") + at->name;

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "core/file.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace uplink {
@@ -39,7 +40,7 @@ core::Result<OutboxEntry> OutboxEntry::from_json(const core::Json& json, const s
     fields.wrong("sha256", "64 hexadecimal characters are expected");
   if (out.state != "queued" && out.state != "complete" && out.state != "refused")
     fields.wrong("state", "queued, complete or refused is expected");
-  if (auto checked = fields.done(); !checked) return checked.error();
+  TRY(fields.done());
   return out;
 }
 
@@ -59,12 +60,11 @@ core::Result<void> Outbox::write(const OutboxEntry& entry) const {
 core::Result<void> Outbox::queue(const std::string& trial_id, const std::string& case_id,
                                  const fs::path& trial_file) const {
   if (holds(trial_id)) return {};
-  auto digest = digest_of(trial_file);
-  if (!digest) return digest.error();
+  auto digest = TRY(digest_of(trial_file));
   return write({.trial_id = trial_id,
                 .case_id = case_id,
-                .size_bytes = digest->size_bytes,
-                .sha256 = digest->sha256,
+                .size_bytes = digest.size_bytes,
+                .sha256 = digest.sha256,
                 .reason = {}});
 }
 
@@ -73,11 +73,9 @@ core::Result<std::vector<OutboxEntry>> Outbox::entries() const {
   std::error_code failure;
   for (const auto& file : fs::directory_iterator(folder_, failure)) {
     if (file.path().extension() != ".json") continue;
-    auto json = core::read_json(file.path());
-    if (!json) return json.error();
-    auto entry = OutboxEntry::from_json(*json, file.path().string() + ": ");
-    if (!entry) return entry.error();
-    out.push_back(std::move(*entry));
+    auto json = TRY(core::read_json(file.path()));
+    auto entry = TRY(OutboxEntry::from_json(json, file.path().string() + ": "));
+    out.push_back(std::move(entry));
   }
   if (failure)
     return core::Error{core::Errc::io, fmt::format("{}: {}", folder_.string(), failure.message())};

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "station/uplink/outbox.hpp"
 
 namespace tractus {
@@ -71,15 +72,14 @@ core::Result<core::Bytes> Fetching::range(std::uint64_t at, std::uint64_t size) 
                         .path = fmt::format("/api/v1/cases/{}/parts/{}", case_id, part.name),
                         .headers = {{"Range", fmt::format("bytes={}-{}", at, at + size - 1)}},
                         .max_answer_bytes = size};
-  auto answer = server.send(request);
-  if (!answer) return answer.error();
-  if (answer->status != 206 && !(answer->status == 200 && size == part.size_bytes))
-    return answer->status / 100 == 2 ? changed(case_id, part.name + ": the server ignores ranges")
-                                     : error_of(request, *answer);
-  if (answer->body.size() != size)
+  auto answer = TRY(server.send(request));
+  if (answer.status != 206 && !(answer.status == 200 && size == part.size_bytes))
+    return answer.status / 100 == 2 ? changed(case_id, part.name + ": the server ignores ranges")
+                                    : error_of(request, answer);
+  if (answer.body.size() != size)
     return changed(case_id, part.name + ": a piece has the wrong size");
   fetched_bytes += size;
-  return std::move(answer->body);
+  return std::move(answer.body);
 }
 
 /// Of a stored volume the index is looked at first.
@@ -89,9 +89,8 @@ core::Result<std::vector<Segment>> Fetching::plan() const {
   const bool is_volume = part.name.ends_with(".tvol") && !local.empty();
   core::Bytes head;
   for (std::uint64_t known = kVolumeHead_bytes; is_volume && known <= part.size_bytes;) {
-    auto more = range(head.size(), known - head.size());
-    if (!more) return more.error();
-    head.insert(head.end(), more->begin(), more->end());
+    auto more = TRY(range(head.size(), known - head.size()));
+    head.insert(head.end(), more.begin(), more.end());
     const auto end = index_end(head);
     if (!end || *end <= known) break;
     known = *end;
@@ -118,9 +117,9 @@ core::Result<void> Fetching::resume(const std::vector<Segment>& plan) const {
     while (done < segment.offset + segment.size) {
       const std::uint64_t skipped = done - segment.offset;
       const std::uint64_t size = std::min(kPiece_bytes, segment.size - skipped);
-      auto piece = segment.from.empty() ? range(done, size) : bytes_here(segment, skipped, size);
-      if (!piece) return piece.error();
-      if (auto written = file.add(*piece); !written) return written;
+      auto piece =
+          TRY(segment.from.empty() ? range(done, size) : bytes_here(segment, skipped, size));
+      TRY(file.add(piece));
       done += size;
     }
   }
@@ -128,9 +127,8 @@ core::Result<void> Fetching::resume(const std::vector<Segment>& plan) const {
 }
 
 core::Result<bool> Fetching::holds() const {
-  auto digest = digest_of(target);
-  if (!digest) return digest.error();
-  return digest->size_bytes == part.size_bytes && digest->sha256 == part.sha256;
+  auto digest = TRY(digest_of(target));
+  return digest.size_bytes == part.size_bytes && digest.sha256 == part.sha256;
 }
 
 }  // namespace
@@ -144,17 +142,16 @@ core::Result<void> fetch_part(Server& server, const std::string& case_id, const 
   if (begun && fs::file_size(target, ignored) == part.size_bytes)
     if (auto whole = fetching.holds(); whole && *whole) return {};
   if (begun && fs::file_size(target, ignored) >= part.size_bytes) fs::remove(target, ignored);
-  auto plan = fetching.plan();
-  if (!plan) return plan.error();
+  auto plan = TRY(fetching.plan());
   const bool from_here =
-      begun || std::ranges::any_of(*plan, [](const Segment& one) { return !one.from.empty(); });
-  if (auto done = fetching.resume(*plan); !done) return done;
+      begun || std::ranges::any_of(plan, [](const Segment& one) { return !one.from.empty(); });
+  TRY(fetching.resume(plan));
   auto whole = fetching.holds();
   if (!whole) return whole.error();
   if (*whole) return {};
   fs::remove(target, ignored);
   if (!from_here) return changed(case_id, part.name + ": is not what the manifest names");
-  if (auto again = fetching.resume({{.offset = 0, .size = part.size_bytes}}); !again) return again;
+  TRY(fetching.resume({{.offset = 0, .size = part.size_bytes}}));
   whole = fetching.holds();
   if (!whole) return whole.error();
   if (*whole) return {};

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/file.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace uplink {
@@ -39,9 +40,8 @@ core::Result<ReportsHanded> hand_over_reports(Server& server, const fs::path& fo
                             .path = "/api/v1/station/report",
                             .headers = {{"Content-Type", "application/json"}},
                             .body = *bytes};
-      auto answer = server.send(request);
-      if (!answer) return answer.error();
-      if (answer->status / 100 != 2) sent = error_of(request, *answer);
+      auto answer = TRY(server.send(request));
+      if (answer.status / 100 != 2) sent = error_of(request, answer);
     }
     if (sent) {
       fs::remove(file, ignored);

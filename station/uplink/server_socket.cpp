@@ -6,6 +6,8 @@
 
 #include <chrono>
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace uplink {
 namespace {
@@ -54,9 +56,7 @@ class CurlLine final : public ServerSocket {
     curl_easy_getinfo(handle_, CURLINFO_ACTIVESOCKET, &socket_);
     const std::string key = core::base64(core::random_bytes(16));
     const std::string host = to.url.substr(to.url.find("://") + 3);
-    const auto asked =
-        send_all(websocket_request(host, to.path, to.authorization, key), kAnswer_ms);
-    if (!asked) return asked;
+    TRY(send_all(websocket_request(host, to.path, to.authorization, key), kAnswer_ms));
     return take_answer(key);
   }
 
@@ -67,19 +67,16 @@ class CurlLine final : public ServerSocket {
   core::Result<std::optional<std::string>> receive(int patience_ms) override {
     const auto until = Clock::now() + std::chrono::milliseconds(patience_ms);
     while (true) {
-      auto event = reader_.next();
-      if (!event) return event.error();
-      if (*event) {
-        if ((*event)->opcode == Opcode::text) return std::optional(std::move((*event)->payload));
-        if ((*event)->opcode == Opcode::close) return open_ = false, broken("the server closed it");
-        if ((*event)->opcode == Opcode::ping)
-          if (auto sent = send_frame(Opcode::pong, (*event)->payload); !sent) return sent.error();
+      auto event = TRY(reader_.next());
+      if (event) {
+        if (event->opcode == Opcode::text) return std::optional(std::move(event->payload));
+        if (event->opcode == Opcode::close) return open_ = false, broken("the server closed it");
+        if (event->opcode == Opcode::ping) TRY(send_frame(Opcode::pong, event->payload));
         continue;
       }
-      auto more = receive();
-      if (!more) return more.error();
-      if (!more->empty()) {
-        reader_.add(*more);
+      auto more = TRY(receive());
+      if (!more.empty()) {
+        reader_.add(more);
         continue;
       }
       const auto left = until - Clock::now();
@@ -132,17 +129,15 @@ class CurlLine final : public ServerSocket {
     const auto until = Clock::now() + std::chrono::milliseconds(kAnswer_ms);
     std::string head;
     while (head.find("\r\n\r\n") == std::string::npos) {
-      auto more = receive();
-      if (!more) return more.error();
-      head += *more;
+      auto more = TRY(receive());
+      head += more;
       const auto left = until - Clock::now();
       if (head.size() > kMaxHead_bytes || left <= Clock::duration::zero())
         return broken("the server does not answer");
-      if (more->empty()) wait(POLLIN, left);
+      if (more.empty()) wait(POLLIN, left);
     }
     const auto end = head.find("\r\n\r\n") + 4;
-    if (auto fine = check_acceptance(std::string_view(head).substr(0, end), key); !fine)
-      return fine;
+    TRY(check_acceptance(std::string_view(head).substr(0, end), key));
     reader_.add(std::string_view(head).substr(end));
     open_ = true;
     return {};
@@ -159,7 +154,7 @@ class CurlLine final : public ServerSocket {
 core::Result<std::unique_ptr<ServerSocket>> open_server_socket(const ServerAddress& to,
                                                                const std::atomic<bool>& stopped) {
   auto line = std::make_unique<CurlLine>();
-  if (auto opened = line->open(to, stopped); !opened) return opened.error();
+  TRY(line->open(to, stopped));
   return std::unique_ptr<ServerSocket>(std::move(line));
 }
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
+
 namespace tractus::uplink {
 
 core::Result<wire::StudyWork> take_trials(Server& server, const std::string& study,
@@ -15,11 +17,9 @@ core::Result<wire::StudyWork> take_trials(Server& server, const std::string& stu
                         .path = fmt::format("/api/v1/studies/{}/participants/{}/take?ahead={}",
                                             study, participant, ahead),
                         .max_answer_bytes = 16u << 20};
-  auto answer = server.send(request);
-  if (!answer) return answer.error();
-  auto json = json_of(request, *answer);
-  if (!json) return json.error();
-  auto work = wire::StudyWork::from_json(*json, "the server's trials: ");
+  auto answer = TRY(server.send(request));
+  auto json = TRY(json_of(request, answer));
+  auto work = wire::StudyWork::from_json(json, "the server's trials: ");
   if (!work) return work.error();
   if (work->study != study || work->participant != participant)
     return core::Error{core::Errc::bad_input, "the server's trials are somebody else's"};

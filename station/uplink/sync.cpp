@@ -6,6 +6,7 @@
 
 #include "cases/case.hpp"
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "station/uplink/part_fetch.hpp"
 
 namespace tractus {
@@ -18,22 +19,19 @@ constexpr std::size_t kMaxCases = 10'000;
 
 core::Result<core::Bytes> fetch(Server& server, const std::string& path, std::uint64_t limit) {
   const Request request{.method = "GET", .path = path, .max_answer_bytes = limit};
-  auto answer = server.send(request);
-  if (!answer) return answer.error();
-  if (answer->status != 200) return error_of(request, *answer);
-  return std::move(answer->body);
+  auto answer = TRY(server.send(request));
+  if (answer.status != 200) return error_of(request, answer);
+  return std::move(answer.body);
 }
 
 core::Result<std::vector<std::string>> case_ids(Server& server) {
   const Request request{.method = "GET", .path = "/api/v1/cases", .max_answer_bytes = 16u << 20};
-  auto answer = server.send(request);
-  if (!answer) return answer.error();
-  auto json = json_of(request, *answer);
-  if (!json) return json.error();
+  auto answer = TRY(server.send(request));
+  auto json = TRY(json_of(request, answer));
   const core::Error odd{core::Errc::bad_input, "the server's list of cases is not what was agreed"};
-  if (!json->is_object() || !json->contains("cases") || !(*json)["cases"].is_array()) return odd;
+  if (!json.is_object() || !json.contains("cases") || !json["cases"].is_array()) return odd;
   std::vector<std::string> out;
-  for (const auto& one : (*json)["cases"]) {
+  for (const auto& one : json["cases"]) {
     if (!one.is_object() || !one.contains("id") || !one["id"].is_string()) return odd;
     out.push_back(one["id"].get<std::string>());
     if (!core::is_sha256(out.back()) || out.size() > kMaxCases) return odd;
@@ -60,24 +58,19 @@ core::Error changed(const std::string& id, const std::string& what) {
 core::Result<cases::Case> fetch_manifest(Server& server, const std::string& id,
                                          const fs::path& folder) {
   const std::string path = "/api/v1/cases/" + id;
-  auto manifest = fetch(server, path, kMaxManifest_bytes);
-  if (!manifest) return manifest.error();
-  if (core::sha256(*manifest) != id) return changed(id, "the manifest is not the one of that name");
-  auto json = core::parse_json(core::text_of(*manifest), "case.json");
-  if (!json) return json.error();
-  auto definition = cases::Case::from_json(*json, "case.json: ");
+  auto manifest = TRY(fetch(server, path, kMaxManifest_bytes));
+  if (core::sha256(manifest) != id) return changed(id, "the manifest is not the one of that name");
+  auto json = TRY(core::parse_json(core::text_of(manifest), "case.json"));
+  auto definition = cases::Case::from_json(json, "case.json: ");
   if (!definition) return definition.error();
-  auto signature = fetch(server, path + "/parts/case.sig", 64u << 10);
-  if (!signature) return signature.error();
+  auto signature = TRY(fetch(server, path + "/parts/case.sig", 64u << 10));
   std::error_code failure;
   fs::create_directories(folder, failure);
   for (const auto& entry :
        fs::directory_iterator(folder, failure))  // what a kill left half written
     if (entry.path().extension() == ".part") fs::remove(entry.path(), failure);
-  if (auto written = core::write_file(folder / "case.json", *manifest); !written)
-    return written.error();
-  if (auto written = core::write_file(folder / "case.sig", *signature); !written)
-    return written.error();
+  TRY(core::write_file(folder / "case.json", manifest));
+  TRY(core::write_file(folder / "case.sig", signature));
   return definition;
 }
 
@@ -107,25 +100,21 @@ core::Result<void> fetch_case(Server& server, const std::string& id, const fs::p
                               const std::vector<std::string>& trusted, const SyncLimits& limits,
                               SyncReport& report) {
   const fs::path folder = incoming_of(cases_folder) / id;
-  auto definition = fetch_manifest(server, id, folder);
-  if (!definition) return definition.error();
-  if (auto room = check_room(id, *definition, folder, limits); !room) return room;
+  auto definition = TRY(fetch_manifest(server, id, folder));
+  TRY(check_room(id, definition, folder, limits));
   const LocalParts local(cases_folder);
-  for (const cases::Part& part : definition->parts) {
+  for (const cases::Part& part : definition.parts) {
     if (part.secret) continue;
     report.bytes_of_cases += part.size_bytes;
-    if (auto got = fetch_part(server, id, part, local, folder / part.name, report.bytes_fetched);
-        !got)
-      return got;
+    TRY(fetch_part(server, id, part, local, folder / part.name, report.bytes_fetched));
   }
-  auto opened = cases::open_case(folder);
-  if (!opened) return opened.error();
-  if (opened->id != id) return changed(id, "holds another case");
-  if (std::ranges::find(trusted, opened->signer_public_hex) == trusted.end())
+  auto opened = TRY(cases::open_case(folder));
+  if (opened.id != id) return changed(id, "holds another case");
+  if (std::ranges::find(trusted, opened.signer_public_hex) == trusted.end())
     return core::Error{core::Errc::forbidden,
                        fmt::format("case {}: signed by {}, whom this station does not trust",
-                                   id.substr(0, 12), opened->signer_public_hex)};
-  if (auto kept = core::sync_folder(folder); !kept) return kept;
+                                   id.substr(0, 12), opened.signer_public_hex)};
+  TRY(core::sync_folder(folder));
   std::error_code failure;
   fs::rename(folder, cases_folder / id, failure);  // whole, in one step
   if (failure)
@@ -151,12 +140,11 @@ core::Json SyncReport::to_json() const {
 core::Result<SyncReport> sync_cases(Server& server, const fs::path& cases_folder,
                                     const std::vector<std::string>& trusted,
                                     const core::Progress& progress, const SyncLimits& limits) {
-  auto ids = case_ids(server);
-  if (!ids) return ids.error();
+  auto ids = TRY(case_ids(server));
   SyncReport report;
   std::error_code ignored;
-  for (std::size_t i = 0; i < ids->size(); ++i) {
-    const std::string& id = (*ids)[i];
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    const std::string& id = ids[i];
     if (fs::exists(cases_folder / id, ignored)) {
       report.present.push_back(id);
     } else if (auto got = fetch_case(server, id, cases_folder, trusted, limits, report); got) {
@@ -167,7 +155,7 @@ core::Result<SyncReport> sync_cases(Server& server, const fs::path& cases_folder
       fs::remove_all(incoming_of(cases_folder) / id, ignored);
       report.refused.push_back(got.error().what);
     }
-    if (progress && !progress(double(i + 1) / double(ids->size())))
+    if (progress && !progress(double(i + 1) / double(ids.size())))
       return core::Error{core::Errc::cancelled, "the synchronisation was stopped"};
   }
   return report;

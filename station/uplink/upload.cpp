@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <fstream>
 
+#include "core/try.hpp"
 #include "wire/messages.hpp"
 
 namespace tractus {
@@ -19,9 +20,8 @@ constexpr int kMaxCorrections =
 core::Result<wire::UploadState> state_of(const Request& request,
                                          const core::Result<HttpResponse>& answer) {
   if (!answer) return answer.error();
-  auto json = json_of(request, *answer);
-  if (!json) return json.error();
-  return wire::UploadState::from_json(*json, "the server's answer: ");
+  auto json = TRY(json_of(request, *answer));
+  return wire::UploadState::from_json(json, "the server's answer: ");
 }
 
 core::Result<wire::UploadState> announce(Server& server, const std::string& path,
@@ -82,20 +82,18 @@ core::Result<void> send_rest(Server& server, const std::string& path, const fs::
   int corrections = 0;
   while (entry.offset_bytes < entry.size_bytes) {
     const std::uint64_t size = std::min(kChunk_bytes, entry.size_bytes - entry.offset_bytes);
-    auto piece = read_piece(file, trial_file, entry.offset_bytes, size);
-    if (!piece) return piece.error();
+    auto piece = TRY(read_piece(file, trial_file, entry.offset_bytes, size));
     Request request;
-    const auto answer = send_chunk(server, path, entry.offset_bytes, *piece, request);
+    const auto answer = send_chunk(server, path, entry.offset_bytes, piece, request);
     if (const auto offset = corrected_offset(answer); offset && ++corrections <= kMaxCorrections) {
       if (*offset > entry.size_bytes) return confused(entry, *offset);
       entry.offset_bytes = *offset;
       continue;
     }
-    const auto state = state_of(request, answer);
-    if (!state) return state.error();
-    if (state->offset_bytes <= entry.offset_bytes || state->offset_bytes > entry.size_bytes)
-      return confused(entry, state->offset_bytes);
-    entry.offset_bytes = state->offset_bytes;
+    const auto state = TRY(state_of(request, answer));
+    if (state.offset_bytes <= entry.offset_bytes || state.offset_bytes > entry.size_bytes)
+      return confused(entry, state.offset_bytes);
+    entry.offset_bytes = state.offset_bytes;
     corrections = 0;
     if (progress && !progress(double(entry.offset_bytes) / double(entry.size_bytes)))
       return core::Error{core::Errc::cancelled, "the upload was stopped"};
@@ -119,20 +117,18 @@ core::Result<void> upload_trial(Server& server, const fs::path& trial_file, Outb
                                 const core::Progress& progress,
                                 const std::optional<ClockOffset>& offset) {
   const std::string path = "/api/v1/uploads/" + entry.trial_id;
-  auto state = announce(server, path, entry);
-  if (!state) return state.error();
-  if (state->offset_bytes > entry.size_bytes) return confused(entry, state->offset_bytes);
-  entry.offset_bytes = state->offset_bytes;
-  if (state->state != "complete") {
-    if (auto sent = send_rest(server, path, trial_file, entry, progress); !sent) return sent;
+  auto state = TRY(announce(server, path, entry));
+  if (state.offset_bytes > entry.size_bytes) return confused(entry, state.offset_bytes);
+  entry.offset_bytes = state.offset_bytes;
+  if (state.state != "complete") {
+    TRY(send_rest(server, path, trial_file, entry, progress));
     const std::string note = note_of(offset);
     const Request request{.method = "POST",
                           .path = path + "/commit",
                           .headers = {{"Content-Type", "application/json"}},
                           .body = core::bytes_of(note)};
-    auto committed = state_of(request, server.send(request));
-    if (!committed) return committed.error();
-    if (committed->state != "complete")
+    auto committed = TRY(state_of(request, server.send(request)));
+    if (committed.state != "complete")
       return core::Error{
           core::Errc::unavailable,
           fmt::format("upload of {}: not complete after the commit", entry.trial_id)};
@@ -150,20 +146,19 @@ core::Result<UploadReport> upload_all(Server& server, const Outbox& outbox,
                                       const fs::path& trials_folder, core::Clock& clock,
                                       const Patience& patience, const core::Progress& progress,
                                       const std::optional<ClockOffset>& offset) {
-  auto entries = outbox.entries();
-  if (!entries) return entries.error();
-  std::erase_if(*entries, [](const OutboxEntry& entry) { return entry.state != "queued"; });
+  auto entries = TRY(outbox.entries());
+  std::erase_if(entries, [](const OutboxEntry& entry) { return entry.state != "queued"; });
   UploadReport report;
   core::Instant_ns wait = patience.first_wait_ns, last_progress = clock.now();
-  for (std::size_t i = 0; i < entries->size();) {
-    OutboxEntry& entry = (*entries)[i];
+  for (std::size_t i = 0; i < entries.size();) {
+    OutboxEntry& entry = entries[i];
     const std::uint64_t before = entry.offset_bytes;
     const auto outcome =
         upload_trial(server, trials_folder / (entry.trial_id + ".ttrial"), entry, progress, offset);
     if (!outcome && outcome.error().code == core::Errc::unauthorised) return outcome.error();
     const bool later = !outcome && passes(outcome.error().code);
     if (!outcome && !later) entry.state = "refused", entry.reason = outcome.error().what;
-    if (auto written = outbox.write(entry); !written) return written.error();
+    TRY(outbox.write(entry));
     if (entry.offset_bytes > before || !later)
       last_progress = clock.now(), wait = patience.first_wait_ns;
     if (!later) {
@@ -174,7 +169,7 @@ core::Result<UploadReport> upload_all(Server& server, const Outbox& outbox,
     report.why = outcome.error().what;
     if (outcome.error().code == core::Errc::cancelled ||
         clock.now() - last_progress >= patience.give_up_after_ns) {
-      report.waiting = static_cast<int>(entries->size() - i);
+      report.waiting = static_cast<int>(entries.size() - i);
       return report;
     }
     clock.sleep_until(clock.now() + wait);

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "core/require.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace uplink {
@@ -130,11 +131,10 @@ core::Result<std::optional<WebSocketReader::Head>> WebSocketReader::head() const
 
 core::Result<std::optional<WebSocketEvent>> WebSocketReader::next() {
   while (true) {
-    auto found = head();
-    if (!found) return found.error();
-    if (!*found || waiting_.size() < (*found)->size + (*found)->payload)
+    auto found = TRY(head());
+    if (!found || waiting_.size() < found->size + found->payload)
       return std::optional<WebSocketEvent>();
-    const Head frame = **found;
+    const Head frame = *found;
     std::string payload = waiting_.substr(frame.size, frame.payload);
     waiting_.erase(0, frame.size + frame.payload);
     if (frame.opcode == std::uint8_t(Opcode::close) || frame.opcode == std::uint8_t(Opcode::ping) ||

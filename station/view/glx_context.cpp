@@ -5,6 +5,8 @@
 
 #include <string>
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace view {
 namespace {
@@ -42,7 +44,7 @@ GLXFBConfig config_of(Display* display) {
 
 core::Result<std::unique_ptr<GlxContext>> GlxContext::make() {
   std::unique_ptr<GlxContext> made(new GlxContext);
-  if (auto opened = made->open(); !opened) return opened.error();
+  TRY(made->open());
   return made;
 }
 

@@ -17,6 +17,7 @@
 #include <vtkUnsignedCharArray.h>
 
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "station/view/egl_context.hpp"
 #include "station/view/lent_context.hpp"
 #include "station/view/scene_parts.hpp"
@@ -88,7 +89,7 @@ core::Result<std::unique_ptr<View>> View::make(const Scene& scene, Mode mode, in
                                                int height_px) {
   auto parts = std::make_unique<Parts>();
   if (mode == Mode::window) {
-    if (auto there = display_is_there(); !there) return there.error();
+    TRY(display_is_there());
     parts->window = vtkSmartPointer<vtkRenderWindow>::New();
     parts->interactor = vtkSmartPointer<vtkRenderWindowInteractor>::New();
     parts->interactor->SetInteractorStyle(vtkNew<vtkInteractorStyleTrackballCamera>());
@@ -100,9 +101,8 @@ core::Result<std::unique_ptr<View>> View::make(const Scene& scene, Mode mode, in
     });
     parts->interactor->AddObserver(vtkCommand::ExitEvent, closing);
   } else {
-    auto egl = EglContext::make();
-    if (!egl) return egl.error();
-    parts->egl = std::move(*egl);
+    auto egl = TRY(EglContext::make());
+    parts->egl = std::move(egl);
     vtkNew<vtkGenericOpenGLRenderWindow> window;
     window->SetFrameBlitModeToNoBlit();
     lend_context(*window, *parts->egl);

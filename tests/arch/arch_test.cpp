@@ -185,6 +185,21 @@ TEST(Architecture, JsonIsParsedByCoreAlone) {
   EXPECT_EQ(calls_in_core, 2) << "the expression no longer finds the one place that is allowed";
 }
 
+/// A guard without a name ends in the line that takes it: TRY(lock()) would guard nothing.
+TEST(Architecture, GuardsHaveANameBeyondTry) {
+  const std::regex guard("(^|[;{}])[ \\n]*TRY\\([^;]*(hold_upload|hold|lock|Lock::take)\\(");
+  EXPECT_TRUE(std::regex_search(std::string("{\n  TRY(FolderLock::take(path));"), guard));
+  EXPECT_FALSE(std::regex_search(std::string(";\n  const auto held = TRY(hold(x));"), guard));
+  for (const auto& path : sources()) {
+    const std::string text = text_of(path);
+    for (std::size_t at = 0; (at = text.find("TRY(", at)) != std::string::npos; ++at) {
+      const std::size_t from = text.find_last_of(";{}", at);
+      const std::string statement = text.substr(from + 1, text.find('\n', at) - from);
+      EXPECT_FALSE(std::regex_search(statement, guard)) << path << ": " << statement;
+    }
+  }
+}
+
 /// Trials reach research through the filter of db/store/cohort/released.hpp alone: the rows with names are
 /// for the page of a trainee, and whoever else includes them is named here after somebody thought
 /// about it.

@@ -45,7 +45,7 @@ Client connected(int port, int unit = registers::kUnit) {
 struct Readings {
   std::uint16_t at[registers::kReadingCount] = {};
   std::uint16_t status() const { return at[0]; }
-  registers::Fault fault() const { return static_cast<registers::Fault>(at[0] >> 8); }
+  registers::RigFault fault() const { return static_cast<registers::RigFault>(at[0] >> 8); }
   std::int32_t wide_at(int address) const {
     return wide(at + (address - registers::kReadingStart));
   }
@@ -131,7 +131,7 @@ TEST_F(RigOnTheWire, StopsWhenTheBusIsLostAndSaysWhy) {
   const auto again = connected(peer_->port());
   const auto readings = cycle(again.get(), 0, 0);
   EXPECT_EQ(readings.wide_at(registers::kVelocity_um_s), 0);
-  EXPECT_EQ(readings.fault(), registers::Fault::watchdog);
+  EXPECT_EQ(readings.fault(), registers::RigFault::watchdog);
   const int stopped_um = readings.wide_at(registers::kPosition_um);
   silence(50);
   EXPECT_EQ(cycle(again.get(), 0, 0).wide_at(registers::kPosition_um), stopped_um);
@@ -185,7 +185,7 @@ TEST_F(RigOnTheWire, RefusesRequestsThatItsMapDoesNotHave) {
   EXPECT_EQ(modbus_read_registers(stranger.get(), 0, 1, values), -1);
   EXPECT_EQ(errno, EMBXGTAR);
   EXPECT_EQ(traffic_.refused, 5u);
-  EXPECT_EQ(cycle(client.get(), 0, 0).fault(), registers::Fault::none);
+  EXPECT_EQ(cycle(client.get(), 0, 0).fault(), registers::RigFault::none);
 }
 
 int raw_socket(int port) {
@@ -212,7 +212,7 @@ TEST_F(RigOnTheWire, OutlivesGarbageAndGoesOnAnswering) {
     pollfd closed{socket, POLLIN, 0};
     EXPECT_EQ(::poll(&closed, 1, 10000), 1) << "the peer neither answers nor hangs up";
     ::close(socket);
-    EXPECT_EQ(cycle(client.get(), 0, 0).fault(), registers::Fault::none);
+    EXPECT_EQ(cycle(client.get(), 0, 0).fault(), registers::RigFault::none);
   }
   EXPECT_GT(traffic_.garbage, 0u);
 }

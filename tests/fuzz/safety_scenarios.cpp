@@ -93,7 +93,7 @@ class WildRig final : public devices::RigDevice {
     out.fz_N = ++ticks_ > 20 ? push_N_ : 0.0;
     if (dice_.rarely(0.005)) {
       out.status |= registers::kFaulted;
-      out.fault = registers::Fault(1 + dice_.one_of(5));
+      out.fault = registers::RigFault(1 + dice_.one_of(5));
     }
     return Exchange::ok;
   }

@@ -1,5 +1,7 @@
 #include "db/store/cases/case_makings.hpp"
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace store {
 namespace {
@@ -33,10 +35,9 @@ core::Result<void> add_case_making(Writing& tx, const CaseMaking& making) {
 }
 
 core::Result<std::optional<CaseMaking>> case_making_of(Reading& tx, const std::string& id) {
-  auto found = all_of(tx.query(std::string(kMaking) + "where id = ?", {id}));
-  if (!found) return found.error();
-  if (found->empty()) return std::optional<CaseMaking>();
-  return std::optional(std::move(found->front()));
+  auto found = TRY(all_of(tx.query(std::string(kMaking) + "where id = ?", {id})));
+  if (found.empty()) return std::optional<CaseMaking>();
+  return std::optional(std::move(found.front()));
 }
 
 core::Result<std::vector<CaseMaking>> case_makings(Reading& tx, std::int64_t limit) {

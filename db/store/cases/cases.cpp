@@ -1,5 +1,7 @@
 #include "db/store/cases/cases.hpp"
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace store {
 namespace {
@@ -18,11 +20,10 @@ CaseSummary summary_from(const Row& row) {
 
 core::Result<void> add_object(Writing& tx, const std::string& sha256, std::uint64_t size_bytes,
                               std::int64_t now_utc_us) {
-  auto done = tx.query(
-      "insert into objects (sha256, size_bytes, made_utc_us) values (?, ?, ?) "
-      "on conflict (sha256) do nothing",
-      {sha256, count_value(size_bytes), now_utc_us});
-  if (!done) return done.error();
+  TRY(
+      tx.query("insert into objects (sha256, size_bytes, made_utc_us) values (?, ?, ?) "
+               "on conflict (sha256) do nothing",
+               {sha256, count_value(size_bytes), now_utc_us}));
   return {};
 }
 
@@ -35,7 +36,7 @@ core::Result<void> add_case(Writing& tx, const CaseSummary& summary,
        bool_value(summary.planned), bool_value(summary.planned)});
   if (!done) return done.error();
   for (const CasePart& part : parts) {
-    if (auto noted = add_object(tx, part.sha256, part.size_bytes, now_utc_us); !noted) return noted;
+    TRY(add_object(tx, part.sha256, part.size_bytes, now_utc_us));
     done = tx.query(
         "insert into case_parts (case_id, name, sha256, size_bytes, secret) "
         "values (?, ?, ?, ?, ?) on conflict (case_id, name) do nothing",
@@ -47,39 +48,35 @@ core::Result<void> add_case(Writing& tx, const CaseSummary& summary,
 }
 
 core::Result<std::vector<CaseSummary>> all_cases(Reading& tx) {
-  auto rows =
+  auto rows = TRY(
       tx.query(std::string(kSummary) + "where c.kind = ? order by c.published_utc_us desc, c.id",
-               {std::string(kPalpation)});
-  if (!rows) return rows.error();
+               {std::string(kPalpation)}));
   std::vector<CaseSummary> out;
-  for (const Row& row : *rows) out.push_back(summary_from(row));
+  for (const Row& row : rows) out.push_back(summary_from(row));
   return out;
 }
 
 core::Result<std::optional<CaseSummary>> case_of(Reading& tx, const std::string& id) {
-  auto rows = tx.query(std::string(kSummary) + "where c.id = ?", {id});
-  if (!rows) return rows.error();
-  if (rows->empty()) return std::optional<CaseSummary>();
-  return std::optional(summary_from(rows->front()));
+  auto rows = TRY(tx.query(std::string(kSummary) + "where c.id = ?", {id}));
+  if (rows.empty()) return std::optional<CaseSummary>();
+  return std::optional(summary_from(rows.front()));
 }
 
 core::Result<void> set_case_retired(Writing& tx, const std::string& id, bool retired,
                                     std::int64_t now_utc_us) {
-  auto rows = tx.query("update cases set retired_utc_us = ? where id = ? returning id",
-                       {retired ? Value(now_utc_us) : Value(), id});
-  if (!rows) return rows.error();
-  if (rows->empty()) return core::Error{core::Errc::not_found, "no case " + id.substr(0, 64)};
+  auto rows = TRY(tx.query("update cases set retired_utc_us = ? where id = ? returning id",
+                           {retired ? Value(now_utc_us) : Value(), id}));
+  if (rows.empty()) return core::Error{core::Errc::not_found, "no case " + id.substr(0, 64)};
   return {};
 }
 
 core::Result<std::optional<CasePart>> case_part(Reading& tx, const std::string& case_id,
                                                 const std::string& name) {
-  auto rows = tx.query(
+  auto rows = TRY(tx.query(
       "select name, sha256, size_bytes, secret from case_parts where case_id = ? and name = ?",
-      {case_id, name});
-  if (!rows) return rows.error();
-  if (rows->empty()) return std::optional<CasePart>();
-  const Row& row = rows->front();
+      {case_id, name}));
+  if (rows.empty()) return std::optional<CasePart>();
+  const Row& row = rows.front();
   return std::optional(CasePart{row.text(0), row.text(1), row.count(2), row.truth(3)});
 }
 

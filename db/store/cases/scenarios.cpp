@@ -1,5 +1,7 @@
 #include "db/store/cases/scenarios.hpp"
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace store {
 namespace {
@@ -20,21 +22,19 @@ core::Result<std::vector<ScenarioVersion>> all_of(core::Result<Rows> rows) {
 }  // namespace
 
 core::Result<void> add_scenario_version(Writing& tx, const ScenarioVersion& version) {
-  auto done = tx.query(
+  TRY(tx.query(
       "insert into scenario_versions (id, sha256, name, kind, parent, published, made_utc_us, "
       "made_by) values (?, ?, ?, ?, ?, ?, ?, ?)",
       {version.id, version.sha256, version.name, version.kind, or_null(version.parent),
-       bool_value(version.published), version.made_utc_us, version.made_by});
-  if (!done) return done.error();
+       bool_value(version.published), version.made_utc_us, version.made_by}));
   return {};
 }
 
 core::Result<std::optional<ScenarioVersion>> scenario_version_of(Reading& tx,
                                                                  const std::string& id) {
-  auto found = all_of(tx.query(std::string(kVersion) + "where id = ?", {id}));
-  if (!found) return found.error();
-  if (found->empty()) return std::optional<ScenarioVersion>();
-  return std::optional(std::move(found->front()));
+  auto found = TRY(all_of(tx.query(std::string(kVersion) + "where id = ?", {id})));
+  if (found.empty()) return std::optional<ScenarioVersion>();
+  return std::optional(std::move(found.front()));
 }
 
 core::Result<std::vector<ScenarioVersion>> all_scenario_versions(Reading& tx) {
@@ -42,10 +42,9 @@ core::Result<std::vector<ScenarioVersion>> all_scenario_versions(Reading& tx) {
 }
 
 core::Result<void> set_scenario_published(Writing& tx, const std::string& id, bool published) {
-  auto rows = tx.query("update scenario_versions set published = ? where id = ? returning id",
-                       {bool_value(published), id});
-  if (!rows) return rows.error();
-  if (rows->empty()) return core::Error{core::Errc::not_found, "no scenario " + id.substr(0, 64)};
+  auto rows = TRY(tx.query("update scenario_versions set published = ? where id = ? returning id",
+                           {bool_value(published), id}));
+  if (rows.empty()) return core::Error{core::Errc::not_found, "no scenario " + id.substr(0, 64)};
   return {};
 }
 

@@ -1,5 +1,7 @@
 #include "db/store/cohort/analyses.hpp"
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace store {
 namespace {
@@ -45,17 +47,15 @@ core::Result<void> add_analysis_plan(Writing& tx, const AnalysisPlan& plan) {
 }
 
 core::Result<std::optional<AnalysisPlan>> analysis_plan_of(Reading& tx, const std::string& id) {
-  auto rows = tx.query(std::string(kPlan) + "where id = ?", {id});
-  if (!rows) return rows.error();
-  if (rows->empty()) return std::optional<AnalysisPlan>();
-  return std::optional(plan_from(rows->front()));
+  auto rows = TRY(tx.query(std::string(kPlan) + "where id = ?", {id}));
+  if (rows.empty()) return std::optional<AnalysisPlan>();
+  return std::optional(plan_from(rows.front()));
 }
 
 core::Result<std::vector<AnalysisPlan>> all_analysis_plans(Reading& tx) {
-  auto rows = tx.query(std::string(kPlan) + "order by made_utc_us desc, id");
-  if (!rows) return rows.error();
+  auto rows = TRY(tx.query(std::string(kPlan) + "order by made_utc_us desc, id"));
   std::vector<AnalysisPlan> out;
-  for (const Row& row : *rows) out.push_back(plan_from(row));
+  for (const Row& row : rows) out.push_back(plan_from(row));
   return out;
 }
 
@@ -73,11 +73,10 @@ core::Result<std::optional<AnalysisRun>> analysis_of(Reading& tx, const std::str
 }
 
 core::Result<std::vector<AnalysisRun>> analyses_of_plan(Reading& tx, const std::string& plan_id) {
-  auto rows =
-      tx.query(std::string(kRun) + "where plan_id = ? order by made_utc_us desc, id", {plan_id});
-  if (!rows) return rows.error();
+  auto rows = TRY(
+      tx.query(std::string(kRun) + "where plan_id = ? order by made_utc_us desc, id", {plan_id}));
   std::vector<AnalysisRun> out;
-  for (const Row& row : *rows) out.push_back(run_from(row));
+  for (const Row& row : rows) out.push_back(run_from(row));
   return out;
 }
 

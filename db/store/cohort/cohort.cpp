@@ -2,6 +2,7 @@
 
 #include <set>
 
+#include "core/try.hpp"
 #include "db/store/studies/blinding.hpp"
 
 namespace tractus {
@@ -55,17 +56,15 @@ CohortTrial trial_from(const Row& row) {
 
 core::Result<std::vector<CohortTrial>> CohortRows::read(Reading& tx, const std::string& study_id,
                                                         std::int64_t limit) {
-  auto rows = tx.query(kTrials(), {study_id, study_id, limit + 1});
-  if (!rows) return rows.error();
-  if (rows->size() > static_cast<std::size_t>(limit))
+  auto rows = TRY(tx.query(kTrials(), {study_id, study_id, limit + 1}));
+  if (rows.size() > static_cast<std::size_t>(limit))
     return core::Error{core::Errc::too_large, "the cohort has more than " + std::to_string(limit) +
                                                   " trials: ask for one study"};
   std::vector<CohortTrial> out;
-  for (const Row& row : *rows) {
+  for (const Row& row : rows) {
     out.push_back(trial_from(row));
-    auto scores = scores_of(tx, out.back().summary.id);
-    if (!scores) return scores.error();
-    for (const ScoreRecord& score : *scores)
+    auto scores = TRY(scores_of(tx, out.back().summary.id));
+    for (const ScoreRecord& score : scores)
       if (score.value) out.back().metrics.emplace(score.metric_id, *score.value);
   }
   return out;
@@ -79,10 +78,9 @@ core::Result<std::vector<CohortTrial>> trials_for_teaching(Reading& tx, const st
   if (!trials) return trials.error();
   std::erase_if(*trials, [](const CohortTrial& trial) { return trial.blind; });
   if (whose.taught_by.empty() && whose.seen_by.empty()) return trials;
-  const auto reached = trials_before(tx, kAnyTime_utc_us, limit, whose);
-  if (!reached) return reached.error();
+  const auto reached = TRY(trials_before(tx, kAnyTime_utc_us, limit, whose));
   std::set<std::string> ids;
-  for (const TrialSummary& trial : *reached) ids.insert(trial.id);
+  for (const TrialSummary& trial : reached) ids.insert(trial.id);
   std::erase_if(*trials, [&](const CohortTrial& trial) { return !ids.contains(trial.summary.id); });
   return trials;
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace store {
 namespace {
@@ -11,9 +13,8 @@ constexpr std::int64_t kMostKnown = 1'000'000;
 
 core::Result<void> check_there(Reading& tx, const std::string& study) {
   if (study.empty()) return {};
-  auto known = series_exists(tx, study);
-  if (!known) return known.error();
-  if (*known) return {};
+  auto known = TRY(series_exists(tx, study));
+  if (known) return {};
   return core::Error{core::Errc::not_found, "study: there is no study " + study.substr(0, 32)};
 }
 
@@ -51,15 +52,12 @@ core::Result<std::string> ReleasedTrial::file(Tier wanted) const {
 core::Result<ReleasedTrials> ReleasedTrials::read(Reading& tx,
                                                   const std::optional<PseudonymKey>& key,
                                                   const Wish& wish) {
-  const auto names = Pseudonyms::of(key);
-  if (!names) return names.error();
-  if (auto there = check_there(tx, wish.study); !there) return there.error();
-  auto trials = CohortRows::read(tx, wish.study, wish.most);
-  if (!trials) return trials.error();
-  const auto book = ConsentBook::read(tx);
-  if (!book) return book.error();
+  const auto names = TRY(Pseudonyms::of(key));
+  TRY(check_there(tx, wish.study));
+  auto trials = TRY(CohortRows::read(tx, wish.study, wish.most));
+  const auto book = TRY(ConsentBook::read(tx));
   ReleasedTrials out;
-  out.take(std::move(*trials), *book, *names, wish.least);
+  out.take(std::move(trials), book, names, wish.least);
   out.count_days();
   return out;
 }
@@ -93,29 +91,25 @@ ReleasedTrials ReleasedTrials::at_least(Tier tier) const {
 
 core::Result<std::map<std::string, std::string>> who_is_who(
     Reading& tx, const std::optional<PseudonymKey>& key) {
-  const auto names = Pseudonyms::of(key);
-  if (!names) return names.error();
-  auto trials = CohortRows::read(tx, "", kMostKnown);
-  if (!trials) return trials.error();
-  const auto book = ConsentBook::read(tx);
-  if (!book) return book.error();
+  const auto names = TRY(Pseudonyms::of(key));
+  auto trials = TRY(CohortRows::read(tx, "", kMostKnown));
+  const auto book = TRY(ConsentBook::read(tx));
   std::map<std::string, std::string> out;
-  for (const CohortTrial& trial : *trials) {
-    const std::string person = book->person_of(trial);
-    out[names->person(person)] = person;
+  for (const CohortTrial& trial : trials) {
+    const std::string person = book.person_of(trial);
+    out[names.person(person)] = person;
   }
   return out;
 }
 
 core::Result<std::int64_t> scored_trials(Reading& tx, const std::string& study) {
-  if (auto there = check_there(tx, study); !there) return there.error();
-  auto rows = tx.query(
+  TRY(check_there(tx, study));
+  auto rows = TRY(tx.query(
       "select count(*) from trials t left join study_trials m on m.trial_id = t.id left join "
       "study_slots l on l.id = m.slot_id where t.complete = 1 and t.state = 'assessed' and "
       "(m.state is null or m.state = 'counts') and (? = '' or l.study_id = ?)",
-      {study, study});
-  if (!rows) return rows.error();
-  return rows->front().integer(0);
+      {study, study}));
+  return rows.front().integer(0);
 }
 
 }  // namespace store

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace store {
 namespace {
@@ -25,12 +27,11 @@ core::Result<void> check_same_schema(const std::vector<Table>& from, const std::
 core::Result<void> check_empty(Reading& to, const std::vector<Table>& tables) {
   for (const Table& table : tables) {
     if (table.name == kVersions) continue;
-    auto rows = to.query("select count(*) from " + table.name);
-    if (!rows) return rows.error();
-    if (rows->front().count(0) > 0)
+    auto rows = TRY(to.query("select count(*) from " + table.name));
+    if (rows.front().count(0) > 0)
       return core::Error{core::Errc::conflict,
                          fmt::format("the database is not empty: table {} has {} rows", table.name,
-                                     rows->front().count(0))};
+                                     rows.front().count(0))};
   }
   return {};
 }
@@ -45,10 +46,9 @@ std::string insertion(const Table& table) {
 }  // namespace
 
 core::Result<std::vector<Table>> tables_from(Connection& connection, std::string_view sql) {
-  auto rows = connection.query(sql, {});
-  if (!rows) return rows.error();
+  auto rows = TRY(connection.query(sql, {}));
   std::vector<Table> out;
-  for (const Row& row : *rows) {
+  for (const Row& row : rows) {
     if (out.empty() || out.back().name != row.text(0)) out.push_back({row.text(0), {}});
     out.back().columns.push_back(row.text(1));
   }
@@ -56,15 +56,13 @@ core::Result<std::vector<Table>> tables_from(Connection& connection, std::string
 }
 
 core::Result<std::uint64_t> copy_rows(Reading& from, Writing& to) {
-  auto sources = from.tables();
-  if (!sources) return sources.error();
-  auto targets = to.tables();
-  if (!targets) return targets.error();
-  if (auto same = check_same_schema(*sources, *targets); !same) return same.error();
-  if (auto empty = check_empty(to, *targets); !empty) return empty.error();
-  if (auto deferred = to.connection_.defer_references(); !deferred) return deferred.error();
+  auto sources = TRY(from.tables());
+  auto targets = TRY(to.tables());
+  TRY(check_same_schema(sources, targets));
+  TRY(check_empty(to, targets));
+  TRY(to.connection_.defer_references());
   std::uint64_t copied = 0;
-  for (const Table& table : *sources) {
+  for (const Table& table : sources) {
     if (table.name == kVersions) continue;
     const std::string insert = insertion(table);
     auto done =
@@ -80,7 +78,7 @@ core::Result<std::uint64_t> copy_rows(Reading& from, Writing& to) {
       return core::Error{done.error().code,
                          fmt::format("table {}: {}", table.name, done.error().what)};
   }
-  if (auto fine = to.connection_.check_references(); !fine) return fine.error();
+  TRY(to.connection_.check_references());
   return copied;
 }
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "core/try.hpp"
 #include "db/store/cases/cases.hpp"
 #include "db/store/people/accounts.hpp"
 #include "db/store/studies/study_slots.hpp"
@@ -20,22 +21,18 @@ using test_support::TestDatabase;
 /// Rows that refer to others, to themselves, and hold every type there is in the schema.
 core::Result<void> furnish(Writing& tx) {
   const std::string kA(64, 'a');
-  if (auto done = add_account(tx, {"1", "ada", "admin", "hash"}, 1); !done) return done;
-  if (auto done = add_station(tx, {"s", "station-1"}, "token", 1); !done) return done;
-  if (auto done = add_case(tx, {kA, "L3", "made", 1, 0}, {{"case.json", kA, 9, false}}, 1); !done)
-    return done;
+  TRY(add_account(tx, {"1", "ada", "admin", "hash"}, 1));
+  TRY(add_station(tx, {"s", "station-1"}, "token", 1));
+  TRY(add_case(tx, {kA, "L3", "made", 1, 0}, {{"case.json", kA, 9, false}}, 1));
   const Study study{.id = "study", .title = "\xc3\xa9", .ordering = "random"};
-  auto id = add_study(tx, study, {kA}, {"ada", 1});
-  if (!id) return id.error();
+  auto id = TRY(add_study(tx, study, {kA}, {"ada", 1}));
   const Participant person{.name = "P1", .experience_years = 1.0 / 3.0};
-  if (auto done = add_participant(tx, *id, person, {kA, kA}, {"ada", 1}); !done) return done;
+  TRY(add_participant(tx, id, person, {kA, kA}, {"ada", 1}));
   // Two that refer to each other: neither can be first.
-  auto slots = study_slots(tx, *id);
-  if (!slots) return slots.error();
+  auto slots = TRY(study_slots(tx, id));
   for (int i = 0; i < 2; ++i) {
-    auto set = tx.query("update study_slots set repeat_of = ? where id = ?",
-                        {slots->at(std::size_t(1 - i)).id, slots->at(std::size_t(i)).id});
-    if (!set) return set.error();
+    TRY(tx.query("update study_slots set repeat_of = ? where id = ?",
+                 {slots.at(std::size_t(1 - i)).id, slots.at(std::size_t(i)).id}));
   }
   return {};
 }
@@ -44,16 +41,14 @@ core::Result<void> furnish(Writing& tx) {
 std::map<std::string, std::multiset<std::string>> contents(Store& store) {
   std::map<std::string, std::multiset<std::string>> out;
   auto read = store.read([&](Reading& tx) -> core::Result<void> {
-    auto tables = tx.tables();
-    if (!tables) return tables.error();
-    for (const Table& table : *tables) {
+    auto tables = TRY(tx.tables());
+    for (const Table& table : tables) {
       if (table.name == "schema_versions") continue;
       std::string columns;
       for (const std::string& column : table.columns)
         columns += (columns.empty() ? "" : ", ") + column;
-      auto rows = tx.query("select " + columns + " from " + table.name);
-      if (!rows) return rows.error();
-      for (const Row& row : *rows) {
+      auto rows = TRY(tx.query("select " + columns + " from " + table.name));
+      for (const Row& row : rows) {
         std::string line;
         for (std::size_t i = 0; i < row.size(); ++i) {
           const Value& value = row.value(i);

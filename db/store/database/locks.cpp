@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "core/bytes.hpp"
+#include "core/try.hpp"
 #include "db/store/database/postgres_link.hpp"
 
 namespace tractus {
@@ -50,11 +51,10 @@ class PostgresLocks final : public Locks {
     auto stripe = stripes_.hold(name);
     const auto until = std::chrono::steady_clock::now() + kPatience;
     while (true) {
-      auto session = try_lock(key_of(name));
-      if (!session) return session.error();
-      if (*session != 0)
+      auto session = TRY(try_lock(key_of(name)));
+      if (session != 0)
         return std::unique_ptr<NamedLock>(
-            std::make_unique<Held>(*this, key_of(name), *session, std::move(stripe)));
+            std::make_unique<Held>(*this, key_of(name), session, std::move(stripe)));
       if (std::chrono::steady_clock::now() > until)
         return core::Error{core::Errc::unavailable,
                            "another server has been at this for ten seconds"};
@@ -84,7 +84,7 @@ class PostgresLocks final : public Locks {
     const std::lock_guard held(mutex_);
     const std::vector<Value> values{key};
     for (int tries = 0;; ++tries) {
-      if (auto connected = link_.connect(); !connected) return connected.error();
+      TRY(link_.connect());
       auto rows = link_.query("select pg_try_advisory_lock(?)", values);
       if (rows) return rows->front().truth(0) ? link_.session() : 0u;
       if (link_.connected() || tries > 0) return rows.error();

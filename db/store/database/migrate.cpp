@@ -3,6 +3,7 @@
 #include <set>
 
 #include "core/clock.hpp"
+#include "core/try.hpp"
 #include "db/store/database/migrations.hpp"
 
 namespace tractus {
@@ -12,10 +13,9 @@ namespace {
 /// The steps that were applied, each by its own number: branches of the product may add steps in
 /// any order.
 core::Result<std::set<std::int64_t>> applied(Connection& connection) {
-  auto rows = connection.query("select version from schema_versions", {});
-  if (!rows) return rows.error();
+  auto rows = TRY(connection.query("select version from schema_versions", {}));
   std::set<std::int64_t> out;
-  for (const Row& row : *rows) out.insert(row.integer(0));
+  for (const Row& row : rows) out.insert(row.integer(0));
   return out;
 }
 
@@ -23,17 +23,16 @@ core::Result<void> apply(Connection& connection, const Migration& step) {
   auto known = applied(connection);  // again, inside: another process may have been first
   if (!known) return known.error();
   if (known->contains(step.version)) return {};
-  if (auto done = connection.script(step.sql); !done) return done.error();
+  TRY(connection.script(step.sql));
   const std::vector<Value> values{step.version, step.name, core::utc_us()};
-  auto noted = connection.query(
-      "insert into schema_versions (version, name, applied_utc_us) values (?, ?, ?)", values);
-  if (!noted) return noted.error();
+  TRY(connection.query(
+      "insert into schema_versions (version, name, applied_utc_us) values (?, ?, ?)", values));
   return {};
 }
 
 /// In a transaction of its own: two processes that meet an empty database come one after the other.
 core::Result<void> make_versions(Connection& connection) {
-  if (auto begun = connection.begin(Access::write); !begun) return begun;
+  TRY(connection.begin(Access::write));
   auto made = connection.query(
       "create table if not exists schema_versions "
       "(version bigint primary key, name text not null, applied_utc_us bigint not null)",
@@ -46,18 +45,17 @@ core::Result<void> make_versions(Connection& connection) {
 }  // namespace
 
 core::Result<void> migrate(Connection& connection, const std::vector<Migration>& steps) {
-  if (auto made = make_versions(connection); !made) return made;
-  auto known = applied(connection);
-  if (!known) return known.error();
+  TRY(make_versions(connection));
+  auto known = TRY(applied(connection));
   const std::int64_t last = steps.empty() ? 0 : steps.back().version;
-  if (!known->empty() && *known->rbegin() > last)
+  if (!known.empty() && *known.rbegin() > last)
     return core::Error{core::Errc::conflict,
                        fmt::format("the database has schema {}, this program knows up to {}: use "
                                    "the newer program that made it",
-                                   *known->rbegin(), last)};
+                                   *known.rbegin(), last)};
   for (const Migration& step : steps) {
-    if (known->contains(step.version)) continue;
-    if (auto begun = connection.begin(Access::write); !begun) return begun.error();
+    if (known.contains(step.version)) continue;
+    TRY(connection.begin(Access::write));
     auto done = apply(connection, step);
     if (done) done = connection.commit();
     if (!done) {

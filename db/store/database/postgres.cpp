@@ -1,6 +1,7 @@
 /// PostgreSQL behind the driver's interface.
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "db/store/database/connection.hpp"
 #include "db/store/database/copy.hpp"
 #include "db/store/database/postgres_link.hpp"
@@ -24,8 +25,7 @@ class Postgres final : public Connection {
     return link_.each(sql, values, seen);
   }
   core::Result<void> script(std::string_view sql) override {
-    auto done = link_.script(std::string(sql));
-    if (!done) return done.error();
+    TRY(link_.script(std::string(sql)));
     return {};
   }
 
@@ -35,7 +35,7 @@ class Postgres final : public Connection {
     // A connection that broke while nobody looked is only found out by using it.
     for (int tries = 0; tries < 2; ++tries) {
       const bool fresh = !link_.connected();
-      if (auto connected = link_.connect(); !connected) return connected;
+      TRY(link_.connect());
       begun = link_.script(words);
       if (begun) return {};
       if (fresh || link_.connected()) break;
@@ -45,10 +45,9 @@ class Postgres final : public Connection {
   }
 
   core::Result<void> commit() override {
-    auto done = link_.script("commit");
-    if (!done) return done.error();
+    auto done = TRY(link_.script("commit"));
     // A transaction in which a statement failed answers COMMIT with ROLLBACK, as a success.
-    if (*done == "COMMIT") return {};
+    if (done == "COMMIT") return {};
     return core::Error{core::Errc::io, "PostgreSQL: a statement of the transaction had failed"};
   }
 
@@ -61,11 +60,11 @@ class Postgres final : public Connection {
                        "order by c.table_name::text collate \"C\", c.ordinal_position");
   }
   core::Result<void> defer_references() override {
-    if (auto done = alter_references("deferrable initially deferred"); !done) return done;
+    TRY(alter_references("deferrable initially deferred"));
     return script("set constraints all deferred");
   }
   core::Result<void> check_references() override {
-    if (auto done = script("set constraints all immediate"); !done) return done;
+    TRY(script("set constraints all immediate"));
     return alter_references("not deferrable");
   }
 
@@ -75,15 +74,13 @@ class Postgres final : public Connection {
 
  private:
   core::Result<void> alter_references(const std::string& how) {
-    auto rows = link_.query(
+    auto rows = TRY(link_.query(
         "select conrelid::regclass::text, conname::text from pg_constraint where contype = 'f' and "
         "connamespace = current_schema()::regnamespace",
-        {});
-    if (!rows) return rows.error();
-    for (const Row& row : *rows) {
-      auto done = script(
-          fmt::format("alter table {} alter constraint {} {}", row.text(0), row.text(1), how));
-      if (!done) return done;
+        {}));
+    for (const Row& row : rows) {
+      TRY(script(
+          fmt::format("alter table {} alter constraint {} {}", row.text(0), row.text(1), how)));
     }
     return {};
   }

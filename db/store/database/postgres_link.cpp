@@ -10,6 +10,7 @@
 #include <cstring>
 
 #include "core/require.hpp"
+#include "core/try.hpp"
 #include "db/store/database/connection.hpp"
 
 namespace tractus {
@@ -211,13 +212,12 @@ core::Result<void> PostgresLink::set_up() {
   }
   // Who waits for a lock, or stops in the middle of a transaction, does not do so for ever; a
   // commit is on the disk when it is answered, whatever the server's default is.
-  auto set = script(
+  TRY(script(
       "set lock_timeout = '10s'; set idle_in_transaction_session_timeout = '60s'; "
       "select set_config('synchronous_commit', 'on', false) "
       "where current_setting('synchronous_commit') = 'off'; "
       "set tcp_keepalives_idle = 10; set tcp_keepalives_interval = 5; set tcp_keepalives_count = "
-      "3");
-  if (!set) return set.error();
+      "3"));
   return {};
 }
 
@@ -251,8 +251,7 @@ core::Result<std::string> PostgresLink::prepared(std::string_view sql,
 core::Result<void> PostgresLink::each(std::string_view sql, std::span<const Value> values,
                                       const std::function<core::Result<void>(Row)>& seen) {
   if (!connected()) return core::Error{core::Errc::unavailable, "PostgreSQL: the connection broke"};
-  auto name = prepared(sql, values);
-  if (!name) return name.error();
+  auto name = TRY(prepared(sql, values));
   std::vector<Bound> bound(values.size());
   std::vector<const char*> data;
   std::vector<int> sizes, formats(values.size(), kBinary);
@@ -261,7 +260,7 @@ core::Result<void> PostgresLink::each(std::string_view sql, std::span<const Valu
     data.push_back(bound[i].data);
     sizes.push_back(bound[i].size);
   }
-  if (PQsendQueryPrepared(connection_.get(), name->c_str(), static_cast<int>(values.size()),
+  if (PQsendQueryPrepared(connection_.get(), name.c_str(), static_cast<int>(values.size()),
                           data.data(), sizes.data(), formats.data(), kBinary) != 1)
     return failure(nullptr);
   PQsetSingleRowMode(connection_.get());
@@ -292,11 +291,10 @@ core::Result<void> PostgresLink::take_rows(const std::function<core::Result<void
 
 core::Result<Rows> PostgresLink::query(std::string_view sql, std::span<const Value> values) {
   Rows rows;
-  auto done = each(sql, values, [&](Row row) {
+  TRY(each(sql, values, [&](Row row) {
     rows.push_back(std::move(row));
     return core::Result<void>();
-  });
-  if (!done) return done.error();
+  }));
   return rows;
 }
 

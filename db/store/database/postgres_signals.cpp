@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "core/bytes.hpp"
+#include "core/try.hpp"
 #include "db/store/database/listeners.hpp"
 #include "db/store/database/postgres_link.hpp"
 #include "db/store/store.hpp"
@@ -57,11 +58,11 @@ class PostgresSignals final : public Signals {
   }
 
   core::Result<void> send(const std::string& channel, const std::string& payload) override {
-    if (auto fits = check_payload(payload); !fits) return fits;
+    TRY(check_payload(payload));
     const std::vector<Value> values{channel_name(channel), id_ + " " + payload};
     const std::lock_guard held(sending_);
     for (int tries = 0;; ++tries) {
-      if (auto connected = sender_.connect(); !connected) return connected;
+      TRY(sender_.connect());
       auto sent = sender_.query(kNotify, values);
       if (sent) return {};
       if (sender_.connected() || tries > 0) return sent.error();
@@ -73,8 +74,7 @@ class PostgresSignals final : public Signals {
  protected:
   core::Result<void> committing(Writing& tx, std::span<const Noted> noted) override {
     for (const Noted& one : noted) {
-      auto sent = tx.query(kNotify, {channel_name(one.channel), id_ + " " + one.payload});
-      if (!sent) return sent.error();
+      TRY(tx.query(kNotify, {channel_name(one.channel), id_ + " " + one.payload}));
     }
     return {};
   }
@@ -103,8 +103,8 @@ class PostgresSignals final : public Signals {
   core::Result<std::vector<PostgresLink::Notification>> listen_on(PostgresLink& link,
                                                                   bool& was_connected) {
     const bool fresh = !link.connected();
-    if (auto connected = link.connect(); !connected) return connected.error();
-    if (auto done = listen_to_what_is_wanted(link, fresh); !done) return done.error();
+    TRY(link.connect());
+    TRY(listen_to_what_is_wanted(link, fresh));
     if (fresh && was_connected) listeners_.tell("", {});
     was_connected = true;
     auto heard = link.notifications(wake_);
@@ -121,8 +121,7 @@ class PostgresSignals final : public Signals {
       for (const std::string& name : wanted_)
         if (!listened_.contains(name)) names.insert(name);
     }
-    for (const std::string& name : names)
-      if (auto done = link.script("listen " + name); !done) return done.error();
+    for (const std::string& name : names) TRY(link.script("listen " + name));
     {
       const std::lock_guard held(mutex_);
       listened_.insert(names.begin(), names.end());

@@ -10,6 +10,7 @@
 #include <set>
 #include <thread>
 
+#include "core/try.hpp"
 #include "db/store/cases/cases.hpp"
 #include "db/store/database/postgres_link.hpp"
 #include "db/store/operations/audit.hpp"
@@ -84,8 +85,7 @@ TEST_P(SharedDatabase, AWriteSeesWhatTheOneBeforeItDid) {
 TEST_P(SharedDatabase, EveryJobIsClaimedOnceByWhoeverComesFirst) {
   constexpr int kJobs = 60;
   ASSERT_TRUE(one_.write([](Writing& tx) -> core::Result<void> {
-    for (int i = 0; i < kJobs; ++i)
-      if (auto queued = queue_job(tx, "metrics", std::to_string(i), i); !queued) return queued;
+    for (int i = 0; i < kJobs; ++i) TRY(queue_job(tx, "metrics", std::to_string(i), i));
     return {};
   }));
   std::mutex mutex;

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "core/bytes.hpp"
+#include "core/try.hpp"
 #include "db/store/database/listeners.hpp"
 #include "db/store/store.hpp"
 
@@ -36,7 +37,7 @@ class LocalSignals final : public Signals {
   }
 
   core::Result<void> send(const std::string& channel, const std::string& payload) override {
-    if (auto fits = check_payload(payload); !fits) return fits;
+    TRY(check_payload(payload));
     const Noted noted{channel, payload};
     committed({&noted, 1});
     return {};
@@ -91,7 +92,7 @@ core::Result<void> check_payload(const std::string& payload) {
 std::unique_ptr<Signals> local_signals() { return std::make_unique<LocalSignals>(); }
 
 core::Result<void> notify(Writing& tx, const std::string& channel, const std::string& payload) {
-  if (auto fits = check_payload(payload); !fits) return fits;
+  TRY(check_payload(payload));
   tx.noted_.push_back({channel, payload});
   return {};
 }

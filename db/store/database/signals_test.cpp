@@ -6,6 +6,7 @@
 #include <condition_variable>
 #include <mutex>
 
+#include "core/try.hpp"
 #include "tests/support/database/database.hpp"
 
 namespace tractus {
@@ -70,7 +71,7 @@ TEST_P(SignalsContract, OfAWriteAreHeardWhenItCommitsAndNotWhenItFails) {
   auto listening = db.store.signals().listen("jobs", ear.heard());
   ASSERT_TRUE(listening);
   auto failed = db.store.write([](Writing& tx) -> core::Result<void> {
-    if (auto said = notify(tx, "jobs", "never"); !said) return said;
+    TRY(notify(tx, "jobs", "never"));
     return core::Error{core::Errc::cancelled, "changed my mind"};
   });
   EXPECT_FALSE(failed);

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "core/require.hpp"
+#include "core/try.hpp"
 #include "db/store/database/connection.hpp"
 #include "db/store/database/copy.hpp"
 
@@ -95,19 +96,17 @@ class Sqlite final : public Connection {
 
   core::Result<Rows> query(std::string_view sql, std::span<const Value> values) override {
     Rows rows;
-    auto done = each(sql, values, [&](Row row) {
+    TRY(each(sql, values, [&](Row row) {
       rows.push_back(std::move(row));
       return core::Result<void>();
-    });
-    if (!done) return done.error();
+    }));
     return rows;
   }
 
   core::Result<void> each(std::string_view sql, std::span<const Value> values,
                           const std::function<core::Result<void>(Row)>& seen) override {
-    auto prepared = prepare(sql);
-    if (!prepared) return prepared.error();
-    sqlite3_stmt* statement = *prepared;
+    auto prepared = TRY(prepare(sql));
+    sqlite3_stmt* statement = prepared;
     const Use use(statement);
     core::require(sqlite3_bind_parameter_count(statement) == static_cast<int>(values.size()),
                   "a statement gets as many values as it has placeholders");
@@ -163,7 +162,7 @@ class Sqlite final : public Connection {
       const int columns = sqlite3_column_count(statement);
       values.reserve(static_cast<std::size_t>(columns));
       for (int i = 0; i < columns; ++i) values.push_back(column(statement, i));
-      if (auto on = seen(Row(std::move(values))); !on) return on;
+      TRY(seen(Row(std::move(values))));
     }
   }
 

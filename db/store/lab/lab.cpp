@@ -1,5 +1,7 @@
 #include "db/store/lab/lab.hpp"
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace store {
 namespace {
@@ -137,12 +139,11 @@ core::Result<std::vector<LabRun>> lab_runs(Reading& tx, const LabRunFilter& filt
 
 core::Result<bool> note_lab_share(Writing& tx, const std::string& id, double share,
                                   const std::string& phase, std::int64_t now_utc_us) {
-  auto rows = tx.query(
-      "update lab_runs set state = 'running', share = ?, phase = ?, changed_utc_us = ? "
-      "where id = ? returning stop",
-      {share, phase, now_utc_us, id});
-  if (!rows) return rows.error();
-  return rows->empty() || rows->front().truth(0);
+  auto rows = TRY(
+      tx.query("update lab_runs set state = 'running', share = ?, phase = ?, changed_utc_us = ? "
+               "where id = ? returning stop",
+               {share, phase, now_utc_us, id}));
+  return rows.empty() || rows.front().truth(0);
 }
 
 core::Result<void> note_lab_ranking(Writing& tx, const std::string& id, const std::string& json) {

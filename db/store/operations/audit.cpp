@@ -4,6 +4,7 @@
 #include <sodium.h>
 
 #include "core/clock.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace store {
@@ -93,35 +94,31 @@ void act_was_noted() noexcept {
 }
 
 core::Result<ChainEnd> chain_end(Reading& tx) {
-  auto rows = tx.query("select number, hash from audit order by number desc limit 1");
-  if (!rows) return rows.error();
-  if (rows->empty()) return ChainEnd{};
-  return ChainEnd{rows->front().integer(0), rows->front().text(1)};
+  auto rows = TRY(tx.query("select number, hash from audit order by number desc limit 1"));
+  if (rows.empty()) return ChainEnd{};
+  return ChainEnd{rows.front().integer(0), rows.front().text(1)};
 }
 
 core::Result<void> add_act(Writing& tx, const AuditKey& key, const AuditedAction& act,
                            const std::string& changes) {
-  auto end = chain_end(tx);
-  if (!end) return end.error();
-  const std::int64_t number = end->number + 1;
-  auto added = tx.query(
-      "insert into audit (number, at_utc_us, who, role, peer, what, object, detail, hash, "
-      "changes) values (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-      {number, act.at_utc_us, act.who, act.role, act.peer, act.what, act.object, act.detail,
-       hash_of(key, end->hash, number, act, changes), changes});
-  if (!added) return added.error();
+  auto end = TRY(chain_end(tx));
+  const std::int64_t number = end.number + 1;
+  TRY(
+      tx.query("insert into audit (number, at_utc_us, who, role, peer, what, object, detail, hash, "
+               "changes) values (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+               {number, act.at_utc_us, act.who, act.role, act.peer, act.what, act.object,
+                act.detail, hash_of(key, end.hash, number, act, changes), changes}));
   return {};
 }
 
 core::Result<std::vector<AuditRow>> audit_before(Reading& tx, std::int64_t number,
                                                  std::int64_t limit) {
-  auto rows = tx.query(
+  auto rows = TRY(tx.query(
       "select number, at_utc_us, who, role, peer, what, object, detail, hash, '' from audit "
       "where number < ? order by number desc limit ?",
-      {number, limit});
-  if (!rows) return rows.error();
+      {number, limit}));
   std::vector<AuditRow> out;
-  for (const Row& row : *rows) out.push_back(row_from(row));
+  for (const Row& row : rows) out.push_back(row_from(row));
   return out;
 }
 
@@ -129,12 +126,11 @@ core::Result<ChainEnd> verify_chain(Reading& tx, const AuditKey& key,
                                     const std::function<void(const AuditRow&)>& seen) {
   ChainEnd end;
   while (true) {
-    auto rows = tx.query(
+    auto rows = TRY(tx.query(
         "select number, at_utc_us, who, role, peer, what, object, detail, hash, changes from "
         "audit where number > ? order by number limit ?",
-        {end.number, kPiece});
-    if (!rows) return rows.error();
-    for (const Row& raw : *rows) {
+        {end.number, kPiece}));
+    for (const Row& raw : rows) {
       const AuditRow row = row_from(raw);
       if (row.number != end.number + 1)
         return broken(end.number + 1, fmt::format("is missing; row {} follows", row.number));
@@ -143,7 +139,7 @@ core::Result<ChainEnd> verify_chain(Reading& tx, const AuditKey& key,
       if (seen) seen(row);
       end = {row.number, row.hash};
     }
-    if (rows->size() < static_cast<std::size_t>(kPiece)) return end;
+    if (rows.size() < static_cast<std::size_t>(kPiece)) return end;
   }
 }
 

@@ -1,5 +1,6 @@
 #include "db/store/operations/audit.hpp"
 
+#include "core/try.hpp"
 #include "db/store/cases/cases.hpp"
 #include "tests/support/database/database.hpp"
 
@@ -99,7 +100,7 @@ TEST_P(AuditTrail, AChainRewrittenWithAnotherKeyIsSeen) { EXPECT_FALSE(check(key
 TEST_P(AuditTrail, AChangeThatFailsLeavesNoRow) {
   const AuditScope acting({.who = "ada", .what = "fails", .detail = "{}"});
   const auto done = store_.write([&](Writing& tx) -> core::Result<void> {
-    if (auto added = add_object(tx, std::string(64, 'x'), 1, 1); !added) return added;
+    TRY(add_object(tx, std::string(64, 'x'), 1, 1));
     return core::Error{core::Errc::conflict, "thought better of it"};
   });
   EXPECT_FALSE(done);

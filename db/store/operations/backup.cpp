@@ -4,6 +4,7 @@
 
 #include <map>
 
+#include "core/try.hpp"
 #include "db/store/operations/coverage.hpp"
 
 namespace tractus {
@@ -19,9 +20,8 @@ std::string quoted(const std::string& text) {
 /// PostgreSQL holds its references itself and has no such judgement to ask for: every row is read
 /// instead, which meets every page and its checksum.
 core::Result<void> read_everything(Reading& tx, Findings& found) {
-  auto tables = tx.tables();
-  if (!tables) return tables.error();
-  for (const Table& table : *tables) {
+  auto tables = TRY(tx.tables());
+  for (const Table& table : tables) {
     auto read = tx.each("select * from " + table.name, [](Row) { return core::Result<void>(); });
     if (!read)
       found.lines.push_back(
@@ -32,13 +32,11 @@ core::Result<void> read_everything(Reading& tx, Findings& found) {
 
 /// The database's own judgement of itself.
 core::Result<void> check_sqlite(Reading& tx, Findings& found) {
-  auto structure = tx.query("pragma integrity_check(20)");
-  if (!structure) return structure.error();
-  for (const Row& row : *structure)
+  auto structure = TRY(tx.query("pragma integrity_check(20)"));
+  for (const Row& row : structure)
     if (row.text(0) != "ok") found.lines.push_back("database: " + row.text(0));
-  auto references = tx.query("pragma foreign_key_check");
-  if (!references) return references.error();
-  for (const Row& row : *references)
+  auto references = TRY(tx.query("pragma foreign_key_check"));
+  for (const Row& row : references)
     found.lines.push_back(
         fmt::format("database: a row of {} refers to what is not there", row.text(0)));
   return {};
@@ -95,34 +93,30 @@ core::Result<void> copy_database(const std::filesystem::path& database,
   std::error_code failure;
   if (std::filesystem::exists(copy, failure))
     return core::Error{core::Errc::conflict, copy.string() + ": exists already"};
-  auto connection = open_sqlite(database, Access::write);
-  if (!connection) return connection.error();
-  return (*connection)->script("vacuum into " + quoted(copy.string()));
+  auto connection = TRY(open_sqlite(database, Access::write));
+  return connection->script("vacuum into " + quoted(copy.string()));
 }
 
 core::Result<std::vector<ObjectEntry>> all_objects(Reading& tx) {
-  auto rows = tx.query("select sha256, size_bytes from objects order by sha256");
-  if (!rows) return rows.error();
+  auto rows = TRY(tx.query("select sha256, size_bytes from objects order by sha256"));
   std::vector<ObjectEntry> out;
-  for (const Row& row : *rows) out.push_back({row.text(0), row.count(1)});
+  for (const Row& row : rows) out.push_back({row.text(0), row.count(1)});
   return out;
 }
 
 core::Result<Findings> look_over(Store& store, const Objects& objects, const AuditKey& key,
                                  const Anchors& anchors, const std::function<bool(double)>& shown) {
   Findings found;
-  auto entries = store.read([&](Reading& tx) -> core::Result<std::vector<ObjectEntry>> {
-    auto structure = store.shared() ? read_everything(tx, found) : check_sqlite(tx, found);
-    if (!structure) return structure.error();
-    if (auto done = check_audit(tx, key, anchors, found); !done) return done.error();
+  auto entries = TRY(store.read([&](Reading& tx) -> core::Result<std::vector<ObjectEntry>> {
+    TRY(store.shared() ? read_everything(tx, found) : check_sqlite(tx, found));
+    TRY(check_audit(tx, key, anchors, found));
     return all_objects(tx);
-  });
-  if (!entries) return entries.error();
-  for (const ObjectEntry& entry : *entries) {
+  }));
+  for (const ObjectEntry& entry : entries) {
     if (std::string wrong = wrong_with(objects, entry); !wrong.empty())
       found.lines.push_back(std::move(wrong));
     found.bytes += entry.size_bytes;
-    if (shown && !shown(double(++found.objects) / double(entries->size())))
+    if (shown && !shown(double(++found.objects) / double(entries.size())))
       return core::Error{core::Errc::cancelled, "stopped"};
     if (!shown) ++found.objects;
   }

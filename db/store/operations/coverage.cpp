@@ -9,6 +9,7 @@
 #include "core/clock.hpp"
 #include "core/json.hpp"
 #include "core/require.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace store {
@@ -75,10 +76,9 @@ Result<std::string> digest_now(Reading& tx, const AuditKey& key, const CoveredTa
                                const std::vector<Value>& of) {
   const std::string sql =
       selection(table) + fmt::format(" where {} = ?", fmt::join(table.keys, " = ? and "));
-  auto rows = tx.query_with(sql, std::span(of));
-  if (!rows) return rows.error();
+  auto rows = TRY(tx.query_with(sql, std::span(of)));
   std::vector<std::string> texts;
-  for (const Row& row : *rows) texts.push_back(row_text(row));
+  for (const Row& row : rows) texts.push_back(row_text(row));
   return digest_of(key, table, std::move(texts));
 }
 
@@ -131,7 +131,7 @@ Result<std::size_t> differences(Reading& tx, const AuditKey& key) {
   auto end = verify_chain(tx, key, [&](const AuditRow& row) { digests.add(row); });
   if (!end) return end.error().code == core::Errc::corrupt ? Result<std::size_t>(1) : end.error();
   std::vector<std::string> found;
-  if (auto compared = digests.compare(tx, key, found); !compared) return compared.error();
+  TRY(digests.compare(tx, key, found));
   return found.size();
 }
 
@@ -153,14 +153,13 @@ struct Beginning {
   Result<void> add(const CoveredTable& table) {
     Result<void> outcome;
     std::vector<std::pair<std::string, std::string>> all;  // a table is read before it is written
-    auto read = each_digest(tx, key, table, [&](const std::string& of, std::string digest) {
+    TRY(each_digest(tx, key, table, [&](const std::string& of, std::string digest) {
       all.emplace_back(of, std::move(digest));
-    });
-    if (!read) return read;
+    }));
     for (const auto& [of, digest] : all) {
       changes.push_back(Json::array({table.name, of, digest}));
       if (changes.size() < kChangesPerRow) continue;
-      if (auto flushed = flush(); !flushed) return flushed;
+      TRY(flush());
     }
     return {};
   }
@@ -189,9 +188,8 @@ Result<std::string> changes_text(Reading& tx, const AuditKey& key, const Changed
   if (rows.empty()) return std::string();
   Json out = Json::array();
   for (const auto& [table, of] : rows) {
-    auto digest = digest_now(tx, key, *table, of);
-    if (!digest) return digest.error();
-    out.push_back(Json::array({table->name, key_text(Row(of), 0, of.size()), *digest}));
+    auto digest = TRY(digest_now(tx, key, *table, of));
+    out.push_back(Json::array({table->name, key_text(Row(of), 0, of.size()), digest}));
   }
   return out.dump();
 }
@@ -199,22 +197,19 @@ Result<std::string> changes_text(Reading& tx, const AuditKey& key, const Changed
 Result<bool> begin_coverage(Store& store) {
   const AuditKey& key = store.audit_key();
   return store.write([&](Writing& tx) -> Result<bool> {
-    auto last = tx.query(
-        "select detail from audit where what = 'beginCoverage' order by number desc limit 1");
-    if (!last) return last.error();
+    auto last = TRY(tx.query(
+        "select detail from audit where what = 'beginCoverage' order by number desc limit 1"));
     Json detail{{"tables", coverage_json(covered_tables())}, {"differences", 0}};
-    if (!last->empty()) {
-      const auto before = core::parse_json(last->front().text(0), "audit trail");
+    if (!last.empty()) {
+      const auto before = core::parse_json(last.front().text(0), "audit trail");
       if (before && before->is_object() && before->value("tables", Json()) == detail["tables"])
         return false;
-      auto differ = differences(tx, key);
-      if (!differ) return differ.error();
-      detail["differences"] = *differ;
+      auto differ = TRY(differences(tx, key));
+      detail["differences"] = differ;
     }
     Beginning beginning{tx, key, std::move(detail)};
-    for (const CoveredTable& table : covered_tables())
-      if (auto added = beginning.add(table); !added) return added.error();
-    if (auto flushed = beginning.flush(); !flushed) return flushed.error();
+    for (const CoveredTable& table : covered_tables()) TRY(beginning.add(table));
+    TRY(beginning.flush());
     return true;
   });
 }
@@ -246,15 +241,14 @@ Result<void> TrailDigests::compare(Reading& tx, const AuditKey& key,
     const auto tell = [&](const std::string& of, const char* what) {
       findings.push_back(fmt::format("table {}: row {} {}", table.name, of, what));
     };
-    auto read = each_digest(tx, key, table, [&](const std::string& of, std::string digest) {
+    TRY(each_digest(tx, key, table, [&](const std::string& of, std::string digest) {
       const auto at = known.find(of);
       if (at == known.end() || at->second.empty())
         tell(of, "was inserted by other means than this program");
       else if (at->second != digest)
         tell(of, "was changed by other means than this program");
       if (at != known.end()) known.erase(at);
-    });
-    if (!read) return read;
+    }));
     for (const auto& [of, digest] : known)
       if (!digest.empty()) tell(of, "was deleted by other means than this program");
   }

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "core/json.hpp"
+#include "core/try.hpp"
 #include "tests/support/database/database.hpp"
 
 namespace tractus {
@@ -79,8 +80,7 @@ class Coverage : public test_support::BothDatabases {
   Coverage() {
     EXPECT_TRUE(begin_coverage(store_).value());
     const auto written = store_.write([](Writing& tx) -> core::Result<void> {
-      for (const char* row : kRows)
-        if (auto done = tx.query(row); !done) return done.error();
+      for (const char* row : kRows) TRY(tx.query(row));
       return {};
     });
     EXPECT_TRUE(written) << written.error().what;
@@ -110,9 +110,7 @@ class Coverage : public test_support::BothDatabases {
     std::vector<std::string> out;
     const auto read = store_.read([&](Reading& tx) -> core::Result<void> {
       TrailDigests digests;
-      auto end =
-          verify_chain(tx, store_.audit_key(), [&](const AuditRow& row) { digests.add(row); });
-      if (!end) return end.error();
+      TRY(verify_chain(tx, store_.audit_key(), [&](const AuditRow& row) { digests.add(row); }));
       return digests.compare(tx, store_.audit_key(), out);
     });
     EXPECT_TRUE(read) << read.error().what;
@@ -210,7 +208,7 @@ TEST_P(Coverage, ChangesOfTheServerStayRight) {
   ASSERT_TRUE(store_.write([](Writing& tx) -> core::Result<void> {
     for (const char* sql : {"update trials set state = 'failed' where id = ?",
                             "delete from trial_metrics where trial_id = ?"})
-      if (auto done = tx.query(sql, {"t"}); !done) return done.error();
+      TRY(tx.query(sql, {"t"}));
     return {};
   }));
   EXPECT_TRUE(findings().empty());
@@ -230,7 +228,7 @@ TEST_P(Coverage, AStatementThatReturnsColumnsStillReturnsThemFirst) {
 TEST_P(Coverage, AWriteThatFailsLeavesTheTrailAsItWas) {
   const auto before = store_.read([](Reading& tx) { return chain_end(tx); });
   EXPECT_FALSE(store_.write([](Writing& tx) -> core::Result<void> {
-    if (auto done = tx.query("update cohorts set name = 'x'"); !done) return done.error();
+    TRY(tx.query("update cohorts set name = 'x'"));
     return core::Error{core::Errc::conflict, "thought better of it"};
   }));
   const auto after = store_.read([](Reading& tx) { return chain_end(tx); });

@@ -2,6 +2,7 @@
 
 #include "core/bytes.hpp"
 #include "core/require.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace store {
@@ -11,12 +12,11 @@ namespace {
 core::Result<void> set_state(Writing& tx, const Job& job, const char* state,
                              const std::string& error, std::int64_t uncounted_attempts,
                              std::int64_t now_utc_us) {
-  auto rows = tx.query(
-      "update jobs set state = ?, error = ?, attempts = attempts - ?, changed_utc_us = ? "
-      "where id = ? and owner = ? and state = 'claimed' returning id",
-      {state, error, uncounted_attempts, now_utc_us, job.id, job.owner});
-  if (!rows) return rows.error();
-  if (rows->empty())
+  auto rows = TRY(
+      tx.query("update jobs set state = ?, error = ?, attempts = attempts - ?, changed_utc_us = ? "
+               "where id = ? and owner = ? and state = 'claimed' returning id",
+               {state, error, uncounted_attempts, now_utc_us, job.id, job.owner}));
+  if (rows.empty())
     return core::Error{core::Errc::conflict, "job " + job.id + " is another's by now"};
   return {};
 }
@@ -25,11 +25,10 @@ core::Result<void> set_state(Writing& tx, const Job& job, const char* state,
 
 core::Result<void> queue_job(Writing& tx, const std::string& kind, const std::string& subject,
                              std::int64_t now_utc_us) {
-  auto done = tx.query(
+  TRY(tx.query(
       "insert into jobs (id, kind, subject, state, attempts, error, queued_utc_us, changed_utc_us) "
       "values (?, ?, ?, 'queued', 0, '', ?, ?)",
-      {core::new_id(), kind, subject, now_utc_us, now_utc_us});
-  if (!done) return done.error();
+      {core::new_id(), kind, subject, now_utc_us, now_utc_us}));
   return notify(tx, kJobsChannel, kind);
 }
 
@@ -38,27 +37,25 @@ core::Result<std::optional<Job>> claim_job(Writing& tx, const std::vector<std::s
   core::require(!kinds.empty(), "whoever claims a job says of which kinds");
   std::string listed = ",";
   for (const std::string& kind : kinds) listed += kind + ",";
-  auto rows = tx.query(
+  auto rows = TRY(tx.query(
       "update jobs set state = 'claimed', attempts = attempts + 1, owner = ?, "
       "lease_until_utc_us = ?, changed_utc_us = ? "
       "where id = (select id from jobs where state = 'queued' and ? like '%,' || kind || ',%' "
       "order by queued_utc_us, id limit 1 /*pg: for update skip locked */) "
       "returning id, kind, subject, attempts",
-      {worker.id, now_utc_us + worker.lease_us, now_utc_us, listed});
-  if (!rows) return rows.error();
-  if (rows->empty()) return std::optional<Job>();
-  const Row& row = rows->front();
+      {worker.id, now_utc_us + worker.lease_us, now_utc_us, listed}));
+  if (rows.empty()) return std::optional<Job>();
+  const Row& row = rows.front();
   return std::optional(Job{row.text(0), row.text(1), row.text(2), row.count(3), worker.id});
 }
 
 core::Result<std::vector<std::string>> renew_claims(Writing& tx, const Worker& worker,
                                                     std::int64_t now_utc_us) {
-  auto rows = tx.query(
+  auto rows = TRY(tx.query(
       "update jobs set lease_until_utc_us = ? where owner = ? and state = 'claimed' returning id",
-      {now_utc_us + worker.lease_us, worker.id});
-  if (!rows) return rows.error();
+      {now_utc_us + worker.lease_us, worker.id}));
   std::vector<std::string> out;
-  for (const Row& row : *rows) out.push_back(row.text(0));
+  for (const Row& row : rows) out.push_back(row.text(0));
   return out;
 }
 
@@ -72,25 +69,23 @@ core::Result<void> fail_job(Writing& tx, const Job& job, const std::string& why,
 }
 
 core::Result<void> give_back_job(Writing& tx, const Job& job, std::int64_t now_utc_us) {
-  if (auto done = set_state(tx, job, "queued", "", 1, now_utc_us); !done) return done;
+  TRY(set_state(tx, job, "queued", "", 1, now_utc_us));
   return notify(tx, kJobsChannel, job.kind);
 }
 
 core::Result<std::uint64_t> requeue_lapsed_jobs(Writing& tx, std::int64_t now_utc_us) {
-  auto rows = tx.query(
-      "update jobs set state = 'queued', changed_utc_us = ? where state = 'claimed' and "
-      "lease_until_utc_us < ? returning id",
-      {now_utc_us, now_utc_us});
-  if (!rows) return rows.error();
-  if (rows->empty()) return 0;
-  if (auto said = notify(tx, kJobsChannel, "lapsed"); !said) return said.error();
-  return rows->size();
+  auto rows = TRY(
+      tx.query("update jobs set state = 'queued', changed_utc_us = ? where state = 'claimed' and "
+               "lease_until_utc_us < ? returning id",
+               {now_utc_us, now_utc_us}));
+  if (rows.empty()) return 0;
+  TRY(notify(tx, kJobsChannel, "lapsed"));
+  return rows.size();
 }
 
 core::Result<void> requeue_claimed_jobs(Writing& tx, std::int64_t now_utc_us) {
-  auto done = tx.query(
-      "update jobs set state = 'queued', changed_utc_us = ? where state = 'claimed'", {now_utc_us});
-  if (!done) return done.error();
+  TRY(tx.query("update jobs set state = 'queued', changed_utc_us = ? where state = 'claimed'",
+               {now_utc_us}));
   return {};
 }
 

@@ -1,12 +1,13 @@
 #include "db/store/people/accounts.hpp"
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace store {
 namespace {
 
 core::Result<void> run(Writing& tx, std::string_view sql, std::initializer_list<Value> values) {
-  auto done = tx.query(sql, values);
-  if (!done) return done.error();
+  TRY(tx.query(sql, values));
   return {};
 }
 
@@ -38,19 +39,17 @@ Value text_or_null(const std::string& text) { return text.empty() ? Value() : Va
 /// The account whose `column` has this value.
 core::Result<std::optional<Account>> account_by(Reading& tx, const char* column,
                                                 const std::string& value) {
-  auto rows = tx.query(
-      std::string("select ") + kAccount + " from accounts a where a." + column + " = ?", {value});
-  if (!rows) return rows.error();
-  if (rows->empty()) return std::optional<Account>();
-  return std::optional(account_from(rows->front()));
+  auto rows = TRY(tx.query(
+      std::string("select ") + kAccount + " from accounts a where a." + column + " = ?", {value}));
+  if (rows.empty()) return std::optional<Account>();
+  return std::optional(account_from(rows.front()));
 }
 
 core::Result<std::string> station_text(Reading& tx, const std::string& column,
                                        const std::string& station_id) {
-  auto rows = tx.query("select " + column + " from stations where id = ?", {station_id});
-  if (!rows) return rows.error();
-  if (rows->empty()) return core::Error{core::Errc::not_found, "no such station"};
-  return rows->front().text(0);
+  auto rows = TRY(tx.query("select " + column + " from stations where id = ?", {station_id}));
+  if (rows.empty()) return core::Error{core::Errc::not_found, "no such station"};
+  return rows.front().text(0);
 }
 
 }  // namespace
@@ -84,10 +83,9 @@ core::Result<void> set_account(Writing& tx, const Account& account) {
 
 core::Result<void> use_totp_step(Writing& tx, const std::string& account_id, std::int64_t step) {
   auto rows =
-      tx.query("update accounts set totp_step = ? where id = ? and totp_step < ? returning id",
-               {step, account_id, step});
-  if (!rows) return rows.error();
-  if (rows->empty())
+      TRY(tx.query("update accounts set totp_step = ? where id = ? and totp_step < ? returning id",
+                   {step, account_id, step}));
+  if (rows.empty())
     return core::Error{core::Errc::unauthorised, "the one-time code was used already"};
   return {};
 }
@@ -105,17 +103,15 @@ core::Result<std::optional<Account>> account_with_badge(Reading& tx, const std::
 }
 
 core::Result<std::vector<Account>> all_accounts(Reading& tx) {
-  auto rows = tx.query(std::string("select ") + kAccount + " from accounts a order by a.name");
-  if (!rows) return rows.error();
+  auto rows = TRY(tx.query(std::string("select ") + kAccount + " from accounts a order by a.name"));
   std::vector<Account> out;
-  for (const Row& row : *rows) out.push_back(account_from(row));
+  for (const Row& row : rows) out.push_back(account_from(row));
   return out;
 }
 
 core::Result<std::uint64_t> account_count(Reading& tx) {
-  auto rows = tx.query("select count(*) from accounts");
-  if (!rows) return rows.error();
-  return rows->front().count(0);
+  auto rows = TRY(tx.query("select count(*) from accounts"));
+  return rows.front().count(0);
 }
 
 core::Result<void> add_session(Writing& tx, const std::string& token_hash,
@@ -127,14 +123,13 @@ core::Result<void> add_session(Writing& tx, const std::string& token_hash,
 }
 
 core::Result<std::optional<Session>> session_of(Reading& tx, const std::string& token_hash) {
-  auto rows =
+  auto rows = TRY(
       tx.query(std::string("select ") + kAccount +
                    ", s.made_utc_us, s.seen_utc_us "
                    "from sessions s join accounts a on a.id = s.account_id where s.token_hash = ?",
-               {token_hash});
-  if (!rows) return rows.error();
-  if (rows->empty()) return std::optional<Session>();
-  const Row& row = rows->front();
+               {token_hash}));
+  if (rows.empty()) return std::optional<Session>();
+  const Row& row = rows.front();
   return std::optional(
       Session{account_from(row), row.integer(kAccountColumns), row.integer(kAccountColumns + 1)});
 }
@@ -173,19 +168,17 @@ core::Result<void> add_station(Writing& tx, const Station& station, const std::s
 
 core::Result<std::optional<Station>> station_of(Reading& tx, const std::string& token_hash) {
   auto rows =
-      tx.query("select id, name from stations where token_hash = ? and revoked_utc_us is null",
-               {token_hash});
-  if (!rows) return rows.error();
-  if (rows->empty()) return std::optional<Station>();
-  return std::optional(Station{rows->front().text(0), rows->front().text(1)});
+      TRY(tx.query("select id, name from stations where token_hash = ? and revoked_utc_us is null",
+                   {token_hash}));
+  if (rows.empty()) return std::optional<Station>();
+  return std::optional(Station{rows.front().text(0), rows.front().text(1)});
 }
 
 core::Result<std::vector<StationEntry>> all_stations(Reading& tx) {
   auto rows =
-      tx.query("select id, name, enrolled_utc_us, revoked_utc_us from stations order by name");
-  if (!rows) return rows.error();
+      TRY(tx.query("select id, name, enrolled_utc_us, revoked_utc_us from stations order by name"));
   std::vector<StationEntry> out;
-  for (const Row& row : *rows) {
+  for (const Row& row : rows) {
     StationEntry entry{{row.text(0), row.text(1)}, row.integer(2), {}};
     if (const auto* at = std::get_if<std::int64_t>(&row.value(3))) entry.revoked_utc_us = *at;
     out.push_back(std::move(entry));
@@ -194,20 +187,18 @@ core::Result<std::vector<StationEntry>> all_stations(Reading& tx) {
 }
 
 core::Result<void> revoke_station(Writing& tx, const std::string& id, std::int64_t now_utc_us) {
-  auto rows = tx.query(
+  auto rows = TRY(tx.query(
       "update stations set revoked_utc_us = coalesce(revoked_utc_us, ?) where id = ? returning id",
-      {now_utc_us, id});
-  if (!rows) return rows.error();
-  if (rows->empty()) return core::Error{core::Errc::not_found, "no such station"};
+      {now_utc_us, id}));
+  if (rows.empty()) return core::Error{core::Errc::not_found, "no such station"};
   return {};
 }
 
 core::Result<void> add_enrolment_code(Writing& tx, const std::string& code_hash,
                                       const std::string& station_name, std::int64_t now_utc_us,
                                       std::int64_t expires_utc_us) {
-  auto rows = tx.query("select id from stations where name = ?", {station_name});
-  if (!rows) return rows.error();
-  if (!rows->empty())
+  auto rows = TRY(tx.query("select id from stations where name = ?", {station_name}));
+  if (!rows.empty())
     return core::Error{core::Errc::conflict, "a station named " + station_name + " exists already"};
   return run(tx,
              "insert into enrolment_codes (code_hash, station_name, made_utc_us, expires_utc_us) "
@@ -217,14 +208,13 @@ core::Result<void> add_enrolment_code(Writing& tx, const std::string& code_hash,
 
 core::Result<std::string> use_enrolment_code(Writing& tx, const std::string& code_hash,
                                              std::int64_t now_utc_us) {
-  auto rows = tx.query(
+  auto rows = TRY(tx.query(
       "update enrolment_codes set used_utc_us = ? where code_hash = ? and used_utc_us is null "
       "and expires_utc_us > ? returning station_name",
-      {now_utc_us, code_hash, now_utc_us});
-  if (!rows) return rows.error();
-  if (rows->empty())
+      {now_utc_us, code_hash, now_utc_us}));
+  if (rows.empty())
     return core::Error{core::Errc::unauthorised, "this code is unknown, used or too old"};
-  return rows->front().text(0);
+  return rows.front().text(0);
 }
 
 core::Result<std::string> station_token_hash(Reading& tx, const std::string& station_id) {

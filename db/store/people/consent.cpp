@@ -1,5 +1,7 @@
 #include "db/store/people/consent.hpp"
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace store {
 namespace {
@@ -30,16 +32,14 @@ std::optional<Tier> tier_named(std::string_view name) {
 
 core::Result<void> set_consent(Writing& tx, const Consent& c) {
   if (!c.account_id.empty() && c.study_id.empty())
-    if (auto gone = tx.query("delete from consents where account_id = ?", {c.account_id}); !gone)
-      return gone.error();
-  auto set = tx.query(
+    TRY(tx.query("delete from consents where account_id = ?", {c.account_id}));
+  TRY(tx.query(
       "insert into consents (account_id, study_id, participant, tier, basis, noted_utc_us, "
       "noted_by) values (?, ?, ?, ?, ?, ?, ?) on conflict (account_id, study_id, participant) do "
       "update set tier = excluded.tier, basis = excluded.basis, noted_utc_us = "
       "excluded.noted_utc_us, noted_by = excluded.noted_by",
       {c.account_id, c.study_id, c.participant, std::string(name(c.tier)), c.basis, c.noted_utc_us,
-       c.noted_by});
-  if (!set) return set.error();
+       c.noted_by}));
   return {};
 }
 
@@ -55,15 +55,12 @@ core::Result<std::vector<Consent>> all_consents(Reading& tx) {
 
 core::Result<ConsentBook> ConsentBook::read(Reading& tx) {
   ConsentBook out;
-  auto said = all_consents(tx);
-  if (!said) return said.error();
-  for (const Consent& c : *said) out.said_[{c.account_id, c.study_id, c.participant}] = c.tier;
-  auto assigned = tx.query("select study_id from assignments");
-  if (!assigned) return assigned.error();
-  for (const Row& row : *assigned) out.assignments_.insert(row.text(0));
-  auto people = tx.query("select study_id, participant, account_id from assignment_people");
-  if (!people) return people.error();
-  for (const Row& row : *people) out.accounts_[{row.text(0), row.text(1)}] = row.text(2);
+  auto said = TRY(all_consents(tx));
+  for (const Consent& c : said) out.said_[{c.account_id, c.study_id, c.participant}] = c.tier;
+  auto assigned = TRY(tx.query("select study_id from assignments"));
+  for (const Row& row : assigned) out.assignments_.insert(row.text(0));
+  auto people = TRY(tx.query("select study_id, participant, account_id from assignment_people"));
+  for (const Row& row : people) out.accounts_[{row.text(0), row.text(1)}] = row.text(2);
   return out;
 }
 
@@ -92,16 +89,15 @@ Tier ConsentBook::tier_of(const CohortTrial& trial) const {
 }
 
 core::Result<std::string> pseudonym_key_known(Reading& tx) {
-  auto rows = tx.query("select fingerprint from pseudonym_keys order by since_utc_us desc limit 1");
-  if (!rows) return rows.error();
-  return rows->empty() ? std::string() : rows->front().text(0);
+  auto rows =
+      TRY(tx.query("select fingerprint from pseudonym_keys order by since_utc_us desc limit 1"));
+  return rows.empty() ? std::string() : rows.front().text(0);
 }
 
 core::Result<void> note_pseudonym_key(Writing& tx, const std::string& fingerprint,
                                       std::int64_t now_utc_us) {
-  auto noted = tx.query("insert into pseudonym_keys (fingerprint, since_utc_us) values (?, ?)",
-                        {fingerprint, now_utc_us});
-  if (!noted) return noted.error();
+  TRY(tx.query("insert into pseudonym_keys (fingerprint, since_utc_us) values (?, ?)",
+               {fingerprint, now_utc_us}));
   return {};
 }
 

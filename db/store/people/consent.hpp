@@ -41,7 +41,7 @@ core::Result<void> set_consent(Writing& tx, const Consent& consent);
 core::Result<std::vector<Consent>> consents_of(Reading& tx, const std::string& account_id);
 core::Result<std::vector<Consent>> all_consents(Reading& tx);
 
-/// TrialFilter a trial is and what may be had of it, at one moment.
+/// Whose a trial is and what may be had of it, at one moment.
 class ConsentBook {
  public:
   static core::Result<ConsentBook> read(Reading& tx);

@@ -1,5 +1,7 @@
 #include "db/store/people/invitations.hpp"
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace store {
 namespace {
@@ -20,17 +22,15 @@ core::Result<std::vector<Invitation>> invitations_from(const core::Result<Rows>&
 
 core::Result<void> invite(Writing& tx, const Invitation& i) {
   auto waiting =
-      tx.query("select count(*) from cohort_invitations where cohort_id = ?", {i.cohort_id});
-  if (!waiting) return waiting.error();
-  if (waiting->front().count(0) >= kMostInvitations)
+      TRY(tx.query("select count(*) from cohort_invitations where cohort_id = ?", {i.cohort_id}));
+  if (waiting.front().count(0) >= kMostInvitations)
     return core::Error{
         core::Errc::conflict,
         std::to_string(kMostInvitations) + " invitations wait in this cohort: withdraw some first"};
-  auto added = tx.query(
+  TRY(tx.query(
       "insert into cohort_invitations (cohort_id, account_name, made_utc_us, made_by) values "
       "(?, ?, ?, ?) on conflict (cohort_id, account_name) do nothing",
-      {i.cohort_id, i.account_name, i.made_utc_us, i.made_by});
-  if (!added) return added.error();
+      {i.cohort_id, i.account_name, i.made_utc_us, i.made_by}));
   return {};
 }
 
@@ -48,20 +48,18 @@ core::Result<std::vector<Invitation>> invitations_for(Reading& tx,
 
 core::Result<void> remove_invitation(Writing& tx, const std::string& cohort_id,
                                      const std::string& account_name) {
-  auto removed = tx.query("delete from cohort_invitations where cohort_id = ? and account_name = ?",
-                          {cohort_id, account_name});
-  if (!removed) return removed.error();
+  TRY(tx.query("delete from cohort_invitations where cohort_id = ? and account_name = ?",
+               {cohort_id, account_name}));
   return {};
 }
 
 core::Result<bool> is_invited(Reading& tx, const std::string& account_id,
                               const std::string& cohort_id) {
-  auto rows = tx.query(
+  auto rows = TRY(tx.query(
       "select 1 from cohort_invitations i join accounts a on a.name = i.account_name where a.id = "
       "? and i.cohort_id = ?",
-      {account_id, cohort_id});
-  if (!rows) return rows.error();
-  return !rows->empty();
+      {account_id, cohort_id}));
+  return !rows.empty();
 }
 
 }  // namespace store

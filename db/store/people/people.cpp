@@ -1,5 +1,7 @@
 #include "db/store/people/people.hpp"
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace store {
 namespace {
@@ -39,31 +41,28 @@ core::Result<void> add_cohort(Writing& tx, const Cohort& cohort) {
 }
 
 core::Result<std::optional<Cohort>> cohort_of(Reading& tx, const std::string& id) {
-  auto rows = tx.query(std::string(kCohort) + "where c.id = ?", {id});
-  if (!rows) return rows.error();
-  if (rows->empty()) return std::optional<Cohort>();
-  return std::optional(cohort_from(rows->front()));
+  auto rows = TRY(tx.query(std::string(kCohort) + "where c.id = ?", {id}));
+  if (rows.empty()) return std::optional<Cohort>();
+  return std::optional(cohort_from(rows.front()));
 }
 
 core::Result<std::vector<Cohort>> cohorts_of(Reading& tx, const std::string& account_id) {
-  auto rows = tx.query(std::string(kCohort) +
-                           "where ? = '' or exists (select 1 from cohort_people p where "
-                           "p.cohort_id = c.id and p.account_id = ?) order by c.name",
-                       {account_id, account_id});
-  if (!rows) return rows.error();
+  auto rows = TRY(tx.query(std::string(kCohort) +
+                               "where ? = '' or exists (select 1 from cohort_people p where "
+                               "p.cohort_id = c.id and p.account_id = ?) order by c.name",
+                           {account_id, account_id}));
   std::vector<Cohort> out;
-  for (const Row& row : *rows) out.push_back(cohort_from(row));
+  for (const Row& row : rows) out.push_back(cohort_from(row));
   return out;
 }
 
 core::Result<std::vector<CohortPerson>> people_of(Reading& tx, const std::string& cohort_id) {
-  auto rows = tx.query(
+  auto rows = TRY(tx.query(
       "select a.id, a.name, a.role, p.part, a.state, coalesce(a.pseudonym, '') from cohort_people "
       "p join accounts a on a.id = p.account_id where p.cohort_id = ? order by a.name",
-      {cohort_id});
-  if (!rows) return rows.error();
+      {cohort_id}));
   std::vector<CohortPerson> out;
-  for (const Row& row : *rows)
+  for (const Row& row : rows)
     out.push_back({row.text(0), row.text(1), row.text(2), row.text(3), row.text(4), row.text(5)});
   return out;
 }

@@ -1,12 +1,13 @@
 #include "db/store/people/sign_ins.hpp"
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace store {
 namespace {
 
 core::Result<void> run(Writing& tx, std::string_view sql, std::initializer_list<Value> values) {
-  auto rows = tx.query(sql, values);
-  if (!rows) return rows.error();
+  TRY(tx.query(sql, values));
   return {};
 }
 
@@ -50,13 +51,12 @@ struct Key {
 
 core::Result<Failures> failures_of(Reading& tx, const Attempt& attempt, Total total) {
   const Key key(attempt, total);
-  auto rows = tx.query(
-      "select failures, at_utc_us from sign_in_failures "
-      "where secret = ? and total = ? and name = ? and origin = ?",
-      {key.secret, key.total, key.name, key.origin});
-  if (!rows) return rows.error();
-  if (rows->empty()) return Failures{};
-  return Failures{rows->front().number(0), rows->front().integer(1)};
+  auto rows =
+      TRY(tx.query("select failures, at_utc_us from sign_in_failures "
+                   "where secret = ? and total = ? and name = ? and origin = ?",
+                   {key.secret, key.total, key.name, key.origin}));
+  if (rows.empty()) return Failures{};
+  return Failures{rows.front().number(0), rows.front().integer(1)};
 }
 
 core::Result<void> set_failures(Writing& tx, const Attempt& attempt, Total total,
@@ -88,27 +88,24 @@ core::Result<void> remove_old_failures(Writing& tx, std::int64_t before_utc_us) 
 
 core::Result<bool> is_known_origin(Reading& tx, const Attempt& attempt) {
   const bool by_badge = attempt.secret == Secret::badge_pin;
-  auto rows =
+  auto rows = TRY(
       tx.query(std::string("select 1 from known_origins k join accounts a on a.id = k.account_id "
                            "where k.secret = ? and k.origin = ? and ") +
                    (by_badge ? "a.badge = ?" : "a.name = ?"),
-               {text_of(attempt.secret), attempt.origin, attempt.name});
-  if (!rows) return rows.error();
-  return !rows->empty();
+               {text_of(attempt.secret), attempt.origin, attempt.name}));
+  return !rows.empty();
 }
 
 core::Result<bool> is_known_origin(Reading& tx, Secret secret, const std::string& origin) {
-  auto rows = tx.query("select 1 from known_origins where secret = ? and origin = ? limit 1",
-                       {text_of(secret), origin});
-  if (!rows) return rows.error();
-  return !rows->empty();
+  auto rows = TRY(tx.query("select 1 from known_origins where secret = ? and origin = ? limit 1",
+                           {text_of(secret), origin}));
+  return !rows.empty();
 }
 
 core::Result<void> note_origin(Writing& tx, const std::string& account_id, const Attempt& from,
                                std::int64_t now_utc_us, std::int64_t forget_before_utc_us) {
-  auto forgotten = run(tx, "delete from known_origins where account_id = ? and seen_utc_us < ?",
-                       {account_id, forget_before_utc_us});
-  if (!forgotten) return forgotten;
+  TRY(run(tx, "delete from known_origins where account_id = ? and seen_utc_us < ?",
+          {account_id, forget_before_utc_us}));
   return run(tx,
              "insert into known_origins (account_id, secret, origin, seen_utc_us) "
              "values (?, ?, ?, ?) on conflict (account_id, secret, origin) do update "

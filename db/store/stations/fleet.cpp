@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "db/store/cases/cases.hpp"
 #include "db/store/studies/study_slots.hpp"
 
@@ -24,19 +25,17 @@ core::Result<void> set_station_last(Writing& tx, const StationLast& last) {
 }
 
 core::Result<std::vector<StationLast>> stations_last(Reading& tx) {
-  auto rows = tx.query("select station_id, seen_utc_us, told from station_states");
-  if (!rows) return rows.error();
+  auto rows = TRY(tx.query("select station_id, seen_utc_us, told from station_states"));
   std::vector<StationLast> out;
-  for (const Row& row : *rows) out.push_back({row.text(0), row.integer(1), row.text(2)});
+  for (const Row& row : rows) out.push_back({row.text(0), row.integer(1), row.text(2)});
   return out;
 }
 
 core::Result<void> add_station_note(Writing& tx, const StationNote& note, std::int64_t now_utc_us) {
-  auto today =
+  auto today = TRY(
       tx.query("select count(*) from station_reports where station_id = ? and received_utc_us > ?",
-               {note.station_id, now_utc_us - kDay_us});
-  if (!today) return today.error();
-  if (today->front().integer(0) >= kMostNotesADay)
+               {note.station_id, now_utc_us - kDay_us}));
+  if (today.front().integer(0) >= kMostNotesADay)
     return core::Error{core::Errc::unavailable,
                        fmt::format("{} reports came from this station within a day: no more are "
                                    "taken today",
@@ -49,13 +48,12 @@ core::Result<void> add_station_note(Writing& tx, const StationNote& note, std::i
 
 core::Result<std::vector<StationNote>> station_notes(Reading& tx, const std::string& station_id,
                                                      const std::string& kind, std::int64_t limit) {
-  auto rows = tx.query(
+  auto rows = TRY(tx.query(
       "select at_utc_us, body from station_reports where station_id = ? and kind = ? order by "
       "at_utc_us desc limit ?",
-      {station_id, kind, limit});
-  if (!rows) return rows.error();
+      {station_id, kind, limit}));
   std::vector<StationNote> out;
-  for (const Row& row : *rows) out.push_back({station_id, kind, row.integer(0), row.text(1)});
+  for (const Row& row : rows) out.push_back({station_id, kind, row.integer(0), row.text(1)});
   return out;
 }
 
@@ -68,42 +66,39 @@ core::Result<void> add_trial_clock(Writing& tx, const std::string& trial_id,
 }
 
 core::Result<std::optional<TrialClock>> trial_clock_of(Reading& tx, const std::string& trial_id) {
-  auto rows = tx.query("select offset_s, error_s from trial_clocks where trial_id = ?", {trial_id});
-  if (!rows) return rows.error();
-  if (rows->empty()) return std::optional<TrialClock>();
-  return std::optional(TrialClock{rows->front().number(0), rows->front().number(1)});
+  auto rows =
+      TRY(tx.query("select offset_s, error_s from trial_clocks where trial_id = ?", {trial_id}));
+  if (rows.empty()) return std::optional<TrialClock>();
+  return std::optional(TrialClock{rows.front().number(0), rows.front().number(1)});
 }
 
 namespace {
 
 core::Result<void> add_teachers(Reading& tx, ShownTrial& out) {
-  auto rows = tx.query(
+  auto rows = TRY(tx.query(
       "select distinct f.account_id from cohort_people t join cohort_people f on f.cohort_id = "
       "t.cohort_id where t.account_id = ? and t.part = 'trainee' and f.part = 'faculty'",
-      {out.account_id});
-  if (!rows) return rows.error();
-  for (const Row& row : *rows) out.teachers.insert(row.text(0));
+      {out.account_id}));
+  for (const Row& row : rows) out.teachers.insert(row.text(0));
   return {};
 }
 
 core::Result<ShownTrial> shown_slot(Reading& tx, const Slot& slot) {
   ShownTrial out;
-  auto person = tx.query(
+  auto person = TRY(tx.query(
       "select a.id, a.name from assignment_people p join accounts a on a.id = p.account_id where "
       "p.study_id = ? and p.participant = ?",
-      {slot.study_id, slot.participant});
-  if (!person) return person.error();
-  if (person->empty()) {
+      {slot.study_id, slot.participant}));
+  if (person.empty()) {
     out.person = slot.participant;
     return out;
   }
-  out.account_id = person->front().text(0);
-  out.person = person->front().text(1);
-  auto name = tx.query("select name from assignment_names where study_id = ? and case_id = ?",
-                       {slot.study_id, slot.case_id});
-  if (!name) return name.error();
-  if (!name->empty()) out.case_title = name->front().text(0);
-  if (auto added = add_teachers(tx, out); !added) return added.error();
+  out.account_id = person.front().text(0);
+  out.person = person.front().text(1);
+  auto name = TRY(tx.query("select name from assignment_names where study_id = ? and case_id = ?",
+                           {slot.study_id, slot.case_id}));
+  if (!name.empty()) out.case_title = name.front().text(0);
+  TRY(add_teachers(tx, out));
   return out;
 }
 
@@ -111,16 +106,14 @@ core::Result<ShownTrial> shown_slot(Reading& tx, const Slot& slot) {
 
 core::Result<ShownTrial> shown_trial(Reading& tx, const std::string& station_id,
                                      const std::string& case_id) {
-  auto slot = slot_of(tx, case_id);
-  if (!slot) return slot.error();
-  if (*slot) {
-    if ((*slot)->station_id != station_id) return ShownTrial{};
-    return shown_slot(tx, **slot);
+  auto slot = TRY(slot_of(tx, case_id));
+  if (slot) {
+    if (slot->station_id != station_id) return ShownTrial{};
+    return shown_slot(tx, *slot);
   }
-  auto known = case_of(tx, case_id);
-  if (!known) return known.error();
+  auto known = TRY(case_of(tx, case_id));
   ShownTrial out;
-  if (*known && (*known)->kind == kPalpation) out.case_title = (*known)->title;
+  if (known && known->kind == kPalpation) out.case_title = known->title;
   return out;
 }
 

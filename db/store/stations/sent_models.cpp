@@ -1,5 +1,7 @@
 #include "db/store/stations/sent_models.hpp"
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace store {
 namespace {
@@ -19,10 +21,9 @@ std::optional<std::int64_t> time_or_nothing(const Row& row, std::size_t column) 
 core::Result<void> send_model(Writing& tx, const std::string& model_id,
                               const std::string& station_id, const std::string& by,
                               std::int64_t now_utc_us) {
-  auto there =
-      tx.query("select id from stations where id = ? and revoked_utc_us is null", {station_id});
-  if (!there) return there.error();
-  if (there->empty())
+  auto there = TRY(
+      tx.query("select id from stations where id = ? and revoked_utc_us is null", {station_id}));
+  if (there.empty())
     return core::Error{core::Errc::not_found, "no station " + station_id.substr(0, 32)};
   return done(
       tx.query("insert into station_models (station_id, model_id, asked_utc_us, asked_by) values "
@@ -31,39 +32,36 @@ core::Result<void> send_model(Writing& tx, const std::string& model_id,
 }
 
 core::Result<std::vector<SentModel>> sent_to(Reading& tx, const std::string& model_id) {
-  auto rows = tx.query(
+  auto rows = TRY(tx.query(
       "select s.id, s.name, m.asked_utc_us, m.asked_by, m.there_utc_us from stations s left join "
       "station_models m on m.station_id = s.id and m.model_id = ? where s.revoked_utc_us is null "
       "order by s.name",
-      {model_id});
-  if (!rows) return rows.error();
+      {model_id}));
   std::vector<SentModel> out;
-  for (const Row& row : *rows)
+  for (const Row& row : rows)
     out.push_back({row.text(0), row.text(1), time_or_nothing(row, 2),
                    row.text_or_null(3).value_or(""), time_or_nothing(row, 4)});
   return out;
 }
 
 core::Result<std::vector<ModelVersion>> models_for(Reading& tx, const std::string& station_id) {
-  auto rows = tx.query(
+  auto rows = TRY(tx.query(
       "select model_id from station_models where station_id = ? order by asked_utc_us, model_id",
-      {station_id});
-  if (!rows) return rows.error();
+      {station_id}));
   std::vector<ModelVersion> out;
-  for (const Row& row : *rows) {
-    auto model = model_of(tx, row.text(0));
-    if (!model) return model.error();
-    if (*model) out.push_back(std::move(**model));
+  for (const Row& row : rows) {
+    auto model = TRY(model_of(tx, row.text(0)));
+    if (model) out.push_back(std::move(*model));
   }
   return out;
 }
 
 core::Result<void> note_model_there(Writing& tx, const std::string& model_id,
                                     const std::string& station_id, std::int64_t now_utc_us) {
-  auto sent = tx.query("select model_id from station_models where station_id = ? and model_id = ?",
-                       {station_id, model_id});
-  if (!sent) return sent.error();
-  if (sent->empty())
+  auto sent =
+      TRY(tx.query("select model_id from station_models where station_id = ? and model_id = ?",
+                   {station_id, model_id}));
+  if (sent.empty())
     return core::Error{core::Errc::not_found, "no model " + model_id.substr(0, 32) + " was sent"};
   return done(
       tx.query("update station_models set there_utc_us = ? where station_id = ? and model_id = ? "

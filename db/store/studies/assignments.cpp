@@ -1,6 +1,7 @@
 #include "db/store/studies/assignments.hpp"
 
 #include "core/require.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace store {
@@ -58,13 +59,11 @@ Assignment assignment_from(const Row& row) {
 core::Result<AssignmentId> add_assignment(Writing& tx, const Assignment& a,
                                           const std::vector<std::string>& case_ids,
                                           const AuditStamp& stamp) {
-  if (auto added = add_series(tx, a.study, "assignment", case_ids, stamp); !added)
-    return added.error();
-  auto added = done(tx.query(
+  TRY(add_series(tx, a.study, "assignment", case_ids, stamp));
+  TRY(done(tx.query(
       "insert into assignments (study_id, cohort_id, due_utc_us, release, made_by_id) values "
       "(?, ?, ?, ?, ?)",
-      {a.study.id, or_null(a.cohort_id), or_null(a.due_utc_us), a.release, a.made_by_id}));
-  if (!added) return added.error();
+      {a.study.id, or_null(a.cohort_id), or_null(a.due_utc_us), a.release, a.made_by_id})));
   return find_assignment(tx, a.study.id);
 }
 
@@ -78,10 +77,9 @@ core::Result<void> set_assigned_name(Writing& tx, const AssignmentId& id,
 
 core::Result<std::string> assigned_name(Reading& tx, const AssignmentId& id,
                                         const std::string& case_id) {
-  auto rows = tx.query("select name from assignment_names where study_id = ? and case_id = ?",
-                       {id.text(), case_id});
-  if (!rows) return rows.error();
-  return rows->empty() ? std::string() : rows->front().text(0);
+  auto rows = TRY(tx.query("select name from assignment_names where study_id = ? and case_id = ?",
+                           {id.text(), case_id}));
+  return rows.empty() ? std::string() : rows.front().text(0);
 }
 
 core::Result<void> add_assigned_person(Writing& tx, const AssignmentId& id,
@@ -97,79 +95,71 @@ core::Result<void> add_assigned_person(Writing& tx, const AssignmentId& id,
 
 core::Result<void> set_release(Writing& tx, const AssignmentId& id, const std::string& release,
                                const AuditStamp& stamp) {
-  auto set =
-      done(tx.query("update assignments set release = ? where study_id = ?", {release, id.text()}));
-  if (!set) return set;
+  TRY(done(
+      tx.query("update assignments set release = ? where study_id = ?", {release, id.text()})));
   return add_study_event(tx, id.text(), stamp, "results " + release);
 }
 
 core::Result<void> set_due(Writing& tx, const AssignmentId& id,
                            const std::optional<std::int64_t>& due_utc_us, const AuditStamp& stamp) {
-  auto set = done(tx.query("update assignments set due_utc_us = ? where study_id = ?",
-                           {or_null(due_utc_us), id.text()}));
-  if (!set) return set;
+  TRY(done(tx.query("update assignments set due_utc_us = ? where study_id = ?",
+                    {or_null(due_utc_us), id.text()})));
   return add_study_event(tx, id.text(), stamp, "due date changed");
 }
 
 core::Result<std::vector<Assignment>> assignments_of(Reading& tx, const AssignmentFilter& whose) {
   const std::string &me = whose.done_by, &leader = whose.led_by;
-  auto rows = tx.query(
+  auto rows = TRY(tx.query(
       std::string(kAssignment) +
           "where (? = '' or a.made_by_id = ? or exists (select 1 from cohort_people f where "
           "f.cohort_id = a.cohort_id and f.account_id = ? and f.part = 'faculty')) and (? = '' or "
           "exists (select 1 from assignment_people p where p.study_id = a.study_id and "
           "p.account_id = ?)) order by a.due_utc_us is null, a.due_utc_us, s.made_utc_us, s.id",
-      {me, me, me, me, me, me, leader, leader, leader, me, me});
-  if (!rows) return rows.error();
+      {me, me, me, me, me, me, leader, leader, leader, me, me}));
   std::vector<Assignment> out;
-  for (const Row& row : *rows) out.push_back(assignment_from(row));
+  for (const Row& row : rows) out.push_back(assignment_from(row));
   return out;
 }
 
 core::Result<Assignment> assignment_of(Reading& tx, const AssignmentId& id,
                                        const std::string& done_by) {
-  auto rows = tx.query(std::string(kAssignment) + "where a.study_id = ?",
-                       {done_by, done_by, done_by, done_by, done_by, done_by, id.text()});
-  if (!rows) return rows.error();
-  core::require(!rows->empty(), "who has an assignment's id has looked it up");
-  return assignment_from(rows->front());
+  auto rows = TRY(tx.query(std::string(kAssignment) + "where a.study_id = ?",
+                           {done_by, done_by, done_by, done_by, done_by, done_by, id.text()}));
+  core::require(!rows.empty(), "who has an assignment's id has looked it up");
+  return assignment_from(rows.front());
 }
 
 core::Result<std::vector<AssignmentId>> assignments_of_cohort(Reading& tx,
                                                               const std::string& cohort_id) {
-  auto rows = tx.query("select study_id from assignments where cohort_id = ?", {cohort_id});
-  if (!rows) return rows.error();
+  auto rows = TRY(tx.query("select study_id from assignments where cohort_id = ?", {cohort_id}));
   std::vector<AssignmentId> out;
-  for (const Row& row : *rows) {
-    auto id = find_assignment(tx, row.text(0));
-    if (!id) return id.error();
-    out.push_back(std::move(*id));
+  for (const Row& row : rows) {
+    auto id = TRY(find_assignment(tx, row.text(0)));
+    out.push_back(std::move(id));
   }
   return out;
 }
 
 core::Result<std::vector<AssignedPerson>> assigned_people(Reading& tx, const AssignmentId& id) {
-  auto rows = tx.query(
+  auto rows = TRY(tx.query(
       "select p.account_id, u.name, p.participant, (select count(*) from study_slots k where "
       "k.study_id = p.study_id and k.participant = p.participant and k.state = 'recorded'), "
       "(select count(*) from study_slots k where k.study_id = p.study_id and k.participant = "
       "p.participant and k.state <> 'invalid') from assignment_people p join accounts u on u.id = "
       "p.account_id where p.study_id = ? order by u.name",
-      {id.text()});
-  if (!rows) return rows.error();
+      {id.text()}));
   std::vector<AssignedPerson> out;
-  for (const Row& row : *rows)
+  for (const Row& row : rows)
     out.push_back({row.text(0), row.text(1), row.text(2), row.count(3), row.count(4)});
   return out;
 }
 
 core::Result<std::string> participant_for(Reading& tx, const AssignmentId& id,
                                           const std::string& account_id) {
-  auto rows =
+  auto rows = TRY(
       tx.query("select participant from assignment_people where study_id = ? and account_id = ?",
-               {id.text(), account_id});
-  if (!rows) return rows.error();
-  return rows->empty() ? std::string() : rows->front().text(0);
+               {id.text(), account_id}));
+  return rows.empty() ? std::string() : rows.front().text(0);
 }
 
 }  // namespace store

@@ -43,7 +43,7 @@ core::Result<void> set_release(Writing& tx, const AssignmentId& id, const std::s
 core::Result<void> set_due(Writing& tx, const AssignmentId& id,
                            const std::optional<std::int64_t>& due_utc_us, const AuditStamp& stamp);
 
-/// TrialFilter assignments a list is of. Both empty: all.
+/// Whose assignments a list is of. Both empty: all.
 struct AssignmentFilter {
   std::string led_by = {};   ///< made by this account, or of a cohort that it leads
   std::string done_by = {};  ///< assigned to this account, whose counts are its own

@@ -1,5 +1,7 @@
 #include "db/store/studies/blinding.hpp"
 
+#include "core/try.hpp"
+
 namespace tractus::store {
 
 std::string blinded_sql() {
@@ -10,19 +12,18 @@ std::string blinded_sql() {
 }
 
 core::Result<bool> is_blinded(Reading& tx, const std::string& trial_id) {
-  auto rows = tx.query("select 1 from trials t where t.id = ? and " + blinded_sql(), {trial_id});
-  if (!rows) return rows.error();
-  return !rows->empty();
+  auto rows =
+      TRY(tx.query("select 1 from trials t where t.id = ? and " + blinded_sql(), {trial_id}));
+  return !rows.empty();
 }
 
 core::Result<bool> is_study_through(Reading& tx, const std::string& study_id) {
-  auto rows = tx.query(
+  auto rows = TRY(tx.query(
       "select 1 from studies s where s.id = ? and s.kind = 'study' and exists (select 1 from "
       "study_slots k where k.study_id = s.id) and not exists (select 1 from study_slots k where "
       "k.study_id = s.id and k.state in ('waiting', 'taken'))",
-      {study_id});
-  if (!rows) return rows.error();
-  return !rows->empty();
+      {study_id}));
+  return !rows.empty();
 }
 
 }  // namespace tractus::store

@@ -1,5 +1,7 @@
 #include "db/store/studies/series.hpp"
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace store {
 namespace {
@@ -8,34 +10,31 @@ constexpr std::size_t kShown = 32;  ///< characters of a foreign id in an error
 
 /// Errors: not_found where there is no row of this id and kind.
 core::Result<void> check_kind(Reading& tx, const std::string& id, const std::string& kind) {
-  auto rows = tx.query("select 1 from studies where id = ? and kind = ?", {id, kind});
-  if (!rows) return rows.error();
-  if (!rows->empty()) return {};
+  auto rows = TRY(tx.query("select 1 from studies where id = ? and kind = ?", {id, kind}));
+  if (!rows.empty()) return {};
   return core::Error{core::Errc::not_found, "no " + kind + " " + id.substr(0, kShown)};
 }
 
 }  // namespace
 
 core::Result<StudyId> find_study(Reading& tx, const std::string& id) {
-  if (auto known = check_kind(tx, id, "study"); !known) return known.error();
+  TRY(check_kind(tx, id, "study"));
   return StudyId(id);
 }
 
 core::Result<AssignmentId> find_assignment(Reading& tx, const std::string& id) {
-  if (auto known = check_kind(tx, id, "assignment"); !known) return known.error();
+  TRY(check_kind(tx, id, "assignment"));
   return AssignmentId(id);
 }
 
 core::Result<bool> series_exists(Reading& tx, const std::string& id) {
-  auto rows = tx.query("select 1 from studies where id = ?", {id});
-  if (!rows) return rows.error();
-  return !rows->empty();
+  auto rows = TRY(tx.query("select 1 from studies where id = ?", {id}));
+  return !rows.empty();
 }
 
 core::Result<std::string> series_title(Reading& tx, const std::string& id) {
-  auto rows = tx.query("select title from studies where id = ?", {id});
-  if (!rows) return rows.error();
-  return rows->empty() ? std::string() : rows->front().text(0);
+  auto rows = TRY(tx.query("select title from studies where id = ?", {id}));
+  return rows.empty() ? std::string() : rows.front().text(0);
 }
 
 }  // namespace store

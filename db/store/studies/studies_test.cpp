@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/try.hpp"
 #include "db/store/cases/cases.hpp"
 #include "db/store/people/accounts.hpp"
 #include "db/store/studies/assignments.hpp"
@@ -24,11 +25,9 @@ class Studies : public test_support::BothDatabases {
   Studies() {
     write([](Writing& tx) -> core::Result<void> {
       for (const char* id : {"s1", "s2"})
-        if (auto done = add_station(tx, {id, std::string("station-") + id}, id, 1); !done)
-          return done;
+        TRY(add_station(tx, {id, std::string("station-") + id}, id, 1));
       for (const std::string& id : {kA, kB})
-        if (auto done = add_case(tx, {id, "scenario", "", 1, 0, kProbing}, {}, 1); !done)
-          return done;
+        TRY(add_case(tx, {id, "scenario", "", 1, 0, kProbing}, {}, 1));
       return add_case(tx, {kWhole, "whole bone", "", 1, 0, kPalpation, false, true}, {}, 1);
     });
   }
@@ -45,7 +44,7 @@ class Studies : public test_support::BothDatabases {
                         .repeats = 2,
                         .seed = 3,
                         .on_invalid = on_invalid};
-      if (auto done = add_study(tx, study, {kA, kB}, kAda); !done) return done.error();
+      TRY(add_study(tx, study, {kA, kB}, kAda));
       return add_participant(tx, find_study(tx, "study").value(), {.name = "P1"}, {kA, kB, kB},
                              kAda);
     });
@@ -55,7 +54,7 @@ class Studies : public test_support::BothDatabases {
     write([&](Writing& tx) -> core::Result<void> {
       const Study study{
           .id = "study", .title = "Drill", .ordering = "fixed", .on_invalid = on_invalid};
-      if (auto done = add_study(tx, study, {kWhole, kB}, kAda); !done) return done.error();
+      TRY(add_study(tx, study, {kWhole, kB}, kAda));
       return add_participant(tx, find_study(tx, "study").value(), {.name = "P1"}, {kWhole, kB},
                              kAda);
     });
@@ -71,9 +70,8 @@ class Studies : public test_support::BothDatabases {
   void bring(const std::string& trial_id, const Slot& slot, bool complete = true,
              const Tool& tool = {}) {
     write([&](Writing& tx) -> core::Result<void> {
-      if (auto done = add_upload(tx, {trial_id, "s1", slot.case_id, 1, kA, "receiving"}, 9); !done)
-        return done;
-      if (auto done = announce_for_slot(tx, trial_id, slot.id, 9); !done) return done;
+      TRY(add_upload(tx, {trial_id, "s1", slot.case_id, 1, kA, "receiving"}, 9));
+      TRY(announce_for_slot(tx, trial_id, slot.id, 9));
       return record_for_slot(tx, trial_id, complete, {"station-s1", 10}, tool);
     });
   }
@@ -136,9 +134,8 @@ TEST_P(Studies, GiveOneParticipantToOneStationAtATime) {
   EXPECT_EQ(refused.error().code, core::Errc::conflict);
   EXPECT_THAT(refused.error().what, HasSubstr("another station"));
   write([](Writing& tx) -> core::Result<void> {
-    auto freed = release_slots(tx, find_study(tx, "study").value(), "P1", kAda);
-    if (!freed) return freed.error();
-    EXPECT_EQ(*freed, 2u);
+    auto freed = TRY(release_slots(tx, find_study(tx, "study").value(), "P1", kAda));
+    EXPECT_EQ(freed, 2u);
     return {};
   });
   EXPECT_TRUE(take("s2", 1));
@@ -227,9 +224,9 @@ TEST_P(Studies, OnlyATrialThatCountsOfThisStudyCanBeMarkedInvalid) {
 /// The row's kind decides, whatever the id looks like.
 TEST_P(Studies, AStudyAndAnAssignmentAreNotFoundAsEachOther) {
   write([](Writing& tx) -> core::Result<void> {
-    if (auto done = add_account(tx, {"fay", "fay", "faculty", "x"}, 0); !done) return done;
+    TRY(add_account(tx, {"fay", "fay", "faculty", "x"}, 0));
     const Study like_an_assignment{.id = "a-study", .title = "", .ordering = "random"};
-    if (auto done = add_study(tx, like_an_assignment, {kA}, kAda); !done) return done.error();
+    TRY(add_study(tx, like_an_assignment, {kA}, kAda));
     const Assignment assignment{.study = {.id = "spine", .title = "", .ordering = "random"},
                                 .made_by_id = "fay"};
     auto added = add_assignment(tx, assignment, {kA}, kAda);

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/bytes.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace store {
@@ -35,10 +36,9 @@ Slot slot_from(const Row& row) {
 
 core::Result<std::vector<Slot>> slots_where(Reading& tx, const std::string& tail,
                                             std::initializer_list<Value> values) {
-  auto rows = tx.query(kSlot + tail, values);
-  if (!rows) return rows.error();
+  auto rows = TRY(tx.query(kSlot + tail, values));
   std::vector<Slot> out;
-  for (const Row& row : *rows) out.push_back(slot_from(row));
+  for (const Row& row : rows) out.push_back(slot_from(row));
   return out;
 }
 
@@ -66,49 +66,41 @@ core::Result<void> set_trial(Writing& tx, const std::string& trial_id, const std
 core::Result<std::pair<std::int64_t, std::int64_t>> place_of_repetition(
     Writing& tx, const Slot& slot, const std::string& on_invalid) {
   const bool at_end = on_invalid == "at_end";
-  auto rows = at_end
-                  ? tx.query(
-                        "select max(position) + 1, 0 from study_slots where study_id = ? and "
+  auto rows = TRY(
+      at_end ? tx.query("select max(position) + 1, 0 from study_slots where study_id = ? and "
                         "participant = ?",
                         {slot.study_id, slot.participant})
-                  : tx.query(
-                        "select position, max(attempt) + 1 from study_slots where study_id = ? and "
+             : tx.query("select position, max(attempt) + 1 from study_slots where study_id = ? and "
                         "participant = ? and position = ? group by position",
-                        {slot.study_id, slot.participant, slot.position});
-  if (!rows) return rows.error();
-  return std::pair(rows->front().integer(0), rows->front().integer(1));
+                        {slot.study_id, slot.participant, slot.position}));
+  return std::pair(rows.front().integer(0), rows.front().integer(1));
 }
 
 core::Result<std::string> on_invalid_of(Reading& tx, const std::string& series_id) {
-  auto rows = tx.query("select on_invalid from studies where id = ?", {series_id});
-  if (!rows) return rows.error();
-  core::require(!rows->empty(), "a slot has its study");
-  return rows->front().text(0);
+  auto rows = TRY(tx.query("select on_invalid from studies where id = ?", {series_id}));
+  core::require(!rows.empty(), "a slot has its study");
+  return rows.front().text(0);
 }
 
 /// The slot did not yield a trial that counts: it is closed, and repeated as the study says. That
 /// of a palpation whose channel is there stays open for the next one.
 core::Result<void> close_and_repeat(Writing& tx, const Slot& slot, const Tool& tool,
                                     const AuditStamp& stamp) {
-  auto on_invalid = on_invalid_of(tx, slot.study_id);
-  if (!on_invalid) return on_invalid.error();
-  const bool never = *on_invalid == "never";
+  auto on_invalid = TRY(on_invalid_of(tx, slot.study_id));
+  const bool never = on_invalid == "never";
   if (slot.planned && !tool.burr && !never)
     return set_slot(tx, slot.id, slot.station_id ? "taken" : "waiting", slot.station_id,
                     stamp.at_utc_us);
-  if (auto closed = set_slot(tx, slot.id, "invalid", slot.station_id, stamp.at_utc_us); !closed)
-    return closed;
+  TRY(set_slot(tx, slot.id, "invalid", slot.station_id, stamp.at_utc_us));
   if (never) return {};
-  auto place = place_of_repetition(tx, slot, *on_invalid);
-  if (!place) return place.error();
+  auto place = TRY(place_of_repetition(tx, slot, on_invalid));
   Slot again = slot;
   again.id = core::hex(core::random_bytes(32));
-  auto added = tx.query(
+  TRY(tx.query(
       "insert into study_slots (id, study_id, participant, position, attempt, case_id, state, "
       "repeat_of, changed_utc_us) values (?, ?, ?, ?, ?, ?, 'waiting', ?, ?)",
-      {again.id, slot.study_id, slot.participant, place->first, place->second, slot.case_id,
-       slot.id, stamp.at_utc_us});
-  if (!added) return added.error();
+      {again.id, slot.study_id, slot.participant, place.first, place.second, slot.case_id, slot.id,
+       stamp.at_utc_us}));
   return add_study_event(tx, slot.study_id, stamp, "repeated", &again);
 }
 
@@ -131,14 +123,11 @@ Judged judged(const Slot& slot, bool complete, const Tool& tool, const std::stri
 
 /// The trials of a slot that count no longer do.
 core::Result<void> discount(Writing& tx, const Slot& slot, const AuditStamp& stamp) {
-  auto rows = tx.query("select trial_id from study_trials where slot_id = ? and state = 'counts'",
-                       {slot.id});
-  if (!rows) return rows.error();
-  for (const Row& row : *rows) {
-    if (auto set = set_trial(tx, row.text(0), "invalid", stamp); !set) return set;
-    if (auto noted = add_study_event(tx, slot.study_id, stamp, "invalid", &slot, row.text(0));
-        !noted)
-      return noted;
+  auto rows = TRY(tx.query(
+      "select trial_id from study_trials where slot_id = ? and state = 'counts'", {slot.id}));
+  for (const Row& row : rows) {
+    TRY(set_trial(tx, row.text(0), "invalid", stamp));
+    TRY(add_study_event(tx, slot.study_id, stamp, "invalid", &slot, row.text(0)));
   }
   return {};
 }
@@ -152,18 +141,17 @@ core::Result<void> give(Writing& tx, Slot& slot, const std::string& station_id,
   if (slot.state == "taken") return {};
   slot.state = "taken";
   slot.station_id = station_id;
-  if (auto set = set_slot(tx, slot.id, "taken", station_id, stamp.at_utc_us); !set) return set;
+  TRY(set_slot(tx, slot.id, "taken", station_id, stamp.at_utc_us));
   return add_study_event(tx, slot.study_id, stamp, "taken", &slot);
 }
 
 core::Result<std::uint64_t> planned_of(Reading& tx, const std::string& study_id,
                                        const std::string& participant) {
-  auto rows = tx.query(
-      "select count(*) from study_slots where study_id = ? and participant = ? and "
-      "state <> 'invalid'",
-      {study_id, participant});
-  if (!rows) return rows.error();
-  return rows->front().count(0);
+  auto rows =
+      TRY(tx.query("select count(*) from study_slots where study_id = ? and participant = ? and "
+                   "state <> 'invalid'",
+                   {study_id, participant}));
+  return rows.front().count(0);
 }
 
 }  // namespace
@@ -179,46 +167,40 @@ core::Result<std::vector<Slot>> study_slots(Reading& tx, const SeriesId& id) {
 core::Result<Taken> take_slots(Writing& tx, const SeriesId& id, const Participant& participant,
                                const std::string& station_id, std::int64_t ahead,
                                const AuditStamp& stamp) {
-  auto study = study_of(tx, id);
-  if (!study) return study.error();
-  if (study->state == "paused") return paused("study " + id.text());
+  auto study = TRY(study_of(tx, id));
+  if (study.state == "paused") return paused("study " + id.text());
   if (participant.state == "paused") return paused("participant " + participant.name);
-  auto open = slots_where(tx,
-                          "where k.study_id = ? and k.participant = ? and "
-                          "k.state in ('waiting', 'taken') order by k.position, k.attempt",
-                          {id.text(), participant.name});
-  if (!open) return open.error();
-  for (const Slot& slot : *open)
+  auto open = TRY(slots_where(tx,
+                              "where k.study_id = ? and k.participant = ? and "
+                              "k.state in ('waiting', 'taken') order by k.position, k.attempt",
+                              {id.text(), participant.name}));
+  for (const Slot& slot : open)
     if (slot.station_id && *slot.station_id != station_id)
       return core::Error{core::Errc::conflict,
                          fmt::format("{} is at another station: end there, or have the trials that "
                                      "it holds released",
                                      participant.name)};
-  auto planned = planned_of(tx, id.text(), participant.name);
-  if (!planned) return planned.error();
-  Taken out{.slots = {}, .unfinished = open->size(), .planned = *planned};
-  open->resize(std::min<std::size_t>(open->size(), static_cast<std::size_t>(ahead)));
-  for (Slot& slot : *open)
-    if (auto given = give(tx, slot, station_id, stamp); !given) return given.error();
-  out.slots = std::move(*open);
+  auto planned = TRY(planned_of(tx, id.text(), participant.name));
+  Taken out{.slots = {}, .unfinished = open.size(), .planned = planned};
+  open.resize(std::min<std::size_t>(open.size(), static_cast<std::size_t>(ahead)));
+  for (Slot& slot : open) TRY(give(tx, slot, station_id, stamp));
+  out.slots = std::move(open);
   return out;
 }
 
 core::Result<std::uint64_t> release_slots(Writing& tx, const SeriesId& id,
                                           const std::string& participant, const AuditStamp& stamp) {
-  auto held = slots_where(tx, "where k.study_id = ? and k.participant = ? and k.state = 'taken'",
-                          {id.text(), participant});
-  if (!held) return held.error();
+  auto held =
+      TRY(slots_where(tx, "where k.study_id = ? and k.participant = ? and k.state = 'taken'",
+                      {id.text(), participant}));
   AuditStamp unfelt = stamp;
   unfelt.reason = "freed before its channel was felt";
-  for (const Slot& slot : *held) {
-    if (auto dropped = discount(tx, slot, unfelt); !dropped) return dropped.error();
-    if (auto set = set_slot(tx, slot.id, "waiting", std::nullopt, stamp.at_utc_us); !set)
-      return set.error();
-    if (auto noted = add_study_event(tx, id.text(), stamp, "released", &slot); !noted)
-      return noted.error();
+  for (const Slot& slot : held) {
+    TRY(discount(tx, slot, unfelt));
+    TRY(set_slot(tx, slot.id, "waiting", std::nullopt, stamp.at_utc_us));
+    TRY(add_study_event(tx, id.text(), stamp, "released", &slot));
   }
-  return held->size();
+  return held.size();
 }
 
 core::Result<std::optional<Slot>> slot_of(Reading& tx, const std::string& slot_id) {
@@ -226,11 +208,10 @@ core::Result<std::optional<Slot>> slot_of(Reading& tx, const std::string& slot_i
 }
 
 core::Result<bool> was_handed_to(Reading& tx, const Slot& slot, const std::string& station_name) {
-  auto rows =
+  auto rows = TRY(
       tx.query("select count(*) from study_events where slot_id = ? and what = 'taken' and who = ?",
-               {slot.id, station_name});
-  if (!rows) return rows.error();
-  return rows->front().integer(0) > 0;
+               {slot.id, station_name}));
+  return rows.front().integer(0) > 0;
 }
 
 core::Result<std::optional<Slot>> slot_of_trial(Reading& tx, const std::string& trial_id) {
@@ -239,13 +220,12 @@ core::Result<std::optional<Slot>> slot_of_trial(Reading& tx, const std::string& 
 }
 
 core::Result<std::optional<StudyTrial>> study_trial_of(Reading& tx, const std::string& trial_id) {
-  auto rows = tx.query(
+  auto rows = TRY(tx.query(
       "select trial_id, slot_id, state, reason, changed_utc_us from study_trials where trial_id = "
       "?",
-      {trial_id});
-  if (!rows) return rows.error();
-  if (rows->empty()) return std::optional<StudyTrial>();
-  const Row& row = rows->front();
+      {trial_id}));
+  if (rows.empty()) return std::optional<StudyTrial>();
+  const Row& row = rows.front();
   return std::optional(
       StudyTrial{row.text(0), row.text(1), row.text(2), row.text(3), row.integer(4)});
 }
@@ -259,32 +239,27 @@ core::Result<void> announce_for_slot(Writing& tx, const std::string& trial_id,
 }
 
 core::Result<std::string> drilling_of(Reading& tx, const std::string& slot_id) {
-  auto rows = tx.query(
+  auto rows = TRY(tx.query(
       "select trial_id from study_trials where slot_id = ? and state = 'counts' and tool = 'burr'",
-      {slot_id});
-  if (!rows) return rows.error();
-  return rows->empty() ? std::string() : rows->front().text(0);
+      {slot_id}));
+  return rows.empty() ? std::string() : rows.front().text(0);
 }
 
 core::Result<void> record_for_slot(Writing& tx, const std::string& trial_id, bool complete,
                                    const AuditStamp& stamp, const Tool& tool) {
-  auto found = slot_of_trial(tx, trial_id);
-  if (!found) return found.error();
-  if (!*found) return {};
-  const Slot& slot = **found;
-  auto drilling = drilling_of(tx, slot.id);
-  if (!drilling) return drilling.error();
-  const Judged what = judged(slot, complete, tool, *drilling);
+  auto found = TRY(slot_of_trial(tx, trial_id));
+  if (!found) return {};
+  const Slot& slot = *found;
+  auto drilling = TRY(drilling_of(tx, slot.id));
+  const Judged what = judged(slot, complete, tool, drilling);
   AuditStamp said = stamp;
   if (!what.reason.empty()) said.reason = what.reason;
-  if (auto set = set_trial(tx, trial_id, what.state, said); !set) return set;
-  auto held = tx.query("update study_trials set tool = ? where trial_id = ?",
-                       {std::string(tool.burr ? "burr" : "probe"), trial_id});
-  if (!held) return held.error();
+  TRY(set_trial(tx, trial_id, what.state, said));
+  TRY(tx.query("update study_trials set tool = ? where trial_id = ?",
+               {std::string(tool.burr ? "burr" : "probe"), trial_id}));
   const bool counts = what.state == "counts", to_be_felt = slot.planned && tool.burr;
   const std::string event = !counts ? what.state : to_be_felt ? "drilled" : "recorded";
-  if (auto noted = add_study_event(tx, slot.study_id, said, event, &slot, trial_id); !noted)
-    return noted;
+  TRY(add_study_event(tx, slot.study_id, said, event, &slot, trial_id));
   if (what.state == "invalid") return close_and_repeat(tx, slot, tool, said);
   if (!counts || to_be_felt) return {};
   return set_slot(tx, slot.id, "recorded", slot.station_id, stamp.at_utc_us);
@@ -292,36 +267,31 @@ core::Result<void> record_for_slot(Writing& tx, const std::string& trial_id, boo
 
 core::Result<void> set_trial_invalid(Writing& tx, const SeriesId& id, const std::string& trial_id,
                                      const AuditStamp& stamp) {
-  auto slot = slot_of_trial(tx, trial_id);
-  if (!slot) return slot.error();
-  if (!*slot || (*slot)->study_id != id.text())
+  auto slot = TRY(slot_of_trial(tx, trial_id));
+  if (!slot || slot->study_id != id.text())
     return core::Error{core::Errc::not_found,
                        fmt::format("study {} has no trial {}", id.text(), trial_id.substr(0, 32))};
-  auto trial = tx.query("select state, tool from study_trials where trial_id = ?", {trial_id});
-  if (!trial) return trial.error();
-  if (trial->front().text(0) != "counts")
+  auto trial = TRY(tx.query("select state, tool from study_trials where trial_id = ?", {trial_id}));
+  if (trial.front().text(0) != "counts")
     return core::Error{core::Errc::conflict,
                        fmt::format("trial {} does not count as it is", trial_id)};
-  const Tool tool{.burr = trial->front().text(1) == "burr"};
-  if (auto set = set_trial(tx, trial_id, "invalid", stamp); !set) return set;
-  if (auto noted = add_study_event(tx, id.text(), stamp, "invalid", &**slot, trial_id); !noted)
-    return noted;
-  if (tool.burr)
-    if (auto with_it = discount(tx, **slot, stamp); !with_it) return with_it;
-  return close_and_repeat(tx, **slot, tool, stamp);
+  const Tool tool{.burr = trial.front().text(1) == "burr"};
+  TRY(set_trial(tx, trial_id, "invalid", stamp));
+  TRY(add_study_event(tx, id.text(), stamp, "invalid", &*slot, trial_id));
+  if (tool.burr) TRY(discount(tx, *slot, stamp));
+  return close_and_repeat(tx, *slot, tool, stamp);
 }
 
 core::Result<std::vector<StudyTrial>> study_trials(Reading& tx, const SeriesId& id) {
-  auto rows = tx.query(
+  auto rows = TRY(tx.query(
       "select x.trial_id, x.slot_id, x.state, x.reason, x.changed_utc_us, s.name, t.duration_s, "
       "t.samples, t.started_utc_us, t.sha256, t.correct, t.state, x.tool from study_trials x "
       "join study_slots k on k.id = x.slot_id join uploads u on u.trial_id = x.trial_id "
       "join stations s on s.id = u.station_id left join trials t on t.id = x.trial_id "
       "where k.study_id = ? order by x.changed_utc_us, x.trial_id",
-      {id.text()});
-  if (!rows) return rows.error();
+      {id.text()}));
   std::vector<StudyTrial> out;
-  for (const Row& row : *rows) {
+  for (const Row& row : rows) {
     StudyTrial one{.trial_id = row.text(0),
                    .slot_id = row.text(1),
                    .state = row.text(2),

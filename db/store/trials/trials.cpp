@@ -1,5 +1,6 @@
 #include "db/store/trials/trials.hpp"
 
+#include "core/try.hpp"
 #include "db/store/studies/blinding.hpp"
 
 namespace tractus {
@@ -56,14 +57,14 @@ core::Result<void> add_trial(Writing& tx, const TrialRecord& trial, std::int64_t
 }
 
 core::Result<std::optional<TrialRecord>> trial_of(Reading& tx, const std::string& id) {
-  auto rows = tx.query(std::string(kSummaryColumns) +
-                           ", t.station_id, t.sha256, t.complete, t.late_ticks, t.not_converged, "
-                           "t.skipped_ticks, t.header, t.events, t.failure, t.coverage" +
-                           kFrom + "where t.id = ?",
-                       {id});
-  if (!rows) return rows.error();
-  if (rows->empty()) return std::optional<TrialRecord>();
-  const Row& row = rows->front();
+  auto rows =
+      TRY(tx.query(std::string(kSummaryColumns) +
+                       ", t.station_id, t.sha256, t.complete, t.late_ticks, t.not_converged, "
+                       "t.skipped_ticks, t.header, t.events, t.failure, t.coverage" +
+                       kFrom + "where t.id = ?",
+                   {id}));
+  if (rows.empty()) return std::optional<TrialRecord>();
+  const Row& row = rows.front();
   return std::optional(TrialRecord{.summary = summary_from(row),
                                    .station_id = row.text(11),
                                    .sha256 = row.text(12),
@@ -83,7 +84,7 @@ core::Result<std::vector<TrialSummary>> trials_before(Reading& tx, std::int64_t 
   constexpr const char* kAssigned =
       "exists (select 1 from study_trials st join study_slots sl on sl.id = st.slot_id join "
       "assignment_people p on p.study_id = sl.study_id and p.participant = sl.participant ";
-  auto rows = tx.query(
+  auto rows = TRY(tx.query(
       std::string(kSummaryColumns) + kFrom + "where t.started_utc_us < ? and not " + blinded_sql() +
           " and (? = '' or " + kAssigned +
           "join cohort_people c on c.account_id = p.account_id and c.part = 'trainee' join "
@@ -93,21 +94,18 @@ core::Result<std::vector<TrialSummary>> trials_before(Reading& tx, std::int64_t 
           "join assignments a on a.study_id = sl.study_id where st.trial_id = t.id and "
           "p.account_id = ? and a.release <> 'held')) order by t.started_utc_us desc, t.id desc "
           "limit ?",
-      {before_utc_us, whose.taught_by, whose.taught_by, whose.seen_by, whose.seen_by, limit});
-  if (!rows) return rows.error();
+      {before_utc_us, whose.taught_by, whose.taught_by, whose.seen_by, whose.seen_by, limit}));
   std::vector<TrialSummary> out;
-  for (const Row& row : *rows) out.push_back(summary_from(row));
+  for (const Row& row : rows) out.push_back(summary_from(row));
   return out;
 }
 
 core::Result<void> set_assessment(Writing& tx, const std::string& id,
                                   const std::vector<ScoreRecord>& scores,
                                   std::optional<bool> correct, const std::string& coverage) {
-  if (auto cleared = tx.query("delete from trial_metrics where trial_id = ?", {id}); !cleared)
-    return cleared.error();
+  TRY(tx.query("delete from trial_metrics where trial_id = ?", {id}));
   for (std::size_t i = 0; i < scores.size(); ++i)
-    if (auto added = add_score(tx, id, static_cast<std::int64_t>(i), scores[i]); !added)
-      return added;
+    TRY(add_score(tx, id, static_cast<std::int64_t>(i), scores[i]));
   return done(tx.query(
       "update trials set state = 'assessed', failure = '', correct = ?, coverage = ? where id = ?",
       {correct ? bool_value(*correct) : Value(), coverage, id}));
@@ -119,12 +117,11 @@ core::Result<void> set_assessment_failed(Writing& tx, const std::string& id,
 }
 
 core::Result<std::vector<ScoreRecord>> scores_of(Reading& tx, const std::string& trial_id) {
-  auto rows = tx.query(
+  auto rows = TRY(tx.query(
       "select metric_id, value, note from trial_metrics where trial_id = ? order by position",
-      {trial_id});
-  if (!rows) return rows.error();
+      {trial_id}));
   std::vector<ScoreRecord> out;
-  for (const Row& row : *rows) out.push_back({row.text(0), row.number_or_null(1), row.text(2)});
+  for (const Row& row : rows) out.push_back({row.text(0), row.number_or_null(1), row.text(2)});
   return out;
 }
 

@@ -41,7 +41,7 @@ struct ScoreRecord {
 core::Result<void> add_trial(Writing& tx, const TrialRecord& trial, std::int64_t now_utc_us);
 core::Result<std::optional<TrialRecord>> trial_of(Reading& tx, const std::string& id);
 
-/// TrialFilter trials a list is of. Both empty: everybody's.
+/// Whose trials a list is of. Both empty: everybody's.
 struct TrialFilter {
   std::string taught_by = {};  ///< those of people whom this account teaches
   std::string seen_by = {};    ///< this account's own, as far as their results are released

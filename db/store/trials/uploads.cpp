@@ -1,5 +1,7 @@
 #include "db/store/trials/uploads.hpp"
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace store {
 namespace {
@@ -19,10 +21,9 @@ core::Result<void> done(const core::Result<Rows>& rows) {
 }  // namespace
 
 core::Result<std::optional<Upload>> upload_of(Reading& tx, const std::string& trial_id) {
-  auto rows = tx.query(std::string(kUpload) + "where trial_id = ?", {trial_id});
-  if (!rows) return rows.error();
-  if (rows->empty()) return std::optional<Upload>();
-  return std::optional(upload_from(rows->front()));
+  auto rows = TRY(tx.query(std::string(kUpload) + "where trial_id = ?", {trial_id}));
+  if (rows.empty()) return std::optional<Upload>();
+  return std::optional(upload_from(rows.front()));
 }
 
 core::Result<std::vector<Upload>> open_uploads(Reading& tx) {
@@ -30,20 +31,18 @@ core::Result<std::vector<Upload>> open_uploads(Reading& tx) {
 }
 
 core::Result<std::vector<Upload>> open_uploads_since(Reading& tx, std::int64_t utc_us) {
-  auto rows = tx.query(
+  auto rows = TRY(tx.query(
       std::string(kUpload) + "where state = 'receiving' and announced_utc_us > ? order by trial_id",
-      {utc_us});
-  if (!rows) return rows.error();
+      {utc_us}));
   std::vector<Upload> out;
-  for (const Row& row : *rows) out.push_back(upload_from(row));
+  for (const Row& row : rows) out.push_back(upload_from(row));
   return out;
 }
 
 core::Result<std::uint64_t> open_upload_count(Reading& tx, const std::string& station_id) {
-  auto rows = tx.query("select count(*) from uploads where station_id = ? and state = 'receiving'",
-                       {station_id});
-  if (!rows) return rows.error();
-  return rows->front().count(0);
+  auto rows = TRY(tx.query(
+      "select count(*) from uploads where station_id = ? and state = 'receiving'", {station_id}));
+  return rows.front().count(0);
 }
 
 core::Result<void> add_upload(Writing& tx, const Upload& upload, std::int64_t now_utc_us) {

@@ -9,6 +9,7 @@
 #include <functional>
 
 #include "core/file.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace store {
@@ -74,9 +75,8 @@ core::Result<fs::path> made_folder(const fs::path& path) {
 }  // namespace
 
 core::Result<Objects> Objects::open(const fs::path& data) {
-  auto root = made_folder(data / "objects");
-  if (!root) return root.error();
-  return Objects(std::move(*root));
+  auto root = TRY(made_folder(data / "objects"));
+  return Objects(std::move(root));
 }
 
 fs::path Objects::path_of(const std::string& sha256) const {
@@ -93,21 +93,21 @@ core::Result<void> Objects::folder_for(const std::string& sha256) const {
   const fs::path folder = path_of(sha256).parent_path();
   std::error_code failure;
   if (fs::exists(folder, failure)) return {};
-  if (auto made = made_folder(folder); !made) return made.error();
+  TRY(made_folder(folder));
   return core::sync_folder(root_);
 }
 
 core::Result<std::string> Objects::put(core::ByteView bytes) const {
   const std::string sha256 = core::sha256(bytes);
   if (has(sha256)) return sha256;
-  if (auto made = folder_for(sha256); !made) return made.error();
-  if (auto written = core::write_file(path_of(sha256), bytes); !written) return written.error();
+  TRY(folder_for(sha256));
+  TRY(core::write_file(path_of(sha256), bytes));
   return sha256;
 }
 
 core::Result<void> Objects::copy_in(const fs::path& file, const std::string& sha256) const {
   if (has(sha256)) return {};
-  if (auto made = folder_for(sha256); !made) return made.error();
+  TRY(folder_for(sha256));
   const fs::path target = path_of(sha256);
   const fs::path beside = target.string() + "." + core::hex(core::random_bytes(4)) + ".part";
   core::Sha256 hash;
@@ -140,7 +140,7 @@ core::Result<void> Objects::copy_in(const fs::path& file, const std::string& sha
 }
 
 core::Result<void> Objects::link_in(const fs::path& file, const std::string& sha256) const {
-  if (auto made = folder_for(sha256); !made) return made.error();
+  TRY(folder_for(sha256));
   const fs::path target = path_of(sha256);
   if (::link(file.c_str(), target.c_str()) != 0 && errno != EEXIST)
     return core::system_error(target, "cannot put in place");
@@ -148,9 +148,8 @@ core::Result<void> Objects::link_in(const fs::path& file, const std::string& sha
 }
 
 core::Result<PartialFiles> PartialFiles::open(const fs::path& data) {
-  auto root = made_folder(data / "uploads");
-  if (!root) return root.error();
-  return PartialFiles(std::move(*root));
+  auto root = TRY(made_folder(data / "uploads"));
+  return PartialFiles(std::move(root));
 }
 
 fs::path PartialFiles::path_of(const std::string& trial_id) const {
@@ -202,8 +201,7 @@ std::vector<std::string> PartialFiles::ids() const {
 
 core::Result<std::string> file_sha256(const fs::path& path) {
   core::Sha256 hash;
-  auto read = each_piece(path, [&](core::ByteView piece) { return hash.add(piece), true; });
-  if (!read) return read.error();
+  TRY(each_piece(path, [&](core::ByteView piece) { return hash.add(piece), true; }));
   return hash.hex();
 }
 

@@ -1,5 +1,7 @@
 #include "db/store/volumes/volumes.hpp"
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace store {
 namespace {
@@ -30,71 +32,61 @@ VolumeRecord volume_from(const Row& row) {
 /// Does anything of ours still name the object? Its own table says by foreign keys: the deletion of
 /// its row is tried last, so the question is asked of every table that may.
 core::Result<bool> is_named(Reading& tx, const std::string& sha256) {
-  auto rows = tx.query(
-      "select (select count(*) from volumes where sha256 = ?) + "
-      "(select count(*) from case_parts where sha256 = ?) + "
-      "(select count(*) from trials where sha256 = ?)",
-      {sha256, sha256, sha256});
-  if (!rows) return rows.error();
-  return rows->front().integer(0) > 0;
+  auto rows =
+      TRY(tx.query("select (select count(*) from volumes where sha256 = ?) + "
+                   "(select count(*) from case_parts where sha256 = ?) + "
+                   "(select count(*) from trials where sha256 = ?)",
+                   {sha256, sha256, sha256}));
+  return rows.front().integer(0) > 0;
 }
 
 }  // namespace
 
 core::Result<void> add_volume(Writing& tx, const VolumeRecord& v) {
-  auto twin = tx.query("select id, name from volumes where sha256 = ?", {v.sha256});
-  if (!twin) return twin.error();
-  if (!twin->empty())
+  auto twin = TRY(tx.query("select id, name from volumes where sha256 = ?", {v.sha256}));
+  if (!twin.empty())
     return core::Error{core::Errc::conflict, "these voxels are here already, as volume " +
-                                                 twin->front().text(0) + " \"" +
-                                                 twin->front().text(1) + "\""};
-  auto added = tx.query(
-      "insert into volumes (id, name, source, state, sha256, size_bytes, facts, report, "
-      "made_utc_us, made_by, made_by_id) values (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-      {v.id, v.name, v.source, v.state, v.sha256, count_value(v.size_bytes), v.facts, v.report,
-       v.made_utc_us, v.made_by, v.made_by_id});
-  if (!added) return added.error();
+                                                 twin.front().text(0) + " \"" +
+                                                 twin.front().text(1) + "\""};
+  TRY(
+      tx.query("insert into volumes (id, name, source, state, sha256, size_bytes, facts, report, "
+               "made_utc_us, made_by, made_by_id) values (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+               {v.id, v.name, v.source, v.state, v.sha256, count_value(v.size_bytes), v.facts,
+                v.report, v.made_utc_us, v.made_by, v.made_by_id}));
   return {};
 }
 
 core::Result<std::optional<VolumeRecord>> volume_of(Reading& tx, const std::string& id) {
-  auto rows = tx.query(std::string(kVolume) + "where id = ?", {id});
-  if (!rows) return rows.error();
-  if (rows->empty()) return std::optional<VolumeRecord>();
-  return std::optional(volume_from(rows->front()));
+  auto rows = TRY(tx.query(std::string(kVolume) + "where id = ?", {id}));
+  if (rows.empty()) return std::optional<VolumeRecord>();
+  return std::optional(volume_from(rows.front()));
 }
 
 core::Result<std::vector<VolumeRecord>> all_volumes(Reading& tx) {
-  auto rows = tx.query(std::string(kVolume) + "order by made_utc_us desc, id", {});
-  if (!rows) return rows.error();
+  auto rows = TRY(tx.query(std::string(kVolume) + "order by made_utc_us desc, id", {}));
   std::vector<VolumeRecord> out;
-  for (const Row& row : *rows) out.push_back(volume_from(row));
+  for (const Row& row : rows) out.push_back(volume_from(row));
   return out;
 }
 
 core::Result<std::string> decide_volume(Writing& tx, const std::string& id,
                                         const Decision& decision) {
-  auto known = volume_of(tx, id);
-  if (!known) return known.error();
-  if (!*known) return core::Error{core::Errc::not_found, "there is no volume " + id.substr(0, 64)};
-  if ((*known)->state != "held")
-    return core::Error{core::Errc::conflict, "volume " + id + " was " + (*known)->state +
-                                                 " already, by " +
-                                                 (*known)->decided_by.value_or("")};
-  const std::string sha256 = (*known)->sha256;
+  auto known = TRY(volume_of(tx, id));
+  if (!known) return core::Error{core::Errc::not_found, "there is no volume " + id.substr(0, 64)};
+  if (known->state != "held")
+    return core::Error{core::Errc::conflict, "volume " + id + " was " + known->state +
+                                                 " already, by " + known->decided_by.value_or("")};
+  const std::string sha256 = known->sha256;
   const bool refused = decision.state == "refused";
-  auto noted = tx.query(
+  TRY(tx.query(
       "update volumes set state = ?, sha256 = ?, decided_utc_us = ?, decided_by = ?, reason = ? "
       "where id = ?",
       {decision.state, refused ? Value() : Value(sha256), decision.at_utc_us, decision.by,
-       decision.reason, id});
-  if (!noted) return noted.error();
+       decision.reason, id}));
   if (!refused) return std::string();
-  auto named = is_named(tx, sha256);
-  if (!named) return named.error();
-  if (*named) return std::string();
-  auto gone = tx.query("delete from objects where sha256 = ?", {sha256});
-  if (!gone) return gone.error();
+  auto named = TRY(is_named(tx, sha256));
+  if (named) return std::string();
+  TRY(tx.query("delete from objects where sha256 = ?", {sha256}));
   return sha256;
 }
 

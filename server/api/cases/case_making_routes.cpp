@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "core/bytes.hpp"
+#include "core/try.hpp"
 #include "db/store/cases/case_makings.hpp"
 #include "db/store/cases/cases.hpp"
 #include "db/store/operations/jobs.hpp"
@@ -26,20 +27,17 @@ constexpr std::size_t kMaxTitle = 200;
 constexpr std::int64_t kMostShown = 50;
 
 Result<http::Response> look_at_tract(const Call& call) {
-  auto json = core::parse_json(call.request.body, "body");
-  if (!json) return json.error();
-  core::Fields fields(*json, "body");
-  const auto plan = jobs::plan_from(fields);
-  if (!plan) return plan.error();
-  if (auto done = fields.done(); !done) return done.error();
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  core::Fields fields(json, "body");
+  const auto plan = TRY(jobs::plan_from(fields));
+  TRY(fields.done());
   const auto source =
-      jobs::released_volume(call.backend.store, call.backend.objects, call.text("id"));
-  if (!source) return source.error();
-  const auto ct = jobs::read_about(source->file, plan->entry_m, plan->target_m);
+      TRY(jobs::released_volume(call.backend.store, call.backend.objects, call.text("id")));
+  const auto ct = jobs::read_about(source.file, plan.entry_m, plan.target_m);
   if (!ct && ct.error().code == Errc::out_of_range)
-    return json_response(no_tract_json(*plan, ct.error().what));
+    return json_response(no_tract_json(plan, ct.error().what));
   if (!ct) return ct.error();
-  return json_response(tract_json(*ct, models::PalpationModel{}.transfer, *plan));
+  return json_response(tract_json(*ct, models::PalpationModel{}.transfer, plan));
 }
 
 Json making_json(const store::CaseMaking& making) {
@@ -56,11 +54,10 @@ Json making_json(const store::CaseMaking& making) {
 }
 
 Result<http::Response> making_response(const Call& call, const std::string& id, int status) {
-  const auto making =
-      call.backend.store.read([&](store::Reading& tx) { return store::case_making_of(tx, id); });
-  if (!making) return making.error();
-  if (!*making) return Error{Errc::not_found, "no making of a case " + id.substr(0, 32)};
-  return json_response(making_json(**making), status);
+  const auto making = TRY(
+      call.backend.store.read([&](store::Reading& tx) { return store::case_making_of(tx, id); }));
+  if (!making) return Error{Errc::not_found, "no making of a case " + id.substr(0, 32)};
+  return json_response(making_json(*making), status);
 }
 
 Result<http::Response> one_making(const Call& call) {
@@ -68,60 +65,51 @@ Result<http::Response> one_making(const Call& call) {
 }
 
 Result<http::Response> list_makings(const Call& call) {
-  const auto found = call.backend.store.read(
-      [](store::Reading& tx) { return store::case_makings(tx, kMostShown); });
-  if (!found) return found.error();
+  const auto found = TRY(call.backend.store.read(
+      [](store::Reading& tx) { return store::case_makings(tx, kMostShown); }));
   Json list = Json::array();
-  for (const auto& making : *found) list.push_back(making_json(making));
+  for (const auto& making : found) list.push_back(making_json(making));
   return json_response({{"makings", list}});
 }
 
 Result<store::CaseMaking> making_from(const Call& call) {
-  auto json = core::parse_json(call.request.body, "body");
-  if (!json) return json.error();
-  core::Fields fields(*json, "body");
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  core::Fields fields(json, "body");
   store::CaseMaking out;
   out.id = core::new_id();
   out.volume_id = fields.text("volume", 64);
   out.title = fields.text("title", kMaxTitle);
   if (out.title.find_first_not_of(" \t\r\n") == std::string::npos)
     fields.wrong("title", "a title is expected");
-  const auto plan = jobs::plan_from(fields);
-  if (!plan) return plan.error();
-  if (auto done = fields.done(); !done) return done.error();
-  out.plan = jobs::plan_json(*plan).dump();
+  const auto plan = TRY(jobs::plan_from(fields));
+  TRY(fields.done());
+  out.plan = jobs::plan_json(plan).dump();
   out.made_utc_us = call.backend.now_utc_us();
   out.made_by = call.caller.name;
   return out;
 }
 
 Result<http::Response> make(const Call& call) {
-  const auto making = making_from(call);
-  if (!making) return making.error();
-  const auto source =
-      jobs::released_volume(call.backend.store, call.backend.objects, making->volume_id);
-  if (!source) return source.error();
-  auto added = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
-    if (auto done = store::add_case_making(tx, *making); !done) return done;
-    return store::queue_job(tx, "case", making->id, making->made_utc_us);
-  });
-  if (!added) return added.error();
+  const auto making = TRY(making_from(call));
+  TRY(jobs::released_volume(call.backend.store, call.backend.objects, making.volume_id));
+  TRY(call.backend.store.write([&](store::Writing& tx) -> Result<void> {
+    TRY(store::add_case_making(tx, making));
+    return store::queue_job(tx, "case", making.id, making.made_utc_us);
+  }));
   call.backend.work_waits();
-  return making_response(call, making->id, 201);
+  return making_response(call, making.id, 201);
 }
 
 Result<http::Response> retire(const Call& call) {
-  auto json = core::parse_json(call.request.body, "body");
-  if (!json) return json.error();
-  core::Fields fields(*json, "body");
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  core::Fields fields(json, "body");
   const Json* retired = fields.member("retired");
   if (retired && !retired->is_boolean()) fields.wrong("retired", "true or false is expected");
-  if (auto done = fields.done(); !done) return done.error();
-  auto changed = call.backend.store.write([&](store::Writing& tx) {
+  TRY(fields.done());
+  TRY(call.backend.store.write([&](store::Writing& tx) {
     return store::set_case_retired(tx, call.text("id"), retired->get<bool>(),
                                    call.backend.now_utc_us());
-  });
-  if (!changed) return changed.error();
+  }));
   return http::Response{.status = 204, .headers = {}, .body = std::string()};
 }
 

@@ -1,6 +1,7 @@
 /// From a released volume to a case that stations take: what is told before, what is made, by whom.
 #include <cmath>
 
+#include "core/try.hpp"
 #include "db/store/cases/case_makings.hpp"
 #include "db/store/volumes/volumes.hpp"
 #include "server/api/people/people_test_support.hpp"
@@ -57,7 +58,7 @@ class CaseMaking : public PeopleTest {
     record.sha256 = id == "released" ? sha_ : core::sha256(core::bytes_of(id));
     record.made_by = record.made_by_id = "ann";
     const auto added = store_.write([&](store::Writing& tx) -> core::Result<void> {
-      if (auto noted = store::add_object(tx, record.sha256, 1, 1); !noted) return noted;
+      TRY(store::add_object(tx, record.sha256, 1, 1));
       return store::add_volume(tx, record);
     });
     EXPECT_TRUE(added) << added.error().what;

@@ -1,6 +1,7 @@
 /// Published cases: their list, manifest, parts and a small picture in voxels.
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "db/store/cases/cases.hpp"
 #include "server/api/backend.hpp"
 #include "server/api/cases/preview.hpp"
@@ -14,10 +15,10 @@ namespace {
 constexpr const char* kForEver = "private, max-age=31536000, immutable";  // named by content
 
 core::Result<http::Response> list_cases(const Call& call) {
-  auto known = call.backend.store.read([](store::Reading& tx) { return store::all_cases(tx); });
-  if (!known) return known.error();
+  auto known =
+      TRY(call.backend.store.read([](store::Reading& tx) { return store::all_cases(tx); }));
   core::Json list = core::Json::array();
-  for (const store::CaseSummary& c : *known)
+  for (const store::CaseSummary& c : known)
     list.push_back({{"id", c.id},
                     {"title", c.title},
                     {"source", c.source},
@@ -30,29 +31,27 @@ core::Result<http::Response> list_cases(const Call& call) {
 
 core::Result<http::Response> part_named(const Call& call, const std::string& part_name) {
   const std::string& id = call.text("id");
-  auto part = call.backend.store.read(
-      [&](store::Reading& tx) { return store::case_part(tx, id, part_name); });
-  if (!part) return part.error();
+  auto part = TRY(call.backend.store.read(
+      [&](store::Reading& tx) { return store::case_part(tx, id, part_name); }));
   const core::Error absent{
       core::Errc::not_found,
       fmt::format("case {} has no part {} here", id.substr(0, 64), part_name.substr(0, 64))};
-  if (!*part) return absent;
+  if (!part) return absent;
   const Role role = call.caller.role;
   const bool may_know = role == Role::admin || role == Role::faculty || role == Role::researcher;
-  if ((*part)->secret && !may_know) {
+  if (part->secret && !may_know) {
     auto known =
-        call.backend.store.read([&](store::Reading& tx) { return store::case_of(tx, id); });
-    if (!known) return known.error();
+        TRY(call.backend.store.read([&](store::Reading& tx) { return store::case_of(tx, id); }));
     // Of a scenario not even that it is here: versions of scenarios are no secret.
-    if (*known && (*known)->kind == store::kProbing) return absent;
+    if (known && known->kind == store::kProbing) return absent;
     return core::Error{core::Errc::forbidden, "this part is secret"};
   }
   const bool json = part_name.ends_with(".json");
-  auto response = http::file_response(call.backend.objects.path_of((*part)->sha256), call.request,
+  auto response = http::file_response(call.backend.objects.path_of(part->sha256), call.request,
                                       json ? "application/json" : "application/octet-stream");
   if (response)
-    response->with("Cache-Control", (*part)->secret ? "no-store" : kForEver)
-        .with("ETag", "\"" + (*part)->sha256 + "\"");
+    response->with("Cache-Control", part->secret ? "no-store" : kForEver)
+        .with("ETag", "\"" + part->sha256 + "\"");
   return response;
 }
 
@@ -65,9 +64,8 @@ std::string numbers(std::span<const double> values) {
 
 core::Result<http::Response> preview_of_case(const Call& call) {
   auto preview =
-      case_preview(call.backend, call.text("id"), static_cast<int>(call.integer("max_side")));
-  if (!preview) return preview.error();
-  const volume::Geometry& g = preview->geometry;
+      TRY(case_preview(call.backend, call.text("id"), static_cast<int>(call.integer("max_side"))));
+  const volume::Geometry& g = preview.geometry;
   const math::Mat3 rows = g.directions.transpose();  // Eigen stores by column
   http::Response response;
   response.with("Content-Type", "application/octet-stream")
@@ -76,7 +74,7 @@ core::Result<http::Response> preview_of_case(const Call& call) {
       .with("X-Spacing-m", numbers({g.spacing_m.data(), 3}))
       .with("X-Origin-m", numbers({g.origin_m.data(), 3}))
       .with("X-Directions", numbers({rows.data(), 9}));
-  response.body = std::move(preview->opacity);
+  response.body = std::move(preview.opacity);
   return response;
 }
 

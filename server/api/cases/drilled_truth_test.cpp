@@ -1,4 +1,5 @@
 /// What is true of a channel that a trainee drilled: not the case's word, the burr's.
+#include "core/try.hpp"
 #include "db/store/trials/trials.hpp"
 #include "db/store/trials/uploads.hpp"
 #include "server/api/api_test_support.hpp"
@@ -34,10 +35,8 @@ class DrilledTruth : public ApiTest {
                                        {"detail", {{"channel", {{"beyond_m", beyond_m}}}}}}})
                        .dump();
     const auto done = store_.write([&](store::Writing& tx) -> core::Result<void> {
-      if (auto up = store::add_upload(tx, {kDrilling, "s1", of, 1, trial.sha256, "receiving"}, 1);
-          !up)
-        return up.error();
-      if (auto in = store::add_object(tx, trial.sha256, 1, 1); !in) return in;
+      TRY(store::add_upload(tx, {kDrilling, "s1", of, 1, trial.sha256, "receiving"}, 1));
+      TRY(store::add_object(tx, trial.sha256, 1, 1));
       return store::add_trial(tx, trial, 1);
     });
     EXPECT_TRUE(done) << done.error().what;

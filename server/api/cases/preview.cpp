@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/try.hpp"
 #include "db/store/cases/cases.hpp"
 #include "server/api/backend.hpp"
 #include "server/jobs/case_facts.hpp"
@@ -85,11 +86,9 @@ Preview averaged(const volume::Volume& box, const std::vector<float>& opacity, i
 }
 
 core::Result<Preview> case_preview(Backend& backend, const std::string& case_id, int max_side) {
-  auto facts = jobs::case_facts(backend.store, backend.objects, case_id);
-  if (!facts) return facts.error();
-  auto file = volume_of(backend, case_id, facts->definition);
-  if (!file) return file.error();
-  const volume::Box box = box_round(facts->definition.tract, file->geometry());
+  auto facts = TRY(jobs::case_facts(backend.store, backend.objects, case_id));
+  auto file = TRY(volume_of(backend, case_id, facts.definition));
+  const volume::Box box = box_round(facts.definition.tract, file.geometry());
   std::size_t voxels = 1;
   int longest = 1;
   for (std::size_t a = 0; a < 3; ++a) {
@@ -98,10 +97,9 @@ core::Result<Preview> case_preview(Backend& backend, const std::string& case_id,
   }
   if (voxels > kMaxVoxels)
     return core::Error{core::Errc::too_large, "the volume is too fine round its tract to preview"};
-  auto read = file->read_box(box);
-  if (!read) return read.error();
+  auto read = TRY(file.read_box(box));
   const int step = (longest + max_side - 1) / max_side;
-  return averaged(*read, opacity_of(*read, facts->definition.model.transfer), step);
+  return averaged(read, opacity_of(read, facts.definition.model.transfer), step);
 }
 
 }  // namespace api

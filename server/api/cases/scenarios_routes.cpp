@@ -4,6 +4,7 @@
 
 #include "core/clock.hpp"
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "db/store/cases/cases.hpp"
 #include "db/store/cases/scenarios.hpp"
 #include "scenarios/demand.hpp"
@@ -53,9 +54,8 @@ std::pair<std::string, std::string> field_and_words(std::string what) {
 }
 
 Result<http::Response> check(const Call& call) {
-  auto json = core::parse_json(call.request.body, "body");
-  if (!json) return json.error();
-  const auto scenario = drafted(*json, {call.caller.name, "now", ""});
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  const auto scenario = drafted(json, {call.caller.name, "now", ""});
   Json out{{"ok", bool(scenario)},
            {"field", ""},
            {"error", ""},
@@ -65,12 +65,10 @@ Result<http::Response> check(const Call& call) {
     std::tie(out["field"], out["error"]) = field_and_words(scenario.error().what);
     return json_response(out);
   }
-  const auto found = scenarios::resistance(*scenario, kSpeeds_m_s);
-  if (!found) return found.error();
-  const auto demand = scenarios::demand(*scenario);
-  if (!demand) return demand.error();
-  out["curve"] = curve_json(*found);
-  out["excessive"] = demand->excessive;
+  const auto found = TRY(scenarios::resistance(*scenario, kSpeeds_m_s));
+  const auto demand = TRY(scenarios::demand(*scenario));
+  out["curve"] = curve_json(found);
+  out["excessive"] = demand.excessive;
   return json_response(out);
 }
 
@@ -85,15 +83,13 @@ Json version_json(const store::ScenarioVersion& version) {
 }
 
 Result<http::Response> list(const Call& call) {
-  const auto found =
-      call.backend.store.read([](store::Reading& tx) { return store::all_scenario_versions(tx); });
-  if (!found) return found.error();
+  const auto found = TRY(
+      call.backend.store.read([](store::Reading& tx) { return store::all_scenario_versions(tx); }));
   Json versions = Json::array(), tuned = Json::array();
-  for (const auto& version : *found) versions.push_back(version_json(version));
+  for (const auto& version : found) versions.push_back(version_json(version));
   for (int kind = 0; kind < scenarios::kKinds; ++kind) {
-    const auto one = scenarios::tuned(static_cast<scenarios::Kind>(kind));
-    if (!one) return one.error();
-    tuned.push_back({{"kind", scenarios::name(one->kind)}, {"name", one->name}, {"id", one->id()}});
+    const auto one = TRY(scenarios::tuned(static_cast<scenarios::Kind>(kind)));
+    tuned.push_back({{"kind", scenarios::name(one.kind)}, {"name", one.name}, {"id", one.id()}});
   }
   return json_response({{"scenarios", versions}, {"tuned", tuned}});
 }
@@ -103,19 +99,16 @@ Error absent(const std::string& id) { return {Errc::not_found, "no scenario " + 
 /// A version's contents; a kind's name is the tuned one's.
 Result<Scenario> contents(Backend& backend, const std::string& id) {
   if (const auto kind = scenarios::kind_of(id)) return scenarios::tuned(*kind);
-  const auto version =
-      backend.store.read([&](store::Reading& tx) { return store::scenario_version_of(tx, id); });
-  if (!version) return version.error();
-  if (!*version) return absent(id);
-  auto json = core::read_json(backend.objects.path_of((*version)->sha256));
-  if (!json) return json.error();
-  return Scenario::from_json(*json, "scenario " + id.substr(0, 12) + ": ");
+  const auto version = TRY(
+      backend.store.read([&](store::Reading& tx) { return store::scenario_version_of(tx, id); }));
+  if (!version) return absent(id);
+  auto json = TRY(core::read_json(backend.objects.path_of(version->sha256)));
+  return Scenario::from_json(json, "scenario " + id.substr(0, 12) + ": ");
 }
 
 Result<http::Response> one(const Call& call) {
-  const auto scenario = contents(call.backend, call.text("id"));
-  if (!scenario) return scenario.error();
-  return json_response(scenario->to_json());
+  const auto scenario = TRY(contents(call.backend, call.text("id")));
+  return json_response(scenario.to_json());
 }
 
 struct Draft {
@@ -124,19 +117,17 @@ struct Draft {
 };
 
 Result<Draft> draft_from(const Call& call) {
-  auto json = core::parse_json(call.request.body, "body");
-  if (!json) return json.error();
-  core::Fields fields(*json, "body");
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  core::Fields fields(json, "body");
   const Json* scenario = fields.member("scenario");
   const std::string parent = fields.text_or("parent", "", 64);
   const Json* publish = fields.member("publish", false);
   if (publish && !publish->is_boolean()) fields.wrong("publish", "true or false is expected");
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   scenarios::Origin origin{call.caller.name, core::utc_text(call.backend.now_utc_us()), ""};
   if (!parent.empty()) {
-    const auto from = contents(call.backend, parent);
-    if (!from) return from.error();
-    origin.parent = from->id();
+    const auto from = TRY(contents(call.backend, parent));
+    origin.parent = from.id();
   }
   auto read = drafted(*scenario, origin);
   if (!read) return Error{read.error().code, "/scenario" + read.error().what};
@@ -148,62 +139,52 @@ Result<void> offer(store::Writing& tx, const store::ScenarioVersion& version,
                    const store::CasePart& part, std::int64_t now_utc_us) {
   const store::CaseSummary summary{version.id, version.name,   version.made_by, now_utc_us,
                                    0,          store::kProbing};
-  if (auto done = store::add_case(tx, summary, {part}, now_utc_us); !done) return done;
+  TRY(store::add_case(tx, summary, {part}, now_utc_us));
   return store::set_case_retired(tx, version.id, false, now_utc_us);
 }
 
 Result<http::Response> add(const Call& call) {
-  const auto draft = draft_from(call);
-  if (!draft) return draft.error();
-  const Scenario& scenario = draft->scenario;
-  const auto part = put_scenario(call.backend, scenario);
-  if (!part) return part.error();
+  const auto draft = TRY(draft_from(call));
+  const Scenario& scenario = draft.scenario;
+  const auto part = TRY(put_scenario(call.backend, scenario));
   const std::int64_t now = call.backend.now_utc_us();
   store::ScenarioVersion version{.id = scenario.id(),
-                                 .sha256 = part->sha256,
+                                 .sha256 = part.sha256,
                                  .name = scenario.name,
                                  .kind = std::string(scenarios::name(scenario.kind)),
                                  .parent = {},
-                                 .published = draft->publish,
+                                 .published = draft.publish,
                                  .made_utc_us = now,
                                  .made_by = call.caller.name};
   if (!scenario.origin.parent.empty()) version.parent = scenario.origin.parent;
-  auto added = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
-    if (auto noted = store::add_object(tx, part->sha256, part->size_bytes, now); !noted)
-      return noted;
-    if (auto done = store::add_scenario_version(tx, version); !done) return done;
-    return version.published ? offer(tx, version, *part, now) : Result<void>();
-  });
-  if (!added) return added.error();
+  TRY(call.backend.store.write([&](store::Writing& tx) -> Result<void> {
+    TRY(store::add_object(tx, part.sha256, part.size_bytes, now));
+    TRY(store::add_scenario_version(tx, version));
+    return version.published ? offer(tx, version, part, now) : Result<void>();
+  }));
   return json_response(version_json(version), 201);
 }
 
 Result<http::Response> publish(const Call& call) {
-  auto json = core::parse_json(call.request.body, "body");
-  if (!json) return json.error();
-  core::Fields fields(*json, "body");
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  core::Fields fields(json, "body");
   const Json* published = fields.member("published");
   if (published && !published->is_boolean()) fields.wrong("published", "true or false is expected");
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   const std::string& id = call.text("id");
-  const auto scenario = contents(call.backend, id);
-  if (!scenario) return scenario.error();
-  const auto part = put_scenario(call.backend, *scenario);
-  if (!part) return part.error();
+  const auto scenario = TRY(contents(call.backend, id));
+  const auto part = TRY(put_scenario(call.backend, scenario));
   const std::int64_t now = call.backend.now_utc_us();
-  auto version = call.backend.store.write(
+  auto version = TRY(call.backend.store.write(
       [&](store::Writing& tx) -> Result<std::optional<store::ScenarioVersion>> {
         const bool offered = published->get<bool>();
-        if (auto set = store::set_scenario_published(tx, id, offered); !set) return set.error();
+        TRY(store::set_scenario_published(tx, id, offered));
         auto now_is = store::scenario_version_of(tx, id);
         if (!now_is) return now_is;
-        auto done =
-            offered ? offer(tx, **now_is, *part, now) : store::set_case_retired(tx, id, true, now);
-        if (!done) return done.error();
+        TRY(offered ? offer(tx, **now_is, part, now) : store::set_case_retired(tx, id, true, now));
         return now_is;
-      });
-  if (!version) return version.error();
-  return json_response(version_json(**version));
+      }));
+  return json_response(version_json(*version));
 }
 
 std::vector<NamedSchema> curve_schemas() {

@@ -11,6 +11,7 @@
 #include "core/bytes.hpp"
 #include "core/clock.hpp"
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "db/store/cases/cases.hpp"
 #include "db/store/cohort/released.hpp"
 #include "db/store/operations/jobs.hpp"
@@ -42,7 +43,7 @@ Result<Json> unplanned(core::Fields& fields) {
   Json one = {{"id", "question"}, {"method", fields.text("method", 64)}};
   const std::string formula = fields.text_or("formula", "", kMaxFormula_bytes);
   if (const Json* options = fields.member("options", false)) one["options"] = *options;
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   const auto method = assessment::method_named(one["method"].get<std::string>());
   if (!method) return wrong("body: method: " + method.error().what);
   if (method->formula.empty()) return wrong("body: method: " + method->id + " is of no data");
@@ -55,16 +56,15 @@ Result<Json> unplanned(core::Fields& fields) {
                      {"question", "Asked without a plan: it may suggest, it confirms nothing."},
                      {"subject", "participant"},
                      {"analyses", Json::array({one})}};
-  if (const auto fine = assessment::Plan::from_json(plan, "body"); !fine) return fine.error();
+  TRY(assessment::Plan::from_json(plan, "body"));
   return plan;
 }
 
 /// The data that an earlier analysis of this plan was of.
 Result<void> take_snapshot(Backend& backend, const std::string& sha256, store::AnalysisRun& run) {
-  const auto runs = backend.store.read(
-      [&](store::Reading& tx) { return store::analyses_of_plan(tx, *run.plan_id); });
-  if (!runs) return runs.error();
-  for (const auto& before : *runs)
+  const auto runs = TRY(backend.store.read(
+      [&](store::Reading& tx) { return store::analyses_of_plan(tx, *run.plan_id); }));
+  for (const auto& before : runs)
     if (before.snapshot == sha256) {
       run.snapshot = before.snapshot;
       run.description = before.description;
@@ -76,31 +76,27 @@ Result<void> take_snapshot(Backend& backend, const std::string& sha256, store::A
 Result<void> of_plan(Backend& backend, core::Fields& fields, store::AnalysisRun& run) {
   const std::string id = fields.text("plan", 64);
   const std::string snapshot = fields.text_or("snapshot", "", 64);
-  if (auto done = fields.done(); !done) return done;
+  TRY(fields.done());
   const auto plan =
-      backend.store.read([&](store::Reading& tx) { return store::analysis_plan_of(tx, id); });
-  if (!plan) return plan.error();
-  if (!*plan) return wrong("body: plan: there is no plan " + id);
+      TRY(backend.store.read([&](store::Reading& tx) { return store::analysis_plan_of(tx, id); }));
+  if (!plan) return wrong("body: plan: there is no plan " + id);
   run.plan_id = id;
-  run.plan = (*plan)->plan;
-  run.study = (*plan)->study;
+  run.plan = plan->plan;
+  run.study = plan->study;
   return snapshot.empty() ? Result<void>() : take_snapshot(backend, snapshot, run);
 }
 
 Result<void> of_method(Backend& backend, core::Fields& fields, store::AnalysisRun& run) {
   run.study = fields.text_or("study", "", 64);
-  const auto plan = unplanned(fields);
-  if (!plan) return plan.error();
+  const auto plan = TRY(unplanned(fields));
   if (!run.study.empty()) {
-    const auto known =
-        backend.store.read([&](store::Reading& tx) { return store::series_exists(tx, run.study); });
-    if (!known) return known.error();
-    if (!*known) return wrong("body: study: there is no study " + run.study.substr(0, 32));
+    const auto known = TRY(backend.store.read(
+        [&](store::Reading& tx) { return store::series_exists(tx, run.study); }));
+    if (!known) return wrong("body: study: there is no study " + run.study.substr(0, 32));
   }
-  const std::string text = plan->dump();
-  const auto kept = backend.objects.put(core::bytes_of(text));
-  if (!kept) return kept.error();
-  run.plan = *kept;
+  const std::string text = plan.dump();
+  const auto kept = TRY(backend.objects.put(core::bytes_of(text)));
+  run.plan = kept;
   return backend.store.write(
       [&](store::Writing& tx) { return note_object(tx, run.plan, text, run.made_utc_us); });
 }
@@ -115,7 +111,7 @@ Result<store::AnalysisPlan> locked_plan(Backend& backend, const Json& asked,
   out.study = fields.text_or("study", "", 64);
   const Json* seen = fields.member("data_seen", false);
   if (seen && !seen->is_boolean()) fields.wrong("data_seen", "should be true or false");
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   const auto scored =
       backend.store.read([&](store::Reading& tx) { return store::scored_trials(tx, out.study); });
   if (!scored) return wrong("body: " + scored.error().what);
@@ -124,19 +120,16 @@ Result<store::AnalysisPlan> locked_plan(Backend& backend, const Json& asked,
   out.id = core::new_id();
   out.made_utc_us = backend.now_utc_us();
   out.made_by = who;
-  const auto locked = assessment::locked(*json, "body: /plan",
-                                         {who, core::utc_text(out.made_utc_us), out.data_seen, ""});
-  if (!locked) return locked.error();
-  out.title = (*locked)["title"].get<std::string>().substr(0, 200);
-  const std::string text = locked->dump(2);
-  const auto kept = backend.objects.put(core::bytes_of(text));
-  if (!kept) return kept.error();
-  out.plan = *kept;
-  auto added = backend.store.write([&](store::Writing& tx) -> Result<void> {
-    if (auto noted = note_object(tx, out.plan, text, out.made_utc_us); !noted) return noted;
+  const auto locked = TRY(assessment::locked(
+      *json, "body: /plan", {who, core::utc_text(out.made_utc_us), out.data_seen, ""}));
+  out.title = locked["title"].get<std::string>().substr(0, 200);
+  const std::string text = locked.dump(2);
+  const auto kept = TRY(backend.objects.put(core::bytes_of(text)));
+  out.plan = kept;
+  TRY(backend.store.write([&](store::Writing& tx) -> Result<void> {
+    TRY(note_object(tx, out.plan, text, out.made_utc_us));
     return store::add_analysis_plan(tx, out);
-  });
-  if (!added) return added.error();
+  }));
   return out;
 }
 
@@ -147,25 +140,21 @@ Result<store::AnalysisRun> queued_analysis(Backend& backend, const Json& asked,
   run.id = core::new_id();
   run.made_utc_us = backend.now_utc_us();
   run.made_by = who;
-  auto read = fields.has("plan") ? of_plan(backend, fields, run) : of_method(backend, fields, run);
-  if (!read) return read.error();
-  auto queued = backend.store.write([&](store::Writing& tx) -> Result<void> {
-    if (auto added = store::add_analysis(tx, run); !added) return added;
+  TRY(fields.has("plan") ? of_plan(backend, fields, run) : of_method(backend, fields, run));
+  TRY(backend.store.write([&](store::Writing& tx) -> Result<void> {
+    TRY(store::add_analysis(tx, run));
     return store::queue_job(tx, "analysis", run.id, run.made_utc_us);
-  });
-  if (!queued) return queued.error();
+  }));
   return run;
 }
 
 Result<void> check_still_released(Backend& backend, const std::string& study,
                                   const std::string& data) {
-  const auto released = released_trials(backend, study, store::Tier::metrics);
-  if (!released) return released.error();
+  const auto released = TRY(released_trials(backend, study, store::Tier::metrics));
   std::set<std::string, std::less<>> ids;
-  for (const auto& trial : released->all()) ids.insert(trial.id);
-  const auto bytes = core::read_file(backend.objects.path_of(data), kMostData_bytes);
-  if (!bytes) return bytes.error();
-  std::string_view rest(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+  for (const auto& trial : released.all()) ids.insert(trial.id);
+  const auto bytes = TRY(core::read_file(backend.objects.path_of(data), kMostData_bytes));
+  std::string_view rest(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   std::size_t gone = 0;
   for (bool header = true; !rest.empty(); header = false) {
     const std::string_view row = rest.substr(0, rest.find('\n'));
@@ -180,9 +169,8 @@ Result<void> check_still_released(Backend& backend, const std::string& study,
 }
 
 Result<http::Response> dictionary_response(Backend& backend, const store::AnalysisRun& run) {
-  const auto description = core::read_json(backend.objects.path_of(*run.description));
-  if (!description) return description.error();
-  auto response = json_response(assessment::dictionary_of_marked(*description));
+  const auto description = TRY(core::read_json(backend.objects.path_of(*run.description)));
+  auto response = json_response(assessment::dictionary_of_marked(description));
   response.with("Content-Disposition", "attachment; filename=\"dictionary.json\"");
   return response;
 }

@@ -1,6 +1,7 @@
 /// A cohort: its scored trials as a table, locked plans, and analyses of it as jobs.
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "db/store/cohort/analyses.hpp"
 #include "server/api/cohort/cohort_questions.hpp"
 #include "server/api/route.hpp"
@@ -46,15 +47,13 @@ Result<Json> run_json(const Call& call, const store::AnalysisRun& run) {
        {std::pair{"data", &run.description}, std::pair{"result", &run.result}}) {
     out[key] = nullptr;
     if (!*object) continue;
-    auto read = core::read_json(call.backend.objects.path_of(**object));
-    if (!read) return read.error();
-    out[key] = std::move(*read);
+    auto read = TRY(core::read_json(call.backend.objects.path_of(**object)));
+    out[key] = std::move(read);
   }
-  const auto before = call.backend.store.read(
-      [&](store::Reading& tx) { return store::analysis_repeated_by(tx, run); });
-  if (!before) return before.error();
-  out["repeats"] = *before ? Json((*before)->id) : Json();
-  out["same_digits"] = *before && run.result ? Json((*before)->result == run.result) : Json();
+  const auto before = TRY(call.backend.store.read(
+      [&](store::Reading& tx) { return store::analysis_repeated_by(tx, run); }));
+  out["repeats"] = before ? Json(before->id) : Json();
+  out["same_digits"] = before && run.result ? Json(before->result == run.result) : Json();
   return out;
 }
 
@@ -69,82 +68,68 @@ Json plan_json(const store::AnalysisPlan& plan) {
 }
 
 Result<http::Response> lock_plan(const Call& call) {
-  const auto asked = core::parse_json(call.request.body, "body");
-  if (!asked) return asked.error();
-  const auto plan = locked_plan(call.backend, *asked, call.caller.name);
-  if (!plan) return plan.error();
-  return json_response(plan_json(*plan), 201);
+  const auto asked = TRY(core::parse_json(call.request.body, "body"));
+  const auto plan = TRY(locked_plan(call.backend, asked, call.caller.name));
+  return json_response(plan_json(plan), 201);
 }
 
 Result<http::Response> list_plans(const Call& call) {
-  const auto plans =
-      call.backend.store.read([](store::Reading& tx) { return store::all_analysis_plans(tx); });
-  if (!plans) return plans.error();
+  const auto plans = TRY(
+      call.backend.store.read([](store::Reading& tx) { return store::all_analysis_plans(tx); }));
   Json list = Json::array();
-  for (const auto& plan : *plans) list.push_back(plan_json(plan));
+  for (const auto& plan : plans) list.push_back(plan_json(plan));
   return json_response({{"plans", list}});
 }
 
 Result<http::Response> plan_of(const Call& call) {
   using Runs = std::vector<store::AnalysisRun>;
   const std::string& id = call.text("id");
-  const auto plan =
-      call.backend.store.read([&](store::Reading& tx) { return store::analysis_plan_of(tx, id); });
-  if (!plan) return plan.error();
-  if (!*plan) return absent("plan", id);
-  const auto runs = call.backend.store.read(
-      [&](store::Reading& tx) -> Result<Runs> { return store::analyses_of_plan(tx, id); });
-  if (!runs) return runs.error();
-  auto file = core::read_json(call.backend.objects.path_of((*plan)->plan));
-  if (!file) return file.error();
-  Json out = plan_json(**plan);
-  out["plan"] = std::move(*file);
+  const auto plan = TRY(
+      call.backend.store.read([&](store::Reading& tx) { return store::analysis_plan_of(tx, id); }));
+  if (!plan) return absent("plan", id);
+  const auto runs = TRY(call.backend.store.read(
+      [&](store::Reading& tx) -> Result<Runs> { return store::analyses_of_plan(tx, id); }));
+  auto file = TRY(core::read_json(call.backend.objects.path_of(plan->plan)));
+  Json out = plan_json(*plan);
+  out["plan"] = std::move(file);
   out["analyses"] = Json::array();
-  for (const auto& run : *runs) out["analyses"].push_back(run_summary(run));
+  for (const auto& run : runs) out["analyses"].push_back(run_summary(run));
   return json_response(out);
 }
 
 Result<http::Response> analyse_cohort(const Call& call) {
-  const auto asked = core::parse_json(call.request.body, "body");
-  if (!asked) return asked.error();
-  const auto run = queued_analysis(call.backend, *asked, call.caller.name);
-  if (!run) return run.error();
+  const auto asked = TRY(core::parse_json(call.request.body, "body"));
+  const auto run = TRY(queued_analysis(call.backend, asked, call.caller.name));
   call.backend.work_waits();
-  return json_response(run_summary(*run), 201);
+  return json_response(run_summary(run), 201);
 }
 
 Result<store::AnalysisRun> run_of(const Call& call) {
-  const auto run = call.backend.store.read(
-      [&](store::Reading& tx) { return store::analysis_of(tx, call.text("id")); });
-  if (!run) return run.error();
-  if (!*run) return absent("analysis", call.text("id"));
-  return **run;
+  const auto run = TRY(call.backend.store.read(
+      [&](store::Reading& tx) { return store::analysis_of(tx, call.text("id")); }));
+  if (!run) return absent("analysis", call.text("id"));
+  return *run;
 }
 
 Result<http::Response> analysis(const Call& call) {
-  const auto run = run_of(call);
-  if (!run) return run.error();
-  const auto json = run_json(call, *run);
-  if (!json) return json.error();
-  return json_response(*json);
+  const auto run = TRY(run_of(call));
+  const auto json = TRY(run_json(call, run));
+  return json_response(json);
 }
 
 /// One of a finished run's files.
 Result<http::Response> part_of(const Call& call) {
-  const auto run = run_of(call);
-  if (!run) return run.error();
+  const auto run = TRY(run_of(call));
   const std::string& part = call.text("part");
   if (part == "dictionary.json") {
-    if (!run->description || !run->data) return absent("dictionary of the analysis", run->id);
-    return dictionary_response(call.backend, *run);
+    if (!run.description || !run.data) return absent("dictionary of the analysis", run.id);
+    return dictionary_response(call.backend, run);
   }
   const bool page = part == "report.html", json = part == "result.json";
   if (!page && !json && part != "data.csv") return absent("part of an analysis", part);
-  const auto& object = page ? run->report : json ? run->result : run->data;
-  if (!object) return absent("finished analysis", run->id);
-  if (!page && !json)
-    if (auto may = check_still_released(call.backend, run->study, *object); !may)
-      return may.error();
+  const auto& object = page ? run.report : json ? run.result : run.data;
+  if (!object) return absent("finished analysis", run.id);
+  if (!page && !json) TRY(check_still_released(call.backend, run.study, *object));
   auto response = http::file_response(call.backend.objects.path_of(*object), call.request,
                                       page   ? "text/html; charset=utf-8"
                                       : json ? "application/json"
@@ -156,13 +141,12 @@ Result<http::Response> part_of(const Call& call) {
 }
 
 Result<http::Response> table_of(const Call& call) {
-  const auto released = call.backend.store.read([&](store::Reading& tx) {
+  const auto released = TRY(call.backend.store.read([&](store::Reading& tx) {
     return store::ReleasedTrials::read(
         tx, call.backend.pseudonym_key,
         {.study = call.has("study") ? call.text("study") : "", .most = kMostInTable});
-  });
-  if (!released) return released.error();
-  http::Response response{.status = 200, .headers = {}, .body = jobs::cohort_table(*released).csv};
+  }));
+  http::Response response{.status = 200, .headers = {}, .body = jobs::cohort_table(released).csv};
   response.with("Content-Type", "text/csv; charset=utf-8")
       .with("Content-Disposition", "attachment; filename=\"cohort.csv\"")
       .with("Cache-Control", "no-store");

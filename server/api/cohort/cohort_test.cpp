@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/try.hpp"
 #include "db/store/cohort/analyses.hpp"
 #include "db/store/people/pseudonyms.hpp"
 #include "db/store/studies/study_slots.hpp"
@@ -29,15 +30,13 @@ class Cohort : public ApiTest {
     const auto made = store_.write([&](store::Writing& tx) -> core::Result<void> {
       const store::Study study{
           .id = "spine", .title = "", .ordering = "random", .on_invalid = "never"};
-      if (auto done = store::add_study(tx, study, {kCase}, deed_); !done) return done.error();
+      TRY(store::add_study(tx, study, {kCase}, deed_));
       const std::vector<std::string> cases(4, kCase);
       for (const auto& person :
            {store::Participant{.name = "P1", .level = "resident", .experience_years = 2.5},
             store::Participant{.name = "P2", .level = "senior", .simulated = true}})
-        if (auto done = store::add_participant(tx, store::find_study(tx, "spine").value(), person,
-                                               cases, deed_);
-            !done)
-          return done;
+        TRY(store::add_participant(tx, store::find_study(tx, "spine").value(), person, cases,
+                                   deed_));
       return {};
     });
     EXPECT_TRUE(made);
@@ -95,14 +94,11 @@ class Cohort : public ApiTest {
     trial.complete = true;
     trial.header = trial.events = "{}";
     const auto added = store_.write([&](store::Writing& tx) -> core::Result<void> {
-      if (auto done = store::add_upload(tx, {id, "s1", kCase, 1, sha, "receiving"}, 1); !done)
-        return done;
-      if (!slot.empty())
-        if (auto done = store::announce_for_slot(tx, id, slot, 1); !done) return done;
-      if (auto done = store::add_object(tx, sha, 1, 1); !done) return done;
-      if (auto done = store::add_trial(tx, trial, 1); !done) return done;
-      if (!slot.empty())
-        if (auto done = store::record_for_slot(tx, id, true, deed_); !done) return done;
+      TRY(store::add_upload(tx, {id, "s1", kCase, 1, sha, "receiving"}, 1));
+      if (!slot.empty()) TRY(store::announce_for_slot(tx, id, slot, 1));
+      TRY(store::add_object(tx, sha, 1, 1));
+      TRY(store::add_trial(tx, trial, 1));
+      if (!slot.empty()) TRY(store::record_for_slot(tx, id, true, deed_));
       if (!value) return {};
       return store::set_assessment(tx, id, {{"score_N", *value, ""}, {"none_s", {}, "no contact"}},
                                    i % 2 == 0, "{}");

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "core/json.hpp"
+#include "core/try.hpp"
 #include "server/api/trials/samples_array.hpp"
 
 namespace tractus {
@@ -96,44 +97,38 @@ Result<void> add_samples(Zip& zip, Backend& backend, const std::string& client,
                          const store::ReleasedTrial& trial, Tier tier) {
   const Tier allowed = std::min(tier, trial.tier);
   if (allowed < Tier::reduced) return {};
-  const auto file = trial.file(allowed);
-  if (!file) return file.error();
-  auto array = http::scratch_file(*backend.scratch, client, samples_npy_bytes(trial.samples));
-  if (!array) return array.error();
-  auto written = write_samples_npy(backend.objects.path_of(*file),
-                                   allowed == Tier::full ? 0.0 : kReduced_Hz, (*array)->path);
-  if (!written) return written;
-  return zip.add("samples/" + trial.id + ".npy", (*array)->path);
+  const auto file = TRY(trial.file(allowed));
+  auto array = TRY(http::scratch_file(*backend.scratch, client, samples_npy_bytes(trial.samples)));
+  TRY(write_samples_npy(backend.objects.path_of(file), allowed == Tier::full ? 0.0 : kReduced_Hz,
+                        array->path));
+  return zip.add("samples/" + trial.id + ".npy", array->path);
 }
 
 }  // namespace
 
 Result<std::shared_ptr<http::ScratchFile>> cohort_zip(Backend& backend, const std::string& client,
                                                       const std::string& study, Tier tier) {
-  const auto counted = released_trials(backend, study, Tier::summary);
-  if (!counted) return counted.error();
+  const auto counted = TRY(released_trials(backend, study, Tier::summary));
   // A zip of summaries lists nobody's trials.
   const auto listed =
-      tier < Tier::metrics ? store::ReleasedTrials() : counted->at_least(Tier::metrics);
-  auto file = http::scratch_file(*backend.scratch, client, kMostZip_bytes);
-  if (!file) return file.error();
-  Zip zip((*file)->path);
+      tier < Tier::metrics ? store::ReleasedTrials() : counted.at_least(Tier::metrics);
+  auto file = TRY(http::scratch_file(*backend.scratch, client, kMostZip_bytes));
+  Zip zip(file->path);
   const core::Json about{{"format", "tractus-cohort/1"},
                          {"study", study.empty() ? core::Json() : core::Json(study)},
                          {"tier", store::name(tier)},
-                         {"trials_counted", counted->all().size()},
+                         {"trials_counted", counted.all().size()},
                          {"trials_listed", listed.all().size()}};
   for (const auto& [name, content] :
        std::vector<std::pair<std::string, std::string>>{{"cohort.json", about.dump(2) + "\n"},
                                                         {"dictionary.csv", dictionary_csv()},
-                                                        {"summary.csv", summary_csv(*counted)},
+                                                        {"summary.csv", summary_csv(counted)},
                                                         {"trials.csv", trials_csv(listed)},
                                                         {"scores.csv", scores_csv(listed)}})
-    if (auto added = zip.add(name, content); !added) return added.error();
-  for (const auto& one : listed.all())
-    if (auto added = add_samples(zip, backend, client, one, tier); !added) return added.error();
-  if (auto done = zip.finish(); !done) return done.error();
-  return *file;
+    TRY(zip.add(name, content));
+  for (const auto& one : listed.all()) TRY(add_samples(zip, backend, client, one, tier));
+  TRY(zip.finish());
+  return file;
 }
 
 }  // namespace api

@@ -1,5 +1,6 @@
 /// Cohorts: who learns with whom, and who teaches them.
 #include "core/bytes.hpp"
+#include "core/try.hpp"
 #include "db/store/people/invitations.hpp"
 #include "server/api/backend.hpp"
 #include "server/api/people/authentication.hpp"
@@ -26,39 +27,34 @@ core::Json summary_json(const store::Cohort& cohort) {
 }
 
 Result<http::Response> list_cohorts(const Call& call) {
-  auto found = call.backend.store.read([&](store::Reading& tx) {
+  auto found = TRY(call.backend.store.read([&](store::Reading& tx) {
     return store::cohorts_of(tx, call.of == Scope::all ? "" : call.caller.id);
-  });
-  if (!found) return found.error();
+  }));
   core::Json list = core::Json::array();
-  for (const auto& cohort : *found) list.push_back(summary_json(cohort));
+  for (const auto& cohort : found) list.push_back(summary_json(cohort));
   return json_response({{"cohorts", list}});
 }
 
 Result<http::Response> cohort_response(store::Store& store, const std::string& id, int status) {
-  auto answer = store.read([&](store::Reading& tx) -> Result<core::Json> {
-    auto cohort = store::cohort_of(tx, id);
-    if (!cohort) return cohort.error();
-    if (!*cohort) return Error{Errc::not_found, "no cohort " + id.substr(0, 32)};
-    auto people = store::people_of(tx, id);
-    if (!people) return people.error();
-    core::Json out = summary_json(**cohort);
+  auto answer = TRY(store.read([&](store::Reading& tx) -> Result<core::Json> {
+    auto cohort = TRY(store::cohort_of(tx, id));
+    if (!cohort) return Error{Errc::not_found, "no cohort " + id.substr(0, 32)};
+    auto people = TRY(store::people_of(tx, id));
+    core::Json out = summary_json(*cohort);
     out["people"] = core::Json::array();
-    auto invited = store::invitations_into(tx, id);
-    if (!invited) return invited.error();
+    auto invited = TRY(store::invitations_into(tx, id));
     out["invitations"] = core::Json::array();
-    for (const auto& one : *invited)
+    for (const auto& one : invited)
       out["invitations"].push_back(
           {{"name", one.account_name}, {"made_utc_us", one.made_utc_us}, {"made_by", one.made_by}});
-    for (const auto& person : *people)
+    for (const auto& person : people)
       out["people"].push_back({{"account_id", person.account_id},
                                {"name", person.name},
                                {"part", person.part},
                                {"state", person.state}});
     return out;
-  });
-  if (!answer) return answer.error();
-  return json_response(*answer, status);
+  }));
+  return json_response(answer, status);
 }
 
 Result<http::Response> one_cohort(const Call& call) {
@@ -67,75 +63,65 @@ Result<http::Response> one_cohort(const Call& call) {
 
 /// Whoever of the faculty makes a cohort leads it.
 Result<http::Response> add_cohort_route(const Call& call) {
-  auto json = core::parse_json(call.request.body, "body");
-  if (!json) return json.error();
-  core::Fields fields(*json, "body");
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  core::Fields fields(json, "body");
   store::Cohort cohort{core::new_id(), fields.text("name", kMaxName), call.backend.now_utc_us(),
                        call.caller.name};
   if (cohort.name.find_first_not_of(" \t\r\n") == std::string::npos)
     fields.wrong("name", "a name is expected");
-  if (auto done = fields.done(); !done) return done.error();
-  auto added = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
-    if (auto done = store::add_cohort(tx, cohort); !done) return done;
+  TRY(fields.done());
+  TRY(call.backend.store.write([&](store::Writing& tx) -> Result<void> {
+    TRY(store::add_cohort(tx, cohort));
     if (call.caller.role != Role::faculty) return {};
     return store::put_into_cohort(tx, cohort.id, call.caller.id, "faculty", cohort.made_utc_us);
-  });
-  if (!added) return added.error();
+  }));
   return cohort_response(call.backend.store, cohort.id, 201);
 }
 
 Result<void> put(store::Writing& tx, const Call& call, const std::string& account_name) {
-  auto account = store::account_named(tx, account_name);
-  if (!account) return account.error();
-  if (!*account) return Error{Errc::bad_input, "body: /name: there is no account of this name"};
-  return join_cohort(tx, call.text("id"), **account, {call.caller.name, call.backend.now_utc_us()});
+  auto account = TRY(store::account_named(tx, account_name));
+  if (!account) return Error{Errc::bad_input, "body: /name: there is no account of this name"};
+  return join_cohort(tx, call.text("id"), *account, {call.caller.name, call.backend.now_utc_us()});
 }
 
 Result<http::Response> put_person(const Call& call) {
-  auto json = core::parse_json(call.request.body, "body");
-  if (!json) return json.error();
-  core::Fields fields(*json, "body");
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  core::Fields fields(json, "body");
   const std::string name = fields.text("name", kMaxName);
-  if (auto done = fields.done(); !done) return done.error();
-  auto added = call.backend.store.write([&](store::Writing& tx) { return put(tx, call, name); });
-  if (!added) return added.error();
+  TRY(fields.done());
+  TRY(call.backend.store.write([&](store::Writing& tx) { return put(tx, call, name); }));
   return cohort_response(call.backend.store, call.text("id"), 200);
 }
 
 Result<http::Response> invite_person(const Call& call) {
-  auto json = core::parse_json(call.request.body, "body");
-  if (!json) return json.error();
-  core::Fields fields(*json, "body");
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  core::Fields fields(json, "body");
   const store::Invitation invitation{.cohort_id = call.text("id"),
                                      .account_name = fields.text("name", kMaxName),
                                      .made_utc_us = call.backend.now_utc_us(),
                                      .made_by = call.caller.name};
   if (invitation.account_name.find_first_not_of(" \t\r\n") == std::string::npos)
     fields.wrong("name", "a name is expected");
-  if (auto done = fields.done(); !done) return done.error();
-  auto invited = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
-    auto cohort = store::cohort_of(tx, invitation.cohort_id);
-    if (!cohort) return cohort.error();
-    if (!*cohort) return Error{Errc::not_found, "no cohort " + invitation.cohort_id.substr(0, 32)};
+  TRY(fields.done());
+  TRY(call.backend.store.write([&](store::Writing& tx) -> Result<void> {
+    auto cohort = TRY(store::cohort_of(tx, invitation.cohort_id));
+    if (!cohort) return Error{Errc::not_found, "no cohort " + invitation.cohort_id.substr(0, 32)};
     return store::invite(tx, invitation);
-  });
-  if (!invited) return invited.error();
+  }));
   return cohort_response(call.backend.store, call.text("id"), 201);
 }
 
 Result<http::Response> withdraw_invitation(const Call& call) {
-  auto removed = call.backend.store.write([&](store::Writing& tx) {
+  TRY(call.backend.store.write([&](store::Writing& tx) {
     return store::remove_invitation(tx, call.text("id"), call.text("name"));
-  });
-  if (!removed) return removed.error();
+  }));
   return cohort_response(call.backend.store, call.text("id"), 200);
 }
 
 Result<http::Response> take_person(const Call& call) {
-  auto taken = call.backend.store.write([&](store::Writing& tx) {
+  TRY(call.backend.store.write([&](store::Writing& tx) {
     return store::take_from_cohort(tx, call.text("id"), call.text("account_id"));
-  });
-  if (!taken) return taken.error();
+  }));
   return cohort_response(call.backend.store, call.text("id"), 200);
 }
 

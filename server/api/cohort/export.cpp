@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "core/try.hpp"
 #include "db/store/people/accounts.hpp"
 #include "metrics/metric.hpp"
 
@@ -152,15 +153,13 @@ std::string scores_csv(const store::ReleasedTrials& trials) {
 
 Result<std::string> key_csv(Backend& backend) {
   using Lines = std::map<std::string, std::string>;
-  auto lines = backend.store.read([&](store::Reading& tx) -> Result<Lines> {
-    auto people = store::who_is_who(tx, backend.pseudonym_key);
-    if (!people) return people.error();
+  auto lines = TRY(backend.store.read([&](store::Reading& tx) -> Result<Lines> {
+    auto people = TRY(store::who_is_who(tx, backend.pseudonym_key));
     std::map<std::string, std::string> accounts;
-    auto all = store::all_accounts(tx);
-    if (!all) return all.error();
-    for (const auto& account : *all) accounts[account.id] = account.name;
+    auto all = TRY(store::all_accounts(tx));
+    for (const auto& account : all) accounts[account.id] = account.name;
     Lines out;
-    for (const auto& [pseudonym, person] : *people) {
+    for (const auto& [pseudonym, person] : people) {
       const auto colon = person.find(':');
       const std::string kind = person.substr(0, colon), id = person.substr(colon + 1);
       const auto account = accounts.find(id);
@@ -168,10 +167,9 @@ Result<std::string> key_csv(Backend& backend) {
       out[pseudonym] = kind + "," + cell(known ? account->second : id);
     }
     return out;
-  });
-  if (!lines) return lines.error();
+  }));
   std::string out = "participant,kind,name\r\n";
-  for (const auto& [pseudonym, rest] : *lines) out += pseudonym + "," + rest + "\r\n";
+  for (const auto& [pseudonym, rest] : lines) out += pseudonym + "," + rest + "\r\n";
   return out;
 }
 

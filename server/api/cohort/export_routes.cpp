@@ -1,4 +1,5 @@
 /// Research takes its data from here: tables and arrays by pseudonym.
+#include "core/try.hpp"
 #include "db/store/operations/audit.hpp"
 #include "server/api/cohort/cohort_zip.hpp"
 #include "server/api/cohort/export.hpp"
@@ -26,16 +27,14 @@ http::Response csv_response(std::string csv, const char* name) {
 std::string study_of_call(const Call& call) { return call.has("study") ? call.text("study") : ""; }
 
 Result<http::Response> export_summary(const Call& call) {
-  auto trials = released_trials(call.backend, study_of_call(call), Tier::summary);
-  if (!trials) return trials.error();
-  return csv_response(summary_csv(*trials), "summary.csv");
+  auto trials = TRY(released_trials(call.backend, study_of_call(call), Tier::summary));
+  return csv_response(summary_csv(trials), "summary.csv");
 }
 
 Result<http::Response> table(const Call& call, const char* name,
                              std::string (*csv)(const store::ReleasedTrials&)) {
-  auto trials = released_trials(call.backend, study_of_call(call), Tier::metrics);
-  if (!trials) return trials.error();
-  return csv_response(csv(*trials), name);
+  auto trials = TRY(released_trials(call.backend, study_of_call(call), Tier::metrics));
+  return csv_response(csv(trials), name);
 }
 
 Result<http::Response> export_trials(const Call& call) {
@@ -52,25 +51,21 @@ Result<http::Response> export_dictionary(const Call&) {
 
 Result<http::Response> samples_of(const Call& call, const std::string& sha256,
                                   std::uint64_t samples) {
-  auto file = http::scratch_file(*call.backend.scratch, call.caller.id, samples_npy_bytes(samples));
-  if (!file) return file.error();
-  auto written = write_samples_npy(call.backend.objects.path_of(sha256), call.number("rate_Hz"),
-                                   (*file)->path);
-  if (!written) return written.error();
-  return scratch_response(std::move(*file), "application/octet-stream", "samples.npy");
+  auto file =
+      TRY(http::scratch_file(*call.backend.scratch, call.caller.id, samples_npy_bytes(samples)));
+  TRY(write_samples_npy(call.backend.objects.path_of(sha256), call.number("rate_Hz"), file->path));
+  return scratch_response(std::move(file), "application/octet-stream", "samples.npy");
 }
 
 /// Only the key can tell which trial a pseudonym is: so the key is tried on all of them.
 Result<http::Response> export_samples(const Call& call) {
   const double rate_Hz = call.number("rate_Hz");
   const bool reduced = rate_Hz > 0.0 && rate_Hz <= kReduced_Hz;
-  auto trials = released_trials(call.backend, "", Tier::metrics);
-  if (!trials) return trials.error();
-  for (const store::ReleasedTrial& trial : trials->all()) {
+  auto trials = TRY(released_trials(call.backend, "", Tier::metrics));
+  for (const store::ReleasedTrial& trial : trials.all()) {
     if (trial.id != call.text("trial")) continue;
-    const auto file = trial.file(reduced ? Tier::reduced : Tier::full);
-    if (!file) return file.error();
-    return samples_of(call, *file, trial.samples);
+    const auto file = TRY(trial.file(reduced ? Tier::reduced : Tier::full));
+    return samples_of(call, file, trial.samples);
   }
   return Error{Errc::not_found, "no trial " + call.text("trial").substr(0, 32)};
 }
@@ -79,24 +74,21 @@ Result<http::Response> export_cohort(const Call& call) {
   const auto tier = store::tier_named(call.text("tier"));
   if (!tier || *tier == Tier::none)
     return Error{Errc::bad_input, "tier: summary, metrics, reduced or full is expected"};
-  auto zip = cohort_zip(call.backend, call.caller.id, study_of_call(call), *tier);
-  if (!zip) return zip.error();
-  return scratch_response(std::move(*zip), "application/zip", "cohort.zip");
+  auto zip = TRY(cohort_zip(call.backend, call.caller.id, study_of_call(call), *tier));
+  return scratch_response(std::move(zip), "application/zip", "cohort.zip");
 }
 
 /// Looking at it is an act of its own.
 Result<http::Response> export_key(const Call& call) {
-  auto csv = key_csv(call.backend);
-  if (!csv) return csv.error();
+  auto csv = TRY(key_csv(call.backend));
   const store::AuditedAction act{.who = call.caller.name,
                                  .role = std::string(name(call.caller.role)),
                                  .peer = call.request.peer,
                                  .what = "exportKey",
                                  .at_utc_us = call.backend.now_utc_us()};
-  auto noted = call.backend.store.write(
-      [&](store::Writing& tx) { return store::add_act(tx, call.backend.store.audit_key(), act); });
-  if (!noted) return noted.error();
-  return csv_response(std::move(*csv), "key.csv");
+  TRY(call.backend.store.write(
+      [&](store::Writing& tx) { return store::add_act(tx, call.backend.store.audit_key(), act); }));
+  return csv_response(std::move(csv), "key.csv");
 }
 
 RouteInfo route(std::string tail, std::string id, std::string summary,

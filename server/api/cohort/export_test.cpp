@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "server/api/people/people_test_support.hpp"
 #include "trial/trial_file.hpp"
 
@@ -61,10 +62,9 @@ class Export : public PeopleTest {
     const auto bytes = core::read_file(path).value();
     const std::string sha256 = objects_.put(bytes).value();
     ASSERT_TRUE(store_.write([&](store::Writing& tx) -> core::Result<void> {
-      if (auto done = store::add_object(tx, sha256, bytes.size(), 1); !done) return done;
-      auto set = tx.query("update trials set sha256 = ?, operator_name = ? where id = ?",
-                          {sha256, std::string("Mustermann^Erika"), trial_of("tom")});
-      if (!set) return set.error();
+      TRY(store::add_object(tx, sha256, bytes.size(), 1));
+      TRY(tx.query("update trials set sha256 = ?, operator_name = ? where id = ?",
+                   {sha256, std::string("Mustermann^Erika"), trial_of("tom")}));
       return store::set_assessment(tx, trial_of("tom"), {{"force_mean", 2.5, ""}}, true, "{}");
     }));
   }

@@ -2,6 +2,7 @@
 #include "metrics/metric.hpp"
 #include "server/api/route.hpp"
 #include "server/api/schema.hpp"
+#include "server/api/trials/trial_json.hpp"
 
 namespace tractus {
 namespace api {
@@ -9,27 +10,23 @@ namespace {
 
 core::Result<http::Response> list_metrics(const Call&) {
   core::Json list = core::Json::array();
-  for (const metrics::MetricInfo& metric : metrics::all())
-    list.push_back({{"id", metric.id},
-                    {"label", metric.label},
-                    {"unit", metric.unit},
-                    {"definition", metric.definition},
-                    {"source", metric.source},
-                    {"rig", metric.rig ? core::Json(trial::name(*metric.rig)) : core::Json()}});
+  for (const metrics::MetricInfo& metric : metrics::all()) {
+    core::Json entry = metrics::to_json(metric);
+    entry["rig"] = metric.rig ? core::Json(trial::name(*metric.rig)) : core::Json();
+    list.push_back(std::move(entry));
+  }
   return json_response({{"metrics", list}});
 }
 
 }  // namespace
 
 std::vector<RouteInfo> metrics_routes() {
-  const core::Json info = schema::object(
-      {{"id", schema::text("never changes")},
-       {"label", schema::text("for people")},
-       {"unit", schema::text("as printed: N, s, 1")},
-       {"definition", schema::text("one sentence")},
-       {"source", schema::text("where it is from")},
-       {"rig", schema::nullable(schema::one_of({"palpation", "probing"},
-                                               "whose trials it is of; null: of both"))}});
+  auto fields = metric_fields();
+  fields.emplace_back("rig",
+                      schema::nullable(schema::one_of(
+                          {"palpation", "probing"},
+                          "rig whose trials have this metric; null: trials of both rigs have it")));
+  const core::Json info = schema::object(fields);
   return {{.method = "GET",
            .path = "/api/v1/metrics",
            .id = "metrics",

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "server/api/backend.hpp"
 #include "server/api/schema.hpp"
 
@@ -90,15 +91,13 @@ Json run_json(const store::LabRun& run, const std::optional<store::ModelVersion>
 }
 
 Result<Json> whole_run_json(const Call& call, const store::LabRun& run) {
-  const auto published =
-      call.backend.store.read([&](store::Reading& tx) { return store::model_made_by(tx, run.id); });
-  if (!published) return published.error();
-  Json out = run_json(run, *published);
+  const auto published = TRY(call.backend.store.read(
+      [&](store::Reading& tx) { return store::model_made_by(tx, run.id); }));
+  Json out = run_json(run, published);
   if (run.ranking) out["ranking"] = core::stored_json(*run.ranking);
   if (run.result) {
-    auto kept = core::read_json(call.backend.objects.path_of(*run.result));
-    if (!kept) return kept.error();
-    out.update(found_json(std::move(*kept)));
+    auto kept = TRY(core::read_json(call.backend.objects.path_of(*run.result)));
+    out.update(found_json(std::move(kept)));
   }
   return out;
 }

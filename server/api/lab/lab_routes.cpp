@@ -6,6 +6,7 @@
 
 #include "core/bytes.hpp"
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "db/store/cases/cases.hpp"
 #include "db/store/lab/lab.hpp"
 #include "lab/io/case.hpp"
@@ -30,68 +31,60 @@ constexpr std::size_t kMaxNote = 2000, kMaxName = 200;  // letters
 
 Result<http::Response> list_models(const Call& call) {
   const auto models =
-      call.backend.store.read([](store::Reading& tx) { return store::all_models(tx); });
-  if (!models) return models.error();
+      TRY(call.backend.store.read([](store::Reading& tx) { return store::all_models(tx); }));
   Json list = Json::array();
-  for (const auto& model : *models) list.push_back(model_json(model));
+  for (const auto& model : models) list.push_back(model_json(model));
   return json_response({{"models", list}});
 }
 
 Result<void> check_parent(store::Reading& tx, const store::ModelVersion& version) {
   if (!version.parent) return {};
-  const auto parent = store::model_of(tx, *version.parent);
-  if (!parent) return parent.error();
-  if (!*parent) return absent("model", *version.parent);
-  if ((*parent)->rig != version.rig)
+  const auto parent = TRY(store::model_of(tx, *version.parent));
+  if (!parent) return absent("model", *version.parent);
+  if (parent->rig != version.rig)
     return Error{Errc::bad_input,
                  fmt::format("parent: a model of the {} rig, but this one is of the {} rig",
-                             (*parent)->rig, version.rig)};
+                             parent->rig, version.rig)};
   return {};
 }
 
 Result<http::Response> add_model(const Call& call) {
-  const auto json = core::parse_json(call.request.body, "body");
-  if (!json) return json.error();
-  const auto model = models::model_from_json(*json, "body: ");
-  if (!model) return model.error();
+  const auto json = TRY(core::parse_json(call.request.body, "body"));
+  const auto model = TRY(models::model_from_json(json, "body: "));
   store::ModelVersion version;
   version.id = core::new_id();
-  version.name = std::visit([](const auto& m) { return m.name; }, *model);
-  version.rig = std::holds_alternative<models::ProbingModel>(*model) ? "probing" : "palpation";
+  version.name = std::visit([](const auto& m) { return m.name; }, model);
+  version.rig = std::holds_alternative<models::ProbingModel>(model) ? "probing" : "palpation";
   if (!call.text("parent").empty()) version.parent = call.text("parent");
   version.note = call.text("note").substr(0, kMaxNote);
   version.made_utc_us = call.backend.now_utc_us();
   version.made_by = call.caller.name;
-  const auto sha256 = call.backend.objects.put(core::bytes_of(call.request.body));
-  if (!sha256) return sha256.error();
-  version.sha256 = *sha256;
-  auto added = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
-    if (auto fine = check_parent(tx, version); !fine) return fine;
+  const auto sha256 = TRY(call.backend.objects.put(core::bytes_of(call.request.body)));
+  version.sha256 = sha256;
+  TRY(call.backend.store.write([&](store::Writing& tx) -> Result<void> {
+    TRY(check_parent(tx, version));
     if (auto noted =
             store::add_object(tx, version.sha256, call.request.body.size(), version.made_utc_us);
         !noted)
       return noted;
     return store::add_model(tx, version);
-  });
-  if (!added) return added.error();
+  }));
   return json_response(model_json(version), 201);
 }
 
 Result<http::Response> model_file(const Call& call) {
-  const auto model = call.backend.store.read(
-      [&](store::Reading& tx) { return store::model_of(tx, call.text("id")); });
-  if (!model) return model.error();
-  if (!*model) return absent("model", call.text("id"));
-  return http::file_response(call.backend.objects.path_of((*model)->sha256), call.request,
+  const auto model = TRY(call.backend.store.read(
+      [&](store::Reading& tx) { return store::model_of(tx, call.text("id")); }));
+  if (!model) return absent("model", call.text("id"));
+  return http::file_response(call.backend.objects.path_of(model->sha256), call.request,
                              "application/json");
 }
 
 Result<http::Response> list_sets(const Call& call) {
-  const auto sets =
-      call.backend.store.read([](store::Reading& tx) { return store::all_measurement_sets(tx); });
-  if (!sets) return sets.error();
+  const auto sets = TRY(
+      call.backend.store.read([](store::Reading& tx) { return store::all_measurement_sets(tx); }));
   Json list = Json::array();
-  for (const auto& set : *sets) list.push_back(set_json(set));
+  for (const auto& set : sets) list.push_back(set_json(set));
   return json_response({{"measurements", list}});
 }
 
@@ -106,33 +99,27 @@ Result<lab_io::SetFacts> checked(const std::filesystem::path& zip) {
 }
 
 Result<http::Response> add_set(const Call& call) {
-  auto scratch = core::ScratchFolder::make(call.backend.scratch->folder() / "set");
-  if (!scratch) return scratch.error();
-  const auto zip = body_in(call, scratch->path(), "measurements.zip");
-  if (!zip) return zip.error();
-  const auto facts = checked(*zip);
-  if (!facts) return facts.error();
-  const auto sha256 = store::file_sha256(*zip);
-  if (!sha256) return sha256.error();
-  if (auto kept = call.backend.objects.copy_in(*zip, *sha256); !kept) return kept.error();
-  const std::uint64_t size_bytes = std::filesystem::file_size(*zip);
-  const store::MeasurementSet set{*sha256,
+  auto scratch = TRY(core::ScratchFolder::make(call.backend.scratch->folder() / "set"));
+  const auto zip = TRY(body_in(call, scratch.path(), "measurements.zip"));
+  const auto facts = TRY(checked(zip));
+  const auto sha256 = TRY(store::file_sha256(zip));
+  TRY(call.backend.objects.copy_in(zip, sha256));
+  const std::uint64_t size_bytes = std::filesystem::file_size(zip);
+  const store::MeasurementSet set{sha256,
                                   call.text("name").substr(0, kMaxName),
                                   call.backend.now_utc_us(),
                                   call.caller.name,
-                                  facts->rig,
-                                  facts->simulated,
-                                  facts->trials,
-                                  facts->samples};
-  auto kept = call.backend.store.write(
+                                  facts.rig,
+                                  facts.simulated,
+                                  facts.trials,
+                                  facts.samples};
+  auto kept = TRY(call.backend.store.write(
       [&](store::Writing& tx) -> Result<std::optional<store::MeasurementSet>> {
-        if (auto noted = store::add_object(tx, set.id, size_bytes, set.made_utc_us); !noted)
-          return noted.error();
-        if (auto added = store::add_measurement_set(tx, set); !added) return added.error();
+        TRY(store::add_object(tx, set.id, size_bytes, set.made_utc_us));
+        TRY(store::add_measurement_set(tx, set));
         return store::measurement_set_of(tx, set.id);
-      });
-  if (!kept) return kept.error();
-  return json_response(set_json((*kept).value()), 201);
+      }));
+  return json_response(set_json(kept.value()), 201);
 }
 
 Result<http::Response> list_effects(const Call& call) {
@@ -143,9 +130,8 @@ Result<http::Response> list_effects(const Call& call) {
 }
 
 Result<http::Response> check_effect(const Call& call) {
-  const auto json = core::parse_json(call.request.body, "body");
-  if (!json) return json.error();
-  const auto effect = lab_io::own_effect_json({*json, ""});
+  const auto json = TRY(core::parse_json(call.request.body, "body"));
+  const auto effect = lab_io::own_effect_json({json, ""});
   return json_response({{"ok", bool(effect)},
                         {"error", effect ? std::string() : effect.error().what},
                         {"effect", effect ? *effect : Json()}});

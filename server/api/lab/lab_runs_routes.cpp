@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/bytes.hpp"
+#include "core/try.hpp"
 #include "db/store/cases/cases.hpp"
 #include "db/store/lab/lab.hpp"
 #include "db/store/operations/jobs.hpp"
@@ -44,9 +45,8 @@ Result<void> read_wish(core::Fields& fields, store::LabRun& run) {
 }
 
 Result<store::LabRun> wanted(const Call& call, const char* kind) {
-  const auto json = core::parse_json(call.request.body, "body");
-  if (!json) return json.error();
-  core::Fields fields(*json, "");
+  const auto json = TRY(core::parse_json(call.request.body, "body"));
+  core::Fields fields(json, "");
   store::LabRun run;
   run.id = core::new_id();
   run.kind = kind;
@@ -55,52 +55,47 @@ Result<store::LabRun> wanted(const Call& call, const char* kind) {
   run.made_utc_us = call.backend.now_utc_us();
   run.made_by = call.caller.name;
   if (run.kind == "comparison" && fields.has("against")) {
-    if ((*json)["against"].is_null())
+    if (json["against"].is_null())
       fields.skip("against");
     else
       run.against_id = fields.text("against", 64);
   }
-  if (auto read = read_wish(fields, run); !read) return read.error();
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(read_wish(fields, run));
+  TRY(fields.done());
   return run;
 }
 
 /// Both models and the set are here and of one rig; own effects are in order.
 Result<void> check(store::Reading& tx, const store::LabRun& run) {
-  const auto set = store::measurement_set_of(tx, run.set_id);
-  if (!set) return set.error();
-  if (!*set) return absent("measurement set", run.set_id);
+  const auto set = TRY(store::measurement_set_of(tx, run.set_id));
+  if (!set) return absent("measurement set", run.set_id);
   std::string rig;
   for (const std::string& id : {run.model_id, run.against_id.value_or("")}) {
     if (id.empty()) continue;
-    const auto model = store::model_of(tx, id);
-    if (!model) return model.error();
-    if (!*model) return absent("model", id);
-    rig = (*model)->rig;
-    if ((*set)->rig && *(*set)->rig != rig)
+    const auto model = TRY(store::model_of(tx, id));
+    if (!model) return absent("model", id);
+    rig = model->rig;
+    if (set->rig && *set->rig != rig)
       return Error{
           Errc::bad_input,
-          fmt::format("a model of the {} rig, but measurements of the {} rig", rig, *(*set)->rig)};
+          fmt::format("a model of the {} rig, but measurements of the {} rig", rig, *set->rig)};
   }
   std::vector<lab_io::OwnEffect> own;
   for (const Json& one : own_effects(run))
     own.push_back({one, fmt::format("own[{}]: ", own.size())});
-  const auto ids = lab_io::ids_of(own, rig);
-  if (!ids) return ids.error();
+  TRY(lab_io::ids_of(own, rig));
   return {};
 }
 
 Result<http::Response> start(const Call& call, const char* kind) {
-  const auto run = wanted(call, kind);
-  if (!run) return run.error();
-  auto queued = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
-    if (auto fine = check(tx, *run); !fine) return fine;
-    if (auto added = store::add_lab_run(tx, *run); !added) return added;
-    return store::queue_job(tx, "lab", run->id, run->made_utc_us);
-  });
-  if (!queued) return queued.error();
+  const auto run = TRY(wanted(call, kind));
+  TRY(call.backend.store.write([&](store::Writing& tx) -> Result<void> {
+    TRY(check(tx, run));
+    TRY(store::add_lab_run(tx, run));
+    return store::queue_job(tx, "lab", run.id, run.made_utc_us);
+  }));
   call.backend.work_waits();
-  return json_response(run_json(*run, std::nullopt), 201);
+  return json_response(run_json(run, std::nullopt), 201);
 }
 
 Result<http::Response> start_diagnosis(const Call& call) { return start(call, "diagnosis"); }
@@ -109,102 +104,89 @@ Result<http::Response> start_fit(const Call& call) { return start(call, "fit"); 
 
 Result<http::Response> list_runs(const Call& call) {
   using Runs = std::vector<std::pair<store::LabRun, std::optional<store::ModelVersion>>>;
-  const auto runs = call.backend.store.read([&](store::Reading& tx) -> Result<Runs> {
-    const auto found = store::lab_runs(tx, {.kind = call.text("kind"),
-                                            .model_id = call.text("model"),
-                                            .set_id = call.text("measurements"),
-                                            .limit = call.integer("limit")});
-    if (!found) return found.error();
+  const auto runs = TRY(call.backend.store.read([&](store::Reading& tx) -> Result<Runs> {
+    const auto found = TRY(store::lab_runs(tx, {.kind = call.text("kind"),
+                                                .model_id = call.text("model"),
+                                                .set_id = call.text("measurements"),
+                                                .limit = call.integer("limit")}));
     Runs out;
-    for (const auto& run : *found) {
-      auto published = store::model_made_by(tx, run.id);
-      if (!published) return published.error();
-      out.emplace_back(run, std::move(*published));
+    for (const auto& run : found) {
+      auto published = TRY(store::model_made_by(tx, run.id));
+      out.emplace_back(run, std::move(published));
     }
     return out;
-  });
-  if (!runs) return runs.error();
+  }));
   Json list = Json::array();
-  for (const auto& [run, published] : *runs) list.push_back(run_json(run, published));
+  for (const auto& [run, published] : runs) list.push_back(run_json(run, published));
   return json_response({{"runs", list}});
 }
 
 Result<store::LabRun> run_of(const Call& call) {
-  const auto run = call.backend.store.read(
-      [&](store::Reading& tx) { return store::lab_run_of(tx, call.text("id")); });
-  if (!run) return run.error();
-  if (!*run) return absent("run of the lab", call.text("id"));
-  return **run;
+  const auto run = TRY(call.backend.store.read(
+      [&](store::Reading& tx) { return store::lab_run_of(tx, call.text("id")); }));
+  if (!run) return absent("run of the lab", call.text("id"));
+  return *run;
 }
 
 Result<http::Response> one_run(const Call& call) {
-  const auto run = run_of(call);
-  if (!run) return run.error();
-  const auto json = whole_run_json(call, *run);
-  if (!json) return json.error();
-  return json_response(*json);
+  const auto run = TRY(run_of(call));
+  const auto json = TRY(whole_run_json(call, run));
+  return json_response(json);
 }
 
 Result<http::Response> report_of(const Call& call) {
-  const auto run = run_of(call);
-  if (!run) return run.error();
-  if (!run->report) return absent("report of the run", run->id);
-  auto response = http::file_response(call.backend.objects.path_of(*run->report), call.request,
-                                      "text/html; charset=utf-8");
-  if (!response) return response;
-  return as_report(std::move(*response));
+  const auto run = TRY(run_of(call));
+  if (!run.report) return absent("report of the run", run.id);
+  auto response = TRY(http::file_response(call.backend.objects.path_of(*run.report), call.request,
+                                          "text/html; charset=utf-8"));
+  return as_report(std::move(response));
 }
 
 Result<http::Response> better_model(const Call& call) {
-  const auto run = run_of(call);
-  if (!run) return run.error();
-  if (!run->model) return absent("model of the run", run->id);
-  return http::file_response(call.backend.objects.path_of(*run->model), call.request,
+  const auto run = TRY(run_of(call));
+  if (!run.model) return absent("model of the run", run.id);
+  return http::file_response(call.backend.objects.path_of(*run.model), call.request,
                              "application/json");
 }
 
 Result<http::Response> stop(const Call& call) {
-  const auto run = run_of(call);
-  if (!run) return run.error();
-  auto asked = call.backend.store.write([&](store::Writing& tx) {
-    return store::ask_to_stop(tx, run->id, call.backend.now_utc_us());
-  });
-  if (!asked) return asked.error();
+  const auto run = TRY(run_of(call));
+  TRY(call.backend.store.write([&](store::Writing& tx) {
+    return store::ask_to_stop(tx, run.id, call.backend.now_utc_us());
+  }));
   return one_run(call);
 }
 
 Json envelope(const lab_io::Envelope& e) { return {{"min", e.least}, {"max", e.most}}; }
 
 Result<http::Response> signals(const Call& call) {
-  const auto run = run_of(call);
-  if (!run) return run.error();
-  if (!run->samples) return absent("samples of the run", run->id);
+  const auto run = TRY(run_of(call));
+  if (!run.samples) return absent("samples of the run", run.id);
   const std::string& side = call.text("side");
   if (side != "before" && side != "after")
     return Error{Errc::bad_input, "side: before or after is expected"};
-  const auto view = lab_io::view_samples(call.backend.objects.path_of(*run->samples),
-                                         {.trial = call.text("trial"),
-                                          .channel = call.text("channel"),
-                                          .after = side == "after",
-                                          .from_s = call.number("from_s"),
-                                          .to_s = call.number("to_s"),
-                                          .points = std::size_t(call.integer("points"))});
-  if (!view) return view.error();
+  const auto view = TRY(lab_io::view_samples(call.backend.objects.path_of(*run.samples),
+                                             {.trial = call.text("trial"),
+                                              .channel = call.text("channel"),
+                                              .after = side == "after",
+                                              .from_s = call.number("from_s"),
+                                              .to_s = call.number("to_s"),
+                                              .points = std::size_t(call.integer("points"))}));
   Json regions = Json::array();
-  for (const auto& spans : view->regions) {
+  for (const auto& spans : view.regions) {
     regions.push_back(Json::array());
     for (const auto& [from, to] : spans) regions.back().push_back({from, to});
   }
   return json_response({{"trial", call.text("trial")},
                         {"channel", call.text("channel")},
                         {"side", side},
-                        {"duration_s", view->duration_s},
-                        {"t_s", view->t_s},
-                        {"measured", envelope(view->measured)},
-                        {"simulated", envelope(view->simulated)},
-                        {"residual", envelope(view->residual)},
-                        {"noise_floor", view->noise_floor},
-                        {"samples_per_point", view->samples_per_point},
+                        {"duration_s", view.duration_s},
+                        {"t_s", view.t_s},
+                        {"measured", envelope(view.measured)},
+                        {"simulated", envelope(view.simulated)},
+                        {"residual", envelope(view.residual)},
+                        {"noise_floor", view.noise_floor},
+                        {"samples_per_point", view.samples_per_point},
                         {"regions", regions}});
 }
 
@@ -214,13 +196,12 @@ struct Words {
 
 Result<Words> words_of(const Call& call) {
   if (call.request.body.empty()) return Words{};
-  const auto json = core::parse_json(call.request.body, "body");
-  if (!json) return json.error();
-  core::Fields fields(*json, "");
+  const auto json = TRY(core::parse_json(call.request.body, "body"));
+  core::Fields fields(json, "");
   Words out;
   if (fields.has("name")) out.name = fields.text("name", 200);
   if (fields.has("note")) out.note = fields.text("note", 2000);
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   return out;
 }
 
@@ -228,46 +209,38 @@ Result<Words> words_of(const Call& call) {
 Result<std::pair<std::string, std::uint64_t>> named_model(const Call& call,
                                                           const store::LabRun& run,
                                                           std::string& name) {
-  auto json = core::read_json(call.backend.objects.path_of(*run.model));
-  if (!json) return json.error();
-  if (name.empty()) name = json->value("name", "");
-  (*json)["name"] = name;
-  const std::string text = json->dump(2) + "\n";
-  auto sha256 = call.backend.objects.put(core::bytes_of(text));
-  if (!sha256) return sha256.error();
-  return std::pair(*sha256, std::uint64_t(text.size()));
+  auto json = TRY(core::read_json(call.backend.objects.path_of(*run.model)));
+  if (name.empty()) name = json.value("name", "");
+  json["name"] = name;
+  const std::string text = json.dump(2) + "\n";
+  auto sha256 = TRY(call.backend.objects.put(core::bytes_of(text)));
+  return std::pair(sha256, std::uint64_t(text.size()));
 }
 
 Result<http::Response> publish(const Call& call) {
-  const auto run = run_of(call);
-  if (!run) return run.error();
-  auto words = words_of(call);
-  if (!words) return words.error();
-  if (!run->model)
+  const auto run = TRY(run_of(call));
+  auto words = TRY(words_of(call));
+  if (!run.model)
     return Error{Errc::conflict,
-                 fmt::format("this {} has no model to publish: it is {}", run->kind, run->state)};
-  const auto file = named_model(call, *run, words->name);
-  if (!file) return file.error();
+                 fmt::format("this {} has no model to publish: it is {}", run.kind, run.state)};
+  const auto file = TRY(named_model(call, run, words.name));
   bool made = false;
-  auto version = call.backend.store.write([&](store::Writing& tx) -> Result<store::ModelVersion> {
-    auto already = store::model_made_by(tx, run->id);
-    if (!already) return already.error();
-    if (*already) return **already;
-    const auto parent = store::model_of(tx, run->model_id);
-    if (!parent) return parent.error();
-    if (!*parent) return absent("model", run->model_id);
-    const std::int64_t now = call.backend.now_utc_us();
-    if (auto noted = store::add_object(tx, file->first, file->second, now); !noted)
-      return noted.error();
-    store::ModelVersion out{
-        core::new_id(), words->name, (*parent)->rig,   file->first, (*parent)->id,
-        run->id,        now,         call.caller.name, words->note};
-    if (auto added = store::add_model(tx, out); !added) return added.error();
-    made = true;
-    return out;
-  });
-  if (!version) return version.error();
-  return json_response(model_json(*version), made ? 201 : 200);
+  auto version =
+      TRY(call.backend.store.write([&](store::Writing& tx) -> Result<store::ModelVersion> {
+        auto already = TRY(store::model_made_by(tx, run.id));
+        if (already) return *already;
+        const auto parent = TRY(store::model_of(tx, run.model_id));
+        if (!parent) return absent("model", run.model_id);
+        const std::int64_t now = call.backend.now_utc_us();
+        TRY(store::add_object(tx, file.first, file.second, now));
+        store::ModelVersion out{core::new_id(), words.name, parent->rig, file.first,
+                                parent->id,     run.id,     now,         call.caller.name,
+                                words.note};
+        TRY(store::add_model(tx, out));
+        made = true;
+        return out;
+      }));
+  return json_response(model_json(version), made ? 201 : 200);
 }
 
 Parameter numeric(std::string name, Parameter::Kind kind, std::string unit, std::string meaning,

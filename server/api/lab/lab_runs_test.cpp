@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "core/try.hpp"
 #include "db/store/lab/lab.hpp"
 #include "db/store/operations/jobs.hpp"
 #include "server/api/api_test_support.hpp"
@@ -242,7 +243,7 @@ TEST_F(LabRoutes, RefusesWhatIsWrong) {
 /// The runner's thread for scores claims by kind: what waits for the lab before it is no hindrance.
 TEST_F(LabRoutes, AScoreIsClaimedBeforeALabRunThatWaitsLonger) {
   auto queued_both = store_.write([](store::Writing& tx) -> core::Result<void> {
-    if (auto done = store::queue_job(tx, "lab", "first", 1); !done) return done;
+    TRY(store::queue_job(tx, "lab", "first", 1));
     return store::queue_job(tx, "metrics", "second", 2);
   });
   ASSERT_TRUE(queued_both);

@@ -1,4 +1,5 @@
 /// The audit trail, for administrators.
+#include "core/try.hpp"
 #include "db/store/operations/audit.hpp"
 #include "server/api/backend.hpp"
 #include "server/api/route.hpp"
@@ -19,12 +20,11 @@ core::Json row_json(const store::AuditRow& row) {
 }
 
 core::Result<http::Response> list_audit(const Call& call) {
-  auto found = call.backend.store.read([&](store::Reading& tx) {
+  auto found = TRY(call.backend.store.read([&](store::Reading& tx) {
     return store::audit_before(tx, call.integer("before"), call.integer("limit"));
-  });
-  if (!found) return found.error();
+  }));
   core::Json list = core::Json::array();
-  for (const auto& row : *found) list.push_back(row_json(row));
+  for (const auto& row : found) list.push_back(row_json(row));
   return json_response({{"rows", list}});
 }
 

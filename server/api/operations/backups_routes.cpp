@@ -1,4 +1,5 @@
 /// Backups: made while the server serves, and tried by restoring them.
+#include "core/try.hpp"
 #include "server/api/backend.hpp"
 #include "server/api/operations/backups.hpp"
 #include "server/api/route.hpp"
@@ -34,29 +35,23 @@ Result<Backups*> of(const Call& call) {
 }
 
 Result<http::Response> list_backups(const Call& call) {
-  auto backups = of(call);
-  if (!backups) return backups.error();
-  auto found = (*backups)->list();
-  if (!found) return found.error();
+  auto backups = TRY(of(call));
+  auto found = TRY(backups->list());
   Json list = Json::array();
-  for (const Backup& one : *found) list.push_back(backup_json(one));
+  for (const Backup& one : found) list.push_back(backup_json(one));
   return json_response({{"backups", list}});
 }
 
 Result<http::Response> make_backup(const Call& call) {
-  auto backups = of(call);
-  if (!backups) return backups.error();
-  auto made = (*backups)->make(call.caller.name);
-  if (!made) return made.error();
-  return json_response(backup_json(*made), 201);
+  auto backups = TRY(of(call));
+  auto made = TRY(backups->make(call.caller.name));
+  return json_response(backup_json(made), 201);
 }
 
 Result<http::Response> verify_backup(const Call& call) {
-  auto backups = of(call);
-  if (!backups) return backups.error();
-  auto begun = (*backups)->verify(call.text("id"));
-  if (!begun) return begun.error();
-  return json_response(backup_json(*begun));
+  auto backups = TRY(of(call));
+  auto begun = TRY(backups->verify(call.text("id")));
+  return json_response(backup_json(begun));
 }
 
 RouteInfo route(std::string method, std::string tail, std::string id, std::string summary,

@@ -1,4 +1,5 @@
 /// For those who keep the server running: is it well, and what does it do?
+#include "core/try.hpp"
 #include "server/api/backend.hpp"
 #include "server/api/route.hpp"
 #include "server/api/schema.hpp"
@@ -9,9 +10,8 @@ namespace api {
 namespace {
 
 core::Result<double> counted(store::Reading& tx, const char* sql) {
-  auto rows = tx.query(sql);
-  if (!rows) return rows.error();
-  return static_cast<double>(rows->front().count(0));
+  auto rows = TRY(tx.query(sql));
+  return static_cast<double>(rows.front().count(0));
 }
 
 /// Anybody may ask, so it tells no more than whether trials can be taken.
@@ -42,15 +42,13 @@ constexpr Gauge kGauges[] = {
 
 core::Result<http::Response> metrics_text(const Call& call) {
   std::string out = call.backend.telemetry.text();
-  auto read = call.backend.store.read([&](store::Reading& tx) -> core::Result<void> {
+  TRY(call.backend.store.read([&](store::Reading& tx) -> core::Result<void> {
     for (const Gauge& gauge : kGauges) {
-      auto value = counted(tx, gauge.sql);
-      if (!value) return value.error();
-      out += Telemetry::gauge(gauge.name, gauge.help, *value);
+      auto value = TRY(counted(tx, gauge.sql));
+      out += Telemetry::gauge(gauge.name, gauge.help, value);
     }
     return {};
-  });
-  if (!read) return read.error();
+  }));
   out += Telemetry::gauge("tractus_disk_free_bytes", "Left on the data folder's disk.",
                           static_cast<double>(free_bytes(call.backend)));
   http::Response response{.status = 200, .headers = {}, .body = std::move(out)};

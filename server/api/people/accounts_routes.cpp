@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/bytes.hpp"
+#include "core/try.hpp"
 #include "server/api/backend.hpp"
 #include "server/api/people/authentication.hpp"
 #include "server/api/people/people_json.hpp"
@@ -22,10 +23,10 @@ using core::Result;
 constexpr std::uint64_t kMaxBody_bytes = 8192;
 
 Result<http::Response> list_accounts(const Call& call) {
-  auto found = call.backend.store.read([](store::Reading& tx) { return store::all_accounts(tx); });
-  if (!found) return found.error();
+  auto found =
+      TRY(call.backend.store.read([](store::Reading& tx) { return store::all_accounts(tx); }));
   core::Json list = core::Json::array();
-  for (const auto& account : *found) list.push_back(account_json(account));
+  for (const auto& account : found) list.push_back(account_json(account));
   return json_response({{"accounts", list}});
 }
 
@@ -55,7 +56,7 @@ Result<Wanted> wanted(const core::Json& json, const std::string& where) {
   out.password = password_field(fields, "password", false);
   out.account.badge = badge_field(fields);
   out.pin = pin_field(fields);
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   out.made = out.password.empty();
   if (out.made) out.password = made_password();
   out.account.must_change = true;
@@ -64,25 +65,20 @@ Result<Wanted> wanted(const core::Json& json, const std::string& where) {
 }
 
 Result<http::Response> add_account_route(const Call& call) {
-  auto json = core::parse_json(call.request.body, "body");
-  if (!json) return json.error();
-  auto asked = wanted(*json, "body");
-  if (!asked) return asked.error();
-  auto hash = password_hash(asked->password);
-  if (!hash) return hash.error();
-  asked->account.password_hash = *hash;
-  if (!asked->pin.empty()) {
-    auto pin = password_hash(asked->pin);
-    if (!pin) return pin.error();
-    asked->account.pin_hash = *pin;
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  auto asked = TRY(wanted(json, "body"));
+  auto hash = TRY(password_hash(asked.password));
+  asked.account.password_hash = hash;
+  if (!asked.pin.empty()) {
+    auto pin = TRY(password_hash(asked.pin));
+    asked.account.pin_hash = pin;
   }
-  asked->account.made_utc_us = call.backend.now_utc_us();
-  auto added = call.backend.store.write([&](store::Writing& tx) {
-    return store::add_account(tx, asked->account, asked->account.made_utc_us);
-  });
-  if (!added) return added.error();
-  core::Json answer{{"account", account_json(asked->account)}};
-  answer["password"] = asked->made ? core::Json(asked->password) : core::Json();
+  asked.account.made_utc_us = call.backend.now_utc_us();
+  TRY(call.backend.store.write([&](store::Writing& tx) {
+    return store::add_account(tx, asked.account, asked.account.made_utc_us);
+  }));
+  core::Json answer{{"account", account_json(asked.account)}};
+  answer["password"] = asked.made ? core::Json(asked.password) : core::Json();
   return json_response(answer, 201);
 }
 
@@ -90,24 +86,22 @@ Result<http::Response> add_account_route(const Call& call) {
 /// `work(account)` may refuse.
 template <class Work>
 Result<http::Response> changed(const Call& call, Work work) {
-  auto account = call.backend.store.write([&](store::Writing& tx) -> Result<store::Account> {
+  auto account = TRY(call.backend.store.write([&](store::Writing& tx) -> Result<store::Account> {
     auto found = account_of_call(tx, call);
     if (!found) return found;
-    if (Result<void> done = work(tx, *found); !done) return done.error();
-    if (auto done = store::set_account(tx, *found); !done) return done.error();
-    if (auto done = store::remove_sessions_of(tx, found->id, ""); !done) return done.error();
+    TRY(work(tx, *found));
+    TRY(store::set_account(tx, *found));
+    TRY(store::remove_sessions_of(tx, found->id, ""));
     return found;
-  });
-  if (!account) return account.error();
-  close_conversations(call.backend, account->id);
-  return json_response(account_json(*account));
+  }));
+  close_conversations(call.backend, account.id);
+  return json_response(account_json(account));
 }
 
 /// Somebody must be left who can undo this.
 Result<void> check_an_admin_stays(store::Reading& tx, const store::Account& changing) {
-  auto all = store::all_accounts(tx);
-  if (!all) return all.error();
-  const bool stays = std::ranges::any_of(*all, [&](const store::Account& other) {
+  auto all = TRY(store::all_accounts(tx));
+  const bool stays = std::ranges::any_of(all, [&](const store::Account& other) {
     return other.id != changing.id && other.role == name(Role::admin) && other.state == "active";
   });
   if (stays) return {};
@@ -116,34 +110,31 @@ Result<void> check_an_admin_stays(store::Reading& tx, const store::Account& chan
 
 /// One text field of the body.
 Result<std::string> field(const Call& call, const char* key) {
-  auto json = core::parse_json(call.request.body, "body");
-  if (!json) return json.error();
-  core::Fields fields(*json, "body");
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  core::Fields fields(json, "body");
   std::string out = std::string(key) == "role" ? role_field(fields) : fields.text(key, 32);
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   return out;
 }
 
 Result<http::Response> set_state(const Call& call) {
-  auto state = field(call, "state");
-  if (!state) return state.error();
-  if (*state != "active" && *state != "disabled")
+  auto state = TRY(field(call, "state"));
+  if (state != "active" && state != "disabled")
     return Error{Errc::bad_input, "body: /state: active or disabled is expected"};
   return changed(call, [&](store::Writing& tx, store::Account& account) -> Result<void> {
-    if (*state == "disabled" && account.role == name(Role::admin))
-      if (auto stays = check_an_admin_stays(tx, account); !stays) return stays;
-    account.state = *state;
+    if (state == "disabled" && account.role == name(Role::admin))
+      TRY(check_an_admin_stays(tx, account));
+    account.state = state;
     return {};
   });
 }
 
 Result<http::Response> set_role(const Call& call) {
-  auto role = field(call, "role");
-  if (!role) return role.error();
+  auto role = TRY(field(call, "role"));
   return changed(call, [&](store::Writing& tx, store::Account& account) -> Result<void> {
-    if (account.role == name(Role::admin) && *role != name(Role::admin))
-      if (auto stays = check_an_admin_stays(tx, account); !stays) return stays;
-    account.role = *role;
+    if (account.role == name(Role::admin) && role != name(Role::admin))
+      TRY(check_an_admin_stays(tx, account));
+    account.role = role;
     return {};
   });
 }
@@ -154,30 +145,26 @@ Result<http::Response> reset_password(const Call& call) {
     return Error{Errc::forbidden,
                  "this is your own account: change its password by POST /api/v1/session/password"};
   const std::string password = made_password();
-  auto hash = password_hash(password);
-  if (!hash) return hash.error();
-  auto response = changed(call, [&](store::Writing& tx, store::Account& account) {
-    account.password_hash = *hash;
+  auto hash = TRY(password_hash(password));
+  TRY(changed(call, [&](store::Writing& tx, store::Account& account) {
+    account.password_hash = hash;
     account.must_change = true;
     account.totp_secret.clear();
     account.totp_confirmed = false;
     return start_afresh(tx, account.id, store::Secret::account_password, account.name);
-  });
-  if (!response) return response.error();
+  }));
   return json_response({{"password", password}});
 }
 
 Result<http::Response> set_badge(const Call& call) {
-  auto json = core::parse_json(call.request.body, "body");
-  if (!json) return json.error();
-  core::Fields fields(*json, "body");
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  core::Fields fields(json, "body");
   const std::string badge = badge_field(fields), pin = pin_field(fields);
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   std::string hash;
   if (!pin.empty()) {
-    auto made = password_hash(pin);
-    if (!made) return made.error();
-    hash = std::move(*made);
+    auto made = TRY(password_hash(pin));
+    hash = std::move(made);
   }
   return changed(call, [&](store::Writing& tx, store::Account& account) {
     account.badge = badge;

@@ -1,3 +1,4 @@
+#include "core/try.hpp"
 #include "db/store/operations/audit.hpp"
 #include "server/api/people/oidc.hpp"
 #include "server/api/people/people_test_support.hpp"
@@ -23,11 +24,10 @@ class Accounts : public PeopleTest {
   std::string codes_of(const std::string& id) {
     const std::string secret = "12345678901234567890";  // of RFC 6238, appendix B
     EXPECT_TRUE(store_.write([&](store::Writing& tx) -> core::Result<void> {
-      auto account = store::account_of(tx, id);
-      if (!account) return account.error();
-      (*account)->totp_secret = backend_.secrets.sealed(secret);
-      (*account)->totp_confirmed = true;
-      return store::set_account(tx, **account);
+      auto account = TRY(store::account_of(tx, id));
+      account->totp_secret = backend_.secrets.sealed(secret);
+      account->totp_confirmed = true;
+      return store::set_account(tx, *account);
     }));
     return secret;
   }

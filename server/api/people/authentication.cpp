@@ -2,6 +2,7 @@
 
 #include <sodium.h>
 
+#include "core/try.hpp"
 #include "db/store/operations/audit.hpp"
 #include "server/api/backend.hpp"
 #include "server/api/people/throttle.hpp"
@@ -31,28 +32,25 @@ const std::string& nobodys_hash() {
 }
 
 core::Result<Caller> by_token(Backend& backend, std::string_view token) {
-  auto station = backend.store.read(
-      [&](store::Reading& tx) { return store::station_of(tx, token_hash(token)); });
-  if (!station) return station.error();
-  if (!*station) return core::Error{core::Errc::unauthorised, "this token is not known"};
-  return Caller{Role::station, (*station)->id, (*station)->name, ""};
+  auto station = TRY(backend.store.read(
+      [&](store::Reading& tx) { return store::station_of(tx, token_hash(token)); }));
+  if (!station) return core::Error{core::Errc::unauthorised, "this token is not known"};
+  return Caller{Role::station, station->id, station->name, ""};
 }
 
 core::Result<Caller> by_cookie(Backend& backend, std::string_view token, Presence presence) {
   const std::string hash = token_hash(token);
   auto session =
-      backend.store.read([&](store::Reading& tx) { return store::session_of(tx, hash); });
-  if (!session) return session.error();
+      TRY(backend.store.read([&](store::Reading& tx) { return store::session_of(tx, hash); }));
   const std::int64_t now = backend.now_utc_us();
-  const bool over = !*session || now - (*session)->seen_utc_us > kSessionIdle_us ||
-                    now - (*session)->made_utc_us > kSessionAge_us;
+  const bool over = !session || now - session->seen_utc_us > kSessionIdle_us ||
+                    now - session->made_utc_us > kSessionAge_us;
   if (over) return core::Error{core::Errc::unauthorised, "sign in first: the session is over"};
-  if (presence == Presence::shown && now - (*session)->seen_utc_us > kTouch_us) {
-    auto touched = backend.store.write_beside(
-        [&](store::Writing& tx) { return store::touch_session(tx, hash, now); });
-    if (!touched) return touched.error();
+  if (presence == Presence::shown && now - session->seen_utc_us > kTouch_us) {
+    TRY(backend.store.write_beside(
+        [&](store::Writing& tx) { return store::touch_session(tx, hash, now); }));
   }
-  const store::Account& account = (*session)->account;
+  const store::Account& account = session->account;
   const auto role = role_named(account.role);
   if (!role || *role == Role::station || account.state != "active")
     return core::Error{core::Errc::unauthorised, "the account is switched off"};
@@ -67,19 +65,17 @@ bool password_matches(const std::string& hash, const std::string& password) {
 }
 
 core::Result<void> check_unchanged(store::Reading& tx, const store::Account& checked) {
-  auto now = store::account_of(tx, checked.id);
-  if (!now) return now.error();
-  if (*now && (*now)->password_hash == checked.password_hash && (*now)->badge == checked.badge &&
-      (*now)->pin_hash == checked.pin_hash && (*now)->state == checked.state)
+  auto now = TRY(store::account_of(tx, checked.id));
+  if (now && now->password_hash == checked.password_hash && now->badge == checked.badge &&
+      now->pin_hash == checked.pin_hash && now->state == checked.state)
     return {};
   return core::Error{core::Errc::unauthorised, "the account was changed just now: try again"};
 }
 
 core::Result<void> use_code(Backend& backend, store::Account& account, const std::string& code) {
-  auto secret = backend.secrets.opened(account.totp_secret);
-  if (!secret) return secret.error();
+  auto secret = TRY(backend.secrets.opened(account.totp_secret));
   const auto step =
-      totp_step(core::bytes_of(*secret), code, backend.now_utc_us(), account.totp_step);
+      totp_step(core::bytes_of(secret), code, backend.now_utc_us(), account.totp_step);
   if (!step) return core::Error{core::Errc::unauthorised, "the one-time code is wrong"};
   account.totp_step = *step;
   return {};
@@ -108,17 +104,16 @@ namespace {
 
 /// The account that these credentials open, its one-time code used up.
 core::Result<store::Account> account_opened(Backend& backend, const Credentials& given) {
-  auto account =
-      backend.store.read([&](store::Reading& tx) { return store::account_named(tx, given.name); });
-  if (!account) return account.error();
-  const bool right = password_matches(*account ? (*account)->password_hash : "", given.password);
-  if (!*account) store::AuditScope::without_detail();
-  if (!*account || !right || (*account)->state != "active")
+  auto account = TRY(
+      backend.store.read([&](store::Reading& tx) { return store::account_named(tx, given.name); }));
+  const bool right = password_matches(account ? account->password_hash : "", given.password);
+  if (!account) store::AuditScope::without_detail();
+  if (!account || !right || account->state != "active")
     return core::Error{core::Errc::unauthorised, "name or password is wrong"};
-  if (!(*account)->totp_confirmed) return std::move(**account);
+  if (!account->totp_confirmed) return std::move(*account);
   if (given.code.empty()) return core::Error{core::Errc::unauthorised, kCodeNeeded};
-  if (auto used = use_code(backend, **account, given.code); !used) return used.error();
-  return std::move(**account);
+  TRY(use_code(backend, *account, given.code));
+  return std::move(*account);
 }
 
 }  // namespace
@@ -129,23 +124,19 @@ core::Result<SignedIn> sign_in(Backend& backend, const Credentials& given,
   if (!account) {
     if (account.error().code != core::Errc::unauthorised || needs_code(account.error()))
       return account.error();
-    if (auto noted = note_failure(backend, attempt); !noted) return noted.error();
+    TRY(note_failure(backend, attempt));
     return account.error();
   }
   store::AuditScope::is_by(account->name, account->role);
   const std::int64_t now = backend.now_utc_us();
   const std::string token = new_token();
-  auto made = backend.store.write([&](store::Writing& tx) -> core::Result<void> {
-    if (auto same = check_unchanged(tx, *account); !same) return same;
-    if (auto done = note_success(tx, account->id, attempt, now); !done) return done;
-    if (auto done = store::remove_old_sessions(tx, now - kSessionIdle_us, now - kSessionAge_us);
-        !done)
-      return done;
-    if (account->totp_confirmed)
-      if (auto done = store::use_totp_step(tx, account->id, account->totp_step); !done) return done;
+  TRY(backend.store.write([&](store::Writing& tx) -> core::Result<void> {
+    TRY(check_unchanged(tx, *account));
+    TRY(note_success(tx, account->id, attempt, now));
+    TRY(store::remove_old_sessions(tx, now - kSessionIdle_us, now - kSessionAge_us));
+    if (account->totp_confirmed) TRY(store::use_totp_step(tx, account->id, account->totp_step));
     return store::add_session(tx, token_hash(token), account->id, now);
-  });
-  if (!made) return made.error();
+  }));
   return SignedIn{std::move(*account), token};
 }
 

@@ -1,4 +1,5 @@
 /// What people agree that research may have of their trials.
+#include "core/try.hpp"
 #include "db/store/people/consent.hpp"
 #include "db/store/studies/assignments.hpp"
 #include "server/api/backend.hpp"
@@ -27,29 +28,25 @@ Tier tier_field(core::Fields& fields) {
 }
 
 Result<Json> own_answer(store::Reading& tx, const std::string& account) {
-  const auto book = store::ConsentBook::read(tx);
-  if (!book) return book.error();
-  auto assigned = store::assignments_of(tx, {.done_by = account});
-  if (!assigned) return assigned.error();
+  const auto book = TRY(store::ConsentBook::read(tx));
+  auto assigned = TRY(store::assignments_of(tx, {.done_by = account}));
   Json studies = Json::array();
-  for (const auto& a : *assigned)
+  for (const auto& a : assigned)
     studies.push_back({{"study", a.study.id},
                        {"title", a.study.title},
-                       {"tier", store::name(book->tier_of(account, a.study.id))}});
-  return Json{{"everywhere", store::name(book->tier_of(account, ""))}, {"studies", studies}};
+                       {"tier", store::name(book.tier_of(account, a.study.id))}});
+  return Json{{"everywhere", store::name(book.tier_of(account, ""))}, {"studies", studies}};
 }
 
 Result<http::Response> own_consent(const Call& call) {
-  auto answer =
-      call.backend.store.read([&](store::Reading& tx) { return own_answer(tx, call.caller.id); });
-  if (!answer) return answer.error();
-  return json_response(*answer);
+  auto answer = TRY(
+      call.backend.store.read([&](store::Reading& tx) { return own_answer(tx, call.caller.id); }));
+  return json_response(answer);
 }
 
 Result<http::Response> say_own(const Call& call) {
-  auto json = core::parse_json(call.request.body, "body");
-  if (!json) return json.error();
-  core::Fields fields(*json, "body");
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  core::Fields fields(json, "body");
   store::Consent said{.account_id = call.caller.id,
                       .study_id = fields.text_or("study", "", 64),
                       .participant = "",
@@ -57,28 +54,25 @@ Result<http::Response> say_own(const Call& call) {
                       .basis = "own word",
                       .noted_utc_us = call.backend.now_utc_us(),
                       .noted_by = call.caller.name};
-  if (auto fine = fields.done(); !fine) return fine.error();
-  auto answer = call.backend.store.write([&](store::Writing& tx) -> Result<Json> {
-    if (auto set = store::set_consent(tx, said); !set) return set.error();
+  TRY(fields.done());
+  auto answer = TRY(call.backend.store.write([&](store::Writing& tx) -> Result<Json> {
+    TRY(store::set_consent(tx, said));
     return own_answer(tx, call.caller.id);
-  });
-  if (!answer) return answer.error();
-  return json_response(*answer);
+  }));
+  return json_response(answer);
 }
 
 Result<http::Response> list_consents(const Call& call) {
   using Names = std::map<std::string, std::string>;
   Names names;
   auto all =
-      call.backend.store.read([&](store::Reading& tx) -> Result<std::vector<store::Consent>> {
-        auto accounts = store::all_accounts(tx);
-        if (!accounts) return accounts.error();
-        for (const auto& account : *accounts) names[account.id] = account.name;
+      TRY(call.backend.store.read([&](store::Reading& tx) -> Result<std::vector<store::Consent>> {
+        auto accounts = TRY(store::all_accounts(tx));
+        for (const auto& account : accounts) names[account.id] = account.name;
         return store::all_consents(tx);
-      });
-  if (!all) return all.error();
+      }));
   Json list = Json::array();
-  for (const auto& c : *all)
+  for (const auto& c : all)
     list.push_back({{"account", c.account_id.empty() ? Json() : Json(names[c.account_id])},
                     {"study", c.study_id.empty() ? Json() : Json(c.study_id)},
                     {"participant", c.participant.empty() ? Json() : Json(c.participant)},
@@ -92,25 +86,21 @@ Result<http::Response> list_consents(const Call& call) {
 /// Whom the body names: an account, or a participant that is nobody's account.
 Result<void> resolve(store::Reading& tx, const std::string& account, store::Consent& said) {
   if (!account.empty()) {
-    auto known = store::account_named(tx, account);
-    if (!known) return known.error();
-    if (!*known) return Error{Errc::not_found, "account: there is none of this name"};
-    said.account_id = (*known)->id;
+    auto known = TRY(store::account_named(tx, account));
+    if (!known) return Error{Errc::not_found, "account: there is none of this name"};
+    said.account_id = known->id;
     return {};
   }
-  auto study = store::find_study(tx, said.study_id);
-  if (!study) return study.error();
-  auto participant = store::participant_of(tx, *study, said.participant);
-  if (!participant) return participant.error();
-  if (!*participant)
+  auto study = TRY(store::find_study(tx, said.study_id));
+  auto participant = TRY(store::participant_of(tx, study, said.participant));
+  if (!participant)
     return Error{Errc::not_found, "participant: there is none of this name in the study"};
   return {};
 }
 
 Result<http::Response> note_consent(const Call& call) {
-  auto json = core::parse_json(call.request.body, "body");
-  if (!json) return json.error();
-  core::Fields fields(*json, "body");
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  core::Fields fields(json, "body");
   const std::string account = fields.text_or("account", "", 128);
   store::Consent said{.account_id = "",
                       .study_id = fields.text_or("study", "", 64),
@@ -121,12 +111,11 @@ Result<http::Response> note_consent(const Call& call) {
                       .noted_by = call.caller.name};
   if (account.empty() == said.participant.empty())
     fields.wrong("participant", "a participant of a study, or an account, is expected");
-  if (auto fine = fields.done(); !fine) return fine.error();
-  auto noted = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
-    if (auto known = resolve(tx, account, said); !known) return known;
+  TRY(fields.done());
+  TRY(call.backend.store.write([&](store::Writing& tx) -> Result<void> {
+    TRY(resolve(tx, account, said));
     return store::set_consent(tx, said);
-  });
-  if (!noted) return noted.error();
+  }));
   return http::Response{.status = 204, .headers = {}, .body = std::string()};
 }
 

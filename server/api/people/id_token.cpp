@@ -9,6 +9,8 @@
 #include <array>
 #include <memory>
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace api {
 namespace {
@@ -138,10 +140,9 @@ Result<void> check_signature(std::string_view signed_part, const std::string& si
   if (rsa)
     return verifies(key.get(), signed_part, signature) ? Result<void>()
                                                        : refused("is not signed by the provider");
-  const auto der = der_of(signature);
-  if (!der) return der.error();
-  return verifies(key.get(), signed_part, *der) ? Result<void>()
-                                                : refused("is not signed by the provider");
+  const auto der = TRY(der_of(signature));
+  return verifies(key.get(), signed_part, der) ? Result<void>()
+                                               : refused("is not signed by the provider");
 }
 
 std::int64_t seconds_field(const Json& claims, const char* key) {
@@ -167,7 +168,7 @@ Result<void> check_audience(const Json& claims, const std::string& client_id) {
 
 Result<Identity> checked(const Json& claims, const Expected& expected) {
   if (text_field(claims, "iss") != expected.issuer) return refused("is of another issuer");
-  if (auto fine = check_audience(claims, expected.client_id); !fine) return fine.error();
+  TRY(check_audience(claims, expected.client_id));
   const std::int64_t expires = seconds_field(claims, "exp"), made_at = seconds_field(claims, "iat");
   if (expires < 0 || expected.now_s > expires + kSkew_s) return refused("has expired");
   if (made_at < 0 || made_at > expected.now_s + kSkew_s) return refused("is of the future");
@@ -233,16 +234,12 @@ Result<Identity> identity_of(std::string_view token, const Json& keys, const Exp
   const auto first = token.find('.'), last = token.rfind('.');
   if (first == std::string_view::npos || first == last || token.find('.', first + 1) != last)
     return refused("is none");
-  const auto header = part(token.substr(0, first));
-  if (!header) return header.error();
+  const auto header = TRY(part(token.substr(0, first)));
   const auto signature = base64url_decoded(token.substr(last + 1));
   if (!signature) return refused("is none");
-  if (auto signed_by = check_signature(token.substr(0, last), *signature, *header, keys);
-      !signed_by)
-    return signed_by.error();
-  const auto claims = part(token.substr(first + 1, last - first - 1));
-  if (!claims) return claims.error();
-  return checked(*claims, expected);
+  TRY(check_signature(token.substr(0, last), *signature, header, keys));
+  const auto claims = TRY(part(token.substr(first + 1, last - first - 1)));
+  return checked(claims, expected);
 }
 
 }  // namespace api

@@ -1,4 +1,5 @@
 /// Invitations into cohorts as those who are invited see them: who accepts one joins the cohort.
+#include "core/try.hpp"
 #include "db/store/people/invitations.hpp"
 #include "server/api/backend.hpp"
 #include "server/api/schema.hpp"
@@ -12,11 +13,10 @@ using core::Error;
 using core::Result;
 
 Result<http::Response> own_invitations(const Call& call) {
-  auto found = call.backend.store.read(
-      [&](store::Reading& tx) { return store::invitations_for(tx, call.caller.name); });
-  if (!found) return found.error();
+  auto found = TRY(call.backend.store.read(
+      [&](store::Reading& tx) { return store::invitations_for(tx, call.caller.name); }));
   core::Json list = core::Json::array();
-  for (const auto& one : *found)
+  for (const auto& one : found)
     list.push_back({{"cohort_id", one.cohort_id},
                     {"cohort_name", one.cohort_name},
                     {"made_utc_us", one.made_utc_us},
@@ -25,22 +25,19 @@ Result<http::Response> own_invitations(const Call& call) {
 }
 
 Result<http::Response> accept(const Call& call) {
-  auto joined = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
-    auto account = store::account_of(tx, call.caller.id);
-    if (!account) return account.error();
-    core::require(account->has_value(), "who calls has an account");
-    return join_cohort(tx, call.text("cohort"), **account,
+  TRY(call.backend.store.write([&](store::Writing& tx) -> Result<void> {
+    auto account = TRY(store::account_of(tx, call.caller.id));
+    core::require(account.has_value(), "who calls has an account");
+    return join_cohort(tx, call.text("cohort"), *account,
                        {call.caller.name, call.backend.now_utc_us()});
-  });
-  if (!joined) return joined.error();
+  }));
   return own_invitations(call);
 }
 
 Result<http::Response> decline(const Call& call) {
-  auto removed = call.backend.store.write([&](store::Writing& tx) {
+  TRY(call.backend.store.write([&](store::Writing& tx) {
     return store::remove_invitation(tx, call.text("cohort"), call.caller.name);
-  });
-  if (!removed) return removed.error();
+  }));
   return own_invitations(call);
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace api {
 namespace {
@@ -62,7 +64,7 @@ core::Result<core::Json> KeptDocument::at_most(std::int64_t age_s, const Ask& as
     answered_.wait(held, [this, before = answers_] { return answers_ != before; });
     return last_;
   }
-  if (auto open = breaker_.check(); !open) return open.error();
+  TRY(breaker_.check());
   asking_ = true;
   held.unlock();
   auto outcome = asked(ask);

@@ -2,6 +2,7 @@
 
 #include "core/bytes.hpp"
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "server/api/web_fetch.hpp"
 
 namespace tractus {
@@ -32,20 +33,19 @@ std::string challenge_of(const std::string& verifier) {
 }
 
 Result<Json> json_at(const std::string& url, const OidcSettings& settings) {
-  auto got = fetch({.url = url, .authority = settings.authority, .patience = settings.patience});
-  if (!got) return got.error();
-  auto out = core::parse_json(got->body, "the provider's answer");
-  if (got->status == 200 && out && out->is_object()) return out;
+  auto got =
+      TRY(fetch({.url = url, .authority = settings.authority, .patience = settings.patience}));
+  auto out = core::parse_json(got.body, "the provider's answer");
+  if (got.status == 200 && out && out->is_object()) return out;
   return Error{Errc::unavailable,
-               "the provider does not answer as one: HTTP status " + std::to_string(got->status)};
+               "the provider does not answer as one: HTTP status " + std::to_string(got.status)};
 }
 
 }  // namespace
 
 Result<OidcSettings> read_oidc_settings(const std::filesystem::path& path) {
-  const auto json = core::read_json(path);
-  if (!json) return json.error();
-  core::Fields fields(*json, path.string());
+  const auto json = TRY(core::read_json(path));
+  core::Fields fields(json, path.string());
   const std::string format = fields.text("format");
   if (!format.empty() && format != "tractus-oidc/1")
     fields.wrong("format", "tractus-oidc/1 is expected");
@@ -60,12 +60,11 @@ Result<OidcSettings> read_oidc_settings(const std::filesystem::path& path) {
   if (!is_safe_address(out.issuer)) fields.wrong("issuer", "an https address is expected");
   if (!out.base.empty() && !is_safe_address(out.base))
     fields.wrong("base", "an https address is expected");
-  if (auto fine = fields.done(); !fine) return fine.error();
+  TRY(fields.done());
   const auto folder = path.parent_path();
   if (!out.authority.empty()) out.authority = folder / out.authority;
-  auto held = core::read_file(folder / secret, 4096);
-  if (!held) return held.error();
-  out.client_secret = core::text_of(*held);
+  auto held = TRY(core::read_file(folder / secret, 4096));
+  out.client_secret = core::text_of(held);
   while (!out.client_secret.empty() && out.client_secret.back() <= ' ')
     out.client_secret.pop_back();
   if (out.client_secret.empty())
@@ -95,19 +94,17 @@ Result<Json> Oidc::fetched_description() const {
 }
 
 Result<Json> Oidc::keys(std::int64_t age_s) const {
-  const auto description = described();
-  if (!description) return description.error();
+  const auto description = TRY(described());
   return keys_.at_most(age_s,
-                       [&] { return json_at(text_field(*description, "jwks_uri"), settings_); });
+                       [&] { return json_at(text_field(description, "jwks_uri"), settings_); });
 }
 
 /// The token endpoint's answer to a code. A refusal is no failure of the provider: who sends it
 /// wrong codes does not keep others from signing in.
 Result<Json> Oidc::tokens(const std::string& code, const OidcAttempt& attempt) const {
-  const auto description = described();
-  if (!description) return description.error();
-  if (auto open = breaker_.check(); !open) return open.error();
-  auto answer = fetch({.url = text_field(*description, "token_endpoint"),
+  const auto description = TRY(described());
+  TRY(breaker_.check());
+  auto answer = fetch({.url = text_field(description, "token_endpoint"),
                        .form = {{{"grant_type", "authorization_code"},
                                  {"code", code},
                                  {"redirect_uri", settings_.base + "/api/v1/session/oidc/callback"},
@@ -124,9 +121,8 @@ Result<Json> Oidc::tokens(const std::string& code, const OidcAttempt& attempt) c
 }
 
 Result<std::string> Oidc::sign_in_address(const OidcAttempt& attempt) const {
-  const auto description = described();
-  if (!description) return description.error();
-  const std::string endpoint = text_field(*description, "authorization_endpoint");
+  const auto description = TRY(described());
+  const std::string endpoint = text_field(description, "authorization_endpoint");
   std::string out = endpoint + (endpoint.find('?') == std::string::npos ? "?" : "&");
   const std::pair<const char*, std::string> asked[] = {
       {"response_type", "code"},
@@ -145,9 +141,8 @@ Result<std::string> Oidc::sign_in_address(const OidcAttempt& attempt) const {
 
 Result<Identity> Oidc::redeemed(const std::string& code, const OidcAttempt& attempt,
                                 std::int64_t utc_s) const {
-  const auto json = tokens(code, attempt);
-  if (!json) return json.error();
-  const std::string token = text_field(*json, "id_token");
+  const auto json = TRY(tokens(code, attempt));
+  const std::string token = text_field(json, "id_token");
   const Expected expected{settings_.issuer, settings_.client_id, attempt.nonce, utc_s};
   auto known = keys(kKept_s);
   if (!known) return known.error();
@@ -162,9 +157,8 @@ Result<Identity> Oidc::redeemed(const std::string& code, const OidcAttempt& atte
 }
 
 Result<std::string> Oidc::sign_out_address() const {
-  const auto description = described();
-  if (!description) return description.error();
-  const std::string endpoint = text_field(*description, "end_session_endpoint");
+  const auto description = TRY(described());
+  const std::string endpoint = text_field(description, "end_session_endpoint");
   if (!is_safe_address(endpoint)) return std::string();
   return endpoint + (endpoint.find('?') == std::string::npos ? "?" : "&") +
          "client_id=" + percent_encoded(settings_.client_id) +

@@ -1,5 +1,6 @@
 /// Signing in by a provider of identities. Whom it vouches for gets no account by that: an
 /// administrator says which one is whose.
+#include "core/try.hpp"
 #include "db/store/operations/audit.hpp"
 #include "db/store/people/subjects.hpp"
 #include "server/api/backend.hpp"
@@ -50,10 +51,9 @@ Result<http::Response> offered(const Call& call) {
 }
 
 Result<http::Response> begin(const Call& call) {
-  const auto oidc = provider(call);
-  if (!oidc) return oidc.error();
+  const auto oidc = TRY(provider(call));
   const OidcAttempt attempt = new_attempt();
-  auto address = (*oidc)->sign_in_address(attempt);
+  auto address = oidc->sign_in_address(attempt);
   if (!address) return failed(call, address.error());
   const Json kept{{"state", attempt.state},
                   {"nonce", attempt.nonce},
@@ -99,28 +99,25 @@ void note_unknown(const Call& call, const std::string& subject) {
 
 /// The session's token. Errors: unauthorised when nobody's account has the subject, or it is off.
 Result<std::string> session_for(const Call& call, const Oidc& oidc, const std::string& subject) {
-  auto account = call.backend.store.read([&](store::Reading& tx) {
+  auto account = TRY(call.backend.store.read([&](store::Reading& tx) {
     return store::account_of_subject(tx, oidc.settings().issuer, subject);
-  });
-  if (!account) return account.error();
-  if (!*account || (*account)->state != "active") {
+  }));
+  if (!account || account->state != "active") {
     note_unknown(call, subject);
     return Error{Errc::unauthorised, "no account here is linked with this identity"};
   }
   const std::string token = new_token();
-  const store::AuditScope acting({.who = (*account)->name,
-                                  .role = (*account)->role,
+  const store::AuditScope acting({.who = account->name,
+                                  .role = account->role,
                                   .peer = call.request.peer,
                                   .what = "oidcSignIn",
                                   .at_utc_us = call.backend.now_utc_us()});
-  auto made = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
-    auto linked = store::account_of_subject(tx, oidc.settings().issuer, subject);
-    if (!linked) return linked.error();
-    if (!*linked || (*linked)->id != (*account)->id || (*linked)->state != "active")
+  TRY(call.backend.store.write([&](store::Writing& tx) -> Result<void> {
+    auto linked = TRY(store::account_of_subject(tx, oidc.settings().issuer, subject));
+    if (!linked || linked->id != account->id || linked->state != "active")
       return Error{Errc::unauthorised, "the account was changed just now: try again"};
-    return store::add_session(tx, token_hash(token), (*account)->id, call.backend.now_utc_us());
-  });
-  if (!made) return made.error();
+    return store::add_session(tx, token_hash(token), account->id, call.backend.now_utc_us());
+  }));
   return token;
 }
 
@@ -129,19 +126,16 @@ Result<std::string> signed_in(const Call& call, const Oidc& oidc) {
     return Error{Errc::unauthorised, "the provider did not sign anybody in"};
   if (call.has("iss") && call.text("iss") != oidc.settings().issuer)  // RFC 9207
     return Error{Errc::unauthorised, "this is another provider's answer"};
-  const auto attempt = attempt_of(call);
-  if (!attempt) return attempt.error();
+  const auto attempt = TRY(attempt_of(call));
   const auto identity =
-      oidc.redeemed(call.text("code"), *attempt, call.backend.now_utc_us() / 1'000'000);
-  if (!identity) return identity.error();
-  return session_for(call, oidc, identity->subject);
+      TRY(oidc.redeemed(call.text("code"), attempt, call.backend.now_utc_us() / 1'000'000));
+  return session_for(call, oidc, identity.subject);
 }
 
 /// The browser is sent to the pages in any case: they say what happened.
 Result<http::Response> come_back(const Call& call) {
-  const auto oidc = provider(call);
-  if (!oidc) return oidc.error();
-  const auto token = signed_in(call, **oidc);
+  const auto oidc = TRY(provider(call));
+  const auto token = signed_in(call, *oidc);
   if (!token && call.backend.log)
     call.backend.log({{"what", "oidc"}, {"refused", token.error().what}});
   const bool unknown = !token && token.error().what.starts_with("no account");
@@ -156,31 +150,24 @@ Result<http::Response> come_back(const Call& call) {
 }
 
 Result<http::Response> leave(const Call& call) {
-  const auto oidc = provider(call);
-  if (!oidc) return oidc.error();
-  const auto address = (*oidc)->sign_out_address();
+  const auto oidc = TRY(provider(call));
+  const auto address = oidc->sign_out_address();
   if (!address) return failed(call, address.error());
   return sent_to(address->empty() ? "/" : *address);
 }
 
 Result<http::Response> link(const Call& call) {
-  const auto oidc = provider(call);
-  if (!oidc) return oidc.error();
-  auto json = core::parse_json(call.request.body, "body");
-  if (!json) return json.error();
-  core::Fields fields(*json, "body");
+  const auto oidc = TRY(provider(call));
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  core::Fields fields(json, "body");
   const std::string subject = fields.text_or("subject", "", 255);
-  if (auto fine = fields.done(); !fine) return fine.error();
-  auto linked = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
-    auto account = account_of_call(tx, call);
-    if (!account) return account.error();
-    if (auto done = store::link_subject(tx, {(*oidc)->settings().issuer, subject, account->id,
-                                             call.backend.now_utc_us(), call.caller.name});
-        !done)
-      return done;
-    return store::remove_sessions_of(tx, account->id, "");
-  });
-  if (!linked) return linked.error();
+  TRY(fields.done());
+  TRY(call.backend.store.write([&](store::Writing& tx) -> Result<void> {
+    auto account = TRY(account_of_call(tx, call));
+    TRY(store::link_subject(tx, {oidc->settings().issuer, subject, account.id,
+                                 call.backend.now_utc_us(), call.caller.name}));
+    return store::remove_sessions_of(tx, account.id, "");
+  }));
   close_conversations(call.backend, call.text("id"));
   return http::Response{.status = 204, .headers = {}, .body = std::string()};
 }

@@ -2,6 +2,7 @@
 /// neither: the password is asked for again, and a one-time code where the account has them.
 #include <functional>
 
+#include "core/try.hpp"
 #include "server/api/backend.hpp"
 #include "server/api/people/authentication.hpp"
 #include "server/api/people/people_json.hpp"
@@ -22,10 +23,9 @@ constexpr const char* kCodesAreOn = "one-time codes are asked for already: end t
 constexpr std::size_t kTotpKey_bytes = 20;  // RFC 4226 section 4, R6: as long as SHA-1's output
 
 Result<store::Account> own_account(store::Reading& tx, const Call& call) {
-  auto account = store::account_of(tx, call.caller.id);
-  if (!account) return account.error();
-  core::require(account->has_value(), "who is signed in has an account");
-  return std::move(**account);
+  auto account = TRY(store::account_of(tx, call.caller.id));
+  core::require(account.has_value(), "who is signed in has an account");
+  return std::move(*account);
 }
 
 http::Response done() { return {.status = 204, .headers = {}, .body = std::string()}; }
@@ -44,21 +44,19 @@ using Change = std::function<Result<void>(store::Writing&, store::Account&)>;
 
 /// The own account, while the session that asks still lasts: a reset by an administrator ends it.
 Result<store::Account> account_of_session(store::Writing& tx, const Call& call) {
-  auto session = store::session_of(tx, call.caller.session_hash);
-  if (!session) return session.error();
-  if (!*session) return Error{Errc::unauthorised, "sign in first: the session is over"};
-  return std::move((*session)->account);
+  auto session = TRY(store::session_of(tx, call.caller.session_hash));
+  if (!session) return Error{Errc::unauthorised, "sign in first: the session is over"};
+  return std::move(session->account);
 }
 
 /// Changes the own account in one transaction and ends its other sessions.
 Result<void> changed(const Call& call, const Change& change) {
   auto done = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
-    auto account = account_of_session(tx, call);
-    if (!account) return account.error();
-    if (auto made = change(tx, *account); !made) return made;
-    if (auto set = store::set_account(tx, *account); !set) return set;
-    if (auto cleared = store::clear_failures(tx, attempt_of(call)); !cleared) return cleared;
-    return store::remove_sessions_of(tx, account->id, call.caller.session_hash);
+    auto account = TRY(account_of_session(tx, call));
+    TRY(change(tx, account));
+    TRY(store::set_account(tx, account));
+    TRY(store::clear_failures(tx, attempt_of(call)));
+    return store::remove_sessions_of(tx, account.id, call.caller.session_hash);
   });
   if (done) close_conversations(call.backend, call.caller.id);
   return done;
@@ -75,8 +73,7 @@ Result<void> take_code(const Call& call, store::Account& account, const std::str
 /// Runs `change`, which may find a one-time code wrong: that is noted for the throttle.
 Result<http::Response> changed_by_code(const Call& call, const bool& wrong, const Change& change) {
   auto made = changed(call, change);
-  if (wrong)
-    if (auto noted = note_failure(call.backend, attempt_of(call)); !noted) return noted.error();
+  if (wrong) TRY(note_failure(call.backend, attempt_of(call)));
   if (!made) return made.error();
   return done();
 }
@@ -85,13 +82,13 @@ Result<http::Response> changed_by_code(const Call& call, const bool& wrong, cons
 Result<std::optional<http::Response>> refusal_of(const Call& call, const Proof& proof) {
   auto early = too_early(call.backend, attempt_of(call));
   if (!early || *early) return early;
-  auto account = call.backend.store.read([&](store::Reading& tx) { return own_account(tx, call); });
-  if (!account) return account.error();
-  if (!password_matches(account->password_hash, proof.password)) {
-    if (auto noted = note_failure(call.backend, attempt_of(call)); !noted) return noted.error();
+  auto account =
+      TRY(call.backend.store.read([&](store::Reading& tx) { return own_account(tx, call); }));
+  if (!password_matches(account.password_hash, proof.password)) {
+    TRY(note_failure(call.backend, attempt_of(call)));
     return Error{Errc::forbidden, std::string("body: /") + proof.field + ": is not the password"};
   }
-  if (!account->totp_confirmed || !proof.code.empty()) return std::optional<http::Response>();
+  if (!account.totp_confirmed || !proof.code.empty()) return std::optional<http::Response>();
   return std::optional(
       http::error_response(403, "code_needed", "body: /code: a one-time code is asked for"));
 }
@@ -101,82 +98,71 @@ Result<http::Response> changed_by_owner(const Call& call, const Proof& proof,
                                         const Change& change) {
   bool wrong = false;
   return changed_by_code(call, wrong, [&](store::Writing& tx, store::Account& own) -> Result<void> {
-    if (own.totp_confirmed)
-      if (auto used = take_code(call, own, proof.code, wrong); !used) return used;
+    if (own.totp_confirmed) TRY(take_code(call, own, proof.code, wrong));
     return change(tx, own);
   });
 }
 
 Result<http::Response> change_password(const Call& call) {
-  auto json = core::parse_json(call.request.body, "body");
-  if (!json) return json.error();
-  core::Fields fields(*json, "body");
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  core::Fields fields(json, "body");
   const Proof proof{"old", fields.text("old", kMaxPassword), fields.text_or("code", "", 16)};
   const std::string after = password_field(fields, "new", true);
   if (proof.password == after) fields.wrong("new", "another password than before is expected");
-  if (auto fine = fields.done(); !fine) return fine.error();
-  auto refusal = refusal_of(call, proof);
-  if (!refusal) return refusal.error();
-  if (*refusal) return std::move(**refusal);
-  auto hash = password_hash(after);
-  if (!hash) return hash.error();
+  TRY(fields.done());
+  auto refusal = TRY(refusal_of(call, proof));
+  if (refusal) return std::move(*refusal);
+  auto hash = TRY(password_hash(after));
   return changed_by_owner(call, proof, [&](store::Writing&, store::Account& own) -> Result<void> {
-    own.password_hash = *hash;
+    own.password_hash = hash;
     own.must_change = false;
     return {};
   });
 }
 
 Result<http::Response> begin_codes(const Call& call) {
-  auto json = core::parse_json(call.request.body, "body");
-  if (!json) return json.error();
-  core::Fields fields(*json, "body");
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  core::Fields fields(json, "body");
   const Proof proof{"password", fields.text("password", kMaxPassword), ""};
-  if (auto fine = fields.done(); !fine) return fine.error();
-  auto account = call.backend.store.read([&](store::Reading& tx) { return own_account(tx, call); });
-  if (!account) return account.error();
-  if (account->totp_confirmed) return Error{Errc::conflict, kCodesAreOn};
-  auto refusal = refusal_of(call, proof);
-  if (!refusal) return refusal.error();
-  if (*refusal) return std::move(**refusal);
+  TRY(fields.done());
+  auto account =
+      TRY(call.backend.store.read([&](store::Reading& tx) { return own_account(tx, call); }));
+  if (account.totp_confirmed) return Error{Errc::conflict, kCodesAreOn};
+  auto refusal = TRY(refusal_of(call, proof));
+  if (refusal) return std::move(*refusal);
   const core::Bytes secret = core::random_bytes(kTotpKey_bytes);
-  auto begun = changed(call, [&](store::Writing&, store::Account& own) -> Result<void> {
+  TRY(changed(call, [&](store::Writing&, store::Account& own) -> Result<void> {
     if (own.totp_confirmed) return Error{Errc::conflict, kCodesAreOn};
     own.totp_secret = call.backend.secrets.sealed(core::text_of(secret));
     return {};
-  });
-  if (!begun) return begun.error();
+  }));
   return json_response({{"secret", base32(secret)}, {"uri", totp_uri(secret, call.caller.name)}});
 }
 
 Result<http::Response> confirm_codes(const Call& call) {
-  auto json = core::parse_json(call.request.body, "body");
-  if (!json) return json.error();
-  core::Fields fields(*json, "body");
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  core::Fields fields(json, "body");
   const std::string code = fields.text("code", 16);
-  if (auto fine = fields.done(); !fine) return fine.error();
-  auto early = too_early(call.backend, attempt_of(call));
-  if (!early) return early.error();
-  if (*early) return std::move(**early);
+  TRY(fields.done());
+  auto early = TRY(too_early(call.backend, attempt_of(call)));
+  if (early) return std::move(*early);
   bool wrong = false;
   return changed_by_code(call, wrong, [&](store::Writing&, store::Account& own) -> Result<void> {
     if (own.totp_secret.empty() || own.totp_confirmed)
       return Error{Errc::conflict, "ask for a secret first"};
-    if (auto used = take_code(call, own, code, wrong); !used) return used;
+    TRY(take_code(call, own, code, wrong));
     own.totp_confirmed = true;
     return {};
   });
 }
 
 Result<http::Response> end_codes(const Call& call) {
-  auto json = core::parse_json(call.request.body, "body");
-  if (!json) return json.error();
-  core::Fields fields(*json, "body");
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  core::Fields fields(json, "body");
   const Proof proof{"password", fields.text("password", kMaxPassword), fields.text("code", 16)};
-  if (auto fine = fields.done(); !fine) return fine.error();
-  auto refusal = refusal_of(call, proof);
-  if (!refusal) return refusal.error();
-  if (*refusal) return std::move(**refusal);
+  TRY(fields.done());
+  auto refusal = TRY(refusal_of(call, proof));
+  if (refusal) return std::move(*refusal);
   return changed_by_owner(call, proof, [](store::Writing&, store::Account& own) -> Result<void> {
     if (!own.totp_confirmed) return Error{Errc::conflict, "no codes are asked for"};
     own.totp_confirmed = false;

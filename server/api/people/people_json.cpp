@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/bytes.hpp"
+#include "core/try.hpp"
 #include "server/api/people/authentication.hpp"
 #include "server/api/schema.hpp"
 
@@ -74,11 +75,10 @@ std::string badge_field(core::Fields& fields) {
 }
 
 core::Result<store::Account> account_of_call(store::Reading& tx, const Call& call) {
-  auto account = store::account_of(tx, call.text("id"));
-  if (!account) return account.error();
-  if (!*account)
+  auto account = TRY(store::account_of(tx, call.text("id")));
+  if (!account)
     return core::Error{core::Errc::not_found, "no account " + call.text("id").substr(0, 32)};
-  return std::move(**account);
+  return std::move(*account);
 }
 
 std::string made_password() { return letters(16); }

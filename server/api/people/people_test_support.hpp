@@ -2,6 +2,7 @@
 /// each trainee in an assignment of its cohort.
 #pragma once
 
+#include "core/try.hpp"
 #include "db/store/studies/assignments.hpp"
 #include "db/store/trials/trials.hpp"
 #include "db/store/trials/uploads.hpp"
@@ -27,9 +28,9 @@ class PeopleTest : public ApiTest {
         store::Account account{
             .id = name, .name = name, .role = role, .password_hash = quick_hash()};
         account.pseudonym = "P-" + name;
-        if (auto done = store::add_account(tx, account, 0); !done) return done;
+        TRY(store::add_account(tx, account, 0));
       }
-      if (auto done = furnish_cohort(tx, "c-tom", "fay", "tom"); !done) return done;
+      TRY(furnish_cohort(tx, "c-tom", "fay", "tom"));
       return furnish_cohort(tx, "c-tia", "flo", "tia");
     });
     EXPECT_TRUE(furnished) << furnished.error().what;
@@ -38,25 +39,22 @@ class PeopleTest : public ApiTest {
   /// A cohort, its assignment "a-NAME" of one case, and the trial that its trainee did.
   static core::Result<void> furnish_cohort(store::Writing& tx, const std::string& cohort,
                                            const std::string& leader, const std::string& trainee) {
-    if (auto done = store::add_cohort(tx, {cohort, cohort, 0, leader}); !done) return done;
-    if (auto done = store::put_into_cohort(tx, cohort, leader, "faculty", 0); !done) return done;
-    if (auto done = store::put_into_cohort(tx, cohort, trainee, "trainee", 0); !done) return done;
+    TRY(store::add_cohort(tx, {cohort, cohort, 0, leader}));
+    TRY(store::put_into_cohort(tx, cohort, leader, "faculty", 0));
+    TRY(store::put_into_cohort(tx, cohort, trainee, "trainee", 0));
     const store::AuditStamp stamp{leader, 1};
     const std::string study = "a-" + trainee, who = "P-" + trainee;
     auto assigned =
-        store::add_assignment(tx,
-                              {.study = {.id = study, .title = "", .ordering = "random"},
-                               .cohort_id = cohort,
-                               .release = kRelease,
-                               .made_by_id = leader},
-                              {kCase}, stamp);
-    if (!assigned) return assigned.error();
-    if (auto done = store::add_participant(tx, *assigned, {.name = who}, {kCase}, stamp); !done)
-      return done;
-    if (auto done = store::add_assigned_person(tx, *assigned, trainee, who); !done) return done;
-    auto slots = store::study_slots(tx, *assigned);
-    if (!slots) return slots.error();
-    return furnish_trial(tx, trial_of(trainee), slots->front().id);
+        TRY(store::add_assignment(tx,
+                                  {.study = {.id = study, .title = "", .ordering = "random"},
+                                   .cohort_id = cohort,
+                                   .release = kRelease,
+                                   .made_by_id = leader},
+                                  {kCase}, stamp));
+    TRY(store::add_participant(tx, assigned, {.name = who}, {kCase}, stamp));
+    TRY(store::add_assigned_person(tx, assigned, trainee, who));
+    auto slots = TRY(store::study_slots(tx, assigned));
+    return furnish_trial(tx, trial_of(trainee), slots.front().id);
   }
 
   static core::Result<void> furnish_trial(store::Writing& tx, const std::string& id,
@@ -70,11 +68,10 @@ class PeopleTest : public ApiTest {
     trial.sha256 = sha;
     trial.complete = true;
     trial.header = trial.events = "{}";
-    if (auto done = store::add_upload(tx, {id, "s1", kCase, 1, sha, "receiving"}, 1); !done)
-      return done;
-    if (auto done = store::announce_for_slot(tx, id, slot, 1); !done) return done;
-    if (auto done = store::add_object(tx, sha, 1, 1); !done) return done;
-    if (auto done = store::add_trial(tx, trial, 1); !done) return done;
+    TRY(store::add_upload(tx, {id, "s1", kCase, 1, sha, "receiving"}, 1));
+    TRY(store::announce_for_slot(tx, id, slot, 1));
+    TRY(store::add_object(tx, sha, 1, 1));
+    TRY(store::add_trial(tx, trial, 1));
     return store::record_for_slot(tx, id, true, {"s1", 1}, tool);
   }
 

@@ -1,5 +1,6 @@
 /// Signing in and out.
 #include "core/require.hpp"
+#include "core/try.hpp"
 #include "server/api/backend.hpp"
 #include "server/api/people/authentication.hpp"
 #include "server/api/people/throttle.hpp"
@@ -11,12 +12,11 @@ namespace api {
 namespace {
 
 core::Result<Credentials> credentials(const http::Request& request) {
-  auto json = core::parse_json(request.body, "body");
-  if (!json) return json.error();
-  core::Fields fields(*json, "body");
+  auto json = TRY(core::parse_json(request.body, "body"));
+  core::Fields fields(json, "body");
   Credentials out{fields.text("name", kMaxName), fields.text("password", kMaxPassword),
                   fields.text_or("code", "", 16)};
-  if (auto fine = fields.done(); !fine) return fine.error();
+  TRY(fields.done());
   return out;
 }
 
@@ -32,14 +32,12 @@ std::string cookie(const Backend& backend, const std::string& token, std::int64_
 }
 
 core::Result<http::Response> sign_in_route(const Call& call) {
-  auto given = credentials(call.request);
-  if (!given) return given.error();
-  const store::Attempt attempt{store::Secret::account_password, given->name,
+  auto given = TRY(credentials(call.request));
+  const store::Attempt attempt{store::Secret::account_password, given.name,
                                network_of(call.request.peer)};
-  auto early = too_early(call.backend, attempt);
-  if (!early) return early.error();
-  if (*early) return std::move(**early);
-  auto in = sign_in(call.backend, *given, attempt);
+  auto early = TRY(too_early(call.backend, attempt));
+  if (early) return std::move(*early);
+  auto in = sign_in(call.backend, given, attempt);
   if (!in && needs_code(in.error()))
     return http::error_response(401, "code_needed", in.error().what);
   if (!in) return in.error();
@@ -56,9 +54,8 @@ core::Result<http::Response> who_am_i(const Call& call) {
 }
 
 core::Result<http::Response> sign_out_route(const Call& call) {
-  auto done = call.backend.store.write(
-      [&](store::Writing& tx) { return store::remove_session(tx, call.caller.session_hash); });
-  if (!done) return done.error();
+  TRY(call.backend.store.write(
+      [&](store::Writing& tx) { return store::remove_session(tx, call.caller.session_hash); }));
   http::Response response{.status = 204, .headers = {}, .body = std::string()};
   return response.with("Set-Cookie", cookie(call.backend, "", 0)), response;
 }

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstring>
 
+#include "core/try.hpp"
 #include "server/api/backend.hpp"
 
 namespace tractus {
@@ -74,9 +75,8 @@ Result<std::int64_t> wait_for(store::Reading& tx, const Attempt& attempt, Total 
                               std::int64_t now_utc_us) {
   const auto budget = budgets_of(attempt.secret).of(total);
   if (!budget) return std::int64_t{0};
-  auto failures = store::failures_of(tx, attempt, total);
-  if (!failures) return failures.error();
-  return wait_us(*failures, *budget, now_utc_us);
+  auto failures = TRY(store::failures_of(tx, attempt, total));
+  return wait_us(failures, *budget, now_utc_us);
 }
 
 /// How long a name whose budget is spent keeps this origin waiting after its last failure, us.
@@ -84,23 +84,19 @@ Result<std::int64_t> slowed_wait(store::Reading& tx, const Attempt& attempt,
                                  std::int64_t now_utc_us) {
   auto spent = wait_for(tx, attempt, Total::name, now_utc_us);
   if (!spent || *spent == 0) return spent;
-  auto last = store::failures_of(tx, attempt, Total::pair);
-  if (!last) return last.error();
-  const std::int64_t next = last->at_utc_us + budgets_of(attempt.secret).pair.refill_us;
-  return last->at_utc_us == 0 ? 0 : std::max<std::int64_t>(0, next - now_utc_us);
+  auto last = TRY(store::failures_of(tx, attempt, Total::pair));
+  const std::int64_t next = last.at_utc_us + budgets_of(attempt.secret).pair.refill_us;
+  return last.at_utc_us == 0 ? 0 : std::max<std::int64_t>(0, next - now_utc_us);
 }
 
 Result<std::int64_t> wait_of(store::Reading& tx, const Attempt& attempt, std::int64_t now_utc_us) {
   auto pair = wait_for(tx, attempt, Total::pair, now_utc_us);
   if (!pair) return pair;
-  auto known = store::is_known_origin(tx, attempt);
-  if (!known) return known.error();
-  if (*known) return pair;
-  auto name = slowed_wait(tx, attempt, now_utc_us);
-  if (!name) return name;
-  auto origin = wait_for(tx, attempt, Total::origin, now_utc_us);
-  if (!origin) return origin;
-  return std::max({*pair, *name, *origin});
+  auto known = TRY(store::is_known_origin(tx, attempt));
+  if (known) return pair;
+  auto name = TRY(slowed_wait(tx, attempt, now_utc_us));
+  auto origin = TRY(wait_for(tx, attempt, Total::origin, now_utc_us));
+  return std::max({*pair, name, origin});
 }
 
 std::optional<http::Response> answer_of(std::int64_t wait_us) {
@@ -115,9 +111,8 @@ Result<void> add_failure(store::Writing& tx, const Attempt& attempt, Total total
                          std::int64_t now_utc_us) {
   const auto budget = budgets_of(attempt.secret).of(total);
   if (!budget) return {};
-  auto before = store::failures_of(tx, attempt, total);
-  if (!before) return before.error();
-  const double count = count_at(*before, *budget, now_utc_us) + 1.0;
+  auto before = TRY(store::failures_of(tx, attempt, total));
+  const double count = count_at(before, *budget, now_utc_us) + 1.0;
   return store::set_failures(tx, attempt, total, {std::min(count, budget->failures), now_utc_us});
 }
 
@@ -137,43 +132,39 @@ std::string network_of(const std::string& address) {
 }
 
 Result<std::optional<http::Response>> too_early(Backend& backend, const Attempt& attempt) {
-  auto wait = backend.store.read(
-      [&](store::Reading& tx) { return wait_of(tx, attempt, backend.now_utc_us()); });
-  if (!wait) return wait.error();
-  return answer_of(*wait);
+  auto wait = TRY(backend.store.read(
+      [&](store::Reading& tx) { return wait_of(tx, attempt, backend.now_utc_us()); }));
+  return answer_of(wait);
 }
 
 Result<std::optional<http::Response>> too_early_from(Backend& backend, Secret secret,
                                                      const std::string& origin) {
-  auto wait = backend.store.read([&](store::Reading& tx) {
+  auto wait = TRY(backend.store.read([&](store::Reading& tx) {
     return wait_for(tx, {secret, "", origin}, Total::origin, backend.now_utc_us());
-  });
-  if (!wait) return wait.error();
-  return answer_of(*wait);
+  }));
+  return answer_of(wait);
 }
 
 Result<void> note_failure(Backend& backend, const Attempt& attempt) {
   const std::int64_t now = backend.now_utc_us();
   return backend.store.write([&](store::Writing& tx) -> Result<void> {
-    if (auto done = store::remove_old_failures(tx, now - kForgotten_us); !done) return done;
-    auto known = store::is_known_origin(tx, attempt);
-    if (!known) return known.error();
+    TRY(store::remove_old_failures(tx, now - kForgotten_us));
+    auto known = TRY(store::is_known_origin(tx, attempt));
     for (const Total total : kTotals)
-      if (total == Total::pair || !*known)
-        if (auto done = add_failure(tx, attempt, total, now); !done) return done;
+      if (total == Total::pair || !known) TRY(add_failure(tx, attempt, total, now));
     return {};
   });
 }
 
 Result<void> note_success(store::Writing& tx, const std::string& account_id, const Attempt& attempt,
                           std::int64_t now_utc_us) {
-  if (auto done = store::clear_failures(tx, attempt); !done) return done;
+  TRY(store::clear_failures(tx, attempt));
   return store::note_origin(tx, account_id, attempt, now_utc_us, now_utc_us - kOriginKept_us);
 }
 
 Result<void> start_afresh(store::Writing& tx, const std::string& account_id, Secret secret,
                           const std::string& name) {
-  if (auto done = store::clear_failures_of_name(tx, secret, name); !done) return done;
+  TRY(store::clear_failures_of_name(tx, secret, name));
   return store::forget_origins(tx, account_id, secret);
 }
 

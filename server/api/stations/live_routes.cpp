@@ -1,5 +1,6 @@
 /// Stations at work: the wall of those who look on, the line of each station, and what may be asked
 /// of one from afar: to stop, to give less force. Never more.
+#include "core/try.hpp"
 #include "server/api/stations/station_state.hpp"
 
 namespace tractus {
@@ -14,15 +15,13 @@ constexpr std::size_t kMaxReason = 300;
 using Conversing = Result<std::shared_ptr<http::WebSocketHandler>>;
 
 Conversing look_on(const Call& call, std::function<bool()> may_stay) {
-  auto hub = hub_of(call.backend);
-  if (!hub) return hub.error();
-  return (*hub)->viewer_talk(viewer_of(call.caller), std::move(may_stay));
+  auto hub = TRY(hub_of(call.backend));
+  return hub->viewer_talk(viewer_of(call.caller), std::move(may_stay));
 }
 
 Conversing station_line(const Call& call, std::function<bool()> may_stay) {
-  auto hub = hub_of(call.backend);
-  if (!hub) return hub.error();
-  return (*hub)->station_talk({call.caller.id, call.caller.name}, std::move(may_stay));
+  auto hub = TRY(hub_of(call.backend));
+  return hub->station_talk({call.caller.id, call.caller.name}, std::move(may_stay));
 }
 
 Result<http::Response> time_now(const Call& call) {
@@ -31,35 +30,31 @@ Result<http::Response> time_now(const Call& call) {
 
 /// Notes it in the audit trail first, then says it to the station.
 Result<http::Response> commanded(const Call& call, const wire::StationCommand& command) {
-  auto hub = hub_of(call.backend);
-  if (!hub) return hub.error();
+  auto hub = TRY(hub_of(call.backend));
   const std::string& id = call.text("id");
-  if (auto known = station_entry(call.backend, id); !known) return known.error();
-  auto noted = call.backend.store.write([](store::Writing&) { return Result<void>(); });
-  if (!noted) return noted.error();
-  if (auto said = (*hub)->command(id, command); !said) return said.error();
+  TRY(station_entry(call.backend, id));
+  TRY(call.backend.store.write([](store::Writing&) { return Result<void>(); }));
+  TRY(hub->command(id, command));
   return json_response({{"sent", true}}, 202);
 }
 
 Result<http::Response> stop(const Call& call) {
-  auto json = core::parse_json(call.request.body, "body");
-  if (!json) return json.error();
-  core::Fields fields(*json, "body");
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  core::Fields fields(json, "body");
   wire::StationCommand command;
   command.reason = fields.text("reason", kMaxReason);
   if (command.reason.find_first_not_of(" \t\r\n") == std::string::npos)
     fields.wrong("reason", "the person at the station reads it: a few words are expected");
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   return commanded(call, command);
 }
 
 Result<http::Response> limit(const Call& call) {
-  auto json = core::parse_json(call.request.body, "body");
-  if (!json) return json.error();
-  core::Fields fields(*json, "body");
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  core::Fields fields(json, "body");
   wire::StationCommand command{.kind = wire::StationCommand::Kind::limits, .reason = {}};
   command.force_N = fields.number("force_N", 0.0, 1000.0);
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   return commanded(call, command);
 }
 

@@ -9,9 +9,9 @@ namespace {
 using testing::PeopleTest;
 
 /// Keeps what was said last under each key.
-class Ear final : public http::WebSocketSender {
+class MessageLog final : public http::WebSocketSender {
  public:
-  void say(const std::string& key, std::shared_ptr<const std::string> text) override {
+  void send(const std::string& key, std::shared_ptr<const std::string> text) override {
     said[key] = core::Json::parse(*text, nullptr, false);
   }
   void end() override { ended = true; }
@@ -27,20 +27,20 @@ class LiveRoutes : public PeopleTest {
     return converse(backend_, routes(), request("GET", "/api/v1" + path, std::move(headers)));
   }
   /// Somebody at a page of ours looks on.
-  std::shared_ptr<Ear> watching(const std::string& account) {
+  std::shared_ptr<MessageLog> watching(const std::string& account) {
     auto headers = as(account);
     headers["origin"] = "https://Tractus.example";
     auto opened = open("/live", headers);
     auto* talk = std::get_if<std::shared_ptr<http::WebSocketHandler>>(&opened);
     EXPECT_NE(talk, nullptr) << account;
-    auto ear = std::make_shared<Ear>();
+    auto ear = std::make_shared<MessageLog>();
     if (talk) {
       (*talk)->begin(ear);
       talks_.push_back(*talk);
     }
     return ear;
   }
-  std::shared_ptr<http::WebSocketHandler> station_line(std::shared_ptr<Ear> ear) {
+  std::shared_ptr<http::WebSocketHandler> station_line(std::shared_ptr<MessageLog> ear) {
     auto opened = open("/live/station", station("token-1"));
     auto talk = std::get<std::shared_ptr<http::WebSocketHandler>>(opened);
     talk->begin(std::move(ear));
@@ -83,10 +83,10 @@ class LiveRoutes : public PeopleTest {
 };
 
 TEST_F(LiveRoutes, WhoIsAtAStationIsToldToThoseWhoMaySeeThem) {
-  const auto line = station_line(std::make_shared<Ear>());
-  std::map<std::string, std::shared_ptr<Ear>> ears;
+  const auto line = station_line(std::make_shared<MessageLog>());
+  std::map<std::string, std::shared_ptr<MessageLog>> ears;
   for (const char* name : {"ann", "dora", "fay", "flo", "ted"}) ears[name] = watching(name);
-  ASSERT_TRUE(line->hear(at_work(toms_slot())));
+  ASSERT_TRUE(line->on_message(at_work(toms_slot())));
   hub_.catch_up();
   for (const char* name : {"ann", "dora", "fay"})
     EXPECT_EQ(ears[name]->said["s1"]["station"]["trial"]["person"], "tom") << name;
@@ -106,18 +106,18 @@ TEST_F(LiveRoutes, AStationThatShowsAnothersSlotShowsNobody) {
   const std::string slot = toms_slot();
   auto opened = open("/live/station", station("token-2"));
   auto talk = std::get<std::shared_ptr<http::WebSocketHandler>>(opened);
-  talk->begin(std::make_shared<Ear>());
+  talk->begin(std::make_shared<MessageLog>());
   const auto ear = watching("ann");
-  ASSERT_TRUE(talk->hear(at_work(slot)));
+  ASSERT_TRUE(talk->on_message(at_work(slot)));
   hub_.catch_up();
   EXPECT_TRUE(ear->said["s2"]["station"]["trial"]["person"].is_null());
   talk->ended(http::CloseReason::disconnected);
 }
 
 TEST_F(LiveRoutes, ACaseThatIsNotAssignedIsShownByItsTitle) {
-  const auto line = station_line(std::make_shared<Ear>());
+  const auto line = station_line(std::make_shared<MessageLog>());
   const auto ear = watching("ann");
-  ASSERT_TRUE(line->hear(at_work(testing::kCase)));
+  ASSERT_TRUE(line->on_message(at_work(testing::kCase)));
   hub_.catch_up();
   EXPECT_EQ(ear->said["s1"]["station"]["trial"]["case_title"], "L3");
 }
@@ -156,7 +156,7 @@ TEST_F(LiveRoutes, EveryWebSocketIsRefusedToWhoIsNotNamed) {
 }
 
 TEST_F(LiveRoutes, ACommandGoesToTheStationsLineAndIntoTheTrail) {
-  const auto ear = std::make_shared<Ear>();
+  const auto ear = std::make_shared<MessageLog>();
   EXPECT_EQ(post("ted", "/stations/s1/limits", {{"force_N", 2.0}}).status, 409) << "it is away";
   const auto line = station_line(ear);
   EXPECT_EQ(post("fay", "/stations/s1/stop", {{"reason", "look"}}).status, 202);
@@ -181,9 +181,9 @@ TEST_F(LiveRoutes, WhoIsSignedOutMayNotStay) {
   headers["origin"] = "https://tractus.example";
   const auto opened = open("/live", headers);
   const auto talk = std::get<std::shared_ptr<http::WebSocketHandler>>(opened);
-  EXPECT_TRUE(talk->may_stay());
+  EXPECT_TRUE(talk->still_allowed());
   EXPECT_EQ(ask(request("DELETE", "/api/v1/session", headers)).status, 204);
-  EXPECT_FALSE(talk->may_stay());
+  EXPECT_FALSE(talk->still_allowed());
 }
 
 TEST_F(LiveRoutes, AnOpenWallIsNobodysPresence) {
@@ -193,10 +193,10 @@ TEST_F(LiveRoutes, AnOpenWallIsNobodysPresence) {
   const auto talk = std::get<std::shared_ptr<http::WebSocketHandler>>(opened);
   for (int minutes = 0; minutes < 115; minutes += 5) {
     now_ += 5ll * 60 * 1'000'000;
-    EXPECT_TRUE(talk->may_stay()) << minutes;
+    EXPECT_TRUE(talk->still_allowed()) << minutes;
   }
   now_ += 10ll * 60 * 1'000'000;
-  EXPECT_FALSE(talk->may_stay()) << "idle for two hours";
+  EXPECT_FALSE(talk->still_allowed()) << "idle for two hours";
 }
 
 TEST_F(LiveRoutes, RefusalsOfAStationAreNotedAndCannotFloodTheTrail) {

@@ -1,6 +1,7 @@
 /// A version of a model on its way to stations: who is to have it, and what a station asks.
 #include <set>
 
+#include "core/try.hpp"
 #include "db/store/people/accounts.hpp"
 #include "db/store/stations/sent_models.hpp"
 #include "server/api/backend.hpp"
@@ -20,10 +21,9 @@ constexpr std::uint64_t kMaxBody_bytes = 16384;
 constexpr std::size_t kMaxStations = 200;
 
 Result<store::ModelVersion> version_of(store::Reading& tx, const std::string& id) {
-  auto model = store::model_of(tx, id);
-  if (!model) return model.error();
-  if (!*model) return absent("model", id);
-  return std::move(**model);
+  auto model = TRY(store::model_of(tx, id));
+  if (!model) return absent("model", id);
+  return std::move(*model);
 }
 
 const char* state_of(const store::SentModel& one) {
@@ -47,13 +47,11 @@ Json sent_json(const std::vector<store::SentModel>& sent) {
 
 Result<http::Response> where_sent(const Call& call) {
   auto sent =
-      call.backend.store.read([&](store::Reading& tx) -> Result<std::vector<store::SentModel>> {
-        auto model = version_of(tx, call.text("id"));
-        if (!model) return model.error();
-        return store::sent_to(tx, model->id);
-      });
-  if (!sent) return sent.error();
-  return json_response(sent_json(*sent));
+      TRY(call.backend.store.read([&](store::Reading& tx) -> Result<std::vector<store::SentModel>> {
+        auto model = TRY(version_of(tx, call.text("id")));
+        return store::sent_to(tx, model.id);
+      }));
+  return json_response(sent_json(sent));
 }
 
 /// The stations that a body names; nothing: all of them.
@@ -66,7 +64,7 @@ Result<std::optional<std::set<std::string>>> stations_asked(const Json& json) {
                     named->size() <= kMaxStations &&
                     std::ranges::all_of(*named, [](const Json& one) { return one.is_string(); });
   if (all == list) fields.wrong("stations", "ids of stations, or \"all\": true, are expected");
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   if (all) return std::optional<std::set<std::string>>();
   std::set<std::string> out;
   for (const Json& one : *named) out.insert(one.get<std::string>().substr(0, 64));
@@ -74,42 +72,35 @@ Result<std::optional<std::set<std::string>>> stations_asked(const Json& json) {
 }
 
 Result<std::set<std::string>> every_station(store::Reading& tx) {
-  auto stations = store::all_stations(tx);
-  if (!stations) return stations.error();
+  auto stations = TRY(store::all_stations(tx));
   std::set<std::string> out;
-  for (const auto& one : *stations)
+  for (const auto& one : stations)
     if (!one.revoked_utc_us) out.insert(one.station.id);
   return out;
 }
 
 Result<http::Response> send(const Call& call) {
-  auto json = core::parse_json(call.request.body, "body");
-  if (!json) return json.error();
-  auto asked = stations_asked(*json);
-  if (!asked) return asked.error();
-  auto sent =
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  auto asked = TRY(stations_asked(json));
+  auto sent = TRY(
       call.backend.store.write([&](store::Writing& tx) -> Result<std::vector<store::SentModel>> {
-        auto model = version_of(tx, call.text("id"));
-        if (!model) return model.error();
-        auto ids = *asked ? Result<std::set<std::string>>(**asked) : every_station(tx);
-        if (!ids) return ids.error();
-        for (const std::string& id : *ids)
+        auto model = TRY(version_of(tx, call.text("id")));
+        auto ids = TRY(asked ? Result<std::set<std::string>>(*asked) : every_station(tx));
+        for (const std::string& id : ids)
           if (auto done =
-                  store::send_model(tx, model->id, id, call.caller.name, call.backend.now_utc_us());
+                  store::send_model(tx, model.id, id, call.caller.name, call.backend.now_utc_us());
               !done)
             return done.error();
-        return store::sent_to(tx, model->id);
-      });
-  if (!sent) return sent.error();
-  return json_response(sent_json(*sent));
+        return store::sent_to(tx, model.id);
+      }));
+  return json_response(sent_json(sent));
 }
 
 Result<http::Response> for_station(const Call& call) {
-  auto models = call.backend.store.read(
-      [&](store::Reading& tx) { return store::models_for(tx, call.caller.id); });
-  if (!models) return models.error();
+  auto models = TRY(call.backend.store.read(
+      [&](store::Reading& tx) { return store::models_for(tx, call.caller.id); }));
   Json list = Json::array();
-  for (const auto& model : *models)
+  for (const auto& model : models)
     list.push_back(
         {{"id", model.id}, {"name", model.name}, {"rig", model.rig}, {"sha256", model.sha256}});
   return json_response({{"models", list}});
@@ -118,26 +109,23 @@ Result<http::Response> for_station(const Call& call) {
 /// Of those that were sent to the caller; another is as if it were not there.
 Result<store::ModelVersion> own_model(const Call& call) {
   return call.backend.store.read([&](store::Reading& tx) -> Result<store::ModelVersion> {
-    auto models = store::models_for(tx, call.caller.id);
-    if (!models) return models.error();
-    for (auto& model : *models)
+    auto models = TRY(store::models_for(tx, call.caller.id));
+    for (auto& model : models)
       if (model.id == call.text("id")) return std::move(model);
     return absent("model", call.text("id"));
   });
 }
 
 Result<http::Response> file_for_station(const Call& call) {
-  auto model = own_model(call);
-  if (!model) return model.error();
-  return http::file_response(call.backend.objects.path_of(model->sha256), call.request,
+  auto model = TRY(own_model(call));
+  return http::file_response(call.backend.objects.path_of(model.sha256), call.request,
                              "application/json");
 }
 
 Result<http::Response> is_there(const Call& call) {
-  auto noted = call.backend.store.write([&](store::Writing& tx) {
+  TRY(call.backend.store.write([&](store::Writing& tx) {
     return store::note_model_there(tx, call.text("id"), call.caller.id, call.backend.now_utc_us());
-  });
-  if (!noted) return noted.error();
+  }));
   return http::Response{.status = 204, .headers = {}, .body = std::string()};
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/try.hpp"
 #include "server/api/people/people_test_support.hpp"
 
 namespace tractus {
@@ -15,14 +16,14 @@ class SentModels : public PeopleTest {
     const auto sha = objects_.put(core::bytes_of("{\"a\":1}"));
     EXPECT_TRUE(sha);
     const auto made = store_.write([&](store::Writing& tx) -> core::Result<void> {
-      if (auto noted = store::add_object(tx, *sha, 7, 0); !noted) return noted;
+      TRY(store::add_object(tx, *sha, 7, 0));
       for (const char* id : {"m-one", "m-two"}) {
         store::ModelVersion model;
         model.id = id;
         model.name = id;
         model.rig = "probing";
         model.sha256 = *sha;
-        if (auto done = store::add_model(tx, model); !done) return done;
+        TRY(store::add_model(tx, model));
       }
       return {};
     });

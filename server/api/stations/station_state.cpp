@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/try.hpp"
+
 namespace tractus::api {
 
 live::Viewer viewer_of(const Caller& caller) {
@@ -27,11 +29,10 @@ core::Json station_json(Backend& backend, const store::StationEntry& entry, cons
 }
 
 core::Result<store::StationEntry> station_entry(Backend& backend, const std::string& id) {
-  auto all = backend.store.read([](store::Reading& tx) { return store::all_stations(tx); });
-  if (!all) return all.error();
-  const auto found = std::ranges::find(
-      *all, id, [](const store::StationEntry& entry) { return entry.station.id; });
-  if (found == all->end())
+  auto all = TRY(backend.store.read([](store::Reading& tx) { return store::all_stations(tx); }));
+  const auto found =
+      std::ranges::find(all, id, [](const store::StationEntry& entry) { return entry.station.id; });
+  if (found == all.end())
     return core::Error{core::Errc::not_found, "there is no station by this id"};
   return *found;
 }

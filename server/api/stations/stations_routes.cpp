@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/bytes.hpp"
+#include "core/try.hpp"
 #include "db/store/operations/audit.hpp"
 #include "db/store/stations/fleet.hpp"
 #include "server/api/backend.hpp"
@@ -28,80 +29,68 @@ constexpr const char* kSelfTest = "self_test";
 constexpr const char* kCalibration = "calibration";
 
 Result<http::Response> list_stations(const Call& call) {
-  auto found = call.backend.store.read([](store::Reading& tx) { return store::all_stations(tx); });
-  if (!found) return found.error();
+  auto found =
+      TRY(call.backend.store.read([](store::Reading& tx) { return store::all_stations(tx); }));
   core::Json list = core::Json::array();
-  for (const auto& entry : *found) list.push_back(station_json(call.backend, entry, call.caller));
+  for (const auto& entry : found) list.push_back(station_json(call.backend, entry, call.caller));
   return json_response({{"stations", list}});
 }
 
 /// The newest reports of a kind, as they came.
 Result<core::Json> notes(store::Reading& tx, const std::string& id, const char* kind) {
-  auto found = store::station_notes(tx, id, kind, kNotesShown);
-  if (!found) return found.error();
+  auto found = TRY(store::station_notes(tx, id, kind, kNotesShown));
   core::Json out = core::Json::array();
-  for (const store::StationNote& note : *found) {
-    auto json = core::parse_json(note.body, "station_reports");
-    if (!json) return json.error();
-    out.push_back(std::move(*json));
+  for (const store::StationNote& note : found) {
+    auto json = TRY(core::parse_json(note.body, "station_reports"));
+    out.push_back(std::move(json));
   }
   return out;
 }
 
 Result<http::Response> one_station(const Call& call) {
   const std::string& id = call.text("id");
-  auto entry = station_entry(call.backend, id);
-  if (!entry) return entry.error();
-  core::Json out = station_json(call.backend, *entry, call.caller);
+  auto entry = TRY(station_entry(call.backend, id));
+  core::Json out = station_json(call.backend, entry, call.caller);
   for (const auto& [field, kind] :
        {std::pair("self_tests", kSelfTest), std::pair("calibrations", kCalibration)}) {
-    auto list = call.backend.store.read(
-        [&, kind = kind](store::Reading& tx) { return notes(tx, id, kind); });
-    if (!list) return list.error();
-    out[field] = std::move(*list);
+    auto list = TRY(call.backend.store.read(
+        [&, kind = kind](store::Reading& tx) { return notes(tx, id, kind); }));
+    out[field] = std::move(list);
   }
   return json_response(out);
 }
 
 /// Repeating a report is harmless: a station that did not hear the answer sends it again.
 Result<http::Response> report(const Call& call) {
-  auto json = core::parse_json(call.request.body, "body");
-  if (!json) return json.error();
-  auto said = wire::StationReport::from_json(*json, "body");
-  if (!said) return said.error();
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  auto said = TRY(wire::StationReport::from_json(json, "body"));
   const std::int64_t now = call.backend.now_utc_us();
   const std::string& id = call.caller.id;
-  auto kept = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
-    if (said->self_test)
-      if (auto done = store::add_station_note(
-              tx, {id, kSelfTest, said->self_test->at_utc_us, said->self_test->to_json().dump()},
-              now);
-          !done)
-        return done;
-    if (!said->calibration) return {};
+  TRY(call.backend.store.write([&](store::Writing& tx) -> Result<void> {
+    if (said.self_test)
+      TRY(store::add_station_note(
+          tx, {id, kSelfTest, said.self_test->at_utc_us, said.self_test->to_json().dump()}, now));
+    if (!said.calibration) return {};
     return store::add_station_note(
-        tx, {id, kCalibration, said->calibration->at_utc_us, said->calibration->to_json().dump()},
+        tx, {id, kCalibration, said.calibration->at_utc_us, said.calibration->to_json().dump()},
         now);
-  });
-  if (!kept) return kept.error();
-  if (call.backend.live) call.backend.live->reported({id, call.caller.name}, *said);
+  }));
+  if (call.backend.live) call.backend.live->reported({id, call.caller.name}, said);
   return http::Response{.status = 204, .headers = {}, .body = std::string()};
 }
 
 Result<http::Response> make_code(const Call& call) {
-  auto json = core::parse_json(call.request.body, "body");
-  if (!json) return json.error();
-  core::Fields fields(*json, "body");
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  core::Fields fields(json, "body");
   const std::string name = fields.text("name", kMaxName);
   if (name.find_first_not_of(" \t\r\n") == std::string::npos)
     fields.wrong("name", "a name is expected");
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   const std::string code = made_password();
   const std::int64_t now = call.backend.now_utc_us();
-  auto added = call.backend.store.write([&](store::Writing& tx) {
+  TRY(call.backend.store.write([&](store::Writing& tx) {
     return store::add_enrolment_code(tx, token_hash(code), name, now, now + kCodeLife_us);
-  });
-  if (!added) return added.error();
+  }));
   return json_response({{"name", name}, {"code", code}, {"expires_utc_us", now + kCodeLife_us}},
                        201);
 }
@@ -109,27 +98,23 @@ Result<http::Response> make_code(const Call& call) {
 /// The station has made a key of its own; its SHA-256 comes here, the key itself is first sent with
 /// the station's next request, to a server that knows it.
 Result<http::Response> enrol(const Call& call) {
-  auto json = core::parse_json(call.request.body, "body");
-  if (!json) return json.error();
-  core::Fields fields(*json, "body");
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  core::Fields fields(json, "body");
   const std::string code = fields.text("code", 64), key = fields.text("token_sha256", 64);
   if (!core::is_sha256(key)) fields.wrong("token_sha256", "64 hexadecimal characters are expected");
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   const store::Attempt attempt{store::Secret::enrolment_code, "", network_of(call.request.peer)};
-  auto early = too_early(call.backend, attempt);
-  if (!early) return early.error();
-  if (*early) return std::move(**early);
+  auto early = TRY(too_early(call.backend, attempt));
+  if (early) return std::move(*early);
   const std::int64_t now = call.backend.now_utc_us();
   store::Station station{core::new_id(), ""};
   auto added = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
-    auto name = store::use_enrolment_code(tx, token_hash(code), now);
-    if (!name) return name.error();
-    station.name = *name;
-    store::AuditScope::is_by(*name, std::string(api::name(Role::station)));
+    auto name = TRY(store::use_enrolment_code(tx, token_hash(code), now));
+    station.name = name;
+    store::AuditScope::is_by(name, std::string(api::name(Role::station)));
     return store::add_station(tx, station, key, now);
   });
-  if (!added && added.error().code == Errc::unauthorised)
-    if (auto noted = note_failure(call.backend, attempt); !noted) return noted.error();
+  if (!added && added.error().code == Errc::unauthorised) TRY(note_failure(call.backend, attempt));
   if (!added) return added.error();
   return json_response({{"id", station.id},
                         {"name", station.name},
@@ -138,10 +123,9 @@ Result<http::Response> enrol(const Call& call) {
 }
 
 Result<http::Response> revoke(const Call& call) {
-  auto done = call.backend.store.write([&](store::Writing& tx) {
+  TRY(call.backend.store.write([&](store::Writing& tx) {
     return store::revoke_station(tx, call.text("id"), call.backend.now_utc_us());
-  });
-  if (!done) return done.error();
+  }));
   if (call.backend.live) call.backend.live->dismiss(call.text("id"));
   return http::Response{.status = 204, .headers = {}, .body = std::string()};
 }

@@ -1,5 +1,6 @@
 /// A trainee at a station: badge and PIN in, the next assigned trial out.
 #include "core/bytes.hpp"
+#include "core/try.hpp"
 #include "db/store/cases/cases.hpp"
 #include "db/store/operations/audit.hpp"
 #include "db/store/studies/assignments.hpp"
@@ -31,63 +32,55 @@ std::string ticket_hash(const Call& call, const std::string& ticket) {
 
 Result<store::Account> let_in(Backend& backend, const store::Attempt& attempt,
                               const std::string& pin) {
-  auto account = backend.store.read(
-      [&](store::Reading& tx) { return store::account_with_badge(tx, attempt.name); });
-  if (!account) return account.error();
-  const bool right = password_matches(*account ? (*account)->pin_hash : "", pin);
-  if (!*account) store::AuditScope::without_detail();
-  if (right && (*account)->state == "active" && (*account)->role == name(Role::trainee))
-    return std::move(**account);
-  if (auto noted = note_failure(backend, attempt); !noted) return noted.error();
+  auto account = TRY(backend.store.read(
+      [&](store::Reading& tx) { return store::account_with_badge(tx, attempt.name); }));
+  const bool right = password_matches(account ? account->pin_hash : "", pin);
+  if (!account) store::AuditScope::without_detail();
+  if (right && account->state == "active" && account->role == name(Role::trainee))
+    return std::move(*account);
+  TRY(note_failure(backend, attempt));
   return Error{Errc::unauthorised, "badge or PIN is wrong"};
 }
 
 Result<http::Response> sign_in_at_station(const Call& call) {
-  auto json = core::parse_json(call.request.body, "body");
-  if (!json) return json.error();
-  core::Fields fields(*json, "body");
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  core::Fields fields(json, "body");
   const std::string badge = fields.text("badge", kMaxBadge), pin = fields.text("pin", kMaxPin);
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   const store::Attempt attempt{store::Secret::badge_pin, badge, call.caller.id};
-  auto early = too_early(call.backend, attempt);
-  if (!early) return early.error();
-  if (*early) return std::move(**early);
-  auto account = let_in(call.backend, attempt, pin);
-  if (!account) return account.error();
+  auto early = TRY(too_early(call.backend, attempt));
+  if (early) return std::move(*early);
+  auto account = TRY(let_in(call.backend, attempt, pin));
   const std::string ticket = new_token();
   const std::int64_t now = call.backend.now_utc_us();
-  auto in = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
-    if (auto same = check_unchanged(tx, *account); !same) return same;
-    if (auto done = note_success(tx, account->id, attempt, now); !done) return done;
-    return store::add_session(tx, ticket_hash(call, ticket), account->id, now);
-  });
-  if (!in) return in.error();
-  return json_response({{"ticket", ticket}, {"name", account->name}});
+  TRY(call.backend.store.write([&](store::Writing& tx) -> Result<void> {
+    TRY(check_unchanged(tx, account));
+    TRY(note_success(tx, account.id, attempt, now));
+    return store::add_session(tx, ticket_hash(call, ticket), account.id, now);
+  }));
+  return json_response({{"ticket", ticket}, {"name", account.name}});
 }
 
-/// TrialFilter ticket the body holds, as long as it lasts.
+/// Whose ticket the body holds, as long as it lasts.
 Result<store::Account> holder(const Call& call, std::string& hash) {
-  auto json = core::parse_json(call.request.body, "body");
-  if (!json) return json.error();
-  core::Fields fields(*json, "body");
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  core::Fields fields(json, "body");
   hash = ticket_hash(call, fields.text("ticket", 64));
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   auto session =
-      call.backend.store.read([&](store::Reading& tx) { return store::session_of(tx, hash); });
-  if (!session) return session.error();
+      TRY(call.backend.store.read([&](store::Reading& tx) { return store::session_of(tx, hash); }));
   const std::int64_t now = call.backend.now_utc_us();
-  if (!*session || now - (*session)->seen_utc_us > kSessionIdle_us ||
-      now - (*session)->made_utc_us > kSessionAge_us || (*session)->account.state != "active")
+  if (!session || now - session->seen_utc_us > kSessionIdle_us ||
+      now - session->made_utc_us > kSessionAge_us || session->account.state != "active")
     return Error{Errc::forbidden, "sign in at this station first"};
-  return std::move((*session)->account);
+  return std::move(session->account);
 }
 
 Result<http::Response> sign_out_at_station(const Call& call) {
   std::string hash;
-  if (auto known = holder(call, hash); !known) return known.error();
-  auto out =
-      call.backend.store.write([&](store::Writing& tx) { return store::remove_session(tx, hash); });
-  if (!out) return out.error();
+  TRY(holder(call, hash));
+  TRY(call.backend.store.write(
+      [&](store::Writing& tx) { return store::remove_session(tx, hash); }));
   return http::Response{.status = 204, .headers = {}, .body = std::string()};
 }
 
@@ -102,13 +95,11 @@ struct Given {
 Result<wire::AssignedTrial> trial_of_slot(store::Reading& tx, const store::AssignmentId& id,
                                           const std::string& title, const store::Taken& taken) {
   const store::Slot& slot = taken.slots.front();
-  auto name = store::assigned_name(tx, id, slot.case_id);
-  if (!name) return name.error();
-  auto of = store::case_of(tx, slot.case_id);
-  if (!of) return of.error();
+  auto name = TRY(store::assigned_name(tx, id, slot.case_id));
+  auto of = TRY(store::case_of(tx, slot.case_id));
   wire::AssignedTrial trial{.slot = slot.id,
-                            .rig = (*of)->kind,
-                            .name = *name,
+                            .rig = of->kind,
+                            .name = name,
                             .assignment = title,
                             .number = taken.planned - taken.unfinished + 1,
                             .planned = taken.planned,
@@ -117,10 +108,9 @@ Result<wire::AssignedTrial> trial_of_slot(store::Reading& tx, const store::Assig
   if (trial.name.empty()) trial.name = "Trial " + std::to_string(trial.number);
   if (trial.rig == store::kPalpation) trial.case_id = slot.case_id;
   if (slot.planned) {
-    auto drilling = store::drilling_of(tx, slot.id);
-    if (!drilling) return drilling.error();
-    trial.drills = drilling->empty();
-    trial.drilled = std::move(*drilling);
+    auto drilling = TRY(store::drilling_of(tx, slot.id));
+    trial.drills = drilling.empty();
+    trial.drilled = std::move(drilling);
   }
   return trial;
 }
@@ -129,66 +119,53 @@ Result<wire::AssignedTrial> trial_of_slot(store::Reading& tx, const store::Assig
 Result<void> take_of(store::Writing& tx, const Call& call, const store::Assignment& assignment,
                      const store::Account& account, Given& given) {
   if (assignment.study.state == "paused") return {};
-  auto id = store::find_assignment(tx, assignment.study.id);
-  if (!id) return id.error();
-  auto participant = store::participant_for(tx, *id, account.id);
-  if (!participant) return participant.error();
-  auto person = store::participant_of(tx, *id, *participant);
-  if (!person) return person.error();
-  if (!*person || (*person)->state == "paused") return {};
-  auto taken = store::take_slots(tx, *id, **person, call.caller.id, 1,
-                                 {call.caller.name, call.backend.now_utc_us()});
-  if (!taken) return taken.error();
-  given.work.left += taken->unfinished;
-  if (taken->slots.empty()) return {};
-  auto trial = trial_of_slot(tx, *id, assignment.study.title, *taken);
-  if (!trial) return trial.error();
-  given.work.participant = *participant;
-  given.work.trial = std::move(*trial);
-  given.slot = taken->slots.front();
+  auto id = TRY(store::find_assignment(tx, assignment.study.id));
+  auto participant = TRY(store::participant_for(tx, id, account.id));
+  auto person = TRY(store::participant_of(tx, id, participant));
+  if (!person || person->state == "paused") return {};
+  auto taken = TRY(store::take_slots(tx, id, *person, call.caller.id, 1,
+                                     {call.caller.name, call.backend.now_utc_us()}));
+  given.work.left += taken.unfinished;
+  if (taken.slots.empty()) return {};
+  auto trial = TRY(trial_of_slot(tx, id, assignment.study.title, taken));
+  given.work.participant = participant;
+  given.work.trial = std::move(trial);
+  given.slot = taken.slots.front();
   return {};
 }
 
 Result<Given> take(store::Writing& tx, const Call& call, const store::Account& account) {
   Given given;
-  auto token = store::station_token_hash(tx, call.caller.id);
-  if (!token) return token.error();
-  given.token_hash = *token;
-  auto assignments = store::assignments_of(tx, {.led_by = "", .done_by = account.id});
-  if (!assignments) return assignments.error();
-  for (const store::Assignment& assignment : *assignments) {
+  auto token = TRY(store::station_token_hash(tx, call.caller.id));
+  given.token_hash = token;
+  auto assignments = TRY(store::assignments_of(tx, {.led_by = "", .done_by = account.id}));
+  for (const store::Assignment& assignment : assignments) {
     if (given.slot) {
       given.work.left += assignment.planned - assignment.done;
       continue;
     }
-    if (auto done = take_of(tx, call, assignment, account, given); !done) return done.error();
+    TRY(take_of(tx, call, assignment, account, given));
   }
   return given;
 }
 
 Result<http::Response> next_trial(const Call& call) {
   std::string hash;
-  auto account = holder(call, hash);
-  if (!account) return account.error();
-  if (auto room = check_room(call.backend, kTrialToCome_bytes); !room) return room.error();
-  store::AuditScope::is_by(account->name + " at " + call.caller.name, account->role);
-  auto given = call.backend.store.write([&](store::Writing& tx) -> Result<Given> {
-    if (auto seen = store::touch_session(tx, hash, call.backend.now_utc_us()); !seen)
-      return seen.error();
-    return take(tx, call, *account);
-  });
-  if (!given) return given.error();
-  if (given->slot && given->work.trial->rig == store::kProbing) {
+  auto account = TRY(holder(call, hash));
+  TRY(check_room(call.backend, kTrialToCome_bytes));
+  store::AuditScope::is_by(account.name + " at " + call.caller.name, account.role);
+  auto given = TRY(call.backend.store.write([&](store::Writing& tx) -> Result<Given> {
+    TRY(store::touch_session(tx, hash, call.backend.now_utc_us()));
+    return take(tx, call, account);
+  }));
+  if (given.slot && given.work.trial->rig == store::kProbing) {
     auto scenario =
-        jobs::scenario_of(call.backend.store, call.backend.objects, given->slot->case_id);
-    if (!scenario) return scenario.error();
-    auto law = scenario->expanded();
-    if (!law) return law.error();
-    auto sealed = study::sealed_law(*law, given->slot->id, study::StationKey(given->token_hash));
-    if (!sealed) return sealed.error();
-    given->work.trial->sealed = std::move(*sealed);
+        TRY(jobs::scenario_of(call.backend.store, call.backend.objects, given.slot->case_id));
+    auto law = TRY(scenario.expanded());
+    auto sealed = TRY(study::sealed_law(law, given.slot->id, study::StationKey(given.token_hash)));
+    given.work.trial->sealed = std::move(sealed);
   }
-  return json_response(given->work.to_json());
+  return json_response(given.work.to_json());
 }
 
 RouteInfo route(std::string tail, std::string id, std::string summary, std::string body,

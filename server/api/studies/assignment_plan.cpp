@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/bytes.hpp"
+#include "core/try.hpp"
 #include "db/store/cases/cases.hpp"
 #include "db/store/people/invitations.hpp"
 #include "server/api/backend.hpp"
@@ -36,12 +37,11 @@ Result<AssignedCase> case_from(const Json& json, const std::string& where) {
   const Json* scenario = fields.member("scenario", false);
   if (out.case_id.empty() == (scenario == nullptr))
     fields.wrong("case", "a case's id, or /scenario, is expected");
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   if (!scenario) return out;
-  auto read = scenario_from(*scenario, where + "/scenario");
-  if (!read) return read.error();
-  out.case_id = read->id();
-  out.scenario = std::move(*read);
+  auto read = TRY(scenario_from(*scenario, where + "/scenario"));
+  out.case_id = read.id();
+  out.scenario = std::move(read);
   return out;
 }
 
@@ -54,11 +54,10 @@ Result<std::vector<AssignedCase>> cases_from(const Json* json) {
   std::set<std::string> ids;
   for (const Json& one : *json) {
     const std::string where = fmt::format("/cases/{}", out.size());
-    auto read = case_from(one, where);
-    if (!read) return read.error();
-    if (!ids.insert(read->case_id).second)
+    auto read = TRY(case_from(one, where));
+    if (!ids.insert(read.case_id).second)
       return Error{Errc::bad_input, where + ": is there twice; repeats are for that"};
-    out.push_back(std::move(*read));
+    out.push_back(std::move(read));
   }
   return out;
 }
@@ -104,24 +103,20 @@ Result<std::vector<store::Account>> people_meant(store::Reading& tx, const Assig
   std::vector<store::Account> out;
   if (plan.assignment.cohort_id) {
     const std::string& cohort = *plan.assignment.cohort_id;
-    auto there = store::cohort_of(tx, cohort);
-    if (!there) return there.error();
-    if (!*there) return absent("/cohort", cohort);
-    auto people = store::people_of(tx, cohort);
-    if (!people) return people.error();
-    for (const auto& person : *people) {
+    auto there = TRY(store::cohort_of(tx, cohort));
+    if (!there) return absent("/cohort", cohort);
+    auto people = TRY(store::people_of(tx, cohort));
+    for (const auto& person : people) {
       if (person.part != "trainee") continue;
-      auto account = store::account_of(tx, person.account_id);
-      if (!account) return account.error();
-      out.push_back(std::move(**account));
+      auto account = TRY(store::account_of(tx, person.account_id));
+      out.push_back(std::move(*account));
     }
   }
   for (const std::string& name : plan.people) {
-    auto account = store::account_named(tx, name);
-    if (!account) return account.error();
-    if (!*account) return absent("/people", name);
-    if (std::ranges::find(out, (*account)->id, &store::Account::id) == out.end())
-      out.push_back(std::move(**account));
+    auto account = TRY(store::account_named(tx, name));
+    if (!account) return absent("/people", name);
+    if (std::ranges::find(out, account->id, &store::Account::id) == out.end())
+      out.push_back(std::move(*account));
   }
   return out;
 }
@@ -137,14 +132,11 @@ Result<std::vector<std::string>> note_cases(store::Writing& tx, const Assignment
       const store::CaseSummary summary{
           one.case_id, one.scenario->name, one.scenario->origin.who, stamp.at_utc_us,
           0,           store::kProbing};
-      if (auto done = store::add_case(tx, summary, {parts[part++]}, stamp.at_utc_us); !done)
-        return done.error();
+      TRY(store::add_case(tx, summary, {parts[part++]}, stamp.at_utc_us));
     } else {
-      auto known = store::case_of(tx, one.case_id);
-      if (!known) return known.error();
-      if (!*known) return absent("/cases", one.case_id);
-      if ((*known)->retired)
-        return Error{Errc::conflict, "/cases: " + (*known)->title + " is retired"};
+      auto known = TRY(store::case_of(tx, one.case_id));
+      if (!known) return absent("/cases", one.case_id);
+      if (known->retired) return Error{Errc::conflict, "/cases: " + known->title + " is retired"};
     }
     out.push_back(one.case_id);
   }
@@ -154,17 +146,14 @@ Result<std::vector<std::string>> note_cases(store::Writing& tx, const Assignment
 /// Scenarios, order and repeats of the study that is the protocol.
 Result<std::vector<std::string>> protocol_cases(store::Reading& tx, const std::string& protocol,
                                                 store::Assignment& into) {
-  auto id = store::find_study(tx, protocol);
-  if (!id) return id.error();
-  auto study = store::study_of(tx, *id);
-  if (!study) return study.error();
-  auto scenarios = store::study_scenarios(tx, *id);
-  if (!scenarios) return scenarios.error();
-  into.study.ordering = study->ordering;
-  into.study.repeats = study->repeats;
-  into.study.on_invalid = study->on_invalid;
+  auto id = TRY(store::find_study(tx, protocol));
+  auto study = TRY(store::study_of(tx, id));
+  auto scenarios = TRY(store::study_scenarios(tx, id));
+  into.study.ordering = study.ordering;
+  into.study.repeats = study.repeats;
+  into.study.on_invalid = study.on_invalid;
   std::vector<std::string> out;
-  for (const auto& scenario : *scenarios) out.push_back(scenario.case_id);
+  for (const auto& scenario : scenarios) out.push_back(scenario.case_id);
   return out;
 }
 
@@ -173,18 +162,13 @@ Result<void> make(store::Writing& tx, const Call& call, const AssignmentPlan& pl
   const store::AuditStamp stamp{call.caller.name, call.backend.now_utc_us()};
   store::Assignment assignment = plan.assignment;
   assignment.made_by_id = call.caller.id;
-  auto cases = plan.protocol.empty() ? note_cases(tx, plan, parts, stamp)
-                                     : protocol_cases(tx, plan.protocol, assignment);
-  if (!cases) return cases.error();
-  auto people = people_meant(tx, plan);
-  if (!people) return people.error();
-  auto id = store::add_assignment(tx, assignment, *cases, stamp);
-  if (!id) return id.error();
+  auto cases = TRY(plan.protocol.empty() ? note_cases(tx, plan, parts, stamp)
+                                         : protocol_cases(tx, plan.protocol, assignment));
+  auto people = TRY(people_meant(tx, plan));
+  auto id = TRY(store::add_assignment(tx, assignment, cases, stamp));
   for (const AssignedCase& one : plan.cases)
-    if (!one.name.empty())
-      if (auto done = store::set_assigned_name(tx, *id, one.case_id, one.name); !done) return done;
-  for (const store::Account& person : *people)
-    if (auto done = assign_to(tx, *id, person, stamp); !done) return done;
+    if (!one.name.empty()) TRY(store::set_assigned_name(tx, id, one.case_id, one.name));
+  for (const store::Account& person : people) TRY(assign_to(tx, id, person, stamp));
   return {};
 }
 
@@ -199,13 +183,11 @@ Result<AssignmentPlan> AssignmentPlan::from_json(const Json& json) {
   const Json* people = fields.member("people", false);
   if (out.protocol.empty() == (cases == nullptr))
     fields.wrong("cases", "cases, or a protocol, are expected");
-  if (auto done = fields.done(); !done) return done.error();
-  auto read = cases_from(cases);
-  if (!read) return read.error();
-  out.cases = std::move(*read);
-  auto names = names_from(people);
-  if (!names) return names.error();
-  out.people = std::move(*names);
+  TRY(fields.done());
+  auto read = TRY(cases_from(cases));
+  out.cases = std::move(read);
+  auto names = TRY(names_from(people));
+  out.people = std::move(names);
   return out;
 }
 
@@ -213,13 +195,10 @@ Result<std::string> make_assignment(const Call& call, const AssignmentPlan& plan
   std::vector<store::CasePart> parts;
   for (const AssignedCase& one : plan.cases) {
     if (!one.scenario) continue;
-    auto part = put_scenario(call.backend, *one.scenario);
-    if (!part) return part.error();
-    parts.push_back(std::move(*part));
+    auto part = TRY(put_scenario(call.backend, *one.scenario));
+    parts.push_back(std::move(part));
   }
-  auto made =
-      call.backend.store.write([&](store::Writing& tx) { return make(tx, call, plan, parts); });
-  if (!made) return made.error();
+  TRY(call.backend.store.write([&](store::Writing& tx) { return make(tx, call, plan, parts); }));
   return plan.assignment.study.id;
 }
 
@@ -227,20 +206,15 @@ Result<void> assign_to(store::Writing& tx, const store::AssignmentId& id,
                        const store::Account& account, const store::AuditStamp& stamp) {
   if (account.role != name(Role::trainee))
     return Error{Errc::bad_input, account.name + ": is no trainee"};
-  auto study = store::study_of(tx, id);
-  if (!study) return study.error();
-  auto scenarios = store::study_scenarios(tx, id);
-  if (!scenarios) return scenarios.error();
-  auto there = store::study_participants(tx, id);
-  if (!there) return there.error();
+  auto study = TRY(store::study_of(tx, id));
+  auto scenarios = TRY(store::study_scenarios(tx, id));
+  auto there = TRY(store::study_participants(tx, id));
   const std::string participant =
       account.pseudonym.empty() ? "P" + account.id.substr(0, 24) : account.pseudonym;
-  if (std::ranges::find(*there, participant, &store::Participant::name) != there->end())
+  if (std::ranges::find(there, participant, &store::Participant::name) != there.end())
     return Error{Errc::conflict, account.name + ": it is assigned to this person already"};
-  if (auto done = store::add_participant(tx, id, {.name = participant},
-                                         order_for(*study, *scenarios, int(there->size())), stamp);
-      !done)
-    return done;
+  TRY(store::add_participant(tx, id, {.name = participant},
+                             order_for(study, scenarios, int(there.size())), stamp));
   return store::add_assigned_person(tx, id, account.id, participant);
 }
 
@@ -249,13 +223,11 @@ namespace {
 Result<void> assign_what_the_cohort_has(store::Writing& tx, const std::string& cohort_id,
                                         const store::Account& account,
                                         const store::AuditStamp& stamp) {
-  auto ids = store::assignments_of_cohort(tx, cohort_id);
-  if (!ids) return ids.error();
-  for (const store::AssignmentId& id : *ids) {
-    auto there = store::has_assignment(tx, account.id, id.text());
-    if (!there) return there.error();
-    if (*there) continue;
-    if (auto done = assign_to(tx, id, account, stamp); !done) return done;
+  auto ids = TRY(store::assignments_of_cohort(tx, cohort_id));
+  for (const store::AssignmentId& id : ids) {
+    auto there = TRY(store::has_assignment(tx, account.id, id.text()));
+    if (there) continue;
+    TRY(assign_to(tx, id, account, stamp));
   }
   return {};
 }
@@ -264,16 +236,13 @@ Result<void> assign_what_the_cohort_has(store::Writing& tx, const std::string& c
 
 Result<void> join_cohort(store::Writing& tx, const std::string& cohort_id,
                          const store::Account& account, const store::AuditStamp& stamp) {
-  auto cohort = store::cohort_of(tx, cohort_id);
-  if (!cohort) return cohort.error();
-  if (!*cohort) return Error{Errc::not_found, "no cohort " + cohort_id.substr(0, 32)};
+  auto cohort = TRY(store::cohort_of(tx, cohort_id));
+  if (!cohort) return Error{Errc::not_found, "no cohort " + cohort_id.substr(0, 32)};
   const bool learns = account.role == name(Role::trainee);
   if (!learns && account.role != name(Role::faculty))
     return Error{Errc::bad_input, account.name + ": is neither a trainee nor of the faculty"};
-  if (auto done = store::put_into_cohort(tx, cohort_id, account.id, account.role, stamp.at_utc_us);
-      !done)
-    return done;
-  if (auto done = store::remove_invitation(tx, cohort_id, account.name); !done) return done;
+  TRY(store::put_into_cohort(tx, cohort_id, account.id, account.role, stamp.at_utc_us));
+  TRY(store::remove_invitation(tx, cohort_id, account.name));
   return learns ? assign_what_the_cohort_has(tx, cohort_id, account, stamp) : Result<void>();
 }
 

@@ -1,4 +1,5 @@
 /// Assignments: what trainees are to do, until when, and when they may see how they did.
+#include "core/try.hpp"
 #include "db/store/studies/assignments.hpp"
 #include "db/store/trials/debriefs.hpp"
 #include "server/api/backend.hpp"
@@ -45,29 +46,25 @@ Result<http::Response> list_assignments(const Call& call) {
   store::AssignmentFilter whose;
   if (call.of == Scope::cohort) whose.led_by = call.caller.id;
   if (call.of == Scope::own) whose.done_by = call.caller.id;
-  auto found =
-      call.backend.store.read([&](store::Reading& tx) { return store::assignments_of(tx, whose); });
-  if (!found) return found.error();
+  auto found = TRY(call.backend.store.read(
+      [&](store::Reading& tx) { return store::assignments_of(tx, whose); }));
   Json list = Json::array();
-  for (const auto& one : *found) list.push_back(assignment_json(one, call.of));
+  for (const auto& one : found) list.push_back(assignment_json(one, call.of));
   return json_response({{"assignments", list}});
 }
 
 /// @param whose  this participant's alone; empty: everybody's.
 Result<Json> trials_json(store::Reading& tx, const store::AssignmentId& id,
                          const std::string& whose) {
-  auto slots = store::study_slots(tx, id);
-  if (!slots) return slots.error();
+  auto slots = TRY(store::study_slots(tx, id));
   std::map<std::string, const store::Slot*> places;
-  for (const auto& slot : *slots) places[slot.id] = &slot;
-  auto trials = store::study_trials(tx, id);
-  if (!trials) return trials.error();
+  for (const auto& slot : slots) places[slot.id] = &slot;
+  auto trials = TRY(store::study_trials(tx, id));
   Json out = Json::array();
-  for (const auto& trial : *trials) {
+  for (const auto& trial : trials) {
     const auto place = places.find(trial.slot_id);
     if (place == places.end() || (!whose.empty() && place->second->participant != whose)) continue;
-    auto comments = store::comments_of(tx, trial.trial_id);
-    if (!comments) return comments.error();
+    auto comments = TRY(store::comments_of(tx, trial.trial_id));
     out.push_back({{"trial_id", trial.trial_id},
                    {"participant", place->second->participant},
                    {"number", place->second->position + 1},
@@ -75,7 +72,7 @@ Result<Json> trials_json(store::Reading& tx, const store::AssignmentId& id,
                    {"state", trial.state},
                    {"reason", trial.reason},
                    {"correct", trial.correct ? Json(*trial.correct) : Json()},
-                   {"comments", comments->size()},
+                   {"comments", comments.size()},
                    {"started_utc_us", time_or_null(trial.started_utc_us)}});
   }
   return out;
@@ -84,45 +81,38 @@ Result<Json> trials_json(store::Reading& tx, const store::AssignmentId& id,
 /// What a trainee has done of it, once the results may be seen.
 Result<Json> own_trials_json(store::Reading& tx, const store::AssignmentId& id,
                              const std::string& me) {
-  auto participant = store::participant_for(tx, id, me);
-  if (!participant) return participant.error();
-  return trials_json(tx, id, *participant);
+  auto participant = TRY(store::participant_for(tx, id, me));
+  return trials_json(tx, id, participant);
 }
 
 Result<Json> whole_json(store::Reading& tx, const std::string& asked, Scope of,
                         const std::string& me) {
-  auto id = store::find_assignment(tx, asked);
-  if (!id) return id.error();
-  auto found = store::assignment_of(tx, *id, of == Scope::own ? me : "");
-  if (!found) return found.error();
-  Json out = assignment_json(*found, of);
+  auto id = TRY(store::find_assignment(tx, asked));
+  auto found = TRY(store::assignment_of(tx, id, of == Scope::own ? me : ""));
+  Json out = assignment_json(found, of);
   if (of == Scope::own) {
-    if (found->release == "held") return out;
-    auto own = own_trials_json(tx, *id, me);
-    if (!own) return own.error();
-    out["trials"] = std::move(*own);
+    if (found.release == "held") return out;
+    auto own = TRY(own_trials_json(tx, id, me));
+    out["trials"] = std::move(own);
     return out;
   }
   out["trainees"] = Json::array();
-  auto people = store::assigned_people(tx, *id);
-  if (!people) return people.error();
-  for (const auto& person : *people)
+  auto people = TRY(store::assigned_people(tx, id));
+  for (const auto& person : people)
     out["trainees"].push_back({{"account_id", person.account_id},
                                {"name", person.name},
                                {"participant", person.participant},
                                {"done", person.done},
                                {"planned", person.planned}});
-  auto trials = trials_json(tx, *id, "");
-  if (!trials) return trials.error();
-  out["trials"] = std::move(*trials);
+  auto trials = TRY(trials_json(tx, id, ""));
+  out["trials"] = std::move(trials);
   return out;
 }
 
 Result<http::Response> assignment_response(const Call& call, const std::string& id, int status) {
-  auto json = call.backend.store.read(
-      [&](store::Reading& tx) { return whole_json(tx, id, call.of, call.caller.id); });
-  if (!json) return json.error();
-  return json_response(*json, status);
+  auto json = TRY(call.backend.store.read(
+      [&](store::Reading& tx) { return whole_json(tx, id, call.of, call.caller.id); }));
+  return json_response(json, status);
 }
 
 Result<http::Response> one_assignment(const Call& call) {
@@ -130,29 +120,23 @@ Result<http::Response> one_assignment(const Call& call) {
 }
 
 Result<http::Response> add_assignment_route(const Call& call) {
-  auto json = core::parse_json(call.request.body, "body");
-  if (!json) return json.error();
-  auto plan = AssignmentPlan::from_json(*json);
-  if (!plan) return plan.error();
-  auto id = make_assignment(call, *plan);
-  if (!id) return id.error();
-  return assignment_response(call, *id, 201);
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  auto plan = TRY(AssignmentPlan::from_json(json));
+  auto id = TRY(make_assignment(call, plan));
+  return assignment_response(call, id, 201);
 }
 
 /// Reads the body with `read(fields)`, runs `work(tx, id, stamp)`, answers with the assignment.
 template <class Read, class Work>
 Result<http::Response> changed(const Call& call, Read read, Work work) {
-  auto json = core::parse_json(call.request.body, "body");
-  if (!json) return json.error();
-  core::Fields fields(*json, "body");
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  core::Fields fields(json, "body");
   read(fields);
-  if (auto done = fields.done(); !done) return done.error();
-  auto done = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
-    auto id = store::find_assignment(tx, call.text("id"));
-    if (!id) return id.error();
-    return work(tx, *id, store::AuditStamp{call.caller.name, call.backend.now_utc_us()});
-  });
-  if (!done) return done.error();
+  TRY(fields.done());
+  TRY(call.backend.store.write([&](store::Writing& tx) -> Result<void> {
+    auto id = TRY(store::find_assignment(tx, call.text("id")));
+    return work(tx, id, store::AuditStamp{call.caller.name, call.backend.now_utc_us()});
+  }));
   return one_assignment(call);
 }
 
@@ -189,11 +173,10 @@ Result<http::Response> assign_person(const Call& call) {
       call, [&](core::Fields& fields) { name = fields.text("name", kMaxName); },
       [&](store::Writing& tx, const store::AssignmentId& id,
           const store::AuditStamp& stamp) -> Result<void> {
-        auto account = store::account_named(tx, name);
-        if (!account) return account.error();
-        if (!*account)
+        auto account = TRY(store::account_named(tx, name));
+        if (!account)
           return Error{Errc::not_found, "body: /name: there is no account of this name"};
-        return assign_to(tx, id, **account, stamp);
+        return assign_to(tx, id, *account, stamp);
       });
 }
 
@@ -217,12 +200,9 @@ Result<http::Response> free_person(const Call& call) {
       call, [](core::Fields& fields) { fields.skip("reason"); },
       [&](store::Writing& tx, const store::AssignmentId& id,
           const store::AuditStamp& stamp) -> Result<void> {
-        auto participant = store::participant_for(tx, id, call.text("account_id"));
-        if (!participant) return participant.error();
-        if (participant->empty())
-          return Error{Errc::not_found, "it is not assigned to this person"};
-        auto freed = store::release_slots(tx, id, *participant, stamp);
-        if (!freed) return freed.error();
+        auto participant = TRY(store::participant_for(tx, id, call.text("account_id")));
+        if (participant.empty()) return Error{Errc::not_found, "it is not assigned to this person"};
+        TRY(store::release_slots(tx, id, participant, stamp));
         return {};
       });
 }

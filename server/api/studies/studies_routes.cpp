@@ -1,4 +1,5 @@
 /// Studies: their list, one whole, what happened; making one and enrolling participants.
+#include "core/try.hpp"
 #include "server/api/backend.hpp"
 #include "server/api/studies/study_json.hpp"
 #include "server/api/studies/study_plan.hpp"
@@ -10,21 +11,19 @@ namespace {
 constexpr std::uint64_t kMaxPlan_bytes = 4u << 20, kMaxParticipant_bytes = 4096;
 
 core::Result<http::Response> list_studies(const Call& call) {
-  auto found = call.backend.store.read([](store::Reading& tx) { return store::all_studies(tx); });
-  if (!found) return found.error();
+  auto found =
+      TRY(call.backend.store.read([](store::Reading& tx) { return store::all_studies(tx); }));
   core::Json list = core::Json::array();
-  for (const auto& study : *found) list.push_back(summary_json(study));
+  for (const auto& study : found) list.push_back(summary_json(study));
   return json_response({{"studies", list}});
 }
 
 core::Result<http::Response> study_response(Backend& backend, const std::string& id) {
-  auto facts = backend.store.read([&](store::Reading& tx) -> core::Result<StudyFacts> {
-    auto study = store::find_study(tx, id);
-    if (!study) return study.error();
-    return study_facts(tx, *study);
-  });
-  if (!facts) return facts.error();
-  return json_response(study_json(*facts));
+  auto facts = TRY(backend.store.read([&](store::Reading& tx) -> core::Result<StudyFacts> {
+    auto study = TRY(store::find_study(tx, id));
+    return study_facts(tx, study);
+  }));
+  return json_response(study_json(facts));
 }
 
 core::Result<http::Response> one_study(const Call& call) {
@@ -32,36 +31,29 @@ core::Result<http::Response> one_study(const Call& call) {
 }
 
 core::Result<http::Response> new_study(const Call& call) {
-  auto json = core::parse_json(call.request.body, "body");
-  if (!json) return json.error();
-  auto plan = StudyPlan::from_json(*json);
-  if (!plan) return plan.error();
-  if (auto made = make_study(call.backend, *plan, call.caller.name); !made) return made.error();
-  return study_response(call.backend, plan->study.id);
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  auto plan = TRY(StudyPlan::from_json(json));
+  TRY(make_study(call.backend, plan, call.caller.name));
+  return study_response(call.backend, plan.study.id);
 }
 
 core::Result<http::Response> new_participant(const Call& call) {
-  auto json = core::parse_json(call.request.body, "body");
-  if (!json) return json.error();
-  auto participant = participant_from(*json, "");
-  if (!participant) return participant.error();
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  auto participant = TRY(participant_from(json, ""));
   const std::string& id = call.text("id");
-  if (auto done = enrol(call.backend, id, *participant, call.caller.name); !done)
-    return done.error();
+  TRY(enrol(call.backend, id, participant, call.caller.name));
   return study_response(call.backend, id);
 }
 
 core::Result<http::Response> events_of(const Call& call) {
   const std::string& id = call.text("id");
-  auto found = call.backend.store.read(
+  auto found = TRY(call.backend.store.read(
       [&](store::Reading& tx) -> core::Result<std::vector<store::StudyEvent>> {
-        auto study = store::find_study(tx, id);
-        if (!study) return study.error();
-        return store::study_events(tx, *study, call.integer("limit"));
-      });
-  if (!found) return found.error();
+        auto study = TRY(store::find_study(tx, id));
+        return store::study_events(tx, study, call.integer("limit"));
+      }));
   core::Json list = core::Json::array();
-  for (const auto& event : *found) list.push_back(event_json(event));
+  for (const auto& event : found) list.push_back(event_json(event));
   return json_response({{"events", list}});
 }
 

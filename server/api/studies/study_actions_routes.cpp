@@ -1,5 +1,6 @@
 /// What a person decides in a running study: pause and go on, give back what a station holds, say
 /// that a trial does not count. Each is kept with who, when and why.
+#include "core/try.hpp"
 #include "server/api/backend.hpp"
 #include "server/api/schema.hpp"
 #include "server/api/studies/study_json.hpp"
@@ -20,9 +21,8 @@ struct Said {
   std::string reason, state;
 };
 core::Result<Said> said(const Call& call, bool with_state, bool needs_reason) {
-  auto json = core::parse_json(call.request.body, "body");
-  if (!json) return json.error();
-  core::Fields fields(*json, "");
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  core::Fields fields(json, "");
   Said out;
   out.reason = fields.text_or("reason", "", kMaxReason);
   if (needs_reason && out.reason.find_first_not_of(" \t\n") == std::string::npos)
@@ -30,7 +30,7 @@ core::Result<Said> said(const Call& call, bool with_state, bool needs_reason) {
   if (with_state) out.state = fields.text("state", 32);
   if (with_state && out.state != "running" && out.state != "paused")
     fields.wrong("state", "running or paused is expected");
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   return out;
 }
 
@@ -38,66 +38,56 @@ core::Result<Said> said(const Call& call, bool with_state, bool needs_reason) {
 template <class Work>
 core::Result<http::Response> act_on_study(const Call& call, const std::string& reason, Work work) {
   const std::string& id = call.text("id");
-  auto facts = call.backend.store.write([&](store::Writing& tx) -> core::Result<StudyFacts> {
-    auto study = store::find_study(tx, id);
-    if (!study) return study.error();
+  auto facts = TRY(call.backend.store.write([&](store::Writing& tx) -> core::Result<StudyFacts> {
+    auto study = TRY(store::find_study(tx, id));
     const store::AuditStamp done_by{call.caller.name, call.backend.now_utc_us(), reason};
-    if (auto done = work(tx, *study, done_by); !done) return done.error();
-    return study_facts(tx, *study);
-  });
-  if (!facts) return facts.error();
-  return json_response(study_json(*facts));
+    TRY(work(tx, study, done_by));
+    return study_facts(tx, study);
+  }));
+  return json_response(study_json(facts));
 }
 
 core::Result<http::Response> set_state(const Call& call) {
-  auto asked = said(call, true, false);
-  if (!asked) return asked.error();
-  return act_on_study(call, asked->reason,
+  auto asked = TRY(said(call, true, false));
+  return act_on_study(call, asked.reason,
                       [&](store::Writing& tx, const store::StudyId& study,
                           const store::AuditStamp& by) -> core::Result<void> {
-                        auto now = store::study_of(tx, study);
-                        if (!now) return now.error();
-                        if (now->state == asked->state) return {};
-                        return store::set_study_state(tx, study, asked->state, by);
+                        auto now = TRY(store::study_of(tx, study));
+                        if (now.state == asked.state) return {};
+                        return store::set_study_state(tx, study, asked.state, by);
                       });
 }
 
 core::Result<http::Response> set_participant(const Call& call) {
-  auto asked = said(call, true, false);
-  if (!asked) return asked.error();
+  auto asked = TRY(said(call, true, false));
   const std::string& name = call.text("name");
-  return act_on_study(call, asked->reason,
+  return act_on_study(call, asked.reason,
                       [&](store::Writing& tx, const store::StudyId& study,
                           const store::AuditStamp& by) -> core::Result<void> {
-                        auto who = store::participant_of(tx, study, name);
-                        if (!who) return who.error();
-                        if (!*who) return no_participant(name);
-                        if ((*who)->state == asked->state) return {};
-                        return store::set_participant_state(tx, study, name, asked->state, by);
+                        auto who = TRY(store::participant_of(tx, study, name));
+                        if (!who) return no_participant(name);
+                        if (who->state == asked.state) return {};
+                        return store::set_participant_state(tx, study, name, asked.state, by);
                       });
 }
 
 core::Result<http::Response> release(const Call& call) {
-  auto asked = said(call, false, true);
-  if (!asked) return asked.error();
+  auto asked = TRY(said(call, false, true));
   const std::string& name = call.text("name");
-  return act_on_study(call, asked->reason,
+  return act_on_study(call, asked.reason,
                       [&](store::Writing& tx, const store::StudyId& study,
                           const store::AuditStamp& by) -> core::Result<void> {
-                        auto who = store::participant_of(tx, study, name);
-                        if (!who) return who.error();
-                        if (!*who) return no_participant(name);
-                        auto released = store::release_slots(tx, study, name, by);
-                        if (!released) return released.error();
+                        auto who = TRY(store::participant_of(tx, study, name));
+                        if (!who) return no_participant(name);
+                        TRY(store::release_slots(tx, study, name, by));
                         return {};
                       });
 }
 
 core::Result<http::Response> invalidate(const Call& call) {
-  auto asked = said(call, false, true);
-  if (!asked) return asked.error();
+  auto asked = TRY(said(call, false, true));
   return act_on_study(
-      call, asked->reason,
+      call, asked.reason,
       [&](store::Writing& tx, const store::StudyId& study, const store::AuditStamp& by) {
         return store::set_trial_invalid(tx, study, call.text("trial_id"), by);
       });

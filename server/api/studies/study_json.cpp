@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <map>
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace api {
 namespace {
@@ -130,22 +132,17 @@ Json participant_json(const StudyFacts& facts, const store::Participant& who, co
 }  // namespace
 
 core::Result<StudyFacts> study_facts(store::Reading& tx, const store::StudyId& id) {
-  auto study = store::study_of(tx, id);
-  if (!study) return study.error();
+  auto study = TRY(store::study_of(tx, id));
   StudyFacts out;
-  out.study = std::move(*study);
-  auto scenarios = store::study_scenarios(tx, id);
-  if (!scenarios) return scenarios.error();
-  out.scenarios = std::move(*scenarios);
-  auto participants = store::study_participants(tx, id);
-  if (!participants) return participants.error();
-  out.participants = std::move(*participants);
-  auto slots = store::study_slots(tx, id);
-  if (!slots) return slots.error();
-  out.slots = std::move(*slots);
-  auto trials = store::study_trials(tx, id);
-  if (!trials) return trials.error();
-  out.trials = std::move(*trials);
+  out.study = std::move(study);
+  auto scenarios = TRY(store::study_scenarios(tx, id));
+  out.scenarios = std::move(scenarios);
+  auto participants = TRY(store::study_participants(tx, id));
+  out.participants = std::move(participants);
+  auto slots = TRY(store::study_slots(tx, id));
+  out.slots = std::move(slots);
+  auto trials = TRY(store::study_trials(tx, id));
+  out.trials = std::move(trials);
   return out;
 }
 

@@ -1,6 +1,7 @@
 /// No route of studies acts on an assignment, and none of assignments on a study.
 #include <regex>
 
+#include "core/try.hpp"
 #include "server/api/people/people_test_support.hpp"
 
 namespace tractus {
@@ -14,9 +15,8 @@ class StudyKinds : public PeopleTest {
     const auto made = store_.write([](store::Writing& tx) -> core::Result<void> {
       const store::Study study{.id = "a-study", .title = "", .ordering = "random"};
       const store::AuditStamp stamp{"rex", 1};
-      auto id = store::add_study(tx, study, {testing::kCase}, stamp);
-      if (!id) return id.error();
-      return store::add_participant(tx, *id, {.name = "P-tom"}, {testing::kCase}, stamp);
+      auto id = TRY(store::add_study(tx, study, {testing::kCase}, stamp));
+      return store::add_participant(tx, id, {.name = "P-tom"}, {testing::kCase}, stamp);
     });
     EXPECT_TRUE(made);
   }
@@ -50,9 +50,8 @@ class StudyKinds : public PeopleTest {
                               "select name, state from study_participants order by study_id, name",
                               "select id, state from study_slots order by id",
                               "select trial_id, state from study_trials order by trial_id"}) {
-        auto rows = tx.query(sql);
-        if (!rows) return rows.error();
-        for (const auto& row : *rows) out += row.text(0) + " " + row.text(1) + "\n";
+        auto rows = TRY(tx.query(sql));
+        for (const auto& row : rows) out += row.text(0) + " " + row.text(1) + "\n";
       }
       return {};
     });

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "core/try.hpp"
 #include "db/store/cases/cases.hpp"
 #include "study/order.hpp"
 #include "study/sealed_law.hpp"
@@ -45,7 +46,7 @@ Result<scenarios::Scenario> read_scenario(const Json& json, const std::string& w
     return scenarios::Scenario::from_json(json, where + ": ");
   core::Fields fields(json, where);
   const std::string kind = fields.text("tuned", kMaxName);
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   const auto known = scenarios::kind_of(kind);
   if (!known)
     return Error{Errc::bad_input,
@@ -55,9 +56,8 @@ Result<scenarios::Scenario> read_scenario(const Json& json, const std::string& w
 
 /// Can it be handed out blind? Tried with a key of no station.
 Result<void> check_fits(const scenarios::Scenario& scenario, const std::string& where) {
-  auto law = scenario.expanded();
-  if (!law) return law.error();
-  auto sealed = study::sealed_law(*law, "", study::StationKey(""));
+  auto law = TRY(scenario.expanded());
+  auto sealed = study::sealed_law(law, "", study::StationKey(""));
   if (!sealed) return Error{Errc::bad_input, where + ": " + sealed.error().what};
   return {};
 }
@@ -72,32 +72,28 @@ Result<const Json*> array_of(const Json& json, const char* key, std::size_t leas
 }
 
 Result<std::vector<scenarios::Scenario>> scenarios_from(const Json& json) {
-  auto list = array_of(json, "scenarios", 1, kMaxScenarios);
-  if (!list) return list.error();
+  auto list = TRY(array_of(json, "scenarios", 1, kMaxScenarios));
   std::vector<scenarios::Scenario> out;
   std::set<std::string> ids;
-  for (const Json& one : **list) {
+  for (const Json& one : *list) {
     const std::string where = fmt::format("/scenarios/{}", out.size());
-    auto scenario = scenario_from(one, where);
-    if (!scenario) return scenario.error();
-    if (!ids.insert(scenario->id()).second)
+    auto scenario = TRY(scenario_from(one, where));
+    if (!ids.insert(scenario.id()).second)
       return Error{Errc::bad_input, where + ": is the same as one before; repeats are for that"};
-    out.push_back(std::move(*scenario));
+    out.push_back(std::move(scenario));
   }
   return out;
 }
 
 Result<std::vector<store::Participant>> participants_from(const Json& json) {
-  auto list = array_of(json, "participants", 0, kMaxParticipants);
-  if (!list) return list.error();
+  auto list = TRY(array_of(json, "participants", 0, kMaxParticipants));
   std::vector<store::Participant> out;
-  for (const Json& one : **list) {
+  for (const Json& one : *list) {
     const std::string where = fmt::format("/participants/{}", out.size());
-    auto participant = participant_from(one, where);
-    if (!participant) return participant.error();
-    if (std::ranges::find(out, participant->name, &store::Participant::name) != out.end())
-      return Error{Errc::bad_input, where + "/name: " + participant->name + " is there twice"};
-    out.push_back(std::move(*participant));
+    auto participant = TRY(participant_from(one, where));
+    if (std::ranges::find(out, participant.name, &store::Participant::name) != out.end())
+      return Error{Errc::bad_input, where + "/name: " + participant.name + " is there twice"};
+    out.push_back(std::move(participant));
   }
   return out;
 }
@@ -120,7 +116,7 @@ Result<store::Study> study_from(const Json& json) {
   out.seed = fields.integer_or("seed", seed, 0, kMaxSeed);
   fields.skip("scenarios");
   fields.skip("participants");
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   return out;
 }
 
@@ -129,7 +125,7 @@ Result<store::Study> study_from(const Json& json) {
 Result<scenarios::Scenario> scenario_from(const Json& json, const std::string& where) {
   auto scenario = read_scenario(json, where);
   if (!scenario) return scenario;
-  if (auto fits = check_fits(*scenario, where); !fits) return fits.error();
+  TRY(check_fits(*scenario, where));
   return scenario;
 }
 
@@ -150,9 +146,8 @@ std::vector<std::string> order_for(const store::Study& study,
 
 Result<store::CasePart> put_scenario(Backend& backend, const scenarios::Scenario& scenario) {
   const std::string text = scenario.to_json().dump();
-  auto sha256 = backend.objects.put(core::bytes_of(text));
-  if (!sha256) return sha256.error();
-  return store::CasePart{"scenario.json", *sha256, text.size(), true};
+  auto sha256 = TRY(backend.objects.put(core::bytes_of(text)));
+  return store::CasePart{"scenario.json", sha256, text.size(), true};
 }
 
 Result<store::Participant> participant_from(const Json& json, const std::string& where) {
@@ -165,50 +160,42 @@ Result<store::Participant> participant_from(const Json& json, const std::string&
   if (fields.has("experience_years"))
     out.experience_years = fields.number("experience_years", 0.0, 80.0);
   out.simulated = flag(fields, "simulated");
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   return out;
 }
 
 Result<StudyPlan> StudyPlan::from_json(const Json& json) {
-  auto study = study_from(json);
-  if (!study) return study.error();
-  auto scenarios = scenarios_from(json);
-  if (!scenarios) return scenarios.error();
-  auto participants = participants_from(json);
-  if (!participants) return participants.error();
-  return StudyPlan{std::move(*study), std::move(*scenarios), std::move(*participants)};
+  auto study = TRY(study_from(json));
+  auto scenarios = TRY(scenarios_from(json));
+  auto participants = TRY(participants_from(json));
+  return StudyPlan{std::move(study), std::move(scenarios), std::move(participants)};
 }
 
 Result<void> make_study(Backend& backend, const StudyPlan& plan, const std::string& who) {
   std::vector<store::CasePart> parts;
   std::vector<store::StudyScenario> named;
   for (const auto& scenario : plan.scenarios) {
-    auto part = put_scenario(backend, scenario);
-    if (!part) return part.error();
-    parts.push_back(std::move(*part));
+    auto part = TRY(put_scenario(backend, scenario));
+    parts.push_back(std::move(part));
     named.push_back({scenario.id(), scenario.name});
   }
   const std::int64_t now = backend.now_utc_us();
   const store::AuditStamp stamp{who, now};
   return backend.store.write([&](store::Writing& tx) -> Result<void> {
-    auto taken = store::series_exists(tx, plan.study.id);
-    if (!taken) return taken.error();
-    if (*taken) return Error{Errc::conflict, "id: there is a study " + plan.study.id + " already"};
+    auto taken = TRY(store::series_exists(tx, plan.study.id));
+    if (taken) return Error{Errc::conflict, "id: there is a study " + plan.study.id + " already"};
     std::vector<std::string> ids;
     for (std::size_t i = 0; i < named.size(); ++i) {
       const auto& scenario = plan.scenarios[i];
       const store::CaseSummary summary{named[i].case_id, scenario.name, scenario.origin.who, now, 0,
                                        store::kProbing};
-      if (auto done = store::add_case(tx, summary, {parts[i]}, now); !done) return done;
+      TRY(store::add_case(tx, summary, {parts[i]}, now));
       ids.push_back(named[i].case_id);
     }
-    auto id = store::add_study(tx, plan.study, ids, stamp);
-    if (!id) return id.error();
+    auto id = TRY(store::add_study(tx, plan.study, ids, stamp));
     for (std::size_t n = 0; n < plan.participants.size(); ++n)
-      if (auto done = store::add_participant(tx, *id, plan.participants[n],
-                                             order_for(plan.study, named, int(n)), stamp);
-          !done)
-        return done;
+      TRY(store::add_participant(tx, id, plan.participants[n], order_for(plan.study, named, int(n)),
+                                 stamp));
     return {};
   });
 }
@@ -216,21 +203,17 @@ Result<void> make_study(Backend& backend, const StudyPlan& plan, const std::stri
 Result<void> enrol(Backend& backend, const std::string& study_id,
                    const store::Participant& participant, const std::string& who) {
   return backend.store.write([&](store::Writing& tx) -> Result<void> {
-    auto id = store::find_study(tx, study_id);
-    if (!id) return id.error();
-    auto study = store::study_of(tx, *id);
-    if (!study) return study.error();
-    auto there = store::study_participants(tx, *id);
-    if (!there) return there.error();
-    if (std::ranges::find(*there, participant.name, &store::Participant::name) != there->end())
+    auto id = TRY(store::find_study(tx, study_id));
+    auto study = TRY(store::study_of(tx, id));
+    auto there = TRY(store::study_participants(tx, id));
+    if (std::ranges::find(there, participant.name, &store::Participant::name) != there.end())
       return Error{Errc::conflict, "name: " + participant.name + " is enrolled already"};
-    if (there->size() >= kMaxParticipants)
+    if (there.size() >= kMaxParticipants)
       return Error{Errc::conflict,
-                   fmt::format("{} participants are enrolled: that is the most", there->size())};
-    auto scenarios = store::study_scenarios(tx, *id);
-    if (!scenarios) return scenarios.error();
-    return store::add_participant(tx, *id, participant,
-                                  order_for(*study, *scenarios, int(there->size())),
+                   fmt::format("{} participants are enrolled: that is the most", there.size())};
+    auto scenarios = TRY(store::study_scenarios(tx, id));
+    return store::add_participant(tx, id, participant,
+                                  order_for(study, scenarios, int(there.size())),
                                   {who, backend.now_utc_us()});
   });
 }

@@ -1,6 +1,7 @@
 /// A station's part of a study: the next trials of a participant, sealed.
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "db/store/people/accounts.hpp"
 #include "db/store/studies/study_slots.hpp"
 #include "server/api/backend.hpp"
@@ -26,19 +27,15 @@ struct Given {
 
 core::Result<Given> take(store::Writing& tx, const Call& call) {
   const std::string &id = call.text("id"), &name = call.text("name");
-  auto study = store::find_study(tx, id);
-  if (!study) return study.error();
-  auto participant = store::participant_of(tx, *study, name);
-  if (!participant) return participant.error();
-  if (!*participant)
+  auto study = TRY(store::find_study(tx, id));
+  auto participant = TRY(store::participant_of(tx, study, name));
+  if (!participant)
     return core::Error{core::Errc::not_found,
                        "no participant " + name.substr(0, 32) + " in this study"};
-  auto token = store::station_token_hash(tx, call.caller.id);
-  if (!token) return token.error();
-  auto taken = store::take_slots(tx, *study, **participant, call.caller.id, call.integer("ahead"),
-                                 {call.caller.name, call.backend.now_utc_us()});
-  if (!taken) return taken.error();
-  return Given{std::move(**participant), std::move(*taken), std::move(*token)};
+  auto token = TRY(store::station_token_hash(tx, call.caller.id));
+  auto taken = TRY(store::take_slots(tx, study, *participant, call.caller.id, call.integer("ahead"),
+                                     {call.caller.name, call.backend.now_utc_us()}));
+  return Given{std::move(*participant), std::move(taken), std::move(token)};
 }
 
 core::Result<std::vector<wire::SealedTrial>> sealed_trials(Backend& backend, const Given& given) {
@@ -46,29 +43,24 @@ core::Result<std::vector<wire::SealedTrial>> sealed_trials(Backend& backend, con
   std::vector<wire::SealedTrial> out;
   std::uint64_t number = given.taken.planned - given.taken.unfinished;
   for (const store::Slot& slot : given.taken.slots) {
-    auto scenario = jobs::scenario_of(backend.store, backend.objects, slot.case_id);
-    if (!scenario) return scenario.error();
-    auto law = scenario->expanded();
-    if (!law) return law.error();
-    auto sealed = study::sealed_law(*law, slot.id, key);
-    if (!sealed) return sealed.error();
-    out.push_back({slot.id, ++number, std::move(*sealed)});
+    auto scenario = TRY(jobs::scenario_of(backend.store, backend.objects, slot.case_id));
+    auto law = TRY(scenario.expanded());
+    auto sealed = TRY(study::sealed_law(law, slot.id, key));
+    out.push_back({slot.id, ++number, std::move(sealed)});
   }
   return out;
 }
 
 core::Result<http::Response> take_trials(const Call& call) {
-  if (auto room = check_room(call.backend, kTrialToCome_bytes); !room) return room.error();
-  auto given = call.backend.store.write(
-      [&](store::Writing& tx) -> core::Result<Given> { return take(tx, call); });
-  if (!given) return given.error();
-  auto trials = sealed_trials(call.backend, *given);
-  if (!trials) return trials.error();
-  const auto& who = given->participant;
-  const wire::StudyWork work{call.text("id"),         who.name,
-                             who.simulated,           who.experience_years,
-                             given->taken.unfinished, given->taken.planned,
-                             std::move(*trials)};
+  TRY(check_room(call.backend, kTrialToCome_bytes));
+  auto given = TRY(call.backend.store.write(
+      [&](store::Writing& tx) -> core::Result<Given> { return take(tx, call); }));
+  auto trials = TRY(sealed_trials(call.backend, given));
+  const auto& who = given.participant;
+  const wire::StudyWork work{call.text("id"),        who.name,
+                             who.simulated,          who.experience_years,
+                             given.taken.unfinished, given.taken.planned,
+                             std::move(trials)};
   return json_response(work.to_json());
 }
 

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/try.hpp"
+#include "metrics/metric.hpp"
 #include "server/api/trials/trial_json.hpp"
 #include "statistics/distributions/proportions.hpp"
 
@@ -17,10 +19,6 @@ using Trials = std::vector<store::CohortTrial>;
 
 constexpr std::int64_t kMaxTrials = 20'000;
 constexpr double kAdequate = 0.10, kInadequate = 0.25;
-/// What is followed beside right and wrong; those that no trial has are left out.
-constexpr std::array kScores{"operation_time",         "probing_force_mean", "force_xy_mean",
-                             "probing_force_variance", "breach_force",       "pauses",
-                             "spectral_arc_length",    "wall_coverage"};
 /// Edges of stated confidence: "about half sure" to "certain".
 constexpr std::array kConfidence{0.0, 0.55, 0.65, 0.75, 0.85, 0.95, 1.0};
 
@@ -40,9 +38,8 @@ Result<Trials> trials_for(const Call& call) {
   const std::string study = call.has("study") ? call.text("study") : "";
   return call.backend.store.read([&](store::Reading& tx) -> Result<Trials> {
     if (!study.empty()) {
-      const auto known = store::series_exists(tx, study);
-      if (!known) return known.error();
-      if (!*known)
+      const auto known = TRY(store::series_exists(tx, study));
+      if (!known)
         return core::Error{core::Errc::bad_input,
                            "study: there is no study " + study.substr(0, 32)};
     }
@@ -78,11 +75,17 @@ std::vector<std::vector<double>> means_of(const assessment::Cohort& cohort) {
   return sums;
 }
 
-std::vector<std::string> scores_there(const Trials& trials) {
+/// The metrics that a trainee's page follows beside right and wrong, as far as a trial has them.
+std::vector<std::string> followed_metrics(const Trials& trials) {
+  auto known = metrics::all();
+  std::erase_if(known, [&](const metrics::MetricInfo& info) {
+    return info.followed == 0 || std::ranges::none_of(trials, [&](const auto& trial) {
+             return trial.metrics.contains(info.id);
+           });
+  });
+  std::ranges::sort(known, {}, &metrics::MetricInfo::followed);
   std::vector<std::string> out;
-  for (const char* id : kScores)
-    if (std::ranges::any_of(trials, [&](const auto& t) { return t.metrics.contains(id); }))
-      out.emplace_back(id);
+  for (const metrics::MetricInfo& info : known) out.push_back(info.id);
   return out;
 }
 
@@ -170,19 +173,17 @@ Json calibration_json(const std::vector<assessment::Attempt>& attempts,
 }  // namespace
 
 Result<Programme> programme_of(const Call& call) {
-  auto trials = trials_for(call);
-  if (!trials) return trials.error();
-  std::erase_if(*trials, [](const auto& trial) { return !counts(trial); });
-  const auto rates = statistics::Rates::make(kAdequate, kInadequate);
-  if (!rates) return rates.error();
-  static const assessment::Certification rule = assessment::certification(*rates);
+  auto trials = TRY(trials_for(call));
+  std::erase_if(trials, [](const auto& trial) { return !counts(trial); });
+  const auto rates = TRY(statistics::Rates::make(kAdequate, kInadequate));
+  static const assessment::Certification rule = assessment::certification(rates);
   Programme out{.cohort = {},
                 .trials = {},
                 .rule = rule,
-                .rules = {*rates, std::nullopt},
+                .rules = {rates, std::nullopt},
                 .backend = &call.backend};
-  out.cohort.scores = scores_there(*trials);
-  for (store::CohortTrial& trial : *trials) {
+  out.cohort.scores = followed_metrics(trials);
+  for (store::CohortTrial& trial : trials) {
     const std::string& who = name_of(trial);
     const std::size_t at = place_of(out.cohort.trainees, who);
     out.cohort.attempts.resize(out.cohort.trainees.size());

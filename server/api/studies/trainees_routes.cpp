@@ -1,6 +1,7 @@
 /// Trainees: how far each is, by the trials that count.
 #include <algorithm>
 
+#include "core/try.hpp"
 #include "server/api/backend.hpp"
 #include "server/api/schema.hpp"
 #include "server/api/studies/trainees.hpp"
@@ -11,20 +12,18 @@ namespace {
 using namespace schema;
 
 core::Result<http::Response> list_trainees(const Call& call) {
-  const auto programme = programme_of(call);
-  if (!programme) return programme.error();
-  return json_response(list_json(*programme));
+  const auto programme = TRY(programme_of(call));
+  return json_response(list_json(programme));
 }
 
 core::Result<http::Response> one_trainee(const Call& call) {
-  const auto programme = programme_of(call);
-  if (!programme) return programme.error();
-  const auto& names = programme->cohort.trainees;
+  const auto programme = TRY(programme_of(call));
+  const auto& names = programme.cohort.trainees;
   const auto at = std::ranges::find(names, call.text("name"));
   if (at == names.end())
     return core::Error{core::Errc::not_found,
                        "no scored trials of " + call.text("name").substr(0, 64)};
-  core::Json out = trainee_json(*programme, std::size_t(at - names.begin()));
+  core::Json out = trainee_json(programme, std::size_t(at - names.begin()));
   // What would be best to do next names a scenario: a trainee who waits for a blind trial is not
   // told one.
   if (call.of == Scope::own) out["next"] = {{"scenario", ""}, {"why", ""}};

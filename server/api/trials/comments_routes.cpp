@@ -2,6 +2,7 @@
 #include <set>
 
 #include "core/bytes.hpp"
+#include "core/try.hpp"
 #include "db/store/trials/debriefs.hpp"
 #include "server/api/access.hpp"
 #include "server/api/route.hpp"
@@ -30,20 +31,18 @@ Json comment_json(const store::Comment& comment, const std::string& me) {
 }
 
 Result<http::Response> comments_response(const Call& call, int status) {
-  const auto found = call.backend.store.read(
-      [&](store::Reading& tx) { return store::comments_of(tx, call.text("id")); });
-  if (!found) return found.error();
+  const auto found = TRY(call.backend.store.read(
+      [&](store::Reading& tx) { return store::comments_of(tx, call.text("id")); }));
   Json list = Json::array();
-  for (const auto& comment : *found) list.push_back(comment_json(comment, call.caller.id));
+  for (const auto& comment : found) list.push_back(comment_json(comment, call.caller.id));
   return json_response({{"comments", list}}, status);
 }
 
 Result<http::Response> list_comments(const Call& call) { return comments_response(call, 200); }
 
 Result<http::Response> add_comment(const Call& call) {
-  auto json = core::parse_json(call.request.body, "body");
-  if (!json) return json.error();
-  core::Fields fields(*json, "body");
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  core::Fields fields(json, "body");
   store::Comment comment{.id = core::new_id(),
                          .trial_id = call.text("id"),
                          .at_s = {},
@@ -55,22 +54,19 @@ Result<http::Response> add_comment(const Call& call) {
     fields.wrong("text", "a comment is expected");
   const Json* at = fields.member("at_s", false);
   if (at && !at->is_null()) comment.at_s = fields.number("at_s", 0.0, kLongest_s);
-  if (auto done = fields.done(); !done) return done.error();
-  auto added = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
-    auto trial = store::trial_of(tx, comment.trial_id);
-    if (!trial) return trial.error();
-    if (!*trial) return Error{Errc::not_found, "no trial " + comment.trial_id.substr(0, 32)};
+  TRY(fields.done());
+  TRY(call.backend.store.write([&](store::Writing& tx) -> Result<void> {
+    auto trial = TRY(store::trial_of(tx, comment.trial_id));
+    if (!trial) return Error{Errc::not_found, "no trial " + comment.trial_id.substr(0, 32)};
     return store::add_comment(tx, comment);
-  });
-  if (!added) return added.error();
+  }));
   return comments_response(call, 201);
 }
 
 Result<http::Response> remove_comment(const Call& call) {
-  auto removed = call.backend.store.write([&](store::Writing& tx) {
+  TRY(call.backend.store.write([&](store::Writing& tx) {
     return store::remove_comment(tx, call.text("id"), call.text("comment"), call.caller.id);
-  });
-  if (!removed) return removed.error();
+  }));
   return comments_response(call, 200);
 }
 
@@ -81,44 +77,38 @@ Result<http::Response> references_response(const Call& call) {
     std::vector<store::ReferenceTrial> others;
     std::set<std::string> named;  ///< trials of people whom the caller may see
   };
-  const auto found = call.backend.store.read([&](store::Reading& tx) -> Result<Found> {
-    auto own = store::is_reference(tx, call.text("id"));
-    if (!own) return own.error();
-    auto others = store::references_for(tx, call.text("id"));
-    if (!others) return others.error();
-    Found out{*own, std::move(*others), {}};
+  const auto found = TRY(call.backend.store.read([&](store::Reading& tx) -> Result<Found> {
+    auto own = TRY(store::is_reference(tx, call.text("id")));
+    auto others = TRY(store::references_for(tx, call.text("id")));
+    Found out{own, std::move(others), {}};
     for (const auto& one : out.others) {
-      auto sees = call.of == Scope::all
-                      ? Result<bool>(true)
-                      : relates(tx, call.caller, call.of, Object::trial, one.trial_id);
-      if (!sees) return sees.error();
-      if (*sees) out.named.insert(one.trial_id);
+      auto sees = TRY(call.of == Scope::all
+                          ? Result<bool>(true)
+                          : relates(tx, call.caller, call.of, Object::trial, one.trial_id));
+      if (sees) out.named.insert(one.trial_id);
     }
     return out;
-  });
-  if (!found) return found.error();
+  }));
   Json list = Json::array();
-  for (const auto& one : found->others)
+  for (const auto& one : found.others)
     list.push_back({{"id", one.trial_id},
-                    {"operator", found->named.contains(one.trial_id) ? one.operator_name : ""},
+                    {"operator", found.named.contains(one.trial_id) ? one.operator_name : ""},
                     {"simulated", one.simulated},
                     {"started_utc_us", one.started_utc_us},
                     {"duration_s", one.duration_s}});
-  return json_response({{"reference", found->own}, {"trials", list}});
+  return json_response({{"reference", found.own}, {"trials", list}});
 }
 
 Result<http::Response> set_reference(const Call& call) {
-  auto json = core::parse_json(call.request.body, "body");
-  if (!json) return json.error();
-  core::Fields fields(*json, "body");
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  core::Fields fields(json, "body");
   const Json* reference = fields.member("reference");
   if (reference && !reference->is_boolean()) fields.wrong("reference", "true or false is expected");
-  if (auto done = fields.done(); !done) return done.error();
-  auto set = call.backend.store.write([&](store::Writing& tx) {
+  TRY(fields.done());
+  TRY(call.backend.store.write([&](store::Writing& tx) {
     return store::set_reference(tx, call.text("id"), reference->get<bool>(), call.caller.name,
                                 call.backend.now_utc_us());
-  });
-  if (!set) return set.error();
+  }));
   return references_response(call);
 }
 
@@ -129,11 +119,10 @@ Json tips_json(const trial::Path& path) {
 }
 
 Result<Json> palpated(Backend& backend, const trial::Signals& signals, const std::string& case_id) {
-  auto facts = jobs::case_facts(backend.store, backend.objects, case_id);
-  if (!facts) return facts.error();
+  auto facts = TRY(jobs::case_facts(backend.store, backend.objects, case_id));
   const trial::Path path = signals.path(kPoints);
   Json depths = Json::array();
-  for (const math::Vec3& tip : path.tip_m) depths.push_back(facts->definition.tract.depth_of(tip));
+  for (const math::Vec3& tip : path.tip_m) depths.push_back(facts.definition.tract.depth_of(tip));
   return Json{{"t_s", path.t_s},
               {"depth_m", depths},
               {"force_N", path.force_N},
@@ -143,25 +132,20 @@ Result<Json> palpated(Backend& backend, const trial::Signals& signals, const std
 /// The way of a trial that is offered as an example on the case of this one.
 Result<http::Response> reference_way(const Call& call) {
   const std::string& id = call.text("reference");
-  auto record =
+  auto record = TRY(
       call.backend.store.read([&](store::Reading& tx) -> Result<std::optional<store::TrialRecord>> {
-        auto offered = store::references_for(tx, call.text("id"));
-        if (!offered) return offered.error();
-        for (const auto& one : *offered)
+        auto offered = TRY(store::references_for(tx, call.text("id")));
+        for (const auto& one : offered)
           if (one.trial_id == id) return store::trial_of(tx, id);
         return std::optional<store::TrialRecord>();
-      });
-  if (!record) return record.error();
-  if (!*record)
-    return Error{Errc::not_found, "no such trial is offered as an example on this case"};
-  auto signals = signals_of(call.backend, id);
-  if (!signals) return signals.error();
-  if ((*signals)->rig() == trial::Rig::palpation) {
-    auto way = palpated(call.backend, **signals, (*record)->summary.case_id);
-    if (!way) return way.error();
-    return json_response(*way);
+      }));
+  if (!record) return Error{Errc::not_found, "no such trial is offered as an example on this case"};
+  auto signals = TRY(signals_of(call.backend, id));
+  if (signals->rig() == trial::Rig::palpation) {
+    auto way = TRY(palpated(call.backend, *signals, record->summary.case_id));
+    return json_response(way);
   }
-  const auto curve = (*signals)->force_against_depth(kPoints);
+  const auto curve = signals->force_against_depth(kPoints);
   return json_response({{"t_s", curve.t_s},
                         {"depth_m", curve.depth_m},
                         {"force_N", curve.force_N},
@@ -238,7 +222,7 @@ std::vector<RouteInfo> comments_routes() {
   RouteInfo way = route("GET", "/references/{reference}", "referenceWay", "The way of such a trial",
                         "", "ReferenceWay", reference_way);
   way.parameters.push_back(path_text("reference", "the example's id"));
-  // TrialFilter ever it is: it is offered to all who did a trial on its case.
+  // Whosever it is: it is offered to all who did a trial on its case.
   way.ends = {
       {"reference", Object::trial, {Role::admin, Role::director, Role::faculty, Role::trainee}}};
   return {list,

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "db/store/cases/cases.hpp"
 #include "db/store/operations/jobs.hpp"
 #include "db/store/people/accounts.hpp"
@@ -46,12 +47,11 @@ core::Result<void> check_bytes(const store::PartialFiles& partials, const store:
   if (partials.size_of(upload.trial_id) != upload.size_bytes)
     return core::Error{core::Errc::corrupt,
                        fmt::format("trial file: {} bytes were announced", upload.size_bytes)};
-  auto sha256 = store::file_sha256(path);
-  if (!sha256) return sha256.error();
-  if (*sha256 != upload.sha256)
+  auto sha256 = TRY(store::file_sha256(path));
+  if (sha256 != upload.sha256)
     return core::Error{core::Errc::corrupt,
                        fmt::format("sha256: the {} bytes received have {}, announced was {}",
-                                   upload.size_bytes, *sha256, upload.sha256)};
+                                   upload.size_bytes, sha256, upload.sha256)};
   return {};
 }
 
@@ -62,12 +62,10 @@ struct Promised {
 };
 
 core::Result<Promised> promised(store::Reading& tx, const store::Upload& upload) {
-  auto slot = store::slot_of_trial(tx, upload.trial_id);
-  if (!slot) return slot.error();
-  auto known = store::case_of(tx, upload.case_id);
-  if (!known) return known.error();
-  core::require(known->has_value(), "an upload has its case");
-  return Promised{*slot ? (*slot)->id : upload.case_id, (*known)->kind};
+  auto slot = TRY(store::slot_of_trial(tx, upload.trial_id));
+  auto known = TRY(store::case_of(tx, upload.case_id));
+  core::require(known.has_value(), "an upload has its case");
+  return Promised{slot ? slot->id : upload.case_id, known->kind};
 }
 
 core::Result<void> check_identity(const store::Upload& upload, const Promised& promised,
@@ -138,9 +136,8 @@ core::Result<store::TrialRecord> checked_trial(Backend& backend, const store::Up
   auto trial = trial::scan_trial(path, [&](const trial::Block& part) { tally.add(part); },
                                  {.max_samples = kMaxTrialSamples, .max_bytes = kMaxTrial_bytes});
   if (!trial) return without_path(trial.error(), path);
-  auto expected = backend.store.read([&](store::Reading& tx) { return promised(tx, upload); });
-  if (!expected) return expected.error();
-  if (auto fine = check_identity(upload, *expected, *trial, tally); !fine) return fine.error();
+  auto expected = TRY(backend.store.read([&](store::Reading& tx) { return promised(tx, upload); }));
+  TRY(check_identity(upload, expected, *trial, tally));
   return record_of(upload, *trial, tally);
 }
 
@@ -152,16 +149,12 @@ core::Result<void> store_trial(Backend& backend, const store::Upload& upload,
     return linked;
   const std::int64_t now = backend.now_utc_us();
   return backend.store.write([&](store::Writing& tx) -> core::Result<void> {
-    if (auto done = store::add_object(tx, upload.sha256, upload.size_bytes, now); !done)
-      return done;
-    if (auto done = store::add_trial(tx, trial, now); !done) return done;
-    if (auto done = store::complete_upload(tx, upload.trial_id); !done) return done;
-    auto station = store::station_name(tx, upload.station_id);
-    if (!station) return station.error();
-    if (auto done = store::record_for_slot(tx, upload.trial_id, trial.complete, {*station, now},
-                                           tool_of(trial));
-        !done)
-      return done;
+    TRY(store::add_object(tx, upload.sha256, upload.size_bytes, now));
+    TRY(store::add_trial(tx, trial, now));
+    TRY(store::complete_upload(tx, upload.trial_id));
+    auto station = TRY(store::station_name(tx, upload.station_id));
+    TRY(store::record_for_slot(tx, upload.trial_id, trial.complete, {station, now},
+                               tool_of(trial)));
     return store::queue_job(tx, "metrics", upload.trial_id, now);
   });
 }

@@ -10,6 +10,7 @@
 #include <span>
 
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "server/api/trials/uploads.hpp"
 #include "trial/trial_file.hpp"
 
@@ -100,9 +101,8 @@ Result<void> write_samples_npy(const std::filesystem::path& trial_file, double r
     if (rate_Hz > 0.0) next_s = (std::floor(sample.t_s * rate_Hz + 1e-9) + 1.0) / rate_Hz;
     array.add(row_of(sample));
   };
-  auto read = trial::scan_trial(trial_file, [&](const trial::Block& block) { block.each(take); },
-                                {.max_samples = kMaxTrialSamples, .max_bytes = kMaxTrial_bytes});
-  if (!read) return read.error();
+  TRY(trial::scan_trial(trial_file, [&](const trial::Block& block) { block.each(take); },
+                        {.max_samples = kMaxTrialSamples, .max_bytes = kMaxTrial_bytes}));
   if (array.is_full())
     return Error{Errc::too_large, "the array is over 512 MiB: ask for fewer samples a second"};
   if (array.finish()) return {};

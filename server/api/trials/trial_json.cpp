@@ -26,13 +26,7 @@ core::Json scores_json(const std::vector<store::ScoreRecord>& scores) {
   for (const store::ScoreRecord& score : scores) {
     const auto info = std::ranges::find(known, score.metric_id, &metrics::MetricInfo::id);
     if (info == known.end()) continue;  // scored by another version
-    out.push_back({{"id", info->id},
-                   {"label", info->label},
-                   {"unit", info->unit},
-                   {"value", score.value ? core::Json(*score.value) : core::Json()},
-                   {"note", score.note},
-                   {"definition", info->definition},
-                   {"source", info->source}});
+    out.push_back(metrics::to_json(*info, {score.value, score.note}));
   }
   return out;
 }

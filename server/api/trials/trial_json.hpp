@@ -6,6 +6,7 @@
 #include "db/store/trials/trials.hpp"
 #include "scenarios/scenario.hpp"
 #include "server/api/route.hpp"
+#include "server/api/schema.hpp"
 #include "volume/tract.hpp"
 
 namespace tractus::api {
@@ -35,6 +36,9 @@ core::Json trial_json(const store::TrialRecord& trial,
 std::vector<NamedSchema> trial_schemas();
 /// TrialSignals, Envelope, TrialPath.
 std::vector<NamedSchema> curve_schemas();
+
+/// Fields of a metric as metrics::to_json writes it.
+std::vector<schema::Field> metric_fields();
 
 /// The last answer of a trial's events: {"breach", "wall", "confidence", "depth_m"}, or null.
 core::Json answer_json(const core::Json& events);

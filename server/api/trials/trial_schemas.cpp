@@ -91,16 +91,28 @@ core::Json scenario_schema() {
 }
 
 core::Json score_schema() {
-  return object({{"id", text("never changes")},
-                 {"label", text("for people")},
-                 {"unit", text("as printed: N, s, 1")},
-                 {"value", nullable(number("its unit", "null where the score does not exist"))},
-                 {"note", text("why there is no value, or what is to be known about it")},
-                 {"definition", text("one sentence")},
-                 {"source", text("where it is from")}});
+  auto fields = metric_fields();
+  fields.emplace_back("value",
+                      nullable(number("its unit", "null when this trial has no such score")));
+  fields.emplace_back("note", text("reason for a missing value, or a remark; else empty"));
+  return object(fields);
 }
 
 }  // namespace
+
+std::vector<schema::Field> metric_fields() {
+  return {{"id", text("identifier of the metric; never changes")},
+          {"label", text("name of the metric on pages")},
+          {"unit", text("unit as printed: N, s, 1")},
+          {"definition", text("definition in one sentence")},
+          {"source", text("paper and table, or own definition")},
+          {"shown_as", one_of({"number", "share", "right_or_wrong"},
+                              "how pages write the value: with its unit, as a percentage, as right "
+                              "(1) or wrong (0)")},
+          {"cell", nullable(object({{"row", text("quantity: Transverse force")},
+                                    {"symbol", text("symbol of the quantity: F_xy")},
+                                    {"column", text("statistic: Mean, SD, Max")}}))}};
+}
 
 std::vector<NamedSchema> trial_schemas() {
   return {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/try.hpp"
+
 namespace tractus::api {
 
 std::shared_ptr<const trial::Signals> TrialViews::known(const std::string& trial_id) {
@@ -32,10 +34,9 @@ core::Result<std::shared_ptr<const trial::Signals>> TrialViews::of(const std::st
   if (auto there = known(trial_id)) return there;
   const std::lock_guard one(decoding_);
   if (auto there = known(trial_id)) return there;
-  auto decoded = decode();
-  if (!decoded) return decoded.error();
-  const std::size_t bytes = decoded->size() * trial::Signals::kBytesPerSample;
-  auto signals = std::make_shared<const trial::Signals>(std::move(*decoded));
+  auto decoded = TRY(decode());
+  const std::size_t bytes = decoded.size() * trial::Signals::kBytesPerSample;
+  auto signals = std::make_shared<const trial::Signals>(std::move(decoded));
   keep({trial_id, signals, bytes});
   return signals;
 }

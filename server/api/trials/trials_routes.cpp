@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/try.hpp"
 #include "server/api/backend.hpp"
 #include "server/api/schema.hpp"
 #include "server/api/trials/trial_json.hpp"
@@ -24,14 +25,13 @@ core::Result<http::Response> list_trials(const Call& call) {
   store::TrialFilter whose;
   if (call.of == Scope::cohort) whose.taught_by = call.caller.id;
   if (call.of == Scope::own) whose.seen_by = call.caller.id;
-  auto found = call.backend.store.read([&](store::Reading& tx) {
+  auto found = TRY(call.backend.store.read([&](store::Reading& tx) {
     return store::trials_before(tx, call.integer("before_utc_us"), limit + 1, whose);
-  });
-  if (!found) return found.error();
-  const bool more = found->size() > static_cast<std::size_t>(limit);
-  if (more) found->pop_back();
+  }));
+  const bool more = found.size() > static_cast<std::size_t>(limit);
+  if (more) found.pop_back();
   core::Json list = core::Json::array();
-  for (const store::TrialSummary& trial : *found) list.push_back(summary_json(trial));
+  for (const store::TrialSummary& trial : found) list.push_back(summary_json(trial));
   return json_response({{"trials", list}, {"more", more}});
 }
 
@@ -43,12 +43,10 @@ struct Found {
 core::Result<Found> find_trial(const Call& call) {
   const std::string& id = call.text("id");
   return call.backend.store.read([&](store::Reading& tx) -> core::Result<Found> {
-    auto trial = store::trial_of(tx, id);
-    if (!trial) return trial.error();
-    if (!*trial) return core::Error{core::Errc::not_found, "no trial " + id.substr(0, 32)};
-    auto scores = store::scores_of(tx, id);
-    if (!scores) return scores.error();
-    return Found{std::move(**trial), std::move(*scores)};
+    auto trial = TRY(store::trial_of(tx, id));
+    if (!trial) return core::Error{core::Errc::not_found, "no trial " + id.substr(0, 32)};
+    auto scores = TRY(store::scores_of(tx, id));
+    return Found{std::move(*trial), std::move(scores)};
   });
 }
 
@@ -66,49 +64,38 @@ core::Json truth_json(const std::optional<cases::Truth>& truth) {
 core::Result<std::optional<StudyPlace>> study_place(Backend& backend, const std::string& trial_id) {
   using Place = std::optional<StudyPlace>;
   return backend.store.read([&](store::Reading& tx) -> core::Result<Place> {
-    auto slot = store::slot_of_trial(tx, trial_id);
-    if (!slot) return slot.error();
-    if (!*slot) return Place();
-    auto title = store::series_title(tx, (*slot)->study_id);
-    if (!title) return title.error();
-    auto trial = store::study_trial_of(tx, trial_id);
-    if (!trial) return trial.error();
-    return Place(
-        StudyPlace{std::move(*title), std::move(**slot), (*trial)->state, (*trial)->reason});
+    auto slot = TRY(store::slot_of_trial(tx, trial_id));
+    if (!slot) return Place();
+    auto title = TRY(store::series_title(tx, slot->study_id));
+    auto trial = TRY(store::study_trial_of(tx, trial_id));
+    return Place(StudyPlace{std::move(title), std::move(*slot), trial->state, trial->reason});
   });
 }
 
 core::Result<TrialFacts> trial_facts(Backend& backend, const store::TrialRecord& trial) {
-  auto header = header_of(trial);
-  if (!header) return header.error();
+  auto header = TRY(header_of(trial));
   const std::string& case_id = trial.summary.case_id;
   TrialFacts out;
-  auto study = study_place(backend, trial.summary.id);
-  if (!study) return study.error();
-  out.study = std::move(*study);
-  auto clock = backend.store.read(
-      [&](store::Reading& tx) { return store::trial_clock_of(tx, trial.summary.id); });
-  if (!clock) return clock.error();
-  out.clock = *clock;
-  if (header->rig == trial::Rig::probing) {
-    auto scenario = jobs::scenario_of(backend.store, backend.objects, case_id);
-    if (!scenario) return scenario.error();
-    out.scenario = std::move(*scenario);
+  auto study = TRY(study_place(backend, trial.summary.id));
+  out.study = std::move(study);
+  auto clock = TRY(backend.store.read(
+      [&](store::Reading& tx) { return store::trial_clock_of(tx, trial.summary.id); }));
+  out.clock = clock;
+  if (header.rig == trial::Rig::probing) {
+    auto scenario = TRY(jobs::scenario_of(backend.store, backend.objects, case_id));
+    out.scenario = std::move(scenario);
     return out;
   }
-  auto facts = jobs::facts_of_trial(backend.store, backend.objects, case_id, *header);
-  if (!facts) return facts.error();
-  out.tract = facts->definition.tract;
-  out.truth = truth_json(facts->truth);
+  auto facts = TRY(jobs::facts_of_trial(backend.store, backend.objects, case_id, header));
+  out.tract = facts.definition.tract;
+  out.truth = truth_json(facts.truth);
   return out;
 }
 
 core::Result<http::Response> one_trial(const Call& call) {
-  auto found = find_trial(call);
-  if (!found) return found.error();
-  auto facts = trial_facts(call.backend, found->trial);
-  if (!facts) return facts.error();
-  return json_response(trial_json(found->trial, found->scores, *facts));
+  auto found = TRY(find_trial(call));
+  auto facts = TRY(trial_facts(call.backend, found.trial));
+  return json_response(trial_json(found.trial, found.scores, facts));
 }
 
 std::vector<std::string> channels_of(const Call& call, const trial::Signals& signals) {
@@ -124,40 +111,35 @@ std::vector<std::string> channels_of(const Call& call, const trial::Signals& sig
 }
 
 core::Result<http::Response> trial_signals(const Call& call) {
-  auto signals = signals_of(call.backend, call.text("id"));
-  if (!signals) return signals.error();
-  const auto channels = channels_of(call, **signals);
+  auto signals = TRY(signals_of(call.backend, call.text("id")));
+  const auto channels = channels_of(call, *signals);
   if (channels.size() > trial::kChannels.size())
     return core::Error{core::Errc::bad_input, "channels: each may be asked for once"};
-  auto view = (*signals)->view(channels, call.number("from_s"), call.number("to_s"),
-                               static_cast<std::size_t>(call.integer("points")));
-  if (!view) return view.error();
+  auto view = TRY(signals->view(channels, call.number("from_s"), call.number("to_s"),
+                                static_cast<std::size_t>(call.integer("points"))));
   core::Json shown = core::Json::object();
-  for (const auto& [name, envelope] : view->channels)
+  for (const auto& [name, envelope] : view.channels)
     shown[name] = {{"min", envelope.min}, {"max", envelope.max}};
-  return json_response({{"t_s", view->t_s},
+  return json_response({{"t_s", view.t_s},
                         {"channels", shown},
-                        {"from_s", view->from_s},
-                        {"to_s", view->to_s},
-                        {"samples_per_point", view->samples_per_point}});
+                        {"from_s", view.from_s},
+                        {"to_s", view.to_s},
+                        {"samples_per_point", view.samples_per_point}});
 }
 
 core::Result<http::Response> trial_path(const Call& call) {
-  auto signals = signals_of(call.backend, call.text("id"));
-  if (!signals) return signals.error();
-  const trial::Path path = (*signals)->path(static_cast<std::size_t>(call.integer("points")));
+  auto signals = TRY(signals_of(call.backend, call.text("id")));
+  const trial::Path path = signals->path(static_cast<std::size_t>(call.integer("points")));
   core::Json tips = core::Json::array();
   for (const math::Vec3& tip : path.tip_m) tips.push_back({tip.x(), tip.y(), tip.z()});
   return json_response({{"t_s", path.t_s}, {"tip_m", tips}, {"force_N", path.force_N}});
 }
 
 core::Result<http::Response> trial_force_depth(const Call& call) {
-  auto signals = signals_of(call.backend, call.text("id"));
-  if (!signals) return signals.error();
-  if ((*signals)->rig() != trial::Rig::probing)
+  auto signals = TRY(signals_of(call.backend, call.text("id")));
+  if (signals->rig() != trial::Rig::probing)
     return core::Error{core::Errc::not_found, "force against depth: not a probing trial"};
-  const auto curve =
-      (*signals)->force_against_depth(static_cast<std::size_t>(call.integer("points")));
+  const auto curve = signals->force_against_depth(static_cast<std::size_t>(call.integer("points")));
   core::Json modes = core::Json::array();
   for (const trial::ProbingMode mode : curve.mode) modes.push_back(trial::name(mode));
   return json_response({{"t_s", curve.t_s},

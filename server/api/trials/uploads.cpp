@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/try.hpp"
 #include "db/store/cases/cases.hpp"
 #include "db/store/studies/study_slots.hpp"
 #include "db/store/trials/uploads.hpp"
@@ -40,9 +41,8 @@ namespace {
 
 core::Result<void> check_room_in(store::Reading& tx, const Backend& backend,
                                  std::uint64_t size_bytes) {
-  auto open = store::open_uploads_since(tx, backend.now_utc_us() - kReserved_us);
-  if (!open) return open.error();
-  for (const store::Upload& upload : *open) {
+  auto open = TRY(store::open_uploads_since(tx, backend.now_utc_us() - kReserved_us));
+  for (const store::Upload& upload : open) {
     const std::uint64_t here = backend.partials.size_of(upload.trial_id);
     size_bytes += upload.size_bytes - std::min(here, upload.size_bytes);
   }
@@ -73,10 +73,9 @@ core::Result<store::Upload> own_upload(Backend& backend, const Caller& station,
                                        const std::string& trial_id) {
   if (!core::is_id(trial_id)) return unknown(trial_id);
   auto upload =
-      backend.store.read([&](store::Reading& tx) { return store::upload_of(tx, trial_id); });
-  if (!upload) return upload.error();
-  if (!*upload || (*upload)->station_id != station.id) return unknown(trial_id);
-  return std::move(**upload);
+      TRY(backend.store.read([&](store::Reading& tx) { return store::upload_of(tx, trial_id); }));
+  if (!upload || upload->station_id != station.id) return unknown(trial_id);
+  return std::move(*upload);
 }
 
 /// The case that an announcement means: one by its id, or that of a study's slot, which is all that
@@ -86,35 +85,30 @@ core::Result<std::string> case_meant(store::Reading& tx, const Caller& station,
                                      std::optional<store::Slot>& slot) {
   const core::Error absent{core::Errc::not_found,
                            "case_id: no case " + announced + " on this server"};
-  auto found = store::slot_of(tx, announced);
-  if (!found) return found.error();
-  slot = std::move(*found);
+  auto found = TRY(store::slot_of(tx, announced));
+  slot = std::move(found);
   if (slot) {
-    auto own = store::was_handed_to(tx, *slot, station.name);
-    if (!own) return own.error();
-    return *own ? core::Result<std::string>(slot->case_id) : absent;
+    auto own = TRY(store::was_handed_to(tx, *slot, station.name));
+    return own ? core::Result<std::string>(slot->case_id) : absent;
   }
-  auto known = store::case_of(tx, announced);
-  if (!known) return known.error();
-  return *known ? core::Result<std::string>(announced) : absent;
+  auto known = TRY(store::case_of(tx, announced));
+  return known ? core::Result<std::string>(announced) : absent;
 }
 
 core::Result<void> insert(store::Writing& tx, const Backend& backend, const Caller& station,
                           const std::string& trial_id, const wire::UploadAnnouncement& announced) {
-  if (auto room = check_room_in(tx, backend, announced.size_bytes); !room) return room.error();
+  TRY(check_room_in(tx, backend, announced.size_bytes));
   const std::int64_t now_utc_us = backend.now_utc_us();
   std::optional<store::Slot> slot;
-  auto case_id = case_meant(tx, station, announced.case_id, slot);
-  if (!case_id) return case_id.error();
-  auto open = store::open_upload_count(tx, station.id);
-  if (!open) return open.error();
-  if (*open >= kMaxOpenUploads)
+  auto case_id = TRY(case_meant(tx, station, announced.case_id, slot));
+  auto open = TRY(store::open_upload_count(tx, station.id));
+  if (open >= kMaxOpenUploads)
     return core::Error{
         core::Errc::unavailable,
-        fmt::format("{} uploads of this station are unfinished: finish some first", *open)};
-  const store::Upload upload{trial_id,         station.id, *case_id, announced.size_bytes,
+        fmt::format("{} uploads of this station are unfinished: finish some first", open)};
+  const store::Upload upload{trial_id,         station.id, case_id, announced.size_bytes,
                              announced.sha256, "receiving"};
-  if (auto added = store::add_upload(tx, upload, now_utc_us); !added) return added.error();
+  TRY(store::add_upload(tx, upload, now_utc_us));
   return slot ? store::announce_for_slot(tx, trial_id, slot->id, now_utc_us) : core::Result<void>();
 }
 
@@ -128,9 +122,8 @@ core::Result<std::optional<store::Upload>> announced_before(
   if (!*upload) return upload;
   const store::Upload& known = **upload;
   if (known.station_id != station.id) return unknown(trial_id);
-  auto slot = store::slot_of_trial(tx, trial_id);
-  if (!slot) return slot.error();
-  const std::string& case_id = *slot ? (*slot)->id : known.case_id;
+  auto slot = TRY(store::slot_of_trial(tx, trial_id));
+  const std::string& case_id = slot ? slot->id : known.case_id;
   if (case_id == announced.case_id && known.size_bytes == announced.size_bytes &&
       known.sha256 == announced.sha256)
     return upload;
@@ -154,32 +147,26 @@ core::Result<wire::UploadState> announce_upload(Backend& backend, const Caller& 
     return core::Error{core::Errc::too_large,
                        fmt::format("size_bytes: {} bytes, at most {} are taken",
                                    announced.size_bytes, kMaxTrial_bytes)};
-  const auto held = hold_upload(backend, trial_id);
-  if (!held) return held.error();
+  const auto held = TRY(hold_upload(backend, trial_id));
   // What is known already changes nothing, and is no row of the audit trail.
-  auto known = backend.store.read(
-      [&](store::Reading& tx) { return announced_before(tx, station, trial_id, announced); });
-  if (!known) return known.error();
-  if (*known) return state_of(backend, **known);
-  auto added = backend.store.write([&](store::Writing& tx) -> core::Result<void> {
-    auto again = announced_before(tx, station, trial_id, announced);
-    if (!again) return again.error();
-    if (*again) return {};
+  auto known = TRY(backend.store.read(
+      [&](store::Reading& tx) { return announced_before(tx, station, trial_id, announced); }));
+  if (known) return state_of(backend, *known);
+  TRY(backend.store.write([&](store::Writing& tx) -> core::Result<void> {
+    auto again = TRY(announced_before(tx, station, trial_id, announced));
+    if (again) return {};
     return insert(tx, backend, station, trial_id, announced);
-  });
-  if (!added) return added.error();
+  }));
   return wire::UploadState{backend.partials.size_of(trial_id), "receiving"};
 }
 
 core::Result<wire::UploadState> upload_state(Backend& backend, const Caller& station,
                                              const std::string& trial_id) {
-  auto first = own_upload(backend, station, trial_id);
-  if (!first) return first.error();
+  TRY(own_upload(backend, station, trial_id));
   const auto held = hold_upload(backend, trial_id);  // no piece is half on its way
   if (!held) return held.error();
-  auto upload = own_upload(backend, station, trial_id);
-  if (!upload) return upload.error();
-  return state_of(backend, *upload);
+  auto upload = TRY(own_upload(backend, station, trial_id));
+  return state_of(backend, upload);
 }
 
 core::Result<Appended> append_upload(Backend& backend, const Caller& station,
@@ -188,41 +175,36 @@ core::Result<Appended> append_upload(Backend& backend, const Caller& station,
   auto first =
       own_upload(backend, station, trial_id);  // before the lock: others' ids wait for nothing
   if (!first) return first.error();
-  const auto held = hold_upload(backend, trial_id);
-  if (!held) return held.error();
-  auto upload = own_upload(backend, station, trial_id);
-  if (!upload) return upload.error();
-  if (upload->state != "receiving")
+  const auto held = TRY(hold_upload(backend, trial_id));
+  auto upload = TRY(own_upload(backend, station, trial_id));
+  if (upload.state != "receiving")
     return core::Error{core::Errc::conflict, fmt::format("trial {} is complete", trial_id)};
   const std::uint64_t there = backend.partials.size_of(trial_id);
-  if (offset_bytes != there) return Appended{{there, upload->state}, false};
+  if (offset_bytes != there) return Appended{{there, upload.state}, false};
   if (bytes.empty()) return core::Error{core::Errc::bad_input, "the piece is empty"};
-  if (bytes.size() > upload->size_bytes - std::min(there, upload->size_bytes))
+  if (bytes.size() > upload.size_bytes - std::min(there, upload.size_bytes))
     return core::Error{core::Errc::out_of_range,
                        fmt::format("{} bytes at {} go beyond the {} announced", bytes.size(),
-                                   offset_bytes, upload->size_bytes)};
+                                   offset_bytes, upload.size_bytes)};
   if (core::crc32c(bytes) != crc32c)
     return core::Error{core::Errc::corrupt,
                        fmt::format("X-Crc32c: the body's checksum is {:08x}, not {:08x}",
                                    core::crc32c(bytes), crc32c)};
-  if (auto done = backend.partials.append(trial_id, there, bytes); !done) return done.error();
-  return Appended{{there + bytes.size(), upload->state}, true};
+  TRY(backend.partials.append(trial_id, there, bytes));
+  return Appended{{there + bytes.size(), upload.state}, true};
 }
 
 core::Result<wire::UploadState> commit_upload(Backend& backend, const Caller& station,
                                               const std::string& trial_id) {
-  auto first = own_upload(backend, station, trial_id);
-  if (!first) return first.error();
-  const auto held = hold_upload(backend, trial_id);
-  if (!held) return held.error();
-  auto upload = own_upload(backend, station, trial_id);
-  if (!upload) return upload.error();
-  if (upload->state == "complete") return state_of(backend, *upload);
-  if (const std::uint64_t there = backend.partials.size_of(trial_id); there < upload->size_bytes)
+  TRY(own_upload(backend, station, trial_id));
+  const auto held = TRY(hold_upload(backend, trial_id));
+  auto upload = TRY(own_upload(backend, station, trial_id));
+  if (upload.state == "complete") return state_of(backend, upload);
+  if (const std::uint64_t there = backend.partials.size_of(trial_id); there < upload.size_bytes)
     return core::Error{
         core::Errc::conflict,
-        fmt::format("{} of {} bytes are here: send the rest first", there, upload->size_bytes)};
-  auto trial = checked_trial(backend, *upload);
+        fmt::format("{} of {} bytes are here: send the rest first", there, upload.size_bytes)};
+  auto trial = checked_trial(backend, upload);
   if (!trial) {
     const auto code = trial.error().code;
     if (code != core::Errc::corrupt && code != core::Errc::bad_input &&
@@ -231,30 +213,27 @@ core::Result<wire::UploadState> commit_upload(Backend& backend, const Caller& st
     backend.partials.remove(trial_id);  // it begins again
     return trial.error();
   }
-  if (auto stored = store_trial(backend, *upload, *trial); !stored) return stored.error();
+  TRY(store_trial(backend, upload, *trial));
   backend.partials.remove(trial_id);
   backend.work_waits();
-  return wire::UploadState{upload->size_bytes, "complete"};
+  return wire::UploadState{upload.size_bytes, "complete"};
 }
 
 namespace {
 
 /// Under its lock and by what the database says then: another server may be at it.
 core::Result<void> reconcile_one(Backend& backend, const std::string& trial_id) {
-  const auto held = hold_upload(backend, trial_id);
-  if (!held) return held.error();
+  const auto held = TRY(hold_upload(backend, trial_id));
   auto upload =
-      backend.store.read([&](store::Reading& tx) { return store::upload_of(tx, trial_id); });
-  if (!upload) return upload.error();
-  if (*upload && (*upload)->state == "receiving") return backend.partials.flush(trial_id);
+      TRY(backend.store.read([&](store::Reading& tx) { return store::upload_of(tx, trial_id); }));
+  if (upload && upload->state == "receiving") return backend.partials.flush(trial_id);
   return backend.partials.remove(trial_id), core::Result<void>();
 }
 
 }  // namespace
 
 core::Result<void> reconcile_uploads(Backend& backend) {
-  for (const std::string& id : backend.partials.ids())
-    if (auto done = reconcile_one(backend, id); !done) return done;
+  for (const std::string& id : backend.partials.ids()) TRY(reconcile_one(backend, id));
   return {};
 }
 

@@ -1,6 +1,7 @@
 /// A station hands over its trials, in pieces, each acknowledged once it is on the disk.
 #include <charconv>
 
+#include "core/try.hpp"
 #include "db/store/stations/fleet.hpp"
 #include "server/api/backend.hpp"
 #include "server/api/schema.hpp"
@@ -16,11 +17,9 @@ core::Result<http::Response> as_response(const core::Result<wire::UploadState>& 
 }
 
 core::Result<http::Response> announce(const Call& call) {
-  auto json = core::parse_json(call.request.body, "body");
-  if (!json) return json.error();
-  auto announced = wire::UploadAnnouncement::from_json(*json, "body");
-  if (!announced) return announced.error();
-  return as_response(announce_upload(call.backend, call.caller, call.text("trial_id"), *announced));
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  auto announced = TRY(wire::UploadAnnouncement::from_json(json, "body"));
+  return as_response(announce_upload(call.backend, call.caller, call.text("trial_id"), announced));
 }
 
 core::Result<http::Response> state(const Call& call) {
@@ -36,41 +35,36 @@ core::Result<std::uint32_t> checksum(const std::string& text) {
 }
 
 core::Result<http::Response> append(const Call& call) {
-  auto crc32c = checksum(call.text("X-Crc32c"));
-  if (!crc32c) return crc32c.error();
-  auto appended = append_upload(call.backend, call.caller, call.text("trial_id"),
-                                static_cast<std::uint64_t>(call.integer("offset_bytes")), *crc32c,
-                                core::bytes_of(call.request.body));
-  if (!appended) return appended.error();
-  if (appended->taken) return json_response(appended->state.to_json());
+  auto crc32c = TRY(checksum(call.text("X-Crc32c")));
+  auto appended = TRY(append_upload(call.backend, call.caller, call.text("trial_id"),
+                                    static_cast<std::uint64_t>(call.integer("offset_bytes")),
+                                    crc32c, core::bytes_of(call.request.body)));
+  if (appended.taken) return json_response(appended.state.to_json());
   return json_response({{"error", "the upload stands elsewhere: go on from offset_bytes"},
                         {"code", name(core::Errc::conflict)},
-                        {"offset_bytes", appended->state.offset_bytes}},
+                        {"offset_bytes", appended.state.offset_bytes}},
                        409);
 }
 
 /// What a station may add when it commits: how its clock stands.
 core::Result<std::optional<store::TrialClock>> clock_of(const std::string& body) {
   if (body.empty()) return std::optional<store::TrialClock>();
-  auto json = core::parse_json(body, "body");
-  if (!json) return json.error();
-  core::Fields fields(*json, "body");
+  auto json = TRY(core::parse_json(body, "body"));
+  core::Fields fields(json, "body");
   constexpr double kMost_s = 1e10;
   const store::TrialClock clock{fields.number("clock_offset_s", -kMost_s, kMost_s),
                                 fields.number("clock_error_s", 0.0, kMost_s)};
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   return std::optional(clock);
 }
 
 core::Result<http::Response> commit(const Call& call) {
-  auto clock = clock_of(call.request.body);
-  if (!clock) return clock.error();
+  auto clock = TRY(clock_of(call.request.body));
   const std::string& id = call.text("trial_id");
   auto state = commit_upload(call.backend, call.caller, id);
-  if (!state || !*clock) return as_response(state);
-  auto kept = call.backend.store.write(
-      [&](store::Writing& tx) { return store::add_trial_clock(tx, id, **clock); });
-  if (!kept) return kept.error();
+  if (!state || !clock) return as_response(state);
+  TRY(call.backend.store.write(
+      [&](store::Writing& tx) { return store::add_trial_clock(tx, id, *clock); }));
   return as_response(state);
 }
 

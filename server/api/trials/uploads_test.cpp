@@ -2,6 +2,7 @@
 
 #include <fstream>
 
+#include "core/try.hpp"
 #include "db/store/operations/jobs.hpp"
 #include "db/store/trials/trials.hpp"
 #include "server/api/api_test_support.hpp"
@@ -241,7 +242,7 @@ TEST_F(Uploads, ACommitThatFailsAtAnyStepCanBeDoneAgain) {
   for (int n = 1; n < 100; ++n) {
     ASSERT_TRUE(store_.write([](store::Writing& tx) -> core::Result<void> {
       for (const char* table : {"jobs", "trials", "uploads", "objects"})
-        if (auto gone = tx.query(std::string("delete from ") + table); !gone) return gone.error();
+        TRY(tx.query(std::string("delete from ") + table));
       return {};
     }));
     sent(bytes_);

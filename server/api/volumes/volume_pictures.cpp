@@ -6,6 +6,8 @@
 #include <cmath>
 #include <optional>
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace api {
 namespace {
@@ -95,8 +97,7 @@ core::Result<SlicePicture> slice_picture(const volume::VolumeFile& file, Plane p
     return core::Error{core::Errc::out_of_range,
                        fmt::format("at_m: {} is outside the volume, from {} to {}", at_m,
                                    bounds.low_m[axes.normal], bounds.high_m[axes.normal])};
-  auto slab = file.read_box(*box);
-  if (!slab) return slab.error();
+  auto slab = TRY(file.read_box(*box));
   out.pixels.reserve(std::size_t(out.dims[0]) * std::size_t(out.dims[1]));
   constexpr double kSlack = 1e-6;
   for (int row = 0; row < out.dims[1]; ++row)
@@ -109,7 +110,7 @@ core::Result<SlicePicture> slice_picture(const volume::VolumeFile& file, Plane p
         const double i = index[static_cast<Eigen::Index>(a)];
         inside = inside && i >= -kSlack && i <= g.dims[a] - 1 + kSlack;
       }
-      out.pixels.push_back(inside ? grey(slab->value_at(at), window) : '\0');
+      out.pixels.push_back(inside ? grey(slab.value_at(at), window) : '\0');
     }
   return out;
 }
@@ -126,15 +127,15 @@ core::Result<Preview> whole_preview(const volume::VolumeFile& file, int max_side
   out.geometry.spacing_m = g.spacing_m * step;
   out.geometry.origin_m = g.position_of(Vec3::Constant(0.5 * (step - 1)));
   for (int k = 0; k < g.dims[2]; k += thick) {
-    auto slab = file.read_box({{0, 0, k}, {g.dims[0], g.dims[1], std::min(k + thick, g.dims[2])}});
-    if (!slab) return slab.error();
-    std::vector<float> shares(slab->counts.size());
-    std::ranges::transform(slab->counts, shares.begin(), [&](std::uint16_t count) {
-      const double value = slab->intercept + slab->slope * count;
+    auto slab =
+        TRY(file.read_box({{0, 0, k}, {g.dims[0], g.dims[1], std::min(k + thick, g.dims[2])}}));
+    std::vector<float> shares(slab.counts.size());
+    std::ranges::transform(slab.counts, shares.begin(), [&](std::uint16_t count) {
+      const double value = slab.intercept + slab.slope * count;
       return static_cast<float>(
           std::clamp((value - window.low) / (window.high - window.low), 0.0, 1.0));
     });
-    out.opacity += averaged(*slab, shares, step).opacity;
+    out.opacity += averaged(slab, shares, step).opacity;
   }
   return out;
 }

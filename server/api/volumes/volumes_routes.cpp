@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "db/store/cases/cases.hpp"
 #include "db/store/volumes/volumes.hpp"
 #include "server/api/backend.hpp"
@@ -36,73 +37,65 @@ Json volume_json(const store::VolumeRecord& v) {
 }
 
 Result<store::VolumeRecord> volume_of_call(const Call& call) {
-  auto known = call.backend.store.read(
-      [&](store::Reading& tx) { return store::volume_of(tx, call.text("id")); });
-  if (!known) return known.error();
-  if (!*known) return Error{Errc::not_found, "there is no volume " + call.text("id").substr(0, 64)};
-  return **known;
+  auto known = TRY(call.backend.store.read(
+      [&](store::Reading& tx) { return store::volume_of(tx, call.text("id")); }));
+  if (!known) return Error{Errc::not_found, "there is no volume " + call.text("id").substr(0, 64)};
+  return *known;
 }
 
 /// Who decides looks at what is held, and so does who brought it; everybody else sees released
 /// ones.
 Result<volume::VolumeFile> pictured(const Call& call) {
-  auto v = volume_of_call(call);
-  if (!v) return v.error();
+  auto v = TRY(volume_of_call(call));
   const bool decides = call.caller.role == Role::admin || call.caller.role == Role::director;
-  if (v->state == "refused")
+  if (v.state == "refused")
     return Error{Errc::conflict, "this volume was refused: its voxels are no longer here"};
-  if (v->state == "held" && !decides && call.caller.id != v->made_by_id)
+  if (v.state == "held" && !decides && call.caller.id != v.made_by_id)
     return Error{Errc::forbidden, "this volume is held until somebody has looked at it"};
-  return volume::VolumeFile::open(call.backend.objects.path_of(v->sha256));
+  return volume::VolumeFile::open(call.backend.objects.path_of(v.sha256));
 }
 
 Result<http::Response> list_volumes(const Call& call) {
-  auto known = call.backend.store.read([](store::Reading& tx) { return store::all_volumes(tx); });
-  if (!known) return known.error();
+  auto known =
+      TRY(call.backend.store.read([](store::Reading& tx) { return store::all_volumes(tx); }));
   Json list = Json::array();
-  for (const auto& v : *known) list.push_back(volume_json(v));
+  for (const auto& v : known) list.push_back(volume_json(v));
   return json_response({{"volumes", list}});
 }
 
 Result<http::Response> one_volume(const Call& call) {
-  auto v = volume_of_call(call);
-  if (!v) return v.error();
-  return json_response(volume_json(*v));
+  auto v = TRY(volume_of_call(call));
+  return json_response(volume_json(v));
 }
 
 Result<http::Response> add(const Call& call) {
-  auto taken = take_in(call);
-  if (!taken) return taken.error();
+  auto taken = TRY(take_in(call));
   store::VolumeRecord v;
   v.id = core::new_id();
   v.name = call.text("name").substr(0, kMaxName);
   v.source = call.text("source").substr(0, kMaxSource);
-  v.sha256 = taken->sha256;
-  v.size_bytes = taken->size_bytes;
-  v.facts = taken->facts.dump();
-  v.report = taken->report.dump();
+  v.sha256 = taken.sha256;
+  v.size_bytes = taken.size_bytes;
+  v.facts = taken.facts.dump();
+  v.report = taken.report.dump();
   v.made_utc_us = call.backend.now_utc_us();
   v.made_by = call.caller.name;
   v.made_by_id = call.caller.id;
-  auto added = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
-    if (auto noted = store::add_object(tx, v.sha256, v.size_bytes, v.made_utc_us); !noted)
-      return noted;
+  TRY(call.backend.store.write([&](store::Writing& tx) -> Result<void> {
+    TRY(store::add_object(tx, v.sha256, v.size_bytes, v.made_utc_us));
     return store::add_volume(tx, v);
-  });
-  if (!added) return added.error();
+  }));
   return json_response(volume_json(v), 201);
 }
 
 Result<http::Response> decided(const Call& call, const store::Decision& decision) {
   std::string to_remove;
-  auto done = call.backend.store.write(
+  auto done = TRY(call.backend.store.write(
       [&](store::Writing& tx) -> Result<std::optional<store::VolumeRecord>> {
-        auto gone = store::decide_volume(tx, call.text("id"), decision);
-        if (!gone) return gone.error();
-        to_remove = *gone;
+        auto gone = TRY(store::decide_volume(tx, call.text("id"), decision));
+        to_remove = gone;
         return store::volume_of(tx, call.text("id"));
-      });
-  if (!done) return done.error();
+      }));
   if (!to_remove.empty()) {
     std::error_code failure;
     std::filesystem::remove(call.backend.objects.path_of(to_remove), failure);
@@ -110,33 +103,30 @@ Result<http::Response> decided(const Call& call, const store::Decision& decision
       return Error{Errc::io,
                    "the volume was refused, but its file cannot be removed: " + failure.message()};
   }
-  return json_response(volume_json((*done).value()));
+  return json_response(volume_json(done.value()));
 }
 
 Result<http::Response> release(const Call& call) {
-  auto json = core::parse_json(call.request.body, "body");
-  if (!json) return json.error();
-  core::Fields fields(*json, "body");
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  core::Fields fields(json, "body");
   const Json* looked = fields.member("looked_at");
   if (looked && *looked != Json(true))
     fields.wrong("looked_at", "true is expected: look at its pictures first, no text, no face");
-  if (auto fine = fields.done(); !fine) return fine.error();
+  TRY(fields.done());
   return decided(call, {"released", call.caller.name, "", call.backend.now_utc_us()});
 }
 
 Result<http::Response> refuse(const Call& call) {
-  auto json = core::parse_json(call.request.body, "body");
-  if (!json) return json.error();
-  core::Fields fields(*json, "body");
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  core::Fields fields(json, "body");
   const std::string reason = fields.text("reason", kMaxReason);
-  if (auto fine = fields.done(); !fine) return fine.error();
+  TRY(fields.done());
   return decided(call, {"refused", call.caller.name, reason, call.backend.now_utc_us()});
 }
 
 Result<http::Response> report(const Call& call) {
-  auto v = volume_of_call(call);
-  if (!v) return v.error();
-  return json_response(core::stored_json(v->report));
+  auto v = TRY(volume_of_call(call));
+  return json_response(core::stored_json(v.report));
 }
 
 std::string three(const volume::Vec3& v) { return fmt::format("{},{},{}", v.x(), v.y(), v.z()); }
@@ -161,35 +151,29 @@ Result<http::Response> slice(const Call& call) {
                                           : Plane::sagittal;
   if (axis != "axial" && axis != "coronal" && axis != "sagittal")
     return Error{Errc::bad_input, "axis: axial, coronal or sagittal is expected"};
-  auto window = window_of(call);
-  if (!window) return window.error();
-  auto file = pictured(call);
-  if (!file) return file.error();
-  const Bounds bounds = bounds_of(file->geometry());
+  auto window = TRY(window_of(call));
+  auto file = TRY(pictured(call));
+  const Bounds bounds = bounds_of(file.geometry());
   const int normal = plane == Plane::axial ? 2 : plane == Plane::coronal ? 1 : 0;
   const double at_m =
       call.has("at_m") ? call.number("at_m") : 0.5 * (bounds.low_m[normal] + bounds.high_m[normal]);
   auto picture =
-      slice_picture(*file, plane, at_m, static_cast<int>(call.integer("max_side")), *window);
-  if (!picture) return picture.error();
-  auto response = bytes_response(std::move(picture->pixels));
-  response.with("X-Dims", fmt::format("{},{}", picture->dims[0], picture->dims[1]))
-      .with("X-Spacing-m", fmt::format("{0},{0}", picture->spacing_m))
-      .with("X-Origin-m", three(picture->origin_m))
-      .with("X-Directions", three(picture->along_row) + "," + three(picture->along_column));
+      TRY(slice_picture(file, plane, at_m, static_cast<int>(call.integer("max_side")), window));
+  auto response = bytes_response(std::move(picture.pixels));
+  response.with("X-Dims", fmt::format("{},{}", picture.dims[0], picture.dims[1]))
+      .with("X-Spacing-m", fmt::format("{0},{0}", picture.spacing_m))
+      .with("X-Origin-m", three(picture.origin_m))
+      .with("X-Directions", three(picture.along_row) + "," + three(picture.along_column));
   return response;
 }
 
 Result<http::Response> preview(const Call& call) {
-  auto window = window_of(call);
-  if (!window) return window.error();
-  auto file = pictured(call);
-  if (!file) return file.error();
-  auto block = whole_preview(*file, static_cast<int>(call.integer("max_side")), *window);
-  if (!block) return block.error();
-  const volume::Geometry& g = block->geometry;
+  auto window = TRY(window_of(call));
+  auto file = TRY(pictured(call));
+  auto block = TRY(whole_preview(file, static_cast<int>(call.integer("max_side")), window));
+  const volume::Geometry& g = block.geometry;
   const math::Mat3 rows = g.directions.transpose();  // Eigen stores by column
-  auto response = bytes_response(std::move(block->opacity));
+  auto response = bytes_response(std::move(block.opacity));
   response.with("X-Dims", fmt::format("{},{},{}", g.dims[0], g.dims[1], g.dims[2]))
       .with("X-Spacing-m", three(g.spacing_m))
       .with("X-Origin-m", three(g.origin_m))

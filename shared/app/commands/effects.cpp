@@ -15,10 +15,10 @@ namespace tractus {
 namespace commands {
 namespace {
 using core::Json;
-using ::effects::EffectFacts;
-using ::effects::Expression;
-using ::effects::ExpressionRig;
-using ::effects::Param;
+using tractus::effects::EffectFacts;
+using tractus::effects::Expression;
+using tractus::effects::ExpressionRig;
+using tractus::effects::Param;
 
 struct Options {
   std::string id, rig, file;
@@ -31,7 +31,8 @@ struct Entry {
 };
 
 const ExpressionRig& formulas_of(std::string_view rig) {
-  return rig == "probing" ? ::effects::probing_expressions() : ::effects::palpation_expressions();
+  return rig == "probing" ? tractus::effects::probing_expressions()
+                          : tractus::effects::palpation_expressions();
 }
 
 core::Result<std::vector<Entry>> from_file(const std::string& file) {
@@ -48,8 +49,10 @@ core::Result<std::vector<Entry>> from_file(const std::string& file) {
 core::Result<std::vector<Entry>> chosen(const Options& o) {
   if (!o.file.empty()) return from_file(o.file);
   std::vector<Entry> out;
-  for (const auto& info : ::effects::probing_effects()) out.push_back({"probing", info.facts});
-  for (const auto& info : ::effects::palpation_effects()) out.push_back({"palpation", info.facts});
+  for (const auto& info : tractus::effects::probing_effects())
+    out.push_back({"probing", info.facts});
+  for (const auto& info : tractus::effects::palpation_effects())
+    out.push_back({"palpation", info.facts});
   std::erase_if(out, [&](const Entry& entry) {
     return (!o.rig.empty() && entry.rig != o.rig) || (!o.id.empty() && entry.facts.id != o.id);
   });
@@ -68,13 +71,13 @@ std::string joined(const std::vector<std::string>& words) {
 
 void print(const Entry& entry) {
   const EffectFacts& f = entry.facts;
-  fmt::print("{} ({}, {})\n  {}\n  law     {}\n", f.id, entry.rig, ::effects::name(f.kind),
+  fmt::print("{} ({}, {})\n  {}\n  law     {}\n", f.id, entry.rig, tractus::effects::name(f.kind),
              f.summary, f.equation);
   for (const Param& p : f.params)
     fmt::print("  {}{}  {}: {:g} … {:g}, from {:g}{}\n", p.name,
                p.components > 1 ? fmt::format(" ({})", p.components) : "",
-               fmt::format("[{}] {}", ::effects::unit_of(p), p.meaning), p.low, p.high, p.initial,
-               p.logarithmic ? ", by its logarithm" : "");
+               fmt::format("[{}] {}", tractus::effects::unit_of(p), p.meaning), p.low, p.high,
+               p.initial, p.logarithmic ? ", by its logarithm" : "");
   if (!f.needs.empty()) fmt::print("  needs   {}\n", joined(f.needs));
   if (!f.parents.empty()) fmt::print("  holds   {} as a limit\n", joined(f.parents));
   if (f.free_per_trial) fmt::print("  course  free in each trial\n");

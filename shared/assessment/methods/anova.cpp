@@ -5,6 +5,7 @@
 
 #include "assessment/pictures.hpp"
 #include "assessment/report.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace assessment {
@@ -68,11 +69,9 @@ core::Result<Findings> run_anova(const Analysis& of) {
   if (!of.formula.group.empty())
     return bad_input("(1|" + of.formula.group +
                      ") needs 'rm-anova' or 'lmm': anova knows no subjects");
-  const auto column = single_column(of, "anova");
-  if (!column) return column.error();
-  const auto y = of.table.numbers(of.formula.response);
-  if (!y) return y.error();
-  const auto groups = groups_in_order(of.table, *column, *y);
+  const auto column = TRY(single_column(of, "anova"));
+  const auto y = TRY(of.table.numbers(of.formula.response));
+  const auto groups = groups_in_order(of.table, column, y);
   const auto fit = statistics::one_way(groups);
   if (!fit) return located(of, fit.error());
   const auto [fitted, residuals] = residuals_of(groups, *fit);
@@ -89,7 +88,7 @@ core::Result<Findings> run_anova(const Analysis& of) {
                      {"omega_squared", fit->omega_squared},
                      {"cohen_f", fit->cohen_f}};
   const double none = std::nan("");
-  out["tests"] = Json::array({Test{*column, "F", fit->f, fit->df_between, fit->df_within, fit->p,
+  out["tests"] = Json::array({Test{column, "F", fit->f, fit->df_between, fit->df_within, fit->p,
                                    "omega squared", fit->omega_squared, none, none}
                                   .to_json()});
   out["checks"] = Json::array({normality_check(residuals)});
@@ -98,7 +97,7 @@ core::Result<Findings> run_anova(const Analysis& of) {
   add_companions(groups, out);
   return Findings{
       std::move(out),
-      {group_picture(*column, groups, of.formula.response), residual_picture(fitted, residuals)}};
+      {group_picture(column, groups, of.formula.response), residual_picture(fitted, residuals)}};
 }
 
 }  // namespace

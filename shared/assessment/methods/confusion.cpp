@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "assessment/report.hpp"
+#include "core/try.hpp"
 #include "statistics/distributions/distributions.hpp"
 
 namespace tractus {
@@ -37,19 +38,18 @@ Json matrix_table(const std::vector<std::string>& classes, const statistics::Mat
 }
 
 core::Result<Findings> run_confusion(const Analysis& of) {
-  const auto truth = single_column(of, "confusion");
-  if (!truth) return truth.error();
-  const auto classes = classes_of(of.table, *truth, of.formula.response);
+  const auto truth = TRY(single_column(of, "confusion"));
+  const auto classes = classes_of(of.table, truth, of.formula.response);
   if (classes.size() ==
-      levels_of(of.table, *truth).size() + levels_of(of.table, of.formula.response).size())
+      levels_of(of.table, truth).size() + levels_of(of.table, of.formula.response).size())
     return bad_input(fmt::format("{}: '{}' and '{}' have no label in common, as '{}' and '{}'",
-                                 of.table.name(), *truth, of.formula.response, classes.front(),
+                                 of.table.name(), truth, of.formula.response, classes.front(),
                                  classes.back()));
   if (classes.size() > 50)
     return bad_input(fmt::format("{}: {} classes are too many for a table (at most 50)",
                                  of.table.name(), classes.size()));
   statistics::Matrix counts = statistics::Matrix::Zero(std::ssize(classes), std::ssize(classes));
-  const auto was = places_of(of.table, *truth, classes);
+  const auto was = places_of(of.table, truth, classes);
   const auto said = places_of(of.table, of.formula.response, classes);
   for (std::size_t i = 0; i < was.size(); ++i)
     counts(static_cast<Eigen::Index>(was[i]), static_cast<Eigen::Index>(said[i])) += 1.0;

@@ -5,6 +5,7 @@
 
 #include "assessment/pictures.hpp"
 #include "assessment/report.hpp"
+#include "core/try.hpp"
 #include "statistics/summary/modified_z.hpp"
 #include "statistics/summary/shapiro_wilk.hpp"
 #include "statistics/summary/summary.hpp"
@@ -32,28 +33,26 @@ Json row(const std::string& name, const Vector& values) {
 }
 
 core::Result<Findings> run_describe(const Analysis& of) {
-  const auto y = of.table.numbers(of.formula.response);
-  if (!y) return y.error();
-  statistics::Groups groups{{"all"}, {*y}};
+  const auto y = TRY(of.table.numbers(of.formula.response));
+  statistics::Groups groups{{"all"}, {y}};
   std::string column = "all";
   if (!of.formula.terms.empty()) {
-    const auto named = single_column(of, "describe");
-    if (!named) return named.error();
-    column = *named;
-    groups = groups_in_order(of.table, column, *y);
+    const auto named = TRY(single_column(of, "describe"));
+    column = named;
+    groups = groups_in_order(of.table, column, y);
   }
   Json out = report_head(of, "description");
   out["groups"] = Json::array();
   for (std::size_t j = 0; j < groups.names.size(); ++j)
     out["groups"].push_back(row(groups.names[j], groups.values[j]));
   const double limit = of.number("limit");
-  const auto z = statistics::modified_z(*y);
+  const auto z = statistics::modified_z(y);
   out["outliers"] = Json::array();
-  for (Eigen::Index i = 0; i < y->size(); ++i)
+  for (Eigen::Index i = 0; i < y.size(); ++i)
     if (std::abs(z.z[i]) > limit && out["outliers"].size() < 1000)
       out["outliers"].push_back({{"row", i + 1},
                                  {"line", of.table.line(static_cast<std::size_t>(i))},
-                                 {"value", (*y)[i]},
+                                 {"value", y[i]},
                                  {"modified_z", z.z[i]}});
   out["notes"] = {fmt::format("{} row(s) beyond a modified Z-score of {} of all rows{}",
                               out["outliers"].size(), limit,

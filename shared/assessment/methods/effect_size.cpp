@@ -5,6 +5,7 @@
 
 #include "assessment/pictures.hpp"
 #include "assessment/report.hpp"
+#include "core/try.hpp"
 #include "statistics/ranks/rank_tests.hpp"
 
 namespace tractus {
@@ -30,16 +31,15 @@ void add_test(const std::string& term, const statistics::MeanDifference& d, cons
 }
 
 core::Result<Findings> of_pairs(const Analysis& of, const std::string& column, const Vector& y) {
-  const auto cells = cells_of(of, {column}, y);
-  if (!cells) return cells.error();
-  if (cells->names.size() != 2)
+  const auto cells = TRY(cells_of(of, {column}, y));
+  if (cells.names.size() != 2)
     return bad_input(fmt::format("{}: column '{}' has {} levels; a paired effect size is of two",
-                                 of.table.name(), column, cells->names.size()));
-  const Vector difference = cells->values.col(1) - cells->values.col(0);
-  const auto d = statistics::paired(cells->values.col(1), cells->values.col(0));
+                                 of.table.name(), column, cells.names.size()));
+  const Vector difference = cells.values.col(1) - cells.values.col(0);
+  const auto d = statistics::paired(cells.values.col(1), cells.values.col(0));
   if (!d) return located(of, d.error());
   Json out = report_head(of, "paired difference and its size");
-  out["compared"] = cells->names[1] + " minus " + cells->names[0];
+  out["compared"] = cells.names[1] + " minus " + cells.names[0];
   out["difference"] = block(*d);
   out["effect"] = {{"d_z", d->d},
                    {"d_z_ci95_low", d->d_95.low},
@@ -52,7 +52,7 @@ core::Result<Findings> of_pairs(const Analysis& of, const std::string& column, c
   add_test(column, *d, "Cohen's d_z", out);
   out["checks"] = Json::array({normality_check(difference)});
   return Findings{std::move(out),
-                  {profile_picture(cells->names, cells->values, of.formula.response)}};
+                  {profile_picture(cells.names, cells.values, of.formula.response)}};
 }
 
 core::Result<Findings> of_groups(const Analysis& of, const std::string& column, const Vector& y) {
@@ -85,11 +85,9 @@ core::Result<Findings> of_groups(const Analysis& of, const std::string& column, 
 }
 
 core::Result<Findings> run_effect_size(const Analysis& of) {
-  const auto column = single_column(of, "effect-size");
-  if (!column) return column.error();
-  const auto y = of.table.numbers(of.formula.response);
-  if (!y) return y.error();
-  return of.formula.group.empty() ? of_groups(of, *column, *y) : of_pairs(of, *column, *y);
+  const auto column = TRY(single_column(of, "effect-size"));
+  const auto y = TRY(of.table.numbers(of.formula.response));
+  return of.formula.group.empty() ? of_groups(of, column, y) : of_pairs(of, column, y);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "assessment/pictures.hpp"
 #include "assessment/report.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace assessment {
@@ -36,9 +37,8 @@ Findings found(const Analysis& of, const char* head, const std::string& term, co
 core::Result<Matrix> responses_of(const Analysis& of, const std::vector<std::string>& columns) {
   Matrix out(static_cast<Eigen::Index>(of.table.rows()), std::ssize(columns));
   for (std::size_t j = 0; j < columns.size(); ++j) {
-    const auto values = of.table.numbers(columns[j]);
-    if (!values) return values.error();
-    out.col(static_cast<Eigen::Index>(j)) = *values;
+    const auto values = TRY(of.table.numbers(columns[j]));
+    out.col(static_cast<Eigen::Index>(j)) = values;
   }
   return out;
 }
@@ -55,10 +55,9 @@ core::Result<Findings> two_groups(const Analysis& of) {
   if (parts.names.size() != 2)
     return bad_input(fmt::format("{}: column '{}' has {} values; two groups are compared",
                                  of.table.name(), of.formula.response, parts.names.size()));
-  const auto values = responses_of(of, columns);
-  if (!values) return values.error();
-  const auto fit = statistics::hotelling(Matrix((*values)(parts.rows[1], Eigen::all)),
-                                         Matrix((*values)(parts.rows[0], Eigen::all)), columns);
+  const auto values = TRY(responses_of(of, columns));
+  const auto fit = statistics::hotelling(Matrix(values(parts.rows[1], Eigen::all)),
+                                         Matrix(values(parts.rows[0], Eigen::all)), columns);
   if (!fit) return located(of, fit.error());
   Findings out = found(of, "Hotelling's T squared, two groups", of.formula.response, *fit, columns);
   out.report["compared"] = parts.names[1] + " minus " + parts.names[0];
@@ -66,24 +65,21 @@ core::Result<Findings> two_groups(const Analysis& of) {
 }
 
 core::Result<Findings> repeated(const Analysis& of) {
-  const auto column = single_column(of, "hotelling");
-  if (!column) return column.error();
-  const auto y = of.table.numbers(of.formula.response);
-  if (!y) return y.error();
-  const auto cells = cells_of(of, {*column}, *y);
-  if (!cells) return cells.error();
-  const auto k = cells->values.cols();
+  const auto column = TRY(single_column(of, "hotelling"));
+  const auto y = TRY(of.table.numbers(of.formula.response));
+  const auto cells = TRY(cells_of(of, {column}, y));
+  const auto k = cells.values.cols();
   if (k < 2)
     return bad_input(
-        fmt::format("{}: column '{}' has one level: nothing to compare", of.table.name(), *column));
-  const Matrix steps = cells->values.rightCols(k - 1) - cells->values.leftCols(k - 1);
+        fmt::format("{}: column '{}' has one level: nothing to compare", of.table.name(), column));
+  const Matrix steps = cells.values.rightCols(k - 1) - cells.values.leftCols(k - 1);
   std::vector<std::string> names;
-  for (std::size_t j = 1; j < cells->names.size(); ++j)
-    names.push_back(cells->names[j] + " minus " + cells->names[j - 1]);
+  for (std::size_t j = 1; j < cells.names.size(); ++j)
+    names.push_back(cells.names[j] + " minus " + cells.names[j - 1]);
   const auto fit = statistics::hotelling(steps, names);
   if (!fit) return located(of, fit.error());
-  Findings out = found(of, "Hotelling's T squared, repeated measures", *column, *fit, names);
-  out.figures.push_back(profile_picture(cells->names, cells->values, of.formula.response));
+  Findings out = found(of, "Hotelling's T squared, repeated measures", column, *fit, names);
+  out.figures.push_back(profile_picture(cells.names, cells.values, of.formula.response));
   return out;
 }
 

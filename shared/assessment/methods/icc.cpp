@@ -5,6 +5,7 @@
 
 #include "assessment/pictures.hpp"
 #include "assessment/report.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace assessment {
@@ -19,15 +20,12 @@ Json row(const char* name, const char* meaning, double single, const statistics:
 }
 
 core::Result<Findings> run_icc(const Analysis& of) {
-  const auto column = single_column(of, "icc");
-  if (!column) return column.error();
+  const auto column = TRY(single_column(of, "icc"));
   if (of.formula.group.empty())
     return bad_input("icc needs the subject: write y ~ repetition + (1|subject)");
-  const auto y = of.table.numbers(of.formula.response);
-  if (!y) return y.error();
-  const auto cells = cells_of(of, {*column}, *y);
-  if (!cells) return cells.error();
-  const auto fit = statistics::icc(cells->values);
+  const auto y = TRY(of.table.numbers(of.formula.response));
+  const auto cells = TRY(cells_of(of, {column}, y));
+  const auto fit = statistics::icc(cells.values);
   if (!fit) return located(of, fit.error());
   Json out = report_head(of, "intraclass correlation");
   out["icc"] =
@@ -37,14 +35,14 @@ core::Result<Findings> run_icc(const Analysis& of) {
   out["error"] = {{"sem_agreement", fit->sem_agreement},
                   {"sem_consistency", fit->sem_consistency},
                   {"smallest_detectable_change_95", fit->mdc95_consistency}};
-  const double n = static_cast<double>(cells->values.rows()),
-               k = static_cast<double>(cells->values.cols());
+  const double n = static_cast<double>(cells.values.rows()),
+               k = static_cast<double>(cells.values.cols());
   out["tests"] =
       Json::array({Test{"ICC(3)", "F", fit->f23, n - 1.0, (n - 1.0) * (k - 1.0), fit->p23, "ICC(3)",
                         fit->icc3, fit->icc3_95.low, fit->icc3_95.high}
                        .to_json()});
   return Findings{std::move(out),
-                  {profile_picture(cells->names, cells->values, of.formula.response)}};
+                  {profile_picture(cells.names, cells.values, of.formula.response)}};
 }
 
 }  // namespace

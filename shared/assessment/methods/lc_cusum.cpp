@@ -6,6 +6,7 @@
 
 #include "assessment/report.hpp"
 #include "assessment/sequences.hpp"
+#include "core/try.hpp"
 #include "statistics/learning/cusum.hpp"
 
 namespace tractus {
@@ -53,25 +54,22 @@ plot::Figure picture(const std::vector<Sequence>& persons, const statistics::Rat
 }
 
 core::Result<Findings> run_lc_cusum(const Analysis& of) {
-  const auto order = single_column(of, "lc-cusum");
-  if (!order) return order.error();
-  const auto rates = statistics::Rates::make(of.number("adequate"), of.number("inadequate"));
-  if (!rates) return rates.error();
-  const auto persons = sequences_of(of, *order);
-  if (!persons) return persons.error();
+  const auto order = TRY(single_column(of, "lc-cusum"));
+  const auto rates = TRY(statistics::Rates::make(of.number("adequate"), of.number("inadequate")));
+  const auto persons = TRY(sequences_of(of, order));
   const double h = of.number("threshold"), relapse = of.number("relapse");
   Json out = report_head(of, "learning-curve CUSUM");
   std::size_t longest = 1;
   out["persons"] = Json::array();
-  for (const auto& person : *persons) {
-    out["persons"].push_back(person_row(person, *rates, h, relapse));
+  for (const auto& person : persons) {
+    out["persons"].push_back(person_row(person, rates, h, relapse));
     longest = std::max(longest, person.failures.size());
   }
   const int trials = static_cast<int>(std::min<std::size_t>(longest, 1000));
   const auto at = [&](double rate) {
-    return statistics::lc_cusum_characteristic(*rates, h, rate, trials);
+    return statistics::lc_cusum_characteristic(rates, h, rate, trials);
   };
-  const auto good = at(rates->adequate), bad = at(rates->inadequate);
+  const auto good = at(rates.adequate), bad = at(rates.inadequate);
   out["operating_characteristic"] = {{"trials", trials},
                                      {"threshold", h},
                                      {"declared_competent_if_adequate", good.signalled_by.back()},
@@ -82,8 +80,8 @@ core::Result<Findings> run_lc_cusum(const Analysis& of) {
     out["notes"].push_back(fmt::format(
         "within {} trials somebody who fails {:.0f} % would be declared competent with probability "
         "{:.3f}: too high to certify by",
-        trials, 100.0 * rates->inadequate, bad.signalled_by.back()));
-  return Findings{std::move(out), {picture(*persons, *rates, h)}};
+        trials, 100.0 * rates.inadequate, bad.signalled_by.back()));
+  return Findings{std::move(out), {picture(persons, rates, h)}};
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "assessment/pictures.hpp"
 #include "assessment/report.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace assessment {
@@ -60,18 +61,17 @@ plot::Figure picture(const Analysis& of, const Vector& trial, const Vector& y,
 }
 
 core::Result<Findings> run_learning_curve(const Analysis& of) {
-  const auto problem = problem_of(of, false);
-  if (!problem) return problem.error();
-  if (of.formula.terms.size() != 1 || problem->model.design.columns.cols() != 2)
+  const auto problem = TRY(problem_of(of, false));
+  if (of.formula.terms.size() != 1 || problem.model.design.columns.cols() != 2)
     return bad_input("learning-curve takes one number that counts trials: write score ~ trial");
-  const Vector trial = problem->model.design.columns.col(1);
+  const Vector trial = problem.model.design.columns.col(1);
   Json out = report_head(of, "learning curves by nonlinear least squares");
   std::vector<std::pair<const Shape*, LearningCurve>> fits;
   out["shapes"] = Json::array();
   out["notes"] = Json::array();
   std::string refusal;
   for (const auto& shape : kShapes) {
-    auto fit = statistics::learning_curve(trial, problem->y, shape.shape);
+    auto fit = statistics::learning_curve(trial, problem.y, shape.shape);
     if (!fit) {
       refusal = fit.error().what;
       out["notes"].push_back(fmt::format("no {}: {}", shape.name, refusal));
@@ -97,7 +97,7 @@ core::Result<Findings> run_learning_curve(const Analysis& of) {
     if (shape->shape == CurveShape::power)
       out["power_law"] = {{"share_left_when_trials_double", statistics::share_per_doubling(fit)}};
   out["notes"].push_back("shapes are compared by AICc: differences under 2 say nothing");
-  return Findings{std::move(out), {picture(of, trial, problem->y, fits)}};
+  return Findings{std::move(out), {picture(of, trial, problem.y, fits)}};
 }
 
 }  // namespace

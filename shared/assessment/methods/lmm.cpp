@@ -4,6 +4,7 @@
 #include "assessment/pictures.hpp"
 #include "assessment/report.hpp"
 #include "assessment/terms.hpp"
+#include "core/try.hpp"
 #include "statistics/mixed/lmm_tests.hpp"
 
 namespace tractus {
@@ -52,21 +53,20 @@ void add_tests(const Analysis& of, const ModelMatrix& model, const statistics::L
 core::Result<Findings> run_lmm(const Analysis& of) {
   if (of.formula.group.empty())
     return bad_input("lmm needs a random intercept: add (1|COLUMN) to the formula");
-  const auto problem = problem_of(of, true);
-  if (!problem) return problem.error();
+  const auto problem = TRY(problem_of(of, true));
   const auto labels = group_labels(of);
-  const auto fit = statistics::lmm(problem->design(), problem->y, labels);
+  const auto fit = statistics::lmm(problem.design(), problem.y, labels);
   if (!fit) return located(of, fit.error());
   Json out = report_head(of, "linear mixed model, random intercept, REML");
-  add_tests(of, problem->model, *fit, out);
+  add_tests(of, problem.model, *fit, out);
   add_model(*fit, out);
-  const Vector fixed = problem->design().columns * fit->coefficients;
+  const Vector fixed = problem.design().columns * fit->coefficients;
   Vector fitted = fixed;
   const auto places = places_of(of.table, of.formula.group, fit->groups);
   for (std::size_t i = 0; i < places.size(); ++i)
     fitted[static_cast<Eigen::Index>(i)] +=
         fit->group_effects[static_cast<Eigen::Index>(places[i])];
-  const Vector residuals = problem->y - fitted;
+  const Vector residuals = problem.y - fitted;
   out["checks"] = Json::array({normality_check(residuals)});
   auto effects = normality_check(fit->group_effects);
   effects["assumption"] = "effects of " + of.formula.group + " are normal";

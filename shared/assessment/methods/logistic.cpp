@@ -5,6 +5,7 @@
 
 #include "assessment/report.hpp"
 #include "assessment/terms.hpp"
+#include "core/try.hpp"
 #include "statistics/mixed/glmm.hpp"
 
 namespace tractus {
@@ -16,14 +17,12 @@ using statistics::Counts;
 using statistics::Vector;
 
 core::Result<Counts> counts_of(const Analysis& of) {
-  auto successes = of.table.numbers(of.formula.response);
-  if (!successes) return successes.error();
-  const auto rows = successes->size();
+  auto successes = TRY(of.table.numbers(of.formula.response));
+  const auto rows = successes.size();
   if (of.formula.trials.empty())
-    return Counts{*successes, Vector::Constant(rows, of.formula.trials_number)};
-  auto trials = of.table.numbers(of.formula.trials);
-  if (!trials) return trials.error();
-  return Counts{*successes, *trials};
+    return Counts{successes, Vector::Constant(rows, of.formula.trials_number)};
+  auto trials = TRY(of.table.numbers(of.formula.trials));
+  return Counts{successes, trials};
 }
 
 /// Wald tests on the normal.
@@ -135,15 +134,13 @@ Findings plain(const Analysis& of, const ModelMatrix& model, const Counts& count
 }
 
 core::Result<Findings> run_logistic(const Analysis& of) {
-  const auto model = model_matrix(of.formula, of.table);
-  if (!model) return model.error();
-  const auto counts = counts_of(of);
-  if (!counts) return counts.error();
-  if (!of.formula.group.empty()) return mixed(of, *model, *counts);
-  const auto fit = statistics::logistic(model->design, *counts);
-  if (!fit && fit.error().code == core::Errc::out_of_range) return firth(of, *model, *counts);
+  const auto model = TRY(model_matrix(of.formula, of.table));
+  const auto counts = TRY(counts_of(of));
+  if (!of.formula.group.empty()) return mixed(of, model, counts);
+  const auto fit = statistics::logistic(model.design, counts);
+  if (!fit && fit.error().code == core::Errc::out_of_range) return firth(of, model, counts);
   if (!fit) return located(of, fit.error());
-  return plain(of, *model, *counts, *fit);
+  return plain(of, model, counts, *fit);
 }
 
 }  // namespace

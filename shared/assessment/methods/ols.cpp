@@ -6,6 +6,7 @@
 #include "assessment/pictures.hpp"
 #include "assessment/report.hpp"
 #include "assessment/terms.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace assessment {
@@ -54,11 +55,10 @@ void add_notes_and_checks(const Problem& problem, const statistics::Ols& fit, Js
 }
 
 core::Result<Findings> run_ols(const Analysis& of) {
-  const auto problem = problem_of(of, false);
-  if (!problem) return problem.error();
-  const auto fit = statistics::ols(problem->design(), problem->y);
+  const auto problem = TRY(problem_of(of, false));
+  const auto fit = statistics::ols(problem.design(), problem.y);
   if (!fit) return located(of, fit.error());
-  const Vector hc3 = statistics::hc3_standard_errors(problem->design(), *fit);
+  const Vector hc3 = statistics::hc3_standard_errors(problem.design(), *fit);
   Json out = report_head(of, "ordinary least squares");
   out["coefficients"] = coefficient_table(fit->names, {{"estimate", &fit->coefficients},
                                                        {"standard_error", &fit->standard_errors},
@@ -69,7 +69,7 @@ core::Result<Findings> run_ols(const Analysis& of) {
                                                        {"hc3_standard_error", &hc3}});
   const Fitted fitted{fit->coefficients, fit->sigma * fit->sigma * fit->unscaled_covariance,
                       Vector::Constant(fit->coefficients.size(), fit->df_residual), "t"};
-  add_term_tests(of.formula, problem->model, fitted, out);
+  add_term_tests(of.formula, problem.model, fitted, out);
   out["model"] = {{"df_residual", fit->df_residual},
                   {"residual_sd", fit->sigma},
                   {"residual_sum_of_squares", fit->rss},
@@ -81,13 +81,13 @@ core::Result<Findings> run_ols(const Analysis& of) {
                   {"log_likelihood", fit->log_likelihood},
                   {"AIC", fit->aic},
                   {"BIC", fit->bic}};
-  add_notes_and_checks(*problem, *fit, out);
+  add_notes_and_checks(problem, *fit, out);
   Findings found{std::move(out), {}};
-  if (fit->coefficients.size() == 2 && problem->design().intercept)
+  if (fit->coefficients.size() == 2 && problem.design().intercept)
     found.figures.push_back(scatter_picture(
-        fit->names[1], problem->design().columns.col(1), of.formula.response, problem->y,
+        fit->names[1], problem.design().columns.col(1), of.formula.response, problem.y,
         {{"least squares", fit->coefficients[0], fit->coefficients[1]}}));
-  found.figures.push_back(residual_picture(problem->y - fit->residuals, fit->residuals));
+  found.figures.push_back(residual_picture(problem.y - fit->residuals, fit->residuals));
   return found;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "assessment/report.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace assessment {
@@ -15,9 +16,8 @@ using core::Json;
 using statistics::Vector;
 
 core::Result<Findings> slope(const Analysis& of, const std::string& column, const Vector& y) {
-  const auto x = of.table.numbers(column);
-  if (!x) return x.error();
-  const auto test = statistics::permutation_slope(*x, y);
+  const auto x = TRY(of.table.numbers(column));
+  const auto test = statistics::permutation_slope(x, y);
   if (!test) return located(of, test.error());
   Json out = report_head(of, "exact permutation test of a slope");
   out["analysis"] = {{"p", test->p},
@@ -25,7 +25,7 @@ core::Result<Findings> slope(const Analysis& of, const std::string& column, cons
                      {"p_less", test->p_less},
                      {"arrangements", test->arrangements},
                      {"as_extreme", test->as_extreme}};
-  const Vector centred = x->array() - x->mean();
+  const Vector centred = x.array() - x.mean();
   const double b = centred.dot(y) / centred.squaredNorm(), none = std::nan("");
   out["tests"] =
       Json::array({Test{column, "exact", b, 0, 0, test->p, "slope", b, none, none}.to_json()});
@@ -33,16 +33,15 @@ core::Result<Findings> slope(const Analysis& of, const std::string& column, cons
 }
 
 core::Result<Findings> signs(const Analysis& of, const std::string& column, const Vector& y) {
-  const auto cells = cells_of(of, {column}, y);
-  if (!cells) return cells.error();
-  if (cells->names.size() != 2)
+  const auto cells = TRY(cells_of(of, {column}, y));
+  if (cells.names.size() != 2)
     return bad_input(fmt::format("{}: column '{}' has {} levels; flipping signs compares two",
-                                 of.table.name(), column, cells->names.size()));
-  const Vector difference = cells->values.col(1) - cells->values.col(0);
+                                 of.table.name(), column, cells.names.size()));
+  const Vector difference = cells.values.col(1) - cells.values.col(0);
   const auto test = statistics::sign_flip(difference);
   if (!test) return located(of, test.error());
   Json out = report_head(of, "exact test of paired differences by flipping signs");
-  out["compared"] = cells->names[1] + " minus " + cells->names[0];
+  out["compared"] = cells.names[1] + " minus " + cells.names[0];
   out["analysis"] = {{"mean_difference", difference.mean()},
                      {"p", test->p},
                      {"flips", test->flips},
@@ -55,11 +54,9 @@ core::Result<Findings> signs(const Analysis& of, const std::string& column, cons
 }
 
 core::Result<Findings> run_permutation(const Analysis& of) {
-  const auto column = single_column(of, "permutation");
-  if (!column) return column.error();
-  const auto y = of.table.numbers(of.formula.response);
-  if (!y) return y.error();
-  return of.formula.group.empty() ? slope(of, *column, *y) : signs(of, *column, *y);
+  const auto column = TRY(single_column(of, "permutation"));
+  const auto y = TRY(of.table.numbers(of.formula.response));
+  return of.formula.group.empty() ? slope(of, column, y) : signs(of, column, y);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "assessment/report.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace assessment {
@@ -63,13 +64,12 @@ core::Result<Findings> run_power(const Analysis& of) {
     out["answer"] = {{"n", n}, {"counts", curve.counts}, {"power", curve.power(n)}};
   } else {
     const double target = of.number("power");
-    const auto n = statistics::needed_size(curve.power, target, curve.least);
-    if (!n) return n.error();
-    const double whole = std::ceil(*n - 1e-9);
+    const auto n = TRY(statistics::needed_size(curve.power, target, curve.least));
+    const double whole = std::ceil(n - 1e-9);
     out["answer"] = {{"power_wanted", target},
                      {"n", whole},
                      {"counts", curve.counts},
-                     {"n_exact", *n},
+                     {"n_exact", n},
                      {"power", curve.power(whole)}};
   }
   out["notes"] = Json::array();

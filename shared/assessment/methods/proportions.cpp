@@ -5,6 +5,7 @@
 
 #include "assessment/counts.hpp"
 #include "assessment/report.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace assessment {
@@ -51,18 +52,17 @@ void add_pairs(const std::vector<Counted>& groups, double level, Json& out) {
 }
 
 core::Result<Findings> run_proportions(const Analysis& of) {
-  const auto groups = counted_groups(of);
-  if (!groups) return groups.error();
+  const auto groups = TRY(counted_groups(of));
   const double level = of.number("level");
   Json out = report_head(of, "proportions with intervals");
   out["proportions"] = Json::array();
   Proportion all;
-  for (const auto& group : *groups) {
+  for (const auto& group : groups) {
     out["proportions"].push_back(row_of(group.name, group.of, level));
     all.successes += group.of.successes;
     all.trials += group.of.trials;
   }
-  if (groups->size() > 1) out["proportions"].push_back(row_of("all", all, level));
+  if (groups.size() > 1) out["proportions"].push_back(row_of("all", all, level));
   const double chance = of.number("chance");
   const double p = statistics::binomial_test(all, chance);
   const auto w = statistics::wilson(all);
@@ -72,7 +72,7 @@ core::Result<Findings> run_proportions(const Analysis& of) {
   out["notes"] = {
       "intervals take answers as independent; with several answers of each person they are too "
       "narrow: logistic with (1|person) does not"};
-  if (groups->size() > 1 && groups->size() <= kMostPairs) add_pairs(*groups, level, out);
+  if (groups.size() > 1 && groups.size() <= kMostPairs) add_pairs(groups, level, out);
   return Findings{std::move(out), {}};
 }
 

@@ -3,6 +3,7 @@
 
 #include "assessment/pictures.hpp"
 #include "assessment/report.hpp"
+#include "core/try.hpp"
 #include "statistics/ranks/rank_tests.hpp"
 #include "statistics/summary/effect_size.hpp"
 
@@ -17,11 +18,10 @@ const double kNone = std::nan("");
 
 core::Result<Findings> correlations(const Analysis& of, const std::string& column,
                                     const Vector& y) {
-  const auto x = of.table.numbers(column);
-  if (!x) return x.error();
-  const auto rho = statistics::spearman(*x, y);
+  const auto x = TRY(of.table.numbers(column));
+  const auto rho = statistics::spearman(x, y);
   if (!rho) return located(of, rho.error());
-  const auto tau = statistics::kendall(*x, y);
+  const auto tau = statistics::kendall(x, y);
   if (!tau) return located(of, tau.error());
   const auto or_null = [](const std::optional<double>& p) { return p ? Json(*p) : Json(nullptr); };
   Json out = report_head(of, "rank correlation");
@@ -31,7 +31,7 @@ core::Result<Findings> correlations(const Analysis& of, const std::string& colum
                     {"z", tau->statistic},
                     {"p_normal", tau->p},
                     {"p_exact", or_null(tau->p_exact)}};
-  if (const auto r = statistics::pearson(*x, y))
+  if (const auto r = statistics::pearson(x, y))
     out["pearson"] = {{"r", r->r},
                       {"t", r->t},
                       {"p", r->p},
@@ -43,7 +43,7 @@ core::Result<Findings> correlations(const Analysis& of, const std::string& colum
   test.size = rho->r;
   test.low = test.high = kNone;
   out["tests"] = Json::array({test.to_json()});
-  return Findings{std::move(out), {scatter_picture(column, *x, of.formula.response, y, {})}};
+  return Findings{std::move(out), {scatter_picture(column, x, of.formula.response, y, {})}};
 }
 
 core::Result<Findings> two_groups(const Analysis& of, const std::string& column,
@@ -84,20 +84,19 @@ core::Result<Findings> independent(const Analysis& of, const std::string& column
 }
 
 core::Result<Findings> repeated(const Analysis& of, const std::string& column, const Vector& y) {
-  const auto cells = cells_of(of, {column}, y);
-  if (!cells) return cells.error();
-  const plot::Figure figure = profile_picture(cells->names, cells->values, of.formula.response);
-  if (cells->names.size() == 2) {
-    const auto v = statistics::wilcoxon_signed_rank(cells->values.col(1) - cells->values.col(0));
+  const auto cells = TRY(cells_of(of, {column}, y));
+  const plot::Figure figure = profile_picture(cells.names, cells.values, of.formula.response);
+  if (cells.names.size() == 2) {
+    const auto v = statistics::wilcoxon_signed_rank(cells.values.col(1) - cells.values.col(0));
     if (!v) return located(of, v.error());
     Json out = report_head(of, "Wilcoxon signed-rank test, exact");
-    out["compared"] = cells->names[1] + " minus " + cells->names[0];
+    out["compared"] = cells.names[1] + " minus " + cells.names[0];
     out["analysis"] = {{"V", v->statistic}, {"p_exact", v->p}};
     out["tests"] =
         Json::array({Test{column, "exact", v->statistic, 0, 0, v->p, "", 0, 0, 0}.to_json()});
     return Findings{std::move(out), {figure}};
   }
-  const auto f = statistics::friedman(cells->values);
+  const auto f = statistics::friedman(cells.values);
   if (!f) return located(of, f.error());
   Json out = report_head(of, "Friedman test");
   out["analysis"] = {
@@ -105,8 +104,8 @@ core::Result<Findings> repeated(const Analysis& of, const std::string& column, c
   out["tests"] = Json::array({Test{column, "chi2", f->chi_squared, f->df, 0, f->p, "Kendall's W",
                                    f->kendall_w, kNone, kNone}
                                   .to_json()});
-  const auto rising = statistics::page_trend(cells->values);
-  const auto falling = statistics::page_trend(-cells->values);
+  const auto rising = statistics::page_trend(cells.values);
+  const auto falling = statistics::page_trend(-cells.values);
   if (rising && falling)
     out["page_trend"] = {
         {"L", rising->l}, {"p_rising", rising->p_rising}, {"p_falling", falling->p_rising}};
@@ -114,16 +113,13 @@ core::Result<Findings> repeated(const Analysis& of, const std::string& column, c
 }
 
 core::Result<Findings> run_rank(const Analysis& of) {
-  const auto column = single_column(of, "rank");
-  if (!column) return column.error();
-  const auto y = of.table.numbers(of.formula.response);
-  if (!y) return y.error();
-  if (!of.formula.group.empty()) return repeated(of, *column, *y);
+  const auto column = TRY(single_column(of, "rank"));
+  const auto y = TRY(of.table.numbers(of.formula.response));
+  if (!of.formula.group.empty()) return repeated(of, column, y);
   if (of.formula.terms[0].variables[0].as != Variable::As::itself)
-    return independent(of, *column, *y);
-  const auto number = of.table.holds_numbers(*column);
-  if (!number) return number.error();
-  return *number ? correlations(of, *column, *y) : independent(of, *column, *y);
+    return independent(of, column, y);
+  const auto number = TRY(of.table.holds_numbers(column));
+  return number ? correlations(of, column, y) : independent(of, column, y);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "assessment/counts.hpp"
 #include "assessment/report.hpp"
+#include "core/try.hpp"
 #include "statistics/agreement/signal_detection.hpp"
 #include "statistics/distributions/distributions.hpp"
 
@@ -106,14 +107,12 @@ core::Result<void> add_persons(const Analysis& of, const std::vector<bool>& said
 core::Result<Findings> run_recognition(const Analysis& of) {
   if (of.formula.terms.size() != 1 || of.formula.terms[0].variables.size() != 1)
     return bad_input("recognition compares an answer with the truth: write said ~ breach");
-  const auto said = yes_no(of.table, of.formula.response);
-  if (!said) return said.error();
-  const auto truth = yes_no(of.table, of.formula.terms[0].variables[0].column);
-  if (!truth) return truth.error();
+  const auto said = TRY(yes_no(of.table, of.formula.response));
+  const auto truth = TRY(yes_no(of.table, of.formula.terms[0].variables[0].column));
   const auto correction = correction_of(of.text("correction"));
   std::vector<std::size_t> all(of.table.rows());
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
-  const Answers answers = answers_of(all, *said, *truth);
+  const Answers answers = answers_of(all, said, truth);
   if (answers.hits.trials == 0.0 || answers.false_alarms.trials == 0.0)
     return bad_input(fmt::format("{}: there is no row {} a breach: d' needs both", of.table.name(),
                                  answers.hits.trials == 0.0 ? "with" : "without"));
@@ -134,7 +133,7 @@ core::Result<Findings> run_recognition(const Analysis& of) {
           statistics::normal_quantile((answers.false_alarms.trials + 0.5) /
                                       (answers.false_alarms.trials + 1.0)))};
   if (of.formula.group.empty()) return Findings{std::move(out), {}};
-  if (auto fine = add_persons(of, *said, *truth, correction, out); !fine) return fine.error();
+  TRY(add_persons(of, said, truth, correction, out));
   return Findings{std::move(out), {}};
 }
 

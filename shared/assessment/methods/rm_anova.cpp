@@ -8,6 +8,7 @@
 
 #include "assessment/pictures.hpp"
 #include "assessment/report.hpp"
+#include "core/try.hpp"
 #include "statistics/anova/rm_factorial.hpp"
 #include "statistics/summary/p_adjust.hpp"
 
@@ -115,22 +116,21 @@ void add_sphericity(const std::string& name, const statistics::Mauchly& m, doubl
 }
 
 core::Result<Findings> factorial(const Analysis& of, const Roles& roles, const Vector& y) {
-  const auto cells = cells_of(of, roles.within, y);
-  if (!cells) return cells.error();
-  statistics::RmDesign design{cells->values, {}, {}};
-  for (const auto& levels : cells->levels) design.levels.push_back(std::ssize(levels));
+  const auto cells = TRY(cells_of(of, roles.within, y));
+  statistics::RmDesign design{cells.values, {}, {}};
+  for (const auto& levels : cells.levels) design.levels.push_back(std::ssize(levels));
   if (!roles.between.empty()) {
     const auto groups = levels_of(of.table, roles.between);
     const auto group = places_of(of.table, roles.between, groups);
-    const auto who = places_of(of.table, of.formula.group, cells->subjects);
-    design.group.resize(cells->subjects.size());
+    const auto who = places_of(of.table, of.formula.group, cells.subjects);
+    design.group.resize(cells.subjects.size());
     for (std::size_t i = 0; i < who.size(); ++i) design.group[who[i]] = group[i];
   }
   const auto effects = statistics::rm_factorial(design);
   if (!effects) return located(of, effects.error());
   Json out = report_head(of, "repeated-measures analysis of variance");
-  const Vector means = cells->values.colwise().mean();
-  out["cells"] = coefficient_table(cells->names, {{"mean", &means}});
+  const Vector means = cells.values.colwise().mean();
+  out["cells"] = coefficient_table(cells.names, {{"mean", &means}});
   out["effects"] = out["tests"] = out["checks"] = Json::array();
   for (const auto& e : *effects) {
     std::vector<std::string> parts;
@@ -142,21 +142,20 @@ core::Result<Findings> factorial(const Analysis& of, const Roles& roles, const V
         effect_test(name, e.f, e.df1, e.df2, e.epsilon_gg, e.p_gg, e.generalized_eta_squared));
     add_sphericity(name, e.mauchly, e.epsilon_gg, out);
   }
-  out["notes"] = {fmt::format("{} subjects{}; type III sums of squares", cells->subjects.size(),
+  out["notes"] = {fmt::format("{} subjects{}; type III sums of squares", cells.subjects.size(),
                               roles.between.empty() ? "" : ", '" + roles.between + "' between")};
   return Findings{std::move(out),
-                  {profile_picture(cells->names, cells->values, of.formula.response)}};
+                  {profile_picture(cells.names, cells.values, of.formula.response)}};
 }
 
 core::Result<Findings> one_factor(const Analysis& of, const std::string& column, const Vector& y) {
-  const auto cells = cells_of(of, {column}, y);
-  if (!cells) return cells.error();
-  const auto fit = statistics::rm_anova(cells->values);
+  const auto cells = TRY(cells_of(of, {column}, y));
+  const auto fit = statistics::rm_anova(cells.values);
   if (!fit) return located(of, fit.error());
-  const auto trend = statistics::linear_trend(cells->values);
+  const auto trend = statistics::linear_trend(cells.values);
   Json out = report_head(of, "repeated-measures analysis of variance");
-  out["levels"] = coefficient_table(cells->names, {{"mean", &fit->level_means}});
-  out["analysis"] = {{"subjects", cells->subjects.size()},
+  out["levels"] = coefficient_table(cells.names, {{"mean", &fit->level_means}});
+  out["analysis"] = {{"subjects", cells.subjects.size()},
                      {"F", fit->f},
                      {"df1", fit->df1},
                      {"df2", fit->df2},
@@ -173,7 +172,7 @@ core::Result<Findings> one_factor(const Analysis& of, const std::string& column,
                      {"ss_error", fit->ss_error},
                      {"partial_eta_squared", fit->partial_eta_squared},
                      {"generalized_eta_squared", fit->generalized_eta_squared}};
-  out["pairs"] = pair_table(*cells);
+  out["pairs"] = pair_table(cells);
   out["linear_trend"] = {
       {"estimate", trend.estimate}, {"t", trend.t}, {"df", trend.df}, {"p", trend.p}};
   out["tests"] = Json::array({effect_test(column, fit->f, fit->df1, fit->df2, fit->epsilon_gg,
@@ -181,7 +180,7 @@ core::Result<Findings> one_factor(const Analysis& of, const std::string& column,
   out["checks"] = Json::array();
   add_sphericity(column, fit->mauchly, fit->epsilon_gg, out);
   return Findings{std::move(out),
-                  {profile_picture(cells->names, cells->values, of.formula.response)}};
+                  {profile_picture(cells.names, cells.values, of.formula.response)}};
 }
 
 core::Result<Findings> run_rm_anova(const Analysis& of) {
@@ -190,13 +189,10 @@ core::Result<Findings> run_rm_anova(const Analysis& of) {
   if (of.formula.terms.empty() || !of.formula.trials.empty() || of.formula.trials_number != 1 ||
       !of.formula.intercept)
     return bad_input("rm-anova compares the levels of columns: write y ~ a * b + (1|subject)");
-  const auto roles = roles_of(of);
-  if (!roles) return roles.error();
-  const auto y = of.table.numbers(of.formula.response);
-  if (!y) return y.error();
-  if (roles->within.size() == 1 && roles->between.empty())
-    return one_factor(of, roles->within[0], *y);
-  return factorial(of, *roles, *y);
+  const auto roles = TRY(roles_of(of));
+  const auto y = TRY(of.table.numbers(of.formula.response));
+  if (roles.within.size() == 1 && roles.between.empty()) return one_factor(of, roles.within[0], y);
+  return factorial(of, roles, y);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include "assessment/pictures.hpp"
 #include "assessment/report.hpp"
 #include "assessment/terms.hpp"
+#include "core/try.hpp"
 #include "statistics/regression/bisquare.hpp"
 
 namespace tractus {
@@ -26,9 +27,8 @@ Json light_rows(const statistics::Bisquare& fit) {
 }
 
 core::Result<Findings> run_robust(const Analysis& of) {
-  const auto problem = problem_of(of, false);
-  if (!problem) return problem.error();
-  const auto fit = statistics::bisquare(problem->design(), problem->y);
+  const auto problem = TRY(problem_of(of, false));
+  const auto fit = statistics::bisquare(problem.design(), problem.y);
   if (!fit) return located(of, fit.error());
   Json out = report_head(of, "bisquare M-estimation (tuning 4.685)");
   out["coefficients"] = coefficient_table(fit->names, {{"estimate", &fit->coefficients},
@@ -36,7 +36,7 @@ core::Result<Findings> run_robust(const Analysis& of) {
                                                        {"t", &fit->t},
                                                        {"p", &fit->p},
                                                        {"least_squares", &fit->ols_coefficients}});
-  add_term_tests(of.formula, problem->model,
+  add_term_tests(of.formula, problem.model,
                  {fit->coefficients, fit->covariance,
                   statistics::Vector::Constant(fit->coefficients.size(), fit->df_residual), "t"},
                  out);
@@ -55,7 +55,7 @@ core::Result<Findings> run_robust(const Analysis& of) {
                  fmt::format("largest leverage {:.3f}, row {}", leverage, most + 1), std::nan(""),
                  leverage > kHighLeverage ? "read the note below" : "none does")});
   out["notes"] = Json::array();
-  if (!(fit->sigma > 1e-12 * problem->y.cwiseAbs().maxCoeff()))
+  if (!(fit->sigma > 1e-12 * problem.y.cwiseAbs().maxCoeff()))
     out["notes"].push_back("the columns fit the response to the last digit: t and p mean nothing");
   if (!fit->converged) out["notes"].push_back("50 iterations were not enough to settle");
   if (leverage > kHighLeverage)
@@ -63,13 +63,13 @@ core::Result<Findings> run_robust(const Analysis& of) {
         fmt::format("row {} has leverage {:.3f}: robust in y, this fit does not protect against it",
                     most + 1, leverage));
   Findings found{std::move(out), {}};
-  if (fit->coefficients.size() == 2 && problem->design().intercept)
+  if (fit->coefficients.size() == 2 && problem.design().intercept)
     found.figures.push_back(scatter_picture(
-        fit->names[1], problem->design().columns.col(1), of.formula.response, problem->y,
+        fit->names[1], problem.design().columns.col(1), of.formula.response, problem.y,
         {{"bisquare", fit->coefficients[0], fit->coefficients[1]},
          {"least squares", fit->ols_coefficients[0], fit->ols_coefficients[1]}}));
   found.figures.push_back(
-      residual_picture(problem->design().columns * fit->coefficients, fit->residuals));
+      residual_picture(problem.design().columns * fit->coefficients, fit->residuals));
   return found;
 }
 

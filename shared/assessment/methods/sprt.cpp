@@ -5,6 +5,7 @@
 
 #include "assessment/report.hpp"
 #include "assessment/sequences.hpp"
+#include "core/try.hpp"
 #include "statistics/learning/cusum.hpp"
 
 namespace tractus {
@@ -54,18 +55,15 @@ Json row_of(const Sequence& person, const Sprt& test) {
 }
 
 core::Result<Findings> run_sprt(const Analysis& of) {
-  const auto order = single_column(of, "sprt");
-  if (!order) return order.error();
-  const auto rates = statistics::Rates::make(of.number("adequate"), of.number("inadequate"));
-  if (!rates) return rates.error();
-  const auto persons = sequences_of(of, *order);
-  if (!persons) return persons.error();
+  const auto order = TRY(single_column(of, "sprt"));
+  const auto rates = TRY(statistics::Rates::make(of.number("adequate"), of.number("inadequate")));
+  const auto persons = TRY(sequences_of(of, order));
   const auto bounds = statistics::sprt_bounds(of.number("alpha"), of.number("beta"));
   Json out = report_head(of, "sequential probability ratio test");
   std::size_t longest = 1, open = 0;
   out["persons"] = Json::array();
-  for (const auto& person : *persons) {
-    const Sprt test = statistics::sprt(person.failures, *rates, bounds);
+  for (const auto& person : persons) {
+    const Sprt test = statistics::sprt(person.failures, rates, bounds);
     out["persons"].push_back(row_of(person, test));
     open += test.verdict == Sprt::Verdict::undecided ? 1u : 0u;
     longest = std::max(longest, person.failures.size());
@@ -73,8 +71,8 @@ core::Result<Findings> run_sprt(const Analysis& of) {
   const int trials = static_cast<int>(std::min<std::size_t>(longest, 1000));
   out["bounds"] = {{"inadequate_at", bounds.upper}, {"adequate_at", bounds.lower}};
   out["operating_characteristic"] = Json::array();
-  for (const double rate : {rates->adequate, rates->inadequate}) {
-    const auto at = statistics::sprt_characteristic(*rates, bounds, rate, trials);
+  for (const double rate : {rates.adequate, rates.inadequate}) {
+    const auto at = statistics::sprt_characteristic(rates, bounds, rate, trials);
     out["operating_characteristic"].push_back({{"failure_rate", rate},
                                                {"trials", trials},
                                                {"called_adequate", at.adequate},
@@ -84,8 +82,8 @@ core::Result<Findings> run_sprt(const Analysis& of) {
   out["notes"] = Json::array();
   if (open > 0)
     out["notes"].push_back(
-        fmt::format("{} of {} are not decided within their trials", open, persons->size()));
-  return Findings{std::move(out), {picture(*persons, *rates, bounds)}};
+        fmt::format("{} of {} are not decided within their trials", open, persons.size()));
+  return Findings{std::move(out), {picture(persons, rates, bounds)}};
 }
 
 }  // namespace

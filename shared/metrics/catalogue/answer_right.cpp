@@ -24,14 +24,17 @@ Score judged(const Subject& subject) {
 }  // namespace
 
 MetricInfo answer_right() {
-  return {"answer_right",
-          "Answer right",
-          "1",
-          "1 if the last answer says whether there is a breach and, in palpation if there is, in "
-          "which wall; else 0.",
-          "own definition",
-          judged,
-          {}};
+  MetricInfo info{
+      "answer_right",
+      "Answer right",
+      "1",
+      "1 if the last answer says whether there is a breach and, in palpation if there is, in "
+      "which wall; else 0.",
+      "own definition",
+      judged,
+      {}};
+  info.shown_as = ShownAs::right_or_wrong;
+  return info;
 }
 
 }  // namespace metrics

@@ -13,16 +13,19 @@ bool touches(const trial::Sample& sample) {
 }  // namespace
 
 MetricInfo contact_share() {
-  return {"contact_share",
-          "Time in contact",
-          "1",
-          "Share of the samples in which the magnitude of the model's force is at least 0.01 N.",
-          "own definition",
-          [](const Subject& subject) -> Score {
-            const auto& samples = subject.trial.samples;
-            if (samples.empty()) return {{}, "no sample was recorded"};
-            return {double(std::ranges::count_if(samples, touches)) / double(samples.size()), ""};
-          }};
+  MetricInfo info{
+      "contact_share",
+      "Time in contact",
+      "1",
+      "Share of the samples in which the magnitude of the model's force is at least 0.01 N.",
+      "own definition",
+      [](const Subject& subject) -> Score {
+        const auto& samples = subject.trial.samples;
+        if (samples.empty()) return {{}, "no sample was recorded"};
+        return {double(std::ranges::count_if(samples, touches)) / double(samples.size()), ""};
+      }};
+  info.shown_as = ShownAs::share;
+  return info;
 }
 
 }  // namespace metrics

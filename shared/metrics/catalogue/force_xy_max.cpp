@@ -3,15 +3,17 @@
 namespace tractus::metrics {
 
 MetricInfo force_xy_max() {
-  return {"force_xy_max",
-          "Largest transverse force",
-          "N",
-          "Largest value of F_xy = hypot(F_x, F_y) of the model's wrench on the probe, "
-          "in the handle's frame, over the samples strictly above 0.01 N.",
-          "Zoller2020, Table 1",
-          [](const Subject& subject) {
-            return wrench_score(subject, WrenchPart::force_xy, Statistic::max);
-          }};
+  MetricInfo info{"force_xy_max",
+                  "Largest transverse force",
+                  "N",
+                  "Largest value of F_xy = hypot(F_x, F_y) of the model's wrench on the probe, "
+                  "in the handle's frame, over the samples strictly above 0.01 N.",
+                  "Zoller2020, Table 1",
+                  [](const Subject& subject) {
+                    return wrench_score(subject, WrenchPart::force_xy, Statistic::max);
+                  }};
+  info.cell = wrench_cell(WrenchPart::force_xy, Statistic::max);
+  return info;
 }
 
 }  // namespace tractus::metrics

@@ -3,7 +3,7 @@
 namespace tractus::metrics {
 
 MetricInfo force_xy_sd() {
-  return {
+  MetricInfo info{
       "force_xy_sd",
       "Standard deviation of transverse force",
       "N",
@@ -13,6 +13,8 @@ MetricInfo force_xy_sd() {
       [](const Subject& subject) {
         return wrench_score(subject, WrenchPart::force_xy, Statistic::sd);
       }};
+  info.cell = wrench_cell(WrenchPart::force_xy, Statistic::sd);
+  return info;
 }
 
 }  // namespace tractus::metrics

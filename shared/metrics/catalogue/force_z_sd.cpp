@@ -3,15 +3,17 @@
 namespace tractus::metrics {
 
 MetricInfo force_z_sd() {
-  return {"force_z_sd",
-          "Standard deviation of axial force",
-          "N",
-          "Standard deviation (n − 1) of |F_z| of the model's wrench on the probe, "
-          "in the handle's frame, over the samples strictly above 0.01 N.",
-          "Zoller2020, Table 1",
-          [](const Subject& subject) {
-            return wrench_score(subject, WrenchPart::force_z, Statistic::sd);
-          }};
+  MetricInfo info{"force_z_sd",
+                  "Standard deviation of axial force",
+                  "N",
+                  "Standard deviation (n − 1) of |F_z| of the model's wrench on the probe, "
+                  "in the handle's frame, over the samples strictly above 0.01 N.",
+                  "Zoller2020, Table 1",
+                  [](const Subject& subject) {
+                    return wrench_score(subject, WrenchPart::force_z, Statistic::sd);
+                  }};
+  info.cell = wrench_cell(WrenchPart::force_z, Statistic::sd);
+  return info;
 }
 
 }  // namespace tractus::metrics

@@ -3,18 +3,20 @@
 namespace tractus::metrics {
 
 MetricInfo probing_force_mean() {
-  return {"probing_force_mean",
-          "Mean force",
-          "N",
-          "Mean push of the hand on the probe, "
-          "from the first motion that is let through to the probe stop.",
-          "[Probing, section 6.3], definition our own",
-          [](const Subject& subject) {
-            return score_of_motion(subject, 1, [](std::span<const trial::ProbingSample> s) {
-              return spread_of(s, push_N).mean;
-            });
-          },
-          trial::Rig::probing};
+  MetricInfo info{"probing_force_mean",
+                  "Mean force",
+                  "N",
+                  "Mean push of the hand on the probe, "
+                  "from the first motion that is let through to the probe stop.",
+                  "[Probing, section 6.3], definition our own",
+                  [](const Subject& subject) {
+                    return score_of_motion(subject, 1, [](std::span<const trial::ProbingSample> s) {
+                      return spread_of(s, push_N).mean;
+                    });
+                  },
+                  trial::Rig::probing};
+  info.followed = 2;
+  return info;
 }
 
 }  // namespace tractus::metrics

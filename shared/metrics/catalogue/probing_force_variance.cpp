@@ -3,18 +3,20 @@
 namespace tractus::metrics {
 
 MetricInfo probing_force_variance() {
-  return {"probing_force_variance",
-          "Force variance",
-          "N^2",
-          "Variance (n - 1) of the push of the hand on the probe, "
-          "from the first motion that is let through to the probe stop.",
-          "[Probing, section 6.3], definition our own",
-          [](const Subject& subject) {
-            return score_of_motion(subject, 2, [](std::span<const trial::ProbingSample> s) {
-              return spread_of(s, push_N).variance;
-            });
-          },
-          trial::Rig::probing};
+  MetricInfo info{"probing_force_variance",
+                  "Force variance",
+                  "N^2",
+                  "Variance (n - 1) of the push of the hand on the probe, "
+                  "from the first motion that is let through to the probe stop.",
+                  "[Probing, section 6.3], definition our own",
+                  [](const Subject& subject) {
+                    return score_of_motion(subject, 2, [](std::span<const trial::ProbingSample> s) {
+                      return spread_of(s, push_N).variance;
+                    });
+                  },
+                  trial::Rig::probing};
+  info.followed = 4;
+  return info;
 }
 
 }  // namespace tractus::metrics

@@ -3,7 +3,7 @@
 namespace tractus::metrics {
 
 MetricInfo torque_xy_sd() {
-  return {
+  MetricInfo info{
       "torque_xy_sd",
       "Standard deviation of transverse torque",
       "N·m",
@@ -13,6 +13,8 @@ MetricInfo torque_xy_sd() {
       [](const Subject& subject) {
         return wrench_score(subject, WrenchPart::torque_xy, Statistic::sd);
       }};
+  info.cell = wrench_cell(WrenchPart::torque_xy, Statistic::sd);
+  return info;
 }
 
 }  // namespace tractus::metrics

@@ -3,15 +3,17 @@
 namespace tractus::metrics {
 
 MetricInfo torque_z_max() {
-  return {"torque_z_max",
-          "Largest axial torque",
-          "N·m",
-          "Largest value of |T_z| of the model's wrench on the probe, "
-          "in the handle's frame, over the samples strictly above 0.001 N·m.",
-          "Zoller2020, Table 2",
-          [](const Subject& subject) {
-            return wrench_score(subject, WrenchPart::torque_z, Statistic::max);
-          }};
+  MetricInfo info{"torque_z_max",
+                  "Largest axial torque",
+                  "N·m",
+                  "Largest value of |T_z| of the model's wrench on the probe, "
+                  "in the handle's frame, over the samples strictly above 0.001 N·m.",
+                  "Zoller2020, Table 2",
+                  [](const Subject& subject) {
+                    return wrench_score(subject, WrenchPart::torque_z, Statistic::max);
+                  }};
+  info.cell = wrench_cell(WrenchPart::torque_z, Statistic::max);
+  return info;
 }
 
 }  // namespace tractus::metrics

@@ -3,13 +3,16 @@
 namespace tractus::metrics {
 
 MetricInfo wall_coverage_superior() {
-  return {"wall_coverage_superior",
-          "Superior wall covered",
-          "1",
-          "Share of the superior wall (a quarter turn, 10 depths × 3 angles) "
-          "in which the force across the tract's axis reached 0.01 N.",
-          "own definition",
-          [](const Subject& subject) { return coverage_score(subject, volume::Wall::superior); }};
+  MetricInfo info{
+      "wall_coverage_superior",
+      "Superior wall covered",
+      "1",
+      "Share of the superior wall (a quarter turn, 10 depths × 3 angles) "
+      "in which the force across the tract's axis reached 0.01 N.",
+      "own definition",
+      [](const Subject& subject) { return coverage_score(subject, volume::Wall::superior); }};
+  info.shown_as = ShownAs::share;
+  return info;
 }
 
 }  // namespace tractus::metrics

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/try.hpp"
 #include "statistics/distributions/distributions.hpp"
 
 namespace tractus {
@@ -36,7 +37,7 @@ core::Result<Icc> icc(const Matrix& values) {
   if (values.rows() < 2 || values.cols() < 2 || !values.allFinite())
     return core::Error{core::Errc::bad_input,
                        "reliability needs two subjects, two repetitions, and every value"};
-  if (auto fine = check_range(values.reshaped(), "the response"); !fine) return fine.error();
+  TRY(check_range(values.reshaped(), "the response"));
   const double n = static_cast<double>(values.rows()), k = static_cast<double>(values.cols());
   const Matrix y = values.array() - values.mean();
   const Vector rows = y.rowwise().mean(), columns = y.colwise().mean();

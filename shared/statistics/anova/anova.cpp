@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 
+#include "core/try.hpp"
 #include "statistics/distributions/distributions.hpp"
 #include "statistics/summary/modified_z.hpp"
 
@@ -64,17 +65,16 @@ void add_effect_sizes(OneWay& out) {
 
 core::Result<SpreadTest> anova_of_deviations(
     const Groups& groups, const std::function<double(const Vector&)>& middle_of) {
-  if (auto fine = check(groups); !fine) return fine.error();
+  TRY(check(groups));
   Groups deviations = groups;
   for (auto& values : deviations.values) values = (values.array() - middle_of(values)).abs();
-  const auto test = one_way(deviations);
-  if (!test) return test.error();
-  return SpreadTest{test->f, test->df_between, test->df_within, test->p};
+  const auto test = TRY(one_way(deviations));
+  return SpreadTest{test.f, test.df_between, test.df_within, test.p};
 }
 
 /// Variance of each group; each must have one, and not 0.
 core::Result<std::vector<double>> variances(const Groups& groups) {
-  if (auto fine = check(groups); !fine) return fine.error();
+  TRY(check(groups));
   std::vector<double> out;
   for (std::size_t j = 0; j < groups.values.size(); ++j) {
     const auto& values = groups.values[j];
@@ -121,7 +121,7 @@ Groups grouped(const std::vector<std::size_t>& places, std::vector<std::string> 
 }
 
 core::Result<OneWay> one_way(const Groups& groups) {
-  if (auto fine = check(groups); !fine) return fine.error();
+  TRY(check(groups));
   const double shift = groups.values[0][0];
   OneWay out;
   std::vector<Moments> parts;
@@ -157,13 +157,12 @@ core::Result<OneWay> one_way(const Groups& groups) {
 }
 
 core::Result<SpreadTest> welch(const Groups& groups) {
-  const auto variance = variances(groups);
-  if (!variance) return variance.error();
+  const auto variance = TRY(variances(groups));
   const double k = static_cast<double>(groups.values.size());
   std::vector<double> weight;
   double total = 0.0, mean = 0.0;
   for (std::size_t j = 0; j < groups.values.size(); ++j) {
-    weight.push_back(static_cast<double>(groups.values[j].size()) / (*variance)[j]);
+    weight.push_back(static_cast<double>(groups.values[j].size()) / variance[j]);
     total += weight[j];
     mean += weight[j] * groups.values[j].mean();
   }
@@ -194,15 +193,14 @@ core::Result<SpreadTest> brown_forsythe(const Groups& groups) {
 }
 
 core::Result<SpreadTest> bartlett(const Groups& groups) {
-  const auto variance = variances(groups);
-  if (!variance) return variance.error();
+  const auto variance = TRY(variances(groups));
   const double k = static_cast<double>(groups.values.size());
   double df = 0.0, pooled = 0.0, logs = 0.0, inverse = 0.0;
-  for (std::size_t j = 0; j < variance->size(); ++j) {
+  for (std::size_t j = 0; j < variance.size(); ++j) {
     const double own = static_cast<double>(groups.values[j].size() - 1);
     df += own;
-    pooled += own * (*variance)[j];
-    logs += own * std::log((*variance)[j]);
+    pooled += own * variance[j];
+    logs += own * std::log(variance[j]);
     inverse += 1.0 / own;
   }
   SpreadTest out;
@@ -214,26 +212,25 @@ core::Result<SpreadTest> bartlett(const Groups& groups) {
 }
 
 core::Result<std::vector<TukeyPair>> tukey(const Groups& groups) {
-  const auto fit = one_way(groups);
-  if (!fit) return fit.error();
+  const auto fit = TRY(one_way(groups));
   const double k = static_cast<double>(groups.values.size());
   // Bisection on the upper tail: its values are good to 1e-10, so q is to about 1e-9.
   double low = 0.0, high = 10.0;
-  while (studentized_range_upper(high, k, fit->df_within) > 0.05) high *= 2.0;
+  while (studentized_range_upper(high, k, fit.df_within) > 0.05) high *= 2.0;
   for (int i = 0; i < 48; ++i) {
     const double middle = 0.5 * (low + high);
-    (studentized_range_upper(middle, k, fit->df_within) > 0.05 ? low : high) = middle;
+    (studentized_range_upper(middle, k, fit.df_within) > 0.05 ? low : high) = middle;
   }
   std::vector<TukeyPair> out;
   for (std::size_t a = 0; a < groups.values.size(); ++a)
     for (std::size_t b = a + 1; b < groups.values.size(); ++b) {
-      const double difference = fit->means[b] - fit->means[a];
+      const double difference = fit.means[b] - fit.means[a];
       const double se =
-          fit->residual_sd * std::sqrt(0.5 / static_cast<double>(groups.values[a].size()) +
-                                       0.5 / static_cast<double>(groups.values[b].size()));
+          fit.residual_sd * std::sqrt(0.5 / static_cast<double>(groups.values[a].size()) +
+                                      0.5 / static_cast<double>(groups.values[b].size()));
       out.push_back({groups.names[b] + "-" + groups.names[a], difference, difference - low * se,
                      difference + low * se,
-                     studentized_range_upper(std::abs(difference) / se, k, fit->df_within)});
+                     studentized_range_upper(std::abs(difference) / se, k, fit.df_within)});
     }
   return out;
 }

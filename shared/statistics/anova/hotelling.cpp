@@ -5,6 +5,7 @@
 #include <Eigen/QR>
 #include <cmath>
 
+#include "core/try.hpp"
 #include "statistics/distributions/distributions.hpp"
 
 namespace tractus {
@@ -39,8 +40,7 @@ core::Result<double> distance_squared(const Matrix& centred, double df, const Ve
 
 core::Result<void> check_rows(const Matrix& values, Eigen::Index least) {
   if (!values.allFinite()) return wrong("a response is not a finite number");
-  for (Eigen::Index j = 0; j < values.cols(); ++j)
-    if (auto fine = check_range(values.col(j), "a response"); !fine) return fine;
+  for (Eigen::Index j = 0; j < values.cols(); ++j) TRY(check_range(values.col(j), "a response"));
   if (values.rows() >= least) return {};
   return wrong(fmt::format("{} rows of {} responses: at least {} are needed", values.rows(),
                            values.cols(), least));
@@ -60,12 +60,12 @@ Hotelling tested(double t_squared, double distance, double rows_factor, double d
 }  // namespace
 
 core::Result<Hotelling> hotelling(const Matrix& values, const std::vector<std::string>& names) {
-  if (auto fine = check_rows(values, values.cols() + 1); !fine) return fine.error();
+  TRY(check_rows(values, values.cols() + 1));
   const Vector mean = mean_of(values);
   const double n = static_cast<double>(values.rows()), p = static_cast<double>(values.cols());
-  const auto distance = distance_squared(values.rowwise() - mean.transpose(), n - 1.0, mean, names);
-  if (!distance) return distance.error();
-  Hotelling out = tested(n * *distance, *distance, n - 1.0, p, n - p);
+  const auto distance =
+      TRY(distance_squared(values.rowwise() - mean.transpose(), n - 1.0, mean, names));
+  Hotelling out = tested(n * distance, distance, n - 1.0, p, n - p);
   out.means = mean;
   return out;
 }
@@ -76,15 +76,14 @@ core::Result<Hotelling> hotelling(const Matrix& first, const Matrix& second,
   if (first.rows() < 2 || second.rows() < 2) return wrong("each group needs two rows");
   Matrix centred(first.rows() + second.rows(), first.cols());
   centred << first, second;
-  if (auto fine = check_rows(centred, first.cols() + 2); !fine) return fine.error();
+  TRY(check_rows(centred, first.cols() + 2));
   const Vector one = mean_of(first), two = mean_of(second);
   centred.topRows(first.rows()).rowwise() -= one.transpose();
   centred.bottomRows(second.rows()).rowwise() -= two.transpose();
   const double n1 = static_cast<double>(first.rows()), n2 = static_cast<double>(second.rows());
   const double p = static_cast<double>(first.cols()), n = n1 + n2;
-  const auto distance = distance_squared(centred, n - 2.0, one - two, names);
-  if (!distance) return distance.error();
-  Hotelling out = tested(n1 * n2 / n * *distance, *distance, n - 2.0, p, n - p - 1.0);
+  const auto distance = TRY(distance_squared(centred, n - 2.0, one - two, names));
+  Hotelling out = tested(n1 * n2 / n * distance, distance, n - 2.0, p, n - p - 1.0);
   out.means = one - two;
   return out;
 }

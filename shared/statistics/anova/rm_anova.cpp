@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/try.hpp"
 #include "statistics/distributions/distributions.hpp"
 
 namespace tractus {
@@ -47,7 +48,7 @@ core::Result<void> check(const Matrix& values) {
   if (values.rows() < 2 || values.cols() < 2)
     return wrong("repeated measures need at least two subjects and two levels");
   if (!values.allFinite()) return wrong("a value is missing or not a finite number");
-  if (auto fine = check_range(values.reshaped(), "the response"); !fine) return fine;
+  TRY(check_range(values.reshaped(), "the response"));
   return {};
 }
 
@@ -74,7 +75,7 @@ void add_corrections(const Matrix& values, RmAnova& out) {
 }  // namespace
 
 core::Result<RmAnova> rm_anova(const Matrix& values) {
-  if (auto fine = check(values); !fine) return fine.error();
+  TRY(check(values));
   const auto n = static_cast<long double>(values.rows()),
              k = static_cast<long double>(values.cols());
   const long double shift = values(0, 0);

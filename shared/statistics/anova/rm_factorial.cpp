@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/try.hpp"
 #include "statistics/distributions/distributions.hpp"
 
 namespace tractus {
@@ -132,7 +133,7 @@ core::Result<std::size_t> checked_groups(const RmDesign& design) {
   if (design.values.rows() < 2 || cells < 2)
     return wrong("repeated measures need at least two subjects and two levels");
   if (!design.values.allFinite()) return wrong("a value is missing or not a finite number");
-  if (auto fine = check_range(design.values.reshaped(), "the response"); !fine) return fine.error();
+  TRY(check_range(design.values.reshaped(), "the response"));
   std::vector<std::size_t> sizes(1, static_cast<std::size_t>(design.values.rows()));
   if (!design.group.empty()) {
     core::require(std::ssize(design.group) == design.values.rows(), "every subject has a group");
@@ -147,12 +148,11 @@ core::Result<std::size_t> checked_groups(const RmDesign& design) {
 }  // namespace
 
 core::Result<std::vector<RmEffect>> rm_factorial(const RmDesign& design) {
-  const auto groups = checked_groups(design);
-  if (!groups) return groups.error();
+  const auto groups = TRY(checked_groups(design));
   std::vector<RmEffect> out;
   double all_error = 0.0;
   for (unsigned mask = 0; mask < 1u << design.levels.size(); ++mask) {
-    const Scores s = scores(design, mask, *groups);
+    const Scores s = scores(design, mask, groups);
     const double error = s.error.trace();
     all_error += error;
     if (!(error > 1e-28 * s.means.squaredNorm()))
@@ -161,7 +161,7 @@ core::Result<std::vector<RmEffect>> rm_factorial(const RmDesign& design) {
       return core::Error{core::Errc::out_of_range,
                          "the numbers are too large for sums of squares: rescale them"};
     for (const bool with_group : {false, true}) {
-      if ((mask == 0 && !with_group) || (with_group && *groups == 1)) continue;
+      if ((mask == 0 && !with_group) || (with_group && groups == 1)) continue;
       out.push_back(effect(s, with_group));
       out.back().within = members(mask);
     }

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "core/try.hpp"
 #include "statistics/distributions/distributions.hpp"
 
 namespace tractus {
@@ -98,7 +99,7 @@ core::Result<LearningCurve> learning_curve(const Vector& trial, const Vector& sc
     return wrong("a learning curve needs at least 5 trials, 6 with a plateau");
   if (!trial.allFinite() || !score.allFinite() || !(trial.minCoeff() > 0.0))
     return wrong("trials are numbered from 1, scores are finite");
-  if (auto fine = check_range(score, "the score"); !fine) return fine.error();
+  TRY(check_range(score, "the score"));
   if (score.maxCoeff() == score.minCoeff()) return wrong("every score is the same: no curve");
   LearningCurve fit;
   fit.names = data.has_plateau() ? std::vector<std::string>{"a", "b", "c"}

@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 
+#include "core/try.hpp"
 #include "statistics/distributions/binomial.hpp"
 #include "statistics/distributions/distributions.hpp"
 
@@ -210,8 +211,7 @@ core::Result<Glmm> logistic_mixed(const Design& design, const Counts& counts,
                                   const std::vector<std::string>& labels) {
   core::require(labels.size() == static_cast<std::size_t>(counts.successes.size()),
                 "every row has a group");
-  const auto plain = logistic(design, counts);
-  if (!plain) return plain.error();
+  const auto plain = TRY(logistic(design, counts));
   Glmm out;
   out.names = design.names;
   const auto groups = groups_of(design, counts, labels, out.groups);
@@ -219,25 +219,25 @@ core::Result<Glmm> logistic_mixed(const Design& design, const Counts& counts,
     return core::Error{core::Errc::bad_input,
                        "one group: the spread between groups cannot be estimated"};
   const Quadrature rule;
-  const Eigen::Index p = plain->coefficients.size();
+  const Eigen::Index p = plain.coefficients.size();
   Vector theta(p + 1);
-  theta << plain->coefficients, 0.5;
+  theta << plain.coefficients, 0.5;
   Value value;
   const bool found = maximise(groups, rule, theta, value);
   const double binomial =
-      plain->log_likelihood -
-      value_at(groups, rule, (Vector(p + 1) << plain->coefficients, 0.0).finished()).log_likelihood;
+      plain.log_likelihood -
+      value_at(groups, rule, (Vector(p + 1) << plain.coefficients, 0.0).finished()).log_likelihood;
   // σ_u = 0 is always stationary; the estimate is there when nothing beyond it is higher.
   const bool at_zero = value.log_likelihood + binomial <=
-                       plain->log_likelihood + std::max(1e-10, rounding_of(plain->log_likelihood));
+                       plain.log_likelihood + std::max(1e-10, rounding_of(plain.log_likelihood));
   if (!found && !at_zero)
     return core::Error{core::Errc::out_of_range,
                        "the likelihood has no maximum: the outcomes may be separated by group"};
   if (at_zero) {
-    out.coefficients = plain->coefficients;
-    out.log_likelihood = plain->log_likelihood;
+    out.coefficients = plain.coefficients;
+    out.log_likelihood = plain.log_likelihood;
     out.sigma_u_se = std::numeric_limits<double>::quiet_NaN();
-    add_tests(plain->covariance, out);
+    add_tests(plain.covariance, out);
     return out;
   }
   out.coefficients = theta.head(p);

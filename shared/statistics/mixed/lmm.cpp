@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 
+#include "core/try.hpp"
 #include "statistics/distributions/distributions.hpp"
 
 namespace tractus {
@@ -180,7 +181,7 @@ core::Result<Moments> prepared(const Design& design, const Vector& response,
                                const std::vector<std::string>& labels) {
   core::require(labels.size() == static_cast<std::size_t>(response.size()),
                 "every observation has a group");
-  if (auto fine = check(design, response); !fine) return fine.error();
+  TRY(check(design, response));
   if (!collinear_columns(design).empty()) return collinear_error(design);
   Moments m = moments(design, response, labels);
   if (m.groups.size() < 2)
@@ -218,9 +219,8 @@ void add_tests(const Moments& m, const Gls& fit, Lmm& out) {
 
 core::Result<Lmm> lmm(const Design& design, const Vector& response,
                       const std::vector<std::string>& labels) {
-  const auto prepared_moments = prepared(design, response, labels);
-  if (!prepared_moments) return prepared_moments.error();
-  const Moments& m = *prepared_moments;
+  const auto prepared_moments = TRY(prepared(design, response, labels));
+  const Moments& m = prepared_moments;
   const Real lambda = best_lambda(m, true), df = m.n - static_cast<Real>(m.p);
   const Gls fit = gls(m, lambda);
   const Real sigma2 = fit.rss / df;
@@ -249,18 +249,17 @@ core::Result<Lmm> lmm(const Design& design, const Vector& response,
 
 core::Result<LmmMl> lmm_ml(const Design& design, const Vector& response,
                            const std::vector<std::string>& labels) {
-  const auto m = prepared(design, response, labels);
-  if (!m) return m.error();
-  const Real lambda = best_lambda(*m, false);
-  const Gls fit = gls(*m, lambda);
+  const auto m = TRY(prepared(design, response, labels));
+  const Real lambda = best_lambda(m, false);
+  const Gls fit = gls(m, lambda);
   LmmMl out;
   out.coefficients = fit.beta.cast<double>();
-  out.sigma_squared = static_cast<double>(fit.rss / m->n);
-  out.tau_squared = static_cast<double>(lambda * fit.rss / m->n);
-  out.deviance = static_cast<double>(criterion(*m, lambda, false));
-  const double parameters = static_cast<double>(m->p) + 2.0;
+  out.sigma_squared = static_cast<double>(fit.rss / m.n);
+  out.tau_squared = static_cast<double>(lambda * fit.rss / m.n);
+  out.deviance = static_cast<double>(criterion(m, lambda, false));
+  const double parameters = static_cast<double>(m.p) + 2.0;
   out.aic = out.deviance + 2.0 * parameters;
-  out.bic = out.deviance + std::log(static_cast<double>(m->n)) * parameters;
+  out.bic = out.deviance + std::log(static_cast<double>(m.n)) * parameters;
   return out;
 }
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace statistics {
 namespace {
@@ -29,8 +31,8 @@ core::Result<PermutationSlope> permutation_slope(const Vector& x, const Vector& 
   core::require(x.size() == y.size(), "a slope is of pairs");
   if (x.size() < 2 || !x.allFinite() || !y.allFinite())
     return wrong("a slope needs two pairs of finite numbers");
-  if (auto fine = check_range(x, "x"); !fine) return fine.error();
-  if (auto fine = check_range(y, "the response"); !fine) return fine.error();
+  TRY(check_range(x, "x"));
+  TRY(check_range(y, "the response"));
   if (x.maxCoeff() == x.minCoeff() || y.maxCoeff() == y.minCoeff())
     return wrong("x or y is the same everywhere: there is no slope to test");
   std::vector<double> order(y.begin(), y.end());
@@ -59,7 +61,7 @@ core::Result<PermutationSlope> permutation_slope(const Vector& x, const Vector& 
 core::Result<SignFlip> sign_flip(const Vector& differences) {
   if (differences.size() < 1 || !differences.allFinite())
     return wrong("a sign-flip test needs finite differences");
-  if (auto fine = check_range(differences, "the difference"); !fine) return fine.error();
+  TRY(check_range(differences, "the difference"));
   if (differences.size() > 28)
     return core::Error{core::Errc::too_large,
                        "over 28 differences: 2ⁿ signs are too many to count"};

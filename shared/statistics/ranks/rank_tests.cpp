@@ -5,6 +5,7 @@
 #include <map>
 #include <numeric>
 
+#include "core/try.hpp"
 #include "statistics/distributions/distributions.hpp"
 #include "statistics/ranks/permutation.hpp"
 #include "statistics/summary/modified_z.hpp"
@@ -182,10 +183,9 @@ Vector ranks(const Vector& values) {
 }
 
 core::Result<KruskalWallis> kruskal_wallis(const Groups& groups) {
-  const auto all = pooled(groups);
-  if (!all) return all.error();
-  const double n = static_cast<double>(all->values.size());
-  const auto sums = sums_by_group(ranks(all->values), *all, groups.values.size());
+  const auto all = TRY(pooled(groups));
+  const double n = static_cast<double>(all.values.size());
+  const auto sums = sums_by_group(ranks(all.values), all, groups.values.size());
   double h = 0.0;
   for (std::size_t j = 0; j < sums.size(); ++j) {
     const double size = static_cast<double>(groups.values[j].size());
@@ -193,7 +193,7 @@ core::Result<KruskalWallis> kruskal_wallis(const Groups& groups) {
     h += size * off * off;
   }
   KruskalWallis out;
-  out.h = 12.0 * h / (n * (n + 1.0)) / (1.0 - cubes_of_ties(all->values) / (n * n * n - n));
+  out.h = 12.0 * h / (n * (n + 1.0)) / (1.0 - cubes_of_ties(all.values) / (n * n * n - n));
   out.df = static_cast<double>(sums.size()) - 1.0;
   out.p = chi_squared_upper(out.h, out.df);
   out.epsilon_squared = out.h / (n - 1.0);
@@ -230,13 +230,12 @@ struct Dealing {
 }  // namespace
 
 core::Result<ExactKruskal> kruskal_wallis_exact(const Groups& groups) {
-  const auto all = pooled(groups);
-  if (!all) return all.error();
-  double log_ways = std::lgamma(static_cast<double>(all->values.size()) + 1.0);
-  const Vector ranked = ranks(all->values);
+  const auto all = TRY(pooled(groups));
+  double log_ways = std::lgamma(static_cast<double>(all.values.size()) + 1.0);
+  const Vector ranked = ranks(all.values);
   Dealing dealing{ranked, {}, {}, {}};
   double observed = 0.0;
-  const auto sums = sums_by_group(ranked, *all, groups.values.size());
+  const auto sums = sums_by_group(ranked, all, groups.values.size());
   for (std::size_t j = 0; j < groups.values.size(); ++j) {
     const double size = static_cast<double>(groups.values[j].size());
     log_ways -= std::lgamma(size + 1.0);
@@ -258,15 +257,14 @@ core::Result<SpreadTest> fligner_killeen(const Groups& groups) {
   Groups deviations = groups;
   for (auto& values : deviations.values)
     if (values.size() > 0) values = (values.array() - median({values.begin(), values.end()})).abs();
-  const auto all = pooled(deviations);
-  if (!all) return all.error();
-  const double n = static_cast<double>(all->values.size());
-  const Vector scores = ranks(all->values).unaryExpr([&](double r) {
+  const auto all = TRY(pooled(deviations));
+  const double n = static_cast<double>(all.values.size());
+  const Vector scores = ranks(all.values).unaryExpr([&](double r) {
     return normal_quantile(0.5 * (1.0 + r / (n + 1.0)));
   });
   const double mean = scores.mean();
   const double variance = (scores.array() - mean).square().sum() / (n - 1.0);
-  const auto sums = sums_by_group(scores, *all, groups.values.size());
+  const auto sums = sums_by_group(scores, all, groups.values.size());
   SpreadTest out;
   for (std::size_t j = 0; j < sums.size(); ++j) {
     const double size = static_cast<double>(groups.values[j].size());
@@ -278,14 +276,13 @@ core::Result<SpreadTest> fligner_killeen(const Groups& groups) {
 }
 
 core::Result<Friedman> friedman(const Matrix& values) {
-  const auto ranked = row_ranks(values);
-  if (!ranked) return ranked.error();
+  const auto ranked = TRY(row_ranks(values));
   const double n = static_cast<double>(values.rows()), k = static_cast<double>(values.cols());
   double ties = 0.0;
   for (Eigen::Index i = 0; i < values.rows(); ++i) ties += cubes_of_ties(values.row(i).transpose());
   const double scale = n * k * (k + 1.0) - ties / (k - 1.0);
   if (!(scale > 0.0)) return wrong("every subject is the same at every level");
-  const Vector sums = ranked->colwise().sum();
+  const Vector sums = ranked.colwise().sum();
   Friedman out;
   out.chi_squared = 12.0 * (sums.array() - 0.5 * n * (k + 1.0)).square().sum() / scale;
   out.df = k - 1.0;
@@ -295,11 +292,10 @@ core::Result<Friedman> friedman(const Matrix& values) {
 }
 
 core::Result<Page> page_trend(const Matrix& values) {
-  const auto ranked = row_ranks(values);
-  if (!ranked) return ranked.error();
+  const auto ranked = TRY(row_ranks(values));
   const double n = static_cast<double>(values.rows()), k = static_cast<double>(values.cols());
   Page out;
-  out.l = ranked->colwise().sum().transpose().dot(Vector::LinSpaced(values.cols(), 1.0, k));
+  out.l = ranked.colwise().sum().transpose().dot(Vector::LinSpaced(values.cols(), 1.0, k));
   out.mean = n * k * (k + 1.0) * (k + 1.0) / 4.0;
   out.variance = n * k * k * (k + 1.0) * (k * k - 1.0) / 144.0;
   out.z = (out.l - out.mean) / std::sqrt(out.variance);
@@ -341,7 +337,7 @@ core::Result<MannWhitney> mann_whitney(const Vector& x, const Vector& y) {
 }
 
 core::Result<Correlation> spearman(const Vector& x, const Vector& y) {
-  if (auto fine = check_pairs(x, y); !fine) return fine.error();
+  TRY(check_pairs(x, y));
   Vector a = ranks(x), b = ranks(y);
   a.array() -= a.mean();
   b.array() -= b.mean();
@@ -356,7 +352,7 @@ core::Result<Correlation> spearman(const Vector& x, const Vector& y) {
 }
 
 core::Result<Correlation> kendall(const Vector& x, const Vector& y) {
-  if (auto fine = check_pairs(x, y); !fine) return fine.error();
+  TRY(check_pairs(x, y));
   const double n = static_cast<double>(x.size()), pairs = n * (n - 1.0);
   const auto two = [](double t) { return t * (t - 1.0); };
   const auto three = [](double t) { return t * (t - 1.0) * (t - 2.0); };

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "core/try.hpp"
 #include "statistics/distributions/distributions.hpp"
 #include "statistics/regression/block_least_squares.hpp"
 
@@ -179,7 +180,7 @@ void add_tests(Bisquare& fit, double n, double p, bool floor) {
 
 core::Result<Bisquare> bisquare(const Design& design, const Vector& response,
                                 const BisquareOptions& options) {
-  if (auto fine = check(design, response); !fine) return fine.error();
+  TRY(check(design, response));
   const bool mass = options.convention == BisquareConvention::mass;
   const auto p = design.columns.cols();
   Bisquare fit;

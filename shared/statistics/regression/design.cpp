@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace statistics {
 namespace {
@@ -72,7 +74,7 @@ core::Result<void> check_range(const Vector& values, const std::string& what) {
 }
 
 core::Result<void> check(const Design& design, const Vector& response) {
-  if (auto fine = check_shape(design, response); !fine) return fine;
+  TRY(check_shape(design, response));
   const auto rows = design.columns.rows(), columns = design.columns.cols();
   const bool fine = response.allFinite() && design.columns.allFinite();
   for (Eigen::Index i = 0; i < rows && !fine; ++i) {
@@ -87,10 +89,8 @@ core::Result<void> check(const Design& design, const Vector& response) {
     return wrong(
         fmt::format("the response is {} in every row: there is nothing to explain", response[0]));
   for (Eigen::Index j = 0; j < columns; ++j)
-    if (auto in_range = check_range(design.columns.col(j),
-                                    "column '" + design.names[static_cast<std::size_t>(j)] + "'");
-        !in_range)
-      return in_range;
+    TRY(check_range(design.columns.col(j),
+                    "column '" + design.names[static_cast<std::size_t>(j)] + "'"));
   return check_range(response, "the response");
 }
 

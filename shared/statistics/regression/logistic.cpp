@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
+#include "core/try.hpp"
 #include "statistics/distributions/binomial.hpp"
 #include "statistics/distributions/distributions.hpp"
 
@@ -36,10 +37,8 @@ core::Result<void> check_counts(const Design& design, const Counts& counts) {
   if (sum == 0.0 || sum == counts.trials.sum())
     return wrong("every outcome is the same: there is nothing to explain");
   for (Eigen::Index j = 0; j < design.columns.cols(); ++j)
-    if (auto in_range = check_range(design.columns.col(j),
-                                    "column '" + design.names[static_cast<std::size_t>(j)] + "'");
-        !in_range)
-      return in_range;
+    TRY(check_range(design.columns.col(j),
+                    "column '" + design.names[static_cast<std::size_t>(j)] + "'"));
   if (!collinear_columns(design).empty()) return collinear_error(design);
   return {};
 }
@@ -127,7 +126,7 @@ core::Error separated() {
 }  // namespace
 
 core::Result<Logistic> logistic(const Design& design, const Counts& counts) {
-  if (auto fine = check_counts(design, counts); !fine) return fine.error();
+  TRY(check_counts(design, counts));
   const Matrix& x = design.columns;
   Logistic fit;
   fit.names = design.names;
@@ -205,7 +204,7 @@ QuasiBinomial quasi_binomial(const Logistic& fit) {
 }
 
 core::Result<Firth> firth_logistic(const Design& design, const Counts& counts) {
-  if (auto fine = check_counts(design, counts); !fine) return fine.error();
+  TRY(check_counts(design, counts));
   const Matrix& x = design.columns;
   Firth fit;
   fit.names = design.names;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/try.hpp"
 #include "statistics/distributions/distributions.hpp"
 #include "statistics/regression/block_least_squares.hpp"
 
@@ -166,13 +167,13 @@ bool covariance_fits(const Ols& fit) {
 }  // namespace
 
 core::Result<Ols> ols(const Design& design, const Vector& response) {
-  if (auto fine = check_shape(design, response); !fine) return fine.error();
+  TRY(check_shape(design, response));
   Ols fit;
   fit.names = design.names;
   fit.df_residual = static_cast<double>(response.size() - design.columns.cols());
   // Blocks need every number finite and a response that varies, and say so themselves.
   if (!is_large(design) || !solve_in_blocks(design, response, fit)) {
-    if (auto fine = check(design, response); !fine) return fine.error();
+    TRY(check(design, response));
     const bool full_rank = is_large(design) ? solve<double>(design, response, fit)
                                             : solve<long double>(design, response, fit);
     if (!full_rank) return collinear_error(design);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/try.hpp"
 #include "statistics/distributions/distributions.hpp"
 
 namespace tractus {
@@ -20,7 +21,7 @@ core::Result<void> check(const Vector& x, const Vector& y) {
     return core::Error{core::Errc::bad_input, "a value is not a finite number"};
   Vector both(x.size() + y.size());
   both << x, y;
-  if (auto fine = check_range(both, "the response"); !fine) return fine;
+  TRY(check_range(both, "the response"));
   return {};
 }
 
@@ -60,7 +61,7 @@ double hedges_j(double df) {
 }
 
 core::Result<MeanDifference> two_samples(const Vector& x, const Vector& y) {
-  if (auto fine = check(x, y); !fine) return fine.error();
+  TRY(check(x, y));
   const double n = static_cast<double>(x.size()), m = static_cast<double>(y.size());
   const double df = n + m - 2.0;
   const double pooled = ((n - 1.0) * variance(x) + (m - 1.0) * variance(y)) / df;
@@ -73,7 +74,7 @@ core::Result<MeanDifference> two_samples(const Vector& x, const Vector& y) {
 
 core::Result<MeanDifference> paired(const Vector& x, const Vector& y) {
   core::require(x.size() == y.size(), "paired values come in pairs");
-  if (auto fine = check(x, y); !fine) return fine.error();
+  TRY(check(x, y));
   const Vector each = x - y;
   const double n = static_cast<double>(each.size()), spread = variance(each);
   if (!(spread > 0.0)) return no_spread();
@@ -83,7 +84,7 @@ core::Result<MeanDifference> paired(const Vector& x, const Vector& y) {
 }
 
 core::Result<WelchT> welch_t(const Vector& x, const Vector& y) {
-  if (auto fine = check(x, y); !fine) return fine.error();
+  TRY(check(x, y));
   const double a = variance(x) / static_cast<double>(x.size());
   const double b = variance(y) / static_cast<double>(y.size());
   if (!(a + b > 0.0)) return no_spread();

@@ -11,6 +11,7 @@
 #include <memory>
 
 #include "core/file.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace volume_io {
@@ -68,7 +69,7 @@ core::Result<std::uint64_t> size_of_file(const fs::path& path) {
 }
 
 core::Result<core::Bytes> first_bytes(const fs::path& path, std::size_t limit) {
-  if (const auto size = size_of_file(path); !size) return size.error();
+  TRY(size_of_file(path));
   const Gzip file = open_gzip(path, 0);
   if (!file) return core::system_error(path, "cannot open");
   core::Bytes out(limit);
@@ -89,12 +90,11 @@ bool is_gzip(const fs::path& path, std::uint64_t offset) {
 
 core::Result<void> check_gzip(const fs::path& path, std::uint64_t offset, std::uint64_t expected,
                               const core::Progress& progress) {
-  const auto size = size_of_file(path);
-  if (!size) return size.error();
-  if (expected > kFreelyInflated && expected / kMaxCompression > *size)
+  const auto size = TRY(size_of_file(path));
+  if (expected > kFreelyInflated && expected / kMaxCompression > size)
     return bad(path,
                fmt::format("{} bytes that would inflate to {}, over {} : 1, which no CT reaches",
-                           *size, expected, kMaxCompression));
+                           size, expected, kMaxCompression));
   const Gzip file = open_gzip(path, offset);
   if (!file) return core::system_error(path, "cannot open");
   core::Bytes part(1u << 18);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/result.hpp"
+#include "core/try.hpp"
 
 namespace tractus::volume_io {
 
@@ -55,25 +56,24 @@ core::Result<Span> span_of(std::span<const T> raw) {
 /// that overflows).
 template <class T>
 core::Result<Counts> counts_of(std::span<const T> raw, double scale, double offset) {
-  const auto span = span_of(raw);
-  if (!span) return span.error();
-  const double range = span->high - span->low;
-  const bool exact = span->whole && range <= 65535.0;
+  const auto span = TRY(span_of(raw));
+  const double range = span.high - span.low;
+  const bool exact = span.whole && range <= 65535.0;
   const double step = exact ? 1.0 : range / 65535.0;
-  const double from = scale > 0 ? span->low : span->high;
+  const double from = scale > 0 ? span.low : span.high;
   const double sign = scale > 0 ? 1.0 : -1.0;
   Counts out{
       std::vector<std::uint16_t>(raw.size()), step * std::abs(scale), offset + scale * from, {}};
   if (!std::isfinite(out.intercept) || !(out.slope > 0.0 && out.slope < 1e9))
-    return core::Error{core::Errc::bad_input, fmt::format("values from {} to {} are none a CT has",
-                                                          span->low, span->high)};
+    return core::Error{core::Errc::bad_input,
+                       fmt::format("values from {} to {} are none a CT has", span.low, span.high)};
   for (std::size_t i = 0; i < raw.size(); ++i)
     out.counts[i] = static_cast<std::uint16_t>(std::clamp(
         std::nearbyint(sign * (static_cast<double>(raw[i]) - from) / step), 0.0, 65535.0));
   if (!exact)
     out.note =
         fmt::format("values were rounded to 65536 levels of {:.6g} between {:.6g} and {:.6g}",
-                    out.slope, offset + scale * span->low, offset + scale * span->high);
+                    out.slope, offset + scale * span.low, offset + scale * span.high);
   return out;
 }
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include "core/try.hpp"
 #include "volume/io/claims.hpp"
 #include "volume/io/dicom_profile.hpp"
 
@@ -220,13 +221,11 @@ core::Result<void> Deidentifier::take(const DicomElement& e, Writing& out) {
 core::Result<core::Bytes> Deidentifier::cleaned(core::ByteView file, const fs::path& path) {
   std::vector<DicomElement> elements;
   const auto layout =
-      parse_dicom_layout(file, path, [&](const DicomElement& e) { elements.push_back(e); });
-  if (!layout) return layout.error();
-  Writing out{file, path, *layout};
-  for (const DicomElement& e : elements)
-    if (auto taken = take(e, out); !taken) return taken.error();
+      TRY(parse_dicom_layout(file, path, [&](const DicomElement& e) { elements.push_back(e); }));
+  Writing out{file, path, layout};
+  for (const DicomElement& e : elements) TRY(take(e, out));
   const auto say = [&](std::uint32_t tag, const char* vr, std::string_view value) {
-    out.kept[tag] = element(tag, vr, std::string(value), layout->with_vr, layout->big_endian);
+    out.kept[tag] = element(tag, vr, std::string(value), layout.with_vr, layout.big_endian);
   };
   say(0x00120062, "CS", "YES");
   say(0x00120063, "LO", kMethod);

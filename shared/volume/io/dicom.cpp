@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "volume/io/claims.hpp"
 #include "volume/io/counts.hpp"
 #include "volume/io/deidentify.hpp"
@@ -66,13 +67,11 @@ core::Result<Counts> read_voxels(const Series& series, const fs::path& folder) {
 core::Result<void> clean(const Listing& listing, const fs::path& into, Deidentifier& deidentifier,
                          const core::Progress& progress) {
   for (std::size_t i = 0; i < listing.files.size(); ++i) {
-    const auto file = core::read_file(listing.files[i], kSliceLimitBytes);
-    if (!file) return file.error();
-    auto cleaned = deidentifier.cleaned(*file, listing.files[i]);
-    if (!cleaned) return cleaned.error();
+    const auto file = TRY(core::read_file(listing.files[i], kSliceLimitBytes));
+    auto cleaned = TRY(deidentifier.cleaned(file, listing.files[i]));
     std::ofstream copy(into / listing.files[i].filename(), std::ios::binary);
-    copy.write(reinterpret_cast<const char*>(cleaned->data()),
-               static_cast<std::streamsize>(cleaned->size()));
+    copy.write(reinterpret_cast<const char*>(cleaned.data()),
+               static_cast<std::streamsize>(cleaned.size()));
     copy.close();
     if (!copy) return core::system_error(into, "cannot write");
     if (progress &&
@@ -91,39 +90,34 @@ core::Error with_path_of(const fs::path& folder, const fs::path& copies, core::E
 }
 
 core::Result<Imported> read_series(const fs::path& folder, const core::Progress& progress) {
-  auto series =
-      scan_series(folder, [&](double share) { return !progress || progress(0.5 + 0.5 * share); });
-  if (!series) return series.error();
-  auto voxels = read_voxels(*series, folder);
-  if (!voxels) return voxels.error();
-  Imported out{{series->geometry, voxels->slope, voxels->intercept, std::move(voxels->counts)},
+  auto series = TRY(
+      scan_series(folder, [&](double share) { return !progress || progress(0.5 + 0.5 * share); }));
+  auto voxels = TRY(read_voxels(series, folder));
+  Imported out{{series.geometry, voxels.slope, voxels.intercept, std::move(voxels.counts)},
                "DICOM",
-               fmt::format("DICOM series of {} {} slices", series->slices.size(),
-                           printable(series->slices.front().modality)),
-               std::move(series->notes)};
-  out.modality = series->slices.front().modality;
-  if (!voxels->note.empty()) out.notes.push_back(voxels->note);
-  if (series->tilt_rad == 0.0) return out;
-  auto straight = correct_gantry_tilt(out.volume, series->shear_m, folder.string());
-  if (!straight) return straight.error();
-  out.volume = std::move(*straight);
+               fmt::format("DICOM series of {} {} slices", series.slices.size(),
+                           printable(series.slices.front().modality)),
+               std::move(series.notes)};
+  out.modality = series.slices.front().modality;
+  if (!voxels.note.empty()) out.notes.push_back(voxels.note);
+  if (series.tilt_rad == 0.0) return out;
+  auto straight = TRY(correct_gantry_tilt(out.volume, series.shear_m, folder.string()));
+  out.volume = std::move(straight);
   out.notes.push_back(
       fmt::format("the gantry was tilted by {:.2f}°: slices were shifted back within their planes",
-                  series->tilt_rad * 180.0 / std::numbers::pi));
+                  series.tilt_rad * 180.0 / std::numbers::pi));
   return out;
 }
 
 core::Result<Imported> read_cleaned(const fs::path& folder, const fs::path& copies,
                                     const UidKey& key, const core::Progress& progress) {
-  const auto listing = list_series(folder);
-  if (!listing) return listing.error();
+  const auto listing = TRY(list_series(folder));
   Deidentifier deidentifier(key);
-  if (auto done = clean(*listing, copies, deidentifier, progress); !done) return done.error();
+  TRY(clean(listing, copies, deidentifier, progress));
   auto out = read_series(copies, progress);
   if (!out) return with_path_of(folder, copies, out.error());
-  if (listing->others > 0)
-    out->notes.push_back(
-        fmt::format("{} other files in the folder were left out", listing->others));
+  if (listing.others > 0)
+    out->notes.push_back(fmt::format("{} other files in the folder were left out", listing.others));
   out->suspicions = deidentifier.suspicions();
   out->report = deidentifier.report();
   return out;
@@ -135,12 +129,11 @@ core::Result<Imported> read_dicom(const fs::path& folder, const ReadOptions& opt
   std::error_code failure;
   const fs::path temporary = fs::temp_directory_path(failure);
   if (failure) return core::Error{core::Errc::io, "there is no folder for temporary files"};
-  auto copies = core::ScratchFolder::make(temporary / "tractus-dicom");
-  if (!copies) return copies.error();
+  auto copies = TRY(core::ScratchFolder::make(temporary / "tractus-dicom"));
   return isolated(
       folder,
       [&](const core::Progress& passed_on) {
-        return read_cleaned(folder, copies->path(), options.uid_key, passed_on);
+        return read_cleaned(folder, copies.path(), options.uid_key, passed_on);
       },
       options.progress);
 }

@@ -5,6 +5,7 @@
 #include <array>
 #include <string_view>
 
+#include "core/try.hpp"
 #include "volume/io/claims.hpp"
 
 namespace tractus {
@@ -59,19 +60,16 @@ class Walk {
   core::Result<DicomLayout> run() {
     std::size_t at = 132;
     while (at + 4 <= file_.size() && u16(at, false) == 0x0002) {
-      auto element = next(at, file_.size(), true, false);
-      if (!element) return element.error();
-      const std::string_view value =
-          core::text_of(file_.subspan(element->value_at, element->length));
-      if (element->tag == tag(2, 0x10))
+      auto element = TRY(next(at, file_.size(), true, false));
+      const std::string_view value = core::text_of(file_.subspan(element.value_at, element.length));
+      if (element.tag == tag(2, 0x10))
         layout_.transfer_syntax =
             std::string(value.substr(0, value.find_first_of(std::string_view(" \0", 2))));
-      at = element->value_at + element->length;
-      tell(*element, at, -1);
+      at = element.value_at + element.length;
+      tell(element, at, -1);
     }
-    if (auto known = choose_syntax(); !known) return known.error();
-    const auto end = elements(at, file_.size(), explicit_, 0, false);
-    if (!end) return end.error();
+    TRY(choose_syntax());
+    TRY(elements(at, file_.size(), explicit_, 0, false));
     return layout_;
   }
 
@@ -147,16 +145,14 @@ class Walk {
     if (depth > kMaxDepth)
       return bad(path_, fmt::format("sequences nested over {} deep at byte {}", kMaxDepth, at));
     while (at < end) {
-      auto e = next(at, end, with_vr, big_);
-      if (!e) return e.error();
-      if (e->tag == kItemEnd && open) return e->value_at;
-      if (e->tag == kPixels && depth == 0) {
-        if (auto seen = pixels(*e); !seen) return seen.error();
+      auto e = TRY(next(at, end, with_vr, big_));
+      if (e.tag == kItemEnd && open) return e.value_at;
+      if (e.tag == kPixels && depth == 0) {
+        TRY(pixels(e));
       }
-      auto stop = value(*e, end, with_vr, depth);
-      if (!stop) return stop.error();
-      tell(*e, *stop, depth);
-      at = *stop;
+      auto stop = TRY(value(e, end, with_vr, depth));
+      tell(e, stop, depth);
+      at = stop;
     }
     if (open) return bad(path_, fmt::format("a sequence's item has no end before byte {}", end));
     return at;
@@ -170,8 +166,7 @@ class Walk {
         e.vr == "SQ" || (e.vr.empty() && e.length >= 8 &&
                          tag(u16(e.value_at, big_), u16(e.value_at + 2, big_)) == kItem);
     if (looks_nested && e.length > 0) {
-      if (auto inner = items(e.value_at, stop, with_vr, depth + 1, false, false); !inner)
-        return inner;
+      TRY(items(e.value_at, stop, with_vr, depth + 1, false, false));
     }
     return stop;
   }
@@ -181,25 +176,23 @@ class Walk {
   core::Result<std::size_t> items(std::size_t at, std::size_t end, bool with_vr, int depth,
                                   bool open, bool fragments) {
     while (at < end) {
-      auto item = next(at, end, with_vr, big_);
-      if (!item) return item.error();
-      if (item->tag == kSequenceEnd && open) return item->value_at;
-      if (item->tag != kItem)
+      auto item = TRY(next(at, end, with_vr, big_));
+      if (item.tag == kSequenceEnd && open) return item.value_at;
+      if (item.tag != kItem)
         return bad(
             path_,
             fmt::format("element ({:04x},{:04x}) at byte {}, an item of a sequence is expected",
-                        item->tag >> 16, item->tag & 0xffff, at));
+                        item.tag >> 16, item.tag & 0xffff, at));
       if (fragments) {
-        if (item->length == kUndefined) return lie(*item, end - item->value_at);
-        first_fragment(*item);
-        at = item->value_at + item->length;
+        if (item.length == kUndefined) return lie(item, end - item.value_at);
+        first_fragment(item);
+        at = item.value_at + item.length;
         continue;
       }
-      const bool open_item = item->length == kUndefined;
-      auto inner = elements(item->value_at, open_item ? end : item->value_at + item->length,
-                            with_vr, depth, open_item);
-      if (!inner) return inner;
-      at = *inner;
+      const bool open_item = item.length == kUndefined;
+      auto inner = TRY(elements(item.value_at, open_item ? end : item.value_at + item.length,
+                                with_vr, depth, open_item));
+      at = inner;
     }
     if (open) return bad(path_, fmt::format("a sequence has no end before byte {}", end));
     return at;

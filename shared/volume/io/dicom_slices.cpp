@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/try.hpp"
 #include "volume/io/claims.hpp"
 #include "volume/io/dicom_tags.hpp"
 #include "volume/volume_file.hpp"
@@ -109,27 +110,24 @@ core::Result<void> place(Series& series, const fs::path& folder) {
   const Slice& a = series.slices.front();
   volume::Mat3 columns;
   columns << a.along_row, a.along_column, a.along_row.cross(a.along_column);
-  auto axes = straightened(columns, a.path, "image orientation");
-  if (!axes) return axes.error();
-  const Vec3 normal = axes->col(2);
-  const auto step = even_step(series.slices, normal, folder);
-  if (!step) return step.error();
-  series.tilt_rad = std::acos(std::clamp(step->normalized().dot(normal), -1.0, 1.0));
+  auto axes = TRY(straightened(columns, a.path, "image orientation"));
+  const Vec3 normal = axes.col(2);
+  const auto step = TRY(even_step(series.slices, normal, folder));
+  series.tilt_rad = std::acos(std::clamp(step.normalized().dot(normal), -1.0, 1.0));
   if (series.tilt_rad > kMaxTilt_rad)
     return bad(folder,
                fmt::format("slices are stacked {:.1f}° off their normal, at most 45° are taken",
                            series.tilt_rad * 180.0 / std::numbers::pi));
   if (series.tilt_rad < kUpright_rad) series.tilt_rad = 0.0;
   series.shear_m =
-      series.tilt_rad > 0.0 ? Vec3(*step - step->dot(normal) * normal) : Vec3(Vec3::Zero());
+      series.tilt_rad > 0.0 ? Vec3(step - step.dot(normal) * normal) : Vec3(Vec3::Zero());
   volume::Geometry& g = series.geometry;
   const Slice& first = series.slices.front();
   g.dims = {first.columns, first.rows, static_cast<int>(series.slices.size())};
-  g.spacing_m = {first.row_step_m, first.column_step_m, step->dot(normal)};
+  g.spacing_m = {first.row_step_m, first.column_step_m, step.dot(normal)};
   g.origin_m = first.position_m;
-  g.directions = *axes;
-  const auto voxels = checked_dims({g.dims[0], g.dims[1], g.dims[2]}, folder, "the series");
-  if (!voxels) return voxels.error();
+  g.directions = axes;
+  TRY(checked_dims({g.dims[0], g.dims[1], g.dims[2]}, folder, "the series"));
   return volume::check_geometry(g, folder.string());
 }
 
@@ -150,19 +148,17 @@ void add_notes(Series& series) {
 }  // namespace
 
 core::Result<Series> scan_series(const fs::path& folder, const core::Progress& progress) {
-  const auto listing = list_series(folder);
-  if (!listing) return listing.error();
+  const auto listing = TRY(list_series(folder));
   Series series;
-  for (std::size_t i = 0; i < listing->files.size(); ++i) {
-    auto slice = read_slice_tags(listing->files[i]);
-    if (!slice) return slice.error();
-    series.slices.push_back(std::move(*slice));
+  for (std::size_t i = 0; i < listing.files.size(); ++i) {
+    auto slice = TRY(read_slice_tags(listing.files[i]));
+    series.slices.push_back(std::move(slice));
     if (progress &&
-        !progress(static_cast<double>(i + 1) / static_cast<double>(listing->files.size())))
+        !progress(static_cast<double>(i + 1) / static_cast<double>(listing.files.size())))
       return core::Error{core::Errc::cancelled, "reading was stopped"};
   }
-  if (auto alike = check_alike(series.slices); !alike) return alike.error();
-  if (auto placed = place(series, folder); !placed) return placed.error();
+  TRY(check_alike(series.slices));
+  TRY(place(series, folder));
   add_notes(series);
   return series;
 }

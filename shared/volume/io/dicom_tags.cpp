@@ -14,6 +14,7 @@
 #include <set>
 
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "volume/io/claims.hpp"
 #include "volume/io/dicom_layout.hpp"
 
@@ -161,21 +162,19 @@ bool is_dicom_file(const fs::path& path) {
 }
 
 core::Result<Slice> read_slice_tags(const fs::path& path) {
-  const auto file = core::read_file(path, kSliceLimitBytes);
-  if (!file) return file.error();
-  const auto layout = parse_dicom_layout(*file, path);
-  if (!layout) return layout.error();
+  const auto file = TRY(core::read_file(path, kSliceLimitBytes));
+  const auto layout = TRY(parse_dicom_layout(file, path));
   gdcm::Reader reader;
-  if (auto read = read_with_gdcm(reader, path); !read) return read.error();
+  TRY(read_with_gdcm(reader, path));
   Attributes tags(reader.GetFile().GetDataSet(), path);
   Slice out;
   out.path = path;
-  out.transfer_syntax = layout->transfer_syntax;
+  out.transfer_syntax = layout.transfer_syntax;
   out.series = tags.text(kSeries);
   out.modality = tags.text(kModality);
   if (out.series.empty()) tags.wrong("no series instance UID");
   read_geometry(tags, out);
-  read_pixels(tags, out, *layout, *file);
+  read_pixels(tags, out, layout, file);
   if (tags.has(kSlope)) out.slope = tags.decimals(kSlope, "rescale slope", 1)[0];
   if (tags.has(kIntercept)) out.intercept = tags.decimals(kIntercept, "rescale intercept", 1)[0];
   if (!(out.slope > 0.0))

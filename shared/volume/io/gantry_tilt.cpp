@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/try.hpp"
 #include "volume/volume_file.hpp"
 
 namespace tractus {
@@ -50,7 +51,7 @@ core::Result<Volume> correct_gantry_tilt(const Volume& tilted, const Vec3& shear
   out.geometry.dims[0] += x.grown;
   out.geometry.dims[1] += y.grown;
   out.geometry.origin_m = g.position_of({x.first, y.first, 0.0});
-  if (auto good = volume::check_geometry(out.geometry, where); !good) return good.error();
+  TRY(volume::check_geometry(out.geometry, where));
   out.counts.reserve(out.geometry.voxel_count());
   for (int k = 0; k < g.dims[2]; ++k)
     for (int j = 0; j < out.geometry.dims[1]; ++j)

@@ -3,6 +3,7 @@
 #include <vtkNIFTIImageReader.h>
 #include <vtkNew.h>
 
+#include "core/try.hpp"
 #include "volume/io/claims.hpp"
 #include "volume/io/counts.hpp"
 #include "volume/io/formats.hpp"
@@ -22,10 +23,9 @@ core::Result<void> check_size(const NiftiHeader& header, const fs::path& path,
       header.data_at +
       header.geometry.voxel_count() * static_cast<std::uint64_t>(header.sample_bytes);
   if (is_gzip(path)) return check_gzip(path, 0, expected, progress);
-  const auto size = size_of_file(path);
-  if (!size) return size.error();
-  if (*size != expected)
-    return bad(path, fmt::format("has {} bytes, its header declares {}", *size, expected));
+  const auto size = TRY(size_of_file(path));
+  if (size != expected)
+    return bad(path, fmt::format("has {} bytes, its header declares {}", size, expected));
   return {};
 }
 
@@ -66,18 +66,15 @@ core::Result<Counts> read_voxels(const NiftiHeader& header, const fs::path& path
 }  // namespace
 
 core::Result<Imported> read_nifti(const fs::path& path, const core::Progress& progress) {
-  const auto first = first_bytes(path, kHeaderBytes);
-  if (!first) return first.error();
-  auto header = parse_nifti(*first, path);
-  if (!header) return header.error();
-  if (auto good = check_size(*header, path, progress); !good) return good.error();
-  auto voxels = read_voxels(*header, path);
-  if (!voxels) return voxels.error();
-  Imported out{{header->geometry, voxels->slope, voxels->intercept, std::move(voxels->counts)},
+  const auto first = TRY(first_bytes(path, kHeaderBytes));
+  auto header = TRY(parse_nifti(first, path));
+  TRY(check_size(header, path, progress));
+  auto voxels = TRY(read_voxels(header, path));
+  Imported out{{header.geometry, voxels.slope, voxels.intercept, std::move(voxels.counts)},
                "NIfTI",
                path.filename().string(),
-               std::move(header->notes)};
-  if (!voxels->note.empty()) out.notes.push_back(voxels->note);
+               std::move(header.notes)};
+  if (!voxels.note.empty()) out.notes.push_back(voxels.note);
   return out;
 }
 

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <optional>
 
+#include "core/try.hpp"
 #include "volume/io/claims.hpp"
 #include "volume/io/formats.hpp"
 #include "volume/volume_file.hpp"
@@ -203,9 +204,8 @@ core::Result<void> place(NiftiHeader& out, const Raw& r, const fs::path& path) {
   out.geometry.spacing_m = spacing * unit;
   out.geometry.origin_m = lps.cwiseProduct(origin) * unit;
   const Mat3 directions = lps.asDiagonal() * steps * spacing.cwiseInverse().asDiagonal();
-  auto axes = straightened(directions, path, name);
-  if (!axes) return axes.error();
-  out.geometry.directions = *axes;
+  auto axes = TRY(straightened(directions, path, name));
+  out.geometry.directions = axes;
   return volume::check_geometry(out.geometry, path.string() + ": " + name);
 }
 
@@ -238,10 +238,9 @@ core::Result<NiftiHeader> parse_nifti(core::ByteView first, const fs::path& path
     if (r.dim[i] != 1)
       return bad(path, fmt::format("dim[{}] is {}: one volume is expected, not a series of them", i,
                                    r.dim[i]));
-  auto dims = checked_dims({r.dim[1], r.dim[2], r.dim[3]}, path, "dim");
-  if (!dims) return dims.error();
+  auto dims = TRY(checked_dims({r.dim[1], r.dim[2], r.dim[3]}, path, "dim"));
   NiftiHeader out;
-  out.geometry.dims = *dims;
+  out.geometry.dims = dims;
   out.sample_bytes = bytes_of_type(r.datatype);
   if (out.sample_bytes == 0)
     return bad(path, fmt::format("datatype {}: not one number per voxel, as a CT has", r.datatype));
@@ -250,8 +249,8 @@ core::Result<NiftiHeader> parse_nifti(core::ByteView first, const fs::path& path
     return bad(path, fmt::format("vox_offset {}: a whole number of at least {} is expected",
                                  r.vox_offset, header_bytes));
   out.data_at = static_cast<std::uint64_t>(r.vox_offset);
-  if (auto good = scaling(out, r, path); !good) return good.error();
-  if (auto good = place(out, r, path); !good) return good.error();
+  TRY(scaling(out, r, path));
+  TRY(place(out, r, path));
   return out;
 }
 

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <memory>
 
+#include "core/try.hpp"
 #include "volume/io/claims.hpp"
 #include "volume/io/counts.hpp"
 #include "volume/io/formats.hpp"
@@ -31,7 +32,7 @@ std::string teem_error() {
 }
 
 core::Result<std::string> header_text(const fs::path& path) {
-  if (const auto size = size_of_file(path); !size) return size.error();
+  TRY(size_of_file(path));
   std::ifstream file(path, std::ios::binary);
   std::string text(kHeaderLimit, '\0');
   file.read(text.data(), static_cast<std::streamsize>(text.size()));
@@ -48,10 +49,9 @@ core::Result<void> check_size(const NrrdHeader& header, const core::Progress& pr
                                           header.data_at));
     return check_gzip(header.data, header.data_at, expected, progress);
   }
-  const auto size = size_of_file(header.data);
-  if (!size) return size.error();
-  if (*size != header.data_at + expected)
-    return bad(header.data, fmt::format("has {} bytes, its header declares {}", *size,
+  const auto size = TRY(size_of_file(header.data));
+  if (size != header.data_at + expected)
+    return bad(header.data, fmt::format("has {} bytes, its header declares {}", size,
                                         header.data_at + expected));
   return {};
 }
@@ -87,25 +87,23 @@ core::Result<Counts> counts_of_nrrd(const Nrrd& nrrd, std::size_t voxels) {
 }  // namespace
 
 core::Result<Imported> read_nrrd(const fs::path& path, const core::Progress& progress) {
-  const auto text = header_text(path);
-  if (!text) return text.error();
-  auto header = parse_nrrd(*text, path);
-  if (!header) return header.error();
-  if (auto good = check_size(*header, progress); !good) return good.error();
+  const auto text = TRY(header_text(path));
+  auto header = TRY(parse_nrrd(text, path));
+  TRY(check_size(header, progress));
   const std::unique_ptr<Nrrd, FreeNrrd> nrrd(nrrdNew());
   nrrdStateVerboseIO = 0;
   if (nrrdLoad(nrrd.get(), path.c_str(), nullptr) != 0)
     return bad(path, fmt::format("cannot be read: {}", teem_error()));
-  const std::size_t voxels = header->geometry.voxel_count();
+  const std::size_t voxels = header.geometry.voxel_count();
   if (nrrdElementNumber(nrrd.get()) != voxels ||
-      nrrdElementSize(nrrd.get()) != static_cast<std::size_t>(header->sample_bytes))
+      nrrdElementSize(nrrd.get()) != static_cast<std::size_t>(header.sample_bytes))
     return bad(path, "cannot be read: header and voxels disagree");
   auto counts = counts_of_nrrd(*nrrd, voxels);
   if (!counts) return bad(path, counts.error().what);
-  Imported out{{header->geometry, counts->slope, counts->intercept, std::move(counts->counts)},
+  Imported out{{header.geometry, counts->slope, counts->intercept, std::move(counts->counts)},
                "NRRD",
                path.filename().string(),
-               std::move(header->notes)};
+               std::move(header.notes)};
   if (!counts->note.empty()) out.notes.push_back(counts->note);
   return out;
 }

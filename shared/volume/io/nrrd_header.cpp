@@ -10,6 +10,7 @@
 #include <map>
 #include <optional>
 
+#include "core/try.hpp"
 #include "volume/io/claims.hpp"
 #include "volume/volume_file.hpp"
 
@@ -111,8 +112,7 @@ core::Result<Lines> lines_of(std::string_view text, const fs::path& path) {
     if (number > 1 && line.empty()) break;
     if (last && number > 1 && text.size() >= (1u << 16))
       return bad(path, "no blank line ends its header within 64 KiB");
-    if (number > 1)
-      if (auto taken = take_line(line, number, path, out.fields); !taken) return taken.error();
+    if (number > 1) TRY(take_line(line, number, path, out.fields));
     if (last) break;
   }
   out.end = at;
@@ -219,10 +219,8 @@ core::Result<double> unit_m(const Lines& lines, const fs::path& path) {
 }
 
 core::Result<void> place(NrrdHeader& out, const Lines& lines, const fs::path& path) {
-  const auto lps = to_lps(lines, path, out.notes);
-  if (!lps) return lps.error();
-  const auto unit = unit_m(lines, path);
-  if (!unit) return unit.error();
+  const auto lps = TRY(to_lps(lines, path, out.notes));
+  const auto unit = TRY(unit_m(lines, path));
   const auto steps = vectors_of(field(lines, "space directions"), 3);
   const auto origin = vectors_of(field(lines, "space origin"), 1);
   if (!steps) return bad(path, "space directions: three vectors (x,y,z) are expected");
@@ -238,13 +236,12 @@ core::Result<void> place(NrrdHeader& out, const Lines& lines, const fs::path& pa
               "space directions or origin of axis {}: finite numbers and a length greater than "
               "0 are expected",
               a + 1));
-    out.geometry.spacing_m[a] = length * *unit;
-    columns.col(a) = lps->cwiseProduct(step) / length;
+    out.geometry.spacing_m[a] = length * unit;
+    columns.col(a) = lps.cwiseProduct(step) / length;
   }
-  out.geometry.origin_m = lps->cwiseProduct(origin->front()) * *unit;
-  auto axes = straightened(columns, path, "space directions");
-  if (!axes) return axes.error();
-  out.geometry.directions = *axes;
+  out.geometry.origin_m = lps.cwiseProduct(origin->front()) * unit;
+  auto axes = TRY(straightened(columns, path, "space directions"));
+  out.geometry.directions = axes;
   return volume::check_geometry(out.geometry, path.string() + ": space directions");
 }
 
@@ -284,20 +281,18 @@ core::Result<void> find_data(NrrdHeader& out, const Lines& lines, const fs::path
     out.data_at = lines.end;
     return {};
   }
-  auto target = data_file(name, path);
-  if (!target) return target.error();
-  out.data = std::move(*target);
+  auto target = TRY(data_file(name, path));
+  out.data = std::move(target);
   return {};
 }
 
 }  // namespace
 
 core::Result<NrrdHeader> parse_nrrd(std::string_view text, const fs::path& path) {
-  auto lines = lines_of(text, path);
-  if (!lines) return lines.error();
-  if (const auto dimension = field(*lines, "dimension"); dimension != "3")
+  auto lines = TRY(lines_of(text, path));
+  if (const auto dimension = field(lines, "dimension"); dimension != "3")
     return bad(path, fmt::format("dimension \"{}\": 3 is expected", printable(dimension)));
-  const auto sizes = numbers_of(field(*lines, "sizes"));
+  const auto sizes = numbers_of(field(lines, "sizes"));
   if (!sizes || sizes->size() != 3) return bad(path, "sizes: three whole numbers are expected");
   std::array<std::int64_t, 3> claimed{};
   for (std::size_t a = 0; a < 3; ++a) {
@@ -305,16 +300,15 @@ core::Result<NrrdHeader> parse_nrrd(std::string_view text, const fs::path& path)
     if (static_cast<double>(claimed[a]) != (*sizes)[a])
       return bad(path, "sizes: three whole numbers are expected");
   }
-  const auto dims = checked_dims(claimed, path, "sizes");
-  if (!dims) return dims.error();
+  const auto dims = TRY(checked_dims(claimed, path, "sizes"));
   NrrdHeader out;
-  out.geometry.dims = *dims;
-  out.sample_bytes = bytes_of_type(field(*lines, "type"));
+  out.geometry.dims = dims;
+  out.sample_bytes = bytes_of_type(field(lines, "type"));
   if (out.sample_bytes == 0)
     return bad(path,
-               fmt::format("type \"{}\": not a number of a CT", printable(field(*lines, "type"))));
-  if (auto good = place(out, *lines, path); !good) return good.error();
-  if (auto good = find_data(out, *lines, path); !good) return good.error();
+               fmt::format("type \"{}\": not a number of a CT", printable(field(lines, "type"))));
+  TRY(place(out, lines, path));
+  TRY(find_data(out, lines, path));
   return out;
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/try.hpp"
 #include "volume/io/canvas.hpp"
 
 namespace tractus {
@@ -206,7 +207,7 @@ Vec3 centre_of(const volume::Geometry& g) {
 core::Result<void> write_slices_png(const std::filesystem::path& path, const volume::Volume& v,
                                     const Vec3& at_m, const PictureOptions& options,
                                     std::span<const Overlay> overlays) {
-  if (auto good = check(v, at_m, options); !good) return good;
+  TRY(check(v, at_m, options));
   const auto [low, high] = bounds_of(v.geometry);
   const bool whole = options.extent_m == 0.0;
   const double pixel_m =

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "volume/io/claims.hpp"
 #include "volume/io/formats.hpp"
 #include "volume/volume_file.hpp"
@@ -14,12 +15,10 @@ namespace {
 constexpr std::size_t kLookAtBytes = 540;  // the longest of the formats' fixed headers, NIfTI-2's
 
 core::Result<Imported> read_own(const fs::path& path, const core::Progress& progress) {
-  auto file = volume::VolumeFile::open(path);
-  if (!file) return file.error();
-  auto whole = file->read_all(progress);
-  if (!whole) return whole.error();
-  Imported out{std::move(*whole), "tractus-volume/1", file->meta().source, {}};
-  if (!file->meta().note.empty()) out.notes.push_back(file->meta().note);
+  auto file = TRY(volume::VolumeFile::open(path));
+  auto whole = TRY(file.read_all(progress));
+  Imported out{std::move(whole), "tractus-volume/1", file.meta().source, {}};
+  if (!file.meta().note.empty()) out.notes.push_back(file.meta().note);
   return out;
 }
 
@@ -33,12 +32,11 @@ core::Result<Imported> read_volume(const fs::path& path, const ReadOptions& opti
   const core::Progress& progress = options.progress;
   std::error_code failure;
   if (fs::is_directory(path, failure)) return read_dicom(path, options);
-  const auto first = first_bytes(path, kLookAtBytes);
-  if (!first) return first.error();
-  const std::string_view text = core::text_of(*first);
+  const auto first = TRY(first_bytes(path, kLookAtBytes));
+  const std::string_view text = core::text_of(first);
   if (text.starts_with("TRACTVOL")) return read_own(path, progress);
   if (text.starts_with("NRRD000")) return read_nrrd(path, progress);
-  if (looks_like_nifti(*first)) return read_nifti(path, progress);
+  if (looks_like_nifti(first)) return read_nifti(path, progress);
   if (text.size() >= 132 && text.substr(128, 4) == "DICM")
     return bad(path, "one DICOM file; give the folder that holds the series");
   return bad(path, fmt::format("starts with \"{}\", which is no NIfTI, NRRD, DICOM or .tvol file",

@@ -12,6 +12,7 @@
 #include <memory>
 
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "volume/io/claims.hpp"
 #include "volume/io/dicom_layout.hpp"
 
@@ -37,9 +38,8 @@ class Unpacking {
   Unpacking(const fs::path& zip, const fs::path& into) : zip_(zip), into_(into) {}
 
   Result<void> run() {
-    const auto size = size_of_file(zip_);
-    if (!size) return size.error();
-    limit_bytes_ = std::min(kMost_bytes, std::max(kAlways_bytes, *size * kMostRatio));
+    const auto size = TRY(size_of_file(zip_));
+    limit_bytes_ = std::min(kMost_bytes, std::max(kAlways_bytes, size * kMostRatio));
     reader_.reset(archive_read_new());
     archive_read_support_format_zip(reader_.get());
     if (archive_read_open_filename(reader_.get(), zip_.c_str(), 1 << 16) != ARCHIVE_OK)
@@ -54,7 +54,7 @@ class Unpacking {
                      fmt::format("{}: over {} entries", zip_.string(), kMostEntries)};
       if (archive_entry_is_encrypted(entry)) return bad(zip_, "is encrypted");
       if (archive_entry_filetype(entry) != AE_IFREG) continue;
-      if (auto taken = take(); !taken) return taken;
+      TRY(take());
     }
     if (slices_ == 0) return bad(zip_, "holds no DICOM file");
     return {};
@@ -76,10 +76,9 @@ class Unpacking {
     // The first piece is short when the entry is stored in small blocks: gather a head's worth.
     core::Bytes head;
     while (head.size() < 132) {
-      auto part = piece();
-      if (!part) return part.error();
-      if (part->empty()) break;
-      head.insert(head.end(), part->begin(), part->end());
+      auto part = TRY(piece());
+      if (part.empty()) break;
+      head.insert(head.end(), part.begin(), part.end());
     }
     if (!looks_like_dicom(head)) return {};
     if (++slices_ > kMostSlices)
@@ -91,10 +90,9 @@ class Unpacking {
     };
     write(head);
     for (;;) {
-      auto part = piece();
-      if (!part) return part.error();
-      if (part->empty()) break;
-      write(*part);
+      auto part = TRY(piece());
+      if (part.empty()) break;
+      write(part);
     }
     file.close();
     if (!file) return core::system_error(into_, "cannot write");

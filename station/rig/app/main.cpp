@@ -11,6 +11,7 @@
 #include <memory>
 
 #include "core/json.hpp"
+#include "core/try.hpp"
 #include "station/rig/modbus_peer.hpp"
 
 namespace tractus {
@@ -111,15 +112,13 @@ core::Result<int> run(const Options& o) {
                           : std::make_unique<rig::Electronics>(machine, world, clock);
   rig::Electronics& electronics = *made;
   rig::Traffic traffic;
-  auto tcp = rig::listen_tcp(electronics, traffic, o.address, o.port);
-  if (!tcp) return tcp.error();
+  auto tcp = TRY(rig::listen_tcp(electronics, traffic, o.address, o.port));
   std::unique_ptr<rig::ModbusPeer> serial;
   if (!o.rtu.empty()) {
-    auto rtu = rig::open_rtu(electronics, traffic, o.rtu, o.baud);
-    if (!rtu) return rtu.error();
-    serial = std::move(*rtu);
+    auto rtu = TRY(rig::open_rtu(electronics, traffic, o.rtu, o.baud));
+    serial = std::move(rtu);
   }
-  say_ready(o, (*tcp)->port());
+  say_ready(o, tcp->port());
   const core::Instant_ns start = clock.now();
   core::Instant_ns next = start;
   while (!asked_to_stop && !(o.until_eof && input_ended()) &&
