@@ -8,12 +8,12 @@
 #include <vector>
 
 [[gnu::noinline]] void* operator new(std::size_t size) {
-  ++loop::allocations_of_this_thread;
+  ++tractus::loop::allocations_of_this_thread;
   if (void* memory = std::malloc(size ? size : 1)) return memory;
   throw std::bad_alloc();
 }
 [[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t alignment) {
-  ++loop::allocations_of_this_thread;
+  ++tractus::loop::allocations_of_this_thread;
   const auto align = static_cast<std::size_t>(alignment);
   if (void* memory = std::aligned_alloc(align, (size + align - 1) / align * align)) return memory;
   throw std::bad_alloc();

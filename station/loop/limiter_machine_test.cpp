@@ -149,7 +149,7 @@ struct RigStimulus {
 
 std::vector<RigStimulus> rig_stimuli() {
   namespace reg = devices::rig;
-  const auto faulted = [](reg::Fault fault) {
+  const auto faulted = [](reg::RigFault fault) {
     devices::RigReading r;
     r.x_m = 0.02;
     r.status = reg::kFaulted;
@@ -160,16 +160,17 @@ std::vector<RigStimulus> rig_stimuli() {
   fine.x_m = pushed.x_m = 0.02;
   pushed.fz_N = 185.0;
   emergency.status = reg::kEmergency;
-  return {{"fine", safety::Fault::none, devices::Exchange::ok, fine},
-          {"pushed", safety::Fault::none, devices::Exchange::ok, pushed},
-          {"silent", safety::Fault::none, devices::Exchange::silent, {}},
-          {"garbage", safety::Fault::garbage, devices::Exchange::garbage, {}},
-          {"gone", safety::Fault::gone, devices::Exchange::gone, {}},
-          {"emergency", safety::Fault::emergency, devices::Exchange::ok, emergency},
-          {"watchdog", safety::Fault::none, devices::Exchange::ok, faulted(reg::Fault::watchdog)},
-          {"stalled", safety::Fault::stalled, devices::Exchange::ok, faulted(reg::Fault::stalled)},
-          {"drive", safety::Fault::drive, devices::Exchange::ok, faulted(reg::Fault::drive)},
-          {"sensor", safety::Fault::sensor, devices::Exchange::ok, faulted(reg::Fault::sensor)}};
+  return {
+      {"fine", safety::Fault::none, devices::Exchange::ok, fine},
+      {"pushed", safety::Fault::none, devices::Exchange::ok, pushed},
+      {"silent", safety::Fault::none, devices::Exchange::silent, {}},
+      {"garbage", safety::Fault::garbage, devices::Exchange::garbage, {}},
+      {"gone", safety::Fault::gone, devices::Exchange::gone, {}},
+      {"emergency", safety::Fault::emergency, devices::Exchange::ok, emergency},
+      {"watchdog", safety::Fault::none, devices::Exchange::ok, faulted(reg::RigFault::watchdog)},
+      {"stalled", safety::Fault::stalled, devices::Exchange::ok, faulted(reg::RigFault::stalled)},
+      {"drive", safety::Fault::drive, devices::Exchange::ok, faulted(reg::RigFault::drive)},
+      {"sensor", safety::Fault::sensor, devices::Exchange::ok, faulted(reg::RigFault::sensor)}};
 }
 
 bool take(ProbingGuard& guard, const RigStimulus& s, std::string& why) {

@@ -17,7 +17,7 @@ namespace tractus::loop {
 class Drilling;
 }
 
-namespace session {
+namespace tractus::session {
 
 enum class Speed {
   real,  ///< the monotonic clock
@@ -113,4 +113,4 @@ class TrialRun {
   std::unique_ptr<Parts> parts_;
 };
 
-}  // namespace session
+}  // namespace tractus::session

@@ -334,7 +334,7 @@ TEST(LiveOverTls, AStationsLineWorksAndATamperedAuthorityOpensNone) {
                            .authority = world.data / "tls/authority.pem"};
   auto line = uplink::open_server_socket(to, stopped);
   ASSERT_TRUE(line) << line.error().what;
-  ASSERT_TRUE((*line)->say(at_work(3).to_json().dump()));
+  ASSERT_TRUE((*line)->send(at_work(3).to_json().dump()));
   std::string state;
   for (int i = 0; i < 100 && state != "trial"; ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));

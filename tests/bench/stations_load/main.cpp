@@ -48,7 +48,7 @@ class Wall {
                                           .path = "/api/v1/live"},
                                          stopped);
           while (line && !stop.stop_requested()) {
-            auto heard = (*line)->hear(200);
+            auto heard = (*line)->receive(200);
             if (!heard) return;
             frames_ += heard->has_value();
           }

@@ -166,7 +166,7 @@ void Station::say_states(const std::stop_token& stop) {
     trial.samples = static_cast<std::uint64_t>(trial.t_s * 1000.0);
     trial.force_N = 1.0 + std::sin(trial.t_s);
     trial.depth_m = 0.01;
-    if (!(*line)->say(told.to_json().dump()) || !(*line)->hear(1)) return;
+    if (!(*line)->send(told.to_json().dump()) || !(*line)->receive(1)) return;
     ++states_;
   }
 }

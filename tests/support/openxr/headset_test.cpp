@@ -10,9 +10,9 @@ namespace {
 TEST_F(WithRuntime, LivesFromReadyToExitingInGoodOrder) {
   auto headset = made(shown());
   ASSERT_TRUE(headset);
-  EXPECT_EQ(headset->seen(), Seen::waiting);
+  EXPECT_EQ(headset->seen(), DisplayState::waiting);
   ASSERT_TRUE(step_to(*headset, *control_, 60));
-  EXPECT_EQ(headset->seen(), Seen::shown);
+  EXPECT_EQ(headset->seen(), DisplayState::shown);
   const Figures figures = headset->figures();
   EXPECT_EQ(figures.frames, control_->shown);
   EXPECT_GE(figures.frames, 57u);  // the first are before anybody sees them
@@ -25,7 +25,7 @@ TEST_F(WithRuntime, LivesFromReadyToExitingInGoodOrder) {
   EXPECT_EQ(control_->binding, on_x_ ? 1 : 2);
   EXPECT_EQ(control_->swapchains, 2u);
   EXPECT_TRUE(left(*headset));
-  EXPECT_EQ(headset->seen(), Seen::over);
+  EXPECT_EQ(headset->seen(), DisplayState::over);
   headset.reset();
   EXPECT_EQ(control_->sessions_ended, 1u);
 }
@@ -36,9 +36,9 @@ TEST_F(WithRuntime, SaysThatTrackingIsLostAndGoesOnWhenItIsBack) {
   auto headset = made(shown());
   ASSERT_TRUE(headset);
   ASSERT_TRUE(step_to(*headset, *control_, 25));
-  EXPECT_EQ(headset->seen(), Seen::tracking_lost);
+  EXPECT_EQ(headset->seen(), DisplayState::tracking_lost);
   ASSERT_TRUE(step_to(*headset, *control_, 40));
-  EXPECT_EQ(headset->seen(), Seen::shown);
+  EXPECT_EQ(headset->seen(), DisplayState::shown);
   EXPECT_EQ(headset->figures().untracked, 11u);
   EXPECT_EQ(control_->in_head, 11u);  // words that hang before the head
   EXPECT_TRUE(left(*headset));
@@ -49,7 +49,7 @@ TEST_F(WithRuntime, ALostSessionEndsTheView) {
   auto headset = made(shown());
   ASSERT_TRUE(headset);
   EXPECT_FALSE(step_to(*headset, *control_, 40));
-  EXPECT_EQ(headset->seen(), Seen::over);
+  EXPECT_EQ(headset->seen(), DisplayState::over);
   EXPECT_EQ(headset->why(), "the runtime lost the session");
   headset.reset();
   EXPECT_EQ(control_->sessions_ended, 1u);
@@ -94,10 +94,10 @@ TEST_F(WithRuntime, TakenOffItWaitsAndPutOnAgainItShows) {
   bool waited = false;
   for (int i = 0; i < 200 && control_->frames < 60; ++i) {
     ASSERT_TRUE(headset->step());
-    waited |= control_->frames >= 20 && headset->seen() == Seen::waiting;
+    waited |= control_->frames >= 20 && headset->seen() == DisplayState::waiting;
   }
   EXPECT_TRUE(waited);
-  EXPECT_EQ(headset->seen(), Seen::shown);
+  EXPECT_EQ(headset->seen(), DisplayState::shown);
   EXPECT_EQ(headset->figures().dropped, 0u);
   EXPECT_TRUE(left(*headset));
 }
@@ -137,7 +137,7 @@ TEST_F(WithRuntime, AnAlignmentIsOfTheStageAndNotUsedWithoutIt) {
   ASSERT_TRUE(headset);
   ASSERT_TRUE(step_to(*headset, *control_, 10));
   EXPECT_FALSE(headset->figures().aligned);
-  EXPECT_EQ(headset->seen(), Seen::shown);
+  EXPECT_EQ(headset->seen(), DisplayState::shown);
   EXPECT_TRUE(left(*headset));
 }
 
@@ -157,7 +157,7 @@ TEST_F(WithRuntime, InAThreadOfItsOwnItSaysWhyItEndedBefore) {
   control_->lose_session_at = 6;
   auto thread = HeadsetThread::start(shown());
   ASSERT_TRUE(thread);
-  while ((*thread)->seen() != Seen::over) std::this_thread::yield();
+  while ((*thread)->seen() != DisplayState::over) std::this_thread::yield();
   EXPECT_EQ((*thread)->end().ended, "the runtime lost the session");
 }
 
