@@ -63,12 +63,12 @@ function Home() {
 }
 
 function NotFound() {
-  useTitle('Not found');
+  useTitle('Page not found');
   return (
     <div className={styles.narrow}>
-      <h1>There is no such page</h1>
-      <p>The address may be mistyped, or what it named is gone.</p>
-      <p><Link href="/">To the beginning</Link></p>
+      <h1>Page not found</h1>
+      <p>Check the address. The page may have been removed.</p>
+      <p><Link href="/">Go to the start page</Link></p>
     </div>
   );
 }
@@ -99,7 +99,7 @@ export function App({ client }: { readonly client: QueryClient }) {
   return (
     <QueryClientProvider client={client}>
       <Framed>
-        <Fault fallback={<Notice tone="bad" title="This page has failed.">Reload it. If it fails again, tell who runs the server what you did.</Notice>}>
+        <Fault fallback={<Notice tone="bad" title="This page stopped working.">Reload the page. If the error occurs again, tell the administrator of this server what you did.</Notice>}>
           <SessionGate waiting={<Loading />}><Pages /></SessionGate>
         </Fault>
       </Framed>

@@ -2,7 +2,7 @@ import { QueryClient } from '@tanstack/react-query';
 import { describe, expect, it, vi } from 'vitest';
 import * as v from 'valibot';
 import { ApiError, sessionQuery, signIn } from '@/api';
-import { ask, tell } from './client';
+import { requestJson, request } from './client';
 import { parsePreview } from './preview';
 import { pathSchema, signalsSchema, trialPageSchema, trialSchema } from './schemas';
 
@@ -30,28 +30,28 @@ describe('asking the server', () => {
     [401, 'unauthorised'], [403, 'forbidden'], [404, 'not_found'], [429, 'too_many'], [503, 'unavailable'], [400, 'refused'],
   ])('turns status %d into %s with the sentence of the server', async (status, code) => {
     served(json({ error: 'one line for a person', code: 'x' }, status));
-    const reason = await failure(tell('/session', { method: 'DELETE' }));
+    const reason = await failure(request('/session', { method: 'DELETE' }));
     expect(reason.code).toBe(code);
     expect(reason.message).toBe('one line for a person');
   });
 
   it('says that the server is away when there is no answer', async () => {
     served(new TypeError('Failed to fetch'));
-    const reason = await failure(ask('/trials', trialPageSchema));
+    const reason = await failure(requestJson('/trials', trialPageSchema));
     expect(reason.code).toBe('unreachable');
     expect(reason.message).toContain('does not answer');
   });
 
   it('says so when a proxy answers with a page instead of JSON', async () => {
     served(new Response('<html>', { status: 502 }));
-    const reason = await failure(ask('/trials', trialPageSchema));
+    const reason = await failure(requestJson('/trials', trialPageSchema));
     expect(reason.code).toBe('unavailable');
     expect(reason.message).toContain('502');
   });
 
   it('names the place in an answer of another shape', async () => {
     served(json({ trials: [{ id: 7 }], more: false }));
-    const reason = await failure(ask('/trials', trialPageSchema));
+    const reason = await failure(requestJson('/trials', trialPageSchema));
     expect(reason.code).toBe('unreadable');
     expect(reason.message).toContain('trials.0.id');
   });

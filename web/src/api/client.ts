@@ -61,7 +61,7 @@ async function send(path: string, request: Request): Promise<Response> {
     });
   } catch (reason) {
     if (signal?.aborted) throw reason;
-    throw new ApiError('unreachable', 'The server does not answer. Check that it runs and that the network is there.');
+    throw new ApiError('unreachable', 'The server does not answer. Check that it is running and that this computer is connected to the network.');
   }
   if (response.ok) return response;
   const said = v.safeParse(errorSchema, await response.json().catch(() => undefined));
@@ -72,7 +72,7 @@ async function send(path: string, request: Request): Promise<Response> {
 }
 
 /** Asks for JSON and checks it against `schema`; an answer of another shape is an error, never a half-filled page. */
-export async function ask<Schema extends v.GenericSchema>(
+export async function requestJson<Schema extends v.GenericSchema>(
   path: string, schema: Schema, request: Request = {},
 ): Promise<v.InferOutput<Schema>> {
   const response = await send(path, request);
@@ -84,7 +84,7 @@ export async function ask<Schema extends v.GenericSchema>(
   throw new ApiError('unreadable', `The server's answer cannot be read: ${where}: ${issue.message}`);
 }
 
-export async function tell(path: string, request: Request): Promise<void> {
+export async function request(path: string, request: Request): Promise<void> {
   await send(path, request);
 }
 

@@ -3,7 +3,7 @@ import { queryOptions } from '@tanstack/react-query';
 import * as v from 'valibot';
 import { share } from '@/units';
 import { address } from './address';
-import { ask, bytes } from './client';
+import { requestJson, bytes } from './client';
 import { count, finite, inUtc } from './quantities';
 
 const kWorking_ms = 700;
@@ -77,22 +77,22 @@ export const cohortTableQuery = (study: string) =>
     queryFn: async ({ signal }) => tableOf(new TextDecoder().decode((await bytes(tablePath(study), { signal })).data)),
   });
 
-export const plansQuery = queryOptions({ queryKey: ['cohort', 'plans'], queryFn: ({ signal }) => ask(address('/api/v1/cohort/plans', {}), planListSchema, { signal }) });
+export const plansQuery = queryOptions({ queryKey: ['cohort', 'plans'], queryFn: ({ signal }) => requestJson(address('/api/v1/cohort/plans', {}), planListSchema, { signal }) });
 export const planQuery = (id: string) =>
-  queryOptions({ queryKey: ['cohort', 'plans', id], queryFn: ({ signal }) => ask(address('/api/v1/cohort/plans/{id}', { id }), lockedPlanSchema, { signal }) });
+  queryOptions({ queryKey: ['cohort', 'plans', id], queryFn: ({ signal }) => requestJson(address('/api/v1/cohort/plans/{id}', { id }), lockedPlanSchema, { signal }) });
 export const analysisQuery = (id: string) =>
   queryOptions({
     queryKey: ['cohort', 'analysis', id],
-    queryFn: ({ signal }) => ask(address('/api/v1/cohort/analyses/{id}', { id }), analysisSchema, { signal }),
+    queryFn: ({ signal }) => requestJson(address('/api/v1/cohort/analyses/{id}', { id }), analysisSchema, { signal }),
     refetchInterval: (query) => (query.state.data && ['queued', 'running'].includes(query.state.data.state) ? kWorking_ms : false),
   });
 
 export const lockPlan = (plan: Readonly<Record<string, unknown>>, study: string, dataSeen: boolean) =>
-  ask(address('/api/v1/cohort/plans', {}), planSummarySchema, { method: 'POST', body: { plan, ...(study === '' ? {} : { study }), data_seen: dataSeen } });
+  requestJson(address('/api/v1/cohort/plans', {}), planSummarySchema, { method: 'POST', body: { plan, ...(study === '' ? {} : { study }), data_seen: dataSeen } });
 export const runPlan = (plan: string, snapshot?: string) =>
-  ask(address('/api/v1/cohort/analyses', {}), analysisRunSchema, { method: 'POST', body: { plan, ...(snapshot === undefined ? {} : { snapshot }) } });
+  requestJson(address('/api/v1/cohort/analyses', {}), analysisRunSchema, { method: 'POST', body: { plan, ...(snapshot === undefined ? {} : { snapshot }) } });
 export const runMethod = (method: string, formula: string, study: string) =>
-  ask(address('/api/v1/cohort/analyses', {}), analysisRunSchema, { method: 'POST', body: { method, formula, ...(study === '' ? {} : { study }) } });
+  requestJson(address('/api/v1/cohort/analyses', {}), analysisRunSchema, { method: 'POST', body: { method, formula, ...(study === '' ? {} : { study }) } });
 export const analysisFile = (id: string, part: 'report.html' | 'result.json' | 'data.csv' | 'dictionary.json') => `/api/v1${address('/api/v1/cohort/analyses/{id}/{part}', { id, part })}`;
 
 export type PlanSummary = v.InferOutput<typeof planSummarySchema>;

@@ -1,7 +1,7 @@
 /** What can be asked, as queries: one key each, so that pages share answers. */
 import { infiniteQueryOptions, queryOptions, type QueryClient } from '@tanstack/react-query';
 import { address } from './address';
-import { ApiError, ask, bytes, tell } from './client';
+import { ApiError, requestJson, bytes, request } from './client';
 import { parsePreview } from './preview';
 import { forceDepthSchema, pathSchema, sessionSchema, signalsSchema, trialPageSchema, trialSchema, type Session } from './schemas';
 
@@ -22,7 +22,7 @@ export const sessionQuery = queryOptions({
   queryKey: ['session'],
   queryFn: async ({ signal }): Promise<Session | null> => {
     try {
-      return await ask(address('/api/v1/session', {}), sessionSchema, { signal });
+      return await requestJson(address('/api/v1/session', {}), sessionSchema, { signal });
     } catch (reason) {
       if (reason instanceof ApiError && reason.code === 'unauthorised') return null;
       throw reason;
@@ -33,16 +33,16 @@ export const sessionQuery = queryOptions({
 
 /** `code`: the one-time code of an account that asks for one. */
 export const signIn = (name: string, password: string, code?: string) =>
-  ask(address('/api/v1/session', {}), sessionSchema, { method: 'POST', body: { name, password, ...(code === undefined ? {} : { code }) } });
+  requestJson(address('/api/v1/session', {}), sessionSchema, { method: 'POST', body: { name, password, ...(code === undefined ? {} : { code }) } });
 
-export const signOut = () => tell(address('/api/v1/session', {}), { method: 'DELETE' });
+export const signOut = () => request(address('/api/v1/session', {}), { method: 'DELETE' });
 
 /** Newest first; asked again while anything is being assessed, and now and then for trials that have arrived. */
 export const trialsQuery = infiniteQueryOptions({
   queryKey: ['trials'],
   queryFn: ({ pageParam, signal }) => {
     const before = pageParam === null ? {} : { before_utc_us: pageParam };
-    return ask(address('/api/v1/trials', {}, { limit: kPage, ...before }), trialPageSchema, { signal });
+    return requestJson(address('/api/v1/trials', {}, { limit: kPage, ...before }), trialPageSchema, { signal });
   },
   initialPageParam: null as number | null,
   getNextPageParam: (last) => (last.more ? (last.trials.at(-1)?.started_utc_us ?? null) : null),
@@ -55,7 +55,7 @@ export const trialsQuery = infiniteQueryOptions({
 export const trialQuery = (id: string) =>
   queryOptions({
     queryKey: ['trial', id],
-    queryFn: ({ signal }) => ask(address('/api/v1/trials/{id}', { id }), trialSchema, { signal }),
+    queryFn: ({ signal }) => requestJson(address('/api/v1/trials/{id}', { id }), trialSchema, { signal }),
     refetchInterval: (query) => (query.state.data?.state === 'assessing' ? kAssessing_ms : false),
   });
 
@@ -67,7 +67,7 @@ export const signalsQuery = (id: string, channels: readonly Channel[], window: S
     queryKey: ['signals', id, channels, window],
     queryFn: ({ signal }) => {
       const query = { channels: channels.join(','), ...window };
-      return ask(address('/api/v1/trials/{id}/signals', { id }, query), signalsSchema, { signal });
+      return requestJson(address('/api/v1/trials/{id}/signals', { id }, query), signalsSchema, { signal });
     },
     staleTime: Infinity,
   });
@@ -75,7 +75,7 @@ export const signalsQuery = (id: string, channels: readonly Channel[], window: S
 export const pathQuery = (id: string) =>
   queryOptions({
     queryKey: ['path', id],
-    queryFn: ({ signal }) => ask(address('/api/v1/trials/{id}/path', { id }, { points: 2000 }), pathSchema, { signal }),
+    queryFn: ({ signal }) => requestJson(address('/api/v1/trials/{id}/path', { id }, { points: 2000 }), pathSchema, { signal }),
     staleTime: Infinity,
   });
 
@@ -83,7 +83,7 @@ export const pathQuery = (id: string) =>
 export const forceDepthQuery = (id: string) =>
   queryOptions({
     queryKey: ['force-depth', id],
-    queryFn: ({ signal }) => ask(address('/api/v1/trials/{id}/force-depth', { id }, { points: 2000 }), forceDepthSchema, { signal }),
+    queryFn: ({ signal }) => requestJson(address('/api/v1/trials/{id}/force-depth', { id }, { points: 2000 }), forceDepthSchema, { signal }),
     staleTime: Infinity,
   });
 

@@ -1,7 +1,7 @@
 /** What can be asked of studies, and what can be decided in them. */
 import { queryOptions } from '@tanstack/react-query';
 import { address } from './address';
-import { ask } from './client';
+import { requestJson } from './client';
 import type { components } from './generated/schema';
 import { studyEventsSchema, studyListSchema, studySchema, type Study, type StudyState } from './study-schemas';
 
@@ -14,25 +14,25 @@ export type NewParticipant = components['schemas']['NewParticipant'];
 
 export const studiesQuery = queryOptions({
   queryKey: ['studies'],
-  queryFn: ({ signal }) => ask(address('/api/v1/studies', {}), studyListSchema, { signal }),
+  queryFn: ({ signal }) => requestJson(address('/api/v1/studies', {}), studyListSchema, { signal }),
   refetchInterval: kLive_ms,
 });
 
 export const studyQuery = (id: string) =>
   queryOptions({
     queryKey: ['study', id],
-    queryFn: ({ signal }) => ask(address('/api/v1/studies/{id}', { id }), studySchema, { signal }),
+    queryFn: ({ signal }) => requestJson(address('/api/v1/studies/{id}', { id }), studySchema, { signal }),
     refetchInterval: kLive_ms,
   });
 
 export const studyEventsQuery = (id: string) =>
   queryOptions({
     queryKey: ['study-events', id],
-    queryFn: ({ signal }) => ask(address('/api/v1/studies/{id}/events', { id }, { limit: kEvents }), studyEventsSchema, { signal }),
+    queryFn: ({ signal }) => requestJson(address('/api/v1/studies/{id}/events', { id }, { limit: kEvents }), studyEventsSchema, { signal }),
     refetchInterval: kLive_ms,
   });
 
-const told = (path: string, body: unknown): Promise<Study> => ask(path, studySchema, { method: 'POST', body });
+const told = (path: string, body: unknown): Promise<Study> => requestJson(path, studySchema, { method: 'POST', body });
 
 export const makeStudy = (study: NewStudy) => told(address('/api/v1/studies', {}), study);
 export const enrol = (id: string, participant: NewParticipant) => told(address('/api/v1/studies/{id}/participants', { id }), participant);

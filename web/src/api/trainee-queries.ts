@@ -3,7 +3,7 @@ import { queryOptions } from '@tanstack/react-query';
 import * as v from 'valibot';
 import { share } from '@/units';
 import { address } from './address';
-import { ask } from './client';
+import { requestJson } from './client';
 import { count, finite, inUtc } from './quantities';
 
 const portion = v.pipe(finite, v.transform(share));
@@ -39,20 +39,20 @@ export const traineeSchema = v.object({
 
 export const traineesQuery = queryOptions({
   queryKey: ['trainees'],
-  queryFn: ({ signal }) => ask(address('/api/v1/cohort/trainees', {}), traineeListSchema, { signal }),
+  queryFn: ({ signal }) => requestJson(address('/api/v1/cohort/trainees', {}), traineeListSchema, { signal }),
 });
 
 export const traineeQuery = (name: string) =>
   queryOptions({
     queryKey: ['trainees', name],
-    queryFn: ({ signal }) => ask(address('/api/v1/cohort/trainees/{name}', { name }), traineeSchema, { signal }),
+    queryFn: ({ signal }) => requestJson(address('/api/v1/cohort/trainees/{name}', { name }), traineeSchema, { signal }),
   });
 
 export const metricsSchema = v.object({ metrics: v.array(v.object({ id: v.string(), label: v.string(), unit: v.string(), definition: v.string(), source: v.string() })) });
 
 export const metricsQuery = queryOptions({
   queryKey: ['metrics'],
-  queryFn: ({ signal }) => ask(address('/api/v1/metrics', {}), metricsSchema, { signal }),
+  queryFn: ({ signal }) => requestJson(address('/api/v1/metrics', {}), metricsSchema, { signal }),
   staleTime: Infinity,
 });
 

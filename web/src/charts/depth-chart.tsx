@@ -81,9 +81,9 @@ function summary({ depth_m, force_N, bone, felt_m }: Props): string {
   const at = depth_m[force_N.indexOf(strongest)] ?? 0;
   const walls = bone?.walls.map((wall) => formatLength(metre(wall.at_m))).join(', ') ?? '';
   return [
-    `Force against depth: up to ${formatForce(newton(strongest))} at ${formatLength(metre(at))}, as deep as ${formatLength(metre(most(depth_m, 0)))}.`,
-    bone === null ? '' : walls === '' ? 'No wall gives way.' : `Walls give way at ${walls}.`,
-    felt_m === null ? '' : `A breach was felt at ${formatLength(metre(felt_m))}.`,
+    `Force against depth: up to ${formatForce(newton(strongest))} at ${formatLength(metre(at))}, maximum depth ${formatLength(metre(most(depth_m, 0)))}.`,
+    bone === null ? '' : walls === '' ? 'No wall is breached.' : `Walls are breached at ${walls}.`,
+    felt_m === null ? '' : `A breach was reported at ${formatLength(metre(felt_m))}.`,
   ].filter(Boolean).join(' ');
 }
 

@@ -15,7 +15,7 @@ interface Props {
 
 const kUntouched = [150, 156, 166] as const;
 
-/** The wall of a tract with a value painted on it, to be turned about; mouth at the top. */
+/** The wall of a tract with a value painted on it, to be turned about; entry at the top. */
 export function PaintedTract({ depth_m, angle_rad, values, radius_m, summary }: Props) {
   const canvas = useRef<HTMLDivElement>(null);
   const [scene, setScene] = useState<PaintedScene | null>(null);
@@ -46,9 +46,9 @@ export function PaintedTract({ depth_m, angle_rad, values, radius_m, summary }: 
         // eslint-disable-next-line jsx-a11y/no-noninteractive-tabindex -- an application takes keys
         tabIndex={0} onKeyDown={(event) => turnByKey(event, scene, () => scene?.reset())}>
         <div ref={canvas} className={styles.canvas} hidden={failed} />
-        {failed ? <p className={styles.failure} role="alert">The picture in 3-D could not be drawn. The unrolled wall beside it says the same.</p> : scene === null ? <p className={styles.failure} role="status">Drawing…</p> : null}
+        {failed ? <p className={styles.failure} role="alert">The 3-D view could not be drawn. The unrolled map shows the same values.</p> : scene === null ? <p className={styles.failure} role="status">Drawing…</p> : null}
       </div>
-      <figcaption className={styles.caption}><span>mouth at the top</span><span className={styles.hint}>Drag or use the arrow keys to turn.</span></figcaption>
+      <figcaption className={styles.caption}><span>entry at the top</span><span className={styles.hint}>Drag or use the arrow keys to rotate.</span></figcaption>
     </figure>
   );
 }

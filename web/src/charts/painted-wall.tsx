@@ -38,14 +38,14 @@ export function PaintedWall({ depth_m, angle_rad, values, format, onPoint }: Pro
         <div className={styles.depth} aria-hidden="true"><span>{mm(depth_m[0])}</span><span>depth</span><span>{mm(depth_m.at(-1))}</span></div>
         <svg viewBox={`0 0 ${columns} ${rows}`} preserveAspectRatio="none" role="img" aria-labelledby={id} className={styles.map}
           onPointerMove={(event) => onPoint(cellAt(event))} onPointerLeave={() => onPoint(null)}>
-          <title id={id}>{`Unrolled wall of the tract. The most is ${worst.value === null ? 'nowhere' : `${format(worst.value)} at ${mm(depth_m[worst.r])} to ${mm(depth_m[worst.r + 1])}`}.`}</title>
+          <title id={id}>{`Unrolled wall of the tract. Largest value: ${worst.value === null ? 'none' : `${format(worst.value)} at ${mm(depth_m[worst.r])} to ${mm(depth_m[worst.r + 1])}`}.`}</title>
           {flat.map(({ r, c, value }) => (value === null ? null : <rect key={`${r} ${c}`} x={c} y={r} width={1.02} height={1.02} fill={paint(value, most)} />))}
         </svg>
         <div /><div className={styles.angle} aria-hidden="true">{[0, 90, 180, 270, 360].map((degrees) => <span key={degrees}>{degrees}°</span>)}</div>
       </div>
       <figcaption className={styles.caption}>
         <span className={styles.scale}>0 <i style={{ background: `linear-gradient(to right, ${[0, 0.25, 0.5, 0.75, 1].map((share) => paint(share, 1)).join(', ')})` }} /> {format(most)}</span>
-        <span>not touched: empty</span>
+        <span>empty: not touched</span>
       </figcaption>
     </figure>
   );

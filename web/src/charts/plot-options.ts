@@ -100,7 +100,7 @@ function traces(panel: Panel): { series: uPlot.Series[]; bands: uPlot.Band[] } {
   const bands: uPlot.Band[] = [];
   for (const trace of panel.traces) {
     const line = { stroke: () => resolved(trace.colour), width: trace.width ?? 1, points: { show: false }, spanGaps: false };
-    series.push({ ...line, label: trace.label }, { ...line, label: `${trace.label} least` });
+    series.push({ ...line, label: trace.label }, { ...line, label: `${trace.label} minimum` });
     const top = series.length - 2;
     bands.push({ series: [top, top + 1], fill: () => faded(resolved(trace.colour)) });
   }

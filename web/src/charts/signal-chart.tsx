@@ -41,7 +41,7 @@ const kAxes_px = 64;  // the ordinate's axis and the right margin: no data there
 function resolution(samplesPerPoint: number): string {
   if (samplesPerPoint === 0) return 'loading';
   if (samplesPerPoint <= 1) return 'every sample';
-  return `least and greatest of ${formatCount(samplesPerPoint)} samples`;
+  return `minimum and maximum of ${formatCount(samplesPerPoint)} samples`;
 }
 
 /** Panels over one another with one time axis, one cursor and one view. */

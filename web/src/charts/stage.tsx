@@ -43,16 +43,16 @@ function useScene(content: SceneContent | null, onScene: StageProps['onScene']) 
     const looked = left.current;
     const stands = (now: Scene | null) => { setScene(now); onScene?.(now); };
     const start = async () => {
-      if (!canDraw()) { setFailure('This browser offers no WebGL 2, so the picture in 3-D cannot be drawn.'); return; }
+      if (!canDraw()) { setFailure('This browser does not support WebGL 2, which the 3-D view needs.'); return; }
       const { makeScene } = await import('./scene');
       if (gone) return;
       made = makeScene(place, holder, content, looked[kind]);
       place.querySelector('canvas')?.addEventListener('webglcontextlost', () => {
-        if (!gone) setFailure('The graphics processor has dropped the picture. Reload the page to draw it again.');
+        if (!gone) setFailure('The graphics processor lost the 3-D view. Reload the page to draw it again.');
       });
       stands(made);
     };
-    start().catch(() => setFailure('The picture in 3-D could not be drawn.'));
+    start().catch(() => setFailure('The 3-D view could not be drawn.'));
     return () => {
       gone = true;
       if (made) looked[kind] = made.looks();
@@ -88,9 +88,9 @@ export function Stage({ content, colours, palette, label, summary, caption, butt
         <span className={styles.gap} />
         {content?.bone ? (
           <>
-            {button('Cut open: without the superior half of the bone', 'Cut open', () => setShown('cut'), shown === 'cut')}
-            {button('Whole bone', 'Whole', () => setShown('whole'), shown === 'whole')}
-            {button('No bone', 'No bone', () => setShown('none'), shown === 'none')}
+            {button('Cut open: hide the superior half of the bone', 'Cut open', () => setShown('cut'), shown === 'cut')}
+            {button('Show the whole bone', 'Whole', () => setShown('whole'), shown === 'whole')}
+            {button('Hide the bone', 'No bone', () => setShown('none'), shown === 'none')}
           </>
         ) : null}
       </div>
@@ -107,7 +107,7 @@ export function Stage({ content, colours, palette, label, summary, caption, butt
       </div>
       <figcaption className={styles.caption}>
         {caption}
-        <span className={styles.hint}>Drag to turn, Shift-drag to move, wheel after a click to zoom. Arrow keys turn.</span>
+        <span className={styles.hint}>Drag to rotate, Shift-drag to move, click and use the wheel to zoom. Arrow keys rotate.</span>
       </figcaption>
     </figure>
   );

@@ -40,7 +40,7 @@ export function WallMap(props: Props) {
     const depth = metre(((row + 0.5) / depthBins) * length_m);
     setPointed(`${sideOf(angle, angleBins)}, ${formatLength(depth)} deep: ${formatCount(samples[row * angleBins + angle] ?? 0)} samples in contact`);
   };
-  const summary = `Wall of the tract unrolled. Share touched: ${kSides.map((side) => `${side} ${formatShare(ofSide(side))}`).join(', ')}.`;
+  const summary = `Wall of the tract unrolled. Touched: ${kSides.map((side) => `${side} ${formatShare(ofSide(side))}`).join(', ')}.`;
   return (
     <figure className={styles.figure}>
       <div className={styles.heads}>
@@ -63,7 +63,7 @@ export function WallMap(props: Props) {
       </div>
       <figcaption className={styles.caption}>
         <span className={styles.scale}>
-          not touched {Array.from({ length: kHeatLevels + 1 }, (_, level) => <i key={level} data-heat={level} />)} longest in contact
+          not touched {Array.from({ length: kHeatLevels + 1 }, (_, level) => <i key={level} data-heat={level} />)} longest contact
         </span>
         <span className={styles.pointed}>{pointed}</span>
       </figcaption>

@@ -30,9 +30,9 @@ export function Shell({ account, home, children }: Props) {
           {home}
           <div className={styles.account}>
             {account}
-            <Button look="quiet" title={`Colours. Next: ${kThemeName[kNext[theme]]}`} onClick={() => setTheme(kNext[theme])}>
+            <Button look="quiet" title={`Theme. Next: ${kThemeName[kNext[theme]]}`} onClick={() => setTheme(kNext[theme])}>
               <span aria-hidden="true">{kThemeSign[theme]}</span>
-              <span className="hidden-visually">Colours: </span>
+              <span className="hidden-visually">Theme: </span>
               <span className={styles.themeName}>{kThemeName[theme]}</span>
             </Button>
           </div>

@@ -35,14 +35,14 @@ async function cases(page: Page, check: Check, volume: string): Promise<void> {
   await page.locator('[data-part="scene"][data-ready]').waitFor();
   await still(page);
   await check('case-new-full');
-  await page.getByLabel('Channel', { exact: true }).selectOption('left whole');
-  await page.getByText('The bone stays whole').waitFor();
+  await page.getByLabel('Channel', { exact: true }).selectOption('trainee drills');
+  await page.getByText('No channel is pre-drilled').waitFor();
   await page.locator('[data-part="scene"][data-ready]').waitFor();
   await still(page);
   await check('case-new-whole');
   await page.goto('/cases');
   await page.locator('tbody a[href^="/cases/"]:not([href^="/cases/new"])').first().click();
-  await page.getByRole('button', { name: 'Show which wall gives way' }).click();
+  await page.getByRole('button', { name: 'Show the breached wall' }).click();
   await page.locator('[data-part="scene"][data-ready]').waitFor();
   await still(page);
   await check('case');
@@ -68,10 +68,10 @@ async function assigning(page: Page, check: Check): Promise<void> {
 async function debriefing(page: Page, check: Check): Promise<void> {
   await page.goto(`/trials/${await assessedTrial(page)}/debrief`);
   await page.locator('[data-part="scene"][data-ready]').waitFor();
-  await page.getByLabel('Example beside it').selectOption({ index: 1 });
-  await page.getByLabel('Moment of the trial').fill('12');
+  await page.getByLabel('Example trial').selectOption({ index: 1 });
+  await page.getByLabel('Time in the trial').fill('12');
   await page.getByLabel('Comment', { exact: true }).fill('Here you felt the wall and went on. Stay with it for a second before you push.');
-  await page.getByRole('button', { name: 'Comment' }).click();
+  await page.getByRole('button', { name: 'Add comment' }).click();
   await page.locator('[data-part="comments"] li').first().waitFor();
   await page.locator('[data-part="scene"][data-ready]').waitFor();
   await still(page);

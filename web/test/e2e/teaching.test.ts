@@ -121,8 +121,8 @@ describe.skipIf(bin === undefined)('a palpation case with a medial breach', () =
     await faculty.waitForTimeout(1000);
     await shot(faculty, '1-plan');
     await staysWhereOneLooks();
-    await faculty.getByLabel('Title, for those who teach').fill('L3 left, medial breach');
-    await faculty.getByRole('button', { name: 'Make the case' }).click();
+    await faculty.getByLabel('Title (not shown to trainees)').fill('L3 left, medial breach');
+    await faculty.getByRole('button', { name: 'Create case' }).click();
     await faculty.getByRole('link', { name: 'L3 left, medial breach' }).waitFor({ timeout: 120_000 });
     await shot(faculty, '2-made');
   }, 240_000);
@@ -130,7 +130,7 @@ describe.skipIf(bin === undefined)('a palpation case with a medial breach', () =
   it('is assigned to a cohort under a blind name', async () => {
     await faculty.getByRole('link', { name: 'Assign cases' }).click();
     await faculty.getByRole('checkbox', { name: 'L3 left, medial breach' }).check();
-    await faculty.getByLabel('Cohort (also who joins it later)').selectOption({ index: 1 });
+    await faculty.getByLabel('Cohort (includes later members)').selectOption({ index: 1 });
     await faculty.getByLabel('Title, shown to trainees').fill('Week 12');
     await shot(faculty, '3-assign');
     await faculty.getByRole('button', { name: 'Assign', exact: true }).click();
@@ -152,27 +152,27 @@ describe.skipIf(bin === undefined)('a palpation case with a medial breach', () =
 
   it('is seen done, talked through and released', async () => {
     await faculty.getByText('1 of 1').first().waitFor();
-    await faculty.getByText('right', { exact: true }).waitFor({ timeout: 60_000 });
+    await faculty.getByText('correct', { exact: true }).waitFor({ timeout: 60_000 });
     await shot(faculty, '5-done');
     await faculty.getByRole('link', { name: /^Debrief/ }).click();
     await faculty.locator('[data-part="scene"][data-ready]').waitFor();
     await faculty.getByRole('button', { name: 'Play' }).click();
     await faculty.waitForTimeout(700);
     await faculty.getByRole('button', { name: 'Pause' }).click();
-    const moment = Number(await faculty.getByLabel('Moment of the trial').inputValue());
+    const moment = Number(await faculty.getByLabel('Time in the trial').inputValue());
     expect(moment).toBeGreaterThan(0.2);
     await faculty.getByLabel('Comment', { exact: true }).fill(kComment);
-    await faculty.getByRole('button', { name: 'Comment' }).click();
+    await faculty.getByRole('button', { name: 'Add comment' }).click();
     await faculty.getByText(kComment).waitFor();
     await faculty.getByRole('button', { name: 'Release results' }).click();
-    await faculty.getByText('Trainees of this assignment see its results and comments.').waitFor();
+    await faculty.getByText('Trainees can see the results and comments of this assignment.').waitFor();
     await shot(faculty, '6-debrief');
   }, 120_000);
 
   it('is seen by its trainee with the result and the comment', async () => {
     await trainee.goto('/assignments');
     await trainee.getByRole('link', { name: 'Week 12' }).click();
-    await trainee.getByText('right', { exact: true }).waitFor();
+    await trainee.getByText('correct', { exact: true }).waitFor();
     await shot(trainee, '7-result');
     await trainee.getByRole('link', { name: /^Debrief/ }).click();
     await trainee.getByText(kComment).waitFor();

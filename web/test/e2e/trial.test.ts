@@ -124,7 +124,7 @@ it('every measure in the tables is the number of the server, to the digits shown
     const cell = page.locator(`[data-metric="${metric.id}"]`);
     const text = spaced((await cell.locator('button').count()) > 0 ? await cell.locator('button').innerText() : await cell.innerText());
     if (metric.value === null) { expect(text, metric.id).toBe('–'); continue; }
-    if (metric.id === 'answer_right') { expect(text).toBe(metric.value === 1 ? 'right' : 'wrong'); continue; }
+    if (metric.id === 'answer_right') { expect(text).toBe(metric.value === 1 ? 'correct' : 'incorrect'); continue; }
     const perSi = text.endsWith('%') ? 100 : /\bmm\b/.test(text) ? 1000 : text.endsWith('°') ? 180 / Math.PI : 1;
     const shown = si(text, perSi);
     const decimals = /\.(\d+)/.exec(text)?.[1]?.length ?? 0;
@@ -167,7 +167,7 @@ describe('the tract in 3-D', () => {
     await scene.focus();
     for (let i = 0; i < 4; ++i) await page.keyboard.press('ArrowRight');
     await expect.poll(async () => (await pictureOf(browser, scene)).png.equals(first.png), { timeout: 15_000 }).toBe(false);
-    await page.getByRole('button', { name: 'No bone' }).click();
+    await page.getByRole('button', { name: 'Hide the bone' }).click();
     await page.getByRole('button', { name: 'Reset the view' }).click();
     await expect.poll(async () => (await pictureOf(browser, scene)).colours, { timeout: 15_000 }).toBeGreaterThan(15);
     expect(faults).toEqual([]);
@@ -182,7 +182,7 @@ describe('the tract in 3-D', () => {
       await page.locator(`tbody a[href="/trials/${id}"]`).click();
     }
     await page.locator('[data-part="scene"][data-ready]').waitFor();
-    expect(await page.getByText('dropped the picture').count()).toBe(0);
+    expect(await page.getByText('lost the 3-D view').count()).toBe(0);
     expect(faults).toEqual([]);
   }, 120_000);
 
@@ -191,7 +191,7 @@ describe('the tract in 3-D', () => {
     const { page, faults } = await visit(blind);
     await signIn(page);
     await openTrial(page);
-    await page.getByText('This browser offers no WebGL 2').waitFor();
+    await page.getByText('This browser does not support WebGL 2').waitFor();
     await page.locator('[data-metric="force_xy_mean"]').waitFor();
     expect(faults).toEqual([]);
     await blind.close();
@@ -222,5 +222,5 @@ it.runIf(inject('fixture'))('what went wrong in a recording is told', async () =
   await page.getByText(/ticks were skipped/).waitFor();
   await page.goto('/trials/trial-003');
   await page.getByText('The assessment of this trial failed.').waitFor();
-  await page.getByText('There are no measures of this trial.').waitFor();
+  await page.getByText('This trial has no measures.').waitFor();
 });

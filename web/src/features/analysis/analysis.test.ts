@@ -20,9 +20,9 @@ describe('a plan', () => {
   const question = { method: 'lmm', formula: 'operation_time ~ level + (1|participant)', question: 'Operation time by level', primary: true };
 
   it('says what is missing, one thing at a time', () => {
-    expect(planOf(kBlankPlan)).toEqual({ missing: 'The plan needs a title.' });
+    expect(planOf(kBlankPlan)).toEqual({ missing: 'Enter a title.' });
     expect(planOf({ ...kBlankPlan, title: 'x', endpoint: 'operation_time' })).toEqual({ missing: 'Add at least one analysis.' });
-    expect(planOf({ ...kBlankPlan, title: 'x', endpoint: 'a', questions: [question], alpha: '2' })).toEqual({ missing: 'α lies between 0 and 0.5.' });
+    expect(planOf({ ...kBlankPlan, title: 'x', endpoint: 'a', questions: [question], alpha: '2' })).toEqual({ missing: 'α must be greater than 0 and less than 0.5.' });
   });
 
   it('goes out as tractus-plan/1 with its primary family', () => {

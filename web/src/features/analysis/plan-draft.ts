@@ -9,9 +9,9 @@ export const kCorrections = [{ value: 'holm', text: 'Holm' }, { value: 'hommel',
 /** tractus-plan/1, or what is still missing. */
 export function planOf(draft: PlanDraft): { plan: Record<string, unknown> } | { missing: string } {
   const alpha = Number(draft.alpha);
-  if (draft.title.trim() === '') return { missing: 'The plan needs a title.' };
-  if (draft.endpoint === '') return { missing: 'Choose the endpoint.' };
-  if (!(alpha > 0 && alpha < 0.5)) return { missing: 'α lies between 0 and 0.5.' };
+  if (draft.title.trim() === '') return { missing: 'Enter a title.' };
+  if (draft.endpoint === '') return { missing: 'Choose an endpoint.' };
+  if (!(alpha > 0 && alpha < 0.5)) return { missing: 'α must be greater than 0 and less than 0.5.' };
   if (draft.questions.length === 0) return { missing: 'Add at least one analysis.' };
   return {
     plan: {

@@ -2,11 +2,11 @@ import { Notice, Scroll } from '@/ui';
 import { formatCount, formatFigure, kNone } from '@/units';
 import styles from './analysis.module.css';
 
-const kWords: Record<string, string | undefined> = {
+const kHeadings: Record<string, string | undefined> = {
   name: 'Term', estimate: 'Estimate', standard_error: 'Standard error', t: 't', z: 'z', p: 'p', ci95_low: '95 % from', ci95_high: 'to', hc3_standard_error: 'SE, robust (HC3)', statistic: 'Statistic',
   value: 'Value', df: 'df', df1: 'df', df2: 'df residual', effect: 'Effect', size: 'Size', term: 'Term', assumption: 'Assumption', found: 'Found', advice: 'Advice', level: 'Level', mean: 'Mean', sd: 'SD', n: 'n',
 };
-const heading = (key: string) => kWords[key] ?? (key.charAt(0).toUpperCase() + key.slice(1)).replaceAll('_', ' ');
+const heading = (key: string) => kHeadings[key] ?? (key.charAt(0).toUpperCase() + key.slice(1)).replaceAll('_', ' ');
 
 export function cell(value: unknown, key = ''): string {
   if (value === null || value === undefined) return kNone;
@@ -32,11 +32,11 @@ function Lines({ caption, lines }: { readonly caption: string; readonly lines: r
   );
 }
 
-const kElsewhere = new Set(['method', 'file', 'formula', 'rows', 'rows_left_out', 'tests', 'checks', 'notes']);
+const kShownElsewhere = new Set(['method', 'file', 'formula', 'rows', 'rows_left_out', 'tests', 'checks', 'notes']);
 
-/** What a method reports: its tables, its figures, what it assumed and whether that holds, what is to be known. */
+/** The report of one method: tables, figures, assumption checks and notes. */
 export function ReportView({ report }: { readonly report: Line }) {
-  const entries = Object.entries(report).filter(([key]) => !kElsewhere.has(key));
+  const entries = Object.entries(report).filter(([key]) => !kShownElsewhere.has(key));
   const checks = Array.isArray(report.checks) ? report.checks.filter(isLine) : [];
   const notes = Array.isArray(report.notes) ? report.notes.filter((note): note is string => typeof note === 'string') : [];
   const loose = entries.filter(([, value]) => !Array.isArray(value) && !isLine(value));
@@ -47,8 +47,8 @@ export function ReportView({ report }: { readonly report: Line }) {
         return isLine(value) ? <Lines key={key} caption={heading(key)} lines={[value]} /> : null;
       })}
       {loose.length > 0 ? <p className={styles.muted}>{loose.map(([key, value]) => `${heading(key)}: ${cell(value, key)}`).join(' · ')}</p> : null}
-      {checks.length > 0 ? <Lines caption="Assumptions, checked" lines={checks} /> : null}
-      {notes.map((note) => <Notice key={note} tone="warn" title="To be known">{note}</Notice>)}
+      {checks.length > 0 ? <Lines caption="Assumption checks" lines={checks} /> : null}
+      {notes.map((note) => <Notice key={note} tone="warn" title="Note">{note}</Notice>)}
     </div>
   );
 }

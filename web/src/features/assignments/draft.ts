@@ -18,12 +18,12 @@ export interface Draft {
 
 export const kNoDraft: Draft = { title: '', chosen: [], cohort: '', people: [], ordering: 'random', repeats: 1, due: '', release: 'held' };
 
-/** A, B, … Z, AA: what a case is called where nobody said otherwise. */
+/** A, B, … Z, AA: the default blind name of a case. */
 export function letters(index: number): string {
   return index < 26 ? String.fromCharCode(65 + index) : letters(Math.floor(index / 26) - 1) + letters(index % 26);
 }
 
-/** The next blind name that none has. */
+/** The next unused blind name. */
 export function nextBlind(chosen: readonly Chosen[]): string {
   for (let i = 0; ; ++i) {
     const name = `Case ${letters(i)}`;
@@ -38,9 +38,9 @@ export function toggled(draft: Draft, item: Item): Draft {
 
 /** The first thing that is missing or wrong, in words; empty: it can be made. */
 export function lacking(draft: Draft): string {
-  if (draft.title.trim() === '') return 'It needs a title.';
+  if (draft.title.trim() === '') return 'Enter a title.';
   if (draft.chosen.length === 0) return 'Choose at least one case.';
-  if (draft.cohort === '' && draft.people.length === 0) return 'Choose a cohort, or people.';
+  if (draft.cohort === '' && draft.people.length === 0) return 'Choose a cohort or trainees.';
   const names = draft.chosen.map(({ blind }) => blind.trim()).filter((name) => name !== '');
   if (new Set(names).size !== names.length) return 'Two cases have the same blind name.';
   return '';

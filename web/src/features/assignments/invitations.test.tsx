@@ -29,7 +29,7 @@ describe('invitations into cohorts', () => {
     open([kInvitation]);
     expect(await screen.findByText('Residents 2027')).toBeTruthy();
     expect(screen.getByText('F. Senior')).toBeTruthy();
-    expect(screen.getByText(/see the trials of everybody in it/)).toBeTruthy();
+    expect(screen.getByText(/see the trials of all its members/)).toBeTruthy();
   });
 
   it.each([['Accept', 'accept'], ['Decline', 'decline']])('%s is sent, and the invitation is gone', async (label, deed) => {

@@ -4,7 +4,7 @@ import { Button, Card, Notice, Table } from '@/ui';
 import { formatDateTime } from '@/units';
 import styles from './assignments.module.css';
 
-/** Cohorts that the signed-in person is asked into; nothing where there are none. */
+/** Invitations of the signed-in person into cohorts; empty without any. */
 export function Invitations() {
   const client = useQueryClient();
   const query = useQuery(invitationsQuery);
@@ -18,9 +18,9 @@ export function Invitations() {
   return (
     <Card title="Invitations">
       <div className={styles.stack}>
-        <p>Those who lead a cohort see the trials of everybody in it and set badges and PINs. You join only when you accept.</p>
-        {answered.isError ? <Notice tone="bad" title="That was not done.">{answered.error.message}</Notice> : null}
-        <Table<Invitation> caption="Invitations into cohorts" rows={list} keyOf={({ cohort_id }) => cohort_id} empty="" columns={[
+        <p>Faculty who lead a cohort see the trials of all its members and set their badges and PINs. You join only if you accept.</p>
+        {answered.isError ? <Notice tone="bad" title="The action failed.">{answered.error.message}</Notice> : null}
+        <Table<Invitation> caption="Cohort invitations" rows={list} keyOf={({ cohort_id }) => cohort_id} empty="" columns={[
           { name: 'Cohort', cell: (one) => one.cohort_name },
           { name: 'From', cell: (one) => one.made_by },
           { name: 'Sent', cell: (one) => formatDateTime(one.made_utc_us) },

@@ -6,7 +6,7 @@ import { Badge, Button, Card, Field, Notice, Select, Skeleton, useTitle } from '
 import { formatCount } from '@/units';
 import styles from './assignments.module.css';
 import { kNoDraft, lacking, toggled, trialsEach, wishOf, type Draft, type Item } from './draft';
-import { kOrderWords, kReleaseWords, kToDrill } from './words';
+import { kOrderLabels, kReleaseLabels, kDrillThenPalpate } from './labels';
 
 type Change = (change: Partial<Draft>) => void;
 
@@ -19,7 +19,7 @@ function useItems(): { items: Item[] | undefined; failed: Error | null; retry: (
   const items: Item[] = [
     ...cases.data.cases.filter(({ retired }) => !retired).map(({ id, title, planned }) => ({ key: `case ${id}`, title, rig: 'palpation' as const, case_id: id, whole: planned })),
     ...scenarios.data.scenarios.filter(({ published }) => published).map(({ id, name }) => ({ key: `scenario ${id}`, title: name, rig: 'probing' as const, case_id: id })),
-    ...scenarios.data.tuned.map(({ kind, name }) => ({ key: `tuned ${kind}`, title: `${name} (ships with the rig)`, rig: 'probing' as const, tuned: kind })),
+    ...scenarios.data.tuned.map(({ kind, name }) => ({ key: `tuned ${kind}`, title: `${name} (built-in)`, rig: 'probing' as const, tuned: kind })),
   ];
   return { items, failed, retry };
 }
@@ -33,7 +33,7 @@ function CasesField({ draft, items, onDraft }: { readonly draft: Draft; readonly
         return (
           <div key={item.key} className={styles.choice} data-chosen={chosen !== undefined || undefined}>
             <label><input type="checkbox" checked={chosen !== undefined} onChange={() => onDraft(toggled(draft, item))} /> <span>{item.title}</span></label>
-            <Badge>{item.whole ? kToDrill : item.rig}</Badge>
+            <Badge>{item.whole ? kDrillThenPalpate : item.rig}</Badge>
             <input className={styles.blind} aria-label={`Blind name of ${item.title}`} placeholder="blind name" maxLength={128} value={chosen?.blind ?? ''} disabled={!chosen}
               onChange={(event) => onDraft({ ...draft, chosen: draft.chosen.map((one) => (one.key === item.key ? { ...one, blind: event.target.value } : one)) })} />
           </div>
@@ -50,17 +50,17 @@ function People({ draft, change }: { readonly draft: Draft; readonly change: Cha
   const members = useQuery({ ...cohortQuery(source), enabled: source !== '' });
   if (cohorts.isError) return <Notice tone="bad" title="The cohorts could not be loaded." onRetry={() => void cohorts.refetch()}>{cohorts.error.message}</Notice>;
   if (!cohorts.data) return <Skeleton height="180px" />;
-  if (cohorts.data.cohorts.length === 0) return <p>There is no cohort yet. <Link href="/network/cohorts">Make one</Link>, with the trainees in it.</p>;
+  if (cohorts.data.cohorts.length === 0) return <p>No cohorts yet. <Link href="/network/cohorts">Create a cohort</Link> and add trainees first.</p>;
   const options = cohorts.data.cohorts.map(({ id, name, trainees }) => ({ value: id, text: `${name}, ${formatCount(trainees)} ${trainees === 1 ? 'trainee' : 'trainees'}` }));
   const trainees = members.data?.people.filter(({ part, state }) => part === 'trainee' && state === 'active') ?? [];
   return (
     <div className={styles.stack}>
-      <Select label="Cohort (also who joins it later)" value={draft.cohort} options={[{ value: '', text: 'no whole cohort' }, ...options]} onChange={(event) => change({ cohort: event.target.value })} />
-      <Select label="Single people of" value={source} options={options} onChange={(event) => setFrom(event.target.value)} />
+      <Select label="Cohort (includes later members)" value={draft.cohort} options={[{ value: '', text: 'none' }, ...options]} onChange={(event) => change({ cohort: event.target.value })} />
+      <Select label="Individual trainees from" value={source} options={options} onChange={(event) => setFrom(event.target.value)} />
       <fieldset className={styles.people}>
         <legend className="hidden-visually">People</legend>
         {members.isPending ? <Skeleton height="28px" /> : null}
-        {members.data && trainees.length === 0 ? <p className={styles.muted}>Nobody learns in it yet.</p> : null}
+        {members.data && trainees.length === 0 ? <p className={styles.muted}>This cohort has no trainees yet.</p> : null}
         {trainees.map(({ name }) => (
           <label key={name} className={styles.person}>
             <input type="checkbox" checked={draft.people.includes(name) || draft.cohort === source} disabled={draft.cohort === source}
@@ -72,7 +72,7 @@ function People({ draft, change }: { readonly draft: Draft; readonly change: Cha
   );
 }
 
-/** Which cases, by whom, in which order, until when, and who sees the results. */
+/** Cases, trainees, order, due date and release of a new assignment. */
 export function NewAssignmentPage() {
   useTitle('New assignment');
   const client = useQueryClient();
@@ -93,30 +93,30 @@ export function NewAssignmentPage() {
     <form className={styles.page} onSubmit={submit}>
       <p><Link href="/assignments">← Assignments</Link></p>
       <h1>New assignment</h1>
-      {failed ? <Notice tone="bad" title="What can be assigned could not be loaded." onRetry={retry}>{failed.message}</Notice> : null}
+      {failed ? <Notice tone="bad" title="The cases could not be loaded." onRetry={retry}>{failed.message}</Notice> : null}
       <div className={styles.two}>
         <Card title="Cases" aside={<span className={styles.muted}>{formatCount(draft.chosen.length)} chosen</span>}>
           <div className={styles.stack}>
-            <p className={styles.muted}>Trainees see the blind name alone, never what the case is called here.</p>
-            {items ? (items.length === 0 ? <p>There is no case yet.</p> : <CasesField draft={draft} items={items} onDraft={setDraft} />) : <Skeleton height="240px" />}
+            <p className={styles.muted}>Trainees see only the blind name, never the title of the case.</p>
+            {items ? (items.length === 0 ? <p>No cases yet.</p> : <CasesField draft={draft} items={items} onDraft={setDraft} />) : <Skeleton height="240px" />}
           </div>
         </Card>
-        <Card title="Who"><People draft={draft} change={change} /></Card>
+        <Card title="Trainees"><People draft={draft} change={change} /></Card>
       </div>
-      <Card title="How">
+      <Card title="Settings">
         <div className={styles.form}>
           <Field label="Title, shown to trainees" value={draft.title} required maxLength={200} placeholder="Week 12, palpation" onChange={(event) => change({ title: event.target.value })} />
-          <Select label="Order" value={draft.ordering} options={Object.keys(kOrderWords).map((value) => ({ value, text: value }))} aria-describedby="order-means"
+          <Select label="Order" value={draft.ordering} options={Object.keys(kOrderLabels).map((value) => ({ value, text: value }))} aria-describedby="order-means"
             onChange={(event) => { const to = event.target.value; if (to === 'fixed' || to === 'random' || to === 'balanced') change({ ordering: to }); }} />
-          <Field label="Times each case is done" type="number" min={1} max={20} value={draft.repeats} onChange={(event) => { const n = Number(event.target.value); if (Number.isInteger(n) && n >= 1 && n <= 20) change({ repeats: n }); }} />
-          <Field label="Due (may be left out)" type="datetime-local" value={draft.due} onChange={(event) => change({ due: event.target.value })} />
-          <Select label="Results" value={draft.release} options={Object.entries(kReleaseWords).map(([value, { name }]) => ({ value, text: name }))} aria-describedby="release-means"
+          <Field label="Repeats per case" type="number" min={1} max={20} value={draft.repeats} onChange={(event) => { const n = Number(event.target.value); if (Number.isInteger(n) && n >= 1 && n <= 20) change({ repeats: n }); }} />
+          <Field label="Due (optional)" type="datetime-local" value={draft.due} onChange={(event) => change({ due: event.target.value })} />
+          <Select label="Results" value={draft.release} options={Object.entries(kReleaseLabels).map(([value, { name }]) => ({ value, text: name }))} aria-describedby="release-means"
             onChange={(event) => { const to = event.target.value; if (to === 'held' || to === 'released' || to === 'at_once') change({ release: to }); }} />
-          <p id="order-means" className={`${styles.wide} ${styles.muted}`}>Order: {kOrderWords[draft.ordering]}.</p>
-          <p id="release-means" className={`${styles.wide} ${styles.muted}`}>{kReleaseWords[draft.release].means}</p>
+          <p id="order-means" className={`${styles.wide} ${styles.muted}`}>{kOrderLabels[draft.ordering]}.</p>
+          <p id="release-means" className={`${styles.wide} ${styles.muted}`}>{kReleaseLabels[draft.release].description}</p>
         </div>
       </Card>
-      {made.isError ? <Notice tone="bad" title="It was not assigned.">{made.error.message}</Notice> : null}
+      {made.isError ? <Notice tone="bad" title="The assignment was not created.">{made.error.message}</Notice> : null}
       <div className={styles.go}>
         <span role="status" className={styles.muted}>{missing || `${formatCount(trialsEach(draft))} ${trialsEach(draft) === 1 ? 'trial' : 'trials'} for each trainee.`}</span>
         <Button look="solid" type="submit" disabled={missing !== '' || made.isPending}>{made.isPending ? 'Assigning…' : 'Assign'}</Button>

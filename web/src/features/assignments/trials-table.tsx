@@ -6,13 +6,13 @@ import styles from './assignments.module.css';
 
 type Done = Assignment['trials'][number];
 
-const kStates: Record<Done['state'], string> = { arriving: 'arriving', counts: 'counts', invalid: 'does not count', surplus: 'surplus' };
+const kStates: Record<Done['state'], string> = { arriving: 'uploading', counts: 'valid', invalid: 'invalid', surplus: 'surplus' };
 
 function State({ trial }: { readonly trial: Done }) {
-  return <span>{trial.state === 'counts' ? 'counts' : <Badge tone="warn">{kStates[trial.state]}</Badge>}{trial.reason ? <span className={styles.muted}> {trial.reason}</span> : null}</span>;
+  return <span>{trial.state === 'counts' ? kStates.counts : <Badge tone="warn">{kStates[trial.state]}</Badge>}{trial.reason ? <span className={styles.muted}> {trial.reason}</span> : null}</span>;
 }
 
-const answer = ({ correct }: Done) => (correct === null ? '–' : correct ? <Badge tone="good">right</Badge> : <Badge tone="bad">wrong</Badge>);
+const answer = ({ correct }: Done) => (correct === null ? '–' : correct ? <Badge tone="good">correct</Badge> : <Badge tone="bad">incorrect</Badge>);
 
 interface Props { readonly one: Assignment; readonly may: boolean; readonly own?: boolean; readonly onInvalid?: (trial: string) => void }
 
@@ -25,14 +25,14 @@ export function TrialsTable({ one, may, own = false, onInvalid }: Props) {
   return (
     <Table<Done> caption="Trials" rows={one.trials} keyOf={({ trial_id }) => trial_id} empty="No trial has arrived yet." minWidth={own ? 480 : 680} columns={[
       { name: 'Trial', cell: (trial) => <>{whose(trial)}{named(trial)}</> },
-      { name: 'Done', cell: (trial) => (trial.started_utc_us === null ? '–' : formatDateTime(trial.started_utc_us)) },
+      { name: 'Date', cell: (trial) => (trial.started_utc_us === null ? '–' : formatDateTime(trial.started_utc_us)) },
       { name: 'Answer', cell: answer },
       { name: 'Comments', cell: (trial) => formatCount(trial.comments), number: true },
       { name: 'State', cell: (trial) => <State trial={trial} /> },
-      { name: <span className="hidden-visually">Go on</span>, cell: (trial) => (
+      { name: <span className="hidden-visually">Actions</span>, cell: (trial) => (
         <span className={styles.buttons}>
           {trial.state === 'arriving' ? null : link(trial)}
-          {may && trial.state === 'counts' ? <Button look="quiet" label={`Mark as invalid: ${named(trial)} of ${names.get(trial.participant) ?? trial.participant}`} onClick={() => onInvalid?.(trial.trial_id)}>Invalid…</Button> : null}
+          {may && trial.state === 'counts' ? <Button look="quiet" label={`Mark as invalid: ${named(trial)} of ${names.get(trial.participant) ?? trial.participant}`} onClick={() => onInvalid?.(trial.trial_id)}>Mark as invalid…</Button> : null}
         </span>) },
     ]} />
   );

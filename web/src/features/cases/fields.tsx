@@ -7,7 +7,7 @@ import type { Breach, End, Plan } from './plan';
 const kAxes = ['x (left)', 'y (back)', 'z (up)'] as const;
 const inMillimetres = (value: number | undefined | null) => (value === undefined || value === null ? '' : String(Math.round(value * 1e5) / 100));
 
-/** A number in millimetres that is told on when it is one; what is being typed stays as it is typed. */
+/** A number in millimetres. Valid input is passed on; the text stays as it is typed. */
 export function Millimetres({ label, value_m, min = -2000, max = 2000, step = 0.5, required = true, onValue }: {
   readonly label: string; readonly value_m: number | null; readonly min?: number; readonly max?: number; readonly step?: number; readonly required?: boolean;
   readonly onValue: (value_m: number | null) => void;
@@ -53,16 +53,16 @@ export function BreachFields({ plan, length_m, onBreach, onWhole }: {
   const longest_mm = Math.max(1, Math.floor((length_m ?? 0.1) * 1000));
   return (
     <div className={styles.breach}>
-      <Select label="Channel" value={plan.whole ? 'planned' : 'drilled'} options={[{ value: 'drilled', text: 'made' }, { value: 'planned', text: 'left whole' }]}
+      <Select label="Channel" value={plan.whole ? 'planned' : 'drilled'} options={[{ value: 'drilled', text: 'pre-drilled' }, { value: 'planned', text: 'trainee drills' }]}
         onChange={(event) => onWhole(event.target.value === 'planned')} />
       {plan.whole ? null : <Select label="Breach" value={breach?.wall ?? ''} options={[{ value: '', text: 'none' }, ...kWalls.map((wall) => ({ value: wall, text: wall }))]}
         onChange={(event) => {
           const wall = kWalls.find((one) => one === event.target.value);
           onBreach(wall ? { wall, depth_m: breach?.depth_m ?? 0.003, at_m: wall === 'anterior' ? null : breach?.at_m ?? null } : null);
         }} />}
-      {breach ? <Millimetres label="Beyond the bone, mm" value_m={breach.depth_m} min={0.5} max={15} onValue={(depth_m) => { if (depth_m !== null) onBreach({ ...breach, depth_m }); }} /> : null}
+      {breach ? <Millimetres label="Depth beyond the bone, mm" value_m={breach.depth_m} min={0.5} max={15} onValue={(depth_m) => { if (depth_m !== null) onBreach({ ...breach, depth_m }); }} /> : null}
       {breach && breach.wall !== 'anterior' ? (
-        <Millimetres label="At depth, mm (empty: thinnest)" value_m={breach.at_m} min={0} max={longest_mm} required={false} onValue={(at_m) => onBreach({ ...breach, at_m })} />
+        <Millimetres label="At depth, mm (empty: thinnest point)" value_m={breach.at_m} min={0} max={longest_mm} required={false} onValue={(at_m) => onBreach({ ...breach, at_m })} />
       ) : null}
     </div>
   );

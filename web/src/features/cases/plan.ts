@@ -1,4 +1,4 @@
-/** A plan of a case as it is being drawn, and each step as a value: what was may be brought back. */
+/** The plan of a case while it is edited. Each step is a value, so that it can be undone. */
 import { kWalls, type NewCase, type TractWish, type Vec3 } from '@/api';
 
 export type WallName = (typeof kWalls)[number];
@@ -35,8 +35,8 @@ export function draw(drawing: Drawing, step: Step): Drawing {
   }
 }
 
-/** What the server is asked; null while an end is missing. A tenth of a millimetre's hundredth is enough. */
-export function wishOf({ entry, target, radius_m, breach, whole }: Plan): TractWish | null {
+/** The request to the server, rounded to 1 µm; null while an end is missing. */
+export function requestOf({ entry, target, radius_m, breach, whole }: Plan): TractWish | null {
   if (!entry || !target) return null;
   const tidy = (p: Vec3): [number, number, number] => [round(p[0]), round(p[1]), round(p[2])];
   return {
@@ -46,18 +46,18 @@ export function wishOf({ entry, target, radius_m, breach, whole }: Plan): TractW
 }
 const round = (value: number) => Math.round(value * 1e6) / 1e6;
 
-export const caseOf = (wish: TractWish, volume: string, title: string): NewCase => ({ ...wish, volume, title });
+export const caseOf = (request: TractWish, volume: string, title: string): NewCase => ({ ...request, volume, title });
 
 /** The plan as part of an address, in millimetres: a link to it can be kept. */
 export function toAddress({ entry, target, radius_m, breach, whole }: Plan): string {
-  const said = new URLSearchParams();
+  const parameters = new URLSearchParams();
   const mm = (p: Vec3) => p.map((value) => Math.round(value * 1e5) / 100).join(',');
-  if (entry) said.set('entry', mm(entry));
-  if (target) said.set('target', mm(target));
-  if (radius_m !== kNoPlan.radius_m) said.set('radius', String(Math.round(radius_m * 1e5) / 100));
-  if (whole) said.set('whole', '1');
-  if (breach) said.set('breach', [breach.wall, breach.depth_m * 1000, ...(breach.at_m === null ? [] : [breach.at_m * 1000])].join(','));
-  return said.toString();
+  if (entry) parameters.set('entry', mm(entry));
+  if (target) parameters.set('target', mm(target));
+  if (radius_m !== kNoPlan.radius_m) parameters.set('radius', String(Math.round(radius_m * 1e5) / 100));
+  if (whole) parameters.set('whole', '1');
+  if (breach) parameters.set('breach', [breach.wall, breach.depth_m * 1000, ...(breach.at_m === null ? [] : [breach.at_m * 1000])].join(','));
+  return parameters.toString();
 }
 
 function pointOf(text: string | null): Vec3 | null {
@@ -66,13 +66,13 @@ function pointOf(text: string | null): Vec3 | null {
 }
 
 export function fromAddress(search: string): Plan {
-  const said = new URLSearchParams(search);
-  const [wall, depth, at] = (said.get('breach') ?? '').split(',');
+  const parameters = new URLSearchParams(search);
+  const [wall, depth, at] = (parameters.get('breach') ?? '').split(',');
   const known = kWalls.find((one) => one === wall);
   const number = (text: string | undefined | null, otherwise: number) => (text && Number.isFinite(Number(text)) ? Number(text) / 1000 : otherwise);
   return {
-    entry: pointOf(said.get('entry')), target: pointOf(said.get('target')), radius_m: number(said.get('radius'), kNoPlan.radius_m),
-    whole: said.get('whole') === '1',
+    entry: pointOf(parameters.get('entry')), target: pointOf(parameters.get('target')), radius_m: number(parameters.get('radius'), kNoPlan.radius_m),
+    whole: parameters.get('whole') === '1',
     breach: known ? { wall: known, depth_m: number(depth, 0.003), at_m: at === undefined ? null : number(at, 0) } : null,
   };
 }

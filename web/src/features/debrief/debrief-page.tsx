@@ -16,7 +16,7 @@ import { usePlayer } from './use-player';
 
 type Tips = readonly (readonly [number, number, number])[];
 
-/** The way of the tip of either rig, as soon as it is there. */
+/** Path of the tip of either rig, once it is loaded. */
 function useWay(trial: Trial): { way: Way | undefined; tips: Tips | null; failed: Error | null; retry: () => void; curve: ReturnType<typeof breaches> } {
   const palpation = trial.rig === 'palpation';
   const path = useQuery({ ...pathQuery(trial.id), enabled: palpation });
@@ -43,9 +43,9 @@ function Picture({ trial, way, tips, ghost, cursor }: { readonly trial: Trial; r
   if (preview.isPending) return <Skeleton height="444px" />;
   return (
     <>
-      {preview.isError ? <Notice tone="warn" title="The bone could not be loaded; the rest is drawn without it.">{preview.error.message}</Notice> : null}
+      {preview.isError ? <Notice tone="warn" title="The bone could not be loaded. The view shows the tract without it.">{preview.error.message}</Notice> : null}
       <TractView tract={trial.tract} path={path} bone={preview.data ?? null} cursor={cursor} ghost={other} palette={palette}
-        summary="The tract with the bone round it and the way of the tip coloured by force; a ball shows the moment, a second one the example’s."
+        summary="The tract with the surrounding bone and the path of the tip, coloured by force. A ball marks the current position; a second ball marks that of the example."
         button={(label, text, press, pressed) => <Button label={label} onClick={press} {...(pressed === undefined ? {} : { pressed })}>{text}</Button>} />
     </>
   );
@@ -55,13 +55,13 @@ const sides = (found: string | null, none: string) => (found === null ? none : `
 
 function Verdict({ trial }: { readonly trial: Trial }) {
   const { answer, truth, scenario } = trial;
-  const said = answer ? (answer.breach ? (answer.wall ? sides(answer.wall, '') : 'a breach') : 'no breach') : 'no answer';
+  const given = answer ? (answer.breach ? (answer.wall ? sides(answer.wall, '') : 'a breach') : 'no breach') : 'no answer';
   const was = trial.rig === 'probing' ? (scenario ? (scenario.walls.length > 0 ? 'a breach' : 'no breach') : null) : truth ? sides(truth.breached ?? null, 'no breach') : null;
   const right = trial.metrics.find((metric) => metric.id === 'answer_right')?.value ?? null;
   return (
     <p className={styles.verdict}>
-      <span>Said: <strong>{said}</strong>.</span> {was === null ? null : <span>There was: <strong>{was}</strong>.</span>}
-      {right === null ? null : right > 0.5 ? <Badge tone="good">right</Badge> : <Badge tone="bad">wrong</Badge>}
+      <span>Answer: <strong>{given}</strong>.</span> {was === null ? null : <span>Truth: <strong>{was}</strong>.</span>}
+      {right === null ? null : right > 0.5 ? <Badge tone="good">correct</Badge> : <Badge tone="bad">incorrect</Badge>}
     </p>
   );
 }
@@ -91,7 +91,7 @@ function Replay({ trial, may }: { readonly trial: Trial; readonly may: boolean }
                 <Transport duration_s={trial.duration_s} cursor={cursor} player={player} moments={moments} />
                 <Now cursor={cursor} way={way} ghost={ghost} />
                 <Timeline way={way} ghost={ghost} duration_s={trial.duration_s} cursor={cursor} player={player} moments={moments} scenario={trial.scenario} />
-                <p className={styles.muted}>Space plays and pauses, arrows move by a second (with Shift by a tenth), N and P go to the next moment and the one before. Click or drag in the curves.</p>
+                <p className={styles.muted}>Space: play or pause. Arrow keys: move by 1 s (with Shift by 0.1 s). N and P: next and previous event. Click or drag in the charts to move in time.</p>
               </>
             ) : null}
             <ExampleField trial={trial.id} choice={choice} may={may} onChoice={setChoice} />
@@ -103,7 +103,7 @@ function Replay({ trial, may }: { readonly trial: Trial; readonly may: boolean }
   );
 }
 
-/** A trial talked through: replay beside an expert's, comments on its moments, release of results. */
+/** Debriefing of a trial: replay beside an example, comments, release of results. */
 export function DebriefPage({ id }: { readonly id: string }) {
   const query = useQuery(trialQuery(id));
   const role = useQuery({ ...sessionQuery, enabled: false }).data?.role;
@@ -113,9 +113,9 @@ export function DebriefPage({ id }: { readonly id: string }) {
   const missing = query.error instanceof ApiError && query.error.code === 'not_found';
   return (
     <div className={styles.page}>
-      <p><Link href={`/trials/${id}`}>← The trial with its measures</Link>{trial?.study?.id.startsWith('a-') ? <> · <Link href={`/assignments/${trial.study.id}`}>{trial.study.title}</Link></> : null}</p>
+      <p><Link href={`/trials/${id}`}>← Trial and measures</Link>{trial?.study?.id.startsWith('a-') ? <> · <Link href={`/assignments/${trial.study.id}`}>{trial.study.title}</Link></> : null}</p>
       {query.isPending ? <div role="status"><span className="hidden-visually">Loading the trial</span><Skeleton height="640px" /></div> : null}
-      {query.isError && !trial ? <Notice tone={missing ? 'warn' : 'bad'} title={missing ? 'There is no such trial, or its results are not released.' : 'The trial could not be loaded.'} onRetry={missing ? undefined : () => void query.refetch()}>{query.error.message}</Notice> : null}
+      {query.isError && !trial ? <Notice tone={missing ? 'warn' : 'bad'} title={missing ? 'Trial not found, or its results are not released.' : 'The trial could not be loaded.'} onRetry={missing ? undefined : () => void query.refetch()}>{query.error.message}</Notice> : null}
       {trial ? (
         <>
           <div className={styles.headline}>

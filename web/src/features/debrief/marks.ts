@@ -3,8 +3,8 @@ import type { ForceDepth, Trial, TrialComment } from '@/api';
 
 export interface Moment { readonly t_s: number; readonly text: string; readonly kind: 'event' | 'comment' }
 
-const kWords: Record<string, string> = { start: 'start', end: 'end', answer: 'answer', fault: 'fault', interrupted: 'interrupted' };
-const kSilent: readonly string[] = ['tare'];
+const kEventNames: Record<string, string> = { start: 'start', end: 'end', answer: 'answer', fault: 'fault', interrupted: 'interrupted' };
+const kUnmarked: readonly string[] = ['tare'];
 
 /** Where the probe of the rig went through a wall. */
 export function breaches(curve: ForceDepth | undefined): Moment[] {
@@ -17,9 +17,9 @@ export function breaches(curve: ForceDepth | undefined): Moment[] {
 
 /** In order of time. */
 export function momentsOf(trial: Trial, comments: readonly TrialComment[], further: readonly Moment[]): Moment[] {
-  const events = trial.events.filter(({ kind }) => !kSilent.includes(kind)).map(({ t_s, kind }) => ({ t_s, text: kWords[kind] ?? kind, kind: 'event' as const }));
-  const said = comments.flatMap(({ at_s, text }) => (at_s === null ? [] : [{ t_s: at_s, text, kind: 'comment' as const }]));
-  return [...events, ...further, ...said].sort((a, b) => a.t_s - b.t_s);
+  const events = trial.events.filter(({ kind }) => !kUnmarked.includes(kind)).map(({ t_s, kind }) => ({ t_s, text: kEventNames[kind] ?? kind, kind: 'event' as const }));
+  const commented = comments.flatMap(({ at_s, text }) => (at_s === null ? [] : [{ t_s: at_s, text, kind: 'comment' as const }]));
+  return [...events, ...further, ...commented].sort((a, b) => a.t_s - b.t_s);
 }
 
 const kNear_s = 0.02;

@@ -73,7 +73,7 @@ function Line(props: Props & { readonly column: 'force_N' | 'depth_m'; readonly 
   const end = Math.max(most, other, (bone?.travel_m ?? 0) * scale, column === 'force_N' ? 0.5 : 1) * 1.05;
   return (
     <div className={styles.line} data-part={`line-${column}`} {...handlers}>
-      <Plane across={{ title: 'time, s', from: 0, to: Math.max(duration_s, 0.1) }} up={{ title, from: least, to: end }} height_px={170} summary={`${title} over the trial${ghost ? ', with the example’s' : ''}.`}>
+      <Plane across={{ title: 'time, s', from: 0, to: Math.max(duration_s, 0.1) }} up={{ title, from: least, to: end }} height_px={170} summary={`${title} over the trial${ghost ? ', with the curve of the example' : ''}.`}>
         {(places) => {
           keep(places);
           const across = { x: places.x(0), width: places.width_px };
@@ -103,8 +103,8 @@ function Line(props: Props & { readonly column: 'force_N' | 'depth_m'; readonly 
 export function Timeline(props: Props) {
   return (
     <div className={styles.stack}>
-      <Line {...props} column="force_N" title={props.scenario ? 'push of the hand, N' : 'force on the tip, N'} scale={1} named />
-      <Line {...props} column="depth_m" title="depth of the tip, mm" scale={1000} named={false} />
+      <Line {...props} column="force_N" title={props.scenario ? 'hand force, N' : 'tip force, N'} scale={1} named />
+      <Line {...props} column="depth_m" title="tip depth, mm" scale={1000} named={false} />
     </div>
   );
 }

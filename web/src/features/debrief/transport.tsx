@@ -35,7 +35,7 @@ function Scrubber({ duration_s, cursor, player }: { readonly duration_s: number;
     follow();
     return cursor.subscribe(follow);
   }, [cursor]);
-  return <input ref={input} type="range" className={styles.scrub} aria-label="Moment of the trial" min={0} max={duration_s} step={0.01} defaultValue={0} onChange={(event) => player.seek(Number(event.target.value))} />;
+  return <input ref={input} type="range" className={styles.scrub} aria-label="Time in the trial" min={0} max={duration_s} step={0.01} defaultValue={0} onChange={(event) => player.seek(Number(event.target.value))} />;
 }
 
 /** The numbers of the moment. */
@@ -43,11 +43,11 @@ export function Now({ cursor, way, ghost }: { readonly cursor: Cursor; readonly 
   const now = useSyncExternalStore(cursor.subscribe, cursor.now) ?? 0;
   const row = rowAt(way.t_s, now);
   const other = ghost ? rowAt(ghost.way.t_s, ghost.at(now)) : 0;
-  const told = (one: Way, at: number) => `${formatForce(newton(one.force_N[at] ?? 0))}, ${formatLength(metre(one.depth_m[at] ?? 0))} deep`;
+  const describe = (one: Way, at: number) => `${formatForce(newton(one.force_N[at] ?? 0))}, ${formatLength(metre(one.depth_m[at] ?? 0))} deep`;
   return (
     <p className={styles.now} data-part="now">
-      <strong>{formatTime(second(now), 1)}</strong> <span>{told(way, row)}</span>
-      {ghost ? <span className={styles.ghostText}>example: {told(ghost.way, other)}</span> : null}
+      <strong>{formatTime(second(now), 1)}</strong> <span>{describe(way, row)}</span>
+      {ghost ? <span className={styles.ghostText}>example: {describe(ghost.way, other)}</span> : null}
     </p>
   );
 }
@@ -60,8 +60,8 @@ export function Transport({ duration_s, cursor, player, moments }: Props) {
   return (
     <div className={styles.transport} role="group" aria-label="Replay">
       <Button look="solid" label={player.playing ? 'Pause' : 'Play'} className={styles.play} onClick={player.toggle}>{player.playing ? '❚❚' : '▶'}</Button>
-      <Button label="To the moment before" onClick={() => jump(-1)}>|◀</Button>
-      <Button label="To the next moment" onClick={() => jump(1)}>▶|</Button>
+      <Button label="Previous event" onClick={() => jump(-1)}>|◀</Button>
+      <Button label="Next event" onClick={() => jump(1)}>▶|</Button>
       <Scrubber duration_s={duration_s} cursor={cursor} player={player} />
       <Select label={<span className="hidden-visually">Speed</span>} value={String(player.speed)} options={kSpeeds.map((speed) => ({ value: String(speed), text: `${speed} ×` }))} onChange={(event) => player.setSpeed(Number(event.target.value))} />
     </div>

@@ -6,7 +6,7 @@ import { Channels, Headline, Phases, primaryOf, TrialChoice } from './comparison
 import { Distributions } from './distributions';
 import styles from './lab.module.css';
 import { Overlay, type Names } from './overlay';
-import { channelNameOf } from './words';
+import { channelNameOf } from './names';
 
 export interface Drawable { readonly run: LabRun; readonly before: Comparison; readonly after: Comparison | null; readonly names: Names; readonly rig: string | null }
 
@@ -24,7 +24,7 @@ export function Series({ drawable, region = null }: { readonly drawable: Drawabl
   const [pickedChannel, setChannel] = useState<string | null>(null);
   const trial = before.trials.find(({ id }) => id === pickedTrial) ?? worstTrial(before);
   const channel = channels.find(({ name }) => name === pickedChannel) ?? first;
-  if (!trial || !channel) return <p>There is no series to draw.</p>;
+  if (!trial || !channel) return <p>There are no data to draw.</p>;
   return (
     <div className={styles.series}>
       <div className={styles.side}>
@@ -46,24 +46,24 @@ export function CompareStep({ drawable, versions, against, setAgainst }: Props) 
   const shown = channels.find(({ name }) => name === picked) ?? channels.find(({ name }) => name === primaryOf(before)?.name) ?? channels[0];
   return (
     <>
-      <Card title="How far off" aside={versions.length > 0 ? (
-        <Select label={<span className="hidden-visually">Another version beside it</span>} value={against ?? ''} onChange={(event) => setAgainst(event.target.value === '' ? null : event.target.value)}
-          options={[{ value: '', text: 'No other version beside it' }, ...versions.map(({ id, name, note, made_utc_us }) => ({ value: id, text: `Beside: ${name}${note === '' ? '' : `, ${note}`} (${formatDateTime(made_utc_us)})` }))]} />
+      <Card title="Model error" aside={versions.length > 0 ? (
+        <Select label={<span className="hidden-visually">Second version to compare</span>} value={against ?? ''} onChange={(event) => setAgainst(event.target.value === '' ? null : event.target.value)}
+          options={[{ value: '', text: 'No second version' }, ...versions.map(({ id, name, note, made_utc_us }) => ({ value: id, text: `Compare with: ${name}${note === '' ? '' : `, ${note}`} (${formatDateTime(made_utc_us)})` }))]} />
       ) : null}>
         <Headline before={before} after={after} names={names} />
-        <p className={styles.muted} data-part="as-published">The model as it was published, no number of it changed. “What is missing” fits its own numbers to these measurements first, so it begins from a smaller error.</p>
+        <p className={styles.muted} data-part="as-published">The model as published, with all parameters unchanged. “Missing effects” first fits the parameters to these measurements and therefore starts from a smaller error.</p>
       </Card>
       <Card title="Measured and simulated"><Series drawable={drawable} /></Card>
       {shown ? (
-        <Card title="How the error is distributed" aside={channels.length > 1 ? (
+        <Card title="Error distribution" aside={channels.length > 1 ? (
           <Select label={<span className="hidden-visually">Channel of the distributions</span>} value={shown.name} onChange={(event) => setPicked(event.target.value)} options={channels.map(({ name }) => ({ value: name, text: channelNameOf(name, rig) }))} />
         ) : null}>
           <Distributions before={shown} after={after?.channels.find(({ name }) => name === shown.name) ?? null} names={names} />
         </Card>
       ) : null}
       <div className={styles.two}>
-        <Card title="By channel"><Channels before={before} after={after} names={names} rig={rig} /></Card>
-        <Card title="By phase"><Phases comparison={before} /></Card>
+        <Card title="Error by channel"><Channels before={before} after={after} names={names} rig={rig} /></Card>
+        <Card title="Error by phase"><Phases comparison={before} /></Card>
       </div>
     </>
   );

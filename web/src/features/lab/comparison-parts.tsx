@@ -3,13 +3,13 @@ import { Bar, Facts, Scroll, Term } from '@/ui';
 import { formatCount, formatDuration, formatFigure, formatShare, kNone, share } from '@/units';
 import styles from './lab.module.css';
 import type { Names } from './overlay';
-import { channelNameOf, channelUnit } from './words';
+import { channelNameOf, channelUnit } from './names';
 
-export const kFloorMeaning = 'What noise alone leaves: estimated from the measurements themselves, not assumed. No model can come below it.';
+export const kFloorMeaning = 'The error that noise alone causes, estimated from the measurements themselves. No model can have a smaller error.';
 export const kErrorMeaning = 'Root mean square of measured − simulated over all samples.';
-export const kExplainedMeaning = 'Of the variation that is more than noise, the part that the model reproduces: 100 % at the noise floor, 0 % for a model no better than the mean.';
+export const kExplainedMeaning = 'Share of the variation beyond noise that the model reproduces: 100 % at the noise floor, 0 % for a model that is no better than the mean.';
 
-export const explained = (value: number | null | undefined) => (value === null || value === undefined ? kNone : value < 0 ? 'less than none' : formatShare(share(Math.min(value, 1)), 1));
+export const explained = (value: number | null | undefined) => (value === null || value === undefined ? kNone : value < 0 ? 'below 0 %' : formatShare(share(Math.min(value, 1)), 1));
 
 export const primaryOf = (comparison: Comparison) => comparison.channels.find(({ name }) => name === comparison.primary) ?? comparison.channels[0];
 
@@ -59,7 +59,7 @@ export function Channels({ before, after, names, rig }: { readonly before: Compa
 }
 
 export function Phases({ comparison }: { readonly comparison: Comparison }) {
-  if (comparison.phases.length === 0) return <p className={styles.muted}>The recording names no phases.</p>;
+  if (comparison.phases.length === 0) return <p className={styles.muted}>The measurements define no phases.</p>;
   const unit = channelUnit(comparison.primary);
   return (
     <Scroll label="Error by phase">

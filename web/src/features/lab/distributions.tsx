@@ -3,7 +3,7 @@ import { curve, Plane, stairs, type Places } from '@/charts';
 import { axisTitle, formatFigure } from '@/units';
 import styles from './distributions.module.css';
 import type { Names } from './overlay';
-import { channelName, channelQuantity, channelUnit } from './words';
+import { channelName, channelQuantity, channelUnit } from './names';
 
 interface Props { readonly before: LabChannel; readonly after: LabChannel | null; readonly names: Names }
 
@@ -33,10 +33,10 @@ function Residuals({ before, after, names }: Props) {
   const quantity = channelQuantity(before.name), unit = channelUnit(before.name);
   const [from, to] = middle([before.residual, after?.residual]);
   const floor = before.noise_floor ?? Number.NaN;
-  const summary = `What ${names.before} leaves: mean ${formatFigure(before.residual.mean, unit)}, spread ${formatFigure(before.residual.sd, unit)}${after?.residual ? `; ${names.after ?? ''}: mean ${formatFigure(after.residual.mean, unit)}, spread ${formatFigure(after.residual.sd, unit)}` : ''}. Noise floor ${formatFigure(floor, unit)}.`;
+  const summary = `Residual of ${names.before}: mean ${formatFigure(before.residual.mean, unit)}, standard deviation ${formatFigure(before.residual.sd, unit)}${after?.residual ? `; ${names.after ?? ''}: mean ${formatFigure(after.residual.mean, unit)}, standard deviation ${formatFigure(after.residual.sd, unit)}` : ''}. Noise floor ${formatFigure(floor, unit)}.`;
   return (
     <div>
-      <h3>What is left</h3>
+      <h3>Residual</h3>
       <Plane across={{ title: axisTitle('measured − simulated', quantity), from, to }} up={{ title: 'share of samples', from: 0, to: most(before.residual.shares, after?.residual?.shares ?? []) * 1.05 }} summary={summary}>
         {(places) => <>
           {[-floor, floor].map((at) => <line key={at} x1={places.x(at)} x2={places.x(at)} y1={places.y(0)} y2={22} className={styles.floor} />)}
@@ -79,7 +79,7 @@ function Spectra({ before, after, names }: Props) {
     <div>
       <h3>Spectrum</h3>
       <Plane across={{ title: 'frequency, Hz', from: frequency[0] ?? 1, to: frequency.at(-1) ?? 10, log: true }} up={{ title: `(${channelUnit(before.name)})² per Hz`, from: low, to: Math.max(...powers) * 2, log: true }}
-        summary={`Power by frequency of what was measured and of what ${names.before}${names.after === null ? '' : ` and ${names.after}`} leave.`}>
+        summary={`Power spectrum of the measured signal and of the residual of ${names.before}${names.after === null ? '' : ` and of ${names.after}`}.`}>
         {(places) => <>
           <path d={line(found.measured, places)} className={styles.line} data-series="measured" />
           <path d={line(found.residual, places)} className={styles.line} data-series="before" />
@@ -90,7 +90,7 @@ function Spectra({ before, after, names }: Props) {
   );
 }
 
-/** Values, what is left, and its spectrum, of one channel. */
+/** Distribution of the residual, of the values, and their spectra, for one channel. */
 export function Distributions(props: Props) {
   const { names } = props;
   return (

@@ -17,13 +17,13 @@ export function DropZone({ onFiles, busy, children }: Props) {
   });
   return (
     <div {...getRootProps({ className: styles.zone, role: 'group', 'aria-label': 'New measurements' })} data-over={isDragActive || undefined} data-part="drop">
-      <input {...getInputProps({ 'aria-label': 'A zip, or set.json with its CSV files', tabIndex: -1 })} />
+      <input {...getInputProps({ 'aria-label': 'A zip file, or set.json with its CSV files', tabIndex: -1 })} />
       <input ref={folder} type="file" hidden webkitdirectory="" aria-label="A folder with set.json"
         onChange={(event) => { const files = [...(event.currentTarget.files ?? [])]; event.currentTarget.value = ''; if (files.length > 0) onFiles(dropped(files)); }} />
-      <p className={styles.text}>{busy ?? (isDragActive ? 'Let go to take them.' : children)}</p>
+      <p className={styles.text}>{busy ?? (isDragActive ? 'Release to add the files.' : children)}</p>
       <div className={styles.buttons}>
-        <Button onClick={() => folder.current?.click()} disabled={busy !== null}>Choose a folder</Button>
-        <Button onClick={open} disabled={busy !== null}>Choose a zip</Button>
+        <Button onClick={() => folder.current?.click()} disabled={busy !== null}>Choose folder</Button>
+        <Button onClick={open} disabled={busy !== null}>Choose zip file</Button>
       </div>
     </div>
   );

@@ -5,7 +5,7 @@ import { differences } from './differences';
 import { kBlankOwn, ownEffect, parametersIn, withFormula } from './own-effect';
 import { parameterName } from './parameters';
 import { verdictOf } from './verdict';
-import { channelQuantity, effectName, joined } from './words';
+import { channelQuantity, effectName, joined } from './names';
 import { pack, problemsOf, rootOf } from './zip-files';
 
 const plain = (text: string) => text.replaceAll('\u202f', ' ');
@@ -85,11 +85,11 @@ describe('the verdict', () => {
   it('names what is missing and how far the error falls on trials that were not fitted', () => {
     const { headline, detail } = verdictOf(diagnosis({}), 'N');
     expect(headline).toBe('Coulomb friction is missing.');
-    expect(plain(detail)).toContain('from 1.99 N to 0.0502 N; noise alone leaves 0.0616 N');
+    expect(plain(detail)).toContain('from 1.99 N to 0.0502 N; the noise floor is 0.0616 N');
   });
 
   it('adds nothing where nothing is missing', () => {
-    expect(verdictOf(diagnosis({ verdict: 'complete', effects: [] }), 'N')).toMatchObject({ tone: 'good', headline: 'Nothing is missing.' });
+    expect(verdictOf(diagnosis({ verdict: 'complete', effects: [] }), 'N')).toMatchObject({ tone: 'good', headline: 'No effect is missing.' });
   });
 
   it('says on what it depends where the catalogue has no name for it', () => {
@@ -104,9 +104,9 @@ describe('the verdict', () => {
   });
 });
 
-describe('words of the lab', () => {
+describe('names of the lab', () => {
   it('are made from ids', () => {
-    expect(effectName('expression:drag')).toBe('drag (own formula)');
+    expect(effectName('expression:drag')).toBe('drag (custom formula)');
     expect(joined(['a', 'b', 'c'])).toBe('a, b and c');
     expect(channelQuantity('tz_Nm').unit).toBe('N·m');
     expect(channelQuantity('fz_N').unit).toBe('N');

@@ -2,7 +2,7 @@ import type { Estimate } from '@/api';
 import { Badge, Scroll, Term } from '@/ui';
 import { formatWithin, nameAndUnit } from '@/units';
 import styles from './lab.module.css';
-import { effectName } from './words';
+import { effectName } from './names';
 
 /** "/base/layers/0/stiffness_N_per_m" → "Layer 1, stiffness"; "coulomb_friction/friction_N" → "Coulomb friction, friction". */
 export function parameterName(pointer: string): { name: string; unit: string } {
@@ -19,10 +19,10 @@ export function parameterName(pointer: string): { name: string; unit: string } {
 
 export function Parameters({ estimates }: { readonly estimates: readonly Estimate[] }) {
   return (
-    <Scroll label="Fitted numbers">
+    <Scroll label="Fitted parameters">
       <table className={styles.table}>
-        <caption className="hidden-visually">Fitted numbers</caption>
-        <thead><tr><th scope="col">Number</th><th scope="col" className={styles.number}><Term align="end" definition="The fitted value and its standard error, from the fit’s own curvature.">Value</Term></th><th scope="col">Said of it</th></tr></thead>
+        <caption className="hidden-visually">Fitted parameters</caption>
+        <thead><tr><th scope="col">Parameter</th><th scope="col" className={styles.number}><Term align="end" definition="Fitted value and its standard error, from the curvature of the fit.">Value</Term></th><th scope="col">Assessment</th></tr></thead>
         <tbody>
           {estimates.map((one) => {
             const { name, unit } = parameterName(one.name);
@@ -30,7 +30,7 @@ export function Parameters({ estimates }: { readonly estimates: readonly Estimat
               <tr key={one.name}>
                 <th scope="row">{name}</th>
                 <td className={styles.number}>{formatWithin(one.value, one.sd, unit)}</td>
-                <td>{!one.informed ? <Badge tone="warn">these measurements say nothing of it</Badge> : one.at_bound ? <Badge tone="warn">at its bound</Badge> : <span className={styles.muted}>determined</span>}</td>
+                <td>{!one.informed ? <Badge tone="warn">not determined by these measurements</Badge> : one.at_bound ? <Badge tone="warn">at a bound</Badge> : <span className={styles.muted}>determined</span>}</td>
               </tr>
             );
           })}

@@ -19,12 +19,12 @@ export function RunState({ run, what, again }: Props) {
   return (
     <div className={styles.state} role="status" data-part="run-state">
       <div className={styles.words}>
-        <strong>{waiting ? `${what}: waiting for its turn` : `${what}: ${formatShare(run.share)}`}</strong>
-        <span className={styles.phase}>{run.phase === '' ? (waiting ? 'The lab does one piece of work after the other.' : 'Reading the measurements.') : run.phase}</span>
+        <strong>{waiting ? `${what}: queued` : `${what}: ${formatShare(run.share)}`}</strong>
+        <span className={styles.phase}>{run.phase === '' ? (waiting ? 'The lab runs one job at a time.' : 'Reading the measurements.') : run.phase}</span>
       </div>
       <Progress done={run.share} of={1} label={what} />
       <Button onClick={() => stopped.mutate()} disabled={stopped.isPending}>{stopped.isPending ? 'Stopping…' : 'Cancel'}</Button>
-      {stopped.isError ? <span role="alert">It could not be stopped: {stopped.error.message}</span> : null}
+      {stopped.isError ? <span role="alert">The job could not be stopped: {stopped.error.message}</span> : null}
     </div>
   );
 }

@@ -15,16 +15,16 @@ function merged(of: Partial<Record<Side, LabSignals>>): Detail | undefined {
     const signals = of[side];
     if (!signals || signals.t_s.length !== first.t_s.length) continue;
     channels[side] = signals.simulated;
-    channels[`${side}_rest`] = signals.residual;
+    channels[`${side}_residual`] = signals.residual;
   }
   return { t: first.t_s, channels, samplesPerPoint: first.samples_per_point };
 }
 
 /** The size of what is left, for the strip: where along the trial the error is. */
 function sizes(detail: Detail): Detail {
-  const rest = detail.channels.before_rest ?? detail.channels.after_rest;
-  if (!rest) return detail;
-  const size = rest.max.map((greatest, i) => Math.max(Math.abs(greatest ?? 0), Math.abs(rest.min[i] ?? 0)));
+  const residual = detail.channels.before_residual ?? detail.channels.after_residual;
+  if (!residual) return detail;
+  const size = residual.max.map((greatest, i) => Math.max(Math.abs(greatest ?? 0), Math.abs(residual.min[i] ?? 0)));
   return { ...detail, channels: { ...detail.channels, size: { min: size, max: size } } };
 }
 

@@ -10,8 +10,8 @@ import { MissingStep } from './missing-step';
 import { PublishStep } from './publish-step';
 import { RunState } from './run-state';
 import { useComparison } from './use-run';
-import { WhereStep } from './where-step';
-import { kSteps, setFacts, workAddress, type Step } from './words';
+import { ErrorRegionsStep } from './error-regions-step';
+import { kSteps, setFacts, workAddress, type Step } from './names';
 
 interface Work { readonly model: ModelVersion; readonly set: MeasurementSet; readonly versions: readonly ModelVersion[] }
 
@@ -37,10 +37,10 @@ function Compared({ model, set, versions, step }: Work & { readonly step: 'compa
   if (error) return <Notice tone="bad" title="The comparison could not be made." onRetry={retry}>{error.message}</Notice>;
   if (!run) return <><Skeleton height="120px" /><Skeleton height="480px" /></>;
   if (!run.comparisons) return <Card title="Comparing"><RunState run={run} what="The comparison" again={begin} /></Card>;
-  const drawable: Drawable = { run, ...run.comparisons, rig: model.rig, names: { before: beside ? `${model.name} (this)` : 'model', after: run.comparisons.after && beside ? (beside.name === model.name ? `${beside.name} (beside)` : beside.name) : null } };
+  const drawable: Drawable = { run, ...run.comparisons, rig: model.rig, names: { before: beside ? `${model.name} (first)` : 'model', after: run.comparisons.after && beside ? (beside.name === model.name ? `${beside.name} (second)` : beside.name) : null } };
   return step === 'compare'
     ? <CompareStep drawable={drawable} versions={versions.filter(({ id, rig }) => id !== model.id && rig === model.rig)} against={beside?.id ?? null} setAgainst={setAgainst} />
-    : <WhereStep drawable={drawable} region={region === null ? null : Number(region)} setRegion={(next) => setRegion(next === null ? null : String(next))} />;
+    : <ErrorRegionsStep drawable={drawable} region={region === null ? null : Number(region)} setRegion={(next) => setRegion(next === null ? null : String(next))} />;
 }
 
 function Content({ work, step }: { readonly work: Work; readonly step: Step }) {
@@ -66,15 +66,15 @@ export function WorkPage({ model: modelId, set: setId, step: stepName }: { reado
   const back = <p className={styles.back}><Link href="/lab">← Model lab</Link></p>;
   if (failed) return <div className={styles.page}>{back}<Notice tone="bad" title="The lab could not be loaded." onRetry={() => { void models.refetch(); void sets.refetch(); }}>{failed.message}</Notice></div>;
   if (models.isPending || sets.isPending) return <div className={styles.page}>{back}<Skeleton width="360px" height="36px" /><Skeleton height="54px" /><Skeleton height="480px" /></div>;
-  if (!model || !set || !models.data) return <div className={styles.page}>{back}<Notice tone="warn" title={`There ${model ? 'are no such measurements' : 'is no such model'}.`}>The address may be mistyped, or what it named is not on this server.</Notice></div>;
+  if (!model || !set || !models.data) return <div className={styles.page}>{back}<Notice tone="warn" title={model ? 'Measurements not found.' : 'Model not found.'}>Check the address. The data may be on another server.</Notice></div>;
   return (
     <div className={styles.page}>
       {back}
       <div>
         <h1>{model.name}</h1>
-        <p className={styles.against}>against <strong>{set.name}</strong> {set.simulated === true ? <Badge tone="warn">simulated measurements</Badge> : null} <span className={styles.muted}>{setFacts(set)}{model.note === '' ? '' : ` · model: ${model.note}`}</span></p>
+        <p className={styles.against}>compared with <strong>{set.name}</strong> {set.simulated === true ? <Badge tone="warn">simulated measurements</Badge> : null} <span className={styles.muted}>{setFacts(set)}{model.note === '' ? '' : ` · model: ${model.note}`}</span></p>
       </div>
-      <Steps label="Steps of the work" steps={kSteps.map(({ id, name: said }) => ({ href: workAddress(model.id, set.id, id), name: said, current: id === step }))} />
+      <Steps label="Steps" steps={kSteps.map(({ id, name: said }) => ({ href: workAddress(model.id, set.id, id), name: said, current: id === step }))} />
       <Content work={{ model, set, versions: models.data.models }} step={step} />
     </div>
   );

@@ -27,9 +27,9 @@ describe('the own account', () => {
       sent.push(body);
       return 'code' in body ? Promise.resolve(new Response(null, { status: 204 })) : json({ error: 'body: /code: a one-time code is asked for', code: 'code_needed' }, 403);
     });
-    await userEvent.type(screen.getByLabelText('Password now'), 'the old password');
+    await userEvent.type(screen.getByLabelText('Current password'), 'the old password');
     await userEvent.type(screen.getByLabelText('New password'), 'a longer password');
-    await userEvent.type(screen.getByLabelText('New password again'), 'a longer password{Enter}');
+    await userEvent.type(screen.getByLabelText('Repeat new password'), 'a longer password{Enter}');
     await userEvent.type(await screen.findByLabelText('One-time code'), '123456{Enter}');
     await waitFor(() => expect(screen.getByText('The password was changed.')).toBeTruthy());
     expect(sent).toEqual([

@@ -63,7 +63,7 @@ describe('signing in', () => {
     );
     const link = await screen.findByRole('link', { name: 'Sign in with the hospital' });
     expect(link.getAttribute('href')).toBe('/api/v1/session/oidc/start');
-    expect(screen.getByRole('alert').textContent).toContain('no account here is linked');
+    expect(screen.getByRole('alert').textContent).toContain('no account on this server is linked');
     window.history.replaceState(null, '', '/');
   });
 

@@ -13,7 +13,7 @@ describe('participants written one a line', () => {
   });
 
   it.each([
-    ['Dr Smith, senior', 'no pseudonym'], ['P1, 100', '0 to 80'], ['P1, a, b', 'are expected'], ['P1\nP1', 'there twice'],
+    ['Dr Smith, senior', 'not a valid pseudonym'], ['P1, 100', '0 to 80'], ['P1, a, b', 'expected pseudonym, level, years'], ['P1\nP1', 'listed twice'],
   ])('%s is told to be wrong: %s', (text, words) => {
     expect(participantsOf(text).faults[0]).toContain(words);
   });

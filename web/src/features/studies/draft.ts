@@ -37,13 +37,13 @@ const kPseudonym = /^[A-Za-z0-9_-]{1,32}$/;
 
 function participant(line: string): NewParticipant | string {
   const [name = '', ...rest] = line.split(',').map((part) => part.trim());
-  if (!kPseudonym.test(name)) return `“${name}” is no pseudonym: letters, digits, - and _ alone.`;
+  if (!kPseudonym.test(name)) return `“${name}” is not a valid pseudonym: use 1 to 32 letters, digits, - or _.`;
   const simulated = rest.some((part) => part.toLowerCase() === 'simulated');
   const others = rest.filter((part) => part !== '' && part.toLowerCase() !== 'simulated');
   const numbers = others.filter((part) => Number.isFinite(Number(part))), words = others.filter((part) => !Number.isFinite(Number(part)));
-  if (numbers.length > 1 || words.length > 1) return `“${line}”: pseudonym, level, years of experience are expected.`;
+  if (numbers.length > 1 || words.length > 1) return `“${line}”: expected pseudonym, level, years of experience.`;
   const years = numbers[0] === undefined ? undefined : Number(numbers[0]);
-  if (years !== undefined && (years < 0 || years > 80)) return `“${line}”: years of experience are 0 to 80.`;
+  if (years !== undefined && (years < 0 || years > 80)) return `“${line}”: years of experience must be 0 to 80.`;
   return {
     name, ...(words[0] === undefined ? {} : { level: words[0] }), ...(years === undefined ? {} : { experience_years: years }), ...(simulated ? { simulated } : {}),
   };
@@ -56,7 +56,7 @@ export function participantsOf(text: string): Enrolled {
   for (const line of text.split('\n').map((one) => one.trim()).filter(Boolean)) {
     const read = participant(line);
     if (typeof read === 'string') faults.push(read);
-    else if (participants.some(({ name }) => name === read.name)) faults.push(`${read.name} is there twice.`);
+    else if (participants.some(({ name }) => name === read.name)) faults.push(`${read.name} is listed twice.`);
     else participants.push(read);
   }
   return { participants, faults };
@@ -69,10 +69,10 @@ export function studyOf(draft: Draft): { study: NewStudy } | { faults: string[] 
   const repeats = Number(draft.repeats);
   const scenarios = [...draft.tuned.map((tuned) => ({ tuned })), ...draft.uploaded.map(({ scenario }) => scenario)];
   const missing = [
-    ...(draft.title.trim() === '' ? ['The study needs a title.'] : []),
-    ...(/^[a-z0-9][a-z0-9-]{0,31}$/.test(id) ? [] : ['The short name has 1 to 32 of a–z, 0–9 and -.']),
-    ...(scenarios.length > 0 && scenarios.length <= 16 ? [] : ['1 to 16 scenarios are needed.']),
-    ...(Number.isInteger(repeats) && repeats >= 1 && repeats <= 20 ? [] : ['Each scenario is repeated 1 to 20 times.']),
+    ...(draft.title.trim() === '' ? ['Enter a title.'] : []),
+    ...(/^[a-z0-9][a-z0-9-]{0,31}$/.test(id) ? [] : ['The short name must have 1 to 32 characters: a–z, 0–9 and -.']),
+    ...(scenarios.length > 0 && scenarios.length <= 16 ? [] : ['Choose 1 to 16 scenarios.']),
+    ...(Number.isInteger(repeats) && repeats >= 1 && repeats <= 20 ? [] : ['Each scenario must be repeated 1 to 20 times.']),
     ...faults,
   ];
   if (missing.length > 0) return { faults: missing };

@@ -11,12 +11,12 @@ import { Protocol, Scenarios } from './protocol-fields';
 function People({ draft, set }: { readonly draft: Draft; readonly set: (changes: Partial<Draft>) => void }) {
   const { participants, faults } = participantsOf(draft.participants);
   return (
-    <Card title="Participants" aside={<span className={styles.count} role="status">{formatCount(participants.length)} read</span>}>
+    <Card title="Participants" aside={<span className={styles.count} role="status">{formatCount(participants.length)} valid</span>}>
       <div className={styles.people}>
-        <label htmlFor="participants">One a line: pseudonym, level, years of experience</label>
+        <label htmlFor="participants">One per line: pseudonym, level, years of experience</label>
         <textarea id="participants" rows={8} spellCheck={false} value={draft.participants} placeholder={'P01, resident, 0.5\nP02, senior, 6'}
           aria-describedby="participants-hint" onChange={(event) => set({ participants: event.target.value })} />
-        <p id="participants-hint" className={styles.hint}>Pseudonyms alone; who is behind one is kept elsewhere. More can be enrolled later. Add “simulated” to a line for a simulated surgeon.</p>
+        <p id="participants-hint" className={styles.hint}>Use pseudonyms only; the names are stored elsewhere. You can enrol more participants later. Add “simulated” to a line for a simulated surgeon.</p>
         <ul className={styles.faults} aria-live="polite">{faults.map((fault) => <li key={fault}>{fault}</li>)}</ul>
       </div>
     </Card>
@@ -50,12 +50,12 @@ export function NewStudyPage() {
       <Scenarios draft={draft} set={set} />
       <Protocol draft={draft} set={set} />
       <People draft={draft} set={set} />
-      {made.isError ? <Notice tone="bad" title="The study was not made.">{made.error.message}</Notice> : null}
+      {made.isError ? <Notice tone="bad" title="The study was not created.">{made.error.message}</Notice> : null}
       <div className={styles.end}>
         <p className={styles.hint} role="status">
           {trials === null ? ('faults' in ready ? ready.faults[0] : '') : `${formatCount(trials)} trials for each participant.`}
         </p>
-        <Button look="solid" type="submit" disabled={!('study' in ready) || made.isPending}>{made.isPending ? 'Making…' : 'Make the study'}</Button>
+        <Button look="solid" type="submit" disabled={!('study' in ready) || made.isPending}>{made.isPending ? 'Creating…' : 'Create study'}</Button>
       </div>
     </form>
   );

@@ -9,14 +9,14 @@ const kMost_bytes = 1_000_000;
 
 /** A scenario file, or a sentence why it is none; the numbers in it are the server's to judge. */
 async function read(file: File): Promise<Uploaded | string> {
-  if (file.size > kMost_bytes) return `${file.name}: is too large for a scenario.`;
+  if (file.size > kMost_bytes) return `${file.name}: too large for a scenario (limit: 1 MB).`;
   try {
     const json: unknown = JSON.parse(await file.text());
     const scenario = json as Record<string, unknown>;
     if (typeof json === 'object' && json !== null && scenario.format === 'tractus-scenario/1') return { file: file.name, scenario };
-    return `${file.name}: is no tractus-scenario/1.`;
+    return `${file.name}: not a tractus-scenario/1 file.`;
   } catch {
-    return `${file.name}: is not JSON.`;
+    return `${file.name}: not valid JSON.`;
   }
 }
 
@@ -33,13 +33,13 @@ export function Scenarios({ draft, set }: Props) {
   return (
     <Card title="Scenarios">
       <fieldset className={styles.choices}>
-        <legend>The tuned ones that ship</legend>
+        <legend>Built-in scenarios</legend>
         {kTuned.map(({ id, label }) => (
           <label key={id}><input type="checkbox" checked={draft.tuned.includes(id)} onChange={(event) => chosen(id, event.target.checked)} /> {label}</label>
         ))}
       </fieldset>
       <div className={styles.upload}>
-        <label htmlFor="scenario-files">Own scenarios (JSON files of <code>tractus scenario new</code>)</label>
+        <label htmlFor="scenario-files">Custom scenarios (JSON files created with <code>tractus scenario new</code>)</label>
         <input id="scenario-files" type="file" accept=".json,application/json" multiple onChange={(event) => void upload(event)} />
         <ul className={styles.files}>
           {draft.uploaded.map(({ file, scenario }, i) => (
@@ -49,21 +49,21 @@ export function Scenarios({ draft, set }: Props) {
             </li>
           ))}
         </ul>
-        {refused.length > 0 ? <Notice tone="warn" title="Not taken:">{refused.join(' ')}</Notice> : null}
+        {refused.length > 0 ? <Notice tone="warn" title="Rejected files:">{refused.join(' ')}</Notice> : null}
       </div>
     </Card>
   );
 }
 
 const kOrders = [
-  { id: 'random', label: 'Random', text: 'Every participant gets a shuffle of all trials of their own, as published.' },
-  { id: 'balanced', label: 'Balanced', text: 'In blocks with each scenario once, by Williams squares: over participants each follows each equally often.' },
+  { id: 'random', label: 'Random', text: 'Each participant gets all trials in an individual random order, as in the published study.' },
+  { id: 'balanced', label: 'Balanced', text: 'In blocks that contain each scenario once, ordered by Williams squares: across participants, each scenario follows each other one equally often.' },
 ] as const;
 
 const kRepeats = [
   { id: 'at_end', label: 'at the end of the participant’s order' },
   { id: 'at_once', label: 'as the participant’s next trial' },
-  { id: 'never', label: 'not at all' },
+  { id: 'never', label: 'never' },
 ] as const;
 
 export function Protocol({ draft, set }: Props) {
@@ -81,7 +81,7 @@ export function Protocol({ draft, set }: Props) {
           ))}
         </fieldset>
         <div className={styles.select}>
-          <label htmlFor="on-invalid">A trial that does not count is repeated</label>
+          <label htmlFor="on-invalid">Repeat an invalid trial</label>
           <select id="on-invalid" value={draft.onInvalid} onChange={(event) => {
             const found = kRepeats.find(({ id }) => id === event.target.value);
             if (found) set({ onInvalid: found.id });

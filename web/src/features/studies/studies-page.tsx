@@ -5,7 +5,7 @@ import { Badge, Notice, Progress, Skeleton, useTitle } from '@/ui';
 import { formatCount, formatDateTime, isoDateTime } from '@/units';
 import styles from './studies-page.module.css';
 
-const kColumns = ['Study', 'State', 'Participants', 'Trials done', 'Made'] as const;
+const kColumns = ['Study', 'State', 'Participants', 'Trials done', 'Created'] as const;
 const kWaiting = 4;
 
 function Row({ study }: { readonly study: StudySummary }) {
@@ -53,11 +53,11 @@ export function StudiesPage() {
       </div>
       {query.isError ? (
         <div className={styles.error}>
-          <Notice tone="bad" title={query.data ? 'The list could not be brought up to date.' : 'The studies could not be loaded.'} onRetry={() => void query.refetch()}>{query.error.message}</Notice>
+          <Notice tone="bad" title={query.data ? 'The list could not be refreshed.' : 'The studies could not be loaded.'} onRetry={() => void query.refetch()}>{query.error.message}</Notice>
         </div>
       ) : null}
       {query.data?.studies.length === 0
-        ? <Notice title="There are no studies yet.">A study gives every participant the same scenarios in an order of their own, blind. Make the first one.</Notice>
+        ? <Notice title="No studies yet.">In a study, all participants do the same scenarios, blinded, each in an individual order. Create the first one.</Notice>
         : query.data || query.isPending ? <Table studies={query.data?.studies} /> : null}
     </>
   );

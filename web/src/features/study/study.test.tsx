@@ -6,7 +6,7 @@ import type { Participant, Slot, Study, StudyTrial } from '@/api';
 import { ReasonDialog } from '@/ui';
 import { second, utcMicroseconds } from '@/units';
 import { People } from './people';
-import { doingOf, markOf, sentenceOf } from './words';
+import { statusOf, markOf, eventSentence } from './labels';
 
 afterEach(cleanup);
 beforeAll(() => {
@@ -29,9 +29,9 @@ const study = (participants: Participant[]): Study => ({
 
 describe('what a participant is at', () => {
   it.each([
-    [person({}), 'not begun'], [person({ done: 1 }), 'to go on'], [person({ at_station: true }), 'at a station'], [person({ state: 'paused', at_station: true }), 'paused'],
-    [person({ slots: [slot(1, { state: 'recorded' })] }), 'through'], [person({ slots: [slot(1, { state: 'invalid' })] }), 'through'],
-  ] as const)('%#: %s', (who, words) => { expect(doingOf(who).text).toBe(words); });
+    [person({}), 'not started'], [person({ done: 1 }), 'in progress'], [person({ at_station: true }), 'at a station'], [person({ state: 'paused', at_station: true }), 'paused'],
+    [person({ slots: [slot(1, { state: 'recorded' })] }), 'complete'], [person({ slots: [slot(1, { state: 'invalid' })] }), 'complete'],
+  ] as const)('%#: %s', (who, words) => { expect(statusOf(who).text).toBe(words); });
 });
 
 describe('the sign of a place', () => {
@@ -44,15 +44,15 @@ describe('the sign of a place', () => {
 });
 
 it('an event reads as a sentence with its reason', () => {
-  expect(sentenceOf({ at_utc_us: utcMicroseconds(0), who: 'ada', what: 'invalid', participant: 'P01', trial_id: 't', reason: 'cable' })).toBe('ada: a trial of P01 does not count (cable)');
-  expect(sentenceOf({ at_utc_us: utcMicroseconds(0), who: 'ada', what: 'paused', participant: null, trial_id: null, reason: '' })).toBe('ada paused the study');
+  expect(eventSentence({ at_utc_us: utcMicroseconds(0), who: 'ada', what: 'invalid', participant: 'P01', trial_id: 't', reason: 'cable' })).toBe('ada marked a trial of P01 as invalid (cable)');
+  expect(eventSentence({ at_utc_us: utcMicroseconds(0), who: 'ada', what: 'paused', participant: null, trial_id: null, reason: '' })).toBe('ada paused the study');
 });
 
 describe('the participants', () => {
   it('show a cell for every place and never which scenario comes', () => {
     render(<People study={study([person({ slots: [slot(1, { state: 'recorded', trials: [trial({ correct: false })] }), slot(2)] })])} ask={vi.fn()} />);
     expect(screen.getByRole('link', { name: 'Trial 1: done, not recognised' }).getAttribute('href')).toBe('/trials/t1');
-    expect(screen.getByText('2: to be done')).toBeTruthy();
+    expect(screen.getByText('2: not started')).toBeTruthy();
   });
 
   it('open to their trials, each of which can be marked as not counting', async () => {
@@ -72,19 +72,19 @@ describe('the participants', () => {
   });
 });
 
-describe('the dialog before a deed', () => {
-  const opened = (onDeed: (reason: string) => Promise<void>, onClose = vi.fn()) => {
-    render(<ReasonDialog title="Pause" text="Really." deed="Do it" reasonNeeded onDeed={onDeed} onClose={onClose} />);
+describe('the dialog before a action', () => {
+  const opened = (onAction: (reason: string) => Promise<void>, onClose = vi.fn()) => {
+    render(<ReasonDialog title="Pause" text="Really." action="Do it" reasonNeeded onAction={onAction} onClose={onClose} />);
     return onClose;
   };
 
   it('wants a reason, hands it over and closes', async () => {
-    const onDeed = vi.fn(() => Promise.resolve());
-    const onClose = opened(onDeed);
+    const onAction = vi.fn(() => Promise.resolve());
+    const onClose = opened(onAction);
     expect(screen.getByRole<HTMLButtonElement>('button', { name: 'Do it' }).disabled).toBe(true);
     await userEvent.type(screen.getByLabelText('Reason'), ' loose cable ');
     await userEvent.click(screen.getByRole('button', { name: 'Do it' }));
-    expect(onDeed).toHaveBeenCalledWith('loose cable');
+    expect(onAction).toHaveBeenCalledWith('loose cable');
     expect(onClose).toHaveBeenCalled();
   });
 

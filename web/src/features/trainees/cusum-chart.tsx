@@ -24,7 +24,7 @@ export function CusumChart({ trainee }: { readonly trainee: Trainee }) {
       <ul className={styles.key}>
         <li><i data-key="sum" />towards competence</li>
         {watched.length > 0 ? <li><i data-key="relapse" />towards relapse</li> : null}
-        <li><i data-key="right" />right</li><li><i data-key="wrong" />wrong</li>
+        <li><i data-key="right" />correct</li><li><i data-key="wrong" />incorrect</li>
       </ul>
     </>
   );

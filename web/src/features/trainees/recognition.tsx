@@ -17,13 +17,13 @@ export function Whisker({ value, low, high }: { readonly value: number; readonly
 
 const kTone: Record<string, 'good' | 'bad' | 'neutral'> = { strength: 'good', weakness: 'bad' };
 
-/** Right answers by scenario, each with its interval. */
+/** Correct answers by scenario, each with its interval. */
 export function ByScenario({ trainee }: { readonly trainee: Trainee }) {
   return (
-    <Scroll label="Right answers by scenario">
+    <Scroll label="Correct answers by scenario">
       <table className={styles.table}>
-        <caption className="hidden-visually">Right answers by scenario</caption>
-        <thead><tr><th scope="col">Scenario</th><th scope="col" className={styles.number}>Right</th><th scope="col">Share and its 95 % interval</th><th scope="col">Said of it</th></tr></thead>
+        <caption className="hidden-visually">Correct answers by scenario</caption>
+        <thead><tr><th scope="col">Scenario</th><th scope="col" className={styles.number}>Correct</th><th scope="col">Share with 95 % interval</th><th scope="col">Assessment</th></tr></thead>
         <tbody>
           {trainee.scenarios.map((one) => (
             <tr key={one.scenario}>
@@ -39,12 +39,12 @@ export function ByScenario({ trainee }: { readonly trainee: Trainee }) {
   );
 }
 
-/** Stated confidence against what came of it. */
+/** Stated confidence against the share of correct answers. */
 export function Calibration({ bins }: { readonly bins: readonly CalibrationBin[] }) {
-  if (bins.length === 0) return <p className={styles.muted}>No confidence was stated with the answers.</p>;
-  const summary = bins.map((bin) => `said ${formatShare(bin.stated)}: ${formatCount(bin.right)} of ${formatCount(bin.trials)} right`).join('; ');
+  if (bins.length === 0) return <p className={styles.muted}>The answers contain no confidence.</p>;
+  const summary = bins.map((bin) => `stated ${formatShare(bin.stated)}: ${formatCount(bin.right)} of ${formatCount(bin.trials)} correct`).join('; ');
   return (
-    <Plane across={{ title: 'said to be sure, %', from: 40, to: 100 }} up={{ title: 'right, %', from: 0, to: 100 }} height_px={230} summary={`Calibration of confidence: ${summary}.`}>
+    <Plane across={{ title: 'stated confidence, %', from: 40, to: 100 }} up={{ title: 'correct, %', from: 0, to: 100 }} height_px={230} summary={`Calibration of confidence: ${summary}.`}>
       {(places) => <>
         <line x1={places.x(40)} y1={places.y(40)} x2={places.x(100)} y2={places.y(100)} className={styles.diagonal} />
         {bins.map((bin) => {

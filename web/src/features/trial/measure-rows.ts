@@ -29,7 +29,7 @@ export function arranged(metrics: readonly Metric[]): { table: TableRow[]; other
 export function shown(metric: Metric): string {
   const { id, value, unit } = metric;
   if (value === null) return kNone;
-  if (id === 'answer_right') return value === 1 ? 'right' : 'wrong';
+  if (id === 'answer_right') return value === 1 ? 'correct' : 'incorrect';
   if (unit === '1' && (id.endsWith('_share') || id.startsWith('wall_coverage'))) return formatShare(share(value), value > 0 && value < 0.01 ? 3 : 0);
   return formatMeasure(value, unit);
 }

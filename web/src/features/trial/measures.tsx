@@ -70,12 +70,12 @@ export function Measures({ metrics, state }: { readonly metrics: readonly Metric
           {published ? (
             <div>
               <PublishedTable rows={table} />
-              <p className={styles.foot}>Over the samples above 0.01 N and 0.001 N·m, as in the published tables. Point at a number for its definition.</p>
+              <p className={styles.foot}>Over the samples above 0.01 N and 0.001 N·m, as in the published tables. Point at a number to see its definition.</p>
             </div>
           ) : null}
-          <Others metrics={others} caption={published ? 'Further measures' : 'Point at a name for its definition.'} />
+          <Others metrics={others} caption={published ? 'Further measures' : 'Point at a name to see its definition.'} />
         </div>
-      ) : state === 'assessing' ? <Skeleton height="220px" /> : <p>There are no measures of this trial.</p>}
+      ) : state === 'assessing' ? <Skeleton height="220px" /> : <p>This trial has no measures.</p>}
     </Card>
   );
 }

@@ -7,8 +7,8 @@ const kPalpation: readonly Panel[] = [
   {
     id: 'force', title: 'Force on the probe', quantity: kForce, height_px: 170, fromZero: true,
     traces: [
-      { channel: 'force_xy_N', label: 'across', symbol: ['F', 'xy'], colour: '--series-across' },
-      { channel: 'force_z_N', label: 'along', symbol: ['F', 'z'], colour: '--series-along' },
+      { channel: 'force_xy_N', label: 'transverse', symbol: ['F', 'xy'], colour: '--series-across' },
+      { channel: 'force_z_N', label: 'axial', symbol: ['F', 'z'], colour: '--series-along' },
     ],
   },
   {
@@ -19,25 +19,25 @@ const kPalpation: readonly Panel[] = [
     ],
   },
   {
-    id: 'place', title: 'Tip in the tract', quantity: kLength, height_px: 130, fromZero: true,
+    id: 'place', title: 'Tip position in the tract', quantity: kLength, height_px: 130, fromZero: true,
     traces: [
       { channel: 'depth_m', label: 'depth', colour: '--series-third' },
       { channel: 'offset_m', label: 'offset from the axis', colour: '--series-across' },
     ],
   },
   {
-    id: 'tilt', title: 'Shank against the axis', quantity: kAngle, height_px: 90, fromZero: true,
+    id: 'tilt', title: 'Angle of the shank to the axis', quantity: kAngle, height_px: 90, fromZero: true,
     traces: [{ channel: 'angle_rad', label: 'angle', colour: '--series-along' }],
   },
 ];
 
 const kProbing: readonly Panel[] = [
   {
-    id: 'force', title: 'Push of the hand', quantity: kForce, height_px: 170, fromZero: true,
+    id: 'force', title: 'Hand force', quantity: kForce, height_px: 170, fromZero: true,
     traces: [{ channel: 'force_N', label: 'force', symbol: ['F', 'z'], colour: '--series-along' }],
   },
   {
-    id: 'depth', title: 'Depth of the tip', quantity: kLength, height_px: 130, fromZero: true,
+    id: 'depth', title: 'Tip depth', quantity: kLength, height_px: 130, fromZero: true,
     traces: [{ channel: 'depth_m', label: 'depth', colour: '--series-third' }],
   },
   {
@@ -55,11 +55,11 @@ interface SignalSet { readonly panels: readonly Panel[]; readonly channels: read
 const kSets: Record<Trial['rig'], SignalSet> = {
   palpation: {
     panels: kPalpation, channels: kChannels,
-    note: 'Forces and torques are what the bone does to the probe, in the frame of its handle: a negative axial force pushes it out of the tract.',
+    note: 'Forces and torques act from the bone on the probe, in the frame of its handle: a negative axial force pushes the probe out of the tract.',
   },
   probing: {
     panels: kProbing, channels: kProbingChannels,
-    note: 'The force is the push of the hand on the probe, the depth that of the tip from the entry; both are positive into the bone.',
+    note: 'The force acts from the hand on the probe; the depth is the distance of the tip from the entry. Both are positive into the bone.',
   },
 };
 

@@ -8,7 +8,7 @@ import { formatCount, formatDateTime, formatDateTimeLong, formatDuration, format
 import { breachMarks } from './breaches';
 import { DepthPanel } from './depth-panel';
 import { Measures } from './measures';
-import { Place } from './place';
+import { StudyPosition } from './study-position';
 import { Recording } from './recording';
 import { SignalsPanel } from './signals-panel';
 import { TractPanel } from './tract-panel';
@@ -25,7 +25,7 @@ function Header({ trial }: { readonly trial: Trial }) {
         {trial.simulated ? <Badge tone="warn">simulated</Badge> : null}
         {trial.complete ? null : <Badge tone="bad">incomplete recording</Badge>}
       </div>
-      {trial.study ? <Place place={trial.study} /> : null}
+      {trial.study ? <StudyPosition position={trial.study} /> : null}
       <div className={styles.facts}><Facts
         facts={[
           { name: 'Operator', value: trial.operator_name },
@@ -65,7 +65,7 @@ function Failed({ reason, retry }: { readonly reason: Error; readonly retry: () 
     <Frame>
       <p className={styles.back}><Link href="/trials">← Trials</Link></p>
       {missing
-        ? <Notice tone="warn" title="There is no such trial.">The address may be mistyped, or the trial is not on this server.</Notice>
+        ? <Notice tone="warn" title="Trial not found.">Check the address. The trial may be on another server.</Notice>
         : <Notice tone="bad" title="The trial could not be loaded." onRetry={retry}>{reason.message}</Notice>}
     </Frame>
   );
@@ -107,8 +107,8 @@ export function TrialPage({ id }: { readonly id: string }) {
   return (
     <Frame>
       <Header trial={trial} />
-      {trial.state === 'assessing' ? <Notice title="This trial is being assessed.">Measures, walls and the verdict appear here when that is done.</Notice> : null}
-      {trial.state === 'failed' ? <Notice tone="warn" title="The assessment of this trial failed.">{trial.failure ?? 'Its measures could not be made.'} What was recorded is shown below.</Notice> : null}
+      {trial.state === 'assessing' ? <Notice title="This trial is being assessed.">Measures, walls and the verdict appear here after the assessment.</Notice> : null}
+      {trial.state === 'failed' ? <Notice tone="warn" title="The assessment of this trial failed.">{trial.failure ?? 'The measures could not be computed.'} The recording is shown below.</Notice> : null}
       <div className={styles.pair}>
         <Verdict trial={trial} />
         <Recording trial={trial} />

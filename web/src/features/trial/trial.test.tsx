@@ -17,12 +17,12 @@ const metric = (id: string, value: number | null, unit = 'N', note = ''): Metric
 
 describe('the judgement', () => {
   it.each([
-    ['both name the wall', answer({}), { breached: 'medial' }, 'right', 'Right'],
-    ['both say intact', answer({ breach: false, wall: null }), { breached: null }, 'right', 'Right'],
-    ['another wall was named', answer({ wall: 'lateral' }), { breached: 'medial' }, 'wrong', 'in another wall'],
-    ['no wall was named', answer({ wall: null }), { breached: 'medial' }, 'wrong', 'no wall was named'],
-    ['the breach was missed', answer({ breach: false, wall: null }), { breached: 'inferior' }, 'wrong', 'missed'],
-    ['there is no breach', answer({}), { breached: null }, 'wrong', 'where there is none'],
+    ['both name the wall', answer({}), { breached: 'medial' }, 'correct', 'Correct'],
+    ['both say intact', answer({ breach: false, wall: null }), { breached: null }, 'correct', 'Correct'],
+    ['another wall was named', answer({ wall: 'lateral' }), { breached: 'medial' }, 'incorrect', 'in another wall'],
+    ['no wall was named', answer({ wall: null }), { breached: 'medial' }, 'incorrect', 'no wall was named'],
+    ['the breach was missed', answer({ breach: false, wall: null }), { breached: 'inferior' }, 'incorrect', 'missed'],
+    ['there is no breach', answer({}), { breached: null }, 'incorrect', 'where there is none'],
   ] as const)('when %s', (_, said, truth, outcome, words) => {
     const judged = judge(said, truth);
     expect(judged.outcome).toBe(outcome);
@@ -41,8 +41,8 @@ describe('the channel that a burr made', () => {
   ];
   it.each([
     [0.0021, 'through the medial wall', 'out', 'Left the bone, through the medial wall, by 2.1 mm'],
-    [-0.0014, 'nearest to the inferior wall', 'within', 'Within the bone, 1.4 mm left, nearest to the inferior wall'],
-    [null, 'the channel came to no place with a known wall', 'unknown', 'Not told: the channel came to no place with a known wall'],
+    [-0.0014, 'nearest to the inferior wall', 'within', 'Within the bone: 1.4 mm of bone remains, nearest to the inferior wall'],
+    [null, 'the channel came to no place with a known wall', 'unknown', 'Not assessed: the channel came to no place with a known wall'],
   ] as const)('reaching %s m beyond the bone', (beyond, note, outcome, words) => {
     const channel = channelOf(drilled(beyond, note));
     expect(channel?.outcome).toBe(outcome);
@@ -62,20 +62,20 @@ const scenario = (walls: number[]): Scenario => ({
 
 describe('the judgement of a probing trial', () => {
   it.each([
-    ['both say breach', answer({ wall: null, depth_m: metre(0.0212) }), scenario([0.02]), 'right', 'Right'],
-    ['both say none', answer({ breach: false, wall: null }), scenario([]), 'right', 'Right'],
-    ['it was missed', answer({ breach: false, wall: null }), scenario([0.02]), 'wrong', 'missed'],
-    ['there is none', answer({ wall: null }), scenario([]), 'wrong', 'where there is none'],
+    ['both say breach', answer({ wall: null, depth_m: metre(0.0212) }), scenario([0.02]), 'correct', 'Correct'],
+    ['both say none', answer({ breach: false, wall: null }), scenario([]), 'correct', 'Correct'],
+    ['it was missed', answer({ breach: false, wall: null }), scenario([0.02]), 'incorrect', 'missed'],
+    ['there is none', answer({ wall: null }), scenario([]), 'incorrect', 'where there is none'],
   ] as const)('when %s', (_, said, truth, outcome, words) => {
     const judged = judgeProbing(said, truth);
     expect(judged.outcome).toBe(outcome);
     expect(judged.headline).toContain(words);
   });
 
-  it('tells where it was felt and where the wall is', () => {
-    const { said, truth } = judgeProbing(answer({ wall: null, depth_m: metre(0.0212) }), scenario([0.02]));
-    expect(said.replaceAll('\u202f', ' ')).toContain('A breach at 21.2 mm.');
-    expect(truth.replaceAll('\u202f', ' ')).toContain('gives way at 20.0 mm');
+  it('gives the reported depth and the depth of the wall', () => {
+    const { given, truth } = judgeProbing(answer({ wall: null, depth_m: metre(0.0212) }), scenario([0.02]));
+    expect(given.replaceAll('\u202f', ' ')).toContain('A breach at 21.2 mm.');
+    expect(truth.replaceAll('\u202f', ' ')).toContain('breach at 20.0 mm');
   });
 });
 
@@ -114,13 +114,13 @@ describe('the measures', () => {
   it('that are shares read in per cent, a judgement as a word, a missing one as a dash', () => {
     expect(shown(metric('contact_share', 0.44, '1')).replace('\u202f', ' ')).toBe('44 %');
     expect(shown(metric('wall_coverage_medial', 0.4667, '1')).replace('\u202f', ' ')).toBe('47 %');
-    expect(shown(metric('answer_right', 0, '1'))).toBe('wrong');
+    expect(shown(metric('answer_right', 0, '1'))).toBe('incorrect');
     expect(shown(metric('answer_right', null, '1'))).toBe('–');
     expect(shown(metric('late_ticks', 3, '1'))).toBe('3');
   });
 
   it('are said to be missing where there are none', () => {
     render(<Measures metrics={[]} state="failed" />);
-    expect(screen.getByText('There are no measures of this trial.')).toBeTruthy();
+    expect(screen.getByText('This trial has no measures.')).toBeTruthy();
   });
 });

@@ -25,7 +25,7 @@ export function WallsPanel({ trial, cursor }: { readonly trial: Trial; readonly 
     <Card title="Walls touched">
       {tract && bins && bins.depthBins > 0 && bins.angleBins > 0
         ? <WallMap bins={bins} length_m={tract.length_m} breached={sideBreached(trial)} depthAt={depthAt} cursor={cursor} />
-        : <p>{trial.state === 'assessing' ? 'Being assessed.' : 'Not known for this trial.'}</p>}
+        : <p>{trial.state === 'assessing' ? 'Being assessed.' : 'Not available for this trial.'}</p>}
       {trial.truth?.breached === 'anterior' ? <p>The breach is at the anterior end, beyond the side walls.</p> : null}
     </Card>
   );

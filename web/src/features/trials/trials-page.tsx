@@ -20,13 +20,13 @@ export function TrialsPage() {
       </div>
       {query.isError && (trials === undefined || !query.isFetching) ? (
         <div className={styles.error}>
-          <Notice tone="bad" title={trials ? 'The list could not be brought up to date.' : 'The trials could not be loaded.'} onRetry={() => void query.refetch()}>
+          <Notice tone="bad" title={trials ? 'The list could not be refreshed.' : 'The trials could not be loaded.'} onRetry={() => void query.refetch()}>
             {query.error.message}
           </Notice>
         </div>
       ) : null}
       {trials?.length === 0 ? (
-        <Notice title="There are no trials yet.">A trial appears here as soon as a station has handed it over whole.</Notice>
+        <Notice title="No trials yet.">A trial appears here after a station has uploaded it completely.</Notice>
       ) : trials !== undefined || query.isPending ? <TrialsTable trials={trials} /> : null}
       {query.hasNextPage ? (
         <div className={styles.more}>

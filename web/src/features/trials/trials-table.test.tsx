@@ -27,8 +27,8 @@ describe('the table of trials', () => {
   });
 
   it.each([
-    [{ correct: true }, '✓ right', 'assessed'],
-    [{ correct: false }, '✗ wrong', 'assessed'],
+    [{ correct: true }, '✓ correct', 'assessed'],
+    [{ correct: false }, '✗ incorrect', 'assessed'],
     [{ correct: null }, 'none', 'assessed'],
     [{ correct: null, state: 'assessing' }, '–', 'assessing…'],
     [{ correct: null, state: 'failed' }, '–', 'failed'],

@@ -8,8 +8,8 @@ const kWaiting = 8;
 const kColumns = ['Started', 'Case', 'Operator', 'Station', 'Duration', 'Answer', 'State'] as const;
 
 function AnswerCell({ trial }: { readonly trial: TrialSummary }) {
-  if (trial.correct === true) return <Badge tone="good">✓ right</Badge>;
-  if (trial.correct === false) return <Badge tone="bad">✗ wrong</Badge>;
+  if (trial.correct === true) return <Badge tone="good">✓ correct</Badge>;
+  if (trial.correct === false) return <Badge tone="bad">✗ incorrect</Badge>;
   return <span className={styles.none}>{trial.state === 'assessed' ? 'none' : '–'}</span>;
 }
 

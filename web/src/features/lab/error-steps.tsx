@@ -1,16 +1,16 @@
 import { curve, Plane } from '@/charts';
 import { Scroll, Term } from '@/ui';
 import { formatFigure } from '@/units';
-import styles from './falls.module.css';
+import styles from './error-steps.module.css';
 
-export interface Fall { readonly name: string; readonly rmse: number | null; readonly held_out_rmse: number | null }
+export interface ErrorStep { readonly name: string; readonly rmse: number | null; readonly held_out_rmse: number | null }
 
-interface Props { readonly steps: readonly Fall[]; readonly noise_floor: number | null; readonly unit: string }
+interface Props { readonly steps: readonly ErrorStep[]; readonly noise_floor: number | null; readonly unit: string }
 
-export const kHeldOutMeaning = 'The error on trials that the fit did not see: what the model is worth on the next recording.';
+export const kHeldOutMeaning = 'The error on trials that the fit did not use: an estimate of the error on the next recording.';
 
-/** The error falling step by step, on the trials that were fitted and on those held out, down to the noise floor. */
-export function Falls({ steps, noise_floor, unit }: Props) {
+/** Error after each step, on fitted and on held-out trials, with the noise floor. */
+export function ErrorSteps({ steps, noise_floor, unit }: Props) {
   const all = steps.flatMap(({ rmse, held_out_rmse }) => [rmse, held_out_rmse]).filter((value): value is number => value !== null);
   const positive = [...all, ...(noise_floor === null ? [] : [noise_floor])].filter((value) => value > 0);
   const most = Math.max(...positive, 1e-12), least = Math.min(...positive, most);
@@ -18,7 +18,7 @@ export function Falls({ steps, noise_floor, unit }: Props) {
   const summary = `Error step by step: ${steps.map((step) => `${step.name} ${formatFigure(step.rmse, unit)}, held out ${formatFigure(step.held_out_rmse, unit)}`).join('; ')}. Noise floor ${formatFigure(noise_floor, unit)}.`;
   const line = (of: 'rmse' | 'held_out_rmse') => steps.map((step, i) => [i, step[of] ?? Number.NaN] as const);
   return (
-    <div className={styles.falls} data-part="falls">
+    <div className={styles.falls} data-part="error-steps">
       <Plane
         across={{ title: '', from: -0.5, to: Math.max(steps.length, 2) - 0.5, ticks: steps.map(({ name }, at) => ({ at, text: name })) }}
         up={{ title: `error, ${unit}${log ? ' (logarithmic)' : ''}`, from: log ? least / 1.8 : 0, to: log ? most * 1.4 : most * 1.12, log }}
@@ -37,7 +37,7 @@ export function Falls({ steps, noise_floor, unit }: Props) {
       <Scroll label="Error by step">
         <table className={styles.table}>
           <caption className="hidden-visually">Error by step</caption>
-          <thead><tr><th scope="col">Model</th><th scope="col"><i data-series="fit" />Fitted trials</th><th scope="col"><i data-series="held" /><Term align="end" definition={kHeldOutMeaning}>Held out</Term></th></tr></thead>
+          <thead><tr><th scope="col">Model</th><th scope="col"><i data-series="fit" />Fitted trials</th><th scope="col"><i data-series="held" /><Term align="end" definition={kHeldOutMeaning}>Held-out trials</Term></th></tr></thead>
           <tbody>{steps.map((step, i) => <tr key={i}><th scope="row">{step.name}</th><td>{formatFigure(step.rmse, unit)}</td><td data-part="held-out">{formatFigure(step.held_out_rmse, unit)}</td></tr>)}</tbody>
         </table>
       </Scroll>

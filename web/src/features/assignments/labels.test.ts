@@ -1,7 +1,7 @@
 import { describe, expect, it } from 'vitest';
 import { utcMicroseconds } from '@/units';
 import { fromField, toField } from './dates';
-import { drilling, pressing } from './words';
+import { drillingLabel, dueState } from './labels';
 
 const now = Date.UTC(2026, 2, 10, 12) * 1000;
 const day_us = 24 * 3600 * 1e6;
@@ -9,14 +9,14 @@ const due = (days: number | null, done = 0) => ({ due_utc_us: days === null ? nu
 
 describe('what is due', () => {
   it('is late once its date has passed, and no longer when all is done', () => {
-    expect(pressing(due(-1), now)).toBe('late');
-    expect(pressing(due(-1, 4), now)).toBe('none');
+    expect(dueState(due(-1), now)).toBe('late');
+    expect(dueState(due(-1, 4), now)).toBe('none');
   });
   it('is soon within three days', () => {
-    expect(pressing(due(2), now)).toBe('soon');
-    expect(pressing(due(4), now)).toBe('later');
+    expect(dueState(due(2), now)).toBe('soon');
+    expect(dueState(due(4), now)).toBe('later');
   });
-  it('is nothing without a date', () => { expect(pressing(due(null), now)).toBe('none'); });
+  it('is nothing without a date', () => { expect(dueState(due(null), now)).toBe('none'); });
   it('is read from the field to the minute that was written into it', () => {
     const at = Date.UTC(2026, 6, 1, 8, 30) * 1000;
     expect(fromField(toField(at))).toBe(at);
@@ -27,8 +27,8 @@ describe('what is due', () => {
 
 describe('what is drilled', () => {
   it('is said of all, of some, and not at all of none', () => {
-    expect(drilling({ to_drill: 2, planned: 2 })).toBe('to be drilled, then felt');
-    expect(drilling({ to_drill: 1, planned: 4 })).toBe('1 of 4 to be drilled, then felt');
-    expect(drilling({ to_drill: 0, planned: 4 })).toBe('');
+    expect(drillingLabel({ to_drill: 2, planned: 2 })).toBe('drill, then palpate');
+    expect(drillingLabel({ to_drill: 1, planned: 4 })).toBe('1 of 4: drill, then palpate');
+    expect(drillingLabel({ to_drill: 0, planned: 4 })).toBe('');
   });
 });

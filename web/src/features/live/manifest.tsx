@@ -1,15 +1,15 @@
-/** The page on which all stations are watched live. */
+/** The live view of all stations. */
 import { lazy } from 'react';
 import type { Feature } from '@/ui';
 
 const index = () => import('./index');
-const WallPage = lazy(() => index().then(({ WallPage: page }) => ({ default: page })));
+const LivePage = lazy(() => index().then(({ LivePage: page }) => ({ default: page })));
 
 export const feature: Feature = {
   menu: [
     { to: '/wall', name: 'Live', roles: ['admin', 'director', 'faculty', 'technician'], order: 110 },
   ],
   pages: [
-    { path: '/wall', show: () => <WallPage /> },
+    { path: '/wall', show: () => <LivePage /> },
   ],
 };

@@ -1,4 +1,4 @@
-/** What a participant, a place and an event read as. */
+/** Labels of participants, trials and events of a study. */
 import type { Participant, Slot, StudyEvent, StudyTrial } from '@/api';
 import { formatCount, formatYears } from '@/units';
 
@@ -6,13 +6,13 @@ export function levelOf({ level, experience_years }: Participant): string {
   return [level, experience_years === null ? '' : formatYears(experience_years)].filter(Boolean).join(', ');
 }
 
-/** What a participant is at, and who brings it. */
-export function doingOf(participant: Participant): { text: string; tone: 'good' | 'warn' | 'accent' | 'neutral' } {
+/** Status of a participant in the study. */
+export function statusOf(participant: Participant): { text: string; tone: 'good' | 'warn' | 'accent' | 'neutral' } {
   const left = participant.slots.some(({ state }) => state === 'waiting' || state === 'taken');
-  if (!left) return { text: 'through', tone: 'good' };
+  if (!left) return { text: 'complete', tone: 'good' };
   if (participant.state === 'paused') return { text: 'paused', tone: 'warn' };
   if (participant.at_station) return { text: 'at a station', tone: 'accent' };
-  return { text: participant.done === 0 ? 'not begun' : 'to go on', tone: 'neutral' };
+  return { text: participant.done === 0 ? 'not started' : 'in progress', tone: 'neutral' };
 }
 
 /** The trial of a place that matters: the one that counts, or else the last. */
@@ -29,27 +29,27 @@ export function markOf(slot: Slot): Mark {
 }
 
 export const kMarkSign: Record<Mark, string> = { waiting: '', taken: '·', right: '✓', wrong: '✗', recorded: '●', invalid: '⊘' };
-export const kMarkWord: Record<Mark, string> = {
-  waiting: 'to be done', taken: 'at a station', right: 'done, recognised', wrong: 'done, not recognised', recorded: 'done, not judged', invalid: 'does not count',
+export const kMarkLabel: Record<Mark, string> = {
+  waiting: 'not started', taken: 'at a station', right: 'done, recognised', wrong: 'done, not recognised', recorded: 'done, not assessed', invalid: 'invalid',
 };
 
 const kSentences: Record<string, (who: string, whom: string) => string> = {
-  made: (who) => `${who} made the study`,
+  made: (who) => `${who} created the study`,
   enrolled: (who, whom) => `${who} enrolled ${whom}`,
-  taken: (who, whom) => `${who} took the next trial of ${whom}`,
-  recorded: (who, whom) => `${who} brought a trial of ${whom}`,
-  invalid: (who, whom) => `${who}: a trial of ${whom} does not count`,
-  repeated: (who, whom) => `${who}: its place is repeated for ${whom}`,
-  surplus: (who, whom) => `${who} brought a second trial of ${whom} for the same place`,
-  released: (who, whom) => `${who} released a trial of ${whom}`,
+  taken: (who, whom) => `${who} reserved the next trial of ${whom}`,
+  recorded: (who, whom) => `${who} uploaded a trial of ${whom}`,
+  invalid: (who, whom) => `${who} marked a trial of ${whom} as invalid`,
+  repeated: (who, whom) => `${who} added a repeat for ${whom}`,
+  surplus: (who, whom) => `${who} uploaded a surplus trial of ${whom}`,
+  released: (who, whom) => `${who} released the reservation for ${whom}`,
   paused: (who, whom) => `${who} paused ${whom}`,
-  running: (who, whom) => `${who} went on with ${whom}`,
+  running: (who, whom) => `${who} resumed ${whom}`,
 };
 
-/** "station-1 brought a trial of P03" */
-export function sentenceOf({ who, what, participant, reason }: StudyEvent): string {
-  const said = kSentences[what]?.(who, participant ?? 'the study') ?? `${who}: ${what}`;
-  return reason === '' ? said : `${said} (${reason})`;
+/** "station-1 uploaded a trial of P03" */
+export function eventSentence({ who, what, participant, reason }: StudyEvent): string {
+  const sentence = kSentences[what]?.(who, participant ?? 'the study') ?? `${who}: ${what}`;
+  return reason === '' ? sentence : `${sentence} (${reason})`;
 }
 
 export const progressOf = ({ done, planned }: { readonly done: number; readonly planned: number }) => `${formatCount(done)} of ${formatCount(planned)}`;
