@@ -20,7 +20,7 @@ export function AnalysisPage() {
   return (
     <div className={styles.page}>
       <div className={styles.head}>
-        <div><h1>Analysis</h1><p className={styles.lead}>Analyse trial data: run a plan that was locked before data were seen, or run a single method now. Every result can be recomputed.</p></div>
+        <div><h1>Analysis</h1><p className={styles.lead}>Analyse trial data: run a plan that was locked before the data were seen, or run a single method now. Every result can be recomputed.</p></div>
         <span className={styles.buttons}><Link href="/analysis/example">Published tables, recomputed</Link><Link href={`/analysis/plans/new${study === '' ? '' : `?study=${encodeURIComponent(study)}`}`} className={styles.solidLink}>New plan</Link></span>
       </div>
       <Card title="Trial data" aside={<span className={styles.buttons}><Select label={<span className="hidden-visually">Study</span>} value={study} onChange={(event) => setStudy(event.target.value)} options={[{ value: '', text: 'All scored trials' }, ...studies.map(({ id, title }) => ({ value: id, text: title }))]} /><a href={cohortTableAddress(study)} download="cohort.csv">Download CSV</a></span>}>

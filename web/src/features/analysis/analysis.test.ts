@@ -1,5 +1,6 @@
 import { describe, expect, it } from 'vitest';
-import { cellsOf, tableOf } from '@/api';
+import { cellsOf, tableOf, type MetricFacts } from '@/api';
+import { columnName, defaultPredictor, endpointsOf } from './columns';
 import { kMethods } from './methods';
 import { kBlankPlan, planOf } from './plan-draft';
 import { cell } from './report-view';
@@ -13,6 +14,25 @@ describe('the cohort’s table', () => {
     const { columns, rows } = tableOf('trial,level,time\na,novice,1.5\nb,senior,\n');
     expect(rows).toHaveLength(2);
     expect(columns.map(({ name, numbers }) => [name, numbers])).toEqual([['trial', false], ['level', false], ['time', true]]);
+  });
+});
+
+describe('the columns', () => {
+  const metric = (id: string, label: string): MetricFacts => ({ id, label, unit: 's', definition: '', source: '' });
+  const table = tableOf('trial,level,number,correct,answer_right,operation_time\na,novice,1,1,1,20\nb,,2,0,0,30\nc,senior,3,1,1,40\n');
+
+  it('have the id in the name where two metrics share a label', () => {
+    const metrics = [metric('operation_time', 'Operation time'), metric('probing_time', 'Operation time'), metric('path', 'Path')];
+    expect(['operation_time', 'probing_time', 'path'].map((name) => columnName(name, metrics))).toEqual(['Operation time (operation_time)', 'Operation time (probing_time)', 'Path']);
+  });
+
+  it('list the correctness of the answer once among the endpoints', () => {
+    expect(endpointsOf(table).map(({ name }) => name)).toEqual(['correct', 'operation_time']);
+  });
+
+  it('begin with the predictor that most rows have', () => {
+    expect(defaultPredictor(table, 'operation_time')).toBe('number');
+    expect(defaultPredictor(tableOf('trial,operation_time\na,20\n'), 'operation_time')).toBe('1');
   });
 });
 

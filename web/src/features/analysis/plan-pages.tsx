@@ -6,7 +6,8 @@ import { AskDialog, Badge, Button, Card, Field, Notice, Select, Skeleton, Table,
 import { formatCount, formatDateTime, formatShare } from '@/units';
 import styles from './analysis.module.css';
 import { kBlankPlan, kCorrections, planOf, type PlanDraft } from './plan-draft';
-import { columnName, QuestionForm } from './question-form';
+import { columnName, endpointsOf } from './columns';
+import { QuestionForm } from './question-form';
 
 const kLockMeaning = 'Locking stores a hash of the whole plan with your name and the time. A locked plan can be run any number of times, but it can never be changed.';
 
@@ -21,7 +22,7 @@ export function NewPlanPage() {
   const [seen, setSeen] = useState(false);
   const set = (changes: Partial<PlanDraft>) => setDraft((before) => ({ ...before, ...changes }));
   const ready = planOf(draft);
-  const endpoints = (table.data?.columns ?? []).filter(({ name, numbers }) => numbers && name !== 'simulated');
+  const endpoints = table.data ? endpointsOf(table.data) : [];
   const rows = table.data?.rows.length ?? 0;
   return (
     <div className={styles.page}>

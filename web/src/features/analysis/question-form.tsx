@@ -2,6 +2,7 @@ import { useState } from 'react';
 import type { CohortTable, MetricFacts } from '@/api';
 import { Button, Field, Select } from '@/ui';
 import styles from './analysis.module.css';
+import { columnName, defaultPredictor, endpointsOf, predictorsOf } from './columns';
 import { kMethods, type Method } from './methods';
 import type { Question } from './plan-draft';
 
@@ -15,18 +16,15 @@ interface Props {
   readonly onAsk: (question: Question) => void;
 }
 
-const kFacts: Record<string, string | undefined> = { correct: 'Correct answer', experience_years: 'Years of experience', level: 'Level of training', number: 'Trial number', case: 'Scenario or case', participant: 'Participant', study: 'Study', rig: 'Rig' };
-export const columnName = (name: string, metrics: readonly MetricFacts[]) => kFacts[name] ?? metrics.find(({ id }) => id === name)?.label ?? name.replaceAll('_', ' ');
-
 const kFirst: Method = { id: 'describe', name: '', description: '', formula: (endpoint) => `${endpoint} ~ 1`, people: false };
 
 /** An analysis: endpoint, predictor and method. */
 export function QuestionForm({ table, metrics, action, busy, planned = false, onAsk }: Props) {
-  const endpoints = table.columns.filter(({ name, numbers }) => numbers && !['number', 'experience_years', 'simulated'].includes(name));
-  const causes = table.columns.filter(({ name, levels }) => ['experience_years', 'level', 'number', 'case', 'rig'].includes(name) && levels.length > 1);
+  const endpoints = endpointsOf(table);
+  const predictors = predictorsOf(table);
   const [methodId, setMethod] = useState('lmm');
   const [endpoint, setEndpoint] = useState(endpoints.find(({ name }) => name === 'operation_time')?.name ?? endpoints[0]?.name ?? '');
-  const [by, setBy] = useState(causes[0]?.name ?? '1');
+  const [by, setBy] = useState(() => defaultPredictor(table, endpoint));
   const [own, setOwn] = useState<string | null>(null);
   const [primary, setPrimary] = useState(true);
   const method = kMethods.find(({ id }) => id === methodId) ?? kFirst;
@@ -37,7 +35,7 @@ export function QuestionForm({ table, metrics, action, busy, planned = false, on
     <div className={styles.stack}>
       <div className={styles.fields}>
         <Select label="Endpoint" value={endpoint} onChange={(event) => change(setEndpoint)(event.target.value)} options={endpoints.map(({ name }) => ({ value: name, text: columnName(name, metrics) }))} />
-        <Select label="Predictor" value={by} onChange={(event) => change(setBy)(event.target.value)} options={causes.length === 0 ? [{ value: '1', text: 'no predictor available' }] : causes.map(({ name }) => ({ value: name, text: columnName(name, metrics) }))} />
+        <Select label="Predictor" value={by} onChange={(event) => change(setBy)(event.target.value)} options={predictors.length === 0 ? [{ value: '1', text: 'no predictor available' }] : predictors.map(({ name }) => ({ value: name, text: columnName(name, metrics) }))} />
         <Select label="Method" value={methodId} onChange={(event) => change(setMethod)(event.target.value)} options={kMethods.map(({ id, name }) => ({ value: id, text: name }))} />
       </div>
       <p className={styles.muted}>{method.description}</p>
