@@ -39,12 +39,20 @@ export function valueAt(file: Json, pointer: string): unknown {
 export const shown = (si: number, { times }: Pick<Knob, 'times'>) => String(Math.round(si * times * 1e6) / 1e6);
 export const fromShown = (text: string, { times }: Pick<Knob, 'times'>) => Math.round((Number(text) / times) * 1e12) / 1e12;
 
-/** The server's words on a number out of its range, in the unit that the field shows; other words as they are. */
-export function inUnitsOf(words: string, knob: Pick<Knob, 'times' | 'unit'>): string {
-  const [, value, low, high] = /^(\S+) is outside (\S+) … (\S+)$/.exec(words) ?? [];
-  if (value === undefined || low === undefined || high === undefined || ![value, low, high].every((text) => Number.isFinite(Number(text)))) return words;
-  const [a, b, c] = [value, low, high].map((text) => shown(Number(text), knob));
-  return `${a} is outside ${b} … ${c}${knob.unit === '' ? '' : ` ${knob.unit}`}`;
+const kMetres = /(-?\d[\d.e+-]*) m(?![\w/²])/g;
+
+/** Lengths in a message of the server, which are in metres, in millimetres. */
+export const inMillimetres = (message: string) => message.replace(kMetres, (_, metres: string) => `${shown(Number(metres), { times: 1e3 })} mm`);
+
+/** The server's message about a number, in the unit of its field: the value leads the message, or stands in "value is outside low … high". */
+export function inUnitsOf(message: string, knob: Pick<Knob, 'times' | 'unit'>): string {
+  const unit = knob.unit === '' ? '' : ` ${knob.unit}`;
+  const [, value, low, high] = /^(\S+) is outside (\S+) … (\S+)$/.exec(message) ?? [];
+  if (value !== undefined && low !== undefined && high !== undefined && [value, low, high].every((text) => Number.isFinite(Number(text)))) {
+    const [a, b, c] = [value, low, high].map((text) => shown(Number(text), knob));
+    return `${a} is outside ${b} … ${c}${unit}`;
+  }
+  return inMillimetres(message.replace(/^-?\d[\d.e+-]*(?= (?!m\b))/, (text) => `${shown(Number(text), knob)}${unit}`));
 }
 
 /** What the server is given: who, when and of which version is its to say. */

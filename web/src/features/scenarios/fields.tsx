@@ -1,7 +1,7 @@
 import { useId, useState } from 'react';
 import type { ScenarioCheck, ScenarioFile } from '@/api';
 import { Button } from '@/ui';
-import { fromShown, inUnitsOf, shown, valueAt, withLayer, withValue, withWall, type Knob } from './draft';
+import { fromShown, inMillimetres, inUnitsOf, shown, valueAt, withLayer, withValue, withWall, type Knob } from './draft';
 import styles from './scenarios.module.css';
 
 interface Props { readonly file: ScenarioFile; readonly check: ScenarioCheck | undefined; readonly onFile: (file: ScenarioFile) => void }
@@ -44,7 +44,7 @@ export function Walls(props: Props) {
           <Button look="quiet" label={`Remove wall ${i + 1}`} onClick={() => onFile({ ...file, walls_m: file.walls_m.filter((__, k) => k !== i) })}>Remove</Button>
         </div>
       ))}
-      {all === '' ? null : <p className={styles.wrong}>{all}</p>}
+      {all === '' ? null : <p className={styles.wrong}>{inMillimetres(all)}</p>}
       {file.walls_m.length === 0 ? <p className={styles.means}>No walls: there is no breach.</p> : null}
       <div><Button onClick={() => onFile(withWall(file))} disabled={file.walls_m.length >= 8}>Add wall</Button></div>
     </div>
@@ -66,7 +66,7 @@ export function Layers(props: Props) {
           <Button look="quiet" label={`Remove region ${i + 1}`} onClick={() => onFile({ ...file, layers: file.layers.filter((__, k) => k !== i) })}>Remove</Button>
         </div>
       ))}
-      {all === '' ? null : <p className={styles.wrong}>{all}</p>}
+      {all === '' ? null : <p className={styles.wrong}>{inMillimetres(all)}</p>}
       {file.layers.length === 0 ? <p className={styles.means}>The density is the same everywhere.</p> : null}
       <div><Button onClick={() => onFile(withLayer(file))} disabled={file.layers.length >= 12 || withLayer(file) === file}>Add region</Button></div>
     </div>

@@ -13,7 +13,7 @@ export function Resistance({ found, late }: { readonly found: NonNullable<Scenar
   const top = Math.max(peak, kSurgeon_N) * 1.08;
   return (
     <div className={styles.resistance} data-part="resistance" data-late={late || undefined}>
-      <Plane across={{ title: 'depth of the tip, mm', from: 0, to: end }} up={{ title: 'required force, N', from: 0, to: top }} height_px={340}
+      <Plane across={{ title: 'tip depth, mm', from: 0, to: end }} up={{ title: 'required force, N', from: 0, to: top }} height_px={340}
         summary={`Required force over depth at ${found.at.length} speeds, up to ${formatForce(newton(peak))}; ${found.walls.length === 0 ? 'no wall' : `walls at ${found.walls.map(({ at_m }) => `${Math.round(at_m * 1e4) / 10} mm`).join(', ')}`}.`}>
         {(places) => (
           <g>

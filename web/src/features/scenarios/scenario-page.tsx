@@ -3,7 +3,7 @@ import { useReducer, type FormEvent } from 'react';
 import { Link, useLocation } from 'wouter';
 import { addScenario, ApiError, kKinds, scenarioCheckQuery, scenarioFileQuery, scenariosQuery, type ScenarioFile } from '@/api';
 import { Button, Card, Field, Notice, Select, Skeleton, useTitle } from '@/ui';
-import { draftOf, kBone, kBreach } from './draft';
+import { draftOf, inMillimetres, kBone, kBreach } from './draft';
 import { Knobs, Layers, Walls } from './fields';
 import { Resistance } from './resistance';
 import styles from './scenarios.module.css';
@@ -55,8 +55,8 @@ function Bench({ start, parent }: { readonly start: ScenarioFile; readonly paren
             {check.isError ? <Notice tone="bad" title="The scenario could not be checked." onRetry={() => void check.refetch()}>{check.error.message}</Notice> : null}
             {found?.curve ? <Resistance found={found.curve} late={late} /> : <div className={styles.blank}>{found ? <p>Correct the marked value to see the curve.</p> : <Skeleton height="340px" />}</div>}
             <div className={styles.says} role="status">
-              {found?.excessive.map((sentence) => <p key={sentence} className={styles.warn}>{sentence}</p>)}
-              {unplaced === '' ? null : <p className={styles.wrong}>{unplaced}</p>}
+              {found?.excessive.map((sentence) => <p key={sentence} className={styles.warn}>{inMillimetres(sentence)}</p>)}
+              {unplaced === '' ? null : <p className={styles.wrong}>{inMillimetres(unplaced)}</p>}
               {found?.ok && found.excessive.length === 0 ? <p className={styles.means}>Forces are within the limits of surgeon and actuator.</p> : null}
             </div>
           </div>
