@@ -4,14 +4,14 @@ import { Link } from 'wouter';
 import { effectsQuery, labRunQuery, labRunsQuery, startFit, type Effect, type EffectList, type Fit, type LabRun, type LabRunSummary, type OwnEffect, type Rig } from '@/api';
 import { Badge, Button, Card, Notice, Select, Skeleton, Term } from '@/ui';
 import { formatClock, formatFigure } from '@/units';
-import { Headline, primaryOf } from './comparison-parts';
+import { Headline, primaryUnit } from './comparison-parts';
 import { Series, type Drawable } from './compare-step';
 import { ErrorSteps } from './error-steps';
 import styles from './lab.module.css';
 import { OwnFormula } from './own-formula';
 import { Parameters } from './parameters';
 import { RunState } from './run-state';
-import { channelUnit, effectName, joined, kEffectKinds, workAddress } from './names';
+import { effectName, joined, kEffectKinds, workAddress } from './names';
 
 interface Props { readonly model: string; readonly set: string; readonly rig: Rig; readonly asked: readonly string[] }
 
@@ -60,8 +60,7 @@ function Chooser({ model, set, rig, asked, list, onRun }: Props & { readonly lis
 }
 
 function Fitted({ run, fit, model, set, rig }: { readonly run: LabRun; readonly fit: Fit; readonly model: string; readonly set: string; readonly rig: Rig }) {
-  const primary = run.comparisons ? primaryOf(run.comparisons.before)?.name ?? 'force_N' : 'force_N';
-  const unit = channelUnit(primary), what = addedEffects(run);
+  const unit = primaryUnit(run), what = addedEffects(run);
   const name = what === 'no effect added' ? 'fitted' : `with ${what}`;
   const drawable: Drawable | null = run.comparisons ? { run, ...run.comparisons, rig, names: { before: 'as supplied', after: run.comparisons.after ? name : null } } : null;
   const better = fit.held_out_rmse !== null && fit.base.rmse !== null && fit.held_out_rmse < fit.base.rmse;

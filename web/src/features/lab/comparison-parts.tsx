@@ -1,4 +1,4 @@
-import type { Comparison } from '@/api';
+import type { Comparison, LabRun } from '@/api';
 import { Bar, Facts, Scroll, Term } from '@/ui';
 import { formatCount, formatDuration, formatFigure, formatShare, kNone, share } from '@/units';
 import styles from './lab.module.css';
@@ -12,6 +12,11 @@ export const kExplainedMeaning = 'Share of the variation beyond noise that the m
 export const explained = (value: number | null | undefined) => (value === null || value === undefined ? kNone : value < 0 ? 'below 0 %' : formatShare(share(Math.min(value, 1)), 1));
 
 export const primaryOf = (comparison: Comparison) => comparison.channels.find(({ name }) => name === comparison.primary) ?? comparison.channels[0];
+
+/** Unit of the error of a run; newton until its comparison is known. */
+export function primaryUnit({ comparisons }: Pick<LabRun, 'comparisons'>): string {
+  return channelUnit(comparisons ? primaryOf(comparisons.before)?.name ?? comparisons.before.primary : 'force_N');
+}
 
 /** The headline: how large the error is, what of it is noise, how much is explained. */
 export function Headline({ before, after, names }: { readonly before: Comparison; readonly after: Comparison | null; readonly names: Names }) {

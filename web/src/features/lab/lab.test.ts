@@ -1,8 +1,9 @@
 import { File as NodeFile } from 'node:buffer';
 import { describe, expect, it } from 'vitest';
-import type { Diagnosis } from '@/api';
+import type { Diagnosis, LabRun } from '@/api';
 import { differences } from './differences';
-import { kBlankOwn, ownEffect, parametersIn, withFormula } from './own-effect';
+import { primaryUnit } from './comparison-parts';
+import { kBlankOwn, mistypedStates, ownEffect, parametersIn, withFormula } from './own-effect';
 import { parameterName } from './parameters';
 import { verdictOf } from './verdict';
 import { channelQuantity, effectName, joined } from './names';
@@ -47,6 +48,16 @@ describe('a formula of one’s own', () => {
     const first = withFormula(kBlankOwn, 'c * v_m_s', states);
     const second = withFormula({ ...first, parameters: first.parameters.map((one) => ({ ...one, unit: 'N*s/m' })) }, 'c * v_m_s + k', states);
     expect(second.parameters.map(({ name, unit }) => [name, unit])).toEqual([['c', 'N*s/m'], ['k', '1']]);
+  });
+
+  it('starts a divisor with a minimum above zero', () => {
+    const { parameters } = withFormula(kBlankOwn, 'f * tanh(v_m_s / v0)', states);
+    expect(parameters.map(({ name, low }) => [name, low])).toEqual([['f', '0'], ['v0', '0.001']]);
+  });
+
+  it('points out a parameter that looks like a state variable', () => {
+    expect(mistypedStates(withFormula(kBlankOwn, 'f * sign(v)', states), states)).toEqual([{ typed: 'v', state: 'v_m_s' }]);
+    expect(mistypedStates(withFormula(kBlankOwn, 'f * sign(v_m_s)', states), states)).toEqual([]);
   });
 
   it('goes to the server as tractus-effect/1, and not before there is one', () => {
@@ -101,6 +112,14 @@ describe('the verdict', () => {
   it('puts two effects into one sentence', () => {
     const two = ['inertia', 'time_delay'].map((id) => ({ id, probability: 0.9, parameters: {} }));
     expect(verdictOf(diagnosis({ effects: two }), 'N').headline).toBe('Inertia and Time delay are missing.');
+  });
+});
+
+describe('the unit of the error', () => {
+  it('is that of the primary channel, and newton until the comparison is known', () => {
+    const compared = (primary: string) => ({ comparisons: { before: { primary, channels: [{ name: primary }] }, after: null } }) as unknown as Pick<LabRun, 'comparisons'>;
+    expect(primaryUnit(compared('tz_Nm'))).toBe('N·m');
+    expect(primaryUnit({ comparisons: null })).toBe('N');
   });
 });
 

@@ -3,7 +3,7 @@ import { Link } from 'wouter';
 import { atWork, effectsQuery, reportAddress, startDiagnosis, type Diagnosis, type LabRun, type Rig } from '@/api';
 import { Badge, Button, Card, Notice, Skeleton } from '@/ui';
 import { formatFigure, formatShare, share } from '@/units';
-import { Headline, primaryOf } from './comparison-parts';
+import { Headline, primaryUnit } from './comparison-parts';
 import { Series, type Drawable } from './compare-step';
 import { ErrorSteps } from './error-steps';
 import styles from './lab.module.css';
@@ -12,7 +12,7 @@ import { Ranking } from './ranking';
 import { RunState } from './run-state';
 import { useRun } from './use-run';
 import { verdictOf } from './verdict';
-import { channelUnit, effectName, joined, workAddress } from './names';
+import { effectName, joined, workAddress } from './names';
 
 interface Props { readonly model: string; readonly set: string; readonly rig: Rig }
 
@@ -38,8 +38,7 @@ function Undetermined({ diagnosis }: { readonly diagnosis: Diagnosis }) {
 
 function Found({ run, diagnosis, model, set, rig }: Props & { readonly run: LabRun; readonly diagnosis: Diagnosis }) {
   const effects = useQuery(effectsQuery(rig)).data?.effects ?? [];
-  const primary = run.comparisons ? primaryOf(run.comparisons.before)?.name ?? 'force_N' : 'force_N';
-  const unit = channelUnit(primary);
+  const unit = primaryUnit(run);
   const { tone, headline, detail } = verdictOf(diagnosis, unit);
   const found = diagnosis.effects.map(({ id }) => effectName(id));
   const drawable: Drawable | null = run.comparisons
@@ -87,7 +86,7 @@ export function MissingStep({ model, set, rig }: Props) {
       <Card title="Which effect is missing?"><RunState run={run} what="The search" again={view.begin} /></Card>
       {run.ranking && atWork(run) ? (
         <Card title="Preliminary ranking" aside={<Badge tone="accent">in progress</Badge>}>
-          <Ranking ranking={run.ranking} effects={effects} unit="N" without={null} addressToTry={(id) => `${workAddress(model, set, 'add')}?add=${encodeURIComponent(id)}`} />
+          <Ranking ranking={run.ranking} effects={effects} unit={primaryUnit(run)} without={null} addressToTry={(id) => `${workAddress(model, set, 'add')}?add=${encodeURIComponent(id)}`} />
         </Card>
       ) : null}
     </>

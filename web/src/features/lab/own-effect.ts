@@ -1,4 +1,5 @@
 /** A formula of one's own as it is being written, and as the server takes it. Pure. */
+import { nameAndUnit } from '@/units';
 import type { EffectList, OwnEffect, Rig } from '@/api';
 
 export interface OwnParameter { readonly name: string; readonly unit: string; readonly initial: string; readonly low: string; readonly high: string }
@@ -16,9 +17,20 @@ export function parametersIn(formula: string, states: readonly { readonly name: 
   return [...new Set(names)].filter((name) => !kFunctions.has(name) && !known.has(name) && !/^e\d*$/i.test(name));
 }
 
+/** A divisor must not become zero: its minimum is above it. */
+const divides = (formula: string, name: string) => new RegExp(`/\\s*${name}\\b`).test(formula);
+
+/** Parameters that may be mistyped state variables: "v" where "v_m_s" is one. */
+export function mistypedStates(draft: OwnDraft, states: readonly { readonly name: string }[]): { readonly typed: string; readonly state: string }[] {
+  return draft.parameters.flatMap(({ name }) => {
+    const state = states.find((one) => nameAndUnit(one.name).name === name && one.name !== name);
+    return state ? [{ typed: name, state: state.name }] : [];
+  });
+}
+
 /** Keeps what was written of the parameters that stay, and adds those that came. */
 export function withFormula(draft: OwnDraft, formula: string, states: readonly { readonly name: string }[]): OwnDraft {
-  const parameters = parametersIn(formula, states).map((name) => draft.parameters.find((one) => one.name === name) ?? { name, unit: '1', initial: '1', low: '0', high: '1000' });
+  const parameters = parametersIn(formula, states).map((name) => draft.parameters.find((one) => one.name === name) ?? { name, unit: '1', initial: '1', low: divides(formula, name) ? '0.001' : '0', high: '1000' });
   return { ...draft, formula, parameters };
 }
 

@@ -3,7 +3,7 @@ import { useEffect, useId, useState } from 'react';
 import { checkEffect, type EffectList, type OwnEffect, type Rig } from '@/api';
 import { Field, Scroll } from '@/ui';
 import styles from './lab.module.css';
-import { kBlankOwn, ownEffect, withFormula, type OwnDraft, type OwnParameter } from './own-effect';
+import { kBlankOwn, mistypedStates, ownEffect, withFormula, type OwnDraft, type OwnParameter } from './own-effect';
 
 interface Props { readonly rig: Rig; readonly list: EffectList; readonly onOwn: (own: OwnEffect | null) => void }
 
@@ -46,6 +46,7 @@ export function OwnFormula({ rig, list, onOwn }: Props) {
           onChange={(event) => setDraft(withFormula(draft, event.target.value, list.states))} />
       </div>
       <p id={id} role="status" className={wrong ? styles.wrong : styles.muted} data-part="unit-check">{message}</p>
+      {mistypedStates(draft, list.states).map(({ typed, state }) => <p key={typed} className={styles.wrong} role="status"><code>{typed}</code> is a parameter and will be fitted. The state variable is <code>{state}</code>.</p>)}
       {draft.parameters.length > 0 ? (
         <Scroll label="Parameters of the formula">
           <table className={`${styles.table} ${styles.inputs}`}>

@@ -5,19 +5,18 @@ import { betterModelAddress, labRunQuery, labRunsQuery, modelAddress, publishRun
 import { Badge, Button, Card, Field, Notice, Skeleton } from '@/ui';
 import { formatClock, formatFigure } from '@/units';
 import { addedEffects } from './add-step';
-import { primaryOf } from './comparison-parts';
+import { primaryUnit } from './comparison-parts';
 import styles from './lab.module.css';
 import { SendCard } from './send-card';
-import { channelUnit, effectName, joined, workAddress } from './names';
+import { effectName, joined, workAddress } from './names';
 
 interface Props { readonly model: ModelVersion; readonly set: string; readonly versions: readonly ModelVersion[] }
 
 /** Effects of a run and its held-out error. */
 export function candidateText(run: LabRun): string {
-  const primary = run.comparisons ? primaryOf(run.comparisons.before)?.name ?? 'force_N' : 'force_N';
   const error = run.fit?.held_out_rmse ?? run.diagnosis?.steps.at(-1)?.held_out_rmse;
   const what = run.diagnosis ? joined(run.diagnosis.effects.map(({ id }) => effectName(id))) || 'refitted' : addedEffects(run);
-  return `${what}: ${formatFigure(error, channelUnit(primary))} on held-out trials`;
+  return `${what}: ${formatFigure(error, primaryUnit(run))} on held-out trials`;
 }
 
 function Candidate({ run, summary, chosen, choose }: { readonly run: LabRun | undefined; readonly summary: LabRunSummary; readonly chosen: boolean; readonly choose: () => void }) {
