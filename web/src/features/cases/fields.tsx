@@ -16,7 +16,7 @@ export function Millimetres({ label, value_m, min = -2000, max = 2000, step = 0.
   const text = typed ?? inMillimetres(value_m);
   const wrong = text !== '' && !(Number.isFinite(Number(text)) && Number(text) >= min && Number(text) <= max);
   return (
-    <Field label={label} type="number" inputMode="decimal" step={step} min={min} max={max} value={text} aria-invalid={wrong || undefined} required={required}
+    <Field label={label} type="number" inputMode="decimal" step={step} min={min} max={max} value={text} error={wrong ? `Enter a value from ${min} to ${max} mm.` : ''} required={required}
       onBlur={() => setTyped(null)}
       onChange={(event) => {
         const next = event.target.value;
