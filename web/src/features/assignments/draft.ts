@@ -36,17 +36,19 @@ export function toggled(draft: Draft, item: Item): Draft {
   return { ...draft, chosen: there ? draft.chosen.filter(({ key }) => key !== item.key) : [...draft.chosen, { ...item, blind: nextBlind(draft.chosen) }] };
 }
 
-/** The first thing that is missing or wrong, in words; empty: it can be made. */
-export function lacking(draft: Draft): string {
+/** The first thing that is missing or wrong; empty: the assignment can be created. */
+export function firstProblem(draft: Draft, now_us: number): string {
   if (draft.title.trim() === '') return 'Enter a title.';
   if (draft.chosen.length === 0) return 'Choose at least one case.';
   if (draft.cohort === '' && draft.people.length === 0) return 'Choose a cohort or trainees.';
   const names = draft.chosen.map(({ blind }) => blind.trim()).filter((name) => name !== '');
+  const due = fromField(draft.due);
+  if (due !== null && due < now_us) return 'The due date is in the past.';
   if (new Set(names).size !== names.length) return 'Two cases have the same blind name.';
   return '';
 }
 
-export function wishOf(draft: Draft): NewAssignment {
+export function requestOf(draft: Draft): NewAssignment {
   const due = fromField(draft.due);
   return {
     title: draft.title.trim(),

@@ -5,7 +5,7 @@ import { addAssignment, assignmentsQuery, casesQuery, cohortQuery, cohortsQuery,
 import { Badge, Button, Card, Field, Notice, Select, Skeleton, useTitle } from '@/ui';
 import { formatCount } from '@/units';
 import styles from './assignments.module.css';
-import { kNoDraft, lacking, toggled, trialsEach, wishOf, type Draft, type Item } from './draft';
+import { kNoDraft, firstProblem, toggled, trialsEach, requestOf, type Draft, type Item } from './draft';
 import { kOrderLabels, kReleaseLabels, kDrillThenPalpate } from './labels';
 
 type Change = (change: Partial<Draft>) => void;
@@ -79,6 +79,7 @@ export function NewAssignmentPage() {
   const [, go] = useLocation();
   const wanted = new URLSearchParams(useSearch()).get('case');
   const [written, setDraft] = useState<Draft | null>(null);
+  const [now_us] = useState(() => Date.now() * 1000);
   const { items, failed, retry } = useItems();
   const first = wanted === null ? undefined : items?.find(({ case_id }) => case_id === wanted);
   const draft = written ?? (first ? toggled(kNoDraft, first) : kNoDraft);
@@ -87,8 +88,8 @@ export function NewAssignmentPage() {
     mutationFn: addAssignment,
     onSuccess: async ({ id }) => { await client.invalidateQueries({ queryKey: assignmentsQuery.queryKey, exact: true }); go(`/assignments/${id}`); },
   });
-  const missing = lacking(draft);
-  const submit = (event: FormEvent) => { event.preventDefault(); if (missing === '') made.mutate(wishOf(draft)); };
+  const missing = firstProblem(draft, now_us);
+  const submit = (event: FormEvent) => { event.preventDefault(); if (missing === '') made.mutate(requestOf(draft)); };
   return (
     <form className={styles.page} onSubmit={submit}>
       <p><Link href="/assignments">← Assignments</Link></p>

@@ -23,7 +23,7 @@ export function TrialsTable({ one, may, own = false, onInvalid }: Props) {
   const whose = (trial: Done) => (own ? '' : `${names.get(trial.participant) ?? trial.participant}, `);
   const link = (trial: Done) => <Link href={`/trials/${trial.trial_id}/debrief`} aria-label={`Debrief: ${whose(trial)}${named(trial)}`}>Debrief</Link>;
   return (
-    <Table<Done> caption="Trials" rows={one.trials} keyOf={({ trial_id }) => trial_id} empty="No trial has arrived yet." minWidth={own ? 480 : 680} columns={[
+    <Table<Done> caption="Trials" rows={one.trials} keyOf={({ trial_id }) => trial_id} empty="No trials have been uploaded yet." minWidth={own ? 480 : 680} columns={[
       { name: 'Trial', cell: (trial) => <>{whose(trial)}{named(trial)}</> },
       { name: 'Date', cell: (trial) => (trial.started_utc_us === null ? '–' : formatDateTime(trial.started_utc_us)) },
       { name: 'Answer', cell: answer },
