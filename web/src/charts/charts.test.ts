@@ -4,6 +4,7 @@ import { columnOf, coveredBySide, heatOf, heatPaths, sideOf } from './coverage';
 import { clamp, panned, whole, zoomed } from './range';
 import { opacityAt } from './scene/slice';
 import { assemble, finestLevel, kTilePoints, levelFor, lowerBound, tileRange, tilesFor, upperBound, type Detail, type Tile } from './tiles';
+import { mostTicks, ticks } from './plane';
 import { keyed } from './use-navigation';
 
 describe('the view', () => {
@@ -179,6 +180,10 @@ describe('the scale of force against depth', () => {
     expect(roundStep(0.9, 5)).toBeCloseTo(0.2);
     expect(ticksOf(0, 48, 10)).toEqual([0, 10, 20, 30, 40]);
     expect(roundStep(0, 5)).toBe(1);
+  });
+
+  it('has at least three ticks on a low axis of depth', () => {
+    for (const deepest_mm of [8, 29, 42, 63, 99]) expect(ticks({ title: '', from: 0, to: deepest_mm }, mostTicks(170)).length).toBeGreaterThanOrEqual(3);
   });
 
   it('finds the point under the pointer on the picture, not in the data', () => {

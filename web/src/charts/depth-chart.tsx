@@ -119,10 +119,10 @@ export function DepthChart(props: Props) {
         )}
       </div>
       <ul className={styles.key}>
-        <li><i className={styles.curveKey} />{axisTitle('push of the hand', kForce)}</li>
-        {bone ? <li><i className={styles.layerKey} />layers, stronger where stiffer</li> : null}
-        {bone && bone.walls.length > 0 ? <><li><i className={styles.growKey} />resistance grows</li><li><i className={styles.breachKey} />soft tissue behind the wall</li></> : null}
-        {felt_m === null ? null : <li><i className={styles.feltKey} />breach felt here</li>}
+        <li><i className={styles.curveKey} />{axisTitle('hand force', kForce)}</li>
+        {bone ? <li><i className={styles.layerKey} />layers, darker when stiffer</li> : null}
+        {bone && bone.walls.length > 0 ? <><li><i className={styles.growKey} />increasing resistance</li><li><i className={styles.breachKey} />soft tissue behind the wall</li></> : null}
+        {felt_m === null ? null : <li><i className={styles.feltKey} />breach reported here</li>}
       </ul>
       <p id={summaryId} className={styles.summary}>{summary(props)}</p>
     </figure>

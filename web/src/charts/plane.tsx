@@ -43,6 +43,9 @@ export function ticks(axis: PlaneAxis, most: number): readonly { at: number; tex
     .map((power) => ({ at: 10 ** power, text: tickLabels([10 ** power], 10 ** power)[0] ?? '' }));
 }
 
+/** Ticks that fit a vertical axis without crowding. */
+export const mostTicks = (height_px: number) => Math.max(2, Math.floor((height_px - kTop - kBottom) / 22));
+
 /** Two axes, and what is drawn between them: small statistics that are read, not panned. */
 export function Plane({ across, up, height_px = 220, summary, children }: Props) {
   const place = useRef<HTMLDivElement>(null);
@@ -53,10 +56,10 @@ export function Plane({ across, up, height_px = 220, summary, children }: Props)
     <figure className={styles.figure}>
       <div ref={place} className={styles.frame} style={{ minHeight: height_px }}>
         {width === 0 ? null : (
-          <svg width={width} height={height_px} role="img" aria-labelledby={id}>
+          <svg width={width} height={height_px} viewBox={`0 0 ${width} ${height_px}`} role="img" aria-labelledby={id}>
             <title id={id}>{summary}</title>
             <g className={styles.axes} aria-hidden="true">
-              {ticks(up, Math.max(2, Math.floor(height_px / 44))).map(({ at, text }) => (
+              {ticks(up, mostTicks(height_px)).map(({ at, text }) => (
                 <g key={at} transform={`translate(0 ${y(at)})`}>
                   <line x1={kLeft} x2={width - kRight} />
                   <text x={kLeft - 6} dy="0.35em" textAnchor="end">{text}</text>

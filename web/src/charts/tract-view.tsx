@@ -42,7 +42,7 @@ export function TractView({ tract, path, bone, cursor, ghost = null, palette, su
     follow();
     return cursor.subscribe(follow);
   }, [scene, cursor, ghostAt]);
-  const scale = <span className={styles.scale}>force on the tip 0<i style={{ background: kScale }} />{formatForce(newton(most_N))} and above</span>;
+  const scale = <span className={styles.scale}>tip force 0<i style={{ background: kScale }} />{formatForce(newton(most_N))} and above</span>;
   return (
     <Stage
       content={content} colours={kColours} palette={palette} label="View of the tract" summary={summary} button={button} caption={scale} onScene={setScene}

@@ -32,7 +32,7 @@ function CommentForm({ trial, cursor, onAdded }: { readonly trial: string; reado
       <label htmlFor={id}>Comment</label>
       <textarea id={id} rows={3} maxLength={4000} value={text} onChange={(event) => setText(event.target.value)} />
       <label className={styles.check}><input type="checkbox" checked={moment} onChange={(event) => setMoment(event.target.checked)} /> <CursorTime cursor={cursor} /></label>
-      <Button look="solid" type="submit" disabled={text.trim() === '' || added.isPending}>{added.isPending ? 'Saying…' : 'Add comment'}</Button>
+      <Button look="solid" type="submit" disabled={text.trim() === '' || added.isPending}>{added.isPending ? 'Saving…' : 'Add comment'}</Button>
       {added.isError ? <Notice tone="bad" title="The comment was not saved.">{added.error.message}</Notice> : null}
     </form>
   );
