@@ -8,12 +8,18 @@ import { channelOf } from './channel';
 import { judge, judgeProbing } from './judgement';
 import { arranged, shown } from './measure-rows';
 import { Measures } from './measures';
+import { seriesAddress } from './study-position';
 
 afterEach(cleanup);
 
 const answer = (changes: Partial<Answer>): Answer => ({ breach: true, wall: 'medial', confidence: share(0.8), depth_m: null, ...changes });
 const metric = (id: string, value: number | null, unit = 'N', note = ''): Metric =>
   ({ id, label: `label of ${id}`, unit, value, note, definition: `definition of ${id}`, source: 'paper' });
+
+it('the link of a trial leads to its study, or to its assignment', () => {
+  expect(seriesAddress('spine-study')).toBe('/studies/spine-study');
+  expect(seriesAddress('a-0f3')).toBe('/assignments/a-0f3');
+});
 
 describe('the judgement', () => {
   it.each([
