@@ -20,9 +20,9 @@ export function address<P extends keyof paths & `${typeof kRoot}${string}`>(
   for (const [name, value] of Object.entries(parts as Record<string, unknown>)) {
     filled = filled.replace(`{${name}}`, encodeURIComponent(String(value)));
   }
-  const said = new URLSearchParams();
+  const search = new URLSearchParams();
   for (const [name, value] of Object.entries((query ?? {}) as Record<string, unknown>)) {
-    if (value !== undefined) said.set(name, String(value));
+    if (value !== undefined) search.set(name, String(value));
   }
-  return said.size > 0 ? `${filled}?${said}` : filled;
+  return search.size > 0 ? `${filled}?${search}` : filled;
 }

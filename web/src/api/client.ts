@@ -47,16 +47,16 @@ function content({ body, text, bytes: raw }: Request): { type: string; sent: str
 
 async function send(path: string, request: Request): Promise<Response> {
   const { method = 'GET', timeout_ms = kTimeout_ms, signal } = request;
-  const what = content(request);
+  const payload = content(request);
   const headers = new Headers({ Accept: 'application/json' });
   if (method !== 'GET') headers.set('X-Tractus', '1'); // refuses requests forged by another site
-  if (what) headers.set('Content-Type', what.type);
+  if (payload) headers.set('Content-Type', payload.type);
   const timeout = AbortSignal.timeout(timeout_ms);
   let response: Response;
   try {
     response = await fetch(kRoot + path, {
       method, headers, credentials: 'same-origin',
-      ...(what ? { body: what.sent } : {}),
+      ...(payload ? { body: payload.sent } : {}),
       signal: signal ? AbortSignal.any([signal, timeout]) : timeout,
     });
   } catch (reason) {
@@ -64,9 +64,9 @@ async function send(path: string, request: Request): Promise<Response> {
     throw new ApiError('unreachable', 'The server does not answer. Check that it is running and that this computer is connected to the network.');
   }
   if (response.ok) return response;
-  const said = v.safeParse(errorSchema, await response.json().catch(() => undefined));
-  const text = said.success ? said.output.error : `The server answered with status ${response.status}.`;
-  const needsCode = said.success && said.output.code === 'code_needed';
+  const failure = v.safeParse(errorSchema, await response.json().catch(() => undefined));
+  const text = failure.success ? failure.output.error : `The server answered with status ${response.status}.`;
+  const needsCode = failure.success && failure.output.code === 'code_needed';
   const retryAfter = response.headers.get('Retry-After');
   throw new ApiError(needsCode ? 'code_needed' : codeOf(response.status), text, response.status, retryAfter === null ? null : Number(retryAfter));
 }

@@ -1,4 +1,4 @@
-/** What can be asked of the model lab, and what can be set to work in it. */
+/** Queries and runs of the model lab. */
 import { queryOptions } from '@tanstack/react-query';
 import * as v from 'valibot';
 import { address } from './address';
@@ -42,7 +42,7 @@ export const effectsQuery = (rig: Rig) =>
 
 export interface RunsOf { readonly kind?: LabRun['kind']; readonly model?: string; readonly measurements?: string }
 
-/** Newest first; asked again soon while one of them works. */
+/** Newest first; refetched soon while one of them runs. */
 export const labRunsQuery = (of: RunsOf = {}) =>
   queryOptions({
     queryKey: ['lab', 'runs', of],
@@ -96,7 +96,7 @@ export const stopLabRun = (id: string) => started(address('/api/v1/lab/runs/{id}
 export const publishRun = (id: string, name: string, note: string) =>
   requestJson(address('/api/v1/lab/runs/{id}/publish', { id }), modelVersionSchema, { method: 'POST', body: { name, note } });
 
-/** Where a version is, or is on its way to; asked again while a station has not fetched it yet. */
+/** Stations that a version was sent to; refetched while a station has not downloaded it. */
 export const sentModelQuery = (id: string) =>
   queryOptions({
     queryKey: ['lab', 'sent', id],

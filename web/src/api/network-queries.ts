@@ -56,7 +56,7 @@ export const revokeStation = (id: string) => request(address('/api/v1/stations/{
 
 export const addCohort = (name: string) => requestJson(address('/api/v1/cohorts', {}), cohortSchema, { ...posted, body: { name } });
 export const addToCohort = (id: string, name: string) => requestJson(address('/api/v1/cohorts/{id}/people', { id }), cohortSchema, { ...posted, body: { name } });
-export const takeFromCohort = (id: string, account: string) => requestJson(address('/api/v1/cohorts/{id}/people/{account_id}', { id, account_id: account }), cohortSchema, { method: 'DELETE' });
+export const removeFromCohort = (id: string, account: string) => requestJson(address('/api/v1/cohorts/{id}/people/{account_id}', { id, account_id: account }), cohortSchema, { method: 'DELETE' });
 export const inviteIntoCohort = (id: string, name: string) => requestJson(address('/api/v1/cohorts/{id}/invitations', { id }), cohortSchema, { ...posted, body: { name } });
 export const withdrawInvitation = (id: string, name: string) => requestJson(address('/api/v1/cohorts/{id}/invitations/{name}', { id, name }), cohortSchema, { method: 'DELETE' });
 export const acceptInvitation = (cohort: string) => requestJson(address('/api/v1/session/invitations/{cohort}/accept', { cohort }), invitationListSchema, posted);

@@ -1,4 +1,4 @@
-/** What can be asked, as queries: one key each, so that pages share answers. */
+/** All queries, one key each, so that pages share answers. */
 import { infiniteQueryOptions, queryOptions, type QueryClient } from '@tanstack/react-query';
 import { address } from './address';
 import { ApiError, requestJson, bytes, request } from './client';
@@ -37,7 +37,7 @@ export const signIn = (name: string, password: string, code?: string) =>
 
 export const signOut = () => request(address('/api/v1/session', {}), { method: 'DELETE' });
 
-/** Newest first; asked again while anything is being assessed, and now and then for trials that have arrived. */
+/** Newest first; refetched while a trial is being assessed, and from time to time for new trials. */
 export const trialsQuery = infiniteQueryOptions({
   queryKey: ['trials'],
   queryFn: ({ pageParam, signal }) => {

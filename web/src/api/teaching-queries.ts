@@ -10,7 +10,7 @@ import {
   referenceListSchema, referenceWaySchema, scenarioCheckSchema, scenarioFileSchema, scenarioListSchema, scenarioVersionSchema, sourceVolumeListSchema, type Release,
 } from './teaching-schemas';
 
-export type TractWish = components['schemas']['TractWish'];
+export type TractRequest = components['schemas']['TractWish'];
 export type NewCase = components['schemas']['NewCase'];
 export type NewAssignment = components['schemas']['NewAssignment'];
 
@@ -51,11 +51,11 @@ export const volumeBoneQuery = (volume: string) =>
     staleTime: Infinity,
   });
 
-export const plannedTractQuery = (volume: string, wish: TractWish | null) =>
+export const plannedTractQuery = (volume: string, request: TractRequest | null) =>
   queryOptions({
-    queryKey: ['planned-tract', volume, wish],
-    queryFn: ({ signal }) => requestJson(address('/api/v1/volumes/{id}/tract', { id: volume }), plannedTractSchema, { ...posted, body: wish, signal, timeout_ms: 60_000 }),
-    enabled: wish !== null,
+    queryKey: ['planned-tract', volume, request],
+    queryFn: ({ signal }) => requestJson(address('/api/v1/volumes/{id}/tract', { id: volume }), plannedTractSchema, { ...posted, body: request, signal, timeout_ms: 60_000 }),
+    enabled: request !== null,
     staleTime: Infinity,
     placeholderData: keepPreviousData,
   });
@@ -69,7 +69,7 @@ export const caseTruthQuery = (id: string) =>
     queryFn: ({ signal }) => requestJson(address('/api/v1/cases/{id}/parts/{name}', { id, name: 'truth.json' }), caseTruthSchema, { signal }),
     staleTime: Infinity,
   });
-export const makeCase = (wish: NewCase) => requestJson(address('/api/v1/cases', {}), makingSchema, { ...posted, body: wish });
+export const makeCase = (newCase: NewCase) => requestJson(address('/api/v1/cases', {}), makingSchema, { ...posted, body: newCase });
 export const retireCase = (id: string, retired: boolean) => request(address('/api/v1/cases/{id}/retire', { id }), { ...posted, body: { retired } });
 
 const going = (state: string | undefined) => state === 'queued' || state === 'running';
@@ -113,7 +113,7 @@ export const assignmentQuery = (id: string) =>
     refetchInterval: kLive_ms,
   });
 const changed = (path: string, body: unknown) => requestJson(path, assignmentSchema, { ...posted, body });
-export const addAssignment = (wish: NewAssignment) => changed(address('/api/v1/assignments', {}), wish);
+export const addAssignment = (request: NewAssignment) => changed(address('/api/v1/assignments', {}), request);
 export const setRelease = (id: string, release: Release) => changed(address('/api/v1/assignments/{id}/release', { id }), { release });
 export const setDue = (id: string, due_utc_us: number | null) => changed(address('/api/v1/assignments/{id}/due', { id }), { due_utc_us });
 export const assignPerson = (id: string, name: string) => changed(address('/api/v1/assignments/{id}/people', { id }), { name });

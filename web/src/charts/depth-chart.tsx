@@ -13,7 +13,7 @@ interface Props {
   readonly force_N: readonly number[];
   /** null where it may not be known. */
   readonly bone: Bone | null;
-  /** Where a breach was said to be felt. */
+  /** Where a breach was reported. */
   readonly felt_m: number | null;
   readonly cursor: Cursor;
 }
@@ -66,12 +66,12 @@ function Here({ props, across, up }: { readonly props: Props; readonly across: S
   if (moment === null || t_s.length === 0) return null;
   const i = Math.min(lowerBound(t_s, moment), t_s.length - 1);
   const x = placeOf(across, depth_m[i] ?? 0), y = placeOf(up, force_N[i] ?? 0);
-  const said = `${formatForce(newton(force_N[i] ?? 0))} at ${formatLength(metre(depth_m[i] ?? 0))}`;
+  const reading = `${formatForce(newton(force_N[i] ?? 0))} at ${formatLength(metre(depth_m[i] ?? 0))}`;
   return (
     <g className={styles.here}>
       <line x1={x} x2={x} y1={up.end_px} y2={up.start_px} />
       <circle cx={x} cy={y} r={5} />
-      <text x={across.start_px + 4} y={14}>{said}</text>
+      <text x={across.start_px + 4} y={14}>{reading}</text>
     </g>
   );
 }

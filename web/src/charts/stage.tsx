@@ -84,7 +84,7 @@ export function Stage({ content, colours, palette, label, summary, caption, butt
   return (
     <figure className={styles.figure}>
       <div className={styles.tools} role="group" aria-label={label}>
-        {kViews.map(({ name, text, label: words }) => <span key={name}>{button(words, text, () => scene?.look(name))}</span>)}
+        {kViews.map(({ name, text, label: viewLabel }) => <span key={name}>{button(viewLabel, text, () => scene?.look(name))}</span>)}
         <span className={styles.gap} />
         {content?.bone ? (
           <>

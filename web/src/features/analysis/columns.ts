@@ -15,7 +15,7 @@ export function columnName(name: string, metrics: readonly MetricFacts[]): strin
   return metrics.filter((metric) => metric.label === label).length > 1 ? `${label} (${name})` : label;
 }
 
-/** Columns of numbers. The metric answer_right is left out where the column "correct" says the same. */
+/** Columns of numbers. The metric answer_right is left out where the column "correct" has the same values. */
 export function endpointsOf({ columns }: CohortTable): Column[] {
   const judged = columns.some(({ name }) => name === 'correct');
   return columns.filter(({ name, numbers }) => numbers && !kNoEndpoints.includes(name) && !(judged && name === 'answer_right'));

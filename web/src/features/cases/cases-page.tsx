@@ -79,7 +79,7 @@ export function CasesPage() {
               { name: 'State', cell: (one) => (one.retired ? <Badge>retired</Badge> : <><Badge tone="good">available</Badge>{one.planned ? <> <Badge>trainee drills</Badge></> : null}</>) },
               { name: <span className="hidden-visually">Actions</span>, cell: (one) => (may ? <Button look="quiet" label={`${one.retired ? 'Restore' : 'Retire'}: ${one.title}`} disabled={retired.isPending} onClick={() => retired.mutate({ one, away: !one.retired })}>{one.retired ? 'Restore' : 'Retire'}</Button> : null) },
             ]} />
-            <p className={styles.said} role="status">
+            <p className={styles.message} role="status">
               {last ? <>{last.one.title} is {last.away ? 'retired; existing assignments continue.' : 'available again.'} <Button look="quiet" onClick={() => retired.mutate({ one: last.one, away: !last.away })}>Undo</Button></> : null}
               {retired.isError ? `The action failed: ${retired.error.message}` : null}
             </p>

@@ -3,13 +3,12 @@ import { useEffect, useReducer, useState, type FormEvent } from 'react';
 import { Link, useLocation, useSearch } from 'wouter';
 import { makeCase, makingsQuery, plannedTractQuery, sourceVolumesQuery, volumeBoneQuery, type PlannedTract, type Preview, type SourceVolume, type Vec3, type Window } from '@/api';
 import { PlanView } from '@/charts';
-import { Button, Card, Field, Notice, Select, Skeleton, usePalette, useTitle } from '@/ui';
+import { Button, Card, Field, Notice, Select, Skeleton, usePalette, useTitle, useSettled } from '@/ui';
 import { formatLength } from '@/units';
 import styles from './cases.module.css';
 import { BreachFields, PointFields } from './fields';
 import { caseOf, draw, fromAddress, toAddress, requestOf, type End, type Plan } from './plan';
 import { boundsOf, Slices } from './slices';
-import { useSettled } from './use-settled';
 import { Walls } from './walls';
 
 const kWindows: Record<string, { readonly text: string; readonly window: Window }> = {

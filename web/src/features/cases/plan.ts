@@ -1,5 +1,5 @@
 /** The plan of a case while it is edited. Each step is a value, so that it can be undone. */
-import { kWalls, type NewCase, type TractWish, type Vec3 } from '@/api';
+import { kWalls, type NewCase, type TractRequest, type Vec3 } from '@/api';
 
 export type WallName = (typeof kWalls)[number];
 export type End = 'entry' | 'target';
@@ -36,7 +36,7 @@ export function draw(drawing: Drawing, step: Step): Drawing {
 }
 
 /** The request to the server, rounded to 1 µm; null while an end is missing. */
-export function requestOf({ entry, target, radius_m, breach, whole }: Plan): TractWish | null {
+export function requestOf({ entry, target, radius_m, breach, whole }: Plan): TractRequest | null {
   if (!entry || !target) return null;
   const tidy = (p: Vec3): [number, number, number] => [round(p[0]), round(p[1]), round(p[2])];
   return {
@@ -46,7 +46,7 @@ export function requestOf({ entry, target, radius_m, breach, whole }: Plan): Tra
 }
 const round = (value: number) => Math.round(value * 1e6) / 1e6;
 
-export const caseOf = (request: TractWish, volume: string, title: string): NewCase => ({ ...request, volume, title });
+export const caseOf = (request: TractRequest, volume: string, title: string): NewCase => ({ ...request, volume, title });
 
 /** The plan as part of an address, in millimetres: a link to it can be kept. */
 export function toAddress({ entry, target, radius_m, breach, whole }: Plan): string {

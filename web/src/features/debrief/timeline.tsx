@@ -41,7 +41,7 @@ function useScrub(player: Player) {
     player.seek((event.clientX - event.currentTarget.getBoundingClientRect().left - from) / perSecond);
   };
   return {
-    keep: (now: Places) => { places.current = now; },
+    remember: (now: Places) => { places.current = now; },
     handlers: {
       onPointerDown: (event: PointerEvent<HTMLDivElement>) => { held.current = true; event.currentTarget.setPointerCapture(event.pointerId); go(event); },
       onPointerMove: (event: PointerEvent<HTMLDivElement>) => { if (held.current) go(event); },
@@ -66,7 +66,7 @@ const top = (values: readonly number[], least: number) => values.reduce((most, v
 
 function Line(props: Props & { readonly column: 'force_N' | 'depth_m'; readonly title: string; readonly scale: number; readonly named: boolean }) {
   const { way, ghost, duration_s, cursor, moments, scenario, column, title, scale, named } = props;
-  const { keep, handlers } = useScrub(props.player);
+  const { remember, handlers } = useScrub(props.player);
   const most = top(way[column], 0) * scale, other = ghost ? top(ghost.way[column], 0) * scale : 0;
   const least = Math.min(0, way[column].reduce((low, value) => Math.min(low, value), 0) * scale);
   const bone = column === 'depth_m' ? scenario : null;
@@ -75,7 +75,7 @@ function Line(props: Props & { readonly column: 'force_N' | 'depth_m'; readonly 
     <div className={styles.line} data-part={`line-${column}`} {...handlers}>
       <Plane across={{ title: 'time, s', from: 0, to: Math.max(duration_s, 0.1) }} up={{ title, from: least, to: end }} height_px={170} summary={`${title} over the trial${ghost ? ', with the curve of the example' : ''}.`}>
         {(places) => {
-          keep(places);
+          remember(places);
           const across = { x: places.x(0), width: places.width_px };
           return (
             <g>

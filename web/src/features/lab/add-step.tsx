@@ -13,7 +13,7 @@ import { Parameters } from './parameters';
 import { RunState } from './run-state';
 import { effectName, joined, kEffectKinds, workAddress } from './names';
 
-interface Props { readonly model: string; readonly set: string; readonly rig: Rig; readonly asked: readonly string[] }
+interface Props { readonly model: string; readonly set: string; readonly rig: Rig; readonly requested: readonly string[] }
 
 /** Names of the effects that a fit adds. */
 export const addedEffects = (run: Pick<LabRunSummary, 'add' | 'own'>) =>
@@ -31,9 +31,9 @@ function Choice({ effect, on, toggle }: { readonly effect: Effect; readonly on: 
   );
 }
 
-function Chooser({ model, set, rig, asked, list, onRun }: Props & { readonly list: EffectList; readonly onRun: (run: LabRun) => void }) {
+function Chooser({ model, set, rig, requested, list, onRun }: Props & { readonly list: EffectList; readonly onRun: (run: LabRun) => void }) {
   const client = useQueryClient();
-  const [chosen, setChosen] = useState<readonly string[]>(asked);
+  const [chosen, setChosen] = useState<readonly string[]>(requested);
   const [own, setOwn] = useState<OwnEffect | null>(null);
   const [withOwn, setWithOwn] = useState(false);
   const started = useMutation({

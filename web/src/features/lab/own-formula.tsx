@@ -1,22 +1,13 @@
 import { useQuery } from '@tanstack/react-query';
 import { useEffect, useId, useState } from 'react';
 import { checkEffect, type EffectList, type OwnEffect, type Rig } from '@/api';
-import { Field, Scroll } from '@/ui';
+import { Field, Scroll, useSettled } from '@/ui';
 import styles from './lab.module.css';
 import { kBlankOwn, mistypedStates, ownEffect, withFormula, type OwnDraft, type OwnParameter } from './own-effect';
 
 interface Props { readonly rig: Rig; readonly list: EffectList; readonly onOwn: (own: OwnEffect | null) => void }
 
 const kPace_ms = 250;
-
-function usePaced<Value>(value: Value): Value {
-  const [paced, setPaced] = useState(value);
-  useEffect(() => {
-    const timer = setTimeout(() => setPaced(value), kPace_ms);
-    return () => clearTimeout(timer);
-  }, [value]);
-  return paced;
-}
 
 function ParameterRow({ parameter, set }: { readonly parameter: OwnParameter; readonly set: (changes: Partial<OwnParameter>) => void }) {
   const { name } = parameter;
@@ -28,15 +19,15 @@ function ParameterRow({ parameter, set }: { readonly parameter: OwnParameter; re
 /** A custom formula: its parameters are detected and its units are checked while it is typed. */
 export function OwnFormula({ rig, list, onOwn }: Props) {
   const [draft, setDraft] = useState<OwnDraft>(kBlankOwn);
-  const paced = usePaced(draft);
-  const own = ownEffect(paced, rig, list);
+  const settled = useSettled(draft, kPace_ms);
+  const own = ownEffect(settled, rig, list);
   const check = useQuery({ queryKey: ['lab', 'check', own], queryFn: ({ signal }) => checkEffect(own ?? {}, signal), enabled: own !== null, staleTime: Infinity, retry: false });
-  const good = own !== null && check.data?.ok === true && paced === draft;
+  const good = own !== null && check.data?.ok === true && settled === draft;
   useEffect(() => { onOwn(good ? own : null); }, [good, JSON.stringify(own)]); // eslint-disable-line react-hooks/exhaustive-deps -- the effect as a value
   const id = useId();
   const set = (name: string, changes: Partial<OwnParameter>) =>
     setDraft({ ...draft, parameters: draft.parameters.map((one) => (one.name === name ? { ...one, ...changes } : one)) });
-  const message = own === null ? `The result must have the unit ${list.adds_unit}.` : check.isError ? check.error.message : paced !== draft || check.isPending ? 'Checking the units…' : check.data.ok ? `✓ The units are consistent: the result has the unit ${list.adds_unit}.` : check.data.error;
+  const message = own === null ? `The result must have the unit ${list.adds_unit}.` : check.isError ? check.error.message : settled !== draft || check.isPending ? 'Checking the units…' : check.data.ok ? `✓ The units are consistent: the result has the unit ${list.adds_unit}.` : check.data.error;
   const wrong = own !== null && (check.isError || check.data?.ok === false);
   return (
     <div className={styles.own}>

@@ -18,7 +18,7 @@ export function RunState({ run, what, again }: Props) {
   const waiting = run.state === 'queued';
   return (
     <div className={styles.state} role="status" data-part="run-state">
-      <div className={styles.words}>
+      <div className={styles.text}>
         <strong>{waiting ? `${what}: queued` : `${what}: ${formatShare(run.share)}`}</strong>
         <span className={styles.phase}>{run.phase === '' ? (waiting ? 'The lab runs one job at a time.' : 'Reading the measurements.') : run.phase}</span>
       </div>

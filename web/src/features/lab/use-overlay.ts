@@ -40,9 +40,9 @@ export interface OverlayView {
 
 const kWhole: Tile = { level: 0, index: 0 };
 
-interface Asked { readonly run: string; readonly trial: string; readonly channel: string; readonly duration_s: number; readonly sides: readonly Side[] }
+interface OverlayRequest { readonly run: string; readonly trial: string; readonly channel: string; readonly duration_s: number; readonly sides: readonly Side[] }
 
-export function useOverlay({ run, trial, channel, duration_s, sides }: Asked, range: Range, width_px: number): OverlayView {
+export function useOverlay({ run, trial, channel, duration_s, sides }: OverlayRequest, range: Range, width_px: number): OverlayView {
   const client = useQueryClient();
   const queryOf = (tile: Tile, side: Side) => {
     const { from, to } = tileRange(tile, duration_s);

@@ -44,12 +44,12 @@ function Compared({ model, set, versions, step }: Work & { readonly step: 'compa
 }
 
 function Content({ work, step }: { readonly work: Work; readonly step: Step }) {
-  const asked = new URLSearchParams(useSearch()).getAll('add');
+  const requested = new URLSearchParams(useSearch()).getAll('add');
   const { model, set } = work;
   switch (step) {
     case 'compare': case 'where': return <Compared {...work} step={step} />;
     case 'missing': return <MissingStep model={model.id} set={set.id} rig={model.rig} />;
-    case 'add': return <AddStep key={asked.join(' ')} model={model.id} set={set.id} rig={model.rig} asked={asked} />;
+    case 'add': return <AddStep key={requested.join(' ')} model={model.id} set={set.id} rig={model.rig} requested={requested} />;
     case 'publish': return <PublishStep key={model.id} model={model} set={set.id} versions={work.versions} />;
   }
 }
@@ -74,7 +74,7 @@ export function WorkPage({ model: modelId, set: setId, step: stepName }: { reado
         <h1>{model.name}</h1>
         <p className={styles.against}>compared with <strong>{set.name}</strong> {set.simulated === true ? <Badge tone="warn">simulated measurements</Badge> : null} <span className={styles.muted}>{setFacts(set)}{model.note === '' ? '' : ` · model: ${model.note}`}</span></p>
       </div>
-      <Steps label="Steps" steps={kSteps.map(({ id, name: said }) => ({ href: workAddress(model.id, set.id, id), name: said, current: id === step }))} />
+      <Steps label="Steps" steps={kSteps.map(({ id, name: stepTitle }) => ({ href: workAddress(model.id, set.id, id), name: stepTitle, current: id === step }))} />
       <Content work={{ model, set, versions: models.data.models }} step={step} />
     </div>
   );

@@ -5,7 +5,7 @@ import { formatClock, formatCount } from '@/units';
 import { Frame } from './frame';
 import styles from './network.module.css';
 
-const spaced = (operation: string) => { const words = operation.replace(/([A-Z])/g, ' $1').toLowerCase().trim(); return words.charAt(0).toUpperCase() + words.slice(1); };
+const sentenceCase = (operation: string) => { const sentence = operation.replace(/([A-Z])/g, ' $1').toLowerCase().trim(); return sentence.charAt(0).toUpperCase() + sentence.slice(1); };
 const detailOf = (detail: AuditRow['detail']) => Object.entries(detail).map(([key, value]) => `${key}: ${typeof value === 'string' ? value : JSON.stringify(value)}`).join(', ');
 
 function Check() {
@@ -34,7 +34,7 @@ export function AuditPage() {
           { name: 'Row', cell: (one) => formatCount(one.number) },
           { name: 'Time', cell: (one) => formatClock(one.at_utc_us) },
           { name: 'Account', cell: (one) => <>{one.who} <span className={styles.muted}>{one.role}</span></> },
-          { name: 'Action', cell: (one) => spaced(one.what) },
+          { name: 'Action', cell: (one) => sentenceCase(one.what) },
           { name: 'Object', cell: (one) => <span className={styles.muted}>{one.object}</span> },
           { name: 'Details', cell: (one) => <span className={styles.muted}>{detailOf(one.detail)}</span> },
           { name: <Term align="end" definition="First digits of the SHA-256 hash of this row and all rows before it.">Hash</Term>, cell: (one) => <span className={styles.hash}>{one.hash.slice(0, 10)}</span> },

@@ -1,7 +1,7 @@
 import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { useState, type FormEvent } from 'react';
 import { useSearch, Link } from 'wouter';
-import { addCohort, addToCohort, cohortQuery, cohortsQuery, inviteIntoCohort, sessionQuery, takeFromCohort, type Cohort, type CohortSummary } from '@/api';
+import { addCohort, addToCohort, cohortQuery, cohortsQuery, inviteIntoCohort, sessionQuery, removeFromCohort, type Cohort, type CohortSummary } from '@/api';
 import { Badge, Button, Card, Field, Notice, Skeleton, Table } from '@/ui';
 import { formatCount, formatDateTime } from '@/units';
 import { Frame } from './frame';
@@ -34,9 +34,9 @@ function Members({ id, role }: { readonly id: string; readonly role: string | un
   const [last, setLast] = useState<Person | null>(null);
   const store = async (cohort: Cohort) => { client.setQueryData(cohortQuery(id).queryKey, cohort); await client.invalidateQueries({ queryKey: cohortsQuery.queryKey, exact: true }); };
   const added = useMutation({ mutationFn: (person: string) => addToCohort(id, person), onSuccess: async (cohort) => { setName(''); setLast(null); await store(cohort); } });
-  const taken = useMutation({ mutationFn: (person: Person) => takeFromCohort(id, person.account_id), onSuccess: async (cohort, person) => { setLast(person); await store(cohort); } });
+  const removed = useMutation({ mutationFn: (person: Person) => removeFromCohort(id, person.account_id), onSuccess: async (cohort, person) => { setLast(person); await store(cohort); } });
   const invited = useMutation({ mutationFn: (person: string) => inviteIntoCohort(id, person), onSuccess: async (cohort) => { setName(''); added.reset(); await store(cohort); } });
-  const failed = invited.error ?? taken.error;
+  const failed = invited.error ?? removed.error;
   if (query.isError) return <Notice tone="bad" title="The cohort could not be loaded." onRetry={() => void query.refetch()}>{query.error.message}</Notice>;
   if (!query.data) return <Card title="People"><Skeleton height="200px" /></Card>;
   const submit = (event: FormEvent) => { event.preventDefault(); added.mutate(name.trim()); };
@@ -57,7 +57,7 @@ function Members({ id, role }: { readonly id: string; readonly role: string | un
           { name: 'Name', cell: (one) => one.name },
           { name: 'Role', cell: (one) => (one.part === 'faculty' ? <Badge tone="accent">faculty</Badge> : 'trainee') },
           { name: 'State', cell: (one) => one.state },
-          { name: <span className="hidden-visually">Actions</span>, cell: (one) => (may ? <span className={styles.buttons}><Button look="quiet" label={`Remove: ${one.name}`} disabled={taken.isPending} onClick={() => taken.mutate(one)}>Remove</Button></span> : null) },
+          { name: <span className="hidden-visually">Actions</span>, cell: (one) => (may ? <span className={styles.buttons}><Button look="quiet" label={`Remove: ${one.name}`} disabled={removed.isPending} onClick={() => removed.mutate(one)}>Remove</Button></span> : null) },
         ]} />
         {mayAdd ? <InvitedPeople cohort={query.data} onChange={store} /> : null}
       </div>

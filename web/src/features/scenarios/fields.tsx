@@ -18,10 +18,10 @@ function Number_({ knob, file, check, onFile }: Props & { readonly knob: Knob })
   return (
     <div className={styles.knob}>
       <label htmlFor={id}>{knob.label}{knob.unit === '' ? '' : <span className={styles.unit}>, {knob.unit}</span>}</label>
-      <input id={id} type="number" step={knob.step} value={text} aria-invalid={wrong !== '' || undefined} aria-describedby={`${id}-says`}
+      <input id={id} type="number" step={knob.step} value={text} aria-invalid={wrong !== '' || undefined} aria-describedby={`${id}-description`}
         onBlur={() => { if (!none) setTyped(null); }}
         onChange={(event) => { setTyped(event.target.value); if (event.target.value.trim() !== '' && Number.isFinite(Number(event.target.value))) onFile(withValue(file, knob.pointer, fromShown(event.target.value, knob))); }} />
-      <p id={`${id}-says`} className={wrong === '' ? styles.means : styles.wrong}>{wrong === '' ? knob.description : wrong}</p>
+      <p id={`${id}-description`} className={wrong === '' ? styles.means : styles.wrong}>{wrong === '' ? knob.description : wrong}</p>
     </div>
   );
 }

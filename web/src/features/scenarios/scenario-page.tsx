@@ -2,12 +2,11 @@ import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { useReducer, type FormEvent } from 'react';
 import { Link, useLocation } from 'wouter';
 import { addScenario, ApiError, kKinds, scenarioCheckQuery, scenarioFileQuery, scenariosQuery, type ScenarioFile } from '@/api';
-import { Button, Card, Field, Notice, Select, Skeleton, useTitle } from '@/ui';
+import { Button, Card, Field, Notice, Select, Skeleton, useTitle, useSettled } from '@/ui';
 import { draftOf, inMillimetres, kBone, kBreach } from './draft';
 import { Knobs, Layers, Walls } from './fields';
 import { Resistance } from './resistance';
 import styles from './scenarios.module.css';
-import { useSettled } from './use-settled';
 import { kKindLabels } from './labels';
 
 interface History { readonly file: ScenarioFile; readonly past: readonly ScenarioFile[] }

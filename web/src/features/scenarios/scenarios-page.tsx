@@ -36,7 +36,7 @@ export function ScenariosPage() {
             { name: 'State', cell: (one) => (one.published ? <Badge tone="good">published</Badge> : <Badge>not published</Badge>) },
             { name: <span className="hidden-visually">Actions</span>, cell: (one) => <Button look="quiet" disabled={published.isPending} label={`${one.published ? 'Unpublish' : 'Publish'}: ${one.name}`} onClick={() => published.mutate({ one, to: !one.published })}>{one.published ? 'Unpublish' : 'Publish'}</Button> },
           ]} />
-          <p className={styles.said} role="status">
+          <p className={styles.message} role="status">
             {published.isSuccess ? <>{published.variables.one.name} is {published.variables.to ? 'published and can be assigned.' : 'unpublished; existing assignments continue.'} <Button look="quiet" onClick={() => published.mutate({ one: published.variables.one, to: !published.variables.to })}>Undo</Button></> : null}
             {published.isError ? `The action failed: ${published.error.message}` : null}
           </p>

@@ -6,31 +6,31 @@ import styles from './own-account.module.css';
 import { PasswordForm } from './password-form';
 
 function Codes() {
-  const begun = useMutation({ mutationFn: () => beginCodes(password), onSuccess: () => setPassword('') });
+  const enrolled = useMutation({ mutationFn: () => beginCodes(password), onSuccess: () => setPassword('') });
   const confirmed = useMutation({ mutationFn: confirmCodes });
   const ended = useMutation({ mutationFn: () => endCodes(password, code.trim()) });
   const [password, setPassword] = useState('');
   const [code, setCode] = useState('');
   const submit = (event: FormEvent) => { event.preventDefault(); confirmed.mutate(code.trim()); };
-  const failed = begun.error ?? confirmed.error ?? ended.error;
+  const failed = enrolled.error ?? confirmed.error ?? ended.error;
   const field = <Field label="Code from the app" value={code} inputMode="numeric" autoComplete="one-time-code" maxLength={8} onChange={(event) => setCode(event.target.value)} />;
   return (
     <div className={styles.stack}>
       <p>With one-time codes, a stolen password is not enough to sign in: an app on your phone shows a new code every 30 seconds.</p>
       {failed ? <Notice tone="bad" title="The action failed.">{failed.message}</Notice> : null}
       {confirmed.isSuccess ? <Notice title="One-time codes are on.">You will be asked for a code at each sign-in.</Notice>
-        : ended.isSuccess ? <Notice title="One-time codes are off.">You sign in with your password only.</Notice> : begun.data ? (
+        : ended.isSuccess ? <Notice title="One-time codes are off.">You sign in with your password only.</Notice> : enrolled.data ? (
           <form className={styles.form} onSubmit={submit}>
             <p>Enter this secret in the app, then enter the code that the app shows.</p>
-            <p className={styles.secret}>{begun.data.secret}</p>
-            <p><a href={begun.data.uri}>Open in an app on this computer</a></p>
+            <p className={styles.secret}>{enrolled.data.secret}</p>
+            <p><a href={enrolled.data.uri}>Open in an app on this computer</a></p>
             {field}
             <Button look="solid" type="submit" disabled={confirmed.isPending || code.trim() === ''}>Turn on</Button>
           </form>
         ) : (
-          <form className={styles.form} onSubmit={(event) => { event.preventDefault(); if (code.trim() !== '') ended.mutate(); else begun.mutate(); }}>
+          <form className={styles.form} onSubmit={(event) => { event.preventDefault(); if (code.trim() !== '') ended.mutate(); else enrolled.mutate(); }}>
             <Field label="Your password" type="password" autoComplete="current-password" required value={password} onChange={(event) => setPassword(event.target.value)} />
-            <Button onClick={() => begun.mutate()} disabled={begun.isPending || password === ''}>Set up one-time codes</Button>
+            <Button onClick={() => enrolled.mutate()} disabled={enrolled.isPending || password === ''}>Set up one-time codes</Button>
             <details><summary>Turn off one-time codes</summary>{field}<p><Button type="submit" disabled={ended.isPending || password === '' || code.trim() === ''}>Turn off</Button></p></details>
           </form>
         )}

@@ -30,7 +30,7 @@ export function SignIn() {
   const [name, setName] = useState('');
   const [password, setPassword] = useState('');
   const [code, setCode] = useState('');
-  const [asked, setAsked] = useState(false);
+  const [codeRequired, setCodeRequired] = useState(false);
   const [ended] = useState(endedByItself);
   const [back] = useState(providerMessage);
   const offer = useQuery(oidcOfferQuery);
@@ -38,10 +38,10 @@ export function SignIn() {
   const passwordField = useRef<HTMLInputElement>(null);
   const codeField = useRef<HTMLInputElement>(null);
   const attempt = useMutation({
-    mutationFn: () => signIn(name.trim(), password, asked ? code.trim() : undefined),
+    mutationFn: () => signIn(name.trim(), password, codeRequired ? code.trim() : undefined),
     onSuccess: (session) => client.setQueryData(sessionQuery.queryKey, session),
     onError: (reason) => {
-      if (reason instanceof ApiError && reason.code === 'code_needed') { setAsked(true); return; }
+      if (reason instanceof ApiError && reason.code === 'code_needed') { setCodeRequired(true); return; }
       setCode('');
       setPassword('');
       passwordField.current?.focus();
@@ -49,7 +49,7 @@ export function SignIn() {
   });
 
   useEffect(() => nameField.current?.focus(), []);
-  useEffect(() => { if (asked) codeField.current?.focus(); }, [asked]);
+  useEffect(() => { if (codeRequired) codeField.current?.focus(); }, [codeRequired]);
 
   const submit = (event: FormEvent) => {
     event.preventDefault();
@@ -69,7 +69,7 @@ export function SignIn() {
           inputRef={nameField} value={name} onChange={(event) => setName(event.target.value)} aria-invalid={attempt.isError} />
         <Field label="Password" name="password" type="password" autoComplete="current-password" required
           inputRef={passwordField} value={password} onChange={(event) => setPassword(event.target.value)} aria-invalid={attempt.isError} />
-        {asked ? <Field label="One-time code" name="code" inputMode="numeric" autoComplete="one-time-code" maxLength={8} inputRef={codeField} value={code} onChange={(event) => setCode(event.target.value)} /> : null}
+        {codeRequired ? <Field label="One-time code" name="code" inputMode="numeric" autoComplete="one-time-code" maxLength={8} inputRef={codeField} value={code} onChange={(event) => setCode(event.target.value)} /> : null}
         <p className={styles.error} role="alert">{attempt.isError ? errorText(attempt.error) : back}</p>
         <Button type="submit" look="solid" disabled={attempt.isPending}>{attempt.isPending ? 'Signing in…' : 'Sign in'}</Button>
         {offer.data?.offered ? <a className={styles.provider} href={kOidcStart}>{offer.data.label ?? 'Sign in with your institution'}</a> : null}

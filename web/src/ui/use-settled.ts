@@ -1,6 +1,6 @@
 import { useEffect, useState } from 'react';
 
-/** Follows a value once it has been still for so long: for questions that cost the server something. */
+/** The value once it has not changed for `still_ms`: limits requests while a person types or drags. */
 export function useSettled<Value>(value: Value, still_ms: number): Value {
   const [settled, setSettled] = useState(value);
   useEffect(() => {
