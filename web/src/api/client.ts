@@ -5,11 +5,24 @@ const kRoot = '/api/v1';
 const kTimeout_ms = 20_000;
 
 export type ApiErrorCode =
-  | 'unauthorised' | 'code_needed' | 'forbidden' | 'not_found' | 'too_many' | 'unavailable' | 'unreachable' | 'unreadable' | 'refused';
+  | 'unauthorised'
+  | 'code_needed'
+  | 'forbidden'
+  | 'not_found'
+  | 'too_many'
+  | 'unavailable'
+  | 'unreachable'
+  | 'unreadable'
+  | 'refused';
 
 export class ApiError extends Error {
   /** @param retryAfter_s when the server takes the request again; null: it did not say */
-  constructor(readonly code: ApiErrorCode, message: string, readonly status = 0, readonly retryAfter_s: number | null = null) {
+  constructor(
+    readonly code: ApiErrorCode,
+    message: string,
+    readonly status = 0,
+    readonly retryAfter_s: number | null = null,
+  ) {
     super(message);
     this.name = 'ApiError';
   }
@@ -19,12 +32,20 @@ const errorSchema = v.object({ error: v.string(), code: v.string() });
 
 function codeOf(status: number): ApiErrorCode {
   switch (status) {
-    case 401: return 'unauthorised';
-    case 403: return 'forbidden';
-    case 404: return 'not_found';
-    case 429: return 'too_many';
-    case 502: case 503: case 504: return 'unavailable';
-    default: return 'refused';
+    case 401:
+      return 'unauthorised';
+    case 403:
+      return 'forbidden';
+    case 404:
+      return 'not_found';
+    case 429:
+      return 'too_many';
+    case 502:
+    case 503:
+    case 504:
+      return 'unavailable';
+    default:
+      return 'refused';
   }
 }
 
@@ -55,25 +76,37 @@ async function send(path: string, request: Request): Promise<Response> {
   let response: Response;
   try {
     response = await fetch(kRoot + path, {
-      method, headers, credentials: 'same-origin',
+      method,
+      headers,
+      credentials: 'same-origin',
       ...(payload ? { body: payload.sent } : {}),
       signal: signal ? AbortSignal.any([signal, timeout]) : timeout,
     });
   } catch (reason) {
     if (signal?.aborted) throw reason;
-    throw new ApiError('unreachable', 'The server does not answer. Check that it is running and that this computer is connected to the network.');
+    throw new ApiError(
+      'unreachable',
+      'The server does not answer. Check that it is running and that this computer is connected to the network.',
+    );
   }
   if (response.ok) return response;
   const failure = v.safeParse(errorSchema, await response.json().catch(() => undefined));
   const text = failure.success ? failure.output.error : `The server answered with status ${response.status}.`;
   const needsCode = failure.success && failure.output.code === 'code_needed';
   const retryAfter = response.headers.get('Retry-After');
-  throw new ApiError(needsCode ? 'code_needed' : codeOf(response.status), text, response.status, retryAfter === null ? null : Number(retryAfter));
+  throw new ApiError(
+    needsCode ? 'code_needed' : codeOf(response.status),
+    text,
+    response.status,
+    retryAfter === null ? null : Number(retryAfter),
+  );
 }
 
 /** Asks for JSON and checks it against `schema`; an answer of another shape is an error, never a half-filled page. */
 export async function requestJson<Schema extends v.GenericSchema>(
-  path: string, schema: Schema, request: Request = {},
+  path: string,
+  schema: Schema,
+  request: Request = {},
 ): Promise<v.InferOutput<Schema>> {
   const response = await send(path, request);
   const json: unknown = await response.json().catch(() => undefined);
@@ -89,7 +122,10 @@ export async function request(path: string, request: Request): Promise<void> {
 }
 
 /** Bytes with the headers that describe them. */
-export async function bytes(path: string, request: Request = {}): Promise<{ headers: Headers; data: Uint8Array<ArrayBuffer> }> {
+export async function bytes(
+  path: string,
+  request: Request = {},
+): Promise<{ headers: Headers; data: Uint8Array<ArrayBuffer> }> {
   const response = await send(path, request);
   return { headers: response.headers, data: new Uint8Array(await response.arrayBuffer()) };
 }

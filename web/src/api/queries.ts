@@ -3,7 +3,15 @@ import { infiniteQueryOptions, queryOptions, type QueryClient } from '@tanstack/
 import { address } from './address';
 import { ApiError, requestJson, bytes, request } from './client';
 import { parsePreview } from './preview';
-import { forceDepthSchema, pathSchema, sessionSchema, signalsSchema, trialPageSchema, trialSchema, type Session } from './schemas';
+import {
+  forceDepthSchema,
+  pathSchema,
+  sessionSchema,
+  signalsSchema,
+  trialPageSchema,
+  trialSchema,
+  type Session,
+} from './schemas';
 
 const kAssessing_ms = 2_000;
 const kIdle_ms = 15_000;
@@ -12,7 +20,13 @@ const kPage = 50;
 const kPreview = 128;
 
 export const kChannels = [
-  'force_xy_N', 'force_z_N', 'torque_xy_Nm', 'torque_z_Nm', 'depth_m', 'offset_m', 'angle_rad',
+  'force_xy_N',
+  'force_z_N',
+  'torque_xy_Nm',
+  'torque_z_Nm',
+  'depth_m',
+  'offset_m',
+  'angle_rad',
 ] as const;
 export const kProbingChannels = ['force_N', 'depth_m', 'speed_m_s', 'angle_rad'] as const;
 export type Channel = (typeof kChannels)[number] | (typeof kProbingChannels)[number];
@@ -33,7 +47,10 @@ export const sessionQuery = queryOptions({
 
 /** `code`: the one-time code of an account that asks for one. */
 export const signIn = (name: string, password: string, code?: string) =>
-  requestJson(address('/api/v1/session', {}), sessionSchema, { method: 'POST', body: { name, password, ...(code === undefined ? {} : { code }) } });
+  requestJson(address('/api/v1/session', {}), sessionSchema, {
+    method: 'POST',
+    body: { name, password, ...(code === undefined ? {} : { code }) },
+  });
 
 export const signOut = () => request(address('/api/v1/session', {}), { method: 'DELETE' });
 
@@ -59,7 +76,11 @@ export const trialQuery = (id: string) =>
     refetchInterval: (query) => (query.state.data?.state === 'assessing' ? kAssessing_ms : false),
   });
 
-export interface SignalWindow { from_s: number; to_s: number; points: number }
+export interface SignalWindow {
+  from_s: number;
+  to_s: number;
+  points: number;
+}
 
 /** Signals of a trial never change, so a window once fetched is kept. */
 export const signalsQuery = (id: string, channels: readonly Channel[], window: SignalWindow) =>
@@ -75,7 +96,8 @@ export const signalsQuery = (id: string, channels: readonly Channel[], window: S
 export const pathQuery = (id: string) =>
   queryOptions({
     queryKey: ['path', id],
-    queryFn: ({ signal }) => requestJson(address('/api/v1/trials/{id}/path', { id }, { points: 2000 }), pathSchema, { signal }),
+    queryFn: ({ signal }) =>
+      requestJson(address('/api/v1/trials/{id}/path', { id }, { points: 2000 }), pathSchema, { signal }),
     staleTime: Infinity,
   });
 
@@ -83,7 +105,8 @@ export const pathQuery = (id: string) =>
 export const forceDepthQuery = (id: string) =>
   queryOptions({
     queryKey: ['force-depth', id],
-    queryFn: ({ signal }) => requestJson(address('/api/v1/trials/{id}/force-depth', { id }, { points: 2000 }), forceDepthSchema, { signal }),
+    queryFn: ({ signal }) =>
+      requestJson(address('/api/v1/trials/{id}/force-depth', { id }, { points: 2000 }), forceDepthSchema, { signal }),
     staleTime: Infinity,
   });
 
@@ -91,7 +114,10 @@ export const previewQuery = (caseId: string) =>
   queryOptions({
     queryKey: ['preview', caseId],
     queryFn: async ({ signal }) => {
-      const { headers, data } = await bytes(address('/api/v1/cases/{id}/preview', { id: caseId }, { max_side: kPreview }), { signal });
+      const { headers, data } = await bytes(
+        address('/api/v1/cases/{id}/preview', { id: caseId }, { max_side: kPreview }),
+        { signal },
+      );
       return parsePreview(headers, data);
     },
     staleTime: Infinity,

@@ -4,13 +4,36 @@
  */
 import type * as v from 'valibot';
 import type { components } from './generated/schema';
-import type { effectCheckSchema, effectListSchema, labRunListSchema, labSignalsSchema, measurementListSchema, modelListSchema, sentModelSchema } from './lab-schemas';
+import type {
+  effectCheckSchema,
+  effectListSchema,
+  labRunListSchema,
+  labSignalsSchema,
+  measurementListSchema,
+  modelListSchema,
+  sentModelSchema,
+} from './lab-schemas';
 import type { backupListSchema } from './backup-queries';
-import type { accountListSchema, auditCheckSchema, auditSchema, cohortListSchema, cohortSchema, invitationListSchema, stationListSchema } from './network-schemas';
+import type {
+  accountListSchema,
+  auditCheckSchema,
+  auditSchema,
+  cohortListSchema,
+  cohortSchema,
+  invitationListSchema,
+  stationListSchema,
+} from './network-schemas';
 import type { stationPageSchema } from './live-schemas';
 import type { traineeListSchema } from './trainee-queries';
 import type { studyEventsSchema, studyListSchema, studySchema } from './study-schemas';
-import type { forceDepthSchema, pathSchema, sessionSchema, signalsSchema, trialPageSchema, trialSchema } from './schemas';
+import type {
+  forceDepthSchema,
+  pathSchema,
+  sessionSchema,
+  signalsSchema,
+  trialPageSchema,
+  trialSchema,
+} from './schemas';
 
 type Served = components['schemas'];
 type Takes<Schema extends v.GenericSchema, Answer> = Answer extends v.InferInput<Schema> ? true : false;
@@ -45,6 +68,30 @@ export interface Agreed {
 }
 
 export const kAgreed: Agreed = {
-  session: true, trials: true, trial: true, signals: true, path: true, forceDepth: true, studies: true, study: true, studyEvents: true,
-  models: true, measurements: true, effects: true, effectCheck: true, labRuns: true, labSignals: true, accounts: true, stations: true, station: true, cohorts: true, cohort: true, invitations: true, audit: true, auditCheck: true, trainees: true, sentModel: true, backups: true,
+  session: true,
+  trials: true,
+  trial: true,
+  signals: true,
+  path: true,
+  forceDepth: true,
+  studies: true,
+  study: true,
+  studyEvents: true,
+  models: true,
+  measurements: true,
+  effects: true,
+  effectCheck: true,
+  labRuns: true,
+  labSignals: true,
+  accounts: true,
+  stations: true,
+  station: true,
+  cohorts: true,
+  cohort: true,
+  invitations: true,
+  audit: true,
+  auditCheck: true,
+  trainees: true,
+  sentModel: true,
+  backups: true,
 };

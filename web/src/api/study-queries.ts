@@ -28,14 +28,17 @@ export const studyQuery = (id: string) =>
 export const studyEventsQuery = (id: string) =>
   queryOptions({
     queryKey: ['study-events', id],
-    queryFn: ({ signal }) => requestJson(address('/api/v1/studies/{id}/events', { id }, { limit: kEvents }), studyEventsSchema, { signal }),
+    queryFn: ({ signal }) =>
+      requestJson(address('/api/v1/studies/{id}/events', { id }, { limit: kEvents }), studyEventsSchema, { signal }),
     refetchInterval: kLive_ms,
   });
 
-const changedStudy = (path: string, body: unknown): Promise<Study> => requestJson(path, studySchema, { method: 'POST', body });
+const changedStudy = (path: string, body: unknown): Promise<Study> =>
+  requestJson(path, studySchema, { method: 'POST', body });
 
 export const makeStudy = (study: NewStudy) => changedStudy(address('/api/v1/studies', {}), study);
-export const enrol = (id: string, participant: NewParticipant) => changedStudy(address('/api/v1/studies/{id}/participants', { id }), participant);
+export const enrol = (id: string, participant: NewParticipant) =>
+  changedStudy(address('/api/v1/studies/{id}/participants', { id }), participant);
 export const setStudyState = (id: string, state: StudyState, reason: string) =>
   changedStudy(address('/api/v1/studies/{id}/state', { id }), { state, reason });
 export const setParticipantState = (id: string, name: string, state: StudyState, reason: string) =>

@@ -2,7 +2,16 @@
 import type * as v from 'valibot';
 import type { components } from './generated/schema';
 import type {
-  assignmentListSchema, assignmentSchema, caseListSchema, commentListSchema, makingSchema, plannedTractSchema, referenceListSchema, referenceWaySchema, scenarioCheckSchema, scenarioListSchema,
+  assignmentListSchema,
+  assignmentSchema,
+  caseListSchema,
+  commentListSchema,
+  makingSchema,
+  plannedTractSchema,
+  referenceListSchema,
+  referenceWaySchema,
+  scenarioCheckSchema,
+  scenarioListSchema,
 } from './teaching-schemas';
 
 type Served = components['schemas'];
@@ -22,5 +31,14 @@ export interface TeachingAgreed {
 }
 
 export const kTeachingAgreed: TeachingAgreed = {
-  cases: true, making: true, tract: true, scenarios: true, check: true, assignments: true, assignment: true, comments: true, references: true, way: true,
+  cases: true,
+  making: true,
+  tract: true,
+  scenarios: true,
+  check: true,
+  assignments: true,
+  assignment: true,
+  comments: true,
+  references: true,
+  way: true,
 };

@@ -19,19 +19,33 @@ export function AskDialog({ title, children, action, ready = true, onAction, onC
   const [busy, setBusy] = useState(false);
   const [failure, setFailure] = useState<string | null>(null);
   const id = useId();
-  useEffect(() => { dialog.current?.showModal(); }, []);
+  useEffect(() => {
+    dialog.current?.showModal();
+  }, []);
   const submit = (event: FormEvent) => {
     event.preventDefault();
     setBusy(true);
-    onAction().then(onClose, (wrong: unknown) => { setFailure(wrong instanceof Error ? wrong.message : String(wrong)); setBusy(false); });
+    onAction().then(onClose, (wrong: unknown) => {
+      setFailure(wrong instanceof Error ? wrong.message : String(wrong));
+      setBusy(false);
+    });
   };
   return (
     <dialog ref={dialog} className={styles.dialog} aria-labelledby={id} onClose={onClose}>
       <form onSubmit={submit}>
         <h2 id={id}>{title}</h2>
         {children}
-        {failure === null ? null : <Notice tone="bad" title="The action failed.">{failure}</Notice>}
-        <div className={styles.buttons}><Button onClick={onClose}>Cancel</Button><Button look="solid" type="submit" disabled={busy || !ready}>{action}</Button></div>
+        {failure === null ? null : (
+          <Notice tone="bad" title="The action failed.">
+            {failure}
+          </Notice>
+        )}
+        <div className={styles.buttons}>
+          <Button onClick={onClose}>Cancel</Button>
+          <Button look="solid" type="submit" disabled={busy || !ready}>
+            {action}
+          </Button>
+        </div>
       </form>
     </dialog>
   );

@@ -21,8 +21,11 @@ export function ReasonDialog({ title, text, action, reasonNeeded = false, onActi
   const [reason, setReason] = useState('');
   const [failure, setFailure] = useState<string | null>(null);
   const [busy, setBusy] = useState(false);
-  const titleId = useId(), reasonId = useId();
-  useEffect(() => { dialog.current?.showModal(); }, []);
+  const titleId = useId(),
+    reasonId = useId();
+  useEffect(() => {
+    dialog.current?.showModal();
+  }, []);
   const submit = (event: FormEvent) => {
     event.preventDefault();
     setBusy(true);
@@ -38,12 +41,25 @@ export function ReasonDialog({ title, text, action, reasonNeeded = false, onActi
         <p>{text}</p>
         <div className={styles.reason}>
           <label htmlFor={reasonId}>Reason{reasonNeeded ? '' : ' (optional)'}</label>
-          <textarea id={reasonId} rows={3} maxLength={500} required={reasonNeeded} value={reason} onChange={(event) => setReason(event.target.value)} />
+          <textarea
+            id={reasonId}
+            rows={3}
+            maxLength={500}
+            required={reasonNeeded}
+            value={reason}
+            onChange={(event) => setReason(event.target.value)}
+          />
         </div>
-        {failure === null ? null : <Notice tone="bad" title="The action failed.">{failure}</Notice>}
+        {failure === null ? null : (
+          <Notice tone="bad" title="The action failed.">
+            {failure}
+          </Notice>
+        )}
         <div className={styles.buttons}>
           <Button onClick={onClose}>Cancel</Button>
-          <Button look="solid" type="submit" disabled={busy || (reasonNeeded && reason.trim() === '')}>{action}</Button>
+          <Button look="solid" type="submit" disabled={busy || (reasonNeeded && reason.trim() === '')}>
+            {action}
+          </Button>
         </div>
       </form>
     </dialog>

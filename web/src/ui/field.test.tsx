@@ -10,7 +10,9 @@ describe('a field', () => {
     render(<Field label="Depth" error="Enter a value from 0.5 to 15 mm." defaultValue="99" />);
     const input = screen.getByLabelText('Depth');
     expect(input.getAttribute('aria-invalid')).toBe('true');
-    expect(document.getElementById(input.getAttribute('aria-describedby') ?? '')?.textContent).toBe('Enter a value from 0.5 to 15 mm.');
+    expect(document.getElementById(input.getAttribute('aria-describedby') ?? '')?.textContent).toBe(
+      'Enter a value from 0.5 to 15 mm.',
+    );
   });
 
   it('is valid without an error', () => {

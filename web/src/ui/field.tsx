@@ -13,8 +13,17 @@ export function Field({ label, error = '', inputRef, ...rest }: Props) {
   return (
     <div className={styles.field}>
       <label htmlFor={id}>{label}</label>
-      <input id={id} ref={inputRef} {...rest} {...(error === '' ? {} : { 'aria-invalid': true, 'aria-describedby': `${id}-error` })} />
-      {error === '' ? null : <p id={`${id}-error`} className={styles.error} role="status">{error}</p>}
+      <input
+        id={id}
+        ref={inputRef}
+        {...rest}
+        {...(error === '' ? {} : { 'aria-invalid': true, 'aria-describedby': `${id}-error` })}
+      />
+      {error === '' ? null : (
+        <p id={`${id}-error`} className={styles.error} role="status">
+          {error}
+        </p>
+      )}
     </div>
   );
 }

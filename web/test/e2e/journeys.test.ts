@@ -17,7 +17,10 @@ async function picture(page: Page, name: string): Promise<void> {
   await page.waitForLoadState('networkidle');
   await page.waitForTimeout(600);
   await page.screenshot({ path: `${kShots}guide-${name}.png` });
-  if (process.env.GUIDE_PICTURES) { mkdirSync(kPictures, { recursive: true }); await page.screenshot({ path: `${kPictures}${name}.jpg`, type: 'jpeg', quality: 82 }); }
+  if (process.env.GUIDE_PICTURES) {
+    mkdirSync(kPictures, { recursive: true });
+    await page.screenshot({ path: `${kPictures}${name}.jpg`, type: 'jpeg', quality: 82 });
+  }
   await page.setViewportSize({ width: 1440, height: 900 });
 }
 
@@ -29,15 +32,30 @@ describe.skipIf(bin === undefined)('on a real server', () => {
     programme = await furnish(served, bin ?? '');
     const faculty = await new Person(served.url).in('faculty', programme.passwords.get('faculty') ?? '');
     const { cases } = await faculty.ask<{ cases: { id: string }[] }>('GET', '/cases');
-    ({ id: assignment } = await faculty.ask<{ id: string }>('POST', '/assignments', { title: 'Four kinds of bone', cases: tuned, cohort: programme.cohort, repeats: 4, seed: 3, release: 'held' }));
+    ({ id: assignment } = await faculty.ask<{ id: string }>('POST', '/assignments', {
+      title: 'Four kinds of bone',
+      cases: tuned,
+      cohort: programme.cohort,
+      repeats: 4,
+      seed: 3,
+      release: 'held',
+    }));
     programme.does(kAda, 16);
     programme.does(kBen, 16);
-    await faculty.ask('POST', '/assignments', { title: 'The wall of the tract', cases: [{ case: cases[0]?.id }], people: [kAda], release: 'at_once' });
+    await faculty.ask('POST', '/assignments', {
+      title: 'The wall of the tract',
+      cases: [{ case: cases[0]?.id }],
+      people: [kAda],
+      release: 'at_once',
+    });
     programme.does(kAda, 1, 'sim-lambda6');
     await scored(programme.admin);
     browser = await launch();
   }, 600_000);
-  afterAll(async () => { await browser.close(); await served.stop(); });
+  afterAll(async () => {
+    await browser.close();
+    await served.stop();
+  });
   const enter = async (name: string) => {
     const page = await at(browser, served, name, programme.passwords.get(name) ?? '');
     page.on('pageerror', (error) => faults.push(`${name}: ${String(error)}`));
@@ -46,7 +64,9 @@ describe.skipIf(bin === undefined)('on a real server', () => {
 
   it('a trainee sees nothing of the assignment before its results are released, and the own curve after', async () => {
     const page = await enter(kBen);
-    expect(await page.getByRole('navigation', { name: 'Pages' }).getByRole('link').allInnerTexts()).not.toContain('Studies');
+    expect(await page.getByRole('navigation', { name: 'Pages' }).getByRole('link').allInnerTexts()).not.toContain(
+      'Studies',
+    );
     await page.goto('/me');
     await page.getByText('No results yet.').waitFor();
     await programme.admin.ask('POST', `/assignments/${assignment}/release`, { release: 'released' });
@@ -82,7 +102,10 @@ describe.skipIf(bin === undefined)('on a real server', () => {
     const page = await enter('faculty');
     await page.goto('/trials');
     await page.locator('tbody a').first().waitFor();
-    const { trials } = await page.evaluate(async () => (await fetch('/api/v1/trials?limit=50')).json() as Promise<{ trials: { id: string; case_title: string }[] }>);
+    const { trials } = await page.evaluate(
+      async () =>
+        (await fetch('/api/v1/trials?limit=50')).json() as Promise<{ trials: { id: string; case_title: string }[] }>,
+    );
     const palpated = trials.find(({ case_title }) => case_title === 'L3 left pedicle');
     await page.goto(`/trials/${palpated?.id ?? ''}`);
     await page.locator('[data-part="scene"][data-ready]').waitFor();
@@ -112,14 +135,28 @@ describe.skipIf(bin === undefined)('on a real server', () => {
     await page.getByRole('button', { name: 'Create code' }).click();
     const code = await page.locator('[data-part="secret"]').innerText();
     const { execFileSync } = await import('node:child_process');
-    execFileSync(`${bin ?? ''}/tractus-station`, ['enrol', '--server', served.url, '--code', code.trim(), '--token-file', `${served.folder}/theatre.token`]);
+    execFileSync(`${bin ?? ''}/tractus-station`, [
+      'enrol',
+      '--server',
+      served.url,
+      '--code',
+      code.trim(),
+      '--token-file',
+      `${served.folder}/theatre.token`,
+    ]);
     await page.reload();
     await page.getByRole('link', { name: 'theatre 4' }).click();
-    await page.getByRole('heading', { name: 'Status' }).or(page.getByText('The station could not be loaded.')).waitFor();
+    await page
+      .getByRole('heading', { name: 'Status' })
+      .or(page.getByText('The station could not be loaded.'))
+      .waitFor();
     await page.goto('/network/stations');
     await page.getByRole('button', { name: 'Revoke theatre 4' }).click();
     await page.getByRole('button', { name: 'Revoke', exact: true }).click();
-    await page.getByRole('row', { name: /theatre 4/ }).getByText('revoked').waitFor();
+    await page
+      .getByRole('row', { name: /theatre 4/ })
+      .getByText('revoked')
+      .waitFor();
 
     await page.goto('/network/backups');
     await page.getByText('No backups yet.').waitFor();

@@ -19,9 +19,28 @@ describe.skipIf(bin === undefined)('a set with a hidden effect', () => {
   let browser: Browser, served: Served, page: Page, token: string;
   beforeAll(async () => {
     served = await serveReal(bin ?? '');
-    execFileSync(join(bin ?? '', 'blind-probing'), ['--seed', kSeed, '--out', join(served.folder, 'set'), '--effect', 'coulomb_friction', '--trials', '6', '--duration', '4']);
+    execFileSync(join(bin ?? '', 'blind-probing'), [
+      '--seed',
+      kSeed,
+      '--out',
+      join(served.folder, 'set'),
+      '--effect',
+      'coulomb_friction',
+      '--trials',
+      '6',
+      '--duration',
+      '4',
+    ]);
     token = join(served.folder, 'station.token');
-    execFileSync(join(bin ?? '', 'tractus-server'), ['enrol', '--data', join(served.folder, 'data'), '--name', 'skills lab 1', '--out', token]);
+    execFileSync(join(bin ?? '', 'tractus-server'), [
+      'enrol',
+      '--data',
+      join(served.folder, 'data'),
+      '--name',
+      'skills lab 1',
+      '--out',
+      token,
+    ]);
     browser = await launch();
     const context = await browser.newContext({ viewport: { width: 1440, height: 900 }, baseURL: served.url });
     page = await context.newPage();
@@ -32,7 +51,10 @@ describe.skipIf(bin === undefined)('a set with a hidden effect', () => {
     await page.getByRole('button', { name: 'Sign in' }).click();
     await page.getByRole('button', { name: 'Sign out' }).waitFor();
   }, 120_000);
-  afterAll(async () => { await browser.close(); await served.stop(); });
+  afterAll(async () => {
+    await browser.close();
+    await served.stop();
+  });
   const shot = (name: string) => page.screenshot({ path: `${kShots}lab-${name}.png`, fullPage: true });
 
   it('is refused with file and line while a number in it is none', async () => {
@@ -41,8 +63,16 @@ describe.skipIf(bin === undefined)('a set with a hidden effect', () => {
     good[16] = good[16]?.replace(/,[^,]*$/, ',abc') ?? '';
     const choosing = page.waitForEvent('filechooser');
     await page.getByRole('button', { name: 'Choose zip file' }).click();
-    await (await choosing).setFiles([
-      { name: 'set.json', mimeType: 'application/json', buffer: Buffer.from('{"format":"tractus-measurements/1","rig":"probing","trials":[{"id":"t1","file":"trial1.csv"}]}') },
+    await (
+      await choosing
+    ).setFiles([
+      {
+        name: 'set.json',
+        mimeType: 'application/json',
+        buffer: Buffer.from(
+          '{"format":"tractus-measurements/1","rig":"probing","trials":[{"id":"t1","file":"trial1.csv"}]}',
+        ),
+      },
       { name: 'trial1.csv', mimeType: 'text/csv', buffer: Buffer.from(good.join('\n')) },
     ]);
     const row = page.getByRole('row', { name: /trial1\.csv/ });
@@ -78,7 +108,9 @@ describe.skipIf(bin === undefined)('a set with a hidden effect', () => {
     await page.locator('[data-part="verdict"]').waitFor({ timeout: 240_000 });
     expect(await page.locator('[data-part="verdict"]').innerText()).toContain('Coulomb friction is missing.');
     const held = await page.locator('[data-part="held-out"]').allInnerTexts();
-    const floor = newtons(await page.locator('[data-part="error-steps"] text').filter({ hasText: 'noise floor' }).first().innerHTML());
+    const floor = newtons(
+      await page.locator('[data-part="error-steps"] text').filter({ hasText: 'noise floor' }).first().innerHTML(),
+    );
     expect(newtons(held.at(-1) ?? '')).toBeLessThanOrEqual(1.1 * floor);
     await page.waitForLoadState('networkidle');
     await shot('missing');
@@ -99,9 +131,29 @@ describe.skipIf(bin === undefined)('a set with a hidden effect', () => {
     await page.locator('[data-part="sent"]').getByText('received').waitFor();
     await shot('published');
     // It may end in a fault where dry friction lets the push rise above what the actuator holds: felt it was.
-    const felt = spawnSync(join(bin ?? '', 'tractus-station'), ['--device', 'sim-rig', '--scenario', 'hard', '--model', 'handed base (simulated set)', '--data', join(served.folder, 'station'), '--speed', 'fast', '--json'], { encoding: 'utf8' });
-    const { trials: [trial] } = JSON.parse(felt.stdout) as { trials: { file: string }[] };
-    expect(readFileSync(trial?.file ?? '', 'latin1'), 'the trial was felt by the better model').toContain('coulomb_friction');
+    const felt = spawnSync(
+      join(bin ?? '', 'tractus-station'),
+      [
+        '--device',
+        'sim-rig',
+        '--scenario',
+        'hard',
+        '--model',
+        'handed base (simulated set)',
+        '--data',
+        join(served.folder, 'station'),
+        '--speed',
+        'fast',
+        '--json',
+      ],
+      { encoding: 'utf8' },
+    );
+    const {
+      trials: [trial],
+    } = JSON.parse(felt.stdout) as { trials: { file: string }[] };
+    expect(readFileSync(trial?.file ?? '', 'latin1'), 'the trial was felt by the better model').toContain(
+      'coulomb_friction',
+    );
     await page.getByRole('link', { name: 'Compare old and new version' }).click();
     await page.locator('[data-part="error-after"]').waitFor();
     expect(newtons(await page.locator('[data-part="error-after"]').innerText())).toBeLessThan(before / 4);
@@ -112,13 +164,20 @@ describe.skipIf(bin === undefined)('a set with a hidden effect', () => {
 
   it('takes a formula of one’s own once its units fit, and fits it', async () => {
     await page.goto('/lab');
-    await page.getByRole('radio', { name: /handed base.*/ }).last().check();
+    await page
+      .getByRole('radio', { name: /handed base.*/ })
+      .last()
+      .check();
     await page.getByRole('button', { name: 'Compare' }).click();
     await page.getByRole('link', { name: 'Add effects', exact: true }).click();
     await page.getByLabel('Custom formula').check();
     const formula = page.getByLabel('Formula', { exact: true });
     await formula.fill('c * (v_m_s + x_m)');
-    await page.locator('[data-part="unit-check"]').filter({ hasNotText: 'Checking' }).filter({ hasText: 'm/s' }).waitFor();
+    await page
+      .locator('[data-part="unit-check"]')
+      .filter({ hasNotText: 'Checking' })
+      .filter({ hasText: 'm/s' })
+      .waitFor();
     await shot('formula-wrong');
     await formula.fill('f * sign(v_m_s)');
     await page.getByLabel('Unit of f').fill('N');
@@ -135,10 +194,17 @@ describe.skipIf(bin === undefined)('a set with a hidden effect', () => {
     await page.getByRole('link', { name: 'Publish', exact: true }).click();
     await page.getByRole('link', { name: 'Compare', exact: true }).click();
     const [, , , model, set] = new URL(page.url()).pathname.split('/');
-    const id = await page.evaluate(async ([m, s]) => {
-      const answer = await fetch('/api/v1/lab/diagnoses', { method: 'POST', headers: { 'Content-Type': 'application/json', 'X-Tractus': '1' }, body: JSON.stringify({ model: m, measurements: s }) });
-      return ((await answer.json()) as { id: string }).id;
-    }, [model, set]);
+    const id = await page.evaluate(
+      async ([m, s]) => {
+        const answer = await fetch('/api/v1/lab/diagnoses', {
+          method: 'POST',
+          headers: { 'Content-Type': 'application/json', 'X-Tractus': '1' },
+          body: JSON.stringify({ model: m, measurements: s }),
+        });
+        return ((await answer.json()) as { id: string }).id;
+      },
+      [model, set],
+    );
     expect(id).toMatch(/^[0-9a-f]{32}$/);
     await page.getByRole('link', { name: 'Missing effects' }).click();
     await page.getByRole('button', { name: 'Cancel' }).click();
@@ -148,21 +214,45 @@ describe.skipIf(bin === undefined)('a set with a hidden effect', () => {
 
   it('shows a palpation model’s error painted on the wall of the tract', async () => {
     const set = join(served.folder, 'palpation');
-    execFileSync(join(bin ?? '', 'blind-palpation'), ['--seed', '12', '--out', set, '--effect', 'contact_friction', '--trials', '3', '--duration', '5', '--rate', '200', '--tract']);
+    execFileSync(join(bin ?? '', 'blind-palpation'), [
+      '--seed',
+      '12',
+      '--out',
+      set,
+      '--effect',
+      'contact_friction',
+      '--trials',
+      '3',
+      '--duration',
+      '5',
+      '--rate',
+      '200',
+      '--tract',
+    ]);
     const model = JSON.parse(readFileSync(join(set, 'model.json'), 'utf8')) as Record<string, unknown>;
-    delete model.volume;  // the set brings it along
+    delete model.volume; // the set brings it along
     const told = JSON.parse(readFileSync(join(set, 'measurements/set.json'), 'utf8')) as Record<string, unknown>;
     await page.goto('/lab');
     const choosing = page.waitForEvent('filechooser');
     await page.getByRole('button', { name: 'Choose zip file' }).click();
     const named = (name: string, buffer: Buffer) => ({ name, mimeType: 'application/octet-stream', buffer });
-    await (await choosing).setFiles([
-      named('set.json', Buffer.from(JSON.stringify({ ...told, name: 'palpated, simulated', simulated: true, volume: 'volume.nrrd' }))), named('volume.nrrd', readFileSync(join(set, 'volume.nrrd'))),
+    await (
+      await choosing
+    ).setFiles([
+      named(
+        'set.json',
+        Buffer.from(JSON.stringify({ ...told, name: 'palpated, simulated', simulated: true, volume: 'volume.nrrd' })),
+      ),
+      named('volume.nrrd', readFileSync(join(set, 'volume.nrrd'))),
       ...[1, 2, 3].map((n) => named(`trial${n}.csv`, readFileSync(join(set, `measurements/trial${n}.csv`)))),
     ]);
     await page.getByText('palpated, simulated').first().waitFor();
     await page.getByRole('radio', { name: /palpated, simulated/ }).check();
-    await page.locator('[data-part="model-file"]').setInputFiles({ name: 'model.json', mimeType: 'application/json', buffer: Buffer.from(JSON.stringify({ ...model, name: 'palpation, as handed out' })) });
+    await page.locator('[data-part="model-file"]').setInputFiles({
+      name: 'model.json',
+      mimeType: 'application/json',
+      buffer: Buffer.from(JSON.stringify({ ...model, name: 'palpation, as handed out' })),
+    });
     await page.getByText('palpation, as handed out').first().waitFor();
     await page.getByRole('radio', { name: /palpation, as handed out/ }).check();
     await page.getByRole('button', { name: 'Compare' }).click();

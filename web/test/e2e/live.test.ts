@@ -5,7 +5,9 @@ import { launch, signIn, visit } from './browser';
 
 describe.skipIf(!inject('fixture'))('the live view of stations', () => {
   let browser: Browser;
-  beforeAll(async () => { browser = await launch(); });
+  beforeAll(async () => {
+    browser = await launch();
+  });
   afterAll(() => browser.close());
 
   it('moves by itself, says in words what needs a person, and puts it first', async () => {
@@ -16,7 +18,9 @@ describe.skipIf(!inject('fixture'))('the live view of stations', () => {
     const first = await time.innerText();
     await expect.poll(() => time.innerText()).not.toBe(first);
     expect(await page.locator('[data-station]').first().getAttribute('data-station')).toBe('theatre 4');
-    expect(await page.locator('[data-part="summary"]').innerText()).toBe('1 in use, 1 needing attention, 1 available, 1 offline');
+    expect(await page.locator('[data-part="summary"]').innerText()).toBe(
+      '1 in use, 1 needing attention, 1 available, 1 offline',
+    );
     expect(faults).toEqual([]);
     await context.close();
   });

@@ -26,7 +26,7 @@ async function lab(page: Page, check: Check): Promise<void> {
   await page.getByRole('link', { name: 'Missing effects' }).click();
   const find = page.getByRole('button', { name: 'Find missing effects' });
   const verdict = page.locator('[data-part="verdict"]');
-  await find.or(verdict).first().waitFor();  // a visit before this one may have found it
+  await find.or(verdict).first().waitFor(); // a visit before this one may have found it
   if (await find.isVisible()) {
     await check('lab-missing-before');
     await find.click();
@@ -95,7 +95,12 @@ async function programme(page: Page, check: Check): Promise<void> {
   await page.waitForLoadState('networkidle');
   await check('network-station');
   await page.goto('/wall');
-  await page.locator('[data-station]').or(page.getByText('No stations are enrolled yet.')).or(page.locator('[data-connection="connecting"]')).first().waitFor();
+  await page
+    .locator('[data-station]')
+    .or(page.getByText('No stations are enrolled yet.'))
+    .or(page.locator('[data-connection="connecting"]'))
+    .first()
+    .waitFor();
   await page.waitForTimeout(300);
   await check('wall');
 }
@@ -107,11 +112,16 @@ async function hasProgramme(page: Page): Promise<boolean> {
 }
 
 let browser: Browser;
-beforeAll(async () => { browser = await launch(); });
+beforeAll(async () => {
+  browser = await launch();
+});
 afterAll(() => browser.close());
 
 describe.each([
-  { width: 1440, dark: false }, { width: 1440, dark: true }, { width: 800, dark: false }, { width: 800, dark: true },
+  { width: 1440, dark: false },
+  { width: 1440, dark: true },
+  { width: 800, dark: false },
+  { width: 800, dark: true },
 ])('at $width px, dark: $dark', ({ width, dark }) => {
   it('every page can be used without sight, fits the screen and breaks no policy', async () => {
     const { context, page, faults } = await visit(browser, { width, dark });
@@ -121,7 +131,9 @@ describe.each([
       expect(await accessibilityFaults(page), name).toEqual([]);
       const { layoutShift, layoutShiftOf } = await jumped(page);
       expect(layoutShift, `${name}: jumps: ${layoutShiftOf.join(', ')}`).toBeLessThan(kNoticed);
-      const overflow = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+      const overflow = await page.evaluate(
+        () => document.documentElement.scrollWidth - document.documentElement.clientWidth,
+      );
       expect(overflow, `${name}: pixels wider than the screen`).toBeLessThanOrEqual(0);
     };
 
@@ -151,7 +163,10 @@ describe.each([
       await page.locator('[data-participant]').first().waitFor();
       await check('study');
       await page.locator('[data-participant] button[aria-expanded]').first().click();
-      await page.getByRole('button', { name: /^Mark trial/ }).first().click();
+      await page
+        .getByRole('button', { name: /^Mark trial/ })
+        .first()
+        .click();
       await page.getByRole('dialog').waitFor();
       await check('study-invalid');
       await page.keyboard.press('Escape');

@@ -4,7 +4,9 @@ import { afterAll, beforeAll, expect, inject, it } from 'vitest';
 import { assessedTrial, launch, signIn, visit } from './browser';
 
 let browser: Browser;
-beforeAll(async () => { browser = await launch(); });
+beforeAll(async () => {
+  browser = await launch();
+});
 afterAll(() => browser.close());
 
 it('a wrong password is refused in words and the right one lets in, by keyboard alone', async () => {

@@ -4,7 +4,16 @@ import { afterAll, beforeAll, describe, expect, inject, it } from 'vitest';
 import { asked, launch, signIn, someStudy, visit, type Visit } from './browser';
 import { inked } from './pixels';
 
-interface Told { participants: { name: string; state: string; done: number; planned: number; slots: { state: string; trials: { state: string; reason: string }[] }[] }[]; state: string }
+interface Told {
+  participants: {
+    name: string;
+    state: string;
+    done: number;
+    planned: number;
+    slots: { state: string; trials: { state: string; reason: string }[] }[];
+  }[];
+  state: string;
+}
 
 let browser: Browser;
 let seen: Visit;
@@ -17,33 +26,47 @@ afterAll(() => browser.close());
 
 const told = (page: Page, id: string) => asked<Told>(page, `/studies/${id}`);
 
-it.runIf(inject('fixture'))('a study is made from the page: tuned scenarios, one from a file, participants; what is wrong is said', async () => {
-  const { page, faults } = seen;
-  await page.goto('/studies');
-  await page.getByRole('link', { name: 'New study' }).click();
-  await page.getByLabel('Title').fill('Spine study 1');
-  const button = page.getByRole('button', { name: 'Create study' });
-  await page.getByLabel(/One per line/).fill('P01, resident, 0.5\nP 02');
-  await page.getByText('“P 02” is not a valid pseudonym').first().waitFor();
-  expect(await button.isDisabled()).toBe(true);
-  await page.getByLabel(/One per line/).fill('P01, resident, 0.5\nP02, senior, 6');
-  await page.getByLabel('In, out and in again').uncheck();
-  const file = (name: string, text: string) => ({ name, mimeType: 'application/json', buffer: Buffer.from(text) });
-  await page.getByLabel(/Custom scenarios/).setInputFiles([file('mine.json', JSON.stringify({ format: 'tractus-scenario/1', name: 'Mine', bone: { stiffness_N_per_m: -1 } })), file('other.json', '{"a":1}')]);
-  await page.getByText('other.json: not a tractus-scenario/1 file.').waitFor();
-  await button.click();
-  await page.getByText('stiffness_N_per_m: -1 is outside').waitFor();
-  await page.getByRole('button', { name: 'Remove mine.json' }).click();
-  await button.click();
-  await page.getByRole('heading', { level: 1, name: 'Spine study 1' }).waitFor();
-  const { participants } = await told(page, 'spine-study-1');
-  expect(participants.map(({ name, slots }) => `${name}: ${slots.length}`)).toEqual(['P01: 9', 'P02: 9']);
-  expect(faults).toEqual([]);
-});
+it.runIf(inject('fixture'))(
+  'a study is made from the page: tuned scenarios, one from a file, participants; what is wrong is said',
+  async () => {
+    const { page, faults } = seen;
+    await page.goto('/studies');
+    await page.getByRole('link', { name: 'New study' }).click();
+    await page.getByLabel('Title').fill('Spine study 1');
+    const button = page.getByRole('button', { name: 'Create study' });
+    await page.getByLabel(/One per line/).fill('P01, resident, 0.5\nP 02');
+    await page.getByText('“P 02” is not a valid pseudonym').first().waitFor();
+    expect(await button.isDisabled()).toBe(true);
+    await page.getByLabel(/One per line/).fill('P01, resident, 0.5\nP02, senior, 6');
+    await page.getByLabel('In, out and in again').uncheck();
+    const file = (name: string, text: string) => ({ name, mimeType: 'application/json', buffer: Buffer.from(text) });
+    await page
+      .getByLabel(/Custom scenarios/)
+      .setInputFiles([
+        file(
+          'mine.json',
+          JSON.stringify({ format: 'tractus-scenario/1', name: 'Mine', bone: { stiffness_N_per_m: -1 } }),
+        ),
+        file('other.json', '{"a":1}'),
+      ]);
+    await page.getByText('other.json: not a tractus-scenario/1 file.').waitFor();
+    await button.click();
+    await page.getByText('stiffness_N_per_m: -1 is outside').waitFor();
+    await page.getByRole('button', { name: 'Remove mine.json' }).click();
+    await button.click();
+    await page.getByRole('heading', { level: 1, name: 'Spine study 1' }).waitFor();
+    const { participants } = await told(page, 'spine-study-1');
+    expect(participants.map(({ name, slots }) => `${name}: ${slots.length}`)).toEqual(['P01: 9', 'P02: 9']);
+    expect(faults).toEqual([]);
+  },
+);
 
 describe.runIf(inject('fixture'))('the page of a study', () => {
   const kId = 'twelve-trials';
-  const open = async (page: Page) => { await page.goto(`/studies/${kId}`); await page.locator('[data-participant="S08"]').waitFor(); };
+  const open = async (page: Page) => {
+    await page.goto(`/studies/${kId}`);
+    await page.locator('[data-participant="S08"]').waitFor();
+  };
 
   it('follows what comes in, without a jump', async () => {
     const { page } = seen;
@@ -126,7 +149,11 @@ it('a probing trial shows its signals, its force against depth with the wall beh
   const box = (await page.locator('[data-panel="force"] .u-over').boundingBox())!;
   await page.mouse.move(box.x + box.width / 2, box.y + 40);
   await page.locator('[data-part="depth-chart"] circle').waitFor();
-  await page.getByRole('link', { name: /.+/ }).filter({ hasText: /rials|study/i }).first().waitFor();
+  await page
+    .getByRole('link', { name: /.+/ })
+    .filter({ hasText: /rials|study/i })
+    .first()
+    .waitFor();
   await page.locator(`a[href="/studies/${study.id}"]`).click();
   await page.locator('[data-participant]').first().waitFor();
   expect(faults).toEqual([]);

@@ -16,33 +16,81 @@ interface Props {
   readonly onAsk: (question: Question) => void;
 }
 
-const kFirst: Method = { id: 'describe', name: '', description: '', formula: (endpoint) => `${endpoint} ~ 1`, people: false };
+const kFirst: Method = {
+  id: 'describe',
+  name: '',
+  description: '',
+  formula: (endpoint) => `${endpoint} ~ 1`,
+  people: false,
+};
 
 /** An analysis: endpoint, predictor and method. */
 export function QuestionForm({ table, metrics, action, busy, planned = false, onAsk }: Props) {
   const endpoints = endpointsOf(table);
   const predictors = predictorsOf(table);
   const [methodId, setMethod] = useState('lmm');
-  const [endpoint, setEndpoint] = useState(endpoints.find(({ name }) => name === 'operation_time')?.name ?? endpoints[0]?.name ?? '');
+  const [endpoint, setEndpoint] = useState(
+    endpoints.find(({ name }) => name === 'operation_time')?.name ?? endpoints[0]?.name ?? '',
+  );
   const [by, setBy] = useState(() => defaultPredictor(table, endpoint));
   const [own, setOwn] = useState<string | null>(null);
   const [primary, setPrimary] = useState(true);
   const method = kMethods.find(({ id }) => id === methodId) ?? kFirst;
   const formula = own ?? method.formula(endpoint, by, 'participant');
-  const change = <Value,>(set: (value: Value) => void) => (value: Value) => { set(value); setOwn(null); };
+  const change =
+    <Value,>(set: (value: Value) => void) =>
+    (value: Value) => {
+      set(value);
+      setOwn(null);
+    };
   const question = `${columnName(endpoint, metrics)}${method.id === 'describe' ? '' : ` by ${columnName(by, metrics).toLowerCase()}`}`;
   return (
     <div className={styles.stack}>
       <div className={styles.fields}>
-        <Select label="Endpoint" value={endpoint} onChange={(event) => change(setEndpoint)(event.target.value)} options={endpoints.map(({ name }) => ({ value: name, text: columnName(name, metrics) }))} />
-        <Select label="Predictor" value={by} onChange={(event) => change(setBy)(event.target.value)} options={predictors.length === 0 ? [{ value: '1', text: 'no predictor available' }] : predictors.map(({ name }) => ({ value: name, text: columnName(name, metrics) }))} />
-        <Select label="Method" value={methodId} onChange={(event) => change(setMethod)(event.target.value)} options={kMethods.map(({ id, name }) => ({ value: id, text: name }))} />
+        <Select
+          label="Endpoint"
+          value={endpoint}
+          onChange={(event) => change(setEndpoint)(event.target.value)}
+          options={endpoints.map(({ name }) => ({ value: name, text: columnName(name, metrics) }))}
+        />
+        <Select
+          label="Predictor"
+          value={by}
+          onChange={(event) => change(setBy)(event.target.value)}
+          options={
+            predictors.length === 0
+              ? [{ value: '1', text: 'no predictor available' }]
+              : predictors.map(({ name }) => ({ value: name, text: columnName(name, metrics) }))
+          }
+        />
+        <Select
+          label="Method"
+          value={methodId}
+          onChange={(event) => change(setMethod)(event.target.value)}
+          options={kMethods.map(({ id, name }) => ({ value: id, text: name }))}
+        />
       </div>
       <p className={styles.muted}>{method.description}</p>
       <div className={styles.ask}>
-        <Field label="Formula (editable)" value={formula} spellCheck={false} onChange={(event) => setOwn(event.target.value)} />
-        {planned ? <label className={styles.check}><input type="checkbox" checked={primary} onChange={(event) => setPrimary(event.target.checked)} /> primary (included in the correction for multiple testing)</label> : null}
-        <Button look="solid" disabled={busy || endpoint === ''} onClick={() => onAsk({ method: method.id, formula, question, primary })}>{busy ? 'Starting…' : action}</Button>
+        <Field
+          label="Formula (editable)"
+          value={formula}
+          spellCheck={false}
+          onChange={(event) => setOwn(event.target.value)}
+        />
+        {planned ? (
+          <label className={styles.check}>
+            <input type="checkbox" checked={primary} onChange={(event) => setPrimary(event.target.checked)} /> primary
+            (included in the correction for multiple testing)
+          </label>
+        ) : null}
+        <Button
+          look="solid"
+          disabled={busy || endpoint === ''}
+          onClick={() => onAsk({ method: method.id, formula, question, primary })}
+        >
+          {busy ? 'Starting…' : action}
+        </Button>
       </div>
     </div>
   );

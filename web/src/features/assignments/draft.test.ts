@@ -12,17 +12,29 @@ describe('a new assignment', () => {
     expect(both.chosen.map(({ blind }) => blind)).toEqual(['Case A', 'Case B']);
     expect(toggled(toggled(both, l3), l3).chosen.map(({ blind }) => blind)).toEqual(['Case B', 'Case A']);
   });
-  it('counts on after Z', () => { expect([25, 26, 51, 52].map(letters)).toEqual(['Z', 'AA', 'AZ', 'BA']); });
+  it('counts on after Z', () => {
+    expect([25, 26, 51, 52].map(letters)).toEqual(['Z', 'AA', 'AZ', 'BA']);
+  });
   it('tells the server nothing of a title of a case, and the tuned scenario by its kind', () => {
     expect(requestOf(both)).toEqual({
-      title: 'Week 1', cases: [{ case: 'c3', name: 'Case A' }, { scenario: { tuned: 'hard' }, name: 'Case B' }], cohort: 'r27', ordering: 'random', repeats: 1, release: 'held',
+      title: 'Week 1',
+      cases: [
+        { case: 'c3', name: 'Case A' },
+        { scenario: { tuned: 'hard' }, name: 'Case B' },
+      ],
+      cohort: 'r27',
+      ordering: 'random',
+      repeats: 1,
+      release: 'held',
     });
   });
   it('says what it lacks', () => {
     expect(firstProblem({ ...both, title: '' }, kNow_us)).toMatch(/title/);
     expect(firstProblem({ ...both, chosen: [] }, kNow_us)).toMatch(/case/);
     expect(firstProblem({ ...both, cohort: '' }, kNow_us)).toMatch(/cohort/);
-    expect(firstProblem({ ...both, chosen: both.chosen.map((one) => ({ ...one, blind: 'Case A' })) }, kNow_us)).toMatch(/same blind name/);
+    expect(firstProblem({ ...both, chosen: both.chosen.map((one) => ({ ...one, blind: 'Case A' })) }, kNow_us)).toMatch(
+      /same blind name/,
+    );
     expect(firstProblem({ ...both, due: '2026-02-28T12:00' }, kNow_us)).toBe('The due date is in the past.');
     expect(firstProblem({ ...both, due: '2026-03-02T12:00' }, kNow_us)).toBe('');
     expect(firstProblem(both, kNow_us)).toBe('');

@@ -2,8 +2,17 @@
 import type { NewAssignment } from '@/api';
 import { fromField } from './dates';
 
-export interface Item { readonly key: string; readonly title: string; readonly rig: 'palpation' | 'probing'; readonly case_id?: string; readonly tuned?: string; /** Its bone is whole. */ readonly whole?: boolean }
-export interface Chosen extends Item { readonly blind: string }
+export interface Item {
+  readonly key: string;
+  readonly title: string;
+  readonly rig: 'palpation' | 'probing';
+  readonly case_id?: string;
+  readonly tuned?: string;
+  /** Its bone is whole. */ readonly whole?: boolean;
+}
+export interface Chosen extends Item {
+  readonly blind: string;
+}
 
 export interface Draft {
   readonly title: string;
@@ -16,7 +25,16 @@ export interface Draft {
   readonly release: 'held' | 'released' | 'at_once';
 }
 
-export const kNoDraft: Draft = { title: '', chosen: [], cohort: '', people: [], ordering: 'random', repeats: 1, due: '', release: 'held' };
+export const kNoDraft: Draft = {
+  title: '',
+  chosen: [],
+  cohort: '',
+  people: [],
+  ordering: 'random',
+  repeats: 1,
+  due: '',
+  release: 'held',
+};
 
 /** A, B, … Z, AA: the default blind name of a case. */
 export function letters(index: number): string {
@@ -33,7 +51,12 @@ export function nextBlind(chosen: readonly Chosen[]): string {
 
 export function toggled(draft: Draft, item: Item): Draft {
   const there = draft.chosen.some(({ key }) => key === item.key);
-  return { ...draft, chosen: there ? draft.chosen.filter(({ key }) => key !== item.key) : [...draft.chosen, { ...item, blind: nextBlind(draft.chosen) }] };
+  return {
+    ...draft,
+    chosen: there
+      ? draft.chosen.filter(({ key }) => key !== item.key)
+      : [...draft.chosen, { ...item, blind: nextBlind(draft.chosen) }],
+  };
 }
 
 /** The first thing that is missing or wrong; empty: the assignment can be created. */
@@ -53,10 +76,15 @@ export function requestOf(draft: Draft): NewAssignment {
   return {
     title: draft.title.trim(),
     cases: draft.chosen.map(({ case_id, tuned, blind }) => ({
-      ...(case_id === undefined ? { scenario: { tuned: tuned ?? '' } } : { case: case_id }), ...(blind.trim() === '' ? {} : { name: blind.trim() }),
+      ...(case_id === undefined ? { scenario: { tuned: tuned ?? '' } } : { case: case_id }),
+      ...(blind.trim() === '' ? {} : { name: blind.trim() }),
     })),
-    ...(draft.cohort === '' ? {} : { cohort: draft.cohort }), ...(draft.people.length === 0 ? {} : { people: [...draft.people] }),
-    ordering: draft.ordering, repeats: draft.repeats, release: draft.release, ...(due === null ? {} : { due_utc_us: due }),
+    ...(draft.cohort === '' ? {} : { cohort: draft.cohort }),
+    ...(draft.people.length === 0 ? {} : { people: [...draft.people] }),
+    ordering: draft.ordering,
+    repeats: draft.repeats,
+    release: draft.release,
+    ...(due === null ? {} : { due_utc_us: due }),
   };
 }
 

@@ -24,7 +24,10 @@ export type Due = 'none' | 'late' | 'soon' | 'later';
 const kSoon_us = 3 * 24 * 3600 * 1e6;
 
 /** Urgency of an assignment that is not complete. */
-export function dueState({ due_utc_us, done, planned }: Pick<AssignmentSummary, 'due_utc_us' | 'done' | 'planned'>, now_us: number): Due {
+export function dueState(
+  { due_utc_us, done, planned }: Pick<AssignmentSummary, 'due_utc_us' | 'done' | 'planned'>,
+  now_us: number,
+): Due {
   if (due_utc_us === null || done >= planned) return 'none';
   const left = due_utc_us - now_us;
   return left < 0 ? 'late' : left < kSoon_us ? 'soon' : 'later';

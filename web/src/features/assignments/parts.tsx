@@ -20,6 +20,21 @@ export function Drilling({ one }: { readonly one: AssignmentSummary }) {
   return label === '' ? null : <span className={styles.drilling}>{label}</span>;
 }
 
-export function Done({ done, planned, label }: { readonly done: number; readonly planned: number; readonly label: string }) {
-  return <span className={styles.done}><Progress done={done} of={planned} label={label} /><span>{formatCount(done)} of {formatCount(planned)}</span></span>;
+export function Done({
+  done,
+  planned,
+  label,
+}: {
+  readonly done: number;
+  readonly planned: number;
+  readonly label: string;
+}) {
+  return (
+    <span className={styles.done}>
+      <Progress done={done} of={planned} label={label} />
+      <span>
+        {formatCount(done)} of {formatCount(planned)}
+      </span>
+    </span>
+  );
 }

@@ -25,9 +25,23 @@ function Truth({ id }: { readonly id: string }) {
     <Card title="Truth">
       <div className={styles.truth}>
         {!shown ? <Button onClick={() => setShown(true)}>Show the breached wall</Button> : null}
-        {shown && query.data ? <><Facts facts={truthFacts(query.data)} /><Button look="quiet" onClick={() => setShown(false)}>Hide</Button></> : null}
+        {shown && query.data ? (
+          <>
+            <Facts facts={truthFacts(query.data)} />
+            <Button look="quiet" onClick={() => setShown(false)}>
+              Hide
+            </Button>
+          </>
+        ) : null}
         {shown && query.isPending ? <Skeleton height="40px" /> : null}
-        {shown && query.isError ? <Notice tone={refused ? 'warn' : 'bad'} title={refused ? 'Only faculty and administrators can see the truth.' : 'The truth could not be loaded.'}>{query.error.message}</Notice> : null}
+        {shown && query.isError ? (
+          <Notice
+            tone={refused ? 'warn' : 'bad'}
+            title={refused ? 'Only faculty and administrators can see the truth.' : 'The truth could not be loaded.'}
+          >
+            {query.error.message}
+          </Notice>
+        ) : null}
       </div>
     </Card>
   );
@@ -42,24 +56,60 @@ export function CasePage({ id }: { readonly id: string }) {
   useTitle(found?.title ?? 'Case');
   return (
     <div className={styles.page}>
-      <p><Link href="/cases">← Cases</Link></p>
-      {query.isError ? <Notice tone="bad" title="The case could not be loaded." onRetry={() => void query.refetch()}>{query.error.message}</Notice> : null}
-      {query.isPending ? <div role="status"><span className="hidden-visually">Loading the case</span><Skeleton height="480px" /></div> : null}
+      <p>
+        <Link href="/cases">← Cases</Link>
+      </p>
+      {query.isError ? (
+        <Notice tone="bad" title="The case could not be loaded." onRetry={() => void query.refetch()}>
+          {query.error.message}
+        </Notice>
+      ) : null}
+      {query.isPending ? (
+        <div role="status">
+          <span className="hidden-visually">Loading the case</span>
+          <Skeleton height="480px" />
+        </div>
+      ) : null}
       {found ? (
         <>
           <h1>{found.title}</h1>
-          <Facts facts={[
-            { name: 'Source', value: found.source },
-            { name: 'Created', value: formatDateTime(found.made_utc_us) },
-            { name: 'Channel', value: found.channel === 'planned' ? 'trainee drills, then palpates' : 'pre-drilled' },
-            { name: 'Tract', value: `${formatLength(found.tract.length_m)} long, ${formatLength(metre(2 * found.tract.radius_m))} wide` },
-          ]} />
+          <Facts
+            facts={[
+              { name: 'Source', value: found.source },
+              { name: 'Created', value: formatDateTime(found.made_utc_us) },
+              { name: 'Channel', value: found.channel === 'planned' ? 'trainee drills, then palpates' : 'pre-drilled' },
+              {
+                name: 'Tract',
+                value: `${formatLength(found.tract.length_m)} long, ${formatLength(metre(2 * found.tract.radius_m))} wide`,
+              },
+            ]}
+          />
           <div className={styles.pair}>
             <Card title="Tract in the bone">
-              {preview.isError ? <Notice tone="warn" title="The bone could not be loaded. The view does not show it." onRetry={() => void preview.refetch()}>{preview.error.message}</Notice> : null}
-              {preview.isPending ? <Skeleton height="444px" /> : (
-                <PlanView tract={found.tract} breach={null} bone={preview.data ?? null} palette={palette} summary="The tract and the surrounding bone."
-                  button={(label, text, press, pressed) => <Button label={label} onClick={press} {...(pressed === undefined ? {} : { pressed })}>{text}</Button>} />
+              {preview.isError ? (
+                <Notice
+                  tone="warn"
+                  title="The bone could not be loaded. The view does not show it."
+                  onRetry={() => void preview.refetch()}
+                >
+                  {preview.error.message}
+                </Notice>
+              ) : null}
+              {preview.isPending ? (
+                <Skeleton height="444px" />
+              ) : (
+                <PlanView
+                  tract={found.tract}
+                  breach={null}
+                  bone={preview.data ?? null}
+                  palette={palette}
+                  summary="The tract and the surrounding bone."
+                  button={(label, text, press, pressed) => (
+                    <Button label={label} onClick={press} {...(pressed === undefined ? {} : { pressed })}>
+                      {text}
+                    </Button>
+                  )}
+                />
               )}
             </Card>
             <Truth id={id} />

@@ -1,7 +1,16 @@
 import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { useEffect, useRef } from 'react';
 import { Link } from 'wouter';
-import { casesQuery, makingsQuery, retireCase, sessionQuery, sourceVolumesQuery, type CaseSummary, type Making, type SourceVolume } from '@/api';
+import {
+  casesQuery,
+  makingsQuery,
+  retireCase,
+  sessionQuery,
+  sourceVolumesQuery,
+  type CaseSummary,
+  type Making,
+  type SourceVolume,
+} from '@/api';
 import { Badge, Button, Card, Notice, Progress, Table, useTitle } from '@/ui';
 import { formatCount, formatDateTime, formatShare, share } from '@/units';
 import styles from './cases.module.css';
@@ -12,15 +21,29 @@ function Volumes() {
   const held = query.data?.volumes.filter(({ state }) => state === 'held').length ?? 0;
   return (
     <Card title="Create a case from a volume">
-      {query.isError ? <Notice tone="bad" title="The volumes could not be loaded." onRetry={() => void query.refetch()}>{query.error.message}</Notice> : (
+      {query.isError ? (
+        <Notice tone="bad" title="The volumes could not be loaded." onRetry={() => void query.refetch()}>
+          {query.error.message}
+        </Notice>
+      ) : (
         <div className={styles.stack}>
-          <Table<SourceVolume> caption="Released volumes" rows={released} keyOf={({ id }) => id} empty="No released volumes yet. An administrator or the programme director reviews every imported volume before its release." columns={[
-            { name: 'Volume', cell: (one) => <Link href={`/cases/new/${one.id}`}>{one.name}</Link> },
-            { name: 'Source', cell: (one) => one.source },
-            { name: 'Voxels', cell: (one) => one.dims.map(formatCount).join(' × '), number: true },
-            { name: 'Imported', cell: (one) => formatDateTime(one.made_utc_us) },
-          ]} />
-          {held > 0 ? <p className={styles.muted}>{formatCount(held)} {held === 1 ? 'volume is' : 'volumes are'} waiting for review.</p> : null}
+          <Table<SourceVolume>
+            caption="Released volumes"
+            rows={released}
+            keyOf={({ id }) => id}
+            empty="No released volumes yet. An administrator or the programme director reviews every imported volume before its release."
+            columns={[
+              { name: 'Volume', cell: (one) => <Link href={`/cases/new/${one.id}`}>{one.name}</Link> },
+              { name: 'Source', cell: (one) => one.source },
+              { name: 'Voxels', cell: (one) => one.dims.map(formatCount).join(' × '), number: true },
+              { name: 'Imported', cell: (one) => formatDateTime(one.made_utc_us) },
+            ]}
+          />
+          {held > 0 ? (
+            <p className={styles.muted}>
+              {formatCount(held)} {held === 1 ? 'volume is' : 'volumes are'} waiting for review.
+            </p>
+          ) : null}
         </div>
       )}
     </Card>
@@ -34,19 +57,38 @@ function CasesInPreparation() {
   const done = query.data?.makings.filter(({ state }) => state === 'done').length;
   const before = useRef(done);
   useEffect(() => {
-    if (before.current !== undefined && done !== before.current) void client.invalidateQueries({ queryKey: casesQuery.queryKey });
+    if (before.current !== undefined && done !== before.current)
+      void client.invalidateQueries({ queryKey: casesQuery.queryKey });
     before.current = done;
   }, [done, client]);
   if (shown.length === 0) return null;
   return (
     <Card title="Cases in preparation">
-      <Table<Making> caption="Cases in preparation" rows={shown} keyOf={({ id }) => id} empty="" columns={[
-        { name: 'Case', cell: (one) => one.title },
-        { name: 'State', cell: (one) => (one.state === 'failed'
-          ? <span><Badge tone="bad">failed</Badge> {one.error} <Link href={`/cases/new/${one.volume}`}>Try again</Link></span>
-          : <span className={styles.going}><Progress done={one.share} of={1} label={`Preparing ${one.title}`} /><span>{formatShare(share(one.share))}</span><span>{one.state === 'queued' ? 'queued' : one.phase}</span></span>) },
-        { name: 'Requested', cell: (one) => `${formatDateTime(one.made_utc_us)} by ${one.made_by}` },
-      ]} />
+      <Table<Making>
+        caption="Cases in preparation"
+        rows={shown}
+        keyOf={({ id }) => id}
+        empty=""
+        columns={[
+          { name: 'Case', cell: (one) => one.title },
+          {
+            name: 'State',
+            cell: (one) =>
+              one.state === 'failed' ? (
+                <span>
+                  <Badge tone="bad">failed</Badge> {one.error} <Link href={`/cases/new/${one.volume}`}>Try again</Link>
+                </span>
+              ) : (
+                <span className={styles.going}>
+                  <Progress done={one.share} of={1} label={`Preparing ${one.title}`} />
+                  <span>{formatShare(share(one.share))}</span>
+                  <span>{one.state === 'queued' ? 'queued' : one.phase}</span>
+                </span>
+              ),
+          },
+          { name: 'Requested', cell: (one) => `${formatDateTime(one.made_utc_us)} by ${one.made_by}` },
+        ]}
+      />
     </Card>
   );
 }
@@ -65,22 +107,76 @@ export function CasesPage() {
   const last = retired.data === undefined && retired.isSuccess ? retired.variables : null;
   return (
     <div className={styles.page}>
-      <div><h1>Cases</h1><p className={styles.lead}>A case is a patient’s bone with a drilled channel. The truth (which wall is breached, and where) is stored separately; stations receive the case without it. In cases without a pre-drilled channel, the trainee drills the channel and then palpates it.</p></div>
+      <div>
+        <h1>Cases</h1>
+        <p className={styles.lead}>
+          A case is a patient’s bone with a drilled channel. The truth (which wall is breached, and where) is stored
+          separately; stations receive the case without it. In cases without a pre-drilled channel, the trainee drills
+          the channel and then palpates it.
+        </p>
+      </div>
       {may ? <Volumes /> : null}
       {may ? <CasesInPreparation /> : null}
-      {query.isError ? <Notice tone="bad" title="The cases could not be loaded." onRetry={() => void query.refetch()}>{query.error.message}</Notice> : (
+      {query.isError ? (
+        <Notice tone="bad" title="The cases could not be loaded." onRetry={() => void query.refetch()}>
+          {query.error.message}
+        </Notice>
+      ) : (
         <Card title="Cases" aside={may ? <Link href="/assignments/new">Assign cases</Link> : undefined}>
           <div className={styles.stack}>
-            <Table<CaseSummary> caption="Cases" rows={query.data?.cases} keyOf={({ id }) => id} empty="No cases yet. Create one from a volume." minWidth={640} columns={[
-              { name: 'Case', cell: (one) => <Link href={`/cases/${one.id}`}>{one.title}</Link> },
-              { name: 'Source', cell: (one) => one.source },
-              { name: 'Created', cell: (one) => formatDateTime(one.made_utc_us) },
-              { name: 'Trials', cell: (one) => formatCount(one.trials), number: true },
-              { name: 'State', cell: (one) => (one.retired ? <Badge>retired</Badge> : <><Badge tone="good">available</Badge>{one.planned ? <> <Badge>trainee drills</Badge></> : null}</>) },
-              { name: <span className="hidden-visually">Actions</span>, cell: (one) => (may ? <Button look="quiet" label={`${one.retired ? 'Restore' : 'Retire'}: ${one.title}`} disabled={retired.isPending} onClick={() => retired.mutate({ one, away: !one.retired })}>{one.retired ? 'Restore' : 'Retire'}</Button> : null) },
-            ]} />
+            <Table<CaseSummary>
+              caption="Cases"
+              rows={query.data?.cases}
+              keyOf={({ id }) => id}
+              empty="No cases yet. Create one from a volume."
+              minWidth={640}
+              columns={[
+                { name: 'Case', cell: (one) => <Link href={`/cases/${one.id}`}>{one.title}</Link> },
+                { name: 'Source', cell: (one) => one.source },
+                { name: 'Created', cell: (one) => formatDateTime(one.made_utc_us) },
+                { name: 'Trials', cell: (one) => formatCount(one.trials), number: true },
+                {
+                  name: 'State',
+                  cell: (one) =>
+                    one.retired ? (
+                      <Badge>retired</Badge>
+                    ) : (
+                      <>
+                        <Badge tone="good">available</Badge>
+                        {one.planned ? (
+                          <>
+                            {' '}
+                            <Badge>trainee drills</Badge>
+                          </>
+                        ) : null}
+                      </>
+                    ),
+                },
+                {
+                  name: <span className="hidden-visually">Actions</span>,
+                  cell: (one) =>
+                    may ? (
+                      <Button
+                        look="quiet"
+                        label={`${one.retired ? 'Restore' : 'Retire'}: ${one.title}`}
+                        disabled={retired.isPending}
+                        onClick={() => retired.mutate({ one, away: !one.retired })}
+                      >
+                        {one.retired ? 'Restore' : 'Retire'}
+                      </Button>
+                    ) : null,
+                },
+              ]}
+            />
             <p className={styles.message} role="status">
-              {last ? <>{last.one.title} is {last.away ? 'retired; existing assignments continue.' : 'available again.'} <Button look="quiet" onClick={() => retired.mutate({ one: last.one, away: !last.away })}>Undo</Button></> : null}
+              {last ? (
+                <>
+                  {last.one.title} is {last.away ? 'retired; existing assignments continue.' : 'available again.'}{' '}
+                  <Button look="quiet" onClick={() => retired.mutate({ one: last.one, away: !last.away })}>
+                    Undo
+                  </Button>
+                </>
+              ) : null}
               {retired.isError ? `The action failed: ${retired.error.message}` : null}
             </p>
           </div>

@@ -14,11 +14,18 @@ import { useRun } from './use-run';
 import { verdictOf } from './verdict';
 import { effectName, joined, workAddress } from './names';
 
-interface Props { readonly model: string; readonly set: string; readonly rig: Rig }
+interface Props {
+  readonly model: string;
+  readonly set: string;
+  readonly rig: Rig;
+}
 
 const kTone = { good: 'good', warn: 'warn', bad: 'bad', accent: 'accent' } as const;
 
-const stepName = (name: string) => (name === 'base' ? 'Refitted, no effect added' : name.replace(/\+ ?([\w:]+)/g, (_, id: string) => `+ ${effectName(id)}`));
+const stepName = (name: string) =>
+  name === 'base'
+    ? 'Refitted, no effect added'
+    : name.replace(/\+ ?([\w:]+)/g, (_, id: string) => `+ ${effectName(id)}`);
 
 function Undetermined({ diagnosis }: { readonly diagnosis: Diagnosis }) {
   const { confounded, settle, notes } = diagnosis;
@@ -26,11 +33,25 @@ function Undetermined({ diagnosis }: { readonly diagnosis: Diagnosis }) {
   return (
     <Card title="What these measurements cannot determine">
       <div className={styles.stack}>
-        {confounded.map(([a, b]) => <p key={`${a} ${b}`}><strong>{effectName(a)}</strong> and <strong>{effectName(b)}</strong> cannot be distinguished with these measurements: the error is nearly the same with each.</p>)}
+        {confounded.map(([a, b]) => (
+          <p key={`${a} ${b}`}>
+            <strong>{effectName(a)}</strong> and <strong>{effectName(b)}</strong> cannot be distinguished with these
+            measurements: the error is nearly the same with each.
+          </p>
+        ))}
         {settle ? (
-          <Notice title="Recommended next recording">{settle.recording} It would distinguish {joined(settle.between.map(effectName))}{settle.expected_gain === null ? '.' : ` with a probability of ${formatShare(share(Math.min(settle.expected_gain, 1)))}.`}</Notice>
+          <Notice title="Recommended next recording">
+            {settle.recording} It would distinguish {joined(settle.between.map(effectName))}
+            {settle.expected_gain === null
+              ? '.'
+              : ` with a probability of ${formatShare(share(Math.min(settle.expected_gain, 1)))}.`}
+          </Notice>
         ) : null}
-        {notes.map((note) => <p key={note} className={styles.muted}>{note}</p>)}
+        {notes.map((note) => (
+          <p key={note} className={styles.muted}>
+            {note}
+          </p>
+        ))}
       </div>
     </Card>
   );
@@ -42,23 +63,76 @@ function Found({ run, diagnosis, model, set, rig }: Props & { readonly run: LabR
   const { tone, headline, detail } = verdictOf(diagnosis, unit);
   const found = diagnosis.effects.map(({ id }) => effectName(id));
   const drawable: Drawable | null = run.comparisons
-    ? { run, ...run.comparisons, rig, names: { before: found.length > 0 ? 'without effects' : 'refitted', after: run.comparisons.after ? `with ${joined(found)}` : null } } : null;
+    ? {
+        run,
+        ...run.comparisons,
+        rig,
+        names: {
+          before: found.length > 0 ? 'without effects' : 'refitted',
+          after: run.comparisons.after ? `with ${joined(found)}` : null,
+        },
+      }
+    : null;
   return (
     <>
-      <Card title="Verdict" aside={<a href={reportAddress(run.id)} target="_blank" rel="noreferrer">Report (new tab)</a>}>
+      <Card
+        title="Verdict"
+        aside={
+          <a href={reportAddress(run.id)} target="_blank" rel="noreferrer">
+            Report (new tab)
+          </a>
+        }
+      >
         <div className={styles.verdict} data-tone={kTone[tone]} data-part="verdict">
           <p className={styles.headline}>{headline}</p>
           <p>{detail}</p>
-          {run.model_ready && found.length > 0 ? <p className={styles.buttons}><Link href={workAddress(model, set, 'publish')} className={styles.solidLink}>Add {joined(found)} and publish</Link><Link href={workAddress(model, set, 'add')}>Try other effects or a custom formula</Link></p> : null}
+          {run.model_ready && found.length > 0 ? (
+            <p className={styles.buttons}>
+              <Link href={workAddress(model, set, 'publish')} className={styles.solidLink}>
+                Add {joined(found)} and publish
+              </Link>
+              <Link href={workAddress(model, set, 'add')}>Try other effects or a custom formula</Link>
+            </p>
+          ) : null}
         </div>
       </Card>
-      <Card title="Error by step"><ErrorSteps steps={diagnosis.steps.map(({ model: name, ...errors }) => ({ name: stepName(name), ...errors }))} noise_floor={diagnosis.base.noise_floor} unit={unit} />
-        <p className={styles.readable} data-part="why-two">“Refitted, no effect added” has an error of {formatFigure(diagnosis.base.rmse, unit)}. <Link href={workAddress(model, set)}>Compare</Link> may show a larger error, because it uses the model as published; here, the parameters were first fitted to these measurements. Refitting corrects inaccurate parameters; the remaining error shows what the model lacks.</p>
+      <Card title="Error by step">
+        <ErrorSteps
+          steps={diagnosis.steps.map(({ model: name, ...errors }) => ({ name: stepName(name), ...errors }))}
+          noise_floor={diagnosis.base.noise_floor}
+          unit={unit}
+        />
+        <p className={styles.readable} data-part="why-two">
+          “Refitted, no effect added” has an error of {formatFigure(diagnosis.base.rmse, unit)}.{' '}
+          <Link href={workAddress(model, set)}>Compare</Link> may show a larger error, because it uses the model as
+          published; here, the parameters were first fitted to these measurements. Refitting corrects inaccurate
+          parameters; the remaining error shows what the model lacks.
+        </p>
       </Card>
-      <Card title="Ranked effects"><Ranking ranking={diagnosis.ranking} effects={effects} unit={unit} without={diagnosis.base.held_out_rmse} addressToTry={(id) => `${workAddress(model, set, 'add')}?add=${encodeURIComponent(id)}`} /></Card>
+      <Card title="Ranked effects">
+        <Ranking
+          ranking={diagnosis.ranking}
+          effects={effects}
+          unit={unit}
+          without={diagnosis.base.held_out_rmse}
+          addressToTry={(id) => `${workAddress(model, set, 'add')}?add=${encodeURIComponent(id)}`}
+        />
+      </Card>
       <Undetermined diagnosis={diagnosis} />
-      {drawable ? <Card title={drawable.names.after ? 'Residual without and with the effects' : 'Residual'} aside={<Badge>{diagnosis.held_out === 'trials' ? 'held out by trial' : diagnosis.held_out}</Badge>}><div className={styles.stack}><Headline before={drawable.before} after={drawable.after} names={drawable.names} /><Series drawable={drawable} /></div></Card> : null}
-      <Card title="Fitted parameters"><Parameters estimates={diagnosis.parameters} /></Card>
+      {drawable ? (
+        <Card
+          title={drawable.names.after ? 'Residual without and with the effects' : 'Residual'}
+          aside={<Badge>{diagnosis.held_out === 'trials' ? 'held out by trial' : diagnosis.held_out}</Badge>}
+        >
+          <div className={styles.stack}>
+            <Headline before={drawable.before} after={drawable.after} names={drawable.names} />
+            <Series drawable={drawable} />
+          </div>
+        </Card>
+      ) : null}
+      <Card title="Fitted parameters">
+        <Parameters estimates={diagnosis.parameters} />
+      </Card>
     </>
   );
 }
@@ -68,14 +142,27 @@ export function MissingStep({ model, set, rig }: Props) {
   const view = useRun({ kind: 'diagnosis', model, set, fits: () => true, start: () => startDiagnosis(model, set) });
   const effects = useQuery(effectsQuery(rig)).data?.effects ?? [];
   const { run } = view;
-  if (view.error) return <Notice tone="bad" title="The search failed." onRetry={view.retry}>{view.error.message}</Notice>;
+  if (view.error)
+    return (
+      <Notice tone="bad" title="The search failed." onRetry={view.retry}>
+        {view.error.message}
+      </Notice>
+    );
   if (run === undefined) return <Skeleton height="200px" />;
   if (run === null) {
     return (
       <Card title="Which effect is missing?">
         <div className={styles.stack}>
-          <p className={styles.readable}>First, the parameters of the model are fitted. Then every effect of the catalogue is added, alone and in combination, fitted on some trials and tested on the others. This takes seconds for probing and minutes for palpation; you can leave the page meanwhile.</p>
-          <div><Button look="solid" onClick={view.begin} disabled={view.beginning}>{view.beginning ? 'Starting…' : 'Find missing effects'}</Button></div>
+          <p className={styles.readable}>
+            First, the parameters of the model are fitted. Then every effect of the catalogue is added, alone and in
+            combination, fitted on some trials and tested on the others. This takes seconds for probing and minutes for
+            palpation; you can leave the page meanwhile.
+          </p>
+          <div>
+            <Button look="solid" onClick={view.begin} disabled={view.beginning}>
+              {view.beginning ? 'Starting…' : 'Find missing effects'}
+            </Button>
+          </div>
         </div>
       </Card>
     );
@@ -83,10 +170,18 @@ export function MissingStep({ model, set, rig }: Props) {
   if (run.diagnosis) return <Found run={run} diagnosis={run.diagnosis} model={model} set={set} rig={rig} />;
   return (
     <>
-      <Card title="Which effect is missing?"><RunState run={run} what="The search" again={view.begin} /></Card>
+      <Card title="Which effect is missing?">
+        <RunState run={run} what="The search" again={view.begin} />
+      </Card>
       {run.ranking && atWork(run) ? (
         <Card title="Preliminary ranking" aside={<Badge tone="accent">in progress</Badge>}>
-          <Ranking ranking={run.ranking} effects={effects} unit={primaryUnit(run)} without={null} addressToTry={(id) => `${workAddress(model, set, 'add')}?add=${encodeURIComponent(id)}`} />
+          <Ranking
+            ranking={run.ranking}
+            effects={effects}
+            unit={primaryUnit(run)}
+            without={null}
+            addressToTry={(id) => `${workAddress(model, set, 'add')}?add=${encodeURIComponent(id)}`}
+          />
         </Card>
       ) : null}
     </>

@@ -11,10 +11,14 @@ export function parameterName(pointer: string): { name: string; unit: string } {
   const own = nameAndUnit((numbered ? parts.at(-2) : parts.at(-1)) ?? pointer);
   const component = numbered ? ` ${['x', 'y', 'z'][Number(parts.at(-1))] ?? parts.at(-1) ?? ''}` : '';
   const rest = parts.slice(0, numbered ? -2 : -1);
-  const place = rest[0] !== 'base' && rest[0] !== undefined ? effectName(rest[0])
-    : rest[1] === 'layers' ? `Layer ${Number(rest[2] ?? 0) + 1}` : rest.slice(1).join(' ');
+  const place =
+    rest[0] !== 'base' && rest[0] !== undefined
+      ? effectName(rest[0])
+      : rest[1] === 'layers'
+        ? `Layer ${Number(rest[2] ?? 0) + 1}`
+        : rest.slice(1).join(' ');
   const words = place === '' ? own.name : `${place}, ${own.name}`;
-  return { name: (words.charAt(0).toUpperCase() + words.slice(1)) + component, unit: own.unit };
+  return { name: words.charAt(0).toUpperCase() + words.slice(1) + component, unit: own.unit };
 }
 
 export function Parameters({ estimates }: { readonly estimates: readonly Estimate[] }) {
@@ -22,7 +26,17 @@ export function Parameters({ estimates }: { readonly estimates: readonly Estimat
     <Scroll label="Fitted parameters">
       <table className={styles.table}>
         <caption className="hidden-visually">Fitted parameters</caption>
-        <thead><tr><th scope="col">Parameter</th><th scope="col" className={styles.number}><Term align="end" definition="Fitted value and its standard error, from the curvature of the fit.">Value</Term></th><th scope="col">Assessment</th></tr></thead>
+        <thead>
+          <tr>
+            <th scope="col">Parameter</th>
+            <th scope="col" className={styles.number}>
+              <Term align="end" definition="Fitted value and its standard error, from the curvature of the fit.">
+                Value
+              </Term>
+            </th>
+            <th scope="col">Assessment</th>
+          </tr>
+        </thead>
         <tbody>
           {estimates.map((one) => {
             const { name, unit } = parameterName(one.name);
@@ -30,7 +44,15 @@ export function Parameters({ estimates }: { readonly estimates: readonly Estimat
               <tr key={one.name}>
                 <th scope="row">{name}</th>
                 <td className={styles.number}>{formatWithin(one.value, one.sd, unit)}</td>
-                <td>{!one.informed ? <Badge tone="warn">not determined by these measurements</Badge> : one.at_bound ? <Badge tone="warn">at a bound</Badge> : <span className={styles.muted}>determined</span>}</td>
+                <td>
+                  {!one.informed ? (
+                    <Badge tone="warn">not determined by these measurements</Badge>
+                  ) : one.at_bound ? (
+                    <Badge tone="warn">at a bound</Badge>
+                  ) : (
+                    <span className={styles.muted}>determined</span>
+                  )}
+                </td>
               </tr>
             );
           })}

@@ -12,7 +12,13 @@ export interface RunView {
   readonly retry: () => void;
 }
 
-interface RunRequest { readonly kind: LabRun['kind']; readonly model: string; readonly set: string; readonly fits: (run: LabRunSummary) => boolean; readonly start: () => Promise<LabRun> }
+interface RunRequest {
+  readonly kind: LabRun['kind'];
+  readonly model: string;
+  readonly set: string;
+  readonly fits: (run: LabRunSummary) => boolean;
+  readonly start: () => Promise<LabRun>;
+}
 
 export function useRun({ kind, model, set, fits, start }: RunRequest): RunView {
   const client = useQueryClient();
@@ -31,14 +37,22 @@ export function useRun({ kind, model, set, fits, start }: RunRequest): RunView {
     error: started.error ?? list.error ?? one.error,
     begin: () => started.mutate(),
     beginning: started.isPending,
-    retry: () => { started.reset(); void list.refetch(); if (newest) void one.refetch(); },
+    retry: () => {
+      started.reset();
+      void list.refetch();
+      if (newest) void one.refetch();
+    },
   };
 }
 
 /** Compares one or two versions with a measurement set; starts the comparison if there is none. */
 export function useComparison(model: string, set: string, against: string | null): RunView {
   const view = useRun({
-    kind: 'comparison', model, set, fits: (run) => run.against === against, start: () => startComparison(model, set, against),
+    kind: 'comparison',
+    model,
+    set,
+    fits: (run) => run.against === against,
+    start: () => startComparison(model, set, against),
   });
   const startedKey = useRef('');
   const key = `${model} ${set} ${against ?? ''}`;

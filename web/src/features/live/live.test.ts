@@ -5,7 +5,11 @@ import { liveMessageSchema } from '@/api/live-schemas';
 import { withMessage } from './use-live';
 import { byUrgency, summaryOf } from './station-states';
 
-const station = (name: string, state: StationState['state']) => v.parse(liveMessageSchema, { kind: 'station', station: { id: name, name, state, connected: state !== 'away' } }) as { kind: 'station'; station: StationState };
+const station = (name: string, state: StationState['state']) =>
+  v.parse(liveMessageSchema, { kind: 'station', station: { id: name, name, state, connected: state !== 'away' } }) as {
+    kind: 'station';
+    station: StationState;
+  };
 const of = (name: string, state: StationState['state']) => station(name, state).station;
 
 describe('the live view', () => {
@@ -15,7 +19,9 @@ describe('the live view', () => {
   });
 
   it('says in one line what the colours say', () => {
-    expect(summaryOf([of('a', 'trial'), of('b', 'questions'), of('c', 'fault'), of('d', 'idle')])).toBe('2 in use, 1 needing attention, 1 available');
+    expect(summaryOf([of('a', 'trial'), of('b', 'questions'), of('c', 'fault'), of('d', 'idle')])).toBe(
+      '2 in use, 1 needing attention, 1 available',
+    );
     expect(summaryOf([])).toBe('no stations');
   });
 
@@ -27,7 +33,9 @@ describe('the live view', () => {
   });
 
   it('holds a station of which nothing is known for one that is away', () => {
-    const { station: known } = v.parse(liveMessageSchema, { kind: 'station', station: { id: 'x', name: 'x' } }) as { station: StationState };
+    const { station: known } = v.parse(liveMessageSchema, { kind: 'station', station: { id: 'x', name: 'x' } }) as {
+      station: StationState;
+    };
     expect(known).toMatchObject({ state: 'away', connected: false, trial: null, self_test: null });
   });
 });

@@ -6,10 +6,6 @@ const index = () => import('./index');
 const LivePage = lazy(() => index().then(({ LivePage: page }) => ({ default: page })));
 
 export const feature: Feature = {
-  menu: [
-    { to: '/wall', name: 'Live', roles: ['admin', 'director', 'faculty', 'technician'], order: 110 },
-  ],
-  pages: [
-    { path: '/wall', show: () => <LivePage /> },
-  ],
+  menu: [{ to: '/wall', name: 'Live', roles: ['admin', 'director', 'faculty', 'technician'], order: 110 }],
+  pages: [{ path: '/wall', show: () => <LivePage /> }],
 };

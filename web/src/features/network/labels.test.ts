@@ -2,7 +2,8 @@ import { describe, expect, it } from 'vitest';
 import { formatBytes, utcMicroseconds } from '@/units';
 import { calibrationLabel } from './labels';
 
-const kNow = Date.UTC(2026, 10, 21) * 1000, kDay_us = 86_400_000_000;
+const kNow = Date.UTC(2026, 10, 21) * 1000,
+  kDay_us = 86_400_000_000;
 const dueIn = (days: number) => calibrationLabel(utcMicroseconds(kNow + days * kDay_us), kNow);
 
 describe('a calibration', () => {
@@ -20,7 +21,14 @@ describe('a calibration', () => {
 });
 
 describe('a size', () => {
-  it.each([[0, '0 B'], [999, '999 B'], [1000, '1.00 kB'], [81_000_000_000, '81.0 GB'], [1_240_000_000, '1.24 GB'], [640_000_000, '640 MB']])('%d reads %s', (bytes, text) => {
+  it.each([
+    [0, '0 B'],
+    [999, '999 B'],
+    [1000, '1.00 kB'],
+    [81_000_000_000, '81.0 GB'],
+    [1_240_000_000, '1.24 GB'],
+    [640_000_000, '640 MB'],
+  ])('%d reads %s', (bytes, text) => {
     expect(formatBytes(bytes).replaceAll('\u202f', ' ')).toBe(text);
   });
 });

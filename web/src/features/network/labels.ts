@@ -3,8 +3,14 @@ import type { Tone } from '@/ui';
 import { formatDateTime, type UtcMicroseconds } from '@/units';
 
 export const kRoleLabels: Record<Role, { name: string; description: string }> = {
-  trainee: { name: 'Trainee', description: 'Does assigned trials at a station and sees their own progress after the results are released.' },
-  faculty: { name: 'Faculty', description: 'Leads cohorts: assigns trials to their members, supervises and debriefs them.' },
+  trainee: {
+    name: 'Trainee',
+    description: 'Does assigned trials at a station and sees their own progress after the results are released.',
+  },
+  faculty: {
+    name: 'Faculty',
+    description: 'Leads cohorts: assigns trials to their members, supervises and debriefs them.',
+  },
   director: { name: 'Programme director', description: 'Sees all trainees and their progress.' },
   researcher: { name: 'Researcher', description: 'Works with studies, analyses and the model lab.' },
   technician: { name: 'Technician', description: 'Enrols and maintains stations.' },
@@ -21,5 +27,7 @@ export function calibrationLabel(due: UtcMicroseconds | null, now: number): { to
   if (due === null) return { tone: 'neutral', text: 'not reported yet' };
   const days = Math.floor((due - now) / kDay_us);
   if (days < 0) return { tone: 'bad', text: `overdue since ${formatDateTime(due)}` };
-  return days <= kSoon_days ? { tone: 'warn', text: `due in ${days} ${days === 1 ? 'day' : 'days'}` } : { tone: 'good', text: `due ${formatDateTime(due)}` };
+  return days <= kSoon_days
+    ? { tone: 'warn', text: `due in ${days} ${days === 1 ? 'day' : 'days'}` }
+    : { tone: 'good', text: `due ${formatDateTime(due)}` };
 }

@@ -11,29 +11,79 @@ function Codes() {
   const ended = useMutation({ mutationFn: () => endCodes(password, code.trim()) });
   const [password, setPassword] = useState('');
   const [code, setCode] = useState('');
-  const submit = (event: FormEvent) => { event.preventDefault(); confirmed.mutate(code.trim()); };
+  const submit = (event: FormEvent) => {
+    event.preventDefault();
+    confirmed.mutate(code.trim());
+  };
   const failed = enrolled.error ?? confirmed.error ?? ended.error;
-  const field = <Field label="Code from the app" value={code} inputMode="numeric" autoComplete="one-time-code" maxLength={8} onChange={(event) => setCode(event.target.value)} />;
+  const field = (
+    <Field
+      label="Code from the app"
+      value={code}
+      inputMode="numeric"
+      autoComplete="one-time-code"
+      maxLength={8}
+      onChange={(event) => setCode(event.target.value)}
+    />
+  );
   return (
     <div className={styles.stack}>
-      <p>With one-time codes, a stolen password is not enough to sign in: an app on your phone shows a new code every 30 seconds.</p>
-      {failed ? <Notice tone="bad" title="The action failed.">{failed.message}</Notice> : null}
-      {confirmed.isSuccess ? <Notice title="One-time codes are on.">You will be asked for a code at each sign-in.</Notice>
-        : ended.isSuccess ? <Notice title="One-time codes are off.">You sign in with your password only.</Notice> : enrolled.data ? (
-          <form className={styles.form} onSubmit={submit}>
-            <p>Enter this secret in the app, then enter the code that the app shows.</p>
-            <p className={styles.secret}>{enrolled.data.secret}</p>
-            <p><a href={enrolled.data.uri}>Open in an app on this computer</a></p>
+      <p>
+        With one-time codes, a stolen password is not enough to sign in: an app on your phone shows a new code every 30
+        seconds.
+      </p>
+      {failed ? (
+        <Notice tone="bad" title="The action failed.">
+          {failed.message}
+        </Notice>
+      ) : null}
+      {confirmed.isSuccess ? (
+        <Notice title="One-time codes are on.">You will be asked for a code at each sign-in.</Notice>
+      ) : ended.isSuccess ? (
+        <Notice title="One-time codes are off.">You sign in with your password only.</Notice>
+      ) : enrolled.data ? (
+        <form className={styles.form} onSubmit={submit}>
+          <p>Enter this secret in the app, then enter the code that the app shows.</p>
+          <p className={styles.secret}>{enrolled.data.secret}</p>
+          <p>
+            <a href={enrolled.data.uri}>Open in an app on this computer</a>
+          </p>
+          {field}
+          <Button look="solid" type="submit" disabled={confirmed.isPending || code.trim() === ''}>
+            Turn on
+          </Button>
+        </form>
+      ) : (
+        <form
+          className={styles.form}
+          onSubmit={(event) => {
+            event.preventDefault();
+            if (code.trim() !== '') ended.mutate();
+            else enrolled.mutate();
+          }}
+        >
+          <Field
+            label="Your password"
+            type="password"
+            autoComplete="current-password"
+            required
+            value={password}
+            onChange={(event) => setPassword(event.target.value)}
+          />
+          <Button onClick={() => enrolled.mutate()} disabled={enrolled.isPending || password === ''}>
+            Set up one-time codes
+          </Button>
+          <details>
+            <summary>Turn off one-time codes</summary>
             {field}
-            <Button look="solid" type="submit" disabled={confirmed.isPending || code.trim() === ''}>Turn on</Button>
-          </form>
-        ) : (
-          <form className={styles.form} onSubmit={(event) => { event.preventDefault(); if (code.trim() !== '') ended.mutate(); else enrolled.mutate(); }}>
-            <Field label="Your password" type="password" autoComplete="current-password" required value={password} onChange={(event) => setPassword(event.target.value)} />
-            <Button onClick={() => enrolled.mutate()} disabled={enrolled.isPending || password === ''}>Set up one-time codes</Button>
-            <details><summary>Turn off one-time codes</summary>{field}<p><Button type="submit" disabled={ended.isPending || password === '' || code.trim() === ''}>Turn off</Button></p></details>
-          </form>
-        )}
+            <p>
+              <Button type="submit" disabled={ended.isPending || password === '' || code.trim() === ''}>
+                Turn off
+              </Button>
+            </p>
+          </details>
+        </form>
+      )}
     </div>
   );
 }
@@ -41,11 +91,29 @@ function Codes() {
 /** Password and one-time codes of the signed-in person. */
 export function OwnAccountPage() {
   useTitle('My account');
-  return <div className={styles.page}><h1>My account</h1><Card title="Password"><PasswordForm /></Card><Card title="One-time codes"><Codes /></Card></div>;
+  return (
+    <div className={styles.page}>
+      <h1>My account</h1>
+      <Card title="Password">
+        <PasswordForm />
+      </Card>
+      <Card title="One-time codes">
+        <Codes />
+      </Card>
+    </div>
+  );
 }
 
 /** Shown first when the password was created by somebody else. */
 export function FirstPassword() {
   useTitle('Choose a new password');
-  return <div className={styles.page}><h1>Choose a new password</h1><p>Another person created your password. Choose a new one that only you know.</p><Card title="Password"><PasswordForm /></Card></div>;
+  return (
+    <div className={styles.page}>
+      <h1>Choose a new password</h1>
+      <p>Another person created your password. Choose a new one that only you know.</p>
+      <Card title="Password">
+        <PasswordForm />
+      </Card>
+    </div>
+  );
 }

@@ -28,9 +28,21 @@ export function markOf(slot: Slot): Mark {
   return correct === true ? 'right' : correct === false ? 'wrong' : 'recorded';
 }
 
-export const kMarkSign: Record<Mark, string> = { waiting: '', taken: '·', right: '✓', wrong: '✗', recorded: '●', invalid: '⊘' };
+export const kMarkSign: Record<Mark, string> = {
+  waiting: '',
+  taken: '·',
+  right: '✓',
+  wrong: '✗',
+  recorded: '●',
+  invalid: '⊘',
+};
 export const kMarkLabel: Record<Mark, string> = {
-  waiting: 'not started', taken: 'at a station', right: 'done, recognised', wrong: 'done, not recognised', recorded: 'done, not assessed', invalid: 'invalid',
+  waiting: 'not started',
+  taken: 'at a station',
+  right: 'done, recognised',
+  wrong: 'done, not recognised',
+  recorded: 'done, not assessed',
+  invalid: 'invalid',
 };
 
 const kSentences: Record<string, (who: string, whom: string) => string> = {
@@ -52,4 +64,5 @@ export function eventSentence({ who, what, participant, reason }: StudyEvent): s
   return reason === '' ? sentence : `${sentence} (${reason})`;
 }
 
-export const progressOf = ({ done, planned }: { readonly done: number; readonly planned: number }) => `${formatCount(done)} of ${formatCount(planned)}`;
+export const progressOf = ({ done, planned }: { readonly done: number; readonly planned: number }) =>
+  `${formatCount(done)} of ${formatCount(planned)}`;

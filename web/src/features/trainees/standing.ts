@@ -7,11 +7,21 @@ const kInactive_days = 60;
 export type Show = 'all' | TraineeSummary['state'] | 'inactive';
 
 /** No trial for two months. */
-export const isInactive = (one: Pick<TraineeSummary, 'last_utc_us'>, now_utc_us: number) => now_utc_us - one.last_utc_us > kInactive_days * kDay_us;
+export const isInactive = (one: Pick<TraineeSummary, 'last_utc_us'>, now_utc_us: number) =>
+  now_utc_us - one.last_utc_us > kInactive_days * kDay_us;
 
-export function shownOf(trainees: readonly TraineeSummary[], show: Show, search: string, now_utc_us: number): TraineeSummary[] {
+export function shownOf(
+  trainees: readonly TraineeSummary[],
+  show: Show,
+  search: string,
+  now_utc_us: number,
+): TraineeSummary[] {
   const wanted = search.trim().toLowerCase();
-  return trainees.filter((one) => (show === 'all' || (show === 'inactive' ? isInactive(one, now_utc_us) : one.state === show)) && one.trainee.toLowerCase().includes(wanted));
+  return trainees.filter(
+    (one) =>
+      (show === 'all' || (show === 'inactive' ? isInactive(one, now_utc_us) : one.state === show)) &&
+      one.trainee.toLowerCase().includes(wanted),
+  );
 }
 
 const kWindow = 10;

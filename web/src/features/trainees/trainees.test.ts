@@ -4,8 +4,19 @@ import { share, utcMicroseconds } from '@/units';
 import { isInactive, runningShare, shownOf } from './standing';
 
 const one = (changes: Partial<TraineeSummary>): TraineeSummary => ({
-  trainee: 'S01', trials: 12, right: 9, share: share(0.75), wilson_low: share(0.47), wilson_high: share(0.91), state: 'learning', certified: false, why: '',
-  next: { scenario: 'hard', why: '' }, simulated: false, last_utc_us: utcMicroseconds(0), ...changes,
+  trainee: 'S01',
+  trials: 12,
+  right: 9,
+  share: share(0.75),
+  wilson_low: share(0.47),
+  wilson_high: share(0.91),
+  state: 'learning',
+  certified: false,
+  why: '',
+  next: { scenario: 'hard', why: '' },
+  simulated: false,
+  last_utc_us: utcMicroseconds(0),
+  ...changes,
 });
 const kDay_us = 86_400_000_000;
 

@@ -20,8 +20,18 @@ export function channelOf(metrics: readonly Metric[]): Channel | null {
     return metric && metric.value !== null ? formatMeasure(metric.value, metric.unit) : kNone;
   };
   const beyond = byId.get('channel_breach');
-  const rest = { entry: shown('channel_entry_offset'), direction: shown('channel_angle'), end: shown('channel_beyond_end'), removed: shown('drilled_volume') };
-  if (!beyond || beyond.value === null) return { outcome: 'unknown', headline: beyond ? `Not assessed: ${beyond.note}` : 'The channel was not measured', ...rest };
+  const rest = {
+    entry: shown('channel_entry_offset'),
+    direction: shown('channel_angle'),
+    end: shown('channel_beyond_end'),
+    removed: shown('drilled_volume'),
+  };
+  if (!beyond || beyond.value === null)
+    return {
+      outcome: 'unknown',
+      headline: beyond ? `Not assessed: ${beyond.note}` : 'The channel was not measured',
+      ...rest,
+    };
   const by = formatMeasure(Math.abs(beyond.value), beyond.unit);
   return beyond.value > 0
     ? { outcome: 'out', headline: `Left the bone, ${beyond.note}, by ${by}`, ...rest }

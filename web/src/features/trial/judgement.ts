@@ -26,10 +26,23 @@ export function judge(answer: Answer | null, truth: Truth | null): Judgement {
   if (!answer) return { outcome: 'open', headline: 'No answer', ...texts };
   if (!truth) return { outcome: 'open', headline: 'Not assessed yet', ...texts };
   if (answer.breach !== (truth.breached !== null)) {
-    return { outcome: 'incorrect', headline: answer.breach ? 'Incorrect: a breach was reported where there is none' : 'Incorrect: the breach was missed', ...texts };
+    return {
+      outcome: 'incorrect',
+      headline: answer.breach
+        ? 'Incorrect: a breach was reported where there is none'
+        : 'Incorrect: the breach was missed',
+      ...texts,
+    };
   }
   if (truth.breached !== null && answer.wall !== truth.breached) {
-    return { outcome: 'incorrect', headline: answer.wall === null ? 'Incorrect: a breach was reported, but no wall was named' : 'Incorrect: a breach was reported, but in another wall', ...texts };
+    return {
+      outcome: 'incorrect',
+      headline:
+        answer.wall === null
+          ? 'Incorrect: a breach was reported, but no wall was named'
+          : 'Incorrect: a breach was reported, but in another wall',
+      ...texts,
+    };
   }
   return { outcome: 'correct', headline: 'Correct', ...texts };
 }
@@ -55,5 +68,9 @@ export function judgeProbing(answer: Answer | null, scenario: Scenario | null): 
   if (!scenario) return { outcome: 'open', headline: 'Not assessed yet', ...texts };
   const there = scenario.walls.length > 0;
   if (answer.breach === there) return { outcome: 'correct', headline: 'Correct', ...texts };
-  return { outcome: 'incorrect', headline: there ? 'Incorrect: the breach was missed' : 'Incorrect: a breach was reported where there is none', ...texts };
+  return {
+    outcome: 'incorrect',
+    headline: there ? 'Incorrect: the breach was missed' : 'Incorrect: a breach was reported where there is none',
+    ...texts,
+  };
 }

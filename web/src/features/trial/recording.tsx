@@ -18,7 +18,11 @@ function headline(trial: Trial): { text: string; sound: boolean } {
     ...(late_ticks > kWorthSaying * samples ? ['many ticks were late'] : []),
     ...(not_converged > kWorthSaying * samples ? ['many steps did not converge'] : []),
   ];
-  if (named.length === 0) return { text: late_ticks + not_converged === 0 ? 'No faults.' : 'Usable; the few faults are counted below.', sound: true };
+  if (named.length === 0)
+    return {
+      text: late_ticks + not_converged === 0 ? 'No faults.' : 'Usable; the few faults are counted below.',
+      sound: true,
+    };
   const text = named.join('; ');
   return { text: `${text.charAt(0).toUpperCase()}${text.slice(1)}.`, sound: false };
 }
@@ -32,9 +36,34 @@ export function Recording({ trial }: { readonly trial: Trial }) {
       <p className={styles.headline}>{text}</p>
       <Facts
         facts={[
-          { name: 'Late ticks', value: <Term definition="Ticks of the force loop that started more than a quarter of a period late. The force was late; the sample was recorded.">{counted(trial.late_ticks, samples)}</Term> },
-          { name: 'Skipped ticks', value: <Term definition="Ticks that did not run: their samples are missing.">{counted(trial.skipped_ticks, samples + trial.skipped_ticks)}</Term> },
-          ...(trial.rig === 'probing' ? [] : [{ name: 'Steps not converged', value: <Term definition="Samples in which the bending of the shank was not computed to the published tolerance of 0.001 N. The best estimate was rendered.">{counted(trial.not_converged, samples)}</Term> }]),
+          {
+            name: 'Late ticks',
+            value: (
+              <Term definition="Ticks of the force loop that started more than a quarter of a period late. The force was late; the sample was recorded.">
+                {counted(trial.late_ticks, samples)}
+              </Term>
+            ),
+          },
+          {
+            name: 'Skipped ticks',
+            value: (
+              <Term definition="Ticks that did not run: their samples are missing.">
+                {counted(trial.skipped_ticks, samples + trial.skipped_ticks)}
+              </Term>
+            ),
+          },
+          ...(trial.rig === 'probing'
+            ? []
+            : [
+                {
+                  name: 'Steps not converged',
+                  value: (
+                    <Term definition="Samples in which the bending of the shank was not computed to the published tolerance of 0.001 N. The best estimate was rendered.">
+                      {counted(trial.not_converged, samples)}
+                    </Term>
+                  ),
+                },
+              ]),
         ]}
       />
     </Card>

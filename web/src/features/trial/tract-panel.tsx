@@ -4,7 +4,11 @@ import { TractView, type Cursor } from '@/charts';
 import { Button, Card, Notice, Skeleton, usePalette } from '@/ui';
 import { formatLength, metre } from '@/units';
 
-interface Props { readonly trial: Trial; readonly tract: Tract; readonly cursor: Cursor }
+interface Props {
+  readonly trial: Trial;
+  readonly tract: Tract;
+  readonly cursor: Cursor;
+}
 
 /** The tract in 3-D with the way of the tip. Without the bone where that cannot be had. */
 function Picture({ trial, tract, cursor }: Props) {
@@ -15,14 +19,37 @@ function Picture({ trial, tract, cursor }: Props) {
   const summary = `The tract, ${formatLength(tract.length_m)} long and ${formatLength(diameter)} wide, with the surrounding bone and the path of the tip, coloured by force.`;
   return (
     <>
-      {path.isError ? <Notice tone="bad" title="The path of the tip could not be loaded." onRetry={() => void path.refetch()}>{path.error.message}</Notice> : null}
-      {preview.isError ? <Notice tone="warn" title="The bone could not be loaded. The view shows the tract without it." onRetry={() => void preview.refetch()}>{preview.error.message}</Notice> : null}
+      {path.isError ? (
+        <Notice tone="bad" title="The path of the tip could not be loaded." onRetry={() => void path.refetch()}>
+          {path.error.message}
+        </Notice>
+      ) : null}
+      {preview.isError ? (
+        <Notice
+          tone="warn"
+          title="The bone could not be loaded. The view shows the tract without it."
+          onRetry={() => void preview.refetch()}
+        >
+          {preview.error.message}
+        </Notice>
+      ) : null}
       {path.data && !preview.isPending ? (
         <TractView
-          tract={tract} path={path.data} bone={preview.data ?? null} cursor={cursor} palette={palette} summary={summary}
-          button={(label, text, press, pressed) => <Button label={label} onClick={press} {...(pressed === undefined ? {} : { pressed })}>{text}</Button>}
+          tract={tract}
+          path={path.data}
+          bone={preview.data ?? null}
+          cursor={cursor}
+          palette={palette}
+          summary={summary}
+          button={(label, text, press, pressed) => (
+            <Button label={label} onClick={press} {...(pressed === undefined ? {} : { pressed })}>
+              {text}
+            </Button>
+          )}
         />
-      ) : path.isError ? null : <Skeleton height="444px" />}
+      ) : path.isError ? null : (
+        <Skeleton height="444px" />
+      )}
     </>
   );
 }
@@ -30,7 +57,11 @@ function Picture({ trial, tract, cursor }: Props) {
 export function TractPanel({ trial, cursor }: { readonly trial: Trial; readonly cursor: Cursor }) {
   return (
     <Card title="Tract and path of the tip">
-      {trial.tract ? <Picture trial={trial} tract={trial.tract} cursor={cursor} /> : <p>The case of this trial is not on this server.</p>}
+      {trial.tract ? (
+        <Picture trial={trial} tract={trial.tract} cursor={cursor} />
+      ) : (
+        <p>The case of this trial is not on this server.</p>
+      )}
     </Card>
   );
 }

@@ -12,9 +12,22 @@ import { seriesAddress } from './study-position';
 
 afterEach(cleanup);
 
-const answer = (changes: Partial<Answer>): Answer => ({ breach: true, wall: 'medial', confidence: share(0.8), depth_m: null, ...changes });
-const metric = (id: string, value: number | null, unit = 'N', note = ''): Metric =>
-  ({ id, label: `label of ${id}`, unit, value, note, definition: `definition of ${id}`, source: 'paper' });
+const answer = (changes: Partial<Answer>): Answer => ({
+  breach: true,
+  wall: 'medial',
+  confidence: share(0.8),
+  depth_m: null,
+  ...changes,
+});
+const metric = (id: string, value: number | null, unit = 'N', note = ''): Metric => ({
+  id,
+  label: `label of ${id}`,
+  unit,
+  value,
+  note,
+  definition: `definition of ${id}`,
+  source: 'paper',
+});
 
 it('the link of a trial leads to its study, or to its assignment', () => {
   expect(seriesAddress('spine-study')).toBe('/studies/spine-study');
@@ -43,12 +56,24 @@ describe('the judgement', () => {
 
 describe('the channel that a burr made', () => {
   const drilled = (beyond: number | null, note: string) => [
-    metric('drilled_volume', 5.6e-8, 'm^3'), metric('channel_breach', beyond, 'm', note), metric('channel_angle', null, 'rad', 'too short'),
+    metric('drilled_volume', 5.6e-8, 'm^3'),
+    metric('channel_breach', beyond, 'm', note),
+    metric('channel_angle', null, 'rad', 'too short'),
   ];
   it.each([
     [0.0021, 'through the medial wall', 'out', 'Left the bone, through the medial wall, by 2.1 mm'],
-    [-0.0014, 'nearest to the inferior wall', 'within', 'Within the bone: 1.4 mm of bone remains, nearest to the inferior wall'],
-    [null, 'the channel came to no place with a known wall', 'unknown', 'Not assessed: the channel came to no place with a known wall'],
+    [
+      -0.0014,
+      'nearest to the inferior wall',
+      'within',
+      'Within the bone: 1.4 mm of bone remains, nearest to the inferior wall',
+    ],
+    [
+      null,
+      'the channel came to no place with a known wall',
+      'unknown',
+      'Not assessed: the channel came to no place with a known wall',
+    ],
   ] as const)('reaching %s m beyond the bone', (beyond, note, outcome, words) => {
     const channel = channelOf(drilled(beyond, note));
     expect(channel?.outcome).toBe(outcome);
@@ -63,7 +88,15 @@ describe('the channel that a burr made', () => {
 });
 
 const scenario = (walls: number[]): Scenario => ({
-  id: 'x', name: 'bone', travel_m: metre(0.04), layers: [], walls: walls.map((at) => ({ position_m: metre(at), resistance_interval_m: metre(0.006), breach_interval_m: metre(0.008) })),
+  id: 'x',
+  name: 'bone',
+  travel_m: metre(0.04),
+  layers: [],
+  walls: walls.map((at) => ({
+    position_m: metre(at),
+    resistance_interval_m: metre(0.006),
+    breach_interval_m: metre(0.008),
+  })),
 });
 
 describe('the judgement of a probing trial', () => {
@@ -88,12 +121,20 @@ describe('the judgement of a probing trial', () => {
 it('the moments of a breach are the entries into soft tissue from before it, not those back into it from behind', () => {
   const mode = ['bone', 'breach', 'bone', 'breach', 'bone', 'breach'] as const;
   const depth_m = [0.019, 0.021, 0.0281, 0.0279, 0.035, 0.036];
-  expect(breachMarks({ t_s: [0, 1, 2, 3, 4, 5], depth_m, force_N: [], mode: [...mode] }).map(({ t_s }) => t_s)).toEqual([1, 5]);
+  expect(breachMarks({ t_s: [0, 1, 2, 3, 4, 5], depth_m, force_N: [], mode: [...mode] }).map(({ t_s }) => t_s)).toEqual(
+    [1, 5],
+  );
   expect(breachMarks(undefined)).toEqual([]);
 });
 
 describe('the measures', () => {
-  const metrics = [metric('force_xy_mean', 0.28), metric('force_xy_sd', 0.24), metric('force_xy_max', 1.12), metric('path_length', 0.863, 'm'), metric('torque_z_sd', 0.0004, 'N·m')];
+  const metrics = [
+    metric('force_xy_mean', 0.28),
+    metric('force_xy_sd', 0.24),
+    metric('force_xy_max', 1.12),
+    metric('path_length', 0.863, 'm'),
+    metric('torque_z_sd', 0.0004, 'N·m'),
+  ];
 
   it('stand in the published layout, and what is not in it follows in order', () => {
     const { table, others } = arranged(metrics);
@@ -106,7 +147,11 @@ describe('the measures', () => {
     render(<Measures metrics={metrics} state="assessed" />);
     const row = screen.getByRole('row', { name: /Transverse force/ });
     // Basel paper, Table 1, surgeon 1.
-    expect(within(row).getAllByRole('cell').map((cell) => within(cell).queryByRole('button')?.textContent ?? cell.textContent)).toEqual(['N', '0.28', '0.24', '1.12']);
+    expect(
+      within(row)
+        .getAllByRole('cell')
+        .map((cell) => within(cell).queryByRole('button')?.textContent ?? cell.textContent),
+    ).toEqual(['N', '0.28', '0.24', '1.12']);
     expect(screen.getByRole('row', { name: /Twisting torque/ }).textContent).toContain('0.001');
   });
 

@@ -14,12 +14,14 @@ function Drilled({ channel }: { readonly channel: Channel }) {
   return (
     <Card title="Channel" aside={<Badge tone={kChannelTone[channel.outcome]}>{kChannelLabels[channel.outcome]}</Badge>}>
       <p className={styles.headline}>{channel.headline}.</p>
-      <Facts facts={[
-        { name: 'Distance from the planned entry', value: channel.entry },
-        { name: 'Angle to the planned direction', value: channel.direction },
-        { name: 'Depth beyond the planned end', value: channel.end },
-        { name: 'Removed bone', value: channel.removed },
-      ]} />
+      <Facts
+        facts={[
+          { name: 'Distance from the planned entry', value: channel.entry },
+          { name: 'Angle to the planned direction', value: channel.direction },
+          { name: 'Depth beyond the planned end', value: channel.end },
+          { name: 'Removed bone', value: channel.removed },
+        ]}
+      />
     </Card>
   );
 }
@@ -28,12 +30,29 @@ function Drilled({ channel }: { readonly channel: Channel }) {
 export function Verdict({ trial }: { readonly trial: Trial }) {
   const channel = channelOf(trial.metrics);
   if (channel) return <Drilled channel={channel} />;
-  const { outcome, headline, given, truth: known } =
-    trial.rig === 'probing' ? judgeProbing(trial.answer, trial.scenario) : judge(trial.answer, trial.truth);
+  const {
+    outcome,
+    headline,
+    given,
+    truth: known,
+  } = trial.rig === 'probing' ? judgeProbing(trial.answer, trial.scenario) : judge(trial.answer, trial.truth);
   return (
-    <Card title="Answer" aside={<Badge tone={kTone[outcome]}><span aria-hidden="true">{kSign[outcome]}</span>{outcome === 'open' ? 'not assessed' : outcome}</Badge>}>
+    <Card
+      title="Answer"
+      aside={
+        <Badge tone={kTone[outcome]}>
+          <span aria-hidden="true">{kSign[outcome]}</span>
+          {outcome === 'open' ? 'not assessed' : outcome}
+        </Badge>
+      }
+    >
       <p className={styles.headline}>{headline}.</p>
-      <Facts facts={[{ name: 'Answer', value: given }, { name: 'Truth', value: known }]} />
+      <Facts
+        facts={[
+          { name: 'Answer', value: given },
+          { name: 'Truth', value: known },
+        ]}
+      />
     </Card>
   );
 }
