@@ -61,7 +61,7 @@ it('prints its figures', async () => {
   await page.goto('/trials/trial-001');
   await page.locator('[data-panel="force"] canvas').waitFor();
   console.log('first paint, trial, ms:', Math.round(await firstPaint_ms(page)));
-  await page.getByText(/least and greatest/).waitFor();
+  await page.getByText(/minimum and maximum/).waitFor();
   console.log('signals of 10⁶ samples on the screen, ms:', Math.round(await page.evaluate(() => performance.now())));
   await page.locator('[data-part="scene"][data-ready]').waitFor();
   const devtools = await page.context().newCDPSession(page);

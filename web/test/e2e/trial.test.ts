@@ -44,7 +44,7 @@ afterAll(() => browser.close());
 async function openTrial(page: Page): Promise<void> {
   await page.goto(`/trials/${id}`);
   await page.locator('[data-panel="force"] canvas').waitFor();
-  await page.getByText(/least and greatest|every sample/).waitFor();
+  await page.getByText(/minimum and maximum|every sample/).waitFor();
 }
 
 const range = async (page: Page) => spaced(await page.locator('[data-part="range"]').innerText());
