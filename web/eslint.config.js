@@ -12,14 +12,17 @@ function layer(name, allowed, extra = []) {
   return {
     files: [`src/${name}/**/*.{ts,tsx}`],
     rules: {
-      'no-restricted-imports': ['error', {
-        patterns: [
-          { regex: '^\\.\\./', message: 'Name another folder as @/layer/….' },
-          { regex: '^@/(app|main)$', message: 'Only src itself sees the whole.' },
-          ...refused.map((other) => ({ regex: `^@/${other}(/|$)`, message: `${name} may not know ${other}.` })),
-          ...extra,
-        ],
-      }],
+      'no-restricted-imports': [
+        'error',
+        {
+          patterns: [
+            { regex: '^\\.\\./', message: 'Name another folder as @/layer/….' },
+            { regex: '^@/(app|main)$', message: 'Only src itself sees the whole.' },
+            ...refused.map((other) => ({ regex: `^@/${other}(/|$)`, message: `${name} may not know ${other}.` })),
+            ...extra,
+          ],
+        },
+      ],
     },
   };
 }
@@ -40,24 +43,34 @@ export default tseslint.config(
     },
   },
   // The simulated trials index arrays whose length they made themselves.
-  { files: ['test/**/*.ts'], rules: { '@typescript-eslint/no-non-null-assertion': 'off' } },
-  { files: ['src/**/*.tsx'], rules: { 'max-lines': ['error', { max: 200 }] } },
+  {
+    files: ['test/**/*.ts'],
+    rules: { '@typescript-eslint/no-non-null-assertion': 'off', 'max-lines': ['error', { max: 600 }] },
+  },
+  // A page of one component; a third of the lines is layout.
+  { files: ['src/**/*.tsx'], rules: { 'max-lines': ['error', { max: 330 }] } },
   layer('units', ['units']),
   layer('api', ['api', 'units']),
   layer('ui', ['ui', 'units']),
   layer('charts', ['charts', 'units']),
   ...kFeatures.map((name) =>
-    layer(`features/${name}`, ['units', 'api', 'ui', 'charts'], [
-      { regex: '^@/features/', message: 'Features never know each other.' },
-    ]),
+    layer(
+      `features/${name}`,
+      ['units', 'api', 'ui', 'charts'],
+      [{ regex: '^@/features/', message: 'Features never know each other.' }],
+    ),
   ),
   {
     // Numbers become text in units/ alone, so that a unit is never forgotten and never written twice.
     files: ['src/{api,ui,charts,features}/**/*.{ts,tsx}'],
     ignores: ['**/*.test.{ts,tsx}'],
     rules: {
-      'no-restricted-syntax': ['error',
-        { selector: "CallExpression[callee.property.name=/^(toFixed|toPrecision|toLocaleString|toExponential)$/]", message: 'Format numbers in units/.' },
+      'no-restricted-syntax': [
+        'error',
+        {
+          selector: 'CallExpression[callee.property.name=/^(toFixed|toPrecision|toLocaleString|toExponential)$/]',
+          message: 'Format numbers in units/.',
+        },
         { selector: "NewExpression[callee.object.name='Intl']", message: 'Format in units/.' },
       ],
     },

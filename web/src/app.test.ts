@@ -7,5 +7,7 @@ afterEach(() => onlineManager.setOnline(true));
 
 it('asks the server even when the browser thinks that there is no network', async () => {
   onlineManager.setOnline(false);
-  await expect(makeClient().fetchQuery({ queryKey: ['a server in the house'], queryFn: () => Promise.resolve(7) })).resolves.toBe(7);
+  await expect(
+    makeClient().fetchQuery({ queryKey: ['a server in the house'], queryFn: () => Promise.resolve(7) }),
+  ).resolves.toBe(7);
 });

@@ -8,9 +8,13 @@ import { type Feature, Notice, Shell, Skeleton, useTitle } from '@/ui';
 import styles from './app.module.css';
 import { Fault } from './fault';
 /** Every folder of features/ that has a manifest: there is no list to edit. */
-const kFeatures = Object.values(import.meta.glob<{ feature: Feature }>('./features/*/manifest.tsx', { eager: true })).map(({ feature }) => feature);
+const kFeatures = Object.values(
+  import.meta.glob<{ feature: Feature }>('./features/*/manifest.tsx', { eager: true }),
+).map(({ feature }) => feature);
 /** A fixed segment ("new") is tried before a parameter (":id"). */
-const kPages = kFeatures.flatMap(({ pages }) => pages).sort((a, b) => (a.path.replaceAll(':', '~') < b.path.replaceAll(':', '~') ? -1 : 1));
+const kPages = kFeatures
+  .flatMap(({ pages }) => pages)
+  .sort((a, b) => (a.path.replaceAll(':', '~') < b.path.replaceAll(':', '~') ? -1 : 1));
 const kMenu = kFeatures.flatMap(({ menu }) => menu).sort((a, b) => a.order - b.order);
 
 export function makeClient(): QueryClient {
@@ -26,7 +30,9 @@ export function makeClient(): QueryClient {
         networkMode: 'always',
         staleTime: 5_000,
         retry: (failures, reason) =>
-          failures < 2 && reason instanceof ApiError && (reason.code === 'unreachable' || reason.code === 'unavailable'),
+          failures < 2 &&
+          reason instanceof ApiError &&
+          (reason.code === 'unreachable' || reason.code === 'unavailable'),
         retryDelay: (failures) => 500 * 2 ** failures,
       },
     },
@@ -48,7 +54,14 @@ function Brand() {
       {role === undefined ? null : (
         <nav aria-label="Pages" className={styles.places}>
           {open(role).map(({ to, name }) => (
-            <Link key={to} href={to} className={styles.place} aria-current={at === to || at.startsWith(`${to}/`) ? 'page' : undefined}>{name}</Link>
+            <Link
+              key={to}
+              href={to}
+              className={styles.place}
+              aria-current={at === to || at.startsWith(`${to}/`) ? 'page' : undefined}
+            >
+              {name}
+            </Link>
           ))}
         </nav>
       )}
@@ -63,44 +76,69 @@ function Home() {
 }
 
 function NotFound() {
-  useTitle('Not found');
+  useTitle('Page not found');
   return (
     <div className={styles.narrow}>
-      <h1>There is no such page</h1>
-      <p>The address may be mistyped, or what it named is gone.</p>
-      <p><Link href="/">To the beginning</Link></p>
+      <h1>Page not found</h1>
+      <p>Check the address. The page may have been removed.</p>
+      <p>
+        <Link href="/">Go to the start page</Link>
+      </p>
     </div>
   );
 }
 
 function Loading() {
-  return <div className={styles.loading} role="status"><span className="hidden-visually">Loading</span><Skeleton height="40px" width="320px" /></div>;
+  return (
+    <div className={styles.loading} role="status">
+      <span className="hidden-visually">Loading</span>
+      <Skeleton height="40px" width="320px" />
+    </div>
+  );
 }
 
 function Pages() {
   return (
     <Suspense fallback={<Loading />}>
       <Switch>
-        <Route path="/"><Home /></Route>
+        <Route path="/">
+          <Home />
+        </Route>
         {kPages.map(({ path, show }) => (
-          <Route key={path} path={path}>{(parameters: Record<string, string | undefined>) => show((name) => parameters[name] ?? '')}</Route>
+          <Route key={path} path={path}>
+            {(parameters: Record<string, string | undefined>) => show((name) => parameters[name] ?? '')}
+          </Route>
         ))}
-        <Route><NotFound /></Route>
+        <Route>
+          <NotFound />
+        </Route>
       </Switch>
     </Suspense>
   );
 }
 
 function Framed({ children }: { readonly children: ReactNode }) {
-  return <Shell home={<Brand />} account={<Account />}>{children}</Shell>;
+  return (
+    <Shell home={<Brand />} account={<Account />}>
+      {children}
+    </Shell>
+  );
 }
 
 export function App({ client }: { readonly client: QueryClient }) {
   return (
     <QueryClientProvider client={client}>
       <Framed>
-        <Fault fallback={<Notice tone="bad" title="This page has failed.">Reload it. If it fails again, tell who runs the server what you did.</Notice>}>
-          <SessionGate waiting={<Loading />}><Pages /></SessionGate>
+        <Fault
+          fallback={
+            <Notice tone="bad" title="This page stopped working.">
+              Reload the page. If the error occurs again, tell the administrator of this server what you did.
+            </Notice>
+          }
+        >
+          <SessionGate waiting={<Loading />}>
+            <Pages />
+          </SessionGate>
         </Fault>
       </Framed>
     </QueryClientProvider>

@@ -2,16 +2,22 @@ import { QueryClient } from '@tanstack/react-query';
 import { describe, expect, it, vi } from 'vitest';
 import * as v from 'valibot';
 import { ApiError, sessionQuery, signIn } from '@/api';
-import { ask, tell } from './client';
+import { requestJson, request } from './client';
 import { parsePreview } from './preview';
 import { pathSchema, signalsSchema, trialPageSchema, trialSchema } from './schemas';
 
-const json = (body: unknown, status = 200) => new Response(JSON.stringify(body), { status, headers: { 'Content-Type': 'application/json' } });
+const json = (body: unknown, status = 200) =>
+  new Response(JSON.stringify(body), { status, headers: { 'Content-Type': 'application/json' } });
 const served = (answer: Response | Error) =>
-  vi.spyOn(globalThis, 'fetch').mockImplementation(() => (answer instanceof Error ? Promise.reject(answer) : Promise.resolve(answer)));
+  vi
+    .spyOn(globalThis, 'fetch')
+    .mockImplementation(() => (answer instanceof Error ? Promise.reject(answer) : Promise.resolve(answer)));
 
 async function failure(promise: Promise<unknown>): Promise<ApiError> {
-  const reason: unknown = await promise.then(() => undefined, (error: unknown) => error);
+  const reason: unknown = await promise.then(
+    () => undefined,
+    (error: unknown) => error,
+  );
   if (!(reason instanceof ApiError)) throw new Error(`not an ApiError: ${String(reason)}`);
   return reason;
 }
@@ -27,31 +33,36 @@ describe('asking the server', () => {
   });
 
   it.each([
-    [401, 'unauthorised'], [403, 'forbidden'], [404, 'not_found'], [429, 'too_many'], [503, 'unavailable'], [400, 'refused'],
+    [401, 'unauthorised'],
+    [403, 'forbidden'],
+    [404, 'not_found'],
+    [429, 'too_many'],
+    [503, 'unavailable'],
+    [400, 'refused'],
   ])('turns status %d into %s with the sentence of the server', async (status, code) => {
     served(json({ error: 'one line for a person', code: 'x' }, status));
-    const reason = await failure(tell('/session', { method: 'DELETE' }));
+    const reason = await failure(request('/session', { method: 'DELETE' }));
     expect(reason.code).toBe(code);
     expect(reason.message).toBe('one line for a person');
   });
 
   it('says that the server is away when there is no answer', async () => {
     served(new TypeError('Failed to fetch'));
-    const reason = await failure(ask('/trials', trialPageSchema));
+    const reason = await failure(requestJson('/trials', trialPageSchema));
     expect(reason.code).toBe('unreachable');
     expect(reason.message).toContain('does not answer');
   });
 
   it('says so when a proxy answers with a page instead of JSON', async () => {
     served(new Response('<html>', { status: 502 }));
-    const reason = await failure(ask('/trials', trialPageSchema));
+    const reason = await failure(requestJson('/trials', trialPageSchema));
     expect(reason.code).toBe('unavailable');
     expect(reason.message).toContain('502');
   });
 
   it('names the place in an answer of another shape', async () => {
     served(json({ trials: [{ id: 7 }], more: false }));
-    const reason = await failure(ask('/trials', trialPageSchema));
+    const reason = await failure(requestJson('/trials', trialPageSchema));
     expect(reason.code).toBe('unreadable');
     expect(reason.message).toContain('trials.0.id');
   });
@@ -64,25 +75,46 @@ describe('asking the server', () => {
 
 describe('an answer', () => {
   it('with columns of different lengths is refused', () => {
-    const signals = { t_s: [0, 1], channels: { depth_m: { min: [0], max: [0] } }, from_s: 0, to_s: 1, samples_per_point: 1 };
+    const signals = {
+      t_s: [0, 1],
+      channels: { depth_m: { min: [0], max: [0] } },
+      from_s: 0,
+      to_s: 1,
+      samples_per_point: 1,
+    };
     expect(v.safeParse(signalsSchema, signals).success).toBe(false);
     expect(v.safeParse(pathSchema, { t_s: [0], tip_m: [], force_N: [] }).success).toBe(false);
   });
 
   it('with gaps in a channel is kept, gaps and all', () => {
-    const signals = { t_s: [0, 1], channels: { depth_m: { min: [0, null], max: [0, null] } }, from_s: 0, to_s: 1, samples_per_point: 1 };
+    const signals = {
+      t_s: [0, 1],
+      channels: { depth_m: { min: [0, null], max: [0, null] } },
+      from_s: 0,
+      to_s: 1,
+      samples_per_point: 1,
+    };
     expect(v.parse(signalsSchema, signals).channels.depth_m?.min).toEqual([0, null]);
   });
 
   it('whose coverage is not depth × angle is refused', () => {
-    const issues = v.safeParse(trialSchema.entries.coverage, { depth_bins: 2, angle_bins: 2, samples: [1, 2, 3] }).issues;
+    const issues = v.safeParse(trialSchema.entries.coverage, {
+      depth_bins: 2,
+      angle_bins: 2,
+      samples: [1, 2, 3],
+    }).issues;
     expect(issues?.[0]?.message).toContain('depth_bins × angle_bins');
   });
 });
 
 describe('a preview', () => {
   const headers = (dims: string) =>
-    new Headers({ 'X-Dims': dims, 'X-Spacing-m': '0.001,0.001,0.001', 'X-Origin-m': '0, 0, 0', 'X-Directions': '1,0,0,0,1,0,0,0,1' });
+    new Headers({
+      'X-Dims': dims,
+      'X-Spacing-m': '0.001,0.001,0.001',
+      'X-Origin-m': '0, 0, 0',
+      'X-Directions': '1,0,0,0,1,0,0,0,1',
+    });
 
   it('is read with its place in the patient', () => {
     const block = parsePreview(headers('2,1,2'), new Uint8Array(4));
@@ -90,7 +122,10 @@ describe('a preview', () => {
     expect(block.spacing_m).toEqual([0.001, 0.001, 0.001]);
   });
 
-  it.each(['2,2,2', '2,1', '-2,-1,2', '1e9,1,1', 'a,b,c'])('of size %s that does not fit its four bytes is refused', (dims) => {
-    expect(() => parsePreview(headers(dims), new Uint8Array(4))).toThrow(ApiError);
-  });
+  it.each(['2,2,2', '2,1', '-2,-1,2', '1e9,1,1', 'a,b,c'])(
+    'of size %s that does not fit its four bytes is refused',
+    (dims) => {
+      expect(() => parsePreview(headers(dims), new Uint8Array(4))).toThrow(ApiError);
+    },
+  );
 });

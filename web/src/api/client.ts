@@ -5,11 +5,24 @@ const kRoot = '/api/v1';
 const kTimeout_ms = 20_000;
 
 export type ApiErrorCode =
-  | 'unauthorised' | 'code_needed' | 'forbidden' | 'not_found' | 'too_many' | 'unavailable' | 'unreachable' | 'unreadable' | 'refused';
+  | 'unauthorised'
+  | 'code_needed'
+  | 'forbidden'
+  | 'not_found'
+  | 'too_many'
+  | 'unavailable'
+  | 'unreachable'
+  | 'unreadable'
+  | 'refused';
 
 export class ApiError extends Error {
   /** @param retryAfter_s when the server takes the request again; null: it did not say */
-  constructor(readonly code: ApiErrorCode, message: string, readonly status = 0, readonly retryAfter_s: number | null = null) {
+  constructor(
+    readonly code: ApiErrorCode,
+    message: string,
+    readonly status = 0,
+    readonly retryAfter_s: number | null = null,
+  ) {
     super(message);
     this.name = 'ApiError';
   }
@@ -19,12 +32,20 @@ const errorSchema = v.object({ error: v.string(), code: v.string() });
 
 function codeOf(status: number): ApiErrorCode {
   switch (status) {
-    case 401: return 'unauthorised';
-    case 403: return 'forbidden';
-    case 404: return 'not_found';
-    case 429: return 'too_many';
-    case 502: case 503: case 504: return 'unavailable';
-    default: return 'refused';
+    case 401:
+      return 'unauthorised';
+    case 403:
+      return 'forbidden';
+    case 404:
+      return 'not_found';
+    case 429:
+      return 'too_many';
+    case 502:
+    case 503:
+    case 504:
+      return 'unavailable';
+    default:
+      return 'refused';
   }
 }
 
@@ -47,33 +68,45 @@ function content({ body, text, bytes: raw }: Request): { type: string; sent: str
 
 async function send(path: string, request: Request): Promise<Response> {
   const { method = 'GET', timeout_ms = kTimeout_ms, signal } = request;
-  const what = content(request);
+  const payload = content(request);
   const headers = new Headers({ Accept: 'application/json' });
   if (method !== 'GET') headers.set('X-Tractus', '1'); // refuses requests forged by another site
-  if (what) headers.set('Content-Type', what.type);
+  if (payload) headers.set('Content-Type', payload.type);
   const timeout = AbortSignal.timeout(timeout_ms);
   let response: Response;
   try {
     response = await fetch(kRoot + path, {
-      method, headers, credentials: 'same-origin',
-      ...(what ? { body: what.sent } : {}),
+      method,
+      headers,
+      credentials: 'same-origin',
+      ...(payload ? { body: payload.sent } : {}),
       signal: signal ? AbortSignal.any([signal, timeout]) : timeout,
     });
   } catch (reason) {
     if (signal?.aborted) throw reason;
-    throw new ApiError('unreachable', 'The server does not answer. Check that it runs and that the network is there.');
+    throw new ApiError(
+      'unreachable',
+      'The server does not answer. Check that it is running and that this computer is connected to the network.',
+    );
   }
   if (response.ok) return response;
-  const said = v.safeParse(errorSchema, await response.json().catch(() => undefined));
-  const text = said.success ? said.output.error : `The server answered with status ${response.status}.`;
-  const needsCode = said.success && said.output.code === 'code_needed';
+  const failure = v.safeParse(errorSchema, await response.json().catch(() => undefined));
+  const text = failure.success ? failure.output.error : `The server answered with status ${response.status}.`;
+  const needsCode = failure.success && failure.output.code === 'code_needed';
   const retryAfter = response.headers.get('Retry-After');
-  throw new ApiError(needsCode ? 'code_needed' : codeOf(response.status), text, response.status, retryAfter === null ? null : Number(retryAfter));
+  throw new ApiError(
+    needsCode ? 'code_needed' : codeOf(response.status),
+    text,
+    response.status,
+    retryAfter === null ? null : Number(retryAfter),
+  );
 }
 
 /** Asks for JSON and checks it against `schema`; an answer of another shape is an error, never a half-filled page. */
-export async function ask<Schema extends v.GenericSchema>(
-  path: string, schema: Schema, request: Request = {},
+export async function requestJson<Schema extends v.GenericSchema>(
+  path: string,
+  schema: Schema,
+  request: Request = {},
 ): Promise<v.InferOutput<Schema>> {
   const response = await send(path, request);
   const json: unknown = await response.json().catch(() => undefined);
@@ -84,12 +117,15 @@ export async function ask<Schema extends v.GenericSchema>(
   throw new ApiError('unreadable', `The server's answer cannot be read: ${where}: ${issue.message}`);
 }
 
-export async function tell(path: string, request: Request): Promise<void> {
+export async function request(path: string, request: Request): Promise<void> {
   await send(path, request);
 }
 
 /** Bytes with the headers that describe them. */
-export async function bytes(path: string, request: Request = {}): Promise<{ headers: Headers; data: Uint8Array<ArrayBuffer> }> {
+export async function bytes(
+  path: string,
+  request: Request = {},
+): Promise<{ headers: Headers; data: Uint8Array<ArrayBuffer> }> {
   const response = await send(path, request);
   return { headers: response.headers, data: new Uint8Array(await response.arrayBuffer()) };
 }

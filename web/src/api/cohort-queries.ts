@@ -3,7 +3,7 @@ import { queryOptions } from '@tanstack/react-query';
 import * as v from 'valibot';
 import { share } from '@/units';
 import { address } from './address';
-import { ask, bytes } from './client';
+import { requestJson, bytes } from './client';
 import { count, finite, inUtc } from './quantities';
 
 const kWorking_ms = 700;
@@ -11,39 +11,101 @@ const kWorking_ms = 700;
 const row = v.record(v.string(), v.unknown());
 
 export const planSummarySchema = v.object({
-  id: v.string(), title: v.string(), study: v.nullable(v.string()), data_seen: v.boolean(), trials_then: count, made_utc_us: inUtc, made_by: v.string(),
+  id: v.string(),
+  title: v.string(),
+  study: v.nullable(v.string()),
+  data_seen: v.boolean(),
+  trials_then: count,
+  made_utc_us: inUtc,
+  made_by: v.string(),
 });
 export const planListSchema = v.object({ plans: v.array(planSummarySchema) });
 
 const runFields = {
-  id: v.string(), plan: v.nullable(v.string()), study: v.nullable(v.string()), state: v.picklist(['queued', 'running', 'done', 'failed']),
-  share: v.pipe(finite, v.transform(share)), error: v.string(), snapshot: v.nullable(v.string()), made_utc_us: inUtc, made_by: v.string(),
+  id: v.string(),
+  plan: v.nullable(v.string()),
+  study: v.nullable(v.string()),
+  state: v.picklist(['queued', 'running', 'done', 'failed']),
+  share: v.pipe(finite, v.transform(share)),
+  error: v.string(),
+  snapshot: v.nullable(v.string()),
+  made_utc_us: inUtc,
+  made_by: v.string(),
 };
 export const analysisRunSchema = v.object(runFields);
-export const lockedPlanSchema = v.object({ ...planSummarySchema.entries, plan: row, analyses: v.array(analysisRunSchema) });
+export const lockedPlanSchema = v.object({
+  ...planSummarySchema.entries,
+  plan: row,
+  analyses: v.array(analysisRunSchema),
+});
 
 /** One test, as a plan corrects it. */
 const testSchema = v.looseObject({
-  analysis: v.optional(v.string()), term: v.string(), statistic: v.optional(v.string(), ''), value: v.optional(v.nullable(finite), null), p: v.nullable(finite), note: v.optional(v.string()), p_adjusted: v.optional(v.nullable(finite)), holds: v.optional(v.boolean()),
-  effect: v.optional(v.string()), size: v.optional(v.nullable(finite)), ci95_low: v.optional(v.nullable(finite)), ci95_high: v.optional(v.nullable(finite)), df1: v.optional(v.nullable(finite)), df2: v.optional(v.nullable(finite)),
+  analysis: v.optional(v.string()),
+  term: v.string(),
+  statistic: v.optional(v.string(), ''),
+  value: v.optional(v.nullable(finite), null),
+  p: v.nullable(finite),
+  note: v.optional(v.string()),
+  p_adjusted: v.optional(v.nullable(finite)),
+  holds: v.optional(v.boolean()),
+  effect: v.optional(v.string()),
+  size: v.optional(v.nullable(finite)),
+  ci95_low: v.optional(v.nullable(finite)),
+  ci95_high: v.optional(v.nullable(finite)),
+  df1: v.optional(v.nullable(finite)),
+  df2: v.optional(v.nullable(finite)),
 });
 
 export const analysisResultSchema = v.object({
   plan: v.looseObject({ title: v.string(), question: v.string(), endpoint: v.string() }),
-  data: v.looseObject({ name: v.string(), sha256: v.string(), rows: count, rows_used: count, simulated: v.optional(v.boolean(), false), exclusions: v.array(row) }),
-  analyses: v.array(v.looseObject({ id: v.string(), question: v.string(), method: v.string(), formula: v.optional(v.string(), ''), where: v.optional(v.string(), ''), report: v.nullish(row, null), error: v.nullish(v.string(), null) })),
+  data: v.looseObject({
+    name: v.string(),
+    sha256: v.string(),
+    rows: count,
+    rows_used: count,
+    simulated: v.optional(v.boolean(), false),
+    exclusions: v.array(row),
+  }),
+  analyses: v.array(
+    v.looseObject({
+      id: v.string(),
+      question: v.string(),
+      method: v.string(),
+      formula: v.optional(v.string(), ''),
+      where: v.optional(v.string(), ''),
+      report: v.nullish(row, null),
+      error: v.nullish(v.string(), null),
+    }),
+  ),
   families: v.array(v.object({ name: v.string(), correction: v.string(), alpha: finite, tests: v.array(testSchema) })),
-  published: v.array(v.looseObject({ where: v.string(), says: v.string(), printed: v.optional(v.nullable(finite)), computed: v.optional(v.nullable(finite)), agrees: v.optional(v.nullable(v.boolean())), remark: v.optional(v.string(), '') })),
+  published: v.array(
+    v.looseObject({
+      where: v.string(),
+      says: v.string(),
+      printed: v.optional(v.nullable(finite)),
+      computed: v.optional(v.nullable(finite)),
+      agrees: v.optional(v.nullable(v.boolean())),
+      remark: v.optional(v.string(), ''),
+    }),
+  ),
   methods: v.array(v.string()),
   results: v.array(v.string()),
 });
 
 export const analysisSchema = v.object({
-  ...runFields, data: v.nullable(row), result: v.nullable(analysisResultSchema), repeats: v.nullable(v.string()), same_digits: v.nullable(v.boolean()),
+  ...runFields,
+  data: v.nullable(row),
+  result: v.nullable(analysisResultSchema),
+  repeats: v.nullable(v.string()),
+  same_digits: v.nullable(v.boolean()),
 });
 
 /** The scored trials, column by column: numbers where every cell is one. */
-export interface CohortTable { readonly columns: readonly { readonly name: string; readonly numbers: boolean; readonly levels: readonly string[] }[]; readonly rows: readonly Readonly<Record<string, string>>[] }
+export interface CohortTable {
+  readonly columns: readonly { readonly name: string; readonly numbers: boolean; readonly levels: readonly string[] }[];
+  readonly rows: readonly Readonly<Record<string, string>>[];
+}
 
 /** A line of a CSV whose cells may stand in quotes. */
 export function cellsOf(line: string): string[] {
@@ -59,12 +121,19 @@ export function cellsOf(line: string): string[] {
 export function tableOf(csv: string): CohortTable {
   const [head = '', ...lines] = csv.split('\n').filter((line) => line !== '');
   const names = cellsOf(head);
-  const rows = lines.map((line) => { const cells = cellsOf(line); return Object.fromEntries(names.map((name, i) => [name, cells[i] ?? ''])); });
+  const rows = lines.map((line) => {
+    const cells = cellsOf(line);
+    return Object.fromEntries(names.map((name, i) => [name, cells[i] ?? '']));
+  });
   return {
     rows,
     columns: names.map((name) => {
       const values = [...new Set(rows.map((one) => one[name] ?? '').filter((text) => text !== ''))];
-      return { name, numbers: values.length > 0 && values.every((text) => Number.isFinite(Number(text))), levels: values.slice(0, 40) };
+      return {
+        name,
+        numbers: values.length > 0 && values.every((text) => Number.isFinite(Number(text))),
+        levels: values.slice(0, 40),
+      };
     }),
   };
 }
@@ -77,27 +146,43 @@ export const cohortTableQuery = (study: string) =>
     queryFn: async ({ signal }) => tableOf(new TextDecoder().decode((await bytes(tablePath(study), { signal })).data)),
   });
 
-export const plansQuery = queryOptions({ queryKey: ['cohort', 'plans'], queryFn: ({ signal }) => ask(address('/api/v1/cohort/plans', {}), planListSchema, { signal }) });
+export const plansQuery = queryOptions({
+  queryKey: ['cohort', 'plans'],
+  queryFn: ({ signal }) => requestJson(address('/api/v1/cohort/plans', {}), planListSchema, { signal }),
+});
 export const planQuery = (id: string) =>
-  queryOptions({ queryKey: ['cohort', 'plans', id], queryFn: ({ signal }) => ask(address('/api/v1/cohort/plans/{id}', { id }), lockedPlanSchema, { signal }) });
+  queryOptions({
+    queryKey: ['cohort', 'plans', id],
+    queryFn: ({ signal }) => requestJson(address('/api/v1/cohort/plans/{id}', { id }), lockedPlanSchema, { signal }),
+  });
 export const analysisQuery = (id: string) =>
   queryOptions({
     queryKey: ['cohort', 'analysis', id],
-    queryFn: ({ signal }) => ask(address('/api/v1/cohort/analyses/{id}', { id }), analysisSchema, { signal }),
-    refetchInterval: (query) => (query.state.data && ['queued', 'running'].includes(query.state.data.state) ? kWorking_ms : false),
+    queryFn: ({ signal }) => requestJson(address('/api/v1/cohort/analyses/{id}', { id }), analysisSchema, { signal }),
+    refetchInterval: (query) =>
+      query.state.data && ['queued', 'running'].includes(query.state.data.state) ? kWorking_ms : false,
   });
 
 export const lockPlan = (plan: Readonly<Record<string, unknown>>, study: string, dataSeen: boolean) =>
-  ask(address('/api/v1/cohort/plans', {}), planSummarySchema, { method: 'POST', body: { plan, ...(study === '' ? {} : { study }), data_seen: dataSeen } });
+  requestJson(address('/api/v1/cohort/plans', {}), planSummarySchema, {
+    method: 'POST',
+    body: { plan, ...(study === '' ? {} : { study }), data_seen: dataSeen },
+  });
 export const runPlan = (plan: string, snapshot?: string) =>
-  ask(address('/api/v1/cohort/analyses', {}), analysisRunSchema, { method: 'POST', body: { plan, ...(snapshot === undefined ? {} : { snapshot }) } });
+  requestJson(address('/api/v1/cohort/analyses', {}), analysisRunSchema, {
+    method: 'POST',
+    body: { plan, ...(snapshot === undefined ? {} : { snapshot }) },
+  });
 export const runMethod = (method: string, formula: string, study: string) =>
-  ask(address('/api/v1/cohort/analyses', {}), analysisRunSchema, { method: 'POST', body: { method, formula, ...(study === '' ? {} : { study }) } });
-export const analysisFile = (id: string, part: 'report.html' | 'result.json' | 'data.csv' | 'dictionary.json') => `/api/v1${address('/api/v1/cohort/analyses/{id}/{part}', { id, part })}`;
+  requestJson(address('/api/v1/cohort/analyses', {}), analysisRunSchema, {
+    method: 'POST',
+    body: { method, formula, ...(study === '' ? {} : { study }) },
+  });
+export const analysisFile = (id: string, part: 'report.html' | 'result.json' | 'data.csv' | 'dictionary.json') =>
+  `/api/v1${address('/api/v1/cohort/analyses/{id}/{part}', { id, part })}`;
 
 export type PlanSummary = v.InferOutput<typeof planSummarySchema>;
 export type LockedPlan = v.InferOutput<typeof lockedPlanSchema>;
 export type AnalysisRun = v.InferOutput<typeof analysisRunSchema>;
 export type AnalysisResult = v.InferOutput<typeof analysisResultSchema>;
 export type PlannedTest = v.InferOutput<typeof testSchema>;
-

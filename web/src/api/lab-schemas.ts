@@ -9,43 +9,101 @@ const figure = v.nullable(finite);
 const portion = v.pipe(finite, v.transform(share));
 
 export const modelVersionSchema = v.object({
-  id: v.string(), name: v.string(), rig, note: v.string(), parent: v.nullable(v.string()), run: v.nullable(v.string()), made_utc_us: inUtc, made_by: v.string(),
+  id: v.string(),
+  name: v.string(),
+  rig,
+  note: v.string(),
+  parent: v.nullable(v.string()),
+  run: v.nullable(v.string()),
+  made_utc_us: inUtc,
+  made_by: v.string(),
 });
 export const modelListSchema = v.object({ models: v.array(modelVersionSchema) });
 
 export const measurementSetSchema = v.object({
-  id: v.string(), name: v.string(), rig: v.nullable(rig), simulated: v.nullable(v.boolean()), trials: v.nullable(count), samples: v.nullable(count),
-  size_bytes: count, made_utc_us: inUtc, made_by: v.string(),
+  id: v.string(),
+  name: v.string(),
+  rig: v.nullable(rig),
+  simulated: v.nullable(v.boolean()),
+  trials: v.nullable(count),
+  samples: v.nullable(count),
+  size_bytes: count,
+  made_utc_us: inUtc,
+  made_by: v.string(),
 });
 export const measurementListSchema = v.object({ measurements: v.array(measurementSetSchema) });
 
 export const effectSchema = v.object({
-  id: v.string(), rig: v.string(), kind: v.picklist(['force', 'structure', 'measurement']), summary: v.string(), equation: v.string(), source: v.string(),
-  parameters: v.array(v.object({ name: v.string(), unit: v.string(), meaning: v.string(), components: count, initial: finite, low: finite, high: finite })),
+  id: v.string(),
+  rig: v.string(),
+  kind: v.picklist(['force', 'structure', 'measurement']),
+  summary: v.string(),
+  equation: v.string(),
+  source: v.string(),
+  parameters: v.array(
+    v.object({
+      name: v.string(),
+      unit: v.string(),
+      meaning: v.string(),
+      components: count,
+      initial: finite,
+      low: finite,
+      high: finite,
+    }),
+  ),
 });
 export const effectListSchema = v.object({
   effects: v.array(effectSchema),
   states: v.array(v.object({ name: v.string(), unit: v.string(), meaning: v.string() })),
-  adds_to: v.string(), adds_unit: v.string(),
+  adds_to: v.string(),
+  adds_unit: v.string(),
 });
 export const effectCheckSchema = v.object({ ok: v.boolean(), error: v.string(), effect: v.nullable(effectSchema) });
 
-const distribution = v.object({ mean: figure, sd: figure, p05: figure, p50: figure, p95: figure, edges: v.array(figure), shares: v.array(figure) });
-const spectrum = v.object({ frequency_Hz: v.array(figure), measured: v.array(figure), simulated: v.array(figure), residual: v.array(figure) });
+const distribution = v.object({
+  mean: figure,
+  sd: figure,
+  p05: figure,
+  p50: figure,
+  p95: figure,
+  edges: v.array(figure),
+  shares: v.array(figure),
+});
+const spectrum = v.object({
+  frequency_Hz: v.array(figure),
+  measured: v.array(figure),
+  simulated: v.array(figure),
+  residual: v.array(figure),
+});
 
 export const channelSchema = v.object({
-  name: v.string(), rmse: figure, r2: figure, noise_floor: figure, explained: figure,
-  bias: v.optional(figure), measured: v.optional(distribution), simulated: v.optional(distribution), residual: v.optional(distribution), spectrum: v.optional(spectrum),
+  name: v.string(),
+  rmse: figure,
+  r2: figure,
+  noise_floor: figure,
+  explained: figure,
+  bias: v.optional(figure),
+  measured: v.optional(distribution),
+  simulated: v.optional(distribution),
+  residual: v.optional(distribution),
+  spectrum: v.optional(spectrum),
 });
 
 export const regionSchema = v.object({
-  region: v.string(), words: v.string(), share_of_error: portion, share_of_time: portion, rmse: figure, mean: v.array(figure),
+  region: v.string(),
+  words: v.string(),
+  share_of_error: portion,
+  share_of_time: portion,
+  rmse: figure,
+  mean: v.array(figure),
 });
 
 export const comparisonSchema = v.object({
   primary: v.string(),
   channels: v.array(channelSchema),
-  trials: v.array(v.object({ id: v.string(), rmse: figure, channels: v.record(v.string(), figure), duration_s: inSeconds })),
+  trials: v.array(
+    v.object({ id: v.string(), rmse: figure, channels: v.record(v.string(), figure), duration_s: inSeconds }),
+  ),
   where: v.array(regionSchema),
   where_method: v.string(),
   phases: v.array(v.object({ phase: v.string(), rmse: figure, share_of_error: portion, share_of_time: portion })),
@@ -53,9 +111,20 @@ export const comparisonSchema = v.object({
 
 const several = v.union([figure, v.array(figure)]);
 const parameters = v.record(v.string(), v.object({ value: several, sd: several }));
-const estimate = v.object({ name: v.string(), value: figure, sd: figure, informed: v.boolean(), at_bound: v.boolean() });
+const estimate = v.object({
+  name: v.string(),
+  value: figure,
+  sd: figure,
+  informed: v.boolean(),
+  at_bound: v.boolean(),
+});
 const fittedTrial = v.object({ id: v.string(), rmse: figure, held_out_rmse: figure });
-export const rankedSchema = v.object({ id: v.string(), probability: figure, held_out_rmse: figure, note: v.optional(v.string(), '') });
+export const rankedSchema = v.object({
+  id: v.string(),
+  probability: figure,
+  held_out_rmse: figure,
+  note: v.optional(v.string(), ''),
+});
 
 export const diagnosisSchema = v.object({
   verdict: v.picklist(['complete', 'missing', 'partly', 'unexplained']),
@@ -75,7 +144,11 @@ export const diagnosisSchema = v.object({
 
 export const fitSchema = v.object({
   base: v.object({ rmse: figure, noise_floor: figure }),
-  rmse: figure, held_out_rmse: figure, noise_floor: figure, converged: v.boolean(), held_out: v.string(),
+  rmse: figure,
+  held_out_rmse: figure,
+  noise_floor: figure,
+  converged: v.boolean(),
+  held_out: v.string(),
   effects: v.array(v.object({ id: v.string(), parameters })),
   parameters: v.array(estimate),
   correlations: v.array(v.object({ between: v.array(v.string()), correlation: figure })),
@@ -85,14 +158,29 @@ export const fitSchema = v.object({
 
 const point = v.tuple([finite, finite, finite]);
 export const tractMapSchema = v.object({
-  depth_m: v.array(finite), angle_rad: v.array(finite), rmse: v.array(v.array(figure)), share: v.array(v.array(figure)),
+  depth_m: v.array(finite),
+  angle_rad: v.array(finite),
+  rmse: v.array(v.array(figure)),
+  share: v.array(v.array(figure)),
   tract: v.nullish(v.object({ entry_m: point, axis: point, length_m: finite }), null),
 });
 
 const runFields = {
-  id: v.string(), kind: v.picklist(['diagnosis', 'comparison', 'fit']), model: v.string(), against: v.nullable(v.string()), measurements: v.string(),
-  add: v.array(v.string()), own: v.array(v.string()), state: v.picklist(['queued', 'running', 'done', 'failed', 'cancelled']),
-  share: portion, phase: v.string(), error: v.string(), made_utc_us: inUtc, made_by: v.string(), model_ready: v.boolean(), version: v.nullable(v.string()),
+  id: v.string(),
+  kind: v.picklist(['diagnosis', 'comparison', 'fit']),
+  model: v.string(),
+  against: v.nullable(v.string()),
+  measurements: v.string(),
+  add: v.array(v.string()),
+  own: v.array(v.string()),
+  state: v.picklist(['queued', 'running', 'done', 'failed', 'cancelled']),
+  share: portion,
+  phase: v.string(),
+  error: v.string(),
+  made_utc_us: inUtc,
+  made_by: v.string(),
+  model_ready: v.boolean(),
+  version: v.nullable(v.string()),
 };
 export const labRunSchema = v.object({
   ...runFields,
@@ -107,16 +195,39 @@ export const labRunListSchema = v.object({ runs: v.array(v.object(runFields)) })
 const envelope = v.object({ min: v.array(figure), max: v.array(figure) });
 export const labSignalsSchema = v.pipe(
   v.object({
-    trial: v.string(), channel: v.string(), side: v.picklist(['before', 'after']), duration_s: finite, t_s: v.array(finite),
-    measured: envelope, simulated: envelope, residual: envelope, noise_floor: figure, samples_per_point: finite,
+    trial: v.string(),
+    channel: v.string(),
+    side: v.picklist(['before', 'after']),
+    duration_s: finite,
+    t_s: v.array(finite),
+    measured: envelope,
+    simulated: envelope,
+    residual: envelope,
+    noise_floor: figure,
+    samples_per_point: finite,
     regions: v.array(v.array(v.tuple([finite, finite]))),
   }),
-  v.check((s) => [s.measured, s.simulated, s.residual].every((c) => c.min.length === s.t_s.length && c.max.length === s.t_s.length), 'signals: every series must be as long as t_s'),
+  v.check(
+    (s) =>
+      [s.measured, s.simulated, s.residual].every(
+        (c) => c.min.length === s.t_s.length && c.max.length === s.t_s.length,
+      ),
+    'signals: every series must be as long as t_s',
+  ),
 );
 
 /** Every station, and whether a version was sent there. */
 export const sentModelSchema = v.object({
-  stations: v.array(v.object({ id: v.string(), name: v.string(), state: v.picklist(['not_sent', 'waiting', 'there']), asked_utc_us: v.nullable(inUtc), asked_by: v.string(), there_utc_us: v.nullable(inUtc) })),
+  stations: v.array(
+    v.object({
+      id: v.string(),
+      name: v.string(),
+      state: v.picklist(['not_sent', 'waiting', 'there']),
+      asked_utc_us: v.nullable(inUtc),
+      asked_by: v.string(),
+      there_utc_us: v.nullable(inUtc),
+    }),
+  ),
 });
 export type SentModel = v.InferOutput<typeof sentModelSchema>;
 

@@ -1,10 +1,21 @@
 /** Accounts, stations, cohorts and the audit trail: what can be asked, and what can be decided. */
 import { infiniteQueryOptions, queryOptions } from '@tanstack/react-query';
 import { address } from './address';
-import { ask, tell } from './client';
+import { requestJson, request } from './client';
 import {
-  accountListSchema, accountSchema, auditCheckSchema, auditSchema, codesSchema, cohortListSchema, cohortSchema, enrolmentSchema, invitationListSchema, newAccountSchema, newPasswordSchema,
-  stationListSchema, type Role,
+  accountListSchema,
+  accountSchema,
+  auditCheckSchema,
+  auditSchema,
+  codesSchema,
+  cohortListSchema,
+  cohortSchema,
+  enrolmentSchema,
+  invitationListSchema,
+  newAccountSchema,
+  newPasswordSchema,
+  stationListSchema,
+  type Role,
 } from './network-schemas';
 
 const kAuditPage = 100;
@@ -12,59 +23,94 @@ const kStations_ms = 15_000;
 
 export const accountsQuery = queryOptions({
   queryKey: ['accounts'],
-  queryFn: ({ signal }) => ask(address('/api/v1/accounts', {}), accountListSchema, { signal }),
+  queryFn: ({ signal }) => requestJson(address('/api/v1/accounts', {}), accountListSchema, { signal }),
 });
 export const stationsQuery = queryOptions({
   queryKey: ['stations'],
-  queryFn: ({ signal }) => ask(address('/api/v1/stations', {}), stationListSchema, { signal }),
+  queryFn: ({ signal }) => requestJson(address('/api/v1/stations', {}), stationListSchema, { signal }),
   refetchInterval: kStations_ms,
 });
 export const cohortsQuery = queryOptions({
   queryKey: ['cohorts'],
-  queryFn: ({ signal }) => ask(address('/api/v1/cohorts', {}), cohortListSchema, { signal }),
+  queryFn: ({ signal }) => requestJson(address('/api/v1/cohorts', {}), cohortListSchema, { signal }),
 });
 export const cohortQuery = (id: string) =>
-  queryOptions({ queryKey: ['cohorts', id], queryFn: ({ signal }) => ask(address('/api/v1/cohorts/{id}', { id }), cohortSchema, { signal }) });
+  queryOptions({
+    queryKey: ['cohorts', id],
+    queryFn: ({ signal }) => requestJson(address('/api/v1/cohorts/{id}', { id }), cohortSchema, { signal }),
+  });
 
 export const invitationsQuery = queryOptions({
   queryKey: ['invitations'],
-  queryFn: ({ signal }) => ask(address('/api/v1/session/invitations', {}), invitationListSchema, { signal }),
+  queryFn: ({ signal }) => requestJson(address('/api/v1/session/invitations', {}), invitationListSchema, { signal }),
 });
 
 /** Newest first, a page at a time. */
 export const auditQuery = infiniteQueryOptions({
   queryKey: ['audit'],
   queryFn: ({ pageParam, signal }) =>
-    ask(address('/api/v1/audit', {}, { limit: kAuditPage, ...(pageParam === null ? {} : { before: pageParam }) }), auditSchema, { signal }),
+    requestJson(
+      address('/api/v1/audit', {}, { limit: kAuditPage, ...(pageParam === null ? {} : { before: pageParam }) }),
+      auditSchema,
+      { signal },
+    ),
   initialPageParam: null as number | null,
   getNextPageParam: ({ rows }) => (rows.length < kAuditPage ? null : (rows.at(-1)?.number ?? null)),
 });
-export const checkAudit = () => ask(address('/api/v1/audit/check', {}), auditCheckSchema);
+export const checkAudit = () => requestJson(address('/api/v1/audit/check', {}), auditCheckSchema);
 
-export interface NewAccount { readonly name: string; readonly role: Role; readonly badge?: string; readonly pin?: string }
+export interface NewAccount {
+  readonly name: string;
+  readonly role: Role;
+  readonly badge?: string;
+  readonly pin?: string;
+}
 
 const posted = { method: 'POST' } as const;
-export const addAccount = (account: NewAccount) => ask(address('/api/v1/accounts', {}), newAccountSchema, { ...posted, body: account });
-export const setAccountState = (id: string, state: 'active' | 'disabled') => ask(address('/api/v1/accounts/{id}/state', { id }), accountSchema, { ...posted, body: { state } });
-export const setAccountRole = (id: string, role: Role) => ask(address('/api/v1/accounts/{id}/role', { id }), accountSchema, { ...posted, body: { role } });
-export const resetPassword = (id: string) => ask(address('/api/v1/accounts/{id}/password', { id }), newPasswordSchema, posted);
+export const addAccount = (account: NewAccount) =>
+  requestJson(address('/api/v1/accounts', {}), newAccountSchema, { ...posted, body: account });
+export const setAccountState = (id: string, state: 'active' | 'disabled') =>
+  requestJson(address('/api/v1/accounts/{id}/state', { id }), accountSchema, { ...posted, body: { state } });
+export const setAccountRole = (id: string, role: Role) =>
+  requestJson(address('/api/v1/accounts/{id}/role', { id }), accountSchema, { ...posted, body: { role } });
+export const resetPassword = (id: string) =>
+  requestJson(address('/api/v1/accounts/{id}/password', { id }), newPasswordSchema, posted);
 export const setBadge = (id: string, badge: string, pin: string) =>
-  ask(address('/api/v1/accounts/{id}/badge', { id }), accountSchema, { ...posted, body: { ...(badge === '' ? {} : { badge }), ...(pin === '' ? {} : { pin }) } });
+  requestJson(address('/api/v1/accounts/{id}/badge', { id }), accountSchema, {
+    ...posted,
+    body: { ...(badge === '' ? {} : { badge }), ...(pin === '' ? {} : { pin }) },
+  });
 
-export const enrolStation = (name: string) => ask(address('/api/v1/stations/codes', {}), enrolmentSchema, { ...posted, body: { name } });
-export const revokeStation = (id: string) => tell(address('/api/v1/stations/{id}/revoke', { id }), posted);
+export const enrolStation = (name: string) =>
+  requestJson(address('/api/v1/stations/codes', {}), enrolmentSchema, { ...posted, body: { name } });
+export const revokeStation = (id: string) => request(address('/api/v1/stations/{id}/revoke', { id }), posted);
 
-export const addCohort = (name: string) => ask(address('/api/v1/cohorts', {}), cohortSchema, { ...posted, body: { name } });
-export const addToCohort = (id: string, name: string) => ask(address('/api/v1/cohorts/{id}/people', { id }), cohortSchema, { ...posted, body: { name } });
-export const takeFromCohort = (id: string, account: string) => ask(address('/api/v1/cohorts/{id}/people/{account_id}', { id, account_id: account }), cohortSchema, { method: 'DELETE' });
-export const inviteIntoCohort = (id: string, name: string) => ask(address('/api/v1/cohorts/{id}/invitations', { id }), cohortSchema, { ...posted, body: { name } });
-export const withdrawInvitation = (id: string, name: string) => ask(address('/api/v1/cohorts/{id}/invitations/{name}', { id, name }), cohortSchema, { method: 'DELETE' });
-export const acceptInvitation = (cohort: string) => ask(address('/api/v1/session/invitations/{cohort}/accept', { cohort }), invitationListSchema, posted);
-export const declineInvitation = (cohort: string) => ask(address('/api/v1/session/invitations/{cohort}/decline', { cohort }), invitationListSchema, posted);
+export const addCohort = (name: string) =>
+  requestJson(address('/api/v1/cohorts', {}), cohortSchema, { ...posted, body: { name } });
+export const addToCohort = (id: string, name: string) =>
+  requestJson(address('/api/v1/cohorts/{id}/people', { id }), cohortSchema, { ...posted, body: { name } });
+export const removeFromCohort = (id: string, account: string) =>
+  requestJson(address('/api/v1/cohorts/{id}/people/{account_id}', { id, account_id: account }), cohortSchema, {
+    method: 'DELETE',
+  });
+export const inviteIntoCohort = (id: string, name: string) =>
+  requestJson(address('/api/v1/cohorts/{id}/invitations', { id }), cohortSchema, { ...posted, body: { name } });
+export const withdrawInvitation = (id: string, name: string) =>
+  requestJson(address('/api/v1/cohorts/{id}/invitations/{name}', { id, name }), cohortSchema, { method: 'DELETE' });
+export const acceptInvitation = (cohort: string) =>
+  requestJson(address('/api/v1/session/invitations/{cohort}/accept', { cohort }), invitationListSchema, posted);
+export const declineInvitation = (cohort: string) =>
+  requestJson(address('/api/v1/session/invitations/{cohort}/decline', { cohort }), invitationListSchema, posted);
 
 /** @param code one-time, where the account asks for codes */
 export const changePassword = (old: string, next: string, code?: string) =>
-  tell(address('/api/v1/session/password', {}), { ...posted, body: { old, new: next, ...(code === undefined ? {} : { code }) } });
-export const beginCodes = (password: string) => ask(address('/api/v1/session/codes', {}), codesSchema, { ...posted, body: { password } });
-export const confirmCodes = (code: string) => tell(address('/api/v1/session/codes/confirm', {}), { ...posted, body: { code } });
-export const endCodes = (password: string, code: string) => tell(address('/api/v1/session/codes/end', {}), { ...posted, body: { password, code } });
+  request(address('/api/v1/session/password', {}), {
+    ...posted,
+    body: { old, new: next, ...(code === undefined ? {} : { code }) },
+  });
+export const beginCodes = (password: string) =>
+  requestJson(address('/api/v1/session/codes', {}), codesSchema, { ...posted, body: { password } });
+export const confirmCodes = (code: string) =>
+  request(address('/api/v1/session/codes/confirm', {}), { ...posted, body: { code } });
+export const endCodes = (password: string, code: string) =>
+  request(address('/api/v1/session/codes/end', {}), { ...posted, body: { password, code } });

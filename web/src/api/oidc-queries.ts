@@ -2,13 +2,13 @@
 import { queryOptions } from '@tanstack/react-query';
 import * as v from 'valibot';
 import { address } from './address';
-import { ask } from './client';
+import { requestJson } from './client';
 
 const offerSchema = v.object({ offered: v.boolean(), label: v.nullable(v.string()) });
 
 export const oidcOfferQuery = queryOptions({
   queryKey: ['oidc'],
-  queryFn: ({ signal }) => ask(address('/api/v1/session/oidc', {}), offerSchema, { signal }),
+  queryFn: ({ signal }) => requestJson(address('/api/v1/session/oidc', {}), offerSchema, { signal }),
   staleTime: Infinity,
   retry: false,
 });

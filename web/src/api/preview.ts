@@ -12,7 +12,10 @@ export interface Preview {
 }
 
 function numbers(headers: Headers, name: string, length: number): number[] {
-  const values = (headers.get(name) ?? '').split(/[\s,]+/).filter(Boolean).map(Number);
+  const values = (headers.get(name) ?? '')
+    .split(/[\s,]+/)
+    .filter(Boolean)
+    .map(Number);
   if (values.length !== length || !values.every(Number.isFinite)) {
     throw new ApiError('unreadable', `The server's answer cannot be read: header ${name} needs ${length} numbers.`);
   }
@@ -25,7 +28,10 @@ export function parsePreview(headers: Headers, opacity: Uint8Array<ArrayBuffer>)
   const dims = numbers(headers, 'X-Dims', 3);
   const voxels = dims.reduce((product, n) => product * n, 1);
   if (!dims.every((n) => Number.isInteger(n) && n > 0 && n <= 512) || voxels !== opacity.length) {
-    throw new ApiError('unreadable', `The server's answer cannot be read: ${opacity.length} voxels for ${dims.join(' × ')}.`);
+    throw new ApiError(
+      'unreadable',
+      `The server's answer cannot be read: ${opacity.length} voxels for ${dims.join(' × ')}.`,
+    );
   }
   return {
     dims: triple(dims),

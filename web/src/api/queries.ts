@@ -1,9 +1,17 @@
-/** What can be asked, as queries: one key each, so that pages share answers. */
+/** All queries, one key each, so that pages share answers. */
 import { infiniteQueryOptions, queryOptions, type QueryClient } from '@tanstack/react-query';
 import { address } from './address';
-import { ApiError, ask, bytes, tell } from './client';
+import { ApiError, requestJson, bytes, request } from './client';
 import { parsePreview } from './preview';
-import { forceDepthSchema, pathSchema, sessionSchema, signalsSchema, trialPageSchema, trialSchema, type Session } from './schemas';
+import {
+  forceDepthSchema,
+  pathSchema,
+  sessionSchema,
+  signalsSchema,
+  trialPageSchema,
+  trialSchema,
+  type Session,
+} from './schemas';
 
 const kAssessing_ms = 2_000;
 const kIdle_ms = 15_000;
@@ -12,7 +20,13 @@ const kPage = 50;
 const kPreview = 128;
 
 export const kChannels = [
-  'force_xy_N', 'force_z_N', 'torque_xy_Nm', 'torque_z_Nm', 'depth_m', 'offset_m', 'angle_rad',
+  'force_xy_N',
+  'force_z_N',
+  'torque_xy_Nm',
+  'torque_z_Nm',
+  'depth_m',
+  'offset_m',
+  'angle_rad',
 ] as const;
 export const kProbingChannels = ['force_N', 'depth_m', 'speed_m_s', 'angle_rad'] as const;
 export type Channel = (typeof kChannels)[number] | (typeof kProbingChannels)[number];
@@ -22,7 +36,7 @@ export const sessionQuery = queryOptions({
   queryKey: ['session'],
   queryFn: async ({ signal }): Promise<Session | null> => {
     try {
-      return await ask(address('/api/v1/session', {}), sessionSchema, { signal });
+      return await requestJson(address('/api/v1/session', {}), sessionSchema, { signal });
     } catch (reason) {
       if (reason instanceof ApiError && reason.code === 'unauthorised') return null;
       throw reason;
@@ -33,16 +47,19 @@ export const sessionQuery = queryOptions({
 
 /** `code`: the one-time code of an account that asks for one. */
 export const signIn = (name: string, password: string, code?: string) =>
-  ask(address('/api/v1/session', {}), sessionSchema, { method: 'POST', body: { name, password, ...(code === undefined ? {} : { code }) } });
+  requestJson(address('/api/v1/session', {}), sessionSchema, {
+    method: 'POST',
+    body: { name, password, ...(code === undefined ? {} : { code }) },
+  });
 
-export const signOut = () => tell(address('/api/v1/session', {}), { method: 'DELETE' });
+export const signOut = () => request(address('/api/v1/session', {}), { method: 'DELETE' });
 
-/** Newest first; asked again while anything is being assessed, and now and then for trials that have arrived. */
+/** Newest first; refetched while a trial is being assessed, and from time to time for new trials. */
 export const trialsQuery = infiniteQueryOptions({
   queryKey: ['trials'],
   queryFn: ({ pageParam, signal }) => {
     const before = pageParam === null ? {} : { before_utc_us: pageParam };
-    return ask(address('/api/v1/trials', {}, { limit: kPage, ...before }), trialPageSchema, { signal });
+    return requestJson(address('/api/v1/trials', {}, { limit: kPage, ...before }), trialPageSchema, { signal });
   },
   initialPageParam: null as number | null,
   getNextPageParam: (last) => (last.more ? (last.trials.at(-1)?.started_utc_us ?? null) : null),
@@ -55,11 +72,15 @@ export const trialsQuery = infiniteQueryOptions({
 export const trialQuery = (id: string) =>
   queryOptions({
     queryKey: ['trial', id],
-    queryFn: ({ signal }) => ask(address('/api/v1/trials/{id}', { id }), trialSchema, { signal }),
+    queryFn: ({ signal }) => requestJson(address('/api/v1/trials/{id}', { id }), trialSchema, { signal }),
     refetchInterval: (query) => (query.state.data?.state === 'assessing' ? kAssessing_ms : false),
   });
 
-export interface SignalWindow { from_s: number; to_s: number; points: number }
+export interface SignalWindow {
+  from_s: number;
+  to_s: number;
+  points: number;
+}
 
 /** Signals of a trial never change, so a window once fetched is kept. */
 export const signalsQuery = (id: string, channels: readonly Channel[], window: SignalWindow) =>
@@ -67,7 +88,7 @@ export const signalsQuery = (id: string, channels: readonly Channel[], window: S
     queryKey: ['signals', id, channels, window],
     queryFn: ({ signal }) => {
       const query = { channels: channels.join(','), ...window };
-      return ask(address('/api/v1/trials/{id}/signals', { id }, query), signalsSchema, { signal });
+      return requestJson(address('/api/v1/trials/{id}/signals', { id }, query), signalsSchema, { signal });
     },
     staleTime: Infinity,
   });
@@ -75,7 +96,8 @@ export const signalsQuery = (id: string, channels: readonly Channel[], window: S
 export const pathQuery = (id: string) =>
   queryOptions({
     queryKey: ['path', id],
-    queryFn: ({ signal }) => ask(address('/api/v1/trials/{id}/path', { id }, { points: 2000 }), pathSchema, { signal }),
+    queryFn: ({ signal }) =>
+      requestJson(address('/api/v1/trials/{id}/path', { id }, { points: 2000 }), pathSchema, { signal }),
     staleTime: Infinity,
   });
 
@@ -83,7 +105,8 @@ export const pathQuery = (id: string) =>
 export const forceDepthQuery = (id: string) =>
   queryOptions({
     queryKey: ['force-depth', id],
-    queryFn: ({ signal }) => ask(address('/api/v1/trials/{id}/force-depth', { id }, { points: 2000 }), forceDepthSchema, { signal }),
+    queryFn: ({ signal }) =>
+      requestJson(address('/api/v1/trials/{id}/force-depth', { id }, { points: 2000 }), forceDepthSchema, { signal }),
     staleTime: Infinity,
   });
 
@@ -91,7 +114,10 @@ export const previewQuery = (caseId: string) =>
   queryOptions({
     queryKey: ['preview', caseId],
     queryFn: async ({ signal }) => {
-      const { headers, data } = await bytes(address('/api/v1/cases/{id}/preview', { id: caseId }, { max_side: kPreview }), { signal });
+      const { headers, data } = await bytes(
+        address('/api/v1/cases/{id}/preview', { id: caseId }, { max_side: kPreview }),
+        { signal },
+      );
       return parsePreview(headers, data);
     },
     staleTime: Infinity,

@@ -8,7 +8,12 @@ const point = v.tuple([finite, finite, finite]);
 const wall = v.picklist(['medial', 'lateral', 'superior', 'inferior', 'anterior']);
 
 /** `must_change`: the password was made by another, and nothing else is answered until it is changed. */
-export const sessionSchema = v.object({ name: v.string(), role: v.string(), id: v.optional(v.string(), ''), must_change: v.optional(v.boolean(), false) });
+export const sessionSchema = v.object({
+  name: v.string(),
+  role: v.string(),
+  id: v.optional(v.string(), ''),
+  must_change: v.optional(v.boolean(), false),
+});
 
 export const trialStateSchema = v.picklist(['assessing', 'assessed', 'failed']);
 
@@ -44,7 +49,12 @@ export const coverageSchema = v.pipe(
 );
 
 export const tractSchema = v.object({
-  entry_m: point, axis: point, length_m: inMetres, radius_m: inMetres, medial: point, superior: point,
+  entry_m: point,
+  axis: point,
+  length_m: inMetres,
+  radius_m: inMetres,
+  medial: point,
+  superior: point,
 });
 
 /** An event's detail is the station's own: kept as it is, and shown only for the kinds known here. */
@@ -63,14 +73,20 @@ export const scenarioSchema = v.object({
   id: v.string(),
   name: v.string(),
   travel_m: inMetres,
-  layers: v.array(v.object({ start_m: inMetres, thickness_m: inMetres, stiffness_N_per_m: finite, damping_Ns_per_m: finite })),
+  layers: v.array(
+    v.object({ start_m: inMetres, thickness_m: inMetres, stiffness_N_per_m: finite, damping_Ns_per_m: finite }),
+  ),
   walls: v.array(v.object({ position_m: inMetres, resistance_interval_m: inMetres, breach_interval_m: inMetres })),
 });
 
 /** Where a trial stands in a study. */
 export const placeSchema = v.object({
-  id: v.string(), title: v.string(), participant: v.string(), number: count,
-  state: v.picklist(['arriving', 'counts', 'invalid', 'surplus']), reason: v.string(),
+  id: v.string(),
+  title: v.string(),
+  participant: v.string(),
+  number: count,
+  state: v.picklist(['arriving', 'counts', 'invalid', 'surplus']),
+  reason: v.string(),
 });
 
 export const truthSchema = v.object({ breached: v.nullish(wall, null) });
@@ -126,13 +142,21 @@ export const signalsSchema = v.pipe(
 
 export const pathSchema = v.pipe(
   v.object({ t_s: v.array(finite), tip_m: v.array(point), force_N: v.array(inNewtons) }),
-  v.check((p) => p.tip_m.length === p.t_s.length && p.force_N.length === p.t_s.length, 'path: columns must be as long as one another'),
+  v.check(
+    (p) => p.tip_m.length === p.t_s.length && p.force_N.length === p.t_s.length,
+    'path: columns must be as long as one another',
+  ),
 );
 
 export const kModes = ['holding', 'bone', 'resistance', 'breach', 'stopped'] as const;
 
 export const forceDepthSchema = v.pipe(
-  v.object({ t_s: v.array(finite), depth_m: v.array(finite), force_N: v.array(finite), mode: v.array(v.picklist(kModes)) }),
+  v.object({
+    t_s: v.array(finite),
+    depth_m: v.array(finite),
+    force_N: v.array(finite),
+    mode: v.array(v.picklist(kModes)),
+  }),
   v.check(
     (c) => [c.depth_m, c.force_N, c.mode].every((column) => column.length === c.t_s.length),
     'force against depth: columns must be as long as one another',

@@ -19,22 +19,41 @@ export interface Slice {
 }
 
 function numbers(headers: Headers, name: string, lengths: readonly number[]): number[] {
-  const values = (headers.get(name) ?? '').split(/[\s,]+/).filter(Boolean).map(Number);
+  const values = (headers.get(name) ?? '')
+    .split(/[\s,]+/)
+    .filter(Boolean)
+    .map(Number);
   if (!lengths.includes(values.length) || !values.every(Number.isFinite)) {
-    throw new ApiError('unreadable', `The server's answer cannot be read: header ${name} needs ${lengths.join(' or ')} numbers.`);
+    throw new ApiError(
+      'unreadable',
+      `The server's answer cannot be read: header ${name} needs ${lengths.join(' or ')} numbers.`,
+    );
   }
   return values;
 }
 
-const triple = (values: readonly number[], from = 0): Vec3 => [values[from] ?? 0, values[from + 1] ?? 0, values[from + 2] ?? 0];
+const triple = (values: readonly number[], from = 0): Vec3 => [
+  values[from] ?? 0,
+  values[from + 1] ?? 0,
+  values[from + 2] ?? 0,
+];
 
 export function parseSlice(headers: Headers, pixels: Uint8Array<ArrayBuffer>): Slice {
   const [width = 0, height = 0] = numbers(headers, 'X-Dims', [2]);
-  if (width * height !== pixels.length || width < 1) throw new ApiError('unreadable', `The server's answer cannot be read: ${pixels.length} pixels for ${width} × ${height}.`);
+  if (width * height !== pixels.length || width < 1)
+    throw new ApiError(
+      'unreadable',
+      `The server's answer cannot be read: ${pixels.length} pixels for ${width} × ${height}.`,
+    );
   const [across = 0, down = across] = numbers(headers, 'X-Spacing-m', [1, 2]);
   const along = numbers(headers, 'X-Directions', [6]);
   return {
-    width, height, pixels, spacing_m: [across, down], origin_m: triple(numbers(headers, 'X-Origin-m', [3])),
-    alongRow: triple(along), alongColumn: triple(along, 3),
+    width,
+    height,
+    pixels,
+    spacing_m: [across, down],
+    origin_m: triple(numbers(headers, 'X-Origin-m', [3])),
+    alongRow: triple(along),
+    alongColumn: triple(along, 3),
   };
 }

@@ -1,11 +1,11 @@
-/** What can be asked of studies, and what can be decided in them. */
+/** Queries and actions of studies. */
 import { queryOptions } from '@tanstack/react-query';
 import { address } from './address';
-import { ask } from './client';
+import { requestJson } from './client';
 import type { components } from './generated/schema';
 import { studyEventsSchema, studyListSchema, studySchema, type Study, type StudyState } from './study-schemas';
 
-/** Pages of studies are live: asked again so often while they are looked at. */
+/** Refetch interval of the pages of studies. */
 const kLive_ms = 2_000;
 const kEvents = 50;
 
@@ -14,33 +14,36 @@ export type NewParticipant = components['schemas']['NewParticipant'];
 
 export const studiesQuery = queryOptions({
   queryKey: ['studies'],
-  queryFn: ({ signal }) => ask(address('/api/v1/studies', {}), studyListSchema, { signal }),
+  queryFn: ({ signal }) => requestJson(address('/api/v1/studies', {}), studyListSchema, { signal }),
   refetchInterval: kLive_ms,
 });
 
 export const studyQuery = (id: string) =>
   queryOptions({
     queryKey: ['study', id],
-    queryFn: ({ signal }) => ask(address('/api/v1/studies/{id}', { id }), studySchema, { signal }),
+    queryFn: ({ signal }) => requestJson(address('/api/v1/studies/{id}', { id }), studySchema, { signal }),
     refetchInterval: kLive_ms,
   });
 
 export const studyEventsQuery = (id: string) =>
   queryOptions({
     queryKey: ['study-events', id],
-    queryFn: ({ signal }) => ask(address('/api/v1/studies/{id}/events', { id }, { limit: kEvents }), studyEventsSchema, { signal }),
+    queryFn: ({ signal }) =>
+      requestJson(address('/api/v1/studies/{id}/events', { id }, { limit: kEvents }), studyEventsSchema, { signal }),
     refetchInterval: kLive_ms,
   });
 
-const told = (path: string, body: unknown): Promise<Study> => ask(path, studySchema, { method: 'POST', body });
+const changedStudy = (path: string, body: unknown): Promise<Study> =>
+  requestJson(path, studySchema, { method: 'POST', body });
 
-export const makeStudy = (study: NewStudy) => told(address('/api/v1/studies', {}), study);
-export const enrol = (id: string, participant: NewParticipant) => told(address('/api/v1/studies/{id}/participants', { id }), participant);
+export const makeStudy = (study: NewStudy) => changedStudy(address('/api/v1/studies', {}), study);
+export const enrol = (id: string, participant: NewParticipant) =>
+  changedStudy(address('/api/v1/studies/{id}/participants', { id }), participant);
 export const setStudyState = (id: string, state: StudyState, reason: string) =>
-  told(address('/api/v1/studies/{id}/state', { id }), { state, reason });
+  changedStudy(address('/api/v1/studies/{id}/state', { id }), { state, reason });
 export const setParticipantState = (id: string, name: string, state: StudyState, reason: string) =>
-  told(address('/api/v1/studies/{id}/participants/{name}/state', { id, name }), { state, reason });
+  changedStudy(address('/api/v1/studies/{id}/participants/{name}/state', { id, name }), { state, reason });
 export const releaseParticipant = (id: string, name: string, reason: string) =>
-  told(address('/api/v1/studies/{id}/participants/{name}/release', { id, name }), { reason });
+  changedStudy(address('/api/v1/studies/{id}/participants/{name}/release', { id, name }), { reason });
 export const markTrialInvalid = (id: string, trial: string, reason: string) =>
-  told(address('/api/v1/studies/{id}/trials/{trial_id}/invalid', { id, trial_id: trial }), { reason });
+  changedStudy(address('/api/v1/studies/{id}/trials/{trial_id}/invalid', { id, trial_id: trial }), { reason });

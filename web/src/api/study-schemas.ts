@@ -8,8 +8,14 @@ const ordering = v.picklist(['random', 'balanced']);
 const onInvalid = v.picklist(['at_end', 'at_once', 'never']);
 
 const common = {
-  id: v.string(), title: v.string(), state, ordering, repeats: count, on_invalid: onInvalid,
-  made_utc_us: inUtc, made_by: v.string(),
+  id: v.string(),
+  title: v.string(),
+  state,
+  ordering,
+  repeats: count,
+  on_invalid: onInvalid,
+  made_utc_us: inUtc,
+  made_by: v.string(),
 };
 
 export const studyListSchema = v.object({
@@ -47,7 +53,10 @@ export const participantSchema = v.object({
   simulated: v.boolean(),
   at_station: v.boolean(),
   last_station: v.nullable(v.string()),
-  done: count, planned: count, judged: count, recognised: count,
+  done: count,
+  planned: count,
+  judged: count,
+  recognised: count,
   slots: v.array(slotSchema),
 });
 
@@ -59,10 +68,16 @@ export const studySchema = v.object({
 });
 
 export const studyEventsSchema = v.object({
-  events: v.array(v.object({
-    at_utc_us: inUtc, who: v.string(), what: v.string(),
-    participant: v.nullable(v.string()), trial_id: v.nullable(v.string()), reason: v.string(),
-  })),
+  events: v.array(
+    v.object({
+      at_utc_us: inUtc,
+      who: v.string(),
+      what: v.string(),
+      participant: v.nullable(v.string()),
+      trial_id: v.nullable(v.string()),
+      reason: v.string(),
+    }),
+  ),
 });
 
 export type StudySummary = v.InferOutput<typeof studyListSchema>['studies'][number];

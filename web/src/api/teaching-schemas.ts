@@ -8,88 +8,204 @@ export const kWalls = ['medial', 'lateral', 'superior', 'inferior', 'anterior'] 
 const wall = v.picklist(kWalls);
 
 export const sourceVolumeSchema = v.object({
-  id: v.string(), name: v.string(), source: v.string(), state: v.string(), dims: v.tuple([count, count, count]), spacing_m: point,
-  made_utc_us: inUtc, made_by: v.string(),
+  id: v.string(),
+  name: v.string(),
+  source: v.string(),
+  state: v.string(),
+  dims: v.tuple([count, count, count]),
+  spacing_m: point,
+  made_utc_us: inUtc,
+  made_by: v.string(),
 });
 export const sourceVolumeListSchema = v.object({ volumes: v.array(sourceVolumeSchema) });
 
 export const caseSummarySchema = v.object({
-  id: v.string(), title: v.string(), source: v.string(), made_utc_us: inUtc, trials: count, retired: v.boolean(), planned: v.boolean(),
+  id: v.string(),
+  title: v.string(),
+  source: v.string(),
+  made_utc_us: inUtc,
+  trials: count,
+  retired: v.boolean(),
+  planned: v.boolean(),
 });
 export const caseListSchema = v.object({ cases: v.array(caseSummarySchema) });
 /** Of the signed manifest and of the truth what a page shows. */
-export const caseManifestSchema = v.object({ title: v.string(), source: v.string(), made_utc_us: inUtc, tract: tractSchema, channel: v.optional(v.literal('planned')) });
+export const caseManifestSchema = v.object({
+  title: v.string(),
+  source: v.string(),
+  made_utc_us: inUtc,
+  tract: tractSchema,
+  channel: v.optional(v.literal('planned')),
+});
 export const caseTruthSchema = v.object({
-  breached: v.nullish(wall, null), breach_m: v.nullish(point, null), breach_depth_m: v.optional(inMetres, 0), wall_thickness_m: v.optional(inMetres, 0),
+  breached: v.nullish(wall, null),
+  breach_m: v.nullish(point, null),
+  breach_depth_m: v.optional(inMetres, 0),
+  wall_thickness_m: v.optional(inMetres, 0),
 });
 
 export const plannedWallSchema = v.object({
-  wall, depth_m: v.array(finite), inner_m: v.array(v.nullable(finite)), thickness_m: v.array(v.nullable(finite)),
+  wall,
+  depth_m: v.array(finite),
+  inner_m: v.array(v.nullable(finite)),
+  thickness_m: v.array(v.nullable(finite)),
   thinnest: v.nullable(v.object({ at_m: inMetres, inner_m: inMetres, thickness_m: inMetres })),
 });
 export const plannedTractSchema = v.object({
-  length_m: inMetres, side: v.nullable(v.picklist(['left', 'right'])), tract: v.nullable(tractSchema), walls: v.array(plannedWallSchema),
-  breach: v.nullable(v.object({
-    wall, at_m: inMetres, breach_m: point, from_m: point, tip_m: point, depth_m: inMetres, inner_m: inMetres, wall_thickness_m: inMetres,
-  })),
+  length_m: inMetres,
+  side: v.nullable(v.picklist(['left', 'right'])),
+  tract: v.nullable(tractSchema),
+  walls: v.array(plannedWallSchema),
+  breach: v.nullable(
+    v.object({
+      wall,
+      at_m: inMetres,
+      breach_m: point,
+      from_m: point,
+      tip_m: point,
+      depth_m: inMetres,
+      inner_m: inMetres,
+      wall_thickness_m: inMetres,
+    }),
+  ),
   problems: v.array(v.string()),
 });
 export const makingSchema = v.object({
-  id: v.string(), volume: v.string(), title: v.string(), state: v.picklist(['queued', 'running', 'done', 'failed']), share: finite, phase: v.string(),
-  error: v.string(), case_id: v.nullable(v.string()), made_utc_us: inUtc, made_by: v.string(),
+  id: v.string(),
+  volume: v.string(),
+  title: v.string(),
+  state: v.picklist(['queued', 'running', 'done', 'failed']),
+  share: finite,
+  phase: v.string(),
+  error: v.string(),
+  case_id: v.nullable(v.string()),
+  made_utc_us: inUtc,
+  made_by: v.string(),
 });
 export const makingListSchema = v.object({ makings: v.array(makingSchema) });
 
 export const kKinds = ['hard', 'soft', 'lateral_breach', 'in_out_in'] as const;
 const kind = v.picklist(kKinds);
 export const scenarioVersionSchema = v.object({
-  id: v.string(), name: v.string(), kind, parent: v.nullable(v.string()), published: v.boolean(), made_utc_us: inUtc, made_by: v.string(),
+  id: v.string(),
+  name: v.string(),
+  kind,
+  parent: v.nullable(v.string()),
+  published: v.boolean(),
+  made_utc_us: inUtc,
+  made_by: v.string(),
 });
 export const scenarioListSchema = v.object({
-  scenarios: v.array(scenarioVersionSchema), tuned: v.array(v.object({ kind, name: v.string(), id: v.string() })),
+  scenarios: v.array(scenarioVersionSchema),
+  tuned: v.array(v.object({ kind, name: v.string(), id: v.string() })),
 });
 /** tractus-scenario/1: kept whole, so that what this page does not show is not lost on the way. */
 export const scenarioFileSchema = v.looseObject({
-  format: v.literal('tractus-scenario/1'), name: v.string(), kind,
+  format: v.literal('tractus-scenario/1'),
+  name: v.string(),
+  kind,
   bone: v.object({ stiffness_N_per_m: finite, damping_Ns_per_m: finite, equilibrium_m: finite, interval_m: finite }),
-  breach: v.object({ resistance_interval_m: finite, resistance_factor_per_m: finite, breach_interval_m: finite, breach_damping_Ns_per_m: finite }),
-  walls_m: v.array(finite), density: finite, layers: v.array(v.object({ start_m: finite, thickness_m: finite, density: finite })), travel_m: finite,
+  breach: v.object({
+    resistance_interval_m: finite,
+    resistance_factor_per_m: finite,
+    breach_interval_m: finite,
+    breach_damping_Ns_per_m: finite,
+  }),
+  walls_m: v.array(finite),
+  density: finite,
+  layers: v.array(v.object({ start_m: finite, thickness_m: finite, density: finite })),
+  travel_m: finite,
   rotary: v.object({ viscous_Nms_per_rad: finite, detent_Nm: finite, detent_pitch_rad: finite }),
 });
 export const scenarioCheckSchema = v.object({
-  ok: v.boolean(), field: v.string(), error: v.string(), excessive: v.array(v.string()),
-  curve: v.nullable(v.object({
-    depth_m: v.array(finite), at: v.array(v.object({ speed_m_s: finite, force_N: v.array(finite) })),
-    layers: v.array(v.object({ from_m: finite, to_m: finite })), walls: v.array(v.object({ from_m: finite, at_m: finite, to_m: finite })),
-  })),
+  ok: v.boolean(),
+  field: v.string(),
+  error: v.string(),
+  excessive: v.array(v.string()),
+  curve: v.nullable(
+    v.object({
+      depth_m: v.array(finite),
+      at: v.array(v.object({ speed_m_s: finite, force_N: v.array(finite) })),
+      layers: v.array(v.object({ from_m: finite, to_m: finite })),
+      walls: v.array(v.object({ from_m: finite, at_m: finite, to_m: finite })),
+    }),
+  ),
 });
 
 export const kReleases = ['held', 'released', 'at_once'] as const;
 const assignmentFields = {
-  id: v.string(), title: v.string(), state: v.picklist(['running', 'paused']), due_utc_us: v.nullable(inUtc), release: v.picklist(kReleases),
-  done: count, planned: count, to_drill: count, cohort_id: v.nullable(v.string()), cohort_name: v.string(), made_utc_us: inUtc, made_by: v.string(),
-  ordering: v.optional(v.picklist(['fixed', 'random', 'balanced'])), repeats: v.optional(count), people: v.optional(count),
+  id: v.string(),
+  title: v.string(),
+  state: v.picklist(['running', 'paused']),
+  due_utc_us: v.nullable(inUtc),
+  release: v.picklist(kReleases),
+  done: count,
+  planned: count,
+  to_drill: count,
+  cohort_id: v.nullable(v.string()),
+  cohort_name: v.string(),
+  made_utc_us: inUtc,
+  made_by: v.string(),
+  ordering: v.optional(v.picklist(['fixed', 'random', 'balanced'])),
+  repeats: v.optional(count),
+  people: v.optional(count),
 };
 export const assignmentListSchema = v.object({ assignments: v.array(v.object(assignmentFields)) });
 export const assignmentSchema = v.object({
   ...assignmentFields,
-  trainees: v.optional(v.array(v.object({ account_id: v.string(), name: v.string(), participant: v.string(), done: count, planned: count })), []),
-  trials: v.optional(v.array(v.object({
-    trial_id: v.string(), participant: v.string(), number: count, tool: v.picklist(['probe', 'burr']),
-    state: v.picklist(['arriving', 'counts', 'invalid', 'surplus']), reason: v.string(),
-    correct: v.nullable(v.boolean()), comments: count, started_utc_us: v.nullable(inUtc),
-  })), []),
+  trainees: v.optional(
+    v.array(
+      v.object({ account_id: v.string(), name: v.string(), participant: v.string(), done: count, planned: count }),
+    ),
+    [],
+  ),
+  trials: v.optional(
+    v.array(
+      v.object({
+        trial_id: v.string(),
+        participant: v.string(),
+        number: count,
+        tool: v.picklist(['probe', 'burr']),
+        state: v.picklist(['arriving', 'counts', 'invalid', 'surplus']),
+        reason: v.string(),
+        correct: v.nullable(v.boolean()),
+        comments: count,
+        started_utc_us: v.nullable(inUtc),
+      }),
+    ),
+    [],
+  ),
 });
 
 export const commentListSchema = v.object({
-  comments: v.array(v.object({ id: v.string(), at_s: v.nullable(inSeconds), text: v.string(), by: v.string(), own: v.boolean(), made_utc_us: inUtc })),
+  comments: v.array(
+    v.object({
+      id: v.string(),
+      at_s: v.nullable(inSeconds),
+      text: v.string(),
+      by: v.string(),
+      own: v.boolean(),
+      made_utc_us: inUtc,
+    }),
+  ),
 });
 export const referenceListSchema = v.object({
   reference: v.boolean(),
-  trials: v.array(v.object({ id: v.string(), operator: v.string(), simulated: v.boolean(), started_utc_us: inUtc, duration_s: inSeconds })),
+  trials: v.array(
+    v.object({
+      id: v.string(),
+      operator: v.string(),
+      simulated: v.boolean(),
+      started_utc_us: inUtc,
+      duration_s: inSeconds,
+    }),
+  ),
 });
 export const referenceWaySchema = v.object({
-  t_s: v.array(finite), depth_m: v.array(finite), force_N: v.array(inNewtons), tip_m: v.nullable(v.array(point)),
+  t_s: v.array(finite),
+  depth_m: v.array(finite),
+  force_N: v.array(inNewtons),
+  tip_m: v.nullable(v.array(point)),
 });
 
 export type SourceVolume = v.InferOutput<typeof sourceVolumeSchema>;

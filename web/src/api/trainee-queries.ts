@@ -3,17 +3,32 @@ import { queryOptions } from '@tanstack/react-query';
 import * as v from 'valibot';
 import { share } from '@/units';
 import { address } from './address';
-import { ask } from './client';
+import { requestJson } from './client';
 import { count, finite, inUtc } from './quantities';
 
 const portion = v.pipe(finite, v.transform(share));
 
-const ruleSchema = v.object({ adequate: portion, inadequate: portion, trials: count, threshold: finite, relapse: finite });
+const ruleSchema = v.object({
+  adequate: portion,
+  inadequate: portion,
+  trials: count,
+  threshold: finite,
+  relapse: finite,
+});
 
 const standingFields = {
-  trainee: v.string(), trials: count, right: count, share: portion, wilson_low: portion, wilson_high: portion,
-  state: v.picklist(['learning', 'competent', 'relapsed']), certified: v.boolean(), why: v.string(),
-  next: v.object({ scenario: v.string(), why: v.string() }), simulated: v.boolean(), last_utc_us: inUtc,
+  trainee: v.string(),
+  trials: count,
+  right: count,
+  share: portion,
+  wilson_low: portion,
+  wilson_high: portion,
+  state: v.picklist(['learning', 'competent', 'relapsed']),
+  certified: v.boolean(),
+  why: v.string(),
+  next: v.object({ scenario: v.string(), why: v.string() }),
+  simulated: v.boolean(),
+  last_utc_us: inUtc,
 };
 
 export const traineeListSchema = v.object({ rule: ruleSchema, trainees: v.array(v.object(standingFields)) });
@@ -23,36 +38,75 @@ export const traineeSchema = v.object({
   rule: ruleSchema,
   competent_at_trial: v.nullable(count),
   relapse_at_trial: v.nullable(count),
-  scenarios: v.array(v.object({
-    scenario: v.string(), trials: count, right: count, verdict: v.string(),
-    share: v.optional(portion), wilson_low: v.optional(portion), wilson_high: v.optional(portion),
-  })),
-  scores: v.array(v.object({
-    score: v.string(), trials: count, first: v.optional(finite), rate: v.optional(finite), rate_p: v.nullish(finite), share_left_when_trials_double: v.optional(finite), note: v.optional(v.string()),
-  })),
-  attempts: v.array(v.object({
-    number: count, trial: v.string(), scenario: v.string(), started_utc_us: inUtc, correct: v.boolean(), confidence: v.nullable(portion),
-    sum: finite, relapse_sum: v.nullable(finite), scores: v.record(v.string(), v.nullable(finite)),
-  })),
-  calibration: v.array(v.object({ low: portion, high: portion, stated: portion, trials: count, right: count, wilson_low: portion, wilson_high: portion })),
+  scenarios: v.array(
+    v.object({
+      scenario: v.string(),
+      trials: count,
+      right: count,
+      verdict: v.string(),
+      share: v.optional(portion),
+      wilson_low: v.optional(portion),
+      wilson_high: v.optional(portion),
+    }),
+  ),
+  scores: v.array(
+    v.object({
+      score: v.string(),
+      trials: count,
+      first: v.optional(finite),
+      rate: v.optional(finite),
+      rate_p: v.nullish(finite),
+      share_left_when_trials_double: v.optional(finite),
+      note: v.optional(v.string()),
+    }),
+  ),
+  attempts: v.array(
+    v.object({
+      number: count,
+      trial: v.string(),
+      scenario: v.string(),
+      started_utc_us: inUtc,
+      correct: v.boolean(),
+      confidence: v.nullable(portion),
+      sum: finite,
+      relapse_sum: v.nullable(finite),
+      scores: v.record(v.string(), v.nullable(finite)),
+    }),
+  ),
+  calibration: v.array(
+    v.object({
+      low: portion,
+      high: portion,
+      stated: portion,
+      trials: count,
+      right: count,
+      wilson_low: portion,
+      wilson_high: portion,
+    }),
+  ),
 });
 
 export const traineesQuery = queryOptions({
   queryKey: ['trainees'],
-  queryFn: ({ signal }) => ask(address('/api/v1/cohort/trainees', {}), traineeListSchema, { signal }),
+  queryFn: ({ signal }) => requestJson(address('/api/v1/cohort/trainees', {}), traineeListSchema, { signal }),
 });
 
 export const traineeQuery = (name: string) =>
   queryOptions({
     queryKey: ['trainees', name],
-    queryFn: ({ signal }) => ask(address('/api/v1/cohort/trainees/{name}', { name }), traineeSchema, { signal }),
+    queryFn: ({ signal }) =>
+      requestJson(address('/api/v1/cohort/trainees/{name}', { name }), traineeSchema, { signal }),
   });
 
-export const metricsSchema = v.object({ metrics: v.array(v.object({ id: v.string(), label: v.string(), unit: v.string(), definition: v.string(), source: v.string() })) });
+export const metricsSchema = v.object({
+  metrics: v.array(
+    v.object({ id: v.string(), label: v.string(), unit: v.string(), definition: v.string(), source: v.string() }),
+  ),
+});
 
 export const metricsQuery = queryOptions({
   queryKey: ['metrics'],
-  queryFn: ({ signal }) => ask(address('/api/v1/metrics', {}), metricsSchema, { signal }),
+  queryFn: ({ signal }) => requestJson(address('/api/v1/metrics', {}), metricsSchema, { signal }),
   staleTime: Infinity,
 });
 

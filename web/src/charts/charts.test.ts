@@ -3,7 +3,19 @@ import { linePath, nearestPoint, placeOf, roundStep, ticksOf, type Scale } from 
 import { columnOf, coveredBySide, heatOf, heatPaths, sideOf } from './coverage';
 import { clamp, panned, whole, zoomed } from './range';
 import { opacityAt } from './scene/slice';
-import { assemble, finestLevel, kTilePoints, levelFor, lowerBound, tileRange, tilesFor, upperBound, type Detail, type Tile } from './tiles';
+import {
+  assemble,
+  finestLevel,
+  kTilePoints,
+  levelFor,
+  lowerBound,
+  tileRange,
+  tilesFor,
+  upperBound,
+  type Detail,
+  type Tile,
+} from './tiles';
+import { mostTicks, ticks } from './plane';
 import { keyed } from './use-navigation';
 
 describe('the view', () => {
@@ -35,7 +47,8 @@ describe('the view', () => {
 });
 
 describe('the level of detail', () => {
-  const duration = 250, samples = 1_000_000; // 4 kHz
+  const duration = 250,
+    samples = 1_000_000; // 4 kHz
 
   it('is one tile for the whole trial', () => {
     expect(tilesFor(whole(duration), 1200, duration, samples)).toEqual([{ level: 0, index: 0 }]);
@@ -62,7 +75,8 @@ describe('the level of detail', () => {
     const tiles = tilesFor({ from: 0, to: 10 }, 1200, duration, samples);
     expect(tiles[0]?.index).toBe(0);
     const inside = tilesFor({ from: 120, to: 130 }, 1200, duration, samples);
-    const first = inside[0], last = inside.at(-1);
+    const first = inside[0],
+      last = inside.at(-1);
     if (!first || !last) throw new Error('no tiles');
     expect(tileRange(first, duration).to).toBeLessThanOrEqual(120);
     expect(tileRange(last, duration).from).toBeGreaterThanOrEqual(130);
@@ -74,9 +88,16 @@ describe('a detail put together', () => {
   const made = ({ level, index }: Tile): Detail => {
     const { from, to } = tileRange({ level, index }, 8);
     const t = Array.from({ length: 10 }, (_, i) => from + ((i + 0.5) / 10) * (to - from));
-    return { t, channels: { a: { min: t.map(() => level), max: t.map(() => level + 0.5) } }, samplesPerPoint: 2 ** (3 - level) };
+    return {
+      t,
+      channels: { a: { min: t.map(() => level), max: t.map(() => level + 0.5) } },
+      samplesPerPoint: 2 ** (3 - level),
+    };
   };
-  const tiles: Tile[] = [{ level: 2, index: 1 }, { level: 2, index: 2 }];
+  const tiles: Tile[] = [
+    { level: 2, index: 1 },
+    { level: 2, index: 2 },
+  ];
 
   it('is the fine tiles end to end, in order of time', () => {
     const { t, channels, samplesPerPoint } = assemble(tiles, made, 8);
@@ -120,20 +141,33 @@ describe('the wall unrolled', () => {
     // Twelve bins of 30°, centred: medial is −30°, 0° and 30°.
     const sides = Array.from({ length: 12 }, (_, bin) => sideOf(bin, 12));
     expect(sides).toEqual([
-      'medial', 'medial', 'superior', 'superior', 'superior', 'lateral', 'lateral', 'lateral', 'inferior', 'inferior', 'inferior', 'medial',
+      'medial',
+      'medial',
+      'superior',
+      'superior',
+      'superior',
+      'lateral',
+      'lateral',
+      'lateral',
+      'inferior',
+      'inferior',
+      'inferior',
+      'medial',
     ]);
   });
 
   it('shows each side in one piece', () => {
     const columns = Array.from({ length: 12 }, (_, bin) => ({ side: sideOf(bin, 12), column: columnOf(bin, 12) }));
     const inOrder = columns.sort((a, b) => a.column - b.column).map(({ side }) => side);
-    expect(inOrder.join(' ')).toBe('medial medial medial superior superior superior lateral lateral lateral inferior inferior inferior');
+    expect(inOrder.join(' ')).toBe(
+      'medial medial medial superior superior superior lateral lateral lateral inferior inferior inferior',
+    );
   });
 
   it('counts bins that were touched, not how often', () => {
     const samples = new Array<number>(24).fill(0);
-    samples[0] = 500;      // depth 0, medial
-    samples[12 + 3] = 1;   // depth 1, superior
+    samples[0] = 500; // depth 0, medial
+    samples[12 + 3] = 1; // depth 1, superior
     const sides = coveredBySide({ depthBins: 2, angleBins: 12, samples });
     expect(sides.medial).toEqual({ touched: 1, bins: 6 });
     expect(sides.superior).toEqual({ touched: 1, bins: 6 });
@@ -144,7 +178,9 @@ describe('the wall unrolled', () => {
     expect(heatOf(0, 100)).toBe(0);
     expect(heatOf(1, 1_000_000)).toBe(1);
     expect(heatOf(100, 100)).toBe(5);
-    const cells = heatPaths({ depthBins: 2, angleBins: 4, samples: [0, 1, 0, 0, 0, 0, 0, 9] }).map((path) => path.split('M').length - 1);
+    const cells = heatPaths({ depthBins: 2, angleBins: 4, samples: [0, 1, 0, 0, 0, 0, 0, 9] }).map(
+      (path) => path.split('M').length - 1,
+    );
     expect(cells.reduce((a, b) => a + b)).toBe(8);
     expect(cells[0]).toBe(6);
   });
@@ -154,8 +190,11 @@ describe('the CT on the cut', () => {
   it('is the mean of its neighbours halfway between, through turned axes', () => {
     // i runs along −x: the grid's second voxel lies at x = −2 mm.
     const bone = {
-      dims: [2, 2, 2] as const, spacing_m: [0.002, 0.002, 0.002] as const, origin_m: [0, 0, 0] as const,
-      directions: [-1, 0, 0, 0, 1, 0, 0, 0, 1], opacity: Uint8Array.from([0, 200, 0, 200, 0, 200, 0, 200]),
+      dims: [2, 2, 2] as const,
+      spacing_m: [0.002, 0.002, 0.002] as const,
+      origin_m: [0, 0, 0] as const,
+      directions: [-1, 0, 0, 0, 1, 0, 0, 0, 1],
+      opacity: Uint8Array.from([0, 200, 0, 200, 0, 200, 0, 200]),
     };
     expect(opacityAt(bone, [-0.001, 0.001, 0.001])).toBeCloseTo(100, 9);
     expect(opacityAt(bone, [-0.0005, 0.0004, 0.0013])).toBeCloseTo(50, 9);
@@ -179,6 +218,11 @@ describe('the scale of force against depth', () => {
     expect(roundStep(0.9, 5)).toBeCloseTo(0.2);
     expect(ticksOf(0, 48, 10)).toEqual([0, 10, 20, 30, 40]);
     expect(roundStep(0, 5)).toBe(1);
+  });
+
+  it('has at least three ticks on a low axis of depth', () => {
+    for (const deepest_mm of [8, 29, 42, 63, 99])
+      expect(ticks({ title: '', from: 0, to: deepest_mm }, mostTicks(170)).length).toBeGreaterThanOrEqual(3);
   });
 
   it('finds the point under the pointer on the picture, not in the data', () => {

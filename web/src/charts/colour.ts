@@ -19,7 +19,15 @@ export function resolved(token: string): string {
 
 /** Viridis at nine places (matplotlib, CC0): even in lightness, and read by the colour-blind. 0…255. */
 const kViridis = [
-  [68, 1, 84], [71, 44, 122], [59, 81, 139], [44, 113, 142], [33, 144, 141], [39, 173, 129], [92, 200, 99], [170, 220, 50], [253, 231, 37],
+  [68, 1, 84],
+  [71, 44, 122],
+  [59, 81, 139],
+  [44, 113, 142],
+  [33, 144, 141],
+  [39, 173, 129],
+  [92, 200, 99],
+  [170, 220, 50],
+  [253, 231, 37],
 ] as const;
 
 /** Red, green, blue of a share 0…1, each 0…1. */

@@ -15,8 +15,17 @@ export function sideOf(angleBin: number, angleBins: number): Side {
 }
 
 /** Bins touched, of all, per side. */
-export function coveredBySide({ depthBins, angleBins, samples }: WallBins): Record<Side, { touched: number; bins: number }> {
-  const found = { medial: { touched: 0, bins: 0 }, superior: { touched: 0, bins: 0 }, lateral: { touched: 0, bins: 0 }, inferior: { touched: 0, bins: 0 } };
+export function coveredBySide({
+  depthBins,
+  angleBins,
+  samples,
+}: WallBins): Record<Side, { touched: number; bins: number }> {
+  const found = {
+    medial: { touched: 0, bins: 0 },
+    superior: { touched: 0, bins: 0 },
+    lateral: { touched: 0, bins: 0 },
+    inferior: { touched: 0, bins: 0 },
+  };
   for (let d = 0; d < depthBins; ++d) {
     for (let a = 0; a < angleBins; ++a) {
       const side = found[sideOf(a, angleBins)];
@@ -35,7 +44,8 @@ export function columnOf(angleBin: number, angleBins: number): number {
 export const kHeatLevels = 5;
 
 /** The angle bin that a column of the map shows. */
-export const binOf = (column: number, angleBins: number) => (column - Math.floor(angleBins / 8) + angleBins) % angleBins;
+export const binOf = (column: number, angleBins: number) =>
+  (column - Math.floor(angleBins / 8) + angleBins) % angleBins;
 
 /** 0 untouched, then 1…5 up to the most touched bin, by the root, so that a short contact still shows. */
 export function heatOf(samples: number, most: number): number {

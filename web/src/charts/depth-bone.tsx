@@ -8,7 +8,11 @@ export interface Bone {
   readonly walls: readonly { readonly at_m: number; readonly growsFrom_m: number; readonly breachTo_m: number }[];
 }
 
-interface Props { readonly bone: Bone; readonly across: Scale; readonly up: Scale }
+interface Props {
+  readonly bone: Bone;
+  readonly across: Scale;
+  readonly up: Scale;
+}
 
 /** Layers as shades by stiffness, the growing resistance before a wall, the wall, the soft tissue behind it, the probe stop. */
 export function BoneBehind({ bone, across, up }: Props) {
@@ -22,17 +26,30 @@ export function BoneBehind({ bone, across, up }: Props) {
   return (
     <g data-part="bone">
       {bone.layers.map((layer) => (
-        <rect key={layer.from_m} {...band(layer.from_m, layer.to_m)} className={styles.layer} fillOpacity={0.12 + 0.5 * (layer.stiffness_N_per_m / stiffest)} />
+        <rect
+          key={layer.from_m}
+          {...band(layer.from_m, layer.to_m)}
+          className={styles.layer}
+          fillOpacity={0.12 + 0.5 * (layer.stiffness_N_per_m / stiffest)}
+        />
       ))}
       {bone.walls.map((wall) => (
         <g key={wall.at_m} data-part="wall">
           <rect {...band(wall.growsFrom_m, wall.at_m)} className={styles.grow} />
           <rect {...band(wall.at_m, wall.breachTo_m)} className={styles.breach} />
-          <line x1={placeOf(across, wall.at_m)} x2={placeOf(across, wall.at_m)} y1={up.end_px} y2={up.start_px} className={styles.wall} />
+          <line
+            x1={placeOf(across, wall.at_m)}
+            x2={placeOf(across, wall.at_m)}
+            y1={up.end_px}
+            y2={up.start_px}
+            className={styles.wall}
+          />
         </g>
       ))}
       <line x1={stop} x2={stop} y1={up.end_px} y2={up.start_px} className={styles.stop} />
-      <text x={stop - 4} y={up.end_px - 6} textAnchor="end" className={styles.name}>probe stop</text>
+      <text x={stop - 4} y={up.end_px - 6} textAnchor="end" className={styles.name}>
+        probe stop
+      </text>
     </g>
   );
 }

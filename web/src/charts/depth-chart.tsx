@@ -13,21 +13,31 @@ interface Props {
   readonly force_N: readonly number[];
   /** null where it may not be known. */
   readonly bone: Bone | null;
-  /** Where a breach was said to be felt. */
+  /** Where a breach was reported. */
   readonly felt_m: number | null;
   readonly cursor: Cursor;
 }
 
 export const kDepthHeight_px = 300;
-const kLeft = 54, kRight = 12, kTop = 22, kBottom = 34;
+const kLeft = 54,
+  kRight = 12,
+  kTop = 22,
+  kBottom = 34;
 
 const most = (values: readonly number[], least: number) => values.reduce((top, value) => Math.max(top, value), least);
 
-function scales({ depth_m, force_N, bone }: Pick<Props, 'depth_m' | 'force_N' | 'bone'>, width: number): { across: Scale; up: Scale } {
+function scales(
+  { depth_m, force_N, bone }: Pick<Props, 'depth_m' | 'force_N' | 'bone'>,
+  width: number,
+): { across: Scale; up: Scale } {
   const deepest = Math.max(bone?.travel_m ?? 0, most(depth_m, 0.001));
   const shallowest = Math.min(0, ...depth_m.slice(0, 1));
   const strongest = most(force_N, 1) * 1.08;
-  const weakest = -most(force_N.map((force) => -force), 0) * 1.08;
+  const weakest =
+    -most(
+      force_N.map((force) => -force),
+      0,
+    ) * 1.08;
   return {
     across: { from: shallowest, to: deepest * 1.02, start_px: kLeft, end_px: width - kRight },
     up: { from: weakest, to: strongest, start_px: kDepthHeight_px - kBottom, end_px: kTop },
@@ -35,26 +45,37 @@ function scales({ depth_m, force_N, bone }: Pick<Props, 'depth_m' | 'force_N' | 
 }
 
 function Axes({ across, up }: { readonly across: Scale; readonly up: Scale }) {
-  const mm = { step: roundStep((across.to - across.from) * kLength.perSi, Math.max(2, (across.end_px - across.start_px) / 80)), from: across.from * kLength.perSi, to: across.to * kLength.perSi };
+  const mm = {
+    step: roundStep((across.to - across.from) * kLength.perSi, Math.max(2, (across.end_px - across.start_px) / 80)),
+    from: across.from * kLength.perSi,
+    to: across.to * kLength.perSi,
+  };
   const depths = ticksOf(mm.from, mm.to, mm.step);
   const step = roundStep(up.to - up.from, 6);
   const forces = ticksOf(up.from, up.to, step);
-  const depthNames = tickLabels(depths, mm.step), forceNames = tickLabels(forces, step);
+  const depthNames = tickLabels(depths, mm.step),
+    forceNames = tickLabels(forces, step);
   return (
     <g className={styles.axes}>
       {forces.map((force, i) => (
         <g key={force} transform={`translate(0 ${placeOf(up, force)})`}>
           <line x1={across.start_px} x2={across.end_px} />
-          <text x={across.start_px - 6} dy="0.35em" textAnchor="end">{forceNames[i]}</text>
+          <text x={across.start_px - 6} dy="0.35em" textAnchor="end">
+            {forceNames[i]}
+          </text>
         </g>
       ))}
       {depths.map((depth, i) => (
         <g key={depth} transform={`translate(${placeOf(across, depth / kLength.perSi)} ${up.start_px})`}>
           <line y1={0} y2={5} />
-          <text y={18} textAnchor="middle">{depthNames[i]}</text>
+          <text y={18} textAnchor="middle">
+            {depthNames[i]}
+          </text>
         </g>
       ))}
-      <text x={across.end_px} y={kDepthHeight_px - 2} textAnchor="end">{axisTitle('Depth', kLength)}</text>
+      <text x={across.end_px} y={kDepthHeight_px - 2} textAnchor="end">
+        {axisTitle('Depth', kLength)}
+      </text>
     </g>
   );
 }
@@ -65,13 +86,16 @@ function Here({ props, across, up }: { readonly props: Props; readonly across: S
   const moment = useSyncExternalStore(cursor.subscribe, cursor.now);
   if (moment === null || t_s.length === 0) return null;
   const i = Math.min(lowerBound(t_s, moment), t_s.length - 1);
-  const x = placeOf(across, depth_m[i] ?? 0), y = placeOf(up, force_N[i] ?? 0);
-  const said = `${formatForce(newton(force_N[i] ?? 0))} at ${formatLength(metre(depth_m[i] ?? 0))}`;
+  const x = placeOf(across, depth_m[i] ?? 0),
+    y = placeOf(up, force_N[i] ?? 0);
+  const reading = `${formatForce(newton(force_N[i] ?? 0))} at ${formatLength(metre(depth_m[i] ?? 0))}`;
   return (
     <g className={styles.here}>
       <line x1={x} x2={x} y1={up.end_px} y2={up.start_px} />
       <circle cx={x} cy={y} r={5} />
-      <text x={across.start_px + 4} y={14}>{said}</text>
+      <text x={across.start_px + 4} y={14}>
+        {reading}
+      </text>
     </g>
   );
 }
@@ -81,10 +105,12 @@ function summary({ depth_m, force_N, bone, felt_m }: Props): string {
   const at = depth_m[force_N.indexOf(strongest)] ?? 0;
   const walls = bone?.walls.map((wall) => formatLength(metre(wall.at_m))).join(', ') ?? '';
   return [
-    `Force against depth: up to ${formatForce(newton(strongest))} at ${formatLength(metre(at))}, as deep as ${formatLength(metre(most(depth_m, 0)))}.`,
-    bone === null ? '' : walls === '' ? 'No wall gives way.' : `Walls give way at ${walls}.`,
-    felt_m === null ? '' : `A breach was felt at ${formatLength(metre(felt_m))}.`,
-  ].filter(Boolean).join(' ');
+    `Force against depth: up to ${formatForce(newton(strongest))} at ${formatLength(metre(at))}, maximum depth ${formatLength(metre(most(depth_m, 0)))}.`,
+    bone === null ? '' : walls === '' ? 'No wall is breached.' : `Walls are breached at ${walls}.`,
+    felt_m === null ? '' : `A breach was reported at ${formatLength(metre(felt_m))}.`,
+  ]
+    .filter(Boolean)
+    .join(' ');
 }
 
 /** Push against depth, with the layers and walls of the bone behind the curve. */
@@ -93,7 +119,10 @@ export function DepthChart(props: Props) {
   const place = useRef<HTMLDivElement>(null);
   const width = useWidth(place);
   const summaryId = useId();
-  const { across, up } = useMemo(() => scales({ depth_m, force_N, bone }, Math.max(width, 200)), [depth_m, force_N, bone, width]);
+  const { across, up } = useMemo(
+    () => scales({ depth_m, force_N, bone }, Math.max(width, 200)),
+    [depth_m, force_N, bone, width],
+  );
   const path = useMemo(() => linePath(depth_m, force_N, across, up), [depth_m, force_N, across, up]);
   const point = (event: PointerEvent<SVGSVGElement>) => {
     const box = event.currentTarget.getBoundingClientRect();
@@ -104,14 +133,21 @@ export function DepthChart(props: Props) {
     <figure className={styles.figure} aria-describedby={summaryId}>
       <div ref={place} style={{ minHeight: kDepthHeight_px }} data-part="depth-chart">
         {width === 0 ? null : (
-          <svg width={width} height={kDepthHeight_px} role="img" aria-labelledby={summaryId}
-            onPointerMove={point} onPointerLeave={() => cursor.set(null)}>
+          <svg
+            width={width}
+            height={kDepthHeight_px}
+            role="img"
+            aria-labelledby={summaryId}
+            onPointerMove={point}
+            onPointerLeave={() => cursor.set(null)}
+          >
             {bone ? <BoneBehind bone={bone} across={across} up={up} /> : null}
             <Axes across={across} up={up} />
             <path d={path} className={styles.curve} data-part="depth-curve" />
             {felt_m === null ? null : (
               <g className={styles.felt} transform={`translate(${placeOf(across, felt_m)} 0)`}>
-                <line y1={up.end_px} y2={up.start_px} /><path d={`M-6 ${up.end_px - 10}h12l-6 9z`} />
+                <line y1={up.end_px} y2={up.start_px} />
+                <path d={`M-6 ${up.end_px - 10}h12l-6 9z`} />
               </g>
             )}
             <Here props={props} across={across} up={up} />
@@ -119,12 +155,38 @@ export function DepthChart(props: Props) {
         )}
       </div>
       <ul className={styles.key}>
-        <li><i className={styles.curveKey} />{axisTitle('push of the hand', kForce)}</li>
-        {bone ? <li><i className={styles.layerKey} />layers, stronger where stiffer</li> : null}
-        {bone && bone.walls.length > 0 ? <><li><i className={styles.growKey} />resistance grows</li><li><i className={styles.breachKey} />soft tissue behind the wall</li></> : null}
-        {felt_m === null ? null : <li><i className={styles.feltKey} />breach felt here</li>}
+        <li>
+          <i className={styles.curveKey} />
+          {axisTitle('hand force', kForce)}
+        </li>
+        {bone ? (
+          <li>
+            <i className={styles.layerKey} />
+            layers, darker when stiffer
+          </li>
+        ) : null}
+        {bone && bone.walls.length > 0 ? (
+          <>
+            <li>
+              <i className={styles.growKey} />
+              increasing resistance
+            </li>
+            <li>
+              <i className={styles.breachKey} />
+              soft tissue behind the wall
+            </li>
+          </>
+        ) : null}
+        {felt_m === null ? null : (
+          <li>
+            <i className={styles.feltKey} />
+            breach reported here
+          </li>
+        )}
       </ul>
-      <p id={summaryId} className={styles.summary}>{summary(props)}</p>
+      <p id={summaryId} className={styles.summary}>
+        {summary(props)}
+      </p>
     </figure>
   );
 }

@@ -1,5 +1,10 @@
 /** From depth and force to the place on the picture, and round ticks between. Pure. */
-export interface Scale { readonly from: number; readonly to: number; readonly start_px: number; readonly end_px: number }
+export interface Scale {
+  readonly from: number;
+  readonly to: number;
+  readonly start_px: number;
+  readonly end_px: number;
+}
 
 export const placeOf = (scale: Scale, value: number): number =>
   scale.start_px + ((value - scale.from) / (scale.to - scale.from)) * (scale.end_px - scale.start_px);
@@ -22,7 +27,8 @@ export function ticksOf(from: number, to: number, step: number): number[] {
 export function linePath(x: readonly number[], y: readonly number[], across: Scale, up: Scale): string {
   let path = '';
   x.forEach((value, i) => {
-    const px = placeOf(across, value), py = placeOf(up, y[i] ?? Number.NaN);
+    const px = placeOf(across, value),
+      py = placeOf(up, y[i] ?? Number.NaN);
     if (!Number.isFinite(px) || !Number.isFinite(py)) return;
     path += `${path === '' ? 'M' : 'L'}${Math.round(px * 10) / 10} ${Math.round(py * 10) / 10}`;
   });
@@ -30,11 +36,22 @@ export function linePath(x: readonly number[], y: readonly number[], across: Sca
 }
 
 /** The index whose place on the picture is nearest. */
-export function nearestPoint(x: readonly number[], y: readonly number[], across: Scale, up: Scale, px: number, py: number): number {
-  let best = -1, least = Infinity;
+export function nearestPoint(
+  x: readonly number[],
+  y: readonly number[],
+  across: Scale,
+  up: Scale,
+  px: number,
+  py: number,
+): number {
+  let best = -1,
+    least = Infinity;
   x.forEach((value, i) => {
     const distance = (placeOf(across, value) - px) ** 2 + (placeOf(up, y[i] ?? Number.NaN) - py) ** 2;
-    if (distance < least) { least = distance; best = i; }
+    if (distance < least) {
+      least = distance;
+      best = i;
+    }
   });
   return best;
 }

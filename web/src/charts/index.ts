@@ -11,6 +11,16 @@ export { SliceView } from './slice-view';
 export { type SliceMark, type SlicePicture } from './slice-places';
 export { SignalChart } from './signal-chart';
 export type { Level, Mark, Panel, Span, Trace } from './signal-types';
-export { assemble, coarser, kNoDetail, kTilePoints, lowerBound, tileRange, tilesFor, type Detail, type Tile } from './tiles';
+export {
+  assemble,
+  coarser,
+  kNoDetail,
+  kTilePoints,
+  lowerBound,
+  tileRange,
+  tilesFor,
+  type Detail,
+  type Tile,
+} from './tiles';
 export { TractView } from './tract-view';
 export { WallMap } from './wall-map';

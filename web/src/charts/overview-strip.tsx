@@ -61,11 +61,19 @@ export function OverviewStrip(props: Props) {
 
   return (
     <div
-      className={styles.overview} aria-hidden="true" data-part="overview"
+      className={styles.overview}
+      aria-hidden="true"
+      data-part="overview"
       onPointerDown={onPointerDown}
-      onPointerMove={(event) => { if (grip.current !== null) moveTo(moment(event) - grip.current); }}
-      onPointerUp={() => { grip.current = null; }}
-      onPointerCancel={() => { grip.current = null; }}
+      onPointerMove={(event) => {
+        if (grip.current !== null) moveTo(moment(event) - grip.current);
+      }}
+      onPointerUp={() => {
+        grip.current = null;
+      }}
+      onPointerCancel={() => {
+        grip.current = null;
+      }}
     >
       <canvas ref={canvas} style={{ width: width_px, height: kHeight_px }} />
       <div className={styles.window} style={{ left: share(range.from), width: share(range.to - range.from) }} />

@@ -15,7 +15,7 @@ interface Props {
 
 const kUntouched = [150, 156, 166] as const;
 
-/** The wall of a tract with a value painted on it, to be turned about; mouth at the top. */
+/** The wall of a tract with a value painted on it, to be turned about; entry at the top. */
 export function PaintedTract({ depth_m, angle_rad, values, radius_m, summary }: Props) {
   const canvas = useRef<HTMLDivElement>(null);
   const [scene, setScene] = useState<PaintedScene | null>(null);
@@ -26,29 +26,56 @@ export function PaintedTract({ depth_m, angle_rad, values, radius_m, summary }: 
     let gone = false;
     let made: PaintedScene | null = null;
     const most = largestOf(values);
-    const colours = values.map((row) => row.map((value) => {
-      if (value === null) return kUntouched;
-      const [r, g, b] = viridis(most > 0 ? value / most : 0);
-      return [255 * r, 255 * g, 255 * b] as const;
-    }));
-    import('./scene/painted').then(({ makePainted }) => {
-      if (gone) return;
-      made = makePainted(place, { depth_m, angle_rad, colours, radius_m });
-      setScene(made);
-    }).catch(() => setFailed(true));
-    return () => { gone = true; made?.destroy(); setScene(null); };
+    const colours = values.map((row) =>
+      row.map((value) => {
+        if (value === null) return kUntouched;
+        const [r, g, b] = viridis(most > 0 ? value / most : 0);
+        return [255 * r, 255 * g, 255 * b] as const;
+      }),
+    );
+    import('./scene/painted')
+      .then(({ makePainted }) => {
+        if (gone) return;
+        made = makePainted(place, { depth_m, angle_rad, colours, radius_m });
+        setScene(made);
+      })
+      .catch(() => setFailed(true));
+    return () => {
+      gone = true;
+      made?.destroy();
+      setScene(null);
+    };
   }, [depth_m, angle_rad, values, radius_m]);
   useResized(scene, canvas);
   return (
     <figure className={styles.figure}>
       {/* eslint-disable-next-line jsx-a11y/no-noninteractive-element-interactions -- an application takes keys */}
-      <div className={`${styles.stage} ${styles.small}`} role="application" aria-roledescription="3-D picture" aria-label={summary} data-part="painted" data-ready={scene !== null || undefined}
+      <div
+        className={`${styles.stage} ${styles.small}`}
+        role="application"
+        aria-roledescription="3-D picture"
+        aria-label={summary}
+        data-part="painted"
+        data-ready={scene !== null || undefined}
         // eslint-disable-next-line jsx-a11y/no-noninteractive-tabindex -- an application takes keys
-        tabIndex={0} onKeyDown={(event) => turnByKey(event, scene, () => scene?.reset())}>
+        tabIndex={0}
+        onKeyDown={(event) => turnByKey(event, scene, () => scene?.reset())}
+      >
         <div ref={canvas} className={styles.canvas} hidden={failed} />
-        {failed ? <p className={styles.failure} role="alert">The picture in 3-D could not be drawn. The unrolled wall beside it says the same.</p> : scene === null ? <p className={styles.failure} role="status">Drawing…</p> : null}
+        {failed ? (
+          <p className={styles.failure} role="alert">
+            The 3-D view could not be drawn. The unrolled map shows the same values.
+          </p>
+        ) : scene === null ? (
+          <p className={styles.failure} role="status">
+            Drawing…
+          </p>
+        ) : null}
       </div>
-      <figcaption className={styles.caption}><span>mouth at the top</span><span className={styles.hint}>Drag or use the arrow keys to turn.</span></figcaption>
+      <figcaption className={styles.caption}>
+        <span>entry at the top</span>
+        <span className={styles.hint}>Drag or use the arrow keys to rotate.</span>
+      </figcaption>
     </figure>
   );
 }

@@ -17,8 +17,17 @@ const kColours = { bone: '--bone', tract: '--accent', moment: '--bad', ghost: '-
 function throughTheMiddle(bone: SceneBone): SceneTract {
   const d = bone.directions;
   const half = bone.dims.map((n, i) => ((n - 1) / 2) * (bone.spacing_m[i] ?? 0));
-  const middle = ([0, 1, 2] as const).map((row) => bone.origin_m[row] + [0, 1, 2].reduce((total, i) => total + (d[3 * row + i] ?? 0) * (half[i] ?? 0), 0));
-  return { entry_m: [middle[0] ?? 0, (middle[1] ?? 0) + 0.03, middle[2] ?? 0], axis: [0, -1, 0], length_m: 0.06, radius_m: 0.0015, medial: [1, 0, 0], superior: [0, 0, 1] };
+  const middle = ([0, 1, 2] as const).map(
+    (row) => bone.origin_m[row] + [0, 1, 2].reduce((total, i) => total + (d[3 * row + i] ?? 0) * (half[i] ?? 0), 0),
+  );
+  return {
+    entry_m: [middle[0] ?? 0, (middle[1] ?? 0) + 0.03, middle[2] ?? 0],
+    axis: [0, -1, 0],
+    length_m: 0.06,
+    radius_m: 0.0015,
+    medial: [1, 0, 0],
+    superior: [0, 0, 1],
+  };
 }
 
 /** A planned tract and its breach in the bone, to be turned about. */
@@ -27,5 +36,14 @@ export function PlanView({ tract, breach, bone, palette, summary, button }: Prop
     const at = tract ?? (bone ? throughTheMiddle(bone) : null);
     return at && { tract: at, path: kNoPath, bone, most_N: 1, breach, bare: tract === null };
   }, [tract, breach, bone]);
-  return <Stage content={content} colours={kColours} palette={palette} label="View of the bone" summary={summary} button={button} />;
+  return (
+    <Stage
+      content={content}
+      colours={kColours}
+      palette={palette}
+      label="View of the bone"
+      summary={summary}
+      button={button}
+    />
+  );
 }

@@ -5,9 +5,20 @@ import styles from './plane.module.css';
 import { useWidth } from './use-width';
 
 /** One axis, in the unit that is shown. A logarithmic one has positive bounds. */
-export interface PlaneAxis { readonly title: string; readonly from: number; readonly to: number; readonly log?: boolean; readonly ticks?: readonly { at: number; text: string }[] }
+export interface PlaneAxis {
+  readonly title: string;
+  readonly from: number;
+  readonly to: number;
+  readonly log?: boolean;
+  readonly ticks?: readonly { at: number; text: string }[];
+}
 
-export interface Places { readonly x: (value: number) => number; readonly y: (value: number) => number; readonly width_px: number; readonly height_px: number }
+export interface Places {
+  readonly x: (value: number) => number;
+  readonly y: (value: number) => number;
+  readonly width_px: number;
+  readonly height_px: number;
+}
 
 interface Props {
   readonly across: PlaneAxis;
@@ -18,12 +29,16 @@ interface Props {
   readonly children: (places: Places) => ReactNode;
 }
 
-const kLeft = 50, kRight = 12, kTop = 22, kBottom = 36;
+const kLeft = 50,
+  kRight = 12,
+  kTop = 22,
+  kBottom = 36;
 
 const turned = (axis: PlaneAxis, value: number) => (axis.log ? Math.log10(Math.max(value, 1e-300)) : value);
 
 function placing(axis: PlaneAxis, start_px: number, end_px: number): (value: number) => number {
-  const from = turned(axis, axis.from), to = turned(axis, axis.to);
+  const from = turned(axis, axis.from),
+    to = turned(axis, axis.to);
   const span = to - from || 1;
   return (value) => start_px + ((turned(axis, value) - from) / span) * (end_px - start_px);
 }
@@ -37,39 +52,53 @@ export function ticks(axis: PlaneAxis, most: number): readonly { at: number; tex
     const texts = tickLabels(at, step);
     return at.map((value, i) => ({ at: value, text: texts[i] ?? '' }));
   }
-  const first = Math.ceil(Math.log10(axis.from) - 1e-9), last = Math.floor(Math.log10(axis.to) + 1e-9);
+  const first = Math.ceil(Math.log10(axis.from) - 1e-9),
+    last = Math.floor(Math.log10(axis.to) + 1e-9);
   const every = Math.max(1, Math.ceil((last - first + 1) / most));
-  return Array.from({ length: last - first + 1 }, (_, i) => first + i).filter((power) => (power - first) % every === 0)
+  return Array.from({ length: last - first + 1 }, (_, i) => first + i)
+    .filter((power) => (power - first) % every === 0)
     .map((power) => ({ at: 10 ** power, text: tickLabels([10 ** power], 10 ** power)[0] ?? '' }));
 }
+
+/** Ticks that fit a vertical axis without crowding. */
+export const mostTicks = (height_px: number) => Math.max(2, Math.floor((height_px - kTop - kBottom) / 22));
 
 /** Two axes, and what is drawn between them: small statistics that are read, not panned. */
 export function Plane({ across, up, height_px = 220, summary, children }: Props) {
   const place = useRef<HTMLDivElement>(null);
   const width = useWidth(place);
   const id = useId();
-  const x = placing(across, kLeft, width - kRight), y = placing(up, height_px - kBottom, kTop);
+  const x = placing(across, kLeft, width - kRight),
+    y = placing(up, height_px - kBottom, kTop);
   return (
     <figure className={styles.figure}>
       <div ref={place} className={styles.frame} style={{ minHeight: height_px }}>
         {width === 0 ? null : (
-          <svg width={width} height={height_px} role="img" aria-labelledby={id}>
+          <svg width={width} height={height_px} viewBox={`0 0 ${width} ${height_px}`} role="img" aria-labelledby={id}>
             <title id={id}>{summary}</title>
             <g className={styles.axes} aria-hidden="true">
-              {ticks(up, Math.max(2, Math.floor(height_px / 44))).map(({ at, text }) => (
+              {ticks(up, mostTicks(height_px)).map(({ at, text }) => (
                 <g key={at} transform={`translate(0 ${y(at)})`}>
                   <line x1={kLeft} x2={width - kRight} />
-                  <text x={kLeft - 6} dy="0.35em" textAnchor="end">{text}</text>
+                  <text x={kLeft - 6} dy="0.35em" textAnchor="end">
+                    {text}
+                  </text>
                 </g>
               ))}
               {ticks(across, Math.max(2, Math.floor(width / 90))).map(({ at, text }) => (
                 <g key={at} transform={`translate(${x(at)} ${height_px - kBottom})`}>
                   <line y1={0} y2={5} />
-                  <text y={17} textAnchor="middle">{text}</text>
+                  <text y={17} textAnchor="middle">
+                    {text}
+                  </text>
                 </g>
               ))}
-              <text x={width - kRight} y={height_px - 4} textAnchor="end">{across.title}</text>
-              <text x={0} y={12}>{up.title}</text>
+              <text x={width - kRight} y={height_px - 4} textAnchor="end">
+                {across.title}
+              </text>
+              <text x={0} y={12}>
+                {up.title}
+              </text>
             </g>
             {children({ x, y, width_px: width - kLeft - kRight, height_px: height_px - kTop - kBottom })}
           </svg>
@@ -81,10 +110,15 @@ export function Plane({ across, up, height_px = 220, summary, children }: Props)
 
 /** "M x y L …"; a point that is no number ends the stretch before it. */
 export function curve(points: readonly (readonly [number, number])[], { x, y }: Places): string {
-  let path = '', open = false;
+  let path = '',
+    open = false;
   for (const [a, b] of points) {
-    const px = x(a), py = y(b);
-    if (!Number.isFinite(px) || !Number.isFinite(py)) { open = false; continue; }
+    const px = x(a),
+      py = y(b);
+    if (!Number.isFinite(px) || !Number.isFinite(py)) {
+      open = false;
+      continue;
+    }
     path += `${open ? 'L' : 'M'}${Math.round(px * 10) / 10} ${Math.round(py * 10) / 10}`;
     open = true;
   }
@@ -92,13 +126,20 @@ export function curve(points: readonly (readonly [number, number])[], { x, y }: 
 }
 
 /** The outline of a histogram between two bounds, down to the axis at both ends. */
-export function stairs(edges: readonly number[], shares: readonly number[], [from, to]: readonly [number, number], places: Places): string {
+export function stairs(
+  edges: readonly number[],
+  shares: readonly number[],
+  [from, to]: readonly [number, number],
+  places: Places,
+): string {
   const within = (edge: number) => Math.min(Math.max(edge, from), to);
   const points: [number, number][] = [];
   shares.forEach((share, i) => {
-    const low = within(edges[i] ?? 0), high = within(edges[i + 1] ?? 0);
+    const low = within(edges[i] ?? 0),
+      high = within(edges[i + 1] ?? 0);
     if (high > low) points.push([low, share], [high, share]);
   });
-  const first = points[0], last = points.at(-1);
+  const first = points[0],
+    last = points.at(-1);
   return first && last ? curve([[first[0], 0], ...points, [last[0], 0]], places) : '';
 }

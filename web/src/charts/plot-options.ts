@@ -48,7 +48,8 @@ function drawSpans(plot: uPlot, spans: readonly Span[]): void {
   ctx.fillStyle = resolved('--span');
   for (const span of spans) {
     if (span.to_s < min || span.from_s > max) continue;
-    const from = plot.valToPos(Math.max(span.from_s, min), 'x', true), to = plot.valToPos(Math.min(span.to_s, max), 'x', true);
+    const from = plot.valToPos(Math.max(span.from_s, min), 'x', true),
+      to = plot.valToPos(Math.min(span.to_s, max), 'x', true);
     ctx.fillRect(from, bbox.top, Math.max(to - from, devicePixelRatio), bbox.height);
   }
   ctx.restore();
@@ -86,8 +87,11 @@ function axes(withTime: boolean): uPlot.Axis[] {
   };
   return [
     {
-      ...common, size: withTime ? kTimeAxis_px : 0, space: 70,
-      values: (_plot, ticks, _axis, _space, step) => (withTime ? tickLabels(ticks, step).map((text) => `${text} s`) : ticks.map(() => '')),
+      ...common,
+      size: withTime ? kTimeAxis_px : 0,
+      space: 70,
+      values: (_plot, ticks, _axis, _space, step) =>
+        withTime ? tickLabels(ticks, step).map((text) => `${text} s`) : ticks.map(() => ''),
       ...(withTime ? {} : { ticks: { show: false } }),
     },
     { ...common, size: kAxis_px, space: 26, values: (_plot, ticks, _axis, _space, step) => tickLabels(ticks, step) },
@@ -99,8 +103,13 @@ function traces(panel: Panel): { series: uPlot.Series[]; bands: uPlot.Band[] } {
   const series: uPlot.Series[] = [{}];
   const bands: uPlot.Band[] = [];
   for (const trace of panel.traces) {
-    const line = { stroke: () => resolved(trace.colour), width: trace.width ?? 1, points: { show: false }, spanGaps: false };
-    series.push({ ...line, label: trace.label }, { ...line, label: `${trace.label} least` });
+    const line = {
+      stroke: () => resolved(trace.colour),
+      width: trace.width ?? 1,
+      points: { show: false },
+      spanGaps: false,
+    };
+    series.push({ ...line, label: trace.label }, { ...line, label: `${trace.label} minimum` });
     const top = series.length - 2;
     bands.push({ series: [top, top + 1], fill: () => faded(resolved(trace.colour)) });
   }
@@ -109,7 +118,14 @@ function traces(panel: Panel): { series: uPlot.Series[]; bands: uPlot.Band[] } {
 
 const faded = (colour: string) => colour.replace(/^rgb\(([^)]+)\)$/, 'rgba($1, 0.35)');
 
-export function plotOptions(panel: Panel, width: number, withTime: boolean, named: boolean, syncKey: string, on: PlotEvents): uPlot.Options {
+export function plotOptions(
+  panel: Panel,
+  width: number,
+  withTime: boolean,
+  named: boolean,
+  syncKey: string,
+  on: PlotEvents,
+): uPlot.Options {
   return {
     width,
     height: panel.height_px + (withTime ? kTimeAxis_px : 0),
@@ -131,29 +147,53 @@ export function plotOptions(panel: Panel, width: number, withTime: boolean, name
       drag: { x: true, y: false, setScale: false, dist: 4 },
       points: { show: false },
       y: false,
-      bind: { dblclick: () => () => { on.onReset(); return null; } },
+      bind: {
+        dblclick: () => () => {
+          on.onReset();
+          return null;
+        },
+      },
     },
     hooks: {
       drawClear: [(plot) => drawSpans(plot, on.spans())],
-      draw: [(plot) => { drawLevels(plot, panel); drawMarks(plot, on.marks(), named); }],
-      setCursor: [(plot) => {
-        const left = plot.cursor.left ?? -1;
-        on.onCursor(left < 0 ? null : plot.posToVal(left, 'x'));
-      }],
-      setSelect: [(plot) => {
-        const { left, width: selected } = plot.select;
-        if (selected < 4) return;
-        on.onRange({ from: plot.posToVal(left, 'x'), to: plot.posToVal(left + selected, 'x') });
-        plot.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
-      }],
+      draw: [
+        (plot) => {
+          drawLevels(plot, panel);
+          drawMarks(plot, on.marks(), named);
+        },
+      ],
+      setCursor: [
+        (plot) => {
+          const left = plot.cursor.left ?? -1;
+          on.onCursor(left < 0 ? null : plot.posToVal(left, 'x'));
+        },
+      ],
+      setSelect: [
+        (plot) => {
+          const { left, width: selected } = plot.select;
+          if (selected < 4) return;
+          on.onRange({ from: plot.posToVal(left, 'x'), to: plot.posToVal(left + selected, 'x') });
+          plot.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
+        },
+      ],
     },
   };
 }
 
 /** Columns as uPlot takes them, in the display unit: time, then greatest and least of each trace. */
-export function plotData(panel: Panel, t: readonly number[], channels: Readonly<Record<string, { min: readonly (number | null)[]; max: readonly (number | null)[] }>>): uPlot.AlignedData {
+export function plotData(
+  panel: Panel,
+  t: readonly number[],
+  channels: Readonly<Record<string, { min: readonly (number | null)[]; max: readonly (number | null)[] }>>,
+): uPlot.AlignedData {
   const scale = panel.quantity.perSi;
   const shown = (values: readonly (number | null)[] | undefined) =>
-    t.map((_, i) => { const value = values?.[i]; return value === null || value === undefined ? null : value * scale; });
-  return [[...t], ...panel.traces.flatMap(({ channel }) => [shown(channels[channel]?.max), shown(channels[channel]?.min)])];
+    t.map((_, i) => {
+      const value = values?.[i];
+      return value === null || value === undefined ? null : value * scale;
+    });
+  return [
+    [...t],
+    ...panel.traces.flatMap(({ channel }) => [shown(channels[channel]?.max), shown(channels[channel]?.min)]),
+  ];
 }

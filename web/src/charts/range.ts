@@ -1,5 +1,8 @@
 /** The stretch of time that a chart shows. Pure: a range in, a range out, never outside the trial. */
-export interface Range { readonly from: number; readonly to: number }
+export interface Range {
+  readonly from: number;
+  readonly to: number;
+}
 
 /** Below this nothing more can be seen at any sampling rate of ours. */
 const kLeast_s = 0.002;

@@ -13,14 +13,23 @@ function nearest(t: readonly number[], moment: number): number {
 }
 
 /** "0.42 N", or "0.10…0.42 N" where a drawn point stands for several samples. */
-function said(least: number | null | undefined, greatest: number | null | undefined, quantity: Quantity): string {
+function rangeText(least: number | null | undefined, greatest: number | null | undefined, quantity: Quantity): string {
   if (least === null || least === undefined || greatest === null || greatest === undefined) return kNone;
-  const low = rounded(least, quantity), high = rounded(greatest, quantity);
+  const low = rounded(least, quantity),
+    high = rounded(greatest, quantity);
   return united(low === high ? high : `${low} … ${high}`, quantity);
 }
 
 /** Legend of a panel, with the values under the pointer. */
-export function Readout({ panel, detail, cursor }: { readonly panel: Panel; readonly detail: Detail; readonly cursor: Cursor }) {
+export function Readout({
+  panel,
+  detail,
+  cursor,
+}: {
+  readonly panel: Panel;
+  readonly detail: Detail;
+  readonly cursor: Cursor;
+}) {
   const moment = useSyncExternalStore(cursor.subscribe, cursor.now);
   const at = moment === null || detail.t.length === 0 ? null : nearest(detail.t, moment);
   return (
@@ -30,9 +39,26 @@ export function Readout({ panel, detail, cursor }: { readonly panel: Panel; read
         {panel.traces.map((trace) => (
           <li key={trace.channel}>
             <span className={styles.swatch} style={{ background: `var(${trace.colour})` }} />
-            <span>{trace.label}{trace.symbol ? <> <i>{trace.symbol[0]}<sub>{trace.symbol[1]}</sub></i></> : null}</span>
+            <span>
+              {trace.label}
+              {trace.symbol ? (
+                <>
+                  {' '}
+                  <i>
+                    {trace.symbol[0]}
+                    <sub>{trace.symbol[1]}</sub>
+                  </i>
+                </>
+              ) : null}
+            </span>
             <span className={styles.value} data-channel={trace.channel}>
-              {at === null ? '' : said(detail.channels[trace.channel]?.min[at], detail.channels[trace.channel]?.max[at], panel.quantity)}
+              {at === null
+                ? ''
+                : rangeText(
+                    detail.channels[trace.channel]?.min[at],
+                    detail.channels[trace.channel]?.max[at],
+                    panel.quantity,
+                  )}
             </span>
           </li>
         ))}

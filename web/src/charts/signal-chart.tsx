@@ -36,24 +36,41 @@ interface Props {
 }
 
 const kNoSpans: readonly Span[] = [];
-const kAxes_px = 64;  // the ordinate's axis and the right margin: no data there
+const kAxes_px = 64; // the ordinate's axis and the right margin: no data there
 
 function resolution(samplesPerPoint: number): string {
   if (samplesPerPoint === 0) return 'loading';
   if (samplesPerPoint <= 1) return 'every sample';
-  return `least and greatest of ${formatCount(samplesPerPoint)} samples`;
+  return `minimum and maximum of ${formatCount(samplesPerPoint)} samples`;
 }
 
 /** Panels over one another with one time axis, one cursor and one view. */
 export function SignalChart(props: Props) {
-  const { panels, detail, overview, duration_s, range, marks, spans = kNoSpans, cursor, palette, summary, note, button, onRange, onWidth } = props;
+  const {
+    panels,
+    detail,
+    overview,
+    duration_s,
+    range,
+    marks,
+    spans = kNoSpans,
+    cursor,
+    palette,
+    summary,
+    note,
+    button,
+    onRange,
+    onWidth,
+  } = props;
   const place = useRef<HTMLDivElement>(null);
   const width = useWidth(place);
   const syncKey = useId();
   const summaryId = useId();
   const view = { range, duration_s, onRange };
   useWheel(place, view);
-  useEffect(() => { if (width > 0) onWidth(width - kAxes_px); }, [width, onWidth]);
+  useEffect(() => {
+    if (width > 0) onWidth(width - kAxes_px);
+  }, [width, onWidth]);
 
   const middle = (range.from + range.to) / 2;
   const reset = () => onRange(whole(duration_s));
@@ -63,7 +80,9 @@ export function SignalChart(props: Props) {
     <figure className={styles.chart} aria-describedby={summaryId}>
       <div className={styles.tools}>
         <p className={styles.shown}>
-          <span data-part="range" role="status">{formatTime(second(range.from), decimals)} – {formatTime(second(range.to), decimals)}</span>
+          <span data-part="range" role="status">
+            {formatTime(second(range.from), decimals)} – {formatTime(second(range.to), decimals)}
+          </span>
           <span className={styles.resolution}>{resolution(detail.samplesPerPoint)}</span>
           <Moment cursor={cursor} />
         </p>
@@ -77,7 +96,11 @@ export function SignalChart(props: Props) {
       </div>
       {/* eslint-disable-next-line jsx-a11y/no-noninteractive-element-interactions -- an application takes keys */}
       <div
-        ref={place} className={styles.panels} role="application" aria-roledescription="chart" data-part="panels"
+        ref={place}
+        className={styles.panels}
+        role="application"
+        aria-roledescription="chart"
+        data-part="panels"
         aria-label="Signals against time. Arrow keys move and zoom, 0 shows the whole trial."
         // eslint-disable-next-line jsx-a11y/no-noninteractive-tabindex -- an application takes keys
         tabIndex={0}
@@ -88,22 +111,45 @@ export function SignalChart(props: Props) {
             <Readout panel={panel} detail={detail} cursor={cursor} />
             <div style={{ minHeight: panel.height_px }}>
               {width === 0 ? null : (
-                <SignalPlot panel={panel} detail={detail} range={range} marks={marks} spans={spans} cursor={cursor} width_px={width}
-                  withTime={index === panels.length - 1} named={index === 0} syncKey={syncKey} palette={palette}
-                  onRange={onRange} onReset={reset} />
+                <SignalPlot
+                  panel={panel}
+                  detail={detail}
+                  range={range}
+                  marks={marks}
+                  spans={spans}
+                  cursor={cursor}
+                  width_px={width}
+                  withTime={index === panels.length - 1}
+                  named={index === 0}
+                  syncKey={syncKey}
+                  palette={palette}
+                  onRange={onRange}
+                  onReset={reset}
+                />
               )}
             </div>
           </div>
         ))}
       </div>
       {strip && width > 0 ? (
-        <OverviewStrip detail={overview} channel={strip.channel} colour={strip.colour} duration_s={duration_s}
-          range={range} width_px={width - kAxes_px} palette={palette} onRange={onRange} />
+        <OverviewStrip
+          detail={overview}
+          channel={strip.channel}
+          colour={strip.colour}
+          duration_s={duration_s}
+          range={range}
+          width_px={width - kAxes_px}
+          palette={palette}
+          onRange={onRange}
+        />
       ) : null}
       <p className={styles.hint}>
-        {note} Drag across to zoom, drag the strip to move, double-click for the whole trial. Wheel: zoom after a click or with Ctrl, move with Shift.
+        {note} Drag across to zoom, drag the strip to move, double-click for the whole trial. Wheel: zoom after a click
+        or with Ctrl, move with Shift.
       </p>
-      <figcaption id={summaryId} className="hidden-visually">{summary}</figcaption>
+      <figcaption id={summaryId} className="hidden-visually">
+        {summary}
+      </figcaption>
     </figure>
   );
 }

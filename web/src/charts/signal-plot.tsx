@@ -26,11 +26,27 @@ interface Props {
 }
 
 /** One uPlot kept over the life of the panel; only what has changed is told to it. */
-export function SignalPlot({ panel, detail, range, marks, spans, cursor, width_px, withTime, named, syncKey, palette, onRange, onReset }: Props) {
+export function SignalPlot({
+  panel,
+  detail,
+  range,
+  marks,
+  spans,
+  cursor,
+  width_px,
+  withTime,
+  named,
+  syncKey,
+  palette,
+  onRange,
+  onReset,
+}: Props) {
   const place = useRef<HTMLDivElement>(null);
   const plot = useRef<uPlot | null>(null);
   const latest = useRef({ detail, range, marks, spans, cursor, onRange, onReset, width_px });
-  useEffect(() => { latest.current = { detail, range, marks, spans, cursor, onRange, onReset, width_px }; });
+  useEffect(() => {
+    latest.current = { detail, range, marks, spans, cursor, onRange, onReset, width_px };
+  });
 
   useEffect(() => {
     if (!place.current) return;
@@ -45,7 +61,10 @@ export function SignalPlot({ panel, detail, range, marks, spans, cursor, width_p
     const made = new uPlot(options, plotData(panel, now().detail.t, now().detail.channels), place.current);
     made.setScale('x', { min: now().range.from, max: now().range.to });
     plot.current = made;
-    return () => { made.destroy(); plot.current = null; };
+    return () => {
+      made.destroy();
+      plot.current = null;
+    };
   }, [panel, withTime, named, syncKey]);
 
   useEffect(() => {
@@ -57,8 +76,13 @@ export function SignalPlot({ panel, detail, range, marks, spans, cursor, width_p
     });
   }, [panel, detail]);
 
-  useEffect(() => { plot.current?.setScale('x', { min: range.from, max: range.to }); }, [range]);
-  useEffect(() => { forgetColours(); plot.current?.redraw(false, true); }, [palette, marks, spans]);
+  useEffect(() => {
+    plot.current?.setScale('x', { min: range.from, max: range.to });
+  }, [range]);
+  useEffect(() => {
+    forgetColours();
+    plot.current?.redraw(false, true);
+  }, [palette, marks, spans]);
   useEffect(() => {
     plot.current?.setSize({ width: width_px, height: plot.current.height });
   }, [width_px]);

@@ -25,10 +25,19 @@ export interface Panel {
   readonly levels?: readonly Level[];
 }
 
-export interface Level { readonly value: number; readonly label: string }
+export interface Level {
+  readonly value: number;
+  readonly label: string;
+}
 
 /** A moment marked in every panel. */
-export interface Mark { readonly t_s: number; readonly label: string }
+export interface Mark {
+  readonly t_s: number;
+  readonly label: string;
+}
 
 /** A stretch of time that is shaded in every panel. */
-export interface Span { readonly from_s: number; readonly to_s: number }
+export interface Span {
+  readonly from_s: number;
+  readonly to_s: number;
+}

@@ -30,10 +30,18 @@ export function onSlice(picture: SlicePicture, p: Vec3): { x: number; y: number;
   const from = sum(p, scaled(picture.origin_m, -1));
   const { alongRow: u, alongColumn: w } = picture;
   const normal: Vec3 = [u[1] * w[2] - u[2] * w[1], u[2] * w[0] - u[0] * w[2], u[0] * w[1] - u[1] * w[0]];
-  return { x: dot(from, u) / picture.spacing_m[0] + 0.5, y: dot(from, w) / picture.spacing_m[1] + 0.5, off_m: dot(from, normal) };
+  return {
+    x: dot(from, u) / picture.spacing_m[0] + 0.5,
+    y: dot(from, w) / picture.spacing_m[1] + 0.5,
+    off_m: dot(from, normal),
+  };
 }
 
 /** The point of the plane itself. */
 export function onPlane(picture: SlicePicture, x: number, y: number): Vec3 {
-  return sum(picture.origin_m, scaled(picture.alongRow, (x - 0.5) * picture.spacing_m[0]), scaled(picture.alongColumn, (y - 0.5) * picture.spacing_m[1]));
+  return sum(
+    picture.origin_m,
+    scaled(picture.alongRow, (x - 0.5) * picture.spacing_m[0]),
+    scaled(picture.alongColumn, (y - 0.5) * picture.spacing_m[1]),
+  );
 }

@@ -23,8 +23,9 @@ interface Props {
   readonly onPlace: (id: string, at: Vec3, done: boolean) => void;
 }
 
-const kStep_m = 0.0005, kFine_m = 0.0001;
-const kFar_m = 0.003;  // farther from the plane than this, a mark is a shadow
+const kStep_m = 0.0005,
+  kFine_m = 0.0001;
+const kFar_m = 0.003; // farther from the plane than this, a mark is a shadow
 
 /** Drawn once a picture: grey pixels, as they came. */
 function paint(canvas: HTMLCanvasElement, { width, height, pixels }: SlicePicture): void {
@@ -47,7 +48,9 @@ export function SliceView({ name, picture, late, at_m, from_m, to_m, ends, marks
   const drawing = useRef<SVGSVGElement>(null);
   const dragged = useRef<string | null>(null);
   const id = useId();
-  useEffect(() => { if (canvas.current && picture) paint(canvas.current, picture); }, [picture]);
+  useEffect(() => {
+    if (canvas.current && picture) paint(canvas.current, picture);
+  }, [picture]);
 
   const placeOf = (event: PointerEvent): Vec3 | null => {
     const matrix = drawing.current?.getScreenCTM();
@@ -59,7 +62,8 @@ export function SliceView({ name, picture, late, at_m, from_m, to_m, ends, marks
     if (event.button !== 0) return;
     const at = placeOf(event);
     if (!at) return;
-    const mark = event.target instanceof Element ? event.target.closest('[data-mark]')?.getAttribute('data-mark') : undefined;
+    const mark =
+      event.target instanceof Element ? event.target.closest('[data-mark]')?.getAttribute('data-mark') : undefined;
     dragged.current = mark ?? chosen;
     event.currentTarget.setPointerCapture(event.pointerId);
     if (!mark) onPlace(chosen, at, false);
@@ -81,45 +85,105 @@ export function SliceView({ name, picture, late, at_m, from_m, to_m, ends, marks
       onAt(Math.min(Math.max(at_m + (event.key === 'PageUp' ? 2 : -2) * kStep_m, from_m), to_m));
       return;
     }
-    const moves: Record<string, readonly [number, number] | undefined> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+    const moves: Record<string, readonly [number, number] | undefined> = {
+      ArrowLeft: [-1, 0],
+      ArrowRight: [1, 0],
+      ArrowUp: [0, -1],
+      ArrowDown: [0, 1],
+    };
     const moved = moves[event.key];
     const mark = marks.find((one) => one.id === chosen);
     if (!moved || !mark) return;
     event.preventDefault();
-    const along = (i: 0 | 1 | 2) => mark.at[i] + step * (moved[0] * picture.alongRow[i] + moved[1] * picture.alongColumn[i]);
+    const along = (i: 0 | 1 | 2) =>
+      mark.at[i] + step * (moved[0] * picture.alongRow[i] + moved[1] * picture.alongColumn[i]);
     onPlace(chosen, [along(0), along(1), along(2)], true);
   };
 
   const scale = picture ? Math.max(picture.width, picture.height) / 100 : 1;
   return (
     <div className={styles.view} data-plane={name.toLowerCase()} data-ready={(picture !== null && !late) || undefined}>
-      <div className={styles.head}><h3 id={id}>{name}</h3><span className={styles.at}>{formatLength(metre(at_m))}</span></div>
+      <div className={styles.head}>
+        <h3 id={id}>{name}</h3>
+        <span className={styles.at}>{formatLength(metre(at_m))}</span>
+      </div>
       <div className={styles.frame}>
         <canvas ref={canvas} className={styles.picture} aria-hidden="true" hidden={picture === null} />
         {picture ? (
-          <svg ref={drawing} className={styles.drawing} viewBox={`0 0 ${picture.width} ${picture.height}`} role="application" aria-roledescription="slice"
+          <svg
+            ref={drawing}
+            className={styles.drawing}
+            viewBox={`0 0 ${picture.width} ${picture.height}`}
+            role="application"
+            aria-roledescription="slice"
             aria-label={`${name} slice. Click or drag places the ${chosen}; arrow keys move it by half a millimetre, with Shift by a tenth; Page Up and Page Down change the slice.`}
-            tabIndex={0} onKeyDown={onKeyDown} onPointerDown={begin} onPointerMove={move} onPointerUp={end} onPointerCancel={() => { dragged.current = null; }}>
+            tabIndex={0}
+            onKeyDown={onKeyDown}
+            onPointerDown={begin}
+            onPointerMove={move}
+            onPointerUp={end}
+            onPointerCancel={() => {
+              dragged.current = null;
+            }}
+          >
             {marks.map((mark) => {
-              const here = onSlice(picture, mark.at), there = mark.to ? onSlice(picture, mark.to) : null;
+              const here = onSlice(picture, mark.at),
+                there = mark.to ? onSlice(picture, mark.to) : null;
               const far = Math.abs(here.off_m) > kFar_m;
               return there ? (
-                <line key={mark.id} className={styles[mark.look]} x1={here.x} y1={here.y} x2={there.x} y2={there.y} strokeWidth={(mark.wide ?? 0.6) * scale} />
+                <line
+                  key={mark.id}
+                  className={styles[mark.look]}
+                  x1={here.x}
+                  y1={here.y}
+                  x2={there.x}
+                  y2={there.y}
+                  strokeWidth={(mark.wide ?? 0.6) * scale}
+                />
               ) : (
-                <g key={mark.id} className={styles[mark.look]} data-mark={mark.fixed ? undefined : mark.id} data-far={far || undefined} data-chosen={mark.id === chosen || undefined}>
+                <g
+                  key={mark.id}
+                  className={styles[mark.look]}
+                  data-mark={mark.fixed ? undefined : mark.id}
+                  data-far={far || undefined}
+                  data-chosen={mark.id === chosen || undefined}
+                >
                   <circle className={styles.grip} cx={here.x} cy={here.y} r={3.4 * scale} />
                   <circle className={styles.dot} cx={here.x} cy={here.y} r={1.5 * scale} strokeWidth={0.6 * scale} />
-                  {mark.text === undefined ? null : <text x={here.x + 2.6 * scale} y={here.y - 2 * scale} fontSize={4.2 * scale} strokeWidth={0.9 * scale}>{mark.text}</text>}
+                  {mark.text === undefined ? null : (
+                    <text
+                      x={here.x + 2.6 * scale}
+                      y={here.y - 2 * scale}
+                      fontSize={4.2 * scale}
+                      strokeWidth={0.9 * scale}
+                    >
+                      {mark.text}
+                    </text>
+                  )}
                 </g>
               );
             })}
           </svg>
-        ) : <p className={styles.waiting} role="status">Loading…</p>}
+        ) : (
+          <p className={styles.waiting} role="status">
+            Loading…
+          </p>
+        )}
       </div>
       <label className={styles.slider}>
-        <span className="hidden-visually">{name} slice, from {ends[0]} to {ends[1]}</span>
+        <span className="hidden-visually">
+          {name} slice, from {ends[0]} to {ends[1]}
+        </span>
         <span aria-hidden="true">{ends[0]}</span>
-        <input type="range" min={from_m} max={to_m} step={kStep_m} value={at_m} aria-valuetext={formatLength(metre(at_m))} onChange={(event) => onAt(Number(event.target.value))} />
+        <input
+          type="range"
+          min={from_m}
+          max={to_m}
+          step={kStep_m}
+          value={at_m}
+          aria-valuetext={formatLength(metre(at_m))}
+          onChange={(event) => onAt(Number(event.target.value))}
+        />
         <span aria-hidden="true">{ends[1]}</span>
       </label>
     </div>

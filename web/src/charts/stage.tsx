@@ -35,24 +35,31 @@ function useScene(content: SceneContent | null, onScene: StageProps['onScene']) 
   const [scene, setScene] = useState<Scene | null>(null);
   const [failure, setFailure] = useState('');
   useEffect(() => {
-    const place = canvas.current, holder = labels.current;
+    const place = canvas.current,
+      holder = labels.current;
     if (!place || !holder || !content) return;
     let gone = false;
     let made: Scene | null = null;
     const kind = content.bare === true ? 'bare' : 'planned';
     const looked = left.current;
-    const stands = (now: Scene | null) => { setScene(now); onScene?.(now); };
+    const stands = (now: Scene | null) => {
+      setScene(now);
+      onScene?.(now);
+    };
     const start = async () => {
-      if (!canDraw()) { setFailure('This browser offers no WebGL 2, so the picture in 3-D cannot be drawn.'); return; }
+      if (!canDraw()) {
+        setFailure('This browser does not support WebGL 2, which the 3-D view needs.');
+        return;
+      }
       const { makeScene } = await import('./scene');
       if (gone) return;
       made = makeScene(place, holder, content, looked[kind]);
       place.querySelector('canvas')?.addEventListener('webglcontextlost', () => {
-        if (!gone) setFailure('The graphics processor has dropped the picture. Reload the page to draw it again.');
+        if (!gone) setFailure('The graphics processor lost the 3-D view. Reload the page to draw it again.');
       });
       stands(made);
     };
-    start().catch(() => setFailure('The picture in 3-D could not be drawn.'));
+    start().catch(() => setFailure('The 3-D view could not be drawn.'));
     return () => {
       gone = true;
       if (made) looked[kind] = made.looks();
@@ -71,43 +78,72 @@ export function Stage({ content, colours, palette, label, summary, caption, butt
   const [shown, setShown] = useState<'cut' | 'whole' | 'none'>('cut');
   const cut = shown === 'cut' && content?.bare !== true;
   useEffect(() => {
-    scene?.colour({ bone: rgb(colours.bone), tract: rgb(colours.tract), moment: rgb(colours.moment), ghost: rgb(colours.ghost) });
+    scene?.colour({
+      bone: rgb(colours.bone),
+      tract: rgb(colours.tract),
+      moment: rgb(colours.moment),
+      ghost: rgb(colours.ghost),
+    });
   }, [scene, colours, palette]);
-  useEffect(() => { scene?.bone(shown !== 'none', cut); }, [scene, shown, cut]);
+  useEffect(() => {
+    scene?.bone(shown !== 'none', cut);
+  }, [scene, shown, cut]);
   // The wheel belongs to the page until the picture has the focus.
   useEffect(() => {
     const element = stage.current;
-    const onWheel = (event: WheelEvent) => { if (!event.ctrlKey && !element?.contains(document.activeElement)) event.stopPropagation(); };
+    const onWheel = (event: WheelEvent) => {
+      if (!event.ctrlKey && !element?.contains(document.activeElement)) event.stopPropagation();
+    };
     element?.addEventListener('wheel', onWheel, { capture: true });
     return () => element?.removeEventListener('wheel', onWheel, { capture: true });
   }, []);
   return (
     <figure className={styles.figure}>
       <div className={styles.tools} role="group" aria-label={label}>
-        {kViews.map(({ name, text, label: words }) => <span key={name}>{button(words, text, () => scene?.look(name))}</span>)}
+        {kViews.map(({ name, text, label: viewLabel }) => (
+          <span key={name}>{button(viewLabel, text, () => scene?.look(name))}</span>
+        ))}
         <span className={styles.gap} />
         {content?.bone ? (
           <>
-            {button('Cut open: without the superior half of the bone', 'Cut open', () => setShown('cut'), shown === 'cut')}
-            {button('Whole bone', 'Whole', () => setShown('whole'), shown === 'whole')}
-            {button('No bone', 'No bone', () => setShown('none'), shown === 'none')}
+            {button('Cut open: hide the superior half of the bone', 'Cut open', () => setShown('cut'), shown === 'cut')}
+            {button('Show the whole bone', 'Whole', () => setShown('whole'), shown === 'whole')}
+            {button('Hide the bone', 'No bone', () => setShown('none'), shown === 'none')}
           </>
         ) : null}
       </div>
       {/* eslint-disable-next-line jsx-a11y/no-noninteractive-element-interactions -- an application takes keys */}
       <div
-        ref={stage} className={styles.stage} role="application" aria-roledescription="3-D picture" aria-label={summary} data-part="scene" data-ready={scene !== null || undefined}
+        ref={stage}
+        className={styles.stage}
+        role="application"
+        aria-roledescription="3-D picture"
+        aria-label={summary}
+        data-part="scene"
+        data-ready={scene !== null || undefined}
         // eslint-disable-next-line jsx-a11y/no-noninteractive-tabindex -- an application takes keys
-        tabIndex={0} onKeyDown={(event) => turnByKey(event, scene, () => scene?.look('start'))} onPointerDown={() => stage.current?.focus({ preventScroll: true })}
+        tabIndex={0}
+        onKeyDown={(event) => turnByKey(event, scene, () => scene?.look('start'))}
+        onPointerDown={() => stage.current?.focus({ preventScroll: true })}
       >
         <div ref={canvas} className={styles.canvas} hidden={failure !== ''} />
         <div ref={labels} className={styles.labels} aria-hidden="true" hidden={failure !== ''} />
-        {failure !== '' ? <p className={styles.failure} role="alert">{failure} Everything else on this page is complete without it.</p> : null}
-        {failure === '' && scene === null ? <p className={styles.failure} role="status">Drawing…</p> : null}
+        {failure !== '' ? (
+          <p className={styles.failure} role="alert">
+            {failure} Everything else on this page is complete without it.
+          </p>
+        ) : null}
+        {failure === '' && scene === null ? (
+          <p className={styles.failure} role="status">
+            Drawing…
+          </p>
+        ) : null}
       </div>
       <figcaption className={styles.caption}>
         {caption}
-        <span className={styles.hint}>Drag to turn, Shift-drag to move, wheel after a click to zoom. Arrow keys turn.</span>
+        <span className={styles.hint}>
+          Drag to rotate, Shift-drag to move, click and use the wheel to zoom. Arrow keys rotate.
+        </span>
       </figcaption>
     </figure>
   );

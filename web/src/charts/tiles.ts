@@ -14,7 +14,10 @@ export const kTilePoints = 1024;
 /** Least and greatest are drawn for every point, so fewer points than pixels still show every peak. */
 const kPointsPerPixel = 0.75;
 
-export interface Tile { readonly level: number; readonly index: number }
+export interface Tile {
+  readonly level: number;
+  readonly index: number;
+}
 
 export function tileRange({ level, index }: Tile, duration: number): Range {
   const length = duration / 2 ** level;
@@ -44,7 +47,10 @@ export function tilesFor(range: Range, width_px: number, duration: number, sampl
 }
 
 /** Least and greatest of a channel at each point of `t`. */
-export interface Envelope { readonly min: readonly (number | null)[]; readonly max: readonly (number | null)[] }
+export interface Envelope {
+  readonly min: readonly (number | null)[];
+  readonly max: readonly (number | null)[];
+}
 
 export interface Detail {
   readonly t: readonly number[];
@@ -89,7 +95,8 @@ export function assemble(tiles: readonly Tile[], held: (tile: Tile) => Detail | 
 
 /** First index whose value is ≥ x. */
 export function lowerBound(sorted: readonly number[], x: number): number {
-  let low = 0, high = sorted.length;
+  let low = 0,
+    high = sorted.length;
   while (low < high) {
     const middle = (low + high) >> 1;
     if ((sorted[middle] ?? 0) < x) low = middle + 1;

@@ -18,7 +18,13 @@ interface Props extends Pick<StageProps, 'palette' | 'summary' | 'button'> {
 }
 
 const kColours = { bone: '--bone', tract: '--accent', moment: '--series-across', ghost: '--event' } as const;
-const kScale = `linear-gradient(to right, ${Array.from({ length: 9 }, (_, i) => `rgb(${viridis(i / 8).map((c) => Math.round(c * 255)).join(' ')})`).join(', ')})`;
+const kScale = `linear-gradient(to right, ${Array.from(
+  { length: 9 },
+  (_, i) =>
+    `rgb(${viridis(i / 8)
+      .map((c) => Math.round(c * 255))
+      .join(' ')})`,
+).join(', ')})`;
 
 /** Top of the colour scale: above all but the strongest twentieth, so that a few taps do not darken the rest. */
 function topOf(force_N: readonly number[]): number {
@@ -30,8 +36,12 @@ function topOf(force_N: readonly number[]): number {
 export function TractView({ tract, path, bone, cursor, ghost = null, palette, summary, button }: Props) {
   const [scene, setScene] = useState<Scene | null>(null);
   const most_N = topOf(path.force_N);
-  const ghostPath = ghost?.path ?? null, ghostAt = ghost?.at ?? null;
-  const content = useMemo(() => ({ tract, path, bone, most_N, ghost: ghostPath }), [tract, path, bone, most_N, ghostPath]);
+  const ghostPath = ghost?.path ?? null,
+    ghostAt = ghost?.at ?? null;
+  const content = useMemo(
+    () => ({ tract, path, bone, most_N, ghost: ghostPath }),
+    [tract, path, bone, most_N, ghostPath],
+  );
   useEffect(() => {
     if (!scene) return;
     const follow = () => {
@@ -42,10 +52,22 @@ export function TractView({ tract, path, bone, cursor, ghost = null, palette, su
     follow();
     return cursor.subscribe(follow);
   }, [scene, cursor, ghostAt]);
-  const scale = <span className={styles.scale}>force on the tip 0<i style={{ background: kScale }} />{formatForce(newton(most_N))} and above</span>;
+  const scale = (
+    <span className={styles.scale}>
+      tip force 0<i style={{ background: kScale }} />
+      {formatForce(newton(most_N))} and above
+    </span>
+  );
   return (
     <Stage
-      content={content} colours={kColours} palette={palette} label="View of the tract" summary={summary} button={button} caption={scale} onScene={setScene}
+      content={content}
+      colours={kColours}
+      palette={palette}
+      label="View of the tract"
+      summary={summary}
+      button={button}
+      caption={scale}
+      onScene={setScene}
     />
   );
 }

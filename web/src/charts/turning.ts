@@ -8,8 +8,14 @@ interface Turned {
 /** Arrow keys turn by ten degrees, + and - zoom, 0 begins anew. */
 export function turnByKey(event: KeyboardEvent, scene: Turned | null, reset: () => void): void {
   const act: Record<string, (() => void) | undefined> = {
-    ArrowLeft: () => scene?.turn(10, 0), ArrowRight: () => scene?.turn(-10, 0), ArrowUp: () => scene?.turn(0, -10), ArrowDown: () => scene?.turn(0, 10),
-    '+': () => scene?.zoom(1.15), '=': () => scene?.zoom(1.15), '-': () => scene?.zoom(1 / 1.15), '0': reset,
+    ArrowLeft: () => scene?.turn(10, 0),
+    ArrowRight: () => scene?.turn(-10, 0),
+    ArrowUp: () => scene?.turn(0, -10),
+    ArrowDown: () => scene?.turn(0, 10),
+    '+': () => scene?.zoom(1.15),
+    '=': () => scene?.zoom(1.15),
+    '-': () => scene?.zoom(1 / 1.15),
+    '0': reset,
   };
   const done = act[event.key];
   if (!done || event.ctrlKey || event.metaKey || event.altKey) return;

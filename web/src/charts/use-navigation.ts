@@ -13,7 +13,9 @@ const kWheelZoom = 0.0016;
 /** The wheel zooms about the pointer while the chart has the focus or Ctrl is held; else the page scrolls as ever. */
 export function useWheel(place: RefObject<HTMLElement | null>, view: View): void {
   const latest = useRef(view);
-  useEffect(() => { latest.current = view; });
+  useEffect(() => {
+    latest.current = view;
+  });
   useEffect(() => {
     const element = place.current;
     if (!element) return;
@@ -29,7 +31,14 @@ export function useWheel(place: RefObject<HTMLElement | null>, view: View): void
       } else if (event.ctrlKey || event.metaKey || element.contains(document.activeElement)) {
         event.preventDefault();
         const place01 = Math.min(Math.max((event.clientX - box.left) / box.width, 0), 1);
-        onRange(zoomed(range, Math.exp(event.deltaY * kWheelZoom), range.from + place01 * (range.to - range.from), duration_s));
+        onRange(
+          zoomed(
+            range,
+            Math.exp(event.deltaY * kWheelZoom),
+            range.from + place01 * (range.to - range.from),
+            duration_s,
+          ),
+        );
       }
     };
     element.addEventListener('wheel', onWheel, { passive: false });
@@ -42,16 +51,30 @@ export function keyed(key: string, range: Range, duration: number): Range | unde
   const middle = (range.from + range.to) / 2;
   const span = range.to - range.from;
   switch (key) {
-    case 'ArrowLeft': return panned(range, -0.1, duration);
-    case 'ArrowRight': return panned(range, 0.1, duration);
-    case 'PageUp': return panned(range, -0.9, duration);
-    case 'PageDown': return panned(range, 0.9, duration);
-    case '+': case '=': case 'ArrowUp': return zoomed(range, 1 / 1.5, middle, duration);
-    case '-': case 'ArrowDown': return zoomed(range, 1.5, middle, duration);
-    case 'Home': return { from: 0, to: span };
-    case 'End': return { from: duration - span, to: duration };
-    case '0': case 'Escape': return whole(duration);
-    default: return undefined;
+    case 'ArrowLeft':
+      return panned(range, -0.1, duration);
+    case 'ArrowRight':
+      return panned(range, 0.1, duration);
+    case 'PageUp':
+      return panned(range, -0.9, duration);
+    case 'PageDown':
+      return panned(range, 0.9, duration);
+    case '+':
+    case '=':
+    case 'ArrowUp':
+      return zoomed(range, 1 / 1.5, middle, duration);
+    case '-':
+    case 'ArrowDown':
+      return zoomed(range, 1.5, middle, duration);
+    case 'Home':
+      return { from: 0, to: span };
+    case 'End':
+      return { from: duration - span, to: duration };
+    case '0':
+    case 'Escape':
+      return whole(duration);
+    default:
+      return undefined;
   }
 }
 

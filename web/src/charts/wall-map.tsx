@@ -38,32 +38,62 @@ export function WallMap(props: Props) {
     const row = Math.min(Math.floor(((event.clientY - box.top) / box.height) * depthBins), depthBins - 1);
     const angle = binOf(column, angleBins);
     const depth = metre(((row + 0.5) / depthBins) * length_m);
-    setPointed(`${sideOf(angle, angleBins)}, ${formatLength(depth)} deep: ${formatCount(samples[row * angleBins + angle] ?? 0)} samples in contact`);
+    setPointed(
+      `${sideOf(angle, angleBins)}, ${formatLength(depth)} deep: ${formatCount(samples[row * angleBins + angle] ?? 0)} samples in contact`,
+    );
   };
-  const summary = `Wall of the tract unrolled. Share touched: ${kSides.map((side) => `${side} ${formatShare(ofSide(side))}`).join(', ')}.`;
+  const summary = `Wall of the tract unrolled. Touched: ${kSides.map((side) => `${side} ${formatShare(ofSide(side))}`).join(', ')}.`;
   return (
     <figure className={styles.figure}>
       <div className={styles.heads}>
         {kSides.map((side) => (
           <div key={side} className={side === breached ? styles.breached : undefined}>
             <strong aria-hidden="true">{kInitial[side]}</strong> {side}
-            <span className={styles.share} data-side={side}>{formatShare(ofSide(side))}</span>
+            <span className={styles.share} data-side={side}>
+              {formatShare(ofSide(side))}
+            </span>
             {side === breached ? <span className={styles.tag}>breached here</span> : null}
           </div>
         ))}
       </div>
       <div className={styles.plot}>
-        <div className={styles.depth} aria-hidden="true"><span>0 mm</span><span>depth</span><span>{formatLength(length_m, 0)}</span></div>
-        <svg viewBox={`0 0 ${angleBins} ${depthBins}`} preserveAspectRatio="none" role="img" aria-label={summary} className={styles.map}
-          onPointerMove={onPointerMove} onPointerLeave={() => setPointed('')}>
-          {heatPaths(bins).map((path, level) => <path key={level} d={path} className={styles.cell} data-heat={level} />)}
-          {[1, 2, 3].map((quarter) => <line key={quarter} x1={(quarter * angleBins) / 4} x2={(quarter * angleBins) / 4} y1={0} y2={depthBins} className={styles.divide} />)}
+        <div className={styles.depth} aria-hidden="true">
+          <span>0 mm</span>
+          <span>depth</span>
+          <span>{formatLength(length_m, 0)}</span>
+        </div>
+        <svg
+          viewBox={`0 0 ${angleBins} ${depthBins}`}
+          preserveAspectRatio="none"
+          role="img"
+          aria-label={summary}
+          className={styles.map}
+          onPointerMove={onPointerMove}
+          onPointerLeave={() => setPointed('')}
+        >
+          {heatPaths(bins).map((path, level) => (
+            <path key={level} d={path} className={styles.cell} data-heat={level} />
+          ))}
+          {[1, 2, 3].map((quarter) => (
+            <line
+              key={quarter}
+              x1={(quarter * angleBins) / 4}
+              x2={(quarter * angleBins) / 4}
+              y1={0}
+              y2={depthBins}
+              className={styles.divide}
+            />
+          ))}
           <Here {...props} />
         </svg>
       </div>
       <figcaption className={styles.caption}>
         <span className={styles.scale}>
-          not touched {Array.from({ length: kHeatLevels + 1 }, (_, level) => <i key={level} data-heat={level} />)} longest in contact
+          not touched{' '}
+          {Array.from({ length: kHeatLevels + 1 }, (_, level) => (
+            <i key={level} data-heat={level} />
+          ))}{' '}
+          longest contact
         </span>
         <span className={styles.pointed}>{pointed}</span>
       </figcaption>

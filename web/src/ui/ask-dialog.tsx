@@ -6,32 +6,46 @@ import { Notice } from './notice';
 interface Props {
   readonly title: string;
   readonly children: ReactNode;
-  /** What the button says. */
-  readonly deed: string;
+  /** Label of the button. */
+  readonly action: string;
   readonly ready?: boolean;
-  readonly onDeed: () => Promise<unknown>;
+  readonly onAction: () => Promise<unknown>;
   readonly onClose: () => void;
 }
 
 /** Asks before something is done; closes when it was, and says why when it was not. */
-export function AskDialog({ title, children, deed, ready = true, onDeed, onClose }: Props) {
+export function AskDialog({ title, children, action, ready = true, onAction, onClose }: Props) {
   const dialog = useRef<HTMLDialogElement>(null);
   const [busy, setBusy] = useState(false);
   const [failure, setFailure] = useState<string | null>(null);
   const id = useId();
-  useEffect(() => { dialog.current?.showModal(); }, []);
+  useEffect(() => {
+    dialog.current?.showModal();
+  }, []);
   const submit = (event: FormEvent) => {
     event.preventDefault();
     setBusy(true);
-    onDeed().then(onClose, (wrong: unknown) => { setFailure(wrong instanceof Error ? wrong.message : String(wrong)); setBusy(false); });
+    onAction().then(onClose, (wrong: unknown) => {
+      setFailure(wrong instanceof Error ? wrong.message : String(wrong));
+      setBusy(false);
+    });
   };
   return (
     <dialog ref={dialog} className={styles.dialog} aria-labelledby={id} onClose={onClose}>
       <form onSubmit={submit}>
         <h2 id={id}>{title}</h2>
         {children}
-        {failure === null ? null : <Notice tone="bad" title="That was not done.">{failure}</Notice>}
-        <div className={styles.buttons}><Button onClick={onClose}>Leave it</Button><Button look="solid" type="submit" disabled={busy || !ready}>{deed}</Button></div>
+        {failure === null ? null : (
+          <Notice tone="bad" title="The action failed.">
+            {failure}
+          </Notice>
+        )}
+        <div className={styles.buttons}>
+          <Button onClick={onClose}>Cancel</Button>
+          <Button look="solid" type="submit" disabled={busy || !ready}>
+            {action}
+          </Button>
+        </div>
       </form>
     </dialog>
   );

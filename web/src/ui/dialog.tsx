@@ -7,26 +7,29 @@ interface Props {
   readonly title: string;
   /** What will happen, in a sentence or two. */
   readonly text: string;
-  /** What the button says: the deed itself. */
-  readonly deed: string;
+  /** Label of the button. */
+  readonly action: string;
   readonly reasonNeeded?: boolean;
   /** Does it; the dialog closes when that has succeeded, and says why when it has not. */
-  readonly onDeed: (reason: string) => Promise<void>;
+  readonly onAction: (reason: string) => Promise<void>;
   readonly onClose: () => void;
 }
 
 /** Asks before something is done that is kept, with a reason for those who read it later. Escape leaves things as they are. */
-export function ReasonDialog({ title, text, deed, reasonNeeded = false, onDeed, onClose }: Props) {
+export function ReasonDialog({ title, text, action, reasonNeeded = false, onAction, onClose }: Props) {
   const dialog = useRef<HTMLDialogElement>(null);
   const [reason, setReason] = useState('');
   const [failure, setFailure] = useState<string | null>(null);
   const [busy, setBusy] = useState(false);
-  const titleId = useId(), reasonId = useId();
-  useEffect(() => { dialog.current?.showModal(); }, []);
+  const titleId = useId(),
+    reasonId = useId();
+  useEffect(() => {
+    dialog.current?.showModal();
+  }, []);
   const submit = (event: FormEvent) => {
     event.preventDefault();
     setBusy(true);
-    onDeed(reason.trim()).then(onClose, (wrong: unknown) => {
+    onAction(reason.trim()).then(onClose, (wrong: unknown) => {
       setFailure(wrong instanceof Error ? wrong.message : String(wrong));
       setBusy(false);
     });
@@ -37,13 +40,26 @@ export function ReasonDialog({ title, text, deed, reasonNeeded = false, onDeed, 
         <h2 id={titleId}>{title}</h2>
         <p>{text}</p>
         <div className={styles.reason}>
-          <label htmlFor={reasonId}>Reason{reasonNeeded ? '' : ' (may be left out)'}</label>
-          <textarea id={reasonId} rows={3} maxLength={500} required={reasonNeeded} value={reason} onChange={(event) => setReason(event.target.value)} />
+          <label htmlFor={reasonId}>Reason{reasonNeeded ? '' : ' (optional)'}</label>
+          <textarea
+            id={reasonId}
+            rows={3}
+            maxLength={500}
+            required={reasonNeeded}
+            value={reason}
+            onChange={(event) => setReason(event.target.value)}
+          />
         </div>
-        {failure === null ? null : <Notice tone="bad" title="That was not done.">{failure}</Notice>}
+        {failure === null ? null : (
+          <Notice tone="bad" title="The action failed.">
+            {failure}
+          </Notice>
+        )}
         <div className={styles.buttons}>
-          <Button onClick={onClose}>Leave it</Button>
-          <Button look="solid" type="submit" disabled={busy || (reasonNeeded && reason.trim() === '')}>{deed}</Button>
+          <Button onClick={onClose}>Cancel</Button>
+          <Button look="solid" type="submit" disabled={busy || (reasonNeeded && reason.trim() === '')}>
+            {action}
+          </Button>
         </div>
       </form>
     </dialog>

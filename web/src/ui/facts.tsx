@@ -1,7 +1,10 @@
 import type { ReactNode } from 'react';
 import styles from './facts.module.css';
 
-export interface Fact { readonly name: ReactNode; readonly value: ReactNode }
+export interface Fact {
+  readonly name: ReactNode;
+  readonly value: ReactNode;
+}
 
 export function Facts({ facts }: { readonly facts: readonly Fact[] }) {
   return (

@@ -18,3 +18,4 @@ export { Term } from './term';
 export { setTheme, theme, usePalette, useTheme, type Theme } from './theme';
 export { useTitle } from './title';
 export type { Feature, MenuEntry, Page } from './feature';
+export { useSettled } from './use-settled';

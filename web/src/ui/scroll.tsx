@@ -1,8 +1,12 @@
 import type { ReactNode } from 'react';
 import styles from './table.module.css';
 
-/** What may be wider than the page: it scrolls by itself, with keys too. */
+/** Content that may be wider than the page; it scrolls by itself, also with the keyboard. */
 export function Scroll({ label, children }: { readonly label: string; readonly children: ReactNode }) {
-  // eslint-disable-next-line jsx-a11y/no-noninteractive-tabindex -- a part that scrolls takes the keys that scroll it
-  return <div className={styles.frame} role="group" aria-label={label} tabIndex={0}>{children}</div>;
+  return (
+    // eslint-disable-next-line jsx-a11y/no-noninteractive-tabindex -- a part that scrolls takes the keys that scroll it
+    <div className={styles.frame} role="group" aria-label={label} tabIndex={0}>
+      {children}
+    </div>
+  );
 }

@@ -11,7 +11,13 @@ export function Select({ label, options, ...rest }: Props) {
   return (
     <div className={styles.field}>
       <label htmlFor={id}>{label}</label>
-      <select id={id} {...rest}>{options.map(({ value, text }) => <option key={value} value={value}>{text}</option>)}</select>
+      <select id={id} {...rest}>
+        {options.map(({ value, text }) => (
+          <option key={value} value={value}>
+            {text}
+          </option>
+        ))}
+      </select>
     </div>
   );
 }

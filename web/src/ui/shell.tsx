@@ -24,21 +24,29 @@ export function Shell({ account, home, children }: Props) {
   const theme = useTheme();
   return (
     <>
-      <a className={styles.skip} href="#content" onClick={toContent}>Skip to content</a>
+      <a className={styles.skip} href="#content" onClick={toContent}>
+        Skip to content
+      </a>
       <header className={styles.header}>
         <div className={styles.bar}>
           {home}
           <div className={styles.account}>
             {account}
-            <Button look="quiet" title={`Colours. Next: ${kThemeName[kNext[theme]]}`} onClick={() => setTheme(kNext[theme])}>
+            <Button
+              look="quiet"
+              title={`Theme. Next: ${kThemeName[kNext[theme]]}`}
+              onClick={() => setTheme(kNext[theme])}
+            >
               <span aria-hidden="true">{kThemeSign[theme]}</span>
-              <span className="hidden-visually">Colours: </span>
+              <span className="hidden-visually">Theme: </span>
               <span className={styles.themeName}>{kThemeName[theme]}</span>
             </Button>
           </div>
         </div>
       </header>
-      <main id="content" tabIndex={-1} className={styles.main}>{children}</main>
+      <main id="content" tabIndex={-1} className={styles.main}>
+        {children}
+      </main>
     </>
   );
 }

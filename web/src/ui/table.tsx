@@ -26,17 +26,47 @@ export function Table<Row>({ caption, columns, rows, keyOf, empty, minWidth }: P
   if (rows?.length === 0) return <p className={styles.empty}>{empty}</p>;
   return (
     <Scroll label={caption}>
-      <table className={styles.table} aria-busy={rows === undefined} style={minWidth === undefined ? undefined : { minWidth }}>
+      <table
+        className={styles.table}
+        aria-busy={rows === undefined}
+        style={minWidth === undefined ? undefined : { minWidth }}
+      >
         <caption className="hidden-visually">{caption}</caption>
-        <thead><tr>{columns.map(({ name, number }, i) => <th key={i} scope="col" className={number ? styles.number : undefined}>{name}</th>)}</tr></thead>
+        <thead>
+          <tr>
+            {columns.map(({ name, number }, i) => (
+              <th key={i} scope="col" className={number ? styles.number : undefined}>
+                {name}
+              </th>
+            ))}
+          </tr>
+        </thead>
         <tbody>
           {rows === undefined
-            ? Array.from({ length: kWaiting }, (_, i) => <tr key={i}>{columns.map((__, c) => <td key={c}><Skeleton width="80%" /></td>)}</tr>)
+            ? Array.from({ length: kWaiting }, (_, i) => (
+                <tr key={i}>
+                  {columns.map((__, c) => (
+                    <td key={c}>
+                      <Skeleton width="80%" />
+                    </td>
+                  ))}
+                </tr>
+              ))
             : rows.map((row, i) => (
-              <tr key={keyOf(row, i)}>
-                {columns.map(({ cell, number }, c) => (c === 0 ? <th key={c} scope="row">{cell(row)}</th> : <td key={c} className={number ? styles.number : undefined}>{cell(row)}</td>))}
-              </tr>
-            ))}
+                <tr key={keyOf(row, i)}>
+                  {columns.map(({ cell, number }, c) =>
+                    c === 0 ? (
+                      <th key={c} scope="row">
+                        {cell(row)}
+                      </th>
+                    ) : (
+                      <td key={c} className={number ? styles.number : undefined}>
+                        {cell(row)}
+                      </td>
+                    ),
+                  )}
+                </tr>
+              ))}
         </tbody>
       </table>
     </Scroll>

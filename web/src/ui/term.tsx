@@ -12,13 +12,27 @@ interface Props {
 export function Term({ children, definition, align = 'start' }: Props) {
   const id = useId();
   const [closed, setClosed] = useState(false);
-  const onKeyDown = (event: KeyboardEvent) => { if (event.key === 'Escape') setClosed(true); };
+  const onKeyDown = (event: KeyboardEvent) => {
+    if (event.key === 'Escape') setClosed(true);
+  };
   return (
-    <span className={`${styles.holder} ${align === 'end' ? styles.end : ''}`} data-closed={closed || undefined} onPointerEnter={() => setClosed(false)}>
-      <button type="button" className={styles.term} aria-describedby={id} onKeyDown={onKeyDown} onFocus={() => setClosed(false)}>
+    <span
+      className={`${styles.holder} ${align === 'end' ? styles.end : ''}`}
+      data-closed={closed || undefined}
+      onPointerEnter={() => setClosed(false)}
+    >
+      <button
+        type="button"
+        className={styles.term}
+        aria-describedby={id}
+        onKeyDown={onKeyDown}
+        onFocus={() => setClosed(false)}
+      >
         {children}
       </button>
-      <span id={id} role="tooltip" className={styles.definition}>{definition}</span>
+      <span id={id} role="tooltip" className={styles.definition}>
+        {definition}
+      </span>
     </span>
   );
 }

@@ -2,5 +2,7 @@ import { useEffect } from 'react';
 
 /** The window's title while a page is shown. */
 export function useTitle(title: string): void {
-  useEffect(() => { document.title = title === '' ? 'Tractus' : `${title} · Tractus`; }, [title]);
+  useEffect(() => {
+    document.title = title === '' ? 'Tractus' : `${title} · Tractus`;
+  }, [title]);
 }

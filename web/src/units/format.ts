@@ -1,10 +1,22 @@
 /** The only place where a number becomes text. SI in; millimetres, degrees and per cent out. */
 import {
-  kAngle, kForce, kLength, kSpeed, kTime, kTorque,
-  type Metre, type Newton, type NewtonMetre, type Quantity, type Radian, type Second, type Share, type UtcMicroseconds,
+  kAngle,
+  kForce,
+  kLength,
+  kSpeed,
+  kTime,
+  kTorque,
+  type Metre,
+  type Newton,
+  type NewtonMetre,
+  type Quantity,
+  type Radian,
+  type Second,
+  type Share,
+  type UtcMicroseconds,
 } from './quantity';
 
-const kNarrowSpace = '\u202f';  // no line break between a number and its unit
+const kNarrowSpace = '\u202f'; // no line break between a number and its unit
 const kMinus = '−';
 export const kNone = '–';
 
@@ -14,7 +26,9 @@ export function digits(si: number, quantity: Quantity, decimals = quantity.decim
   const shown = si * quantity.perSi;
   const least = 10 ** -decimals;
   if (shown !== 0 && Math.abs(shown) < least / 2) {
-    return shown > 0 ? `<${kNarrowSpace}${least.toFixed(decimals)}` : `>${kNarrowSpace}${kMinus}${least.toFixed(decimals)}`;
+    return shown > 0
+      ? `<${kNarrowSpace}${least.toFixed(decimals)}`
+      : `>${kNarrowSpace}${kMinus}${least.toFixed(decimals)}`;
   }
   return grouped(Math.abs(shown).toFixed(decimals), shown < 0 ? kMinus : '');
 }
@@ -69,13 +83,16 @@ export function formatShare(value: Share, decimals = 0): string {
   const percent = value * 100;
   const least = 10 ** -decimals;
   if (percent > 0 && percent < least / 2) return `<${kNarrowSpace}${least.toFixed(decimals)}${kNarrowSpace}%`;
-  if (percent < 100 && percent > 100 - least / 2) return `>${kNarrowSpace}${(100 - least).toFixed(decimals)}${kNarrowSpace}%`;
+  if (percent < 100 && percent > 100 - least / 2)
+    return `>${kNarrowSpace}${(100 - least).toFixed(decimals)}${kNarrowSpace}%`;
   return `${percent.toFixed(decimals)}${kNarrowSpace}%`;
 }
 
 export function formatRate(hertz: number): string {
   if (!Number.isFinite(hertz)) return kNone;
-  return hertz >= 1000 ? `${Number((hertz / 1000).toFixed(3))}${kNarrowSpace}kHz` : `${Number(hertz.toFixed(1))}${kNarrowSpace}Hz`;
+  return hertz >= 1000
+    ? `${Number((hertz / 1000).toFixed(3))}${kNarrowSpace}kHz`
+    : `${Number(hertz.toFixed(1))}${kNarrowSpace}Hz`;
 }
 
 const kDateTime = new Intl.DateTimeFormat('en-GB', { dateStyle: 'medium', timeStyle: 'short' });
@@ -96,7 +113,13 @@ export const formatDateTime = (value: UtcMicroseconds) => kDateTime.format(new D
 export const formatDateTimeLong = (value: UtcMicroseconds) => kSeconds.format(new Date(value / 1000));
 export const isoDateTime = (value: UtcMicroseconds) => new Date(value / 1000).toISOString();
 
-const kClock = new Intl.DateTimeFormat('en-GB', { day: '2-digit', month: 'short', hour: '2-digit', minute: '2-digit', second: '2-digit' });
+const kClock = new Intl.DateTimeFormat('en-GB', {
+  day: '2-digit',
+  month: 'short',
+  hour: '2-digit',
+  minute: '2-digit',
+  second: '2-digit',
+});
 /** "21 Nov, 05:35:07": for a list of what happened. */
 export const formatClock = (value: UtcMicroseconds) => kClock.format(new Date(value / 1000));
 

@@ -5,7 +5,13 @@ const plain = (text: string) => text.replaceAll('\u202f', ' ');
 
 describe('a figure', () => {
   it.each([
-    [2.3301989, 'N', '2.33 N'], [0.061617, 'N', '0.0616 N'], [5150.69, 'N/m', '5151 N/m'], [0.0087, 'm', '8.70 mm'], [0.2618, 'rad', '15.0°'], [0.98647, '1', '0.986'], [0, 'N', '0 N'],
+    [2.3301989, 'N', '2.33 N'],
+    [0.061617, 'N', '0.0616 N'],
+    [5150.69, 'N/m', '5151 N/m'],
+    [0.0087, 'm', '8.70 mm'],
+    [0.2618, 'rad', '15.0°'],
+    [0.98647, '1', '0.986'],
+    [0, 'N', '0 N'],
   ])('of %d %s has three digits that mean something: %s', (value, unit, text) => {
     expect(plain(formatFigure(value, unit))).toBe(text);
   });
@@ -18,7 +24,14 @@ describe('a figure', () => {
 
 describe('a figure of a self-test', () => {
   it.each([
-    [1.41e-6, 's', '1.41 µs'], [0.00025, 's', '250 µs'], [0.0708, 's', '70.8 ms'], [1, 's', '1.00 s'], [64_261_746_688, 'B', '64.3 GB'], [0.00286, 'm', '2.86 mm'], [0.0297, '', '2.97 %'], [0.001, '', '0.100 %'],
+    [1.41e-6, 's', '1.41 µs'],
+    [0.00025, 's', '250 µs'],
+    [0.0708, 's', '70.8 ms'],
+    [1, 's', '1.00 s'],
+    [64_261_746_688, 'B', '64.3 GB'],
+    [0.00286, 'm', '2.86 mm'],
+    [0.0297, '', '2.97 %'],
+    [0.001, '', '0.100 %'],
   ])('%d %s is read as %s', (value, unit, text) => {
     expect(plain(formatFound(value, unit))).toBe(text);
   });
@@ -36,7 +49,11 @@ describe('a fitted number', () => {
   });
 });
 
-it.each([['friction_N', 'friction', 'N'], ['damping_Ns_per_m', 'damping', 'N·s/m'], ['stribeck_velocity_m_s', 'stribeck velocity', 'm/s'], ['coefficient', 'coefficient', '']])(
-  'the name %s is taken apart', (name, words, unit) => {
-    expect(nameAndUnit(name)).toEqual({ name: words, unit });
-  });
+it.each([
+  ['friction_N', 'friction', 'N'],
+  ['damping_Ns_per_m', 'damping', 'N·s/m'],
+  ['stribeck_velocity_m_s', 'stribeck velocity', 'm/s'],
+  ['coefficient', 'coefficient', ''],
+])('the name %s is taken apart', (name, words, unit) => {
+  expect(nameAndUnit(name)).toEqual({ name: words, unit });
+});

@@ -50,10 +50,43 @@ export function formatWithin(value: number | null, sd: number | null, unit = '')
   return `${digits(value, as, decimals)} ± ${spelled(sd, unit, decimals)}`;
 }
 
-const kEndings = ['N_per_m', 'Ns_per_m', 'Ns2_per_m2', 'Nms_per_rad', 's_per_rad', 'rad_s', 'm_s', 'per_m', 'rad', 'Nm', 'kg', 'Pa', 'mm', 'N', 'm', 's', 'Hz'] as const;
+const kEndings = [
+  'N_per_m',
+  'Ns_per_m',
+  'Ns2_per_m2',
+  'Nms_per_rad',
+  's_per_rad',
+  'rad_s',
+  'm_s',
+  'per_m',
+  'rad',
+  'Nm',
+  'kg',
+  'Pa',
+  'mm',
+  'N',
+  'm',
+  's',
+  'Hz',
+] as const;
 const kSpelled: Record<(typeof kEndings)[number], string> = {
-  N_per_m: 'N/m', Ns_per_m: 'N·s/m', Ns2_per_m2: 'N·s²/m²', Nms_per_rad: 'N·m·s/rad', s_per_rad: 's/rad', rad_s: 'rad/s', m_s: 'm/s', per_m: '1/m',
-  rad: 'rad', Nm: 'N·m', kg: 'kg', Pa: 'Pa', mm: 'mm', N: 'N', m: 'm', s: 's', Hz: 'Hz',
+  N_per_m: 'N/m',
+  Ns_per_m: 'N·s/m',
+  Ns2_per_m2: 'N·s²/m²',
+  Nms_per_rad: 'N·m·s/rad',
+  s_per_rad: 's/rad',
+  rad_s: 'rad/s',
+  m_s: 'm/s',
+  per_m: '1/m',
+  rad: 'rad',
+  Nm: 'N·m',
+  kg: 'kg',
+  Pa: 'Pa',
+  mm: 'mm',
+  N: 'N',
+  m: 'm',
+  s: 's',
+  Hz: 'Hz',
 };
 
 /** A name that ends in its unit, taken apart: "friction_N" → friction, N. */

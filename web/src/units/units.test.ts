@@ -1,7 +1,27 @@
 import { describe, expect, it } from 'vitest';
 import {
-  decimalsFor, digits, formatAngle, formatCount, formatDuration, formatForce, formatLength, formatMeasure, formatRate,
-  formatShare, formatTorque, kForce, kTorque, measureDigits, metre, newton, newtonMetre, radian, rounded, second, share, shownUnit,
+  decimalsFor,
+  digits,
+  formatAngle,
+  formatCount,
+  formatDuration,
+  formatForce,
+  formatLength,
+  formatMeasure,
+  formatRate,
+  formatShare,
+  formatTorque,
+  kForce,
+  kTorque,
+  measureDigits,
+  metre,
+  newton,
+  newtonMetre,
+  radian,
+  rounded,
+  second,
+  share,
+  shownUnit,
   tickLabels,
 } from '@/units';
 
@@ -9,7 +29,7 @@ const plain = (text: string) => text.replaceAll('\u202f', ' ');
 
 describe('a number of the trial', () => {
   it('is shown in the unit of the clinic, from SI', () => {
-    expect(plain(formatForce(newton(7.78)))).toBe('7.78 N');           // Basel paper, Table 1, max of F_z
+    expect(plain(formatForce(newton(7.78)))).toBe('7.78 N'); // Basel paper, Table 1, max of F_z
     expect(plain(formatTorque(newtonMetre(0.134)))).toBe('0.134 N·m'); // the same, max of T_xy
     expect(plain(formatLength(metre(0.009)))).toBe('9.0 mm');
     expect(plain(formatAngle(radian(Math.PI / 2)))).toBe('90.0°');
@@ -38,7 +58,12 @@ describe('a number of the trial', () => {
 });
 
 describe('a duration', () => {
-  it.each([[42.46, '42.5 s'], [119.9, '119.9 s'], [185, '3 min 05 s'], [3720, '1 h 02 min']])('of %d s reads %s', (value, text) => {
+  it.each([
+    [42.46, '42.5 s'],
+    [119.9, '119.9 s'],
+    [185, '3 min 05 s'],
+    [3720, '1 h 02 min'],
+  ])('of %d s reads %s', (value, text) => {
     expect(plain(formatDuration(second(value)))).toBe(text);
   });
 });

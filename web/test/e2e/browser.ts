@@ -8,38 +8,64 @@ export const kShots = fileURLToPath(new URL('../screenshots/', import.meta.url))
 mkdirSync(kShots, { recursive: true });
 
 /** `drawing` says how pictures are made: by default so that 3-D is as fast as it gets without a graphics processor. */
-export function launch(drawing: readonly string[] = ['--use-gl=angle', '--use-angle=gl-egl', '--ignore-gpu-blocklist']): Promise<Browser> {
+export function launch(
+  drawing: readonly string[] = ['--use-gl=angle', '--use-angle=gl-egl', '--ignore-gpu-blocklist'],
+): Promise<Browser> {
   return chromium.launch({
     executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
     args: [
-      '--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync',
+      '--no-sandbox',
+      '--disable-quic',
+      '--no-first-run',
+      '--disable-background-networking',
+      '--disable-component-update',
+      '--disable-sync',
       ...drawing,
     ],
   });
 }
 
-export interface Visit { readonly context: BrowserContext; readonly page: Page; readonly faults: string[] }
+export interface Visit {
+  readonly context: BrowserContext;
+  readonly page: Page;
+  readonly faults: string[];
+}
 
 /** How far the page has jumped since it was loaded (cumulative layout shift), and what jumped. Above 0.1 a person notices. */
-export const jumped = (page: Page) => page.evaluate(() => {
-  const { layoutShift, layoutShiftOf } = window as unknown as { layoutShift: number; layoutShiftOf: string[] };
-  return { layoutShift, layoutShiftOf };
-});
+export const jumped = (page: Page) =>
+  page.evaluate(() => {
+    const { layoutShift, layoutShiftOf } = window as unknown as { layoutShift: number; layoutShiftOf: string[] };
+    return { layoutShift, layoutShiftOf };
+  });
 
-interface Look { readonly width?: number; readonly height?: number; readonly dark?: boolean }
+interface Look {
+  readonly width?: number;
+  readonly height?: number;
+  readonly dark?: boolean;
+}
 
 /** A fresh person at a fresh screen. `faults` gathers what the page complains about: errors and refusals of the policy. */
 export async function visit(browser: Browser, { width = 1440, height = 900, dark = false }: Look = {}): Promise<Visit> {
-  const context = await browser.newContext({ viewport: { width, height }, colorScheme: dark ? 'dark' : 'light', baseURL: inject('url') });
+  const context = await browser.newContext({
+    viewport: { width, height },
+    colorScheme: dark ? 'dark' : 'light',
+    baseURL: inject('url'),
+  });
   await context.addInitScript(() => {
     const shifts = window as unknown as { layoutShift: number; layoutShiftOf: string[] };
     shifts.layoutShift = 0;
     shifts.layoutShiftOf = [];
     new PerformanceObserver((list) => {
-      for (const entry of list.getEntries() as (PerformanceEntry & { value: number; hadRecentInput: boolean; sources?: { node?: Node | null }[] })[]) {
+      for (const entry of list.getEntries() as (PerformanceEntry & {
+        value: number;
+        hadRecentInput: boolean;
+        sources?: { node?: Node | null }[];
+      })[]) {
         if (entry.hadRecentInput) continue;
         shifts.layoutShift += entry.value;
-        for (const { node } of entry.sources ?? []) if (node instanceof Element) shifts.layoutShiftOf.push(`${node.tagName} ${node.className} ${entry.value.toFixed(3)}`);
+        for (const { node } of entry.sources ?? [])
+          if (node instanceof Element)
+            shifts.layoutShiftOf.push(`${node.tagName} ${node.className} ${entry.value.toFixed(3)}`);
       }
     }).observe({ type: 'layout-shift', buffered: true });
   });
@@ -78,7 +104,9 @@ export async function assessedTrial(page: Page): Promise<string> {
   throw new Error('the server has no assessed palpation trial');
 }
 
-interface Told { participants: { name: string; slots: { state: string; trials: { id: string; state: string }[] }[] }[] }
+interface Told {
+  participants: { name: string; slots: { state: string; trials: { id: string; state: string }[] }[] }[];
+}
 
 /** A study with a trial that counts, if the server has one: the newest of its trials behind a wall, or any. */
 export async function someStudy(page: Page): Promise<{ id: string; trial: string } | null> {
@@ -86,7 +114,9 @@ export async function someStudy(page: Page): Promise<{ id: string; trial: string
   const found = studies.find(({ done }) => done > 0);
   if (!found) return null;
   const study = await asked<Told>(page, `/studies/${found.id}`);
-  const trials = study.participants.flatMap((one) => one.slots.flatMap((slot) => slot.trials.filter(({ state }) => state === 'counts')));
+  const trials = study.participants.flatMap((one) =>
+    one.slots.flatMap((slot) => slot.trials.filter(({ state }) => state === 'counts')),
+  );
   for (const { id } of trials.slice(0, 8)) {
     const { scenario } = await asked<{ scenario: { walls: unknown[] } | null }>(page, `/trials/${id}`);
     if (scenario && scenario.walls.length > 0) return { id: found.id, trial: id };

@@ -19,7 +19,8 @@ const kRoot = fileURLToPath(new URL('../..', import.meta.url));
 export default async function setup(project: TestProject) {
   const url = process.env.TRACTUS_URL;
   if (url) {
-    const name = process.env.TRACTUS_USER, password = process.env.TRACTUS_PASSWORD;
+    const name = process.env.TRACTUS_USER,
+      password = process.env.TRACTUS_PASSWORD;
     if (!name || !password) throw new Error('TRACTUS_URL needs TRACTUS_USER and TRACTUS_PASSWORD');
     project.provide('url', url.replace(/\/$/, ''));
     project.provide('account', { name, password });
@@ -27,7 +28,11 @@ export default async function setup(project: TestProject) {
     return;
   }
   // In a process of its own: within the test runner the libraries would be built for testing, and slow.
-  execFileSync('npm', ['run', '--silent', 'build', '--', '--logLevel', 'warn'], { cwd: kRoot, stdio: 'inherit', env: { ...process.env, NODE_ENV: 'production', VITEST: '' } });
+  execFileSync('npm', ['run', '--silent', 'build', '--', '--logLevel', 'warn'], {
+    cwd: kRoot,
+    stdio: 'inherit',
+    env: { ...process.env, NODE_ENV: 'production', VITEST: '' },
+  });
   const { url: served, server } = await serveFixture(`${kRoot}/dist`);
   project.provide('url', served);
   project.provide('account', kAccount);

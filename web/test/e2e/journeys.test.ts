@@ -17,7 +17,10 @@ async function picture(page: Page, name: string): Promise<void> {
   await page.waitForLoadState('networkidle');
   await page.waitForTimeout(600);
   await page.screenshot({ path: `${kShots}guide-${name}.png` });
-  if (process.env.GUIDE_PICTURES) { mkdirSync(kPictures, { recursive: true }); await page.screenshot({ path: `${kPictures}${name}.jpg`, type: 'jpeg', quality: 82 }); }
+  if (process.env.GUIDE_PICTURES) {
+    mkdirSync(kPictures, { recursive: true });
+    await page.screenshot({ path: `${kPictures}${name}.jpg`, type: 'jpeg', quality: 82 });
+  }
   await page.setViewportSize({ width: 1440, height: 900 });
 }
 
@@ -29,15 +32,30 @@ describe.skipIf(bin === undefined)('on a real server', () => {
     programme = await furnish(served, bin ?? '');
     const faculty = await new Person(served.url).in('faculty', programme.passwords.get('faculty') ?? '');
     const { cases } = await faculty.ask<{ cases: { id: string }[] }>('GET', '/cases');
-    ({ id: assignment } = await faculty.ask<{ id: string }>('POST', '/assignments', { title: 'Four kinds of bone', cases: tuned, cohort: programme.cohort, repeats: 4, seed: 3, release: 'held' }));
+    ({ id: assignment } = await faculty.ask<{ id: string }>('POST', '/assignments', {
+      title: 'Four kinds of bone',
+      cases: tuned,
+      cohort: programme.cohort,
+      repeats: 4,
+      seed: 3,
+      release: 'held',
+    }));
     programme.does(kAda, 16);
     programme.does(kBen, 16);
-    await faculty.ask('POST', '/assignments', { title: 'The wall of the tract', cases: [{ case: cases[0]?.id }], people: [kAda], release: 'at_once' });
+    await faculty.ask('POST', '/assignments', {
+      title: 'The wall of the tract',
+      cases: [{ case: cases[0]?.id }],
+      people: [kAda],
+      release: 'at_once',
+    });
     programme.does(kAda, 1, 'sim-lambda6');
     await scored(programme.admin);
     browser = await launch();
   }, 600_000);
-  afterAll(async () => { await browser.close(); await served.stop(); });
+  afterAll(async () => {
+    await browser.close();
+    await served.stop();
+  });
   const enter = async (name: string) => {
     const page = await at(browser, served, name, programme.passwords.get(name) ?? '');
     page.on('pageerror', (error) => faults.push(`${name}: ${String(error)}`));
@@ -46,9 +64,11 @@ describe.skipIf(bin === undefined)('on a real server', () => {
 
   it('a trainee sees nothing of the assignment before its results are released, and the own curve after', async () => {
     const page = await enter(kBen);
-    expect(await page.getByRole('navigation', { name: 'Pages' }).getByRole('link').allInnerTexts()).not.toContain('Studies');
+    expect(await page.getByRole('navigation', { name: 'Pages' }).getByRole('link').allInnerTexts()).not.toContain(
+      'Studies',
+    );
     await page.goto('/me');
-    await page.getByText('There is nothing to show yet.').waitFor();
+    await page.getByText('No results yet.').waitFor();
     await programme.admin.ask('POST', `/assignments/${assignment}/release`, { release: 'released' });
     await page.reload();
     await page.getByText(/ of 16/).waitFor();
@@ -82,7 +102,10 @@ describe.skipIf(bin === undefined)('on a real server', () => {
     const page = await enter('faculty');
     await page.goto('/trials');
     await page.locator('tbody a').first().waitFor();
-    const { trials } = await page.evaluate(async () => (await fetch('/api/v1/trials?limit=50')).json() as Promise<{ trials: { id: string; case_title: string }[] }>);
+    const { trials } = await page.evaluate(
+      async () =>
+        (await fetch('/api/v1/trials?limit=50')).json() as Promise<{ trials: { id: string; case_title: string }[] }>,
+    );
     const palpated = trials.find(({ case_title }) => case_title === 'L3 left pedicle');
     await page.goto(`/trials/${palpated?.id ?? ''}`);
     await page.locator('[data-part="scene"][data-ready]').waitFor();
@@ -97,58 +120,72 @@ describe.skipIf(bin === undefined)('on a real server', () => {
     await page.getByRole('link', { name: 'New plan' }).click();
     await page.getByLabel('Title').fill('Does practice shorten the operation?');
     await page.getByLabel('Endpoint').first().selectOption('operation_time');
-    await page.getByRole('button', { name: 'Add to the plan' }).click();
-    await page.getByRole('button', { name: 'Lock the plan…' }).click();
-    await page.getByRole('button', { name: 'Lock it' }).click();
-    await page.getByRole('button', { name: 'Run on the trials of now' }).click();
-    await page.getByText('Methods, for a paper').waitFor({ timeout: 60_000 });
+    await page.getByRole('button', { name: 'Add to plan' }).click();
+    await page.getByRole('button', { name: 'Lock plan…' }).click();
+    await page.getByRole('button', { name: 'Lock plan', exact: true }).click();
+    await page.getByRole('button', { name: 'Run on current trials' }).click();
+    await page.getByText('Methods text for publication').waitFor({ timeout: 60_000 });
     await page.context().close();
   }, 120_000);
 
-  it('a technician enrols a station by its code, revokes it, makes a backup and tries it', async () => {
+  it('a technician enrols a station by its code, revokes it, creates a backup and verifies it', async () => {
     const page = await enter('technician');
     await page.goto('/network/stations');
     await page.getByLabel('Name of the station').fill('theatre 4');
-    await page.getByRole('button', { name: 'Make a code' }).click();
+    await page.getByRole('button', { name: 'Create code' }).click();
     const code = await page.locator('[data-part="secret"]').innerText();
     const { execFileSync } = await import('node:child_process');
-    execFileSync(`${bin ?? ''}/tractus-station`, ['enrol', '--server', served.url, '--code', code.trim(), '--token-file', `${served.folder}/theatre.token`]);
+    execFileSync(`${bin ?? ''}/tractus-station`, [
+      'enrol',
+      '--server',
+      served.url,
+      '--code',
+      code.trim(),
+      '--token-file',
+      `${served.folder}/theatre.token`,
+    ]);
     await page.reload();
     await page.getByRole('link', { name: 'theatre 4' }).click();
-    await page.getByRole('heading', { name: 'How it is' }).or(page.getByText('The station could not be loaded.')).waitFor();
+    await page
+      .getByRole('heading', { name: 'Status' })
+      .or(page.getByText('The station could not be loaded.'))
+      .waitFor();
     await page.goto('/network/stations');
     await page.getByRole('button', { name: 'Revoke theatre 4' }).click();
     await page.getByRole('button', { name: 'Revoke', exact: true }).click();
-    await page.getByRole('row', { name: /theatre 4/ }).getByText('revoked').waitFor();
+    await page
+      .getByRole('row', { name: /theatre 4/ })
+      .getByText('revoked')
+      .waitFor();
 
     await page.goto('/network/backups');
-    await page.getByText('There is no backup yet.').waitFor();
-    await page.getByRole('button', { name: 'Make a backup' }).click();
-    await page.getByText('whole').waitFor({ timeout: 60_000 });
-    await page.getByRole('button', { name: /^Try it/ }).click();
-    await page.getByText('holds', { exact: true }).waitFor({ timeout: 90_000 });
+    await page.getByText('No backups yet.').waitFor();
+    await page.getByRole('button', { name: 'Create backup' }).click();
+    await page.getByText('complete', { exact: true }).waitFor({ timeout: 60_000 });
+    await page.getByRole('button', { name: /^Verify/ }).click();
+    await page.getByText('passed', { exact: true }).waitFor({ timeout: 90_000 });
     await picture(page, 'technician');
     await page.context().close();
   }, 240_000);
 
-  it('an administrator makes an account that has to choose its own password, and finds the trail untouched', async () => {
+  it('an administrator creates an account that has to choose its own password, and verifies the audit trail', async () => {
     const page = await at(browser, served, served.account.name, served.account.password);
     await page.goto('/network/people');
     await page.getByLabel('Name', { exact: true }).fill('newcomer');
-    await page.getByRole('button', { name: 'Make the account' }).click();
+    await page.getByRole('button', { name: 'Create account' }).click();
     const first = await page.locator('[data-part="secret"]').innerText();
     await picture(page, 'admin');
     const fresh = await at(browser, served, 'newcomer', first.trim());
-    await fresh.getByLabel('Password now').fill(first.trim());
+    await fresh.getByLabel('Current password').fill(first.trim());
     await fresh.getByLabel('New password', { exact: true }).fill('a password of my own');
-    await fresh.getByLabel('New password again').fill('a password of my own');
-    await fresh.getByRole('button', { name: 'Change the password' }).click();
-    await fresh.getByRole('navigation', { name: 'Pages' }).getByRole('link', { name: 'My curve' }).click();
-    await fresh.getByText('There is nothing to show yet.').waitFor();
+    await fresh.getByLabel('Repeat new password').fill('a password of my own');
+    await fresh.getByRole('button', { name: 'Change password' }).click();
+    await fresh.getByRole('navigation', { name: 'Pages' }).getByRole('link', { name: 'My progress' }).click();
+    await fresh.getByText('No results yet.').waitFor();
     await fresh.context().close();
     await page.goto('/network/audit');
-    await page.getByRole('button', { name: 'Check the whole trail' }).click();
-    await page.getByText(/^The trail holds/).waitFor();
+    await page.getByRole('button', { name: 'Verify the audit trail' }).click();
+    await page.getByText(/^The audit trail is intact/).waitFor();
     expect(await page.getByRole('row', { name: /Add account/ }).count()).toBeGreaterThan(0);
     await page.context().close();
     expect(faults).toEqual([]);

@@ -19,9 +19,28 @@ describe.skipIf(bin === undefined)('a set with a hidden effect', () => {
   let browser: Browser, served: Served, page: Page, token: string;
   beforeAll(async () => {
     served = await serveReal(bin ?? '');
-    execFileSync(join(bin ?? '', 'blind-probing'), ['--seed', kSeed, '--out', join(served.folder, 'set'), '--effect', 'coulomb_friction', '--trials', '6', '--duration', '4']);
+    execFileSync(join(bin ?? '', 'blind-probing'), [
+      '--seed',
+      kSeed,
+      '--out',
+      join(served.folder, 'set'),
+      '--effect',
+      'coulomb_friction',
+      '--trials',
+      '6',
+      '--duration',
+      '4',
+    ]);
     token = join(served.folder, 'station.token');
-    execFileSync(join(bin ?? '', 'tractus-server'), ['enrol', '--data', join(served.folder, 'data'), '--name', 'skills lab 1', '--out', token]);
+    execFileSync(join(bin ?? '', 'tractus-server'), [
+      'enrol',
+      '--data',
+      join(served.folder, 'data'),
+      '--name',
+      'skills lab 1',
+      '--out',
+      token,
+    ]);
     browser = await launch();
     const context = await browser.newContext({ viewport: { width: 1440, height: 900 }, baseURL: served.url });
     page = await context.newPage();
@@ -32,7 +51,10 @@ describe.skipIf(bin === undefined)('a set with a hidden effect', () => {
     await page.getByRole('button', { name: 'Sign in' }).click();
     await page.getByRole('button', { name: 'Sign out' }).waitFor();
   }, 120_000);
-  afterAll(async () => { await browser.close(); await served.stop(); });
+  afterAll(async () => {
+    await browser.close();
+    await served.stop();
+  });
   const shot = (name: string) => page.screenshot({ path: `${kShots}lab-${name}.png`, fullPage: true });
 
   it('is refused with file and line while a number in it is none', async () => {
@@ -40,9 +62,17 @@ describe.skipIf(bin === undefined)('a set with a hidden effect', () => {
     const good = readFileSync(join(served.folder, 'set/measurements/trial1.csv'), 'utf8').split('\n');
     good[16] = good[16]?.replace(/,[^,]*$/, ',abc') ?? '';
     const choosing = page.waitForEvent('filechooser');
-    await page.getByRole('button', { name: 'Choose a zip' }).click();
-    await (await choosing).setFiles([
-      { name: 'set.json', mimeType: 'application/json', buffer: Buffer.from('{"format":"tractus-measurements/1","rig":"probing","trials":[{"id":"t1","file":"trial1.csv"}]}') },
+    await page.getByRole('button', { name: 'Choose zip file' }).click();
+    await (
+      await choosing
+    ).setFiles([
+      {
+        name: 'set.json',
+        mimeType: 'application/json',
+        buffer: Buffer.from(
+          '{"format":"tractus-measurements/1","rig":"probing","trials":[{"id":"t1","file":"trial1.csv"}]}',
+        ),
+      },
       { name: 'trial1.csv', mimeType: 'text/csv', buffer: Buffer.from(good.join('\n')) },
     ]);
     const row = page.getByRole('row', { name: /trial1\.csv/ });
@@ -56,7 +86,7 @@ describe.skipIf(bin === undefined)('a set with a hidden effect', () => {
     await page.locator('[data-part="model-file"]').setInputFiles(join(served.folder, 'set/model.json'));
     await page.getByText('handed base').first().waitFor();
     const choosing = page.waitForEvent('filechooser');
-    await page.getByRole('button', { name: 'Choose a folder' }).click();
+    await page.getByRole('button', { name: 'Choose folder' }).click();
     await (await choosing).setFiles(join(served.folder, 'set/measurements'));
     await page.getByText('6 trials').first().waitFor();
     await shot('start');
@@ -67,18 +97,20 @@ describe.skipIf(bin === undefined)('a set with a hidden effect', () => {
     expect(before).toBeGreaterThan(0.5);
     await shot('compare');
 
-    await page.getByRole('link', { name: 'Where it fails' }).click();
+    await page.getByRole('link', { name: 'Error regions' }).click();
     await page.locator('[data-part="regions"] tbody button').first().click();
-    await page.locator('[data-part="stretches"]').waitFor();
+    await page.locator('[data-part="intervals"]').waitFor();
     await shot('where');
 
-    await page.getByRole('link', { name: 'What is missing' }).click();
-    await page.getByRole('button', { name: 'Find what is missing' }).click();
+    await page.getByRole('link', { name: 'Missing effects' }).click();
+    await page.getByRole('button', { name: 'Find missing effects' }).click();
     await page.locator('[data-part="run-state"]').waitFor();
     await page.locator('[data-part="verdict"]').waitFor({ timeout: 240_000 });
     expect(await page.locator('[data-part="verdict"]').innerText()).toContain('Coulomb friction is missing.');
     const held = await page.locator('[data-part="held-out"]').allInnerTexts();
-    const floor = newtons(await page.locator('[data-part="falls"] text').filter({ hasText: 'noise floor' }).first().innerHTML());
+    const floor = newtons(
+      await page.locator('[data-part="error-steps"] text').filter({ hasText: 'noise floor' }).first().innerHTML(),
+    );
     expect(newtons(held.at(-1) ?? '')).toBeLessThanOrEqual(1.1 * floor);
     await page.waitForLoadState('networkidle');
     await shot('missing');
@@ -92,17 +124,37 @@ describe.skipIf(bin === undefined)('a set with a hidden effect', () => {
     await page.getByRole('link', { name: /^Add Coulomb friction and publish/ }).click();
     await page.getByRole('button', { name: 'Publish' }).click();
     await page.locator('[data-part="published"]').waitFor();
-    await page.getByRole('button', { name: 'Send to every station' }).click();
-    await page.locator('[data-part="sent"]').getByText('waits for the station').waitFor();
+    await page.getByRole('button', { name: 'Send to all stations' }).click();
+    await page.locator('[data-part="sent"]').getByText('pending').waitFor();
     const at = ['--data', join(served.folder, 'station'), '--server', served.url, '--token-file', token];
     execFileSync(join(bin ?? '', 'tractus-station'), ['sync', ...at]);
-    await page.locator('[data-part="sent"]').getByText('is there').waitFor();
+    await page.locator('[data-part="sent"]').getByText('received').waitFor();
     await shot('published');
     // It may end in a fault where dry friction lets the push rise above what the actuator holds: felt it was.
-    const felt = spawnSync(join(bin ?? '', 'tractus-station'), ['--device', 'sim-rig', '--scenario', 'hard', '--model', 'handed base (simulated set)', '--data', join(served.folder, 'station'), '--speed', 'fast', '--json'], { encoding: 'utf8' });
-    const { trials: [trial] } = JSON.parse(felt.stdout) as { trials: { file: string }[] };
-    expect(readFileSync(trial?.file ?? '', 'latin1'), 'the trial was felt by the better model').toContain('coulomb_friction');
-    await page.getByRole('link', { name: 'Old and new side by side' }).click();
+    const felt = spawnSync(
+      join(bin ?? '', 'tractus-station'),
+      [
+        '--device',
+        'sim-rig',
+        '--scenario',
+        'hard',
+        '--model',
+        'handed base (simulated set)',
+        '--data',
+        join(served.folder, 'station'),
+        '--speed',
+        'fast',
+        '--json',
+      ],
+      { encoding: 'utf8' },
+    );
+    const {
+      trials: [trial],
+    } = JSON.parse(felt.stdout) as { trials: { file: string }[] };
+    expect(readFileSync(trial?.file ?? '', 'latin1'), 'the trial was felt by the better model').toContain(
+      'coulomb_friction',
+    );
+    await page.getByRole('link', { name: 'Compare old and new version' }).click();
     await page.locator('[data-part="error-after"]').waitFor();
     expect(newtons(await page.locator('[data-part="error-after"]').innerText())).toBeLessThan(before / 4);
     expect(await page.locator('[data-part="tree"] li').count()).toBe(2);
@@ -112,19 +164,26 @@ describe.skipIf(bin === undefined)('a set with a hidden effect', () => {
 
   it('takes a formula of one’s own once its units fit, and fits it', async () => {
     await page.goto('/lab');
-    await page.getByRole('radio', { name: /handed base.*/ }).last().check();
+    await page
+      .getByRole('radio', { name: /handed base.*/ })
+      .last()
+      .check();
     await page.getByRole('button', { name: 'Compare' }).click();
-    await page.getByRole('link', { name: 'Add', exact: true }).click();
-    await page.getByLabel('A formula of my own').check();
+    await page.getByRole('link', { name: 'Add effects', exact: true }).click();
+    await page.getByLabel('Custom formula').check();
     const formula = page.getByLabel('Formula', { exact: true });
     await formula.fill('c * (v_m_s + x_m)');
-    await page.locator('[data-part="unit-check"]').filter({ hasNotText: 'Checking' }).filter({ hasText: 'm/s' }).waitFor();
+    await page
+      .locator('[data-part="unit-check"]')
+      .filter({ hasNotText: 'Checking' })
+      .filter({ hasText: 'm/s' })
+      .waitFor();
     await shot('formula-wrong');
     await formula.fill('f * sign(v_m_s)');
     await page.getByLabel('Unit of f').fill('N');
-    await page.getByText('The units fit').waitFor();
+    await page.getByText('The units are consistent').waitFor();
     await page.getByRole('button', { name: 'Add and fit' }).click();
-    await page.locator('[data-part="falls"]').waitFor({ timeout: 120_000 });
+    await page.locator('[data-part="error-steps"]').waitFor({ timeout: 120_000 });
     const held = await page.locator('[data-part="held-out"]').allInnerTexts();
     expect(newtons(held.at(-1) ?? '')).toBeLessThan(newtons(held[0] ?? '') / 4);
     await page.waitForLoadState('networkidle');
@@ -135,12 +194,19 @@ describe.skipIf(bin === undefined)('a set with a hidden effect', () => {
     await page.getByRole('link', { name: 'Publish', exact: true }).click();
     await page.getByRole('link', { name: 'Compare', exact: true }).click();
     const [, , , model, set] = new URL(page.url()).pathname.split('/');
-    const id = await page.evaluate(async ([m, s]) => {
-      const answer = await fetch('/api/v1/lab/diagnoses', { method: 'POST', headers: { 'Content-Type': 'application/json', 'X-Tractus': '1' }, body: JSON.stringify({ model: m, measurements: s }) });
-      return ((await answer.json()) as { id: string }).id;
-    }, [model, set]);
+    const id = await page.evaluate(
+      async ([m, s]) => {
+        const answer = await fetch('/api/v1/lab/diagnoses', {
+          method: 'POST',
+          headers: { 'Content-Type': 'application/json', 'X-Tractus': '1' },
+          body: JSON.stringify({ model: m, measurements: s }),
+        });
+        return ((await answer.json()) as { id: string }).id;
+      },
+      [model, set],
+    );
     expect(id).toMatch(/^[0-9a-f]{32}$/);
-    await page.getByRole('link', { name: 'What is missing' }).click();
+    await page.getByRole('link', { name: 'Missing effects' }).click();
     await page.getByRole('button', { name: 'Cancel' }).click();
     await page.getByText('The search was cancelled.').waitFor();
     await shot('cancelled');
@@ -148,27 +214,51 @@ describe.skipIf(bin === undefined)('a set with a hidden effect', () => {
 
   it('shows a palpation model’s error painted on the wall of the tract', async () => {
     const set = join(served.folder, 'palpation');
-    execFileSync(join(bin ?? '', 'blind-palpation'), ['--seed', '12', '--out', set, '--effect', 'contact_friction', '--trials', '3', '--duration', '5', '--rate', '200', '--tract']);
+    execFileSync(join(bin ?? '', 'blind-palpation'), [
+      '--seed',
+      '12',
+      '--out',
+      set,
+      '--effect',
+      'contact_friction',
+      '--trials',
+      '3',
+      '--duration',
+      '5',
+      '--rate',
+      '200',
+      '--tract',
+    ]);
     const model = JSON.parse(readFileSync(join(set, 'model.json'), 'utf8')) as Record<string, unknown>;
-    delete model.volume;  // the set brings it along
+    delete model.volume; // the set brings it along
     const told = JSON.parse(readFileSync(join(set, 'measurements/set.json'), 'utf8')) as Record<string, unknown>;
     await page.goto('/lab');
     const choosing = page.waitForEvent('filechooser');
-    await page.getByRole('button', { name: 'Choose a zip' }).click();
+    await page.getByRole('button', { name: 'Choose zip file' }).click();
     const named = (name: string, buffer: Buffer) => ({ name, mimeType: 'application/octet-stream', buffer });
-    await (await choosing).setFiles([
-      named('set.json', Buffer.from(JSON.stringify({ ...told, name: 'palpated, simulated', simulated: true, volume: 'volume.nrrd' }))), named('volume.nrrd', readFileSync(join(set, 'volume.nrrd'))),
+    await (
+      await choosing
+    ).setFiles([
+      named(
+        'set.json',
+        Buffer.from(JSON.stringify({ ...told, name: 'palpated, simulated', simulated: true, volume: 'volume.nrrd' })),
+      ),
+      named('volume.nrrd', readFileSync(join(set, 'volume.nrrd'))),
       ...[1, 2, 3].map((n) => named(`trial${n}.csv`, readFileSync(join(set, `measurements/trial${n}.csv`)))),
     ]);
     await page.getByText('palpated, simulated').first().waitFor();
     await page.getByRole('radio', { name: /palpated, simulated/ }).check();
-    await page.locator('[data-part="model-file"]').setInputFiles({ name: 'model.json', mimeType: 'application/json', buffer: Buffer.from(JSON.stringify({ ...model, name: 'palpation, as handed out' })) });
+    await page.locator('[data-part="model-file"]').setInputFiles({
+      name: 'model.json',
+      mimeType: 'application/json',
+      buffer: Buffer.from(JSON.stringify({ ...model, name: 'palpation, as handed out' })),
+    });
     await page.getByText('palpation, as handed out').first().waitFor();
     await page.getByRole('radio', { name: /palpation, as handed out/ }).check();
     await page.getByRole('button', { name: 'Compare' }).click();
     await page.locator('[data-panel="value"] canvas').waitFor({ timeout: 120_000 });
-    await page.getByRole('link', { name: 'Where it fails' }).click();
-    await page.getByRole('heading', { name: 'On the wall of the tract' }).waitFor();
+    await page.getByRole('link', { name: 'Error regions' }).click();
+    await page.getByRole('heading', { name: 'Error on the wall of the tract' }).waitFor();
     await page.locator('[data-part="painted"][data-ready]').waitFor();
     await page.waitForTimeout(800);
     await shot('palpation-where');

@@ -5,7 +5,9 @@ import { accessibilityFaults } from './axe';
 import { asked, assessedTrial, kShots, launch, signIn, visit } from './browser';
 
 let browser: Browser;
-beforeAll(async () => { browser = await launch(); });
+beforeAll(async () => {
+  browser = await launch();
+});
 afterAll(() => browser.close());
 
 type Check = (name: string) => Promise<void>;
@@ -24,7 +26,10 @@ async function cases(page: Page, check: Check, volume: string): Promise<void> {
   await page.locator('[data-part="scene"][data-ready]').waitFor();
   await still(page);
   await check('case-new-empty');
-  for (const [end, plane, x, y] of [['Entry', 'axial', 0.5, 0.75], ['Target', 'axial', 0.48, 0.4]] as const) {
+  for (const [end, plane, x, y] of [
+    ['Entry', 'axial', 0.5, 0.75],
+    ['Target', 'axial', 0.48, 0.4],
+  ] as const) {
     await page.getByRole('radio', { name: end }).check();
     const box = await page.locator(`[data-plane="${plane}"] svg`).boundingBox();
     if (!box) throw new Error('no slice');
@@ -35,14 +40,14 @@ async function cases(page: Page, check: Check, volume: string): Promise<void> {
   await page.locator('[data-part="scene"][data-ready]').waitFor();
   await still(page);
   await check('case-new-full');
-  await page.getByLabel('Channel', { exact: true }).selectOption('left whole');
-  await page.getByText('The bone stays whole').waitFor();
+  await page.getByLabel('Channel', { exact: true }).selectOption('trainee drills');
+  await page.getByText('No channel is pre-drilled').waitFor();
   await page.locator('[data-part="scene"][data-ready]').waitFor();
   await still(page);
   await check('case-new-whole');
   await page.goto('/cases');
   await page.locator('tbody a[href^="/cases/"]:not([href^="/cases/new"])').first().click();
-  await page.getByRole('button', { name: 'Show which wall gives way' }).click();
+  await page.getByRole('button', { name: 'Show the breached wall' }).click();
   await page.locator('[data-part="scene"][data-ready]').waitFor();
   await still(page);
   await check('case');
@@ -68,10 +73,12 @@ async function assigning(page: Page, check: Check): Promise<void> {
 async function debriefing(page: Page, check: Check): Promise<void> {
   await page.goto(`/trials/${await assessedTrial(page)}/debrief`);
   await page.locator('[data-part="scene"][data-ready]').waitFor();
-  await page.getByLabel('Example beside it').selectOption({ index: 1 });
-  await page.getByLabel('Moment of the trial').fill('12');
-  await page.getByLabel('Comment', { exact: true }).fill('Here you felt the wall and went on. Stay with it for a second before you push.');
-  await page.getByRole('button', { name: 'Comment' }).click();
+  await page.getByLabel('Example trial').selectOption({ index: 1 });
+  await page.getByLabel('Time in the trial').fill('12');
+  await page
+    .getByLabel('Comment', { exact: true })
+    .fill('Here you felt the wall and went on. Stay with it for a second before you push.');
+  await page.getByRole('button', { name: 'Add comment' }).click();
   await page.locator('[data-part="comments"] li').first().waitFor();
   await page.locator('[data-part="scene"][data-ready]').waitFor();
   await still(page);
@@ -80,7 +87,10 @@ async function debriefing(page: Page, check: Check): Promise<void> {
 
 async function scenarios(page: Page, check: Check): Promise<void> {
   await page.goto('/scenarios');
-  await page.getByRole('link', { name: /lateral/ }).first().waitFor();
+  await page
+    .getByRole('link', { name: /lateral/ })
+    .first()
+    .waitFor();
   await check('scenarios');
   await page.goto('/scenarios/lateral_breach');
   await page.locator('[data-part="resistance"] path').first().waitFor();
@@ -93,7 +103,10 @@ async function scenarios(page: Page, check: Check): Promise<void> {
 }
 
 describe.each([
-  { width: 1440, dark: false }, { width: 1440, dark: true }, { width: 800, dark: false }, { width: 800, dark: true },
+  { width: 1440, dark: false },
+  { width: 1440, dark: true },
+  { width: 800, dark: false },
+  { width: 800, dark: true },
 ])('at $width px, dark: $dark', ({ width, dark }) => {
   it('the pages of teaching can be used without sight, fit the screen and break no policy', async () => {
     const { context, page, faults } = await visit(browser, { width, dark });
@@ -102,7 +115,9 @@ describe.each([
     const check: Check = async (name) => {
       await page.screenshot({ path: `${kShots}teaching-${name}-${suffix}.png`, fullPage: true });
       expect(await accessibilityFaults(page), name).toEqual([]);
-      const overflow = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+      const overflow = await page.evaluate(
+        () => document.documentElement.scrollWidth - document.documentElement.clientWidth,
+      );
       expect(overflow, `${name}: pixels wider than the screen`).toBeLessThanOrEqual(0);
     };
     await signIn(page);
@@ -113,7 +128,9 @@ describe.each([
     if (volume) await debriefing(page, check);
     if (volume) await scenarios(page, check);
     expect(faults).toEqual([]);
-    await page.route('**/api/v1/{cases,assignments,volumes,case-makings}*', (route) => route.fulfill({ status: 500, contentType: 'application/json', body: '{"error":"the disk is full","code":"io"}' }));
+    await page.route('**/api/v1/{cases,assignments,volumes,case-makings}*', (route) =>
+      route.fulfill({ status: 500, contentType: 'application/json', body: '{"error":"the disk is full","code":"io"}' }),
+    );
     for (const place of ['cases', 'assignments']) {
       await page.goto(`/${place}`);
       await page.getByRole('alert').first().waitFor();

@@ -18,15 +18,15 @@ async function lab(page: Page, check: Check): Promise<void> {
   await page.waitForLoadState('networkidle');
   await page.waitForTimeout(500);
   await check('lab-compare');
-  await page.getByRole('link', { name: 'Where it fails' }).click();
+  await page.getByRole('link', { name: 'Error regions' }).click();
   await page.locator('[data-part="regions"] tbody button').first().click();
-  await page.locator('[data-part="stretches"]').waitFor();
+  await page.locator('[data-part="intervals"]').waitFor();
   await page.waitForTimeout(500);
   await check('lab-where');
-  await page.getByRole('link', { name: 'What is missing' }).click();
-  const find = page.getByRole('button', { name: 'Find what is missing' });
+  await page.getByRole('link', { name: 'Missing effects' }).click();
+  const find = page.getByRole('button', { name: 'Find missing effects' });
   const verdict = page.locator('[data-part="verdict"]');
-  await find.or(verdict).first().waitFor();  // a visit before this one may have found it
+  await find.or(verdict).first().waitFor(); // a visit before this one may have found it
   if (await find.isVisible()) {
     await check('lab-missing-before');
     await find.click();
@@ -37,8 +37,8 @@ async function lab(page: Page, check: Check): Promise<void> {
   await page.waitForLoadState('networkidle');
   await page.waitForTimeout(500);
   await check('lab-missing');
-  await page.getByRole('link', { name: 'Add', exact: true }).click();
-  await page.getByLabel('A formula of my own').check();
+  await page.getByRole('link', { name: 'Add effects', exact: true }).click();
+  await page.getByLabel('Custom formula').check();
   await page.getByLabel('Formula', { exact: true }).fill('c * (v_m_s + x_m)');
   await page.locator('[data-part="unit-check"]').filter({ hasText: 'm/s' }).waitFor();
   await check('lab-add');
@@ -53,24 +53,24 @@ async function lab(page: Page, check: Check): Promise<void> {
 /** From the published example over a plan to its result. */
 async function analysis(page: Page, check: Check): Promise<void> {
   await page.goto('/analysis/example');
-  await page.getByText('Printed and recomputed').waitFor();
+  await page.getByText('Published and recomputed values').waitFor();
   await check('analysis-example');
   await page.goto('/analysis');
-  await page.getByLabel('Formula (may be changed)').waitFor();
+  await page.getByLabel('Formula (editable)').waitFor();
   await check('analysis');
   await page.getByRole('link', { name: 'New plan' }).click();
   await page.getByLabel('Title').fill('Does experience shorten the operation?');
   await page.getByLabel('Endpoint').first().selectOption('operation_time');
-  await page.getByRole('button', { name: 'Add to the plan' }).click();
+  await page.getByRole('button', { name: 'Add to plan' }).click();
   await check('analysis-plan-new');
-  await page.getByRole('button', { name: 'Lock the plan…' }).click();
+  await page.getByRole('button', { name: 'Lock plan…' }).click();
   await page.getByRole('dialog').waitFor();
   await check('analysis-lock');
-  await page.getByRole('button', { name: 'Lock it' }).click();
-  await page.getByRole('button', { name: 'Run on the trials of now' }).waitFor();
+  await page.getByRole('button', { name: 'Lock plan', exact: true }).click();
+  await page.getByRole('button', { name: 'Run on current trials' }).waitFor();
   await check('analysis-plan');
-  await page.getByRole('button', { name: 'Run on the trials of now' }).click();
-  await page.getByText('Methods, for a paper').waitFor();
+  await page.getByRole('button', { name: 'Run on current trials' }).click();
+  await page.getByText('Methods text for publication').waitFor();
   await check('analysis-run');
 }
 
@@ -85,17 +85,22 @@ async function programme(page: Page, check: Check): Promise<void> {
   await check('trainee');
   for (const place of ['people', 'cohorts', 'stations', 'backups', 'audit']) {
     await page.goto(`/network/${place}`);
-    await page.locator('tbody tr').or(page.getByText('There is no backup yet.')).first().waitFor();
+    await page.locator('tbody tr').or(page.getByText('No backups yet.')).first().waitFor();
     await page.waitForLoadState('networkidle');
     await check(`network-${place}`);
   }
   await page.goto('/network/stations');
   await page.locator('tbody a').nth(2).click();
-  await page.getByRole('heading', { name: 'How it is' }).or(page.getByText('could not be loaded')).waitFor();
+  await page.getByRole('heading', { name: 'Status' }).or(page.getByText('could not be loaded')).waitFor();
   await page.waitForLoadState('networkidle');
   await check('network-station');
   await page.goto('/wall');
-  await page.locator('[data-station]').or(page.getByText('No station is enrolled yet.')).or(page.locator('[data-line="connecting"]')).first().waitFor();
+  await page
+    .locator('[data-station]')
+    .or(page.getByText('No stations are enrolled yet.'))
+    .or(page.locator('[data-connection="connecting"]'))
+    .first()
+    .waitFor();
   await page.waitForTimeout(300);
   await check('wall');
 }
@@ -107,11 +112,16 @@ async function hasProgramme(page: Page): Promise<boolean> {
 }
 
 let browser: Browser;
-beforeAll(async () => { browser = await launch(); });
+beforeAll(async () => {
+  browser = await launch();
+});
 afterAll(() => browser.close());
 
 describe.each([
-  { width: 1440, dark: false }, { width: 1440, dark: true }, { width: 800, dark: false }, { width: 800, dark: true },
+  { width: 1440, dark: false },
+  { width: 1440, dark: true },
+  { width: 800, dark: false },
+  { width: 800, dark: true },
 ])('at $width px, dark: $dark', ({ width, dark }) => {
   it('every page can be used without sight, fits the screen and breaks no policy', async () => {
     const { context, page, faults } = await visit(browser, { width, dark });
@@ -121,7 +131,9 @@ describe.each([
       expect(await accessibilityFaults(page), name).toEqual([]);
       const { layoutShift, layoutShiftOf } = await jumped(page);
       expect(layoutShift, `${name}: jumps: ${layoutShiftOf.join(', ')}`).toBeLessThan(kNoticed);
-      const overflow = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+      const overflow = await page.evaluate(
+        () => document.documentElement.scrollWidth - document.documentElement.clientWidth,
+      );
       expect(overflow, `${name}: pixels wider than the screen`).toBeLessThanOrEqual(0);
     };
 
@@ -151,7 +163,10 @@ describe.each([
       await page.locator('[data-participant]').first().waitFor();
       await check('study');
       await page.locator('[data-participant] button[aria-expanded]').first().click();
-      await page.getByRole('button', { name: /^Mark trial/ }).first().click();
+      await page
+        .getByRole('button', { name: /^Mark trial/ })
+        .first()
+        .click();
       await page.getByRole('dialog').waitFor();
       await check('study-invalid');
       await page.keyboard.press('Escape');
@@ -165,7 +180,7 @@ describe.each([
     }
     await page.goto('/studies/new');
     await page.getByLabel('Title').fill('Spine study');
-    await page.getByLabel(/One a line/).fill('P01, resident, 0.5\nDr Who');
+    await page.getByLabel(/One per line/).fill('P01, resident, 0.5\nDr Who');
     await check('study-new');
 
     if (await hasProgramme(page)) {
@@ -174,14 +189,14 @@ describe.each([
       await programme(page, check);
     }
     await page.goto('/guide/researcher');
-    await page.getByRole('heading', { name: 'What the words mean' }).waitFor();
+    await page.getByRole('heading', { name: 'Terms' }).waitFor();
     await check('guide');
     await page.goto('/account');
-    await page.getByRole('button', { name: 'Change the password' }).waitFor();
+    await page.getByRole('button', { name: 'Change password' }).waitFor();
     await check('account');
 
     await page.goto('/nowhere');
-    await page.getByRole('heading', { name: 'There is no such page' }).waitFor();
+    await page.getByRole('heading', { name: 'Page not found' }).waitFor();
     await check('not-found');
 
     expect(faults).toEqual([]);

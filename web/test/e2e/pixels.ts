@@ -1,7 +1,10 @@
 /** What a picture shows, counted. */
 import type { Browser, Locator } from 'playwright-core';
 
-export interface Picture { readonly colours: number; readonly png: Buffer }
+export interface Picture {
+  readonly colours: number;
+  readonly png: Buffer;
+}
 
 /** Distinct colours of an element as composed on the screen, coarsened to 4 bits a channel. */
 export async function pictureOf(browser: Browser, element: Locator): Promise<Picture> {
@@ -20,7 +23,8 @@ export async function pictureOf(browser: Browser, element: Locator): Promise<Pic
     pen.drawImage(image, 0, 0);
     const { data } = pen.getImageData(0, 0, canvas.width, canvas.height);
     const seen = new Set<number>();
-    for (let i = 0; i < data.length; i += 4) seen.add(((data[i]! >> 4) << 8) | ((data[i + 1]! >> 4) << 4) | (data[i + 2]! >> 4));
+    for (let i = 0; i < data.length; i += 4)
+      seen.add(((data[i]! >> 4) << 8) | ((data[i + 1]! >> 4) << 4) | (data[i + 2]! >> 4));
     return seen.size;
   }, png.toString('base64'));
   await context.close();

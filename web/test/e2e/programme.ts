@@ -7,7 +7,8 @@ import type { Browser, Page } from 'playwright-core';
 import type { Served } from './real-server';
 
 const kRoot = fileURLToPath(new URL('../../..', import.meta.url));
-const kPin = '2580', kTrials_ms = 240_000;
+const kPin = '2580',
+  kTrials_ms = 240_000;
 export const kTrainees = ['Simulated Ada', 'Simulated Ben'] as const;
 export const kScenarios = ['hard', 'soft', 'lateral_breach', 'in_out_in'] as const;
 
@@ -18,13 +19,21 @@ export class Person {
   private cookie = '';
   constructor(private readonly url: string) {}
 
-  async in(name: string, password: string): Promise<this> { await this.ask('POST', '/session', { name, password }); return this; }
+  async in(name: string, password: string): Promise<this> {
+    await this.ask('POST', '/session', { name, password });
+    return this;
+  }
 
   async ask<Answer = Json>(method: string, path: string, body?: unknown): Promise<Answer> {
     const raw = body instanceof Uint8Array;
     const answer = await fetch(`${this.url}/api/v1${path}`, {
-      method, headers: { 'X-Tractus': '1', Cookie: this.cookie, ...(body === undefined ? {} : { 'Content-Type': raw ? 'application/octet-stream' : 'application/json' }) },
-      ...(body === undefined ? {} : { body: raw ? body as Uint8Array<ArrayBuffer> : JSON.stringify(body) }),
+      method,
+      headers: {
+        'X-Tractus': '1',
+        Cookie: this.cookie,
+        ...(body === undefined ? {} : { 'Content-Type': raw ? 'application/octet-stream' : 'application/json' }),
+      },
+      ...(body === undefined ? {} : { body: raw ? (body as Uint8Array<ArrayBuffer>) : JSON.stringify(body) }),
     });
     const set = answer.headers.get('set-cookie');
     if (set) this.cookie = set.split(';')[0] ?? '';
@@ -49,9 +58,15 @@ export async function furnish(served: Served, bin: string): Promise<Programme> {
   const admin = await new Person(served.url).in(served.account.name, served.account.password);
   const passwords = new Map<string, string>();
   const account = async (name: string, role: string, badge?: string) => {
-    const { password: first } = await admin.ask<{ password: string }>('POST', '/accounts', { name, role, ...(badge ? { badge, pin: kPin } : {}) });
+    const { password: first } = await admin.ask<{ password: string }>('POST', '/accounts', {
+      name,
+      role,
+      ...(badge ? { badge, pin: kPin } : {}),
+    });
     const password = `the password of ${name}`;
-    await (await new Person(served.url).in(name, first)).ask('POST', '/session/password', { old: first, new: password });
+    await (
+      await new Person(served.url).in(name, first)
+    ).ask('POST', '/session/password', { old: first, new: password });
     passwords.set(name, password);
   };
   for (const role of ['director', 'faculty', 'researcher', 'technician']) await account(role, role);
@@ -62,8 +77,15 @@ export async function furnish(served: Served, bin: string): Promise<Programme> {
     await admin.ask('POST', `/cohorts/${cohort}/people`, { name });
   }
 
-  const run = (program: string, ...words: string[]) => execFileSync(join(bin, program), words, { encoding: 'utf8', timeout: kTrials_ms, stdio: ['ignore', 'pipe', 'pipe'] });
-  const folder = join(served.folder, 'station'), token = join(served.folder, 'station.token'), pin = join(served.folder, 'pin');
+  const run = (program: string, ...words: string[]) =>
+    execFileSync(join(bin, program), words, {
+      encoding: 'utf8',
+      timeout: kTrials_ms,
+      stdio: ['ignore', 'pipe', 'pipe'],
+    });
+  const folder = join(served.folder, 'station'),
+    token = join(served.folder, 'station.token'),
+    pin = join(served.folder, 'pin');
   mkdirSync(folder);
   writeFileSync(pin, `${kPin}\n`);
   writeFileSync(join(folder, 'config.json'), JSON.stringify({ format: 'tractus-station/1', name: 'skills lab' }));
@@ -71,17 +93,60 @@ export async function furnish(served: Served, bin: string): Promise<Programme> {
   run('tractus-station', 'enrol', '--server', served.url, '--code', code, '--token-file', token);
   const { stations } = await admin.ask<{ stations: { id: string }[] }>('GET', '/stations');
 
-  const volume = join(served.folder, 'l3.tvol'), made = join(served.folder, 'case'), key = join(served.folder, 'signing.key');
+  const volume = join(served.folder, 'l3.tvol'),
+    made = join(served.folder, 'case'),
+    key = join(served.folder, 'signing.key');
   run('tractus', 'import', join(kRoot, 'tests/data/ct/tptbox_L3/sub-ct_label-22_ct.nii.gz'), volume);
-  run('tractus', 'carve', '--volume', volume, '--entry', '46,200,-61', '--target', '38.5,158,-61', '--breach', 'medial', '--title', 'L3 left pedicle', '--source', 'TPTBox sample CT', '--key', key, '--out', made);
+  run(
+    'tractus',
+    'carve',
+    '--volume',
+    volume,
+    '--entry',
+    '46,200,-61',
+    '--target',
+    '38.5,158,-61',
+    '--breach',
+    'medial',
+    '--title',
+    'L3 left pedicle',
+    '--source',
+    'TPTBox sample CT',
+    '--key',
+    key,
+    '--out',
+    made,
+  );
   run('tractus-server', 'publish', '--data', join(served.folder, 'data'), made);
   run('tractus-station', 'trust', '--data', folder, '--case', made);
 
   const at = ['--data', folder, '--server', served.url, '--token-file', token];
   return {
-    admin, passwords, cohort, station: { folder, token, id: stations[0]?.id ?? '' },
+    admin,
+    passwords,
+    cohort,
+    station: { folder, token, id: stations[0]?.id ?? '' },
     does: (trainee, trials, device = 'sim-rig') => {
-      run('tractus-station', 'assigned', '--badge', String(100 + kTrainees.indexOf(trainee)), '--pin-file', pin, ...at, '--device', device, '--speed', 'fast', '--duration', '6', '--seed', '7', '--trials', String(trials), '--json');
+      run(
+        'tractus-station',
+        'assigned',
+        '--badge',
+        String(100 + kTrainees.indexOf(trainee)),
+        '--pin-file',
+        pin,
+        ...at,
+        '--device',
+        device,
+        '--speed',
+        'fast',
+        '--duration',
+        '6',
+        '--seed',
+        '7',
+        '--trials',
+        String(trials),
+        '--json',
+      );
     },
     station_does: (...words) => run('tractus-station', ...words, ...at),
   };
@@ -100,8 +165,18 @@ export async function scored(admin: Person): Promise<void> {
 }
 
 /** A fresh browser of somebody's, signed in through the page. */
-export async function at(browser: Browser, served: Served, name: string, password: string, dark = false): Promise<Page> {
-  const context = await browser.newContext({ viewport: { width: 1440, height: 900 }, baseURL: served.url, colorScheme: dark ? 'dark' : 'light' });
+export async function at(
+  browser: Browser,
+  served: Served,
+  name: string,
+  password: string,
+  dark = false,
+): Promise<Page> {
+  const context = await browser.newContext({
+    viewport: { width: 1440, height: 900 },
+    baseURL: served.url,
+    colorScheme: dark ? 'dark' : 'light',
+  });
   const page = await context.newPage();
   page.setDefaultTimeout(30_000);
   await page.goto('/');

@@ -22,27 +22,46 @@ async function freePort(): Promise<number> {
   return port;
 }
 
-export interface Served { readonly url: string; readonly folder: string; readonly log: string; readonly account: { readonly name: string; readonly password: string }; readonly stop: () => Promise<void> }
+export interface Served {
+  readonly url: string;
+  readonly folder: string;
+  readonly log: string;
+  readonly account: { readonly name: string; readonly password: string };
+  readonly stop: () => Promise<void>;
+}
 
 const kPassword = 'a password for the tests';
 
 /** `dist` is built by the run's set-up. */
 export async function serveReal(bin: string, words: readonly string[] = []): Promise<Served> {
-  const folder = mkdtempSync(join(tmpdir(), 'tractus-e2e-')), data = join(folder, 'data'), password = join(folder, 'password');
+  const folder = mkdtempSync(join(tmpdir(), 'tractus-e2e-')),
+    data = join(folder, 'data'),
+    password = join(folder, 'password');
   writeFileSync(password, kPassword);
   const program = join(bin, 'tractus-server');
   execFileSync(program, ['init', '--data', data, '--admin-name', 'admin', '--password-file', password]);
   const log = join(folder, 'server.log');
-  const port = await freePort(), url = `http://127.0.0.1:${port}`;
-  const process_ = spawn(program, ['serve', '--plain', '--data', data, '--listen', `127.0.0.1:${port}`, '--web', `${kRoot}web/dist`, ...words], { stdio: ['ignore', 'ignore', openSync(log, 'a')] });
+  const port = await freePort(),
+    url = `http://127.0.0.1:${port}`;
+  const process_ = spawn(
+    program,
+    ['serve', '--plain', '--data', data, '--listen', `127.0.0.1:${port}`, '--web', `${kRoot}web/dist`, ...words],
+    { stdio: ['ignore', 'ignore', openSync(log, 'a')] },
+  );
   for (let i = 0; i < 200; ++i) {
-    const answered = await fetch(`${url}/api/v1/session`).then(() => true, () => false);
+    const answered = await fetch(`${url}/api/v1/session`).then(
+      () => true,
+      () => false,
+    );
     if (answered) break;
     if (process_.exitCode !== null) throw new Error('tractus-server has ended');
     await new Promise((resolve) => setTimeout(resolve, 50));
   }
   return {
-    url, folder, log, account: { name: 'admin', password: kPassword },
+    url,
+    folder,
+    log,
+    account: { name: 'admin', password: kPassword },
     stop: async () => {
       const ended = new Promise((resolve) => process_.once('exit', resolve));
       process_.kill();

@@ -4,7 +4,9 @@ import { afterAll, beforeAll, expect, inject, it } from 'vitest';
 import { assessedTrial, launch, signIn, visit } from './browser';
 
 let browser: Browser;
-beforeAll(async () => { browser = await launch(); });
+beforeAll(async () => {
+  browser = await launch();
+});
 afterAll(() => browser.close());
 
 it('a wrong password is refused in words and the right one lets in, by keyboard alone', async () => {
@@ -33,7 +35,7 @@ it('an address of a trial survives the sign-in, and one of nothing says so', asy
   await page.getByRole('heading', { name: 'Signals' }).waitFor();
   expect(new URL(page.url()).pathname).toBe(`/trials/${id}`);
   await page.goto('/trials/0123456789abcdef0123456789abcdef');
-  await page.getByText('There is no such trial.').waitFor();
+  await page.getByText('Trial not found.').waitFor();
   await context.close();
 });
 
@@ -73,7 +75,7 @@ it('the choice of dark is kept over a reload, without a flash of white', async (
   await page.getByLabel('Name').waitFor();
   const ground = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
   const light = await ground();
-  const button = page.getByRole('button', { name: /Colours/ });
+  const button = page.getByRole('button', { name: /Theme/ });
   await button.click();
   await button.click();
   const dark = await ground();

@@ -4,7 +4,16 @@ import { afterAll, beforeAll, describe, expect, inject, it } from 'vitest';
 import { asked, launch, signIn, someStudy, visit, type Visit } from './browser';
 import { inked } from './pixels';
 
-interface Told { participants: { name: string; state: string; done: number; planned: number; slots: { state: string; trials: { state: string; reason: string }[] }[] }[]; state: string }
+interface Told {
+  participants: {
+    name: string;
+    state: string;
+    done: number;
+    planned: number;
+    slots: { state: string; trials: { state: string; reason: string }[] }[];
+  }[];
+  state: string;
+}
 
 let browser: Browser;
 let seen: Visit;
@@ -17,33 +26,47 @@ afterAll(() => browser.close());
 
 const told = (page: Page, id: string) => asked<Told>(page, `/studies/${id}`);
 
-it.runIf(inject('fixture'))('a study is made from the page: tuned scenarios, one from a file, participants; what is wrong is said', async () => {
-  const { page, faults } = seen;
-  await page.goto('/studies');
-  await page.getByRole('link', { name: 'New study' }).click();
-  await page.getByLabel('Title').fill('Spine study 1');
-  const button = page.getByRole('button', { name: 'Make the study' });
-  await page.getByLabel(/One a line/).fill('P01, resident, 0.5\nP 02');
-  await page.getByText('“P 02” is no pseudonym').first().waitFor();
-  expect(await button.isDisabled()).toBe(true);
-  await page.getByLabel(/One a line/).fill('P01, resident, 0.5\nP02, senior, 6');
-  await page.getByLabel('In, out and in again').uncheck();
-  const file = (name: string, text: string) => ({ name, mimeType: 'application/json', buffer: Buffer.from(text) });
-  await page.getByLabel(/Own scenarios/).setInputFiles([file('mine.json', JSON.stringify({ format: 'tractus-scenario/1', name: 'Mine', bone: { stiffness_N_per_m: -1 } })), file('other.json', '{"a":1}')]);
-  await page.getByText('other.json: is no tractus-scenario/1.').waitFor();
-  await button.click();
-  await page.getByText('stiffness_N_per_m: -1 is outside').waitFor();
-  await page.getByRole('button', { name: 'Remove mine.json' }).click();
-  await button.click();
-  await page.getByRole('heading', { level: 1, name: 'Spine study 1' }).waitFor();
-  const { participants } = await told(page, 'spine-study-1');
-  expect(participants.map(({ name, slots }) => `${name}: ${slots.length}`)).toEqual(['P01: 9', 'P02: 9']);
-  expect(faults).toEqual([]);
-});
+it.runIf(inject('fixture'))(
+  'a study is made from the page: tuned scenarios, one from a file, participants; what is wrong is said',
+  async () => {
+    const { page, faults } = seen;
+    await page.goto('/studies');
+    await page.getByRole('link', { name: 'New study' }).click();
+    await page.getByLabel('Title').fill('Spine study 1');
+    const button = page.getByRole('button', { name: 'Create study' });
+    await page.getByLabel(/One per line/).fill('P01, resident, 0.5\nP 02');
+    await page.getByText('“P 02” is not a valid pseudonym').first().waitFor();
+    expect(await button.isDisabled()).toBe(true);
+    await page.getByLabel(/One per line/).fill('P01, resident, 0.5\nP02, senior, 6');
+    await page.getByLabel('In, out and in again').uncheck();
+    const file = (name: string, text: string) => ({ name, mimeType: 'application/json', buffer: Buffer.from(text) });
+    await page
+      .getByLabel(/Custom scenarios/)
+      .setInputFiles([
+        file(
+          'mine.json',
+          JSON.stringify({ format: 'tractus-scenario/1', name: 'Mine', bone: { stiffness_N_per_m: -1 } }),
+        ),
+        file('other.json', '{"a":1}'),
+      ]);
+    await page.getByText('other.json: not a tractus-scenario/1 file.').waitFor();
+    await button.click();
+    await page.getByText('stiffness_N_per_m: -1 is outside').waitFor();
+    await page.getByRole('button', { name: 'Remove mine.json' }).click();
+    await button.click();
+    await page.getByRole('heading', { level: 1, name: 'Spine study 1' }).waitFor();
+    const { participants } = await told(page, 'spine-study-1');
+    expect(participants.map(({ name, slots }) => `${name}: ${slots.length}`)).toEqual(['P01: 9', 'P02: 9']);
+    expect(faults).toEqual([]);
+  },
+);
 
 describe.runIf(inject('fixture'))('the page of a study', () => {
   const kId = 'twelve-trials';
-  const open = async (page: Page) => { await page.goto(`/studies/${kId}`); await page.locator('[data-participant="S08"]').waitFor(); };
+  const open = async (page: Page) => {
+    await page.goto(`/studies/${kId}`);
+    await page.locator('[data-participant="S08"]').waitFor();
+  };
 
   it('follows what comes in, without a jump', async () => {
     const { page } = seen;
@@ -54,27 +77,27 @@ describe.runIf(inject('fixture'))('the page of a study', () => {
     await page.evaluate(async (id) => fetch(`/api/v1/studies/${id}/bring/S08`), kId);
     await expect.poll(() => done.innerText(), { timeout: 6_000 }).toBe('1 of 12');
     expect((await page.locator('[data-participant="S10"]').boundingBox())?.y).toBe(place?.y);
-    await page.getByText('brought a trial of S08').first().waitFor();
+    await page.getByText('uploaded a trial of S08').first().waitFor();
   });
 
   it('pauses the study and a participant after a question, and Escape leaves things as they are', async () => {
     const { page } = seen;
     await open(page);
-    await page.getByRole('button', { name: 'Pause the study' }).click();
+    await page.getByRole('button', { name: 'Pause study' }).click();
     await page.getByRole('dialog').waitFor();
     await page.keyboard.press('Escape');
     await page.getByRole('dialog').waitFor({ state: 'detached' });
     expect((await told(page, kId)).state).toBe('running');
-    await page.getByRole('button', { name: 'Pause the study' }).click();
+    await page.getByRole('button', { name: 'Pause study' }).click();
     await page.getByRole('dialog').getByRole('button', { name: 'Pause' }).click();
-    await page.getByRole('button', { name: 'Go on', exact: true }).first().waitFor();
+    await page.getByRole('button', { name: 'Resume', exact: true }).first().waitFor();
     expect((await told(page, kId)).state).toBe('paused');
-    await page.getByRole('button', { name: 'Go on', exact: true }).first().click();
-    await page.getByRole('dialog').getByRole('button', { name: 'Go on' }).click();
-    await page.getByRole('button', { name: 'Pause the study' }).waitFor();
+    await page.getByRole('button', { name: 'Resume', exact: true }).first().click();
+    await page.getByRole('dialog').getByRole('button', { name: 'Resume' }).click();
+    await page.getByRole('button', { name: 'Pause study' }).waitFor();
     await page.getByRole('button', { name: 'Pause S09' }).click();
     await page.getByRole('dialog').getByRole('button', { name: 'Pause' }).click();
-    await page.getByRole('button', { name: 'Go on with S09' }).waitFor();
+    await page.getByRole('button', { name: 'Resume S09' }).waitFor();
   });
 
   it('marks a trial as not counting with a reason; it stays and its place is repeated', async () => {
@@ -97,12 +120,12 @@ describe.runIf(inject('fixture'))('the page of a study', () => {
     const { context, page } = await visit(browser);
     await signIn(page);
     await page.goto('/studies/nowhere');
-    await page.getByText('There is no such study.').waitFor();
+    await page.getByText('Study not found.').waitFor();
     await open(page);
     await page.route('**/api/v1/studies/**', (route) => route.abort());
-    await page.getByText('The study could not be brought up to date.').waitFor({ timeout: 20_000 });
+    await page.getByText('The study could not be refreshed.').waitFor({ timeout: 20_000 });
     await page.unroute('**/api/v1/studies/**');
-    await page.getByText('The study could not be brought up to date.').waitFor({ state: 'detached', timeout: 20_000 });
+    await page.getByText('The study could not be refreshed.').waitFor({ state: 'detached', timeout: 20_000 });
     await context.close();
   });
 });
@@ -126,7 +149,11 @@ it('a probing trial shows its signals, its force against depth with the wall beh
   const box = (await page.locator('[data-panel="force"] .u-over').boundingBox())!;
   await page.mouse.move(box.x + box.width / 2, box.y + 40);
   await page.locator('[data-part="depth-chart"] circle').waitFor();
-  await page.getByRole('link', { name: /.+/ }).filter({ hasText: /rials|study/i }).first().waitFor();
+  await page
+    .getByRole('link', { name: /.+/ })
+    .filter({ hasText: /rials|study/i })
+    .first()
+    .waitFor();
   await page.locator(`a[href="/studies/${study.id}"]`).click();
   await page.locator('[data-participant]').first().waitFor();
   expect(faults).toEqual([]);

@@ -15,8 +15,11 @@ import { programs, serveReal, type Served } from './real-server';
 const bin = programs('tractus-server', 'tractus-station');
 const kCt = fileURLToPath(new URL('../../../tests/data/ct/tptbox_L3/sub-ct_label-22_ct.nii.gz', import.meta.url));
 /** The left pedicle of that vertebra, in mm of the patient. */
-const kEntry = ['46', '200', '-61'], kTarget = ['38.5', '158', '-61'];
-const kBadge = '4711', kPin = '246810', kComment = 'Here the wall gives way: stop pushing as soon as it does.';
+const kEntry = ['46', '200', '-61'],
+  kTarget = ['38.5', '158', '-61'];
+const kBadge = '4711',
+  kPin = '246810',
+  kComment = 'Here the wall gives way: stop pushing as soon as it does.';
 const kPasswords = { faculty: 'faculty of the tests', trainee: 'trainee of the tests' };
 
 /** The API as somebody signed in, without a browser: for what others than the two have prepared. */
@@ -26,7 +29,12 @@ class Caller {
   async call<Answer>(method: string, path: string, body?: unknown): Promise<Answer> {
     const raw = body instanceof Uint8Array;
     const response = await fetch(`${this.url}/api/v1${path}`, {
-      method, headers: { 'X-Tractus': '1', Cookie: this.cookie, ...(body === undefined ? {} : { 'Content-Type': raw ? 'application/octet-stream' : 'application/json' }) },
+      method,
+      headers: {
+        'X-Tractus': '1',
+        Cookie: this.cookie,
+        ...(body === undefined ? {} : { 'Content-Type': raw ? 'application/octet-stream' : 'application/json' }),
+      },
       ...(body === undefined ? {} : { body: raw ? new Uint8Array(body) : JSON.stringify(body) }),
     });
     const text = await response.text();
@@ -34,11 +42,19 @@ class Caller {
     this.cookie = response.headers.get('set-cookie')?.split(';')[0] ?? this.cookie;
     return (text === '' ? {} : JSON.parse(text)) as Answer;
   }
-  signIn(name: string, password: string) { return this.call('POST', '/session', { name, password }); }
+  signIn(name: string, password: string) {
+    return this.call('POST', '/session', { name, password });
+  }
 }
 
 /** An account whose first password was changed already. */
-async function person(admin: Caller, url: string, name: string, role: 'faculty' | 'trainee', more: object = {}): Promise<void> {
+async function person(
+  admin: Caller,
+  url: string,
+  name: string,
+  role: 'faculty' | 'trainee',
+  more: object = {},
+): Promise<void> {
   const { password } = await admin.call<{ password: string }>('POST', '/accounts', { name, role, ...more });
   const own = new Caller(url);
   await own.signIn(name, password);
@@ -73,17 +89,34 @@ describe.skipIf(bin === undefined)('a palpation case with a medial breach', () =
     await person(admin, served.url, 'A. Resident', 'trainee', { badge: kBadge, pin: kPin });
     const { id: cohort } = await admin.call<{ id: string }>('POST', '/cohorts', { name: 'Residents 2027' });
     for (const name of ['F. Senior', 'A. Resident']) await admin.call('POST', `/cohorts/${cohort}/people`, { name });
-    const { id: volume } = await admin.call<{ id: string }>('POST', '/volumes?name=L3&source=TPTBox%20L3,%20Apache-2.0', new Uint8Array(readFileSync(kCt)));
+    const { id: volume } = await admin.call<{ id: string }>(
+      'POST',
+      '/volumes?name=L3&source=TPTBox%20L3,%20Apache-2.0',
+      new Uint8Array(readFileSync(kCt)),
+    );
     await admin.call('POST', `/volumes/${volume}/release`, { looked_at: true });
     const { code } = await admin.call<{ code: string }>('POST', '/stations/codes', { name: 'skills lab 1' });
     token = join(served.folder, 'station.token');
-    station('enrol', '--server', served.url, '--code', code, '--token-file', token, '--data', join(served.folder, 'station'));
+    station(
+      'enrol',
+      '--server',
+      served.url,
+      '--code',
+      code,
+      '--token-file',
+      token,
+      '--data',
+      join(served.folder, 'station'),
+    );
     writeFileSync(join(served.folder, 'pin'), `${kPin}\n`);
     browser = await launch();
     faculty = await signedIn('F. Senior', kPasswords.faculty);
     trainee = await signedIn('A. Resident', kPasswords.trainee);
   }, 240_000);
-  afterAll(async () => { await browser.close(); await served.stop(); });
+  afterAll(async () => {
+    await browser.close();
+    await served.stop();
+  });
 
   /** Turned to medial, the picture of a plan moved by half a millimetre is seen from medial too. */
   async function staysWhereOneLooks() {
@@ -99,7 +132,10 @@ describe.skipIf(bin === undefined)('a palpation case with a medial breach', () =
     expect(apart(first, turned)).toBeGreaterThan(40);
     const drawn = await faculty.locator('[data-part="scene"] canvas').elementHandle();
     await faculty.locator('[data-end="target"] input[type="number"]').nth(2).fill('-60.5');
-    await faculty.waitForFunction((canvas) => canvas && !canvas.isConnected && document.querySelector('[data-part="scene"][data-ready] canvas'), drawn);
+    await faculty.waitForFunction(
+      (canvas) => canvas && !canvas.isConnected && document.querySelector('[data-part="scene"][data-ready] canvas'),
+      drawn,
+    );
     await faculty.waitForTimeout(300);
     expect(apart(turned, await anterior())).toBeLessThan(15);
   }
@@ -108,7 +144,10 @@ describe.skipIf(bin === undefined)('a palpation case with a medial breach', () =
     await faculty.getByRole('link', { name: 'Cases', exact: true }).click();
     await faculty.getByRole('link', { name: 'L3', exact: true }).click();
     await faculty.locator('[data-plane="axial"][data-ready]').waitFor();
-    for (const [end, at] of [['entry', kEntry], ['target', kTarget]] as const) {
+    for (const [end, at] of [
+      ['entry', kEntry],
+      ['target', kTarget],
+    ] as const) {
       const fields = faculty.locator(`[data-end="${end}"] input[type="number"]`);
       for (const [i, value] of at.entries()) await fields.nth(i).fill(value);
     }
@@ -121,8 +160,8 @@ describe.skipIf(bin === undefined)('a palpation case with a medial breach', () =
     await faculty.waitForTimeout(1000);
     await shot(faculty, '1-plan');
     await staysWhereOneLooks();
-    await faculty.getByLabel('Title, for those who teach').fill('L3 left, medial breach');
-    await faculty.getByRole('button', { name: 'Make the case' }).click();
+    await faculty.getByLabel('Title (not shown to trainees)').fill('L3 left, medial breach');
+    await faculty.getByRole('button', { name: 'Create case' }).click();
     await faculty.getByRole('link', { name: 'L3 left, medial breach' }).waitFor({ timeout: 120_000 });
     await shot(faculty, '2-made');
   }, 240_000);
@@ -130,7 +169,7 @@ describe.skipIf(bin === undefined)('a palpation case with a medial breach', () =
   it('is assigned to a cohort under a blind name', async () => {
     await faculty.getByRole('link', { name: 'Assign cases' }).click();
     await faculty.getByRole('checkbox', { name: 'L3 left, medial breach' }).check();
-    await faculty.getByLabel('Cohort (also who joins it later)').selectOption({ index: 1 });
+    await faculty.getByLabel('Cohort (includes later members)').selectOption({ index: 1 });
     await faculty.getByLabel('Title, shown to trainees').fill('Week 12');
     await shot(faculty, '3-assign');
     await faculty.getByRole('button', { name: 'Assign', exact: true }).click();
@@ -144,35 +183,56 @@ describe.skipIf(bin === undefined)('a palpation case with a medial breach', () =
 
   it('is done at a station that was never told where the breach is', () => {
     const data = join(served.folder, 'station');
-    const out = station('assigned', '--data', data, '--server', served.url, '--token-file', token, '--badge', kBadge, '--pin-file', join(served.folder, 'pin'),
-      '--device', 'sim-lambda6', '--seed', '3', '--duration', '8', '--speed', 'fast', '--answer', 'medial');
+    const out = station(
+      'assigned',
+      '--data',
+      data,
+      '--server',
+      served.url,
+      '--token-file',
+      token,
+      '--badge',
+      kBadge,
+      '--pin-file',
+      join(served.folder, 'pin'),
+      '--device',
+      'sim-lambda6',
+      '--seed',
+      '3',
+      '--duration',
+      '8',
+      '--speed',
+      'fast',
+      '--answer',
+      'medial',
+    );
     expect(out).not.toMatch(/L3 left/);
     station('upload', '--data', data, '--server', served.url, '--token-file', token, '--wait', '30');
   }, 240_000);
 
   it('is seen done, talked through and released', async () => {
     await faculty.getByText('1 of 1').first().waitFor();
-    await faculty.getByText('right', { exact: true }).waitFor({ timeout: 60_000 });
+    await faculty.getByText('correct', { exact: true }).waitFor({ timeout: 60_000 });
     await shot(faculty, '5-done');
     await faculty.getByRole('link', { name: /^Debrief/ }).click();
     await faculty.locator('[data-part="scene"][data-ready]').waitFor();
     await faculty.getByRole('button', { name: 'Play' }).click();
     await faculty.waitForTimeout(700);
     await faculty.getByRole('button', { name: 'Pause' }).click();
-    const moment = Number(await faculty.getByLabel('Moment of the trial').inputValue());
+    const moment = Number(await faculty.getByLabel('Time in the trial').inputValue());
     expect(moment).toBeGreaterThan(0.2);
     await faculty.getByLabel('Comment', { exact: true }).fill(kComment);
-    await faculty.getByRole('button', { name: 'Comment' }).click();
+    await faculty.getByRole('button', { name: 'Add comment' }).click();
     await faculty.getByText(kComment).waitFor();
     await faculty.getByRole('button', { name: 'Release results' }).click();
-    await faculty.getByText('Trainees of this assignment see its results and comments.').waitFor();
+    await faculty.getByText('Trainees can see the results and comments of this assignment.').waitFor();
     await shot(faculty, '6-debrief');
   }, 120_000);
 
   it('is seen by its trainee with the result and the comment', async () => {
     await trainee.goto('/assignments');
     await trainee.getByRole('link', { name: 'Week 12' }).click();
-    await trainee.getByText('right', { exact: true }).waitFor();
+    await trainee.getByText('correct', { exact: true }).waitFor();
     await shot(trainee, '7-result');
     await trainee.getByRole('link', { name: /^Debrief/ }).click();
     await trainee.getByText(kComment).waitFor();

@@ -4,15 +4,29 @@ import { afterAll, beforeAll, describe, expect, inject, it } from 'vitest';
 import { asked, assessedTrial, launch, signIn, visit, type Visit } from './browser';
 import { inked, pictureOf } from './pixels';
 
-interface Metric { id: string; unit: string; value: number | null }
-interface Served { id: string; case_title: string; operator_name: string; duration_s: number; metrics: Metric[]; coverage: { samples: number[] } | null }
+interface Metric {
+  id: string;
+  unit: string;
+  value: number | null;
+}
+interface Served {
+  id: string;
+  case_title: string;
+  operator_name: string;
+  duration_s: number;
+  metrics: Metric[];
+  coverage: { samples: number[] } | null;
+}
 
 const served = (page: Page, trial: string) => asked<Served>(page, `/trials/${trial}`);
 const spaced = (text: string) => text.replaceAll('\u202f', ' ').trim();
 
 /** What is shown, read back as a number of SI; "< 0.001" is a bound. */
 function si(text: string, perSi: number): { value: number; bound: boolean } {
-  const plain = spaced(text).replace('−', '-').replace(/^([<>]) /, '').replace(/ (?=\d)/g, '');
+  const plain = spaced(text)
+    .replace('−', '-')
+    .replace(/^([<>]) /, '')
+    .replace(/ (?=\d)/g, '');
   return { value: Number.parseFloat(plain) / perSi, bound: /^[<>]/.test(spaced(text)) };
 }
 
@@ -30,11 +44,14 @@ afterAll(() => browser.close());
 async function openTrial(page: Page): Promise<void> {
   await page.goto(`/trials/${id}`);
   await page.locator('[data-panel="force"] canvas').waitFor();
-  await page.getByText(/least and greatest|every sample/).waitFor();
+  await page.getByText(/minimum and maximum|every sample/).waitFor();
 }
 
 const range = async (page: Page) => spaced(await page.locator('[data-part="range"]').innerText());
-const span = async (page: Page) => { const [from = 0, to = 0] = (await range(page)).match(/[\d.]+/g)?.map(Number) ?? []; return to - from; };
+const span = async (page: Page) => {
+  const [from = 0, to = 0] = (await range(page)).match(/[\d.]+/g)?.map(Number) ?? [];
+  return to - from;
+};
 
 it('the list shows what the server lists, and its link opens the trial', async () => {
   const { page } = seen;
@@ -99,7 +116,9 @@ describe('the chart', () => {
     await expect.poll(() => span(page)).toBeLessThan(once / 100);
     await page.getByText('every sample').waitFor();
     await page.mouse.move(box.x + box.width / 2 + 5, box.y + box.height / 2);
-    await expect.poll(async () => spaced(await page.locator('[data-channel="force_xy_N"]').innerText())).toMatch(/^[<\d. ]+ N$/);
+    await expect
+      .poll(async () => spaced(await page.locator('[data-channel="force_xy_N"]').innerText()))
+      .toMatch(/^[<\d. ]+ N$/);
     await page.keyboard.press('0');
   });
 
@@ -122,15 +141,26 @@ it('every measure in the tables is the number of the server, to the digits shown
   expect(metrics.length).toBeGreaterThan(12);
   for (const metric of metrics) {
     const cell = page.locator(`[data-metric="${metric.id}"]`);
-    const text = spaced((await cell.locator('button').count()) > 0 ? await cell.locator('button').innerText() : await cell.innerText());
-    if (metric.value === null) { expect(text, metric.id).toBe('–'); continue; }
-    if (metric.id === 'answer_right') { expect(text).toBe(metric.value === 1 ? 'right' : 'wrong'); continue; }
+    const text = spaced(
+      (await cell.locator('button').count()) > 0 ? await cell.locator('button').innerText() : await cell.innerText(),
+    );
+    if (metric.value === null) {
+      expect(text, metric.id).toBe('–');
+      continue;
+    }
+    if (metric.id === 'answer_right') {
+      expect(text).toBe(metric.value === 1 ? 'correct' : 'incorrect');
+      continue;
+    }
     const perSi = text.endsWith('%') ? 100 : /\bmm\b/.test(text) ? 1000 : text.endsWith('°') ? 180 / Math.PI : 1;
     const shown = si(text, perSi);
     const decimals = /\.(\d+)/.exec(text)?.[1]?.length ?? 0;
-    const tolerance = 0.5001 * 10 ** -decimals / perSi;
+    const tolerance = (0.5001 * 10 ** -decimals) / perSi;
     if (shown.bound) expect(Math.abs(shown.value - Math.abs(metric.value)), metric.id).toBeLessThan(2.5 * tolerance);
-    else expect(Math.abs(shown.value - metric.value), `${metric.id}: ${text} for ${metric.value}`).toBeLessThanOrEqual(tolerance);
+    else
+      expect(Math.abs(shown.value - metric.value), `${metric.id}: ${text} for ${metric.value}`).toBeLessThanOrEqual(
+        tolerance,
+      );
   }
 });
 
@@ -150,7 +180,11 @@ it('the walls show as many touched cells as the server counted', async () => {
   await openTrial(page);
   const { coverage } = await served(page, id);
   const cells = await page.locator('path[data-heat]').evaluateAll((paths) =>
-    paths.map((path) => ({ heat: Number(path.getAttribute('data-heat')), cells: (path.getAttribute('d') ?? '').split('M').length - 1 })));
+    paths.map((path) => ({
+      heat: Number(path.getAttribute('data-heat')),
+      cells: (path.getAttribute('d') ?? '').split('M').length - 1,
+    })),
+  );
   const touched = cells.filter(({ heat }) => heat > 0).reduce((total, { cells: n }) => total + n, 0);
   expect(touched).toBe(coverage?.samples.filter((n) => n > 0).length ?? 0);
 });
@@ -166,8 +200,10 @@ describe('the tract in 3-D', () => {
     const first = await pictureOf(browser, scene);
     await scene.focus();
     for (let i = 0; i < 4; ++i) await page.keyboard.press('ArrowRight');
-    await expect.poll(async () => (await pictureOf(browser, scene)).png.equals(first.png), { timeout: 15_000 }).toBe(false);
-    await page.getByRole('button', { name: 'No bone' }).click();
+    await expect
+      .poll(async () => (await pictureOf(browser, scene)).png.equals(first.png), { timeout: 15_000 })
+      .toBe(false);
+    await page.getByRole('button', { name: 'Hide the bone' }).click();
     await page.getByRole('button', { name: 'Reset the view' }).click();
     await expect.poll(async () => (await pictureOf(browser, scene)).colours, { timeout: 15_000 }).toBeGreaterThan(15);
     expect(faults).toEqual([]);
@@ -182,7 +218,7 @@ describe('the tract in 3-D', () => {
       await page.locator(`tbody a[href="/trials/${id}"]`).click();
     }
     await page.locator('[data-part="scene"][data-ready]').waitFor();
-    expect(await page.getByText('dropped the picture').count()).toBe(0);
+    expect(await page.getByText('lost the 3-D view').count()).toBe(0);
     expect(faults).toEqual([]);
   }, 120_000);
 
@@ -191,7 +227,7 @@ describe('the tract in 3-D', () => {
     const { page, faults } = await visit(blind);
     await signIn(page);
     await openTrial(page);
-    await page.getByText('This browser offers no WebGL 2').waitFor();
+    await page.getByText('This browser does not support WebGL 2').waitFor();
     await page.locator('[data-metric="force_xy_mean"]').waitFor();
     expect(faults).toEqual([]);
     await blind.close();
@@ -210,7 +246,9 @@ it('nothing jumps while a trial comes in', async () => {
   for (const path of ['/trials', `/trials/${id}`]) {
     await page.goto(path);
     await page.waitForLoadState('networkidle');
-    const total = await page.evaluate(() => (window as unknown as { shifts: number[] }).shifts.reduce((a, b) => a + b, 0));
+    const total = await page.evaluate(() =>
+      (window as unknown as { shifts: number[] }).shifts.reduce((a, b) => a + b, 0),
+    );
     expect(total, path).toBeLessThan(0.05); // half of what is commonly called good
   }
 });
@@ -222,5 +260,5 @@ it.runIf(inject('fixture'))('what went wrong in a recording is told', async () =
   await page.getByText(/ticks were skipped/).waitFor();
   await page.goto('/trials/trial-003');
   await page.getByText('The assessment of this trial failed.').waitFor();
-  await page.getByText('There are no measures of this trial.').waitFor();
+  await page.getByText('This trial has no measures.').waitFor();
 });

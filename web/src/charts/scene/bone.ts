@@ -32,7 +32,9 @@ function surfaceOf(bone: SceneBone): vtkPolyData {
   const image = vtkImageData.newInstance();
   image.setDimensions([bone.dims[0], bone.dims[1], bone.dims[2]]);
   image.setSpacing([...scaled(bone.spacing_m)] as [number, number, number]);
-  image.getPointData().setScalars(vtkDataArray.newInstance({ name: 'opacity', numberOfComponents: 1, values: bone.opacity }));
+  image
+    .getPointData()
+    .setScalars(vtkDataArray.newInstance({ name: 'opacity', numberOfComponents: 1, values: bone.opacity }));
   const cubes = vtkImageMarchingCubes.newInstance({ contourValue: kSurface, computeNormals: true, mergePoints: true });
   cubes.setInputData(image);
   const surface = cubes.getOutputData();
@@ -66,6 +68,8 @@ export function makeBone(bone: SceneBone, tract: SceneTract): BoneActor {
       mapper.removeAllClippingPlanes();
       if (cut) mapper.addClippingPlane(plane);
     },
-    colour: (colour) => { actor.getProperty().setColor(colour[0], colour[1], colour[2]); },
+    colour: (colour) => {
+      actor.getProperty().setColor(colour[0], colour[1], colour[2]);
+    },
   };
 }

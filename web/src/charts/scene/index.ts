@@ -3,7 +3,18 @@ import { makeBone } from './bone';
 import { makeLabels } from './labels';
 import { makeGhost, makeMoment, makePath } from './path';
 import { makeBreach, makeTract } from './tract';
-import { kPerMetre, scaled, sum, type SceneBone, type SceneBreach, type SceneColours, type ScenePath, type SceneTract, type Vec3, type ViewName } from './types';
+import {
+  kPerMetre,
+  scaled,
+  sum,
+  type SceneBone,
+  type SceneBreach,
+  type SceneColours,
+  type ScenePath,
+  type SceneTract,
+  type Vec3,
+  type ViewName,
+} from './types';
 import { dispose, fit, makeWindow, paced } from './window';
 
 export interface Scene {
@@ -45,23 +56,38 @@ export interface SceneContent {
 /** Where the camera stands (from the middle of the tract) and what is up. */
 function stand(view: ViewName, { axis, medial, superior }: SceneTract): { from: Vec3; up: Vec3 } {
   switch (view) {
-    case 'medial': return { from: medial, up: superior };
-    case 'superior': return { from: superior, up: axis };
-    case 'along': return { from: scaled(axis, -1), up: superior };
-    case 'start': return { from: sum(scaled(superior, 0.8), scaled(axis, -0.42), scaled(medial, 0.42)), up: superior };
+    case 'medial':
+      return { from: medial, up: superior };
+    case 'superior':
+      return { from: superior, up: axis };
+    case 'along':
+      return { from: scaled(axis, -1), up: superior };
+    case 'start':
+      return { from: sum(scaled(superior, 0.8), scaled(axis, -0.42), scaled(medial, 0.42)), up: superior };
   }
 }
 
 /** Throws where the browser cannot draw; the caller says so on the page. Without `looks` it is looked at from where it starts. */
-export function makeScene(container: HTMLElement, labelHolder: HTMLElement, content: SceneContent, looks?: Looks): Scene {
+export function makeScene(
+  container: HTMLElement,
+  labelHolder: HTMLElement,
+  content: SceneContent,
+  looks?: Looks,
+): Scene {
   const drawing = makeWindow(container);
   const { renderer } = drawing;
   const { tract } = content;
   const tube = makeTract(tract);
   const ball = makeMoment(content.path);
   const bone = content.bone ? makeBone(content.bone, tract) : null;
-  const other = content.ghost && content.ghost.tip_m.length > 1 ? { way: makeGhost(content.ghost), ball: makeMoment(content.ghost) } : null;
-  if (other) { renderer.addActor(other.way); renderer.addActor(other.ball.actor); }
+  const other =
+    content.ghost && content.ghost.tip_m.length > 1
+      ? { way: makeGhost(content.ghost), ball: makeMoment(content.ghost) }
+      : null;
+  if (other) {
+    renderer.addActor(other.way);
+    renderer.addActor(other.ball.actor);
+  }
   const hole = content.breach ? makeBreach(content.breach, tract.radius_m) : null;
   if (!content.bare) renderer.addActor(tube);
   if (hole) renderer.addActor(hole);
@@ -113,12 +139,17 @@ export function makeScene(container: HTMLElement, labelHolder: HTMLElement, cont
       bone?.colour(colours.bone);
       tube.getProperty().setColor(...colours.tract);
       ball.actor.getProperty().setColor(...colours.moment);
-      for (const actor of other ? [other.way, other.ball.actor] : []) actor.getProperty().setColor(...(colours.ghost ?? colours.tract));
+      for (const actor of other ? [other.way, other.ball.actor] : [])
+        actor.getProperty().setColor(...(colours.ghost ?? colours.tract));
       hole?.getProperty().setColor(...colours.moment);
       render();
     },
-    moment(t_s) { if (ball.put(t_s)) render(); },
-    ghost(t_s) { if (other?.ball.put(t_s)) render(); },
+    moment(t_s) {
+      if (ball.put(t_s)) render();
+    },
+    ghost(t_s) {
+      if (other?.ball.put(t_s)) render();
+    },
     resize() {
       fit(container, drawing);
       placeLabels();

@@ -21,7 +21,11 @@ function placed(tract: SceneTract): Label[] {
     { text: 'Lateral', at: side(tract.medial, -1) },
     { text: 'Superior', at: side(tract.superior, 1) },
     { text: 'Inferior', at: side(tract.superior, -1) },
-    { text: 'Anterior', at: sum(scaled(tract.entry_m), scaled(tract.axis, (tract.length_m + 0.006) * kPerMetre)), end: true },
+    {
+      text: 'Anterior',
+      at: sum(scaled(tract.entry_m), scaled(tract.axis, (tract.length_m + 0.006) * kPerMetre)),
+      end: true,
+    },
     { text: 'Entry', at: sum(scaled(tract.entry_m), scaled(tract.axis, -0.004 * kPerMetre)), end: true },
   ];
 }

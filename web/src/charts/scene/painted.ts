@@ -18,13 +18,21 @@ export interface Wall {
   readonly radius_m: number;
 }
 
-export interface PaintedScene { turn(azimuth: number, elevation: number): void; zoom(factor: number): void; reset(): void; resize(): void; destroy(): void }
+export interface PaintedScene {
+  turn(azimuth: number, elevation: number): void;
+  zoom(factor: number): void;
+  reset(): void;
+  resize(): void;
+  destroy(): void;
+}
 
 /** A finer ring within each part, so that the wall is round. */
 const kFiner = 3;
 
 function surface({ depth_m, angle_rad, colours, radius_m }: Wall): vtkPolyData {
-  const points: number[] = [], cells: number[] = [], paints: number[] = [];
+  const points: number[] = [],
+    cells: number[] = [],
+    paints: number[] = [];
   const put = (depth: number, angle: number) => {
     points.push(radius_m * kPerMetre * Math.cos(angle), radius_m * kPerMetre * Math.sin(angle), depth * kPerMetre);
     return points.length / 3 - 1;
@@ -32,9 +40,12 @@ function surface({ depth_m, angle_rad, colours, radius_m }: Wall): vtkPolyData {
   for (let d = 0; d + 1 < depth_m.length; ++d) {
     for (let a = 0; a + 1 < angle_rad.length; ++a) {
       const colour = colours[d]?.[a] ?? [128, 128, 128];
-      const from = angle_rad[a] ?? 0, step = ((angle_rad[a + 1] ?? 0) - from) / kFiner;
+      const from = angle_rad[a] ?? 0,
+        step = ((angle_rad[a + 1] ?? 0) - from) / kFiner;
       for (let part = 0; part < kFiner; ++part) {
-        const low = from + part * step, top = depth_m[d] ?? 0, end = depth_m[d + 1] ?? 0;
+        const low = from + part * step,
+          top = depth_m[d] ?? 0,
+          end = depth_m[d + 1] ?? 0;
         cells.push(4, put(top, low), put(top, low + step), put(end, low + step), put(end, low));
         paints.push(...colour);
       }
@@ -45,7 +56,9 @@ function surface({ depth_m, angle_rad, colours, radius_m }: Wall): vtkPolyData {
   places.setData(Float32Array.from(points), 3);
   wall.setPoints(places);
   wall.setPolys(vtkCellArray.newInstance({ values: Uint32Array.from(cells) }));
-  wall.getCellData().setScalars(vtkDataArray.newInstance({ name: 'colour', numberOfComponents: 3, values: Uint8Array.from(paints) }));
+  wall
+    .getCellData()
+    .setScalars(vtkDataArray.newInstance({ name: 'colour', numberOfComponents: 3, values: Uint8Array.from(paints) }));
   return wall;
 }
 
@@ -63,12 +76,23 @@ export function makePainted(container: HTMLElement, wall: Wall): PaintedScene {
   renderer.addActor(actor);
   const camera = renderer.getActiveCamera();
   const render = paced(container, drawing);
-  const moved = () => { renderer.resetCameraClippingRange(); render(); };
+  const moved = () => {
+    renderer.resetCameraClippingRange();
+    render();
+  };
   const scene: PaintedScene = {
-    turn(azimuth, elevation) { camera.azimuth(azimuth); camera.elevation(elevation); camera.orthogonalizeViewUp(); moved(); },
-    zoom(factor) { camera.dolly(factor); moved(); },
+    turn(azimuth, elevation) {
+      camera.azimuth(azimuth);
+      camera.elevation(elevation);
+      camera.orthogonalizeViewUp();
+      moved();
+    },
+    zoom(factor) {
+      camera.dolly(factor);
+      moved();
+    },
     reset() {
-      const middle = ((wall.depth_m[0] ?? 0) + (wall.depth_m.at(-1) ?? 0)) / 2 * kPerMetre;
+      const middle = (((wall.depth_m[0] ?? 0) + (wall.depth_m.at(-1) ?? 0)) / 2) * kPerMetre;
       camera.setFocalPoint(0, 0, middle);
       camera.setPosition(3, -1.4, middle - 2.2);
       camera.setViewUp(0, 0, -1);
@@ -76,8 +100,13 @@ export function makePainted(container: HTMLElement, wall: Wall): PaintedScene {
       camera.dolly(1.35);
       moved();
     },
-    resize() { fit(container, drawing); render(); },
-    destroy() { dispose(container, drawing); },
+    resize() {
+      fit(container, drawing);
+      render();
+    },
+    destroy() {
+      dispose(container, drawing);
+    },
   };
   scene.resize();
   scene.reset();

@@ -19,7 +19,10 @@ const kStops = 16;
 export function makePath(path: ScenePath, most_N: number): vtkActor {
   const count = path.tip_m.length;
   const points = vtkPoints.newInstance();
-  points.setData(Float32Array.from(path.tip_m.flatMap((p) => [p[0] * kPerMetre, p[1] * kPerMetre, p[2] * kPerMetre])), 3);
+  points.setData(
+    Float32Array.from(path.tip_m.flatMap((p) => [p[0] * kPerMetre, p[1] * kPerMetre, p[2] * kPerMetre])),
+    3,
+  );
   const line = vtkPolyData.newInstance();
   line.setPoints(points);
   line.setLines(vtkCellArray.newInstance({ values: Uint32Array.from([count, ...path.tip_m.keys()]) }));
@@ -46,7 +49,10 @@ export function makePath(path: ScenePath, most_N: number): vtkActor {
 /** The way of another trial: thin and in one colour, so that it stays behind the first. */
 export function makeGhost(path: ScenePath): vtkActor {
   const points = vtkPoints.newInstance();
-  points.setData(Float32Array.from(path.tip_m.flatMap((p) => [p[0] * kPerMetre, p[1] * kPerMetre, p[2] * kPerMetre])), 3);
+  points.setData(
+    Float32Array.from(path.tip_m.flatMap((p) => [p[0] * kPerMetre, p[1] * kPerMetre, p[2] * kPerMetre])),
+    3,
+  );
   const line = vtkPolyData.newInstance();
   line.setPoints(points);
   line.setLines(vtkCellArray.newInstance({ values: Uint32Array.from([path.tip_m.length, ...path.tip_m.keys()]) }));

@@ -27,8 +27,12 @@ export function makeBreach({ from_m, tip_m }: SceneBreach, radius_m: number): vt
   const along = sum(scaled(tip_m), scaled(from_m, -kPerMetre));
   const middle = sum(scaled(from_m, kPerMetre / 2), scaled(tip_m, kPerMetre / 2));
   const source = vtkCylinderSource.newInstance({
-    height: Math.hypot(...along), radius: radius_m * kPerMetre, resolution: 32, capping: true,
-    center: [middle[0], middle[1], middle[2]], direction: [along[0], along[1], along[2]],
+    height: Math.hypot(...along),
+    radius: radius_m * kPerMetre,
+    resolution: 32,
+    capping: true,
+    center: [middle[0], middle[1], middle[2]],
+    direction: [along[0], along[1], along[2]],
   });
   const mapper = vtkMapper.newInstance({ scalarVisibility: false });
   mapper.setInputConnection(source.getOutputPort());

@@ -24,14 +24,14 @@ export function makeWindow(container: HTMLElement) {
 
 type Drawing = ReturnType<typeof makeWindow>;
 
-/** Draws at the next frame, once, however often it is asked for. */
+/** Draws at the next frame, once, however often it is requested. */
 export function paced(container: HTMLElement, drawing: Drawing): () => void {
-  let asked = false;
+  let requested = false;
   return () => {
-    if (asked) return;
-    asked = true;
+    if (requested) return;
+    requested = true;
     requestAnimationFrame(() => {
-      asked = false;
+      requested = false;
       if (container.isConnected && !drawing.window.isDeleted()) drawing.window.render();
     });
   };

@@ -1,51 +1,151 @@
 import { useMutation, useQuery } from '@tanstack/react-query';
 import { useState } from 'react';
 import { Link, useLocation } from 'wouter';
-import { cohortTableAddress, cohortTableQuery, metricsQuery, plansQuery, runMethod, studiesQuery, type PlanSummary } from '@/api';
+import {
+  cohortTableAddress,
+  cohortTableQuery,
+  metricsQuery,
+  plansQuery,
+  runMethod,
+  studiesQuery,
+  type PlanSummary,
+} from '@/api';
 import { Badge, Card, Facts, Notice, Select, Skeleton, Table, useTitle } from '@/ui';
 import { formatCount, formatDateTime } from '@/units';
 import styles from './analysis.module.css';
 import { QuestionForm } from './question-form';
 
-/** The cohort, one question to it, and the plans that were locked. */
+/** The trial data, a quick analysis of them, and the locked plans. */
 export function AnalysisPage() {
   useTitle('Analysis');
   const [, go] = useLocation();
   const [study, setStudy] = useState('');
   const studies = useQuery(studiesQuery).data?.studies ?? [];
-  const table = useQuery(cohortTableQuery(study)), metrics = useQuery(metricsQuery).data?.metrics ?? [];
+  const table = useQuery(cohortTableQuery(study)),
+    metrics = useQuery(metricsQuery).data?.metrics ?? [];
   const plans = useQuery(plansQuery);
-  const asked = useMutation({ mutationFn: ({ method, formula }: { method: string; formula: string }) => runMethod(method, formula, study), onSuccess: ({ id }) => go(`/analysis/runs/${id}`) });
-  const rows = table.data?.rows ?? [], people = new Set(rows.map(({ participant }) => participant)).size, simulated = rows.filter((row) => row.simulated === '1').length;
+  const started = useMutation({
+    mutationFn: ({ method, formula }: { method: string; formula: string }) => runMethod(method, formula, study),
+    onSuccess: ({ id }) => go(`/analysis/runs/${id}`),
+  });
+  const rows = table.data?.rows ?? [],
+    people = new Set(rows.map(({ participant }) => participant)).size,
+    simulated = rows.filter((row) => row.simulated === '1').length;
   return (
     <div className={styles.page}>
       <div className={styles.head}>
-        <div><h1>Analysis</h1><p className={styles.lead}>Ask the cohort, by a plan that was locked before its data were seen or by one method at once. Every number can be computed again.</p></div>
-        <span className={styles.buttons}><Link href="/analysis/example">The published tables, recomputed</Link><Link href={`/analysis/plans/new${study === '' ? '' : `?study=${encodeURIComponent(study)}`}`} className={styles.solidLink}>New plan</Link></span>
+        <div>
+          <h1>Analysis</h1>
+          <p className={styles.lead}>
+            Analyse trial data: run a plan that was locked before the data were seen, or run a single method now. Every
+            result can be recomputed.
+          </p>
+        </div>
+        <span className={styles.buttons}>
+          <Link href="/analysis/example">Published tables, recomputed</Link>
+          <Link
+            href={`/analysis/plans/new${study === '' ? '' : `?study=${encodeURIComponent(study)}`}`}
+            className={styles.solidLink}
+          >
+            New plan
+          </Link>
+        </span>
       </div>
-      <Card title="The cohort" aside={<span className={styles.buttons}><Select label={<span className="hidden-visually">Trials of</span>} value={study} onChange={(event) => setStudy(event.target.value)} options={[{ value: '', text: 'All scored trials' }, ...studies.map(({ id, title }) => ({ value: id, text: title }))]} /><a href={cohortTableAddress(study)} download="cohort.csv">As CSV</a></span>}>
-        {table.isError ? <Notice tone="bad" title="The cohort could not be loaded." onRetry={() => void table.refetch()}>{table.error.message}</Notice> : null}
-        <div className={styles.holdsFacts}>{table.isPending ? <Skeleton height="52px" /> : (
-          <Facts facts={[
-            { name: 'Trials that count and are scored', value: <strong>{formatCount(rows.length)}</strong> }, { name: 'Participants', value: <strong>{formatCount(people)}</strong> },
-            { name: 'By a machine', value: simulated > 0 ? <Badge tone="warn">{formatCount(simulated)} simulated</Badge> : 'none' }, { name: 'Columns', value: formatCount(table.data?.columns.length ?? 0) },
-          ]} />
-        )}</div>
+      <Card
+        title="Trial data"
+        aside={
+          <span className={styles.buttons}>
+            <Select
+              label={<span className="hidden-visually">Study</span>}
+              value={study}
+              onChange={(event) => setStudy(event.target.value)}
+              options={[
+                { value: '', text: 'All scored trials' },
+                ...studies.map(({ id, title }) => ({ value: id, text: title })),
+              ]}
+            />
+            <a href={cohortTableAddress(study)} download="cohort.csv">
+              Download CSV
+            </a>
+          </span>
+        }
+      >
+        {table.isError ? (
+          <Notice tone="bad" title="The trial data could not be loaded." onRetry={() => void table.refetch()}>
+            {table.error.message}
+          </Notice>
+        ) : null}
+        <div className={styles.holdsFacts}>
+          {table.isPending ? (
+            <Skeleton height="52px" />
+          ) : (
+            <Facts
+              facts={[
+                { name: 'Valid, scored trials', value: <strong>{formatCount(rows.length)}</strong> },
+                { name: 'Participants', value: <strong>{formatCount(people)}</strong> },
+                {
+                  name: 'Simulated trials',
+                  value: simulated > 0 ? <Badge tone="warn">{formatCount(simulated)}</Badge> : 'none',
+                },
+                { name: 'Columns', value: formatCount(table.data?.columns.length ?? 0) },
+              ]}
+            />
+          )}
+        </div>
       </Card>
-      <Card title="One question, at once" aside={<Badge>not planned beforehand</Badge>}>
-        <div className={styles.holdsForm}>{table.data && rows.length > 0 ? <QuestionForm key={study} table={table.data} metrics={metrics} deed="Ask" busy={asked.isPending} onAsk={(question) => asked.mutate(question)} />
-          : table.isPending ? <Skeleton height="140px" /> : <p className={styles.muted}>There is no scored trial yet. <Link href="/analysis/example">See how it looks with the published study.</Link></p>}</div>
-        {asked.isError ? <Notice tone="bad" title="That cannot be asked.">{asked.error.message}</Notice> : null}
+      <Card title="Quick analysis" aside={<Badge>exploratory</Badge>}>
+        <div className={styles.holdsForm}>
+          {table.data && rows.length > 0 ? (
+            <QuestionForm
+              key={study}
+              table={table.data}
+              metrics={metrics}
+              action="Run analysis"
+              busy={started.isPending}
+              onAsk={(question) => started.mutate(question)}
+            />
+          ) : table.isPending ? (
+            <Skeleton height="140px" />
+          ) : (
+            <p className={styles.muted}>
+              No trial has been scored yet.{' '}
+              <Link href="/analysis/example">See an example with the published study.</Link>
+            </p>
+          )}
+        </div>
+        {started.isError ? (
+          <Notice tone="bad" title="The analysis was not started.">
+            {started.error.message}
+          </Notice>
+        ) : null}
       </Card>
       <Card title="Locked plans">
-        {plans.isError ? <Notice tone="bad" title="The plans could not be loaded." onRetry={() => void plans.refetch()}>{plans.error.message}</Notice> : (
-          <Table<PlanSummary> caption="Locked plans, newest first" rows={plans.data?.plans} keyOf={({ id }) => id} empty="No plan was locked yet." columns={[
-            { name: 'Plan', cell: (one) => <Link href={`/analysis/plans/${one.id}`}>{one.title}</Link> },
-            { name: 'Of', cell: (one) => one.study ?? 'all trials' },
-            { name: 'Locked', cell: (one) => `${formatDateTime(one.made_utc_us)}, ${one.made_by}` },
-            { name: 'Trials then', cell: (one) => formatCount(one.trials_then), number: true },
-            { name: 'Confirms', cell: (one) => (one.data_seen || one.trials_then > 0 ? <Badge tone="warn">data could be seen</Badge> : <Badge tone="good">locked before the data</Badge>) },
-          ]} />
+        {plans.isError ? (
+          <Notice tone="bad" title="The plans could not be loaded." onRetry={() => void plans.refetch()}>
+            {plans.error.message}
+          </Notice>
+        ) : (
+          <Table<PlanSummary>
+            caption="Locked plans, newest first"
+            rows={plans.data?.plans}
+            keyOf={({ id }) => id}
+            empty="No plan has been locked yet."
+            columns={[
+              { name: 'Plan', cell: (one) => <Link href={`/analysis/plans/${one.id}`}>{one.title}</Link> },
+              { name: 'Data', cell: (one) => one.study ?? 'all trials' },
+              { name: 'Locked', cell: (one) => `${formatDateTime(one.made_utc_us)}, ${one.made_by}` },
+              { name: 'Trials when locked', cell: (one) => formatCount(one.trials_then), number: true },
+              {
+                name: 'Timing',
+                cell: (one) =>
+                  one.data_seen || one.trials_then > 0 ? (
+                    <Badge tone="warn">data already existed</Badge>
+                  ) : (
+                    <Badge tone="good">locked before data</Badge>
+                  ),
+              },
+            ]}
+          />
         )}
       </Card>
     </div>

@@ -1,5 +1,6 @@
 import { describe, expect, it } from 'vitest';
-import { cellsOf, tableOf } from '@/api';
+import { cellsOf, tableOf, type MetricFacts } from '@/api';
+import { columnName, defaultPredictor, endpointsOf } from './columns';
 import { kMethods } from './methods';
 import { kBlankPlan, planOf } from './plan-draft';
 import { cell } from './report-view';
@@ -12,22 +13,78 @@ describe('the cohort’s table', () => {
   it('knows which columns are numbers, empty cells aside', () => {
     const { columns, rows } = tableOf('trial,level,time\na,novice,1.5\nb,senior,\n');
     expect(rows).toHaveLength(2);
-    expect(columns.map(({ name, numbers }) => [name, numbers])).toEqual([['trial', false], ['level', false], ['time', true]]);
+    expect(columns.map(({ name, numbers }) => [name, numbers])).toEqual([
+      ['trial', false],
+      ['level', false],
+      ['time', true],
+    ]);
+  });
+});
+
+describe('the columns', () => {
+  const metric = (id: string, label: string): MetricFacts => ({ id, label, unit: 's', definition: '', source: '' });
+  const table = tableOf(
+    'trial,level,number,correct,answer_right,operation_time\na,novice,1,1,1,20\nb,,2,0,0,30\nc,senior,3,1,1,40\n',
+  );
+
+  it('have the id in the name where two metrics share a label', () => {
+    const metrics = [
+      metric('operation_time', 'Operation time'),
+      metric('probing_time', 'Operation time'),
+      metric('path', 'Path'),
+    ];
+    expect(['operation_time', 'probing_time', 'path'].map((name) => columnName(name, metrics))).toEqual([
+      'Operation time (operation_time)',
+      'Operation time (probing_time)',
+      'Path',
+    ]);
+  });
+
+  it('list the correctness of the answer once among the endpoints', () => {
+    expect(endpointsOf(table).map(({ name }) => name)).toEqual(['correct', 'operation_time']);
+  });
+
+  it('begin with the predictor that most rows have', () => {
+    expect(defaultPredictor(table, 'operation_time')).toBe('number');
+    expect(defaultPredictor(tableOf('trial,operation_time\na,20\n'), 'operation_time')).toBe('1');
   });
 });
 
 describe('a plan', () => {
-  const question = { method: 'lmm', formula: 'operation_time ~ level + (1|participant)', question: 'Operation time by level', primary: true };
+  const question = {
+    method: 'lmm',
+    formula: 'operation_time ~ level + (1|participant)',
+    question: 'Operation time by level',
+    primary: true,
+  };
 
   it('says what is missing, one thing at a time', () => {
-    expect(planOf(kBlankPlan)).toEqual({ missing: 'The plan needs a title.' });
-    expect(planOf({ ...kBlankPlan, title: 'x', endpoint: 'operation_time' })).toEqual({ missing: 'Add at least one analysis.' });
-    expect(planOf({ ...kBlankPlan, title: 'x', endpoint: 'a', questions: [question], alpha: '2' })).toEqual({ missing: 'α lies between 0 and 0.5.' });
+    expect(planOf(kBlankPlan)).toEqual({ missing: 'Enter a title.' });
+    expect(planOf({ ...kBlankPlan, title: 'x', endpoint: 'operation_time' })).toEqual({
+      missing: 'Add at least one analysis.',
+    });
+    expect(planOf({ ...kBlankPlan, title: 'x', endpoint: 'a', questions: [question], alpha: '2' })).toEqual({
+      missing: 'α must be greater than 0 and less than 0.5.',
+    });
   });
 
   it('goes out as tractus-plan/1 with its primary family', () => {
-    const made = planOf({ ...kBlankPlan, title: ' x ', endpoint: 'operation_time', questions: [question, { ...question, primary: false }] });
-    expect(made).toMatchObject({ plan: { format: 'tractus-plan/1', title: 'x', alpha: 0.05, correction: 'holm', exclusions: [], analyses: [{ id: 'analysis-1', family: 'primary', method: 'lmm' }, { id: 'analysis-2' }] } });
+    const made = planOf({
+      ...kBlankPlan,
+      title: ' x ',
+      endpoint: 'operation_time',
+      questions: [question, { ...question, primary: false }],
+    });
+    expect(made).toMatchObject({
+      plan: {
+        format: 'tractus-plan/1',
+        title: 'x',
+        alpha: 0.05,
+        correction: 'holm',
+        exclusions: [],
+        analyses: [{ id: 'analysis-1', family: 'primary', method: 'lmm' }, { id: 'analysis-2' }],
+      },
+    });
   });
 
   it('has the person as a random intercept wherever trials repeat', () => {
@@ -37,7 +94,13 @@ describe('a plan', () => {
 });
 
 describe('a number of a report', () => {
-  it.each([[0.0000231, 'p', 'p < 0.001'], [0.38909, 'p', '0.389'], [8, 'df', '8'], [null, 'p', '–'], [true, 'x', 'yes']])('%s as %s reads %s', (value, key, text) => {
+  it.each([
+    [0.0000231, 'p', 'p < 0.001'],
+    [0.38909, 'p', '0.389'],
+    [8, 'df', '8'],
+    [null, 'p', '–'],
+    [true, 'x', 'yes'],
+  ])('%s as %s reads %s', (value, key, text) => {
     expect(cell(value, key)).toBe(text);
   });
 });

@@ -2,49 +2,95 @@ import { useState } from 'react';
 import type { CohortTable, MetricFacts } from '@/api';
 import { Button, Field, Select } from '@/ui';
 import styles from './analysis.module.css';
+import { columnName, defaultPredictor, endpointsOf, predictorsOf } from './columns';
 import { kMethods, type Method } from './methods';
 import type { Question } from './plan-draft';
 
 interface Props {
   readonly table: CohortTable;
   readonly metrics: readonly MetricFacts[];
-  readonly deed: string;
+  readonly action: string;
   readonly busy: boolean;
   /** In a plan: whether it is one of the tests that are corrected together. */
   readonly planned?: boolean;
   readonly onAsk: (question: Question) => void;
 }
 
-const kFacts: Record<string, string | undefined> = { correct: 'Answer right', experience_years: 'Years of experience', level: 'Level of training', number: 'Number of the trial', case: 'Scenario or case', participant: 'Participant', study: 'Study', rig: 'Rig' };
-export const columnName = (name: string, metrics: readonly MetricFacts[]) => kFacts[name] ?? metrics.find(({ id }) => id === name)?.label ?? name.replaceAll('_', ' ');
+const kFirst: Method = {
+  id: 'describe',
+  name: '',
+  description: '',
+  formula: (endpoint) => `${endpoint} ~ 1`,
+  people: false,
+};
 
-const kFirst: Method = { id: 'describe', name: '', says: '', formula: (endpoint) => `${endpoint} ~ 1`, people: false };
-
-/** One question to the cohort: what is measured, what it may depend on, and by which method. */
-export function QuestionForm({ table, metrics, deed, busy, planned = false, onAsk }: Props) {
-  const endpoints = table.columns.filter(({ name, numbers }) => numbers && !['number', 'experience_years', 'simulated'].includes(name));
-  const causes = table.columns.filter(({ name, levels }) => ['experience_years', 'level', 'number', 'case', 'rig'].includes(name) && levels.length > 1);
+/** An analysis: endpoint, predictor and method. */
+export function QuestionForm({ table, metrics, action, busy, planned = false, onAsk }: Props) {
+  const endpoints = endpointsOf(table);
+  const predictors = predictorsOf(table);
   const [methodId, setMethod] = useState('lmm');
-  const [endpoint, setEndpoint] = useState(endpoints.find(({ name }) => name === 'operation_time')?.name ?? endpoints[0]?.name ?? '');
-  const [by, setBy] = useState(causes[0]?.name ?? '1');
+  const [endpoint, setEndpoint] = useState(
+    endpoints.find(({ name }) => name === 'operation_time')?.name ?? endpoints[0]?.name ?? '',
+  );
+  const [by, setBy] = useState(() => defaultPredictor(table, endpoint));
   const [own, setOwn] = useState<string | null>(null);
   const [primary, setPrimary] = useState(true);
   const method = kMethods.find(({ id }) => id === methodId) ?? kFirst;
   const formula = own ?? method.formula(endpoint, by, 'participant');
-  const change = <Value,>(set: (value: Value) => void) => (value: Value) => { set(value); setOwn(null); };
+  const change =
+    <Value,>(set: (value: Value) => void) =>
+    (value: Value) => {
+      set(value);
+      setOwn(null);
+    };
   const question = `${columnName(endpoint, metrics)}${method.id === 'describe' ? '' : ` by ${columnName(by, metrics).toLowerCase()}`}`;
   return (
     <div className={styles.stack}>
       <div className={styles.fields}>
-        <Select label="Endpoint" value={endpoint} onChange={(event) => change(setEndpoint)(event.target.value)} options={endpoints.map(({ name }) => ({ value: name, text: columnName(name, metrics) }))} />
-        <Select label="Depends on" value={by} onChange={(event) => change(setBy)(event.target.value)} options={causes.length === 0 ? [{ value: '1', text: 'nothing varies' }] : causes.map(({ name }) => ({ value: name, text: columnName(name, metrics) }))} />
-        <Select label="Method" value={methodId} onChange={(event) => change(setMethod)(event.target.value)} options={kMethods.map(({ id, name }) => ({ value: id, text: name }))} />
+        <Select
+          label="Endpoint"
+          value={endpoint}
+          onChange={(event) => change(setEndpoint)(event.target.value)}
+          options={endpoints.map(({ name }) => ({ value: name, text: columnName(name, metrics) }))}
+        />
+        <Select
+          label="Predictor"
+          value={by}
+          onChange={(event) => change(setBy)(event.target.value)}
+          options={
+            predictors.length === 0
+              ? [{ value: '1', text: 'no predictor available' }]
+              : predictors.map(({ name }) => ({ value: name, text: columnName(name, metrics) }))
+          }
+        />
+        <Select
+          label="Method"
+          value={methodId}
+          onChange={(event) => change(setMethod)(event.target.value)}
+          options={kMethods.map(({ id, name }) => ({ value: id, text: name }))}
+        />
       </div>
-      <p className={styles.muted}>{method.says}</p>
+      <p className={styles.muted}>{method.description}</p>
       <div className={styles.ask}>
-        <Field label="Formula (may be changed)" value={formula} spellCheck={false} onChange={(event) => setOwn(event.target.value)} />
-        {planned ? <label className={styles.check}><input type="checkbox" checked={primary} onChange={(event) => setPrimary(event.target.checked)} /> primary (corrected with the others)</label> : null}
-        <Button look="solid" disabled={busy || endpoint === ''} onClick={() => onAsk({ method: method.id, formula, question, primary })}>{busy ? 'Asking…' : deed}</Button>
+        <Field
+          label="Formula (editable)"
+          value={formula}
+          spellCheck={false}
+          onChange={(event) => setOwn(event.target.value)}
+        />
+        {planned ? (
+          <label className={styles.check}>
+            <input type="checkbox" checked={primary} onChange={(event) => setPrimary(event.target.checked)} /> primary
+            (included in the correction for multiple testing)
+          </label>
+        ) : null}
+        <Button
+          look="solid"
+          disabled={busy || endpoint === ''}
+          onClick={() => onAsk({ method: method.id, formula, question, primary })}
+        >
+          {busy ? 'Starting…' : action}
+        </Button>
       </div>
     </div>
   );

@@ -2,15 +2,44 @@ import { Notice, Scroll } from '@/ui';
 import { formatCount, formatFigure, kNone } from '@/units';
 import styles from './analysis.module.css';
 
-const kWords: Record<string, string | undefined> = {
-  name: 'Term', estimate: 'Estimate', standard_error: 'Standard error', t: 't', z: 'z', p: 'p', ci95_low: '95 % from', ci95_high: 'to', hc3_standard_error: 'SE, robust (HC3)', statistic: 'Statistic',
-  value: 'Value', df: 'df', df1: 'df', df2: 'df residual', effect: 'Effect', size: 'Size', term: 'Term', assumption: 'Assumption', found: 'Found', advice: 'Advice', level: 'Level', mean: 'Mean', sd: 'SD', n: 'n',
+const kHeadings: Record<string, string | undefined> = {
+  name: 'Term',
+  estimate: 'Estimate',
+  standard_error: 'Standard error',
+  t: 't',
+  z: 'z',
+  p: 'p',
+  ci95_low: '95 % from',
+  ci95_high: 'to',
+  hc3_standard_error: 'SE, robust (HC3)',
+  statistic: 'Statistic',
+  value: 'Value',
+  df: 'df',
+  df1: 'df',
+  df2: 'df residual',
+  effect: 'Effect',
+  size: 'Size',
+  term: 'Term',
+  assumption: 'Assumption',
+  found: 'Found',
+  advice: 'Advice',
+  level: 'Level',
+  mean: 'Mean',
+  sd: 'SD',
+  n: 'n',
 };
-const heading = (key: string) => kWords[key] ?? (key.charAt(0).toUpperCase() + key.slice(1)).replaceAll('_', ' ');
+const heading = (key: string) => kHeadings[key] ?? (key.charAt(0).toUpperCase() + key.slice(1)).replaceAll('_', ' ');
 
 export function cell(value: unknown, key = ''): string {
   if (value === null || value === undefined) return kNone;
-  if (typeof value === 'number') return key === 'p' || key.endsWith('_p') || key === 'p_adjusted' ? (value < 0.001 ? 'p < 0.001' : formatFigure(value, '', 3)) : Number.isInteger(value) ? formatCount(value) : formatFigure(value, '', 4);
+  if (typeof value === 'number')
+    return key === 'p' || key.endsWith('_p') || key === 'p_adjusted'
+      ? value < 0.001
+        ? 'p < 0.001'
+        : formatFigure(value, '', 3)
+      : Number.isInteger(value)
+        ? formatCount(value)
+        : formatFigure(value, '', 4);
   if (typeof value === 'boolean') return value ? 'yes' : 'no';
   if (typeof value === 'string') return value;
   return JSON.stringify(value);
@@ -20,35 +49,84 @@ type Line = Readonly<Record<string, unknown>>;
 const isLine = (value: unknown): value is Line => typeof value === 'object' && value !== null && !Array.isArray(value);
 
 function Lines({ caption, lines }: { readonly caption: string; readonly lines: readonly Line[] }) {
-  const keys = [...new Set(lines.flatMap((line) => Object.keys(line)))].filter((key) => lines.some((line) => !Array.isArray(line[key]) && !isLine(line[key])));
+  const keys = [...new Set(lines.flatMap((line) => Object.keys(line)))].filter((key) =>
+    lines.some((line) => !Array.isArray(line[key]) && !isLine(line[key])),
+  );
   return (
     <Scroll label={caption}>
       <table className={styles.table}>
         <caption>{caption}</caption>
-        <thead><tr>{keys.map((key) => <th key={key} scope="col" className={lines.every((line) => typeof line[key] === 'number' || line[key] === null || line[key] === undefined) ? styles.number : undefined}>{heading(key)}</th>)}</tr></thead>
-        <tbody>{lines.map((line, i) => <tr key={i}>{keys.map((key, k) => { const text = cell(line[key], key), number = typeof line[key] === 'number'; return k === 0 ? <th key={key} scope="row">{text}</th> : <td key={key} className={number ? styles.number : undefined}>{text}</td>; })}</tr>)}</tbody>
+        <thead>
+          <tr>
+            {keys.map((key) => (
+              <th
+                key={key}
+                scope="col"
+                className={
+                  lines.every((line) => typeof line[key] === 'number' || line[key] === null || line[key] === undefined)
+                    ? styles.number
+                    : undefined
+                }
+              >
+                {heading(key)}
+              </th>
+            ))}
+          </tr>
+        </thead>
+        <tbody>
+          {lines.map((line, i) => (
+            <tr key={i}>
+              {keys.map((key, k) => {
+                const text = cell(line[key], key),
+                  number = typeof line[key] === 'number';
+                return k === 0 ? (
+                  <th key={key} scope="row">
+                    {text}
+                  </th>
+                ) : (
+                  <td key={key} className={number ? styles.number : undefined}>
+                    {text}
+                  </td>
+                );
+              })}
+            </tr>
+          ))}
+        </tbody>
       </table>
     </Scroll>
   );
 }
 
-const kElsewhere = new Set(['method', 'file', 'formula', 'rows', 'rows_left_out', 'tests', 'checks', 'notes']);
+const kShownElsewhere = new Set(['method', 'file', 'formula', 'rows', 'rows_left_out', 'tests', 'checks', 'notes']);
 
-/** What a method reports: its tables, its figures, what it assumed and whether that holds, what is to be known. */
+/** The report of one method: tables, figures, assumption checks and notes. */
 export function ReportView({ report }: { readonly report: Line }) {
-  const entries = Object.entries(report).filter(([key]) => !kElsewhere.has(key));
+  const entries = Object.entries(report).filter(([key]) => !kShownElsewhere.has(key));
   const checks = Array.isArray(report.checks) ? report.checks.filter(isLine) : [];
-  const notes = Array.isArray(report.notes) ? report.notes.filter((note): note is string => typeof note === 'string') : [];
+  const notes = Array.isArray(report.notes)
+    ? report.notes.filter((note): note is string => typeof note === 'string')
+    : [];
   const loose = entries.filter(([, value]) => !Array.isArray(value) && !isLine(value));
   return (
     <div className={styles.stack}>
       {entries.map(([key, value]) => {
-        if (Array.isArray(value)) return value.length > 0 && value.every(isLine) ? <Lines key={key} caption={heading(key)} lines={value} /> : null;
+        if (Array.isArray(value))
+          return value.length > 0 && value.every(isLine) ? (
+            <Lines key={key} caption={heading(key)} lines={value} />
+          ) : null;
         return isLine(value) ? <Lines key={key} caption={heading(key)} lines={[value]} /> : null;
       })}
-      {loose.length > 0 ? <p className={styles.muted}>{loose.map(([key, value]) => `${heading(key)}: ${cell(value, key)}`).join(' · ')}</p> : null}
-      {checks.length > 0 ? <Lines caption="Assumptions, checked" lines={checks} /> : null}
-      {notes.map((note) => <Notice key={note} tone="warn" title="To be known">{note}</Notice>)}
+      {loose.length > 0 ? (
+        <p className={styles.muted}>
+          {loose.map(([key, value]) => `${heading(key)}: ${cell(value, key)}`).join(' · ')}
+        </p>
+      ) : null}
+      {checks.length > 0 ? <Lines caption="Assumption checks" lines={checks} /> : null}
+      {notes.map((note) => (
+        <Notice key={note} tone="warn" title="Note">
+          {note}
+        </Notice>
+      ))}
     </div>
   );
 }

@@ -5,39 +5,107 @@ import { formatCount, formatFigure } from '@/units';
 import styles from './analysis.module.css';
 import { cell, ReportView } from './report-view';
 
-const kAdjusted = 'Several tests of one family are corrected together, so that the chance of any false alarm among them stays what the plan says.';
+const kAdjusted =
+  'The tests of one family are corrected together, so that the error rate of the whole family stays at the level that the plan states.';
 
 /** Effects with their intervals beside one another, zero marked. */
 function Forest({ tests }: { readonly tests: readonly PlannedTest[] }) {
-  const known = tests.flatMap((test) => (typeof test.size === 'number' && typeof test.ci95_low === 'number' && typeof test.ci95_high === 'number' ? [{ ...test, size: test.size, low: test.ci95_low, high: test.ci95_high }] : []));
+  const known = tests.flatMap((test) =>
+    typeof test.size === 'number' && typeof test.ci95_low === 'number' && typeof test.ci95_high === 'number'
+      ? [{ ...test, size: test.size, low: test.ci95_low, high: test.ci95_high }]
+      : [],
+  );
   if (known.length === 0) return null;
-  const least = Math.min(0, ...known.map(({ low }) => low)), most = Math.max(0, ...known.map(({ high }) => high)), margin = (most - least || 1) * 0.06;
+  const least = Math.min(0, ...known.map(({ low }) => low)),
+    most = Math.max(0, ...known.map(({ high }) => high)),
+    margin = (most - least || 1) * 0.06;
   return (
-    <Plane across={{ title: 'effect with its 95 % interval', from: least - margin, to: most + margin }} up={{ title: '', from: 0, to: known.length, ticks: [] }} height_px={70 + 34 * known.length}
-      summary={known.map(({ term, size, low, high }) => `${term}: ${formatFigure(size)} (${formatFigure(low)} to ${formatFigure(high)})`).join('; ')}>
-      {({ x, y }) => <>
-        <line x1={x(0)} x2={x(0)} y1={y(0)} y2={y(known.length)} className={styles.zero} />
-        {known.map(({ term, analysis, size, low, high, holds }, i) => {
-          const at = y(known.length - i - 0.6);
-          return <g key={i} className={styles.effect} data-holds={holds === true}><line x1={x(low)} x2={x(high)} y1={at} y2={at} /><circle cx={x(size)} cy={at} r={5} /><text x={x(least - margin) + 4} y={at - 9}>{analysis === undefined ? term : `${term} (${analysis})`}</text></g>;
-        })}
-      </>}
+    <Plane
+      across={{ title: 'effect with its 95 % interval', from: least - margin, to: most + margin }}
+      up={{ title: '', from: 0, to: known.length, ticks: [] }}
+      height_px={70 + 34 * known.length}
+      summary={known
+        .map(
+          ({ term, size, low, high }) =>
+            `${term}: ${formatFigure(size)} (${formatFigure(low)} to ${formatFigure(high)})`,
+        )
+        .join('; ')}
+    >
+      {({ x, y }) => (
+        <>
+          <line x1={x(0)} x2={x(0)} y1={y(0)} y2={y(known.length)} className={styles.zero} />
+          {known.map(({ term, analysis, size, low, high, holds }, i) => {
+            const at = y(known.length - i - 0.6);
+            return (
+              <g key={i} className={styles.effect} data-holds={holds === true}>
+                <line x1={x(low)} x2={x(high)} y1={at} y2={at} />
+                <circle cx={x(size)} cy={at} r={5} />
+                <text x={x(least - margin) + 4} y={at - 9}>
+                  {analysis === undefined ? term : `${term} (${analysis})`}
+                </text>
+              </g>
+            );
+          })}
+        </>
+      )}
     </Plane>
   );
 }
 
 function Family({ family }: { readonly family: AnalysisResult['families'][number] }) {
   return (
-    <Card title={`Tests: ${family.name}`} aside={<Term align="end" definition={kAdjusted}>corrected by {family.correction}, α = {formatFigure(family.alpha, '', 2)}</Term>}>
+    <Card
+      title={`Tests: ${family.name}`}
+      aside={
+        <Term align="end" definition={kAdjusted}>
+          corrected by {family.correction}, α = {formatFigure(family.alpha, '', 2)}
+        </Term>
+      }
+    >
       <div className={styles.stack}>
-        <Table<PlannedTest> caption={`Tests of the family ${family.name}`} rows={family.tests} keyOf={(_, i) => String(i)} empty="No test." minWidth={760} columns={[
-          { name: 'Term', cell: (test) => <>{test.term} {test.analysis === undefined ? null : <span className={styles.muted}>{test.analysis}</span>}</> },
-          { name: 'Statistic', cell: (test) => (test.statistic === '' ? test.note ?? '–' : `${test.statistic}${typeof test.df1 === 'number' ? `(${formatFigure(test.df1)}, ${formatFigure(test.df2 ?? null)})` : typeof test.df2 === 'number' ? `(${formatFigure(test.df2)})` : ''} = ${formatFigure(test.value)}`) },
-          { name: 'Effect', cell: (test) => (typeof test.size === 'number' ? `${test.effect ?? ''} ${formatFigure(test.size)}${typeof test.ci95_low === 'number' ? ` (${formatFigure(test.ci95_low)} to ${formatFigure(test.ci95_high ?? null)})` : ''}` : '–') },
-          { name: 'p', cell: (test) => cell(test.p, 'p'), number: true },
-          { name: 'p, corrected', cell: (test) => cell(test.p_adjusted, 'p'), number: true },
-          { name: 'Holds', cell: (test) => (test.holds === undefined ? '–' : <Badge tone={test.holds ? 'good' : 'neutral'}>{test.holds ? 'holds' : 'no evidence'}</Badge>) },
-        ]} />
+        <Table<PlannedTest>
+          caption={`Tests of the family ${family.name}`}
+          rows={family.tests}
+          keyOf={(_, i) => String(i)}
+          empty="No tests."
+          minWidth={760}
+          columns={[
+            {
+              name: 'Term',
+              cell: (test) => (
+                <>
+                  {test.term}{' '}
+                  {test.analysis === undefined ? null : <span className={styles.muted}>{test.analysis}</span>}
+                </>
+              ),
+            },
+            {
+              name: 'Statistic',
+              cell: (test) =>
+                test.statistic === ''
+                  ? (test.note ?? '–')
+                  : `${test.statistic}${typeof test.df1 === 'number' ? `(${formatFigure(test.df1)}, ${formatFigure(test.df2 ?? null)})` : typeof test.df2 === 'number' ? `(${formatFigure(test.df2)})` : ''} = ${formatFigure(test.value)}`,
+            },
+            {
+              name: 'Effect',
+              cell: (test) =>
+                typeof test.size === 'number'
+                  ? `${test.effect ?? ''} ${formatFigure(test.size)}${typeof test.ci95_low === 'number' ? ` (${formatFigure(test.ci95_low)} to ${formatFigure(test.ci95_high ?? null)})` : ''}`
+                  : '–',
+            },
+            { name: 'p', cell: (test) => cell(test.p, 'p'), number: true },
+            { name: 'Corrected p', cell: (test) => cell(test.p_adjusted, 'p'), number: true },
+            {
+              name: 'Significant',
+              cell: (test) =>
+                test.holds === undefined ? (
+                  '–'
+                ) : (
+                  <Badge tone={test.holds ? 'good' : 'neutral'}>{test.holds ? 'yes' : 'no'}</Badge>
+                ),
+            },
+          ]}
+        />
         <Forest tests={family.tests} />
       </div>
     </Card>
@@ -48,14 +116,44 @@ function Published({ rows }: { readonly rows: AnalysisResult['published'] }) {
   const held = rows.filter(({ printed }) => typeof printed === 'number');
   const agree = held.filter(({ agrees }) => agrees === true).length;
   return (
-    <Card title="Printed and recomputed" aside={<Badge tone={agree === held.length ? 'good' : 'warn'}>{`${formatCount(agree)} of ${formatCount(held.length)} agree`}</Badge>}>
-      <Table<AnalysisResult['published'][number]> caption="Published numbers beside the recomputed ones" rows={rows} keyOf={(_, i) => String(i)} empty="Nothing was published of it." minWidth={760} columns={[
-        { name: 'Where', cell: (one) => one.where },
-        { name: 'What', cell: (one) => <>{one.says}{one.remark === '' ? null : <span className={styles.remark}>{one.remark}</span>}</> },
-        { name: 'Printed', cell: (one) => cell(one.printed), number: true },
-        { name: 'Here', cell: (one) => formatFigure(one.computed, '', 5), number: true },
-        { name: 'Verdict', cell: (one) => (one.agrees === true ? <Badge tone="good">agrees</Badge> : one.agrees === false ? <Badge tone="bad">differs</Badge> : null) },
-      ]} />
+    <Card
+      title="Published and recomputed values"
+      aside={
+        <Badge
+          tone={agree === held.length ? 'good' : 'warn'}
+        >{`${formatCount(agree)} of ${formatCount(held.length)} agree`}</Badge>
+      }
+    >
+      <Table<AnalysisResult['published'][number]>
+        caption="Published values beside recomputed values"
+        rows={rows}
+        keyOf={(_, i) => String(i)}
+        empty="No published values."
+        minWidth={760}
+        columns={[
+          { name: 'Source', cell: (one) => one.where },
+          {
+            name: 'Quantity',
+            cell: (one) => (
+              <>
+                {one.says}
+                {one.remark === '' ? null : <span className={styles.remark}>{one.remark}</span>}
+              </>
+            ),
+          },
+          { name: 'Published', cell: (one) => cell(one.printed), number: true },
+          { name: 'Recomputed', cell: (one) => formatFigure(one.computed, '', 5), number: true },
+          {
+            name: 'Agreement',
+            cell: (one) =>
+              one.agrees === true ? (
+                <Badge tone="good">agrees</Badge>
+              ) : one.agrees === false ? (
+                <Badge tone="bad">differs</Badge>
+              ) : null,
+          },
+        ]}
+      />
     </Card>
   );
 }
@@ -63,24 +161,63 @@ function Published({ rows }: { readonly rows: AnalysisResult['published'] }) {
 /** Two analyses may answer the same question: then each is told by its id too. */
 function titleOf(one: AnalysisResult['analyses'][number], all: AnalysisResult['analyses']): string {
   if (one.question === '') return one.id;
-  return all.some((other) => other.id !== one.id && other.question === one.question) ? `${one.question} (${one.id})` : one.question;
+  return all.some((other) => other.id !== one.id && other.question === one.question)
+    ? `${one.question} (${one.id})`
+    : one.question;
 }
 
-/** Everything that an analysis gave: sentences first, then tests, then each analysis whole. */
+/** The result of an analysis: summary sentences, then tests, then each report. */
 export function ResultView({ result }: { readonly result: AnalysisResult }) {
   return (
     <>
-      <Card title="Results" aside={result.data.simulated ? <Badge tone="warn">simulated data</Badge> : <span className={styles.muted}>{formatCount(result.data.rows_used)} of {formatCount(result.data.rows)} rows used</span>}>
-        {result.results.length > 0 ? <ul className={styles.sentences}>{result.results.map((one) => <li key={one}>{one}</li>)}</ul> : <p className={styles.muted}>The plan tests nothing; what it describes stands below.</p>}
+      <Card
+        title="Results"
+        aside={
+          result.data.simulated ? (
+            <Badge tone="warn">simulated data</Badge>
+          ) : (
+            <span className={styles.muted}>
+              {formatCount(result.data.rows_used)} of {formatCount(result.data.rows)} rows used
+            </span>
+          )
+        }
+      >
+        {result.results.length > 0 ? (
+          <ul className={styles.sentences}>
+            {result.results.map((one) => (
+              <li key={one}>{one}</li>
+            ))}
+          </ul>
+        ) : (
+          <p className={styles.muted}>No confirmatory test was planned; exploratory results follow.</p>
+        )}
       </Card>
-      {result.families.map((family) => <Family key={family.name} family={family} />)}
+      {result.families.map((family) => (
+        <Family key={family.name} family={family} />
+      ))}
       {result.published.length > 0 ? <Published rows={result.published} /> : null}
       {result.analyses.map((one) => (
-        <Card key={one.id} title={titleOf(one, result.analyses)} aside={<span className={styles.muted}><code>{one.formula === '' ? one.method : `${one.method}: ${one.formula}`}</code></span>}>
-          {one.error ? <Notice tone="bad" title="This analysis could not be done.">{one.error}</Notice> : one.report ? <ReportView report={one.report} /> : null}
+        <Card
+          key={one.id}
+          title={titleOf(one, result.analyses)}
+          aside={
+            <span className={styles.muted}>
+              <code>{one.formula === '' ? one.method : `${one.method}: ${one.formula}`}</code>
+            </span>
+          }
+        >
+          {one.error ? (
+            <Notice tone="bad" title="This analysis failed.">
+              {one.error}
+            </Notice>
+          ) : one.report ? (
+            <ReportView report={one.report} />
+          ) : null}
         </Card>
       ))}
-      <Card title="Methods, for a paper"><p className={styles.methods}>{result.methods.join(' ')}</p></Card>
+      <Card title="Methods text for publication">
+        <p className={styles.methods}>{result.methods.join(' ')}</p>
+      </Card>
     </>
   );
 }

@@ -1,18 +1,29 @@
 import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { useState, type FormEvent } from 'react';
 import { Link } from 'wouter';
-import { assignmentQuery, assignmentsQuery, assignPerson, freePerson, markAssignedInvalid, sessionQuery, setDue, setRelease, type Assignment, type Release } from '@/api';
+import {
+  assignmentQuery,
+  assignmentsQuery,
+  assignPerson,
+  releaseReservation,
+  markAssignedInvalid,
+  sessionQuery,
+  setDue,
+  setRelease,
+  type Assignment,
+  type Release,
+} from '@/api';
 import { AskDialog, Button, Card, Facts, Field, Notice, ReasonDialog, Skeleton, Table, useTitle } from '@/ui';
 import { formatDateTime } from '@/units';
 import styles from './assignments.module.css';
 import { fromField, toField } from './dates';
 import { Done, Drilling, DueDate } from './parts';
 import { TrialsTable } from './trials-table';
-import { kOrderWords, kReleaseWords } from './words';
+import { kOrderLabels, kReleaseLabels } from './labels';
 
-type Keep = (next: Assignment) => Promise<void>;
+type Store = (next: Assignment) => Promise<void>;
 
-function useKeep(id: string): Keep {
+function useStore(id: string): Store {
   const client = useQueryClient();
   return async (next) => {
     client.setQueryData(assignmentQuery(id).queryKey, next);
@@ -20,30 +31,65 @@ function useKeep(id: string): Keep {
   };
 }
 
-/** Results held or released; what was can be brought back at once. */
-function Results({ one, keep }: { readonly one: Assignment; readonly keep: Keep }) {
+/** Releases or hides the results; the last change can be undone. */
+function Results({ one, store }: { readonly one: Assignment; readonly store: Store }) {
   const [before, setBefore] = useState<Release | null>(null);
-  const set = useMutation({ mutationFn: (to: Release) => setRelease(one.id, to), onSuccess: keep });
-  const go = (to: Release, from: Release | null) => { setBefore(from); set.mutate(to); };
+  const set = useMutation({ mutationFn: (to: Release) => setRelease(one.id, to), onSuccess: store });
+  const go = (to: Release, from: Release | null) => {
+    setBefore(from);
+    set.mutate(to);
+  };
   return (
     <Card title="Results">
       <div className={styles.stack} data-part="results">
-        <p><strong>{kReleaseWords[one.release].name}</strong>. {kReleaseWords[one.release].means}</p>
+        <p>
+          <strong>{kReleaseLabels[one.release].name}</strong>. {kReleaseLabels[one.release].description}
+        </p>
         <div className={styles.buttons}>
-          {one.release === 'released' ? <Button onClick={() => go('held', 'released')} disabled={set.isPending}>Hold them</Button> : <Button look="solid" onClick={() => go('released', one.release)} disabled={set.isPending}>Release results</Button>}
-          {before !== null && !set.isPending && set.isSuccess ? <Button look="quiet" onClick={() => go(before, null)}>Undo</Button> : null}
+          {one.release === 'released' ? (
+            <Button onClick={() => go('held', 'released')} disabled={set.isPending}>
+              Hide results
+            </Button>
+          ) : (
+            <Button look="solid" onClick={() => go('released', one.release)} disabled={set.isPending}>
+              Release results
+            </Button>
+          )}
+          {before !== null && !set.isPending && set.isSuccess ? (
+            <Button look="quiet" onClick={() => go(before, null)}>
+              Undo
+            </Button>
+          ) : null}
         </div>
-        {set.isError ? <Notice tone="bad" title="That was not done.">{set.error.message}</Notice> : null}
+        {set.isError ? (
+          <Notice tone="bad" title="The action failed.">
+            {set.error.message}
+          </Notice>
+        ) : null}
       </div>
     </Card>
   );
 }
 
-function DueDialog({ one, keep, onClose }: { readonly one: Assignment; readonly keep: Keep; readonly onClose: () => void }) {
+function DueDialog({
+  one,
+  store,
+  onClose,
+}: {
+  readonly one: Assignment;
+  readonly store: Store;
+  readonly onClose: () => void;
+}) {
   const [text, setText] = useState(toField(one.due_utc_us));
   return (
-    <AskDialog title="When is it due?" deed="Set" ready={text === '' || fromField(text) !== null} onClose={onClose} onDeed={() => setDue(one.id, fromField(text)).then(keep)}>
-      <p>Stations hand out what is due first. An empty date takes it away.</p>
+    <AskDialog
+      title="Change due date"
+      action="Save"
+      ready={text === '' || fromField(text) !== null}
+      onClose={onClose}
+      onAction={() => setDue(one.id, fromField(text)).then(store)}
+    >
+      <p>Stations offer the assignment with the earliest due date first. Leave the field empty for no due date.</p>
       <Field label="Due" type="datetime-local" value={text} onChange={(event) => setText(event.target.value)} />
     </AskDialog>
   );
@@ -51,30 +97,88 @@ function DueDialog({ one, keep, onClose }: { readonly one: Assignment; readonly 
 
 type Trainee = Assignment['trainees'][number];
 
-function Trainees({ one, keep, may }: { readonly one: Assignment; readonly keep: Keep; readonly may: boolean }) {
+function Trainees({ one, store, may }: { readonly one: Assignment; readonly store: Store; readonly may: boolean }) {
   const [name, setName] = useState('');
-  const [freeing, setFreeing] = useState<Trainee | null>(null);
-  const added = useMutation({ mutationFn: (person: string) => assignPerson(one.id, person), onSuccess: async (next) => { setName(''); await keep(next); } });
-  const submit = (event: FormEvent) => { event.preventDefault(); added.mutate(name.trim()); };
+  const [releasing, setReleasing] = useState<Trainee | null>(null);
+  const added = useMutation({
+    mutationFn: (person: string) => assignPerson(one.id, person),
+    onSuccess: async (next) => {
+      setName('');
+      await store(next);
+    },
+  });
+  const submit = (event: FormEvent) => {
+    event.preventDefault();
+    added.mutate(name.trim());
+  };
   return (
     <Card title="Trainees">
       <div className={styles.stack}>
-        <Table<Trainee> caption="Trainees" rows={one.trainees} keyOf={({ account_id }) => account_id} empty="It is assigned to nobody yet." columns={[
-          { name: 'Name', cell: (person) => <Link href={`/trainees/${encodeURIComponent(person.participant)}`}>{person.name}</Link> },
-          { name: 'Done', cell: (person) => <Done done={person.done} planned={person.planned} label={`Trials done by ${person.name}`} /> },
-          { name: <span className="hidden-visually">Decide</span>, cell: (person) => (may && person.done < person.planned ? <Button look="quiet" label={`Free what a station holds: ${person.name}`} onClick={() => setFreeing(person)}>Free…</Button> : null) },
-        ]} />
+        <Table<Trainee>
+          caption="Trainees"
+          rows={one.trainees}
+          keyOf={({ account_id }) => account_id}
+          empty="No trainees yet."
+          columns={[
+            {
+              name: 'Name',
+              cell: (person) => <Link href={`/trainees/${encodeURIComponent(person.participant)}`}>{person.name}</Link>,
+            },
+            {
+              name: 'Done',
+              cell: (person) => (
+                <Done done={person.done} planned={person.planned} label={`Trials done by ${person.name}`} />
+              ),
+            },
+            {
+              name: <span className="hidden-visually">Actions</span>,
+              cell: (person) =>
+                may && person.done < person.planned ? (
+                  <Button
+                    look="quiet"
+                    label={`Release the reservation: ${person.name}`}
+                    onClick={() => setReleasing(person)}
+                  >
+                    Release reservation…
+                  </Button>
+                ) : null,
+            },
+          ]}
+        />
         {may ? (
           <form className={styles.add} onSubmit={submit}>
-            <Field label="One more trainee, by name" value={name} maxLength={100} onChange={(event) => setName(event.target.value)} />
-            <Button type="submit" disabled={name.trim() === '' || added.isPending}>Assign to them</Button>
+            <Field
+              label="Add a trainee by account name"
+              value={name}
+              maxLength={100}
+              onChange={(event) => setName(event.target.value)}
+            />
+            <Button type="submit" disabled={name.trim() === '' || added.isPending}>
+              Add trainee
+            </Button>
           </form>
         ) : null}
-        {added.isError ? <Notice tone="bad" title="That was not done.">{added.error.message}</Notice> : null}
+        {added.isError ? (
+          <Notice tone="bad" title="The action failed.">
+            {added.error.message}
+          </Notice>
+        ) : null}
       </div>
-      {freeing ? (
-        <AskDialog title={`Free what a station holds of ${freeing.name}?`} deed="Free it" onClose={() => setFreeing(null)} onDeed={() => freePerson(one.id, freeing.account_id).then(keep)}>
-          <p>A station that has begun a trial keeps it until it hands it over. Freed, the trial waits again and any station may hand it out; should the first one arrive after all, it stays as surplus.{one.to_drill > 0 ? ' A channel that was drilled there and not felt yet is drilled anew.' : ''}</p>
+      {releasing ? (
+        <AskDialog
+          title={`Release the reservation for ${releasing.name}?`}
+          action="Release reservation"
+          onClose={() => setReleasing(null)}
+          onAction={() => releaseReservation(one.id, releasing.account_id).then(store)}
+        >
+          <p>
+            A station reserves a trial from its start until the recording is uploaded. After the release, any station
+            can offer the trial again. If the first station uploads its recording later, the recording is kept as
+            surplus.
+            {one.to_drill > 0
+              ? ' A channel that was drilled at that station and not yet palpated must be drilled again.'
+              : ''}
+          </p>
         </AskDialog>
       ) : null}
     </Card>
@@ -82,30 +186,46 @@ function Trainees({ one, keep, may }: { readonly one: Assignment; readonly keep:
 }
 
 function Teaching({ one, may }: { readonly one: Assignment; readonly may: boolean }) {
-  const keep = useKeep(one.id);
+  const store = useStore(one.id);
   const [dialog, setDialog] = useState<'due' | string | null>(null);
   return (
     <>
       <div className={styles.two}>
-        <Trainees one={one} keep={keep} may={may} />
+        <Trainees one={one} store={store} may={may} />
         <div className={styles.stack}>
-          {may ? <Results one={one} keep={keep} /> : null}
-          <Card title="How">
+          {may ? <Results one={one} store={store} /> : null}
+          <Card title="Settings">
             <div className={styles.stack}>
-              <Facts facts={[
-                { name: 'Order', value: one.ordering ? kOrderWords[one.ordering] : '–' }, { name: 'Times each case', value: String(one.repeats ?? 1) },
-                { name: 'Cohort', value: one.cohort_name || 'none' }, { name: 'Made', value: `${formatDateTime(one.made_utc_us)} by ${one.made_by}` },
-              ]} />
-              {may ? <div className={styles.buttons}><Button onClick={() => setDialog('due')}>Change the date…</Button></div> : null}
+              <Facts
+                facts={[
+                  { name: 'Order', value: one.ordering ? kOrderLabels[one.ordering] : '–' },
+                  { name: 'Repeats per case', value: String(one.repeats ?? 1) },
+                  { name: 'Cohort', value: one.cohort_name || 'none' },
+                  { name: 'Created', value: `${formatDateTime(one.made_utc_us)} by ${one.made_by}` },
+                ]}
+              />
+              {may ? (
+                <div className={styles.buttons}>
+                  <Button onClick={() => setDialog('due')}>Change due date…</Button>
+                </div>
+              ) : null}
             </div>
           </Card>
         </div>
       </div>
-      <Card title="Trials"><TrialsTable one={one} may={may} onInvalid={setDialog} /></Card>
-      {dialog === 'due' ? <DueDialog one={one} keep={keep} onClose={() => setDialog(null)} /> : null}
+      <Card title="Trials">
+        <TrialsTable one={one} may={may} onInvalid={setDialog} />
+      </Card>
+      {dialog === 'due' ? <DueDialog one={one} store={store} onClose={() => setDialog(null)} /> : null}
       {dialog !== null && dialog !== 'due' ? (
-        <ReasonDialog title="This trial does not count?" text="It stays, with the reason, and is repeated as the assignment says." deed="Mark it invalid" reasonNeeded
-          onDeed={(reason) => markAssignedInvalid(one.id, dialog, reason).then(keep)} onClose={() => setDialog(null)} />
+        <ReasonDialog
+          title="Mark this trial as invalid?"
+          text="The trial is kept with your reason, but it is not counted. It is repeated as the assignment specifies."
+          action="Mark as invalid"
+          reasonNeeded
+          onAction={(reason) => markAssignedInvalid(one.id, dialog, reason).then(store)}
+          onClose={() => setDialog(null)}
+        />
       ) : null}
     </>
   );
@@ -114,17 +234,26 @@ function Teaching({ one, may }: { readonly one: Assignment; readonly may: boolea
 function Own({ one }: { readonly one: Assignment }) {
   return (
     <>
-      {one.to_drill > 0 ? <p>Where the bone is whole you drill the channel first, and then feel the one that you made: two trials at the same station. It is done when both are in.</p> : null}
+      {one.to_drill > 0 ? (
+        <p>
+          In cases without a pre-drilled channel, you first drill the channel and then palpate it: two trials at the
+          same station. The case is done when both recordings are uploaded.
+        </p>
+      ) : null}
       <Card title="Results">
-        {one.release === 'held'
-          ? <p data-part="held">Your results are shown here once they are released. Until then the cases stay blind for all.</p>
-          : <TrialsTable one={one} may={false} own />}
+        {one.release === 'held' ? (
+          <p data-part="held">
+            Your results appear here after they are released. Until then, the cases stay blinded for everyone.
+          </p>
+        ) : (
+          <TrialsTable one={one} may={false} own />
+        )}
       </Card>
     </>
   );
 }
 
-/** One assignment: who has done what, when it is due, and whether the results may be seen. */
+/** One assignment: progress of each trainee, due date, release of results. */
 export function AssignmentPage({ id }: { readonly id: string }) {
   const query = useQuery(assignmentQuery(id));
   const role = useQuery({ ...sessionQuery, enabled: false }).data?.role;
@@ -133,12 +262,28 @@ export function AssignmentPage({ id }: { readonly id: string }) {
   useTitle(one?.title ?? 'Assignment');
   return (
     <div className={styles.page}>
-      <p><Link href="/assignments">← {role === 'trainee' ? 'My work' : 'Assignments'}</Link></p>
-      {query.isError && !one ? <Notice tone="bad" title="The assignment could not be loaded." onRetry={() => void query.refetch()}>{query.error.message}</Notice> : null}
-      {query.isPending ? <div role="status"><span className="hidden-visually">Loading the assignment</span><Skeleton height="480px" /></div> : null}
+      <p>
+        <Link href="/assignments">← {role === 'trainee' ? 'My work' : 'Assignments'}</Link>
+      </p>
+      {query.isError && !one ? (
+        <Notice tone="bad" title="The assignment could not be loaded." onRetry={() => void query.refetch()}>
+          {query.error.message}
+        </Notice>
+      ) : null}
+      {query.isPending ? (
+        <div role="status">
+          <span className="hidden-visually">Loading the assignment</span>
+          <Skeleton height="480px" />
+        </div>
+      ) : null}
       {one ? (
         <>
-          <div className={styles.headline}><h1>{one.title}</h1><DueDate one={one} now_us={now_us} /><Done done={one.done} planned={one.planned} label="Trials done in all" /><Drilling one={one} /></div>
+          <div className={styles.headline}>
+            <h1>{one.title}</h1>
+            <DueDate one={one} now_us={now_us} />
+            <Done done={one.done} planned={one.planned} label="Trials done in total" />
+            <Drilling one={one} />
+          </div>
           {role === 'trainee' ? <Own one={one} /> : <Teaching one={one} may={role === 'admin' || role === 'faculty'} />}
         </>
       ) : null}

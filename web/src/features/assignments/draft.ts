@@ -2,8 +2,17 @@
 import type { NewAssignment } from '@/api';
 import { fromField } from './dates';
 
-export interface Item { readonly key: string; readonly title: string; readonly rig: 'palpation' | 'probing'; readonly case_id?: string; readonly tuned?: string; /** Its bone is whole. */ readonly whole?: boolean }
-export interface Chosen extends Item { readonly blind: string }
+export interface Item {
+  readonly key: string;
+  readonly title: string;
+  readonly rig: 'palpation' | 'probing';
+  readonly case_id?: string;
+  readonly tuned?: string;
+  /** Its bone is whole. */ readonly whole?: boolean;
+}
+export interface Chosen extends Item {
+  readonly blind: string;
+}
 
 export interface Draft {
   readonly title: string;
@@ -16,14 +25,23 @@ export interface Draft {
   readonly release: 'held' | 'released' | 'at_once';
 }
 
-export const kNoDraft: Draft = { title: '', chosen: [], cohort: '', people: [], ordering: 'random', repeats: 1, due: '', release: 'held' };
+export const kNoDraft: Draft = {
+  title: '',
+  chosen: [],
+  cohort: '',
+  people: [],
+  ordering: 'random',
+  repeats: 1,
+  due: '',
+  release: 'held',
+};
 
-/** A, B, … Z, AA: what a case is called where nobody said otherwise. */
+/** A, B, … Z, AA: the default blind name of a case. */
 export function letters(index: number): string {
   return index < 26 ? String.fromCharCode(65 + index) : letters(Math.floor(index / 26) - 1) + letters(index % 26);
 }
 
-/** The next blind name that none has. */
+/** The next unused blind name. */
 export function nextBlind(chosen: readonly Chosen[]): string {
   for (let i = 0; ; ++i) {
     const name = `Case ${letters(i)}`;
@@ -33,28 +51,40 @@ export function nextBlind(chosen: readonly Chosen[]): string {
 
 export function toggled(draft: Draft, item: Item): Draft {
   const there = draft.chosen.some(({ key }) => key === item.key);
-  return { ...draft, chosen: there ? draft.chosen.filter(({ key }) => key !== item.key) : [...draft.chosen, { ...item, blind: nextBlind(draft.chosen) }] };
+  return {
+    ...draft,
+    chosen: there
+      ? draft.chosen.filter(({ key }) => key !== item.key)
+      : [...draft.chosen, { ...item, blind: nextBlind(draft.chosen) }],
+  };
 }
 
-/** The first thing that is missing or wrong, in words; empty: it can be made. */
-export function lacking(draft: Draft): string {
-  if (draft.title.trim() === '') return 'It needs a title.';
+/** The first thing that is missing or wrong; empty: the assignment can be created. */
+export function firstProblem(draft: Draft, now_us: number): string {
+  if (draft.title.trim() === '') return 'Enter a title.';
   if (draft.chosen.length === 0) return 'Choose at least one case.';
-  if (draft.cohort === '' && draft.people.length === 0) return 'Choose a cohort, or people.';
+  if (draft.cohort === '' && draft.people.length === 0) return 'Choose a cohort or trainees.';
   const names = draft.chosen.map(({ blind }) => blind.trim()).filter((name) => name !== '');
+  const due = fromField(draft.due);
+  if (due !== null && due < now_us) return 'The due date is in the past.';
   if (new Set(names).size !== names.length) return 'Two cases have the same blind name.';
   return '';
 }
 
-export function wishOf(draft: Draft): NewAssignment {
+export function requestOf(draft: Draft): NewAssignment {
   const due = fromField(draft.due);
   return {
     title: draft.title.trim(),
     cases: draft.chosen.map(({ case_id, tuned, blind }) => ({
-      ...(case_id === undefined ? { scenario: { tuned: tuned ?? '' } } : { case: case_id }), ...(blind.trim() === '' ? {} : { name: blind.trim() }),
+      ...(case_id === undefined ? { scenario: { tuned: tuned ?? '' } } : { case: case_id }),
+      ...(blind.trim() === '' ? {} : { name: blind.trim() }),
     })),
-    ...(draft.cohort === '' ? {} : { cohort: draft.cohort }), ...(draft.people.length === 0 ? {} : { people: [...draft.people] }),
-    ordering: draft.ordering, repeats: draft.repeats, release: draft.release, ...(due === null ? {} : { due_utc_us: due }),
+    ...(draft.cohort === '' ? {} : { cohort: draft.cohort }),
+    ...(draft.people.length === 0 ? {} : { people: [...draft.people] }),
+    ordering: draft.ordering,
+    repeats: draft.repeats,
+    release: draft.release,
+    ...(due === null ? {} : { due_utc_us: due }),
   };
 }
 

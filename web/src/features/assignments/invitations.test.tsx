@@ -14,7 +14,9 @@ function open(invitations: readonly (typeof kInvitation)[]) {
   const posted: string[] = [];
   vi.spyOn(globalThis, 'fetch').mockImplementation((address, init) => {
     if (init?.method === 'POST') posted.push(String(address));
-    return Promise.resolve(new Response(JSON.stringify({ invitations: init?.method === 'POST' ? [] : invitations }), { status: 200 }));
+    return Promise.resolve(
+      new Response(JSON.stringify({ invitations: init?.method === 'POST' ? [] : invitations }), { status: 200 }),
+    );
   });
   render(
     <QueryClientProvider client={new QueryClient({ defaultOptions: { queries: { retry: false } } })}>
@@ -29,10 +31,13 @@ describe('invitations into cohorts', () => {
     open([kInvitation]);
     expect(await screen.findByText('Residents 2027')).toBeTruthy();
     expect(screen.getByText('F. Senior')).toBeTruthy();
-    expect(screen.getByText(/see the trials of everybody in it/)).toBeTruthy();
+    expect(screen.getByText(/see the trials of all its members/)).toBeTruthy();
   });
 
-  it.each([['Accept', 'accept'], ['Decline', 'decline']])('%s is sent, and the invitation is gone', async (label, deed) => {
+  it.each([
+    ['Accept', 'accept'],
+    ['Decline', 'decline'],
+  ])('%s is sent, and the invitation is gone', async (label, deed) => {
     const posted = open([kInvitation]);
     await userEvent.click(await screen.findByRole('button', { name: `${label}: Residents 2027` }));
     await waitFor(() => expect(screen.queryByText('Residents 2027')).toBeNull());

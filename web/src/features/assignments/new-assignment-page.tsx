@@ -5,26 +5,53 @@ import { addAssignment, assignmentsQuery, casesQuery, cohortQuery, cohortsQuery,
 import { Badge, Button, Card, Field, Notice, Select, Skeleton, useTitle } from '@/ui';
 import { formatCount } from '@/units';
 import styles from './assignments.module.css';
-import { kNoDraft, lacking, toggled, trialsEach, wishOf, type Draft, type Item } from './draft';
-import { kOrderWords, kReleaseWords, kToDrill } from './words';
+import { kNoDraft, firstProblem, toggled, trialsEach, requestOf, type Draft, type Item } from './draft';
+import { kOrderLabels, kReleaseLabels, kDrillThenPalpate } from './labels';
 
 type Change = (change: Partial<Draft>) => void;
 
 /** All that can be assigned; undefined while it is on its way. */
 function useItems(): { items: Item[] | undefined; failed: Error | null; retry: () => void } {
-  const cases = useQuery(casesQuery), scenarios = useQuery(scenariosQuery);
+  const cases = useQuery(casesQuery),
+    scenarios = useQuery(scenariosQuery);
   const failed = cases.error ?? scenarios.error;
-  const retry = () => { void cases.refetch(); void scenarios.refetch(); };
+  const retry = () => {
+    void cases.refetch();
+    void scenarios.refetch();
+  };
   if (!cases.data || !scenarios.data) return { items: undefined, failed, retry };
   const items: Item[] = [
-    ...cases.data.cases.filter(({ retired }) => !retired).map(({ id, title, planned }) => ({ key: `case ${id}`, title, rig: 'palpation' as const, case_id: id, whole: planned })),
-    ...scenarios.data.scenarios.filter(({ published }) => published).map(({ id, name }) => ({ key: `scenario ${id}`, title: name, rig: 'probing' as const, case_id: id })),
-    ...scenarios.data.tuned.map(({ kind, name }) => ({ key: `tuned ${kind}`, title: `${name} (ships with the rig)`, rig: 'probing' as const, tuned: kind })),
+    ...cases.data.cases
+      .filter(({ retired }) => !retired)
+      .map(({ id, title, planned }) => ({
+        key: `case ${id}`,
+        title,
+        rig: 'palpation' as const,
+        case_id: id,
+        whole: planned,
+      })),
+    ...scenarios.data.scenarios
+      .filter(({ published }) => published)
+      .map(({ id, name }) => ({ key: `scenario ${id}`, title: name, rig: 'probing' as const, case_id: id })),
+    ...scenarios.data.tuned.map(({ kind, name }) => ({
+      key: `tuned ${kind}`,
+      title: `${name} (built-in)`,
+      rig: 'probing' as const,
+      tuned: kind,
+    })),
   ];
   return { items, failed, retry };
 }
 
-function CasesField({ draft, items, onDraft }: { readonly draft: Draft; readonly items: readonly Item[]; readonly onDraft: (draft: Draft) => void }) {
+function CasesField({
+  draft,
+  items,
+  onDraft,
+}: {
+  readonly draft: Draft;
+  readonly items: readonly Item[];
+  readonly onDraft: (draft: Draft) => void;
+}) {
   return (
     <fieldset className={styles.choices}>
       <legend className="hidden-visually">Cases</legend>
@@ -32,10 +59,27 @@ function CasesField({ draft, items, onDraft }: { readonly draft: Draft; readonly
         const chosen = draft.chosen.find(({ key }) => key === item.key);
         return (
           <div key={item.key} className={styles.choice} data-chosen={chosen !== undefined || undefined}>
-            <label><input type="checkbox" checked={chosen !== undefined} onChange={() => onDraft(toggled(draft, item))} /> <span>{item.title}</span></label>
-            <Badge>{item.whole ? kToDrill : item.rig}</Badge>
-            <input className={styles.blind} aria-label={`Blind name of ${item.title}`} placeholder="blind name" maxLength={128} value={chosen?.blind ?? ''} disabled={!chosen}
-              onChange={(event) => onDraft({ ...draft, chosen: draft.chosen.map((one) => (one.key === item.key ? { ...one, blind: event.target.value } : one)) })} />
+            <label>
+              <input type="checkbox" checked={chosen !== undefined} onChange={() => onDraft(toggled(draft, item))} />{' '}
+              <span>{item.title}</span>
+            </label>
+            <Badge>{item.whole ? kDrillThenPalpate : item.rig}</Badge>
+            <input
+              className={styles.blind}
+              aria-label={`Blind name of ${item.title}`}
+              placeholder="blind name"
+              maxLength={128}
+              value={chosen?.blind ?? ''}
+              disabled={!chosen}
+              onChange={(event) =>
+                onDraft({
+                  ...draft,
+                  chosen: draft.chosen.map((one) =>
+                    one.key === item.key ? { ...one, blind: event.target.value } : one,
+                  ),
+                })
+              }
+            />
           </div>
         );
       })}
@@ -48,23 +92,59 @@ function People({ draft, change }: { readonly draft: Draft; readonly change: Cha
   const [from, setFrom] = useState('');
   const source = from || cohorts.data?.cohorts[0]?.id || '';
   const members = useQuery({ ...cohortQuery(source), enabled: source !== '' });
-  if (cohorts.isError) return <Notice tone="bad" title="The cohorts could not be loaded." onRetry={() => void cohorts.refetch()}>{cohorts.error.message}</Notice>;
+  if (cohorts.isError)
+    return (
+      <Notice tone="bad" title="The cohorts could not be loaded." onRetry={() => void cohorts.refetch()}>
+        {cohorts.error.message}
+      </Notice>
+    );
   if (!cohorts.data) return <Skeleton height="180px" />;
-  if (cohorts.data.cohorts.length === 0) return <p>There is no cohort yet. <Link href="/network/cohorts">Make one</Link>, with the trainees in it.</p>;
-  const options = cohorts.data.cohorts.map(({ id, name, trainees }) => ({ value: id, text: `${name}, ${formatCount(trainees)} ${trainees === 1 ? 'trainee' : 'trainees'}` }));
+  if (cohorts.data.cohorts.length === 0)
+    return (
+      <p>
+        No cohorts yet. <Link href="/network/cohorts">Create a cohort</Link> and add trainees first.
+      </p>
+    );
+  const options = cohorts.data.cohorts.map(({ id, name, trainees }) => ({
+    value: id,
+    text: `${name}, ${formatCount(trainees)} ${trainees === 1 ? 'trainee' : 'trainees'}`,
+  }));
   const trainees = members.data?.people.filter(({ part, state }) => part === 'trainee' && state === 'active') ?? [];
   return (
     <div className={styles.stack}>
-      <Select label="Cohort (also who joins it later)" value={draft.cohort} options={[{ value: '', text: 'no whole cohort' }, ...options]} onChange={(event) => change({ cohort: event.target.value })} />
-      <Select label="Single people of" value={source} options={options} onChange={(event) => setFrom(event.target.value)} />
+      <Select
+        label="Cohort (includes later members)"
+        value={draft.cohort}
+        options={[{ value: '', text: 'none' }, ...options]}
+        onChange={(event) => change({ cohort: event.target.value })}
+      />
+      <Select
+        label="Individual trainees from"
+        value={source}
+        options={options}
+        onChange={(event) => setFrom(event.target.value)}
+      />
       <fieldset className={styles.people}>
         <legend className="hidden-visually">People</legend>
         {members.isPending ? <Skeleton height="28px" /> : null}
-        {members.data && trainees.length === 0 ? <p className={styles.muted}>Nobody learns in it yet.</p> : null}
+        {members.data && trainees.length === 0 ? (
+          <p className={styles.muted}>This cohort has no trainees yet.</p>
+        ) : null}
         {trainees.map(({ name }) => (
           <label key={name} className={styles.person}>
-            <input type="checkbox" checked={draft.people.includes(name) || draft.cohort === source} disabled={draft.cohort === source}
-              onChange={() => change({ people: draft.people.includes(name) ? draft.people.filter((one) => one !== name) : [...draft.people, name] })} /> {name}
+            <input
+              type="checkbox"
+              checked={draft.people.includes(name) || draft.cohort === source}
+              disabled={draft.cohort === source}
+              onChange={() =>
+                change({
+                  people: draft.people.includes(name)
+                    ? draft.people.filter((one) => one !== name)
+                    : [...draft.people, name],
+                })
+              }
+            />{' '}
+            {name}
           </label>
         ))}
       </fieldset>
@@ -72,54 +152,128 @@ function People({ draft, change }: { readonly draft: Draft; readonly change: Cha
   );
 }
 
-/** Which cases, by whom, in which order, until when, and who sees the results. */
+/** Cases, trainees, order, due date and release of a new assignment. */
 export function NewAssignmentPage() {
   useTitle('New assignment');
   const client = useQueryClient();
   const [, go] = useLocation();
   const wanted = new URLSearchParams(useSearch()).get('case');
   const [written, setDraft] = useState<Draft | null>(null);
+  const [now_us] = useState(() => Date.now() * 1000);
   const { items, failed, retry } = useItems();
   const first = wanted === null ? undefined : items?.find(({ case_id }) => case_id === wanted);
   const draft = written ?? (first ? toggled(kNoDraft, first) : kNoDraft);
   const change: Change = (next) => setDraft({ ...draft, ...next });
   const made = useMutation({
     mutationFn: addAssignment,
-    onSuccess: async ({ id }) => { await client.invalidateQueries({ queryKey: assignmentsQuery.queryKey, exact: true }); go(`/assignments/${id}`); },
+    onSuccess: async ({ id }) => {
+      await client.invalidateQueries({ queryKey: assignmentsQuery.queryKey, exact: true });
+      go(`/assignments/${id}`);
+    },
   });
-  const missing = lacking(draft);
-  const submit = (event: FormEvent) => { event.preventDefault(); if (missing === '') made.mutate(wishOf(draft)); };
+  const missing = firstProblem(draft, now_us);
+  const submit = (event: FormEvent) => {
+    event.preventDefault();
+    if (missing === '') made.mutate(requestOf(draft));
+  };
   return (
     <form className={styles.page} onSubmit={submit}>
-      <p><Link href="/assignments">← Assignments</Link></p>
+      <p>
+        <Link href="/assignments">← Assignments</Link>
+      </p>
       <h1>New assignment</h1>
-      {failed ? <Notice tone="bad" title="What can be assigned could not be loaded." onRetry={retry}>{failed.message}</Notice> : null}
+      {failed ? (
+        <Notice tone="bad" title="The cases could not be loaded." onRetry={retry}>
+          {failed.message}
+        </Notice>
+      ) : null}
       <div className={styles.two}>
         <Card title="Cases" aside={<span className={styles.muted}>{formatCount(draft.chosen.length)} chosen</span>}>
           <div className={styles.stack}>
-            <p className={styles.muted}>Trainees see the blind name alone, never what the case is called here.</p>
-            {items ? (items.length === 0 ? <p>There is no case yet.</p> : <CasesField draft={draft} items={items} onDraft={setDraft} />) : <Skeleton height="240px" />}
+            <p className={styles.muted}>Trainees see only the blind name, never the title of the case.</p>
+            {items ? (
+              items.length === 0 ? (
+                <p>No cases yet.</p>
+              ) : (
+                <CasesField draft={draft} items={items} onDraft={setDraft} />
+              )
+            ) : (
+              <Skeleton height="240px" />
+            )}
           </div>
         </Card>
-        <Card title="Who"><People draft={draft} change={change} /></Card>
+        <Card title="Trainees">
+          <People draft={draft} change={change} />
+        </Card>
       </div>
-      <Card title="How">
+      <Card title="Settings">
         <div className={styles.form}>
-          <Field label="Title, shown to trainees" value={draft.title} required maxLength={200} placeholder="Week 12, palpation" onChange={(event) => change({ title: event.target.value })} />
-          <Select label="Order" value={draft.ordering} options={Object.keys(kOrderWords).map((value) => ({ value, text: value }))} aria-describedby="order-means"
-            onChange={(event) => { const to = event.target.value; if (to === 'fixed' || to === 'random' || to === 'balanced') change({ ordering: to }); }} />
-          <Field label="Times each case is done" type="number" min={1} max={20} value={draft.repeats} onChange={(event) => { const n = Number(event.target.value); if (Number.isInteger(n) && n >= 1 && n <= 20) change({ repeats: n }); }} />
-          <Field label="Due (may be left out)" type="datetime-local" value={draft.due} onChange={(event) => change({ due: event.target.value })} />
-          <Select label="Results" value={draft.release} options={Object.entries(kReleaseWords).map(([value, { name }]) => ({ value, text: name }))} aria-describedby="release-means"
-            onChange={(event) => { const to = event.target.value; if (to === 'held' || to === 'released' || to === 'at_once') change({ release: to }); }} />
-          <p id="order-means" className={`${styles.wide} ${styles.muted}`}>Order: {kOrderWords[draft.ordering]}.</p>
-          <p id="release-means" className={`${styles.wide} ${styles.muted}`}>{kReleaseWords[draft.release].means}</p>
+          <Field
+            label="Title, shown to trainees"
+            value={draft.title}
+            required
+            maxLength={200}
+            placeholder="Week 12, palpation"
+            onChange={(event) => change({ title: event.target.value })}
+          />
+          <Select
+            label="Order"
+            value={draft.ordering}
+            options={Object.keys(kOrderLabels).map((value) => ({ value, text: value }))}
+            aria-describedby="order-means"
+            onChange={(event) => {
+              const to = event.target.value;
+              if (to === 'fixed' || to === 'random' || to === 'balanced') change({ ordering: to });
+            }}
+          />
+          <Field
+            label="Repeats per case"
+            type="number"
+            min={1}
+            max={20}
+            value={draft.repeats}
+            onChange={(event) => {
+              const n = Number(event.target.value);
+              if (Number.isInteger(n) && n >= 1 && n <= 20) change({ repeats: n });
+            }}
+          />
+          <Field
+            label="Due (optional)"
+            type="datetime-local"
+            value={draft.due}
+            onChange={(event) => change({ due: event.target.value })}
+          />
+          <Select
+            label="Results"
+            value={draft.release}
+            options={Object.entries(kReleaseLabels).map(([value, { name }]) => ({ value, text: name }))}
+            aria-describedby="release-means"
+            onChange={(event) => {
+              const to = event.target.value;
+              if (to === 'held' || to === 'released' || to === 'at_once') change({ release: to });
+            }}
+          />
+          <p id="order-means" className={`${styles.wide} ${styles.muted}`}>
+            {kOrderLabels[draft.ordering]}.
+          </p>
+          <p id="release-means" className={`${styles.wide} ${styles.muted}`}>
+            {kReleaseLabels[draft.release].description}
+          </p>
         </div>
       </Card>
-      {made.isError ? <Notice tone="bad" title="It was not assigned.">{made.error.message}</Notice> : null}
+      {made.isError ? (
+        <Notice tone="bad" title="The assignment was not created.">
+          {made.error.message}
+        </Notice>
+      ) : null}
       <div className={styles.go}>
-        <span role="status" className={styles.muted}>{missing || `${formatCount(trialsEach(draft))} ${trialsEach(draft) === 1 ? 'trial' : 'trials'} for each trainee.`}</span>
-        <Button look="solid" type="submit" disabled={missing !== '' || made.isPending}>{made.isPending ? 'Assigning…' : 'Assign'}</Button>
+        <span role="status" className={styles.muted}>
+          {missing ||
+            `${formatCount(trialsEach(draft))} ${trialsEach(draft) === 1 ? 'trial' : 'trials'} for each trainee.`}
+        </span>
+        <Button look="solid" type="submit" disabled={missing !== '' || made.isPending}>
+          {made.isPending ? 'Assigning…' : 'Assign'}
+        </Button>
       </div>
     </form>
   );

@@ -6,34 +6,81 @@ import styles from './assignments.module.css';
 
 type Done = Assignment['trials'][number];
 
-const kStates: Record<Done['state'], string> = { arriving: 'arriving', counts: 'counts', invalid: 'does not count', surplus: 'surplus' };
+const kStates: Record<Done['state'], string> = {
+  arriving: 'uploading',
+  counts: 'valid',
+  invalid: 'invalid',
+  surplus: 'surplus',
+};
 
 function State({ trial }: { readonly trial: Done }) {
-  return <span>{trial.state === 'counts' ? 'counts' : <Badge tone="warn">{kStates[trial.state]}</Badge>}{trial.reason ? <span className={styles.muted}> {trial.reason}</span> : null}</span>;
+  return (
+    <span>
+      {trial.state === 'counts' ? kStates.counts : <Badge tone="warn">{kStates[trial.state]}</Badge>}
+      {trial.reason ? <span className={styles.muted}> {trial.reason}</span> : null}
+    </span>
+  );
 }
 
-const answer = ({ correct }: Done) => (correct === null ? '–' : correct ? <Badge tone="good">right</Badge> : <Badge tone="bad">wrong</Badge>);
+const answer = ({ correct }: Done) =>
+  correct === null ? '–' : correct ? <Badge tone="good">correct</Badge> : <Badge tone="bad">incorrect</Badge>;
 
-interface Props { readonly one: Assignment; readonly may: boolean; readonly own?: boolean; readonly onInvalid?: (trial: string) => void }
+interface Props {
+  readonly one: Assignment;
+  readonly may: boolean;
+  readonly own?: boolean;
+  readonly onInvalid?: (trial: string) => void;
+}
 
 /** Trials that arrived: of all, or one's own. */
 export function TrialsTable({ one, may, own = false, onInvalid }: Props) {
   const names = new Map(one.trainees.map(({ participant, name }) => [participant, name]));
   const named = (trial: Done) => `trial ${formatCount(trial.number)}${trial.tool === 'burr' ? ', drilling' : ''}`;
   const whose = (trial: Done) => (own ? '' : `${names.get(trial.participant) ?? trial.participant}, `);
-  const link = (trial: Done) => <Link href={`/trials/${trial.trial_id}/debrief`} aria-label={`Debrief: ${whose(trial)}${named(trial)}`}>Debrief</Link>;
+  const link = (trial: Done) => (
+    <Link href={`/trials/${trial.trial_id}/debrief`} aria-label={`Debrief: ${whose(trial)}${named(trial)}`}>
+      Debrief
+    </Link>
+  );
   return (
-    <Table<Done> caption="Trials" rows={one.trials} keyOf={({ trial_id }) => trial_id} empty="No trial has arrived yet." minWidth={own ? 480 : 680} columns={[
-      { name: 'Trial', cell: (trial) => <>{whose(trial)}{named(trial)}</> },
-      { name: 'Done', cell: (trial) => (trial.started_utc_us === null ? '–' : formatDateTime(trial.started_utc_us)) },
-      { name: 'Answer', cell: answer },
-      { name: 'Comments', cell: (trial) => formatCount(trial.comments), number: true },
-      { name: 'State', cell: (trial) => <State trial={trial} /> },
-      { name: <span className="hidden-visually">Go on</span>, cell: (trial) => (
-        <span className={styles.buttons}>
-          {trial.state === 'arriving' ? null : link(trial)}
-          {may && trial.state === 'counts' ? <Button look="quiet" label={`Mark as invalid: ${named(trial)} of ${names.get(trial.participant) ?? trial.participant}`} onClick={() => onInvalid?.(trial.trial_id)}>Invalid…</Button> : null}
-        </span>) },
-    ]} />
+    <Table<Done>
+      caption="Trials"
+      rows={one.trials}
+      keyOf={({ trial_id }) => trial_id}
+      empty="No trials have been uploaded yet."
+      minWidth={own ? 480 : 680}
+      columns={[
+        {
+          name: 'Trial',
+          cell: (trial) => (
+            <>
+              {whose(trial)}
+              {named(trial)}
+            </>
+          ),
+        },
+        { name: 'Date', cell: (trial) => (trial.started_utc_us === null ? '–' : formatDateTime(trial.started_utc_us)) },
+        { name: 'Answer', cell: answer },
+        { name: 'Comments', cell: (trial) => formatCount(trial.comments), number: true },
+        { name: 'State', cell: (trial) => <State trial={trial} /> },
+        {
+          name: <span className="hidden-visually">Actions</span>,
+          cell: (trial) => (
+            <span className={styles.buttons}>
+              {trial.state === 'arriving' ? null : link(trial)}
+              {may && trial.state === 'counts' ? (
+                <Button
+                  look="quiet"
+                  label={`Mark as invalid: ${named(trial)} of ${names.get(trial.participant) ?? trial.participant}`}
+                  onClick={() => onInvalid?.(trial.trial_id)}
+                >
+                  Mark as invalid…
+                </Button>
+              ) : null}
+            </span>
+          ),
+        },
+      ]}
+    />
   );
 }

@@ -7,16 +7,16 @@ import { Button, Card, Facts, Notice, Skeleton, usePalette, useTitle } from '@/u
 import { formatDateTime, formatLength, metre } from '@/units';
 import styles from './cases.module.css';
 
-function told(truth: CaseTruth): { name: string; value: string }[] {
+function truthFacts(truth: CaseTruth): { name: string; value: string }[] {
   if (truth.breached === null) return [{ name: 'Breach', value: 'none' }];
   return [
     { name: 'Breach', value: truth.breached },
-    { name: 'Wall there', value: `${formatLength(metre(truth.wall_thickness_m))} thick` },
-    { name: 'Beyond the bone', value: formatLength(metre(truth.breach_depth_m)) },
+    { name: 'Wall thickness', value: formatLength(metre(truth.wall_thickness_m)) },
+    { name: 'Depth beyond the bone', value: formatLength(metre(truth.breach_depth_m)) },
   ];
 }
 
-/** The truth is asked for on purpose: somebody may look over the teacher's shoulder. */
+/** The truth is shown on request only: a trainee may be looking at the same screen. */
 function Truth({ id }: { readonly id: string }) {
   const [shown, setShown] = useState(false);
   const query = useQuery({ ...caseTruthQuery(id), enabled: shown });
@@ -24,10 +24,24 @@ function Truth({ id }: { readonly id: string }) {
   return (
     <Card title="Truth">
       <div className={styles.truth}>
-        {!shown ? <Button onClick={() => setShown(true)}>Show which wall gives way</Button> : null}
-        {shown && query.data ? <><Facts facts={told(query.data)} /><Button look="quiet" onClick={() => setShown(false)}>Hide</Button></> : null}
+        {!shown ? <Button onClick={() => setShown(true)}>Show the breached wall</Button> : null}
+        {shown && query.data ? (
+          <>
+            <Facts facts={truthFacts(query.data)} />
+            <Button look="quiet" onClick={() => setShown(false)}>
+              Hide
+            </Button>
+          </>
+        ) : null}
         {shown && query.isPending ? <Skeleton height="40px" /> : null}
-        {shown && query.isError ? <Notice tone={refused ? 'warn' : 'bad'} title={refused ? 'The truth is for those who teach.' : 'The truth could not be loaded.'}>{query.error.message}</Notice> : null}
+        {shown && query.isError ? (
+          <Notice
+            tone={refused ? 'warn' : 'bad'}
+            title={refused ? 'Only faculty and administrators can see the truth.' : 'The truth could not be loaded.'}
+          >
+            {query.error.message}
+          </Notice>
+        ) : null}
       </div>
     </Card>
   );
@@ -42,24 +56,60 @@ export function CasePage({ id }: { readonly id: string }) {
   useTitle(found?.title ?? 'Case');
   return (
     <div className={styles.page}>
-      <p><Link href="/cases">← Cases</Link></p>
-      {query.isError ? <Notice tone="bad" title="The case could not be loaded." onRetry={() => void query.refetch()}>{query.error.message}</Notice> : null}
-      {query.isPending ? <div role="status"><span className="hidden-visually">Loading the case</span><Skeleton height="480px" /></div> : null}
+      <p>
+        <Link href="/cases">← Cases</Link>
+      </p>
+      {query.isError ? (
+        <Notice tone="bad" title="The case could not be loaded." onRetry={() => void query.refetch()}>
+          {query.error.message}
+        </Notice>
+      ) : null}
+      {query.isPending ? (
+        <div role="status">
+          <span className="hidden-visually">Loading the case</span>
+          <Skeleton height="480px" />
+        </div>
+      ) : null}
       {found ? (
         <>
           <h1>{found.title}</h1>
-          <Facts facts={[
-            { name: 'Source', value: found.source },
-            { name: 'Made', value: formatDateTime(found.made_utc_us) },
-            { name: 'Channel', value: found.channel === 'planned' ? 'to be drilled, then felt' : 'made' },
-            { name: 'Tract', value: `${formatLength(found.tract.length_m)} long, ${formatLength(metre(2 * found.tract.radius_m))} wide` },
-          ]} />
+          <Facts
+            facts={[
+              { name: 'Source', value: found.source },
+              { name: 'Created', value: formatDateTime(found.made_utc_us) },
+              { name: 'Channel', value: found.channel === 'planned' ? 'trainee drills, then palpates' : 'pre-drilled' },
+              {
+                name: 'Tract',
+                value: `${formatLength(found.tract.length_m)} long, ${formatLength(metre(2 * found.tract.radius_m))} wide`,
+              },
+            ]}
+          />
           <div className={styles.pair}>
             <Card title="Tract in the bone">
-              {preview.isError ? <Notice tone="warn" title="The bone could not be loaded; the rest is drawn without it." onRetry={() => void preview.refetch()}>{preview.error.message}</Notice> : null}
-              {preview.isPending ? <Skeleton height="444px" /> : (
-                <PlanView tract={found.tract} breach={null} bone={preview.data ?? null} palette={palette} summary="The tract with the bone round it."
-                  button={(label, text, press, pressed) => <Button label={label} onClick={press} {...(pressed === undefined ? {} : { pressed })}>{text}</Button>} />
+              {preview.isError ? (
+                <Notice
+                  tone="warn"
+                  title="The bone could not be loaded. The view does not show it."
+                  onRetry={() => void preview.refetch()}
+                >
+                  {preview.error.message}
+                </Notice>
+              ) : null}
+              {preview.isPending ? (
+                <Skeleton height="444px" />
+              ) : (
+                <PlanView
+                  tract={found.tract}
+                  breach={null}
+                  bone={preview.data ?? null}
+                  palette={palette}
+                  summary="The tract and the surrounding bone."
+                  button={(label, text, press, pressed) => (
+                    <Button label={label} onClick={press} {...(pressed === undefined ? {} : { pressed })}>
+                      {text}
+                    </Button>
+                  )}
+                />
               )}
             </Card>
             <Truth id={id} />

@@ -1,7 +1,16 @@
 import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { useEffect, useRef } from 'react';
 import { Link } from 'wouter';
-import { casesQuery, makingsQuery, retireCase, sessionQuery, sourceVolumesQuery, type CaseSummary, type Making, type SourceVolume } from '@/api';
+import {
+  casesQuery,
+  makingsQuery,
+  retireCase,
+  sessionQuery,
+  sourceVolumesQuery,
+  type CaseSummary,
+  type Making,
+  type SourceVolume,
+} from '@/api';
 import { Badge, Button, Card, Notice, Progress, Table, useTitle } from '@/ui';
 import { formatCount, formatDateTime, formatShare, share } from '@/units';
 import styles from './cases.module.css';
@@ -11,47 +20,80 @@ function Volumes() {
   const released = query.data?.volumes.filter(({ state }) => state === 'released');
   const held = query.data?.volumes.filter(({ state }) => state === 'held').length ?? 0;
   return (
-    <Card title="Make a case of a volume">
-      {query.isError ? <Notice tone="bad" title="The volumes could not be loaded." onRetry={() => void query.refetch()}>{query.error.message}</Notice> : (
+    <Card title="Create a case from a volume">
+      {query.isError ? (
+        <Notice tone="bad" title="The volumes could not be loaded." onRetry={() => void query.refetch()}>
+          {query.error.message}
+        </Notice>
+      ) : (
         <div className={styles.stack}>
-          <Table<SourceVolume> caption="Released volumes" rows={released} keyOf={({ id }) => id} empty="No volume is released yet. One that was brought in is looked at by an administrator or the programme director first." columns={[
-            { name: 'Volume', cell: (one) => <Link href={`/cases/new/${one.id}`}>{one.name}</Link> },
-            { name: 'Source', cell: (one) => one.source },
-            { name: 'Voxels', cell: (one) => one.dims.map(formatCount).join(' × '), number: true },
-            { name: 'Brought in', cell: (one) => formatDateTime(one.made_utc_us) },
-          ]} />
-          {held > 0 ? <p className={styles.muted}>{formatCount(held)} more {held === 1 ? 'waits' : 'wait'} to be looked at and released.</p> : null}
+          <Table<SourceVolume>
+            caption="Released volumes"
+            rows={released}
+            keyOf={({ id }) => id}
+            empty="No released volumes yet. An administrator or the programme director reviews every imported volume before its release."
+            columns={[
+              { name: 'Volume', cell: (one) => <Link href={`/cases/new/${one.id}`}>{one.name}</Link> },
+              { name: 'Source', cell: (one) => one.source },
+              { name: 'Voxels', cell: (one) => one.dims.map(formatCount).join(' × '), number: true },
+              { name: 'Imported', cell: (one) => formatDateTime(one.made_utc_us) },
+            ]}
+          />
+          {held > 0 ? (
+            <p className={styles.muted}>
+              {formatCount(held)} {held === 1 ? 'volume is' : 'volumes are'} waiting for review.
+            </p>
+          ) : null}
         </div>
       )}
     </Card>
   );
 }
 
-function Makings() {
+function CasesInPreparation() {
   const client = useQueryClient();
   const query = useQuery(makingsQuery);
   const shown = query.data?.makings.filter(({ state }) => state !== 'done') ?? [];
   const done = query.data?.makings.filter(({ state }) => state === 'done').length;
   const before = useRef(done);
   useEffect(() => {
-    if (before.current !== undefined && done !== before.current) void client.invalidateQueries({ queryKey: casesQuery.queryKey });
+    if (before.current !== undefined && done !== before.current)
+      void client.invalidateQueries({ queryKey: casesQuery.queryKey });
     before.current = done;
   }, [done, client]);
   if (shown.length === 0) return null;
   return (
-    <Card title="In the making">
-      <Table<Making> caption="Cases in the making" rows={shown} keyOf={({ id }) => id} empty="" columns={[
-        { name: 'Case', cell: (one) => one.title },
-        { name: 'State', cell: (one) => (one.state === 'failed'
-          ? <span><Badge tone="bad">failed</Badge> {one.error} <Link href={`/cases/new/${one.volume}`}>Begin again</Link></span>
-          : <span className={styles.going}><Progress done={one.share} of={1} label={`Making ${one.title}`} /><span>{formatShare(share(one.share))}</span><span>{one.state === 'queued' ? 'waits' : one.phase}</span></span>) },
-        { name: 'Asked for', cell: (one) => `${formatDateTime(one.made_utc_us)} by ${one.made_by}` },
-      ]} />
+    <Card title="Cases in preparation">
+      <Table<Making>
+        caption="Cases in preparation"
+        rows={shown}
+        keyOf={({ id }) => id}
+        empty=""
+        columns={[
+          { name: 'Case', cell: (one) => one.title },
+          {
+            name: 'State',
+            cell: (one) =>
+              one.state === 'failed' ? (
+                <span>
+                  <Badge tone="bad">failed</Badge> {one.error} <Link href={`/cases/new/${one.volume}`}>Try again</Link>
+                </span>
+              ) : (
+                <span className={styles.going}>
+                  <Progress done={one.share} of={1} label={`Preparing ${one.title}`} />
+                  <span>{formatShare(share(one.share))}</span>
+                  <span>{one.state === 'queued' ? 'queued' : one.phase}</span>
+                </span>
+              ),
+          },
+          { name: 'Requested', cell: (one) => `${formatDateTime(one.made_utc_us)} by ${one.made_by}` },
+        ]}
+      />
     </Card>
   );
 }
 
-/** Cases of the palpation rig: what there is, what is being made, what is offered no more. */
+/** Cases of the palpation rig: volumes to create them from, cases in preparation, all cases. */
 export function CasesPage() {
   useTitle('Cases');
   const client = useQueryClient();
@@ -65,23 +107,77 @@ export function CasesPage() {
   const last = retired.data === undefined && retired.isSuccess ? retired.variables : null;
   return (
     <div className={styles.page}>
-      <div><h1>Cases</h1><p className={styles.lead}>A case is a patient’s bone with a drilled tract, and apart from it the truth: which wall gives way, and where. Stations fetch it without the truth. Of bone that is left whole a trainee makes the channel, and then feels it.</p></div>
+      <div>
+        <h1>Cases</h1>
+        <p className={styles.lead}>
+          A case is a patient’s bone with a drilled channel. The truth (which wall is breached, and where) is stored
+          separately; stations receive the case without it. In cases without a pre-drilled channel, the trainee drills
+          the channel and then palpates it.
+        </p>
+      </div>
       {may ? <Volumes /> : null}
-      {may ? <Makings /> : null}
-      {query.isError ? <Notice tone="bad" title="The cases could not be loaded." onRetry={() => void query.refetch()}>{query.error.message}</Notice> : (
+      {may ? <CasesInPreparation /> : null}
+      {query.isError ? (
+        <Notice tone="bad" title="The cases could not be loaded." onRetry={() => void query.refetch()}>
+          {query.error.message}
+        </Notice>
+      ) : (
         <Card title="Cases" aside={may ? <Link href="/assignments/new">Assign cases</Link> : undefined}>
           <div className={styles.stack}>
-            <Table<CaseSummary> caption="Cases" rows={query.data?.cases} keyOf={({ id }) => id} empty="There are no cases yet. Make one of a volume." minWidth={640} columns={[
-              { name: 'Case', cell: (one) => <Link href={`/cases/${one.id}`}>{one.title}</Link> },
-              { name: 'Source', cell: (one) => one.source },
-              { name: 'Made', cell: (one) => formatDateTime(one.made_utc_us) },
-              { name: 'Trials', cell: (one) => formatCount(one.trials), number: true },
-              { name: 'State', cell: (one) => (one.retired ? <Badge>retired</Badge> : <><Badge tone="good">offered</Badge>{one.planned ? <> <Badge>to be drilled</Badge></> : null}</>) },
-              { name: <span className="hidden-visually">Decide</span>, cell: (one) => (may ? <Button look="quiet" label={`${one.retired ? 'Offer again' : 'Retire'}: ${one.title}`} disabled={retired.isPending} onClick={() => retired.mutate({ one, away: !one.retired })}>{one.retired ? 'Offer again' : 'Retire'}</Button> : null) },
-            ]} />
-            <p className={styles.said} role="status">
-              {last ? <>{last.one.title} is {last.away ? 'offered no more; what was assigned of it goes on.' : 'offered again.'} <Button look="quiet" onClick={() => retired.mutate({ one: last.one, away: !last.away })}>Undo</Button></> : null}
-              {retired.isError ? `That was not done: ${retired.error.message}` : null}
+            <Table<CaseSummary>
+              caption="Cases"
+              rows={query.data?.cases}
+              keyOf={({ id }) => id}
+              empty="No cases yet. Create one from a volume."
+              minWidth={640}
+              columns={[
+                { name: 'Case', cell: (one) => <Link href={`/cases/${one.id}`}>{one.title}</Link> },
+                { name: 'Source', cell: (one) => one.source },
+                { name: 'Created', cell: (one) => formatDateTime(one.made_utc_us) },
+                { name: 'Trials', cell: (one) => formatCount(one.trials), number: true },
+                {
+                  name: 'State',
+                  cell: (one) =>
+                    one.retired ? (
+                      <Badge>retired</Badge>
+                    ) : (
+                      <>
+                        <Badge tone="good">available</Badge>
+                        {one.planned ? (
+                          <>
+                            {' '}
+                            <Badge>trainee drills</Badge>
+                          </>
+                        ) : null}
+                      </>
+                    ),
+                },
+                {
+                  name: <span className="hidden-visually">Actions</span>,
+                  cell: (one) =>
+                    may ? (
+                      <Button
+                        look="quiet"
+                        label={`${one.retired ? 'Restore' : 'Retire'}: ${one.title}`}
+                        disabled={retired.isPending}
+                        onClick={() => retired.mutate({ one, away: !one.retired })}
+                      >
+                        {one.retired ? 'Restore' : 'Retire'}
+                      </Button>
+                    ) : null,
+                },
+              ]}
+            />
+            <p className={styles.message} role="status">
+              {last ? (
+                <>
+                  {last.one.title} is {last.away ? 'retired; existing assignments continue.' : 'available again.'}{' '}
+                  <Button look="quiet" onClick={() => retired.mutate({ one: last.one, away: !last.away })}>
+                    Undo
+                  </Button>
+                </>
+              ) : null}
+              {retired.isError ? `The action failed: ${retired.error.message}` : null}
             </p>
           </div>
         </Card>

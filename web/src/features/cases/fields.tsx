@@ -5,31 +5,68 @@ import styles from './cases.module.css';
 import type { Breach, End, Plan } from './plan';
 
 const kAxes = ['x (left)', 'y (back)', 'z (up)'] as const;
-const inMillimetres = (value: number | undefined | null) => (value === undefined || value === null ? '' : String(Math.round(value * 1e5) / 100));
+const inMillimetres = (value: number | undefined | null) =>
+  value === undefined || value === null ? '' : String(Math.round(value * 1e5) / 100);
 
-/** A number in millimetres that is told on when it is one; what is being typed stays as it is typed. */
-export function Millimetres({ label, value_m, min = -2000, max = 2000, step = 0.5, required = true, onValue }: {
-  readonly label: string; readonly value_m: number | null; readonly min?: number; readonly max?: number; readonly step?: number; readonly required?: boolean;
+/** A number in millimetres. Valid input is passed on; the text stays as it is typed. */
+export function Millimetres({
+  label,
+  value_m,
+  min = -2000,
+  max = 2000,
+  step = 0.5,
+  required = true,
+  onValue,
+}: {
+  readonly label: string;
+  readonly value_m: number | null;
+  readonly min?: number;
+  readonly max?: number;
+  readonly step?: number;
+  readonly required?: boolean;
   readonly onValue: (value_m: number | null) => void;
 }) {
   const [typed, setTyped] = useState<string | null>(null);
   const text = typed ?? inMillimetres(value_m);
   const wrong = text !== '' && !(Number.isFinite(Number(text)) && Number(text) >= min && Number(text) <= max);
   return (
-    <Field label={label} type="number" inputMode="decimal" step={step} min={min} max={max} value={text} aria-invalid={wrong || undefined} required={required}
+    <Field
+      label={label}
+      type="number"
+      inputMode="decimal"
+      step={step}
+      min={min}
+      max={max}
+      value={text}
+      error={wrong ? `Enter a value from ${min} to ${max} mm.` : ''}
+      required={required}
       onBlur={() => setTyped(null)}
       onChange={(event) => {
         const next = event.target.value;
         setTyped(next);
-        if (next === '') { if (!required) onValue(null); return; }
+        if (next === '') {
+          if (!required) onValue(null);
+          return;
+        }
         const number = Number(next);
         if (Number.isFinite(number) && number >= min && number <= max) onValue(number / 1000);
-      }} />
+      }}
+    />
   );
 }
 
-export function PointFields({ end, at, chosen, onChoose, onAt }: {
-  readonly end: End; readonly at: Vec3 | null; readonly chosen: boolean; readonly onChoose: () => void; readonly onAt: (at: Vec3) => void;
+export function PointFields({
+  end,
+  at,
+  chosen,
+  onChoose,
+  onAt,
+}: {
+  readonly end: End;
+  readonly at: Vec3 | null;
+  readonly chosen: boolean;
+  readonly onChoose: () => void;
+  readonly onAt: (at: Vec3) => void;
 }) {
   const place = (axis: number, value: number | null) => {
     if (value === null) return;
@@ -38,31 +75,82 @@ export function PointFields({ end, at, chosen, onChoose, onAt }: {
   };
   return (
     <div className={styles.point} data-end={end}>
-      <label className={styles.choose}><input type="radio" name="end" checked={chosen} onChange={onChoose} /> {end === 'entry' ? 'Entry' : 'Target'}</label>
+      <label className={styles.choose}>
+        <input type="radio" name="end" checked={chosen} onChange={onChoose} /> {end === 'entry' ? 'Entry' : 'Target'}
+      </label>
       <div className={styles.three}>
-        {kAxes.map((axis, i) => <Millimetres key={axis} label={`${axis}, mm`} value_m={at?.[i] ?? null} onValue={(value) => place(i, value)} />)}
+        {kAxes.map((axis, i) => (
+          <Millimetres
+            key={axis}
+            label={`${axis}, mm`}
+            value_m={at?.[i] ?? null}
+            onValue={(value) => place(i, value)}
+          />
+        ))}
       </div>
     </div>
   );
 }
 
-export function BreachFields({ plan, length_m, onBreach, onWhole }: {
-  readonly plan: Plan; readonly length_m: number | null; readonly onBreach: (breach: Breach | null) => void; readonly onWhole: (whole: boolean) => void;
+export function BreachFields({
+  plan,
+  length_m,
+  onBreach,
+  onWhole,
+}: {
+  readonly plan: Plan;
+  readonly length_m: number | null;
+  readonly onBreach: (breach: Breach | null) => void;
+  readonly onWhole: (whole: boolean) => void;
 }) {
   const { breach } = plan;
   const longest_mm = Math.max(1, Math.floor((length_m ?? 0.1) * 1000));
   return (
     <div className={styles.breach}>
-      <Select label="Channel" value={plan.whole ? 'planned' : 'drilled'} options={[{ value: 'drilled', text: 'made' }, { value: 'planned', text: 'left whole' }]}
-        onChange={(event) => onWhole(event.target.value === 'planned')} />
-      {plan.whole ? null : <Select label="Breach" value={breach?.wall ?? ''} options={[{ value: '', text: 'none' }, ...kWalls.map((wall) => ({ value: wall, text: wall }))]}
-        onChange={(event) => {
-          const wall = kWalls.find((one) => one === event.target.value);
-          onBreach(wall ? { wall, depth_m: breach?.depth_m ?? 0.003, at_m: wall === 'anterior' ? null : breach?.at_m ?? null } : null);
-        }} />}
-      {breach ? <Millimetres label="Beyond the bone, mm" value_m={breach.depth_m} min={0.5} max={15} onValue={(depth_m) => { if (depth_m !== null) onBreach({ ...breach, depth_m }); }} /> : null}
+      <Select
+        label="Channel"
+        value={plan.whole ? 'planned' : 'drilled'}
+        options={[
+          { value: 'drilled', text: 'pre-drilled' },
+          { value: 'planned', text: 'trainee drills' },
+        ]}
+        onChange={(event) => onWhole(event.target.value === 'planned')}
+      />
+      {plan.whole ? null : (
+        <Select
+          label="Breach"
+          value={breach?.wall ?? ''}
+          options={[{ value: '', text: 'none' }, ...kWalls.map((wall) => ({ value: wall, text: wall }))]}
+          onChange={(event) => {
+            const wall = kWalls.find((one) => one === event.target.value);
+            onBreach(
+              wall
+                ? { wall, depth_m: breach?.depth_m ?? 0.003, at_m: wall === 'anterior' ? null : (breach?.at_m ?? null) }
+                : null,
+            );
+          }}
+        />
+      )}
+      {breach ? (
+        <Millimetres
+          label="Depth beyond the bone, mm"
+          value_m={breach.depth_m}
+          min={0.5}
+          max={15}
+          onValue={(depth_m) => {
+            if (depth_m !== null) onBreach({ ...breach, depth_m });
+          }}
+        />
+      ) : null}
       {breach && breach.wall !== 'anterior' ? (
-        <Millimetres label="At depth, mm (empty: thinnest)" value_m={breach.at_m} min={0} max={longest_mm} required={false} onValue={(at_m) => onBreach({ ...breach, at_m })} />
+        <Millimetres
+          label="At depth, mm (empty: thinnest point)"
+          value_m={breach.at_m}
+          min={0}
+          max={longest_mm}
+          required={false}
+          onValue={(at_m) => onBreach({ ...breach, at_m })}
+        />
       ) : null}
     </div>
   );

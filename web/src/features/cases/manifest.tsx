@@ -8,9 +8,7 @@ const CasesPage = lazy(() => index().then(({ CasesPage: page }) => ({ default: p
 const NewCasePage = lazy(() => index().then(({ NewCasePage: page }) => ({ default: page })));
 
 export const feature: Feature = {
-  menu: [
-    { to: '/cases', name: 'Cases', roles: ['admin', 'director', 'faculty', 'researcher'], order: 30 },
-  ],
+  menu: [{ to: '/cases', name: 'Cases', roles: ['admin', 'director', 'faculty', 'researcher'], order: 30 }],
   pages: [
     { path: '/cases', show: () => <CasesPage /> },
     { path: '/cases/new/:volume', show: (at) => <NewCasePage key={at('volume')} volume={at('volume')} /> },

@@ -1,15 +1,25 @@
 import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { useEffect, useReducer, useState, type FormEvent } from 'react';
 import { Link, useLocation, useSearch } from 'wouter';
-import { makeCase, makingsQuery, plannedTractQuery, sourceVolumesQuery, volumeBoneQuery, type PlannedTract, type Preview, type SourceVolume, type Vec3, type Window } from '@/api';
+import {
+  makeCase,
+  makingsQuery,
+  plannedTractQuery,
+  sourceVolumesQuery,
+  volumeBoneQuery,
+  type PlannedTract,
+  type Preview,
+  type SourceVolume,
+  type Vec3,
+  type Window,
+} from '@/api';
 import { PlanView } from '@/charts';
-import { Button, Card, Field, Notice, Select, Skeleton, usePalette, useTitle } from '@/ui';
+import { Button, Card, Field, Notice, Select, Skeleton, usePalette, useTitle, useSettled } from '@/ui';
 import { formatLength } from '@/units';
 import styles from './cases.module.css';
 import { BreachFields, PointFields } from './fields';
-import { caseOf, draw, fromAddress, toAddress, wishOf, type End, type Plan } from './plan';
+import { caseOf, draw, fromAddress, toAddress, requestOf, type End, type Plan } from './plan';
 import { boundsOf, Slices } from './slices';
-import { useSettled } from './use-settled';
 import { Walls } from './walls';
 
 const kWindows: Record<string, { readonly text: string; readonly window: Window }> = {
@@ -23,16 +33,54 @@ function middleOf(block: Preview): Vec3 {
   return [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2];
 }
 
-/** What the server found of the plan, in a few sentences. */
-function Findings({ plan, found, looking }: { readonly plan: Plan; readonly found: PlannedTract | undefined; readonly looking: boolean }) {
-  if (!plan.entry || !plan.target) return <p className={styles.muted} role="status">Place the entry, then the target: click into a slice, drag a mark, or type its place.</p>;
-  if (!found) return <p className={styles.muted} role="status">{looking ? 'Looking at the bone…' : ''}</p>;
+/** The server's findings about the plan, as sentences. */
+function Findings({
+  plan,
+  found,
+  looking,
+}: {
+  readonly plan: Plan;
+  readonly found: PlannedTract | undefined;
+  readonly looking: boolean;
+}) {
+  if (!plan.entry || !plan.target)
+    return (
+      <p className={styles.muted} role="status">
+        Place the entry, then the target: click in a slice, drag a marker, or enter coordinates.
+      </p>
+    );
+  if (!found)
+    return (
+      <p className={styles.muted} role="status">
+        {looking ? 'Analysing the bone…' : ''}
+      </p>
+    );
   const { breach, problems } = found;
   return (
     <div className={styles.findings} data-part="findings" data-late={looking || undefined} role="status">
-      {problems.map((problem) => <p key={problem} className={styles.problem}>{problem}</p>)}
-      {found.tract ? <p>{found.side === 'left' ? 'Left' : 'Right'} side, tract of {formatLength(found.length_m)}.</p> : null}
-      {breach ? <p data-part="breach">The {breach.wall} wall gives way at a depth of <strong>{formatLength(breach.at_m)}</strong>, where it is <strong>{formatLength(breach.wall_thickness_m)}</strong> thick; the tool goes {formatLength(breach.depth_m)} beyond.</p> : found.tract ? <p>{plan.whole ? 'The bone stays whole: trainees drill this tract, then feel what they made.' : 'No wall is breached.'}</p> : null}
+      {problems.map((problem) => (
+        <p key={problem} className={styles.problem}>
+          {problem}
+        </p>
+      ))}
+      {found.tract ? (
+        <p>
+          {found.side === 'left' ? 'Left' : 'Right'} side, tract of {formatLength(found.length_m)}.
+        </p>
+      ) : null}
+      {breach ? (
+        <p data-part="breach">
+          The {breach.wall} wall is breached at a depth of <strong>{formatLength(breach.at_m)}</strong>, where it is{' '}
+          <strong>{formatLength(breach.wall_thickness_m)}</strong> thick; the tool extends{' '}
+          {formatLength(breach.depth_m)} beyond the bone.
+        </p>
+      ) : found.tract ? (
+        <p>
+          {plan.whole
+            ? 'No channel is pre-drilled: trainees drill this tract and then palpate it.'
+            : 'No wall is breached.'}
+        </p>
+      ) : null}
     </div>
   );
 }
@@ -41,18 +89,37 @@ function Make({ volume, plan, ready }: { readonly volume: string; readonly plan:
   const client = useQueryClient();
   const [, go] = useLocation();
   const [title, setTitle] = useState('');
-  const wish = wishOf(plan);
+  const request = requestOf(plan);
   const made = useMutation({
     mutationFn: makeCase,
-    onSuccess: async () => { await client.invalidateQueries({ queryKey: makingsQuery.queryKey }); go('/cases'); },
+    onSuccess: async () => {
+      await client.invalidateQueries({ queryKey: makingsQuery.queryKey });
+      go('/cases');
+    },
   });
-  const submit = (event: FormEvent) => { event.preventDefault(); if (wish) made.mutate(caseOf(wish, volume, title.trim())); };
+  const submit = (event: FormEvent) => {
+    event.preventDefault();
+    if (request) made.mutate(caseOf(request, volume, title.trim()));
+  };
   return (
     <form className={styles.make} onSubmit={submit}>
-      <Field label="Title, for those who teach" value={title} required maxLength={200} placeholder="L3 left, medial breach" onChange={(event) => setTitle(event.target.value)} />
-      <Button look="solid" type="submit" disabled={!ready || wish === null || title.trim() === '' || made.isPending}>{made.isPending ? 'Asking…' : 'Make the case'}</Button>
-      <p className={styles.muted}>Trainees never see the title: in an assignment a case has a blind name.</p>
-      {made.isError ? <Notice tone="bad" title="The case is not being made.">{made.error.message}</Notice> : null}
+      <Field
+        label="Title (not shown to trainees)"
+        value={title}
+        required
+        maxLength={200}
+        placeholder="L3 left, medial breach"
+        onChange={(event) => setTitle(event.target.value)}
+      />
+      <Button look="solid" type="submit" disabled={!ready || request === null || title.trim() === '' || made.isPending}>
+        {made.isPending ? 'Submitting…' : 'Create case'}
+      </Button>
+      <p className={styles.muted}>Trainees see the blind name from the assignment instead of this title.</p>
+      {made.isError ? (
+        <Notice tone="bad" title="The case was not created.">
+          {made.error.message}
+        </Notice>
+      ) : null}
     </form>
   );
 }
@@ -60,17 +127,23 @@ function Make({ volume, plan, ready }: { readonly volume: string; readonly plan:
 function Workbench({ volume, block }: { readonly volume: SourceVolume; readonly block: Preview }) {
   const search = useSearch();
   const palette = usePalette();
-  const [{ plan, past, future }, step] = useReducer(draw, search, (address) => ({ plan: fromAddress(address), past: [], future: [] }));
+  const [{ plan, past, future }, step] = useReducer(draw, search, (address) => ({
+    plan: fromAddress(address),
+    past: [],
+    future: [],
+  }));
   const [chosen, setChosen] = useState<End>(plan.entry ? 'target' : 'entry');
   const [focus, setFocus] = useState<Vec3>(() => plan.entry ?? middleOf(block));
   const [dragging, setDragging] = useState(false);
   const [window_, setWindow] = useState('bone');
   const settled = useSettled(plan, 250);
-  const wish = wishOf(settled);
-  const answer = useQuery(plannedTractQuery(volume.id, wish));
-  const found = wish ? answer.data : undefined;
+  const request = requestOf(settled);
+  const answer = useQuery(plannedTractQuery(volume.id, request));
+  const found = request ? answer.data : undefined;
   const looking = answer.isFetching || settled !== plan;
-  useEffect(() => { window.history.replaceState(null, '', `?${toAddress(settled)}`); }, [settled]);
+  useEffect(() => {
+    window.history.replaceState(null, '', `?${toAddress(settled)}`);
+  }, [settled]);
 
   const place = (end: End, at: Vec3, done: boolean) => {
     step({ kind: 'change', to: end === 'entry' ? { entry: at } : { target: at }, passing: dragging });
@@ -80,38 +153,107 @@ function Workbench({ volume, block }: { readonly volume: SourceVolume; readonly 
     setFocus(at);
     if (end === 'entry' && !plan.target) setChosen('target');
   };
-  const type = (end: End, at: Vec3) => { step({ kind: 'change', to: end === 'entry' ? { entry: at } : { target: at } }); setFocus(at); };
+  const type = (end: End, at: Vec3) => {
+    step({ kind: 'change', to: end === 'entry' ? { entry: at } : { target: at } });
+    setFocus(at);
+  };
   return (
     <div className={styles.bench}>
       <div className={styles.left}>
-        <Card title="Slices" aside={(
-          <span className={styles.tools}>
-            <Select label={<span className="hidden-visually">Window</span>} value={window_} options={Object.entries(kWindows).map(([value, { text }]) => ({ value, text }))} onChange={(event) => setWindow(event.target.value)} />
-            <Button onClick={() => step({ kind: 'undo' })} disabled={past.length === 0}>Undo</Button>
-            <Button onClick={() => step({ kind: 'redo' })} disabled={future.length === 0}>Redo</Button>
-          </span>
-        )}>
-          <Slices volume={volume.id} block={block} window={kWindows[window_]?.window ?? { low: -200, high: 1100 }} plan={plan} found={found} chosen={chosen} focus={focus} onFocus={setFocus} onPlace={place} />
+        <Card
+          title="Slices"
+          aside={
+            <span className={styles.tools}>
+              <Select
+                label={<span className="hidden-visually">Window</span>}
+                value={window_}
+                options={Object.entries(kWindows).map(([value, { text }]) => ({ value, text }))}
+                onChange={(event) => setWindow(event.target.value)}
+              />
+              <Button onClick={() => step({ kind: 'undo' })} disabled={past.length === 0}>
+                Undo
+              </Button>
+              <Button onClick={() => step({ kind: 'redo' })} disabled={future.length === 0}>
+                Redo
+              </Button>
+            </span>
+          }
+        >
+          <Slices
+            volume={volume.id}
+            block={block}
+            window={kWindows[window_]?.window ?? { low: -200, high: 1100 }}
+            plan={plan}
+            found={found}
+            chosen={chosen}
+            focus={focus}
+            onFocus={setFocus}
+            onPlace={place}
+          />
         </Card>
         <div className={styles.pair}>
-          <Card title="In three dimensions">
-            <PlanView tract={found?.tract ?? null} breach={found?.breach ?? null} bone={block} palette={palette} summary="The bone with the planned tract and its breach."
-              button={(label, text, press, pressed) => <Button label={label} onClick={press} {...(pressed === undefined ? {} : { pressed })}>{text}</Button>} />
+          <Card title="3-D view">
+            <PlanView
+              tract={found?.tract ?? null}
+              breach={found?.breach ?? null}
+              bone={block}
+              palette={palette}
+              summary="The bone with the planned tract and its breach."
+              button={(label, text, press, pressed) => (
+                <Button label={label} onClick={press} {...(pressed === undefined ? {} : { pressed })}>
+                  {text}
+                </Button>
+              )}
+            />
           </Card>
           <Card title="Walls along the tract">
-            {found?.tract ? <Walls found={found} /> : <p className={`${styles.muted} ${styles.tall}`}>Where the walls are and how thick they are is shown here as soon as both ends of the tract are placed.</p>}
+            {found?.tract ? (
+              <Walls found={found} />
+            ) : (
+              <p className={`${styles.muted} ${styles.tall}`}>
+                Place both ends of the tract to see the thickness of the walls.
+              </p>
+            )}
           </Card>
         </div>
       </div>
       <Card title="Tract" className={styles.side ?? ''}>
         <div className={styles.stack}>
           <fieldset className={styles.ends}>
-            <legend className="hidden-visually">Which end a click places</legend>
-            {(['entry', 'target'] as const).map((end) => <PointFields key={end} end={end} at={plan[end]} chosen={chosen === end} onChoose={() => { setChosen(end); const at = plan[end]; if (at) setFocus(at); }} onAt={(at) => type(end, at)} />)}
+            <legend className="hidden-visually">End of the tract that a click places</legend>
+            {(['entry', 'target'] as const).map((end) => (
+              <PointFields
+                key={end}
+                end={end}
+                at={plan[end]}
+                chosen={chosen === end}
+                onChoose={() => {
+                  setChosen(end);
+                  const at = plan[end];
+                  if (at) setFocus(at);
+                }}
+                onAt={(at) => type(end, at)}
+              />
+            ))}
           </fieldset>
-          <BreachFields plan={plan} length_m={found?.length_m ?? null} onBreach={(breach) => step({ kind: 'change', to: { breach } })} onWhole={(whole) => step({ kind: 'change', to: { whole, breach: null } })} />
-          {answer.isError ? <Notice tone="bad" title="The plan could not be looked at." onRetry={() => void answer.refetch()}>{answer.error.message}</Notice> : <Findings plan={plan} found={found} looking={looking} />}
-          <Make volume={volume.id} plan={plan} ready={found?.tract !== null && found?.problems.length === 0 && !looking} />
+          <BreachFields
+            plan={plan}
+            length_m={found?.length_m ?? null}
+            onBreach={(breach) => step({ kind: 'change', to: { breach } })}
+            onWhole={(whole) => step({ kind: 'change', to: { whole, breach: null } })}
+          />
+          {answer.isError ? (
+            <Notice tone="bad" title="The plan could not be checked." onRetry={() => void answer.refetch()}>
+              {answer.error.message}
+            </Notice>
+          ) : (
+            <Findings plan={plan} found={found} looking={looking} />
+          )}
+          <Make
+            volume={volume.id}
+            plan={plan}
+            ready={found?.tract !== null && found?.problems.length === 0 && !looking}
+          />
         </div>
       </Card>
     </div>
@@ -120,8 +262,20 @@ function Workbench({ volume, block }: { readonly volume: SourceVolume; readonly 
 
 function Chosen({ volume }: { readonly volume: SourceVolume }) {
   const block = useQuery(volumeBoneQuery(volume.id));
-  if (block.isError) return <Notice tone="bad" title="The volume could not be loaded." onRetry={() => void block.refetch()}>{block.error.message}</Notice>;
-  return block.data ? <Workbench volume={volume} block={block.data} /> : <div role="status"><span className="hidden-visually">Loading the volume</span><Skeleton height="640px" /></div>;
+  if (block.isError)
+    return (
+      <Notice tone="bad" title="The volume could not be loaded." onRetry={() => void block.refetch()}>
+        {block.error.message}
+      </Notice>
+    );
+  return block.data ? (
+    <Workbench volume={volume} block={block.data} />
+  ) : (
+    <div role="status">
+      <span className="hidden-visually">Loading the volume</span>
+      <Skeleton height="640px" />
+    </div>
+  );
 }
 
 /** From a released volume to a case: tract, breach, title. */
@@ -131,12 +285,37 @@ export function NewCasePage({ volume: id }: { readonly volume: string }) {
   useTitle('New case');
   return (
     <div className={styles.page}>
-      <p><Link href="/cases">← Cases</Link></p>
-      <div><h1>New case{volume ? ` of ${volume.name}` : ''}</h1><p className={styles.lead}>Place the tract of a pedicle screw in the bone, and choose where it breaks out. Millimetres of the patient: x to the left, y to the back, z upwards.</p></div>
-      {volumes.isError ? <Notice tone="bad" title="The volumes could not be loaded." onRetry={() => void volumes.refetch()}>{volumes.error.message}</Notice> : null}
-      {volumes.isPending ? <div role="status"><span className="hidden-visually">Loading</span><Skeleton height="640px" /></div> : null}
-      {volumes.data && !volume ? <Notice tone="warn" title="There is no such volume.">It may have been refused since.</Notice> : null}
-      {volume && volume.state !== 'released' ? <Notice tone="warn" title="This volume is not released.">An administrator or the programme director looks at it first.</Notice> : null}
+      <p>
+        <Link href="/cases">← Cases</Link>
+      </p>
+      <div>
+        <h1>New case{volume ? ` from ${volume.name}` : ''}</h1>
+        <p className={styles.lead}>
+          Place the tract of a pedicle screw in the bone and choose where it breaches a wall. Coordinates are in
+          millimetres in the patient’s frame: x to the left, y to the back, z upwards.
+        </p>
+      </div>
+      {volumes.isError ? (
+        <Notice tone="bad" title="The volumes could not be loaded." onRetry={() => void volumes.refetch()}>
+          {volumes.error.message}
+        </Notice>
+      ) : null}
+      {volumes.isPending ? (
+        <div role="status">
+          <span className="hidden-visually">Loading</span>
+          <Skeleton height="640px" />
+        </div>
+      ) : null}
+      {volumes.data && !volume ? (
+        <Notice tone="warn" title="Volume not found.">
+          It may have been rejected.
+        </Notice>
+      ) : null}
+      {volume && volume.state !== 'released' ? (
+        <Notice tone="warn" title="This volume is not released.">
+          An administrator or the programme director must review it first.
+        </Notice>
+      ) : null}
       {volume?.state === 'released' ? <Chosen volume={volume} /> : null}
     </div>
   );

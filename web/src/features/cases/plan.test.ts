@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { draw, fromAddress, kNoPlan, toAddress, wishOf, type Drawing } from './plan';
+import { draw, fromAddress, kNoPlan, toAddress, requestOf, type Drawing } from './plan';
 
 const empty: Drawing = { plan: kNoPlan, past: [], future: [] };
 
@@ -14,16 +14,31 @@ describe('a plan of a case', () => {
     expect(draw(back, { kind: 'redo' }).plan.entry).toEqual([0.05, 0.2, -0.06]);
   });
   it('asks nothing of the server until both ends are placed', () => {
-    expect(wishOf({ ...kNoPlan, entry: [0, 0, 0] })).toBeNull();
-    expect(wishOf({ ...kNoPlan, entry: [0, 0, 0], target: [0, -0.04, 0] })).toMatchObject({ target_m: [0, -0.04, 0], breach: null });
+    expect(requestOf({ ...kNoPlan, entry: [0, 0, 0] })).toBeNull();
+    expect(requestOf({ ...kNoPlan, entry: [0, 0, 0], target: [0, -0.04, 0] })).toMatchObject({
+      target_m: [0, -0.04, 0],
+      breach: null,
+    });
   });
   it('is the same after it was an address', () => {
-    const plan = { entry: [0.0453, 0.1991, -0.0611], target: [0.039, 0.158, -0.061], radius_m: 0.0015, breach: { wall: 'medial', depth_m: 0.003, at_m: null }, whole: false } as const;
+    const plan = {
+      entry: [0.0453, 0.1991, -0.0611],
+      target: [0.039, 0.158, -0.061],
+      radius_m: 0.0015,
+      breach: { wall: 'medial', depth_m: 0.003, at_m: null },
+      whole: false,
+    } as const;
     expect(fromAddress(toAddress(plan))).toEqual(plan);
   });
   it('asks for no breach in bone that is left whole, and says so in its address', () => {
-    const plan = { ...kNoPlan, entry: [0, 0, 0], target: [0, -0.04, 0], breach: { wall: 'medial', depth_m: 0.003, at_m: null }, whole: true } as const;
-    expect(wishOf(plan)).toMatchObject({ channel: 'planned', breach: null });
+    const plan = {
+      ...kNoPlan,
+      entry: [0, 0, 0],
+      target: [0, -0.04, 0],
+      breach: { wall: 'medial', depth_m: 0.003, at_m: null },
+      whole: true,
+    } as const;
+    expect(requestOf(plan)).toMatchObject({ channel: 'planned', breach: null });
     expect(fromAddress(toAddress(plan)).whole).toBe(true);
   });
   it('takes nothing from an address that is none', () => {

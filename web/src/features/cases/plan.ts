@@ -1,28 +1,49 @@
-/** A plan of a case as it is being drawn, and each step as a value: what was may be brought back. */
-import { kWalls, type NewCase, type TractWish, type Vec3 } from '@/api';
+/** The plan of a case while it is edited. Each step is a value, so that it can be undone. */
+import { kWalls, type NewCase, type TractRequest, type Vec3 } from '@/api';
 
 export type WallName = (typeof kWalls)[number];
 export type End = 'entry' | 'target';
 
-export interface Breach { readonly wall: WallName; readonly depth_m: number; /** null: where the wall is thinnest. */ readonly at_m: number | null }
-export interface Plan { readonly entry: Vec3 | null; readonly target: Vec3 | null; readonly radius_m: number; readonly breach: Breach | null; /** No channel is made: trainees drill it. */ readonly whole: boolean }
+export interface Breach {
+  readonly wall: WallName;
+  readonly depth_m: number;
+  /** null: where the wall is thinnest. */ readonly at_m: number | null;
+}
+export interface Plan {
+  readonly entry: Vec3 | null;
+  readonly target: Vec3 | null;
+  readonly radius_m: number;
+  readonly breach: Breach | null;
+  /** No channel is made: trainees drill it. */ readonly whole: boolean;
+}
 
 export const kNoPlan: Plan = { entry: null, target: null, radius_m: 0.0015, breach: null, whole: false };
 
-export interface Drawing { readonly plan: Plan; readonly past: readonly Plan[]; readonly future: readonly Plan[] }
+export interface Drawing {
+  readonly plan: Plan;
+  readonly past: readonly Plan[];
+  readonly future: readonly Plan[];
+}
 
 const kMostSteps = 100;
 
 export type Step =
-  | { readonly kind: 'change'; readonly to: Partial<Plan>; /** Part of a drag: no step of its own. */ readonly passing?: boolean }
-  | { readonly kind: 'undo' } | { readonly kind: 'redo' };
+  | {
+      readonly kind: 'change';
+      readonly to: Partial<Plan>;
+      /** Part of a drag: no step of its own. */ readonly passing?: boolean;
+    }
+  | { readonly kind: 'undo' }
+  | { readonly kind: 'redo' };
 
 export function draw(drawing: Drawing, step: Step): Drawing {
   const { plan, past, future } = drawing;
   switch (step.kind) {
     case 'change': {
       const next = { ...plan, ...step.to };
-      return step.passing ? { ...drawing, plan: next } : { plan: next, past: [...past, plan].slice(-kMostSteps), future: [] };
+      return step.passing
+        ? { ...drawing, plan: next }
+        : { plan: next, past: [...past, plan].slice(-kMostSteps), future: [] };
     }
     case 'undo': {
       const before = past.at(-1);
@@ -35,44 +56,67 @@ export function draw(drawing: Drawing, step: Step): Drawing {
   }
 }
 
-/** What the server is asked; null while an end is missing. A tenth of a millimetre's hundredth is enough. */
-export function wishOf({ entry, target, radius_m, breach, whole }: Plan): TractWish | null {
+/** The request to the server, rounded to 1 µm; null while an end is missing. */
+export function requestOf({ entry, target, radius_m, breach, whole }: Plan): TractRequest | null {
   if (!entry || !target) return null;
   const tidy = (p: Vec3): [number, number, number] => [round(p[0]), round(p[1]), round(p[2])];
   return {
-    entry_m: tidy(entry), target_m: tidy(target), radius_m, channel: whole ? 'planned' : 'drilled',
-    breach: breach && !whole ? { wall: breach.wall, depth_m: breach.depth_m, ...(breach.at_m === null ? {} : { at_m: breach.at_m }) } : null,
+    entry_m: tidy(entry),
+    target_m: tidy(target),
+    radius_m,
+    channel: whole ? 'planned' : 'drilled',
+    breach:
+      breach && !whole
+        ? { wall: breach.wall, depth_m: breach.depth_m, ...(breach.at_m === null ? {} : { at_m: breach.at_m }) }
+        : null,
   };
 }
 const round = (value: number) => Math.round(value * 1e6) / 1e6;
 
-export const caseOf = (wish: TractWish, volume: string, title: string): NewCase => ({ ...wish, volume, title });
+export const caseOf = (request: TractRequest, volume: string, title: string): NewCase => ({
+  ...request,
+  volume,
+  title,
+});
 
 /** The plan as part of an address, in millimetres: a link to it can be kept. */
 export function toAddress({ entry, target, radius_m, breach, whole }: Plan): string {
-  const said = new URLSearchParams();
+  const parameters = new URLSearchParams();
   const mm = (p: Vec3) => p.map((value) => Math.round(value * 1e5) / 100).join(',');
-  if (entry) said.set('entry', mm(entry));
-  if (target) said.set('target', mm(target));
-  if (radius_m !== kNoPlan.radius_m) said.set('radius', String(Math.round(radius_m * 1e5) / 100));
-  if (whole) said.set('whole', '1');
-  if (breach) said.set('breach', [breach.wall, breach.depth_m * 1000, ...(breach.at_m === null ? [] : [breach.at_m * 1000])].join(','));
-  return said.toString();
+  if (entry) parameters.set('entry', mm(entry));
+  if (target) parameters.set('target', mm(target));
+  if (radius_m !== kNoPlan.radius_m) parameters.set('radius', String(Math.round(radius_m * 1e5) / 100));
+  if (whole) parameters.set('whole', '1');
+  if (breach)
+    parameters.set(
+      'breach',
+      [breach.wall, breach.depth_m * 1000, ...(breach.at_m === null ? [] : [breach.at_m * 1000])].join(','),
+    );
+  return parameters.toString();
 }
 
 function pointOf(text: string | null): Vec3 | null {
-  const [x, y, z, ...more] = (text ?? '').split(',').map((part) => (part.trim() === '' ? Number.NaN : Number(part) / 1000));
-  return x !== undefined && y !== undefined && z !== undefined && more.length === 0 && [x, y, z].every(Number.isFinite) ? [x, y, z] : null;
+  const [x, y, z, ...more] = (text ?? '')
+    .split(',')
+    .map((part) => (part.trim() === '' ? Number.NaN : Number(part) / 1000));
+  return x !== undefined && y !== undefined && z !== undefined && more.length === 0 && [x, y, z].every(Number.isFinite)
+    ? [x, y, z]
+    : null;
 }
 
 export function fromAddress(search: string): Plan {
-  const said = new URLSearchParams(search);
-  const [wall, depth, at] = (said.get('breach') ?? '').split(',');
+  const parameters = new URLSearchParams(search);
+  const [wall, depth, at] = (parameters.get('breach') ?? '').split(',');
   const known = kWalls.find((one) => one === wall);
-  const number = (text: string | undefined | null, otherwise: number) => (text && Number.isFinite(Number(text)) ? Number(text) / 1000 : otherwise);
+  const number = (text: string | undefined | null, otherwise: number) =>
+    text && Number.isFinite(Number(text)) ? Number(text) / 1000 : otherwise;
   return {
-    entry: pointOf(said.get('entry')), target: pointOf(said.get('target')), radius_m: number(said.get('radius'), kNoPlan.radius_m),
-    whole: said.get('whole') === '1',
-    breach: known ? { wall: known, depth_m: number(depth, 0.003), at_m: at === undefined ? null : number(at, 0) } : null,
+    entry: pointOf(parameters.get('entry')),
+    target: pointOf(parameters.get('target')),
+    radius_m: number(parameters.get('radius'), kNoPlan.radius_m),
+    whole: parameters.get('whole') === '1',
+    breach: known
+      ? { wall: known, depth_m: number(depth, 0.003), at_m: at === undefined ? null : number(at, 0) }
+      : null,
   };
 }

@@ -15,11 +15,13 @@ const kPitch_m = 0.0005;
 
 /** The corners of the block along the patient's axes. */
 export function boundsOf({ dims, spacing_m, origin_m, directions: d }: Preview): { low: Vec3; high: Vec3 } {
-  const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+  const low = [Infinity, Infinity, Infinity],
+    high = [-Infinity, -Infinity, -Infinity];
   for (let corner = 0; corner < 8; ++corner) {
     for (const row of [0, 1, 2] as const) {
       let at = origin_m[row];
-      for (const i of [0, 1, 2] as const) at += (corner >> i) & 1 ? (d[3 * row + i] ?? 0) * (dims[i] - 1) * spacing_m[i] : 0;
+      for (const i of [0, 1, 2] as const)
+        at += (corner >> i) & 1 ? (d[3 * row + i] ?? 0) * (dims[i] - 1) * spacing_m[i] : 0;
       low[row] = Math.min(low[row] ?? 0, at);
       high[row] = Math.max(high[row] ?? 0, at);
     }
@@ -35,7 +37,11 @@ function marksOf(plan: Plan, found: PlannedTract | undefined): SliceMark[] {
   const tract = found?.tract;
   if (tract) {
     const towards: Record<string, Vec3> = {
-      medial: tract.medial, lateral: add([0, 0, 0], tract.medial, -1), superior: tract.superior, inferior: add([0, 0, 0], tract.superior, -1), anterior: tract.axis,
+      medial: tract.medial,
+      lateral: add([0, 0, 0], tract.medial, -1),
+      superior: tract.superior,
+      inferior: add([0, 0, 0], tract.superior, -1),
+      anterior: tract.axis,
     };
     for (const { wall, depth_m, inner_m, thickness_m } of found.walls) {
       const side = towards[wall];
@@ -43,11 +49,18 @@ function marksOf(plan: Plan, found: PlannedTract | undefined): SliceMark[] {
       for (let i = 0; i + 2 < depth_m.length; i += 2) {
         for (const face of ['inner', 'outer'] as const) {
           const place = (at: number) => {
-            const inner = inner_m[at], thick = thickness_m[at];
-            if (inner === null || inner === undefined || thick === null || thick === undefined || inner > 0.015) return null;
-            return add(add(tract.entry_m, tract.axis, depth_m[at] ?? 0), side, face === 'inner' ? inner : inner + thick);
+            const inner = inner_m[at],
+              thick = thickness_m[at];
+            if (inner === null || inner === undefined || thick === null || thick === undefined || inner > 0.015)
+              return null;
+            return add(
+              add(tract.entry_m, tract.axis, depth_m[at] ?? 0),
+              side,
+              face === 'inner' ? inner : inner + thick,
+            );
           };
-          const from = place(i), to = place(i + 2);
+          const from = place(i),
+            to = place(i + 2);
           if (from && to) out.push({ id: `${wall} ${face} ${i}`, at: from, to, look: 'wall', wide: 0.35 });
         }
       }
@@ -78,16 +91,42 @@ interface Props {
 type Placed = (typeof kPlanes)[number];
 
 /** One plane; while the next slice is on its way, the one before stays. */
-function OnePlane({ where: { plane, name, axis, ends }, low, high, marks, volume, window, chosen, focus, onFocus, onPlace }: Props & { readonly where: Placed; readonly low: Vec3; readonly high: Vec3; readonly marks: readonly SliceMark[] }) {
-  const at = Math.round(Math.min(Math.max(Math.round(focus[axis] / kPitch_m) * kPitch_m, low[axis]), high[axis]) * 1e6) / 1e6;
+function OnePlane({
+  where: { plane, name, axis, ends },
+  low,
+  high,
+  marks,
+  volume,
+  window,
+  chosen,
+  focus,
+  onFocus,
+  onPlace,
+}: Props & { readonly where: Placed; readonly low: Vec3; readonly high: Vec3; readonly marks: readonly SliceMark[] }) {
+  const at =
+    Math.round(Math.min(Math.max(Math.round(focus[axis] / kPitch_m) * kPitch_m, low[axis]), high[axis]) * 1e6) / 1e6;
   const query = useQuery(sliceQuery(volume, plane, at, window));
   return (
     <div>
-      {query.isError ? <Notice tone="bad" title="This slice could not be loaded." onRetry={() => void query.refetch()}>{query.error.message}</Notice> : null}
+      {query.isError ? (
+        <Notice tone="bad" title="This slice could not be loaded." onRetry={() => void query.refetch()}>
+          {query.error.message}
+        </Notice>
+      ) : null}
       <SliceView
-        name={name} picture={query.data ?? null} late={query.isPlaceholderData} at_m={at} from_m={low[axis]} to_m={high[axis]} ends={ends} marks={marks} chosen={chosen}
+        name={name}
+        picture={query.data ?? null}
+        late={query.isPlaceholderData}
+        at_m={at}
+        from_m={low[axis]}
+        to_m={high[axis]}
+        ends={ends}
+        marks={marks}
+        chosen={chosen}
         onAt={(to) => onFocus([axis === 0 ? to : focus[0], axis === 1 ? to : focus[1], axis === 2 ? to : focus[2]])}
-        onPlace={(id, to, done) => { if (id === 'entry' || id === 'target') onPlace(id, to, done); }}
+        onPlace={(id, to, done) => {
+          if (id === 'entry' || id === 'target') onPlace(id, to, done);
+        }}
       />
     </div>
   );
@@ -98,5 +137,11 @@ export function Slices(props: Props) {
   const { block, plan, found } = props;
   const bounds = useMemo(() => boundsOf(block), [block]);
   const marks = useMemo(() => marksOf(plan, found), [plan, found]);
-  return <div className={styles.slices}>{kPlanes.map((where) => <OnePlane key={where.plane} where={where} marks={marks} {...bounds} {...props} />)}</div>;
+  return (
+    <div className={styles.slices}>
+      {kPlanes.map((where) => (
+        <OnePlane key={where.plane} where={where} marks={marks} {...bounds} {...props} />
+      ))}
+    </div>
+  );
 }

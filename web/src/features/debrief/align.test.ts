@@ -21,10 +21,16 @@ describe('two trials beside each other', () => {
   });
   it('never run back', () => {
     const wandering = steady(1, 20, 0);
-    const withdrawn = { ...wandering, depth_m: wandering.depth_m.map((depth, i) => (i > 800 && i < 1200 ? 0.002 : depth)) };
+    const withdrawn = {
+      ...wandering,
+      depth_m: wandering.depth_m.map((depth, i) => (i > 800 && i < 1200 ? 0.002 : depth)),
+    };
     const at = byProgress(withdrawn, steady(2, 20, 5));
     let before = -1;
-    for (let t = 0; t <= 20; t += 0.25) { expect(at(t)).toBeGreaterThanOrEqual(before); before = at(t); }
+    for (let t = 0; t <= 20; t += 0.25) {
+      expect(at(t)).toBeGreaterThanOrEqual(before);
+      before = at(t);
+    }
   });
   it('wait at the end when they go by the clock', () => {
     expect(byTime(steady(1, 5, 0))(3)).toBe(3);

@@ -1,7 +1,18 @@
 import { useQuery } from '@tanstack/react-query';
 import { useMemo, useState } from 'react';
 import { Link } from 'wouter';
-import { ApiError, commentsQuery, forceDepthQuery, pathQuery, previewQuery, referenceWayQuery, sessionQuery, trialQuery, type ReferenceWay, type Trial } from '@/api';
+import {
+  ApiError,
+  commentsQuery,
+  forceDepthQuery,
+  pathQuery,
+  previewQuery,
+  referenceWayQuery,
+  sessionQuery,
+  trialQuery,
+  type ReferenceWay,
+  type Trial,
+} from '@/api';
 import { makeCursor, TractView, type Cursor } from '@/charts';
 import { Badge, Button, Card, Notice, Skeleton, usePalette, useTitle } from '@/ui';
 import { formatDateTime, formatDuration } from '@/units';
@@ -16,8 +27,14 @@ import { usePlayer } from './use-player';
 
 type Tips = readonly (readonly [number, number, number])[];
 
-/** The way of the tip of either rig, as soon as it is there. */
-function useWay(trial: Trial): { way: Way | undefined; tips: Tips | null; failed: Error | null; retry: () => void; curve: ReturnType<typeof breaches> } {
+/** Path of the tip of either rig, once it is loaded. */
+function useWay(trial: Trial): {
+  way: Way | undefined;
+  tips: Tips | null;
+  failed: Error | null;
+  retry: () => void;
+  curve: ReturnType<typeof breaches>;
+} {
   const palpation = trial.rig === 'palpation';
   const path = useQuery({ ...pathQuery(trial.id), enabled: palpation });
   const depth = useQuery({ ...forceDepthQuery(trial.id), enabled: !palpation });
@@ -25,28 +42,76 @@ function useWay(trial: Trial): { way: Way | undefined; tips: Tips | null; failed
   const way = useMemo<Way | undefined>(() => {
     if (!palpation) return depth.data;
     if (!path.data) return undefined;
-    const depth_m = path.data.tip_m.map((tip) => (tract ? [0, 1, 2].reduce((sum, i) => sum + ((tip[i] ?? 0) - (tract.entry_m[i] ?? 0)) * (tract.axis[i] ?? 0), 0) : 0));
+    const depth_m = path.data.tip_m.map((tip) =>
+      tract
+        ? [0, 1, 2].reduce((sum, i) => sum + ((tip[i] ?? 0) - (tract.entry_m[i] ?? 0)) * (tract.axis[i] ?? 0), 0)
+        : 0,
+    );
     return { t_s: path.data.t_s, force_N: path.data.force_N, depth_m };
   }, [palpation, path.data, depth.data, tract]);
   const curve = useMemo(() => breaches(depth.data), [depth.data]);
-  return { way, tips: path.data?.tip_m ?? null, failed: path.error ?? depth.error, retry: () => { void (palpation ? path : depth).refetch(); }, curve };
+  return {
+    way,
+    tips: path.data?.tip_m ?? null,
+    failed: path.error ?? depth.error,
+    retry: () => {
+      void (palpation ? path : depth).refetch();
+    },
+    curve,
+  };
 }
 
-interface Ghost { readonly way: ReferenceWay; readonly at: Moments }
+interface Ghost {
+  readonly way: ReferenceWay;
+  readonly at: Moments;
+}
 
-function Picture({ trial, way, tips, ghost, cursor }: { readonly trial: Trial; readonly way: Way; readonly tips: Tips; readonly ghost: Ghost | null; readonly cursor: Cursor }) {
+function Picture({
+  trial,
+  way,
+  tips,
+  ghost,
+  cursor,
+}: {
+  readonly trial: Trial;
+  readonly way: Way;
+  readonly tips: Tips;
+  readonly ghost: Ghost | null;
+  readonly cursor: Cursor;
+}) {
   const preview = useQuery(previewQuery(trial.case_id));
   const palette = usePalette();
   const path = useMemo(() => ({ t_s: way.t_s, tip_m: tips, force_N: way.force_N }), [way, tips]);
-  const other = useMemo(() => (ghost?.way.tip_m ? { path: { t_s: ghost.way.t_s, tip_m: ghost.way.tip_m, force_N: ghost.way.force_N }, at: ghost.at } : null), [ghost]);
+  const other = useMemo(
+    () =>
+      ghost?.way.tip_m
+        ? { path: { t_s: ghost.way.t_s, tip_m: ghost.way.tip_m, force_N: ghost.way.force_N }, at: ghost.at }
+        : null,
+    [ghost],
+  );
   if (!trial.tract) return <p>The case of this trial is not on this server.</p>;
   if (preview.isPending) return <Skeleton height="444px" />;
   return (
     <>
-      {preview.isError ? <Notice tone="warn" title="The bone could not be loaded; the rest is drawn without it.">{preview.error.message}</Notice> : null}
-      <TractView tract={trial.tract} path={path} bone={preview.data ?? null} cursor={cursor} ghost={other} palette={palette}
-        summary="The tract with the bone round it and the way of the tip coloured by force; a ball shows the moment, a second one the example’s."
-        button={(label, text, press, pressed) => <Button label={label} onClick={press} {...(pressed === undefined ? {} : { pressed })}>{text}</Button>} />
+      {preview.isError ? (
+        <Notice tone="warn" title="The bone could not be loaded. The view shows the tract without it.">
+          {preview.error.message}
+        </Notice>
+      ) : null}
+      <TractView
+        tract={trial.tract}
+        path={path}
+        bone={preview.data ?? null}
+        cursor={cursor}
+        ghost={other}
+        palette={palette}
+        summary="The tract with the surrounding bone and the path of the tip, coloured by force. A ball marks the current position; a second ball marks that of the example."
+        button={(label, text, press, pressed) => (
+          <Button label={label} onClick={press} {...(pressed === undefined ? {} : { pressed })}>
+            {text}
+          </Button>
+        )}
+      />
     </>
   );
 }
@@ -55,13 +120,35 @@ const sides = (found: string | null, none: string) => (found === null ? none : `
 
 function Verdict({ trial }: { readonly trial: Trial }) {
   const { answer, truth, scenario } = trial;
-  const said = answer ? (answer.breach ? (answer.wall ? sides(answer.wall, '') : 'a breach') : 'no breach') : 'no answer';
-  const was = trial.rig === 'probing' ? (scenario ? (scenario.walls.length > 0 ? 'a breach' : 'no breach') : null) : truth ? sides(truth.breached ?? null, 'no breach') : null;
+  const given = answer
+    ? answer.breach
+      ? answer.wall
+        ? sides(answer.wall, '')
+        : 'a breach'
+      : 'no breach'
+    : 'no answer';
+  const was =
+    trial.rig === 'probing'
+      ? scenario
+        ? scenario.walls.length > 0
+          ? 'a breach'
+          : 'no breach'
+        : null
+      : truth
+        ? sides(truth.breached ?? null, 'no breach')
+        : null;
   const right = trial.metrics.find((metric) => metric.id === 'answer_right')?.value ?? null;
   return (
     <p className={styles.verdict}>
-      <span>Said: <strong>{said}</strong>.</span> {was === null ? null : <span>There was: <strong>{was}</strong>.</span>}
-      {right === null ? null : right > 0.5 ? <Badge tone="good">right</Badge> : <Badge tone="bad">wrong</Badge>}
+      <span>
+        Answer: <strong>{given}</strong>.
+      </span>{' '}
+      {was === null ? null : (
+        <span>
+          Truth: <strong>{was}</strong>.
+        </span>
+      )}
+      {right === null ? null : right > 0.5 ? <Badge tone="good">correct</Badge> : <Badge tone="bad">incorrect</Badge>}
     </p>
   );
 }
@@ -74,36 +161,66 @@ function Replay({ trial, may }: { readonly trial: Trial; readonly may: boolean }
   const comments = useQuery(commentsQuery(trial.id));
   const other = useQuery({ ...referenceWayQuery(trial.id, choice.id), enabled: choice.id !== '' });
   const theirs = choice.id === '' ? undefined : other.data;
-  const ghost = useMemo(() => (theirs && way ? { way: theirs, at: choice.by === 'progress' ? byProgress(way, theirs) : byTime(theirs) } : null), [theirs, way, choice.by]);
+  const ghost = useMemo(
+    () =>
+      theirs && way ? { way: theirs, at: choice.by === 'progress' ? byProgress(way, theirs) : byTime(theirs) } : null,
+    [theirs, way, choice.by],
+  );
   const moments = useMemo(() => momentsOf(trial, comments.data?.comments ?? [], curve), [trial, comments.data, curve]);
   return (
     // eslint-disable-next-line jsx-a11y/no-static-element-interactions -- keys of the player work wherever one is in it
-    <div className={styles.page} onKeyDown={(event) => onPlayerKey(event, player, cursor.now() ?? 0, trial.duration_s, moments)}>
-      {failed ? <Notice tone="bad" title="The recording could not be loaded." onRetry={retry}>{failed.message}</Notice> : null}
-      {other.isError ? <Notice tone="bad" title="The example could not be loaded.">{other.error.message}</Notice> : null}
+    <div
+      className={styles.page}
+      onKeyDown={(event) => onPlayerKey(event, player, cursor.now() ?? 0, trial.duration_s, moments)}
+    >
+      {failed ? (
+        <Notice tone="bad" title="The recording could not be loaded." onRetry={retry}>
+          {failed.message}
+        </Notice>
+      ) : null}
+      {other.isError ? (
+        <Notice tone="bad" title="The example could not be loaded.">
+          {other.error.message}
+        </Notice>
+      ) : null}
       <div className={styles.two}>
         <Card title="Replay">
           <div className={styles.stack}>
-            {way && trial.rig === 'palpation' && tips ? <Picture trial={trial} way={way} tips={tips} ghost={ghost} cursor={cursor} /> : null}
+            {way && trial.rig === 'palpation' && tips ? (
+              <Picture trial={trial} way={way} tips={tips} ghost={ghost} cursor={cursor} />
+            ) : null}
             {way ? null : failed ? null : <Skeleton height="640px" />}
             {way ? (
               <>
                 <Transport duration_s={trial.duration_s} cursor={cursor} player={player} moments={moments} />
                 <Now cursor={cursor} way={way} ghost={ghost} />
-                <Timeline way={way} ghost={ghost} duration_s={trial.duration_s} cursor={cursor} player={player} moments={moments} scenario={trial.scenario} />
-                <p className={styles.muted}>Space plays and pauses, arrows move by a second (with Shift by a tenth), N and P go to the next moment and the one before. Click or drag in the curves.</p>
+                <Timeline
+                  way={way}
+                  ghost={ghost}
+                  duration_s={trial.duration_s}
+                  cursor={cursor}
+                  player={player}
+                  moments={moments}
+                  scenario={trial.scenario}
+                />
+                <p className={styles.muted}>
+                  Space: play or pause. Arrow keys: move by 1 s (with Shift by 0.1 s). N and P: next and previous event.
+                  Click or drag in the charts to move in time.
+                </p>
               </>
             ) : null}
             <ExampleField trial={trial.id} choice={choice} may={may} onChoice={setChoice} />
           </div>
         </Card>
-        <Card title="Comments"><Comments trial={trial.id} cursor={cursor} player={player} may={may} /></Card>
+        <Card title="Comments">
+          <Comments trial={trial.id} cursor={cursor} player={player} may={may} />
+        </Card>
       </div>
     </div>
   );
 }
 
-/** A trial talked through: replay beside an expert's, comments on its moments, release of results. */
+/** Debriefing of a trial: replay beside an example, comments, release of results. */
 export function DebriefPage({ id }: { readonly id: string }) {
   const query = useQuery(trialQuery(id));
   const role = useQuery({ ...sessionQuery, enabled: false }).data?.role;
@@ -113,15 +230,38 @@ export function DebriefPage({ id }: { readonly id: string }) {
   const missing = query.error instanceof ApiError && query.error.code === 'not_found';
   return (
     <div className={styles.page}>
-      <p><Link href={`/trials/${id}`}>← The trial with its measures</Link>{trial?.study?.id.startsWith('a-') ? <> · <Link href={`/assignments/${trial.study.id}`}>{trial.study.title}</Link></> : null}</p>
-      {query.isPending ? <div role="status"><span className="hidden-visually">Loading the trial</span><Skeleton height="640px" /></div> : null}
-      {query.isError && !trial ? <Notice tone={missing ? 'warn' : 'bad'} title={missing ? 'There is no such trial, or its results are not released.' : 'The trial could not be loaded.'} onRetry={missing ? undefined : () => void query.refetch()}>{query.error.message}</Notice> : null}
+      <p>
+        <Link href={`/trials/${id}`}>← Trial and measures</Link>
+        {trial?.study?.id.startsWith('a-') ? (
+          <>
+            {' '}
+            · <Link href={`/assignments/${trial.study.id}`}>{trial.study.title}</Link>
+          </>
+        ) : null}
+      </p>
+      {query.isPending ? (
+        <div role="status">
+          <span className="hidden-visually">Loading the trial</span>
+          <Skeleton height="640px" />
+        </div>
+      ) : null}
+      {query.isError && !trial ? (
+        <Notice
+          tone={missing ? 'warn' : 'bad'}
+          title={missing ? 'Trial not found, or its results are not released.' : 'The trial could not be loaded.'}
+          onRetry={missing ? undefined : () => void query.refetch()}
+        >
+          {query.error.message}
+        </Notice>
+      ) : null}
       {trial ? (
         <>
           <div className={styles.headline}>
             <h1>Debrief: {trial.case_title}</h1>
             {trial.simulated ? <Badge tone="warn">simulated</Badge> : null}
-            <span className={styles.muted}>{trial.operator_name}, {formatDateTime(trial.started_utc_us)}, {formatDuration(trial.duration_s)}</span>
+            <span className={styles.muted}>
+              {trial.operator_name}, {formatDateTime(trial.started_utc_us)}, {formatDuration(trial.duration_s)}
+            </span>
           </div>
           <Verdict trial={trial} />
           <ReleaseField trial={trial} may={may} />

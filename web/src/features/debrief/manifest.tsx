@@ -7,7 +7,5 @@ const DebriefPage = lazy(() => index().then(({ DebriefPage: page }) => ({ defaul
 
 export const feature: Feature = {
   menu: [],
-  pages: [
-    { path: '/trials/:id/debrief', show: (at) => <DebriefPage key={at('id')} id={at('id')} /> },
-  ],
+  pages: [{ path: '/trials/:id/debrief', show: (at) => <DebriefPage key={at('id')} id={at('id')} /> }],
 };

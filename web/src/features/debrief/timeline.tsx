@@ -37,22 +37,39 @@ function useScrub(player: Player) {
   const go = (event: PointerEvent<HTMLDivElement>) => {
     const at = places.current;
     if (!at) return;
-    const from = at.x(0), perSecond = at.x(1) - from;
+    const from = at.x(0),
+      perSecond = at.x(1) - from;
     player.seek((event.clientX - event.currentTarget.getBoundingClientRect().left - from) / perSecond);
   };
   return {
-    keep: (now: Places) => { places.current = now; },
+    remember: (now: Places) => {
+      places.current = now;
+    },
     handlers: {
-      onPointerDown: (event: PointerEvent<HTMLDivElement>) => { held.current = true; event.currentTarget.setPointerCapture(event.pointerId); go(event); },
-      onPointerMove: (event: PointerEvent<HTMLDivElement>) => { if (held.current) go(event); },
-      onPointerUp: () => { held.current = false; },
-      onPointerCancel: () => { held.current = false; },
+      onPointerDown: (event: PointerEvent<HTMLDivElement>) => {
+        held.current = true;
+        event.currentTarget.setPointerCapture(event.pointerId);
+        go(event);
+      },
+      onPointerMove: (event: PointerEvent<HTMLDivElement>) => {
+        if (held.current) go(event);
+      },
+      onPointerUp: () => {
+        held.current = false;
+      },
+      onPointerCancel: () => {
+        held.current = false;
+      },
     },
   };
 }
 
 /** The other trial's values at the moments of this one. */
-function shifted({ way: mine, ghost }: Props, column: 'force_N' | 'depth_m', scale: number): (readonly [number, number])[] {
+function shifted(
+  { way: mine, ghost }: Props,
+  column: 'force_N' | 'depth_m',
+  scale: number,
+): (readonly [number, number])[] {
   if (!ghost) return [];
   let row = 0;
   return mine.t_s.map((t) => {
@@ -64,32 +81,84 @@ function shifted({ way: mine, ghost }: Props, column: 'force_N' | 'depth_m', sca
 
 const top = (values: readonly number[], least: number) => values.reduce((most, value) => Math.max(most, value), least);
 
-function Line(props: Props & { readonly column: 'force_N' | 'depth_m'; readonly title: string; readonly scale: number; readonly named: boolean }) {
+function Line(
+  props: Props & {
+    readonly column: 'force_N' | 'depth_m';
+    readonly title: string;
+    readonly scale: number;
+    readonly named: boolean;
+  },
+) {
   const { way, ghost, duration_s, cursor, moments, scenario, column, title, scale, named } = props;
-  const { keep, handlers } = useScrub(props.player);
-  const most = top(way[column], 0) * scale, other = ghost ? top(ghost.way[column], 0) * scale : 0;
+  const { remember, handlers } = useScrub(props.player);
+  const most = top(way[column], 0) * scale,
+    other = ghost ? top(ghost.way[column], 0) * scale : 0;
   const least = Math.min(0, way[column].reduce((low, value) => Math.min(low, value), 0) * scale);
   const bone = column === 'depth_m' ? scenario : null;
   const end = Math.max(most, other, (bone?.travel_m ?? 0) * scale, column === 'force_N' ? 0.5 : 1) * 1.05;
   return (
     <div className={styles.line} data-part={`line-${column}`} {...handlers}>
-      <Plane across={{ title: 'time, s', from: 0, to: Math.max(duration_s, 0.1) }} up={{ title, from: least, to: end }} height_px={170} summary={`${title} over the trial${ghost ? ', with the example’s' : ''}.`}>
+      <Plane
+        across={{ title: 'time, s', from: 0, to: Math.max(duration_s, 0.1) }}
+        up={{ title, from: least, to: end }}
+        height_px={170}
+        summary={`${title} over the trial${ghost ? ', with the curve of the example' : ''}.`}
+      >
         {(places) => {
-          keep(places);
+          remember(places);
           const across = { x: places.x(0), width: places.width_px };
           return (
             <g>
-              {bone?.layers.map((layer, i) => (i % 2 ? null : <rect key={layer.start_m} className={styles.layer} {...across} y={places.y((layer.start_m + layer.thickness_m) * scale)} height={Math.max(0, places.y(layer.start_m * scale) - places.y((layer.start_m + layer.thickness_m) * scale))} />))}
-              {bone?.walls.map((wall) => <rect key={wall.position_m} className={styles.wall} {...across} y={places.y(wall.position_m * scale)} height={Math.max(1, places.y((wall.position_m - wall.resistance_interval_m) * scale) - places.y(wall.position_m * scale))} />)}
+              {bone?.layers.map((layer, i) =>
+                i % 2 ? null : (
+                  <rect
+                    key={layer.start_m}
+                    className={styles.layer}
+                    {...across}
+                    y={places.y((layer.start_m + layer.thickness_m) * scale)}
+                    height={Math.max(
+                      0,
+                      places.y(layer.start_m * scale) - places.y((layer.start_m + layer.thickness_m) * scale),
+                    )}
+                  />
+                ),
+              )}
+              {bone?.walls.map((wall) => (
+                <rect
+                  key={wall.position_m}
+                  className={styles.wall}
+                  {...across}
+                  y={places.y(wall.position_m * scale)}
+                  height={Math.max(
+                    1,
+                    places.y((wall.position_m - wall.resistance_interval_m) * scale) -
+                      places.y(wall.position_m * scale),
+                  )}
+                />
+              ))}
               {moments.map((one, i) => (
-                <g key={i} className={one.kind === 'comment' ? styles.comment : styles.event} transform={`translate(${places.x(one.t_s)} 0)`}>
+                <g
+                  key={i}
+                  className={one.kind === 'comment' ? styles.comment : styles.event}
+                  transform={`translate(${places.x(one.t_s)} 0)`}
+                >
                   <line y1={22} y2={22 + places.height_px} />
-                  {named && one.kind === 'event' && !kEnds.includes(one.text) ? <text y={19} textAnchor={one.t_s > duration_s / 2 ? 'end' : 'start'}>{one.text}</text> : null}
+                  {named && one.kind === 'event' && !kEnds.includes(one.text) ? (
+                    <text y={19} textAnchor={one.t_s > duration_s / 2 ? 'end' : 'start'}>
+                      {one.text}
+                    </text>
+                  ) : null}
                   {one.kind === 'comment' ? <circle cy={26} r={4} /> : null}
                 </g>
               ))}
               <path className={styles.ghostLine} d={curve(shifted(props, column, scale), places)} />
-              <path className={styles.mine} d={curve(way.t_s.map((t, i) => [t, (way[column][i] ?? 0) * scale] as const), places)} />
+              <path
+                className={styles.mine}
+                d={curve(
+                  way.t_s.map((t, i) => [t, (way[column][i] ?? 0) * scale] as const),
+                  places,
+                )}
+              />
               <Playhead places={places} cursor={cursor} />
             </g>
           );
@@ -103,8 +172,8 @@ function Line(props: Props & { readonly column: 'force_N' | 'depth_m'; readonly 
 export function Timeline(props: Props) {
   return (
     <div className={styles.stack}>
-      <Line {...props} column="force_N" title={props.scenario ? 'push of the hand, N' : 'force on the tip, N'} scale={1} named />
-      <Line {...props} column="depth_m" title="depth of the tip, mm" scale={1000} named={false} />
+      <Line {...props} column="force_N" title={props.scenario ? 'hand force, N' : 'tip force, N'} scale={1} named />
+      <Line {...props} column="depth_m" title="tip depth, mm" scale={1000} named={false} />
     </div>
   );
 }

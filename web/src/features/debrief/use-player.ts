@@ -17,8 +17,12 @@ export function usePlayer(duration_s: number, cursor: Cursor): Player {
   const [playing, setPlaying] = useState(false);
   const [speed, setSpeed] = useState(1);
   const rate = useRef(speed);
-  useEffect(() => { rate.current = speed; }, [speed]);
-  useEffect(() => { if (cursor.now() === null) cursor.set(0); }, [cursor]);
+  useEffect(() => {
+    rate.current = speed;
+  }, [speed]);
+  useEffect(() => {
+    if (cursor.now() === null) cursor.set(0);
+  }, [cursor]);
   useEffect(() => {
     if (!playing) return;
     let before = performance.now();

@@ -9,7 +9,7 @@ import { kPages } from './pages';
 const kMade = import.meta.glob<string>('./pictures/*.jpg', { eager: true, query: '?url', import: 'default' });
 const addressOf = (name: string | undefined) => (name === undefined ? undefined : kMade[`./pictures/${name}.jpg`]);
 
-/** One page for each role: what it comes for, how that is done, what the words mean. */
+/** One page for each role: its purpose, steps and terms. */
 export function GuidePage({ role }: { readonly role: string | undefined }) {
   const own = useQuery({ ...sessionQuery, enabled: false }).data?.role;
   const page = kPages.find((one) => one.role === (role ?? own)) ?? kPages[0];
@@ -17,15 +17,50 @@ export function GuidePage({ role }: { readonly role: string | undefined }) {
   if (!page) return null;
   return (
     <div className={styles.page}>
-      <div><h1>Guide</h1><p className={styles.lead}>For whom:</p></div>
-      <nav aria-label="Roles" className={styles.tabs}>{kPages.map((one) => <Link key={one.role} href={`/guide/${one.role}`} aria-current={one.role === page.role ? 'page' : undefined}>{one.name}</Link>)}</nav>
-      <p className={styles.for}>{page.for}</p>
-      <Card title="How it is done">
+      <div>
+        <h1>Guide</h1>
+        <p className={styles.lead}>Choose a role:</p>
+      </div>
+      <nav aria-label="Roles" className={styles.tabs}>
+        {kPages.map((one) => (
+          <Link key={one.role} href={`/guide/${one.role}`} aria-current={one.role === page.role ? 'page' : undefined}>
+            {one.name}
+          </Link>
+        ))}
+      </nav>
+      <p className={styles.for}>{page.purpose}</p>
+      <Card title="Steps">
         <ol className={styles.steps}>
-          {page.steps.map(({ title, text, to, picture }) => <li key={title}><strong>{title}</strong><p>{text} {to ? <Link href={to.href}>{to.name}</Link> : null}</p>{picture && addressOf(picture.name) ? <img className={styles.picture} src={addressOf(picture.name)} alt={picture.shows} width={1200} height={750} loading="lazy" /> : null}</li>)}
+          {page.steps.map(({ title, text, to, picture }) => (
+            <li key={title}>
+              <strong>{title}</strong>
+              <p>
+                {text} {to ? <Link href={to.href}>{to.name}</Link> : null}
+              </p>
+              {picture && addressOf(picture.name) ? (
+                <img
+                  className={styles.picture}
+                  src={addressOf(picture.name)}
+                  alt={picture.shows}
+                  width={1200}
+                  height={750}
+                  loading="lazy"
+                />
+              ) : null}
+            </li>
+          ))}
         </ol>
       </Card>
-      <Card title="What the words mean"><dl className={styles.terms}>{page.terms.map(([word, meaning]) => <div key={word}><dt>{word}</dt><dd>{meaning}</dd></div>)}</dl></Card>
+      <Card title="Terms">
+        <dl className={styles.terms}>
+          {page.terms.map(([word, meaning]) => (
+            <div key={word}>
+              <dt>{word}</dt>
+              <dd>{meaning}</dd>
+            </div>
+          ))}
+        </dl>
+      </Card>
     </div>
   );
 }

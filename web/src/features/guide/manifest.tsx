@@ -7,9 +7,12 @@ const GuidePage = lazy(() => index().then(({ GuidePage: page }) => ({ default: p
 
 export const feature: Feature = {
   menu: [
-    { to: '/guide', name: 'Guide', roles: ['admin', 'director', 'faculty', 'researcher', 'technician', 'trainee'], order: 130 },
+    {
+      to: '/guide',
+      name: 'Guide',
+      roles: ['admin', 'director', 'faculty', 'researcher', 'technician', 'trainee'],
+      order: 130,
+    },
   ],
-  pages: [
-    { path: '/guide/:role?', show: (at) => <GuidePage role={at('role') || undefined} /> },
-  ],
+  pages: [{ path: '/guide/:role?', show: (at) => <GuidePage role={at('role') || undefined} /> }],
 };

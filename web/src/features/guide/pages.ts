@@ -1,75 +1,257 @@
-/** What each role comes for and how it is done, in order; a page a role. */
+/** The guide: purpose, steps and terms, one page per role. */
 
 /** Made by the tests on a real server (GUIDE_PICTURES=1), so that it shows what is there. */
-export interface Picture { readonly name: string; readonly shows: string }
-export interface Step { readonly title: string; readonly text: string; readonly to?: { readonly href: string; readonly name: string }; readonly picture?: Picture }
-export interface GuidePage { readonly role: string; readonly name: string; readonly for: string; readonly steps: readonly Step[]; readonly terms: readonly (readonly [string, string])[] }
+export interface Picture {
+  readonly name: string;
+  readonly shows: string;
+}
+export interface Step {
+  readonly title: string;
+  readonly text: string;
+  readonly to?: { readonly href: string; readonly name: string };
+  readonly picture?: Picture;
+}
+export interface GuidePage {
+  readonly role: string;
+  readonly name: string;
+  readonly purpose: string;
+  readonly steps: readonly Step[];
+  readonly terms: readonly (readonly [string, string])[];
+}
 
-const kSimulated = ['Simulated', 'Made by a machine, not by a hand. It is marked so wherever it is shown.'] as const;
-const kFloor = ['Noise floor', 'The error that noise alone leaves, estimated from the measurements themselves.'] as const;
-const kHeldOut = ['Held out', 'Trials that a fit did not see: the error on them is what a model is worth on the next recording.'] as const;
-const kLearning = ['LC-CUSUM', 'A running sum over the trials: right answers add, wrong ones take off. At the threshold competence is signalled; from then on a second sum watches for relapse.'] as const;
+const kSimulated = [
+  'Simulated',
+  'Recorded by a program, not by a person. Simulated trials are marked on every page.',
+] as const;
+const kFloor = [
+  'Noise floor',
+  'The error that noise alone causes, estimated from the measurements themselves.',
+] as const;
+const kHeldOut = [
+  'Held-out trials',
+  'Trials that a fit did not use. The error on them estimates the error on the next recording.',
+] as const;
+const kLearning = [
+  'LC-CUSUM',
+  'A running sum over the trials: correct answers increase it, incorrect answers decrease it. When it reaches the threshold, competence is signalled; from then on, a second sum detects relapse.',
+] as const;
 
 export const kPages: readonly GuidePage[] = [
   {
-    role: 'trainee', name: 'Trainee', for: 'Do the trials that are assigned to you, blind, and see your own curve.',
+    role: 'trainee',
+    name: 'Trainee',
+    purpose: 'Do your assigned trials, blinded, and follow your own progress.',
     steps: [
-      { title: 'See what waits for you', text: 'What is assigned, how far you are, until when.', to: { href: '/assignments', name: 'My work' } },
-      { title: 'Sign in at a station', text: 'With your badge number and PIN. The station gives you exactly the next trial; what kind of bone it is nobody tells you, not even the files on the station’s disk.' },
-      { title: 'Palpate or probe, then answer', text: 'Was there a breach, where, and how sure are you? The answer ends the trial. Where the bone is whole you drill the channel first, with nothing to answer; the station then lets you feel the one that you made.' },
-      { title: 'See your curve', text: 'Once results are released: right answers over the trials, what you are strong in, and whether your confidence is worth what it says.', to: { href: '/me', name: 'My curve' }, picture: { name: 'trainee', shows: 'A trainee’s own page: standing, learning, competence, confidence' } },
+      {
+        title: 'See your assignments',
+        text: 'Your assignments, your progress in each, and the due dates.',
+        to: { href: '/assignments', name: 'My work' },
+      },
+      {
+        title: 'Sign in at a station',
+        text: 'Use your badge number and PIN. The station offers your next trial. Neither the station nor the files on its disk reveal the kind of bone.',
+      },
+      {
+        title: 'Palpate or probe, then answer',
+        text: 'Is there a breach, where, and how confident are you? Your answer ends the trial. In cases without a pre-drilled channel, you first drill the channel; the station then lets you palpate it.',
+      },
+      {
+        title: 'See your progress',
+        text: 'After the results are released: correct answers over the trials, your strengths, and whether your confidence matches your accuracy.',
+        to: { href: '/me', name: 'My progress' },
+        picture: { name: 'trainee', shows: 'The page of a trainee: summary, learning, competence, confidence' },
+      },
     ],
-    terms: [['Breach', 'A place where the channel has left the bone.'], kLearning, ['Confidence', 'How sure you said to be. On the diagonal of its picture, of answers given 80 % sure 80 % are right.']],
+    terms: [
+      ['Breach', 'A place where the channel leaves the bone.'],
+      kLearning,
+      [
+        'Confidence',
+        'How sure you are of your answer. On the diagonal of the chart, 80 % of the answers with a confidence of 80 % are correct.',
+      ],
+    ],
   },
   {
-    role: 'faculty', name: 'Faculty', for: 'Make cases, assign them, watch, debrief, release results.',
+    role: 'faculty',
+    name: 'Faculty',
+    purpose: 'Create cases, assign them, supervise, debrief, and release results.',
     steps: [
-      { title: 'Gather a cohort', text: 'Give it a name, add trainees by the names of their accounts. Taking somebody out can be undone.', to: { href: '/network/cohorts', name: 'Cohorts' } },
-      { title: 'Make a case', text: 'Place entry and target of the tract in the slices of a CT, choose which wall gives way and how deep; you see at once where it does and how thin it is there. Or leave the bone whole: whoever is assigned it drills the channel, then feels it. Or write the layers and walls of a probing scenario.', to: { href: '/cases', name: 'Cases' } },
-      { title: 'Assign it', text: 'To a cohort or to people, with repeats, order and a date. Everybody gets an order of their own, blind. Results stay held until you release them.', to: { href: '/assignments', name: 'Assignments' } },
-      { title: 'Watch the stations', text: 'Who is at work, for how long, with which force; where somebody is needed stands first. Stop one that goes wrong, with a reason.', to: { href: '/wall', name: 'Stations live' } },
-      { title: 'Debrief a trial', text: 'Play it back: the way of the tip in 3-D, forces, which walls were touched, force against depth, an expert’s trial beside it as a ghost. Point at a moment in one picture and all others follow; leave a comment at it.', to: { href: '/trials', name: 'Trials' }, picture: { name: 'faculty', shows: 'A palpation trial: signals, the way of the tip in 3-D, the walls that were touched' } },
+      {
+        title: 'Create a cohort',
+        text: 'Enter a name and add trainees by account name. Removing a trainee can be undone.',
+        to: { href: '/network/cohorts', name: 'Cohorts' },
+      },
+      {
+        title: 'Create a case',
+        text: 'Place the entry and the target of the tract in the slices of a CT. Choose the breached wall and the depth of the breach; the page shows the position of the breach and the thickness of the wall. Alternatively, let the trainee drill the channel and then palpate it. For the probing rig, define the layers and walls of a scenario.',
+        to: { href: '/cases', name: 'Cases' },
+      },
+      {
+        title: 'Assign the case',
+        text: 'Choose a cohort or individual trainees, repeats, order and due date. Each trainee gets an individual, blinded order. Results stay hidden until you release them.',
+        to: { href: '/assignments', name: 'Assignments' },
+      },
+      {
+        title: 'Supervise the stations',
+        text: 'See who is in a trial, for how long and with which force. Stations that need attention are listed first. Stop a trial with a reason.',
+        to: { href: '/wall', name: 'Live stations' },
+      },
+      {
+        title: 'Debrief a trial',
+        text: 'Replay the trial: path of the tip in 3-D, forces, touched walls, force against depth, and an example trial as a ghost. When you point at a time in one chart, all others follow. You can add a comment at that time.',
+        to: { href: '/trials', name: 'Trials' },
+        picture: { name: 'faculty', shows: 'A palpation trial: signals, path of the tip in 3-D, touched walls' },
+      },
     ],
-    terms: [['Walls touched', 'The wall of the tract unrolled, with the share of each side that the tip has felt.'], ['Scenario', 'The bone of a probing trial: its layers, and the walls that give way.'], kSimulated],
+    terms: [
+      ['Walls touched', 'The unrolled wall of the tract, with the share of each side that the tip touched.'],
+      ['Scenario', 'The bone of a probing trial: its layers and the walls that are breached.'],
+      kSimulated,
+    ],
   },
   {
-    role: 'director', name: 'Programme director', for: 'Who is on track, who has relapsed, who is due.',
+    role: 'director',
+    name: 'Programme director',
+    purpose: 'See which trainees are on track, have relapsed, or are inactive.',
     steps: [
-      { title: 'Look at the list', text: 'Narrow it to who has relapsed, who is learning, who has not been at a station for two months.', to: { href: '/trainees', name: 'Trainees' }, picture: { name: 'director', shows: 'The list of trainees with state, share right and last trial' } },
-      { title: 'Open one trainee', text: 'Standing, learning, competence, recognition by scenario, confidence, on one page.' },
-      { title: 'Print it', text: '“Print this page” makes one sheet for the interview.' },
+      {
+        title: 'Open the list of trainees',
+        text: 'Filter it by trainees who have relapsed, are learning, or have had no trial for two months.',
+        to: { href: '/trainees', name: 'Trainees' },
+        picture: {
+          name: 'director',
+          shows: 'The list of trainees with state, share of correct answers and last trial',
+        },
+      },
+      {
+        title: 'Open one trainee',
+        text: 'One page shows the summary, learning, competence, recognition by scenario, and confidence.',
+      },
+      { title: 'Print the page', text: '“Print this page” prints one sheet for the interview.' },
     ],
-    terms: [kLearning, ['Interval', 'Where the true share may lie, given so few trials (95 %, Wilson). It is wide after twelve trials, and the page says so.'], ['Certified', 'Said only when the trials are enough to say it of anybody.']],
+    terms: [
+      kLearning,
+      [
+        'Interval',
+        'The range of the true share, given the number of trials (95 %, Wilson). After twelve trials it is still wide.',
+      ],
+      ['Certified', 'Stated only when the number of trials is sufficient.'],
+    ],
   },
   {
-    role: 'researcher', name: 'Researcher', for: 'Cohort data with a locked plan; and the model lab: is the simulator’s physics true, where not, what is missing.',
+    role: 'researcher',
+    name: 'Researcher',
+    purpose:
+      'Analyse trial data with a locked plan. In the model lab, test the physics of the simulator against measurements.',
     steps: [
-      { title: 'Hold a model against measurements', text: 'Drop a folder or a zip, choose a model, compare. What is wrong in a file is told by its name and line.', to: { href: '/lab', name: 'Model lab' } },
-      { title: 'See where it fails, and what is missing', text: 'A short list of regions with their samples; then the effects of the catalogue, ranked by the error on trials that no fit saw. The verdict stands first, in plain words.', picture: { name: 'researcher-missing', shows: 'The verdict: which effect is missing, and the error falling to the noise floor' } },
-      { title: 'Add it, and watch the error fall', text: 'By one press, by hand, or by a formula of your own whose units are checked while you write. Publish the better model as a version; any two versions can be compared, and a version sent to the stations can be felt there minutes later.', to: { href: '/lab/versions', name: 'Versions' } },
-      { title: 'Bring measurements of your own', text: 'tractus record takes a force/torque sensor and motion capture, tractus assemble makes a set of them: clocks made one by five taps, frames by a recipe. How, step by step, is in shared/doc/measuring-room.md.' },
-      { title: 'Ask the cohort', text: 'Lock a plan before the data are seen, run it, run it again to the same digits. The published study is there as an example.', to: { href: '/analysis', name: 'Analysis' } },
+      {
+        title: 'Compare a model with measurements',
+        text: 'Upload a folder or a zip file, choose a model, and compare. Errors in a file are listed with file name and line.',
+        to: { href: '/lab', name: 'Model lab' },
+      },
+      {
+        title: 'Find error regions and missing effects',
+        text: 'The lab lists the regions with the largest errors and their samples. Then it ranks the effects of the catalogue by the error on held-out trials. The verdict comes first.',
+        picture: {
+          name: 'researcher-missing',
+          shows: 'The verdict: the missing effect, and the error at the noise floor after adding it',
+        },
+      },
+      {
+        title: 'Add the effect',
+        text: 'Add the recommended effect, choose effects manually, or write a custom formula; its units are checked while you type. Publish the better model as a version. You can compare any two versions and send a version to the stations.',
+        to: { href: '/lab/versions', name: 'Versions' },
+      },
+      {
+        title: 'Record your own measurements',
+        text: 'tractus record reads a force/torque sensor and motion capture; tractus assemble makes a measurement set from them: five taps align the clocks, a recipe aligns the frames. See shared/doc/measuring-room.md for every step.',
+      },
+      {
+        title: 'Analyse trial data',
+        text: 'Lock a plan before you see the data, and run it. Repeated runs give identical results. The published study is included as an example.',
+        to: { href: '/analysis', name: 'Analysis' },
+      },
     ],
-    terms: [kFloor, kHeldOut, ['Confounded', 'Two effects that look alike in these measurements. The lab names the recording that would tell them apart.'], ['Locked plan', 'Every word of it has its hash taken, with name and time. It can be run and never changed.']],
+    terms: [
+      kFloor,
+      kHeldOut,
+      [
+        'Confounded',
+        'Two effects that these measurements cannot distinguish. The lab recommends the recording that would distinguish them.',
+      ],
+      ['Locked plan', 'A plan that is stored with its hash, author and time. It can be run, but never changed.'],
+    ],
   },
   {
-    role: 'technician', name: 'Technician', for: 'Stations that may fetch cases and bring trials.',
+    role: 'technician',
+    name: 'Technician',
+    purpose: 'Enrol and maintain the stations that receive cases and upload trials.',
     steps: [
-      { title: 'Enrol a station', text: 'Give it a name, type the code that is shown at the station. The code is good once.', to: { href: '/network/stations', name: 'Stations' } },
-      { title: 'Test and calibrate', text: 'At the station: tractus-station self-test asks device, loop, display, disk and clock, check by check, and prints a page (--page); tractus-station calibrate finds the device’s zeros, under your name. Both are told here.' },
-      { title: 'See how each is', text: 'Open a station: its self-tests check by check, when its calibration is due, room on its disk, late steps. Lower its force limit when you doubt the device; only a person at the station raises it again.', picture: { name: 'technician', shows: 'Backups: made while the server serves, and tried by restoring them' } },
-      { title: 'Make a backup, and try it', text: 'It is made while everything goes on. Trying it restores it beside and looks everything over: only then is it worth something.', to: { href: '/network/backups', name: 'Backups' } },
-      { title: 'Revoke one that is lost', text: 'Its key is refused at once; what it has recorded stays on its disk.' },
+      {
+        title: 'Enrol a station',
+        text: 'Enter a name and type the displayed code at the station. Each code can be used once.',
+        to: { href: '/network/stations', name: 'Stations' },
+      },
+      {
+        title: 'Test and calibrate',
+        text: 'At the station, tractus-station self-test checks device, loop, display, disk and clock, and prints a page (--page). tractus-station calibrate determines the zeros of the device under your name. Both results are reported here.',
+      },
+      {
+        title: 'Check the status',
+        text: 'Open a station to see its self-tests, when its calibration is due, free disk space and late ticks. Lower its force limit if you suspect a fault of the device; only a person at the station can raise it again.',
+        picture: {
+          name: 'technician',
+          shows: 'Backups: created while the server runs, and verified by restoring them',
+        },
+      },
+      {
+        title: 'Create and verify a backup',
+        text: 'The server stays in operation while a backup is created. Verification restores the backup to a temporary folder and checks all of it.',
+        to: { href: '/network/backups', name: 'Backups' },
+      },
+      {
+        title: 'Revoke a lost station',
+        text: 'The server refuses its key immediately. Its recordings stay on its disk.',
+      },
     ],
-    terms: [['Self-test', 'What a station asks of itself: travel, rest, direction of every axis, step response and round trip of its device; wake-ups, display, disk and clock of the machine.'], ['Calibration', 'The device’s zeros found anew and checked, by whom and when; due again on the date that was set, 90 days later if none was.'], ['Late steps', 'Steps of the force loop that came later than they should have. The hand feels them when there are many.'], ['Station', 'A machine with a simulator. It records to its own disk first and hands over when it can.']],
+    terms: [
+      [
+        'Self-test',
+        'Checks that a station runs: travel, standstill, direction of each axis, step response and round trip of the device; timing, display, disk and clock of the computer.',
+      ],
+      [
+        'Calibration',
+        'Determination and check of the zeros of the device, with person and date. It is due again on the date set, or after 90 days.',
+      ],
+      ['Late ticks', 'Ticks of the force loop that start late. Many late ticks can be felt.'],
+      [
+        'Station',
+        'A computer with a simulator. It saves trials on its own disk first and uploads them when the server can be reached.',
+      ],
+    ],
   },
   {
-    role: 'admin', name: 'Administrator', for: 'Accounts, roles, and the record of every change.',
+    role: 'admin',
+    name: 'Administrator',
+    purpose: 'Manage accounts and roles, and check the audit trail.',
     steps: [
-      { title: 'Make accounts', text: 'A first password is made and shown once; it has to be changed at the first sign-in.', to: { href: '/network/people', name: 'Accounts' }, picture: { name: 'admin', shows: 'The accounts, with a first password shown once' } },
-      { title: 'Turn on one-time codes', text: 'For your own account first.', to: { href: '/account', name: 'My account' } },
-      { title: 'Check the audit trail', text: 'Each row carries a hash of all rows before it, so that a change to the record itself shows.', to: { href: '/network/audit', name: 'Audit trail' } },
+      {
+        title: 'Create accounts',
+        text: 'The first password is shown once. It must be changed at the first sign-in.',
+        to: { href: '/network/people', name: 'Accounts' },
+        picture: { name: 'admin', shows: 'The accounts, with a first password shown once' },
+      },
+      {
+        title: 'Turn on one-time codes',
+        text: 'Start with your own account.',
+        to: { href: '/account', name: 'My account' },
+      },
+      {
+        title: 'Verify the audit trail',
+        text: 'Each row contains a hash of all rows before it, so that a change to the audit trail itself is detected.',
+        to: { href: '/network/audit', name: 'Audit trail' },
+      },
     ],
-    terms: [['Role', 'What an account may do. The server decides it anew on every call.']],
+    terms: [['Role', 'What an account may do. The server checks it on every request.']],
   },
 ];

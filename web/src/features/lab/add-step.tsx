@@ -1,89 +1,209 @@
 import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { useState } from 'react';
 import { Link } from 'wouter';
-import { effectsQuery, labRunQuery, labRunsQuery, startFit, type Effect, type EffectList, type Fit, type LabRun, type LabRunSummary, type OwnEffect, type Rig } from '@/api';
+import {
+  effectsQuery,
+  labRunQuery,
+  labRunsQuery,
+  startFit,
+  type Effect,
+  type EffectList,
+  type Fit,
+  type LabRun,
+  type LabRunSummary,
+  type OwnEffect,
+  type Rig,
+} from '@/api';
 import { Badge, Button, Card, Notice, Select, Skeleton, Term } from '@/ui';
 import { formatClock, formatFigure } from '@/units';
-import { Headline, primaryOf } from './comparison-parts';
+import { Headline, primaryUnit } from './comparison-parts';
 import { Series, type Drawable } from './compare-step';
-import { Falls } from './falls';
+import { ErrorSteps } from './error-steps';
 import styles from './lab.module.css';
 import { OwnFormula } from './own-formula';
 import { Parameters } from './parameters';
 import { RunState } from './run-state';
-import { channelUnit, effectName, joined, kKind, workAddress } from './words';
+import { effectName, joined, kEffectKinds, workAddress } from './names';
 
-interface Props { readonly model: string; readonly set: string; readonly rig: Rig; readonly asked: readonly string[] }
+interface Props {
+  readonly model: string;
+  readonly set: string;
+  readonly rig: Rig;
+  readonly requested: readonly string[];
+}
 
-/** What a fit was asked to add, in words. */
-export const addedWords = (run: Pick<LabRunSummary, 'add' | 'own'>) =>
-  joined([...run.add, ...run.own.map((name) => (name.startsWith('expression:') ? name : `expression:${name}`))].map(effectName)) || 'nothing added';
+/** Names of the effects that a fit adds. */
+export const addedEffects = (run: Pick<LabRunSummary, 'add' | 'own'>) =>
+  joined(
+    [...run.add, ...run.own.map((name) => (name.startsWith('expression:') ? name : `expression:${name}`))].map(
+      effectName,
+    ),
+  ) || 'no effect added';
 
-function Choice({ effect, on, toggle }: { readonly effect: Effect; readonly on: boolean; readonly toggle: () => void }) {
-  const kind = kKind[effect.kind];
+function Choice({
+  effect,
+  on,
+  toggle,
+}: {
+  readonly effect: Effect;
+  readonly on: boolean;
+  readonly toggle: () => void;
+}) {
+  const kind = kEffectKinds[effect.kind];
   return (
     <label className={styles.effect}>
       <input type="checkbox" checked={on} onChange={toggle} />
-      <span className={styles.choiceName}>{effectName(effect.id)} <Badge tone={effect.kind === 'measurement' ? 'warn' : 'neutral'}>{kind.word}</Badge></span>
+      <span className={styles.choiceName}>
+        {effectName(effect.id)} <Badge tone={effect.kind === 'measurement' ? 'warn' : 'neutral'}>{kind.label}</Badge>
+      </span>
       <code>{effect.equation}</code>
       <span className={styles.muted}>{effect.summary}</span>
     </label>
   );
 }
 
-function Chooser({ model, set, rig, asked, list, onRun }: Props & { readonly list: EffectList; readonly onRun: (run: LabRun) => void }) {
+function Chooser({
+  model,
+  set,
+  rig,
+  requested,
+  list,
+  onRun,
+}: Props & { readonly list: EffectList; readonly onRun: (run: LabRun) => void }) {
   const client = useQueryClient();
-  const [chosen, setChosen] = useState<readonly string[]>(asked);
+  const [chosen, setChosen] = useState<readonly string[]>(requested);
   const [own, setOwn] = useState<OwnEffect | null>(null);
   const [withOwn, setWithOwn] = useState(false);
-  const begun = useMutation({
+  const started = useMutation({
     mutationFn: () => startFit(model, set, chosen, withOwn && own ? [own] : []),
-    onSuccess: async (run) => { client.setQueryData(labRunQuery(run.id).queryKey, run); await client.invalidateQueries({ queryKey: ['lab', 'runs'] }); onRun(run); },
+    onSuccess: async (run) => {
+      client.setQueryData(labRunQuery(run.id).queryKey, run);
+      await client.invalidateQueries({ queryKey: ['lab', 'runs'] });
+      onRun(run);
+    },
   });
-  const toggle = (id: string) => setChosen((before) => (before.includes(id) ? before.filter((one) => one !== id) : [...before, id]));
+  const toggle = (id: string) =>
+    setChosen((before) => (before.includes(id) ? before.filter((one) => one !== id) : [...before, id]));
   const ready = withOwn ? own !== null : true;
-  const what = joined([...chosen.map(effectName), ...(withOwn ? ['your formula'] : [])]);
+  const what = joined([...chosen.map(effectName), ...(withOwn ? ['the custom formula'] : [])]);
   return (
-    <Card title="Add effects by hand">
+    <Card title="Add effects manually">
       <div className={styles.stack}>
-        <fieldset className={styles.effects}><legend className="hidden-visually">Effects of the catalogue</legend>{list.effects.map((effect) => <Choice key={effect.id} effect={effect} on={chosen.includes(effect.id)} toggle={() => toggle(effect.id)} />)}</fieldset>
-        <label className={styles.check}><input type="checkbox" checked={withOwn} onChange={(event) => setWithOwn(event.target.checked)} /> A formula of my own</label>
+        <fieldset className={styles.effects}>
+          <legend className="hidden-visually">Effects of the catalogue</legend>
+          {list.effects.map((effect) => (
+            <Choice key={effect.id} effect={effect} on={chosen.includes(effect.id)} toggle={() => toggle(effect.id)} />
+          ))}
+        </fieldset>
+        <label className={styles.check}>
+          <input type="checkbox" checked={withOwn} onChange={(event) => setWithOwn(event.target.checked)} /> Custom
+          formula
+        </label>
         {withOwn ? <OwnFormula rig={rig} list={list} onOwn={setOwn} /> : null}
-        {begun.isError ? <Notice tone="bad" title="The fit was not begun.">{begun.error.message}</Notice> : null}
+        {started.isError ? (
+          <Notice tone="bad" title="The fit was not started.">
+            {started.error.message}
+          </Notice>
+        ) : null}
         <div className={styles.go}>
-          <p className={styles.muted}>{what === '' ? 'Nothing is chosen: the model’s own numbers are fitted alone.' : `With ${what}.`}</p>
-          <Button look="solid" disabled={!ready || begun.isPending} onClick={() => begun.mutate()}>{begun.isPending ? 'Asking…' : what === '' ? 'Fit' : 'Add and fit'}</Button>
+          <p className={styles.muted}>
+            {what === '' ? 'No effect is selected: only the parameters of the model are fitted.' : `Fit with ${what}.`}
+          </p>
+          <Button look="solid" disabled={!ready || started.isPending} onClick={() => started.mutate()}>
+            {started.isPending ? 'Starting…' : what === '' ? 'Fit' : 'Add and fit'}
+          </Button>
         </div>
       </div>
     </Card>
   );
 }
 
-function Fitted({ run, fit, model, set, rig }: { readonly run: LabRun; readonly fit: Fit; readonly model: string; readonly set: string; readonly rig: Rig }) {
-  const primary = run.comparisons ? primaryOf(run.comparisons.before)?.name ?? 'force_N' : 'force_N';
-  const unit = channelUnit(primary), what = addedWords(run);
-  const name = what === 'nothing added' ? 'fitted' : `with ${what}`;
-  const drawable: Drawable | null = run.comparisons ? { run, ...run.comparisons, rig, names: { before: 'as given', after: run.comparisons.after ? name : null } } : null;
+function Fitted({
+  run,
+  fit,
+  model,
+  set,
+  rig,
+}: {
+  readonly run: LabRun;
+  readonly fit: Fit;
+  readonly model: string;
+  readonly set: string;
+  readonly rig: Rig;
+}) {
+  const unit = primaryUnit(run),
+    what = addedEffects(run);
+  const name = what === 'no effect added' ? 'fitted' : `with ${what}`;
+  const drawable: Drawable | null = run.comparisons
+    ? { run, ...run.comparisons, rig, names: { before: 'as supplied', after: run.comparisons.after ? name : null } }
+    : null;
   const better = fit.held_out_rmse !== null && fit.base.rmse !== null && fit.held_out_rmse < fit.base.rmse;
   return (
     <>
-      <Card title={`The error, ${name}`} aside={run.model_ready ? <Link href={workAddress(model, set, 'publish')} className={styles.solidLink}>Publish this model</Link> : null}>
+      <Card
+        title={`Error, ${name}`}
+        aside={
+          run.model_ready ? (
+            <Link href={workAddress(model, set, 'publish')} className={styles.solidLink}>
+              Publish this model
+            </Link>
+          ) : null
+        }
+      >
         <div className={styles.stack}>
-          <p role="status">{better ? `On held-out trials the error is ${formatFigure(fit.held_out_rmse, unit)}; the model as given leaves ${formatFigure(fit.base.rmse, unit)}, noise alone ${formatFigure(fit.noise_floor, unit)}.` : `This does not make the model better: ${formatFigure(fit.held_out_rmse, unit)} on held-out trials against ${formatFigure(fit.base.rmse, unit)} as given.`}{fit.converged ? '' : ' The fit did not converge.'}</p>
-          <Falls unit={unit} noise_floor={fit.noise_floor} steps={[{ name: 'As given', rmse: fit.base.rmse, held_out_rmse: fit.base.rmse }, { name: what === 'nothing added' ? 'Fitted' : `+ ${what}`, rmse: fit.rmse, held_out_rmse: fit.held_out_rmse }]} />
-          {fit.remarks.map((remark) => <p key={remark} className={styles.muted}>{remark}</p>)}
+          <p role="status">
+            {better
+              ? `Error on held-out trials: ${formatFigure(fit.held_out_rmse, unit)}. Model as supplied: ${formatFigure(fit.base.rmse, unit)}. Noise floor: ${formatFigure(fit.noise_floor, unit)}.`
+              : `The fit does not improve the model. Error on held-out trials: ${formatFigure(fit.held_out_rmse, unit)}. Model as supplied: ${formatFigure(fit.base.rmse, unit)}.`}
+            {fit.converged ? '' : ' The fit did not converge.'}
+          </p>
+          <ErrorSteps
+            unit={unit}
+            noise_floor={fit.noise_floor}
+            steps={[
+              { name: 'As supplied', rmse: fit.base.rmse, held_out_rmse: fit.base.rmse },
+              {
+                name: what === 'no effect added' ? 'Fitted' : `+ ${what}`,
+                rmse: fit.rmse,
+                held_out_rmse: fit.held_out_rmse,
+              },
+            ]}
+          />
+          {fit.remarks.map((remark) => (
+            <p key={remark} className={styles.muted}>
+              {remark}
+            </p>
+          ))}
         </div>
       </Card>
-      {drawable ? <Card title="Beside the model as given"><div className={styles.stack}><Headline before={drawable.before} after={drawable.after} names={drawable.names} /><Series drawable={drawable} /></div></Card> : null}
-      <Card title="Fitted numbers">
+      {drawable ? (
+        <Card title="Comparison with the supplied model">
+          <div className={styles.stack}>
+            <Headline before={drawable.before} after={drawable.after} names={drawable.names} />
+            <Series drawable={drawable} />
+          </div>
+        </Card>
+      ) : null}
+      <Card title="Fitted parameters">
         <Parameters estimates={fit.parameters} />
-        {fit.correlations.length > 0 ? <p className={styles.muted}><Term definition="Two fitted numbers whose errors go together: the measurements know their combination better than either.">Known only together</Term>: {fit.correlations.map(({ between, correlation }) => `${between.join(' and ')} (${formatFigure(correlation, '', 2)})`).join('; ')}.</p> : null}
+        {fit.correlations.length > 0 ? (
+          <p className={styles.muted}>
+            <Term definition="Two fitted parameters whose errors are correlated: the measurements determine their combination better than either of them.">
+              Correlated parameters
+            </Term>
+            :{' '}
+            {fit.correlations
+              .map(({ between, correlation }) => `${between.join(' and ')} (${formatFigure(correlation, '', 2)})`)
+              .join('; ')}
+            .
+          </p>
+        ) : null}
       </Card>
     </>
   );
 }
 
-/** Effects added by hand, or a formula of one's own, and what becomes of the error. */
+/** Adds chosen effects or a custom formula, fits the model and shows the error. */
 export function AddStep(props: Props) {
   const { model, set, rig } = props;
   const list = useQuery(effectsQuery(rig));
@@ -96,10 +216,50 @@ export function AddStep(props: Props) {
   const error = list.error ?? runs.error ?? one.error;
   return (
     <>
-      {error ? <Notice tone="bad" title="Part of this page could not be loaded." onRetry={() => { void list.refetch(); void runs.refetch(); if (shown) void one.refetch(); }}>{error.message}</Notice> : null}
-      {list.data ? <Chooser {...props} list={list.data} onRun={({ id }) => setPicked(id)} /> : list.isPending ? <Skeleton height="320px" /> : null}
-      {fits.length > 1 ? <div className={styles.pick}><Select label="Fit that is shown" value={shown?.id ?? ''} onChange={(event) => setPicked(event.target.value)} options={fits.map((fit) => ({ value: fit.id, text: `${addedWords(fit)}, ${formatClock(fit.made_utc_us)}` }))} /></div> : null}
-      {run?.fit ? <Fitted run={run} fit={run.fit} model={model} set={set} rig={rig} /> : run ? <Card title={`The error with ${addedWords(run)}`}><RunState run={run} what="The fit" again={() => { setPicked(null); }} /></Card> : null}
+      {error ? (
+        <Notice
+          tone="bad"
+          title="Part of this page could not be loaded."
+          onRetry={() => {
+            void list.refetch();
+            void runs.refetch();
+            if (shown) void one.refetch();
+          }}
+        >
+          {error.message}
+        </Notice>
+      ) : null}
+      {list.data ? (
+        <Chooser {...props} list={list.data} onRun={({ id }) => setPicked(id)} />
+      ) : list.isPending ? (
+        <Skeleton height="320px" />
+      ) : null}
+      {fits.length > 1 ? (
+        <div className={styles.pick}>
+          <Select
+            label="Fit"
+            value={shown?.id ?? ''}
+            onChange={(event) => setPicked(event.target.value)}
+            options={fits.map((fit) => ({
+              value: fit.id,
+              text: `${addedEffects(fit)}, ${formatClock(fit.made_utc_us)}`,
+            }))}
+          />
+        </div>
+      ) : null}
+      {run?.fit ? (
+        <Fitted run={run} fit={run.fit} model={model} set={set} rig={rig} />
+      ) : run ? (
+        <Card title={`Error with ${addedEffects(run)}`}>
+          <RunState
+            run={run}
+            what="The fit"
+            again={() => {
+              setPicked(null);
+            }}
+          />
+        </Card>
+      ) : null}
     </>
   );
 }

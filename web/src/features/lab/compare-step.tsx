@@ -6,64 +6,139 @@ import { Channels, Headline, Phases, primaryOf, TrialChoice } from './comparison
 import { Distributions } from './distributions';
 import styles from './lab.module.css';
 import { Overlay, type Names } from './overlay';
-import { channelNameOf } from './words';
+import { channelNameOf } from './names';
 
-export interface Drawable { readonly run: LabRun; readonly before: Comparison; readonly after: Comparison | null; readonly names: Names; readonly rig: string | null }
+export interface Drawable {
+  readonly run: LabRun;
+  readonly before: Comparison;
+  readonly after: Comparison | null;
+  readonly names: Names;
+  readonly rig: string | null;
+}
 
 /** Channels that were recorded: a norm over several has no series of its own. */
-export const recorded = (comparison: Comparison) => comparison.channels.filter(({ measured }) => measured !== undefined);
+export const recorded = (comparison: Comparison) =>
+  comparison.channels.filter(({ measured }) => measured !== undefined);
 
-const worstTrial = (comparison: Comparison) => comparison.trials.reduce((worst, trial) => ((trial.rmse ?? 0) > (worst?.rmse ?? -1) ? trial : worst), comparison.trials[0]);
+const worstTrial = (comparison: Comparison) =>
+  comparison.trials.reduce(
+    (worst, trial) => ((trial.rmse ?? 0) > (worst?.rmse ?? -1) ? trial : worst),
+    comparison.trials[0],
+  );
 
 /** One trial drawn, with what chooses which and which channel. */
 export function Series({ drawable, region = null }: { readonly drawable: Drawable; readonly region?: number | null }) {
   const { run, before, after, names, rig } = drawable;
   const channels = recorded(before);
-  const first = channels.find(({ name }) => name === before.primary) ?? channels.find(({ name }) => name === 'fz_N') ?? channels[0];
+  const first =
+    channels.find(({ name }) => name === before.primary) ?? channels.find(({ name }) => name === 'fz_N') ?? channels[0];
   const [pickedTrial, setTrial] = useState<string | null>(null);
   const [pickedChannel, setChannel] = useState<string | null>(null);
   const trial = before.trials.find(({ id }) => id === pickedTrial) ?? worstTrial(before);
   const channel = channels.find(({ name }) => name === pickedChannel) ?? first;
-  if (!trial || !channel) return <p>There is no series to draw.</p>;
+  if (!trial || !channel) return <p>There are no data to draw.</p>;
   return (
     <div className={styles.series}>
       <div className={styles.side}>
-        {channels.length > 1 ? <Select label="Channel" value={channel.name} onChange={(event) => setChannel(event.target.value)} options={channels.map(({ name }) => ({ value: name, text: channelNameOf(name, rig) }))} /> : null}
+        {channels.length > 1 ? (
+          <Select
+            label="Channel"
+            value={channel.name}
+            onChange={(event) => setChannel(event.target.value)}
+            options={channels.map(({ name }) => ({ value: name, text: channelNameOf(name, rig) }))}
+          />
+        ) : null}
         <TrialChoice before={before} after={after} chosen={trial.id} choose={setTrial} />
       </div>
-      <div className={styles.drawing}><Overlay key={`${trial.id} ${region ?? ''}`} run={run.id} rig={rig} trial={trial} channel={channel.name} names={names} region={region} /></div>
+      <div className={styles.drawing}>
+        <Overlay
+          key={`${trial.id} ${region ?? ''}`}
+          run={run.id}
+          rig={rig}
+          trial={trial}
+          channel={channel.name}
+          names={names}
+          region={region}
+        />
+      </div>
     </div>
   );
 }
 
-interface Props { readonly drawable: Drawable; readonly versions: readonly ModelVersion[]; readonly against: string | null; readonly setAgainst: (id: string | null) => void }
+interface Props {
+  readonly drawable: Drawable;
+  readonly versions: readonly ModelVersion[];
+  readonly against: string | null;
+  readonly setAgainst: (id: string | null) => void;
+}
 
 /** Model and measurements side by side. */
 export function CompareStep({ drawable, versions, against, setAgainst }: Props) {
   const { before, after, names, rig } = drawable;
   const channels = recorded(before);
   const [picked, setPicked] = useState<string | null>(null);
-  const shown = channels.find(({ name }) => name === picked) ?? channels.find(({ name }) => name === primaryOf(before)?.name) ?? channels[0];
+  const shown =
+    channels.find(({ name }) => name === picked) ??
+    channels.find(({ name }) => name === primaryOf(before)?.name) ??
+    channels[0];
   return (
     <>
-      <Card title="How far off" aside={versions.length > 0 ? (
-        <Select label={<span className="hidden-visually">Another version beside it</span>} value={against ?? ''} onChange={(event) => setAgainst(event.target.value === '' ? null : event.target.value)}
-          options={[{ value: '', text: 'No other version beside it' }, ...versions.map(({ id, name, note, made_utc_us }) => ({ value: id, text: `Beside: ${name}${note === '' ? '' : `, ${note}`} (${formatDateTime(made_utc_us)})` }))]} />
-      ) : null}>
+      <Card
+        title="Model error"
+        aside={
+          versions.length > 0 ? (
+            <Select
+              label={<span className="hidden-visually">Second version to compare</span>}
+              value={against ?? ''}
+              onChange={(event) => setAgainst(event.target.value === '' ? null : event.target.value)}
+              options={[
+                { value: '', text: 'No second version' },
+                ...versions.map(({ id, name, note, made_utc_us }) => ({
+                  value: id,
+                  text: `Compare with: ${name}${note === '' ? '' : `, ${note}`} (${formatDateTime(made_utc_us)})`,
+                })),
+              ]}
+            />
+          ) : null
+        }
+      >
         <Headline before={before} after={after} names={names} />
-        <p className={styles.muted} data-part="as-published">The model as it was published, no number of it changed. “What is missing” fits its own numbers to these measurements first, so it begins from a smaller error.</p>
+        <p className={styles.muted} data-part="as-published">
+          The model as published, with all parameters unchanged. “Missing effects” first fits the parameters to these
+          measurements and therefore starts from a smaller error.
+        </p>
       </Card>
-      <Card title="Measured and simulated"><Series drawable={drawable} /></Card>
+      <Card title="Measured and simulated">
+        <Series drawable={drawable} />
+      </Card>
       {shown ? (
-        <Card title="How the error is distributed" aside={channels.length > 1 ? (
-          <Select label={<span className="hidden-visually">Channel of the distributions</span>} value={shown.name} onChange={(event) => setPicked(event.target.value)} options={channels.map(({ name }) => ({ value: name, text: channelNameOf(name, rig) }))} />
-        ) : null}>
-          <Distributions before={shown} after={after?.channels.find(({ name }) => name === shown.name) ?? null} names={names} />
+        <Card
+          title="Error distribution"
+          aside={
+            channels.length > 1 ? (
+              <Select
+                label={<span className="hidden-visually">Channel of the distributions</span>}
+                value={shown.name}
+                onChange={(event) => setPicked(event.target.value)}
+                options={channels.map(({ name }) => ({ value: name, text: channelNameOf(name, rig) }))}
+              />
+            ) : null
+          }
+        >
+          <Distributions
+            before={shown}
+            after={after?.channels.find(({ name }) => name === shown.name) ?? null}
+            names={names}
+          />
         </Card>
       ) : null}
       <div className={styles.two}>
-        <Card title="By channel"><Channels before={before} after={after} names={names} rig={rig} /></Card>
-        <Card title="By phase"><Phases comparison={before} /></Card>
+        <Card title="Error by channel">
+          <Channels before={before} after={after} names={names} rig={rig} />
+        </Card>
+        <Card title="Error by phase">
+          <Phases comparison={before} />
+        </Card>
       </div>
     </>
   );

@@ -3,12 +3,17 @@ import { curve, Plane, stairs, type Places } from '@/charts';
 import { axisTitle, formatFigure } from '@/units';
 import styles from './distributions.module.css';
 import type { Names } from './overlay';
-import { channelName, channelQuantity, channelUnit } from './words';
+import { channelName, channelQuantity, channelUnit } from './names';
 
-interface Props { readonly before: LabChannel; readonly after: LabChannel | null; readonly names: Names }
+interface Props {
+  readonly before: LabChannel;
+  readonly after: LabChannel | null;
+  readonly names: Names;
+}
 
 const numbers = (values: readonly (number | null)[]) => values.map((value) => value ?? Number.NaN);
-const most = (...rows: readonly (readonly (number | null)[])[]) => rows.flat().reduce<number>((top, value) => Math.max(top, value ?? 0), 1e-9);
+const most = (...rows: readonly (readonly (number | null)[])[]) =>
+  rows.flat().reduce<number>((top, value) => Math.max(top, value ?? 0), 1e-9);
 
 function extent(rows: readonly (readonly (number | null)[] | undefined)[]): [number, number] {
   const all = rows.flatMap((row) => row ?? []).filter((value): value is number => value !== null);
@@ -18,31 +23,62 @@ function extent(rows: readonly (readonly (number | null)[] | undefined)[]): [num
 /** The middle of a distribution: far tails would leave nothing to see. */
 function middle(of: readonly (Distribution | undefined)[]): [number, number] {
   const known = of.filter((one) => one !== undefined);
-  const low = Math.min(...known.map((one) => (one.p05 ?? 0) - 1.5 * (one.sd ?? 0))), high = Math.max(...known.map((one) => (one.p95 ?? 0) + 1.5 * (one.sd ?? 0)));
+  const low = Math.min(...known.map((one) => (one.p05 ?? 0) - 1.5 * (one.sd ?? 0))),
+    high = Math.max(...known.map((one) => (one.p95 ?? 0) + 1.5 * (one.sd ?? 0)));
   const [least, greatest] = extent(known.map((one) => one.edges));
-  const from = Math.max(low, least), to = Math.min(high, greatest);
+  const from = Math.max(low, least),
+    to = Math.min(high, greatest);
   return to > from ? [from, to] : [least, greatest];
 }
 
-function Bars({ of, within, places, series }: { readonly of: Distribution; readonly within: readonly [number, number]; readonly places: Places; readonly series: 'measured' | 'before' | 'after' }) {
-  return <path d={stairs(numbers(of.edges), numbers(of.shares), within, places)} className={styles.area} data-series={series} />;
+function Bars({
+  of,
+  within,
+  places,
+  series,
+}: {
+  readonly of: Distribution;
+  readonly within: readonly [number, number];
+  readonly places: Places;
+  readonly series: 'measured' | 'before' | 'after';
+}) {
+  return (
+    <path
+      d={stairs(numbers(of.edges), numbers(of.shares), within, places)}
+      className={styles.area}
+      data-series={series}
+    />
+  );
 }
 
 function Residuals({ before, after, names }: Props) {
   if (!before.residual) return null;
-  const quantity = channelQuantity(before.name), unit = channelUnit(before.name);
+  const quantity = channelQuantity(before.name),
+    unit = channelUnit(before.name);
   const [from, to] = middle([before.residual, after?.residual]);
   const floor = before.noise_floor ?? Number.NaN;
-  const summary = `What ${names.before} leaves: mean ${formatFigure(before.residual.mean, unit)}, spread ${formatFigure(before.residual.sd, unit)}${after?.residual ? `; ${names.after ?? ''}: mean ${formatFigure(after.residual.mean, unit)}, spread ${formatFigure(after.residual.sd, unit)}` : ''}. Noise floor ${formatFigure(floor, unit)}.`;
+  const summary = `Residual of ${names.before}: mean ${formatFigure(before.residual.mean, unit)}, standard deviation ${formatFigure(before.residual.sd, unit)}${after?.residual ? `; ${names.after ?? ''}: mean ${formatFigure(after.residual.mean, unit)}, standard deviation ${formatFigure(after.residual.sd, unit)}` : ''}. Noise floor ${formatFigure(floor, unit)}.`;
   return (
     <div>
-      <h3>What is left</h3>
-      <Plane across={{ title: axisTitle('measured − simulated', quantity), from, to }} up={{ title: 'share of samples', from: 0, to: most(before.residual.shares, after?.residual?.shares ?? []) * 1.05 }} summary={summary}>
-        {(places) => <>
-          {[-floor, floor].map((at) => <line key={at} x1={places.x(at)} x2={places.x(at)} y1={places.y(0)} y2={22} className={styles.floor} />)}
-          {before.residual ? <Bars within={[from, to]} of={before.residual} places={places} series="before" /> : null}
-          {after?.residual ? <Bars within={[from, to]} of={after.residual} places={places} series="after" /> : null}
-        </>}
+      <h3>Residual</h3>
+      <Plane
+        across={{ title: axisTitle('measured − simulated', quantity), from, to }}
+        up={{
+          title: 'share of samples',
+          from: 0,
+          to: most(before.residual.shares, after?.residual?.shares ?? []) * 1.05,
+        }}
+        summary={summary}
+      >
+        {(places) => (
+          <>
+            {[-floor, floor].map((at) => (
+              <line key={at} x1={places.x(at)} x2={places.x(at)} y1={places.y(0)} y2={22} className={styles.floor} />
+            ))}
+            {before.residual ? <Bars within={[from, to]} of={before.residual} places={places} series="before" /> : null}
+            {after?.residual ? <Bars within={[from, to]} of={after.residual} places={places} series="after" /> : null}
+          </>
+        )}
       </Plane>
     </div>
   );
@@ -54,14 +90,26 @@ function Values({ before, after, names }: Props) {
   return (
     <div>
       <h3>Values</h3>
-      <Plane across={{ title: axisTitle(channelName(before.name), channelQuantity(before.name)), from, to }}
-        up={{ title: 'share of samples', from: 0, to: most(before.measured.shares, before.simulated.shares, after?.simulated?.shares ?? []) * 1.05 }}
-        summary={`How often each value was measured, and simulated by ${names.before}${names.after === null ? '' : ` and ${names.after}`}.`}>
-        {(places) => <>
-          {before.measured ? <Bars within={[from, to]} of={before.measured} places={places} series="measured" /> : null}
-          {before.simulated ? <Bars within={[from, to]} of={before.simulated} places={places} series="before" /> : null}
-          {after?.simulated ? <Bars within={[from, to]} of={after.simulated} places={places} series="after" /> : null}
-        </>}
+      <Plane
+        across={{ title: axisTitle(channelName(before.name), channelQuantity(before.name)), from, to }}
+        up={{
+          title: 'share of samples',
+          from: 0,
+          to: most(before.measured.shares, before.simulated.shares, after?.simulated?.shares ?? []) * 1.05,
+        }}
+        summary={`How often each value was measured, and simulated by ${names.before}${names.after === null ? '' : ` and ${names.after}`}.`}
+      >
+        {(places) => (
+          <>
+            {before.measured ? (
+              <Bars within={[from, to]} of={before.measured} places={places} series="measured" />
+            ) : null}
+            {before.simulated ? (
+              <Bars within={[from, to]} of={before.simulated} places={places} series="before" />
+            ) : null}
+            {after?.simulated ? <Bars within={[from, to]} of={after.simulated} places={places} series="after" /> : null}
+          </>
+        )}
       </Plane>
     </div>
   );
@@ -71,36 +119,67 @@ function Spectra({ before, after, names }: Props) {
   const found = before.spectrum;
   if (!found || found.frequency_Hz.length < 2) return null;
   const frequency = numbers(found.frequency_Hz);
-  const powers = [found.measured, found.residual, after?.spectrum?.residual ?? []].flat().filter((value): value is number => value !== null && value > 0);
+  const powers = [found.measured, found.residual, after?.spectrum?.residual ?? []]
+    .flat()
+    .filter((value): value is number => value !== null && value > 0);
   const low = Math.max(Math.min(...powers), Math.max(...powers) * 1e-9);
   const line = (values: readonly (number | null)[] | undefined, places: Places) =>
-    curve((values ?? []).map((value, i) => [frequency[i] ?? Number.NaN, value === null || value <= 0 ? Number.NaN : value] as const), places);
+    curve(
+      (values ?? []).map(
+        (value, i) => [frequency[i] ?? Number.NaN, value === null || value <= 0 ? Number.NaN : value] as const,
+      ),
+      places,
+    );
   return (
     <div>
       <h3>Spectrum</h3>
-      <Plane across={{ title: 'frequency, Hz', from: frequency[0] ?? 1, to: frequency.at(-1) ?? 10, log: true }} up={{ title: `(${channelUnit(before.name)})² per Hz`, from: low, to: Math.max(...powers) * 2, log: true }}
-        summary={`Power by frequency of what was measured and of what ${names.before}${names.after === null ? '' : ` and ${names.after}`} leave.`}>
-        {(places) => <>
-          <path d={line(found.measured, places)} className={styles.line} data-series="measured" />
-          <path d={line(found.residual, places)} className={styles.line} data-series="before" />
-          {after?.spectrum ? <path d={line(after.spectrum.residual, places)} className={styles.line} data-series="after" /> : null}
-        </>}
+      <Plane
+        across={{ title: 'frequency, Hz', from: frequency[0] ?? 1, to: frequency.at(-1) ?? 10, log: true }}
+        up={{ title: `(${channelUnit(before.name)})² per Hz`, from: low, to: Math.max(...powers) * 2, log: true }}
+        summary={`Power spectrum of the measured signal and of the residual of ${names.before}${names.after === null ? '' : ` and of ${names.after}`}.`}
+      >
+        {(places) => (
+          <>
+            <path d={line(found.measured, places)} className={styles.line} data-series="measured" />
+            <path d={line(found.residual, places)} className={styles.line} data-series="before" />
+            {after?.spectrum ? (
+              <path d={line(after.spectrum.residual, places)} className={styles.line} data-series="after" />
+            ) : null}
+          </>
+        )}
       </Plane>
     </div>
   );
 }
 
-/** Values, what is left, and its spectrum, of one channel. */
+/** Distribution of the residual, of the values, and their spectra, for one channel. */
 export function Distributions(props: Props) {
   const { names } = props;
   return (
     <>
-      <div className={styles.three}><Residuals {...props} /><Values {...props} /><Spectra {...props} /></div>
+      <div className={styles.three}>
+        <Residuals {...props} />
+        <Values {...props} />
+        <Spectra {...props} />
+      </div>
       <ul className={styles.key}>
-        <li><i data-series="measured" />measured</li>
-        <li><i data-series="before" />{names.before}</li>
-        {names.after === null ? null : <li><i data-series="after" />{names.after}</li>}
-        <li><i data-series="floor" />± noise floor</li>
+        <li>
+          <i data-series="measured" />
+          measured
+        </li>
+        <li>
+          <i data-series="before" />
+          {names.before}
+        </li>
+        {names.after === null ? null : (
+          <li>
+            <i data-series="after" />
+            {names.after}
+          </li>
+        )}
+        <li>
+          <i data-series="floor" />± noise floor
+        </li>
       </ul>
     </>
   );

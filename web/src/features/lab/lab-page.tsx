@@ -7,15 +7,16 @@ import styles from './lab.module.css';
 import { ModelsCard } from './models-card';
 import { RunsCard } from './runs-card';
 import { SetsCard } from './sets-card';
-import { workAddress } from './words';
+import { workAddress } from './names';
 
-/** Where work in the lab begins: which measurements, which model. */
+/** Start page of the lab: choose measurements and a model. */
 export function LabPage() {
   useTitle('Model lab');
   const [, go] = useLocation();
   const [pickedSet, setSet] = useState<string | null>(null);
   const [pickedModel, setModel] = useState<string | null>(null);
-  const sets = useQuery(measurementsQuery).data?.measurements, models = useQuery(modelsQuery).data?.models;
+  const sets = useQuery(measurementsQuery).data?.measurements,
+    models = useQuery(modelsQuery).data?.models;
   const set = sets?.find(({ id }) => id === pickedSet) ?? sets?.[0];
   const fitting = models?.filter(({ rig }) => !set?.rig || rig === set.rig);
   const model = fitting?.find(({ id }) => id === pickedModel) ?? fitting?.[0];
@@ -23,15 +24,34 @@ export function LabPage() {
     <div className={styles.page}>
       <div>
         <h1>Model lab</h1>
-        <p className={styles.lead}>Hold a simulator’s model against measurements, see where it fails, learn which physical effect is missing, add it, and watch the error fall.</p>
+        <p className={styles.lead}>
+          Compare the model of a simulator with measurements, find where it fails and which physical effect is missing,
+          add this effect, and check that the error decreases.
+        </p>
       </div>
       <div className={styles.two}>
         <SetsCard chosen={set?.id ?? null} choose={setSet} />
         <ModelsCard rig={set?.rig ?? null} chosen={model?.id ?? null} choose={setModel} />
       </div>
       <div className={styles.go}>
-        <p className={styles.muted}>{set && model ? <><strong>{model.name}</strong> against <strong>{set.name}</strong></> : 'Measurements and a model are needed.'}</p>
-        <Button look="solid" disabled={!set || !model} onClick={() => { if (set && model) go(workAddress(model.id, set.id)); }}>Compare</Button>
+        <p className={styles.muted}>
+          {set && model ? (
+            <>
+              Compare <strong>{model.name}</strong> with <strong>{set.name}</strong>
+            </>
+          ) : (
+            'Select measurements and a model.'
+          )}
+        </p>
+        <Button
+          look="solid"
+          disabled={!set || !model}
+          onClick={() => {
+            if (set && model) go(workAddress(model.id, set.id));
+          }}
+        >
+          Compare
+        </Button>
       </div>
       <RunsCard />
     </div>

@@ -1,11 +1,12 @@
 import { File as NodeFile } from 'node:buffer';
 import { describe, expect, it } from 'vitest';
-import type { Diagnosis } from '@/api';
+import type { Diagnosis, LabRun } from '@/api';
 import { differences } from './differences';
-import { kBlankOwn, ownEffect, parametersIn, withFormula } from './own-effect';
+import { primaryUnit } from './comparison-parts';
+import { kBlankOwn, mistypedStates, ownEffect, parametersIn, withFormula } from './own-effect';
 import { parameterName } from './parameters';
 import { verdictOf } from './verdict';
-import { channelQuantity, effectName, joined } from './words';
+import { channelQuantity, effectName, joined } from './names';
 import { pack, problemsOf, rootOf } from './zip-files';
 
 const plain = (text: string) => text.replaceAll('\u202f', ' ');
@@ -18,8 +19,11 @@ describe('a folder that was dropped', () => {
   });
 
   it('gives the set its name; files without a folder take the one that set.json states', async () => {
-    const file = (text: string, name: string) => new NodeFile([text], name) as unknown as File;  // jsdom's has no arrayBuffer
-    const dropped = (root: string, set = '{}') => [{ path: `${root}set.json`, file: file(set, 'set.json') }, { path: `${root}a.csv`, file: file('t_s', 'a.csv') }];
+    const file = (text: string, name: string) => new NodeFile([text], name) as unknown as File; // jsdom's has no arrayBuffer
+    const dropped = (root: string, set = '{}') => [
+      { path: `${root}set.json`, file: file(set, 'set.json') },
+      { path: `${root}a.csv`, file: file('t_s', 'a.csv') },
+    ];
     expect((await pack(dropped('./bench, 3 May/'))).name).toBe('bench, 3 May');
     expect((await pack(dropped('/rec/'))).name).toBe('rec');
     expect((await pack(dropped('', '{"name":"rig 2, dry"}'))).name).toBe('rig 2, dry');
@@ -27,12 +31,18 @@ describe('a folder that was dropped', () => {
   });
 
   it('is refused with its faults by file and line', () => {
-    expect(problemsOf('trial1.csv:17: column fz_N: "abc" is not a number\ntrial3.csv, line 4: t_s does not rise\nset.json: no trials')).toEqual([
+    expect(
+      problemsOf(
+        'trial1.csv:17: column fz_N: "abc" is not a number\ntrial3.csv, line 4: t_s does not rise\nset.json: no trials',
+      ),
+    ).toEqual([
       { file: 'trial1.csv', line: 17, what: 'column fz_N: "abc" is not a number' },
       { file: 'trial3.csv', line: 4, what: 't_s does not rise' },
       { file: 'set.json', line: null, what: 'no trials' },
     ]);
-    expect(problemsOf('The server does not answer.')).toEqual([{ file: '', line: null, what: 'The server does not answer.' }]);
+    expect(problemsOf('The server does not answer.')).toEqual([
+      { file: '', line: null, what: 'The server does not answer.' },
+    ]);
   });
 });
 
@@ -45,15 +55,46 @@ describe('a formula of one’s own', () => {
 
   it('keeps what was written of a parameter while the formula changes', () => {
     const first = withFormula(kBlankOwn, 'c * v_m_s', states);
-    const second = withFormula({ ...first, parameters: first.parameters.map((one) => ({ ...one, unit: 'N*s/m' })) }, 'c * v_m_s + k', states);
-    expect(second.parameters.map(({ name, unit }) => [name, unit])).toEqual([['c', 'N*s/m'], ['k', '1']]);
+    const second = withFormula(
+      { ...first, parameters: first.parameters.map((one) => ({ ...one, unit: 'N*s/m' })) },
+      'c * v_m_s + k',
+      states,
+    );
+    expect(second.parameters.map(({ name, unit }) => [name, unit])).toEqual([
+      ['c', 'N*s/m'],
+      ['k', '1'],
+    ]);
+  });
+
+  it('starts a divisor with a minimum above zero', () => {
+    const { parameters } = withFormula(kBlankOwn, 'f * tanh(v_m_s / v0)', states);
+    expect(parameters.map(({ name, low }) => [name, low])).toEqual([
+      ['f', '0'],
+      ['v0', '0.001'],
+    ]);
+  });
+
+  it('points out a parameter that looks like a state variable', () => {
+    expect(mistypedStates(withFormula(kBlankOwn, 'f * sign(v)', states), states)).toEqual([
+      { typed: 'v', state: 'v_m_s' },
+    ]);
+    expect(mistypedStates(withFormula(kBlankOwn, 'f * sign(v_m_s)', states), states)).toEqual([]);
   });
 
   it('goes to the server as tractus-effect/1, and not before there is one', () => {
     expect(ownEffect(kBlankOwn, 'probing', { adds_to: 'fz_N' })).toBeNull();
-    const draft = { name: 'drag', formula: ' c * v_m_s ', parameters: [{ name: 'c', unit: 'N*s/m', initial: '2', low: '0', high: '50' }] };
+    const draft = {
+      name: 'drag',
+      formula: ' c * v_m_s ',
+      parameters: [{ name: 'c', unit: 'N*s/m', initial: '2', low: '0', high: '50' }],
+    };
     expect(ownEffect(draft, 'probing', { adds_to: 'fz_N' })).toEqual({
-      format: 'tractus-effect/1', id: 'expression:drag', rig: 'probing', adds_to: 'fz_N', formula: 'c * v_m_s', parameters: { c: { unit: 'N*s/m', initial: 2, low: 0, high: 50 } },
+      format: 'tractus-effect/1',
+      id: 'expression:drag',
+      rig: 'probing',
+      adds_to: 'fz_N',
+      formula: 'c * v_m_s',
+      parameters: { c: { unit: 'N*s/m', initial: 2, low: 0, high: 50 } },
     });
   });
 });
@@ -62,8 +103,14 @@ describe('two versions', () => {
   const old = { base: { layers: [{ stiffness_N_per_m: 4000, damping_Ns_per_m: 2000 }] }, effects: [] };
 
   it('differ in the numbers that changed and in those that came', () => {
-    const now = { base: { layers: [{ stiffness_N_per_m: 4100, damping_Ns_per_m: 2000 }] }, effects: [{ id: 'coulomb_friction', parameters: { friction_N: 2.3 } }] };
-    expect(differences(old, now)).toEqual([{ name: '/base/layers/0/stiffness_N_per_m', a: 4000, b: 4100 }, { name: 'coulomb_friction/friction_N', a: null, b: 2.3 }]);
+    const now = {
+      base: { layers: [{ stiffness_N_per_m: 4100, damping_Ns_per_m: 2000 }] },
+      effects: [{ id: 'coulomb_friction', parameters: { friction_N: 2.3 } }],
+    };
+    expect(differences(old, now)).toEqual([
+      { name: '/base/layers/0/stiffness_N_per_m', a: 4000, b: 4100 },
+      { name: 'coulomb_friction/friction_N', a: null, b: 2.3 },
+    ]);
     expect(differences(old, old)).toEqual([]);
   });
 
@@ -76,24 +123,43 @@ describe('two versions', () => {
 
 describe('the verdict', () => {
   const diagnosis = (changes: Partial<Diagnosis>): Diagnosis => ({
-    verdict: 'missing', probability: 0.98, base: { rmse: 1.78, held_out_rmse: 1.99, noise_floor: 0.0616 },
-    effects: [{ id: 'coulomb_friction', probability: 0.98, parameters: {} }], ranking: [],
-    steps: [{ model: 'base', rmse: 1.78, held_out_rmse: 1.99 }, { model: '+ coulomb_friction', rmse: 0.0501, held_out_rmse: 0.0502 }],
-    confounded: [], settle: null, depends_on: '', held_out: 'trials', parameters: [], trials: [], notes: [], ...changes,
+    verdict: 'missing',
+    probability: 0.98,
+    base: { rmse: 1.78, held_out_rmse: 1.99, noise_floor: 0.0616 },
+    effects: [{ id: 'coulomb_friction', probability: 0.98, parameters: {} }],
+    ranking: [],
+    steps: [
+      { model: 'base', rmse: 1.78, held_out_rmse: 1.99 },
+      { model: '+ coulomb_friction', rmse: 0.0501, held_out_rmse: 0.0502 },
+    ],
+    confounded: [],
+    settle: null,
+    depends_on: '',
+    held_out: 'trials',
+    parameters: [],
+    trials: [],
+    notes: [],
+    ...changes,
   });
 
   it('names what is missing and how far the error falls on trials that were not fitted', () => {
     const { headline, detail } = verdictOf(diagnosis({}), 'N');
     expect(headline).toBe('Coulomb friction is missing.');
-    expect(plain(detail)).toContain('from 1.99 N to 0.0502 N; noise alone leaves 0.0616 N');
+    expect(plain(detail)).toContain('from 1.99 N to 0.0502 N; the noise floor is 0.0616 N');
   });
 
   it('adds nothing where nothing is missing', () => {
-    expect(verdictOf(diagnosis({ verdict: 'complete', effects: [] }), 'N')).toMatchObject({ tone: 'good', headline: 'Nothing is missing.' });
+    expect(verdictOf(diagnosis({ verdict: 'complete', effects: [] }), 'N')).toMatchObject({
+      tone: 'good',
+      headline: 'No effect is missing.',
+    });
   });
 
   it('says on what it depends where the catalogue has no name for it', () => {
-    const { headline, detail } = verdictOf(diagnosis({ verdict: 'unexplained', effects: [], depends_on: 'speed' }), 'N');
+    const { headline, detail } = verdictOf(
+      diagnosis({ verdict: 'unexplained', effects: [], depends_on: 'speed' }),
+      'N',
+    );
     expect(headline).toContain('not in the catalogue');
     expect(detail).toContain('varies with speed');
   });
@@ -104,9 +170,21 @@ describe('the verdict', () => {
   });
 });
 
-describe('words of the lab', () => {
+describe('the unit of the error', () => {
+  it('is that of the primary channel, and newton until the comparison is known', () => {
+    const compared = (primary: string) =>
+      ({ comparisons: { before: { primary, channels: [{ name: primary }] }, after: null } }) as unknown as Pick<
+        LabRun,
+        'comparisons'
+      >;
+    expect(primaryUnit(compared('tz_Nm'))).toBe('N·m');
+    expect(primaryUnit({ comparisons: null })).toBe('N');
+  });
+});
+
+describe('names of the lab', () => {
   it('are made from ids', () => {
-    expect(effectName('expression:drag')).toBe('drag (own formula)');
+    expect(effectName('expression:drag')).toBe('drag (custom formula)');
     expect(joined(['a', 'b', 'c'])).toBe('a, b and c');
     expect(channelQuantity('tz_Nm').unit).toBe('N·m');
     expect(channelQuantity('fz_N').unit).toBe('N');

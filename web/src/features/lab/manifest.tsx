@@ -8,12 +8,20 @@ const VersionsPage = lazy(() => index().then(({ VersionsPage: page }) => ({ defa
 const WorkPage = lazy(() => index().then(({ WorkPage: page }) => ({ default: page })));
 
 export const feature: Feature = {
-  menu: [
-    { to: '/lab', name: 'Model lab', roles: ['admin', 'researcher'], order: 100 },
-  ],
+  menu: [{ to: '/lab', name: 'Model lab', roles: ['admin', 'researcher'], order: 100 }],
   pages: [
     { path: '/lab', show: () => <LabPage /> },
     { path: '/lab/versions', show: () => <VersionsPage /> },
-    { path: '/lab/work/:model/:set/:step?', show: (at) => <WorkPage key={`${at('model')} ${at('set')}`} model={at('model')} set={at('set')} step={at('step') || 'compare'} /> },
+    {
+      path: '/lab/work/:model/:set/:step?',
+      show: (at) => (
+        <WorkPage
+          key={`${at('model')} ${at('set')}`}
+          model={at('model')}
+          set={at('set')}
+          step={at('step') || 'compare'}
+        />
+      ),
+    },
   ],
 };

@@ -7,7 +7,7 @@ import { formatDateTime, isoDateTime } from '@/units';
 import styles from './lab.module.css';
 
 interface Props {
-  /** Only versions for this rig can be held against the chosen measurements. */
+  /** Only versions for this rig can be compared with the chosen measurements. */
   readonly rig: Rig | null;
   readonly chosen: string | null;
   readonly choose: (id: string) => void;
@@ -16,21 +16,37 @@ interface Props {
 const kMost_bytes = 1 << 20;
 
 async function send(file: File): Promise<ModelVersion> {
-  if (file.size > kMost_bytes) throw new Error(`${file.name}: is larger than a model can be (1 MiB).`);
+  if (file.size > kMost_bytes) throw new Error(`${file.name}: too large for a model file (limit: 1 MiB).`);
   const text = await file.text();
-  try { JSON.parse(text); } catch (reason) { throw new Error(`${file.name}: is not JSON: ${reason instanceof Error ? reason.message : ''}`); }
+  try {
+    JSON.parse(text);
+  } catch (reason) {
+    throw new Error(`${file.name}: not valid JSON: ${reason instanceof Error ? reason.message : ''}`);
+  }
   return addModel(text);
 }
 
-function ModelRow({ model, chosen, choose }: { readonly model: ModelVersion; readonly chosen: boolean; readonly choose: () => void }) {
+function ModelRow({
+  model,
+  chosen,
+  choose,
+}: {
+  readonly model: ModelVersion;
+  readonly chosen: boolean;
+  readonly choose: () => void;
+}) {
   return (
     <label className={styles.choice}>
       <input type="radio" name="model" checked={chosen} onChange={choose} />
       <span className={styles.choiceText}>
-        <span className={styles.choiceName}>{model.name} {model.parent === null ? null : <Badge tone="accent">improved</Badge>}</span>
+        <span className={styles.choiceName}>
+          {model.name} {model.parent === null ? null : <Badge tone="accent">derived</Badge>}
+        </span>
         <span className={styles.muted}>{[model.rig, model.note].filter(Boolean).join(' · ')}</span>
       </span>
-      <span className={styles.muted}><time dateTime={isoDateTime(model.made_utc_us)}>{formatDateTime(model.made_utc_us)}</time>, {model.made_by}</span>
+      <span className={styles.muted}>
+        <time dateTime={isoDateTime(model.made_utc_us)}>{formatDateTime(model.made_utc_us)}</time>, {model.made_by}
+      </span>
     </label>
   );
 }
@@ -41,7 +57,10 @@ export function ModelsCard({ rig, chosen, choose }: Props) {
   const query = useQuery(modelsQuery);
   const sent = useMutation({
     mutationFn: send,
-    onSuccess: async (model) => { await client.invalidateQueries({ queryKey: modelsQuery.queryKey }); choose(model.id); },
+    onSuccess: async (model) => {
+      await client.invalidateQueries({ queryKey: modelsQuery.queryKey });
+      choose(model.id);
+    },
   });
   const upload = (event: ChangeEvent<HTMLInputElement>) => {
     const [file] = event.currentTarget.files ?? [];
@@ -51,18 +70,55 @@ export function ModelsCard({ rig, chosen, choose }: Props) {
   const models = query.data?.models.filter((model) => rig === null || model.rig === rig);
   const hidden = (query.data?.models.length ?? 0) - (models?.length ?? 0);
   return (
-    <Card title="2 · Model" aside={<span className={styles.buttons}><Link href="/lab/versions">All versions</Link><Button onClick={() => input.current?.click()} disabled={sent.isPending}>{sent.isPending ? 'Sending…' : 'Add a model file'}</Button></span>}>
-      <input ref={input} type="file" hidden accept=".json,application/json" aria-label="A model file" data-part="model-file" onChange={upload} />
+    <Card
+      title="2 · Model"
+      aside={
+        <span className={styles.buttons}>
+          <Link href="/lab/versions">All versions</Link>
+          <Button onClick={() => input.current?.click()} disabled={sent.isPending}>
+            {sent.isPending ? 'Sending…' : 'Add model file'}
+          </Button>
+        </span>
+      }
+    >
+      <input
+        ref={input}
+        type="file"
+        hidden
+        accept=".json,application/json"
+        aria-label="A model file"
+        data-part="model-file"
+        onChange={upload}
+      />
       <div className={styles.stack}>
-        {sent.isError ? <Notice tone="bad" title="The model was not taken.">{sent.error.message}</Notice> : null}
-        {query.isError ? <Notice tone="bad" title="The list could not be loaded." onRetry={() => void query.refetch()}>{query.error.message}</Notice> : null}
+        {sent.isError ? (
+          <Notice tone="bad" title="The model was not added.">
+            {sent.error.message}
+          </Notice>
+        ) : null}
+        {query.isError ? (
+          <Notice tone="bad" title="The list could not be loaded." onRetry={() => void query.refetch()}>
+            {query.error.message}
+          </Notice>
+        ) : null}
         <fieldset className={styles.choices} aria-busy={query.isPending}>
           <legend className="hidden-visually">Versions of models, newest first</legend>
-          {query.isPending ? <><Skeleton height="44px" /><Skeleton height="44px" /></> : null}
-          {models?.map((model) => <ModelRow key={model.id} model={model} chosen={model.id === chosen} choose={() => choose(model.id)} />)}
-          {models?.length === 0 ? <p className={styles.muted}>{rig === null ? 'There are no models yet.' : `There is no model of the ${rig} rig yet.`} Add a file (tractus-model/1).</p> : null}
+          {query.isPending ? (
+            <>
+              <Skeleton height="44px" />
+              <Skeleton height="44px" />
+            </>
+          ) : null}
+          {models?.map((model) => (
+            <ModelRow key={model.id} model={model} chosen={model.id === chosen} choose={() => choose(model.id)} />
+          ))}
+          {models?.length === 0 ? (
+            <p className={styles.muted}>
+              {rig === null ? 'No models yet.' : `No models of the ${rig} rig yet.`} Add a model file (tractus-model/1).
+            </p>
+          ) : null}
         </fieldset>
-        {hidden > 0 ? <p className={styles.muted}>Models of the other rig are left out.</p> : null}
+        {hidden > 0 ? <p className={styles.muted}>Models of the other rig are not listed.</p> : null}
       </div>
     </Card>
   );

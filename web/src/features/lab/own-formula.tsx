@@ -1,70 +1,167 @@
 import { useQuery } from '@tanstack/react-query';
 import { useEffect, useId, useState } from 'react';
 import { checkEffect, type EffectList, type OwnEffect, type Rig } from '@/api';
-import { Field, Scroll } from '@/ui';
+import { Field, Scroll, useSettled } from '@/ui';
 import styles from './lab.module.css';
-import { kBlankOwn, ownEffect, withFormula, type OwnDraft, type OwnParameter } from './own-effect';
+import { kBlankOwn, mistypedStates, ownEffect, withFormula, type OwnDraft, type OwnParameter } from './own-effect';
 
-interface Props { readonly rig: Rig; readonly list: EffectList; readonly onOwn: (own: OwnEffect | null) => void }
+interface Props {
+  readonly rig: Rig;
+  readonly list: EffectList;
+  readonly onOwn: (own: OwnEffect | null) => void;
+}
 
 const kPace_ms = 250;
 
-function usePaced<Value>(value: Value): Value {
-  const [paced, setPaced] = useState(value);
-  useEffect(() => {
-    const timer = setTimeout(() => setPaced(value), kPace_ms);
-    return () => clearTimeout(timer);
-  }, [value]);
-  return paced;
-}
-
-function ParameterRow({ parameter, set }: { readonly parameter: OwnParameter; readonly set: (changes: Partial<OwnParameter>) => void }) {
+function ParameterRow({
+  parameter,
+  set,
+}: {
+  readonly parameter: OwnParameter;
+  readonly set: (changes: Partial<OwnParameter>) => void;
+}) {
   const { name } = parameter;
-  const cell = (key: 'unit' | 'initial' | 'low' | 'high', what: string) =>
-    <td><input aria-label={`${what} of ${name}`} value={parameter[key]} spellCheck={false} inputMode={key === 'unit' ? 'text' : 'decimal'} onChange={(event) => set({ [key]: event.target.value })} /></td>;
-  return <tr><th scope="row"><code>{name}</code></th>{cell('unit', 'Unit')}{cell('initial', 'Start')}{cell('low', 'Least')}{cell('high', 'Most')}</tr>;
+  const cell = (key: 'unit' | 'initial' | 'low' | 'high', what: string) => (
+    <td>
+      <input
+        aria-label={`${what} of ${name}`}
+        value={parameter[key]}
+        spellCheck={false}
+        inputMode={key === 'unit' ? 'text' : 'decimal'}
+        onChange={(event) => set({ [key]: event.target.value })}
+      />
+    </td>
+  );
+  return (
+    <tr>
+      <th scope="row">
+        <code>{name}</code>
+      </th>
+      {cell('unit', 'Unit')}
+      {cell('initial', 'Start value')}
+      {cell('low', 'Minimum')}
+      {cell('high', 'Maximum')}
+    </tr>
+  );
 }
 
-/** A formula of one's own: its parameters are read from it, its units are checked while it is written. */
+/** A custom formula: its parameters are detected and its units are checked while it is typed. */
 export function OwnFormula({ rig, list, onOwn }: Props) {
   const [draft, setDraft] = useState<OwnDraft>(kBlankOwn);
-  const paced = usePaced(draft);
-  const own = ownEffect(paced, rig, list);
-  const check = useQuery({ queryKey: ['lab', 'check', own], queryFn: ({ signal }) => checkEffect(own ?? {}, signal), enabled: own !== null, staleTime: Infinity, retry: false });
-  const good = own !== null && check.data?.ok === true && paced === draft;
-  useEffect(() => { onOwn(good ? own : null); }, [good, JSON.stringify(own)]); // eslint-disable-line react-hooks/exhaustive-deps -- the effect as a value
+  const settled = useSettled(draft, kPace_ms);
+  const own = ownEffect(settled, rig, list);
+  const check = useQuery({
+    queryKey: ['lab', 'check', own],
+    queryFn: ({ signal }) => checkEffect(own ?? {}, signal),
+    enabled: own !== null,
+    staleTime: Infinity,
+    retry: false,
+  });
+  const good = own !== null && check.data?.ok === true && settled === draft;
+  useEffect(() => {
+    onOwn(good ? own : null);
+  }, [good, JSON.stringify(own)]); // eslint-disable-line react-hooks/exhaustive-deps -- the effect as a value
   const id = useId();
   const set = (name: string, changes: Partial<OwnParameter>) =>
-    setDraft({ ...draft, parameters: draft.parameters.map((one) => (one.name === name ? { ...one, ...changes } : one)) });
-  const said = own === null ? `Its result has to be in ${list.adds_unit}.` : check.isError ? check.error.message : paced !== draft || check.isPending ? 'Checking the units…' : check.data.ok ? `✓ The units fit: the result is in ${list.adds_unit}.` : check.data.error;
+    setDraft({
+      ...draft,
+      parameters: draft.parameters.map((one) => (one.name === name ? { ...one, ...changes } : one)),
+    });
+  const message =
+    own === null
+      ? `The result must have the unit ${list.adds_unit}.`
+      : check.isError
+        ? check.error.message
+        : settled !== draft || check.isPending
+          ? 'Checking the units…'
+          : check.data.ok
+            ? `✓ The units are consistent: the result has the unit ${list.adds_unit}.`
+            : check.data.error;
   const wrong = own !== null && (check.isError || check.data?.ok === false);
   return (
     <div className={styles.own}>
       <div className={styles.ownHead}>
-        <Field label="Name" value={draft.name} maxLength={32} spellCheck={false} pattern="[a-z][a-z0-9_]*" onChange={(event) => setDraft({ ...draft, name: event.target.value })} />
-        <Field label="Formula" value={draft.formula} maxLength={500} spellCheck={false} placeholder={rig === 'probing' ? 'c * v_m_s * abs(v_m_s)' : 'mu * base_N'} aria-invalid={wrong} aria-describedby={id}
-          onChange={(event) => setDraft(withFormula(draft, event.target.value, list.states))} />
+        <Field
+          label="Name"
+          value={draft.name}
+          maxLength={32}
+          spellCheck={false}
+          pattern="[a-z][a-z0-9_]*"
+          onChange={(event) => setDraft({ ...draft, name: event.target.value })}
+        />
+        <Field
+          label="Formula"
+          value={draft.formula}
+          maxLength={500}
+          spellCheck={false}
+          placeholder={rig === 'probing' ? 'c * v_m_s * abs(v_m_s)' : 'mu * base_N'}
+          aria-invalid={wrong}
+          aria-describedby={id}
+          onChange={(event) => setDraft(withFormula(draft, event.target.value, list.states))}
+        />
       </div>
-      <p id={id} role="status" className={wrong ? styles.wrong : styles.muted} data-part="unit-check">{said}</p>
+      <p id={id} role="status" className={wrong ? styles.wrong : styles.muted} data-part="unit-check">
+        {message}
+      </p>
+      {mistypedStates(draft, list.states).map(({ typed, state }) => (
+        <p key={typed} className={styles.wrong} role="status">
+          <code>{typed}</code> is a parameter and will be fitted. The state variable is <code>{state}</code>.
+        </p>
+      ))}
       {draft.parameters.length > 0 ? (
         <Scroll label="Parameters of the formula">
           <table className={`${styles.table} ${styles.inputs}`}>
             <caption className="hidden-visually">Parameters of the formula</caption>
-            <thead><tr><th scope="col">Parameter</th><th scope="col">Unit</th><th scope="col">Start</th><th scope="col">Least</th><th scope="col">Most</th></tr></thead>
-            <tbody>{draft.parameters.map((parameter) => <ParameterRow key={parameter.name} parameter={parameter} set={(changes) => set(parameter.name, changes)} />)}</tbody>
+            <thead>
+              <tr>
+                <th scope="col">Parameter</th>
+                <th scope="col">Unit</th>
+                <th scope="col">Start value</th>
+                <th scope="col">Minimum</th>
+                <th scope="col">Maximum</th>
+              </tr>
+            </thead>
+            <tbody>
+              {draft.parameters.map((parameter) => (
+                <ParameterRow
+                  key={parameter.name}
+                  parameter={parameter}
+                  set={(changes) => set(parameter.name, changes)}
+                />
+              ))}
+            </tbody>
           </table>
         </Scroll>
       ) : null}
       <details>
-        <summary>What a formula may name</summary>
-        <Scroll label="States">
+        <summary>Names available in a formula</summary>
+        <Scroll label="State variables">
           <table className={styles.table}>
-            <caption className="hidden-visually">States</caption>
-            <thead><tr><th scope="col">Name</th><th scope="col">Unit</th><th scope="col">What it is</th></tr></thead>
-            <tbody>{list.states.map((state) => <tr key={state.name}><th scope="row"><code>{state.name}</code></th><td>{state.unit}</td><td>{state.meaning}</td></tr>)}</tbody>
+            <caption className="hidden-visually">State variables</caption>
+            <thead>
+              <tr>
+                <th scope="col">Name</th>
+                <th scope="col">Unit</th>
+                <th scope="col">Meaning</th>
+              </tr>
+            </thead>
+            <tbody>
+              {list.states.map((state) => (
+                <tr key={state.name}>
+                  <th scope="row">
+                    <code>{state.name}</code>
+                  </th>
+                  <td>{state.unit}</td>
+                  <td>{state.meaning}</td>
+                </tr>
+              ))}
+            </tbody>
           </table>
         </Scroll>
-        <p className={styles.muted}><code>+ - * / ^</code>, comparisons, <code>a ? b : c</code>, abs sqrt sign min max exp ln sin cos tan tanh pi. Any other name is a parameter, and is fitted.</p>
+        <p className={styles.muted}>
+          <code>+ - * / ^</code>, comparisons, <code>a ? b : c</code>, abs sqrt sign min max exp ln sin cos tan tanh pi.
+          Any other name is a parameter and is fitted.
+        </p>
       </details>
     </div>
   );

@@ -2,7 +2,7 @@ import type { Estimate } from '@/api';
 import { Badge, Scroll, Term } from '@/ui';
 import { formatWithin, nameAndUnit } from '@/units';
 import styles from './lab.module.css';
-import { effectName } from './words';
+import { effectName } from './names';
 
 /** "/base/layers/0/stiffness_N_per_m" → "Layer 1, stiffness"; "coulomb_friction/friction_N" → "Coulomb friction, friction". */
 export function parameterName(pointer: string): { name: string; unit: string } {
@@ -11,18 +11,32 @@ export function parameterName(pointer: string): { name: string; unit: string } {
   const own = nameAndUnit((numbered ? parts.at(-2) : parts.at(-1)) ?? pointer);
   const component = numbered ? ` ${['x', 'y', 'z'][Number(parts.at(-1))] ?? parts.at(-1) ?? ''}` : '';
   const rest = parts.slice(0, numbered ? -2 : -1);
-  const place = rest[0] !== 'base' && rest[0] !== undefined ? effectName(rest[0])
-    : rest[1] === 'layers' ? `Layer ${Number(rest[2] ?? 0) + 1}` : rest.slice(1).join(' ');
+  const place =
+    rest[0] !== 'base' && rest[0] !== undefined
+      ? effectName(rest[0])
+      : rest[1] === 'layers'
+        ? `Layer ${Number(rest[2] ?? 0) + 1}`
+        : rest.slice(1).join(' ');
   const words = place === '' ? own.name : `${place}, ${own.name}`;
-  return { name: (words.charAt(0).toUpperCase() + words.slice(1)) + component, unit: own.unit };
+  return { name: words.charAt(0).toUpperCase() + words.slice(1) + component, unit: own.unit };
 }
 
 export function Parameters({ estimates }: { readonly estimates: readonly Estimate[] }) {
   return (
-    <Scroll label="Fitted numbers">
+    <Scroll label="Fitted parameters">
       <table className={styles.table}>
-        <caption className="hidden-visually">Fitted numbers</caption>
-        <thead><tr><th scope="col">Number</th><th scope="col" className={styles.number}><Term align="end" definition="The fitted value and its standard error, from the fit’s own curvature.">Value</Term></th><th scope="col">Said of it</th></tr></thead>
+        <caption className="hidden-visually">Fitted parameters</caption>
+        <thead>
+          <tr>
+            <th scope="col">Parameter</th>
+            <th scope="col" className={styles.number}>
+              <Term align="end" definition="Fitted value and its standard error, from the curvature of the fit.">
+                Value
+              </Term>
+            </th>
+            <th scope="col">Assessment</th>
+          </tr>
+        </thead>
         <tbody>
           {estimates.map((one) => {
             const { name, unit } = parameterName(one.name);
@@ -30,7 +44,15 @@ export function Parameters({ estimates }: { readonly estimates: readonly Estimat
               <tr key={one.name}>
                 <th scope="row">{name}</th>
                 <td className={styles.number}>{formatWithin(one.value, one.sd, unit)}</td>
-                <td>{!one.informed ? <Badge tone="warn">these measurements say nothing of it</Badge> : one.at_bound ? <Badge tone="warn">at its bound</Badge> : <span className={styles.muted}>determined</span>}</td>
+                <td>
+                  {!one.informed ? (
+                    <Badge tone="warn">not determined by these measurements</Badge>
+                  ) : one.at_bound ? (
+                    <Badge tone="warn">at a bound</Badge>
+                  ) : (
+                    <span className={styles.muted}>determined</span>
+                  )}
+                </td>
               </tr>
             );
           })}

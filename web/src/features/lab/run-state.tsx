@@ -4,7 +4,11 @@ import { Button, Notice, Progress } from '@/ui';
 import { formatShare } from '@/units';
 import styles from './run-state.module.css';
 
-interface Props { readonly run: LabRunSummary; readonly what: string; readonly again: () => void }
+interface Props {
+  readonly run: LabRunSummary;
+  readonly what: string;
+  readonly again: () => void;
+}
 
 /** A run that is not done: how far it is and how to stop it, or why it ended and how to try again. */
 export function RunState({ run, what, again }: Props) {
@@ -13,18 +17,32 @@ export function RunState({ run, what, again }: Props) {
     mutationFn: () => stopLabRun(run.id),
     onSuccess: () => client.invalidateQueries({ queryKey: ['lab'] }),
   });
-  if (run.state === 'failed') return <Notice tone="bad" title={`${what} failed.`} onRetry={again}>{run.error}</Notice>;
-  if (run.state === 'cancelled') return <Notice tone="warn" title={`${what} was cancelled.`} onRetry={again}>Nothing was changed.</Notice>;
+  if (run.state === 'failed')
+    return (
+      <Notice tone="bad" title={`${what} failed.`} onRetry={again}>
+        {run.error}
+      </Notice>
+    );
+  if (run.state === 'cancelled')
+    return (
+      <Notice tone="warn" title={`${what} was cancelled.`} onRetry={again}>
+        Nothing was changed.
+      </Notice>
+    );
   const waiting = run.state === 'queued';
   return (
     <div className={styles.state} role="status" data-part="run-state">
-      <div className={styles.words}>
-        <strong>{waiting ? `${what}: waiting for its turn` : `${what}: ${formatShare(run.share)}`}</strong>
-        <span className={styles.phase}>{run.phase === '' ? (waiting ? 'The lab does one piece of work after the other.' : 'Reading the measurements.') : run.phase}</span>
+      <div className={styles.text}>
+        <strong>{waiting ? `${what}: queued` : `${what}: ${formatShare(run.share)}`}</strong>
+        <span className={styles.phase}>
+          {run.phase === '' ? (waiting ? 'The lab runs one job at a time.' : 'Reading the measurements.') : run.phase}
+        </span>
       </div>
       <Progress done={run.share} of={1} label={what} />
-      <Button onClick={() => stopped.mutate()} disabled={stopped.isPending}>{stopped.isPending ? 'Stopping…' : 'Cancel'}</Button>
-      {stopped.isError ? <span role="alert">It could not be stopped: {stopped.error.message}</span> : null}
+      <Button onClick={() => stopped.mutate()} disabled={stopped.isPending}>
+        {stopped.isPending ? 'Stopping…' : 'Cancel'}
+      </Button>
+      {stopped.isError ? <span role="alert">The job could not be stopped: {stopped.error.message}</span> : null}
     </div>
   );
 }

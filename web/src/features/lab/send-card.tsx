@@ -7,57 +7,106 @@ import styles from './lab.module.css';
 
 type Sent = SentModel['stations'][number];
 
-function Where({ sent }: { readonly sent: readonly Sent[] }) {
+function SentStations({ sent }: { readonly sent: readonly Sent[] }) {
   if (sent.length === 0) return null;
   return (
     <ul className={styles.sent} data-part="sent">
       {sent.map((one) => (
         <li key={one.id}>
-          <strong>{one.name}</strong> {one.state === 'there' ? <Badge tone="good">is there</Badge> : <Badge tone="accent">waits for the station</Badge>}
-          <span className={styles.muted}> {one.there_utc_us !== null ? `since ${formatDateTime(one.there_utc_us)}` : one.asked_utc_us === null ? '' : `sent ${formatDateTime(one.asked_utc_us)} by ${one.asked_by}`}</span>
+          <strong>{one.name}</strong>{' '}
+          {one.state === 'there' ? <Badge tone="good">received</Badge> : <Badge tone="accent">pending</Badge>}
+          <span className={styles.muted}>
+            {' '}
+            {one.there_utc_us !== null
+              ? formatDateTime(one.there_utc_us)
+              : one.asked_utc_us === null
+                ? ''
+                : `sent ${formatDateTime(one.asked_utc_us)} by ${one.asked_by}`}
+          </span>
         </li>
       ))}
     </ul>
   );
 }
 
-/** A published version on its way to the stations, where it can be felt. */
+/** Sends a published version to stations. */
 export function SendCard({ version }: { readonly version: Pick<ModelVersion, 'id' | 'name' | 'rig'> }) {
   const client = useQueryClient();
   const sent = useQuery(sentModelQuery(version.id));
   const [asking, setAsking] = useState(false);
   const made = useMutation({
     mutationFn: (stations: readonly string[] | null) => sendModel(version.id, stations),
-    onSuccess: (now) => { client.setQueryData(sentModelQuery(version.id).queryKey, now); setAsking(false); },
+    onSuccess: (now) => {
+      client.setQueryData(sentModelQuery(version.id).queryKey, now);
+      setAsking(false);
+    },
   });
   const [picked, setPicked] = useState<readonly string[]>([]);
   const all = sent.data?.stations ?? [];
-  const there = all.filter(({ state }) => state !== 'not_sent'), open = all.filter(({ state }) => state === 'not_sent');
-  const submit = (event: FormEvent) => { event.preventDefault(); if (picked.length > 0) made.mutate(picked); };
+  const there = all.filter(({ state }) => state !== 'not_sent'),
+    open = all.filter(({ state }) => state === 'not_sent');
+  const submit = (event: FormEvent) => {
+    event.preventDefault();
+    if (picked.length > 0) made.mutate(picked);
+  };
   return (
     <Card title="Send to stations">
       <div className={styles.stack}>
-        <p className={styles.readable}>A station fetches the version when it next speaks to the server, keeps it, and can be started with it: <code>tractus-station --model &quot;{version.name}&quot;</code>. The same file that the lab compared drives the live loop.</p>
-        {sent.isError ? <Notice tone="bad" title="Where it was sent could not be loaded." onRetry={() => void sent.refetch()}>{sent.error.message}</Notice> : null}
-        {sent.isPending ? <Skeleton height="28px" width="320px" /> : <Where sent={there} />}
-        {made.isError ? <Notice tone="bad" title="It was not sent.">{made.error.message}</Notice> : null}
+        <p className={styles.readable}>
+          A station downloads the version when it next connects to the server. Then it can be started with this version:{' '}
+          <code>tractus-station --model &quot;{version.name}&quot;</code>. The station uses the same file that the lab
+          compared.
+        </p>
+        {sent.isError ? (
+          <Notice tone="bad" title="The stations could not be loaded." onRetry={() => void sent.refetch()}>
+            {sent.error.message}
+          </Notice>
+        ) : null}
+        {sent.isPending ? <Skeleton height="28px" width="320px" /> : <SentStations sent={there} />}
+        {made.isError ? (
+          <Notice tone="bad" title="The version was not sent.">
+            {made.error.message}
+          </Notice>
+        ) : null}
         {asking && open.length > 0 ? (
           <form className={styles.stack} onSubmit={submit}>
             <fieldset className={styles.picks}>
-              <legend>To which stations</legend>
+              <legend>Stations</legend>
               {open.map(({ id, name }) => (
-                <label key={id}><input type="checkbox" checked={picked.includes(id)} onChange={(event) => setPicked(event.target.checked ? [...picked, id] : picked.filter((one) => one !== id))} /> {name}</label>
+                <label key={id}>
+                  <input
+                    type="checkbox"
+                    checked={picked.includes(id)}
+                    onChange={(event) =>
+                      setPicked(event.target.checked ? [...picked, id] : picked.filter((one) => one !== id))
+                    }
+                  />{' '}
+                  {name}
+                </label>
               ))}
             </fieldset>
-            <p className={styles.buttons}><Button look="solid" type="submit" disabled={made.isPending || picked.length === 0}>{made.isPending ? 'Sending…' : 'Send'}</Button> <Button onClick={() => setAsking(false)}>Leave it</Button></p>
+            <p className={styles.buttons}>
+              <Button look="solid" type="submit" disabled={made.isPending || picked.length === 0}>
+                {made.isPending ? 'Sending…' : 'Send'}
+              </Button>{' '}
+              <Button onClick={() => setAsking(false)}>Cancel</Button>
+            </p>
           </form>
         ) : (
           <p className={styles.buttons} hidden={open.length === 0}>
-            <Button look="solid" onClick={() => made.mutate(null)} disabled={made.isPending || sent.isPending}>{made.isPending ? 'Sending…' : 'Send to every station'}</Button>
-            <Button onClick={() => setAsking(true)} disabled={made.isPending}>Choose stations…</Button>
+            <Button look="solid" onClick={() => made.mutate(null)} disabled={made.isPending || sent.isPending}>
+              {made.isPending ? 'Sending…' : 'Send to all stations'}
+            </Button>
+            <Button onClick={() => setAsking(true)} disabled={made.isPending}>
+              Choose stations…
+            </Button>
           </p>
         )}
-        {sent.data && open.length === 0 ? <p className={styles.muted}>{all.length === 0 ? 'No station is enrolled yet.' : 'Every station has it, or is about to.'}</p> : null}
+        {sent.data && open.length === 0 ? (
+          <p className={styles.muted}>
+            {all.length === 0 ? 'No stations are enrolled yet.' : 'The version was sent to all stations.'}
+          </p>
+        ) : null}
       </div>
     </Card>
   );

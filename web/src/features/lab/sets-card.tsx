@@ -4,35 +4,64 @@ import { Badge, Card, Notice, Skeleton, Term } from '@/ui';
 import { formatCount, formatDateTime, isoDateTime } from '@/units';
 import { DropZone } from './drop-zone';
 import styles from './lab.module.css';
-import { setFacts } from './words';
+import { setFacts } from './names';
 import { pack, problemsOf, type Dropped } from './zip-files';
 
-interface Props { readonly chosen: string | null; readonly choose: (id: string) => void }
+interface Props {
+  readonly chosen: string | null;
+  readonly choose: (id: string) => void;
+}
 
-/** Every fault with its file and line, so that each can be found and mended. */
+/** All errors with file and line. */
 function Problems({ message }: { readonly message: string }) {
   const problems = problemsOf(message);
   return (
-    <Notice tone="bad" title="The measurements were not taken.">
+    <Notice tone="bad" title="The measurements were not added.">
       <table className={styles.problems}>
-        <thead><tr><th scope="col">File</th><th scope="col" className={styles.number}>Line</th><th scope="col">What is wrong</th></tr></thead>
+        <thead>
+          <tr>
+            <th scope="col">File</th>
+            <th scope="col" className={styles.number}>
+              Line
+            </th>
+            <th scope="col">Error</th>
+          </tr>
+        </thead>
         <tbody>
-          {problems.map(({ file, line, what }, i) => <tr key={i}><td>{file === '' ? '–' : file}</td><td className={styles.number}>{line === null ? '–' : formatCount(line)}</td><td>{what}</td></tr>)}
+          {problems.map(({ file, line, what }, i) => (
+            <tr key={i}>
+              <td>{file === '' ? '–' : file}</td>
+              <td className={styles.number}>{line === null ? '–' : formatCount(line)}</td>
+              <td>{what}</td>
+            </tr>
+          ))}
         </tbody>
       </table>
     </Notice>
   );
 }
 
-function SetRow({ set, chosen, choose }: { readonly set: MeasurementSet; readonly chosen: boolean; readonly choose: () => void }) {
+function SetRow({
+  set,
+  chosen,
+  choose,
+}: {
+  readonly set: MeasurementSet;
+  readonly chosen: boolean;
+  readonly choose: () => void;
+}) {
   return (
     <label className={styles.choice}>
       <input type="radio" name="set" checked={chosen} onChange={choose} />
       <span className={styles.choiceText}>
-        <span className={styles.choiceName}>{set.name} {set.simulated === true ? <Badge tone="warn">simulated</Badge> : null}</span>
+        <span className={styles.choiceName}>
+          {set.name} {set.simulated === true ? <Badge tone="warn">simulated</Badge> : null}
+        </span>
         <span className={styles.muted}>{setFacts(set)}</span>
       </span>
-      <span className={styles.muted}><time dateTime={isoDateTime(set.made_utc_us)}>{formatDateTime(set.made_utc_us)}</time>, {set.made_by}</span>
+      <span className={styles.muted}>
+        <time dateTime={isoDateTime(set.made_utc_us)}>{formatDateTime(set.made_utc_us)}</time>, {set.made_by}
+      </span>
     </label>
   );
 }
@@ -45,22 +74,43 @@ export function SetsCard({ chosen, choose }: Props) {
       const { name, zip } = await pack(files);
       return addMeasurements(name, zip);
     },
-    onSuccess: async (set) => { await client.invalidateQueries({ queryKey: measurementsQuery.queryKey }); choose(set.id); },
+    onSuccess: async (set) => {
+      await client.invalidateQueries({ queryKey: measurementsQuery.queryKey });
+      choose(set.id);
+    },
   });
   const sets = query.data?.measurements;
   return (
     <Card title="1 · Measurements">
       <div className={styles.stack}>
-        <DropZone onFiles={(files) => sent.mutate(files)} busy={sent.isPending ? 'Packing, sending and checking every line…' : null}>
-          Drop a folder or a zip here: <code>set.json</code> and a CSV per trial, in the form <Term definition="The form that measurements have here: set.json names the rig and the trials; each CSV has a header and SI units in the names of its columns, as t_s, x_m, fz_N.">tractus-measurements/1</Term>.
+        <DropZone
+          onFiles={(files) => sent.mutate(files)}
+          busy={sent.isPending ? 'Packing, uploading and checking the files…' : null}
+        >
+          Drop a folder or a zip file here: <code>set.json</code> and one CSV file per trial, in the format{' '}
+          <Term definition="File format for measurements: set.json names the rig and the trials; each CSV file has a header whose column names end in SI units, such as t_s, x_m, fz_N.">
+            tractus-measurements/1
+          </Term>
+          .
         </DropZone>
         {sent.isError ? <Problems message={sent.error.message} /> : null}
-        {query.isError ? <Notice tone="bad" title="The list could not be loaded." onRetry={() => void query.refetch()}>{query.error.message}</Notice> : null}
+        {query.isError ? (
+          <Notice tone="bad" title="The list could not be loaded." onRetry={() => void query.refetch()}>
+            {query.error.message}
+          </Notice>
+        ) : null}
         <fieldset className={styles.choices} aria-busy={query.isPending}>
           <legend className="hidden-visually">Measurement sets, newest first</legend>
-          {query.isPending ? <><Skeleton height="44px" /><Skeleton height="44px" /></> : null}
-          {sets?.map((set) => <SetRow key={set.id} set={set} chosen={set.id === chosen} choose={() => choose(set.id)} />)}
-          {sets?.length === 0 ? <p className={styles.muted}>There are no measurements yet. Drop the first set above.</p> : null}
+          {query.isPending ? (
+            <>
+              <Skeleton height="44px" />
+              <Skeleton height="44px" />
+            </>
+          ) : null}
+          {sets?.map((set) => (
+            <SetRow key={set.id} set={set} chosen={set.id === chosen} choose={() => choose(set.id)} />
+          ))}
+          {sets?.length === 0 ? <p className={styles.muted}>No measurements yet. Add the first set above.</p> : null}
         </fieldset>
       </div>
     </Card>

@@ -2,7 +2,17 @@
 import { useQueries, useQueryClient } from '@tanstack/react-query';
 import { useMemo } from 'react';
 import { labSignalsQuery, type LabSignals } from '@/api';
-import { assemble, kNoDetail, kTilePoints, tileRange, tilesFor, type Detail, type Range, type Span, type Tile } from '@/charts';
+import {
+  assemble,
+  kNoDetail,
+  kTilePoints,
+  tileRange,
+  tilesFor,
+  type Detail,
+  type Range,
+  type Span,
+  type Tile,
+} from '@/charts';
 
 export type Side = 'before' | 'after';
 
@@ -15,16 +25,16 @@ function merged(of: Partial<Record<Side, LabSignals>>): Detail | undefined {
     const signals = of[side];
     if (!signals || signals.t_s.length !== first.t_s.length) continue;
     channels[side] = signals.simulated;
-    channels[`${side}_rest`] = signals.residual;
+    channels[`${side}_residual`] = signals.residual;
   }
   return { t: first.t_s, channels, samplesPerPoint: first.samples_per_point };
 }
 
 /** The size of what is left, for the strip: where along the trial the error is. */
 function sizes(detail: Detail): Detail {
-  const rest = detail.channels.before_rest ?? detail.channels.after_rest;
-  if (!rest) return detail;
-  const size = rest.max.map((greatest, i) => Math.max(Math.abs(greatest ?? 0), Math.abs(rest.min[i] ?? 0)));
+  const residual = detail.channels.before_residual ?? detail.channels.after_residual;
+  if (!residual) return detail;
+  const size = residual.max.map((greatest, i) => Math.max(Math.abs(greatest ?? 0), Math.abs(residual.min[i] ?? 0)));
   return { ...detail, channels: { ...detail.channels, size: { min: size, max: size } } };
 }
 
@@ -40,9 +50,19 @@ export interface OverlayView {
 
 const kWhole: Tile = { level: 0, index: 0 };
 
-interface Asked { readonly run: string; readonly trial: string; readonly channel: string; readonly duration_s: number; readonly sides: readonly Side[] }
+interface OverlayRequest {
+  readonly run: string;
+  readonly trial: string;
+  readonly channel: string;
+  readonly duration_s: number;
+  readonly sides: readonly Side[];
+}
 
-export function useOverlay({ run, trial, channel, duration_s, sides }: Asked, range: Range, width_px: number): OverlayView {
+export function useOverlay(
+  { run, trial, channel, duration_s, sides }: OverlayRequest,
+  range: Range,
+  width_px: number,
+): OverlayView {
   const client = useQueryClient();
   const queryOf = (tile: Tile, side: Side) => {
     const { from, to } = tileRange(tile, duration_s);
@@ -65,14 +85,29 @@ export function useOverlay({ run, trial, channel, duration_s, sides }: Asked, ra
     }
     return merged(found);
   };
-  // eslint-disable-next-line react-hooks/exhaustive-deps -- `came` stands for the answers, the other keys for the queries
-  const detail = useMemo(() => assemble(tiles, held, duration_s), [tiles, came, run, trial, channel, sidesKey, duration_s]);
-  // eslint-disable-next-line react-hooks/exhaustive-deps -- as above
-  const overview = useMemo(() => { const all = held(kWhole); return all ? sizes(all) : kNoDetail; }, [came, run, trial, channel, sidesKey, duration_s]);
-  const regions = useMemo(() => (whole?.regions ?? []).map((stretches) => stretches.map(([from_s, to_s]) => ({ from_s, to_s }))), [whole]);
+  const detail = useMemo(
+    () => assemble(tiles, held, duration_s),
+    // eslint-disable-next-line react-hooks/exhaustive-deps -- `came` stands for the answers, the other keys for the queries
+    [tiles, came, run, trial, channel, sidesKey, duration_s],
+  );
+  const overview = useMemo(() => {
+    const all = held(kWhole);
+    return all ? sizes(all) : kNoDetail;
+    // eslint-disable-next-line react-hooks/exhaustive-deps -- as above
+  }, [came, run, trial, channel, sidesKey, duration_s]);
+  const regions = useMemo(
+    () => (whole?.regions ?? []).map((stretches) => stretches.map(([from_s, to_s]) => ({ from_s, to_s }))),
+    [whole],
+  );
   const failed = [...wholes, ...answers].find((answer) => answer.isError);
   return {
-    detail, overview, noise_floor: whole?.noise_floor ?? null, regions, error: failed?.error ?? null,
-    retry: () => { for (const answer of [...wholes, ...answers]) if (answer.isError) void answer.refetch(); },
+    detail,
+    overview,
+    noise_floor: whole?.noise_floor ?? null,
+    regions,
+    error: failed?.error ?? null,
+    retry: () => {
+      for (const answer of [...wholes, ...answers]) if (answer.isError) void answer.refetch();
+    },
   };
 }

@@ -10,10 +10,14 @@ import { MissingStep } from './missing-step';
 import { PublishStep } from './publish-step';
 import { RunState } from './run-state';
 import { useComparison } from './use-run';
-import { WhereStep } from './where-step';
-import { kSteps, setFacts, workAddress, type Step } from './words';
+import { ErrorRegionsStep } from './error-regions-step';
+import { kSteps, setFacts, workAddress, type Step } from './names';
 
-interface Work { readonly model: ModelVersion; readonly set: MeasurementSet; readonly versions: readonly ModelVersion[] }
+interface Work {
+  readonly model: ModelVersion;
+  readonly set: MeasurementSet;
+  readonly versions: readonly ModelVersion[];
+}
 
 /** What is chosen within a step, kept in the address. */
 function useChoice(key: string): [string | null, (value: string | null) => void] {
@@ -34,47 +38,149 @@ function Compared({ model, set, versions, step }: Work & { readonly step: 'compa
   const [region, setRegion] = useChoice('region');
   const beside = versions.find(({ id }) => id === against);
   const { run, error, begin, retry } = useComparison(model.id, set.id, beside?.id ?? null);
-  if (error) return <Notice tone="bad" title="The comparison could not be made." onRetry={retry}>{error.message}</Notice>;
-  if (!run) return <><Skeleton height="120px" /><Skeleton height="480px" /></>;
-  if (!run.comparisons) return <Card title="Comparing"><RunState run={run} what="The comparison" again={begin} /></Card>;
-  const drawable: Drawable = { run, ...run.comparisons, rig: model.rig, names: { before: beside ? `${model.name} (this)` : 'model', after: run.comparisons.after && beside ? (beside.name === model.name ? `${beside.name} (beside)` : beside.name) : null } };
-  return step === 'compare'
-    ? <CompareStep drawable={drawable} versions={versions.filter(({ id, rig }) => id !== model.id && rig === model.rig)} against={beside?.id ?? null} setAgainst={setAgainst} />
-    : <WhereStep drawable={drawable} region={region === null ? null : Number(region)} setRegion={(next) => setRegion(next === null ? null : String(next))} />;
+  if (error)
+    return (
+      <Notice tone="bad" title="The comparison could not be made." onRetry={retry}>
+        {error.message}
+      </Notice>
+    );
+  if (!run)
+    return (
+      <>
+        <Skeleton height="120px" />
+        <Skeleton height="480px" />
+      </>
+    );
+  if (!run.comparisons)
+    return (
+      <Card title="Comparing">
+        <RunState run={run} what="The comparison" again={begin} />
+      </Card>
+    );
+  const drawable: Drawable = {
+    run,
+    ...run.comparisons,
+    rig: model.rig,
+    names: {
+      before: beside ? `${model.name} (first)` : 'model',
+      after:
+        run.comparisons.after && beside ? (beside.name === model.name ? `${beside.name} (second)` : beside.name) : null,
+    },
+  };
+  return step === 'compare' ? (
+    <CompareStep
+      drawable={drawable}
+      versions={versions.filter(({ id, rig }) => id !== model.id && rig === model.rig)}
+      against={beside?.id ?? null}
+      setAgainst={setAgainst}
+    />
+  ) : (
+    <ErrorRegionsStep
+      drawable={drawable}
+      region={region === null ? null : Number(region)}
+      setRegion={(next) => setRegion(next === null ? null : String(next))}
+    />
+  );
 }
 
 function Content({ work, step }: { readonly work: Work; readonly step: Step }) {
-  const asked = new URLSearchParams(useSearch()).getAll('add');
+  const requested = new URLSearchParams(useSearch()).getAll('add');
   const { model, set } = work;
   switch (step) {
-    case 'compare': case 'where': return <Compared {...work} step={step} />;
-    case 'missing': return <MissingStep model={model.id} set={set.id} rig={model.rig} />;
-    case 'add': return <AddStep key={asked.join(' ')} model={model.id} set={set.id} rig={model.rig} asked={asked} />;
-    case 'publish': return <PublishStep key={model.id} model={model} set={set.id} versions={work.versions} />;
+    case 'compare':
+    case 'where':
+      return <Compared {...work} step={step} />;
+    case 'missing':
+      return <MissingStep model={model.id} set={set.id} rig={model.rig} />;
+    case 'add':
+      return <AddStep key={requested.join(' ')} model={model.id} set={set.id} rig={model.rig} requested={requested} />;
+    case 'publish':
+      return <PublishStep key={model.id} model={model} set={set.id} versions={work.versions} />;
   }
 }
 
 /** One model against one set of measurements: from the comparison to a better version. */
-export function WorkPage({ model: modelId, set: setId, step: stepName }: { readonly model: string; readonly set: string; readonly step: string }) {
-  const models = useQuery(modelsQuery), sets = useQuery(measurementsQuery);
-  const model = models.data?.models.find(({ id }) => id === modelId), set = sets.data?.measurements.find(({ id }) => id === setId);
+export function WorkPage({
+  model: modelId,
+  set: setId,
+  step: stepName,
+}: {
+  readonly model: string;
+  readonly set: string;
+  readonly step: string;
+}) {
+  const models = useQuery(modelsQuery),
+    sets = useQuery(measurementsQuery);
+  const model = models.data?.models.find(({ id }) => id === modelId),
+    set = sets.data?.measurements.find(({ id }) => id === setId);
   const step = kSteps.find(({ id }) => id === stepName)?.id ?? 'compare';
   const name = kSteps.find(({ id }) => id === step)?.name ?? '';
   useTitle(model ? `${name}: ${model.name}` : 'Model lab');
-  useEffect(() => { window.scrollTo({ top: 0 }); }, [step]);
+  useEffect(() => {
+    window.scrollTo({ top: 0 });
+  }, [step]);
   const failed = models.error ?? sets.error;
-  const back = <p className={styles.back}><Link href="/lab">← Model lab</Link></p>;
-  if (failed) return <div className={styles.page}>{back}<Notice tone="bad" title="The lab could not be loaded." onRetry={() => { void models.refetch(); void sets.refetch(); }}>{failed.message}</Notice></div>;
-  if (models.isPending || sets.isPending) return <div className={styles.page}>{back}<Skeleton width="360px" height="36px" /><Skeleton height="54px" /><Skeleton height="480px" /></div>;
-  if (!model || !set || !models.data) return <div className={styles.page}>{back}<Notice tone="warn" title={`There ${model ? 'are no such measurements' : 'is no such model'}.`}>The address may be mistyped, or what it named is not on this server.</Notice></div>;
+  const back = (
+    <p className={styles.back}>
+      <Link href="/lab">← Model lab</Link>
+    </p>
+  );
+  if (failed)
+    return (
+      <div className={styles.page}>
+        {back}
+        <Notice
+          tone="bad"
+          title="The lab could not be loaded."
+          onRetry={() => {
+            void models.refetch();
+            void sets.refetch();
+          }}
+        >
+          {failed.message}
+        </Notice>
+      </div>
+    );
+  if (models.isPending || sets.isPending)
+    return (
+      <div className={styles.page}>
+        {back}
+        <Skeleton width="360px" height="36px" />
+        <Skeleton height="54px" />
+        <Skeleton height="480px" />
+      </div>
+    );
+  if (!model || !set || !models.data)
+    return (
+      <div className={styles.page}>
+        {back}
+        <Notice tone="warn" title={model ? 'Measurements not found.' : 'Model not found.'}>
+          Check the address. The data may be on another server.
+        </Notice>
+      </div>
+    );
   return (
     <div className={styles.page}>
       {back}
       <div>
         <h1>{model.name}</h1>
-        <p className={styles.against}>against <strong>{set.name}</strong> {set.simulated === true ? <Badge tone="warn">simulated measurements</Badge> : null} <span className={styles.muted}>{setFacts(set)}{model.note === '' ? '' : ` · model: ${model.note}`}</span></p>
+        <p className={styles.against}>
+          compared with <strong>{set.name}</strong>{' '}
+          {set.simulated === true ? <Badge tone="warn">simulated measurements</Badge> : null}{' '}
+          <span className={styles.muted}>
+            {setFacts(set)}
+            {model.note === '' ? '' : ` · model: ${model.note}`}
+          </span>
+        </p>
       </div>
-      <Steps label="Steps of the work" steps={kSteps.map(({ id, name: said }) => ({ href: workAddress(model.id, set.id, id), name: said, current: id === step }))} />
+      <Steps
+        label="Steps"
+        steps={kSteps.map(({ id, name: stepTitle }) => ({
+          href: workAddress(model.id, set.id, id),
+          name: stepTitle,
+          current: id === step,
+        }))}
+      />
       <Content work={{ model, set, versions: models.data.models }} step={step} />
     </div>
   );

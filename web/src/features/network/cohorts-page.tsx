@@ -1,23 +1,55 @@
 import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { useState, type FormEvent } from 'react';
 import { useSearch, Link } from 'wouter';
-import { addCohort, addToCohort, cohortQuery, cohortsQuery, inviteIntoCohort, sessionQuery, takeFromCohort, type Cohort, type CohortSummary } from '@/api';
+import {
+  addCohort,
+  addToCohort,
+  cohortQuery,
+  cohortsQuery,
+  inviteIntoCohort,
+  sessionQuery,
+  removeFromCohort,
+  type Cohort,
+  type CohortSummary,
+} from '@/api';
 import { Badge, Button, Card, Field, Notice, Skeleton, Table } from '@/ui';
 import { formatCount, formatDateTime } from '@/units';
 import { Frame } from './frame';
 import { InvitedPeople } from './invited';
 import styles from './network.module.css';
 
-function New() {
+function NewCohortForm() {
   const client = useQueryClient();
   const [name, setName] = useState('');
-  const made = useMutation({ mutationFn: addCohort, onSuccess: async () => { setName(''); await client.invalidateQueries({ queryKey: cohortsQuery.queryKey }); } });
-  const submit = (event: FormEvent) => { event.preventDefault(); made.mutate(name.trim()); };
+  const made = useMutation({
+    mutationFn: addCohort,
+    onSuccess: async () => {
+      setName('');
+      await client.invalidateQueries({ queryKey: cohortsQuery.queryKey });
+    },
+  });
+  const submit = (event: FormEvent) => {
+    event.preventDefault();
+    made.mutate(name.trim());
+  };
   return (
     <form className={styles.form} onSubmit={submit}>
-      <Field label="Name of a new cohort" value={name} required maxLength={100} placeholder="Residents 2027" onChange={(event) => setName(event.target.value)} />
-      <Button type="submit" disabled={made.isPending || name.trim() === ''}>{made.isPending ? 'Making…' : 'Make it'}</Button>
-      {made.isError ? <p role="alert" className={styles.wide}>It was not made: {made.error.message}</p> : null}
+      <Field
+        label="Name of the new cohort"
+        value={name}
+        required
+        maxLength={100}
+        placeholder="Residents 2027"
+        onChange={(event) => setName(event.target.value)}
+      />
+      <Button type="submit" disabled={made.isPending || name.trim() === ''}>
+        {made.isPending ? 'Creating…' : 'Create cohort'}
+      </Button>
+      {made.isError ? (
+        <p role="alert" className={styles.wide}>
+          The cohort was not created: {made.error.message}
+        </p>
+      ) : null}
     </form>
   );
 }
@@ -27,62 +59,174 @@ const mayChange = (role: string | undefined) => role === 'admin' || role === 'fa
 type Person = Cohort['people'][number];
 
 function Members({ id, role }: { readonly id: string; readonly role: string | undefined }) {
-  const may = mayChange(role), mayAdd = may || role === 'director';
+  const may = mayChange(role),
+    mayAdd = may || role === 'director';
   const client = useQueryClient();
   const query = useQuery(cohortQuery(id));
   const [name, setName] = useState('');
   const [last, setLast] = useState<Person | null>(null);
-  const keep = async (cohort: Cohort) => { client.setQueryData(cohortQuery(id).queryKey, cohort); await client.invalidateQueries({ queryKey: cohortsQuery.queryKey, exact: true }); };
-  const added = useMutation({ mutationFn: (person: string) => addToCohort(id, person), onSuccess: async (cohort) => { setName(''); setLast(null); await keep(cohort); } });
-  const taken = useMutation({ mutationFn: (person: Person) => takeFromCohort(id, person.account_id), onSuccess: async (cohort, person) => { setLast(person); await keep(cohort); } });
-  const invited = useMutation({ mutationFn: (person: string) => inviteIntoCohort(id, person), onSuccess: async (cohort) => { setName(''); added.reset(); await keep(cohort); } });
-  const failed = invited.error ?? taken.error;
-  if (query.isError) return <Notice tone="bad" title="The cohort could not be loaded." onRetry={() => void query.refetch()}>{query.error.message}</Notice>;
-  if (!query.data) return <Card title="People"><Skeleton height="200px" /></Card>;
-  const submit = (event: FormEvent) => { event.preventDefault(); added.mutate(name.trim()); };
+  const store = async (cohort: Cohort) => {
+    client.setQueryData(cohortQuery(id).queryKey, cohort);
+    await client.invalidateQueries({ queryKey: cohortsQuery.queryKey, exact: true });
+  };
+  const added = useMutation({
+    mutationFn: (person: string) => addToCohort(id, person),
+    onSuccess: async (cohort) => {
+      setName('');
+      setLast(null);
+      await store(cohort);
+    },
+  });
+  const removed = useMutation({
+    mutationFn: (person: Person) => removeFromCohort(id, person.account_id),
+    onSuccess: async (cohort, person) => {
+      setLast(person);
+      await store(cohort);
+    },
+  });
+  const invited = useMutation({
+    mutationFn: (person: string) => inviteIntoCohort(id, person),
+    onSuccess: async (cohort) => {
+      setName('');
+      added.reset();
+      await store(cohort);
+    },
+  });
+  const failed = invited.error ?? removed.error;
+  if (query.isError)
+    return (
+      <Notice tone="bad" title="The cohort could not be loaded." onRetry={() => void query.refetch()}>
+        {query.error.message}
+      </Notice>
+    );
+  if (!query.data)
+    return (
+      <Card title="People">
+        <Skeleton height="200px" />
+      </Card>
+    );
+  const submit = (event: FormEvent) => {
+    event.preventDefault();
+    added.mutate(name.trim());
+  };
   return (
     <Card title={query.data.name}>
       <div className={styles.stack}>
         {mayAdd ? (
           <form className={styles.form} onSubmit={submit}>
-            <Field label="Name of an account" value={name} required maxLength={100} onChange={(event) => setName(event.target.value)} />
-            <Button type="submit" disabled={added.isPending || name.trim() === ''}>Add to the cohort</Button>
-            <Button look="quiet" disabled={invited.isPending || name.trim() === ''} onClick={() => invited.mutate(name.trim())}>Invite instead</Button>
+            <Field
+              label="Account name"
+              value={name}
+              required
+              maxLength={100}
+              onChange={(event) => setName(event.target.value)}
+            />
+            <Button type="submit" disabled={added.isPending || name.trim() === ''}>
+              Add to cohort
+            </Button>
+            <Button
+              look="quiet"
+              disabled={invited.isPending || name.trim() === ''}
+              onClick={() => invited.mutate(name.trim())}
+            >
+              Invite instead
+            </Button>
           </form>
         ) : null}
-        {added.isError ? <Notice tone="bad" title="They were not added.">{added.error.message}. Invite people whom you do not teach yet: they decide.</Notice> : null}
-        {failed ? <Notice tone="bad" title="That was not done.">{failed.message}</Notice> : null}
-        {last ? <p role="status">{last.name} was taken out. {role === 'admin' ? <Button look="quiet" onClick={() => added.mutate(last.name)}>Undo</Button> : null}</p> : null}
-        <Table<Person> caption="People of the cohort" rows={query.data.people} keyOf={({ account_id }) => account_id} empty="Nobody is in it yet." columns={[
-          { name: 'Name', cell: (one) => one.name },
-          { name: 'Part', cell: (one) => (one.part === 'faculty' ? <Badge tone="accent">leads</Badge> : 'trainee') },
-          { name: 'State', cell: (one) => one.state },
-          { name: <span className="hidden-visually">Decide</span>, cell: (one) => (may ? <span className={styles.buttons}><Button look="quiet" label={`Take out: ${one.name}`} disabled={taken.isPending} onClick={() => taken.mutate(one)}>Take out</Button></span> : null) },
-        ]} />
-        {mayAdd ? <InvitedPeople cohort={query.data} onChange={keep} /> : null}
+        {added.isError ? (
+          <Notice tone="bad" title="The person was not added.">
+            {added.error.message}. To add people whom you do not teach yet, invite them.
+          </Notice>
+        ) : null}
+        {failed ? (
+          <Notice tone="bad" title="The action failed.">
+            {failed.message}
+          </Notice>
+        ) : null}
+        {last ? (
+          <p role="status">
+            {last.name} was removed.{' '}
+            {role === 'admin' ? (
+              <Button look="quiet" onClick={() => added.mutate(last.name)}>
+                Undo
+              </Button>
+            ) : null}
+          </p>
+        ) : null}
+        <Table<Person>
+          caption="People of the cohort"
+          rows={query.data.people}
+          keyOf={({ account_id }) => account_id}
+          empty="No members yet."
+          columns={[
+            { name: 'Name', cell: (one) => one.name },
+            {
+              name: 'Role',
+              cell: (one) => (one.part === 'faculty' ? <Badge tone="accent">faculty</Badge> : 'trainee'),
+            },
+            { name: 'State', cell: (one) => one.state },
+            {
+              name: <span className="hidden-visually">Actions</span>,
+              cell: (one) =>
+                may ? (
+                  <span className={styles.buttons}>
+                    <Button
+                      look="quiet"
+                      label={`Remove: ${one.name}`}
+                      disabled={removed.isPending}
+                      onClick={() => removed.mutate(one)}
+                    >
+                      Remove
+                    </Button>
+                  </span>
+                ) : null,
+            },
+          ]}
+        />
+        {mayAdd ? <InvitedPeople cohort={query.data} onChange={store} /> : null}
       </div>
     </Card>
   );
 }
 
-/** Groups of trainees and who leads them. */
+/** Cohorts and their members. */
 export function CohortsPage() {
   const query = useQuery(cohortsQuery);
   const role = useQuery({ ...sessionQuery, enabled: false }).data?.role;
   const may = mayChange(role);
   const chosen = new URLSearchParams(useSearch()).get('id') ?? query.data?.cohorts[0]?.id;
   return (
-    <Frame at="cohorts" lead="Groups of trainees and who leads them. Faculty see the trials of the people in the cohorts that they lead.">
-      {query.isError ? <Notice tone="bad" title="The cohorts could not be loaded." onRetry={() => void query.refetch()}>{query.error.message}</Notice> : null}
+    <Frame
+      at="cohorts"
+      lead="Groups of trainees and the faculty who lead them. Faculty see the trials of the people in their cohorts."
+    >
+      {query.isError ? (
+        <Notice tone="bad" title="The cohorts could not be loaded." onRetry={() => void query.refetch()}>
+          {query.error.message}
+        </Notice>
+      ) : null}
       <div className={styles.two}>
         <Card title="Cohorts">
           <div className={styles.stack}>
-            <Table<CohortSummary> caption="Cohorts" rows={query.data?.cohorts} keyOf={({ id }) => id} empty="There are no cohorts yet." columns={[
-              { name: 'Cohort', cell: (one) => <Link href={`/network/cohorts?id=${one.id}`} aria-current={one.id === chosen ? 'true' : undefined}>{one.name}</Link> },
-              { name: 'Trainees', cell: (one) => formatCount(one.trainees), number: true },
-              { name: 'Made', cell: (one) => formatDateTime(one.made_utc_us) },
-            ]} />
-            {may ? <New /> : null}
+            <Table<CohortSummary>
+              caption="Cohorts"
+              rows={query.data?.cohorts}
+              keyOf={({ id }) => id}
+              empty="No cohorts yet."
+              columns={[
+                {
+                  name: 'Cohort',
+                  cell: (one) => (
+                    <Link href={`/network/cohorts?id=${one.id}`} aria-current={one.id === chosen ? 'true' : undefined}>
+                      {one.name}
+                    </Link>
+                  ),
+                },
+                { name: 'Trainees', cell: (one) => formatCount(one.trainees), number: true },
+                { name: 'Created', cell: (one) => formatDateTime(one.made_utc_us) },
+              ]}
+            />
+            {may ? <NewCohortForm /> : null}
           </div>
         </Card>
         {chosen ? <Members key={chosen} id={chosen} role={role} /> : null}

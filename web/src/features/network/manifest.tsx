@@ -22,9 +22,7 @@ function FirstPage() {
 }
 
 export const feature: Feature = {
-  menu: [
-    { to: '/network', name: 'Network', roles: ['admin', 'director', 'faculty', 'technician'], order: 120 },
-  ],
+  menu: [{ to: '/network', name: 'Network', roles: ['admin', 'director', 'faculty', 'technician'], order: 120 }],
   pages: [
     { path: '/network', show: () => <FirstPage /> },
     { path: '/network/people', show: () => <PeoplePage /> },

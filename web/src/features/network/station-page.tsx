@@ -5,29 +5,83 @@ import { limitStation, revokeStation, stationQuery, stationsQuery, type StationP
 import { AskDialog, Badge, Button, Card, Facts, Field, Notice, Skeleton, Table, Term, useTitle } from '@/ui';
 import { formatBytes, formatDateTime, formatFound, formatShare, share } from '@/units';
 import styles from './network.module.css';
-import { calibrationWords } from './words';
+import { calibrationLabel } from './labels';
 
 type Test = Page['self_tests'][number];
 type Check = Test['checks'][number];
 
-const kUnknown = 'not told yet';
+const kUnknown = 'not reported yet';
 
 function Health({ station, now }: { readonly station: Page; readonly now: number }) {
-  const calibration = calibrationWords(station.calibration_due_utc_us, now);
+  const calibration = calibrationLabel(station.calibration_due_utc_us, now);
   return (
-    <Card title="How it is">
-      <Facts facts={[
-        { name: 'State', value: station.connected ? <Badge tone={station.state === 'fault' ? 'bad' : 'good'}>{station.state === 'idle' ? 'free' : station.state}</Badge> : <Badge>away</Badge> },
-        { name: 'Last heard of', value: station.last_seen_utc_us === null ? kUnknown : formatDateTime(station.last_seen_utc_us) },
-        { name: 'Device', value: station.device === null ? kUnknown : <span>{station.device} {station.simulated === true ? <Badge tone="warn">simulated</Badge> : null}</span> },
-        { name: 'Version', value: station.version ?? kUnknown },
-        { name: 'Calibration', value: <Badge tone={calibration.tone}>{calibration.words}</Badge> },
-        { name: 'Self-test', value: station.self_test === null ? kUnknown : station.self_test.passed ? <Badge tone="good">passed {formatDateTime(station.self_test.at_utc_us)}</Badge> : <Badge tone="bad">failed: {station.self_test.failed.join(', ')}</Badge> },
-        { name: 'Room on its disk', value: station.free_disk_bytes === null ? kUnknown : formatBytes(station.free_disk_bytes) },
-        { name: 'Trials still there', value: station.waiting_trials === null ? kUnknown : String(station.waiting_trials) },
-        { name: <Term definition="Steps of the force loop that came later than they should have, of all in the last trials. Above one in a thousand the machine does too much else.">Late steps</Term>, value: station.late_share === null ? kUnknown : formatShare(share(station.late_share), 2) },
-        { name: <Term definition="How far the station's clock is from the server's. Times inside a trial do not depend on it.">Clock</Term>, value: station.clock_offset_s === null ? kUnknown : formatFound(station.clock_offset_s, 's') },
-      ]} />
+    <Card title="Status">
+      <Facts
+        facts={[
+          {
+            name: 'State',
+            value: station.connected ? (
+              <Badge tone={station.state === 'fault' ? 'bad' : 'good'}>
+                {station.state === 'idle' ? 'available' : station.state}
+              </Badge>
+            ) : (
+              <Badge>offline</Badge>
+            ),
+          },
+          {
+            name: 'Last contact',
+            value: station.last_seen_utc_us === null ? kUnknown : formatDateTime(station.last_seen_utc_us),
+          },
+          {
+            name: 'Device',
+            value:
+              station.device === null ? (
+                kUnknown
+              ) : (
+                <span>
+                  {station.device} {station.simulated === true ? <Badge tone="warn">simulated</Badge> : null}
+                </span>
+              ),
+          },
+          { name: 'Version', value: station.version ?? kUnknown },
+          { name: 'Calibration', value: <Badge tone={calibration.tone}>{calibration.text}</Badge> },
+          {
+            name: 'Self-test',
+            value:
+              station.self_test === null ? (
+                kUnknown
+              ) : station.self_test.passed ? (
+                <Badge tone="good">passed {formatDateTime(station.self_test.at_utc_us)}</Badge>
+              ) : (
+                <Badge tone="bad">failed: {station.self_test.failed.join(', ')}</Badge>
+              ),
+          },
+          {
+            name: 'Free disk space',
+            value: station.free_disk_bytes === null ? kUnknown : formatBytes(station.free_disk_bytes),
+          },
+          {
+            name: 'Trials to upload',
+            value: station.waiting_trials === null ? kUnknown : String(station.waiting_trials),
+          },
+          {
+            name: (
+              <Term definition="Ticks of the force loop that started late, as a share of all ticks in the last trials. Above 0.1 %, other programs use too much of the computer.">
+                Late ticks
+              </Term>
+            ),
+            value: station.late_share === null ? kUnknown : formatShare(share(station.late_share), 2),
+          },
+          {
+            name: (
+              <Term definition="Difference between the clocks of the station and the server. Times within a trial do not depend on it.">
+                Clock
+              </Term>
+            ),
+            value: station.clock_offset_s === null ? kUnknown : formatFound(station.clock_offset_s, 's'),
+          },
+        ]}
+      />
     </Card>
   );
 }
@@ -35,16 +89,36 @@ function Health({ station, now }: { readonly station: Page; readonly now: number
 function Tests({ station }: { readonly station: Page }) {
   const [newest] = station.self_tests;
   return (
-    <Card title="Self-test" aside={newest ? <span className={styles.muted}>{formatDateTime(newest.at_utc_us)}</span> : null}>
+    <Card
+      title="Self-test"
+      aside={newest ? <span className={styles.muted}>{formatDateTime(newest.at_utc_us)}</span> : null}
+    >
       <div className={styles.stack}>
-        <Table<Check> caption="Checks of the newest self-test" rows={newest?.checks ?? []} keyOf={({ name }) => name} empty="It has not told of a self-test yet. At the station: tractus-station self-test" columns={[
-          { name: 'Check', cell: (one) => one.name },
-          { name: 'Found', cell: (one) => formatFound(one.value, one.unit), number: true },
-          { name: 'Limit', cell: (one) => formatFound(one.limit, one.unit), number: true },
-          { name: 'Result', cell: (one) => <Badge tone={one.passed ? 'good' : 'bad'}>{one.passed ? 'passed' : 'failed'}</Badge> },
-          { name: 'In words', cell: (one) => <span className={styles.muted}>{one.words}</span> },
-        ]} />
-        {station.self_tests.length > 1 ? <p className={styles.muted}>Before: {station.self_tests.slice(1, 6).map((one: Test) => `${formatDateTime(one.at_utc_us)} ${one.passed ? 'passed' : 'failed'}`).join(' · ')}</p> : null}
+        <Table<Check>
+          caption="Checks of the newest self-test"
+          rows={newest?.checks ?? []}
+          keyOf={({ name }) => name}
+          empty="No self-test reported yet. At the station, run: tractus-station self-test"
+          columns={[
+            { name: 'Check', cell: (one) => one.name },
+            { name: 'Measured', cell: (one) => formatFound(one.value, one.unit), number: true },
+            { name: 'Limit', cell: (one) => formatFound(one.limit, one.unit), number: true },
+            {
+              name: 'Result',
+              cell: (one) => <Badge tone={one.passed ? 'good' : 'bad'}>{one.passed ? 'passed' : 'failed'}</Badge>,
+            },
+            { name: 'Details', cell: (one) => <span className={styles.muted}>{one.words}</span> },
+          ]}
+        />
+        {station.self_tests.length > 1 ? (
+          <p className={styles.muted}>
+            Earlier:{' '}
+            {station.self_tests
+              .slice(1, 6)
+              .map((one: Test) => `${formatDateTime(one.at_utc_us)} ${one.passed ? 'passed' : 'failed'}`)
+              .join(' · ')}
+          </p>
+        ) : null}
       </div>
     </Card>
   );
@@ -54,55 +128,139 @@ function Limit({ station }: { readonly station: Page }) {
   const [force, setForce] = useState('');
   const sent = useMutation({ mutationFn: () => limitStation(station.id, Number(force)) });
   const fits = Number(force) > 0 && Number(force) <= 100;
-  const submit = (event: FormEvent) => { event.preventDefault(); if (fits) sent.mutate(); };
+  const submit = (event: FormEvent) => {
+    event.preventDefault();
+    if (fits) sent.mutate();
+  };
   return (
-    <Card title="Limit its force">
+    <Card title="Force limit">
       <div className={styles.stack}>
-        <p className={styles.muted}>For a device that is under suspicion. The server may only lower a station’s limit; a person at the station raises it again.</p>
+        <p className={styles.muted}>
+          Lower the limit if you suspect a fault of the device. Only a person at the station can raise it again.
+        </p>
         <form className={styles.form} onSubmit={submit}>
-          <Field label="At most, N" value={force} type="number" inputMode="decimal" min={0.1} max={100} step={0.1} required onChange={(event) => setForce(event.target.value)} />
-          <Button type="submit" disabled={sent.isPending || !fits}>{sent.isPending ? 'Sending…' : 'Lower the limit'}</Button>
+          <Field
+            label="Maximum force, N"
+            value={force}
+            type="number"
+            inputMode="decimal"
+            min={0.1}
+            max={100}
+            step={0.1}
+            required
+            onChange={(event) => setForce(event.target.value)}
+          />
+          <Button type="submit" disabled={sent.isPending || !fits}>
+            {sent.isPending ? 'Sending…' : 'Lower limit'}
+          </Button>
         </form>
-        {sent.isError ? <Notice tone="bad" title="The limit was not lowered.">{sent.error.message}</Notice> : null}
-        {sent.isSuccess ? <p role="status">The station was told.</p> : null}
+        {sent.isError ? (
+          <Notice tone="bad" title="The limit was not lowered.">
+            {sent.error.message}
+          </Notice>
+        ) : null}
+        {sent.isSuccess ? <p role="status">The new limit was sent to the station.</p> : null}
       </div>
     </Card>
   );
 }
 
-/** One station, for who looks after it. */
+/** One station, for the technician. */
 export function StationPage({ id }: { readonly id: string }) {
   const client = useQueryClient();
   const query = useQuery(stationQuery(id));
   const [ending, setEnding] = useState(false);
-  const station = query.data, now = query.dataUpdatedAt * 1000;
+  const station = query.data,
+    now = query.dataUpdatedAt * 1000;
   useTitle(station ? station.name : 'Station');
-  const back = <p><Link href="/network/stations">← Stations</Link></p>;
-  if (query.isError) return <div className={styles.page}>{back}<Notice tone="bad" title="The station could not be loaded." onRetry={() => void query.refetch()}>{query.error.message}</Notice></div>;
-  if (!station) return <div className={styles.page}>{back}<Skeleton width="280px" height="36px" /><Skeleton height="260px" /><Skeleton height="200px" /></div>;
+  const back = (
+    <p>
+      <Link href="/network/stations">← Stations</Link>
+    </p>
+  );
+  if (query.isError)
+    return (
+      <div className={styles.page}>
+        {back}
+        <Notice tone="bad" title="The station could not be loaded." onRetry={() => void query.refetch()}>
+          {query.error.message}
+        </Notice>
+      </div>
+    );
+  if (!station)
+    return (
+      <div className={styles.page}>
+        {back}
+        <Skeleton width="280px" height="36px" />
+        <Skeleton height="260px" />
+        <Skeleton height="200px" />
+      </div>
+    );
   const revoked = station.revoked_utc_us !== null;
   return (
     <div className={styles.page}>
       {back}
       <div>
-        <h1>{station.name} {revoked ? <Badge tone="warn">revoked</Badge> : null}</h1>
-        <p className={styles.lead}>Enrolled {formatDateTime(station.enrolled_utc_us)}{station.revoked_utc_us === null ? '' : `, revoked ${formatDateTime(station.revoked_utc_us)}`}</p>
+        <h1>
+          {station.name} {revoked ? <Badge tone="warn">revoked</Badge> : null}
+        </h1>
+        <p className={styles.lead}>
+          Enrolled {formatDateTime(station.enrolled_utc_us)}
+          {station.revoked_utc_us === null ? '' : `, revoked ${formatDateTime(station.revoked_utc_us)}`}
+        </p>
       </div>
       <Health station={station} now={now} />
       <Tests station={station} />
       <Card title="Calibrations">
-        <Table<Page['calibrations'][number]> caption="Calibrations, newest first" rows={station.calibrations} keyOf={(one) => String(one.at_utc_us)} empty="It has not told of a calibration yet. At the station: tractus-station calibrate" columns={[
-          { name: 'Done', cell: (one) => formatDateTime(one.at_utc_us) },
-          { name: 'Of', cell: (one) => one.kind },
-          { name: 'Due', cell: (one) => one.due_utc_us === null ? <span className={styles.muted}>not stated</span> : <Badge tone={calibrationWords(one.due_utc_us, now).tone}>{formatDateTime(one.due_utc_us)}</Badge> },
-          { name: 'Result', cell: (one) => <span className={styles.muted}>{one.words}</span> },
-        ]} />
+        <Table<Page['calibrations'][number]>
+          caption="Calibrations, newest first"
+          rows={station.calibrations}
+          keyOf={(one) => String(one.at_utc_us)}
+          empty="No calibration reported yet. At the station, run: tractus-station calibrate"
+          columns={[
+            { name: 'Date', cell: (one) => formatDateTime(one.at_utc_us) },
+            { name: 'Type', cell: (one) => one.kind },
+            {
+              name: 'Due',
+              cell: (one) =>
+                one.due_utc_us === null ? (
+                  <span className={styles.muted}>no date</span>
+                ) : (
+                  <Badge tone={calibrationLabel(one.due_utc_us, now).tone}>{formatDateTime(one.due_utc_us)}</Badge>
+                ),
+            },
+            { name: 'Result', cell: (one) => <span className={styles.muted}>{one.words}</span> },
+          ]}
+        />
       </Card>
       {revoked ? null : <Limit station={station} />}
-      {revoked ? null : <Card title="Shut it out"><div className={styles.stack}><p className={styles.muted}>For a machine that is lost or given away. What it has recorded stays on its disk.</p><p><Button onClick={() => setEnding(true)}>Revoke {station.name}…</Button></p></div></Card>}
+      {revoked ? null : (
+        <Card title="Revoke access">
+          <div className={styles.stack}>
+            <p className={styles.muted}>
+              Use this for a station that is lost or given away. Its recordings stay on its disk.
+            </p>
+            <p>
+              <Button onClick={() => setEnding(true)}>Revoke {station.name}…</Button>
+            </p>
+          </div>
+        </Card>
+      )}
       {ending ? (
-        <AskDialog title={`Revoke ${station.name}`} deed="Revoke" onClose={() => setEnding(false)} onDeed={() => revokeStation(station.id).then(() => Promise.all([client.invalidateQueries({ queryKey: stationsQuery.queryKey }), query.refetch()]))}>
-          <p>Its key is refused from now on, and cannot be given back. To use the station again, enrol it anew.</p>
+        <AskDialog
+          title={`Revoke ${station.name}`}
+          action="Revoke"
+          onClose={() => setEnding(false)}
+          onAction={() =>
+            revokeStation(station.id).then(() =>
+              Promise.all([client.invalidateQueries({ queryKey: stationsQuery.queryKey }), query.refetch()]),
+            )
+          }
+        >
+          <p>
+            The server refuses the key of this station from now on. This cannot be undone. To use the station again,
+            enrol it again.
+          </p>
         </AskDialog>
       ) : null}
     </div>

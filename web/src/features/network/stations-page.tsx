@@ -7,22 +7,48 @@ import { formatDateTime } from '@/units';
 import { Frame } from './frame';
 import styles from './network.module.css';
 import { Once } from './people-page';
-import { calibrationWords } from './words';
+import { calibrationLabel } from './labels';
 
 function Enrol() {
   const client = useQueryClient();
   const [name, setName] = useState('');
-  const made = useMutation({ mutationFn: enrolStation, onSuccess: () => client.invalidateQueries({ queryKey: stationsQuery.queryKey }) });
-  const submit = (event: FormEvent) => { event.preventDefault(); made.mutate(name.trim()); };
+  const made = useMutation({
+    mutationFn: enrolStation,
+    onSuccess: () => client.invalidateQueries({ queryKey: stationsQuery.queryKey }),
+  });
+  const submit = (event: FormEvent) => {
+    event.preventDefault();
+    made.mutate(name.trim());
+  };
   return (
     <Card title="Enrol a station">
       <div className={styles.stack}>
         <form className={styles.form} onSubmit={submit}>
-          <Field label="Name of the station" value={name} required maxLength={64} placeholder="skills lab 2" onChange={(event) => setName(event.target.value)} />
-          <Button look="solid" type="submit" disabled={made.isPending || name.trim() === ''}>{made.isPending ? 'Asking…' : 'Make a code'}</Button>
+          <Field
+            label="Name of the station"
+            value={name}
+            required
+            maxLength={64}
+            placeholder="skills lab 2"
+            onChange={(event) => setName(event.target.value)}
+          />
+          <Button look="solid" type="submit" disabled={made.isPending || name.trim() === ''}>
+            {made.isPending ? 'Creating…' : 'Create code'}
+          </Button>
         </form>
-        {made.isError ? <Notice tone="bad" title="No code was made.">{made.error.message}</Notice> : null}
-        {made.data ? <Once title={`Code for ${made.data.name}, good until ${formatDateTime(made.data.expires_utc_us)}`} secret={made.data.code}>Type it at the station. It is good once; the station makes a key of its own with it.</Once> : null}
+        {made.isError ? (
+          <Notice tone="bad" title="The code was not created.">
+            {made.error.message}
+          </Notice>
+        ) : null}
+        {made.data ? (
+          <Once
+            title={`Code for ${made.data.name}, valid until ${formatDateTime(made.data.expires_utc_us)}`}
+            secret={made.data.code}
+          >
+            Enter this code at the station. It can be used once; the station uses it to register its own key.
+          </Once>
+        ) : null}
       </div>
     </Card>
   );
@@ -30,11 +56,13 @@ function Enrol() {
 
 function StateOf({ station }: { readonly station: Station }) {
   if (station.revoked_utc_us !== null) return <Badge tone="warn">revoked</Badge>;
-  if (!station.connected) return <Badge>away</Badge>;
-  return <Badge tone={station.state === 'fault' ? 'bad' : 'good'}>{station.state === 'fault' ? 'fault' : 'connected'}</Badge>;
+  if (!station.connected) return <Badge>offline</Badge>;
+  return (
+    <Badge tone={station.state === 'fault' ? 'bad' : 'good'}>{station.state === 'fault' ? 'fault' : 'connected'}</Badge>
+  );
 }
 
-/** The stations that may bring trials. */
+/** The enrolled stations. */
 export function StationsPage() {
   const client = useQueryClient();
   const query = useQuery(stationsQuery);
@@ -42,24 +70,82 @@ export function StationsPage() {
   const [ending, setEnding] = useState<Station | null>(null);
   const may = role === 'admin' || role === 'technician';
   return (
-    <Frame at="stations" lead="The stations that may fetch cases and bring trials. A station that is revoked is refused at once; what it has recorded stays on its disk.">
-      {query.isError ? <Notice tone="bad" title="The stations could not be loaded." onRetry={() => void query.refetch()}>{query.error.message}</Notice> : null}
-      <p><Link href="/wall">Watch them live</Link></p>
+    <Frame
+      at="stations"
+      lead="Stations that may download cases and upload trials. A revoked station is refused immediately; its recordings stay on its disk."
+    >
+      {query.isError ? (
+        <Notice tone="bad" title="The stations could not be loaded." onRetry={() => void query.refetch()}>
+          {query.error.message}
+        </Notice>
+      ) : null}
+      <p>
+        <Link href="/wall">Live view</Link>
+      </p>
       {may ? <Enrol /> : null}
       <Card title="Stations">
-        <Table<Station> caption="Stations" minWidth={760} rows={query.data?.stations} keyOf={({ id }) => id} empty="No station is enrolled yet." columns={[
-          { name: 'Station', cell: (one) => (may ? <Link href={`/network/stations/${one.id}`}>{one.name}</Link> : one.name) },
-          { name: 'State', cell: (one) => <StateOf station={one} /> },
-          { name: 'Last heard of', cell: (one) => (one.last_seen_utc_us === null ? 'not yet' : formatDateTime(one.last_seen_utc_us)) },
-          { name: 'Self-test', cell: (one) => (one.self_test === null ? <span className={styles.muted}>not told yet</span> : <Badge tone={one.self_test.passed ? 'good' : 'bad'}>{one.self_test.passed ? 'passed' : 'failed'}</Badge>) },
-          { name: 'Calibration', cell: (one) => { const due = calibrationWords(one.calibration_due_utc_us, query.dataUpdatedAt * 1000); return <Badge tone={due.tone}>{due.words}</Badge>; } },
-          { name: 'Enrolled', cell: (one) => formatDateTime(one.enrolled_utc_us) },
-          { name: <span className="hidden-visually">Decide</span>, cell: (one) => (may && one.revoked_utc_us === null ? <span className={styles.buttons}><Button label={`Revoke ${one.name}`} onClick={() => setEnding(one)}>Revoke…</Button></span> : null) },
-        ]} />
+        <Table<Station>
+          caption="Stations"
+          minWidth={760}
+          rows={query.data?.stations}
+          keyOf={({ id }) => id}
+          empty="No stations are enrolled yet."
+          columns={[
+            {
+              name: 'Station',
+              cell: (one) => (may ? <Link href={`/network/stations/${one.id}`}>{one.name}</Link> : one.name),
+            },
+            { name: 'State', cell: (one) => <StateOf station={one} /> },
+            {
+              name: 'Last contact',
+              cell: (one) => (one.last_seen_utc_us === null ? 'never' : formatDateTime(one.last_seen_utc_us)),
+            },
+            {
+              name: 'Self-test',
+              cell: (one) =>
+                one.self_test === null ? (
+                  <span className={styles.muted}>not reported yet</span>
+                ) : (
+                  <Badge tone={one.self_test.passed ? 'good' : 'bad'}>
+                    {one.self_test.passed ? 'passed' : 'failed'}
+                  </Badge>
+                ),
+            },
+            {
+              name: 'Calibration',
+              cell: (one) => {
+                const due = calibrationLabel(one.calibration_due_utc_us, query.dataUpdatedAt * 1000);
+                return <Badge tone={due.tone}>{due.text}</Badge>;
+              },
+            },
+            { name: 'Enrolled', cell: (one) => formatDateTime(one.enrolled_utc_us) },
+            {
+              name: <span className="hidden-visually">Actions</span>,
+              cell: (one) =>
+                may && one.revoked_utc_us === null ? (
+                  <span className={styles.buttons}>
+                    <Button label={`Revoke ${one.name}`} onClick={() => setEnding(one)}>
+                      Revoke…
+                    </Button>
+                  </span>
+                ) : null,
+            },
+          ]}
+        />
       </Card>
       {ending ? (
-        <AskDialog title={`Revoke ${ending.name}`} deed="Revoke" onClose={() => setEnding(null)} onDeed={() => revokeStation(ending.id).then(() => client.invalidateQueries({ queryKey: stationsQuery.queryKey }))}>
-          <p>Its key is refused from now on, and cannot be given back. To use the station again, enrol it anew.</p>
+        <AskDialog
+          title={`Revoke ${ending.name}`}
+          action="Revoke"
+          onClose={() => setEnding(null)}
+          onAction={() =>
+            revokeStation(ending.id).then(() => client.invalidateQueries({ queryKey: stationsQuery.queryKey }))
+          }
+        >
+          <p>
+            The server refuses the key of this station from now on. This cannot be undone. To use the station again,
+            enrol it again.
+          </p>
         </AskDialog>
       ) : null}
     </Frame>

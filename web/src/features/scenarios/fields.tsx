@@ -1,12 +1,26 @@
 import { useId, useState } from 'react';
 import type { ScenarioCheck, ScenarioFile } from '@/api';
 import { Button } from '@/ui';
-import { fromShown, inUnitsOf, shown, valueAt, withLayer, withValue, withWall, type Knob } from './draft';
+import {
+  fromShown,
+  inMillimetres,
+  inUnitsOf,
+  shown,
+  valueAt,
+  withLayer,
+  withValue,
+  withWall,
+  type Knob,
+} from './draft';
 import styles from './scenarios.module.css';
 
-interface Props { readonly file: ScenarioFile; readonly check: ScenarioCheck | undefined; readonly onFile: (file: ScenarioFile) => void }
+interface Props {
+  readonly file: ScenarioFile;
+  readonly check: ScenarioCheck | undefined;
+  readonly onFile: (file: ScenarioFile) => void;
+}
 
-/** One number; what the server finds wrong with it stands below it. */
+/** One number; the server's error message is shown below it. */
 function Number_({ knob, file, check, onFile }: Props & { readonly knob: Knob }) {
   const [typed, setTyped] = useState<string | null>(null);
   const id = useId();
@@ -14,25 +28,49 @@ function Number_({ knob, file, check, onFile }: Props & { readonly knob: Knob })
   const text = typed ?? (typeof value === 'number' ? shown(value, knob) : '');
   const none = text.trim() === '' || !Number.isFinite(Number(text));
   const refused = check && !check.ok && check.field === knob.pointer ? inUnitsOf(check.error, knob) : '';
-  const wrong = none ? 'a number is expected' : refused;
+  const wrong = none ? 'Enter a number.' : refused;
   return (
     <div className={styles.knob}>
-      <label htmlFor={id}>{knob.label}{knob.unit === '' ? '' : <span className={styles.unit}>, {knob.unit}</span>}</label>
-      <input id={id} type="number" step={knob.step} value={text} aria-invalid={wrong !== '' || undefined} aria-describedby={`${id}-says`}
-        onBlur={() => { if (!none) setTyped(null); }}
-        onChange={(event) => { setTyped(event.target.value); if (event.target.value.trim() !== '' && Number.isFinite(Number(event.target.value))) onFile(withValue(file, knob.pointer, fromShown(event.target.value, knob))); }} />
-      <p id={`${id}-says`} className={wrong === '' ? styles.means : styles.wrong}>{wrong === '' ? knob.means : wrong}</p>
+      <label htmlFor={id}>
+        {knob.label}
+        {knob.unit === '' ? '' : <span className={styles.unit}>, {knob.unit}</span>}
+      </label>
+      <input
+        id={id}
+        type="number"
+        step={knob.step}
+        value={text}
+        aria-invalid={wrong !== '' || undefined}
+        aria-describedby={`${id}-description`}
+        onBlur={() => {
+          if (!none) setTyped(null);
+        }}
+        onChange={(event) => {
+          setTyped(event.target.value);
+          if (event.target.value.trim() !== '' && Number.isFinite(Number(event.target.value)))
+            onFile(withValue(file, knob.pointer, fromShown(event.target.value, knob)));
+        }}
+      />
+      <p id={`${id}-description`} className={wrong === '' ? styles.means : styles.wrong}>
+        {wrong === '' ? knob.description : wrong}
+      </p>
     </div>
   );
 }
 
 export function Knobs({ knobs, ...rest }: Props & { readonly knobs: readonly Knob[] }) {
-  return <div className={styles.knobs}>{knobs.map((knob) => <Number_ key={knob.pointer} knob={knob} {...rest} />)}</div>;
+  return (
+    <div className={styles.knobs}>
+      {knobs.map((knob) => (
+        <Number_ key={knob.pointer} knob={knob} {...rest} />
+      ))}
+    </div>
+  );
 }
 
 const kDepth = { unit: 'mm', times: 1e3, step: 0.5, symbol: '' } as const;
 
-/** Where the bone gives way. */
+/** Depths of the walls. */
 export function Walls(props: Props) {
   const { file, check, onFile } = props;
   const all = check && !check.ok && check.field === '/walls_m' ? check.error : '';
@@ -40,18 +78,36 @@ export function Walls(props: Props) {
     <div className={styles.stack}>
       {file.walls_m.map((_, i) => (
         <div key={i} className={styles.row}>
-          <Number_ {...props} knob={{ ...kDepth, pointer: `/walls_m/${i}`, label: `Wall ${i + 1} at depth`, means: 'where it gives way' }} />
-          <Button look="quiet" label={`Take away wall ${i + 1}`} onClick={() => onFile({ ...file, walls_m: file.walls_m.filter((__, k) => k !== i) })}>Take away</Button>
+          <Number_
+            {...props}
+            knob={{
+              ...kDepth,
+              pointer: `/walls_m/${i}`,
+              label: `Wall ${i + 1} at depth`,
+              description: 'depth of the breach',
+            }}
+          />
+          <Button
+            look="quiet"
+            label={`Remove wall ${i + 1}`}
+            onClick={() => onFile({ ...file, walls_m: file.walls_m.filter((__, k) => k !== i) })}
+          >
+            Remove
+          </Button>
         </div>
       ))}
-      {all === '' ? null : <p className={styles.wrong}>{all}</p>}
-      {file.walls_m.length === 0 ? <p className={styles.means}>No wall: nothing is breached.</p> : null}
-      <div><Button onClick={() => onFile(withWall(file))} disabled={file.walls_m.length >= 8}>Add a wall</Button></div>
+      {all === '' ? null : <p className={styles.wrong}>{inMillimetres(all)}</p>}
+      {file.walls_m.length === 0 ? <p className={styles.means}>No walls: there is no breach.</p> : null}
+      <div>
+        <Button onClick={() => onFile(withWall(file))} disabled={file.walls_m.length >= 8}>
+          Add wall
+        </Button>
+      </div>
     </div>
   );
 }
 
-/** Stretches that are denser or less dense than the rest. */
+/** Regions that are denser or less dense than the rest of the bone. */
 export function Layers(props: Props) {
   const { file, check, onFile } = props;
   const at = (i: number, field: string) => `/layers/${i}/${field}`;
@@ -60,15 +116,42 @@ export function Layers(props: Props) {
     <div className={styles.stack}>
       {file.layers.map((_, i) => (
         <div key={i} className={styles.stretch}>
-          <Number_ {...props} knob={{ ...kDepth, pointer: at(i, 'start_m'), label: `Stretch ${i + 1} from`, means: 'depth' }} />
-          <Number_ {...props} knob={{ ...kDepth, pointer: at(i, 'thickness_m'), label: 'thick', means: 'along the depth' }} />
-          <Number_ {...props} knob={{ unit: '', times: 1, step: 0.1, symbol: '', pointer: at(i, 'density'), label: 'density', means: 'times the rest' }} />
-          <Button look="quiet" label={`Take away stretch ${i + 1}`} onClick={() => onFile({ ...file, layers: file.layers.filter((__, k) => k !== i) })}>Take away</Button>
+          <Number_
+            {...props}
+            knob={{ ...kDepth, pointer: at(i, 'start_m'), label: `Region ${i + 1} from`, description: 'depth' }}
+          />
+          <Number_
+            {...props}
+            knob={{ ...kDepth, pointer: at(i, 'thickness_m'), label: 'thickness', description: 'along the depth' }}
+          />
+          <Number_
+            {...props}
+            knob={{
+              unit: '',
+              times: 1,
+              step: 0.1,
+              symbol: '',
+              pointer: at(i, 'density'),
+              label: 'density',
+              description: 'relative to the rest of the bone',
+            }}
+          />
+          <Button
+            look="quiet"
+            label={`Remove region ${i + 1}`}
+            onClick={() => onFile({ ...file, layers: file.layers.filter((__, k) => k !== i) })}
+          >
+            Remove
+          </Button>
         </div>
       ))}
-      {all === '' ? null : <p className={styles.wrong}>{all}</p>}
-      {file.layers.length === 0 ? <p className={styles.means}>The bone is as dense everywhere.</p> : null}
-      <div><Button onClick={() => onFile(withLayer(file))} disabled={file.layers.length >= 12 || withLayer(file) === file}>Add a stretch</Button></div>
+      {all === '' ? null : <p className={styles.wrong}>{inMillimetres(all)}</p>}
+      {file.layers.length === 0 ? <p className={styles.means}>The density is the same everywhere.</p> : null}
+      <div>
+        <Button onClick={() => onFile(withLayer(file))} disabled={file.layers.length >= 12 || withLayer(file) === file}>
+          Add region
+        </Button>
+      </div>
     </div>
   );
 }

@@ -1,16 +1,26 @@
 import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { useReducer, type FormEvent } from 'react';
 import { Link, useLocation } from 'wouter';
-import { addScenario, ApiError, kKinds, scenarioCheckQuery, scenarioFileQuery, scenariosQuery, type ScenarioFile } from '@/api';
-import { Button, Card, Field, Notice, Select, Skeleton, useTitle } from '@/ui';
-import { draftOf, kBone, kBreach } from './draft';
+import {
+  addScenario,
+  ApiError,
+  kKinds,
+  scenarioCheckQuery,
+  scenarioFileQuery,
+  scenariosQuery,
+  type ScenarioFile,
+} from '@/api';
+import { Button, Card, Field, Notice, Select, Skeleton, useTitle, useSettled } from '@/ui';
+import { draftOf, inMillimetres, kBone, kBreach } from './draft';
 import { Knobs, Layers, Walls } from './fields';
 import { Resistance } from './resistance';
 import styles from './scenarios.module.css';
-import { useSettled } from './use-settled';
-import { kKindWords } from './words';
+import { kKindLabels } from './labels';
 
-interface History { readonly file: ScenarioFile; readonly past: readonly ScenarioFile[] }
+interface History {
+  readonly file: ScenarioFile;
+  readonly past: readonly ScenarioFile[];
+}
 const kMost = 100;
 
 function step({ file, past }: History, next: ScenarioFile | 'undo'): History {
@@ -19,21 +29,46 @@ function step({ file, past }: History, next: ScenarioFile | 'undo'): History {
   return before ? { file: before, past: past.slice(0, -1) } : { file, past };
 }
 
-function Keep({ file, parent, ready }: { readonly file: ScenarioFile; readonly parent: string; readonly ready: boolean }) {
+function SaveForm({
+  file,
+  parent,
+  ready,
+}: {
+  readonly file: ScenarioFile;
+  readonly parent: string;
+  readonly ready: boolean;
+}) {
   const client = useQueryClient();
   const [, go] = useLocation();
-  const kept = useMutation({
+  const saved = useMutation({
     mutationFn: (publish: boolean) => addScenario(draftOf(file), parent, publish),
-    onSuccess: async () => { await client.invalidateQueries({ queryKey: scenariosQuery.queryKey, exact: true }); go('/scenarios'); },
+    onSuccess: async () => {
+      await client.invalidateQueries({ queryKey: scenariosQuery.queryKey, exact: true });
+      go('/scenarios');
+    },
   });
-  const submit = (event: FormEvent) => { event.preventDefault(); kept.mutate(true); };
+  const submit = (event: FormEvent) => {
+    event.preventDefault();
+    saved.mutate(true);
+  };
   return (
     <form className={styles.keep} onSubmit={submit}>
-      {kept.isError ? <Notice tone="bad" title="The version was not kept.">{kept.error.message}</Notice> : null}
-      <p className={styles.means}>A version never changes: the trials of it stay what they are. This one becomes another, with yours as its maker.</p>
+      {saved.isError ? (
+        <Notice tone="bad" title="The version was not saved.">
+          {saved.error.message}
+        </Notice>
+      ) : null}
+      <p className={styles.means}>
+        Saved versions cannot be changed, so that earlier trials stay comparable. Your changes are saved as a new
+        version under your name.
+      </p>
       <div className={styles.buttons}>
-        <Button onClick={() => kept.mutate(false)} disabled={!ready || kept.isPending}>Keep</Button>
-        <Button look="solid" type="submit" disabled={!ready || kept.isPending}>Keep and offer for assignments</Button>
+        <Button onClick={() => saved.mutate(false)} disabled={!ready || saved.isPending}>
+          Save
+        </Button>
+        <Button look="solid" type="submit" disabled={!ready || saved.isPending}>
+          Save and publish
+        </Button>
       </div>
     </form>
   );
@@ -45,52 +80,119 @@ function Bench({ start, parent }: { readonly start: ScenarioFile; readonly paren
   const check = useQuery(scenarioCheckQuery(draftOf(settled)));
   const found = check.data;
   const late = check.isPlaceholderData || settled !== file;
-  const lost = found && !found.ok && !/^\/(bone|breach|density|travel_m|walls_m|layers|name)/.test(found.field) ? found.error : '';
+  const unplaced =
+    found && !found.ok && !/^\/(bone|breach|density|travel_m|walls_m|layers|name)/.test(found.field) ? found.error : '';
   const props = { file, check: found, onFile: go };
   return (
     <div className={styles.bench}>
       <div className={styles.stack}>
-        <Card title="Resistance over depth" aside={<Button onClick={() => go('undo')} disabled={past.length === 0}>Undo</Button>}>
+        <Card
+          title="Resistance over depth"
+          aside={
+            <Button onClick={() => go('undo')} disabled={past.length === 0}>
+              Undo
+            </Button>
+          }
+        >
           <div className={styles.stack}>
-            {check.isError ? <Notice tone="bad" title="The scenario could not be looked at." onRetry={() => void check.refetch()}>{check.error.message}</Notice> : null}
-            {found?.curve ? <Resistance found={found.curve} late={late} /> : <div className={styles.blank}>{found ? <p>No curve while a number is wrong.</p> : <Skeleton height="340px" />}</div>}
+            {check.isError ? (
+              <Notice tone="bad" title="The scenario could not be checked." onRetry={() => void check.refetch()}>
+                {check.error.message}
+              </Notice>
+            ) : null}
+            {found?.curve ? (
+              <Resistance found={found.curve} late={late} />
+            ) : (
+              <div className={styles.blank}>
+                {found ? <p>Correct the marked value to see the curve.</p> : <Skeleton height="340px" />}
+              </div>
+            )}
             <div className={styles.says} role="status">
-              {found?.excessive.map((sentence) => <p key={sentence} className={styles.warn}>{sentence}</p>)}
-              {lost === '' ? null : <p className={styles.wrong}>{lost}</p>}
-              {found?.ok && found.excessive.length === 0 ? <p className={styles.means}>A surgeon and the actuator can do it.</p> : null}
+              {found?.excessive.map((sentence) => (
+                <p key={sentence} className={styles.warn}>
+                  {inMillimetres(sentence)}
+                </p>
+              ))}
+              {unplaced === '' ? null : <p className={styles.wrong}>{inMillimetres(unplaced)}</p>}
+              {found?.ok && found.excessive.length === 0 ? (
+                <p className={styles.means}>Forces are within the limits of surgeon and actuator.</p>
+              ) : null}
             </div>
           </div>
         </Card>
-        <Card title="Keep it">
+        <Card title="Save">
           <div className={styles.stack}>
             <div className={styles.knobs}>
-              <Field label="Name, for those who teach" value={file.name} required maxLength={200} onChange={(event) => go({ ...file, name: event.target.value })} />
-              <Select label="Kind" value={file.kind} options={kKinds.map((kind) => ({ value: kind, text: kKindWords[kind] }))} onChange={(event) => { const to = kKinds.find((kind) => kind === event.target.value); if (to) go({ ...file, kind: to }); }} />
+              <Field
+                label="Name (not shown to trainees)"
+                value={file.name}
+                required
+                maxLength={200}
+                onChange={(event) => go({ ...file, name: event.target.value })}
+              />
+              <Select
+                label="Kind"
+                value={file.kind}
+                options={kKinds.map((kind) => ({ value: kind, text: kKindLabels[kind] }))}
+                onChange={(event) => {
+                  const to = kKinds.find((kind) => kind === event.target.value);
+                  if (to) go({ ...file, kind: to });
+                }}
+              />
             </div>
-            <Keep file={file} parent={parent} ready={found?.ok === true && !late && file.name.trim() !== ''} />
+            <SaveForm file={file} parent={parent} ready={found?.ok === true && !late && file.name.trim() !== ''} />
           </div>
         </Card>
       </div>
       <div className={styles.stack}>
-        <Card title="Bone"><Knobs knobs={kBone} {...props} /></Card>
-        <Card title="Walls"><div className={styles.stack}><Walls {...props} />{file.walls_m.length > 0 ? <Knobs knobs={kBreach} {...props} /> : null}</div></Card>
-        <Card title="Stretches of another density"><Layers {...props} /></Card>
+        <Card title="Bone">
+          <Knobs knobs={kBone} {...props} />
+        </Card>
+        <Card title="Walls">
+          <div className={styles.stack}>
+            <Walls {...props} />
+            {file.walls_m.length > 0 ? <Knobs knobs={kBreach} {...props} /> : null}
+          </div>
+        </Card>
+        <Card title="Regions of different density">
+          <Layers {...props} />
+        </Card>
       </div>
     </div>
   );
 }
 
-/** A scenario of the probing rig, tuned from another, with its resistance as the rig will play it. */
+/** Edits a copy of a scenario of the probing rig and shows its resistance. */
 export function ScenarioPage({ id }: { readonly id: string }) {
   const query = useQuery(scenarioFileQuery(id));
   const missing = query.error instanceof ApiError && query.error.code === 'not_found';
   useTitle(query.data ? `Scenario ${query.data.name}` : 'Scenario');
   return (
     <div className={styles.page}>
-      <p><Link href="/scenarios">← Scenarios</Link></p>
-      {query.isError ? <Notice tone={missing ? 'warn' : 'bad'} title={missing ? 'There is no such scenario.' : 'The scenario could not be loaded.'} onRetry={missing ? undefined : () => void query.refetch()}>{query.error.message}</Notice> : null}
-      {query.isPending ? <div role="status"><span className="hidden-visually">Loading the scenario</span><Skeleton height="640px" /></div> : null}
-      {query.data ? <><h1>From {query.data.name}</h1><Bench start={query.data} parent={id} /></> : null}
+      <p>
+        <Link href="/scenarios">← Scenarios</Link>
+      </p>
+      {query.isError ? (
+        <Notice
+          tone={missing ? 'warn' : 'bad'}
+          title={missing ? 'Scenario not found.' : 'The scenario could not be loaded.'}
+          onRetry={missing ? undefined : () => void query.refetch()}
+        >
+          {query.error.message}
+        </Notice>
+      ) : null}
+      {query.isPending ? (
+        <div role="status">
+          <span className="hidden-visually">Loading the scenario</span>
+          <Skeleton height="640px" />
+        </div>
+      ) : null}
+      {query.data ? (
+        <>
+          <h1>New version of {query.data.name}</h1>
+          <Bench start={query.data} parent={id} />
+        </>
+      ) : null}
     </div>
   );
 }

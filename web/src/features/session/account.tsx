@@ -10,9 +10,10 @@ export function Account() {
   const session = useQuery({ ...sessionQuery, enabled: false });
   const leave = useMutation({
     // A session that the server has ended already is as good as one that it ends now.
-    mutationFn: () => signOut().catch((reason: unknown) => {
-      if (!(reason instanceof ApiError && reason.code === 'unauthorised')) throw reason;
-    }),
+    mutationFn: () =>
+      signOut().catch((reason: unknown) => {
+        if (!(reason instanceof ApiError && reason.code === 'unauthorised')) throw reason;
+      }),
     onSuccess: () => {
       noteSignOut();
       client.setQueryData(sessionQuery.queryKey, null);
@@ -21,9 +22,17 @@ export function Account() {
   if (!session.data) return null;
   return (
     <>
-      {leave.isError ? <span role="alert" className={styles.failed}>Signing out failed: {leave.error.message}</span> : null}
-      <Link href="/account" className={styles.who}>{session.data.name} <span className={styles.role}>{session.data.role}</span></Link>
-      <Button onClick={() => leave.mutate()} disabled={leave.isPending}>Sign out</Button>
+      {leave.isError ? (
+        <span role="alert" className={styles.failed}>
+          Signing out failed: {leave.error.message}
+        </span>
+      ) : null}
+      <Link href="/account" className={styles.who}>
+        {session.data.name} <span className={styles.role}>{session.data.role}</span>
+      </Link>
+      <Button onClick={() => leave.mutate()} disabled={leave.isPending}>
+        Sign out
+      </Button>
     </>
   );
 }

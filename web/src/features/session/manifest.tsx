@@ -4,7 +4,5 @@ import { OwnAccountPage } from './own-account-page';
 
 export const feature: Feature = {
   menu: [],
-  pages: [
-    { path: '/account', show: () => <OwnAccountPage /> },
-  ],
+  pages: [{ path: '/account', show: () => <OwnAccountPage /> }],
 };

@@ -12,7 +12,10 @@ const json = (body: unknown, status: number) => Promise.resolve(new Response(JSO
 /** Shows the page; what is sent is answered by `post`. */
 function open(post: (path: string, body: Record<string, unknown>) => Promise<Response>) {
   vi.spyOn(globalThis, 'fetch').mockImplementation((input, init) =>
-    init?.method === 'POST' ? post(String(input), JSON.parse(String(init.body ?? '{}')) as Record<string, unknown>) : json({ error: 'nobody', code: 'unauthorised' }, 401));
+    init?.method === 'POST'
+      ? post(String(input), JSON.parse(String(init.body ?? '{}')) as Record<string, unknown>)
+      : json({ error: 'nobody', code: 'unauthorised' }, 401),
+  );
   render(
     <QueryClientProvider client={new QueryClient({ defaultOptions: { queries: { retry: false } } })}>
       <OwnAccountPage />
@@ -25,11 +28,13 @@ describe('the own account', () => {
     const sent: Record<string, unknown>[] = [];
     open((_, body) => {
       sent.push(body);
-      return 'code' in body ? Promise.resolve(new Response(null, { status: 204 })) : json({ error: 'body: /code: a one-time code is asked for', code: 'code_needed' }, 403);
+      return 'code' in body
+        ? Promise.resolve(new Response(null, { status: 204 }))
+        : json({ error: 'body: /code: a one-time code is asked for', code: 'code_needed' }, 403);
     });
-    await userEvent.type(screen.getByLabelText('Password now'), 'the old password');
+    await userEvent.type(screen.getByLabelText('Current password'), 'the old password');
     await userEvent.type(screen.getByLabelText('New password'), 'a longer password');
-    await userEvent.type(screen.getByLabelText('New password again'), 'a longer password{Enter}');
+    await userEvent.type(screen.getByLabelText('Repeat new password'), 'a longer password{Enter}');
     await userEvent.type(await screen.findByLabelText('One-time code'), '123456{Enter}');
     await waitFor(() => expect(screen.getByText('The password was changed.')).toBeTruthy());
     expect(sent).toEqual([
@@ -40,7 +45,10 @@ describe('the own account', () => {
 
   it('sets up one-time codes by the password alone', async () => {
     const sent: [string, Record<string, unknown>][] = [];
-    open((path, body) => { sent.push([path, body]); return json({ secret: 'ABCD', uri: 'otpauth://totp/x' }, 200); });
+    open((path, body) => {
+      sent.push([path, body]);
+      return json({ secret: 'ABCD', uri: 'otpauth://totp/x' }, 200);
+    });
     const begin = screen.getByRole('button', { name: 'Set up one-time codes' });
     expect((begin as HTMLButtonElement).disabled).toBe(true);
     await userEvent.type(screen.getByLabelText('Your password'), 'the old password');

@@ -13,25 +13,89 @@ export function PasswordForm() {
   const [next, setNext] = useState('');
   const [again, setAgain] = useState('');
   const [code, setCode] = useState('');
-  const [asked, setAsked] = useState(false);
+  const [codeRequired, setCodeRequired] = useState(false);
   const changed = useMutation({
-    mutationFn: () => changePassword(old, next, asked ? code.trim() : undefined),
-    onError: (reason) => { if (reason instanceof ApiError && reason.code === 'code_needed') setAsked(true); },
-    onSuccess: async () => { setOld(''); setNext(''); setAgain(''); setCode(''); await client.invalidateQueries({ queryKey: sessionQuery.queryKey }); },
+    mutationFn: () => changePassword(old, next, codeRequired ? code.trim() : undefined),
+    onError: (reason) => {
+      if (reason instanceof ApiError && reason.code === 'code_needed') setCodeRequired(true);
+    },
+    onSuccess: async () => {
+      setOld('');
+      setNext('');
+      setAgain('');
+      setCode('');
+      await client.invalidateQueries({ queryKey: sessionQuery.queryKey });
+    },
   });
-  const fault = next !== '' && next.length < kLeast ? `At least ${kLeast} characters.` : again !== '' && again !== next ? 'The two are not the same.' : '';
-  const submit = (event: FormEvent) => { event.preventDefault(); changed.mutate(); };
+  const fault =
+    next !== '' && next.length < kLeast
+      ? `At least ${kLeast} characters.`
+      : again !== '' && again !== next
+        ? 'The passwords do not match.'
+        : '';
+  const submit = (event: FormEvent) => {
+    event.preventDefault();
+    changed.mutate();
+  };
   return (
     <form className={styles.form} onSubmit={submit}>
-      <Field label="Password now" type="password" autoComplete="current-password" required value={old} onChange={(event) => setOld(event.target.value)} />
-      <Field label="New password" type="password" autoComplete="new-password" required value={next} onChange={(event) => setNext(event.target.value)} />
-      <Field label="New password again" type="password" autoComplete="new-password" required value={again} onChange={(event) => setAgain(event.target.value)} />
-      {asked ? <Field label="One-time code" inputMode="numeric" autoComplete="one-time-code" maxLength={8} required value={code} onChange={(event) => setCode(event.target.value)} /> : null}
-      <p className={styles.fault} role="status">{fault}</p>
-      {changed.error instanceof ApiError && changed.error.code === 'code_needed' ? <Notice title="This account asks for a one-time code too.">Write the code that your app shows, and change the password again.</Notice>
-        : changed.isError ? <Notice tone="bad" title="The password was not changed.">{changed.error.message}</Notice> : null}
-      {changed.isSuccess ? <Notice title="The password was changed.">Other sessions of this account have ended.</Notice> : null}
-      <Button look="solid" type="submit" disabled={changed.isPending || old === '' || next.length < kLeast || again !== next}>{changed.isPending ? 'Changing…' : 'Change the password'}</Button>
+      <Field
+        label="Current password"
+        type="password"
+        autoComplete="current-password"
+        required
+        value={old}
+        onChange={(event) => setOld(event.target.value)}
+      />
+      <Field
+        label="New password"
+        type="password"
+        autoComplete="new-password"
+        required
+        value={next}
+        onChange={(event) => setNext(event.target.value)}
+      />
+      <Field
+        label="Repeat new password"
+        type="password"
+        autoComplete="new-password"
+        required
+        value={again}
+        onChange={(event) => setAgain(event.target.value)}
+      />
+      {codeRequired ? (
+        <Field
+          label="One-time code"
+          inputMode="numeric"
+          autoComplete="one-time-code"
+          maxLength={8}
+          required
+          value={code}
+          onChange={(event) => setCode(event.target.value)}
+        />
+      ) : null}
+      <p className={styles.fault} role="status">
+        {fault}
+      </p>
+      {changed.error instanceof ApiError && changed.error.code === 'code_needed' ? (
+        <Notice title="This account requires a one-time code.">
+          Enter the code that your app shows, then press “Change password” again.
+        </Notice>
+      ) : changed.isError ? (
+        <Notice tone="bad" title="The password was not changed.">
+          {changed.error.message}
+        </Notice>
+      ) : null}
+      {changed.isSuccess ? (
+        <Notice title="The password was changed.">Other sessions of this account have ended.</Notice>
+      ) : null}
+      <Button
+        look="solid"
+        type="submit"
+        disabled={changed.isPending || old === '' || next.length < kLeast || again !== next}
+      >
+        {changed.isPending ? 'Changing…' : 'Change password'}
+      </Button>
     </form>
   );
 }

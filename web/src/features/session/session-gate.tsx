@@ -21,7 +21,11 @@ export function SessionGate({ waiting, children }: { readonly waiting: ReactNode
   if (session.isPending) return waiting;
   if (session.data) return session.data.must_change ? <FirstPassword /> : children;
   if (session.isError) {
-    return <Notice tone="bad" title="The server cannot be reached." onRetry={() => void session.refetch()}>{session.error.message}</Notice>;
+    return (
+      <Notice tone="bad" title="The server cannot be reached." onRetry={() => void session.refetch()}>
+        {session.error.message}
+      </Notice>
+    );
   }
   return <SignIn />;
 }

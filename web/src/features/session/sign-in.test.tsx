@@ -12,7 +12,8 @@ const json = (body: unknown, status: number) => Promise.resolve(new Response(JSO
 /** GET /session answers that nobody is there; POST as given. */
 function open(post: () => Promise<Response>) {
   vi.spyOn(globalThis, 'fetch').mockImplementation((_, init) =>
-    init?.method === 'POST' ? post() : json({ error: 'nobody', code: 'unauthorised' }, 401));
+    init?.method === 'POST' ? post() : json({ error: 'nobody', code: 'unauthorised' }, 401),
+  );
   render(
     <QueryClientProvider client={new QueryClient({ defaultOptions: { queries: { retry: false } } })}>
       <SessionGate waiting="waiting">the page</SessionGate>
@@ -47,15 +48,27 @@ describe('signing in', () => {
   });
 
   it('says in how many seconds the server takes another attempt', async () => {
-    open(() => Promise.resolve(new Response(JSON.stringify({ error: 'x', code: 'too_many' }), { status: 429, headers: { 'Retry-After': '90' } })));
+    open(() =>
+      Promise.resolve(
+        new Response(JSON.stringify({ error: 'x', code: 'too_many' }), {
+          status: 429,
+          headers: { 'Retry-After': '90' },
+        }),
+      ),
+    );
     await attempt();
-    await waitFor(() => expect(screen.getByRole('alert').textContent).toBe('Too many failed attempts. Try again in 90 s.'));
+    await waitFor(() =>
+      expect(screen.getByRole('alert').textContent).toBe('Too many failed attempts. Try again in 90 s.'),
+    );
   });
 
   it('offers the provider of identities that the server has, and says how its answer went', async () => {
     window.history.replaceState(null, '', '/?sign_in=unknown');
     vi.spyOn(globalThis, 'fetch').mockImplementation((input) =>
-      String(input).endsWith('/session/oidc') ? json({ offered: true, label: 'Sign in with the hospital' }, 200) : json({ error: 'nobody', code: 'unauthorised' }, 401));
+      String(input).endsWith('/session/oidc')
+        ? json({ offered: true, label: 'Sign in with the hospital' }, 200)
+        : json({ error: 'nobody', code: 'unauthorised' }, 401),
+    );
     render(
       <QueryClientProvider client={new QueryClient({ defaultOptions: { queries: { retry: false } } })}>
         <SessionGate waiting="waiting">the page</SessionGate>
@@ -63,7 +76,7 @@ describe('signing in', () => {
     );
     const link = await screen.findByRole('link', { name: 'Sign in with the hospital' });
     expect(link.getAttribute('href')).toBe('/api/v1/session/oidc/start');
-    expect(screen.getByRole('alert').textContent).toContain('no account here is linked');
+    expect(screen.getByRole('alert').textContent).toContain('no account on this server is linked');
     window.history.replaceState(null, '', '/');
   });
 

@@ -5,22 +5,29 @@ import { Button, Field, useTitle } from '@/ui';
 import { endedByItself } from './ended';
 import styles from './sign-in.module.css';
 
-function sentence(reason: Error): string {
+function errorText(reason: Error): string {
   if (!(reason instanceof ApiError)) return 'Signing in failed.';
   switch (reason.code) {
-    case 'unauthorised': return 'Name or password is wrong.';
-    case 'code_needed': return 'This account asks for a one-time code too.';
-    case 'too_many': return `Too many failed attempts. Try again ${reason.retryAfter_s === null ? 'in a few minutes' : `in ${reason.retryAfter_s} s`}.`;
-    default: return reason.message;
+    case 'unauthorised':
+      return 'Name or password is wrong.';
+    case 'code_needed':
+      return 'This account requires a one-time code.';
+    case 'too_many':
+      return `Too many failed attempts. Try again ${reason.retryAfter_s === null ? 'in a few minutes' : `in ${reason.retryAfter_s} s`}.`;
+    default:
+      return reason.message;
   }
 }
 
 /** What the server's answer after the provider's says, in the address. */
-function returned(): string {
+function providerMessage(): string {
   switch (new URLSearchParams(window.location.search).get('sign_in')) {
-    case 'unknown': return 'Your institution knows you, but no account here is linked with you yet. Ask an administrator of this server.';
-    case 'failed': return 'Signing in by your institution did not work. Try again.';
-    default: return '';
+    case 'unknown':
+      return 'Your institution confirmed your identity, but no account on this server is linked with it. Ask an administrator of this server.';
+    case 'failed':
+      return 'Sign-in through your institution failed. Try again.';
+    default:
+      return '';
   }
 }
 
@@ -30,18 +37,21 @@ export function SignIn() {
   const [name, setName] = useState('');
   const [password, setPassword] = useState('');
   const [code, setCode] = useState('');
-  const [asked, setAsked] = useState(false);
+  const [codeRequired, setCodeRequired] = useState(false);
   const [ended] = useState(endedByItself);
-  const [back] = useState(returned);
+  const [back] = useState(providerMessage);
   const offer = useQuery(oidcOfferQuery);
   const nameField = useRef<HTMLInputElement>(null);
   const passwordField = useRef<HTMLInputElement>(null);
   const codeField = useRef<HTMLInputElement>(null);
   const attempt = useMutation({
-    mutationFn: () => signIn(name.trim(), password, asked ? code.trim() : undefined),
+    mutationFn: () => signIn(name.trim(), password, codeRequired ? code.trim() : undefined),
     onSuccess: (session) => client.setQueryData(sessionQuery.queryKey, session),
     onError: (reason) => {
-      if (reason instanceof ApiError && reason.code === 'code_needed') { setAsked(true); return; }
+      if (reason instanceof ApiError && reason.code === 'code_needed') {
+        setCodeRequired(true);
+        return;
+      }
       setCode('');
       setPassword('');
       passwordField.current?.focus();
@@ -49,7 +59,9 @@ export function SignIn() {
   });
 
   useEffect(() => nameField.current?.focus(), []);
-  useEffect(() => { if (asked) codeField.current?.focus(); }, [asked]);
+  useEffect(() => {
+    if (codeRequired) codeField.current?.focus();
+  }, [codeRequired]);
 
   const submit = (event: FormEvent) => {
     event.preventDefault();
@@ -63,16 +75,56 @@ export function SignIn() {
       <form className={styles.form} onSubmit={submit} noValidate aria-labelledby="sign-in-title">
         <h1 id="sign-in-title">Sign in</h1>
         <p className={styles.lead}>
-          {ended ? 'Your session has ended. Sign in to go on where you were.' : 'Training and assessment in making and checking the channel of a pedicle screw.'}
+          {ended
+            ? 'Your session has ended. Sign in to continue where you were.'
+            : 'Training and assessment in drilling and palpating the channel of a pedicle screw.'}
         </p>
-        <Field label="Name" name="username" autoComplete="username" autoCapitalize="none" spellCheck={false} required
-          inputRef={nameField} value={name} onChange={(event) => setName(event.target.value)} aria-invalid={attempt.isError} />
-        <Field label="Password" name="password" type="password" autoComplete="current-password" required
-          inputRef={passwordField} value={password} onChange={(event) => setPassword(event.target.value)} aria-invalid={attempt.isError} />
-        {asked ? <Field label="One-time code" name="code" inputMode="numeric" autoComplete="one-time-code" maxLength={8} inputRef={codeField} value={code} onChange={(event) => setCode(event.target.value)} /> : null}
-        <p className={styles.error} role="alert">{attempt.isError ? sentence(attempt.error) : back}</p>
-        <Button type="submit" look="solid" disabled={attempt.isPending}>{attempt.isPending ? 'Signing in…' : 'Sign in'}</Button>
-        {offer.data?.offered ? <a className={styles.provider} href={kOidcStart}>{offer.data.label ?? 'Sign in with your institution'}</a> : null}
+        <Field
+          label="Name"
+          name="username"
+          autoComplete="username"
+          autoCapitalize="none"
+          spellCheck={false}
+          required
+          inputRef={nameField}
+          value={name}
+          onChange={(event) => setName(event.target.value)}
+          aria-invalid={attempt.isError}
+        />
+        <Field
+          label="Password"
+          name="password"
+          type="password"
+          autoComplete="current-password"
+          required
+          inputRef={passwordField}
+          value={password}
+          onChange={(event) => setPassword(event.target.value)}
+          aria-invalid={attempt.isError}
+        />
+        {codeRequired ? (
+          <Field
+            label="One-time code"
+            name="code"
+            inputMode="numeric"
+            autoComplete="one-time-code"
+            maxLength={8}
+            inputRef={codeField}
+            value={code}
+            onChange={(event) => setCode(event.target.value)}
+          />
+        ) : null}
+        <p className={styles.error} role="alert">
+          {attempt.isError ? errorText(attempt.error) : back}
+        </p>
+        <Button type="submit" look="solid" disabled={attempt.isPending}>
+          {attempt.isPending ? 'Signing in…' : 'Sign in'}
+        </Button>
+        {offer.data?.offered ? (
+          <a className={styles.provider} href={kOidcStart}>
+            {offer.data.label ?? 'Sign in with your institution'}
+          </a>
+        ) : null}
       </form>
     </div>
   );

@@ -8,12 +8,17 @@ describe('participants written one a line', () => {
     const { participants, faults } = participantsOf('P01, resident, 0.5\n\n P02 , 6 , senior\nS03, simulated');
     expect(faults).toEqual([]);
     expect(participants).toEqual([
-      { name: 'P01', level: 'resident', experience_years: 0.5 }, { name: 'P02', level: 'senior', experience_years: 6 }, { name: 'S03', simulated: true },
+      { name: 'P01', level: 'resident', experience_years: 0.5 },
+      { name: 'P02', level: 'senior', experience_years: 6 },
+      { name: 'S03', simulated: true },
     ]);
   });
 
   it.each([
-    ['Dr Smith, senior', 'no pseudonym'], ['P1, 100', '0 to 80'], ['P1, a, b', 'are expected'], ['P1\nP1', 'there twice'],
+    ['Dr Smith, senior', 'not a valid pseudonym'],
+    ['P1, 100', '0 to 80'],
+    ['P1, a, b', 'expected pseudonym, level, years'],
+    ['P1\nP1', 'listed twice'],
   ])('%s is told to be wrong: %s', (text, words) => {
     expect(participantsOf(text).faults[0]).toContain(words);
   });
@@ -22,17 +27,25 @@ describe('participants written one a line', () => {
 describe('a study', () => {
   it('gets its short name from its title, and keeps one that was typed', () => {
     expect(idOf('Étude n° 3, rachis')).toBe('etude-n-3-rachis');
-    expect(studyOf(draft({}))).toMatchObject({ study: { id: 'spine-study', repeats: 3, ordering: 'random', on_invalid: 'at_end' } });
+    expect(studyOf(draft({}))).toMatchObject({
+      study: { id: 'spine-study', repeats: 3, ordering: 'random', on_invalid: 'at_end' },
+    });
     expect(studyOf(draft({ id: 'own' }))).toMatchObject({ study: { id: 'own' } });
   });
 
   it('carries the tuned scenarios by name and uploaded ones whole', () => {
     const scenario = { format: 'tractus-scenario/1', name: 'mine' };
-    expect(studyOf(draft({ tuned: ['hard'], uploaded: [{ file: 'a.json', scenario }] }))).toMatchObject({ study: { scenarios: [{ tuned: 'hard' }, scenario] } });
+    expect(studyOf(draft({ tuned: ['hard'], uploaded: [{ file: 'a.json', scenario }] }))).toMatchObject({
+      study: { scenarios: [{ tuned: 'hard' }, scenario] },
+    });
   });
 
   it.each([
-    [{ title: ' ' }, 'title'], [{ id: 'Not A Name' }, 'short name'], [{ tuned: [] }, 'scenarios'], [{ repeats: '0' }, 'repeated'], [{ repeats: '1.5' }, 'repeated'],
+    [{ title: ' ' }, 'title'],
+    [{ id: 'Not A Name' }, 'short name'],
+    [{ tuned: [] }, 'scenarios'],
+    [{ repeats: '0' }, 'repeated'],
+    [{ repeats: '1.5' }, 'repeated'],
   ] satisfies [Partial<Draft>, string][])('with %o is not made, and says what is missing', (changes, words) => {
     const read = studyOf(draft(changes));
     expect('faults' in read ? read.faults.join(' ') : '').toContain(words);

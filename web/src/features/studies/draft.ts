@@ -10,7 +10,10 @@ export const kTuned = [
 export type Tuned = (typeof kTuned)[number]['id'];
 
 /** A scenario from a file, as it was read. */
-export interface Uploaded { readonly file: string; readonly scenario: Record<string, unknown> }
+export interface Uploaded {
+  readonly file: string;
+  readonly scenario: Record<string, unknown>;
+}
 
 export interface Draft {
   readonly title: string;
@@ -25,38 +28,63 @@ export interface Draft {
 }
 
 export const kBlank: Draft = {
-  title: '', id: '', tuned: kTuned.map(({ id }) => id), uploaded: [], repeats: '3', ordering: 'random', onInvalid: 'at_end', participants: '',
+  title: '',
+  id: '',
+  tuned: kTuned.map(({ id }) => id),
+  uploaded: [],
+  repeats: '3',
+  ordering: 'random',
+  onInvalid: 'at_end',
+  participants: '',
 };
 
 /** "Spine study, 2026" → "spine-study-2026" */
 export function idOf(title: string): string {
-  return title.toLowerCase().normalize('NFD').replace(/\p{M}/gu, '').replace(/[^a-z0-9]+/g, '-').replace(/^-+|-+$/g, '').slice(0, 32).replace(/-+$/, '');
+  return title
+    .toLowerCase()
+    .normalize('NFD')
+    .replace(/\p{M}/gu, '')
+    .replace(/[^a-z0-9]+/g, '-')
+    .replace(/^-+|-+$/g, '')
+    .slice(0, 32)
+    .replace(/-+$/, '');
 }
 
 const kPseudonym = /^[A-Za-z0-9_-]{1,32}$/;
 
 function participant(line: string): NewParticipant | string {
   const [name = '', ...rest] = line.split(',').map((part) => part.trim());
-  if (!kPseudonym.test(name)) return `“${name}” is no pseudonym: letters, digits, - and _ alone.`;
+  if (!kPseudonym.test(name)) return `“${name}” is not a valid pseudonym: use 1 to 32 letters, digits, - or _.`;
   const simulated = rest.some((part) => part.toLowerCase() === 'simulated');
   const others = rest.filter((part) => part !== '' && part.toLowerCase() !== 'simulated');
-  const numbers = others.filter((part) => Number.isFinite(Number(part))), words = others.filter((part) => !Number.isFinite(Number(part)));
-  if (numbers.length > 1 || words.length > 1) return `“${line}”: pseudonym, level, years of experience are expected.`;
+  const numbers = others.filter((part) => Number.isFinite(Number(part))),
+    words = others.filter((part) => !Number.isFinite(Number(part)));
+  if (numbers.length > 1 || words.length > 1) return `“${line}”: expected pseudonym, level, years of experience.`;
   const years = numbers[0] === undefined ? undefined : Number(numbers[0]);
-  if (years !== undefined && (years < 0 || years > 80)) return `“${line}”: years of experience are 0 to 80.`;
+  if (years !== undefined && (years < 0 || years > 80)) return `“${line}”: years of experience must be 0 to 80.`;
   return {
-    name, ...(words[0] === undefined ? {} : { level: words[0] }), ...(years === undefined ? {} : { experience_years: years }), ...(simulated ? { simulated } : {}),
+    name,
+    ...(words[0] === undefined ? {} : { level: words[0] }),
+    ...(years === undefined ? {} : { experience_years: years }),
+    ...(simulated ? { simulated } : {}),
   };
 }
 
-export interface Enrolled { readonly participants: NewParticipant[]; readonly faults: string[] }
+export interface Enrolled {
+  readonly participants: NewParticipant[];
+  readonly faults: string[];
+}
 
 export function participantsOf(text: string): Enrolled {
-  const participants: NewParticipant[] = [], faults: string[] = [];
-  for (const line of text.split('\n').map((one) => one.trim()).filter(Boolean)) {
+  const participants: NewParticipant[] = [],
+    faults: string[] = [];
+  for (const line of text
+    .split('\n')
+    .map((one) => one.trim())
+    .filter(Boolean)) {
     const read = participant(line);
     if (typeof read === 'string') faults.push(read);
-    else if (participants.some(({ name }) => name === read.name)) faults.push(`${read.name} is there twice.`);
+    else if (participants.some(({ name }) => name === read.name)) faults.push(`${read.name} is listed twice.`);
     else participants.push(read);
   }
   return { participants, faults };
@@ -69,12 +97,24 @@ export function studyOf(draft: Draft): { study: NewStudy } | { faults: string[] 
   const repeats = Number(draft.repeats);
   const scenarios = [...draft.tuned.map((tuned) => ({ tuned })), ...draft.uploaded.map(({ scenario }) => scenario)];
   const missing = [
-    ...(draft.title.trim() === '' ? ['The study needs a title.'] : []),
-    ...(/^[a-z0-9][a-z0-9-]{0,31}$/.test(id) ? [] : ['The short name has 1 to 32 of a–z, 0–9 and -.']),
-    ...(scenarios.length > 0 && scenarios.length <= 16 ? [] : ['1 to 16 scenarios are needed.']),
-    ...(Number.isInteger(repeats) && repeats >= 1 && repeats <= 20 ? [] : ['Each scenario is repeated 1 to 20 times.']),
+    ...(draft.title.trim() === '' ? ['Enter a title.'] : []),
+    ...(/^[a-z0-9][a-z0-9-]{0,31}$/.test(id) ? [] : ['The short name must have 1 to 32 characters: a–z, 0–9 and -.']),
+    ...(scenarios.length > 0 && scenarios.length <= 16 ? [] : ['Choose 1 to 16 scenarios.']),
+    ...(Number.isInteger(repeats) && repeats >= 1 && repeats <= 20
+      ? []
+      : ['Each scenario must be repeated 1 to 20 times.']),
     ...faults,
   ];
   if (missing.length > 0) return { faults: missing };
-  return { study: { id, title: draft.title.trim(), scenarios, repeats, ordering: draft.ordering, on_invalid: draft.onInvalid, participants } };
+  return {
+    study: {
+      id,
+      title: draft.title.trim(),
+      scenarios,
+      repeats,
+      ordering: draft.ordering,
+      on_invalid: draft.onInvalid,
+      participants,
+    },
+  };
 }

@@ -11,13 +11,34 @@ import { Protocol, Scenarios } from './protocol-fields';
 function People({ draft, set }: { readonly draft: Draft; readonly set: (changes: Partial<Draft>) => void }) {
   const { participants, faults } = participantsOf(draft.participants);
   return (
-    <Card title="Participants" aside={<span className={styles.count} role="status">{formatCount(participants.length)} read</span>}>
+    <Card
+      title="Participants"
+      aside={
+        <span className={styles.count} role="status">
+          {formatCount(participants.length)} valid
+        </span>
+      }
+    >
       <div className={styles.people}>
-        <label htmlFor="participants">One a line: pseudonym, level, years of experience</label>
-        <textarea id="participants" rows={8} spellCheck={false} value={draft.participants} placeholder={'P01, resident, 0.5\nP02, senior, 6'}
-          aria-describedby="participants-hint" onChange={(event) => set({ participants: event.target.value })} />
-        <p id="participants-hint" className={styles.hint}>Pseudonyms alone; who is behind one is kept elsewhere. More can be enrolled later. Add “simulated” to a line for a simulated surgeon.</p>
-        <ul className={styles.faults} aria-live="polite">{faults.map((fault) => <li key={fault}>{fault}</li>)}</ul>
+        <label htmlFor="participants">One per line: pseudonym, level, years of experience</label>
+        <textarea
+          id="participants"
+          rows={8}
+          spellCheck={false}
+          value={draft.participants}
+          placeholder={'P01, resident, 0.5\nP02, senior, 6'}
+          aria-describedby="participants-hint"
+          onChange={(event) => set({ participants: event.target.value })}
+        />
+        <p id="participants-hint" className={styles.hint}>
+          Use pseudonyms only; the names are stored elsewhere. You can enrol more participants later. Add “simulated” to
+          a line for a simulated surgeon.
+        </p>
+        <ul className={styles.faults} aria-live="polite">
+          {faults.map((fault) => (
+            <li key={fault}>{fault}</li>
+          ))}
+        </ul>
       </div>
     </Card>
   );
@@ -38,24 +59,50 @@ export function NewStudyPage() {
   const trials = 'study' in ready ? ready.study.scenarios.length * ready.study.repeats : null;
   return (
     <form className={styles.page} onSubmit={submit}>
-      <p className={styles.back}><Link href="/studies">← Studies</Link></p>
+      <p className={styles.back}>
+        <Link href="/studies">← Studies</Link>
+      </p>
       <h1>New study</h1>
       <Card title="Name">
         <div className={styles.names}>
-          <Field label="Title" value={draft.title} maxLength={200} required onChange={(event) => set({ title: event.target.value })} />
-          <Field label="Short name for stations" value={draft.id} maxLength={32} placeholder={idOf(draft.title) || 'spine-study-1'} pattern="[a-z0-9][a-z0-9\-]*"
-            spellCheck={false} autoCapitalize="none" onChange={(event) => set({ id: event.target.value })} />
+          <Field
+            label="Title"
+            value={draft.title}
+            maxLength={200}
+            required
+            onChange={(event) => set({ title: event.target.value })}
+          />
+          <Field
+            label="Short name for stations"
+            value={draft.id}
+            maxLength={32}
+            placeholder={idOf(draft.title) || 'spine-study-1'}
+            pattern="[a-z0-9][a-z0-9\-]*"
+            spellCheck={false}
+            autoCapitalize="none"
+            onChange={(event) => set({ id: event.target.value })}
+          />
         </div>
       </Card>
       <Scenarios draft={draft} set={set} />
       <Protocol draft={draft} set={set} />
       <People draft={draft} set={set} />
-      {made.isError ? <Notice tone="bad" title="The study was not made.">{made.error.message}</Notice> : null}
+      {made.isError ? (
+        <Notice tone="bad" title="The study was not created.">
+          {made.error.message}
+        </Notice>
+      ) : null}
       <div className={styles.end}>
         <p className={styles.hint} role="status">
-          {trials === null ? ('faults' in ready ? ready.faults[0] : '') : `${formatCount(trials)} trials for each participant.`}
+          {trials === null
+            ? 'faults' in ready
+              ? ready.faults[0]
+              : ''
+            : `${formatCount(trials)} trials for each participant.`}
         </p>
-        <Button look="solid" type="submit" disabled={!('study' in ready) || made.isPending}>{made.isPending ? 'Making…' : 'Make the study'}</Button>
+        <Button look="solid" type="submit" disabled={!('study' in ready) || made.isPending}>
+          {made.isPending ? 'Creating…' : 'Create study'}
+        </Button>
       </div>
     </form>
   );

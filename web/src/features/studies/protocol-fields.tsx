@@ -3,26 +3,31 @@ import { Button, Card, Field, Notice } from '@/ui';
 import { kTuned, type Draft, type Tuned, type Uploaded } from './draft';
 import styles from './new-study.module.css';
 
-interface Props { readonly draft: Draft; readonly set: (changes: Partial<Draft>) => void }
+interface Props {
+  readonly draft: Draft;
+  readonly set: (changes: Partial<Draft>) => void;
+}
 
 const kMost_bytes = 1_000_000;
 
 /** A scenario file, or a sentence why it is none; the numbers in it are the server's to judge. */
 async function read(file: File): Promise<Uploaded | string> {
-  if (file.size > kMost_bytes) return `${file.name}: is too large for a scenario.`;
+  if (file.size > kMost_bytes) return `${file.name}: too large for a scenario (limit: 1 MB).`;
   try {
     const json: unknown = JSON.parse(await file.text());
     const scenario = json as Record<string, unknown>;
-    if (typeof json === 'object' && json !== null && scenario.format === 'tractus-scenario/1') return { file: file.name, scenario };
-    return `${file.name}: is no tractus-scenario/1.`;
+    if (typeof json === 'object' && json !== null && scenario.format === 'tractus-scenario/1')
+      return { file: file.name, scenario };
+    return `${file.name}: not a tractus-scenario/1 file.`;
   } catch {
-    return `${file.name}: is not JSON.`;
+    return `${file.name}: not valid JSON.`;
   }
 }
 
 export function Scenarios({ draft, set }: Props) {
   const [refused, setRefused] = useState<readonly string[]>([]);
-  const chosen = (id: Tuned, on: boolean) => set({ tuned: kTuned.map((one) => one.id).filter((one) => (one === id ? on : draft.tuned.includes(one))) });
+  const chosen = (id: Tuned, on: boolean) =>
+    set({ tuned: kTuned.map((one) => one.id).filter((one) => (one === id ? on : draft.tuned.includes(one))) });
   const upload = async (event: ChangeEvent<HTMLInputElement>) => {
     const input = event.currentTarget;
     const results = await Promise.all([...(input.files ?? [])].map(read));
@@ -33,60 +38,119 @@ export function Scenarios({ draft, set }: Props) {
   return (
     <Card title="Scenarios">
       <fieldset className={styles.choices}>
-        <legend>The tuned ones that ship</legend>
+        <legend>Built-in scenarios</legend>
         {kTuned.map(({ id, label }) => (
-          <label key={id}><input type="checkbox" checked={draft.tuned.includes(id)} onChange={(event) => chosen(id, event.target.checked)} /> {label}</label>
+          <label key={id}>
+            <input
+              type="checkbox"
+              checked={draft.tuned.includes(id)}
+              onChange={(event) => chosen(id, event.target.checked)}
+            />{' '}
+            {label}
+          </label>
         ))}
       </fieldset>
       <div className={styles.upload}>
-        <label htmlFor="scenario-files">Own scenarios (JSON files of <code>tractus scenario new</code>)</label>
-        <input id="scenario-files" type="file" accept=".json,application/json" multiple onChange={(event) => void upload(event)} />
+        <label htmlFor="scenario-files">
+          Custom scenarios (JSON files created with <code>tractus scenario new</code>)
+        </label>
+        <input
+          id="scenario-files"
+          type="file"
+          accept=".json,application/json"
+          multiple
+          onChange={(event) => void upload(event)}
+        />
         <ul className={styles.files}>
           {draft.uploaded.map(({ file, scenario }, i) => (
             <li key={`${file}-${i}`}>
-              <span>{typeof scenario.name === 'string' ? scenario.name : file} <span className={styles.hint}>{file}</span></span>
-              <Button look="quiet" label={`Remove ${file}`} onClick={() => set({ uploaded: draft.uploaded.filter((_, at) => at !== i) })}>Remove</Button>
+              <span>
+                {typeof scenario.name === 'string' ? scenario.name : file} <span className={styles.hint}>{file}</span>
+              </span>
+              <Button
+                look="quiet"
+                label={`Remove ${file}`}
+                onClick={() => set({ uploaded: draft.uploaded.filter((_, at) => at !== i) })}
+              >
+                Remove
+              </Button>
             </li>
           ))}
         </ul>
-        {refused.length > 0 ? <Notice tone="warn" title="Not taken:">{refused.join(' ')}</Notice> : null}
+        {refused.length > 0 ? (
+          <Notice tone="warn" title="Rejected files:">
+            {refused.join(' ')}
+          </Notice>
+        ) : null}
       </div>
     </Card>
   );
 }
 
 const kOrders = [
-  { id: 'random', label: 'Random', text: 'Every participant gets a shuffle of all trials of their own, as published.' },
-  { id: 'balanced', label: 'Balanced', text: 'In blocks with each scenario once, by Williams squares: over participants each follows each equally often.' },
+  {
+    id: 'random',
+    label: 'Random',
+    text: 'Each participant gets all trials in an individual random order, as in the published study.',
+  },
+  {
+    id: 'balanced',
+    label: 'Balanced',
+    text: 'In blocks that contain each scenario once, ordered by Williams squares: across participants, each scenario follows each other one equally often.',
+  },
 ] as const;
 
 const kRepeats = [
   { id: 'at_end', label: 'at the end of the participant’s order' },
   { id: 'at_once', label: 'as the participant’s next trial' },
-  { id: 'never', label: 'not at all' },
+  { id: 'never', label: 'never' },
 ] as const;
 
 export function Protocol({ draft, set }: Props) {
   return (
     <Card title="Protocol">
       <div className={styles.protocol}>
-        <Field label="Repeats of each scenario" type="number" min={1} max={20} step={1} required value={draft.repeats} onChange={(event) => set({ repeats: event.target.value })} />
+        <Field
+          label="Repeats of each scenario"
+          type="number"
+          min={1}
+          max={20}
+          step={1}
+          required
+          value={draft.repeats}
+          onChange={(event) => set({ repeats: event.target.value })}
+        />
         <fieldset className={styles.orders}>
           <legend>Order</legend>
           {kOrders.map(({ id, label, text }) => (
             <label key={id}>
-              <input type="radio" name="ordering" checked={draft.ordering === id} onChange={() => set({ ordering: id })} />
-              <span><strong>{label}.</strong> {text}</span>
+              <input
+                type="radio"
+                name="ordering"
+                checked={draft.ordering === id}
+                onChange={() => set({ ordering: id })}
+              />
+              <span>
+                <strong>{label}.</strong> {text}
+              </span>
             </label>
           ))}
         </fieldset>
         <div className={styles.select}>
-          <label htmlFor="on-invalid">A trial that does not count is repeated</label>
-          <select id="on-invalid" value={draft.onInvalid} onChange={(event) => {
-            const found = kRepeats.find(({ id }) => id === event.target.value);
-            if (found) set({ onInvalid: found.id });
-          }}>
-            {kRepeats.map(({ id, label }) => <option key={id} value={id}>{label}</option>)}
+          <label htmlFor="on-invalid">Repeat an invalid trial</label>
+          <select
+            id="on-invalid"
+            value={draft.onInvalid}
+            onChange={(event) => {
+              const found = kRepeats.find(({ id }) => id === event.target.value);
+              if (found) set({ onInvalid: found.id });
+            }}
+          >
+            {kRepeats.map(({ id, label }) => (
+              <option key={id} value={id}>
+                {label}
+              </option>
+            ))}
           </select>
         </div>
       </div>

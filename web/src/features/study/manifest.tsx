@@ -4,7 +4,5 @@ import { StudyPage } from './study-page';
 
 export const feature: Feature = {
   menu: [],
-  pages: [
-    { path: '/studies/:id', show: (at) => <StudyPage key={at('id')} id={at('id')} /> },
-  ],
+  pages: [{ path: '/studies/:id', show: (at) => <StudyPage key={at('id')} id={at('id')} /> }],
 };

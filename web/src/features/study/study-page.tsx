@@ -4,32 +4,54 @@ import { Link } from 'wouter';
 import { ApiError, studyEventsQuery, studyQuery, type Study } from '@/api';
 import { Badge, Button, Card, Facts, Notice, Progress, Skeleton, useTitle } from '@/ui';
 import { formatCount, formatDateTime, formatShare, isoDateTime, kNone, share } from '@/units';
-import { DeedDialog, type Deed } from './deeds';
-import { Happened } from './happened';
+import { ActionDialog, type StudyAction } from './action-dialog';
+import { Activity } from './activity';
 import { People } from './people';
 import styles from './study-page.module.css';
-import { progressOf } from './words';
+import { progressOf } from './labels';
 
 const kOrder = { random: 'random', balanced: 'balanced, Williams squares' } as const;
-const kRepeat = { at_end: 'at the end', at_once: 'at once', never: 'never' } as const;
+const kRepeat = { at_end: 'at the end', at_once: 'as the next trial', never: 'never' } as const;
 
-const sum = (study: Study, what: 'done' | 'planned' | 'judged' | 'recognised') => study.participants.reduce((total, one) => total + one[what], 0);
+const sum = (study: Study, what: 'done' | 'planned' | 'judged' | 'recognised') =>
+  study.participants.reduce((total, one) => total + one[what], 0);
 
-function Back() { return <p className={styles.back}><Link href="/studies">← Studies</Link></p>; }
+function Back() {
+  return (
+    <p className={styles.back}>
+      <Link href="/studies">← Studies</Link>
+    </p>
+  );
+}
 
-function Head({ study, ask }: { readonly study: Study; readonly ask: (deed: Deed) => void }) {
-  const done = sum(study, 'done'), planned = sum(study, 'planned'), judged = sum(study, 'judged'), recognised = sum(study, 'recognised');
+function Head({ study, ask }: { readonly study: Study; readonly ask: (action: StudyAction) => void }) {
+  const done = sum(study, 'done'),
+    planned = sum(study, 'planned'),
+    judged = sum(study, 'judged'),
+    recognised = sum(study, 'recognised');
   const complete = planned > 0 && done === planned;
   return (
     <>
       <div className={styles.title}>
         <h1>{study.title}</h1>
-        {complete ? <Badge tone="good">complete</Badge> : study.state === 'paused' ? <Badge tone="warn">paused</Badge> : <Badge tone="accent">running</Badge>}
+        {complete ? (
+          <Badge tone="good">complete</Badge>
+        ) : study.state === 'paused' ? (
+          <Badge tone="warn">paused</Badge>
+        ) : (
+          <Badge tone="accent">running</Badge>
+        )}
         {study.participants.some(({ simulated }) => simulated) ? <Badge tone="warn">simulated surgeons</Badge> : null}
-        <span className={styles.deed}>
-          {study.state === 'paused'
-            ? <Button look="solid" onClick={() => ask({ kind: 'resume-study' })}>Go on</Button>
-            : <Button disabled={complete} onClick={() => ask({ kind: 'pause-study' })}>Pause the study</Button>}
+        <span className={styles.action}>
+          {study.state === 'paused' ? (
+            <Button look="solid" onClick={() => ask({ kind: 'resume-study' })}>
+              Resume
+            </Button>
+          ) : (
+            <Button disabled={complete} onClick={() => ask({ kind: 'pause-study' })}>
+              Pause study
+            </Button>
+          )}
         </span>
       </div>
       <div className={styles.progress}>
@@ -40,11 +62,28 @@ function Head({ study, ask }: { readonly study: Study; readonly ask: (deed: Deed
         facts={[
           { name: 'Short name', value: study.id },
           { name: 'Participants', value: formatCount(study.participants.length) },
-          { name: 'Scenarios × repeats', value: `${formatCount(study.scenarios.length)} × ${formatCount(study.repeats)}` },
+          {
+            name: 'Scenarios × repeats',
+            value: `${formatCount(study.scenarios.length)} × ${formatCount(study.repeats)}`,
+          },
           { name: 'Order', value: kOrder[study.ordering] },
-          { name: 'What does not count is repeated', value: kRepeat[study.on_invalid] },
-          { name: 'Recognised', value: judged === 0 ? kNone : `${formatCount(recognised)} of ${formatCount(judged)} (${formatShare(share(recognised / judged))})` },
-          { name: 'Made', value: <><time dateTime={isoDateTime(study.made_utc_us)}>{formatDateTime(study.made_utc_us)}</time> by {study.made_by}</> },
+          { name: 'Invalid trials are repeated', value: kRepeat[study.on_invalid] },
+          {
+            name: 'Recognised',
+            value:
+              judged === 0
+                ? kNone
+                : `${formatCount(recognised)} of ${formatCount(judged)} (${formatShare(share(recognised / judged))})`,
+          },
+          {
+            name: 'Created',
+            value: (
+              <>
+                <time dateTime={isoDateTime(study.made_utc_us)}>{formatDateTime(study.made_utc_us)}</time> by{' '}
+                {study.made_by}
+              </>
+            ),
+          },
         ]}
       />
     </>
@@ -69,19 +108,25 @@ function Failed({ reason, retry }: { readonly reason: Error; readonly retry: () 
   return (
     <div className={styles.page}>
       <Back />
-      {missing
-        ? <Notice tone="warn" title="There is no such study.">The address may be mistyped, or the study is on another server.</Notice>
-        : <Notice tone="bad" title="The study could not be loaded." onRetry={retry}>{reason.message}</Notice>}
+      {missing ? (
+        <Notice tone="warn" title="Study not found.">
+          Check the address. The study may be on another server.
+        </Notice>
+      ) : (
+        <Notice tone="bad" title="The study could not be loaded." onRetry={retry}>
+          {reason.message}
+        </Notice>
+      )}
     </div>
   );
 }
 
-/** Who has done what, live. Which scenarios come next is told to nobody. */
+/** Progress of all participants, live. Scenarios of trials to come are not shown. */
 export function StudyPage({ id }: { readonly id: string }) {
   const query = useQuery(studyQuery(id));
   const events = useQuery(studyEventsQuery(id));
   const client = useQueryClient();
-  const [deed, setDeed] = useState<Deed | null>(null);
+  const [action, setAction] = useState<StudyAction | null>(null);
   const study = query.data;
   useTitle(study?.title ?? 'Study');
   if (query.isPending) return <Waiting />;
@@ -93,13 +138,27 @@ export function StudyPage({ id }: { readonly id: string }) {
   return (
     <div className={styles.page}>
       <Back />
-      <Head study={study} ask={setDeed} />
-      {query.isError ? <Notice tone="bad" title="The study could not be brought up to date." onRetry={() => void query.refetch()}>{query.error.message}</Notice> : null}
-      {study.participants.length === 0
-        ? <Notice title="Nobody is enrolled yet.">Participants appear here as soon as they are.</Notice>
-        : <Card title="Participants"><People study={study} ask={setDeed} /></Card>}
-      <Happened events={events.data?.events} error={events.isError ? events.error : null} retry={() => void events.refetch()} />
-      {deed ? <DeedDialog study={study.id} deed={deed} onChanged={changed} onClose={() => setDeed(null)} /> : null}
+      <Head study={study} ask={setAction} />
+      {query.isError ? (
+        <Notice tone="bad" title="The study could not be refreshed." onRetry={() => void query.refetch()}>
+          {query.error.message}
+        </Notice>
+      ) : null}
+      {study.participants.length === 0 ? (
+        <Notice title="No participants yet.">Participants appear here as soon as they are enrolled.</Notice>
+      ) : (
+        <Card title="Participants">
+          <People study={study} ask={setAction} />
+        </Card>
+      )}
+      <Activity
+        events={events.data?.events}
+        error={events.isError ? events.error : null}
+        retry={() => void events.refetch()}
+      />
+      {action ? (
+        <ActionDialog study={study.id} action={action} onChanged={changed} onClose={() => setAction(null)} />
+      ) : null}
     </div>
   );
 }

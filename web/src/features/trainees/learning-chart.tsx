@@ -13,48 +13,114 @@ function RightChart({ trainee }: { readonly trainee: Trainee }) {
   const last = Math.max(attempts.length, 1);
   const wanted = 1 - rule.adequate;
   return (
-    <Plane across={{ title: 'trial', from: 0, to: last }} up={{ title: 'right, of the last ten, %', from: 0, to: 100 }} height_px={230}
-      summary={`Share right among the last ten trials: ${now === null ? 'too few trials' : formatShare(share(now))} now; ${formatShare(wanted as Share)} is adequate.`}>
-      {(places) => <>
-        <g className={styles.threshold}><line x1={places.x(0)} x2={places.x(last)} y1={places.y(100 * wanted)} y2={places.y(100 * wanted)} /><text x={places.x(0) + 4} y={places.y(100 * wanted) - 4}>adequate</text></g>
-        <path d={curve(running.map((value, i) => [i + 1, value === null ? Number.NaN : 100 * value] as const), places)} className={styles.sum} />
-        {attempts.map(({ number, correct }) => <circle key={number} cx={places.x(number)} cy={places.y(correct ? 100 : 0)} r={3} className={styles.answer} data-right={correct} />)}
-      </>}
+    <Plane
+      across={{ title: 'trial', from: 0, to: last }}
+      up={{ title: 'correct, last ten trials, %', from: 0, to: 100 }}
+      height_px={230}
+      summary={`Share of correct answers in the last ten trials: ${now === null ? 'too few trials' : formatShare(share(now))} now; ${formatShare(wanted as Share)} is adequate.`}
+    >
+      {(places) => (
+        <>
+          <g className={styles.threshold}>
+            <line x1={places.x(0)} x2={places.x(last)} y1={places.y(100 * wanted)} y2={places.y(100 * wanted)} />
+            <text x={places.x(0) + 4} y={places.y(100 * wanted) - 4}>
+              adequate
+            </text>
+          </g>
+          <path
+            d={curve(
+              running.map((value, i) => [i + 1, value === null ? Number.NaN : 100 * value] as const),
+              places,
+            )}
+            className={styles.sum}
+          />
+          {attempts.map(({ number, correct }) => (
+            <circle
+              key={number}
+              cx={places.x(number)}
+              cy={places.y(correct ? 100 : 0)}
+              r={3}
+              className={styles.answer}
+              data-right={correct}
+            />
+          ))}
+        </>
+      )}
     </Plane>
   );
 }
 
 function ScoreChart({ trainee, metric }: { readonly trainee: Trainee; readonly metric: MetricFacts }) {
-  const points = trainee.attempts.flatMap(({ number, scores }) => { const value = scores[metric.id]; return value === null || value === undefined ? [] : [{ number, value, shown: Number(measureDigits(value, metric.unit).replaceAll(/[^\d.-]/g, '')) }]; });
+  const points = trainee.attempts.flatMap(({ number, scores }) => {
+    const value = scores[metric.id];
+    return value === null || value === undefined
+      ? []
+      : [{ number, value, shown: Number(measureDigits(value, metric.unit).replaceAll(/[^\d.-]/g, '')) }];
+  });
   const fit = trainee.scores.find(({ score }) => score === metric.id);
   const last = Math.max(trainee.attempts.length, 1);
-  const most = points.reduce((top, { shown }) => Math.max(top, shown), 1e-9), least = Math.min(0, ...points.map(({ shown }) => shown));
+  const most = points.reduce((top, { shown }) => Math.max(top, shown), 1e-9),
+    least = Math.min(0, ...points.map(({ shown }) => shown));
   const mean = points.reduce((sum, { shown }) => sum + shown, 0) / Math.max(points.length, 1);
-  const fitted = fit?.first !== undefined && fit.rate !== undefined
-    ? Array.from({ length: last }, (_, i) => [i + 1, (fit.first ?? 0) * (i + 1) ** -(fit.rate ?? 0) * mean] as const) : [];
-  const said = fit?.share_left_when_trials_double;
+  const fitted =
+    fit?.first !== undefined && fit.rate !== undefined
+      ? Array.from({ length: last }, (_, i) => [i + 1, (fit.first ?? 0) * (i + 1) ** -(fit.rate ?? 0) * mean] as const)
+      : [];
+  const ratio = fit?.share_left_when_trials_double;
   return (
     <>
-      <Plane across={{ title: 'trial', from: 0, to: last }} up={{ title: `${metric.label}${shownUnit(metric.unit) === '' ? '' : `, ${shownUnit(metric.unit)}`}`, from: least, to: most * 1.08 }} height_px={230}
-        summary={`${metric.label} over ${points.length} trials.${said === undefined ? '' : ` When trials double, ${formatShare(share(said))} of it is left.`}`}>
-        {(places) => <>
-          {fitted.length > 1 ? <path d={curve(fitted, places)} className={styles.fitted} /> : null}
-          {points.map(({ number, shown }) => <circle key={number} cx={places.x(number)} cy={places.y(shown)} r={3.5} className={styles.point} />)}
-        </>}
+      <Plane
+        across={{ title: 'trial', from: 0, to: last }}
+        up={{
+          title: `${metric.label}${shownUnit(metric.unit) === '' ? '' : `, ${shownUnit(metric.unit)}`}`,
+          from: least,
+          to: most * 1.08,
+        }}
+        height_px={230}
+        summary={`${metric.label} over ${points.length} trials.${ratio === undefined ? '' : ` Each doubling of the number of trials reduces it to ${formatShare(share(ratio))}.`}`}
+      >
+        {(places) => (
+          <>
+            {fitted.length > 1 ? <path d={curve(fitted, places)} className={styles.fitted} /> : null}
+            {points.map(({ number, shown }) => (
+              <circle key={number} cx={places.x(number)} cy={places.y(shown)} r={3.5} className={styles.point} />
+            ))}
+          </>
+        )}
       </Plane>
-      <p className={styles.muted}>{said === undefined ? fit?.note ?? '' : `When trials double, ${formatShare(share(said))} of it is left (p = ${formatFigure(fit?.rate_p ?? null, '', 2)}); scenarios are evened out.`}</p>
+      <p className={styles.muted}>
+        {ratio === undefined
+          ? (fit?.note ?? '')
+          : `Each doubling of the number of trials reduces it to ${formatShare(share(ratio))} (p = ${formatFigure(fit?.rate_p ?? null, '', 2)}), adjusted for scenario.`}
+      </p>
     </>
   );
 }
 
-/** The own curve: right answers, or a measure chosen. */
-export function LearningChart({ trainee, metrics }: { readonly trainee: Trainee; readonly metrics: readonly MetricFacts[] }) {
+/** Learning curve: correct answers, or a chosen measure. */
+export function LearningChart({
+  trainee,
+  metrics,
+}: {
+  readonly trainee: Trainee;
+  readonly metrics: readonly MetricFacts[];
+}) {
   const [picked, setPicked] = useState('right');
   const known = trainee.scores.flatMap(({ score }) => metrics.filter(({ id }) => id === score));
   const metric = known.find(({ id }) => id === picked);
   return (
     <div className={styles.stack}>
-      <div className={styles.pick}><Select label={<span className="hidden-visually">What is shown</span>} value={picked} onChange={(event) => setPicked(event.target.value)} options={[{ value: 'right', text: 'Right answers' }, ...known.map(({ id, label }) => ({ value: id, text: label }))]} /></div>
+      <div className={styles.pick}>
+        <Select
+          label={<span className="hidden-visually">Measure</span>}
+          value={picked}
+          onChange={(event) => setPicked(event.target.value)}
+          options={[
+            { value: 'right', text: 'Correct answers' },
+            ...known.map(({ id, label }) => ({ value: id, text: label })),
+          ]}
+        />
+      </div>
       {metric ? <ScoreChart trainee={trainee} metric={metric} /> : <RightChart trainee={trainee} />}
     </div>
   );

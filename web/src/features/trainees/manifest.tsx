@@ -17,7 +17,7 @@ function OwnPage() {
 export const feature: Feature = {
   menu: [
     { to: '/trainees', name: 'Trainees', roles: ['admin', 'director', 'faculty'], order: 60 },
-    { to: '/me', name: 'My curve', roles: ['trainee'], order: 70 },
+    { to: '/me', name: 'My progress', roles: ['trainee'], order: 70 },
   ],
   pages: [
     { path: '/me', show: () => <OwnPage /> },

@@ -17,20 +17,45 @@ export function Whisker({ value, low, high }: { readonly value: number; readonly
 
 const kTone: Record<string, 'good' | 'bad' | 'neutral'> = { strength: 'good', weakness: 'bad' };
 
-/** Right answers by scenario, each with its interval. */
+/** Correct answers by scenario, each with its interval. */
 export function ByScenario({ trainee }: { readonly trainee: Trainee }) {
   return (
-    <Scroll label="Right answers by scenario">
+    <Scroll label="Correct answers by scenario">
       <table className={styles.table}>
-        <caption className="hidden-visually">Right answers by scenario</caption>
-        <thead><tr><th scope="col">Scenario</th><th scope="col" className={styles.number}>Right</th><th scope="col">Share and its 95 % interval</th><th scope="col">Said of it</th></tr></thead>
+        <caption className="hidden-visually">Correct answers by scenario</caption>
+        <thead>
+          <tr>
+            <th scope="col">Scenario</th>
+            <th scope="col" className={styles.number}>
+              Correct
+            </th>
+            <th scope="col">Share with 95 % interval</th>
+            <th scope="col">Assessment</th>
+          </tr>
+        </thead>
         <tbody>
           {trainee.scenarios.map((one) => (
             <tr key={one.scenario}>
               <th scope="row">{one.scenario}</th>
-              <td className={styles.number}>{formatCount(one.right)} of {formatCount(one.trials)}</td>
-              <td>{one.share === undefined ? kNone : <span className={styles.interval}><Whisker value={one.share} low={one.wilson_low ?? 0} high={one.wilson_high ?? 1} /><span>{formatShare(one.share)} ({one.wilson_low === undefined ? '' : formatShare(one.wilson_low)}–{one.wilson_high === undefined ? '' : formatShare(one.wilson_high)})</span></span>}</td>
-              <td><Badge tone={kTone[one.verdict] ?? 'neutral'}>{one.verdict}</Badge></td>
+              <td className={styles.number}>
+                {formatCount(one.right)} of {formatCount(one.trials)}
+              </td>
+              <td>
+                {one.share === undefined ? (
+                  kNone
+                ) : (
+                  <span className={styles.interval}>
+                    <Whisker value={one.share} low={one.wilson_low ?? 0} high={one.wilson_high ?? 1} />
+                    <span>
+                      {formatShare(one.share)} ({one.wilson_low === undefined ? '' : formatShare(one.wilson_low)}–
+                      {one.wilson_high === undefined ? '' : formatShare(one.wilson_high)})
+                    </span>
+                  </span>
+                )}
+              </td>
+              <td>
+                <Badge tone={kTone[one.verdict] ?? 'neutral'}>{one.verdict}</Badge>
+              </td>
             </tr>
           ))}
         </tbody>
@@ -39,25 +64,40 @@ export function ByScenario({ trainee }: { readonly trainee: Trainee }) {
   );
 }
 
-/** Stated confidence against what came of it. */
+/** Stated confidence against the share of correct answers. */
 export function Calibration({ bins }: { readonly bins: readonly CalibrationBin[] }) {
-  if (bins.length === 0) return <p className={styles.muted}>No confidence was stated with the answers.</p>;
-  const summary = bins.map((bin) => `said ${formatShare(bin.stated)}: ${formatCount(bin.right)} of ${formatCount(bin.trials)} right`).join('; ');
+  if (bins.length === 0) return <p className={styles.muted}>The answers contain no confidence.</p>;
+  const summary = bins
+    .map((bin) => `stated ${formatShare(bin.stated)}: ${formatCount(bin.right)} of ${formatCount(bin.trials)} correct`)
+    .join('; ');
   return (
-    <Plane across={{ title: 'said to be sure, %', from: 40, to: 100 }} up={{ title: 'right, %', from: 0, to: 100 }} height_px={230} summary={`Calibration of confidence: ${summary}.`}>
-      {(places) => <>
-        <line x1={places.x(40)} y1={places.y(40)} x2={places.x(100)} y2={places.y(100)} className={styles.diagonal} />
-        {bins.map((bin) => {
-          const x = places.x(Math.max(40, 100 * bin.stated));
-          return (
-            <g key={bin.low} className={styles.bin}>
-              <line x1={x} x2={x} y1={places.y(100 * bin.wilson_low)} y2={places.y(100 * bin.wilson_high)} />
-              <circle cx={x} cy={places.y((100 * bin.right) / bin.trials)} r={4 + Math.min(6, Math.sqrt(bin.trials))} />
-              <text x={x + 10} y={places.y((100 * bin.right) / bin.trials) - 8}>{formatCount(bin.trials)}</text>
-            </g>
-          );
-        })}
-      </>}
+    <Plane
+      across={{ title: 'stated confidence, %', from: 40, to: 100 }}
+      up={{ title: 'correct, %', from: 0, to: 100 }}
+      height_px={230}
+      summary={`Calibration of confidence: ${summary}.`}
+    >
+      {(places) => (
+        <>
+          <line x1={places.x(40)} y1={places.y(40)} x2={places.x(100)} y2={places.y(100)} className={styles.diagonal} />
+          {bins.map((bin) => {
+            const x = places.x(Math.max(40, 100 * bin.stated));
+            return (
+              <g key={bin.low} className={styles.bin}>
+                <line x1={x} x2={x} y1={places.y(100 * bin.wilson_low)} y2={places.y(100 * bin.wilson_high)} />
+                <circle
+                  cx={x}
+                  cy={places.y((100 * bin.right) / bin.trials)}
+                  r={4 + Math.min(6, Math.sqrt(bin.trials))}
+                />
+                <text x={x + 10} y={places.y((100 * bin.right) / bin.trials) - 8}>
+                  {formatCount(bin.trials)}
+                </text>
+              </g>
+            );
+          })}
+        </>
+      )}
     </Plane>
   );
 }

@@ -1,17 +1,27 @@
-/** Who is shown, who is due, how the last ten went. Pure. */
+/** Filter of the list of trainees, inactivity, and the running share of correct answers. Pure. */
 import type { TraineeSummary } from '@/api';
 
 const kDay_us = 86_400_000_000;
-const kDue_days = 60;
+const kInactive_days = 60;
 
-export type Show = 'all' | TraineeSummary['state'] | 'due';
+export type Show = 'all' | TraineeSummary['state'] | 'inactive';
 
-/** Somebody who has not been at a station for two months is due. */
-export const isDue = (one: Pick<TraineeSummary, 'last_utc_us'>, now_utc_us: number) => now_utc_us - one.last_utc_us > kDue_days * kDay_us;
+/** No trial for two months. */
+export const isInactive = (one: Pick<TraineeSummary, 'last_utc_us'>, now_utc_us: number) =>
+  now_utc_us - one.last_utc_us > kInactive_days * kDay_us;
 
-export function shownOf(trainees: readonly TraineeSummary[], show: Show, search: string, now_utc_us: number): TraineeSummary[] {
+export function shownOf(
+  trainees: readonly TraineeSummary[],
+  show: Show,
+  search: string,
+  now_utc_us: number,
+): TraineeSummary[] {
   const wanted = search.trim().toLowerCase();
-  return trainees.filter((one) => (show === 'all' || (show === 'due' ? isDue(one, now_utc_us) : one.state === show)) && one.trainee.toLowerCase().includes(wanted));
+  return trainees.filter(
+    (one) =>
+      (show === 'all' || (show === 'inactive' ? isInactive(one, now_utc_us) : one.state === show)) &&
+      one.trainee.toLowerCase().includes(wanted),
+  );
 }
 
 const kWindow = 10;

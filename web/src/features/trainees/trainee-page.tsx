@@ -7,20 +7,44 @@ import { CusumChart } from './cusum-chart';
 import { LearningChart } from './learning-chart';
 import { ByScenario, Calibration } from './recognition';
 import styles from './trainees.module.css';
-import { kCalibration, kCusum, kInterval, kRelapse, kState } from './words';
+import { kCalibration, kCusum, kInterval, kRelapse, kStateLabels } from './terms';
 
 function Head({ trainee }: { readonly trainee: Trainee }) {
-  const state = kState[trainee.state];
+  const state = kStateLabels[trainee.state];
   return (
-    <Card title="Standing" aside={<Badge tone={state.tone}>{state.word}</Badge>}>
+    <Card title="Summary" aside={<Badge tone={state.tone}>{state.label}</Badge>}>
       <div className={styles.stack}>
-        <Facts facts={[
-          { name: <Term definition={kInterval}>Right answers</Term>, value: <strong className={styles.big}>{formatCount(trainee.right)} of {formatCount(trainee.trials)}</strong> },
-          { name: 'Share', value: <><strong className={styles.big}>{formatShare(trainee.share)}</strong> <span className={styles.muted}>{formatShare(trainee.wilson_low)}–{formatShare(trainee.wilson_high)}</span></> },
-          ...(trainee.next.scenario === '' ? [] : [{ name: 'Next case', value: <strong>{trainee.next.scenario}</strong> }]),
-          { name: 'Last trial', value: formatDateTime(trainee.last_utc_us) },
-        ]} />
-        <p>{state.says} {trainee.certified ? 'Competence can be certified: ' : 'Competence cannot be certified: '}{trainee.why}.</p>
+        <Facts
+          facts={[
+            {
+              name: <Term definition={kInterval}>Correct answers</Term>,
+              value: (
+                <strong className={styles.big}>
+                  {formatCount(trainee.right)} of {formatCount(trainee.trials)}
+                </strong>
+              ),
+            },
+            {
+              name: 'Share',
+              value: (
+                <>
+                  <strong className={styles.big}>{formatShare(trainee.share)}</strong>{' '}
+                  <span className={styles.muted}>
+                    {formatShare(trainee.wilson_low)}–{formatShare(trainee.wilson_high)}
+                  </span>
+                </>
+              ),
+            },
+            ...(trainee.next.scenario === ''
+              ? []
+              : [{ name: 'Next case', value: <strong>{trainee.next.scenario}</strong> }]),
+            { name: 'Last trial', value: formatDateTime(trainee.last_utc_us) },
+          ]}
+        />
+        <p>
+          {state.description} {trainee.certified ? 'Competence can be certified: ' : 'Competence cannot be certified: '}
+          {trainee.why}.
+        </p>
         {trainee.next.why === '' ? null : <p className={styles.muted}>Next: {trainee.next.why}.</p>}
       </div>
     </Card>
@@ -30,44 +54,118 @@ function Head({ trainee }: { readonly trainee: Trainee }) {
 function Attempts({ trainee, mayOpen }: { readonly trainee: Trainee; readonly mayOpen: boolean }) {
   return (
     <Card title="Trials" className={styles.unprinted ?? ''}>
-      <Table<Attempt> caption="Trials in order, newest first" rows={[...trainee.attempts].reverse()} keyOf={({ trial }) => trial} empty="There are none." columns={[
-        { name: 'Trial', cell: (one) => (mayOpen ? <Link href={`/trials/${encodeURIComponent(one.trial)}`}>{formatCount(one.number)}</Link> : formatCount(one.number)) },
-        { name: 'When', cell: (one) => formatDateTime(one.started_utc_us) },
-        { name: 'Scenario', cell: (one) => one.scenario },
-        { name: 'Answer', cell: (one) => <Badge tone={one.correct ? 'good' : 'bad'}>{one.correct ? '✓ right' : '✗ wrong'}</Badge> },
-        { name: 'Said to be sure', cell: (one) => (one.confidence === null ? '–' : formatShare(one.confidence)), number: true },
-      ]} />
+      <Table<Attempt>
+        caption="Trials in order, newest first"
+        rows={[...trainee.attempts].reverse()}
+        keyOf={({ trial }) => trial}
+        empty="No trials."
+        columns={[
+          {
+            name: 'Trial',
+            cell: (one) =>
+              mayOpen ? (
+                <Link href={`/trials/${encodeURIComponent(one.trial)}`}>{formatCount(one.number)}</Link>
+              ) : (
+                formatCount(one.number)
+              ),
+          },
+          { name: 'Started', cell: (one) => formatDateTime(one.started_utc_us) },
+          { name: 'Scenario', cell: (one) => one.scenario },
+          {
+            name: 'Answer',
+            cell: (one) => (
+              <Badge tone={one.correct ? 'good' : 'bad'}>{one.correct ? '✓ correct' : '✗ incorrect'}</Badge>
+            ),
+          },
+          {
+            name: 'Confidence',
+            cell: (one) => (one.confidence === null ? '–' : formatShare(one.confidence)),
+            number: true,
+          },
+        ]}
+      />
     </Card>
   );
 }
 
-/** One trainee on one page that prints. */
+/** One trainee on one printable page. */
 export function TraineePage({ name }: { readonly name: string }) {
   useTitle(name);
-  const query = useQuery(traineeQuery(name)), metrics = useQuery(metricsQuery).data?.metrics ?? [];
+  const query = useQuery(traineeQuery(name)),
+    metrics = useQuery(metricsQuery).data?.metrics ?? [];
   const role = useQuery({ ...sessionQuery, enabled: false }).data?.role;
   const trainee = query.data;
-  const back = role === 'trainee' ? null : <p className={styles.back}><Link href="/trainees">← Trainees</Link></p>;
+  const back =
+    role === 'trainee' ? null : (
+      <p className={styles.back}>
+        <Link href="/trainees">← Trainees</Link>
+      </p>
+    );
   if (query.isError) {
     const missing = query.error instanceof ApiError && query.error.code === 'not_found';
-    return <div className={styles.page}>{back}{missing
-      ? <Notice title={role === 'trainee' ? 'There is nothing to show yet.' : 'Nobody of this name has a scored trial.'}>{role === 'trainee' ? 'Your curve appears here once trials of yours are scored and their results are released.' : 'The address may be mistyped, or the trials are not scored yet.'}</Notice>
-      : <Notice tone="bad" title="The page could not be loaded." onRetry={() => void query.refetch()}>{query.error.message}</Notice>}</div>;
+    return (
+      <div className={styles.page}>
+        {back}
+        {missing ? (
+          <Notice title={role === 'trainee' ? 'No results yet.' : 'No scored trials for this name.'}>
+            {role === 'trainee'
+              ? 'Your progress appears here after your trials are scored and the results are released.'
+              : 'Check the address. The trials may not be scored yet.'}
+          </Notice>
+        ) : (
+          <Notice tone="bad" title="The page could not be loaded." onRetry={() => void query.refetch()}>
+            {query.error.message}
+          </Notice>
+        )}
+      </div>
+    );
   }
-  if (!trainee) return <div className={styles.page}>{back}<Skeleton width="280px" height="36px" /><Skeleton height="140px" /><Skeleton height="320px" /></div>;
+  if (!trainee)
+    return (
+      <div className={styles.page}>
+        {back}
+        <Skeleton width="280px" height="36px" />
+        <Skeleton height="140px" />
+        <Skeleton height="320px" />
+      </div>
+    );
   return (
     <div className={styles.page}>
       {back}
       <div className={styles.head}>
-        <h1>{trainee.trainee} {trainee.simulated ? <Badge tone="warn">simulated</Badge> : null}</h1>
+        <h1>
+          {trainee.trainee} {trainee.simulated ? <Badge tone="warn">simulated</Badge> : null}
+        </h1>
         <Button onClick={() => window.print()}>Print this page</Button>
       </div>
       <Head trainee={trainee} />
       <div className={styles.two}>
-        <Card title="Learning"><LearningChart trainee={trainee} metrics={metrics} /></Card>
-        <Card title="Competence" aside={<Term align="end" definition={`${kCusum} ${kRelapse}`}>how to read it</Term>}><CusumChart trainee={trainee} /></Card>
-        <Card title="Recognition by scenario"><ByScenario trainee={trainee} /></Card>
-        <Card title="Confidence" aside={<Term align="end" definition={kCalibration}>how to read it</Term>}><Calibration bins={trainee.calibration} /></Card>
+        <Card title="Learning">
+          <LearningChart trainee={trainee} metrics={metrics} />
+        </Card>
+        <Card
+          title="Competence"
+          aside={
+            <Term align="end" definition={`${kCusum} ${kRelapse}`}>
+              how to read this chart
+            </Term>
+          }
+        >
+          <CusumChart trainee={trainee} />
+        </Card>
+        <Card title="Recognition by scenario">
+          <ByScenario trainee={trainee} />
+        </Card>
+        <Card
+          title="Confidence"
+          aside={
+            <Term align="end" definition={kCalibration}>
+              how to read this chart
+            </Term>
+          }
+        >
+          <Calibration bins={trainee.calibration} />
+        </Card>
       </div>
       <Attempts trainee={trainee} mayOpen />
     </div>

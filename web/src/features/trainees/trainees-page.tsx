@@ -5,11 +5,11 @@ import { traineesQuery, type TraineeSummary } from '@/api';
 import { Badge, Card, Field, Notice, Select, Table, Term, useTitle } from '@/ui';
 import { formatCount, formatDateTime, formatShare } from '@/units';
 import { Whisker } from './recognition';
-import { isDue, shownOf, type Show } from './standing';
+import { isInactive, shownOf, type Show } from './standing';
 import styles from './trainees.module.css';
-import { kCusum, kInterval, kState } from './words';
+import { kCusum, kInterval, kStateLabels } from './terms';
 
-/** Who is on track, who relapsed, who is due. */
+/** The list of trainees, filtered by state. */
 export function TraineesPage() {
   useTitle('Trainees');
   const query = useQuery(traineesQuery);
@@ -21,26 +21,93 @@ export function TraineesPage() {
   const rule = query.data?.rule;
   return (
     <div className={styles.page}>
-      <div><h1>Trainees</h1><p className={styles.lead}>Who is on track, who has relapsed, who has not been at a station for two months.</p></div>
-      {query.isError ? <Notice tone="bad" title="The trainees could not be loaded." onRetry={() => void query.refetch()}>{query.error.message}</Notice> : null}
-      <Card title={all ? `${formatCount(all.length)} ${all.length === 1 ? 'trainee' : 'trainees'}` : 'Trainees'} aside={
-        <span className={styles.tools}>
-          <Select label={<span className="hidden-visually">Shown</span>} value={show} onChange={(event) => setShow(event.target.value as Show)} options={[
-            { value: 'all', text: 'All' }, { value: 'relapsed', text: `Relapsed (${tally('relapsed')})` }, { value: 'learning', text: `Learning (${tally('learning')})` },
-            { value: 'competent', text: `Competent (${tally('competent')})` }, { value: 'due', text: `Due (${tally('due')})` }]} />
-          <Field label={<span className="hidden-visually">Find a name</span>} placeholder="Find a name" type="search" value={search} onChange={(event) => setSearch(event.target.value)} />
-        </span>
-      }>
-        <Table<TraineeSummary> caption="Trainees" minWidth={820} rows={all && shownOf(all, show, search, now)} keyOf={({ trainee }) => trainee}
-          empty={all?.length === 0 ? 'Nobody has a scored trial yet.' : 'Nobody is like that.'} columns={[
-            { name: 'Trainee', cell: (one) => <><Link href={`/trainees/${encodeURIComponent(one.trainee)}`}>{one.trainee}</Link> {one.simulated ? <Badge tone="warn">simulated</Badge> : null}</> },
-            { name: <Term definition={kCusum}>State</Term>, cell: (one) => <Badge tone={kState[one.state].tone}>{kState[one.state].word}</Badge> },
+      <div>
+        <h1>Trainees</h1>
+        <p className={styles.lead}>Which trainees are on track, have relapsed, or have had no trial for two months.</p>
+      </div>
+      {query.isError ? (
+        <Notice tone="bad" title="The trainees could not be loaded." onRetry={() => void query.refetch()}>
+          {query.error.message}
+        </Notice>
+      ) : null}
+      <Card
+        title={all ? `${formatCount(all.length)} ${all.length === 1 ? 'trainee' : 'trainees'}` : 'Trainees'}
+        aside={
+          <span className={styles.tools}>
+            <Select
+              label={<span className="hidden-visually">Filter</span>}
+              value={show}
+              onChange={(event) => setShow(event.target.value as Show)}
+              options={[
+                { value: 'all', text: 'All' },
+                { value: 'relapsed', text: `Relapsed (${tally('relapsed')})` },
+                { value: 'learning', text: `Learning (${tally('learning')})` },
+                { value: 'competent', text: `Competent (${tally('competent')})` },
+                { value: 'inactive', text: `Inactive for two months (${tally('inactive')})` },
+              ]}
+            />
+            <Field
+              label={<span className="hidden-visually">Search by name</span>}
+              placeholder="Search by name"
+              type="search"
+              value={search}
+              onChange={(event) => setSearch(event.target.value)}
+            />
+          </span>
+        }
+      >
+        <Table<TraineeSummary>
+          caption="Trainees"
+          minWidth={820}
+          rows={all && shownOf(all, show, search, now)}
+          keyOf={({ trainee }) => trainee}
+          empty={all?.length === 0 ? 'No scored trials yet.' : 'No trainees match the filter.'}
+          columns={[
+            {
+              name: 'Trainee',
+              cell: (one) => (
+                <>
+                  <Link href={`/trainees/${encodeURIComponent(one.trainee)}`}>{one.trainee}</Link>{' '}
+                  {one.simulated ? <Badge tone="warn">simulated</Badge> : null}
+                </>
+              ),
+            },
+            {
+              name: <Term definition={kCusum}>State</Term>,
+              cell: (one) => <Badge tone={kStateLabels[one.state].tone}>{kStateLabels[one.state].label}</Badge>,
+            },
             { name: 'Trials', cell: (one) => formatCount(one.trials), number: true },
-            { name: <Term definition={kInterval}>Right</Term>, cell: (one) => <span className={styles.interval}><Whisker value={one.share} low={one.wilson_low} high={one.wilson_high} /><span>{formatShare(one.share)} ({formatShare(one.wilson_low)}–{formatShare(one.wilson_high)})</span></span> },
+            {
+              name: <Term definition={kInterval}>Correct</Term>,
+              cell: (one) => (
+                <span className={styles.interval}>
+                  <Whisker value={one.share} low={one.wilson_low} high={one.wilson_high} />
+                  <span>
+                    {formatShare(one.share)} ({formatShare(one.wilson_low)}–{formatShare(one.wilson_high)})
+                  </span>
+                </span>
+              ),
+            },
             { name: 'Next', cell: (one) => one.next.scenario },
-            { name: 'Last trial', cell: (one) => <>{formatDateTime(one.last_utc_us)} {isDue(one, now) ? <Badge tone="warn">due</Badge> : null}</> },
-          ]} />
-        {rule ? <p className={styles.muted}>Judged by failure rates of {formatShare(rule.adequate)} (adequate) and {formatShare(rule.inadequate)} (inadequate). {rule.trials === 0 ? 'No number of trials tells them apart.' : `It takes at least ${formatCount(rule.trials)} trials to certify anybody.`}</p> : null}
+            {
+              name: 'Last trial',
+              cell: (one) => (
+                <>
+                  {formatDateTime(one.last_utc_us)} {isInactive(one, now) ? <Badge tone="warn">inactive</Badge> : null}
+                </>
+              ),
+            },
+          ]}
+        />
+        {rule ? (
+          <p className={styles.muted}>
+            Assessed with failure rates of {formatShare(rule.adequate)} (adequate) and {formatShare(rule.inadequate)}{' '}
+            (inadequate).{' '}
+            {rule.trials === 0
+              ? 'No number of trials can distinguish the two.'
+              : `Certification needs at least ${formatCount(rule.trials)} trials.`}
+          </p>
+        ) : null}
       </Card>
     </div>
   );

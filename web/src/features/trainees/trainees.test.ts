@@ -1,18 +1,29 @@
 import { describe, expect, it } from 'vitest';
 import type { TraineeSummary } from '@/api';
 import { share, utcMicroseconds } from '@/units';
-import { isDue, runningShare, shownOf } from './standing';
+import { isInactive, runningShare, shownOf } from './standing';
 
 const one = (changes: Partial<TraineeSummary>): TraineeSummary => ({
-  trainee: 'S01', trials: 12, right: 9, share: share(0.75), wilson_low: share(0.47), wilson_high: share(0.91), state: 'learning', certified: false, why: '',
-  next: { scenario: 'hard', why: '' }, simulated: false, last_utc_us: utcMicroseconds(0), ...changes,
+  trainee: 'S01',
+  trials: 12,
+  right: 9,
+  share: share(0.75),
+  wilson_low: share(0.47),
+  wilson_high: share(0.91),
+  state: 'learning',
+  certified: false,
+  why: '',
+  next: { scenario: 'hard', why: '' },
+  simulated: false,
+  last_utc_us: utcMicroseconds(0),
+  ...changes,
 });
 const kDay_us = 86_400_000_000;
 
 describe('the list of trainees', () => {
-  it('has as due who was not there for more than sixty days', () => {
-    expect(isDue(one({}), 60 * kDay_us)).toBe(false);
-    expect(isDue(one({}), 61 * kDay_us)).toBe(true);
+  it('calls a trainee inactive after more than sixty days without a trial', () => {
+    expect(isInactive(one({}), 60 * kDay_us)).toBe(false);
+    expect(isInactive(one({}), 61 * kDay_us)).toBe(true);
   });
 
   it('is narrowed by state and by name', () => {

@@ -11,7 +11,8 @@ export function breachMarks(curve: ForceDepth | undefined): Mark[] {
   let deepest_m = -Infinity;
   curve.mode.forEach((mode, i) => {
     const depth_m = curve.depth_m[i] ?? 0;
-    if (mode === 'breach' && curve.mode[i - 1] !== 'breach' && depth_m >= deepest_m) marks.push({ t_s: curve.t_s[i] ?? 0, label: 'breach' });
+    if (mode === 'breach' && curve.mode[i - 1] !== 'breach' && depth_m >= deepest_m)
+      marks.push({ t_s: curve.t_s[i] ?? 0, label: 'breach' });
     deepest_m = Math.max(deepest_m, depth_m);
   });
   return marks;

@@ -1,4 +1,4 @@
-/** What a burr made, in plain words: from the measures of a trial that drilled. */
+/** Sentences about the channel that a burr drilled, from the measures of the trial. */
 import type { Metric } from '@/api';
 import { formatMeasure, kNone } from '@/units';
 
@@ -20,10 +20,20 @@ export function channelOf(metrics: readonly Metric[]): Channel | null {
     return metric && metric.value !== null ? formatMeasure(metric.value, metric.unit) : kNone;
   };
   const beyond = byId.get('channel_breach');
-  const rest = { entry: shown('channel_entry_offset'), direction: shown('channel_angle'), end: shown('channel_beyond_end'), removed: shown('drilled_volume') };
-  if (!beyond || beyond.value === null) return { outcome: 'unknown', headline: beyond ? `Not told: ${beyond.note}` : 'The channel was not measured', ...rest };
+  const rest = {
+    entry: shown('channel_entry_offset'),
+    direction: shown('channel_angle'),
+    end: shown('channel_beyond_end'),
+    removed: shown('drilled_volume'),
+  };
+  if (!beyond || beyond.value === null)
+    return {
+      outcome: 'unknown',
+      headline: beyond ? `Not assessed: ${beyond.note}` : 'The channel was not measured',
+      ...rest,
+    };
   const by = formatMeasure(Math.abs(beyond.value), beyond.unit);
   return beyond.value > 0
     ? { outcome: 'out', headline: `Left the bone, ${beyond.note}, by ${by}`, ...rest }
-    : { outcome: 'within', headline: `Within the bone, ${by} left, ${beyond.note}`, ...rest };
+    : { outcome: 'within', headline: `Within the bone: ${by} of bone remains, ${beyond.note}`, ...rest };
 }

@@ -6,7 +6,5 @@ const TrialPage = lazy(() => import('./index'));
 
 export const feature: Feature = {
   menu: [],
-  pages: [
-    { path: '/trials/:id', show: (at) => <TrialPage key={at('id')} id={at('id')} /> },
-  ],
+  pages: [{ path: '/trials/:id', show: (at) => <TrialPage key={at('id')} id={at('id')} /> }],
 };

@@ -15,7 +15,10 @@ export const kKinds = [
   { id: 'torque_z', symbol: 'T', index: 'z', label: 'Twisting torque' },
 ] as const;
 
-export interface TableRow { readonly kind: (typeof kKinds)[number]; readonly cells: readonly (Metric | undefined)[] }
+export interface TableRow {
+  readonly kind: (typeof kKinds)[number];
+  readonly cells: readonly (Metric | undefined)[];
+}
 
 /** Rows of the published layout, and all measures that are not in it, in the server's order. */
 export function arranged(metrics: readonly Metric[]): { table: TableRow[]; others: Metric[] } {
@@ -29,7 +32,8 @@ export function arranged(metrics: readonly Metric[]): { table: TableRow[]; other
 export function shown(metric: Metric): string {
   const { id, value, unit } = metric;
   if (value === null) return kNone;
-  if (id === 'answer_right') return value === 1 ? 'right' : 'wrong';
-  if (unit === '1' && (id.endsWith('_share') || id.startsWith('wall_coverage'))) return formatShare(share(value), value > 0 && value < 0.01 ? 3 : 0);
+  if (id === 'answer_right') return value === 1 ? 'correct' : 'incorrect';
+  if (unit === '1' && (id.endsWith('_share') || id.startsWith('wall_coverage')))
+    return formatShare(share(value), value > 0 && value < 0.01 ? 3 : 0);
   return formatMeasure(value, unit);
 }

@@ -5,14 +5,26 @@ import { arranged, kStatistics, shown, type TableRow } from './measure-rows';
 import styles from './measures.module.css';
 
 function Definition({ metric }: { readonly metric: Metric }) {
-  return <>{metric.definition} <span className={styles.source}>Source: {metric.source}.</span>{metric.note === '' ? null : <> <em>{metric.note}</em></>}</>;
+  return (
+    <>
+      {metric.definition} <span className={styles.source}>Source: {metric.source}.</span>
+      {metric.note === '' ? null : (
+        <>
+          {' '}
+          <em>{metric.note}</em>
+        </>
+      )}
+    </>
+  );
 }
 
 function Cell({ metric }: { readonly metric: Metric | undefined }) {
   if (!metric) return <td className={styles.number}>{kNone}</td>;
   return (
     <td className={styles.number} data-metric={metric.id}>
-      <Term align="end" definition={<Definition metric={metric} />}>{measureDigits(metric.value, metric.unit)}</Term>
+      <Term align="end" definition={<Definition metric={metric} />}>
+        {measureDigits(metric.value, metric.unit)}
+      </Term>
     </td>
   );
 }
@@ -25,15 +37,27 @@ function PublishedTable({ rows }: { readonly rows: readonly TableRow[] }) {
         <tr>
           <th scope="col">Part</th>
           <th scope="col">Unit</th>
-          {kStatistics.map(({ id, label }) => <th key={id} scope="col" className={styles.number}>{label}</th>)}
+          {kStatistics.map(({ id, label }) => (
+            <th key={id} scope="col" className={styles.number}>
+              {label}
+            </th>
+          ))}
         </tr>
       </thead>
       <tbody>
         {rows.map(({ kind, cells }) => (
           <tr key={kind.id}>
-            <th scope="row">{kind.label} <span className={styles.symbol}>{kind.symbol}<sub>{kind.index}</sub></span></th>
+            <th scope="row">
+              {kind.label}{' '}
+              <span className={styles.symbol}>
+                {kind.symbol}
+                <sub>{kind.index}</sub>
+              </span>
+            </th>
             <td>{shownUnit(cells.find(Boolean)?.unit ?? '')}</td>
-            {cells.map((metric, index) => <Cell key={kStatistics[index]?.id} metric={metric} />)}
+            {cells.map((metric, index) => (
+              <Cell key={kStatistics[index]?.id} metric={metric} />
+            ))}
           </tr>
         ))}
       </tbody>
@@ -45,12 +69,24 @@ function Others({ metrics, caption }: { readonly metrics: readonly Metric[]; rea
   return (
     <table className={styles.table}>
       <caption>{caption}</caption>
-      <thead><tr><th scope="col">Measure</th><th scope="col" className={styles.number}>Value</th><th scope="col">Remark</th></tr></thead>
+      <thead>
+        <tr>
+          <th scope="col">Measure</th>
+          <th scope="col" className={styles.number}>
+            Value
+          </th>
+          <th scope="col">Remark</th>
+        </tr>
+      </thead>
       <tbody>
         {metrics.map((metric) => (
           <tr key={metric.id}>
-            <th scope="row"><Term definition={<Definition metric={metric} />}>{metric.label}</Term></th>
-            <td className={styles.number} data-metric={metric.id}>{shown(metric)}</td>
+            <th scope="row">
+              <Term definition={<Definition metric={metric} />}>{metric.label}</Term>
+            </th>
+            <td className={styles.number} data-metric={metric.id}>
+              {shown(metric)}
+            </td>
             <td className={styles.note}>{metric.note}</td>
           </tr>
         ))}
@@ -70,12 +106,22 @@ export function Measures({ metrics, state }: { readonly metrics: readonly Metric
           {published ? (
             <div>
               <PublishedTable rows={table} />
-              <p className={styles.foot}>Over the samples above 0.01 N and 0.001 N·m, as in the published tables. Point at a number for its definition.</p>
+              <p className={styles.foot}>
+                Over the samples above 0.01 N and 0.001 N·m, as in the published tables. Point at a number to see its
+                definition.
+              </p>
             </div>
           ) : null}
-          <Others metrics={others} caption={published ? 'Further measures' : 'Point at a name for its definition.'} />
+          <Others
+            metrics={others}
+            caption={published ? 'Further measures' : 'Point at a name to see its definition.'}
+          />
         </div>
-      ) : state === 'assessing' ? <Skeleton height="220px" /> : <p>There are no measures of this trial.</p>}
+      ) : state === 'assessing' ? (
+        <Skeleton height="220px" />
+      ) : (
+        <p>This trial has no measures.</p>
+      )}
     </Card>
   );
 }

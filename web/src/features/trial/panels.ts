@@ -5,61 +5,99 @@ import { formatDuration, formatTime, kAngle, kForce, kLength, kSpeed, kTorque, s
 
 const kPalpation: readonly Panel[] = [
   {
-    id: 'force', title: 'Force on the probe', quantity: kForce, height_px: 170, fromZero: true,
+    id: 'force',
+    title: 'Force on the probe',
+    quantity: kForce,
+    height_px: 170,
+    fromZero: true,
     traces: [
-      { channel: 'force_xy_N', label: 'across', symbol: ['F', 'xy'], colour: '--series-across' },
-      { channel: 'force_z_N', label: 'along', symbol: ['F', 'z'], colour: '--series-along' },
+      { channel: 'force_xy_N', label: 'transverse', symbol: ['F', 'xy'], colour: '--series-across' },
+      { channel: 'force_z_N', label: 'axial', symbol: ['F', 'z'], colour: '--series-along' },
     ],
   },
   {
-    id: 'torque', title: 'Torque on the probe', quantity: kTorque, height_px: 130, fromZero: true,
+    id: 'torque',
+    title: 'Torque on the probe',
+    quantity: kTorque,
+    height_px: 130,
+    fromZero: true,
     traces: [
       { channel: 'torque_xy_Nm', label: 'bending', symbol: ['T', 'xy'], colour: '--series-across' },
       { channel: 'torque_z_Nm', label: 'twisting', symbol: ['T', 'z'], colour: '--series-along' },
     ],
   },
   {
-    id: 'place', title: 'Tip in the tract', quantity: kLength, height_px: 130, fromZero: true,
+    id: 'place',
+    title: 'Tip position in the tract',
+    quantity: kLength,
+    height_px: 130,
+    fromZero: true,
     traces: [
       { channel: 'depth_m', label: 'depth', colour: '--series-third' },
       { channel: 'offset_m', label: 'offset from the axis', colour: '--series-across' },
     ],
   },
   {
-    id: 'tilt', title: 'Shank against the axis', quantity: kAngle, height_px: 90, fromZero: true,
+    id: 'tilt',
+    title: 'Angle of the shank to the axis',
+    quantity: kAngle,
+    height_px: 90,
+    fromZero: true,
     traces: [{ channel: 'angle_rad', label: 'angle', colour: '--series-along' }],
   },
 ];
 
 const kProbing: readonly Panel[] = [
   {
-    id: 'force', title: 'Push of the hand', quantity: kForce, height_px: 170, fromZero: true,
+    id: 'force',
+    title: 'Hand force',
+    quantity: kForce,
+    height_px: 170,
+    fromZero: true,
     traces: [{ channel: 'force_N', label: 'force', symbol: ['F', 'z'], colour: '--series-along' }],
   },
   {
-    id: 'depth', title: 'Depth of the tip', quantity: kLength, height_px: 130, fromZero: true,
+    id: 'depth',
+    title: 'Tip depth',
+    quantity: kLength,
+    height_px: 130,
+    fromZero: true,
     traces: [{ channel: 'depth_m', label: 'depth', colour: '--series-third' }],
   },
   {
-    id: 'speed', title: 'Velocity into the bone', quantity: kSpeed, height_px: 130, fromZero: true,
+    id: 'speed',
+    title: 'Velocity into the bone',
+    quantity: kSpeed,
+    height_px: 130,
+    fromZero: true,
     traces: [{ channel: 'speed_m_s', label: 'velocity', colour: '--series-across' }],
   },
   {
-    id: 'turn', title: 'Rotation of the probe', quantity: kAngle, height_px: 90, fromZero: true,
+    id: 'turn',
+    title: 'Rotation of the probe',
+    quantity: kAngle,
+    height_px: 90,
+    fromZero: true,
     traces: [{ channel: 'angle_rad', label: 'angle', colour: '--series-along' }],
   },
 ];
 
-interface SignalSet { readonly panels: readonly Panel[]; readonly channels: readonly Channel[]; readonly note: string }
+interface SignalSet {
+  readonly panels: readonly Panel[];
+  readonly channels: readonly Channel[];
+  readonly note: string;
+}
 
 const kSets: Record<Trial['rig'], SignalSet> = {
   palpation: {
-    panels: kPalpation, channels: kChannels,
-    note: 'Forces and torques are what the bone does to the probe, in the frame of its handle: a negative axial force pushes it out of the tract.',
+    panels: kPalpation,
+    channels: kChannels,
+    note: 'Forces and torques act from the bone on the probe, in the frame of its handle: a negative axial force pushes the probe out of the tract.',
   },
   probing: {
-    panels: kProbing, channels: kProbingChannels,
-    note: 'The force is the push of the hand on the probe, the depth that of the tip from the entry; both are positive into the bone.',
+    panels: kProbing,
+    channels: kProbingChannels,
+    note: 'The force acts from the hand on the probe; the depth is the distance of the tip from the entry. Both are positive into the bone.',
   },
 };
 
@@ -85,10 +123,16 @@ function strongest(detail: Detail, channel: string): { value: number; t: number 
 
 /** The chart for who does not see it: the peaks, when they were, and the events. */
 export function summaryOf(trial: Trial, overview: Detail): string {
-  const peaks = setOf(trial.rig).panels.flatMap((panel) => panel.traces.map((trace) => {
-    const peak = strongest(overview, trace.channel);
-    return peak ? `${panel.title}, ${trace.label}: up to ${withUnit(peak.value, panel.quantity)} at ${formatTime(second(peak.t), 1)}` : '';
-  })).filter(Boolean);
+  const peaks = setOf(trial.rig)
+    .panels.flatMap((panel) =>
+      panel.traces.map((trace) => {
+        const peak = strongest(overview, trace.channel);
+        return peak
+          ? `${panel.title}, ${trace.label}: up to ${withUnit(peak.value, panel.quantity)} at ${formatTime(second(peak.t), 1)}`
+          : '';
+      }),
+    )
+    .filter(Boolean);
   const events = trial.events.map((event) => `${event.kind} at ${formatTime(event.t_s, 1)}`);
   return `Signals over ${formatDuration(trial.duration_s)}. ${peaks.join('. ')}. Events: ${events.join(', ') || 'none'}. The numbers are in the table of measures.`;
 }

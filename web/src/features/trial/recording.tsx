@@ -13,12 +13,16 @@ function counted(count: number, of: number): string {
 function headline(trial: Trial): { text: string; sound: boolean } {
   const { samples, late_ticks, not_converged, skipped_ticks } = trial;
   const named = [
-    ...(trial.complete ? [] : ['the recording has no end: the station stopped before the trial did']),
+    ...(trial.complete ? [] : ['the recording is incomplete: the station stopped before the end of the trial']),
     ...(skipped_ticks > 0 ? ['ticks were skipped'] : []),
     ...(late_ticks > kWorthSaying * samples ? ['many ticks were late'] : []),
     ...(not_converged > kWorthSaying * samples ? ['many steps did not converge'] : []),
   ];
-  if (named.length === 0) return { text: late_ticks + not_converged === 0 ? 'Without a fault.' : 'Sound, with few faults, counted here.', sound: true };
+  if (named.length === 0)
+    return {
+      text: late_ticks + not_converged === 0 ? 'No faults.' : 'Usable; the few faults are counted below.',
+      sound: true,
+    };
   const text = named.join('; ');
   return { text: `${text.charAt(0).toUpperCase()}${text.slice(1)}.`, sound: false };
 }
@@ -28,13 +32,38 @@ export function Recording({ trial }: { readonly trial: Trial }) {
   const { text, sound } = headline(trial);
   const { samples } = trial;
   return (
-    <Card title="Recording" aside={<Badge tone={sound ? 'good' : 'warn'}>{sound ? 'sound' : 'see here'}</Badge>}>
+    <Card title="Recording" aside={<Badge tone={sound ? 'good' : 'warn'}>{sound ? 'usable' : 'has faults'}</Badge>}>
       <p className={styles.headline}>{text}</p>
       <Facts
         facts={[
-          { name: 'Late ticks', value: <Term definition="Ticks of the station's loop that woke more than a quarter of a period late. The force came late; the sample is there.">{counted(trial.late_ticks, samples)}</Term> },
-          { name: 'Skipped ticks', value: <Term definition="Ticks that never ran: their samples are missing.">{counted(trial.skipped_ticks, samples + trial.skipped_ticks)}</Term> },
-          ...(trial.rig === 'probing' ? [] : [{ name: 'Steps not converged', value: <Term definition="Samples in which the bending of the shank was not found to the published tolerance of 0.001 N. The best found was rendered.">{counted(trial.not_converged, samples)}</Term> }]),
+          {
+            name: 'Late ticks',
+            value: (
+              <Term definition="Ticks of the force loop that started more than a quarter of a period late. The force was late; the sample was recorded.">
+                {counted(trial.late_ticks, samples)}
+              </Term>
+            ),
+          },
+          {
+            name: 'Skipped ticks',
+            value: (
+              <Term definition="Ticks that did not run: their samples are missing.">
+                {counted(trial.skipped_ticks, samples + trial.skipped_ticks)}
+              </Term>
+            ),
+          },
+          ...(trial.rig === 'probing'
+            ? []
+            : [
+                {
+                  name: 'Steps not converged',
+                  value: (
+                    <Term definition="Samples in which the bending of the shank was not computed to the published tolerance of 0.001 N. The best estimate was rendered.">
+                      {counted(trial.not_converged, samples)}
+                    </Term>
+                  ),
+                },
+              ]),
         ]}
       />
     </Card>

@@ -27,11 +27,29 @@ export function SignalsPanel({ trial, cursor, further = kNone }: Props) {
   if (!(trial.duration_s > 0)) return <p>No sample was recorded.</p>;
   return (
     <>
-      {error ? <Notice tone="bad" title="Part of the signals could not be loaded." onRetry={retry}>{error.message}</Notice> : null}
+      {error ? (
+        <Notice tone="bad" title="Part of the signals could not be loaded." onRetry={retry}>
+          {error.message}
+        </Notice>
+      ) : null}
       <SignalChart
-        panels={panels} detail={detail} overview={overview} duration_s={trial.duration_s} range={range} marks={marks} cursor={cursor}
-        palette={palette} summary={summary} note={note} onRange={setRange} onWidth={setWidth}
-        button={(label, sign, press, disabled) => <Button label={label} onClick={press} disabled={disabled}>{sign}</Button>}
+        panels={panels}
+        detail={detail}
+        overview={overview}
+        duration_s={trial.duration_s}
+        range={range}
+        marks={marks}
+        cursor={cursor}
+        palette={palette}
+        summary={summary}
+        note={note}
+        onRange={setRange}
+        onWidth={setWidth}
+        button={(label, sign, press, disabled) => (
+          <Button label={label} onClick={press} disabled={disabled}>
+            {sign}
+          </Button>
+        )}
       />
     </>
   );

@@ -4,7 +4,11 @@ import { TractView, type Cursor } from '@/charts';
 import { Button, Card, Notice, Skeleton, usePalette } from '@/ui';
 import { formatLength, metre } from '@/units';
 
-interface Props { readonly trial: Trial; readonly tract: Tract; readonly cursor: Cursor }
+interface Props {
+  readonly trial: Trial;
+  readonly tract: Tract;
+  readonly cursor: Cursor;
+}
 
 /** The tract in 3-D with the way of the tip. Without the bone where that cannot be had. */
 function Picture({ trial, tract, cursor }: Props) {
@@ -12,25 +16,52 @@ function Picture({ trial, tract, cursor }: Props) {
   const preview = useQuery(previewQuery(trial.case_id));
   const palette = usePalette();
   const diameter = metre(2 * tract.radius_m);
-  const summary = `The tract, ${formatLength(tract.length_m)} long and ${formatLength(diameter)} wide, with the bone round it and the way of the tip coloured by force.`;
+  const summary = `The tract, ${formatLength(tract.length_m)} long and ${formatLength(diameter)} wide, with the surrounding bone and the path of the tip, coloured by force.`;
   return (
     <>
-      {path.isError ? <Notice tone="bad" title="The way of the tip could not be loaded." onRetry={() => void path.refetch()}>{path.error.message}</Notice> : null}
-      {preview.isError ? <Notice tone="warn" title="The bone could not be loaded; the rest is drawn without it." onRetry={() => void preview.refetch()}>{preview.error.message}</Notice> : null}
+      {path.isError ? (
+        <Notice tone="bad" title="The path of the tip could not be loaded." onRetry={() => void path.refetch()}>
+          {path.error.message}
+        </Notice>
+      ) : null}
+      {preview.isError ? (
+        <Notice
+          tone="warn"
+          title="The bone could not be loaded. The view shows the tract without it."
+          onRetry={() => void preview.refetch()}
+        >
+          {preview.error.message}
+        </Notice>
+      ) : null}
       {path.data && !preview.isPending ? (
         <TractView
-          tract={tract} path={path.data} bone={preview.data ?? null} cursor={cursor} palette={palette} summary={summary}
-          button={(label, text, press, pressed) => <Button label={label} onClick={press} {...(pressed === undefined ? {} : { pressed })}>{text}</Button>}
+          tract={tract}
+          path={path.data}
+          bone={preview.data ?? null}
+          cursor={cursor}
+          palette={palette}
+          summary={summary}
+          button={(label, text, press, pressed) => (
+            <Button label={label} onClick={press} {...(pressed === undefined ? {} : { pressed })}>
+              {text}
+            </Button>
+          )}
         />
-      ) : path.isError ? null : <Skeleton height="444px" />}
+      ) : path.isError ? null : (
+        <Skeleton height="444px" />
+      )}
     </>
   );
 }
 
 export function TractPanel({ trial, cursor }: { readonly trial: Trial; readonly cursor: Cursor }) {
   return (
-    <Card title="Tract and way of the tip">
-      {trial.tract ? <Picture trial={trial} tract={trial.tract} cursor={cursor} /> : <p>The case of this trial is not on this server.</p>}
+    <Card title="Tract and path of the tip">
+      {trial.tract ? (
+        <Picture trial={trial} tract={trial.tract} cursor={cursor} />
+      ) : (
+        <p>The case of this trial is not on this server.</p>
+      )}
     </Card>
   );
 }

@@ -8,7 +8,7 @@ import { formatCount, formatDateTime, formatDateTimeLong, formatDuration, format
 import { breachMarks } from './breaches';
 import { DepthPanel } from './depth-panel';
 import { Measures } from './measures';
-import { Place } from './place';
+import { StudyPosition } from './study-position';
 import { Recording } from './recording';
 import { SignalsPanel } from './signals-panel';
 import { TractPanel } from './tract-panel';
@@ -19,23 +19,34 @@ import { WallsPanel } from './walls-panel';
 function Header({ trial }: { readonly trial: Trial }) {
   return (
     <>
-      <p className={styles.back}><Link href="/trials">← Trials</Link> · <Link href={`/trials/${trial.id}/debrief`}>Debrief</Link></p>
+      <p className={styles.back}>
+        <Link href="/trials">← Trials</Link> · <Link href={`/trials/${trial.id}/debrief`}>Debrief</Link>
+      </p>
       <div className={styles.title}>
         <h1>{trial.case_title}</h1>
         {trial.simulated ? <Badge tone="warn">simulated</Badge> : null}
         {trial.complete ? null : <Badge tone="bad">incomplete recording</Badge>}
       </div>
-      {trial.study ? <Place place={trial.study} /> : null}
-      <div className={styles.facts}><Facts
-        facts={[
-          { name: 'Operator', value: trial.operator_name },
-          { name: 'Started', value: <time dateTime={isoDateTime(trial.started_utc_us)} title={formatDateTimeLong(trial.started_utc_us)}>{formatDateTime(trial.started_utc_us)}</time> },
-          { name: 'Duration', value: formatDuration(trial.duration_s) },
-          { name: 'Station', value: trial.station },
-          { name: 'Device', value: trial.device },
-          { name: 'Recorded', value: `${formatCount(trial.samples)} samples at ${formatRate(trial.rate_Hz)}` },
-        ]}
-      /></div>
+      {trial.study ? <StudyPosition position={trial.study} /> : null}
+      <div className={styles.facts}>
+        <Facts
+          facts={[
+            { name: 'Operator', value: trial.operator_name },
+            {
+              name: 'Started',
+              value: (
+                <time dateTime={isoDateTime(trial.started_utc_us)} title={formatDateTimeLong(trial.started_utc_us)}>
+                  {formatDateTime(trial.started_utc_us)}
+                </time>
+              ),
+            },
+            { name: 'Duration', value: formatDuration(trial.duration_s) },
+            { name: 'Station', value: trial.station },
+            { name: 'Device', value: trial.device },
+            { name: 'Recorded', value: `${formatCount(trial.samples)} samples at ${formatRate(trial.rate_Hz)}` },
+          ]}
+        />
+      </div>
     </>
   );
 }
@@ -47,7 +58,9 @@ function Frame({ children }: { readonly children: ReactNode }) {
 function Waiting() {
   return (
     <Frame>
-      <p className={styles.back}><Link href="/trials">← Trials</Link></p>
+      <p className={styles.back}>
+        <Link href="/trials">← Trials</Link>
+      </p>
       <div role="status" className={styles.waiting}>
         <span className="hidden-visually">Loading the trial</span>
         <Skeleton width="360px" height="32px" />
@@ -63,20 +76,33 @@ function Failed({ reason, retry }: { readonly reason: Error; readonly retry: () 
   const missing = reason instanceof ApiError && reason.code === 'not_found';
   return (
     <Frame>
-      <p className={styles.back}><Link href="/trials">← Trials</Link></p>
-      {missing
-        ? <Notice tone="warn" title="There is no such trial.">The address may be mistyped, or the trial is not on this server.</Notice>
-        : <Notice tone="bad" title="The trial could not be loaded." onRetry={retry}>{reason.message}</Notice>}
+      <p className={styles.back}>
+        <Link href="/trials">← Trials</Link>
+      </p>
+      {missing ? (
+        <Notice tone="warn" title="Trial not found.">
+          Check the address. The trial may be on another server.
+        </Notice>
+      ) : (
+        <Notice tone="bad" title="The trial could not be loaded." onRetry={retry}>
+          {reason.message}
+        </Notice>
+      )}
     </Frame>
   );
 }
 
-interface Views { readonly trial: Trial; readonly cursor: Cursor }
+interface Views {
+  readonly trial: Trial;
+  readonly cursor: Cursor;
+}
 
 function Palpation({ trial, cursor }: Views) {
   return (
     <>
-      <Card title="Signals"><SignalsPanel trial={trial} cursor={cursor} /></Card>
+      <Card title="Signals">
+        <SignalsPanel trial={trial} cursor={cursor} />
+      </Card>
       <div className={styles.views}>
         <TractPanel trial={trial} cursor={cursor} />
         <WallsPanel trial={trial} cursor={cursor} />
@@ -90,7 +116,9 @@ function Probing({ trial, cursor }: Views) {
   const breaches = useMemo(() => breachMarks(curve.data), [curve.data]);
   return (
     <>
-      <Card title="Signals"><SignalsPanel trial={trial} cursor={cursor} further={breaches} /></Card>
+      <Card title="Signals">
+        <SignalsPanel trial={trial} cursor={cursor} further={breaches} />
+      </Card>
       <DepthPanel trial={trial} cursor={cursor} />
     </>
   );
@@ -107,13 +135,25 @@ export function TrialPage({ id }: { readonly id: string }) {
   return (
     <Frame>
       <Header trial={trial} />
-      {trial.state === 'assessing' ? <Notice title="This trial is being assessed.">Measures, walls and the verdict appear here when that is done.</Notice> : null}
-      {trial.state === 'failed' ? <Notice tone="warn" title="The assessment of this trial failed.">{trial.failure ?? 'Its measures could not be made.'} What was recorded is shown below.</Notice> : null}
+      {trial.state === 'assessing' ? (
+        <Notice title="This trial is being assessed.">
+          Measures, walls and the verdict appear here after the assessment.
+        </Notice>
+      ) : null}
+      {trial.state === 'failed' ? (
+        <Notice tone="warn" title="The assessment of this trial failed.">
+          {trial.failure ?? 'The measures could not be computed.'} The recording is shown below.
+        </Notice>
+      ) : null}
       <div className={styles.pair}>
         <Verdict trial={trial} />
         <Recording trial={trial} />
       </div>
-      {trial.rig === 'probing' ? <Probing trial={trial} cursor={cursor} /> : <Palpation trial={trial} cursor={cursor} />}
+      {trial.rig === 'probing' ? (
+        <Probing trial={trial} cursor={cursor} />
+      ) : (
+        <Palpation trial={trial} cursor={cursor} />
+      )}
       <Measures metrics={trial.metrics} state={trial.state} />
     </Frame>
   );

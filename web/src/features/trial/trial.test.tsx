@@ -8,21 +8,40 @@ import { channelOf } from './channel';
 import { judge, judgeProbing } from './judgement';
 import { arranged, shown } from './measure-rows';
 import { Measures } from './measures';
+import { seriesAddress } from './study-position';
 
 afterEach(cleanup);
 
-const answer = (changes: Partial<Answer>): Answer => ({ breach: true, wall: 'medial', confidence: share(0.8), depth_m: null, ...changes });
-const metric = (id: string, value: number | null, unit = 'N', note = ''): Metric =>
-  ({ id, label: `label of ${id}`, unit, value, note, definition: `definition of ${id}`, source: 'paper' });
+const answer = (changes: Partial<Answer>): Answer => ({
+  breach: true,
+  wall: 'medial',
+  confidence: share(0.8),
+  depth_m: null,
+  ...changes,
+});
+const metric = (id: string, value: number | null, unit = 'N', note = ''): Metric => ({
+  id,
+  label: `label of ${id}`,
+  unit,
+  value,
+  note,
+  definition: `definition of ${id}`,
+  source: 'paper',
+});
+
+it('the link of a trial leads to its study, or to its assignment', () => {
+  expect(seriesAddress('spine-study')).toBe('/studies/spine-study');
+  expect(seriesAddress('a-0f3')).toBe('/assignments/a-0f3');
+});
 
 describe('the judgement', () => {
   it.each([
-    ['both name the wall', answer({}), { breached: 'medial' }, 'right', 'Right'],
-    ['both say intact', answer({ breach: false, wall: null }), { breached: null }, 'right', 'Right'],
-    ['another wall was named', answer({ wall: 'lateral' }), { breached: 'medial' }, 'wrong', 'in another wall'],
-    ['no wall was named', answer({ wall: null }), { breached: 'medial' }, 'wrong', 'no wall was named'],
-    ['the breach was missed', answer({ breach: false, wall: null }), { breached: 'inferior' }, 'wrong', 'missed'],
-    ['there is no breach', answer({}), { breached: null }, 'wrong', 'where there is none'],
+    ['both name the wall', answer({}), { breached: 'medial' }, 'correct', 'Correct'],
+    ['both say intact', answer({ breach: false, wall: null }), { breached: null }, 'correct', 'Correct'],
+    ['another wall was named', answer({ wall: 'lateral' }), { breached: 'medial' }, 'incorrect', 'in another wall'],
+    ['no wall was named', answer({ wall: null }), { breached: 'medial' }, 'incorrect', 'no wall was named'],
+    ['the breach was missed', answer({ breach: false, wall: null }), { breached: 'inferior' }, 'incorrect', 'missed'],
+    ['there is no breach', answer({}), { breached: null }, 'incorrect', 'where there is none'],
   ] as const)('when %s', (_, said, truth, outcome, words) => {
     const judged = judge(said, truth);
     expect(judged.outcome).toBe(outcome);
@@ -37,12 +56,24 @@ describe('the judgement', () => {
 
 describe('the channel that a burr made', () => {
   const drilled = (beyond: number | null, note: string) => [
-    metric('drilled_volume', 5.6e-8, 'm^3'), metric('channel_breach', beyond, 'm', note), metric('channel_angle', null, 'rad', 'too short'),
+    metric('drilled_volume', 5.6e-8, 'm^3'),
+    metric('channel_breach', beyond, 'm', note),
+    metric('channel_angle', null, 'rad', 'too short'),
   ];
   it.each([
     [0.0021, 'through the medial wall', 'out', 'Left the bone, through the medial wall, by 2.1 mm'],
-    [-0.0014, 'nearest to the inferior wall', 'within', 'Within the bone, 1.4 mm left, nearest to the inferior wall'],
-    [null, 'the channel came to no place with a known wall', 'unknown', 'Not told: the channel came to no place with a known wall'],
+    [
+      -0.0014,
+      'nearest to the inferior wall',
+      'within',
+      'Within the bone: 1.4 mm of bone remains, nearest to the inferior wall',
+    ],
+    [
+      null,
+      'the channel came to no place with a known wall',
+      'unknown',
+      'Not assessed: the channel came to no place with a known wall',
+    ],
   ] as const)('reaching %s m beyond the bone', (beyond, note, outcome, words) => {
     const channel = channelOf(drilled(beyond, note));
     expect(channel?.outcome).toBe(outcome);
@@ -57,37 +88,53 @@ describe('the channel that a burr made', () => {
 });
 
 const scenario = (walls: number[]): Scenario => ({
-  id: 'x', name: 'bone', travel_m: metre(0.04), layers: [], walls: walls.map((at) => ({ position_m: metre(at), resistance_interval_m: metre(0.006), breach_interval_m: metre(0.008) })),
+  id: 'x',
+  name: 'bone',
+  travel_m: metre(0.04),
+  layers: [],
+  walls: walls.map((at) => ({
+    position_m: metre(at),
+    resistance_interval_m: metre(0.006),
+    breach_interval_m: metre(0.008),
+  })),
 });
 
 describe('the judgement of a probing trial', () => {
   it.each([
-    ['both say breach', answer({ wall: null, depth_m: metre(0.0212) }), scenario([0.02]), 'right', 'Right'],
-    ['both say none', answer({ breach: false, wall: null }), scenario([]), 'right', 'Right'],
-    ['it was missed', answer({ breach: false, wall: null }), scenario([0.02]), 'wrong', 'missed'],
-    ['there is none', answer({ wall: null }), scenario([]), 'wrong', 'where there is none'],
+    ['both say breach', answer({ wall: null, depth_m: metre(0.0212) }), scenario([0.02]), 'correct', 'Correct'],
+    ['both say none', answer({ breach: false, wall: null }), scenario([]), 'correct', 'Correct'],
+    ['it was missed', answer({ breach: false, wall: null }), scenario([0.02]), 'incorrect', 'missed'],
+    ['there is none', answer({ wall: null }), scenario([]), 'incorrect', 'where there is none'],
   ] as const)('when %s', (_, said, truth, outcome, words) => {
     const judged = judgeProbing(said, truth);
     expect(judged.outcome).toBe(outcome);
     expect(judged.headline).toContain(words);
   });
 
-  it('tells where it was felt and where the wall is', () => {
-    const { said, truth } = judgeProbing(answer({ wall: null, depth_m: metre(0.0212) }), scenario([0.02]));
-    expect(said.replaceAll('\u202f', ' ')).toContain('A breach at 21.2 mm.');
-    expect(truth.replaceAll('\u202f', ' ')).toContain('gives way at 20.0 mm');
+  it('gives the reported depth and the depth of the wall', () => {
+    const { given, truth } = judgeProbing(answer({ wall: null, depth_m: metre(0.0212) }), scenario([0.02]));
+    expect(given.replaceAll('\u202f', ' ')).toContain('A breach at 21.2 mm.');
+    expect(truth.replaceAll('\u202f', ' ')).toContain('breach at 20.0 mm');
   });
 });
 
 it('the moments of a breach are the entries into soft tissue from before it, not those back into it from behind', () => {
   const mode = ['bone', 'breach', 'bone', 'breach', 'bone', 'breach'] as const;
   const depth_m = [0.019, 0.021, 0.0281, 0.0279, 0.035, 0.036];
-  expect(breachMarks({ t_s: [0, 1, 2, 3, 4, 5], depth_m, force_N: [], mode: [...mode] }).map(({ t_s }) => t_s)).toEqual([1, 5]);
+  expect(breachMarks({ t_s: [0, 1, 2, 3, 4, 5], depth_m, force_N: [], mode: [...mode] }).map(({ t_s }) => t_s)).toEqual(
+    [1, 5],
+  );
   expect(breachMarks(undefined)).toEqual([]);
 });
 
 describe('the measures', () => {
-  const metrics = [metric('force_xy_mean', 0.28), metric('force_xy_sd', 0.24), metric('force_xy_max', 1.12), metric('path_length', 0.863, 'm'), metric('torque_z_sd', 0.0004, 'N·m')];
+  const metrics = [
+    metric('force_xy_mean', 0.28),
+    metric('force_xy_sd', 0.24),
+    metric('force_xy_max', 1.12),
+    metric('path_length', 0.863, 'm'),
+    metric('torque_z_sd', 0.0004, 'N·m'),
+  ];
 
   it('stand in the published layout, and what is not in it follows in order', () => {
     const { table, others } = arranged(metrics);
@@ -100,7 +147,11 @@ describe('the measures', () => {
     render(<Measures metrics={metrics} state="assessed" />);
     const row = screen.getByRole('row', { name: /Transverse force/ });
     // Basel paper, Table 1, surgeon 1.
-    expect(within(row).getAllByRole('cell').map((cell) => within(cell).queryByRole('button')?.textContent ?? cell.textContent)).toEqual(['N', '0.28', '0.24', '1.12']);
+    expect(
+      within(row)
+        .getAllByRole('cell')
+        .map((cell) => within(cell).queryByRole('button')?.textContent ?? cell.textContent),
+    ).toEqual(['N', '0.28', '0.24', '1.12']);
     expect(screen.getByRole('row', { name: /Twisting torque/ }).textContent).toContain('0.001');
   });
 
@@ -114,13 +165,13 @@ describe('the measures', () => {
   it('that are shares read in per cent, a judgement as a word, a missing one as a dash', () => {
     expect(shown(metric('contact_share', 0.44, '1')).replace('\u202f', ' ')).toBe('44 %');
     expect(shown(metric('wall_coverage_medial', 0.4667, '1')).replace('\u202f', ' ')).toBe('47 %');
-    expect(shown(metric('answer_right', 0, '1'))).toBe('wrong');
+    expect(shown(metric('answer_right', 0, '1'))).toBe('incorrect');
     expect(shown(metric('answer_right', null, '1'))).toBe('–');
     expect(shown(metric('late_ticks', 3, '1'))).toBe('3');
   });
 
   it('are said to be missing where there are none', () => {
     render(<Measures metrics={[]} state="failed" />);
-    expect(screen.getByText('There are no measures of this trial.')).toBeTruthy();
+    expect(screen.getByText('This trial has no measures.')).toBeTruthy();
   });
 });

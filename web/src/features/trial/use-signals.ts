@@ -16,7 +16,10 @@ function usePaced<Value>(value: Value): Value {
   const last = useRef(0);
   useEffect(() => {
     const wait = Math.max(0, last.current + kPace_ms - performance.now());
-    const timer = setTimeout(() => { last.current = performance.now(); setPaced(value); }, wait);
+    const timer = setTimeout(() => {
+      last.current = performance.now();
+      setPaced(value);
+    }, wait);
     return () => clearTimeout(timer);
   }, [value]);
   return paced;
@@ -57,8 +60,11 @@ export function useSignals(trial: Trial, channels: readonly Channel[], range: Ra
   const overview = useMemo(() => (whole ? detailOf(whole) : kNoDetail), [whole]);
   const failed = answers.find((answer) => answer.isError);
   return {
-    detail, overview,
+    detail,
+    overview,
     error: failed?.error ?? null,
-    retry: () => { for (const answer of answers) if (answer.isError) void answer.refetch(); },
+    retry: () => {
+      for (const answer of answers) if (answer.isError) void answer.refetch();
+    },
   };
 }

@@ -4,22 +4,24 @@ import { channelOf, type Channel } from './channel';
 import { judge, judgeProbing } from './judgement';
 import styles from './verdict.module.css';
 
-const kTone = { right: 'good', wrong: 'bad', open: 'neutral' } as const;
-const kSign = { right: '✓', wrong: '✗', open: '–' } as const;
+const kTone = { correct: 'good', incorrect: 'bad', open: 'neutral' } as const;
+const kSign = { correct: '✓', incorrect: '✗', open: '–' } as const;
 
 const kChannelTone = { within: 'good', out: 'bad', unknown: 'neutral' } as const;
-const kChannelWords = { within: 'within the bone', out: 'left the bone', unknown: 'not known' } as const;
+const kChannelLabels = { within: 'within the bone', out: 'left the bone', unknown: 'unknown' } as const;
 
 function Drilled({ channel }: { readonly channel: Channel }) {
   return (
-    <Card title="Channel" aside={<Badge tone={kChannelTone[channel.outcome]}>{kChannelWords[channel.outcome]}</Badge>}>
+    <Card title="Channel" aside={<Badge tone={kChannelTone[channel.outcome]}>{kChannelLabels[channel.outcome]}</Badge>}>
       <p className={styles.headline}>{channel.headline}.</p>
-      <Facts facts={[
-        { name: 'Off the planned entry', value: channel.entry },
-        { name: 'Off its direction', value: channel.direction },
-        { name: 'Beyond its end', value: channel.end },
-        { name: 'Bone drilled away', value: channel.removed },
-      ]} />
+      <Facts
+        facts={[
+          { name: 'Distance from the planned entry', value: channel.entry },
+          { name: 'Angle to the planned direction', value: channel.direction },
+          { name: 'Depth beyond the planned end', value: channel.end },
+          { name: 'Removed bone', value: channel.removed },
+        ]}
+      />
     </Card>
   );
 }
@@ -28,12 +30,29 @@ function Drilled({ channel }: { readonly channel: Channel }) {
 export function Verdict({ trial }: { readonly trial: Trial }) {
   const channel = channelOf(trial.metrics);
   if (channel) return <Drilled channel={channel} />;
-  const { outcome, headline, said, truth: known } =
-    trial.rig === 'probing' ? judgeProbing(trial.answer, trial.scenario) : judge(trial.answer, trial.truth);
+  const {
+    outcome,
+    headline,
+    given,
+    truth: known,
+  } = trial.rig === 'probing' ? judgeProbing(trial.answer, trial.scenario) : judge(trial.answer, trial.truth);
   return (
-    <Card title="Answer" aside={<Badge tone={kTone[outcome]}><span aria-hidden="true">{kSign[outcome]}</span>{outcome === 'open' ? 'not judged' : outcome}</Badge>}>
+    <Card
+      title="Answer"
+      aside={
+        <Badge tone={kTone[outcome]}>
+          <span aria-hidden="true">{kSign[outcome]}</span>
+          {outcome === 'open' ? 'not assessed' : outcome}
+        </Badge>
+      }
+    >
       <p className={styles.headline}>{headline}.</p>
-      <Facts facts={[{ name: 'Said', value: said }, { name: 'In truth', value: known }]} />
+      <Facts
+        facts={[
+          { name: 'Answer', value: given },
+          { name: 'Truth', value: known },
+        ]}
+      />
     </Card>
   );
 }

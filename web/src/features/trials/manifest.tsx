@@ -3,10 +3,6 @@ import type { Feature } from '@/ui';
 import { TrialsPage } from './trials-page';
 
 export const feature: Feature = {
-  menu: [
-    { to: '/trials', name: 'Trials', roles: ['admin', 'director', 'faculty', 'trainee'], order: 20 },
-  ],
-  pages: [
-    { path: '/trials', show: () => <TrialsPage /> },
-  ],
+  menu: [{ to: '/trials', name: 'Trials', roles: ['admin', 'director', 'faculty', 'trainee'], order: 20 }],
+  pages: [{ path: '/trials', show: () => <TrialsPage /> }],
 };

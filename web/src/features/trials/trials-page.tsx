@@ -15,19 +15,27 @@ export function TrialsPage() {
       <div className={styles.head}>
         <h1>Trials</h1>
         <p role="status" className={styles.count}>
-          {trials === undefined ? '' : `${formatCount(trials.length)} shown${assessing > 0 ? `, ${formatCount(assessing)} being assessed` : ''}`}
+          {trials === undefined
+            ? ''
+            : `${formatCount(trials.length)} shown${assessing > 0 ? `, ${formatCount(assessing)} being assessed` : ''}`}
         </p>
       </div>
       {query.isError && (trials === undefined || !query.isFetching) ? (
         <div className={styles.error}>
-          <Notice tone="bad" title={trials ? 'The list could not be brought up to date.' : 'The trials could not be loaded.'} onRetry={() => void query.refetch()}>
+          <Notice
+            tone="bad"
+            title={trials ? 'The list could not be refreshed.' : 'The trials could not be loaded.'}
+            onRetry={() => void query.refetch()}
+          >
             {query.error.message}
           </Notice>
         </div>
       ) : null}
       {trials?.length === 0 ? (
-        <Notice title="There are no trials yet.">A trial appears here as soon as a station has handed it over whole.</Notice>
-      ) : trials !== undefined || query.isPending ? <TrialsTable trials={trials} /> : null}
+        <Notice title="No trials yet.">A trial appears here after a station has uploaded it completely.</Notice>
+      ) : trials !== undefined || query.isPending ? (
+        <TrialsTable trials={trials} />
+      ) : null}
       {query.hasNextPage ? (
         <div className={styles.more}>
           <Button onClick={() => void query.fetchNextPage()} disabled={query.isFetchingNextPage}>

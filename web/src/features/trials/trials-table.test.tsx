@@ -8,11 +8,24 @@ import { TrialsTable } from './trials-table';
 afterEach(cleanup);
 
 const trial = (changes: Partial<TrialSummary>): TrialSummary => ({
-  id: 'a', case_id: 'c', case_title: 'L3 left pedicle', station: 'lab', operator_name: 'A. Resident', simulated: false,
-  started_utc_us: utcMicroseconds(1.7e15), duration_s: second(61.2), samples: 244800, state: 'assessed', correct: true, ...changes,
+  id: 'a',
+  case_id: 'c',
+  case_title: 'L3 left pedicle',
+  station: 'lab',
+  operator_name: 'A. Resident',
+  simulated: false,
+  started_utc_us: utcMicroseconds(1.7e15),
+  duration_s: second(61.2),
+  samples: 244800,
+  state: 'assessed',
+  correct: true,
+  ...changes,
 });
 
-const cellsOf = (row: HTMLElement) => within(row).getAllByRole('cell').map((cell) => cell.textContent);
+const cellsOf = (row: HTMLElement) =>
+  within(row)
+    .getAllByRole('cell')
+    .map((cell) => cell.textContent);
 
 describe('the table of trials', () => {
   it('holds the place of rows while they come, and says that it is busy', () => {
@@ -27,8 +40,8 @@ describe('the table of trials', () => {
   });
 
   it.each([
-    [{ correct: true }, '✓ right', 'assessed'],
-    [{ correct: false }, '✗ wrong', 'assessed'],
+    [{ correct: true }, '✓ correct', 'assessed'],
+    [{ correct: false }, '✗ incorrect', 'assessed'],
     [{ correct: null }, 'none', 'assessed'],
     [{ correct: null, state: 'assessing' }, '–', 'assessing…'],
     [{ correct: null, state: 'failed' }, '–', 'failed'],

@@ -1,0 +1,97 @@
+/**
+ * What the server describes is what is parsed here: the compiler compares the generated types with the schemas.
+ * A field that the server drops, renames or makes null turns its line red.
+ */
+import type * as v from 'valibot';
+import type { components } from './generated/schema';
+import type {
+  effectCheckSchema,
+  effectListSchema,
+  labRunListSchema,
+  labSignalsSchema,
+  measurementListSchema,
+  modelListSchema,
+  sentModelSchema,
+} from './lab-schemas';
+import type { backupListSchema } from './backup-queries';
+import type {
+  accountListSchema,
+  auditCheckSchema,
+  auditSchema,
+  cohortListSchema,
+  cohortSchema,
+  invitationListSchema,
+  stationListSchema,
+} from './network-schemas';
+import type { stationPageSchema } from './live-schemas';
+import type { traineeListSchema } from './trainee-queries';
+import type { studyEventsSchema, studyListSchema, studySchema } from './study-schemas';
+import type {
+  forceDepthSchema,
+  pathSchema,
+  sessionSchema,
+  signalsSchema,
+  trialPageSchema,
+  trialSchema,
+} from './schemas';
+
+type Served = components['schemas'];
+type Takes<Schema extends v.GenericSchema, Answer> = Answer extends v.InferInput<Schema> ? true : false;
+
+export interface Agreed {
+  readonly session: Takes<typeof sessionSchema, Served['Identity']>;
+  readonly trials: Takes<typeof trialPageSchema, Served['TrialList']>;
+  readonly trial: Takes<typeof trialSchema, Served['Trial']>;
+  readonly signals: Takes<typeof signalsSchema, Served['TrialSignals']>;
+  readonly path: Takes<typeof pathSchema, Served['TrialPath']>;
+  readonly forceDepth: Takes<typeof forceDepthSchema, Served['TrialForceDepth']>;
+  readonly studies: Takes<typeof studyListSchema, Served['StudyList']>;
+  readonly study: Takes<typeof studySchema, Served['Study']>;
+  readonly models: Takes<typeof modelListSchema, Served['ModelList']>;
+  readonly measurements: Takes<typeof measurementListSchema, Served['MeasurementsList']>;
+  readonly effects: Takes<typeof effectListSchema, Served['EffectList']>;
+  readonly effectCheck: Takes<typeof effectCheckSchema, Served['EffectCheck']>;
+  readonly labRuns: Takes<typeof labRunListSchema, Served['LabRunList']>;
+  readonly labSignals: Takes<typeof labSignalsSchema, Served['RunSignals']>;
+  readonly accounts: Takes<typeof accountListSchema, Served['Accounts']>;
+  readonly stations: Takes<typeof stationListSchema, Served['Stations']>;
+  readonly station: Takes<typeof stationPageSchema, Served['Station']>;
+  readonly cohorts: Takes<typeof cohortListSchema, Served['Cohorts']>;
+  readonly cohort: Takes<typeof cohortSchema, Served['Cohort']>;
+  readonly invitations: Takes<typeof invitationListSchema, Served['Invitations']>;
+  readonly audit: Takes<typeof auditSchema, Served['AuditRows']>;
+  readonly auditCheck: Takes<typeof auditCheckSchema, Served['AuditCheck']>;
+  readonly trainees: Takes<typeof traineeListSchema, Served['TraineeList']>;
+  readonly sentModel: Takes<typeof sentModelSchema, Served['SentModel']>;
+  readonly backups: Takes<typeof backupListSchema, Served['Backups']>;
+  readonly studyEvents: Takes<typeof studyEventsSchema, Served['StudyEvents']>;
+}
+
+export const kAgreed: Agreed = {
+  session: true,
+  trials: true,
+  trial: true,
+  signals: true,
+  path: true,
+  forceDepth: true,
+  studies: true,
+  study: true,
+  studyEvents: true,
+  models: true,
+  measurements: true,
+  effects: true,
+  effectCheck: true,
+  labRuns: true,
+  labSignals: true,
+  accounts: true,
+  stations: true,
+  station: true,
+  cohorts: true,
+  cohort: true,
+  invitations: true,
+  audit: true,
+  auditCheck: true,
+  trainees: true,
+  sentModel: true,
+  backups: true,
+};

@@ -1,0 +1,44 @@
+/** The same promise as in agreed.ts, for teaching: what the server describes is what is parsed. */
+import type * as v from 'valibot';
+import type { components } from './generated/schema';
+import type {
+  assignmentListSchema,
+  assignmentSchema,
+  caseListSchema,
+  commentListSchema,
+  makingSchema,
+  plannedTractSchema,
+  referenceListSchema,
+  referenceWaySchema,
+  scenarioCheckSchema,
+  scenarioListSchema,
+} from './teaching-schemas';
+
+type Served = components['schemas'];
+type Takes<Schema extends v.GenericSchema, Answer> = Answer extends v.InferInput<Schema> ? true : false;
+
+export interface TeachingAgreed {
+  readonly cases: Takes<typeof caseListSchema, Served['CaseList']>;
+  readonly making: Takes<typeof makingSchema, Served['CaseMaking']>;
+  readonly tract: Takes<typeof plannedTractSchema, Served['PlannedTract']>;
+  readonly scenarios: Takes<typeof scenarioListSchema, Served['ScenarioVersions']>;
+  readonly check: Takes<typeof scenarioCheckSchema, Served['ScenarioCheck']>;
+  readonly assignments: Takes<typeof assignmentListSchema, Served['Assignments']>;
+  readonly assignment: Takes<typeof assignmentSchema, Served['Assignment']>;
+  readonly comments: Takes<typeof commentListSchema, Served['TrialComments']>;
+  readonly references: Takes<typeof referenceListSchema, Served['ReferenceTrials']>;
+  readonly way: Takes<typeof referenceWaySchema, Served['ReferenceWay']>;
+}
+
+export const kTeachingAgreed: TeachingAgreed = {
+  cases: true,
+  making: true,
+  tract: true,
+  scenarios: true,
+  check: true,
+  assignments: true,
+  assignment: true,
+  comments: true,
+  references: true,
+  way: true,
+};

@@ -1,0 +1,11 @@
+/** The live view of all stations. */
+import { lazy } from 'react';
+import type { Feature } from '@/ui';
+
+const index = () => import('./index');
+const LivePage = lazy(() => index().then(({ LivePage: page }) => ({ default: page })));
+
+export const feature: Feature = {
+  menu: [{ to: '/wall', name: 'Live', roles: ['admin', 'director', 'faculty', 'technician'], order: 110 }],
+  pages: [{ path: '/wall', show: () => <LivePage /> }],
+};

@@ -1,1 +1,0 @@
-export { WallPage } from './wall-page';
