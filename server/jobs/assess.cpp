@@ -31,7 +31,7 @@ Assessment assessment(const metrics::Subject& subject) {
   Assessment out;
   for (const auto& [info, score] : metrics::score_all(subject)) {
     out.scores.push_back({info.id, score.value, score.note});
-    if (info.shown_as == metrics::ShownAs::right_or_wrong && score.value)
+    if (info.shown_as == metrics::ShownAs::correct_or_incorrect && score.value)
       out.correct = *score.value > 0.5;
   }
   out.coverage = coverage_text(subject);

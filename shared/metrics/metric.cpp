@@ -19,10 +19,10 @@ std::string_view name(ShownAs shown_as) {
       return "number";
     case ShownAs::share:
       return "share";
-    case ShownAs::right_or_wrong:
+    case ShownAs::correct_or_incorrect:
       break;
   }
-  return "right_or_wrong";
+  return "correct_or_incorrect";
 }
 
 core::Json to_json(const MetricInfo& info) {

@@ -52,9 +52,9 @@ struct Score {
 
 /// How a page writes a value.
 enum class ShownAs {
-  number,         ///< with its unit
-  share,          ///< as a percentage
-  right_or_wrong  ///< 1: "right", 0: "wrong"; such a metric judges the trainee's answer
+  number,               ///< with its unit
+  share,                ///< as a percentage
+  correct_or_incorrect  ///< 1: "correct", 0: "incorrect"; such a metric judges the trainee's answer
 };
 std::string_view name(ShownAs shown_as);
 

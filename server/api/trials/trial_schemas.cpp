@@ -101,17 +101,18 @@ core::Json score_schema() {
 }  // namespace
 
 std::vector<schema::Field> metric_fields() {
-  return {{"id", text("identifier of the metric; never changes")},
-          {"label", text("name of the metric on pages")},
-          {"unit", text("unit as printed: N, s, 1")},
-          {"definition", text("definition in one sentence")},
-          {"source", text("paper and table, or own definition")},
-          {"shown_as", one_of({"number", "share", "right_or_wrong"},
-                              "how pages write the value: with its unit, as a percentage, as right "
-                              "(1) or wrong (0)")},
-          {"cell", nullable(object({{"row", text("quantity: Transverse force")},
-                                    {"symbol", text("symbol of the quantity: F_xy")},
-                                    {"column", text("statistic: Mean, SD, Max")}}))}};
+  return {
+      {"id", text("identifier of the metric; never changes")},
+      {"label", text("name of the metric on pages")},
+      {"unit", text("unit as printed: N, s, 1")},
+      {"definition", text("definition in one sentence")},
+      {"source", text("paper and table, or own definition")},
+      {"shown_as", one_of({"number", "share", "correct_or_incorrect"},
+                          "how pages write the value: with its unit, as a percentage, as correct "
+                          "(1) or incorrect (0)")},
+      {"cell", nullable(object({{"row", text("quantity: Transverse force")},
+                                {"symbol", text("symbol of the quantity: F_xy")},
+                                {"column", text("statistic: Mean, SD, Max")}}))}};
 }
 
 std::vector<NamedSchema> trial_schemas() {

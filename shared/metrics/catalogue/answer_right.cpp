@@ -26,14 +26,14 @@ Score judged(const Subject& subject) {
 MetricInfo answer_right() {
   MetricInfo info{
       "answer_right",
-      "Answer right",
+      "Answer correct",
       "1",
       "1 if the last answer says whether there is a breach and, in palpation if there is, in "
       "which wall; else 0.",
       "own definition",
       judged,
       {}};
-  info.shown_as = ShownAs::right_or_wrong;
+  info.shown_as = ShownAs::correct_or_incorrect;
   return info;
 }
 

@@ -4,7 +4,7 @@ namespace tractus::metrics {
 
 MetricInfo probing_time() {
   return {"probing_time",
-          "Operation time",
+          "Probing time",
           "s",
           "Time from the first motion that is let through (the probe turns faster than 10 deg/s) "
           "to the "

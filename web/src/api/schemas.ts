@@ -41,6 +41,8 @@ export const metricSchema = v.object({
   note: v.string(),
   definition: v.string(),
   source: v.string(),
+  shown_as: v.picklist(['number', 'share', 'correct_or_incorrect']),
+  cell: v.nullable(v.object({ row: v.string(), symbol: v.string(), column: v.string() })),
 });
 
 export const coverageSchema = v.pipe(

@@ -137,7 +137,7 @@ function Verdict({ trial }: { readonly trial: Trial }) {
       : truth
         ? sides(truth.breached ?? null, 'no breach')
         : null;
-  const right = trial.metrics.find((metric) => metric.id === 'answer_right')?.value ?? null;
+  const right = trial.metrics.find((metric) => metric.shown_as === 'correct_or_incorrect')?.value ?? null;
   return (
     <p className={styles.verdict}>
       <span>

@@ -1,39 +1,44 @@
-/** Which measures stand in the published table, and how the others read. */
+/** Lays the metrics out as the server describes them: in the table of statistics, or one by one. */
 import type { Metric } from '@/api';
 import { formatMeasure, formatShare, kNone, share } from '@/units';
 
-export const kStatistics = [
-  { id: 'mean', label: 'Mean' },
-  { id: 'sd', label: 'SD' },
-  { id: 'max', label: 'Max' },
-] as const;
-
-export const kKinds = [
-  { id: 'force_xy', symbol: 'F', index: 'xy', label: 'Transverse force' },
-  { id: 'force_z', symbol: 'F', index: 'z', label: 'Axial force' },
-  { id: 'torque_xy', symbol: 'T', index: 'xy', label: 'Bending torque' },
-  { id: 'torque_z', symbol: 'T', index: 'z', label: 'Twisting torque' },
-] as const;
-
 export interface TableRow {
-  readonly kind: (typeof kKinds)[number];
+  readonly label: string;
+  /** As F_xy: letter and index. */
+  readonly symbol: string;
   readonly cells: readonly (Metric | undefined)[];
 }
 
-/** Rows of the published layout, and all measures that are not in it, in the server's order. */
-export function arranged(metrics: readonly Metric[]): { table: TableRow[]; others: Metric[] } {
-  const byId = new Map(metrics.map((metric) => [metric.id, metric]));
-  const table = kKinds.map((kind) => ({ kind, cells: kStatistics.map(({ id }) => byId.get(`${kind.id}_${id}`)) }));
-  const placed = new Set(table.flatMap((row) => row.cells.map((cell) => cell?.id)));
-  return { table, others: metrics.filter((metric) => !placed.has(metric.id)) };
+export interface Arranged {
+  /** Headings of the table's columns. */
+  readonly statistics: readonly string[];
+  readonly rows: readonly TableRow[];
+  /** Metrics without a place in the table. */
+  readonly others: readonly Metric[];
 }
 
-/** Shares read in per cent, a judgement as a word, all else with its unit. */
-export function shown(metric: Metric): string {
-  const { id, value, unit } = metric;
+const unique = (texts: readonly string[]) => [...new Set(texts)];
+
+/** Rows stand in the order in which the metrics first name them; columns in the order mean, SD, maximum. */
+export function arranged(metrics: readonly Metric[]): Arranged {
+  const placed = metrics.flatMap((metric) => (metric.cell ? [{ metric, cell: metric.cell }] : []));
+  const order = ['Mean', 'SD', 'Max'];
+  const statistics = unique(placed.map(({ cell }) => cell.column)).sort((a, b) => order.indexOf(a) - order.indexOf(b));
+  const rows = unique(placed.map(({ cell }) => cell.row)).map((label) => {
+    const inRow = placed.filter(({ cell }) => cell.row === label);
+    return {
+      label,
+      symbol: inRow[0]?.cell.symbol ?? '',
+      cells: statistics.map((column) => inRow.find(({ cell }) => cell.column === column)?.metric),
+    };
+  });
+  return { statistics, rows, others: metrics.filter((metric) => !metric.cell) };
+}
+
+/** Writes shares as percentages, a judged answer as a word, other values with their unit. */
+export function shown({ value, unit, shown_as }: Metric): string {
   if (value === null) return kNone;
-  if (id === 'answer_right') return value === 1 ? 'correct' : 'incorrect';
-  if (unit === '1' && (id.endsWith('_share') || id.startsWith('wall_coverage')))
-    return formatShare(share(value), value > 0 && value < 0.01 ? 3 : 0);
+  if (shown_as === 'correct_or_incorrect') return value === 1 ? 'correct' : 'incorrect';
+  if (shown_as === 'share') return formatShare(share(value), value > 0 && value < 0.01 ? 3 : 0);
   return formatMeasure(value, unit);
 }

@@ -1,7 +1,7 @@
 import type { Metric, TrialState } from '@/api';
 import { Card, Skeleton, Term } from '@/ui';
 import { kNone, measureDigits, shownUnit } from '@/units';
-import { arranged, kStatistics, shown, type TableRow } from './measure-rows';
+import { type Arranged, arranged, shown } from './measure-rows';
 import styles from './measures.module.css';
 
 function Definition({ metric }: { readonly metric: Metric }) {
@@ -29,7 +29,7 @@ function Cell({ metric }: { readonly metric: Metric | undefined }) {
   );
 }
 
-function PublishedTable({ rows }: { readonly rows: readonly TableRow[] }) {
+function PublishedTable({ statistics, rows }: Pick<Arranged, 'statistics' | 'rows'>) {
   return (
     <table className={styles.table}>
       <caption>Forces and torques on the probe</caption>
@@ -37,26 +37,26 @@ function PublishedTable({ rows }: { readonly rows: readonly TableRow[] }) {
         <tr>
           <th scope="col">Part</th>
           <th scope="col">Unit</th>
-          {kStatistics.map(({ id, label }) => (
-            <th key={id} scope="col" className={styles.number}>
-              {label}
+          {statistics.map((statistic) => (
+            <th key={statistic} scope="col" className={styles.number}>
+              {statistic}
             </th>
           ))}
         </tr>
       </thead>
       <tbody>
-        {rows.map(({ kind, cells }) => (
-          <tr key={kind.id}>
+        {rows.map(({ label, symbol, cells }) => (
+          <tr key={label}>
             <th scope="row">
-              {kind.label}{' '}
+              {label}{' '}
               <span className={styles.symbol}>
-                {kind.symbol}
-                <sub>{kind.index}</sub>
+                {symbol.split('_')[0]}
+                <sub>{symbol.split('_')[1]}</sub>
               </span>
             </th>
             <td>{shownUnit(cells.find(Boolean)?.unit ?? '')}</td>
             {cells.map((metric, index) => (
-              <Cell key={kStatistics[index]?.id} metric={metric} />
+              <Cell key={statistics[index]} metric={metric} />
             ))}
           </tr>
         ))}
@@ -97,15 +97,15 @@ function Others({ metrics, caption }: { readonly metrics: readonly Metric[]; rea
 
 /** The measures as the server made them, laid out as in the paper: mean, SD and maximum by part of the wrench. */
 export function Measures({ metrics, state }: { readonly metrics: readonly Metric[]; readonly state: TrialState }) {
-  const { table, others } = arranged(metrics);
-  const published = table.some(({ cells }) => cells.some(Boolean));
+  const { statistics, rows, others } = arranged(metrics);
+  const published = rows.length > 0;
   return (
     <Card title="Measures">
       {metrics.length > 0 ? (
         <div className={published ? styles.tables : undefined}>
           {published ? (
             <div>
-              <PublishedTable rows={table} />
+              <PublishedTable statistics={statistics} rows={rows} />
               <p className={styles.foot}>
                 Over the samples above 0.01 N and 0.001 N·m, as in the published tables. Point at a number to see its
                 definition.

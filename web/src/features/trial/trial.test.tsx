@@ -19,15 +19,19 @@ const answer = (changes: Partial<Answer>): Answer => ({
   depth_m: null,
   ...changes,
 });
-const metric = (id: string, value: number | null, unit = 'N', note = ''): Metric => ({
+const metric = (id: string, value: number | null, unit = 'N', more: Partial<Metric> = {}): Metric => ({
   id,
   label: `label of ${id}`,
   unit,
   value,
-  note,
+  note: '',
   definition: `definition of ${id}`,
   source: 'paper',
+  shown_as: 'number',
+  cell: null,
+  ...more,
 });
+const inTable = (row: string, symbol: string, column: string) => ({ cell: { row, symbol, column } });
 
 it('the link of a trial leads to its study, or to its assignment', () => {
   expect(seriesAddress('spine-study')).toBe('/studies/spine-study');
@@ -57,8 +61,8 @@ describe('the judgement', () => {
 describe('the channel that a burr made', () => {
   const drilled = (beyond: number | null, note: string) => [
     metric('drilled_volume', 5.6e-8, 'm^3'),
-    metric('channel_breach', beyond, 'm', note),
-    metric('channel_angle', null, 'rad', 'too short'),
+    metric('channel_breach', beyond, 'm', { note }),
+    metric('channel_angle', null, 'rad', { note: 'too short' }),
   ];
   it.each([
     [0.0021, 'through the medial wall', 'out', 'Left the bone, through the medial wall, by 2.1 mm'],
@@ -129,17 +133,18 @@ it('the moments of a breach are the entries into soft tissue from before it, not
 
 describe('the measures', () => {
   const metrics = [
-    metric('force_xy_mean', 0.28),
-    metric('force_xy_sd', 0.24),
-    metric('force_xy_max', 1.12),
+    metric('force_xy_mean', 0.28, 'N', inTable('Transverse force', 'F_xy', 'Mean')),
+    metric('force_xy_max', 1.12, 'N', inTable('Transverse force', 'F_xy', 'Max')),
+    metric('force_xy_sd', 0.24, 'N', inTable('Transverse force', 'F_xy', 'SD')),
     metric('path_length', 0.863, 'm'),
-    metric('torque_z_sd', 0.0004, 'N·m'),
+    metric('torque_z_sd', 0.0004, 'N·m', inTable('Twisting torque', 'T_z', 'SD')),
   ];
 
   it('stand in the published layout, and what is not in it follows in order', () => {
-    const { table, others } = arranged(metrics);
-    expect(table[0]?.cells.map((cell) => cell?.value)).toEqual([0.28, 0.24, 1.12]);
-    expect(table[1]?.cells).toEqual([undefined, undefined, undefined]);
+    const { statistics, rows, others } = arranged(metrics);
+    expect(statistics).toEqual(['Mean', 'SD', 'Max']);
+    expect(rows[0]?.cells.map((cell) => cell?.value)).toEqual([0.28, 0.24, 1.12]);
+    expect(rows[1]?.cells.map((cell) => cell?.value)).toEqual([undefined, 0.0004, undefined]);
     expect(others.map(({ id }) => id)).toEqual(['path_length']);
   });
 
@@ -163,10 +168,12 @@ describe('the measures', () => {
   });
 
   it('that are shares read in per cent, a judgement as a word, a missing one as a dash', () => {
-    expect(shown(metric('contact_share', 0.44, '1')).replace('\u202f', ' ')).toBe('44 %');
-    expect(shown(metric('wall_coverage_medial', 0.4667, '1')).replace('\u202f', ' ')).toBe('47 %');
-    expect(shown(metric('answer_right', 0, '1'))).toBe('incorrect');
-    expect(shown(metric('answer_right', null, '1'))).toBe('–');
+    expect(shown(metric('contact_share', 0.44, '1', { shown_as: 'share' })).replace('\u202f', ' ')).toBe('44 %');
+    expect(shown(metric('wall_coverage_medial', 0.4667, '1', { shown_as: 'share' })).replace('\u202f', ' ')).toBe(
+      '47 %',
+    );
+    expect(shown(metric('answer_right', 0, '1', { shown_as: 'correct_or_incorrect' }))).toBe('incorrect');
+    expect(shown(metric('answer_right', null, '1', { shown_as: 'correct_or_incorrect' }))).toBe('–');
     expect(shown(metric('late_ticks', 3, '1'))).toBe('3');
   });
 
