@@ -1,5 +1,6 @@
 /// Schemas of the lab's answers, field for field as lab/report/answer.cpp writes them.
 #include "server/api/lab/lab_json.hpp"
+#include "server/api/schema.hpp"
 
 namespace tractus {
 namespace api {
@@ -49,8 +50,8 @@ Json channel_schema() {
 Json region_schema() {
   return object({{"region", text("condition on the signals: depth_m > 0.02")},
                  {"words", text("the condition in words")},
-                 {"share_of_error", share("share of the squared error in the region")},
-                 {"share_of_time", share("share of the samples in the region")},
+                 {"share_of_error", number("1", "share of the squared error in the region")},
+                 {"share_of_time", number("1", "share of the samples in the region")},
                  {"rmse", figure("root mean square error in the region")},
                  {"mean", series(kChannelUnit, "mean residual of each channel")}});
 }
@@ -60,11 +61,11 @@ Json comparison_schema() {
       object({{"id", text("identifier of the trial in the set")},
               {"rmse", figure("root mean square error of the judged channel")},
               {"channels", map(figure("root mean square error"), "error of each channel by name")},
-              {"duration_s", nullable(number("s", "duration of the trial"))}});
+              {"duration_s", number("s", "duration of the trial")}});
   const Json phase = object({{"phase", text("phase of the motion")},
                              {"rmse", figure("root mean square error in the phase")},
-                             {"share_of_error", share("share of the squared error")},
-                             {"share_of_time", share("share of the samples")}});
+                             {"share_of_error", number("1", "share of the squared error")},
+                             {"share_of_time", number("1", "share of the samples")}});
   return object(
       {{"format", text("tractus-comparison/1")},
        {"primary", text("name of the judged channel")},

@@ -133,12 +133,8 @@ std::vector<NamedSchema> lab_model_schemas() {
 
 std::vector<NamedSchema> lab_run_schemas() {
   using namespace schema;
-  const Json ranked = object({{"id", text("of the effect")},
-                              {"probability", nullable(number("1", "that it is missing"))},
-                              {"held_out_rmse", nullable(number("N", "with it added"))},
-                              {"note", optional(text("why it was not tried"))},
-                              {"own", optional(truth("the user's own effect"))}});
-  return {
+  std::vector<NamedSchema> out = lab_answer_schemas();
+  out.push_back(
       {"LabRun",
        object({{"id", text("of this run")},
                {"kind", one_of({"diagnosis", "comparison", "fit"}, "what was asked")},
@@ -154,15 +150,16 @@ std::vector<NamedSchema> lab_run_schemas() {
                {"error", text("why it failed; else empty")},
                {"made_utc_us", integer("us", "since 1970, UTC")},
                {"made_by", text("who")},
-               {"ranking", nullable(array(ranked, "early, before effects are tried together"))},
+               {"ranking",
+                nullable(array(ref("RankedEffect"), "early, before effects are tried together"))},
                {"model_ready", truth("the better model can be fetched and published")},
                {"version", nullable(text("that was published from it"))},
-               {"diagnosis", nullable(anything("tractus-diagnosis/1"))},
-               {"fit", nullable(anything("tractus-fit/1"))},
-               {"comparisons",
-                nullable(object({{"before", anything("tractus-comparison/1")},
-                                 {"after", nullable(anything("tractus-comparison/1"))}}))},
-               {"tract_map", nullable(anything("palpation: the error on the tract's wall"))}})}};
+               {"diagnosis", nullable(ref("Diagnosis"))},
+               {"fit", nullable(ref("Fit"))},
+               {"comparisons", nullable(object({{"before", ref("Comparison")},
+                                                {"after", nullable(ref("Comparison"))}}))},
+               {"tract_map", nullable(ref("TractMap"))}})});
+  return out;
 }
 
 }  // namespace api

@@ -20,6 +20,8 @@ core::Json own_effects(const store::LabRun& run);
 
 std::vector<NamedSchema> lab_model_schemas();
 std::vector<NamedSchema> lab_run_schemas();
+/// Of what the lab answers: Comparison, Diagnosis, Fit, TractMap and what they hold.
+std::vector<NamedSchema> lab_answer_schemas();
 
 /// research_route under /api/v1/lab.
 RouteInfo lab_route(std::string method, std::string tail, std::string id, std::string summary,

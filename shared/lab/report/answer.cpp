@@ -49,8 +49,8 @@ Json error_regions_json(const ErrorRegions& found) {
   for (const Region& region : found.regions)
     out.push_back({{"region", region.text},
                    {"words", region.words},
-                   {"share_of_error", number(region.share_of_error)},
-                   {"share_of_time", number(region.share_of_time)},
+                   {"share_of_error", region.share_of_error},
+                   {"share_of_time", region.share_of_time},
                    {"rmse", number(region.rmse)},
                    {"mean", numbers(region.mean)}});
   return out;
@@ -152,14 +152,14 @@ Json to_json(const Comparison& comparison) {
     trials.push_back({{"id", trial.id},
                       {"rmse", number(trial.rmse)},
                       {"channels", by_channel},
-                      {"duration_s", number(trial.duration_s)}});
+                      {"duration_s", trial.duration_s}});
   }
   Json phases = Json::array();
   for (const PhaseComparison& p : comparison.phases)
     phases.push_back({{"phase", p.phase},
                       {"rmse", number(p.rmse)},
-                      {"share_of_error", number(p.share_of_error)},
-                      {"share_of_time", number(p.share_of_time)}});
+                      {"share_of_error", p.share_of_error},
+                      {"share_of_time", p.share_of_time}});
   return {{"format", "tractus-comparison/1"},
           {"primary", comparison.judged_name},
           {"channels", channels},

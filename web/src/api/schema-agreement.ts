@@ -8,6 +8,7 @@ import type {
   effectCheckSchema,
   effectListSchema,
   labRunListSchema,
+  labRunSchema,
   labSignalsSchema,
   measurementListSchema,
   modelListSchema,
@@ -51,6 +52,7 @@ export interface Agreed {
   readonly measurements: Takes<typeof measurementListSchema, Served['MeasurementsList']>;
   readonly effects: Takes<typeof effectListSchema, Served['EffectList']>;
   readonly effectCheck: Takes<typeof effectCheckSchema, Served['EffectCheck']>;
+  readonly labRun: Takes<typeof labRunSchema, Served['LabRun']>;
   readonly labRuns: Takes<typeof labRunListSchema, Served['LabRunList']>;
   readonly labSignals: Takes<typeof labSignalsSchema, Served['RunSignals']>;
   readonly accounts: Takes<typeof accountListSchema, Served['Accounts']>;
@@ -81,6 +83,7 @@ export const kAgreed: Agreed = {
   measurements: true,
   effects: true,
   effectCheck: true,
+  labRun: true,
   labRuns: true,
   labSignals: true,
   accounts: true,
