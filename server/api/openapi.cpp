@@ -56,17 +56,19 @@ core::Json responses(const RouteInfo& route) {
   if (route.converse)
     out["101"] = {{"description", route.summary}, {"content", content(route.answer)}};
   else if (route.answer.empty())
-    out["204"] = {{"description", "done"}};
+    out["204"] = {{"description", "The request was carried out"}};
   else
     out["200"] = {{"description", route.summary}, {"content", content(route.answer)}};
-  out["400"] = error_answer("what was sent is not what was asked for");
-  out["401"] = error_answer("credentials are missing or wrong");
-  if (!route.open) out["403"] = error_answer("known, and not allowed");
-  if (route.path.find('{') != std::string::npos) out["404"] = error_answer("nothing by that name");
+  out["400"] = error_answer("The request is invalid");
+  out["401"] = error_answer("Credentials are missing or wrong");
+  if (!route.open) out["403"] = error_answer("The caller's role does not allow this request");
+  if (route.path.find('{') != std::string::npos)
+    out["404"] = error_answer("The object does not exist, or the caller may not see it");
   if (route.method == "PUT" || route.method == "PATCH" || (route.method == "POST" && !route.open))
-    out["409"] = error_answer("it contradicts what is already there");
-  if (!route.body.empty()) out["413"] = error_answer("the body is over the limit");
-  if (route.open) out["429"] = error_answer("too many failures: wait");
+    out["409"] = error_answer("The request conflicts with the current state");
+  if (!route.body.empty()) out["413"] = error_answer("The body is larger than the limit");
+  if (route.open)
+    out["429"] = error_answer("Too many failed attempts; wait before the next attempt");
   return out;
 }
 
@@ -116,8 +118,9 @@ std::string lower_case(std::string text) {
 
 core::Json openapi(const std::vector<RouteInfo>& table) {
   core::Json paths = core::Json::object(), schemas = core::Json::object();
-  schemas["Error"] = schema::object({{"error", schema::text("one line for a person")},
-                                     {"code", schema::text("the cause, for a program")}});
+  schemas["Error"] = schema::object(
+      {{"error", schema::text("Description of the error, one line for people")},
+       {"code", schema::text("Code of the error for programs, for example bad_input")}});
   std::set<std::string> resources;
   for (const RouteInfo& route : table) {
     paths[route.path][lower_case(route.method)] = operation(route);
@@ -126,14 +129,16 @@ core::Json openapi(const std::vector<RouteInfo>& table) {
   }
   core::Json tags = core::Json::array();
   for (const std::string& resource : resources)
-    tags.push_back({{"name", resource}, {"description", "What is asked under /" + resource}});
+    tags.push_back({{"name", resource}, {"description", "Routes of the resource " + resource}});
   return {{"openapi", "3.1.0"},
           {"info",
            {{"title", "Tractus"},
             {"version", "1"},
-            {"description", "Cases, trials and their assessment. Units are SI and end each name."},
+            {"description",
+             "Cases, trials and their assessment. Values are in SI units unless a field states "
+             "another unit; the name of a field ends with its unit."},
             {"license", {{"name", "All rights reserved"}, {"identifier", "LicenseRef-Tractus"}}}}},
-          {"servers", core::Json::array({{{"url", "/"}, {"description", "the server itself"}}})},
+          {"servers", core::Json::array({{{"url", "/"}, {"description", "This server"}}})},
           {"tags", tags},
           {"paths", paths},
           {"components",

@@ -102,7 +102,7 @@ RouteInfo research_route(std::string method, std::string path, std::string id, s
                 .schemas = {},
                 .handle = handle};
   if (out.path.find("{id}") != std::string::npos)
-    out.parameters.push_back(path_text("id", "32 hexadecimal characters"));
+    out.parameters.push_back(path_text("id", "Id of the object, 32 hexadecimal characters"));
   return out;
 }
 

@@ -115,71 +115,95 @@ Result<http::Response> retire(const Call& call) {
 
 std::vector<schema::Field> plan_fields() {
   using namespace schema;
-  const Json point = tuple(number("m", "x, y or z"), 3, "in the volume's frame, LPS");
+  const Json point = tuple(number("m", "One coordinate x, y or z, in metres"), 3,
+                           "Point in the volume's frame (LPS), in metres");
   return {{"entry_m", point},
           {"target_m", point},
-          {"radius_m", optional(number("m", "of the drill; 0.0015 without"))},
-          {"channel", optional(one_of({"drilled", "planned"},
-                                      "planned: the bone is left whole, "
-                                      "for drilling; drilled without"))},
+          {"radius_m", optional(number("m", "Radius of the drill, in metres; default 0.0015"))},
+          {"channel",
+           optional(one_of({"drilled", "planned"},
+                           "drilled (default): the channel is drilled into the volume; planned: "
+                           "the bone stays whole, and a trainee drills the channel"))},
           {"breach", optional(nullable(ref("BreachWish")))}};
 }
 
 std::vector<NamedSchema> tract_schemas() {
   using namespace schema;
-  const Json wall = one_of({"medial", "lateral", "superior", "inferior", "anterior"}, "which");
-  const Json point = tuple(number("m", "x, y or z"), 3, "in the volume's frame, LPS");
-  const Json thinnest = object({{"at_m", number("m", "depth along the tract")},
-                                {"inner_m", number("m", "from the axis to the bone")},
-                                {"thickness_m", number("m", "of the bone")}});
+  const Json wall =
+      one_of({"medial", "lateral", "superior", "inferior", "anterior"}, "Wall of the tract");
+  const Json point = tuple(number("m", "One coordinate x, y or z, in metres"), 3,
+                           "Point in the volume's frame (LPS), in metres");
+  const Json thinnest =
+      object({{"at_m", number("m", "Depth along the tract, in metres")},
+              {"inner_m", number("m", "Distance from the tract's axis to the bone, in metres")},
+              {"thickness_m", number("m", "Thickness of the bone, in metres")}});
   return {
       {"BreachWish",
-       object({{"wall", wall},
-               {"depth_m", optional(number("m", "beyond the bone; 0.003 without"))},
-               {"at_m", optional(number("m", "along the tract; where it is thinnest without"))}})},
+       object(
+           {{"wall", wall},
+            {"depth_m", optional(number(
+                            "m", "Depth of the breach beyond the bone, in metres; default 0.003"))},
+            {"at_m",
+             optional(number(
+                 "m", "Depth along the tract, in metres; default: where the wall is thinnest"))}})},
       {"TractWish", object(plan_fields())},
       {"PlannedWall",
        object({{"wall", wall},
-               {"depth_m", array(number("m", "along the tract"), "where it was looked for")},
-               {"inner_m", array(nullable(number("m", "from the axis")), "where bone begins")},
-               {"thickness_m", array(nullable(number("m", "of the bone")), "null: not found")},
+               {"depth_m", array(number("m", "Depth along the tract, in metres"),
+                                 "Depths at which the wall was searched")},
+               {"inner_m", array(nullable(number("m", "Distance from the tract's axis, in metres")),
+                                 "Distance at which the bone begins, for each depth; null where no "
+                                 "wall was found")},
+               {"thickness_m",
+                array(nullable(number("m", "Thickness of the bone, in metres")),
+                      "Thickness of the wall, for each depth; null where no wall was found")},
                {"thinnest", nullable(thinnest)}})},
-      {"PlannedBreach", object({{"wall", wall},
-                                {"at_m", number("m", "depth along the tract")},
-                                {"breach_m", point},
-                                {"from_m", point},
-                                {"tip_m", point},
-                                {"depth_m", number("m", "beyond the bone")},
-                                {"inner_m", number("m", "from the axis to the bone")},
-                                {"wall_thickness_m", number("m", "of the bone that gives way")}})},
-      {"PlannedTract", object({{"length_m", number("m", "from entry to target")},
-                               {"side", nullable(one_of({"left", "right"}, "of the patient"))},
-                               {"tract", nullable(ref("Tract"))},
-                               {"walls", array(ref("PlannedWall"),
-                                               "medial, lateral, superior, inferior, anterior")},
-                               {"breach", nullable(ref("PlannedBreach"))},
-                               {"problems", array(text("a sentence"), "none: it can be made")}})}};
+      {"PlannedBreach",
+       object(
+           {{"wall", wall},
+            {"at_m", number("m", "Depth of the breach along the tract, in metres")},
+            {"breach_m", point},
+            {"from_m", point},
+            {"tip_m", point},
+            {"depth_m", number("m", "Depth of the breach beyond the bone, in metres")},
+            {"inner_m", number("m", "Distance from the tract's axis to the bone, in metres")},
+            {"wall_thickness_m", number("m", "Thickness of the bone at the breach, in metres")}})},
+      {"PlannedTract",
+       object(
+           {{"length_m", number("m", "Distance from the entry to the target, in metres")},
+            {"side", nullable(one_of({"left", "right"},
+                                     "Side of the patient; null if the tract cannot be placed"))},
+            {"tract", nullable(ref("Tract"))},
+            {"walls", array(ref("PlannedWall"),
+                            "Walls in the order medial, lateral, superior, inferior, anterior")},
+            {"breach", nullable(ref("PlannedBreach"))},
+            {"problems", array(text("One problem, as a sentence"),
+                               "Problems of the plan; empty if a case can be made from it")}})}};
 }
 
 std::vector<NamedSchema> making_schemas() {
   using namespace schema;
   std::vector<Field> wish = plan_fields();
-  wish.emplace(wish.begin(), "title", text("for those who teach; trainees never see it"));
-  wish.emplace(wish.begin(), "volume", text("a released volume's id"));
+  wish.emplace(wish.begin(), "title", text("Title for faculty; trainees never see it"));
+  wish.emplace(wish.begin(), "volume", text("Id of a released volume"));
   return {
       {"NewCase", object(wish)},
-      {"CaseMaking", object({{"id", text("of the making")},
-                             {"volume", text("that it is made of")},
-                             {"title", text("for those who teach")},
-                             {"state", one_of({"queued", "running", "done", "failed"}, "how far")},
-                             {"share", number("1", "of the work, 0 to 1")},
-                             {"phase", text("what it is at; else empty")},
-                             {"error", text("why it failed; else empty")},
-                             {"case_id", nullable(text("once done"))},
-                             {"made_utc_us", integer("us", "since 1970, UTC")},
-                             {"made_by", text("who")}})},
-      {"CaseMakings", object({{"makings", array(ref("CaseMaking"), "newest first, 50 at most")}})},
-      {"Retirement", object({{"retired", truth("offered no more")}})}};
+      {"CaseMaking",
+       object({{"id", text("Id of the job that makes the case")},
+               {"volume", text("Id of the volume from which the case is made")},
+               {"title", text("Title for faculty")},
+               {"state", one_of({"queued", "running", "done", "failed"}, "State of the job")},
+               {"share", number("1", "Completed share of the work, 0 to 1")},
+               {"phase", text("Current step of the work; empty if the job is not running")},
+               {"error", text("Reason for the failure; empty if the job did not fail")},
+               {"case_id", nullable(text("Id of the case; null until the job is done"))},
+               {"made_utc_us",
+                integer("us", "Time of the request, in microseconds since 1970-01-01 UTC")},
+               {"made_by", text("Name of the account that requested the case")}})},
+      {"CaseMakings",
+       object({{"makings",
+                array(ref("CaseMaking"), "Jobs that make cases, newest first, at most 50")}})},
+      {"Retirement", object({{"retired", truth("True if new assignments cannot use the case")}})}};
 }
 
 RouteInfo route(std::string method, std::string path, std::string id, std::string summary,
@@ -202,24 +226,29 @@ RouteInfo route(std::string method, std::string path, std::string id, std::strin
 
 std::vector<RouteInfo> case_making_routes() {
   RouteInfo look = route("POST", "volumes/{id}/tract", "planTract",
-                         "What a planned tract meets: walls along it, the breach, what is wrong",
+                         "Examine a planned tract before a case is made: the walls along it, the "
+                         "breach and the problems of the plan",
                          "TractWish", "PlannedTract", look_at_tract);
-  look.parameters = {path_text("id", "the volume's")};
+  look.parameters = {path_text("id", "Id of the volume")};
   look.audited = false;  // it changes nothing
   look.schemas = tract_schemas();
-  RouteInfo add = route("POST", "cases", "makeCase",
-                        "Make a case of a released volume, as `tractus carve` does: a job",
-                        "NewCase", "CaseMaking", make);
+  RouteInfo add =
+      route("POST", "cases", "makeCase",
+            "Queue a job that makes a case from a released volume, as `tractus carve` does",
+            "NewCase", "CaseMaking", make);
   add.schemas = making_schemas();
-  RouteInfo list = route("GET", "case-makings", "caseMakings", "Cases in the making and made", "",
-                         "CaseMakings", list_makings);
-  RouteInfo one = route("GET", "case-makings/{id}", "caseMaking", "How far one is", "",
-                        "CaseMaking", one_making);
-  one.parameters = {path_text("id", "of the making")};
+  RouteInfo list =
+      route("GET", "case-makings", "caseMakings", "List the jobs that make cases, newest first", "",
+            "CaseMakings", list_makings);
+  RouteInfo one =
+      route("GET", "case-makings/{id}", "caseMaking", "Read the state of one job that makes a case",
+            "", "CaseMaking", one_making);
+  one.parameters = {path_text("id", "Id of the job that makes the case")};
   RouteInfo away = route("POST", "cases/{id}/retire", "retireCase",
-                         "Offer a case no more, or again; what was assigned of it goes on",
+                         "Retire a case, so that new assignments cannot use it, or offer it again; "
+                         "existing assignments continue",
                          "Retirement", "", retire);
-  away.parameters = {path_text("id", "the case's")};
+  away.parameters = {path_text("id", "Id of the case")};
   return {look, add, list, one, away};
 }
 

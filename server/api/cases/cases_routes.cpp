@@ -42,7 +42,8 @@ core::Result<http::Response> part_named(const Call& call, const std::string& par
   if (part->secret && !may_know) {
     auto known =
         TRY(call.backend.store.read([&](store::Reading& tx) { return store::case_of(tx, id); }));
-    // Of a scenario not even that it is here: versions of scenarios are no secret.
+    // The answer must not even reveal that this server has the scenario, because the versions of
+    // scenarios are not secret.
     if (known && known->kind == store::kProbing) return absent;
     return core::Error{core::Errc::forbidden, "this part is secret"};
   }
@@ -94,45 +95,51 @@ RouteInfo read_route(std::string path, std::string id, std::string summary, std:
 }  // namespace
 
 std::vector<RouteInfo> cases_routes() {
-  const Parameter id = path_text("id", "SHA-256 of case.json");
-  RouteInfo list = read_route("", "cases", "Published cases, newest first", "CaseList");
+  const Parameter id = path_text("id", "Id of the case, the SHA-256 of its file case.json");
+  RouteInfo list = read_route("", "cases", "List the published cases, newest first", "CaseList");
   list.schemas = {
       {"CaseSummary",
-       schema::object({{"id", schema::text("SHA-256 of case.json")},
-                       {"title", schema::text("for people")},
-                       {"source", schema::text("where the volume came from, licence")},
-                       {"made_utc_us", schema::integer("us", "since 1970, UTC")},
-                       {"trials", schema::integer("1", "on this server")},
-                       {"retired", schema::truth("offered no more")},
-                       {"planned", schema::truth("the bone is whole: its channel is drilled "
-                                                 "first, and felt then")}})},
-      {"CaseList",
-       schema::object({{"cases", schema::array(schema::ref("CaseSummary"), "newest first")}})}};
+       schema::object(
+           {{"id", schema::text("Id of the case, the SHA-256 of its file case.json")},
+            {"title", schema::text("Title of the case, shown to people")},
+            {"source", schema::text("Origin of the volume and its licence")},
+            {"made_utc_us",
+             schema::integer("us", "Time of creation, in microseconds since 1970-01-01 UTC")},
+            {"trials", schema::integer("1", "Number of trials on this case on this server")},
+            {"retired", schema::truth("True if new assignments cannot use the case")},
+            {"planned", schema::truth("True if the bone is whole: the trainee first drills the "
+                                      "channel, then palpates it")}})},
+      {"CaseList", schema::object({{"cases", schema::array(schema::ref("CaseSummary"),
+                                                           "Published cases, newest first")}})}};
   list.handle = list_cases;
 
-  RouteInfo one =
-      read_route("/{id}", "case", "The signed manifest case.json, byte for byte", "CaseManifest");
+  RouteInfo one = read_route("/{id}", "case", "Read the signed manifest case.json, byte for byte",
+                             "CaseManifest");
   one.parameters = {id};
-  one.schemas = {{"CaseManifest", schema::anything("tractus-case/1")}};
+  one.schemas = {
+      {"CaseManifest", schema::anything("Manifest of a case in the format tractus-case/1")}};
   one.handle = manifest;
 
-  RouteInfo bytes =
-      read_route("/{id}/parts/{name}", "casePart",
-                 "A part's bytes; Range is honoured; secret parts never to a station", kBytes);
-  bytes.parameters = {id, path_text("name", "as in the manifest, or case.json, case.sig")};
+  RouteInfo bytes = read_route("/{id}/parts/{name}", "casePart",
+                               "Read the bytes of one part of a case; the header Range is "
+                               "supported; stations cannot read secret parts",
+                               kBytes);
+  bytes.parameters = {
+      id, path_text("name", "Name of the part in the manifest, or case.json, or case.sig")};
   bytes.handle = part;
 
-  RouteInfo small = read_route(
-      "/{id}/preview", "casePreview",
-      "Opacity round the tract as bytes 0 … 255, [k][j][i]; X-Dims, X-Spacing-m, X-Origin-m and "
-      "X-Directions (row-major) place them",
-      kBytes);
+  RouteInfo small =
+      read_route("/{id}/preview", "casePreview",
+                 "Read the opacity around the tract as values 0 to 255, one byte per voxel in the "
+                 "order [k][j][i]; the headers X-Dims, X-Spacing-m, X-Origin-m and X-Directions "
+                 "(row-major) state the position in the patient (LPS)",
+                 kBytes);
   small.parameters = {id,
                       {.in = Parameter::In::query,
                        .name = "max_side",
                        .kind = Parameter::Kind::integer,
                        .unit = "1",
-                       .meaning = "voxels along the longest side, at most",
+                       .meaning = "Largest number of voxels along the longest side",
                        .low = 8,
                        .high = 256,
                        .fallback = "64"}};

@@ -25,7 +25,7 @@ using scenarios::Scenario;
 constexpr std::uint64_t kMaxBody_bytes = 256u << 10;
 constexpr std::array kSpeeds_m_s{0.002, 0.005, 0.010};
 
-/// A draft has no origin yet: what it will be is written by this server.
+/// Reads a draft, which has no origin yet; the server writes the origin.
 Result<Scenario> drafted(Json json, const scenarios::Origin& origin) {
   if (!json.is_object()) return Error{Errc::bad_input, ": an object is expected"};
   json["origin"] = {{"who", origin.who}, {"when", origin.when}, {"parent", origin.parent}};
@@ -45,7 +45,8 @@ Json curve_json(const scenarios::Resistance& found) {
   return {{"depth_m", found.depth_m}, {"at", at}, {"layers", layers}, {"walls", walls}};
 }
 
-/// "/bone/stiffness_N_per_m: -1 is outside 0 … 200000" → the pointer, and the sentence.
+/// Splits "/bone/stiffness_N_per_m: -1 is outside 0 … 200000" into the JSON pointer and the
+/// sentence.
 std::pair<std::string, std::string> field_and_words(std::string what) {
   while (what.starts_with(": ")) what.erase(0, 2);
   const auto colon = what.find(": ");
@@ -96,7 +97,7 @@ Result<http::Response> list(const Call& call) {
 
 Error absent(const std::string& id) { return {Errc::not_found, "no scenario " + id.substr(0, 64)}; }
 
-/// A version's contents; a kind's name is the tuned one's.
+/// The contents of a version; for the name of a kind, those of the tuned scenario of this kind.
 Result<Scenario> contents(Backend& backend, const std::string& id) {
   if (const auto kind = scenarios::kind_of(id)) return scenarios::tuned(*kind);
   const auto version = TRY(
@@ -134,7 +135,8 @@ Result<Draft> draft_from(const Call& call) {
   return Draft{std::move(*read), publish && publish->get<bool>()};
 }
 
-/// Published, it is a case that an assignment may name; its one part is secret.
+/// Publishes the version as a case that an assignment may name; the only part of the case is
+/// secret.
 Result<void> offer(store::Writing& tx, const store::ScenarioVersion& version,
                    const store::CasePart& part, std::int64_t now_utc_us) {
   const store::CaseSummary summary{version.id, version.name,   version.made_by, now_utc_us,
@@ -189,47 +191,69 @@ Result<http::Response> publish(const Call& call) {
 
 std::vector<NamedSchema> curve_schemas() {
   using namespace schema;
-  const Json at = object({{"speed_m_s", number("m/s", "steady, into the bone")},
-                          {"force_N", array(number("N", "push"), "by depth")}});
-  const Json layer = object({{"from_m", number("m", "depth")}, {"to_m", number("m", "depth")}});
-  const Json wall = object({{"from_m", number("m", "from here resistance grows")},
-                            {"at_m", number("m", "where it gives way")},
-                            {"to_m", number("m", "so far soft tissue goes")}});
-  return {{"ScenarioCurve", object({{"depth_m", array(number("m", "of the tip"), "from the entry")},
-                                    {"at", array(at, "a curve a speed, slowest first")},
-                                    {"layers", array(layer, "of bone")},
-                                    {"walls", array(wall, "by depth")}})},
-          {"ScenarioCheck",
-           object({{"ok", truth("it can be kept and handed out")},
-                   {"field", text("JSON pointer of what is wrong; empty: all of it, or nothing")},
-                   {"error", text("what is wrong; else empty")},
-                   {"curve", nullable(ref("ScenarioCurve"))},
-                   {"excessive", array(text("a sentence"),
-                                       "what a surgeon or the actuator "
-                                       "cannot do")}})}};
+  const Json at =
+      object({{"speed_m_s", number("m/s", "Constant speed of the tip into the bone, in m/s")},
+              {"force_N", array(number("N", "Pushing force, in newtons"),
+                                "Pushing force at each depth, in newtons")}});
+  const Json layer = object({{"from_m", number("m", "Depth at which the layer begins, in metres")},
+                             {"to_m", number("m", "Depth at which the layer ends, in metres")}});
+  const Json wall = object(
+      {{"from_m", number("m", "Depth at which the resistance begins to grow, in metres")},
+       {"at_m", number("m", "Depth at which the wall breaks, in metres")},
+       {"to_m", number("m", "Depth at which the soft tissue behind the wall ends, in metres")}});
+  return {
+      {"ScenarioCurve",
+       object({{"depth_m", array(number("m", "Depth of the tip, in metres"),
+                                 "Depths of the tip, measured from the entry, in metres")},
+               {"at", array(at, "One curve for each speed, slowest first")},
+               {"layers", array(layer, "Layers of bone, sorted by depth")},
+               {"walls", array(wall, "Walls that can breach, sorted by depth")}})},
+      {"ScenarioCheck",
+       object(
+           {{"ok", truth("True if the draft is valid, so that it can be stored and assigned")},
+            {"field", text("JSON pointer to the invalid field; empty if the draft is valid or if "
+                           "the error is not in a single field")},
+            {"error", text("Description of the error; empty if the draft is valid")},
+            {"curve", nullable(ref("ScenarioCurve"))},
+            {"excessive", array(text("One demand, as a sentence"),
+                                "Demands that exceed what a surgeon or the actuator can do")}})}};
 }
 
 std::vector<NamedSchema> version_schemas() {
   using namespace schema;
-  const Json kind = one_of({"hard", "soft", "lateral_breach", "in_out_in"}, "of the four");
-  const Json tuned =
-      object({{"kind", kind}, {"name", text("for people")}, {"id", text("its own")}});
-  return {{"ScenarioVersion", object({{"id", text("of its contents, 64 hexadecimal characters")},
-                                      {"name", text("for those who teach")},
-                                      {"kind", kind},
-                                      {"parent", nullable(text("the version it was made from"))},
-                                      {"published", truth("offered for assignments")},
-                                      {"made_utc_us", integer("us", "since 1970, UTC")},
-                                      {"made_by", text("who")}})},
-          {"ScenarioVersions",
-           object({{"scenarios", array(ref("ScenarioVersion"), "newest first")},
-                   {"tuned", array(tuned, "that ship; their kind is their name here")}})},
-          {"ScenarioFile", anything("tractus-scenario/1")},
-          {"ScenarioDraft", anything("tractus-scenario/1, without an origin")},
-          {"NewScenario", object({{"scenario", ref("ScenarioDraft")},
-                                  {"parent", optional(text("a version's id, or a tuned kind"))},
-                                  {"publish", optional(truth("offer it at once"))}})},
-          {"Publication", object({{"published", truth("offered for assignments")}})}};
+  const Json kind = one_of({"hard", "soft", "lateral_breach", "in_out_in"}, "Kind of the scenario");
+  const Json tuned = object({{"kind", kind},
+                             {"name", text("Name of the scenario")},
+                             {"id", text("Id of the scenario's version")}});
+  return {
+      {"ScenarioVersion",
+       object({{"id", text("Id of the version, a hash of its contents, 64 hexadecimal characters")},
+               {"name", text("Name for faculty")},
+               {"kind", kind},
+               {"parent",
+                nullable(text(
+                    "Id of the version from which this version was made; null if there is none"))},
+               {"published", truth("True if assignments can use the version")},
+               {"made_utc_us",
+                integer("us", "Time of creation, in microseconds since 1970-01-01 UTC")},
+               {"made_by", text("Name of the account that created the version")}})},
+      {"ScenarioVersions",
+       object({{"scenarios",
+                array(ref("ScenarioVersion"), "Versions written on this server, newest first")},
+               {"tuned", array(tuned,
+                               "Tuned scenarios that come with the program; routes take the kind "
+                               "of such a scenario in place of an id")}})},
+      {"ScenarioFile", anything("Scenario in the format tractus-scenario/1")},
+      {"ScenarioDraft", anything("Scenario in the format tractus-scenario/1, without the field "
+                                 "origin, which the server writes")},
+      {"NewScenario",
+       object({{"scenario", ref("ScenarioDraft")},
+               {"parent", optional(text("Id of the version from which the draft was made, or the "
+                                        "kind of a tuned scenario"))},
+               {"publish",
+                optional(truth(
+                    "True if assignments can use the version immediately; default false"))}})},
+      {"Publication", object({{"published", truth("True if assignments can use the version")}})}};
 }
 
 RouteInfo route(std::string method, std::string tail, std::string id, std::string summary,
@@ -246,29 +270,32 @@ RouteInfo route(std::string method, std::string tail, std::string id, std::strin
                 .answer = std::move(answer),
                 .schemas = {},
                 .handle = handle};
-  if (tail.starts_with("/{id}")) out.parameters = {path_text("id", "a version's, or a tuned kind")};
+  if (tail.starts_with("/{id}"))
+    out.parameters = {path_text("id", "Id of a version, or the kind of a tuned scenario")};
   return out;
 }
 
 }  // namespace
 
 std::vector<RouteInfo> scenarios_routes() {
-  RouteInfo look = route("POST", "/check", "checkScenario",
-                         "Is a draft well formed, what does it ask for over depth?",
-                         "ScenarioDraft", "ScenarioCheck", check);
+  RouteInfo look =
+      route("POST", "/check", "checkScenario",
+            "Check whether a draft is valid and compute the force that it needs at each depth",
+            "ScenarioDraft", "ScenarioCheck", check);
   look.audited = false;  // it changes nothing
   look.schemas = curve_schemas();
   RouteInfo all = route("GET", "", "scenarios",
-                        "Versions written here, newest first, and those "
-                        "that ship",
+                        "List the versions of scenarios written on this server, newest first, and "
+                        "the tuned scenarios that come with the program",
                         "", "ScenarioVersions", list);
   all.schemas = version_schemas();
-  return {look, all, route("GET", "/{id}", "scenario", "A version's file", "", "ScenarioFile", one),
-          route("POST", "", "addScenario", "Keep a draft as a version", "NewScenario",
+  return {look, all,
+          route("GET", "/{id}", "scenario", "Read the file of a version", "", "ScenarioFile", one),
+          route("POST", "", "addScenario", "Store a draft as a new version", "NewScenario",
                 "ScenarioVersion", add),
           route("POST", "/{id}/publish", "publishScenario",
-                "Offer a version for assignments, or no longer", "Publication", "ScenarioVersion",
-                publish)};
+                "Publish a version, so that assignments can use it, or withdraw it", "Publication",
+                "ScenarioVersion", publish)};
 }
 
 }  // namespace api

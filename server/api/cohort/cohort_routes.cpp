@@ -40,7 +40,8 @@ Json run_summary(const store::AnalysisRun& run) {
           {"made_by", run.made_by}};
 }
 
-/// With the result, the data's description, and whether an earlier run gave the same digits.
+/// The run with its result, the description of its data, and whether an earlier run gave the same
+/// digits.
 Result<Json> run_json(const Call& call, const store::AnalysisRun& run) {
   Json out = run_summary(run);
   for (const auto& [key, object] :
@@ -117,7 +118,7 @@ Result<http::Response> analysis(const Call& call) {
   return json_response(json);
 }
 
-/// One of a finished run's files.
+/// One file of a finished run.
 Result<http::Response> part_of(const Call& call) {
   const auto run = TRY(run_of(call));
   const std::string& part = call.text("part");
@@ -160,82 +161,116 @@ RouteInfo route(std::string method, std::string tail, std::string id, std::strin
 }
 
 std::vector<NamedSchema> plan_schemas() {
-  return {{"PlanToLock",
-           object({{"plan", anything("tractus-plan/1 without a lock")},
-                   {"study", optional(text("of this study's trials alone"))},
-                   {"data_seen", optional(truth("the data are known already: a reanalysis"))}})},
-          {"LockedPlan",
-           object({{"id", text("of this plan, which never changes")},
-                   {"title", text("the plan's")},
-                   {"study", nullable(text("whose trials it is of; null: all"))},
-                   {"data_seen", truth("it confirms nothing: the data could be seen before")},
-                   {"trials_then", integer("1", "scored trials of it here when it was locked")},
-                   {"made_utc_us", integer("us", "since 1970, UTC")},
-                   {"made_by", text("who locked it")}})}};
+  return {
+      {"PlanToLock",
+       object({{"plan", anything("Analysis plan in the format tractus-plan/1, without a lock")},
+               {"study", optional(text("Id of the study; the plan then uses only trials of this "
+                                       "study; if it is missing, all trials"))},
+               {"data_seen", optional(truth("True if the author already knows the data, so that "
+                                            "the analysis is a reanalysis; default false"))}})},
+      {"LockedPlan",
+       object(
+           {{"id", text("Id of the plan, which never changes")},
+            {"title", text("Title of the plan")},
+            {"study",
+             nullable(text("Id of the study whose trials the plan uses; null: all trials"))},
+            {"data_seen", truth("True if the data could be seen before the plan was locked, so "
+                                "that the analysis is not confirmatory")},
+            {"trials_then",
+             integer(
+                 "1",
+                 "Number of scored trials for this plan on this server when the plan was locked")},
+            {"made_utc_us",
+             integer("us", "Time when the plan was locked, in microseconds since 1970-01-01 UTC")},
+            {"made_by", text("Name of the account that locked the plan")}})}};
 }
 
 std::vector<NamedSchema> run_schemas() {
-  return {{"CohortQuestion",
-           object({{"plan", optional(text("a locked plan's id; then no method"))},
-                   {"snapshot", optional(text("with a plan: of an earlier analysis; none: now's"))},
-                   {"method", optional(text("as of `tractus stats`: anova, ols, lmm, …"))},
-                   {"formula", optional(text("of the table's columns: correct ~ level"))},
-                   {"options", optional(anything("the method's, by name: texts or numbers"))},
-                   {"study", optional(text("with a method: trials of this study alone"))}})},
-          {"CohortAnalysis",
-           object({{"id", text("of this run")},
-                   {"plan", nullable(text("null: not planned beforehand"))},
-                   {"study", nullable(text("null: all trials"))},
-                   {"state", one_of({"queued", "running", "done", "failed"}, "how it stands")},
-                   {"share", number("1", "of the work done")},
-                   {"error", text("why it failed; else empty")},
-                   {"snapshot", nullable(text("SHA-256 of the frozen data"))},
-                   {"made_utc_us", integer("us", "since 1970, UTC")},
-                   {"made_by", text("who")}})}};
+  return {
+      {"CohortQuestion",
+       object({{"plan", optional(text("Id of a locked plan; give either a plan or a method"))},
+               {"snapshot", optional(text("With a plan: SHA-256 of the data of an earlier "
+                                          "analysis; if it is missing, the current data"))},
+               {"method",
+                optional(
+                    text("Statistical method of `tractus stats`, for example anova, ols or lmm"))},
+               {"formula",
+                optional(
+                    text("Formula with columns of the cohort table, for example correct ~ level"))},
+               {"options", optional(anything("Options of the method: texts or numbers, by name"))},
+               {"study", optional(text("With a method: id of the study; only trials of this study "
+                                       "are analysed; if it is missing, all trials"))}})},
+      {"CohortAnalysis",
+       object(
+           {{"id", text("Id of the analysis")},
+            {"plan", nullable(text("Id of the locked plan; null for an analysis without a plan"))},
+            {"study", nullable(text("Id of the study; null: all trials"))},
+            {"state", one_of({"queued", "running", "done", "failed"}, "State of the analysis")},
+            {"share", number("1", "Completed share of the work, 0 to 1")},
+            {"error", text("Reason for the failure; empty if the analysis did not fail")},
+            {"snapshot",
+             nullable(text("SHA-256 of the frozen data; null until the data are frozen"))},
+            {"made_utc_us",
+             integer("us", "Time of the request, in microseconds since 1970-01-01 UTC")},
+            {"made_by", text("Name of the account that requested the analysis")}})}};
 }
 
 std::vector<NamedSchema> answer_schemas() {
   return {
       {"CohortAnswer",
-       object({{"id", text("of this run")},
-               {"plan", nullable(text("null: not planned beforehand"))},
-               {"study", nullable(text("null: all trials"))},
-               {"state", one_of({"queued", "running", "done", "failed"}, "how it stands")},
-               {"share", number("1", "of the work done")},
-               {"error", text("why it failed; else empty")},
-               {"snapshot", nullable(text("SHA-256 of the frozen data"))},
-               {"made_utc_us", integer("us", "since 1970, UTC")},
-               {"made_by", text("who")},
-               {"data", nullable(anything("tractus-snapshot/1: rows, dictionary, left_out"))},
-               {"result", nullable(anything("tractus-result/1, once done"))},
-               {"repeats", nullable(text("the first analysis of this plan on these data"))},
-               {"same_digits", nullable(truth("its result was the same to the last digit"))}})}};
+       object(
+           {{"id", text("Id of the analysis")},
+            {"plan", nullable(text("Id of the locked plan; null for an analysis without a plan"))},
+            {"study", nullable(text("Id of the study; null: all trials"))},
+            {"state", one_of({"queued", "running", "done", "failed"}, "State of the analysis")},
+            {"share", number("1", "Completed share of the work, 0 to 1")},
+            {"error", text("Reason for the failure; empty if the analysis did not fail")},
+            {"snapshot",
+             nullable(text("SHA-256 of the frozen data; null until the data are frozen"))},
+            {"made_utc_us",
+             integer("us", "Time of the request, in microseconds since 1970-01-01 UTC")},
+            {"made_by", text("Name of the account that requested the analysis")},
+            {"data",
+             nullable(anything("Description of the frozen data in the format tractus-snapshot/1: "
+                               "rows, dictionary, left_out; null until the data are frozen"))},
+            {"result",
+             nullable(anything(
+                 "Result in the format tractus-result/1; null until the analysis is done"))},
+            {"repeats",
+             nullable(text(
+                 "Id of the first analysis of this plan on the same data; null if there is none"))},
+            {"same_digits",
+             nullable(truth("True if the result equals that of the first analysis to the last "
+                            "digit; null if there is no earlier analysis or no result yet"))}})}};
 }
 
 }  // namespace
 
 std::vector<RouteInfo> cohort_routes() {
-  RouteInfo list =
-      route("GET", "plans", "analysisPlans", "Locked plans, newest first", "PlanList", list_plans);
-  list.schemas = {{"PlanList", object({{"plans", array(ref("LockedPlan"), "newest first")}})}};
+  RouteInfo list = route("GET", "plans", "analysisPlans",
+                         "List the locked analysis plans, newest first", "PlanList", list_plans);
+  list.schemas = {
+      {"PlanList", object({{"plans", array(ref("LockedPlan"), "Locked plans, newest first")}})}};
   RouteInfo one = route("GET", "plans/{id}", "analysisPlan",
-                        "A locked plan, every word, and its analyses", "PlanAnswer", plan_of);
-  one.schemas = {{"PlanAnswer", anything("LockedPlan with plan: tractus-plan/1 and analyses: "
-                                         "CohortAnalysis, newest first")}};
+                        "Read a locked plan in full, with its analyses", "PlanAnswer", plan_of);
+  one.schemas = {{"PlanAnswer",
+                  anything("A LockedPlan with two more fields: plan in the format tractus-plan/1, "
+                           "and analyses, an array of CohortAnalysis, newest first")}};
   RouteInfo answered = route("GET", "analyses/{id}", "cohortAnalysis",
-                             "How far it is, and the result once done", "CohortAnswer", analysis);
+                             "Read the state of an analysis and, when it is done, its result",
+                             "CohortAnswer", analysis);
   answered.schemas = answer_schemas();
   RouteInfo part = route("GET", "analyses/{id}/{part}", "cohortAnalysisPart",
-                         "A file of a finished analysis", kBytes, part_of);
+                         "Read a file of a finished analysis", kBytes, part_of);
   part.parameters.push_back(
-      path_text("part", "report.html, result.json, data.csv or dictionary.json"));
-  RouteInfo table = route("GET", "table", "cohortTable", "The scored trials as CSV, one row each",
-                          kBytes, table_of);
+      path_text("part", "Name of the file: report.html, result.json, data.csv or dictionary.json"));
+  RouteInfo table = route("GET", "table", "cohortTable",
+                          "Export the scored trials as CSV, one row per trial", kBytes, table_of);
   table.parameters = {{.in = Parameter::In::query,
                        .name = "study",
                        .kind = Parameter::Kind::text,
                        .unit = "",
-                       .meaning = "trials of this study alone",
+                       .meaning = "Only trials of the study with this id",
                        .required = false,
                        .fallback = std::nullopt}};
   return {taking(route("POST", "plans", "lockAnalysisPlan",
@@ -244,7 +279,8 @@ std::vector<RouteInfo> cohort_routes() {
           list,
           one,
           taking(route("POST", "analyses", "analyseCohort",
-                       "Run a locked plan, or one method, on the scored trials; done as a job",
+                       "Queue an analysis of the scored trials, either with a locked plan or with "
+                       "one method",
                        "CohortAnalysis", analyse_cohort),
                  "CohortQuestion", kMaxAsk_bytes, run_schemas()),
           answered,

@@ -61,7 +61,7 @@ Result<http::Response> one_cohort(const Call& call) {
   return cohort_response(call.backend.store, call.text("id"), 200);
 }
 
-/// Whoever of the faculty makes a cohort leads it.
+/// A member of the faculty who creates a cohort becomes its leader.
 Result<http::Response> add_cohort_route(const Call& call) {
   auto json = TRY(core::parse_json(call.request.body, "body"));
   core::Fields fields(json, "body");
@@ -139,55 +139,66 @@ RouteInfo route(std::string method, std::string tail, std::string id, std::strin
                 .answer = "Cohort",
                 .schemas = {},
                 .handle = handle};
-  if (!tail.empty()) out.parameters.push_back(path_text("id", "the cohort's"));
+  if (!tail.empty()) out.parameters.push_back(path_text("id", "Id of the cohort"));
   return out;
 }
 
 std::vector<NamedSchema> cohort_schemas() {
   using namespace schema;
-  const std::vector<Field> summary{{"id", text("never changes")},
-                                   {"name", text("for people")},
-                                   {"trainees", integer("1", "in it")},
-                                   {"made_utc_us", integer("us", "since 1970, UTC")},
-                                   {"made_by", text("who")}};
+  const std::vector<Field> summary{
+      {"id", text("Id of the cohort, which never changes")},
+      {"name", text("Name of the cohort")},
+      {"trainees", integer("1", "Number of trainees in the cohort")},
+      {"made_utc_us", integer("us", "Time of creation, in microseconds since 1970-01-01 UTC")},
+      {"made_by", text("Name of the account that created the cohort")}};
   std::vector<Field> whole = summary;
-  whole.emplace_back("people", array(ref("CohortPerson"), "by name"));
-  whole.emplace_back("invitations", array(object({{"name", text("as it was typed")},
-                                                  {"made_utc_us", integer("us", "since 1970, UTC")},
-                                                  {"made_by", text("who")}}),
-                                          "that wait for an answer, by name"));
-  return {{"CohortSummary", object(summary)},
-          {"Cohorts", object({{"cohorts", array(ref("CohortSummary"), "by name")}})},
-          {"CohortPerson", object({{"account_id", text("of the person")},
-                                   {"name", text("of the account")},
-                                   {"part", one_of({"trainee", "faculty"}, "faculty leads it")},
-                                   {"state", one_of({"active", "disabled"}, "of the account")}})},
-          {"Cohort", object(whole)}};
+  whole.emplace_back("people", array(ref("CohortPerson"), "Members of the cohort, sorted by name"));
+  whole.emplace_back(
+      "invitations",
+      array(object({{"name", text("Name of the invited account, as the inviting person typed it")},
+                    {"made_utc_us",
+                     integer("us", "Time of the invitation, in microseconds since 1970-01-01 UTC")},
+                    {"made_by", text("Name of the account that sent the invitation")}}),
+            "Open invitations, sorted by name"));
+  return {
+      {"CohortSummary", object(summary)},
+      {"Cohorts", object({{"cohorts", array(ref("CohortSummary"), "Cohorts, sorted by name")}})},
+      {"CohortPerson",
+       object({{"account_id", text("Id of the person's account")},
+               {"name", text("Name of the account")},
+               {"part", one_of({"trainee", "faculty"},
+                               "Part in the cohort: a trainee learns, faculty leads the cohort")},
+               {"state", one_of({"active", "disabled"},
+                                "State of the account; a disabled account cannot sign in")}})},
+      {"Cohort", object(whole)}};
 }
 
 RouteInfo putting_route() {
-  RouteInfo out = route("POST", "/{id}/people", "putIntoCohort",
-                        "A trainee learns in it from now on, faculty leads it", put_person);
+  RouteInfo out =
+      route("POST", "/{id}/people", "putIntoCohort",
+            "Add a person to a cohort: a trainee as a learner, a member of the faculty as a leader",
+            put_person);
   out.who.push_back(Role::director);
   out.ends = {{"/name", Object::person, out.who, End::By::account_name}};
   out.body = "PersonNamed";
-  out.schemas = {{"PersonNamed", schema::object({{"name", schema::text("of the account")}})}};
+  out.schemas = {{"PersonNamed", schema::object({{"name", schema::text("Name of the account")}})}};
   return out;
 }
 
 RouteInfo taking_route() {
   RouteInfo out = route("DELETE", "/{id}/people/{account_id}", "takeFromCohort",
-                        "No longer in it; what was done stays", take_person);
-  out.parameters.push_back(path_text("account_id", "the person's"));
+                        "Remove a person from a cohort; the person's trials stay", take_person);
+  out.parameters.push_back(path_text("account_id", "Id of the person's account"));
   out.ends = {{"account_id", Object::person, out.who}};
   return out;
 }
 
-/// Anybody may be invited: the person decides.
+/// Every person may be invited, because the person accepts or declines.
 std::vector<RouteInfo> inviting_routes() {
   const std::vector<Grant> inviting{Role::admin, Role::director, Role::faculty};
   RouteInfo ask = route("POST", "/{id}/invitations", "inviteIntoCohort",
-                        "Invite somebody into it whom one may not put there; the person decides",
+                        "Invite a person into a cohort, without the right to add the person "
+                        "directly; the person accepts or declines",
                         invite_person);
   ask.who.push_back(Role::director);
   ask.ends = {{"/name", Object::person, inviting, End::By::account_name}};
@@ -195,7 +206,8 @@ std::vector<RouteInfo> inviting_routes() {
   RouteInfo withdraw = route("DELETE", "/{id}/invitations/{name}", "withdrawInvitation",
                              "Withdraw an invitation", withdraw_invitation);
   withdraw.who.push_back(Role::director);
-  withdraw.parameters.push_back(path_text("name", "as it was typed"));
+  withdraw.parameters.push_back(
+      path_text("name", "Name of the invited account, as in the invitation"));
   withdraw.ends = {{"name", Object::person, inviting, End::By::account_name}};
   return {ask, withdraw};
 }
@@ -203,18 +215,26 @@ std::vector<RouteInfo> inviting_routes() {
 }  // namespace
 
 std::vector<RouteInfo> cohorts_routes() {
-  RouteInfo list = route("GET", "", "cohorts", "Cohorts by name: all, or those one leads or is in",
-                         list_cohorts);
+  RouteInfo list = route(
+      "GET", "", "cohorts",
+      "List cohorts, sorted by name: all cohorts, or those that the caller leads or is a member of",
+      list_cohorts);
   list.answer = "Cohorts";
   list.who = {
       Role::admin, Role::director, {Role::faculty, Scope::cohort}, {Role::trainee, Scope::own}};
   list.schemas = cohort_schemas();
-  RouteInfo one = route("GET", "/{id}", "cohort", "One cohort with its people", one_cohort);
+  RouteInfo one = route("GET", "/{id}", "cohort",
+                        "Read one cohort with its members and open invitations", one_cohort);
   one.who.push_back(Role::director);
-  RouteInfo add = route("POST", "", "addCohort", "Make a cohort; faculty who makes it leads it",
-                        add_cohort_route);
+  RouteInfo add =
+      route("POST", "", "addCohort",
+            "Create a cohort; a member of the faculty who creates a cohort becomes its leader",
+            add_cohort_route);
   add.body = "NewCohort";
-  add.schemas = {{"NewCohort", schema::object({{"name", schema::text("nobody else's")}})}};
+  add.schemas = {
+      {"NewCohort",
+       schema::object(
+           {{"name", schema::text("Name of the cohort; no other cohort may have this name")}})}};
   std::vector<RouteInfo> out{list, one, add, putting_route(), taking_route()};
   for (RouteInfo& inviting : inviting_routes()) out.push_back(std::move(inviting));
   return out;

@@ -57,7 +57,8 @@ Result<http::Response> samples_of(const Call& call, const std::string& sha256,
   return scratch_response(std::move(file), "application/octet-stream", "samples.npy");
 }
 
-/// Only the key can tell which trial a pseudonym is: so the key is tried on all of them.
+/// A pseudonym can only be computed from a trial, not reversed: so the pseudonyms of all released
+/// trials are computed and compared.
 Result<http::Response> export_samples(const Call& call) {
   const double rate_Hz = call.number("rate_Hz");
   const bool reduced = rate_Hz > 0.0 && rate_Hz <= kReduced_Hz;
@@ -78,7 +79,7 @@ Result<http::Response> export_cohort(const Call& call) {
   return scratch_response(std::move(zip), "application/zip", "cohort.zip");
 }
 
-/// Looking at it is an act of its own.
+/// Every export of this table is written into the audit trail.
 Result<http::Response> export_key(const Call& call) {
   auto csv = TRY(key_csv(call.backend));
   const store::AuditedAction act{.who = call.caller.name,
@@ -112,47 +113,56 @@ std::vector<RouteInfo> export_routes() {
                         .name = "study",
                         .kind = Parameter::Kind::text,
                         .unit = "",
-                        .meaning = "trials of this study or assignment alone",
+                        .meaning = "Only trials of the study or assignment with this id",
                         .required = false,
                         .fallback = std::nullopt};
   RouteInfo trials = route("trials.csv", "exportTrials",
-                           "Trials as a tidy table, one row each, by pseudonym", export_trials);
+                           "Export the released trials as a CSV table, one row per trial, with "
+                           "pseudonyms in place of names",
+                           export_trials);
   trials.parameters = {study};
-  RouteInfo scores =
-      route("scores.csv", "exportScores", "Scores as a tidy table, one row each", export_scores);
+  RouteInfo scores = route(
+      "scores.csv", "exportScores",
+      "Export the scores of the released trials as a CSV table, one row per score", export_scores);
   scores.parameters = {study};
-  RouteInfo dictionary =
-      route("dictionary.csv", "exportDictionary",
-            "Every column of the tables and arrays: type, unit, what it is", export_dictionary);
+  RouteInfo dictionary = route("dictionary.csv", "exportDictionary",
+                               "Export the data dictionary: type, unit and meaning of every column "
+                               "of the exported tables and arrays",
+                               export_dictionary);
   RouteInfo samples =
       route("trials/{trial}/samples.npy", "exportSamples",
-            "A trial's samples as an array of doubles (NumPy's .npy)", export_samples);
-  samples.parameters = {path_text("trial", "as in trials.csv"),
+            "Export the samples of one trial as an array of doubles in NumPy's .npy format",
+            export_samples);
+  samples.parameters = {path_text("trial", "Pseudonym of the trial, from trials.csv"),
                         {.in = Parameter::In::query,
                          .name = "rate_Hz",
                          .kind = Parameter::Kind::number,
                          .unit = "Hz",
-                         .meaning = "rows a second; 0: every sample",
+                         .meaning = "Number of rows per second, in Hz; 0: every sample",
                          .low = 0,
                          .high = 10'000,
                          .fallback = "100"}};
   RouteInfo summary =
-      route("summary.csv", "exportSummary", "Counts per person, study and rig", export_summary);
+      route("summary.csv", "exportSummary",
+            "Export the number of trials per person, study and rig as a CSV table", export_summary);
   summary.parameters = {study};
-  RouteInfo cohort =
-      route("cohort.zip", "exportCohort",
-            "All of it in one file: tables, dictionary, and samples where they were agreed to",
-            export_cohort);
+  RouteInfo cohort = route("cohort.zip", "exportCohort",
+                           "Export a zip with tables, data dictionary and, for participants who "
+                           "consented to it, samples",
+                           export_cohort);
   cohort.parameters = {study,
                        {.in = Parameter::In::query,
                         .name = "tier",
                         .kind = Parameter::Kind::text,
                         .unit = "",
-                        .meaning = "summary, metrics, reduced (samples at 100 Hz) or full",
+                        .meaning = "Consent tier up to which data are exported: summary, metrics, "
+                                   "reduced (samples at 100 Hz) or full",
                         .required = false,
                         .fallback = "metrics"}};
   RouteInfo key = route("key.csv", "exportKey",
-                        "Who is who in the exports; that somebody looked is noted", export_key);
+                        "Export the table that links pseudonyms with people; every export of this "
+                        "table is written into the audit trail",
+                        export_key);
   key.who = {Role::admin};
   return {summary, trials, scores, dictionary, samples, cohort, key};
 }

@@ -25,21 +25,25 @@ std::vector<RouteInfo> metrics_routes() {
   fields.emplace_back("rig",
                       schema::nullable(schema::one_of(
                           {"palpation", "probing"},
-                          "rig whose trials have this metric; null: trials of both rigs have it")));
+                          "Rig whose trials have this metric; null: trials of both rigs have it")));
   const core::Json info = schema::object(fields);
-  return {{.method = "GET",
-           .path = "/api/v1/metrics",
-           .id = "metrics",
-           .summary = "Every score and its definition",
-           .who = {kRoles.begin(), kRoles.end()},
-           .parameters = {},
-           .body = "",
-           .answer = "MetricList",
-           .schemas = {{"MetricInfo", info},
-                       {"MetricList",
-                        schema::object({{"metrics", schema::array(schema::ref("MetricInfo"),
-                                                                  "in the order of a trial's")}})}},
-           .handle = list_metrics}};
+  return {
+      {.method = "GET",
+       .path = "/api/v1/metrics",
+       .id = "metrics",
+       .summary = "List the metrics with their definitions",
+       .who = {kRoles.begin(), kRoles.end()},
+       .parameters = {},
+       .body = "",
+       .answer = "MetricList",
+       .schemas = {{"MetricInfo", info},
+                   {"MetricList",
+                    schema::object(
+                        {{"metrics",
+                          schema::array(
+                              schema::ref("MetricInfo"),
+                              "All metrics, in the order in which a trial lists its scores")}})}},
+       .handle = list_metrics}};
 }
 
 }  // namespace api

@@ -15,7 +15,7 @@ using core::Result;
 
 Json or_null(const std::optional<std::string>& text) { return text ? Json(*text) : Json(); }
 
-/// {"add": […], "own": […]} as it was asked.
+/// {"add": […], "own": […]} of the request.
 Json wish_of(const store::LabRun& run) {
   Json wish = core::stored_json(run.wish);
   if (!wish.is_object()) wish = Json::object();
@@ -24,7 +24,7 @@ Json wish_of(const store::LabRun& run) {
   return wish;
 }
 
-/// What a run found; an older release kept a diagnosis alone.
+/// The results of a run; an older release stored only the diagnosis.
 Json found_json(Json kept) {
   Json out{
       {"diagnosis", nullptr}, {"fit", nullptr}, {"comparisons", nullptr}, {"tract_map", nullptr}};
@@ -120,15 +120,21 @@ Parameter optional_text(std::string name, std::string meaning) {
 
 std::vector<NamedSchema> lab_model_schemas() {
   using namespace schema;
-  return {{"ModelFile", anything("tractus-model/1")},
-          {"ModelVersion", object({{"id", text("of this version, which never changes")},
-                                   {"name", text("for people")},
-                                   {"rig", one_of({"probing", "palpation"}, "that it is of")},
-                                   {"note", text("why, in its maker's words")},
-                                   {"parent", nullable(text("the version it was made from"))},
-                                   {"run", nullable(text("of the lab that made it"))},
-                                   {"made_utc_us", integer("us", "since 1970, UTC")},
-                                   {"made_by", text("who")}})}};
+  return {
+      {"ModelFile", anything("Model in the format tractus-model/1")},
+      {"ModelVersion",
+       object({{"id", text("Id of the version, which never changes")},
+               {"name", text("Name of the model")},
+               {"rig", one_of({"probing", "palpation"}, "Rig for which the model was made")},
+               {"note", text("Note about the purpose of the version; empty if there is none")},
+               {"parent",
+                nullable(text(
+                    "Id of the version from which this version was made; null if there is none"))},
+               {"run", nullable(text(
+                           "Id of the lab run that made the version; null for an uploaded model"))},
+               {"made_utc_us",
+                integer("us", "Time of creation, in microseconds since 1970-01-01 UTC")},
+               {"made_by", text("Name of the account that created the version")}})}};
 }
 
 std::vector<NamedSchema> lab_run_schemas() {
@@ -136,29 +142,35 @@ std::vector<NamedSchema> lab_run_schemas() {
   std::vector<NamedSchema> out = lab_answer_schemas();
   out.push_back(
       {"LabRun",
-       object({{"id", text("of this run")},
-               {"kind", one_of({"diagnosis", "comparison", "fit"}, "what was asked")},
-               {"model", text("the version that is judged")},
-               {"against", nullable(text("of a comparison: the other version"))},
-               {"measurements", text("the set that judges")},
-               {"add", array(text("id of an effect"), "of a fit: those added by hand")},
-               {"own", array(text("expression:NAME"), "the user's own effects")},
-               {"state",
-                one_of({"queued", "running", "done", "failed", "cancelled"}, "how it stands")},
-               {"share", number("1", "of the work done")},
-               {"phase", text("what it is at, in words")},
-               {"error", text("why it failed; else empty")},
-               {"made_utc_us", integer("us", "since 1970, UTC")},
-               {"made_by", text("who")},
-               {"ranking",
-                nullable(array(ref("RankedEffect"), "early, before effects are tried together"))},
-               {"model_ready", truth("the better model can be fetched and published")},
-               {"version", nullable(text("that was published from it"))},
-               {"diagnosis", nullable(ref("Diagnosis"))},
-               {"fit", nullable(ref("Fit"))},
-               {"comparisons", nullable(object({{"before", ref("Comparison")},
-                                                {"after", nullable(ref("Comparison"))}}))},
-               {"tract_map", nullable(ref("TractMap"))}})});
+       object(
+           {{"id", text("Id of the run")},
+            {"kind", one_of({"diagnosis", "comparison", "fit"}, "Kind of the run")},
+            {"model", text("Id of the model version that is compared with the measurements")},
+            {"against",
+             nullable(
+                 text("Id of the second model version of a comparison; null if there is none"))},
+            {"measurements", text("Id of the measurement set")},
+            {"add", array(text("Id of an effect"), "Effects that the user added to a fit")},
+            {"own", array(text("Id of a user effect, expression:NAME"), "User effects of the run")},
+            {"state",
+             one_of({"queued", "running", "done", "failed", "cancelled"}, "State of the run")},
+            {"share", number("1", "Completed share of the work, 0 to 1")},
+            {"phase", text("Current step of the work in words")},
+            {"error", text("Reason for the failure; empty if the run did not fail")},
+            {"made_utc_us",
+             integer("us", "Time of the request, in microseconds since 1970-01-01 UTC")},
+            {"made_by", text("Name of the account that started the run")},
+            {"ranking", nullable(array(ref("RankedEffect"),
+                                       "Early ranking of the effects, before effects are tried "
+                                       "together; null until it is known"))},
+            {"model_ready", truth("True if the run made a model, which can be read and published")},
+            {"version", nullable(text("Id of the model version that was published from the run; "
+                                      "null if there is none"))},
+            {"diagnosis", nullable(ref("Diagnosis"))},
+            {"fit", nullable(ref("Fit"))},
+            {"comparisons", nullable(object({{"before", ref("Comparison")},
+                                             {"after", nullable(ref("Comparison"))}}))},
+            {"tract_map", nullable(ref("TractMap"))}})});
   return out;
 }
 

@@ -88,7 +88,7 @@ Result<http::Response> list_sets(const Call& call) {
   return json_response({{"measurements", list}});
 }
 
-/// Read whole; what is wrong is told before anything is kept.
+/// Reads the whole set, so that errors are reported before anything is stored.
 Result<lab_io::SetFacts> checked(const std::filesystem::path& zip) {
   std::array<char, 2> first{};
   std::ifstream(zip, std::ios::binary).read(first.data(), first.size());
@@ -140,98 +140,130 @@ Result<http::Response> check_effect(const Call& call) {
 std::vector<NamedSchema> set_schemas() {
   using namespace schema;
   return {
-      {"Measurements", object({{"id", text("SHA-256 of the zip")},
-                               {"name", text("for people")},
-                               {"rig", nullable(one_of({"probing", "palpation"}, "that it is of"))},
-                               {"simulated", nullable(truth("the set says that it is simulated"))},
-                               {"trials", nullable(integer("1", "in it"))},
-                               {"samples", nullable(integer("1", "in all trials"))},
-                               {"size_bytes", integer("B", "of the zip")},
-                               {"made_utc_us", integer("us", "since 1970, UTC")},
-                               {"made_by", text("who")}})}};
+      {"Measurements",
+       object(
+           {{"id", text("Id of the measurement set, the SHA-256 of its zip file")},
+            {"name", text("Name of the measurement set")},
+            {"rig", nullable(one_of({"probing", "palpation"},
+                                    "Rig on which the set was measured; null for a set that an "
+                                    "older version stored"))},
+            {"simulated",
+             nullable(truth("True if the set states that its measurements are simulated; null for "
+                            "a set that an older version stored"))},
+            {"trials",
+             nullable(integer(
+                 "1", "Number of trials in the set; null for a set that an older version stored"))},
+            {"samples",
+             nullable(integer(
+                 "1",
+                 "Number of samples in all trials; null for a set that an older version stored"))},
+            {"size_bytes", integer("B", "Size of the zip file, in bytes")},
+            {"made_utc_us",
+             integer("us", "Time of the upload, in microseconds since 1970-01-01 UTC")},
+            {"made_by", text("Name of the account that uploaded the set")}})}};
 }
 
 std::vector<NamedSchema> effect_schemas() {
   using namespace schema;
-  const Json parameter = object({{"name", text("as in model files")},
-                                 {"unit", text("SI")},
-                                 {"meaning", text("one sentence")},
-                                 {"components", integer("1", "numbers of that name")},
-                                 {"initial", number("its own", "where a fit begins")},
-                                 {"low", number("its own", "least")},
-                                 {"high", number("its own", "most")},
-                                 {"off", nullable(number("its own", "where the effect vanishes"))},
-                                 {"if_missing", nullable(number("its own", "if a file lacks it"))},
-                                 {"logarithmic", truth("searched in its logarithm")}});
-  const Json state = object(
-      {{"name", text("in a formula")}, {"unit", text("SI")}, {"meaning", text("one sentence")}});
+  const Json parameter = object(
+      {{"name", text("Name of the parameter in model files")},
+       {"unit", text("SI unit of the parameter")},
+       {"meaning", text("Meaning of the parameter, one sentence")},
+       {"components", integer("1", "Number of components; 1 for a scalar")},
+       {"initial", number("its own", "Start value of a fit, in the parameter's unit")},
+       {"low", number("its own", "Smallest allowed value, in the parameter's unit")},
+       {"high", number("its own", "Largest allowed value, in the parameter's unit")},
+       {"off",
+        nullable(number(
+            "its own",
+            "Value at which the effect vanishes, in the parameter's unit; null if there is none"))},
+       {"if_missing", nullable(number("its own",
+                                      "Value that is used if a model file lacks the parameter, in "
+                                      "the parameter's unit; null if the parameter is required"))},
+       {"logarithmic", truth("True if a fit searches the logarithm of the parameter")}});
+  const Json state = object({{"name", text("Name of the variable in a formula")},
+                             {"unit", text("SI unit of the variable")},
+                             {"meaning", text("Meaning of the variable, one sentence")}});
   return {
-      {"Effect", object({{"id", text("in model files")},
-                         {"rig", one_of({"probing", "palpation"}, "that it is of")},
-                         {"kind", one_of({"force", "structure", "measurement"}, "what it acts on")},
-                         {"summary", text("one line")},
-                         {"equation", text("plain text")},
-                         {"source", text("key of the bibliography, or own")},
-                         {"needs", array(text("a column"), "that the recording must have")},
-                         {"contains", array(text("an effect"), "simpler ones it has as a limit")},
-                         {"free_per_trial", truth("its course differs from trial to trial")},
-                         {"passive", truth("gives back no more work than it got")},
-                         {"parameters", array(parameter, "its numbers")}})},
-      {"EffectList", object({{"effects", array(ref("Effect"), "the rig's catalogue")},
-                             {"adds_to", text("what a formula of one's own adds to")},
-                             {"adds_unit", text("the unit that it must have")},
-                             {"states", array(state, "what it may name")}})}};
+      {"Effect",
+       object({{"id", text("Id of the effect in model files")},
+               {"rig", one_of({"probing", "palpation"}, "Rig to which the effect applies")},
+               {"kind", one_of({"force", "structure", "measurement"},
+                               "Part of the model on which the effect acts")},
+               {"summary", text("Summary of the effect, one line")},
+               {"equation", text("Equation of the effect, plain text")},
+               {"source", text("Key of the source in the bibliography, or own")},
+               {"needs", array(text("Name of a column"),
+                               "Columns that a recording must have for this effect")},
+               {"contains",
+                array(text("Id of an effect"), "Simpler effects that are limits of this effect")},
+               {"free_per_trial", truth("True if the effect is estimated separately for each "
+                                        "trial, for example sensor drift")},
+               {"passive", truth("True if the effect never returns more work than it received")},
+               {"parameters", array(parameter, "Parameters of the effect")}})},
+      {"EffectList",
+       object({{"effects", array(ref("Effect"), "Catalogue of the rig's effects")},
+               {"adds_to", text("Quantity to which the formula of a user effect is added")},
+               {"adds_unit", text("Unit that the formula of a user effect must have")},
+               {"states", array(state, "Variables that the formula of a user effect may use")}})}};
 }
 
 }  // namespace
 
 std::vector<RouteInfo> lab_routes() {
   using namespace schema;
-  RouteInfo models = lab_route("GET", "models", "models", "Versions of models, newest first",
-                               "ModelList", list_models);
+  RouteInfo models =
+      lab_route("GET", "models", "models", "List the versions of models, newest first", "ModelList",
+                list_models);
   models.schemas = {
-      {"ModelList", object({{"models", array(ref("ModelVersion"), "newest first")}})}};
-  RouteInfo sets = lab_route("GET", "measurements", "measurementSets",
-                             "Measurement sets, newest first", "MeasurementsList", list_sets);
+      {"ModelList",
+       object({{"models", array(ref("ModelVersion"), "Versions of models, newest first")}})}};
+  RouteInfo sets =
+      lab_route("GET", "measurements", "measurementSets", "List the measurement sets, newest first",
+                "MeasurementsList", list_sets);
   sets.schemas = {
-      {"MeasurementsList", object({{"measurements", array(ref("Measurements"), "newest first")}})}};
-  RouteInfo keep_set = taking(
-      lab_route("POST", "measurements", "addMeasurements",
-                "Read a measurement set whole and keep it: a zip of a folder with set.json; the "
-                "same bytes are the same set",
-                "Measurements", add_set),
-      kBytes, kMaxSet_bytes, set_schemas());
-  Parameter name = optional_text("name", "for people");
+      {"MeasurementsList",
+       object({{"measurements", array(ref("Measurements"), "Measurement sets, newest first")}})}};
+  RouteInfo keep_set =
+      taking(lab_route("POST", "measurements", "addMeasurements",
+                       "Upload a measurement set, a zip of a folder with set.json; the server "
+                       "checks the whole set; the same bytes again give the same set",
+                       "Measurements", add_set),
+             kBytes, kMaxSet_bytes, set_schemas());
+  Parameter name = optional_text("name", "Name of the measurement set");
   name.required = true;
   name.fallback = std::nullopt;
   keep_set.parameters = {name};
   keep_set.body_to_file = true;
   RouteInfo keep_model =
-      taking(lab_route("POST", "models", "addModel", "Keep a model as a new version",
+      taking(lab_route("POST", "models", "addModel", "Store a model as a new version",
                        "ModelVersion", add_model),
              "ModelFile", kMaxModel_bytes, lab_model_schemas());
-  keep_model.parameters = {optional_text("parent", "the version it was made from"),
-                           optional_text("note", "why, for people")};
+  keep_model.parameters = {
+      optional_text("parent", "Id of the version from which the model was made"),
+      optional_text("note", "Note about the purpose of the version, at most 2000 characters")};
   RouteInfo effects =
-      lab_route("GET", "effects", "effects", "The catalogue of physical effects of a rig",
+      lab_route("GET", "effects", "effects", "List the catalogue of physical effects of a rig",
                 "EffectList", list_effects);
-  effects.parameters = {optional_text("rig", "probing or palpation")};
+  effects.parameters = {optional_text("rig", "Rig: probing or palpation")};
   effects.schemas = effect_schemas();
-  return {models,
-          keep_model,
-          lab_route("GET", "models/{id}", "modelFile", "A version's file, byte for byte",
-                    "ModelFile", model_file),
-          sets,
-          keep_set,
-          effects,
-          taking(lab_route("POST", "effects/check", "checkEffect",
-                           "Is an effect of one's own well formed, do its units fit?",
-                           "EffectCheck", check_effect),
-                 "EffectFile", kMaxEffect_bytes,
-                 {{"EffectFile", anything("tractus-effect/1")},
-                  {"EffectCheck", object({{"ok", truth("it may be used")},
-                                          {"error", text("what is wrong; else empty")},
-                                          {"effect", nullable(ref("Effect"))}})}})};
+  return {
+      models,
+      keep_model,
+      lab_route("GET", "models/{id}", "modelFile",
+                "Read the file of a model version, byte for byte", "ModelFile", model_file),
+      sets,
+      keep_set,
+      effects,
+      taking(lab_route("POST", "effects/check", "checkEffect",
+                       "Check whether a user effect is well formed and whether its units agree",
+                       "EffectCheck", check_effect),
+             "EffectFile", kMaxEffect_bytes,
+             {{"EffectFile", anything("User effect in the format tractus-effect/1")},
+              {"EffectCheck",
+               object({{"ok", truth("True if the effect is valid")},
+                       {"error", text("Description of the error; empty if the effect is valid")},
+                       {"effect", nullable(ref("Effect"))}})}})};
 }
 
 }  // namespace api

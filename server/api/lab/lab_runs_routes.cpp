@@ -27,7 +27,7 @@ constexpr std::uint64_t kMaxAsk_bytes = 256 << 10;
 constexpr std::size_t kMostOwn = 8, kMostAdded = 16;
 constexpr double kLongest_s = 1e6;
 
-/// The user's own effects and those added by hand, if the kind of run takes them.
+/// Reads the user effects and the effects that the user adds, if the kind of run allows them.
 Result<void> read_wish(core::Fields& fields, store::LabRun& run) {
   Json wish{{"add", Json::array()}, {"own", Json::array()}};
   if (run.kind == "fit" && fields.has("add")) wish["add"] = *fields.member("add");
@@ -65,7 +65,8 @@ Result<store::LabRun> wanted(const Call& call, const char* kind) {
   return run;
 }
 
-/// Both models and the set are here and of one rig; own effects are in order.
+/// Checks that the models and the set exist and belong to one rig, and that the user effects are
+/// valid.
 Result<void> check(store::Reading& tx, const store::LabRun& run) {
   const auto set = TRY(store::measurement_set_of(tx, run.set_id));
   if (!set) return absent("measurement set", run.set_id);
@@ -205,7 +206,7 @@ Result<Words> words_of(const Call& call) {
   return out;
 }
 
-/// The better model under the name it shall have; its bytes as they were if that is its name.
+/// Stores the improved model under the wanted name; with an unchanged name its bytes stay the same.
 Result<std::pair<std::string, std::uint64_t>> named_model(const Call& call,
                                                           const store::LabRun& run,
                                                           std::string& name) {
@@ -271,60 +272,86 @@ RouteInfo asking(const char* tail, const char* id, const char* summary, const ch
 
 std::vector<RouteInfo> asking_routes() {
   using namespace schema;
-  const Json model = text("a version's id"), set = text("a set's id");
-  const Json own =
-      schema::optional(array(anything("tractus-effect/1"), "the user's own, at most 8"));
-  return {asking("diagnoses", "startDiagnosis",
-                 "Ask which effect a model lacks by a measurement set; done as a job",
-                 "DiagnosisWanted", object({{"model", model}, {"measurements", set}, {"own", own}}),
-                 start_diagnosis),
-          asking("comparisons", "startComparison",
-                 "Hold one or two versions of a model beside a measurement set; done as a job",
-                 "ComparisonWanted",
-                 object({{"model", model},
-                         {"measurements", set},
-                         {"against", schema::optional(nullable(text("the other version's id")))}}),
-                 start_comparison),
-          asking("fits", "startFit",
-                 "Fit a model to a measurement set, with effects added by hand; done as a job",
-                 "FitWanted",
-                 object({{"model", model},
-                         {"measurements", set},
-                         {"add", schema::optional(array(text("an effect's id"), "at most 16"))},
-                         {"own", own}}),
-                 start_fit)};
+  const Json model = text("Id of the model version"), set = text("Id of the measurement set");
+  const Json own = schema::optional(
+      array(anything("User effect in the format tractus-effect/1"), "User effects, at most 8"));
+  return {
+      asking(
+          "diagnoses", "startDiagnosis",
+          "Queue a diagnosis: which physical effect does a model lack, judged by a measurement set",
+          "DiagnosisWanted", object({{"model", model}, {"measurements", set}, {"own", own}}),
+          start_diagnosis),
+      asking("comparisons", "startComparison",
+             "Queue a comparison of one or two model versions with a measurement set",
+             "ComparisonWanted",
+             object({{"model", model},
+                     {"measurements", set},
+                     {"against",
+                      schema::optional(nullable(text("Id of the second model version; null or "
+                                                     "missing: only one model is compared")))}}),
+             start_comparison),
+      asking("fits", "startFit",
+             "Queue a fit of a model, with the effects that the user adds, to a measurement set",
+             "FitWanted",
+             object({{"model", model},
+                     {"measurements", set},
+                     {"add", schema::optional(
+                                 array(text("Id of an effect"),
+                                       "Effects that the fit adds to the model, at most 16"))},
+                     {"own", own}}),
+             start_fit)};
 }
 
 RouteInfo signals_route() {
   using namespace schema;
   using Kind = Parameter::Kind;
-  RouteInfo out = lab_route("GET", "runs/{id}/signals", "runSignals",
-                            "A trial measured and simulated, least and greatest of the samples "
-                            "behind each point, and when it is in which region",
-                            "RunSignals", signals);
-  for (Parameter p : {required_text("trial", "its id in the set"),
-                      required_text("channel", "as fz_N"), optional_text("side", "before or after"),
-                      numeric("from_s", Kind::number, "s", "from this time", 0, kLongest_s, "0"),
-                      numeric("to_s", Kind::number, "s", "to this time", 0, kLongest_s, "1000000"),
-                      numeric("points", Kind::integer, "1", "at most so many", 1, 20000, "1000")})
+  RouteInfo out = lab_route(
+      "GET", "runs/{id}/signals", "runSignals",
+      "Read the measured and simulated signals of one trial of a run; each point states the "
+      "smallest and largest value of its samples; regions state the times in each error region",
+      "RunSignals", signals);
+  for (Parameter p :
+       {required_text("trial", "Id of the trial in the measurement set"),
+        required_text("channel", "Name of the channel, for example fz_N"),
+        optional_text("side",
+                      "Model: before = the first model, after = the second or improved model"),
+        numeric("from_s", Kind::number, "s",
+                "Start of the time range, in seconds since the start of the trial", 0, kLongest_s,
+                "0"),
+        numeric("to_s", Kind::number, "s",
+                "End of the time range, in seconds since the start of the trial", 0, kLongest_s,
+                "1000000"),
+        numeric("points", Kind::integer, "1", "Largest number of points in the answer", 1, 20000,
+                "1000")})
     out.parameters.push_back(std::move(p));
   out.parameters[3].fallback = "before";
-  const Json spans = tuple(number("s", "from, to"), 2, "a stretch of time");
-  const Json both = object({{"min", array(number("its channel's", "least"), "by point")},
-                            {"max", array(number("its channel's", "greatest"), "by point")}});
+  const Json spans = tuple(number("s", "Time since the start of the trial, in seconds"), 2,
+                           "Start and end of a time range, in seconds");
+  const Json both =
+      object({{"min", array(number("its channel's", "Smallest value of the point's samples"),
+                            "Smallest value at each point")},
+              {"max", array(number("its channel's", "Largest value of the point's samples"),
+                            "Largest value at each point")}});
   out.schemas = {
-      {"RunSignals", object({{"trial", text("its id")},
-                             {"channel", text("its name")},
-                             {"side", one_of({"before", "after"}, "which model")},
-                             {"duration_s", number("s", "of the trial")},
-                             {"t_s", array(number("s", "since its start"), "by point")},
-                             {"measured", both},
-                             {"simulated", both},
-                             {"residual", both},
-                             {"noise_floor", number("its channel's", "rms of a true model")},
-                             {"samples_per_point", integer("1", "behind each point")},
-                             {"regions", array(array(spans, "in order of time"),
-                                               "by region of the comparison")}})}};
+      {"RunSignals",
+       object({{"trial", text("Id of the trial in the measurement set")},
+               {"channel", text("Name of the channel")},
+               {"side",
+                one_of({"before", "after"},
+                       "Model: before = the first model, after = the second or improved model")},
+               {"duration_s", number("s", "Duration of the trial, in seconds")},
+               {"t_s", array(number("s", "Time since the start of the trial, in seconds"),
+                             "Time of each point, in seconds")},
+               {"measured", both},
+               {"simulated", both},
+               {"residual", both},
+               {"noise_floor", number("its channel's",
+                                      "Noise floor: root mean square of the residual of a true "
+                                      "model, in the channel's unit")},
+               {"samples_per_point", integer("1", "Number of samples that each point summarises")},
+               {"regions",
+                array(array(spans, "Time ranges in the region, in order of time"),
+                      "One list of time ranges for each error region of the comparison")}})}};
   return out;
 }
 
@@ -333,32 +360,40 @@ RouteInfo signals_route() {
 std::vector<RouteInfo> lab_runs_routes() {
   using namespace schema;
   RouteInfo list = lab_route("GET", "runs", "labRuns",
-                             "What was asked of the lab, newest first, without what was found",
+                             "List the runs of the lab, newest first, without their results",
                              "LabRunList", list_runs);
   list.parameters = {
-      optional_text("kind", "diagnosis, comparison or fit"),
-      optional_text("model", "of this version"), optional_text("measurements", "by this set"),
-      numeric("limit", Parameter::Kind::integer, "1", "at most so many", 1, 500, "50")};
+      optional_text("kind", "Only runs of this kind: diagnosis, comparison or fit"),
+      optional_text("model", "Only runs of the model version with this id"),
+      optional_text("measurements", "Only runs with the measurement set with this id"),
+      numeric("limit", Parameter::Kind::integer, "1", "Largest number of runs in the answer", 1,
+              500, "50")};
   list.schemas = lab_run_schemas();
-  list.schemas.push_back({"LabRunList", object({{"runs", array(ref("LabRun"), "newest first")}})});
+  list.schemas.push_back(
+      {"LabRunList", object({{"runs", array(ref("LabRun"), "Runs, newest first")}})});
   std::vector<RouteInfo> out = asking_routes();
   out.push_back(std::move(list));
-  out.push_back(lab_route("GET", "runs/{id}", "labRun", "How far it is, and what it found",
-                          "LabRun", one_run));
+  out.push_back(lab_route("GET", "runs/{id}", "labRun",
+                          "Read the state of a lab run and its results", "LabRun", one_run));
   out.push_back(lab_route("POST", "runs/{id}/stop", "stopLabRun",
-                          "Stop it; one that ended stays as it is", "LabRun", stop));
-  out.push_back(lab_route("GET", "runs/{id}/report", "labRunReport", "The page of a finished one",
-                          kBytes, report_of));
-  out.push_back(lab_route("GET", "runs/{id}/model", "labRunModel", "The model it made, as a file",
-                          "ModelFile", better_model));
+                          "Stop a lab run; a run that has ended stays unchanged", "LabRun", stop));
+  out.push_back(lab_route("GET", "runs/{id}/report", "labRunReport",
+                          "Read the report of a finished lab run as an HTML page", kBytes,
+                          report_of));
+  out.push_back(lab_route("GET", "runs/{id}/model", "labRunModel",
+                          "Read the file of the model that a lab run made", "ModelFile",
+                          better_model));
   out.push_back(taking(
       lab_route("POST", "runs/{id}/publish", "publishLabRun",
-                "Make its model a version, with the judged one as parent; again: the same version",
+                "Publish the model of a lab run as a new version, whose parent is the run's first "
+                "model; a second call answers with the same version",
                 "ModelVersion", publish),
       "PublishWanted", kMaxAsk_bytes,
       {{"PublishWanted",
-        object({{"name", schema::optional(text("of the version; else the model's own"))},
-                {"note", schema::optional(text("why, for people"))}})}}));
+        object(
+            {{"name", schema::optional(text(
+                          "Name of the new version; if it is missing, the model keeps its name"))},
+             {"note", schema::optional(text("Note about the purpose of the version"))}})}}));
   out.push_back(signals_route());
   return out;
 }

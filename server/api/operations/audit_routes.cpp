@@ -28,7 +28,7 @@ core::Result<http::Response> list_audit(const Call& call) {
   return json_response({{"rows", list}});
 }
 
-/// The whole chain, recomputed.
+/// Recomputes the whole hash chain.
 core::Result<http::Response> check_audit(const Call& call) {
   auto end = call.backend.store.read(
       [&](store::Reading& tx) { return store::verify_chain(tx, call.backend.store.audit_key()); });
@@ -58,29 +58,37 @@ std::vector<RouteInfo> audit_routes() {
       .method = "GET",
       .path = "/api/v1/audit",
       .id = "audit",
-      .summary = "Every change, newest first: who, what, when, with which words",
+      .summary = "List the rows of the audit trail, newest first: who changed what and when",
       .who = {Role::admin},
-      .parameters = {whole("limit", "at most so many", 500, "100"),
-                     whole("before", "rows before this number", kEnd, "9000000000000000")},
+      .parameters = {whole("limit", "Largest number of rows in the answer", 500, "100"),
+                     whole("before", "Only rows whose number is smaller than this", kEnd,
+                           "9000000000000000")},
       .body = "",
       .answer = "AuditRows",
       .schemas = {},
       .handle = list_audit};
-  list.schemas = {{"AuditRow", object({{"number", integer("1", "from 1, without gaps")},
-                                       {"at_utc_us", integer("us", "since 1970, UTC")},
-                                       {"who", text("account, station, or command line: USER")},
-                                       {"role", text("of it then")},
-                                       {"peer", text("address it came from")},
-                                       {"what", text("an operationId of this description, or a "
-                                                     "command of tractus-server")},
-                                       {"object", text("the path's arguments")},
-                                       {"detail", anything("the body, without secrets")},
-                                       {"hash", text("of this row and all before it")}})},
-                  {"AuditRows", object({{"rows", array(ref("AuditRow"), "newest first")}})}};
+  list.schemas = {
+      {"AuditRow",
+       object({{"number", integer("1", "Number of the audit row, counted from 1 without gaps")},
+               {"at_utc_us",
+                integer("us", "Time of the action, in microseconds since 1970-01-01 UTC")},
+               {"who", text("Name of the account or station that acted; \"command line: USER\" for "
+                            "a command of tractus-server")},
+               {"role", text("Role of the account or station at the time of the action")},
+               {"peer", text("Network address from which the request came; empty for a command")},
+               {"what",
+                text("Action: an operationId of this description, or a command of tractus-server")},
+               {"object", text("Arguments in the path of the request, for example id=…")},
+               {"detail", anything("Fields of the request's body, without secrets")},
+               {"hash", text("Hash of this row and of all rows before it")}})},
+      {"AuditRows",
+       object({{"rows", array(ref("AuditRow"), "Rows of the audit trail, newest first")}})}};
   RouteInfo check{.method = "GET",
                   .path = "/api/v1/audit/check",
                   .id = "checkAudit",
-                  .summary = "Recompute the chain: was anything altered, taken out or reordered?",
+                  .summary =
+                      "Recompute the hash chain of the audit trail to find rows that were altered, "
+                      "removed or reordered",
                   .who = {Role::admin},
                   .parameters = {},
                   .body = "",
@@ -88,10 +96,12 @@ std::vector<RouteInfo> audit_routes() {
                   .schemas = {},
                   .handle = check_audit};
   check.schemas = {
-      {"AuditCheck", object({{"holds", truth("nothing was tampered with")},
-                             {"rows", nullable(integer("1", "checked"))},
-                             {"hash", nullable(text("of the newest row"))},
-                             {"failure", nullable(text("the first row that fails"))}})}};
+      {"AuditCheck",
+       object({{"holds", truth("True if every row of the chain is intact")},
+               {"rows", nullable(integer("1", "Number of checked rows; null if the check failed"))},
+               {"hash", nullable(text("Hash of the newest row; null if the check failed"))},
+               {"failure", nullable(text("Description of the first row that fails the check; null "
+                                         "if the chain is intact"))}})}};
   return {list, check};
 }
 

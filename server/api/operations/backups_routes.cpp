@@ -66,7 +66,7 @@ RouteInfo route(std::string method, std::string tail, std::string id, std::strin
                 .answer = std::move(answer),
                 .schemas = {},
                 .handle = handle};
-  if (!tail.empty()) out.parameters.push_back(path_text("id", "the backup's"));
+  if (!tail.empty()) out.parameters.push_back(path_text("id", "Id of the backup"));
   return out;
 }
 
@@ -74,28 +74,35 @@ RouteInfo route(std::string method, std::string tail, std::string id, std::strin
 
 std::vector<RouteInfo> backups_routes() {
   using namespace schema;
-  RouteInfo list =
-      route("GET", "", "backups", "Backups on this server, newest first", "Backups", list_backups);
+  RouteInfo list = route("GET", "", "backups", "List the backups on this server, newest first",
+                         "Backups", list_backups);
   list.schemas = {
-      {"BackupTrial", object({{"holds", truth("restored and looked over, nothing is wrong")},
-                              {"at_utc_us", integer("us", "since 1970, UTC")},
-                              {"findings", array(text("a line"), "what is wrong")}})},
+      {"BackupTrial",
+       object(
+           {{"holds",
+             truth("True if the backup was restored and the check of the copy found no error")},
+            {"at_utc_us", integer("us", "Time of the check, in microseconds since 1970-01-01 UTC")},
+            {"findings",
+             array(text("One error"), "Errors that the check found; empty if there are none")}})},
       {"Backup",
-       object({{"id", text("also its folder's name")},
-               {"state", one_of({"making", "verifying", "done", "failed"}, "at the moment")},
-               {"share", number("1", "of what is being done")},
-               {"error", text("why it failed; else empty")},
-               {"made_utc_us", integer("us", "since 1970, UTC")},
-               {"made_by", text("who; empty: the command line")},
-               {"size_bytes", integer("B", "on the disk")},
-               {"trials", integer("1", "in it")},
+       object({{"id", text("Id of the backup, which is also the name of its folder")},
+               {"state", one_of({"making", "verifying", "done", "failed"}, "State of the backup")},
+               {"share", number("1", "Completed share of the backup or of its check, 0 to 1")},
+               {"error", text("Reason for the failure; empty if the backup did not fail")},
+               {"made_utc_us",
+                integer("us", "Time of creation, in microseconds since 1970-01-01 UTC")},
+               {"made_by",
+                text("Name of the account that made the backup; empty if a command made it")},
+               {"size_bytes", integer("B", "Size of the backup on the disk, in bytes")},
+               {"trials", integer("1", "Number of trials in the backup")},
                {"verified", nullable(ref("BackupTrial"))}})},
-      {"Backups", object({{"backups", array(ref("Backup"), "newest first")}})}};
-  return {
-      list,
-      route("POST", "", "makeBackup", "Make one, while everything goes on", "Backup", make_backup),
-      route("POST", "/{id}/verify", "verifyBackup",
-            "Restore one to a scratch folder and look it over", "Backup", verify_backup)};
+      {"Backups", object({{"backups", array(ref("Backup"), "All backups, newest first")}})}};
+  return {list,
+          route("POST", "", "makeBackup", "Make a backup; the server continues to work meanwhile",
+                "Backup", make_backup),
+          route("POST", "/{id}/verify", "verifyBackup",
+                "Check a backup: restore it to a temporary folder and check the copy", "Backup",
+                verify_backup)};
 }
 
 }  // namespace api

@@ -12,12 +12,12 @@ std::vector<RouteInfo> description_routes() {
   return {{.method = "GET",
            .path = "/api/openapi.json",
            .id = "description",
-           .summary = "This description, OpenAPI 3.1",
+           .summary = "Read this description of the API (OpenAPI 3.1)",
            .who = {kRoles.begin(), kRoles.end()},
            .parameters = {},
            .body = "",
            .answer = "Description",
-           .schemas = {{"Description", schema::anything("OpenAPI 3.1")}},
+           .schemas = {{"Description", schema::anything("Document in OpenAPI 3.1 format")}},
            .handle = describe}};
 }
 

@@ -14,7 +14,8 @@ core::Result<double> counted(store::Reading& tx, const char* sql) {
   return static_cast<double>(rows.front().count(0));
 }
 
-/// Anybody may ask, so it tells no more than whether trials can be taken.
+/// The route needs no credentials, so the answer contains only whether the server can accept
+/// trials.
 core::Result<http::Response> health(const Call& call) {
   auto reads = call.backend.store.read(
       [](store::Reading& tx) { return counted(tx, "select count(*) from schema_versions"); });
@@ -28,14 +29,15 @@ struct Gauge {
 };
 constexpr Gauge kGauges[] = {
     {"tractus_trials", "Trials stored.", "select count(*) from trials"},
-    {"tractus_uploads_open", "Uploads under way.",
+    {"tractus_uploads_open", "Uploads in progress.",
      "select count(*) from uploads where state = 'receiving'"},
     {"tractus_jobs_waiting", "Jobs queued or running.",
      "select count(*) from jobs where state in ('queued', 'running')"},
-    {"tractus_jobs_failed", "Jobs given up.", "select count(*) from jobs where state = 'failed'"},
-    {"tractus_stations", "Stations that may come in.",
+    {"tractus_jobs_failed", "Jobs that failed.",
+     "select count(*) from jobs where state = 'failed'"},
+    {"tractus_stations", "Enrolled stations, without revoked ones.",
      "select count(*) from stations where revoked_utc_us is null"},
-    {"tractus_sessions", "People signed in.", "select count(*) from sessions"},
+    {"tractus_sessions", "Sessions of signed-in people.", "select count(*) from sessions"},
     {"tractus_audit_rows", "Rows of the audit trail.",
      "select coalesce(max(number), 0) from audit"},
 };
@@ -49,7 +51,7 @@ core::Result<http::Response> metrics_text(const Call& call) {
     }
     return {};
   }));
-  out += Telemetry::gauge("tractus_disk_free_bytes", "Left on the data folder's disk.",
+  out += Telemetry::gauge("tractus_disk_free_bytes", "Free bytes on the disk of the data folder.",
                           static_cast<double>(free_bytes(call.backend)));
   http::Response response{.status = 200, .headers = {}, .body = std::move(out)};
   response.with("Content-Type", "text/plain; version=0.0.4").with("Cache-Control", "no-store");
@@ -60,29 +62,30 @@ core::Result<http::Response> metrics_text(const Call& call) {
 
 std::vector<RouteInfo> operations_routes() {
   using namespace schema;
-  return {
-      {.method = "GET",
-       .path = "/api/v1/health",
-       .id = "health",
-       .summary = "200 when the server works and has room for trials; 503 when not",
-       .who = {},
-       .open = true,
-       .parameters = {},
-       .body = "",
-       .answer = "Health",
-       .schemas = {{"Health",
-                    object({{"state", one_of({"ok", "disk full", "failing"}, "of the server")}})}},
-       .handle = health},
-      {.method = "GET",
-       .path = "/api/v1/server/metrics",
-       .id = "serverMetrics",
-       .summary = "Counters, times and gauges in Prometheus' text form, without anybody's name",
-       .who = {Role::admin, Role::technician, Role::station},
-       .parameters = {},
-       .body = "",
-       .answer = kBytes,
-       .schemas = {},
-       .handle = metrics_text}};
+  return {{.method = "GET",
+           .path = "/api/v1/health",
+           .id = "health",
+           .summary = "Show the state of the server: status 200 if it works and has disk space for "
+                      "trials, else 503",
+           .who = {},
+           .open = true,
+           .parameters = {},
+           .body = "",
+           .answer = "Health",
+           .schemas = {{"Health", object({{"state", one_of({"ok", "disk full", "failing"},
+                                                           "State of the server")}})}},
+           .handle = health},
+          {.method = "GET",
+           .path = "/api/v1/server/metrics",
+           .id = "serverMetrics",
+           .summary = "Read counters, durations and gauges in the Prometheus text format, without "
+                      "names of people",
+           .who = {Role::admin, Role::technician, Role::station},
+           .parameters = {},
+           .body = "",
+           .answer = kBytes,
+           .schemas = {},
+           .handle = metrics_text}};
 }
 
 }  // namespace api

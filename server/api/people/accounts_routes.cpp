@@ -38,7 +38,7 @@ std::string role_field(core::Fields& fields) {
   return out;
 }
 
-/// What a body asks of a new account; without a password one is made.
+/// The account that a request's body describes; without a password, one is generated.
 struct Wanted {
   store::Account account;
   std::string password, pin;
@@ -98,7 +98,7 @@ Result<http::Response> changed(const Call& call, Work work) {
   return json_response(account_json(account));
 }
 
-/// Somebody must be left who can undo this.
+/// Refuses a change that would leave no active administrator.
 Result<void> check_an_admin_stays(store::Reading& tx, const store::Account& changing) {
   auto all = TRY(store::all_accounts(tx));
   const bool stays = std::ranges::any_of(all, [&](const store::Account& other) {
@@ -139,7 +139,7 @@ Result<http::Response> set_role(const Call& call) {
   });
 }
 
-/// Of another's account: for one's own, the route of one's own account asks for the old password.
+/// For other people's accounts only: the route for one's own account asks for the old password.
 Result<http::Response> reset_password(const Call& call) {
   if (call.text("id") == call.caller.id)
     return Error{Errc::forbidden,
@@ -187,7 +187,7 @@ RouteInfo route(std::string tail, std::string id, std::string summary, std::stri
                 .answer = std::move(answer),
                 .schemas = {},
                 .handle = handle};
-  if (!tail.empty()) out.parameters.push_back(path_text("id", "the account's"));
+  if (!tail.empty()) out.parameters.push_back(path_text("id", "Id of the account"));
   return out;
 }
 
@@ -195,49 +195,70 @@ RouteInfo route(std::string tail, std::string id, std::string summary, std::stri
 
 std::vector<RouteInfo> accounts_routes() {
   using namespace schema;
-  RouteInfo list = route("", "accounts", "Accounts by name; never a hash or a secret", "Accounts",
-                         list_accounts);
+  RouteInfo list = route("", "accounts",
+                         "List all accounts, sorted by name, without password hashes and secrets",
+                         "Accounts", list_accounts);
   list.method = "GET";
   list.body_limit_bytes = 0;
-  list.schemas = {{"Account", account_schema()},
-                  {"Accounts", object({{"accounts", array(ref("Account"), "by name")}})}};
-  RouteInfo add = route("", "addAccount", "Make an account; its password must be changed at once",
-                        "NewAccountMade", add_account_route);
+  list.schemas = {
+      {"Account", account_schema()},
+      {"Accounts", object({{"accounts", array(ref("Account"), "All accounts, sorted by name")}})}};
+  RouteInfo add =
+      route("", "addAccount",
+            "Create an account; its owner must choose a new password at the first sign-in",
+            "NewAccountMade", add_account_route);
   add.lane = http::Lane::hashing;
   add.body = "NewAccount";
   add.schemas = {
-      {"NewAccount", object({{"name", text("at most 128 bytes")},
-                             {"role", text("what it may do")},
-                             {"password", optional(text("12 to 1024 bytes; without, one is made"))},
-                             {"badge", optional(text("what a station reads"))},
-                             {"pin", optional(text("4 to 12 digits, for stations"))}})},
-      {"NewAccountMade", object({{"account", ref("Account")},
-                                 {"password", nullable(text("the one made, shown only now"))}})}};
+      {"NewAccount",
+       object({{"name", text("Name of the account, at most 128 bytes")},
+               {"role", text("Role of the account: admin, director, faculty, researcher, "
+                             "technician or trainee")},
+               {"password", optional(text("Initial password, 12 to 1024 bytes; if it is missing, "
+                                          "the server generates a password"))},
+               {"badge", optional(text("Text of the badge that a station's reader reads"))},
+               {"pin", optional(text("PIN for signing in at stations, 4 to 12 digits"))}})},
+      {"NewAccountMade",
+       object({{"account", ref("Account")},
+               {"password", nullable(text("Generated password, shown only in this answer; null if "
+                                          "the request gave a password"))}})}};
   RouteInfo state =
       route("/{id}/state", "setAccountState",
-            "Switch an account off, or on again; its sessions end", "Account", set_state);
+            "Disable or enable an account; this ends the account's sessions", "Account", set_state);
   state.body = "AccountState";
   state.schemas = {
-      {"AccountState", object({{"state", one_of({"active", "disabled"}, "from now on")}})}};
-  RouteInfo role = route("/{id}/role", "setAccountRole", "Give another role; its sessions end",
-                         "Account", set_role);
+      {"AccountState",
+       object({{"state", one_of({"active", "disabled"},
+                                "New state of the account; a disabled account cannot sign in")}})}};
+  RouteInfo role =
+      route("/{id}/role", "setAccountRole",
+            "Change the role of an account; this ends the account's sessions", "Account", set_role);
   role.body = "AccountRole";
-  role.schemas = {{"AccountRole", object({{"role", text("from now on")}})}};
-  RouteInfo reset = route("/{id}/password", "resetPassword",
-                          "A new password for another's account, shown once; ends its sessions, "
-                          "one-time codes and the wait after failures",
-                          "PasswordMade", reset_password);
+  role.schemas = {
+      {"AccountRole",
+       object({{"role",
+                text("New role: admin, director, faculty, researcher, technician or trainee")}})}};
+  RouteInfo reset =
+      route("/{id}/password", "resetPassword",
+            "Set a new generated password for another person's account; this ends the account's "
+            "sessions, turns its one-time codes off and clears its failed attempts",
+            "PasswordMade", reset_password);
   reset.lane = http::Lane::hashing;
-  reset.schemas = {{"PasswordMade", object({{"password", text("shown only now")}})}};
+  reset.schemas = {{"PasswordMade",
+                    object({{"password", text("Generated password, shown only in this answer")}})}};
   RouteInfo badge = route("/{id}/badge", "setBadge",
-                          "Badge and PIN for stations; without, none; ends the account's sessions "
-                          "and the wait after failures",
+                          "Set or remove the badge and the PIN for stations; this ends the "
+                          "account's sessions and clears the failed attempts with the badge",
                           "Account", set_badge);
   badge.lane = http::Lane::hashing;
   badge.who.push_back({Role::faculty, Scope::cohort});
   badge.body = "Badge";
-  badge.schemas = {{"Badge", object({{"badge", optional(text("what a station reads"))},
-                                     {"pin", optional(text("4 to 12 digits"))}})}};
+  badge.schemas = {
+      {"Badge",
+       object(
+           {{"badge", optional(text("Text of the badge; if it is missing, the badge is removed"))},
+            {"pin",
+             optional(text("PIN of 4 to 12 digits; if it is missing, the PIN is removed"))}})}};
   return {list, add, state, role, reset, badge};
 }
 

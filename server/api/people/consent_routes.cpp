@@ -83,7 +83,7 @@ Result<http::Response> list_consents(const Call& call) {
   return json_response({{"consents", list}});
 }
 
-/// Whom the body names: an account, or a participant that is nobody's account.
+/// Finds the person that the body names: an account, or a participant without an account.
 Result<void> resolve(store::Reading& tx, const std::string& account, store::Consent& said) {
   if (!account.empty()) {
     auto known = TRY(store::account_named(tx, account));
@@ -137,21 +137,25 @@ RouteInfo route(std::string method, std::string path, std::string id, std::strin
 
 std::vector<RouteInfo> consent_routes() {
   using namespace schema;
-  const Json tier = one_of({"none", "summary", "metrics", "reduced", "full"},
-                           "the most that research may have: nothing, counts, scores, samples at "
-                           "100 Hz, every sample");
-  RouteInfo own = route("GET", "session/consent", "ownConsent",
-                        "What I agreed that research may have of my trials", people(), own_consent);
+  const Json tier =
+      one_of({"none", "summary", "metrics", "reduced", "full"},
+             "Consent tier, the most data that research may use: none = nothing, summary = counts, "
+             "metrics = scores, reduced = samples at 100 Hz, full = every sample");
+  RouteInfo own =
+      route("GET", "session/consent", "ownConsent",
+            "Show which data of the caller's trials research may use", people(), own_consent);
   own.answer = "OwnConsent";
-  own.schemas = {{"OwnConsent",
-                  object({{"everywhere", tier},
-                          {"studies", array(object({{"study", text("id of an assignment of mine")},
-                                                    {"title", text("for people")},
-                                                    {"tier", tier}}),
-                                            "what holds in each")}})}};
+  own.schemas = {
+      {"OwnConsent",
+       object({{"everywhere", tier},
+               {"studies", array(object({{"study", text("Id of an assignment of the caller")},
+                                         {"title", text("Title of the assignment")},
+                                         {"tier", tier}}),
+                                 "Consent tier that applies in each assignment of the caller")}})}};
   RouteInfo say = route("POST", "session/consent", "sayConsent",
-                        "Agree, or withdraw (none): in one study, or everywhere, which replaces "
-                        "what was said of studies; exports follow at once",
+                        "Set or withdraw (tier none) the caller's consent for one study or for all "
+                        "studies; a consent for all studies replaces those for single studies, and "
+                        "it applies to exports immediately",
                         people(), say_own);
   say.ends = {{"/study", Object::assignment, {}}};
   for (const Grant& grant : people()) say.ends.front().who.push_back({grant.role, Scope::own});
@@ -159,34 +163,53 @@ std::vector<RouteInfo> consent_routes() {
   say.body_limit_bytes = kMaxBody_bytes;
   say.answer = "OwnConsent";
   say.schemas = {{"ConsentWord",
-                  object({{"study", optional(text("id; missing: everywhere"))}, {"tier", tier}})}};
-  RouteInfo list =
-      route("GET", "consents", "consents", "Who agreed to what", {Role::admin}, list_consents);
+                  object({{"study", optional(text("Id of the study or assignment; if it is "
+                                                  "missing, the consent applies to all studies"))},
+                          {"tier", tier}})}};
+  RouteInfo list = route("GET", "consents", "consents", "List all recorded consents", {Role::admin},
+                         list_consents);
   list.answer = "ConsentList";
   list.schemas = {
       {"ConsentList",
        object(
-           {{"consents", array(object({{"account", nullable(text("name"))},
-                                       {"study", nullable(text("id; null: everywhere"))},
-                                       {"participant", nullable(text("where there is no account"))},
-                                       {"tier", tier},
-                                       {"basis", text("own word, or where the form lies")},
-                                       {"noted_utc_us", integer("us", "since 1970, UTC")},
-                                       {"noted_by", text("who")}}),
-                               "by account, study")}})}};
+           {{"consents",
+             array(
+                 object(
+                     {{"account",
+                       nullable(
+                           text("Name of the account; null for a participant without an account"))},
+                      {"study",
+                       nullable(
+                           text("Id of the study; null if the consent applies to all studies"))},
+                      {"participant",
+                       nullable(text(
+                           "Pseudonym of a participant without an account; null for an account"))},
+                      {"tier", tier},
+                      {"basis",
+                       text("Evidence of the consent: \"own word\" if the person gave it on the "
+                            "website, else the place where the signed form is kept")},
+                      {"noted_utc_us", integer("us",
+                                               "Time when the consent was recorded, in "
+                                               "microseconds since 1970-01-01 UTC")},
+                      {"noted_by", text("Name of the account that recorded the consent")}}),
+                 "All recorded consents, sorted by account, then by study")}})}};
   RouteInfo note = route("POST", "consents", "noteConsent",
-                         "Note a form that somebody signed: of a study's participant without "
-                         "account, or (administrators) of an account",
+                         "Record a signed consent form of a study participant without an account "
+                         "or, for administrators only, of an account",
                          {Role::admin, Role::researcher}, note_consent);
   note.ends = {{"/account", Object::account, {Role::admin}, End::By::account_name},
                {"/study", Object::study, note.who}};
   note.body = "ConsentForm";
   note.body_limit_bytes = kMaxBody_bytes;
-  note.schemas = {{"ConsentForm", object({{"account", optional(text("name"))},
-                                          {"study", optional(text("id"))},
-                                          {"participant", optional(text("of the study"))},
-                                          {"tier", tier},
-                                          {"basis", text("where the form lies")}})}};
+  note.schemas = {
+      {"ConsentForm",
+       object({{"account",
+                optional(text("Name of the account; give either an account or a participant"))},
+               {"study", optional(text("Id of the study; required for a participant"))},
+               {"participant",
+                optional(text("Pseudonym of a participant of the study who has no account"))},
+               {"tier", tier},
+               {"basis", text("Place where the signed form is kept, at most 500 characters")}})}};
   return {own, say, list, note};
 }
 

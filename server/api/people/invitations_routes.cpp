@@ -55,7 +55,7 @@ RouteInfo route(std::string method, std::string tail, std::string id, std::strin
                 .answer = "Invitations",
                 .schemas = {},
                 .handle = handle};
-  if (!tail.empty()) out.parameters.push_back(path_text("cohort", "the cohort's id"));
+  if (!tail.empty()) out.parameters.push_back(path_text("cohort", "Id of the cohort"));
   return out;
 }
 
@@ -63,20 +63,27 @@ RouteInfo route(std::string method, std::string tail, std::string id, std::strin
 
 std::vector<RouteInfo> invitations_routes() {
   using namespace schema;
-  RouteInfo list = route("GET", "", "ownInvitations", "Cohorts that I am asked into, oldest first",
-                         own_invitations);
+  RouteInfo list =
+      route("GET", "", "ownInvitations",
+            "List the caller's open invitations into cohorts, oldest first", own_invitations);
   list.schemas = {
-      {"Invitation", object({{"cohort_id", text("of the cohort")},
-                             {"cohort_name", text("for people")},
-                             {"made_utc_us", integer("us", "since 1970, UTC")},
-                             {"made_by", text("who asks")}})},
-      {"Invitations", object({{"invitations", array(ref("Invitation"), "oldest first")}})}};
+      {"Invitation",
+       object({{"cohort_id", text("Id of the cohort")},
+               {"cohort_name", text("Name of the cohort")},
+               {"made_utc_us",
+                integer("us", "Time of the invitation, in microseconds since 1970-01-01 UTC")},
+               {"made_by", text("Name of the account that sent the invitation")}})},
+      {"Invitations",
+       object({{"invitations",
+                array(ref("Invitation"), "Open invitations of the caller, oldest first")}})}};
   RouteInfo yes = route("POST", "/{cohort}/accept", "acceptInvitation",
-                        "Join: those who lead the cohort see my trials from now on", accept);
-  // The invitation stands for the caller's right to this cohort.
+                        "Accept an invitation and join the cohort; the leaders of the cohort can "
+                        "then see the caller's trials",
+                        accept);
+  // The invitation gives the caller the right to name this cohort.
   yes.ends = {{"cohort", Object::cohort, {Role::trainee, Role::faculty}}};
-  RouteInfo no =
-      route("POST", "/{cohort}/decline", "declineInvitation", "The invitation is gone", decline);
+  RouteInfo no = route("POST", "/{cohort}/decline", "declineInvitation",
+                       "Decline an invitation; the invitation is removed", decline);
   no.ends = yes.ends;
   return {list, yes, no};
 }

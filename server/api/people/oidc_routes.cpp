@@ -26,7 +26,7 @@ http::Response sent_to(const std::string& address) {
   return out.with("Location", address).with("Cache-Control", "no-store"), out;
 }
 
-/// Of one sign-in. Lax: the browser comes back from another site.
+/// Cookie of one sign-in attempt. SameSite=Lax, because the browser returns from another site.
 std::string attempt_cookie(const Backend& backend, const std::string& value, std::int64_t seconds) {
   return std::string(kAttemptCookie) + "=" + value +
          "; Path=/api/v1/session/oidc; HttpOnly; SameSite=Lax; Max-Age=" + std::to_string(seconds) +
@@ -38,7 +38,7 @@ Result<const Oidc*> provider(const Call& call) {
   return Error{Errc::not_found, "this server has no provider of identities"};
 }
 
-/// Back to the pages, which say that it did not work.
+/// Redirects to the web pages, which show that the sign-in failed.
 http::Response failed(const Call& call, const Error& why) {
   if (call.backend.log) call.backend.log({{"what", "oidc"}, {"refused", why.what}});
   return sent_to("/?sign_in=failed");
@@ -65,7 +65,7 @@ Result<http::Response> begin(const Call& call) {
   return out;
 }
 
-/// The attempt that this browser began, if this is its answer.
+/// The sign-in attempt that this browser began, if the request answers that attempt.
 Result<OidcAttempt> attempt_of(const Call& call) {
   const Error none{Errc::unauthorised, "this browser began no such sign-in, or too long ago"};
   const std::string sealed(call.request.cookie(kAttemptCookie));
@@ -80,7 +80,8 @@ Result<OidcAttempt> attempt_of(const Call& call) {
   return out;
 }
 
-/// What an administrator needs to link somebody: noted, as rarely as refusals.
+/// Writes an unknown subject into the audit trail, so that an administrator can link it; limited in
+/// rate like refusals.
 void note_unknown(const Call& call, const std::string& subject) {
   if (!call.backend.refusals.turn("oidc", call.backend.now_utc_us())) return;
   const store::AuditedAction act{
@@ -97,7 +98,8 @@ void note_unknown(const Call& call, const std::string& subject) {
   if (!noted && call.backend.log) call.backend.log({{"what", "refusal not noted"}});
 }
 
-/// The session's token. Errors: unauthorised when nobody's account has the subject, or it is off.
+/// Starts a session and returns its token. Errors: unauthorised if no active account has the
+/// subject.
 Result<std::string> session_for(const Call& call, const Oidc& oidc, const std::string& subject) {
   auto account = TRY(call.backend.store.read([&](store::Reading& tx) {
     return store::account_of_subject(tx, oidc.settings().issuer, subject);
@@ -132,7 +134,7 @@ Result<std::string> signed_in(const Call& call, const Oidc& oidc) {
   return session_for(call, oidc, identity.subject);
 }
 
-/// The browser is sent to the pages in any case: they say what happened.
+/// Redirects the browser to the web pages in any case; they show what happened.
 Result<http::Response> come_back(const Call& call) {
   const auto oidc = TRY(provider(call));
   const auto token = signed_in(call, *oidc);
@@ -202,41 +204,51 @@ RouteInfo open_route(std::string tail, std::string id, std::string summary, std:
 
 std::vector<RouteInfo> oidc_routes() {
   using namespace schema;
-  RouteInfo offer = open_route("", "oidcOffered", "May people sign in by a provider of identities?",
+  RouteInfo offer = open_route("", "oidcOffered",
+                               "Show whether people can sign in with an OpenID Connect provider",
                                "OidcOffer", http::Lane::quick, offered);
-  offer.schemas = {{"OidcOffer", object({{"offered", truth("there is one")},
-                                         {"label", nullable(text("of the button"))}})}};
+  offer.schemas = {
+      {"OidcOffer",
+       object({{"offered", truth("True if the server is configured with a provider")},
+               {"label",
+                nullable(text("Label of the sign-in button; null if there is no provider"))}})}};
   RouteInfo back =
-      open_route("/callback", "oidcCallback", "Where the provider sends the browser back to",
-                 kBytes, http::Lane::remote, come_back);
-  back.parameters = {answered("code", "for an identity"),
-                     answered("state", "of the attempt"),
-                     answered("iss", "RFC 9207"),
-                     answered("error", "why not"),
-                     answered("error_description", "for people"),
-                     answered("error_uri", "for people"),
-                     answered("session_state", "of the provider"),
-                     answered("scope", "what was granted")};
+      open_route("/callback", "oidcCallback",
+                 "Redirect target to which the provider returns the browser after sign-in", kBytes,
+                 http::Lane::remote, come_back);
+  back.parameters = {
+      answered("code", "Authorization code, which the server exchanges for an ID token"),
+      answered("state", "State value of this sign-in attempt"),
+      answered("iss", "Issuer identifier of the provider (RFC 9207)"),
+      answered("error", "Error code of the provider, if the sign-in failed"),
+      answered("error_description", "Description of the error in words"),
+      answered("error_uri", "Address of a page that explains the error"),
+      answered("session_state", "Session state of the provider; the server does not use it"),
+      answered("scope", "Scopes that the provider granted")};
   RouteInfo join{
       .method = "POST",
       .path = "/api/v1/accounts/{id}/subject",
       .id = "linkSubject",
-      .summary = "Say which of the provider's people the account is; empty: none; its sessions end",
+      .summary =
+          "Link an account with a person of the OpenID Connect provider, or remove the link; this "
+          "ends the account's sessions",
       .who = {Role::admin},
-      .parameters = {path_text("id", "of the account")},
+      .parameters = {path_text("id", "Id of the account")},
       .body = "OidcSubject",
       .body_limit_bytes = 4096,
       .answer = "",
       .schemas = {{"OidcSubject",
-                   object({{"subject", text("the provider's name for the person, sub")}})}},
+                   object({{"subject", text("Subject identifier (sub) of the person at the "
+                                            "provider; an empty text removes the link")}})}},
       .handle = link};
-  return {offer,
-          open_route("/start", "oidcStart", "Send the browser to the provider", kBytes,
-                     http::Lane::remote, begin),
-          back,
-          open_route("/end", "oidcEnd", "Send the browser to the provider to sign out there too",
-                     kBytes, http::Lane::remote, leave),
-          join};
+  return {
+      offer,
+      open_route("/start", "oidcStart", "Redirect the browser to the provider to sign in", kBytes,
+                 http::Lane::remote, begin),
+      back,
+      open_route("/end", "oidcEnd", "Redirect the browser to the provider to sign out there too",
+                 kBytes, http::Lane::remote, leave),
+      join};
 }
 
 }  // namespace api

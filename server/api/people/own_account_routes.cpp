@@ -34,7 +34,8 @@ store::Attempt attempt_of(const Call& call) {
   return {store::Secret::own_password, call.caller.id, call.caller.session_hash};
 }
 
-/// What shows that it is the account's owner who asks, and not whoever found the browser open.
+/// Proof that the request comes from the account's owner, not from another person at an open
+/// browser.
 struct Proof {
   const char* field;  ///< of the body, that holds the password
   std::string password, code;
@@ -42,7 +43,8 @@ struct Proof {
 
 using Change = std::function<Result<void>(store::Writing&, store::Account&)>;
 
-/// The own account, while the session that asks still lasts: a reset by an administrator ends it.
+/// The caller's account, if the caller's session is still valid: a password reset by an
+/// administrator ends the session.
 Result<store::Account> account_of_session(store::Writing& tx, const Call& call) {
   auto session = TRY(store::session_of(tx, call.caller.session_hash));
   if (!session) return Error{Errc::unauthorised, "sign in first: the session is over"};
@@ -62,7 +64,7 @@ Result<void> changed(const Call& call, const Change& change) {
   return done;
 }
 
-/// Uses the code up, within a change.
+/// Checks the one-time code and marks it as used, within the transaction of the change.
 Result<void> take_code(const Call& call, store::Account& account, const std::string& code,
                        bool& wrong) {
   wrong = !use_code(call.backend, account, code);
@@ -70,7 +72,7 @@ Result<void> take_code(const Call& call, store::Account& account, const std::str
   return {};
 }
 
-/// Runs `change`, which may find a one-time code wrong: that is noted for the throttle.
+/// Runs `change`; a wrong one-time code is counted as a failed attempt.
 Result<http::Response> changed_by_code(const Call& call, const bool& wrong, const Change& change) {
   auto made = changed(call, change);
   if (wrong) TRY(note_failure(call.backend, attempt_of(call)));
@@ -78,7 +80,7 @@ Result<http::Response> changed_by_code(const Call& call, const bool& wrong, cons
   return done();
 }
 
-/// What is answered to who does not show the password, or no code where the account has them.
+/// The refusal if the password is wrong, or if a required one-time code is missing; else nothing.
 Result<std::optional<http::Response>> refusal_of(const Call& call, const Proof& proof) {
   auto early = too_early(call.backend, attempt_of(call));
   if (!early || *early) return early;
@@ -93,7 +95,7 @@ Result<std::optional<http::Response>> refusal_of(const Call& call, const Proof& 
       http::error_response(403, "code_needed", "body: /code: a one-time code is asked for"));
 }
 
-/// Runs `change` for an owner whom refusal_of let pass, the code used up.
+/// Runs `change` after refusal_of() returned nothing, and marks the one-time code as used.
 Result<http::Response> changed_by_owner(const Call& call, const Proof& proof,
                                         const Change& change) {
   bool wrong = false;
@@ -191,36 +193,43 @@ RouteInfo route(std::string method, std::string tail, std::string id, std::strin
 std::vector<RouteInfo> own_account_routes() {
   using namespace schema;
   const core::Json code_where_asked =
-      optional(text("one-time, where the account asks for them: six digits"));
-  RouteInfo password = route("POST", "password", "changePassword",
-                             "Choose another password; the other sessions end", change_password);
+      optional(text("One-time code of six digits; required if the account uses one-time codes"));
+  RouteInfo password =
+      route("POST", "password", "changePassword",
+            "Change the caller's password; this ends the caller's other sessions", change_password);
   password.before_password_change = true;
   password.lane = http::Lane::hashing;
   password.body = "PasswordChange";
-  password.schemas = {{"PasswordChange", object({{"old", text("the password until now")},
-                                                 {"new", text("12 to 1024 bytes")},
-                                                 {"code", code_where_asked}})}};
-  RouteInfo begin =
-      route("POST", "codes", "beginCodes",
-            "A secret for an authenticator (RFC 6238); asked for once confirmed", begin_codes);
+  password.schemas = {
+      {"PasswordChange",
+       object({{"old", text("Current password")},
+               {"new", text("New password, 12 to 1024 bytes, different from the current password")},
+               {"code", code_where_asked}})}};
+  RouteInfo begin = route("POST", "codes", "beginCodes",
+                          "Create a secret for an authenticator app (RFC 6238); one-time codes are "
+                          "required after the secret is confirmed",
+                          begin_codes);
   begin.lane = http::Lane::hashing;
   begin.body = "PasswordShown";
   begin.answer = "CodesBegun";
-  begin.schemas = {{"PasswordShown", object({{"password", text("of the account")}})},
-                   {"CodesBegun", object({{"secret", text("base32, shown only now")},
-                                          {"uri", text("otpauth://…, to scan")}})}};
-  RouteInfo confirm =
-      route("POST", "codes/confirm", "confirmCodes",
-            "From now on a one-time code is asked for at signing in; the other sessions end",
-            confirm_codes);
+  begin.schemas = {
+      {"PasswordShown", object({{"password", text("Current password of the caller")}})},
+      {"CodesBegun",
+       object({{"secret", text("Secret in base32, shown only in this answer")},
+               {"uri", text("otpauth:// address of the secret, to be shown as a QR code")}})}};
+  RouteInfo confirm = route("POST", "codes/confirm", "confirmCodes",
+                            "Confirm the secret with a one-time code; from then on signing in "
+                            "requires a one-time code, and the caller's other sessions end",
+                            confirm_codes);
   confirm.body = "OneTimeCode";
-  confirm.schemas = {{"OneTimeCode", object({{"code", text("six digits")}})}};
-  RouteInfo end = route("POST", "codes/end", "endCodes",
-                        "No longer ask for one-time codes; the other sessions end", end_codes);
+  confirm.schemas = {{"OneTimeCode", object({{"code", text("One-time code, six digits")}})}};
+  RouteInfo end =
+      route("POST", "codes/end", "endCodes",
+            "Turn one-time codes off; this ends the caller's other sessions", end_codes);
   end.lane = http::Lane::hashing;
   end.body = "PasswordAndCode";
-  end.schemas = {{"PasswordAndCode", object({{"password", text("of the account")},
-                                             {"code", text("one-time: six digits")}})}};
+  end.schemas = {{"PasswordAndCode", object({{"password", text("Current password of the caller")},
+                                             {"code", text("One-time code, six digits")}})}};
   return {password, begin, confirm, end};
 }
 

@@ -11,7 +11,8 @@ namespace tractus {
 namespace api {
 namespace {
 
-/// Crockford's: without I, L, O and U. 32 of them, so that a byte's five low bits choose evenly.
+/// Crockford's base32 alphabet, without I, L, O and U. It has 32 characters, so that the five low
+/// bits of a random byte choose each character with equal probability.
 constexpr std::string_view kLetters = "0123456789abcdefghjkmnpqrstvwxyz";
 
 std::string letters(std::size_t count) {
@@ -40,15 +41,20 @@ core::Json account_schema() {
   std::vector<std::string> roles;
   for (const Role role : kRoles)
     if (role != Role::station) roles.emplace_back(name(role));
-  return object({{"id", text("never changes")},
-                 {"name", text("typed to sign in")},
-                 {"role", one_of(roles, "what it may do")},
-                 {"state", one_of({"active", "disabled"}, "a disabled one cannot sign in")},
-                 {"badge", nullable(text("what a station reads"))},
-                 {"has_pin", truth("can sign in at a station")},
-                 {"has_codes", truth("one-time codes are asked for")},
-                 {"must_change", truth("a password of its own must be chosen first")},
-                 {"made_utc_us", integer("us", "since 1970, UTC")}});
+  return object(
+      {{"id", text("Id of the account, which never changes")},
+       {"name", text("Name with which the person signs in")},
+       {"role", one_of(roles, "Role, which decides what the account may do")},
+       {"state",
+        one_of({"active", "disabled"}, "State of the account; a disabled account cannot sign in")},
+       {"badge",
+        nullable(
+            text("Text of the badge that a station's reader reads; null if there is no badge"))},
+       {"has_pin", truth("True if the account has a PIN for signing in at stations")},
+       {"has_codes", truth("True if signing in requires a one-time code")},
+       {"must_change",
+        truth("True if the person must choose a new password before any other request")},
+       {"made_utc_us", integer("us", "Time of creation, in microseconds since 1970-01-01 UTC")}});
 }
 
 std::string password_field(core::Fields& fields, const char* key, bool needed) {

@@ -67,18 +67,20 @@ std::vector<RouteInfo> session_routes() {
   std::vector<std::string> roles;
   for (const Role role : kRoles) roles.emplace_back(name(role));
   const core::Json identity = schema::object(
-      {{"name", schema::text("of the account or the station")},
-       {"role", schema::one_of(roles, "what it may do")},
-       {"id", schema::text("of the account or the station")},
-       {"must_change", schema::truth("a password of its own must be chosen first")}});
+      {{"name", schema::text("Name of the account or the station")},
+       {"role", schema::one_of(roles, "Role, which decides what the caller may do")},
+       {"id", schema::text("Id of the account or the station")},
+       {"must_change",
+        schema::truth("True if the person must choose a new password before any other request")}});
   const core::Json sent = schema::object(
-      {{"name", schema::text("of the account")},
-       {"password", schema::text("at most 1024 bytes")},
-       {"code", schema::optional(schema::text("one-time, when the answer was code_needed"))}});
+      {{"name", schema::text("Name of the account")},
+       {"password", schema::text("Password, at most 1024 bytes")},
+       {"code", schema::optional(schema::text("One-time code of six digits; required if the error "
+                                              "code of the previous answer was code_needed"))}});
   return {{.method = "POST",
            .path = path,
            .id = "signIn",
-           .summary = "Sign in; the answer sets the session's cookie",
+           .summary = "Sign in with name and password; the answer sets the session cookie",
            .who = {},
            .open = true,
            .lane = http::Lane::hashing,
@@ -91,7 +93,7 @@ std::vector<RouteInfo> session_routes() {
           {.method = "GET",
            .path = path,
            .id = "whoAmI",
-           .summary = "Whose credentials these are",
+           .summary = "Show which account or station the caller's credentials belong to",
            .who = {kRoles.begin(), kRoles.end()},
            .before_password_change = true,
            .parameters = {},
@@ -102,7 +104,7 @@ std::vector<RouteInfo> session_routes() {
           {.method = "DELETE",
            .path = path,
            .id = "signOut",
-           .summary = "Sign out; the session is over everywhere",
+           .summary = "Sign out and end the session",
            .who = people(),
            .before_password_change = true,
            .parameters = {},

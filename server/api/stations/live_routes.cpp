@@ -28,7 +28,7 @@ Result<http::Response> time_now(const Call& call) {
   return json_response({{"server_utc_us", call.backend.now_utc_us()}});
 }
 
-/// Notes it in the audit trail first, then says it to the station.
+/// Writes the command into the audit trail, then sends it to the station.
 Result<http::Response> commanded(const Call& call, const wire::StationCommand& command) {
   auto hub = TRY(hub_of(call.backend));
   const std::string& id = call.text("id");
@@ -81,7 +81,7 @@ RouteInfo command(std::string tail, std::string id, std::string summary, std::ve
           .id = std::move(id),
           .summary = std::move(summary),
           .who = std::move(who),
-          .parameters = {path_text("id", "the station's")},
+          .parameters = {path_text("id", "Id of the station")},
           .body = std::move(body),
           .body_limit_bytes = kMaxBody_bytes,
           .answer = "CommandSent",
@@ -95,41 +95,63 @@ std::vector<RouteInfo> live_routes() {
   using namespace schema;
   RouteInfo wall =
       line("", "live",
-           "WebSocket: every station at once, then each that changes, at most 20 times a second",
+           "WebSocket for watching stations: sends the state of all stations once, then each "
+           "station that changes, at most 20 times a second",
            {Role::admin, Role::director, Role::faculty, Role::technician}, "LiveFrame", look_on);
   wall.schemas = {
       {"StationState", object(station_state_fields())},
-      {"LiveFrame", object({{"kind", one_of({"stations", "station"}, "which of the two is there")},
-                            {"stations", optional(array(ref("StationState"), "all, by name"))},
-                            {"station", optional(ref("StationState"))}})}};
-  RouteInfo own =
-      line("/station", "liveStation", "WebSocket of a station: says its state, hears commands",
-           {Role::station}, "StationCommand", station_line);
+      {"LiveFrame",
+       object({{"kind", one_of({"stations", "station"},
+                               "stations: the message has the field stations; station: it has the "
+                               "field station")},
+               {"stations", optional(array(ref("StationState"), "All stations, sorted by name"))},
+               {"station", optional(ref("StationState"))}})}};
+  RouteInfo own = line("/station", "liveStation",
+                       "WebSocket for a station: the station sends its state and receives commands",
+                       {Role::station}, "StationCommand", station_line);
   own.schemas = {
       {"StationCommand",
-       object({{"kind", one_of({"stop", "limits"}, "what is asked")},
-               {"reason", optional(text("of a stop, for the person at the station"))},
-               {"force_N", optional(number("N", "at most so much on the hand, from now on"))}})}};
+       object(
+           {{"kind",
+             one_of({"stop", "limits"},
+                    "Command: stop = end the running trial, limits = lower the force limit")},
+            {"reason", optional(text("Reason for the stop, shown to the person at the station"))},
+            {"force_N",
+             optional(number("N", "New limit of the force on the hand, in newtons"))}})}};
   const std::vector<Grant> watching{Role::admin, Role::director, Role::faculty, Role::technician};
-  RouteInfo halt = command("stop", "stopStation",
-                           "End the running trial with zero force; a person at the station goes on",
-                           watching, "StopStation", stop);
-  halt.schemas = {{"StopStation", object({{"reason", text("shown at the station")}})},
-                  {"CommandSent", object({{"sent", truth("to the station's line")}})}};
+  RouteInfo halt = command(
+      "stop", "stopStation",
+      "Stop the running trial and set the force to zero; a person at the station must resume",
+      watching, "StopStation", stop);
+  halt.schemas = {
+      {"StopStation",
+       object({{"reason",
+                text("Reason for the stop, shown at the station, at most 300 characters")}})},
+      {"CommandSent",
+       object(
+           {{"sent", truth("True: the server sent the command over the station's connection")}})}};
   RouteInfo less = command("limits", "limitStation",
-                           "Lower the force that a station gives a hand; it never rises by this",
+                           "Lower the force limit of a station; this route cannot raise the limit",
                            {Role::admin, Role::technician}, "LimitStation", limit);
-  less.schemas = {{"LimitStation", object({{"force_N", number("N", "at most")}})}};
+  less.schemas = {
+      {"LimitStation",
+       object({{"force_N",
+                number("N", "New limit of the force on the hand, in newtons, 0 to 1000")}})}};
   RouteInfo time{
       .method = "GET",
       .path = "/api/v1/time",
       .id = "time",
-      .summary = "The server's clock, for a station to compare its own with",
+      .summary = "Read the server's clock, with which a station compares its own clock",
       .who = {Role::station},
       .parameters = {},
       .body = "",
       .answer = "ServerTime",
-      .schemas = {{"ServerTime", object({{"server_utc_us", integer("us", "since 1970, UTC")}})}},
+      .schemas =
+          {{"ServerTime",
+            object(
+                {{"server_utc_us",
+                  integer("us",
+                          "Time of the server's clock, in microseconds since 1970-01-01 UTC")}})}},
       .handle = time_now};
   return {wall, own, halt, less, time};
 }

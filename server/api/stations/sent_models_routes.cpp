@@ -54,7 +54,7 @@ Result<http::Response> where_sent(const Call& call) {
   return json_response(sent_json(sent));
 }
 
-/// The stations that a body names; nothing: all of them.
+/// The stations that the body names; an empty result means all stations.
 Result<std::optional<std::set<std::string>>> stations_asked(const Json& json) {
   core::Fields fields(json, "body");
   const Json* named = fields.member("stations", false);
@@ -106,7 +106,8 @@ Result<http::Response> for_station(const Call& call) {
   return json_response({{"models", list}});
 }
 
-/// Of those that were sent to the caller; another is as if it were not there.
+/// A model version that was sent to the caller. Errors: not_found, also for a version that was sent
+/// only to other stations.
 Result<store::ModelVersion> own_model(const Call& call) {
   return call.backend.store.read([&](store::Reading& tx) -> Result<store::ModelVersion> {
     auto models = TRY(store::models_for(tx, call.caller.id));
@@ -141,7 +142,7 @@ RouteInfo station_route(std::string method, std::string tail, std::string id, st
                 .answer = std::move(answer),
                 .schemas = {},
                 .handle = handle};
-  if (!tail.empty()) out.parameters.push_back(path_text("id", "the version's"));
+  if (!tail.empty()) out.parameters.push_back(path_text("id", "Id of the model version"));
   return out;
 }
 
@@ -149,41 +150,66 @@ RouteInfo station_route(std::string method, std::string tail, std::string id, st
 
 std::vector<RouteInfo> sent_models_routes() {
   using namespace schema;
-  RouteInfo where =
-      lab_route("GET", "models/{id}/stations", "sentModel",
-                "Every station, and whether a version was sent there", "SentModel", where_sent);
+  RouteInfo where = lab_route("GET", "models/{id}/stations", "sentModel",
+                              "List every station and whether the model version was sent to it",
+                              "SentModel", where_sent);
   where.who.push_back(Role::technician);
   where.schemas = {
-      {"SentModelStation", object({{"id", text("the station's")},
-                                   {"name", text("of the station")},
-                                   {"state", one_of({"not_sent", "waiting", "there"},
-                                                    "there: it has said that it has it")},
-                                   {"asked_utc_us", nullable(integer("us", "since 1970, UTC"))},
-                                   {"asked_by", text("who; empty: it was not sent there")},
-                                   {"there_utc_us", nullable(integer("us", "since 1970, UTC"))}})},
-      {"SentModel", object({{"stations", array(ref("SentModelStation"), "by name")}})}};
-  RouteInfo post =
-      taking(lab_route("POST", "models/{id}/send", "sendModel",
-                       "Stations fetch a version when they next ask", "SentModel", send),
-             "SendModel", kMaxBody_bytes,
-             {{"SendModel", object({{"stations", optional(array(text("an id"), "these alone"))},
-                                    {"all", optional(truth("every station"))}})}});
+      {"SentModelStation",
+       object(
+           {{"id", text("Id of the station")},
+            {"name", text("Name of the station")},
+            {"state", one_of({"not_sent", "waiting", "there"},
+                             "not_sent: the version was not sent; waiting: the station has not "
+                             "fetched the version yet; there: the station has stored the version")},
+            {"asked_utc_us", nullable(integer("us",
+                                              "Time when the version was sent, in microseconds "
+                                              "since 1970-01-01 UTC; null if it was not sent"))},
+            {"asked_by",
+             text("Name of the account that sent the version; empty if it was not sent")},
+            {"there_utc_us",
+             nullable(integer("us",
+                              "Time when the station reported that it stored the version, in "
+                              "microseconds since 1970-01-01 UTC; null until then"))}})},
+      {"SentModel",
+       object({{"stations", array(ref("SentModelStation"), "All stations, sorted by name")}})}};
+  RouteInfo post = taking(
+      lab_route(
+          "POST", "models/{id}/send", "sendModel",
+          "Send a model version to stations; each station fetches the version at its next request",
+          "SentModel", send),
+      "SendModel", kMaxBody_bytes,
+      {{"SendModel",
+        object(
+            {{"stations",
+              optional(array(text("Id of a station"),
+                             "Stations to which the version is sent; give either this or all"))},
+             {"all", optional(truth(
+                         "True: the version is sent to every station that is not revoked"))}})}});
   post.who.push_back(Role::technician);
   post.ends = {{"id", Object::model, post.who}, {"/stations/*", Object::station, post.who}};
-  RouteInfo list =
-      station_route("GET", "", "stationModels", "Versions that the asking station is to have",
-                    "StationModels", for_station);
+  RouteInfo list = station_route("GET", "", "stationModels",
+                                 "List the model versions that were sent to the calling station",
+                                 "StationModels", for_station);
   list.schemas = {
-      {"StationModel", object({{"id", text("never changes")},
-                               {"name", text("for people")},
-                               {"rig", one_of({"probing", "palpation"}, "that it is of")},
-                               {"sha256", text("of its file")}})},
-      {"StationModels", object({{"models", array(ref("StationModel"), "first sent, first")}})}};
-  return {where, post, list,
-          station_route("GET", "/{id}", "stationModelFile", "One of them, byte for byte",
-                        "ModelFile", file_for_station),
-          station_route("POST", "/{id}/there", "stationModelThere",
-                        "The asking station has it on its disk", "", is_there)};
+      {"StationModel",
+       object({{"id", text("Id of the model version, which never changes")},
+               {"name", text("Name of the model")},
+               {"rig", one_of({"probing", "palpation"}, "Rig for which the model was made")},
+               {"sha256", text("SHA-256 of the model's file")}})},
+      {"StationModels",
+       object({{"models",
+                array(ref("StationModel"),
+                      "Model versions, sorted by the time when they were sent, oldest first")}})}};
+  return {
+      where, post, list,
+      station_route(
+          "GET", "/{id}", "stationModelFile",
+          "Read the file of a model version that was sent to the calling station, byte for byte",
+          "ModelFile", file_for_station),
+      station_route("POST", "/{id}/there", "stationModelThere",
+                    "Report that the calling station has stored the model version on its disk", "",
+                    is_there)};
 }
 
 }  // namespace api

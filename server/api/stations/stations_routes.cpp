@@ -36,7 +36,7 @@ Result<http::Response> list_stations(const Call& call) {
   return json_response({{"stations", list}});
 }
 
-/// The newest reports of a kind, as they came.
+/// The newest reports of a kind, as the station sent them.
 Result<core::Json> notes(store::Reading& tx, const std::string& id, const char* kind) {
   auto found = TRY(store::station_notes(tx, id, kind, kNotesShown));
   core::Json out = core::Json::array();
@@ -60,7 +60,7 @@ Result<http::Response> one_station(const Call& call) {
   return json_response(out);
 }
 
-/// Repeating a report is harmless: a station that did not hear the answer sends it again.
+/// The same report twice has no effect: a station that did not receive the answer sends it again.
 Result<http::Response> report(const Call& call) {
   auto json = TRY(core::parse_json(call.request.body, "body"));
   auto said = TRY(wire::StationReport::from_json(json, "body"));
@@ -95,8 +95,8 @@ Result<http::Response> make_code(const Call& call) {
                        201);
 }
 
-/// The station has made a key of its own; its SHA-256 comes here, the key itself is first sent with
-/// the station's next request, to a server that knows it.
+/// The station has generated its token and sends only the SHA-256 of the token here. It first sends
+/// the token itself with its next request.
 Result<http::Response> enrol(const Call& call) {
   auto json = TRY(core::parse_json(call.request.body, "body"));
   core::Fields fields(json, "body");
@@ -130,31 +130,42 @@ Result<http::Response> revoke(const Call& call) {
   return http::Response{.status = 204, .headers = {}, .body = std::string()};
 }
 
-/// What a fleet's entry has besides its state.
+/// The state of a station, with the times of its enrolment and revocation.
 std::vector<schema::Field> entry_fields() {
   using namespace schema;
   std::vector<Field> out = station_state_fields();
-  out.emplace_back("enrolled_utc_us", integer("us", "since 1970, UTC"));
-  out.emplace_back("revoked_utc_us", nullable(integer("us", "shut out since; null: it is not")));
+  out.emplace_back("enrolled_utc_us",
+                   integer("us", "Time of the enrolment, in microseconds since 1970-01-01 UTC"));
+  out.emplace_back("revoked_utc_us",
+                   nullable(integer("us",
+                                    "Time when the station was revoked, in microseconds since "
+                                    "1970-01-01 UTC; null if it is not revoked")));
   return out;
 }
 
 std::vector<NamedSchema> report_schemas() {
   using namespace schema;
-  const core::Json check = object({{"name", text("of the check")},
-                                   {"passed", truth("")},
-                                   {"value", nullable(number("as in unit", "measured"))},
-                                   {"unit", text("of value and limit; empty: none")},
-                                   {"limit", nullable(number("as in unit", "of the value"))},
-                                   {"words", text("for a person")}});
-  return {
-      {"SelfTest", object({{"at_utc_us", integer("us", "since 1970, UTC")},
-                           {"passed", truth("every check")},
-                           {"checks", array(check, "in their order")}})},
-      {"Calibration", object({{"at_utc_us", integer("us", "since 1970, UTC")},
-                              {"due_utc_us", nullable(integer("us", "the next one is due, UTC"))},
-                              {"kind", text("what was calibrated")},
-                              {"words", text("for a person")}})}};
+  const core::Json check = object(
+      {{"name", text("Name of the check")},
+       {"passed", truth("True if the check passed")},
+       {"value", nullable(number("as in unit", "Measured value; null if the check measures none"))},
+       {"unit", text("Unit of value and limit; empty if they have no unit")},
+       {"limit", nullable(number("as in unit", "Limit of the value; null if there is none"))},
+       {"words", text("Result of the check in words")}});
+  return {{"SelfTest",
+           object({{"at_utc_us",
+                    integer("us", "Time of the self-test, in microseconds since 1970-01-01 UTC")},
+                   {"passed", truth("True if every check passed")},
+                   {"checks", array(check, "Checks, in the order in which they ran")}})},
+          {"Calibration",
+           object({{"at_utc_us",
+                    integer("us", "Time of the calibration, in microseconds since 1970-01-01 UTC")},
+                   {"due_utc_us",
+                    nullable(integer("us",
+                                     "Time when the next calibration is due, in microseconds since "
+                                     "1970-01-01 UTC; null if there is no due date"))},
+                   {"kind", text("Kind of the calibration: what was calibrated")},
+                   {"words", text("Result of the calibration in words")}})}};
 }
 
 RouteInfo route(std::string method, std::string tail, std::string id, std::string summary,
@@ -176,65 +187,82 @@ RouteInfo route(std::string method, std::string tail, std::string id, std::strin
 
 std::vector<RouteInfo> stations_routes() {
   using namespace schema;
-  RouteInfo list = route("GET", "", "stations", "Stations by name, and how they are just now",
-                         "Stations", list_stations);
+  RouteInfo list =
+      route("GET", "", "stations", "List the stations with their current state, sorted by name",
+            "Stations", list_stations);
   list.who.push_back(Role::faculty);
   list.who.push_back(Role::director);
-  list.schemas = {{"StationEntry", object(entry_fields())},
-                  {"Stations", object({{"stations", array(ref("StationEntry"), "by name")}})}};
+  list.schemas = {
+      {"StationEntry", object(entry_fields())},
+      {"Stations",
+       object({{"stations", array(ref("StationEntry"), "All stations, sorted by name")}})}};
   RouteInfo one =
-      route("GET", "/{id}", "station", "A station, its newest self-tests and calibrations",
-            "Station", one_station);
+      route("GET", "/{id}", "station",
+            "Read one station with its newest self-tests and calibrations", "Station", one_station);
   one.who = list.who;
-  one.parameters = {path_text("id", "the station's")};
+  one.parameters = {path_text("id", "Id of the station")};
   one.schemas = report_schemas();
   std::vector<Field> whole = entry_fields();
-  whole.emplace_back("self_tests", array(ref("SelfTest"), "newest first, at most 20"));
-  whole.emplace_back("calibrations", array(ref("Calibration"), "newest first, at most 20"));
+  whole.emplace_back("self_tests", array(ref("SelfTest"), "Self-tests, newest first, at most 20"));
+  whole.emplace_back("calibrations",
+                     array(ref("Calibration"), "Calibrations, newest first, at most 20"));
   one.schemas.push_back({"Station", object(whole)});
   RouteInfo said{
       .method = "POST",
       .path = "/api/v1/station/report",
       .id = "reportStation",
-      .summary = "A station's self-test or calibration; repeating it is harmless",
+      .summary =
+          "Report a self-test or a calibration of the calling station; sending the same report "
+          "again has no effect",
       .who = {Role::station},
       .parameters = {},
       .body = "StationReport",
       .body_limit_bytes = kMaxReport_bytes,
       .answer = "",
       .schemas = {{"StationReport",
-                   object({{"self_test", optional(nullable(ref("SelfTest")))},
-                           {"calibration", optional(nullable(ref("Calibration")))},
-                           {"refused",
-                            optional(array(text("one line of a case"), "cases it would not take"))},
-                           {"version", optional(nullable(text("of its program")))},
-                           {"free_disk_bytes", optional(nullable(integer("B", "on its disk")))}})}},
+                   object(
+                       {{"self_test", optional(nullable(ref("SelfTest")))},
+                        {"calibration", optional(nullable(ref("Calibration")))},
+                        {"refused", optional(array(text("One refused case and the reason"),
+                                                   "Cases that the station refused"))},
+                        {"version", optional(nullable(text("Version of the station's program")))},
+                        {"free_disk_bytes",
+                         optional(nullable(
+                             integer("B", "Free space on the station's disk, in bytes")))}})}},
       .handle = report};
-  RouteInfo code =
-      route("POST", "/codes", "makeEnrolmentCode",
-            "A code that lets one station in, once, within an hour", "EnrolmentCode", make_code);
+  RouteInfo code = route("POST", "/codes", "makeEnrolmentCode",
+                         "Create a code with which one station can enrol once within one hour",
+                         "EnrolmentCode", make_code);
   code.body = "NewStation";
   code.schemas = {
-      {"NewStation", object({{"name", text("of the station to come")}})},
-      {"EnrolmentCode", object({{"name", text("of the station")},
-                                {"code", text("shown only now")},
-                                {"expires_utc_us", integer("us", "since 1970, UTC")}})}};
+      {"NewStation", object({{"name", text("Name of the new station")}})},
+      {"EnrolmentCode",
+       object(
+           {{"name", text("Name of the new station")},
+            {"code", text("Enrolment code, shown only in this answer")},
+            {"expires_utc_us",
+             integer("us", "Time when the code expires, in microseconds since 1970-01-01 UTC")}})}};
   RouteInfo in = route("POST", "/enrol", "enrolStation",
-                       "A station with a code says what its key hashes to; the key stays there",
+                       "Enrol a station with an enrolment code; the station sends the SHA-256 of "
+                       "its token, and the token itself stays on the station",
                        "Enrolled", enrol);
   in.who = {};
   in.open = true;
   in.body = "Enrolment";
   in.schemas = {
-      {"Enrolment", object({{"code", text("from makeEnrolmentCode")},
-                            {"token_sha256", text("of the station's own key, 64 hexadecimal")}})},
+      {"Enrolment", object({{"code", text("Enrolment code from makeEnrolmentCode")},
+                            {"token_sha256",
+                             text("SHA-256 of the station's token, 64 hexadecimal characters")}})},
       {"Enrolled",
-       object({{"id", text("never changes")},
-               {"name", text("as in the code")},
-               {"case_signer", text("public key that this server signs cases with")}})}};
-  RouteInfo out = route("POST", "/{id}/revoke", "revokeStation",
-                        "Shut a station out for good; its trials stay", "", revoke);
-  out.parameters = {path_text("id", "the station's")};
+       object(
+           {{"id", text("Id of the station, which never changes")},
+            {"name", text("Name of the station, as given for the enrolment code")},
+            {"case_signer",
+             text("Public key of the key with which this server signs cases, in hexadecimal")}})}};
+  RouteInfo out =
+      route("POST", "/{id}/revoke", "revokeStation",
+            "Revoke a station permanently; the server keeps the station's trials", "", revoke);
+  out.parameters = {path_text("id", "Id of the station")};
   return {list, one, code, in, out, said};
 }
 

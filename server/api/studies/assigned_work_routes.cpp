@@ -24,8 +24,8 @@ using core::Result;
 
 constexpr std::uint64_t kMaxBody_bytes = 1024;
 
-/// A ticket is a session of this trainee at this station: it opens nothing elsewhere, and no
-/// browser's cookie is one.
+/// A ticket is a session of one trainee at one station: it is not valid at other stations, and a
+/// browser's cookie is not valid as a ticket.
 std::string ticket_hash(const Call& call, const std::string& ticket) {
   return token_hash("ticket " + call.caller.id + " " + ticket);
 }
@@ -61,7 +61,8 @@ Result<http::Response> sign_in_at_station(const Call& call) {
   return json_response({{"ticket", ticket}, {"name", account.name}});
 }
 
-/// Whose ticket the body holds, as long as it lasts.
+/// The account to which the ticket in the body belongs. Errors: forbidden if the ticket is unknown
+/// or has expired.
 Result<store::Account> holder(const Call& call, std::string& hash) {
   auto json = TRY(core::parse_json(call.request.body, "body"));
   core::Fields fields(json, "body");
@@ -84,14 +85,14 @@ Result<http::Response> sign_out_at_station(const Call& call) {
   return http::Response{.status = 204, .headers = {}, .body = std::string()};
 }
 
-/// The next slot of whichever assignment is to be done first, given to this station.
+/// The next slot of the assignment that is due first, handed out to the calling station.
 struct Given {
   wire::AssignedWork work;
   std::optional<store::Slot> slot = {};
   std::string token_hash = {};
 };
 
-/// What the station is told of the trial that is next.
+/// The description of the next trial for the station.
 Result<wire::AssignedTrial> trial_of_slot(store::Reading& tx, const store::AssignmentId& id,
                                           const std::string& title, const store::Taken& taken) {
   const store::Slot& slot = taken.slots.front();
@@ -115,7 +116,7 @@ Result<wire::AssignedTrial> trial_of_slot(store::Reading& tx, const store::Assig
   return trial;
 }
 
-/// Gives the account's next slot of one assignment, where it has one now.
+/// Hands out the account's next slot of one assignment, if there is one now.
 Result<void> take_of(store::Writing& tx, const Call& call, const store::Assignment& assignment,
                      const store::Account& account, Given& given) {
   if (assignment.study.state == "paused") return {};
@@ -188,36 +189,48 @@ RouteInfo route(std::string tail, std::string id, std::string summary, std::stri
 std::vector<RouteInfo> assigned_work_routes() {
   using namespace schema;
   RouteInfo in = route("sign-in", "signInAtStation",
-                       "A trainee by badge and PIN; after five failures at a station, one attempt "
-                       "in three minutes",
+                       "Sign a trainee in at the calling station with badge and PIN; after five "
+                       "failed attempts at a station, one attempt is allowed every three minutes",
                        "BadgeAndPin", "Ticket", sign_in_at_station);
   in.lane = http::Lane::hashing;
-  in.schemas = {{"BadgeAndPin", object({{"badge", text("as read")}, {"pin", text("as typed")}})},
-                {"Ticket", object({{"ticket", text("for this station alone")},
-                                   {"name", text("of the account, to greet by")}})}};
+  in.schemas = {
+      {"BadgeAndPin", object({{"badge", text("Text that the station read from the badge")},
+                              {"pin", text("PIN that the trainee typed")}})},
+      {"Ticket",
+       object({{"ticket", text("Ticket for further requests, valid only at the calling station")},
+               {"name", text("Name of the account, for the greeting")}})}};
   RouteInfo next = route("next", "nextTrial",
-                         "Exactly the next assigned trial; the same until it is handed over",
+                         "Read the next assigned trial of the trainee; the answer stays the same "
+                         "until the trial is uploaded",
                          "TicketShown", "AssignedWork", next_trial);
   next.schemas = {
-      {"TicketShown", object({{"ticket", text("from signInAtStation")}})},
+      {"TicketShown", object({{"ticket", text("Ticket from signInAtStation")}})},
       {"AssignedTrial",
-       object({{"slot", text("64 hexadecimal characters: the trial's case_id")},
-               {"rig", one_of({"palpation", "probing"}, "that it is for")},
-               {"name", text("what the trainee is shown")},
-               {"assignment", text("its title")},
-               {"number", integer("1", "of the trainee's trials in it, from 1")},
-               {"planned", integer("1", "in all")},
-               {"case_id", text("of a palpation case; else empty")},
-               {"sealed", text("of a scenario, for this station alone; else empty")},
-               {"tool", optional(one_of({"probe", "burr"},
-                                        "burr: the bone is whole, the channel "
-                                        "is drilled now; probe without"))},
-               {"drilled", optional(text("trial of this station whose channel is felt now"))}})},
-      {"AssignedWork", object({{"participant", text("a pseudonym; empty without a trial")},
-                               {"left", integer("1", "still to be done")},
-                               {"trial", nullable(ref("AssignedTrial"))}})}};
-  RouteInfo out = route("sign-out", "signOutAtStation", "The trainee leaves the station",
-                        "TicketShown", "", sign_out_at_station);
+       object(
+           {{"slot", text("Id of the slot, 64 hexadecimal characters; the station writes it as "
+                          "case_id into the trial file and the upload")},
+            {"rig", one_of({"palpation", "probing"}, "Rig for the trial")},
+            {"name", text("Name of the trial that the trainee sees")},
+            {"assignment", text("Title of the assignment")},
+            {"number", integer("1",
+                               "Number of the trial among the trainee's trials in the assignment, "
+                               "counted from 1")},
+            {"planned", integer("1", "Number of the trainee's trials in the assignment")},
+            {"case_id", text("Id of the palpation case; empty for a probing trial")},
+            {"sealed", text("Parameters of the scenario, encrypted for the calling station; empty "
+                            "for a palpation trial")},
+            {"tool", optional(one_of({"probe", "burr"},
+                                     "burr: the bone is whole, and the trainee drills the channel "
+                                     "in this trial; probe (default): the trainee palpates"))},
+            {"drilled", optional(text("Id of the trial at this station that drilled the channel "
+                                      "which the trainee now palpates"))}})},
+      {"AssignedWork",
+       object({{"participant", text("Pseudonym of the trainee; empty if there is no trial")},
+               {"left", integer("1", "Number of trials that the trainee still has to do")},
+               {"trial", nullable(ref("AssignedTrial"))}})}};
+  RouteInfo out =
+      route("sign-out", "signOutAtStation", "Sign the trainee out at the calling station",
+            "TicketShown", "", sign_out_at_station);
   return {in, next, out};
 }
 

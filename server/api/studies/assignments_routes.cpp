@@ -21,7 +21,7 @@ constexpr long kMaxTime_us = 9'000'000'000'000'000;
 
 Json time_or_null(const std::optional<std::int64_t>& time) { return time ? Json(*time) : Json(); }
 
-/// A trainee is told nothing of the order, nor of what others do.
+/// The answer to a trainee contains neither the order of the cases nor data of other trainees.
 Json assignment_json(const store::Assignment& a, Scope of) {
   Json out{{"id", a.study.id},
            {"title", a.study.title},
@@ -78,7 +78,7 @@ Result<Json> trials_json(store::Reading& tx, const store::AssignmentId& id,
   return out;
 }
 
-/// What a trainee has done of it, once the results may be seen.
+/// The trainee's own trials of the assignment, once the results are released.
 Result<Json> own_trials_json(store::Reading& tx, const store::AssignmentId& id,
                              const std::string& me) {
   auto participant = TRY(store::participant_for(tx, id, me));
@@ -221,87 +221,134 @@ RouteInfo route(std::string method, std::string tail, std::string id, std::strin
                 .answer = "Assignment",
                 .schemas = {},
                 .handle = handle};
-  if (!tail.empty()) out.parameters.push_back(path_text("id", "the assignment's"));
+  if (!tail.empty()) out.parameters.push_back(path_text("id", "Id of the assignment"));
   return out;
 }
 
 std::vector<schema::Field> summary_fields() {
   using namespace schema;
-  return {{"id", text("never changes")},
-          {"title", text("for people")},
-          {"state", one_of({"running", "paused"}, "paused: nothing is handed out")},
-          {"due_utc_us", nullable(integer("us", "since 1970, UTC"))},
-          {"release", one_of({"held", "released", "at_once"}, "may trainees see their results?")},
-          {"done", integer("1", "trials that count; a trainee: the own")},
-          {"planned", integer("1", "trials in all; a trainee: the own")},
-          {"to_drill", integer("1",
-                               "of planned: the channel is drilled first, and felt then; one "
-                               "is done when both are in")},
-          {"cohort_id", nullable(text("that it is of"))},
-          {"cohort_name", text("empty without one")},
-          {"made_utc_us", integer("us", "since 1970, UTC")},
-          {"made_by", text("who")},
-          {"ordering", optional(one_of({"fixed", "random", "balanced"}, "not told to trainees"))},
-          {"repeats", optional(integer("1", "of each case; not told to trainees"))},
-          {"people", optional(integer("1", "trainees it is assigned to"))}};
+  return {
+      {"id", text("Id of the assignment, which never changes")},
+      {"title", text("Title of the assignment")},
+      {"state", one_of({"running", "paused"},
+                       "State of the assignment; paused: stations receive no trials of it")},
+      {"due_utc_us",
+       nullable(
+           integer("us", "Due time, in microseconds since 1970-01-01 UTC; null if there is none"))},
+      {"release", one_of({"held", "released", "at_once"},
+                         "When trainees see their results: held = not yet, released = now, at_once "
+                         "= as soon as a trial is uploaded")},
+      {"done", integer("1", "Number of trials that count; for a trainee only the own trials")},
+      {"planned", integer("1", "Number of planned trials; for a trainee only the own trials")},
+      {"to_drill",
+       integer("1",
+               "Number of the planned trials in which the trainee first drills the channel, then "
+               "palpates it; such a trial is done when both recordings are uploaded")},
+      {"cohort_id", nullable(text("Id of the cohort; null if the assignment has none"))},
+      {"cohort_name", text("Name of the cohort; empty if the assignment has none")},
+      {"made_utc_us", integer("us", "Time of creation, in microseconds since 1970-01-01 UTC")},
+      {"made_by", text("Name of the account that created the assignment")},
+      {"ordering", optional(one_of({"fixed", "random", "balanced"},
+                                   "Order of the cases; missing in the answer to a trainee"))},
+      {"repeats", optional(integer(
+                      "1", "Number of repeats of each case; missing in the answer to a trainee"))},
+      {"people",
+       optional(integer(
+           "1", "Number of trainees in the assignment; missing in the answer to a trainee"))}};
 }
 
 std::vector<NamedSchema> read_schemas() {
   using namespace schema;
   std::vector<Field> whole = summary_fields();
-  whole.emplace_back("trainees", optional(array(ref("AssignedTrainee"), "by name")));
+  whole.emplace_back(
+      "trainees",
+      optional(
+          array(ref("AssignedTrainee"),
+                "Trainees of the assignment, sorted by name; missing in the answer to a trainee")));
   whole.emplace_back("trials", optional(array(ref("AssignedTrialDone"),
-                                              "that arrived; a trainee: the own, once released")));
+                                              "Uploaded trials; for a trainee only the own trials, "
+                                              "and only after the release of the results")));
   return {
       {"AssignmentSummary", object(summary_fields())},
       {"Assignments",
-       object({{"assignments", array(ref("AssignmentSummary"), "due first, first")}})},
-      {"AssignedTrainee", object({{"account_id", text("of the person")},
-                                  {"name", text("of the account")},
-                                  {"participant", text("the pseudonym in files")},
-                                  {"done", integer("1", "trials that count")},
-                                  {"planned", integer("1", "in all")}})},
+       object({{"assignments", array(ref("AssignmentSummary"),
+                                     "Assignments, sorted by due time, earliest first")}})},
+      {"AssignedTrainee",
+       object({{"account_id", text("Id of the person's account")},
+               {"name", text("Name of the account")},
+               {"participant", text("Pseudonym of the person in trial files")},
+               {"done", integer("1", "Number of the person's trials that count")},
+               {"planned", integer("1", "Number of the person's planned trials")}})},
       {"AssignedTrialDone",
        object(
-           {{"trial_id", text("32 hexadecimal characters")},
-            {"participant", text("a pseudonym")},
-            {"number", integer("1", "of the person's trials, from 1")},
-            {"tool", one_of({"probe", "burr"}, "burr: it drilled the channel, and has no answer")},
-            {"state", one_of({"arriving", "counts", "invalid", "surplus"}, "does it count?")},
-            {"reason", text("why it does not")},
-            {"correct", nullable(truth("the answer against the truth"))},
-            {"comments", integer("1", "that were made on it")},
-            {"started_utc_us", nullable(integer("us", "since 1970, UTC"))}})},
+           {{"trial_id", text("Id of the trial, 32 hexadecimal characters")},
+            {"participant", text("Pseudonym of the person")},
+            {"number",
+             integer("1", "Number of the trial among the person's trials, counted from 1")},
+            {"tool", one_of({"probe", "burr"},
+                            "Tool; burr: the trial drilled the channel and has no answer")},
+            {"state",
+             one_of({"arriving", "counts", "invalid", "surplus"},
+                    "arriving: the upload is not complete; counts: the trial counts; invalid: it "
+                    "was marked invalid; surplus: its place in the order already had a trial")},
+            {"reason", text("Reason why the trial does not count; empty if it counts")},
+            {"correct", nullable(truth("True if the answer agrees with the truth; null if the "
+                                       "answer or the truth is missing"))},
+            {"comments", integer("1", "Number of comments on the trial")},
+            {"started_utc_us",
+             nullable(integer("us",
+                              "Start of the trial, in microseconds since 1970-01-01 UTC; null "
+                              "until the upload is complete"))}})},
       {"Assignment", object(whole)}};
 }
 
 std::vector<NamedSchema> plan_schemas() {
   using namespace schema;
   return {
-      {"AssignedCase", object({{"case", optional(text("a published case's id"))},
-                               {"scenario", optional(anything("tractus-scenario/1, or "
-                                                              "{\"tuned\": \"hard\"}"))},
-                               {"name", optional(text("what the trainee is shown; without, the "
-                                                      "trial's number"))}})},
+      {"AssignedCase",
+       object({{"case", optional(text("Id of a published case; give either a case or a scenario"))},
+               {"scenario", optional(anything("Scenario in the format tractus-scenario/1, or a "
+                                              "tuned scenario as {\"tuned\": \"hard\"}"))},
+               {"name",
+                optional(text(
+                    "Name that the trainee sees; if it is missing, the number of the trial"))}})},
       {"NewAssignment",
-       object({{"title", text("shown to trainees")},
-               {"cases", optional(array(ref("AssignedCase"), "without a protocol"))},
-               {"protocol", optional(text("a study's id: its scenarios, order and repeats"))},
-               {"cohort", optional(text("its trainees, also those who join later"))},
-               {"people", optional(array(text("an account's name"), "beside the cohort's"))},
-               {"ordering", optional(one_of({"fixed", "random", "balanced"}, "random"))},
-               {"repeats", optional(integer("1", "of each case, 1 to 20"))},
-               {"seed", optional(integer("1", "of the orders; without, drawn"))},
-               {"due_utc_us", optional(integer("us", "since 1970, UTC"))},
-               {"release", optional(one_of({"held", "released", "at_once"}, "held"))},
-               {"on_invalid", optional(one_of({"at_end", "at_once", "never"},
-                                              "when a trial that does not count is repeated"))}})}};
+       object(
+           {{"title", text("Title of the assignment, shown to trainees")},
+            {"cases", optional(array(ref("AssignedCase"),
+                                     "Cases of the assignment; give either cases or a protocol"))},
+            {"protocol",
+             optional(
+                 text("Id of a study whose scenarios, order and repeats the assignment uses"))},
+            {"cohort", optional(text("Id of a cohort; the assignment then includes its trainees, "
+                                     "also those who join later"))},
+            {"people", optional(array(text("Name of an account"),
+                                      "More trainees, in addition to those of the cohort"))},
+            {"ordering", optional(one_of({"fixed", "random", "balanced"},
+                                         "Order of the cases: fixed as listed, random, or balanced "
+                                         "by Williams squares; default random"))},
+            {"repeats",
+             optional(integer("1", "Number of repeats of each case, 1 to 20; default 1"))},
+            {"seed",
+             optional(integer(
+                 "1", "Seed of the random orders; if it is missing, the server draws one"))},
+            {"due_utc_us", optional(integer("us",
+                                            "Due time, in microseconds since 1970-01-01 UTC; if it "
+                                            "is missing, there is none"))},
+            {"release",
+             optional(one_of({"held", "released", "at_once"},
+                             "When trainees see their results: held (default) = not yet, released "
+                             "= now, at_once = as soon as a trial is uploaded"))},
+            {"on_invalid",
+             optional(one_of({"at_end", "at_once", "never"},
+                             "When an invalid trial is repeated; default at_end"))}})}};
 }
 
 RouteInfo adding_route() {
-  RouteInfo out = route("POST", "", "addAssignment",
-                        "Assign cases, or a study's protocol, to a cohort and to people",
-                        "NewAssignment", add_assignment_route);
+  RouteInfo out =
+      route("POST", "", "addAssignment",
+            "Assign cases, or the protocol of a study, to a cohort and to single trainees",
+            "NewAssignment", add_assignment_route);
   out.body_limit_bytes = kMaxPlan_bytes;
   out.ends = {{"/cohort", Object::cohort, out.who},
               {"/people/*", Object::account, out.who, End::By::account_name},
@@ -316,34 +363,50 @@ RouteInfo adding_route() {
 std::vector<RouteInfo> assignments_routes() {
   using namespace schema;
   RouteInfo list =
-      route("GET", "", "assignments", "All, those one leads, or one's own", "", list_assignments);
+      route("GET", "", "assignments",
+            "List assignments: all, those of cohorts that the caller leads, or the caller's own",
+            "", list_assignments);
   list.who = {
       Role::admin, Role::director, {Role::faculty, Scope::cohort}, {Role::trainee, Scope::own}};
   list.answer = "Assignments";
   list.schemas = read_schemas();
   RouteInfo one =
-      route("GET", "/{id}", "assignment", "One, with who has done what", "", one_assignment);
+      route("GET", "/{id}", "assignment",
+            "Read one assignment with its trainees and uploaded trials", "", one_assignment);
   one.who = list.who;
-  RouteInfo release = route("POST", "/{id}/release", "releaseResults",
-                            "May trainees see their results?", "Release", set_release);
+  RouteInfo release =
+      route("POST", "/{id}/release", "releaseResults",
+            "Set when trainees see their results of an assignment", "Release", set_release);
   release.schemas = {
-      {"Release", object({{"release", one_of({"held", "released", "at_once"}, "from now on")}})}};
-  RouteInfo due = route("POST", "/{id}/due", "setDue", "Another date, or none", "Due", set_due);
-  due.schemas = {{"Due", object({{"due_utc_us", nullable(integer("us", "since 1970, UTC"))}})}};
-  RouteInfo person = route("POST", "/{id}/people", "assignPerson", "One more trainee",
+      {"Release",
+       object({{"release", one_of({"held", "released", "at_once"},
+                                  "When trainees see their results: held = not yet, released = "
+                                  "now, at_once = as soon as a trial is uploaded")}})}};
+  RouteInfo due = route("POST", "/{id}/due", "setDue",
+                        "Change or remove the due time of an assignment", "Due", set_due);
+  due.schemas = {
+      {"Due",
+       object({{"due_utc_us",
+                nullable(integer(
+                    "us",
+                    "New due time, in microseconds since 1970-01-01 UTC; null: no due time"))}})}};
+  RouteInfo person = route("POST", "/{id}/people", "assignPerson", "Add a trainee to an assignment",
                            "PersonNamed", assign_person);
   person.ends = {{"/name", Object::account, person.who, End::By::account_name}};
-  RouteInfo invalid =
-      route("POST", "/{id}/trials/{trial_id}/invalid", "markAssignedTrialInvalid",
-            "A trial does not count: it stays, and is repeated as asked for", "Reason", invalidate);
-  invalid.parameters.push_back(path_text("trial_id", "32 hexadecimal characters"));
-  RouteInfo free =
-      route("POST", "/{id}/people/{account_id}/free", "freeAssignedPerson",
-            "What a station holds of this person's trials waits again", "Nothing", free_person);
-  free.parameters.push_back(path_text("account_id", "the person's"));
-  // Whoever it is assigned to, also who has left the cohort since.
+  RouteInfo invalid = route("POST", "/{id}/trials/{trial_id}/invalid", "markAssignedTrialInvalid",
+                            "Mark a trial invalid, so that it does not count; the server keeps the "
+                            "trial and repeats it as the assignment states",
+                            "Reason", invalidate);
+  invalid.parameters.push_back(path_text("trial_id", "Id of the trial, 32 hexadecimal characters"));
+  RouteInfo free = route("POST", "/{id}/people/{account_id}/free", "freeAssignedPerson",
+                         "Release the trials of a person that a station has taken, so that any "
+                         "station can take them again",
+                         "Nothing", free_person);
+  free.parameters.push_back(path_text("account_id", "Id of the person's account"));
+  // Any person of the assignment, including people who have left the cohort since.
   free.ends = {{"account_id", Object::account, {Role::admin, Role::faculty}}};
-  free.schemas = {{"Nothing", object({{"reason", optional(text("why"))}})}};
+  free.schemas = {
+      {"Nothing", object({{"reason", optional(text("Reason; the server does not store it"))}})}};
   return {list, one, adding_route(), release, due, person, invalid, free};
 }
 

@@ -60,28 +60,32 @@ core::Result<http::Response> events_of(const Call& call) {
 }  // namespace
 
 std::vector<RouteInfo> studies_routes() {
-  RouteInfo list = research_route("GET", "studies", "studies", "Studies, newest first", "StudyList",
-                                  list_studies);
+  RouteInfo list = research_route("GET", "studies", "studies", "List the studies, newest first",
+                                  "StudyList", list_studies);
   list.schemas = study_schemas();
-  const RouteInfo make = taking(
-      research_route("POST", "studies", "makeStudy",
-                     "Make a study: scenarios, repeats, order, participants", "Study", new_study),
-      "NewStudy", kMaxPlan_bytes, study_deed_schemas());
+  const RouteInfo make =
+      taking(research_route("POST", "studies", "makeStudy",
+                            "Create a study with its scenarios, repeats, order and participants",
+                            "Study", new_study),
+             "NewStudy", kMaxPlan_bytes, study_deed_schemas());
   const RouteInfo one =
-      research_route("GET", "studies/{id}", "study", "Who has done what", "Study", one_study);
-  RouteInfo events = research_route("GET", "studies/{id}/events", "studyEvents",
-                                    "Every change, who and when", "StudyEvents", events_of);
+      research_route("GET", "studies/{id}", "study",
+                     "Read a study with its participants and their trials", "Study", one_study);
+  RouteInfo events =
+      research_route("GET", "studies/{id}/events", "studyEvents",
+                     "List the changes of a study, newest first: who changed what and when",
+                     "StudyEvents", events_of);
   events.parameters.push_back({.in = Parameter::In::query,
                                .name = "limit",
                                .kind = Parameter::Kind::integer,
                                .unit = "1",
-                               .meaning = "at most so many",
+                               .meaning = "Largest number of changes in the answer",
                                .low = 1,
                                .high = 10000,
                                .fallback = "200"});
   const RouteInfo add =
       taking(research_route("POST", "studies/{id}/participants", "enrolParticipant",
-                            "Enrol one more participant", "Study", new_participant),
+                            "Enrol a participant in a study", "Study", new_participant),
              "NewParticipant", kMaxParticipant_bytes, {});
   return {list, make, one, events, add};
 }

@@ -99,7 +99,7 @@ RouteInfo route(std::string tail, std::string id, std::string summary, std::stri
           .id = std::move(id),
           .summary = std::move(summary),
           .who = {Role::admin, Role::researcher},
-          .parameters = {path_text("id", "the study's")},
+          .parameters = {path_text("id", "Id of the study")},
           .body = std::move(body),
           .body_limit_bytes = kMaxDeed_bytes,
           .answer = "Study",
@@ -111,26 +111,31 @@ RouteInfo route(std::string tail, std::string id, std::string summary, std::stri
 
 std::vector<RouteInfo> study_actions_routes() {
   using namespace schema;
-  const core::Json reason = text("for those who read it later; at most 500 characters");
-  const Parameter name = path_text("name", "the participant's pseudonym");
-  RouteInfo whole = route("/state", "setStudyState", "Pause the study, or go on", "StateChange");
-  whole.schemas = {{"StateChange", object({{"state", one_of({"running", "paused"}, "from now on")},
-                                           {"reason", optional(reason)}})},
-                   {"Reason", object({{"reason", reason}})}};
+  const core::Json reason =
+      text("Reason for the change, shown in the list of changes, at most 500 characters");
+  const Parameter name = path_text("name", "Pseudonym of the participant");
+  RouteInfo whole = route("/state", "setStudyState", "Pause or continue a study", "StateChange");
+  whole.schemas = {
+      {"StateChange", object({{"state", one_of({"running", "paused"},
+                                               "New state; paused: stations receive no trials")},
+                              {"reason", optional(reason)}})},
+      {"Reason", object({{"reason", reason}})}};
   whole.handle = set_state;
   RouteInfo one = route("/participants/{name}/state", "setParticipantState",
-                        "Pause a participant, or go on", "StateChange");
+                        "Pause or continue a participant of a study", "StateChange");
   one.parameters.push_back(name);
   one.handle = set_participant;
   RouteInfo free = route("/participants/{name}/release", "releaseParticipant",
-                         "What a station holds of a participant's trials waits again", "Reason");
+                         "Release the trials of a participant that a station has taken, so that "
+                         "any station can take them again",
+                         "Reason");
   free.parameters.push_back(name);
   free.handle = release;
   RouteInfo invalid = route("/trials/{trial_id}/invalid", "markTrialInvalid",
-                            "A trial does not count: it stays, and its place is repeated as the "
-                            "study says",
+                            "Mark a trial invalid, so that it does not count; the server keeps the "
+                            "trial and repeats its place as the study states",
                             "Reason");
-  invalid.parameters.push_back(path_text("trial_id", "32 hexadecimal characters"));
+  invalid.parameters.push_back(path_text("trial_id", "Id of the trial, 32 hexadecimal characters"));
   invalid.handle = invalidate;
   return {whole, one, free, invalid};
 }

@@ -27,7 +27,7 @@ Json study_fields(const store::Study& study) {
           {"made_by", study.made_by}};
 }
 
-/// @param told  may it be said whether the answer was right?
+/// @param told  whether the result may state if the answer was correct
 Json trial_json(const store::StudyTrial& trial, bool told) {
   return {{"id", trial.trial_id},
           {"state", trial.state},
@@ -46,7 +46,7 @@ bool unfinished(const store::Slot& slot) {
   return slot.state == "waiting" || slot.state == "taken";
 }
 
-/// What the participants' rows are made from.
+/// The trials, titles and numbers from which the participants' rows are made.
 struct Index {
   std::map<std::string, std::vector<const store::StudyTrial*>> trials;  // by slot
   std::map<std::string, std::string> titles;                            // by case
@@ -89,7 +89,7 @@ struct Tally {
   }
 };
 
-/// The station that has the participant's next trials, or brought the last one.
+/// The station that last uploaded a trial of the participant; null if there is none.
 Json station_of(const StudyFacts& facts, const store::Participant& who, const Index& index) {
   const store::StudyTrial* last = nullptr;
   for (const auto& slot : facts.slots) {

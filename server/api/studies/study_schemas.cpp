@@ -9,48 +9,67 @@ using namespace schema;
 const std::vector<std::string> kStates{"running", "paused"};
 
 std::vector<Field> study_fields() {
-  return {{"id", text("a name of a-z, 0-9 and -")},
-          {"title", text("for people")},
-          {"state", one_of(kStates, "paused: nothing is handed out")},
-          {"ordering", one_of({"random", "balanced"}, "shuffled, or by Williams squares")},
-          {"repeats", integer("1", "of each scenario")},
-          {"on_invalid",
-           one_of({"at_end", "at_once", "never"}, "when a trial that does not count is repeated")},
-          {"made_utc_us", integer("us", "since 1970, UTC")},
-          {"made_by", text("an account")}};
+  return {
+      {"id", text("Id of the study, 1 to 32 of the characters a-z, 0-9 and -")},
+      {"title", text("Title of the study")},
+      {"state", one_of(kStates, "State of the study; paused: stations receive no trials of it")},
+      {"ordering", one_of({"random", "balanced"},
+                          "Order of the scenarios: random, or balanced by Williams squares")},
+      {"repeats", integer("1", "Number of repeats of each scenario")},
+      {"on_invalid", one_of({"at_end", "at_once", "never"}, "When an invalid trial is repeated")},
+      {"made_utc_us", integer("us", "Time of creation, in microseconds since 1970-01-01 UTC")},
+      {"made_by", text("Name of the account that created the study")}};
 }
 
 core::Json progress_field(std::string_view meaning) { return integer("1", meaning); }
 
 core::Json trial_schema() {
   return object(
-      {{"id", text("32 hexadecimal characters")},
-       {"state", one_of({"arriving", "counts", "invalid", "surplus"},
-                        "surplus: its place in the order had a trial already")},
-       {"reason", text("of not counting")},
-       {"station", text("its name")},
-       {"changed_utc_us", integer("us", "since 1970, UTC")},
-       {"started_utc_us", nullable(integer("us", "since 1970, UTC; null while it arrives"))},
-       {"duration_s", nullable(number("s", "first to last sample"))},
-       {"samples", nullable(integer("1", "on this server"))},
-       {"sha256", nullable(text("of the trial file"))},
-       {"assessment", nullable(one_of({"assessing", "assessed", "failed"}, "of the scores"))},
-       {"correct", nullable(truth("the answer against the truth"))}});
+      {{"id", text("Id of the trial, 32 hexadecimal characters")},
+       {"state",
+        one_of({"arriving", "counts", "invalid", "surplus"},
+               "arriving: the upload is not complete; counts: the trial counts; invalid: it was "
+               "marked invalid; surplus: its place in the order already had a trial")},
+       {"reason", text("Reason why the trial does not count; empty if it counts")},
+       {"station", text("Name of the station")},
+       {"changed_utc_us",
+        integer("us", "Time of the last change of state, in microseconds since 1970-01-01 UTC")},
+       {"started_utc_us", nullable(integer("us",
+                                           "Start of the trial, in microseconds since 1970-01-01 "
+                                           "UTC; null until the upload is complete"))},
+       {"duration_s", nullable(number("s",
+                                      "Time from the first to the last sample, in seconds; null "
+                                      "until the upload is complete"))},
+       {"samples", nullable(integer("1", "Number of samples; null until the upload is complete"))},
+       {"sha256", nullable(text("SHA-256 of the trial file; null until the upload is complete"))},
+       {"assessment", nullable(one_of({"assessing", "assessed", "failed"},
+                                      "State of the assessment that computes the scores; null "
+                                      "until the upload is complete"))},
+       {"correct", nullable(truth("True if the answer agrees with the truth; null if either is "
+                                  "missing, or while the participant still has trials to do"))}});
 }
 
 core::Json participant_schema() {
-  return object({{"name", text("a pseudonym")},
-                 {"state", one_of(kStates, "paused: nothing is handed out")},
-                 {"level", text("resident, fellow, …")},
-                 {"experience_years", nullable(number("a", "in years"))},
-                 {"simulated", truth("a simulated surgeon")},
-                 {"at_station", truth("a station has trials of theirs to be done")},
-                 {"last_station", nullable(text("that brought a trial"))},
-                 {"done", progress_field("trials that count")},
-                 {"planned", progress_field("that count or are still to be done")},
-                 {"judged", progress_field("that count and have an answer and a truth")},
-                 {"recognised", progress_field("of those judged, answered rightly")},
-                 {"slots", array(ref("StudySlot"), "in their order")}});
+  return object(
+      {{"name", text("Pseudonym of the participant")},
+       {"state",
+        one_of(kStates,
+               "State of the participant; paused: stations receive no trials of the participant")},
+       {"level", text("Level of training, for example resident or fellow; may be empty")},
+       {"experience_years",
+        nullable(number("a", "Surgical experience, in years; null if it is not known"))},
+       {"simulated", truth("True if the participant is a simulated surgeon")},
+       {"at_station",
+        truth("True if a station has taken trials of the participant that are still to be done")},
+       {"last_station", nullable(text("Name of the station that last uploaded a trial of the "
+                                      "participant; null if there is none"))},
+       {"done", progress_field("Number of trials that count")},
+       {"planned", progress_field("Number of trials that count or are still to be done")},
+       {"judged", progress_field("Number of trials that count and have an answer and a truth; 0 "
+                                 "while the participant still has trials to do")},
+       {"recognised", progress_field("Number of these trials with a correct answer; 0 while the "
+                                     "participant still has trials to do")},
+       {"slots", array(ref("StudySlot"), "Slots of the participant, in their order")}});
 }
 
 core::Json with(std::vector<Field> fields, const std::vector<Field>& more) {
@@ -62,50 +81,76 @@ core::Json with(std::vector<Field> fields, const std::vector<Field>& more) {
 
 std::vector<NamedSchema> study_schemas() {
   return {
-      {"StudySummary", with(study_fields(), {{"participants", progress_field("enrolled")},
-                                             {"done", progress_field("trials that count")},
-                                             {"planned", progress_field("in all")}})},
-      {"StudyList", object({{"studies", array(ref("StudySummary"), "newest first")}})},
-      {"Study", with(study_fields(),
-                     {{"seed", nullable(integer("1", "of the orders; null until all is done"))},
-                      {"scenarios", array(ref("StudyScenario"), "as they were named")},
-                      {"participants", array(ref("StudyParticipant"), "as they were enrolled")}})},
-      {"StudyScenario",
-       object({{"case_id", text("the scenario version's id")}, {"title", text("its name")}})},
+      {"StudySummary",
+       with(study_fields(), {{"participants", progress_field("Number of enrolled participants")},
+                             {"done", progress_field("Number of trials that count")},
+                             {"planned", progress_field("Number of planned trials")}})},
+      {"StudyList", object({{"studies", array(ref("StudySummary"), "Studies, newest first")}})},
+      {"Study",
+       with(study_fields(),
+            {{"seed",
+              nullable(integer("1", "Seed of the random orders; null until all trials are done"))},
+             {"scenarios",
+              array(ref("StudyScenario"), "Scenarios, in the order in which the study lists them")},
+             {"participants",
+              array(ref("StudyParticipant"), "Participants, in the order of their enrolment")}})},
+      {"StudyScenario", object({{"case_id", text("Id of the scenario's version")},
+                                {"title", text("Name of the scenario")}})},
       {"StudyParticipant", participant_schema()},
       {"StudySlot",
-       object({{"number", progress_field("in the participant's order, from 1")},
-               {"state",
-                one_of({"waiting", "taken", "recorded", "invalid"}, "taken: a station has it")},
-               {"repeat_of", nullable(progress_field("number of the slot that it repeats"))},
-               {"scenario", nullable(text("its name; null until the participant is through"))},
-               {"trials", array(ref("StudyTrial"), "by the time they changed")}})},
+       object({{"number",
+                progress_field("Number of the slot in the participant's order, counted from 1")},
+               {"state", one_of({"waiting", "taken", "recorded", "invalid"},
+                                "State of the slot; taken: a station has received it")},
+               {"repeat_of",
+                nullable(progress_field(
+                    "Number of the slot that this slot repeats; null if it repeats none"))},
+               {"scenario",
+                nullable(text(
+                    "Name of the scenario; null while the participant still has trials to do"))},
+               {"trials", array(ref("StudyTrial"),
+                                "Trials of the slot, sorted by the time of their last change")}})},
       {"StudyTrial", trial_schema()}};
 }
 
 std::vector<NamedSchema> study_deed_schemas() {
-  return {{"NewParticipant", object({{"name", text("a pseudonym of letters, digits, - and _")},
-                                     {"level", optional(text("resident, fellow, …"))},
-                                     {"experience_years", optional(number("a", "in years"))},
-                                     {"simulated", optional(truth("a simulated surgeon"))}})},
-          {"NewStudy",
-           object({{"id", text("a name of a-z, 0-9 and -")},
-                   {"title", text("for people")},
-                   {"scenarios",
-                    array(anything("tractus-scenario/1, or {\"tuned\": \"hard\"}"), "1 to 16")},
-                   {"repeats", integer("1", "of each scenario, 1 to 20")},
-                   {"ordering", optional(one_of({"random", "balanced"}, "random if not given"))},
-                   {"on_invalid", optional(one_of({"at_end", "at_once", "never"},
-                                                  "when a trial that does not count is repeated"))},
-                   {"seed", optional(integer("1", "of the orders; drawn if not given"))},
-                   {"participants", array(ref("NewParticipant"), "may be empty")}})},
-          {"StudyEvent", object({{"at_utc_us", integer("us", "since 1970, UTC")},
-                                 {"who", text("account or station")},
-                                 {"what", text("made, enrolled, taken, recorded, invalid, …")},
-                                 {"participant", nullable(text(""))},
-                                 {"trial_id", nullable(text(""))},
-                                 {"reason", text("as it was given")}})},
-          {"StudyEvents", object({{"events", array(ref("StudyEvent"), "newest first")}})}};
+  return {
+      {"NewParticipant",
+       object(
+           {{"name", text("Pseudonym of the participant, 1 to 32 letters, digits, - and _")},
+            {"level", optional(text("Level of training, for example resident or fellow"))},
+            {"experience_years", optional(number("a", "Surgical experience, in years"))},
+            {"simulated",
+             optional(truth("True if the participant is a simulated surgeon; default false"))}})},
+      {"NewStudy",
+       object(
+           {{"id", text("Id of the study, 1 to 32 of the characters a-z, 0-9 and -")},
+            {"title", text("Title of the study")},
+            {"scenarios", array(anything("Scenario in the format tractus-scenario/1, or a tuned "
+                                         "scenario as {\"tuned\": \"hard\"}"),
+                                "Scenarios of the study, 1 to 16")},
+            {"repeats", integer("1", "Number of repeats of each scenario, 1 to 20")},
+            {"ordering", optional(one_of({"random", "balanced"},
+                                         "Order of the scenarios: random, or balanced by Williams "
+                                         "squares; default random"))},
+            {"on_invalid", optional(one_of({"at_end", "at_once", "never"},
+                                           "When an invalid trial is repeated; default at_end"))},
+            {"seed",
+             optional(integer(
+                 "1", "Seed of the random orders; if it is missing, the server draws one"))},
+            {"participants",
+             array(ref("NewParticipant"), "Participants of the study; may be empty")}})},
+      {"StudyEvent",
+       object({{"at_utc_us",
+                integer("us", "Time of the change, in microseconds since 1970-01-01 UTC")},
+               {"who", text("Name of the account or station that made the change")},
+               {"what",
+                text("Kind of the change, for example made, enrolled, taken, recorded or invalid")},
+               {"participant",
+                nullable(text("Pseudonym of the participant; null if the change concerns none"))},
+               {"trial_id", nullable(text("Id of the trial; null if the change concerns none"))},
+               {"reason", text("Reason for the change; empty if none was given")}})},
+      {"StudyEvents", object({{"events", array(ref("StudyEvent"), "Changes, newest first")}})}};
 }
 
 }  // namespace api

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kMaxAhead = 400;
 
-/// What one transaction of a station's question yields.
+/// Result of the transaction that answers a station's request.
 struct Given {
   store::Participant participant;
   store::Taken taken;
@@ -69,29 +69,38 @@ core::Result<http::Response> take_trials(const Call& call) {
 std::vector<RouteInfo> study_work_routes() {
   using namespace schema;
   const core::Json trial = object(
-      {{"slot", text("64 hexadecimal characters: the trial's case_id in its file and upload")},
-       {"number", integer("1", "of the participant's trials, from 1")},
-       {"sealed", text("the law's numbers, for this station alone")}});
+      {{"slot", text("Id of the slot, 64 hexadecimal characters; the station writes it as case_id "
+                     "into the trial file and the upload")},
+       {"number",
+        integer("1", "Number of the trial among the participant's trials, counted from 1")},
+       {"sealed", text("Parameters of the scenario's law, encrypted for the calling station")}});
   const core::Json answer =
-      object({{"study", text("its id")},
-              {"participant", text("a pseudonym")},
-              {"simulated", truth("a simulated surgeon")},
-              {"experience_years", nullable(number("a", "in years"))},
-              {"unfinished", integer("1", "still to be done; 0: the participant is through")},
-              {"planned", integer("1", "in all")},
-              {"trials", array(ref("SealedTrial"), "in the order to be done")}});
+      object({{"study", text("Id of the study")},
+              {"participant", text("Pseudonym of the participant")},
+              {"simulated", truth("True if the participant is a simulated surgeon")},
+              {"experience_years",
+               nullable(number("a", "Surgical experience, in years; null if it is not known"))},
+              {"unfinished", integer("1",
+                                     "Number of trials that the participant still has to do; 0: "
+                                     "the participant has finished the study")},
+              {"planned", integer("1", "Number of the participant's planned trials")},
+              {"trials", array(ref("SealedTrial"),
+                               "Trials, in the order in which the participant does them")}});
   RouteInfo take{.method = "POST",
                  .path = "/api/v1/studies/{id}/participants/{name}/take",
                  .id = "takeTrials",
-                 .summary = "The next trials of a participant; the same when asked again",
+                 .summary =
+                     "Take the next trials of a participant for the calling station; a second call "
+                     "gives the same trials",
                  .who = {Role::station},
-                 .parameters = {path_text("id", "the study's"),
-                                path_text("name", "the participant's pseudonym"),
+                 .parameters = {path_text("id", "Id of the study"),
+                                path_text("name", "Pseudonym of the participant"),
                                 {.in = Parameter::In::query,
                                  .name = "ahead",
                                  .kind = Parameter::Kind::integer,
                                  .unit = "1",
-                                 .meaning = "at most so many; more than 1 to work without a server",
+                                 .meaning = "Largest number of trials in the answer; more than 1, "
+                                            "so that the station can work without the server",
                                  .low = 1,
                                  .high = kMaxAhead,
                                  .fallback = "1"}},

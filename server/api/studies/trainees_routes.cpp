@@ -24,8 +24,8 @@ core::Result<http::Response> one_trainee(const Call& call) {
     return core::Error{core::Errc::not_found,
                        "no scored trials of " + call.text("name").substr(0, 64)};
   core::Json out = trainee_json(programme, std::size_t(at - names.begin()));
-  // What would be best to do next names a scenario: a trainee who waits for a blind trial is not
-  // told one.
+  // The recommendation names a scenario. A trainee must not see it, because the next trial is
+  // blinded.
   if (call.of == Scope::own) out["next"] = {{"scenario", ""}, {"why", ""}};
   return json_response(out);
 }
@@ -35,65 +35,102 @@ Parameter study_parameter() {
           .name = "study",
           .kind = Parameter::Kind::text,
           .unit = "",
-          .meaning = "trials of this study alone",
+          .meaning = "Only trials of the study with this id",
           .required = false,
           .fallback = std::nullopt};
 }
 
 std::vector<Field> standing_fields() {
-  return {{"trainee", text("the account's name, a study's pseudonym, or the operator's name")},
-          {"trials", integer("1", "that count and are judged")},
-          {"right", integer("1", "of them")},
-          {"share", number("1", "right, of all")},
-          {"wilson_low", number("1", "95 % interval of the share")},
-          {"wilson_high", number("1", "95 % interval of the share")},
-          {"state", one_of({"learning", "competent", "relapsed"}, "by LC-CUSUM, then CUSUM")},
-          {"certified", truth("competence can be said")},
-          {"why", text("why it can, or cannot")},
-          {"next", object({{"scenario", text("to do next; empty for the trainee, who is blind")},
-                           {"why", text("that one")}})},
-          {"simulated", truth("some of the trials are by a machine")},
-          {"last_utc_us", integer("us", "of the last trial, since 1970, UTC")}};
+  return {
+      {"trainee", text("Name of the trainee: name of the account, pseudonym in a study, or name of "
+                       "the operator")},
+      {"trials", integer("1", "Number of trials that count and have an answer and a truth")},
+      {"right", integer("1", "Number of these trials with a correct answer")},
+      {"share", number("1", "Share of correct answers, 0 to 1")},
+      {"wilson_low", number("1", "Lower end of the 95 % Wilson interval of the share, 0 to 1")},
+      {"wilson_high", number("1", "Upper end of the 95 % Wilson interval of the share, 0 to 1")},
+      {"state",
+       one_of({"learning", "competent", "relapsed"},
+              "State of the trainee: LC-CUSUM signals competence, then CUSUM signals relapse")},
+      {"certified", truth("True if the trainee can be certified as competent")},
+      {"why", text("Reason why the trainee can or cannot be certified")},
+      {"next",
+       object({{"scenario", text("Recommended next scenario; empty in the answer to a trainee, "
+                                 "because the next trial is blinded")},
+               {"why", text("Reason for the recommendation; empty in the answer to a trainee")}})},
+      {"simulated", truth("True if a simulated hand did some of the trials")},
+      {"last_utc_us",
+       integer("us", "Time of the last trial, in microseconds since 1970-01-01 UTC")}};
 }
 
 std::vector<NamedSchema> list_schemas() {
   return {{"TraineeSummary", object(standing_fields())},
           {"CertificationRule",
-           object({{"adequate", number("1", "failure rate of adequate performance")},
-                   {"inadequate", number("1", "failure rate of inadequate performance")},
-                   {"trials", integer("1", "the fewest that can certify; 0: none within 400")},
-                   {"threshold", number("1", "sum at which competence is signalled")},
-                   {"relapse", number("1", "sum at which relapse is signalled")}})},
-          {"TraineeList", object({{"rule", ref("CertificationRule")},
-                                  {"trainees", array(ref("TraineeSummary"), "by name")}})}};
+           object({{"adequate", number("1", "Failure rate of adequate performance, 0 to 1")},
+                   {"inadequate", number("1", "Failure rate of inadequate performance, 0 to 1")},
+                   {"trials", integer("1",
+                                      "Smallest number of trials after which certification is "
+                                      "possible; 0 if it is not possible within 400 trials")},
+                   {"threshold",
+                    number("1", "Threshold of the LC-CUSUM sum at which competence is signalled")},
+                   {"relapse",
+                    number("1", "Threshold of the CUSUM sum at which relapse is signalled")}})},
+          {"TraineeList",
+           object({{"rule", ref("CertificationRule")},
+                   {"trainees", array(ref("TraineeSummary"), "Trainees, sorted by name")}})}};
 }
 
 std::vector<NamedSchema> one_schemas() {
   auto fields = standing_fields();
   fields.push_back({"rule", ref("CertificationRule")});
-  fields.push_back({"competent_at_trial", nullable(integer("1", "from 1"))});
-  fields.push_back({"relapse_at_trial", nullable(integer("1", "from 1"))});
-  fields.push_back({"scenarios", array(anything("share right, with its interval"), "by scenario")});
-  fields.push_back({"scores", array(anything("its learning curve"), "by score")});
-  fields.push_back({"attempts", array(ref("Attempt"), "in order")});
-  fields.push_back({"calibration", array(ref("CalibrationBin"), "by stated confidence, rising")});
+  fields.push_back({"competent_at_trial",
+                    nullable(integer("1",
+                                     "Number of the trial at which competence was signalled, "
+                                     "counted from 1; null if it was not signalled"))});
+  fields.push_back(
+      {"relapse_at_trial", nullable(integer("1",
+                                            "Number of the trial at which relapse was signalled, "
+                                            "counted from 1; null if it was not signalled"))});
+  fields.push_back(
+      {"scenarios", array(anything("Share of correct answers on one scenario, with its interval"),
+                          "Results by scenario")});
+  fields.push_back(
+      {"scores", array(anything("Learning curve of one score"), "Learning curves by score")});
+  fields.push_back({"attempts", array(ref("Attempt"), "Trials of the trainee, in order of time")});
+  fields.push_back(
+      {"calibration",
+       array(ref("CalibrationBin"),
+             "Share of correct answers by stated confidence, in ascending order of confidence")});
   return {
-      {"Attempt", object({{"number", integer("1", "from 1")},
-                          {"trial", text("id")},
-                          {"scenario", text("its case")},
-                          {"started_utc_us", integer("us", "since 1970, UTC")},
-                          {"correct", truth("the answer was right")},
-                          {"confidence", nullable(number("1", "as stated with the answer"))},
-                          {"sum", number("1", "of the LC-CUSUM after it")},
-                          {"relapse_sum", nullable(number("1", "of the CUSUM after the signal"))},
-                          {"scores", anything("value, or null, by metric id")}})},
-      {"CalibrationBin", object({{"low", number("1", "least confidence in it")},
-                                 {"high", number("1", "most")},
-                                 {"stated", number("1", "mean confidence")},
-                                 {"trials", integer("1", "answers in it")},
-                                 {"right", integer("1", "of them")},
-                                 {"wilson_low", number("1", "95 % interval of the share right")},
-                                 {"wilson_high", number("1", "of it")}})},
+      {"Attempt",
+       object({{"number", integer("1", "Number of the trial, counted from 1")},
+               {"trial", text("Id of the trial")},
+               {"scenario", text("Title of the case or scenario")},
+               {"started_utc_us",
+                integer("us", "Start of the trial, in microseconds since 1970-01-01 UTC")},
+               {"correct", truth("True if the answer agrees with the truth")},
+               {"confidence",
+                nullable(number("1", "Stated confidence, 0 to 1; null if the trainee gave none"))},
+               {"sum", number("1", "LC-CUSUM sum after the trial")},
+               {"relapse_sum",
+                nullable(
+                    number("1", "CUSUM sum after the trial; null before competence is signalled"))},
+               {"scores", anything("Scores of the trial by metric id; a value is null if the trial "
+                                   "has no such score")}})},
+      {"CalibrationBin",
+       object(
+           {{"low", number("1", "Smallest confidence of the bin, 0 to 1")},
+            {"high", number("1", "Largest confidence of the bin, 0 to 1")},
+            {"stated", number("1", "Mean stated confidence in the bin, 0 to 1")},
+            {"trials", integer("1", "Number of answers in the bin")},
+            {"right", integer("1", "Number of correct answers in the bin")},
+            {"wilson_low",
+             number(
+                 "1",
+                 "Lower end of the 95 % Wilson interval of the share of correct answers, 0 to 1")},
+            {"wilson_high", number("1",
+                                   "Upper end of the 95 % Wilson interval of the share of correct "
+                                   "answers, 0 to 1")}})},
       {"Trainee", object(fields)}};
 }
 
@@ -103,7 +140,8 @@ std::vector<RouteInfo> trainees_routes() {
   return {{.method = "GET",
            .path = "/api/v1/cohort/trainees",
            .id = "trainees",
-           .summary = "How far each trainee is, by the trials that count",
+           .summary =
+               "List the trainees with their learning state, computed from the trials that count",
            .who = {Role::admin, Role::director, {Role::faculty, Scope::cohort}},
            .parameters = {study_parameter()},
            .body = "",
@@ -113,12 +151,14 @@ std::vector<RouteInfo> trainees_routes() {
           {.method = "GET",
            .path = "/api/v1/cohort/trainees/{name}",
            .id = "trainee",
-           .summary = "One trainee: trial by trial, LC-CUSUM, scenarios, confidence",
+           .summary = "Read one trainee's results: every trial, the LC-CUSUM, results by scenario, "
+                      "and the calibration of confidence",
            .who = {Role::admin,
                    Role::director,
                    {Role::faculty, Scope::cohort},
                    {Role::trainee, Scope::own}},
-           .parameters = {path_text("name", "as in the list"), study_parameter()},
+           .parameters = {path_text("name", "Name of the trainee, from the list of trainees"),
+                          study_parameter()},
            .body = "",
            .answer = "Trainee",
            .schemas = one_schemas(),

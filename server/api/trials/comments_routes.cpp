@@ -70,7 +70,7 @@ Result<http::Response> remove_comment(const Call& call) {
   return comments_response(call, 200);
 }
 
-/// A trainee is not told whose they are.
+/// The answer names a person only if the caller may see this person's trials.
 Result<http::Response> references_response(const Call& call) {
   struct Found {
     bool own;
@@ -129,7 +129,7 @@ Result<Json> palpated(Backend& backend, const trial::Signals& signals, const std
               {"tip_m", tips_json(path)}};
 }
 
-/// The way of a trial that is offered as an example on the case of this one.
+/// The path of a trial that is offered as an example on the same case.
 Result<http::Response> reference_way(const Call& call) {
   const std::string& id = call.text("reference");
   auto record = TRY(
@@ -161,7 +161,7 @@ RouteInfo route(std::string method, std::string tail, std::string id, std::strin
                 .summary = std::move(summary),
                 .who = {Role::admin, {Role::faculty, Scope::cohort}},
                 .object = Object::trial,
-                .parameters = {path_text("id", "the trial's")},
+                .parameters = {path_text("id", "Id of the trial")},
                 .body = std::move(body),
                 .body_limit_bytes = kMaxBody_bytes,
                 .answer = std::move(answer),
@@ -177,61 +177,88 @@ std::vector<NamedSchema> comment_schemas() {
   using namespace schema;
   return {
       {"TrialComment",
-       object({{"id", text("never changes")},
-               {"at_s", nullable(number("s", "of this moment; null: of the whole trial"))},
-               {"text", text("what was said")},
-               {"by", text("who")},
-               {"own", truth("by who asks: it may be taken back")},
-               {"made_utc_us", integer("us", "since 1970, UTC")}})},
-      {"TrialComments", object({{"comments", array(ref("TrialComment"), "by moment")}})},
-      {"NewComment", object({{"at_s", optional(nullable(number("s", "since the trial's start")))},
-                             {"text", text("up to 4000 characters")}})}};
+       object({{"id", text("Id of the comment, which never changes")},
+               {"at_s", nullable(number(
+                            "s",
+                            "Moment of the trial that the comment is about, in seconds since the "
+                            "start of the trial; null if the comment is about the whole trial"))},
+               {"text", text("Text of the comment")},
+               {"by", text("Name of the account that wrote the comment")},
+               {"own", truth("True if the caller wrote the comment and can remove it")},
+               {"made_utc_us",
+                integer("us", "Time of the comment, in microseconds since 1970-01-01 UTC")}})},
+      {"TrialComments",
+       object({{"comments",
+                array(ref("TrialComment"), "Comments, sorted by the moment of the trial")}})},
+      {"NewComment",
+       object({{"at_s",
+                optional(nullable(number(
+                    "s",
+                    "Moment of the trial that the comment is about, in seconds since the start of "
+                    "the trial; null or missing: the comment is about the whole trial")))},
+               {"text", text("Text of the comment, at most 4000 characters")}})}};
 }
 
 std::vector<NamedSchema> reference_schemas() {
   using namespace schema;
-  const Json one = object({{"id", text("of the trial")},
-                           {"operator", text("who did it; empty: nobody whom you may see")},
-                           {"simulated", truth("by no hand")},
-                           {"started_utc_us", integer("us", "since 1970, UTC")},
-                           {"duration_s", number("s", "")}});
-  const Json tip = tuple(number("m", "x, y or z"), 3, "LPS");
-  return {{"ReferenceTrials", object({{"reference", truth("this trial is offered itself")},
-                                      {"trials", array(one, "on the same case, newest first")}})},
-          {"ReferenceWish", object({{"reference", truth("offer it")}})},
+  const Json one = object(
+      {{"id", text("Id of the trial")},
+       {"operator",
+        text("Name of the person who did the trial; empty if the caller may not see this person")},
+       {"simulated", truth("True if a simulated hand did the trial")},
+       {"started_utc_us",
+        integer("us", "Start of the trial, in microseconds since 1970-01-01 UTC")},
+       {"duration_s", number("s", "Duration of the trial, in seconds")}});
+  const Json tip = tuple(number("m", "One coordinate x, y or z, in metres"), 3,
+                         "Position of the tip in patient coordinates (LPS), in metres");
+  return {{"ReferenceTrials",
+           object({{"reference", truth("True if this trial itself is offered as an example")},
+                   {"trials", array(one, "Example trials on the same case, newest first")}})},
+          {"ReferenceWish",
+           object({{"reference",
+                    truth("True to offer the trial as an example, false to withdraw it")}})},
           {"ReferenceWay",
-           object({{"t_s", array(number("s", "since its start"), "rising")},
-                   {"depth_m", array(number("m", "of the tip along the tract"), "at each")},
-                   {"force_N", array(number("N", "magnitude; probing: the push"), "at each")},
-                   {"tip_m", nullable(array(tip, "at each; palpation alone"))}})}};
+           object({{"t_s", array(number("s", "Time since the start of the trial, in seconds"),
+                                 "Times in ascending order, in seconds")},
+                   {"depth_m", array(number("m", "Depth of the tip along the tract, in metres"),
+                                     "Depth of the tip at each time")},
+                   {"force_N", array(number("N",
+                                            "Palpation: magnitude of the force; probing: pushing "
+                                            "force of the hand; in newtons"),
+                                     "Force at each time")},
+                   {"tip_m",
+                    nullable(array(
+                        tip, "Position of the tip at each time; null for a probing trial"))}})}};
 }
 
 }  // namespace
 
 std::vector<RouteInfo> comments_routes() {
-  RouteInfo list = route("GET", "/comments", "trialComments", "What was said of a trial", "",
+  RouteInfo list = route("GET", "/comments", "trialComments", "List the comments on a trial", "",
                          "TrialComments", list_comments);
   list.schemas = comment_schemas();
-  RouteInfo take = route("DELETE", "/comments/{comment}", "removeComment",
-                         "Take a comment of one's own back", "", "TrialComments", remove_comment);
-  take.parameters.push_back(path_text("comment", "its id"));
+  RouteInfo take =
+      route("DELETE", "/comments/{comment}", "removeComment", "Remove one of the caller's comments",
+            "", "TrialComments", remove_comment);
+  take.parameters.push_back(path_text("comment", "Id of the comment"));
   RouteInfo offered = route("GET", "/references", "trialReferences",
-                            "Trials on the same case that are offered as examples", "",
+                            "List the trials on the same case that are offered as examples", "",
                             "ReferenceTrials", references_response);
   offered.schemas = reference_schemas();
-  RouteInfo way = route("GET", "/references/{reference}", "referenceWay", "The way of such a trial",
+  RouteInfo way = route("GET", "/references/{reference}", "referenceWay",
+                        "Read the path of an example trial: position, depth and force over time",
                         "", "ReferenceWay", reference_way);
-  way.parameters.push_back(path_text("reference", "the example's id"));
-  // Whosever it is: it is offered to all who did a trial on its case.
+  way.parameters.push_back(path_text("reference", "Id of the example trial"));
+  // The example may belong to any person: it is offered to all who did a trial on its case.
   way.ends = {
       {"reference", Object::trial, {Role::admin, Role::director, Role::faculty, Role::trainee}}};
   return {list,
-          route("POST", "/comments", "addComment", "Say something of a trial, or of a moment of it",
+          route("POST", "/comments", "addComment", "Comment on a trial or on one moment of a trial",
                 "NewComment", "TrialComments", add_comment),
           take,
           offered,
           route("POST", "/reference", "setReference",
-                "Offer a trial as an example on its case, or no longer", "ReferenceWish",
+                "Offer a trial as an example on its case, or withdraw the offer", "ReferenceWish",
                 "ReferenceTrials", set_reference),
           way};
 }

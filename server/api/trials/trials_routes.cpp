@@ -56,11 +56,12 @@ core::Json truth_json(const std::optional<cases::Truth>& truth) {
   core::Json shown = core::Json::object();  // without the salt
   for (const char* field : {"breached", "breach_m", "breach_depth_m", "wall_thickness_m"})
     shown[field] = out.contains(field) ? out[field] : core::Json();
-  if (truth->breached && !truth->breach_m) shown["wall_thickness_m"] = nullptr;  // a trainee's hole
+  if (truth->breached && !truth->breach_m)
+    shown["wall_thickness_m"] = nullptr;  // a trainee drilled the hole
   return shown;
 }
 
-/// Where the trial stands in a study, if it is of one.
+/// The place of the trial in its study; none for a trial without a study.
 core::Result<std::optional<StudyPlace>> study_place(Backend& backend, const std::string& trial_id) {
   using Place = std::optional<StudyPlace>;
   return backend.store.read([&](store::Reading& tx) -> core::Result<Place> {
@@ -181,41 +182,51 @@ RouteInfo trial_route(std::string tail, std::string id, std::string summary, std
 
 std::vector<RouteInfo> trials_routes() {
   using Kind = Parameter::Kind;
-  const Parameter id = path_text("id", "32 hexadecimal characters");
-  RouteInfo list = trial_route("", "trials", "Trials, newest first", "TrialList");
-  list.parameters = {query("limit", Kind::integer, "1", "at most so many", 1, 500, "50"),
-                     query("before_utc_us", Kind::integer, "us", "started before this time, UTC", 0,
-                           kEndOfTime_us, "9000000000000000")};
+  const Parameter id = path_text("id", "Id of the trial, 32 hexadecimal characters");
+  RouteInfo list = trial_route("", "trials", "List trials, newest first", "TrialList");
+  list.parameters = {
+      query("limit", Kind::integer, "1", "Largest number of trials in the answer", 1, 500, "50"),
+      query("before_utc_us", Kind::integer, "us",
+            "Only trials that started before this time, in microseconds since 1970-01-01 UTC", 0,
+            kEndOfTime_us, "9000000000000000")};
   list.schemas = trial_schemas();
   list.handle = list_trials;
 
-  RouteInfo one = trial_route("/{id}", "trial", "One trial with its scores and the truth", "Trial");
+  RouteInfo one = trial_route("/{id}", "trial",
+                              "Read one trial with its scores and the truth of its case", "Trial");
   one.parameters = {id};
   one.handle = one_trial;
 
-  RouteInfo curves = trial_route(
-      "/{id}/signals", "trialSignals",
-      "Channels over time, least and greatest of the samples behind each point", "TrialSignals");
+  RouteInfo curves = trial_route("/{id}/signals", "trialSignals",
+                                 "Read channels of a trial over time; each point states the "
+                                 "smallest and largest value of its samples",
+                                 "TrialSignals");
   curves.parameters = {
       id,
       query("channels", Kind::text, "",
-            "names, separated by commas; all: every one that this trial has", 0, 0, "all"),
-      query("from_s", Kind::number, "s", "from this time", 0, kLongest_s, "0"),
-      query("to_s", Kind::number, "s", "to this time", 0, kLongest_s, "1000000"),
-      query("points", Kind::integer, "1", "at most so many", 1, 20000, "1000")};
+            "Names of channels, separated by commas; all: every channel of the trial", 0, 0, "all"),
+      query("from_s", Kind::number, "s",
+            "Start of the time range, in seconds since the start of the trial", 0, kLongest_s, "0"),
+      query("to_s", Kind::number, "s",
+            "End of the time range, in seconds since the start of the trial", 0, kLongest_s,
+            "1000000"),
+      query("points", Kind::integer, "1", "Largest number of points in the answer", 1, 20000,
+            "1000")};
   curves.schemas = curve_schemas();
   curves.handle = trial_signals;
 
   RouteInfo path =
-      trial_route("/{id}/path", "trialPath", "The path of the probe's tip", "TrialPath");
-  path.parameters = {id, query("points", Kind::integer, "1", "at most so many", 1, 20000, "2000")};
+      trial_route("/{id}/path", "trialPath",
+                  "Read the path of the probe's tip in a palpation trial", "TrialPath");
+  path.parameters = {id, query("points", Kind::integer, "1",
+                               "Largest number of points in the answer", 1, 20000, "2000")};
   path.handle = trial_path;
 
-  RouteInfo depths =
-      trial_route("/{id}/force-depth", "trialForceDepth",
-                  "Force against depth of a probing trial, in order of time", "TrialForceDepth");
-  depths.parameters = {id,
-                       query("points", Kind::integer, "1", "at most so many", 2, 20000, "2000")};
+  RouteInfo depths = trial_route("/{id}/force-depth", "trialForceDepth",
+                                 "Read force against depth of a probing trial, in order of time",
+                                 "TrialForceDepth");
+  depths.parameters = {id, query("points", Kind::integer, "1",
+                                 "Largest number of points in the answer", 2, 20000, "2000")};
   depths.handle = trial_force_depth;
   return {list, one, curves, path, depths};
 }

@@ -46,7 +46,7 @@ core::Result<http::Response> append(const Call& call) {
                        409);
 }
 
-/// What a station may add when it commits: how its clock stands.
+/// The offset of the station's clock, which a station may send when it commits an upload.
 core::Result<std::optional<store::TrialClock>> clock_of(const std::string& body) {
   if (body.empty()) return std::optional<store::TrialClock>();
   auto json = TRY(core::parse_json(body, "body"));
@@ -74,7 +74,8 @@ RouteInfo upload_route(std::string method, std::string tail, std::string id, std
           .id = std::move(id),
           .summary = std::move(summary),
           .who = {Role::station},
-          .parameters = {path_text("trial_id", "32 hexadecimal characters, the station's choice")},
+          .parameters = {path_text(
+              "trial_id", "Id of the trial, 32 hexadecimal characters, chosen by the station")},
           .body = "",
           .answer = "UploadState",
           .schemas = {},
@@ -84,30 +85,38 @@ RouteInfo upload_route(std::string method, std::string tail, std::string id, std
 }  // namespace
 
 std::vector<RouteInfo> uploads_routes() {
-  RouteInfo put = upload_route("PUT", "", "announceUpload",
-                               "Announce a trial; the same announcement again is the same upload");
+  RouteInfo put = upload_route(
+      "PUT", "", "announceUpload",
+      "Announce the upload of a trial; the same announcement again gives the same upload");
   put.body = "UploadAnnouncement";
   put.body_limit_bytes = 4096;
   put.schemas = {
-      {"UploadAnnouncement", schema::object({{"case_id", schema::text("SHA-256 of case.json")},
-                                             {"size_bytes", schema::integer("B", "of the file")},
-                                             {"sha256", schema::text("of the file")}})},
+      {"UploadAnnouncement",
+       schema::object(
+           {{"case_id",
+             schema::text(
+                 "Id of the case, or of the slot for an assigned trial or a study's trial")},
+            {"size_bytes", schema::integer("B", "Size of the trial file, in bytes")},
+            {"sha256", schema::text("SHA-256 of the trial file")}})},
       {"UploadState",
-       schema::object({{"offset_bytes", schema::integer("B", "on the server's disk")},
-                       {"state", schema::one_of({"receiving", "complete"}, "")}})}};
+       schema::object(
+           {{"offset_bytes",
+             schema::integer("B", "Number of bytes that the server has stored durably")},
+            {"state", schema::one_of({"receiving", "complete"},
+                                     "State of the upload; complete: the trial is stored")}})}};
   put.handle = announce;
 
-  RouteInfo read = upload_route("GET", "", "uploadState", "Where an upload stands");
+  RouteInfo read = upload_route("GET", "", "uploadState", "Read the state of an upload");
   read.handle = state;
 
-  RouteInfo patch = upload_route(
-      "PATCH", "", "appendUpload",
-      "The next piece, at most 4 MiB; 409 with offset_bytes when the upload stands elsewhere");
+  RouteInfo patch = upload_route("PATCH", "", "appendUpload",
+                                 "Upload the next chunk, at most 4 MiB; answers 409 with "
+                                 "offset_bytes if the server expects another offset");
   patch.parameters.push_back({.in = Parameter::In::query,
                               .name = "offset_bytes",
                               .kind = Parameter::Kind::integer,
                               .unit = "B",
-                              .meaning = "where the piece begins",
+                              .meaning = "Offset of the chunk in the trial file, in bytes",
                               .low = 0,
                               .high = double(kMaxTrial_bytes),
                               .fallback = std::nullopt});
@@ -122,15 +131,18 @@ std::vector<RouteInfo> uploads_routes() {
   patch.audited = false;  // announcing and committing are
   patch.handle = append;
 
-  RouteInfo post = upload_route(
-      "POST", "/commit", "commitUpload",
-      "Check all of it and make it a trial; repeating it is harmless, and so is an empty body");
+  RouteInfo post = upload_route("POST", "/commit", "commitUpload",
+                                "Commit an upload: the server checks the whole file and stores it "
+                                "as a trial; a second commit has no effect; the body may be empty");
   post.body = "CommitUpload";
   post.body_limit_bytes = 4096;
   post.schemas = {
       {"CommitUpload",
-       schema::object({{"clock_offset_s", schema::number("s", "server's clock less the station's")},
-                       {"clock_error_s", schema::number("s", "bound of its error")}})}};
+       schema::object(
+           {{"clock_offset_s",
+             schema::number("s", "Server's clock minus the station's clock, in seconds")},
+            {"clock_error_s",
+             schema::number("s", "Bound of the error of clock_offset_s, in seconds")}})}};
   post.handle = commit;
   return {put, read, patch, post};
 }

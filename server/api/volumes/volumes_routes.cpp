@@ -43,8 +43,8 @@ Result<store::VolumeRecord> volume_of_call(const Call& call) {
   return *known;
 }
 
-/// Who decides looks at what is held, and so does who brought it; everybody else sees released
-/// ones.
+/// Opens the voxels of a volume. Administrators, directors and the person who uploaded the volume
+/// may see it while it is held; everybody else only sees released volumes.
 Result<volume::VolumeFile> pictured(const Call& call) {
   auto v = TRY(volume_of_call(call));
   const bool decides = call.caller.role == Role::admin || call.caller.role == Role::director;
@@ -207,7 +207,7 @@ Parameter side_in_query(std::string fallback, double most) {
           .name = "max_side",
           .kind = Parameter::Kind::integer,
           .unit = "1",
-          .meaning = "pixels or voxels along the longest side, at most",
+          .meaning = "Largest number of pixels or voxels along the longest side",
           .low = 8,
           .high = most,
           .fallback = std::move(fallback)};
@@ -225,112 +225,141 @@ RouteInfo route(std::string method, std::string tail, std::string id, std::strin
                 .answer = std::move(answer),
                 .schemas = {},
                 .handle = handle};
-  if (tail.starts_with("/{id}")) out.parameters = {path_text("id", "of the volume")};
+  if (tail.starts_with("/{id}")) out.parameters = {path_text("id", "Id of the volume")};
   return out;
 }
 
 std::vector<NamedSchema> schemas() {
   using namespace schema;
   const Json volume = object(
-      {{"id", text("32 hexadecimal characters")},
-       {"name", text("for people")},
-       {"source", text("where it came from, licence")},
-       {"state", one_of({"held", "released", "refused"}, "held and refused ones are not used")},
-       {"format", text("that it was read from")},
-       {"modality", nullable(text("of DICOM"))},
-       {"dims", tuple(integer("1", "voxels"), 3, "along i, j, k")},
-       {"spacing_m", tuple(number("m", "between voxels"), 3, "along i, j, k")},
-       {"origin_m", tuple(number("m", "LPS"), 3, "centre of the first voxel")},
-       {"directions", tuple(number("1", ""), 9, "row-major; columns are i, j, k in LPS")},
-       {"range", tuple(number("CT value", ""), 2, "least and greatest")},
-       {"notes", array(text("one line"), "assumptions made and losses taken on reading")},
-       {"suspicions", array(text("one line"), "of text or a face in the pixels")},
-       {"size_bytes", integer("B", "stored")},
-       {"made_utc_us", integer("us", "since 1970, UTC")},
-       {"made_by", text("who brought it")},
-       {"released_by", nullable(text("who looked at it"))},
-       {"decided_utc_us", nullable(integer("us", "since 1970, UTC: released or refused"))},
-       {"reason", text("of a refusal")}});
+      {{"id", text("Id of the volume, 32 hexadecimal characters")},
+       {"name", text("Name of the volume, shown to people")},
+       {"source", text("Origin of the volume and its licence")},
+       {"state", one_of({"held", "released", "refused"},
+                        "State of the volume: held = waits for a person's review, released = cases "
+                        "can be made from it, refused = its voxels were removed")},
+       {"format", text("File format from which the volume was read")},
+       {"modality", nullable(text("DICOM modality; null if the file states none"))},
+       {"dims", tuple(integer("1", "Number of voxels along one axis"), 3,
+                      "Number of voxels along the axes i, j and k")},
+       {"spacing_m",
+        tuple(number("m", "Distance between neighbouring voxels along one axis, in metres"), 3,
+              "Distance between neighbouring voxels along the axes i, j and k, in metres")},
+       {"origin_m", tuple(number("m", "One coordinate, in metres"), 3,
+                          "Centre of the first voxel in patient coordinates (LPS), in metres")},
+       {"directions", tuple(number("1", "One component of a unit vector"), 9,
+                            "Row-major 3 × 3 matrix; its columns are the unit vectors of the axes "
+                            "i, j and k in patient coordinates (LPS)")},
+       {"range", tuple(number("CT value", "One CT value"), 2, "Smallest and largest CT value")},
+       {"notes", array(text("One note"), "Assumptions and losses when the file was read")},
+       {"suspicions",
+        array(text("One suspicion"), "Places where the pixels possibly show text or a face")},
+       {"size_bytes", integer("B", "Size of the stored volume, in bytes")},
+       {"made_utc_us", integer("us", "Time of the upload, in microseconds since 1970-01-01 UTC")},
+       {"made_by", text("Name of the account that uploaded the volume")},
+       {"released_by",
+        nullable(text(
+            "Name of the account that released the volume; null if the volume is not released"))},
+       {"decided_utc_us", nullable(integer("us",
+                                           "Time of the release or refusal, in microseconds since "
+                                           "1970-01-01 UTC; null while the volume is held"))},
+       {"reason", text("Reason for the refusal; empty if the volume was not refused")}});
   const Json attribute =
-      object({{"tag", text("(gggg,eeee); of private ones the group")},
-              {"name", text("by the standard's dictionary")},
-              {"vr", text("value representation, where the file states it")},
-              {"profile", text("action of PS3.15 Table E.1-1; empty: not in it")},
-              {"done", text("removed, replaced, kept or new identifier")},
-              {"count", integer("1", "in the files' data sets")},
-              {"nested", integer("1", "within sequences")}});
+      object({{"tag", text("DICOM tag (gggg,eeee); for private attributes only the group")},
+              {"name", text("Name of the attribute in the DICOM dictionary")},
+              {"vr", text("Value representation of the attribute, if the file states it")},
+              {"profile", text("Action that DICOM PS3.15 Table E.1-1 requires; empty if the table "
+                               "does not list the attribute")},
+              {"done", text("Action taken: removed, replaced, kept or new identifier")},
+              {"count", integer("1", "Number of occurrences in the data sets of the files")},
+              {"nested", integer("1", "Number of occurrences within sequences")}});
   return {
       {"Volume", volume},
-      {"VolumeList", object({{"volumes", array(ref("Volume"), "newest first")}})},
-      {"VolumeRelease", object({{"looked_at", truth("true: somebody looked, no text, no face")}})},
-      {"VolumeRefusal", object({{"reason", text("why")}})},
+      {"VolumeList", object({{"volumes", array(ref("Volume"), "CT volumes, newest first")}})},
+      {"VolumeRelease",
+       object(
+           {{"looked_at",
+             truth(
+                 "Must be true: the caller looked at the pictures and saw no text and no face")}})},
+      {"VolumeRefusal",
+       object({{"reason", text("Reason for the refusal, at most 1000 characters")}})},
       {"DeidentifiedAttribute", attribute},
       {"VolumeReport",
-       object({{"format", optional(text("tractus-deidentification/1"))},
-               {"profile", optional(text("what it went by"))},
-               {"codes", optional(array(text("of PS3.16 CID 7050"), "its options"))},
-               {"files", optional(integer("1", "read"))},
-               {"attributes", optional(array(ref("DeidentifiedAttribute"), "without values"))},
-               {"text_in_pixels", optional(text("what was done about it"))},
-               {"faces", optional(text("what was done about them"))}})}};
+       object({{"format", optional(text("Format of this report, tractus-deidentification/1"))},
+               {"profile", optional(text("De-identification profile that was applied"))},
+               {"codes", optional(array(text("One code of DICOM PS3.16 CID 7050"),
+                                        "Codes of the profile and its options"))},
+               {"files", optional(integer("1", "Number of files that were read"))},
+               {"attributes", optional(array(ref("DeidentifiedAttribute"),
+                                             "Attributes of the files, without their values"))},
+               {"text_in_pixels", optional(text("Action taken against text in the pixels"))},
+               {"faces", optional(text("Action taken against faces in the pixels"))}})}};
 }
 
 }  // namespace
 
 std::vector<RouteInfo> volumes_routes() {
   RouteInfo list =
-      route("GET", "", "volumes", "CT volumes, newest first", "VolumeList", list_volumes);
+      route("GET", "", "volumes", "List the CT volumes, newest first", "VolumeList", list_volumes);
   list.schemas = schemas();
   RouteInfo take = route("POST", "", "addVolume",
-                         "Read a CT, de-identify it and hold it: a zip of one DICOM series, or a "
-                         ".nii.gz, .nrrd or .tvol file",
+                         "Upload a CT volume: a zip of one DICOM series, or a .nii.gz, .nrrd or "
+                         ".tvol file; the server de-identifies it and holds it for review",
                          "Volume", add);
-  take.parameters = {text_in_query("name", "for people; no patient's"),
-                     text_in_query("source", "where it came from, licence", false)};
+  take.parameters = {text_in_query("name", "Name of the volume; must not contain a patient's name"),
+                     text_in_query("source", "Origin of the volume and its licence", false)};
   take.body = kBytes;
   take.body_limit_bytes = kMaxVolume_bytes;
   take.body_to_file = true;
   RouteInfo out =
       route("POST", "/{id}/release", "releaseVolume",
-            "Let a held volume be used: a person has looked at its pictures", "Volume", release);
+            "Release a held volume for making cases, after a person has looked at its pictures",
+            "Volume", release);
   out.who = {Role::admin, Role::director};
   out.body = "VolumeRelease";
   out.body_limit_bytes = 4096;
-  RouteInfo no =
-      route("POST", "/{id}/refuse", "refuseVolume",
-            "Refuse a held volume: its voxels are removed, the record stays", "Volume", refuse);
+  RouteInfo no = route("POST", "/{id}/refuse", "refuseVolume",
+                       "Refuse a held volume: the server removes its voxels and keeps its record",
+                       "Volume", refuse);
   no.who = {Role::admin, Role::director};
   no.body = "VolumeRefusal";
   no.body_limit_bytes = 8192;
-  RouteInfo plane = route("GET", "/{id}/slice", "volumeSlice",
-                          "A plane of the patient as bytes 0 … 255, row after row; X-Dims, "
-                          "X-Spacing-m, X-Origin-m (LPS, first pixel) and X-Directions (along a "
-                          "row, along a column) place it",
-                          kBytes, slice);
-  plane.parameters.push_back(text_in_query("axis", "axial, coronal or sagittal"));
-  Parameter at = value_in_query("at_m", "", "along the axis, LPS; the middle when it is missing");
+  RouteInfo plane =
+      route("GET", "/{id}/slice", "volumeSlice",
+            "Read one plane of a volume as grey values 0 to 255, one byte per pixel, row by row; "
+            "the headers X-Dims, X-Spacing-m, X-Origin-m (first pixel, LPS) and X-Directions "
+            "(along a row, along a column) state its position in the patient",
+            kBytes, slice);
+  plane.parameters.push_back(
+      text_in_query("axis", "Orientation of the plane: axial, coronal or sagittal"));
+  Parameter at = value_in_query("at_m", "",
+                                "Position of the plane along its axis in patient coordinates "
+                                "(LPS), in metres; if it is missing, the middle of the volume");
   at.unit = "m";
   at.required = false;
   at.fallback = std::nullopt;
   plane.parameters.push_back(at);
   plane.parameters.push_back(side_in_query("512", 2048));
-  RouteInfo block = route("GET", "/{id}/preview", "volumePreview",
-                          "The whole volume coarsely as bytes 0 … 255, [k][j][i]; X-Dims, "
-                          "X-Spacing-m, X-Origin-m and X-Directions (row-major) place it",
-                          kBytes, preview);
+  RouteInfo block =
+      route("GET", "/{id}/preview", "volumePreview",
+            "Read the whole volume at low resolution as grey values 0 to 255, one byte per voxel "
+            "in the order [k][j][i]; the headers X-Dims, X-Spacing-m, X-Origin-m and X-Directions "
+            "(row-major) state its position in the patient (LPS)",
+            kBytes, preview);
   block.parameters.push_back(side_in_query("128", 256));
   for (RouteInfo* picture : {&plane, &block}) {
-    picture->parameters.push_back(value_in_query("low", "-200", "shown black"));
-    picture->parameters.push_back(value_in_query("high", "1200", "shown white"));
+    picture->parameters.push_back(value_in_query("low", "-200", "CT value that is shown black"));
+    picture->parameters.push_back(value_in_query("high", "1200", "CT value that is shown white"));
   }
   return {list,
           take,
-          route("GET", "/{id}", "volume", "One volume", "Volume", one_volume),
+          route("GET", "/{id}", "volume", "Read one volume's record", "Volume", one_volume),
           out,
           no,
           route("GET", "/{id}/report", "volumeReport",
-                "What de-identification removed, replaced and kept, by attribute", "VolumeReport",
-                report),
+                "Read the de-identification report of a volume: what was removed, replaced and "
+                "kept, by attribute",
+                "VolumeReport", report),
           plane,
           block};
 }
