@@ -121,8 +121,8 @@ Result<Json> import_volume_in_subprocess(const fs::path& upload, const fs::path&
 
 Run import_volume_command(CLI::App& command) {
   const auto upload = std::make_shared<fs::path>(), folder = std::make_shared<fs::path>();
-  command.add_option("--upload", *upload, "The file that was sent")->required();
-  command.add_option("--folder", *folder, "Where the volume goes")->required();
+  command.add_option("--upload", *upload, "File that was uploaded")->required();
+  command.add_option("--folder", *folder, "Folder for the volume")->required();
   return [=]() -> Result<int> {
     limit(RLIMIT_CORE, 0);
     limit(RLIMIT_CPU, 900);

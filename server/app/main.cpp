@@ -19,8 +19,8 @@ void say(bool json, const core::Json& object, const std::string& line) {
 
 std::shared_ptr<Common> common_options(CLI::App& command) {
   auto common = std::make_shared<Common>();
-  command.add_option("--data", common->data, "The server's data folder")->required();
-  command.add_flag("--json", common->json, "Answer as JSON");
+  command.add_option("--data", common->data, "Data folder of the server")->required();
+  command.add_flag("--json", common->json, "Print the result as JSON");
   command
       .add_option_function<std::string>(
           "--database",
@@ -28,8 +28,10 @@ std::shared_ptr<Common> common_options(CLI::App& command) {
             if (auto used = use_address(address); !used)
               throw CLI::ValidationError(used.error().what);
           },
-          "postgresql://[USER@]HOST[:PORT]/NAME for the records, instead of a file in the folder; "
-          "init and restore note it there. With a password: in TRACTUS_DATABASE, or PGPASSFILE")
+          "Address of a PostgreSQL database for the records, postgresql://[USER@]HOST[:PORT]/NAME, "
+          "instead of a database file in the data folder; init and restore store the address in "
+          "the data folder. Give an address with a password in the variable TRACTUS_DATABASE, or "
+          "give the password in PGPASSFILE")
       ->type_name("ADDRESS");
   return common;
 }
@@ -46,36 +48,39 @@ struct Command {
 };
 
 constexpr Command kCommands[] = {
-    {"init", "Make a data folder and its first account",
+    {"init", "Create a data folder and its first account",
      "tractus-server init --data /srv/tractus --admin-name admin", app::init_command},
     {"enrol", "Enrol a station and write its token to a file",
      "tractus-server enrol --data /srv/tractus --name station-1 --out station-1.token",
      app::enrol_command},
-    {"publish", "Verify a case bundle and offer it to stations",
+    {"publish", "Check the signature and files of a case, and publish the case to stations",
      "tractus-server publish --data /srv/tractus cases/l3-medial", app::publish_command},
-    {"serve", "Serve stations and browsers until stopped",
+    {"serve", "Run the server for stations and browsers until it is stopped",
      "tractus-server serve --data /srv/tractus --listen 127.0.0.1:8480 --web web/dist",
      app::serve_command},
-    {"backup", "Copy a data folder, served or not, to a new folder",
+    {"backup", "Make a backup of a data folder in a new folder; the server may run meanwhile",
      "tractus-server backup --data /srv/tractus --out /backup/tractus-monday", app::backup_command},
-    {"restore", "Make a new data folder of a backup, and look it over",
+    {"restore", "Restore a backup to a new data folder, and check the data folder",
      "tractus-server restore --from /backup/tractus-monday --data /srv/tractus",
      app::restore_command},
     {"verify",
-     "Check a data folder: database, files, audit trail, anchors, the rows that the trail covers; "
-     "exit 1 when something is wrong",
+     "Check a data folder: database, files, audit trail, anchors, and the database rows that the "
+     "audit trail covers; the exit code is 1 if there is an error",
      "tractus-server verify --data /srv/tractus --anchors /mnt/other/anchors", app::verify_command},
-    {"anchor", "Begin the audit trail's anchors again after they were lost; the trail says so",
+    {"anchor",
+     "Start new anchors of the audit trail after the old ones were lost; the audit trail records "
+     "this",
      "tractus-server anchor --data /srv/tractus", app::anchor_command},
-    {"migrate", "Bring the database up to this program's schema",
+    {"migrate", "Migrate the database to the schema of this program version",
      "tractus-server migrate --data /srv/tractus", app::migrate_command},
-    {"openapi", "Print the description of the API, OpenAPI 3.1",
+    {"openapi", "Print the description of the API in OpenAPI 3.1 format",
      "tractus-server openapi > openapi.json", app::openapi_command},
     {"take-volume", "", "tractus-server take-volume --upload FILE --folder FOLDER",
-     app::import_volume_command},  // the server's own child
+     app::import_volume_command},  // run by the server as a child process
 };
 
-/// Exit code of CLI11's own end: 0 for --help, 2 for bad use, said in one line.
+/// Exit code when CLI11 ends the program: 0 for --help, 2 for wrong usage, with one line of
+/// explanation.
 int ended_by(const CLI::App& commands, const CLI::ParseError& end) {
   if (end.get_exit_code() == 0) return commands.exit(end);
   fmt::print(stderr, "tractus-server: {} (see --help)\n", end.what());
@@ -88,7 +93,7 @@ int ended_by(const CLI::App& commands, const CLI::ParseError& end) {
 
 int main(int argc, char** argv) {
   using namespace tractus;
-  ::umask(0077);  // whatever it makes is its owner's alone
+  ::umask(0077);  // only the owner may access files that this program creates
   // A large buffer goes back to the system when it is freed; glibc would raise this bound to 32 MiB
   // and keep what is below it.
   ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
@@ -103,7 +108,7 @@ int main(int argc, char** argv) {
     CLI::App* sub = commands.add_subcommand(command.name, command.summary);
     sub->footer(std::string("Example: ") + command.example);
     if (std::string(command.name) == "serve") sub->alias("run");
-    if (std::string(command.summary).empty()) sub->group("");  // not for people
+    if (std::string(command.summary).empty()) sub->group("");  // not shown in --help
     sub->callback([&chosen, run = command.make(*sub)] { chosen = run; });
   }
   try {

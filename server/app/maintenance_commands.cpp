@@ -84,7 +84,7 @@ core::Result<int> verified(const Common& common, Covered covered,
 Run backup_command(CLI::App& command) {
   const auto common = common_options(command);
   const auto out = std::make_shared<std::filesystem::path>();
-  command.add_option("--out", *out, "The new folder; it must not exist")->required();
+  command.add_option("--out", *out, "Folder of the new backup; it must not exist")->required();
   return [=]() -> core::Result<int> {
     auto made = TRY(back_up(common->data, *out, core::terminal_progress("Backup")));
     say(common->json, {{"backup", out->string()}, {"rows", made["rows"]}},
@@ -98,7 +98,7 @@ Run backup_command(CLI::App& command) {
 Run restore_command(CLI::App& command) {
   const auto common = common_options(command);
   const auto from = std::make_shared<std::filesystem::path>();
-  command.add_option("--from", *from, "The backup's folder")->required();
+  command.add_option("--from", *from, "Folder of the backup")->required();
   return [=]() -> core::Result<int> {
     auto target = TRY(new_database(common->data));
     TRY(restore(*from, common->data, target, core::terminal_progress("Restore")));
@@ -110,8 +110,8 @@ Run verify_command(CLI::App& command) {
   const auto common = common_options(command);
   const auto anchors = std::make_shared<std::filesystem::path>();
   command.add_option("--anchors", *anchors,
-                     "Copy of the anchors from elsewhere (serve --anchors-to): a file, or lines of "
-                     "a system's journal");
+                     "Copy of the anchors that the server wrote with serve --anchors-to: a file, "
+                     "or lines of a system journal");
   return [=]() {
     return verified(*common, Covered::must_be,
                     anchors->empty() ? std::nullopt : std::optional(*anchors));

@@ -15,52 +15,66 @@ Run serve_command(CLI::App& command) {
   const auto listen = std::make_shared<std::string>("127.0.0.1:8480");
   const auto web = std::make_shared<std::filesystem::path>();
   const auto header_s = std::make_shared<double>(10.0);
-  command.add_option("--listen", *listen, "ADDRESS:PORT; port 0 takes a free one")
+  command
+      .add_option("--listen", *listen,
+                  "Address and port to listen on, ADDRESS:PORT; port 0: a free port is chosen")
       ->capture_default_str();
-  command.add_option("--web", *web, "Folder of the built web pages; without, the API alone");
-  command.add_option("--header-seconds", *header_s, "Patience with a request's head")
+  command.add_option(
+      "--web", *web,
+      "Folder of the built web pages; if it is missing, the server offers only the API");
+  command
+      .add_option("--header-seconds", *header_s,
+                  "Largest time for receiving the head of a request, in seconds")
       ->check(CLI::Range(0.1, 600.0))
       ->capture_default_str();
   const auto options = std::make_shared<ServeOptions>();
-  command.add_flag("--plain", options->plain,
-                   "HTTP without TLS, on this machine's own addresses alone: for tests and trials");
+  command.add_flag(
+      "--plain", options->plain,
+      "HTTP without TLS, only on loopback addresses of this machine: for tests and demonstrations");
   command.add_flag("--behind-proxy", options->http.behind_proxy,
-                   "HTTP without TLS: a proxy before it speaks TLS and sets X-Forwarded-For");
+                   "HTTP without TLS behind a reverse proxy, which does TLS and sets the header "
+                   "X-Forwarded-For");
   const auto proxies = std::make_shared<std::vector<std::string>>();
-  command.add_option("--trusted-proxy", *proxies,
-                     "Address or network (ADDRESS/BITS) of a proxy whose X-Forwarded-For is "
-                     "believed, with --behind-proxy; repeat it (default: this machine's own)");
-  command.add_option("--host", options->hosts,
-                     "Name or address that it is reached by, for its certificate; repeat it");
-  command.add_flag("--log-requests", options->log_requests,
-                   "A line in the log for every request, not only for those that fail");
   command.add_option(
-      "--backups", options->backups,
-      "Folder for backups made from the pages (default: backups in the data folder)");
+      "--trusted-proxy", *proxies,
+      "Address or network (ADDRESS/BITS) of a proxy whose header X-Forwarded-For the server "
+      "trusts, with --behind-proxy; may be repeated (default: loopback addresses)");
+  command.add_option("--host", options->hosts,
+                     "Host name or address under which clients reach the server, for its "
+                     "certificate; may be repeated");
+  command.add_flag("--log-requests", options->log_requests,
+                   "Log every request, not only failed ones");
+  command.add_option("--backups", options->backups,
+                     "Folder for backups that people make on the web pages (default: folder "
+                     "backups in the data folder)");
   const auto lease_s = std::make_shared<double>(30.0);
   command
       .add_option("--job-lease-seconds", *lease_s,
-                  "How long a job of a server that died waits before another takes it over")
+                  "Lease of a job, in seconds: after this time another server takes over the job "
+                  "of a server that died")
       ->check(CLI::Range(0.3, 3600.0))
       ->capture_default_str();
   const auto oidc = std::make_shared<std::filesystem::path>();
   command.add_option("--oidc", *oidc,
-                     "Settings of a provider of identities by which people may sign in");
+                     "Settings file of an OpenID Connect provider with which people can sign in");
   const auto pseudonyms = std::make_shared<std::filesystem::path>();
-  command.add_option("--pseudonym-key", *pseudonyms,
-                     "File of the key of exports' pseudonyms, made when it is not there; "
-                     "DATA/pseudonyms/key if not given. No backup holds it: copy it by itself");
+  command.add_option(
+      "--pseudonym-key", *pseudonyms,
+      "File with the key of the pseudonyms in exports; it is created if it does not exist "
+      "(default: DATA/pseudonyms/key). Backups do not contain this key: copy it separately");
   const auto places = std::make_shared<std::vector<std::string>>();
   command
-      .add_option("--anchors-to", *places,
-                  "Where every anchor of the audit trail goes as well: the absolute path of a file "
-                  "(on another disk), syslog, or an https address that takes it by POST; repeat it")
+      .add_option(
+          "--anchors-to", *places,
+          "Additional place for every anchor of the audit trail: the absolute path of a file (on "
+          "another disk), syslog, or an https address that accepts POST; may be repeated")
       ->type_name("PLACE");
   const auto certificate = std::make_shared<std::filesystem::path>();
   const auto key = std::make_shared<std::filesystem::path>();
-  auto* chain = command.add_option("--certificate", *certificate,
-                                   "PEM file of an own certificate chain, instead of the house's");
-  chain->needs(command.add_option("--key", *key, "PEM file of its key"));
+  auto* chain = command.add_option(
+      "--certificate", *certificate,
+      "PEM file of a certificate chain, instead of the certificate that the server makes");
+  chain->needs(command.add_option("--key", *key, "PEM file of the certificate's private key"));
   return [=]() -> core::Result<int> {
     auto address = TRY(listening_address(*listen));
     options->data = common->data;

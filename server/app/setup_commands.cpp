@@ -43,12 +43,15 @@ Run init_command(CLI::App& command) {
   const auto common = common_options(command);
   const auto name = std::make_shared<std::string>("admin");
   const auto file = std::make_shared<std::string>();
-  command.add_option("--admin-name", *name, "The first account")->capture_default_str();
+  command.add_option("--admin-name", *name, "Name of the first account, an administrator")
+      ->capture_default_str();
   const auto hosts = std::make_shared<std::vector<std::string>>();
-  command.add_option("--host", *hosts,
-                     "Name or address that stations and browsers reach the server by; repeat it");
+  command.add_option(
+      "--host", *hosts,
+      "Host name or address under which stations and browsers reach the server; may be repeated");
   command.add_option("--password-file", *file,
-                     "Its password is the first line; without, one is made and printed once");
+                     "File whose first line is the password of the first account; if it is "
+                     "missing, a password is generated and printed once");
   return [=]() -> core::Result<int> {
     if (name->empty() || name->size() > api::kMaxName)
       return core::Error{
@@ -95,8 +98,9 @@ Run enrol_command(CLI::App& command) {
   const auto common = common_options(command);
   const auto name = std::make_shared<std::string>();
   const auto out = std::make_shared<std::filesystem::path>();
-  command.add_option("--name", *name, "The station's name")->required();
-  command.add_option("--out", *out, "File for its token; must not exist")->required();
+  command.add_option("--name", *name, "Name of the station")->required();
+  command.add_option("--out", *out, "File for the token of the station; it must not exist")
+      ->required();
   return [=]() -> core::Result<int> {
     if (name->empty() || name->size() > api::kMaxName)
       return core::Error{core::Errc::bad_input,
@@ -125,8 +129,7 @@ Run enrol_command(CLI::App& command) {
 Run publish_command(CLI::App& command) {
   const auto common = common_options(command);
   const auto bundle = std::make_shared<std::filesystem::path>();
-  command.add_option("bundle", *bundle, "The case's folder, as `tractus carve` made it")
-      ->required();
+  command.add_option("bundle", *bundle, "Folder of the case that `tractus carve` made")->required();
   return [=]() -> core::Result<int> {
     auto data = TRY(open_data(common->data));
     auto id = TRY(publish(data, *bundle));

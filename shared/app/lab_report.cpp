@@ -68,20 +68,23 @@ std::string ranking(const lab::Diagnosis& d, const std::string& unit) {
 }  // namespace
 
 void add_lab_options(CLI::App& app, LabOptions& options) {
-  app.add_option("--model", options.sources.model, "model file, tractus-model/1")->required();
-  app.add_option("--measurements", options.sources.measurements,
-                 "folder with set.json, or a zip of one, tractus-measurements/1")
+  app.add_option("--model", options.sources.model, "model file in the format tractus-model/1")
       ->required();
-  app.add_option("--report", options.report, "also write a page that stands alone, FILE.html");
-  app.add_option("--threads", options.sources.threads, "threads to work with")
+  app.add_option("--measurements", options.sources.measurements,
+                 "measurement set in the format tractus-measurements/1: a folder with set.json, or "
+                 "a zip of such a folder")
+      ->required();
+  app.add_option("--report", options.report,
+                 "also write the report as one self-contained HTML page, FILE.html");
+  app.add_option("--threads", options.sources.threads, "number of threads")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
-  app.add_flag("--json", options.json, "print the answer as JSON");
+  app.add_flag("--json", options.json, "print the result as JSON");
 }
 
 void add_own_option(CLI::App& app, LabOptions& options) {
   app.add_option("--effect", options.own,
-                 "file with an effect of your own, tractus-effect/1; may be given again")
+                 "file of a user effect in the format tractus-effect/1; may be repeated")
       ->expected(1, 64)
       ->allow_extra_args(false);
 }

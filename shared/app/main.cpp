@@ -7,7 +7,10 @@
 
 int main(int argc, char** argv) {
   using namespace tractus;
-  CLI::App app("Tractus: pedicle-screw training and its physics, on files", "tractus");
+  CLI::App app(
+      "Tractus: tools for files of pedicle-screw training: volumes, cases, trials, models, "
+      "measurements",
+      "tractus");
   app.set_version_flag("--version", TRACTUS_VERSION);
   app.require_subcommand(1);
   const auto catalogue = commands::all();

@@ -173,28 +173,34 @@ CLI::App* add(CLI::App& app, const char* name, const char* summary, Action actio
 
 void add_actions(CLI::App& app, const std::shared_ptr<Options>& o,
                  const std::shared_ptr<Action>& chosen) {
-  auto* fresh = add(app, "new", "Writes a plan to start from", make_new, chosen);
+  auto* fresh = add(app, "new", "Write a template of an analysis plan", make_new, chosen);
   auto* locking =
-      add(app, "lock", "Locks a plan: who, when, and the hash of every word", lock, chosen);
-  auto* freezing = add(app, "freeze", "Freezes a CSV with its dictionary and hash", freeze, chosen);
-  auto* running = add(app, "run", "Runs a locked plan on a frozen snapshot", run, chosen);
+      add(app, "lock", "Lock a plan: add author, time and a hash of its contents", lock, chosen);
+  auto* freezing = add(app, "freeze", "Freeze a CSV file as a snapshot with dictionary and hash",
+                       freeze, chosen);
+  auto* running = add(app, "run", "Run a locked plan on a frozen snapshot", run, chosen);
   auto* reporting =
-      add(app, "report", "Runs it and writes page, data and dictionary", report, chosen);
+      add(app, "report", "Run a locked plan and write report page, result, data and dictionary",
+          report, chosen);
   for (CLI::App* sub : {fresh, locking, running, reporting})
-    sub->add_option("PLAN", o->plan, "plan file (tractus-plan/1)")->required();
-  locking->add_option("--who", o->who, "who locks it")->required();
-  locking->add_flag("--data-seen", o->data_seen, "the data are known already: a reanalysis");
+    sub->add_option("PLAN", o->plan, "plan file in the format tractus-plan/1")->required();
+  locking->add_option("--who", o->who, "name of the person who locks the plan")->required();
+  locking->add_flag("--data-seen", o->data_seen,
+                    "the author already knows the data: the analysis is a reanalysis");
   freezing->add_option("DATA", o->data, "CSV file, one row per trial")->required();
-  freezing->add_option("FOLDER", o->out, "the snapshot's folder, new")->required();
-  freezing->add_option("--name", o->name, "what the data are called");
-  freezing->add_option("--source", o->source, "where they come from, licence");
-  freezing->add_option("--meaning", o->meanings, "COLUMN=what it means; may be given again");
+  freezing->add_option("FOLDER", o->out, "folder of the snapshot; it must not exist")->required();
+  freezing->add_option("--name", o->name, "name of the data");
+  freezing->add_option("--source", o->source, "origin of the data and their licence");
+  freezing->add_option("--meaning", o->meanings,
+                       "COLUMN=TEXT: meaning of a column; may be repeated");
   freezing->add_flag("--simulated", o->simulated, "the data are simulated");
   for (CLI::App* sub : {running, reporting})
-    sub->add_option("SNAPSHOT", o->data, "folder that 'freeze' made")->required();
-  running->add_option("--out", o->out, "write the result (JSON)");
-  running->add_option("--against", o->against, "an earlier result: exit 1 if a digit differs");
-  reporting->add_option("FOLDER", o->out, "the report's folder, new")->required();
+    sub->add_option("SNAPSHOT", o->data, "folder of a snapshot that 'freeze' made")->required();
+  running->add_option("--out", o->out, "file for the result, as JSON");
+  running->add_option(
+      "--against", o->against,
+      "file of an earlier result; the exit code is 1 if the new result differs in any digit");
+  reporting->add_option("FOLDER", o->out, "folder of the report; it must not exist")->required();
   for (CLI::App* sub : {locking, freezing, running, reporting})
     sub->add_flag("--json", o->json, "print as JSON");
 }
@@ -202,7 +208,8 @@ void add_actions(CLI::App& app, const std::shared_ptr<Options>& o,
 }  // namespace
 
 Command analyse_command() {
-  return {"analyse", "Locks an analysis plan, runs it on a frozen cohort, writes the report",
+  return {"analyse",
+          "Lock an analysis plan, run it on a frozen snapshot of a cohort, and write the report",
           "tractus analyse new plan.json                     # edit it, then\n"
           "  tractus analyse lock plan.json --who \"A. Author\"\n"
           "  tractus analyse freeze trials.csv cohort/\n"

@@ -145,21 +145,25 @@ Outcome run(const Options& options) {
 }  // namespace
 
 Command assemble_command() {
-  return {.name = "assemble",
-          .summary = "Make a measurement set of motion capture and force recordings",
-          .example =
-              "tractus assemble --recipe room/assembly.json --out recordings/ --picture taps.svg",
-          .make = [](CLI::App& app) -> std::function<Outcome()> {
-            auto options = std::make_shared<Options>();
-            app.add_option("--recipe", options->recipe,
-                           "tractus-assembly/1: which file, body and sensor is what")
-                ->required();
-            app.add_option("--out", options->out, "the set's folder; must not exist")->required();
-            app.add_option("--picture", options->picture,
-                           "SVG: the taps of force and motion on one clock, to look at");
-            app.add_flag("--json", options->json, "one JSON document on standard output");
-            return [options] { return run(*options); };
-          }};
+  return {
+      .name = "assemble",
+      .summary = "Make a measurement set from motion capture and force recordings",
+      .example =
+          "tractus assemble --recipe room/assembly.json --out recordings/ --picture taps.svg",
+      .make = [](CLI::App& app) -> std::function<Outcome()> {
+        auto options = std::make_shared<Options>();
+        app.add_option(
+               "--recipe", options->recipe,
+               "recipe in the format tractus-assembly/1: the role of each file, body and sensor")
+            ->required();
+        app.add_option("--out", options->out, "folder of the measurement set; it must not exist")
+            ->required();
+        app.add_option(
+            "--picture", options->picture,
+            "SVG file with the taps in force and motion on a common clock, for visual inspection");
+        app.add_flag("--json", options->json, "print one JSON document on standard output");
+        return [options] { return run(*options); };
+      }};
 }
 
 }  // namespace commands

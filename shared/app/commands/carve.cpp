@@ -231,45 +231,55 @@ Outcome run(const Options& o) {
 }
 
 void add_options(CLI::App& app, Options& o) {
-  app.add_option("--volume", o.volume, "CT: NIfTI, NRRD, .tvol or a folder of DICOM slices")
+  app.add_option("--volume", o.volume,
+                 "CT volume: a NIfTI, NRRD or .tvol file, or a folder of DICOM slices")
       ->required();
   app.add_option(
          "--entry", o.entry,
-         "centre of the tract's mouth, x,y,z in mm, patient LPS (x to the left, y to the back, "
-         "z up); a unit may follow: 45,199,-61mm or 0.045,0.199,-0.061m")
+         "centre of the tract's entry as x,y,z in patient coordinates LPS (x to the left, y to "
+         "posterior, z to superior), in mm; a unit may follow: 45,199,-61mm or 0.045,0.199,-0.061m")
       ->required();
-  app.add_option("--target", o.target, "a point ahead on the tract's axis, as --entry")->required();
-  app.add_option("--length", o.length, "length of the tract, mm (default: to the target)");
-  app.add_option("--radius", o.radius, "radius of the drill, mm (default 1.5)");
-  app.add_option("--breach", o.breach,
-                 "wall to break through: medial, lateral, superior, inferior, anterior");
-  app.add_option("--breach-depth", o.breach_depth, "how far beyond the bone, mm (default 3)");
+  app.add_option("--target", o.target,
+                 "a point on the tract's axis beyond the entry, in the same form as --entry")
+      ->required();
+  app.add_option("--length", o.length,
+                 "length of the tract, in mm (default: distance from entry to target)");
+  app.add_option("--radius", o.radius, "radius of the drill, in mm (default 1.5)");
+  app.add_option(
+      "--breach", o.breach,
+      "wall with a breach: medial, lateral, superior, inferior or anterior (default: no breach)");
+  app.add_option("--breach-depth", o.breach_depth,
+                 "depth of the breach beyond the bone, in mm (default 3)");
   app.add_option("--breach-at", o.breach_at,
-                 "depth along the tract, mm (default: where that wall is thinnest in the pedicle)");
+                 "depth of the breach along the tract, in mm (default: where this wall is thinnest "
+                 "in the pedicle)");
   app.add_flag("--no-channel", o.no_channel,
-               "leaves the bone whole: the tract is a plan, and a trainee drills it "
+               "leave the bone whole: the tract is only planned, and a trainee drills it "
                "(tractus-station --tool burr)");
-  app.add_option("--midline-x", o.midline,
-                 "x of the midline, mm (default: estimated from the bone's symmetry)");
+  app.add_option(
+      "--midline-x", o.midline,
+      "x coordinate of the midline, in mm (default: estimated from the symmetry of the bone)");
   app.add_option("--spacing", o.spacing,
-                 "voxel of the drilled volume where the CT is coarser, mm (default 0.35)");
-  app.add_option("--margin", o.margin, "kept about the tract, mm (default 20)");
+                 "voxel size of the drilled volume if the CT is coarser, in mm (default 0.35)");
+  app.add_option("--margin", o.margin, "margin of the volume around the tract, in mm (default 20)");
   app.add_option("--model", o.model,
-                 "model file with probe and transfer function (default: the published one)");
-  app.add_option("--out", o.out, "folder of the case; must not exist")->required();
-  app.add_option("--title", o.title, "what the case is called");
+                 "model file with probe and transfer function (default: the published model)");
+  app.add_option("--out", o.out, "folder of the case; it must not exist")->required();
+  app.add_option("--title", o.title, "title of the case");
   app.add_option("--source", o.source,
-                 "where the CT came from and its licence (default: its file name)");
+                 "origin of the CT and its licence (default: name of the CT file)");
   app.add_option("--key", o.key,
-                 "signing key, made if it is not there (default ~/.config/tractus/signing.key)");
-  app.add_option("--png", o.png, "writes the picture here as well; it shows the breach");
-  app.add_flag("--json", o.json, "print what was made as JSON (SI units)");
+                 "file of the signing key; it is created if it does not exist (default "
+                 "~/.config/tractus/signing.key)");
+  app.add_option("--png", o.png, "file for the case's picture, which shows the breach");
+  app.add_flag("--json", o.json, "print the result as JSON, in SI units");
 }
 
 }  // namespace
 
 Command carve_command() {
-  return {"carve", "Drills a tract (and a breach) into a CT and writes a signed case",
+  return {"carve",
+          "Drill a tract, with or without a breach, into a CT volume and write a signed case",
           "tractus carve --volume l3.nii.gz --entry 46,200,-61 --target 39,158,-61 --breach medial "
           "--out l3-left-medial",
           [](CLI::App& app) {

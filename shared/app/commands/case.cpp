@@ -77,14 +77,16 @@ Outcome show(const Options& o) {
 }  // namespace
 
 Command case_command() {
-  return {"case", "Shows a case, or verifies that nobody changed it since it was signed",
+  return {"case", "Show a case, or verify that it is unchanged since it was signed",
           "tractus case verify l3-left-medial", [](CLI::App& app) {
             auto options = std::make_shared<Options>();
             app.require_subcommand(1);
-            CLI::App* check = app.add_subcommand(
-                "verify", "exit 0 if signature and every part hold, 1 if not, saying which");
+            CLI::App* check =
+                app.add_subcommand("verify",
+                                   "verify the signature and every part; the exit code is 0 if all "
+                                   "are valid, else 1, and the first invalid part is named");
             CLI::App* look =
-                app.add_subcommand("show", "title, tract, model, parts; never the truth");
+                app.add_subcommand("show", "show title, tract, model and parts, but not the truth");
             for (CLI::App* each : {check, look}) {
               each->add_option("DIR", options->folder, "folder of the case")->required();
               each->add_flag("--json", options->json, "print as JSON");

@@ -24,7 +24,7 @@ Outcome run(const LabOptions& options) {
 
 Command compare_command() {
   return {.name = "compare",
-          .summary = "Compare a model with measurements: how far off, and where",
+          .summary = "Compare a model with measurements: size of the error, and where it is large",
           .example =
               "tractus compare --model bone.model.json --measurements recordings/ "
               "--report compared.html",

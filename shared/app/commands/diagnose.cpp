@@ -36,7 +36,7 @@ Outcome run(const Options& options) {
 
 Command diagnose_command() {
   return {.name = "diagnose",
-          .summary = "Find which physical effect a model is missing",
+          .summary = "Find the physical effects that a model lacks",
           .example =
               "tractus diagnose --model bone.model.json --measurements recordings/ "
               "--out-model better.model.json --report found.html",
@@ -45,7 +45,7 @@ Command diagnose_command() {
             add_lab_options(app, *options);
             add_own_option(app, *options);
             app.add_option("--out-model", options->out_model,
-                           "write the model, refitted and with the effects found");
+                           "file for the refitted model with the effects that were found");
             return [options] { return run(*options); };
           }};
 }

@@ -171,10 +171,10 @@ Outcome report(const Options& o) {
 }
 
 void add_options(CLI::App& app, Options& o) {
-  app.add_option("trial", o.trial, "a trial with a burr, .ttrial")->required();
-  app.add_option("--case", o.case_folder, "the case that was drilled");
-  app.add_option("--volume", o.volume, "or its volume alone, .tvol");
-  app.add_flag("--json", o.json, "print it as JSON (SI units)");
+  app.add_option("trial", o.trial, "file of a trial with a burr, .ttrial")->required();
+  app.add_option("--case", o.case_folder, "folder of the case that was drilled");
+  app.add_option("--volume", o.volume, "volume of the case, .tvol, in place of --case");
+  app.add_flag("--json", o.json, "print the result as JSON, in SI units");
 }
 
 }  // namespace
@@ -182,17 +182,20 @@ void add_options(CLI::App& app, Options& o) {
 Command drill_command() {
   return {
       "drill",
-      "Drills a recorded trial again: the same voxels, the same forces; what was made of the plan",
+      "Replay a recorded drilling: check its voxels and forces, or compare the drilled channel "
+      "with the plan",
       "tractus drill replay st/trials/ID.ttrial --case undrilled/ --out drilled.tvol\n"
       "  tractus drill report st/trials/ID.ttrial --case undrilled/",
       [](CLI::App& app) {
         auto options = std::make_shared<Options>();
-        CLI::App* again = app.add_subcommand(
-            "replay", "the volume from the trial's samples, held against the trial's own hash");
+        CLI::App* again = app.add_subcommand("replay",
+                                             "compute the drilled volume from the trial's samples "
+                                             "and compare it with the hash in the trial file");
         add_options(*again, *options);
-        again->add_option("--out", options->out, "where the drilled volume is written, .tvol");
-        CLI::App* held = app.add_subcommand(
-            "report", "entry, direction and depth against the plan; did it leave the bone?");
+        again->add_option("--out", options->out, "file for the drilled volume, .tvol");
+        CLI::App* held = app.add_subcommand("report",
+                                            "compare entry, direction and depth with the plan, and "
+                                            "show where the channel leaves the bone");
         add_options(*held, *options);
         app.require_subcommand(1);
         return [options, again] { return again->parsed() ? replay(*options) : report(*options); };

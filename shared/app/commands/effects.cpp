@@ -111,18 +111,17 @@ Outcome run(const Options& o) {
 }  // namespace
 
 Command effects_command() {
-  return {"effects", "Lists the physical effects that a model may carry; checks one of your own",
+  return {"effects", "List the physical effects that a model may contain, or check a user effect",
           "tractus effects --rig probing\n  tractus effects hysteresis\n  tractus effects --check "
           "my_drag.json",
           [](CLI::App& app) {
             auto options = std::make_shared<Options>();
-            auto* id = app.add_option("ID", options->id, "only this one");
-            auto* rig = app.add_option("--rig", options->rig, "only this rig's")
+            auto* id = app.add_option("ID", options->id, "id of an effect: show only this effect");
+            auto* rig = app.add_option("--rig", options->rig, "show only the effects of this rig")
                             ->check(CLI::IsMember({"probing", "palpation"}));
-            app.add_option(
-                   "--check", options->file,
-                   "a tractus-effect/1 file of your own: exit 0 and what is known of it, or "
-                   "2 and what is wrong")
+            app.add_option("--check", options->file,
+                           "file of a user effect in the format tractus-effect/1; exit code 0: the "
+                           "effect is valid and is shown, 2: it is invalid and the error is shown")
                 ->excludes(id)
                 ->excludes(rig);
             app.add_flag("--json", options->json, "print as JSON");

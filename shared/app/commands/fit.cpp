@@ -35,7 +35,7 @@ Outcome run(const Options& options) {
 
 Command fit_command() {
   return {.name = "fit",
-          .summary = "Fit a model to measurements, with effects added by hand",
+          .summary = "Fit a model to measurements, with the effects that you add",
           .example =
               "tractus fit --model bone.model.json --measurements recordings/ "
               "--add coulomb_friction --add inertia --out better.model.json",
@@ -43,11 +43,11 @@ Command fit_command() {
             auto options = std::make_shared<Options>();
             add_lab_options(app, *options);
             app.add_option("--add", options->add,
-                           "id of an effect to add (see tractus effects); may be given again")
+                           "id of an effect to add (see tractus effects); may be repeated")
                 ->expected(1, 64)
                 ->allow_extra_args(false);
             add_own_option(app, *options);
-            app.add_option("--out", options->out, "write the fitted model")->required();
+            app.add_option("--out", options->out, "file for the fitted model")->required();
             return [options] { return run(*options); };
           }};
 }

@@ -67,17 +67,19 @@ Outcome run(const Options& o) {
 }  // namespace
 
 Command import_command() {
-  return {"import", "Reads a CT (NIfTI, NRRD, or a folder of DICOM slices) into a .tvol file",
+  return {"import",
+          "Convert a CT volume (NIfTI, NRRD, or a folder of DICOM slices) to a .tvol file",
           "tractus import spine.nii.gz spine.tvol", [](CLI::App& app) {
             auto options = std::make_shared<Options>();
             app.add_option("SRC", options->source,
-                           "NIfTI, NRRD or .tvol file, or the folder of one DICOM series")
+                           "NIfTI, NRRD or .tvol file, or folder of one DICOM series")
                 ->required();
-            app.add_option("OUT", options->target, "file to write; an older one is replaced")
+            app.add_option("OUT", options->target, "file to write; an existing file is replaced")
                 ->required();
             app.add_option("--report", options->report,
-                           "file for what became of each DICOM attribute, without values");
-            app.add_flag("--json", options->json, "print what was read as JSON");
+                           "file for the de-identification report: the action for each DICOM "
+                           "attribute, without values");
+            app.add_flag("--json", options->json, "print the result as JSON");
             return [options] { return run(*options); };
           }};
 }

@@ -156,21 +156,24 @@ Outcome run(const Options& o) {
 }  // namespace
 
 Command info_command() {
-  return {"info", "Says what a volume is: size, place, values, histogram; draws three slices of it",
+  return {"info", "Show size, position, values and histogram of a volume, and draw three slices",
           "tractus info spine.tvol --png spine.png --at 0,-35,120", [](CLI::App& app) {
             auto options = std::make_shared<Options>();
-            app.add_option("FILE", options->file, "a .tvol, or anything import reads")->required();
+            app.add_option("FILE", options->file,
+                           "a .tvol file, or any file or folder that tractus import reads")
+                ->required();
             app.add_option("--png", options->png,
-                           "write axial, coronal and sagittal slices to this picture");
+                           "file for a picture of an axial, a coronal and a sagittal slice");
             app.add_option("--at", options->at_mm,
-                           "x,y,z of the point the slices go through, mm, LPS; default: the centre")
+                           "point x,y,z through which the slices go, in mm, LPS (default: centre "
+                           "of the volume)")
                 ->delimiter(',')
                 ->expected(3);
             app.add_option("--window", options->window,
-                           "centre,width of the grey scale, CT values; default 400,1800")
+                           "centre,width of the grey scale, in CT values (default 400,1800)")
                 ->delimiter(',')
                 ->expected(2);
-            app.add_flag("--json", options->json, "print as JSON, SI units");
+            app.add_flag("--json", options->json, "print the result as JSON, in SI units");
             return [options] { return run(*options); };
           }};
 }

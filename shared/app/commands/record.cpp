@@ -22,11 +22,10 @@ Outcome become_station(const std::vector<std::string>& arguments) {
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
   if (!failure) ::execv(station.c_str(), argv.data());
-  return core::Error{
-      core::Errc::not_found,
-      fmt::format("record: this program speaks to no device; run tractus-station record, which is "
-                  "expected at {} ({})",
-                  station, std::strerror(errno))};
+  return core::Error{core::Errc::not_found,
+                     fmt::format("record: this program cannot access devices; run tractus-station "
+                                 "record, which is expected at {} ({})",
+                                 station, std::strerror(errno))};
 }
 }  // namespace
 

@@ -261,16 +261,19 @@ Command replay_command() {
   return {
       .name = "replay",
       .summary =
-          "Replay recorded palpations or probings through a model: simulated forces, pictures, "
-          "table",
+          "Replay recorded palpation or probing trials through a model: simulated forces, pictures "
+          "and a table",
       .example = "tractus replay --model l3.model.json --measurements recordings/ --out replayed/",
       .make = [](CLI::App& app) -> std::function<Outcome()> {
         auto options = std::make_shared<Options>();
-        app.add_option("--model", options->model, "model file, tractus-model/1")->required();
-        app.add_option("--measurements", options->measurements,
-                       "folder with set.json, or a zip of one, tractus-measurements/1")
+        app.add_option("--model", options->model, "model file in the format tractus-model/1")
             ->required();
-        app.add_option("--out", options->out, "new folder for the results")->required();
+        app.add_option("--measurements", options->measurements,
+                       "measurement set in the format tractus-measurements/1: a folder with "
+                       "set.json, or a zip of such a folder")
+            ->required();
+        app.add_option("--out", options->out, "folder for the results; it must not exist")
+            ->required();
         app.add_flag("--json", options->json, "print the summary as JSON");
         return [options] { return run(*options); };
       }};

@@ -116,41 +116,52 @@ Outcome draw(const Options& o) {
 }
 
 void add_new(CLI::App& app, Options& o) {
-  auto* kind = app.add_option("--kind", o.kind, "start from the tuned one of this kind")
+  auto* kind = app.add_option("--kind", o.kind, "start from the tuned scenario of this kind")
                    ->check(CLI::IsMember({"hard", "soft", "lateral_breach", "in_out_in"}))
                    ->capture_default_str();
-  app.add_option("--from", o.from, "start from this version; it becomes the parent")
+  app.add_option("--from", o.from,
+                 "file of a version to start from; this version becomes the parent")
       ->excludes(kind);
-  app.add_option("--name", o.name, "another name");
+  app.add_option("--name", o.name,
+                 "name of the new version (default: name of the version to start from)");
   app.add_option("--set", o.changes,
-                 "FIELD=VALUE in SI units, may be repeated: bone/stiffness_N_per_m=9000");
-  app.add_option("--who", o.who, "who tunes it; written into the version")->required();
-  app.add_option("--out", o.out, "new file")->required();
+                 "FIELD=VALUE: new value of a field in SI units, for example "
+                 "bone/stiffness_N_per_m=9000; may be repeated");
+  app.add_option("--who", o.who,
+                 "name of the person who tunes the scenario; it is written into the version")
+      ->required();
+  app.add_option("--out", o.out, "file of the new version; it must not exist")->required();
 }
 
 }  // namespace
 
 Command scenario_command() {
-  return {"scenario", "Makes, checks and draws a scenario of the probing rig",
+  return {"scenario", "Make, check or draw a scenario of the probing rig",
           "tractus scenario new --kind lateral_breach --set density=0.8 --who 'R. Zeller' --out "
           "mine.json\n  tractus scenario check mine.json\n  tractus scenario plot mine.json --out "
           "mine.svg",
           [](CLI::App& app) {
             auto options = std::make_shared<Options>();
             app.require_subcommand(1);
-            CLI::App* make = app.add_subcommand("new", "a new version, with who, when and parent");
-            CLI::App* look = app.add_subcommand(
-                "check", "exit 0 if a surgeon and the actuator can do it, 1 if not, 2 if invalid");
-            CLI::App* plot = app.add_subcommand("plot", "resistance against depth, as SVG");
+            CLI::App* make =
+                app.add_subcommand("new", "make a new version, with author, time and parent");
+            CLI::App* look =
+                app.add_subcommand("check",
+                                   "check a scenario; exit code 0: a surgeon and the actuator can "
+                                   "do it, 1: they cannot, 2: the file is invalid");
+            CLI::App* plot = app.add_subcommand("plot", "draw resistance against depth, as SVG");
             add_new(*make, *options);
             for (CLI::App* each : {look, plot})
-              each->add_option("FILE", options->file, "a tractus-scenario/1 file")->required();
-            plot->add_option("--speed", options->speeds_mm_s, "mm/s, may be repeated")
+              each->add_option("FILE", options->file,
+                               "file of a scenario in the format tractus-scenario/1")
+                  ->required();
+            plot->add_option("--speed", options->speeds_mm_s,
+                             "speed of the tip, in mm/s; may be repeated")
                 ->check(CLI::Range(0.0, 230.0))
                 ->capture_default_str();
-            plot->add_option("--out", options->out, "SVG file")->required();
+            plot->add_option("--out", options->out, "SVG file to write")->required();
             for (CLI::App* each : {make, look, plot})
-              each->add_flag("--json", options->json, "print as JSON");
+              each->add_flag("--json", options->json, "print the result as JSON");
             return [options, make, look]() -> Outcome {
               if (make->parsed()) return make_new(*options);
               return look->parsed() ? check(*options) : draw(*options);

@@ -74,8 +74,8 @@ void add_method(CLI::App& app, const assessment::Method& method,
                         method.formula)
         ->required();
     sub->add_flag("--drop-missing", options->drop_missing,
-                  "leave out rows with an empty cell in a column used, and say how many");
-    sub->add_option("--svg", options->svg, "write the analysis' first picture");
+                  "leave out rows with an empty cell in a used column, and print their number");
+    sub->add_option("--svg", options->svg, "SVG file for the first picture of the analysis");
   }
   for (const auto& option : method.options) {
     std::string meaning = option.meaning;
@@ -83,7 +83,7 @@ void add_method(CLI::App& app, const assessment::Method& method,
     if (!option.fallback.empty()) meaning += " [" + option.fallback + "]";
     sub->add_option("--" + option.name, options->more[option.name], meaning);
   }
-  sub->add_flag("--json", options->json, "print as JSON, every digit");
+  sub->add_flag("--json", options->json, "print the result as JSON, with all digits");
   sub->callback([&chosen, id = method.id] { chosen = id; });
 }
 
@@ -103,7 +103,8 @@ constexpr const char* kExample =
 }  // namespace
 
 Command stats_command() {
-  return {"stats", "Analyses a CSV file: regression, ANOVA, mixed models, recognition, learning",
+  return {"stats",
+          "Analyse a CSV file: regression, ANOVA, mixed models, recognition, learning curves",
           kExample, [](CLI::App& app) {
             auto options = std::make_shared<Options>();
             auto chosen = std::make_shared<std::string>();

@@ -96,38 +96,46 @@ Outcome run(const Options& o) {
 }  // namespace
 
 Command trainee_command() {
-  return {"trainee", "One trainee: curve, competence, strengths, next case; or the list of all",
+  return {"trainee",
+          "Report on one trainee: learning curve, competence, strengths, next case; or list all "
+          "trainees",
           "tractus trainee --data trials.csv --who S03 --html S03.html\n"
           "  tractus trainee --data trials.csv --id surgeon --order trial_order --score "
           "operation_time_s\n"
           "  where trials.csv has a row per trial: participant,order,scenario,correct,…",
           [](CLI::App& app) {
             auto o = std::make_shared<Options>();
-            app.add_option("--data", o->data, "CSV file, a row per trial")->required();
-            app.add_option("--who", o->who, "the trainee; absent: all, one line each");
-            app.add_option("--id", o->columns.trainee, "column that names the trainee")
+            app.add_option("--data", o->data, "CSV file, one row per trial")->required();
+            app.add_option("--who", o->who,
+                           "name of the trainee (default: all trainees, one line each)");
+            app.add_option("--id", o->columns.trainee, "column with the name of the trainee")
                 ->capture_default_str();
-            app.add_option("--order", o->columns.order, "column that counts a trainee's trials")
+            app.add_option("--order", o->columns.order,
+                           "column with the number of the trial in the trainee's order")
                 ->capture_default_str();
-            app.add_option("--scenario", o->columns.scenario, "column of the scenario")
+            app.add_option("--scenario", o->columns.scenario, "column with the scenario")
                 ->capture_default_str();
             app.add_option("--correct", o->columns.right,
-                           "column that is 1 where the answer was right")
+                           "column that is 1 if the answer was correct, else 0")
                 ->capture_default_str();
-            app.add_option("--score", o->columns.scores, "a number whose learning is followed");
+            app.add_option("--score", o->columns.scores,
+                           "column of a score whose learning curve is fitted; may be repeated");
             app.add_option("--adequate", o->adequate, "failure rate of adequate performance")
                 ->capture_default_str();
             app.add_option("--inadequate", o->inadequate, "failure rate of inadequate performance")
                 ->capture_default_str();
             app.add_option("--threshold", o->threshold,
-                           "h of the LC-CUSUM; absent: the one that can certify soonest")
+                           "threshold h of the LC-CUSUM (default: the threshold that allows the "
+                           "earliest certification)")
                 ->check(CLI::Range(1e-3, 100.0));
-            app.add_option("--relapse", o->relapse, "sum at which relapse is signalled")
+            app.add_option("--relapse", o->relapse,
+                           "threshold of the CUSUM sum at which relapse is signalled")
                 ->check(CLI::Range(1e-3, 100.0))
                 ->capture_default_str();
-            app.add_option("--html", o->html, "write the trainee's page");
-            app.add_flag("--simulated", o->simulated, "the trials are simulated; the page says so");
-            app.add_flag("--json", o->json, "print as JSON");
+            app.add_option("--html", o->html, "file for the trainee's report, as an HTML page");
+            app.add_flag("--simulated", o->simulated,
+                         "the trials are simulated; the report states this");
+            app.add_flag("--json", o->json, "print the result as JSON");
             return [o] { return run(*o); };
           }};
 }

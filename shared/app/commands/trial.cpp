@@ -215,33 +215,38 @@ Outcome measurements(const Options& o) {
 Command trial_command() {
   return {
       "trial",
-      "Shows a recorded trial, scores it, ends one that a crash left open, writes trials for the "
-      "lab",
+      "Show or score a recorded trial, recover a trial file after a crash, or write trials as a "
+      "measurement set",
       "tractus trial metrics 018f.ttrial --case l3-left-medial", [](CLI::App& app) {
         auto options = std::make_shared<Options>();
         app.require_subcommand(1);
-        CLI::App* look = app.add_subcommand("show", "who, when, samples, events, how it ended");
-        CLI::App* rate = app.add_subcommand("metrics", "every score of the trial on its case");
-        CLI::App* end = app.add_subcommand(
-            "recover", "cut an unfinished last frame and end the file; a finished one stays");
+        CLI::App* look =
+            app.add_subcommand("show", "show person, time, samples, events and end of the trial");
+        CLI::App* rate = app.add_subcommand("metrics", "compute every score of the trial");
+        CLI::App* end =
+            app.add_subcommand("recover",
+                               "end a trial file that a crash left open: cut off an incomplete "
+                               "last frame; a complete file stays unchanged");
         CLI::App* set = app.add_subcommand(
-            "measurements", "write trials as a measurement set for compare, fit and diagnose");
-        set->add_option("FILES", options->files, "tractus-trial files of one rig")->required();
-        set->add_option("--out", options->out, "folder to make")->required();
-        set->add_flag("--json", options->json, "print as JSON");
+            "measurements",
+            "write trials as a measurement set for tractus compare, fit and diagnose");
+        set->add_option("FILES", options->files, "trial files of one rig")->required();
+        set->add_option("--out", options->out, "new folder for the measurement set")->required();
+        set->add_flag("--json", options->json, "print the result as JSON");
         set->footer("Example:\n  tractus trial measurements st/trials/*.ttrial --out recorded");
         for (CLI::App* each : {look, rate, end}) {
-          each->add_option("FILE", options->file, "a tractus-trial file")->required();
-          each->add_flag("--json", options->json, "print as JSON");
+          each->add_option("FILE", options->file, "trial file")->required();
+          each->add_flag("--json", options->json, "print the result as JSON");
         }
         look->footer("Example:\n  tractus trial show 018f.ttrial --csv 018f.csv");
         rate->footer("Example:\n  tractus trial metrics 018f.ttrial --case l3-left-medial");
         end->footer("Example:\n  tractus trial recover 018f.ttrial");
-        look->add_option("--csv", options->csv, "write every sample to this table, SI units");
+        look->add_option("--csv", options->csv, "CSV file for all samples, in SI units");
         rate->add_option("--case", options->case_folder,
-                         "palpation: folder of the case it was made on");
-        rate->add_option("--scenario", options->scenario,
-                         "probing: file of the scenario it was made on, for the truth");
+                         "palpation: folder of the case of the trial");
+        rate->add_option(
+            "--scenario", options->scenario,
+            "probing: file of the scenario of the trial, from which the truth is read");
         return [options, look, rate, set]() -> Outcome {
           if (set->parsed()) return measurements(*options);
           if (look->parsed()) return show(*options);

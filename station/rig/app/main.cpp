@@ -1,4 +1,4 @@
-/// `tractus-rig`: the probing rig's electronics and mechanics, played by a process.
+/// `tractus-rig`: simulates the electronics and mechanics of the probing rig.
 #include <fmt/format.h>
 #include <poll.h>
 #include <pthread.h>
@@ -35,14 +35,14 @@ struct Options {
 constexpr core::Instant_ns kIdle_ns = 20'000'000;
 std::atomic<bool> asked_to_stop = false;
 
-/// Real time for this thread and those it starts, where the system grants it: electronics do not
-/// wait for other programs.
+/// Requests real-time scheduling for this thread and for threads it starts, because electronics do
+/// not wait for other programs. The program continues if the system refuses it.
 void become_urgent() {
   const sched_param priority{.sched_priority = 70};
   static_cast<void>(pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority));
 }
 
-/// Has who started it closed the other end (or died)?
+/// Whether standard input has ended, because the parent process closed it or died.
 bool input_ended() {
   pollfd input{STDIN_FILENO, POLLIN, 0};
   if (::poll(&input, 1, 0) <= 0) return false;
@@ -52,27 +52,35 @@ bool input_ended() {
 
 void add(CLI::App& app, Options& o) {
   app.add_option("--address", o.address, "IPv4 address to listen on")->capture_default_str();
-  app.add_option("--port", o.port, "TCP port; 0 takes a free one")
+  app.add_option("--port", o.port, "TCP port to listen on; 0: a free port is chosen")
       ->check(CLI::Range(0, 65535))
       ->capture_default_str();
-  app.add_option("--rtu", o.rtu, "serial device to answer on as well");
-  app.add_option("--baud", o.baud, "of the serial line, 8E1")
+  app.add_option("--rtu", o.rtu, "serial device for Modbus RTU, in addition to TCP");
+  app.add_option("--baud", o.baud,
+                 "baud rate of the serial line (8 data bits, even parity, 1 stop bit), in bit/s")
       ->check(CLI::IsMember({9600, 19200, 38400, 57600, 115200}))
       ->capture_default_str();
-  app.add_option("--seed", o.seed, "of sensor noise, bias and the simulated surgeon")
+  app.add_option("--seed", o.seed,
+                 "seed of the random numbers for sensor noise, bias and the simulated surgeon")
       ->capture_default_str();
-  app.add_option("--travel", o.travel_m, "m")->check(CLI::Range(0.01, 0.3))->capture_default_str();
-  app.add_flag("--surgeon", o.surgeon, "a SIMULATED surgeon pushes and turns once enabled");
-  app.add_option("--skill", o.skill, "of the simulated surgeon, 0 … 1")
+  app.add_option("--travel", o.travel_m, "travel of the linear axis, in metres")
+      ->check(CLI::Range(0.01, 0.3))
+      ->capture_default_str();
+  app.add_flag("--surgeon", o.surgeon,
+               "a SIMULATED surgeon pushes and turns while the drive is enabled");
+  app.add_option("--skill", o.skill, "skill of the simulated surgeon, 0 to 1")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
-  app.add_option("--duration", o.duration_s, "s until it ends by itself; 0: until it is stopped")
+  app.add_option("--duration", o.duration_s,
+                 "time after which the program ends, in seconds; 0: it runs until it is stopped")
       ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str();
   app.add_flag("--bus-clock", o.bus_clock,
-               "its time moves by 1 ms with every command, as fast as the bus goes");
-  app.add_flag("--until-eof", o.until_eof, "ends when standard input does: with who started it");
-  app.add_flag("--json", o.json, "one JSON document a line on standard output");
+               "simulated time advances by 1 ms with every command, so that the simulation can be "
+               "faster than real time");
+  app.add_flag("--until-eof", o.until_eof,
+               "end when standard input ends, that is, when the parent process ends");
+  app.add_flag("--json", o.json, "print one JSON document per line on standard output");
 }
 
 void say_ready(const Options& o, int port) {
@@ -138,7 +146,7 @@ core::Result<int> run(const Options& o) {
 int main(int argc, char** argv) {
   using namespace tractus;
   Options options;
-  CLI::App app("The probing rig's electronics as a real Modbus peer, with physics of its own",
+  CLI::App app("Simulates the electronics and physics of the probing rig as a Modbus server",
                "tractus-rig");
   app.set_version_flag("--version", TRACTUS_VERSION);
   app.footer(kExamples);
