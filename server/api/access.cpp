@@ -13,7 +13,7 @@ namespace api {
 
 namespace {
 
-constexpr const char* kNotYours = "there is nothing of yours by this name";
+constexpr const char* kNotYours = "this object does not exist, or you may not access it";
 
 /// The texts at `pointer`, in which a segment * is every element of an array.
 void collect_texts(const core::Json& json, std::string_view pointer,
@@ -51,8 +51,8 @@ core::Result<void> check_not_blind(store::Reading& tx, Object object, const std:
   auto blind = TRY(store::is_blinded(tx, id));
   if (!blind) return {};
   return core::Error{core::Errc::forbidden,
-                     "this trial is of a study whose participant still has trials to do: it is "
-                     "shown when they are done"};
+                     "this trial belongs to a study whose participant still has trials to do: it "
+                     "is shown after the last of these trials"};
 }
 
 /// May the caller name this object as this end?
@@ -70,8 +70,8 @@ core::Result<void> check_end(store::Reading& tx, const Caller& caller, const End
   const std::string where = is_in_body(end) ? "body: " + end.field : end.field;
   const auto of = granted(end.who, caller.role);
   if (!of)
-    return core::Error{core::Errc::forbidden,
-                       where + ": this is not for the role " + std::string(name(caller.role))};
+    return core::Error{core::Errc::forbidden, where + ": this object is not allowed for the role " +
+                                                  std::string(name(caller.role))};
   for (const std::string& one : names) {
     auto may = TRY(may_name(tx, caller, *of, end, one));
     if (!may) return core::Error{core::Errc::not_found, where + ": " + kNotYours};

@@ -15,7 +15,7 @@ namespace {
 using testing::kCase;
 using testing::PeopleTest;
 
-constexpr const char* kNotYours = "there is nothing of yours by this name";
+constexpr const char* kNotYours = "this object does not exist, or you may not access it";
 
 /// Someone of the role; the one whose cohort, trial and account are `tom`'s.
 std::string someone(Role role) {
@@ -112,7 +112,7 @@ TEST_F(Access, EveryCellOfRolesTimesRoutesIsAsTheCatalogueSays) {
       }
       EXPECT_NE(mine.status, 401) << cell;
       const std::string refused = mine.status < 400 ? "" : text(mine);  // the trail tells of them
-      EXPECT_EQ(refused.find("not for the role"), std::string::npos) << cell;
+      EXPECT_EQ(refused.find("not allowed for the role"), std::string::npos) << cell;
       EXPECT_EQ(refused.find(kNotYours), std::string::npos) << cell;
       const bool shared = route.object == Object::none || route.object == Object::published_case;
       if (*of != Scope::all && !shared) {

@@ -15,7 +15,7 @@ using core::Json;
 using testing::kCase;
 using testing::PeopleTest;
 
-constexpr const char* kNotYours = "there is nothing of yours by this name";
+constexpr const char* kNotYours = "this object does not exist, or you may not access it";
 
 /// How a route is called with a value at one of its ends.
 struct Example {
@@ -166,7 +166,7 @@ class Relations : public PeopleTest {
     }
     const std::string said = response.status < 400 ? "" : text(response);
     EXPECT_EQ(said.find(kNotYours), std::string::npos) << cell << ": " << said;
-    EXPECT_EQ(said.find("not for the role"), std::string::npos) << cell << ": " << said;
+    EXPECT_EQ(said.find("not allowed for the role"), std::string::npos) << cell << ": " << said;
     EXPECT_NE(response.status, 401) << cell;
   }
 };

@@ -156,7 +156,8 @@ core::Result<http::Response> scratch_response(std::shared_ptr<http::ScratchFile>
 }
 
 core::Result<http::Response> wants_websocket(const Call&) {
-  auto response = http::error_response(426, "bad_input", "this address is a WebSocket");
+  auto response = http::error_response(426, "bad_input",
+                                       "this address is a WebSocket: send an upgrade request");
   response.with("Upgrade", "websocket").with("Connection", "upgrade");
   return response;
 }

@@ -19,7 +19,7 @@ namespace api {
 namespace {
 
 constexpr std::string_view kKeepOut =
-    "a request by cookie that changes something needs the header X-Tractus: 1";
+    "a request with a session cookie that changes data needs the header X-Tractus: 1";
 
 std::vector<std::string_view> segments_of(std::string_view path) {
   std::vector<std::string_view> out;
@@ -91,8 +91,7 @@ core::Result<void> check_query_is_declared(const RouteInfo& route, const http::R
     if (std::ranges::none_of(route.parameters, [&key = key](const Parameter& p) {
           return p.in == Parameter::In::query && p.name == key;
         }))
-      return core::Error{core::Errc::bad_input,
-                         key.substr(0, 64) + ": this parameter is not known"};
+      return core::Error{core::Errc::bad_input, key.substr(0, 64) + ": this parameter is unknown"};
   return {};
 }
 
@@ -124,12 +123,13 @@ core::Result<Caller> allowed_caller(Backend& backend, const RouteInfo& route,
     if (asked) asked->caller = caller;
     if (!granted(route, caller.role)) {
       if (asked) asked->overstepped = true;
-      return core::Error{core::Errc::forbidden,
-                         fmt::format("this is not for the role {}", name(caller.role))};
+      return core::Error{
+          core::Errc::forbidden,
+          fmt::format("this route is not allowed for the role {}", name(caller.role))};
     }
     if (caller.must_change && !route.before_password_change)
       return core::Error{core::Errc::forbidden,
-                         "choose a password of your own first: POST /api/v1/session/password"};
+                         "choose a new password first: POST /api/v1/session/password"};
   }
   TRY(check_not_forged(route, caller, head));
   return caller;
@@ -150,7 +150,8 @@ core::Result<http::Response> handled(Backend& backend, const Match& matched, con
 http::Response refusal(const core::Error& error, std::string_view allowed) {
   if (error.code == core::Errc::not_found && !allowed.empty()) {
     const std::string methods(allowed);
-    auto response = http::error_response(405, "bad_input", "this address takes " + methods);
+    auto response =
+        http::error_response(405, "bad_input", "this address accepts only the methods " + methods);
     return response.with("Allow", methods), response;
   }
   auto response = error_response(error);
@@ -171,7 +172,7 @@ core::Result<Match> match(const std::vector<RouteInfo>& table, const http::Reque
     if (same) return bound(route, pattern, path);
     if (allowed) *allowed += (allowed->empty() ? "" : ", ") + route.method;
   }
-  return core::Error{core::Errc::not_found, "there is nothing at this address"};
+  return core::Error{core::Errc::not_found, "no route of the API has this address"};
 }
 
 core::Result<std::map<std::string, std::string>> arguments(const Match& matched,
@@ -182,7 +183,8 @@ core::Result<std::map<std::string, std::string>> arguments(const Match& matched,
     auto value = given(p, matched, head);
     if (!value) value = p.fallback;
     if (!value && p.required)
-      return core::Error{core::Errc::bad_input, p.name + ": is missing (" + p.meaning + ")"};
+      return core::Error{core::Errc::bad_input,
+                         p.name + ": this parameter is missing (" + p.meaning + ")"};
     if (!value) continue;
     TRY(check(p, *value));
     out.emplace(p.name, std::move(*value));
@@ -207,7 +209,7 @@ http::Response answer_to(Backend& backend, Asked& asked, const http::Request& re
   if (!caller) return refusal(caller.error(), "");
   if (request.body.size() > matched->route->body_limit_bytes)
     return error_response({core::Errc::too_large,
-                           fmt::format("the body has {} bytes, at most {} are taken",
+                           fmt::format("the body has {} bytes, at most {} are allowed",
                                        request.body.size(), matched->route->body_limit_bytes)});
   auto checked = arguments(*matched, request);
   if (!checked) return error_response(checked.error());
@@ -282,7 +284,7 @@ std::variant<http::Admitted, http::Response> admit(Backend& backend,
   if (head.body_bytes > limit)
     return refused(error_response(
         {core::Errc::too_large,
-         fmt::format("the body has {} bytes, at most {} are taken", head.body_bytes, limit)}));
+         fmt::format("the body has {} bytes, at most {} are allowed", head.body_bytes, limit)}));
   return http::Admitted{limit, matched->route->body_to_file, caller->id};
 }
 
@@ -304,7 +306,9 @@ core::Result<std::shared_ptr<http::WebSocketHandler>> conversation(Backend& back
   const RouteInfo& route = *asked.matched->route;
   auto caller = TRY(allowed_caller(backend, route, request, &asked));
   if (!caller.session_hash.empty() && !is_own_origin(request))
-    return core::Error{core::Errc::forbidden, "the page that asks for this WebSocket is not ours"};
+    return core::Error{
+        core::Errc::forbidden,
+        "the header Origin does not name this server: only its own pages may open a WebSocket"};
   auto checked = TRY(arguments(*asked.matched, request));
   if (auto may = check_access(backend, route, caller, checked, ""); !may) {
     asked.overstepped = may.error().code == core::Errc::not_found;
@@ -332,7 +336,7 @@ std::variant<http::Response, std::shared_ptr<http::WebSocketHandler>> converse(
   };
   if (!matched) return refused(answer_to_nowhere(backend, asked, head));
   if (!matched->route->converse) {
-    const core::Error none{core::Errc::bad_input, "this address is no WebSocket"};
+    const core::Error none{core::Errc::bad_input, "this address is not a WebSocket"};
     auto caller = allowed_caller(backend, *matched->route, head, &asked);
     return refused(refusal(caller ? none : caller.error(), ""));
   }

@@ -37,7 +37,9 @@ Result<void> post(const std::string& url, const std::string& line) {
   auto answer =
       TRY(api::fetch({.url = url, .form = std::map<std::string, std::string>{{"anchor", line}}}));
   if (answer.status >= 200 && answer.status < 300) return {};
-  return core::Error{core::Errc::unavailable, fmt::format("{}: answers {}", url, answer.status)};
+  return core::Error{
+      core::Errc::unavailable,
+      fmt::format("{}: the server answered with the HTTP status {}", url, answer.status)};
 }
 
 Result<void> send_to(const AnchorPlace& place, const std::string& line) {
@@ -67,8 +69,8 @@ Result<AnchorPlace> anchor_place(const std::string& text) {
   if (path.is_absolute() && std::filesystem::is_directory(path.parent_path(), failure))
     return AnchorPlace{AnchorPlace::Kind::file, text};
   return core::Error{core::Errc::bad_input,
-                     fmt::format("--anchors-to {}: syslog, an https address, or the absolute path "
-                                 "of a file in a folder that is there is expected",
+                     fmt::format("--anchors-to {}: expected is syslog, an https address, or the "
+                                 "absolute path of a file in an existing folder",
                                  text)};
 }
 

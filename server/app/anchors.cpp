@@ -181,7 +181,7 @@ Result<void> check_against(const DataFolder& data, const Newest& newest, const T
   if (end.number == 0 || trail.noted.hash == end.hash) return {};
   return Error{
       Errc::corrupt,
-      fmt::format("audit trail: row {} is not the one that was noted, or was cut off", end.number)};
+      fmt::format("audit trail: row {} differs from its anchor, or was cut off", end.number)};
 }
 
 }  // namespace
@@ -321,8 +321,8 @@ Result<Examined> examine(DataFolder& data, const core::Progress& shown,
       store::look_over(data.store, data.objects, data.secrets.audit_key(), anchors.ends, shown));
   found.lines.insert(found.lines.end(), anchors.findings.begin(), anchors.findings.end());
   if (found.covered_since_utc_us > 0 && !anchors.has_high_water)
-    found.lines.push_back(fmt::format(
-        "{}: is missing: whether the newest rows were cut off cannot be told", kHighWater));
+    found.lines.push_back(
+        fmt::format("{}: is missing, so that missing newest rows cannot be detected", kHighWater));
   return Examined{std::move(found), std::move(anchors)};
 }
 

@@ -162,7 +162,7 @@ core::Result<api::Backup> BackupFolder::make(const std::string& by) {
   api::Backup backup{.id = name_of(now), .state = "making", .error = {}, .made_by = by};
   backup.made_utc_us = now;
   if (fs::exists(folder_ / backup.id, failure))
-    return core::Error{core::Errc::conflict, "one was made in this second already"};
+    return core::Error{core::Errc::conflict, "a backup was already made in this second: try again"};
   start(backup, [this](api::Backup& one) { make_now(one); });
   return backup;
 }

@@ -58,10 +58,9 @@ core::Result<api::Secrets> secrets_of(const fs::path& folder, store::Store& stor
   if (!fs::exists(folder / kSecret, failure)) {
     auto end = TRY(store.read([](store::Reading& tx) { return store::chain_end(tx); }));
     if (end.number > 0)
-      return core::Error{core::Errc::not_found,
-                         (folder / kSecret).string() +
-                             ": is missing; the audit trail was made with it: bring it back from "
-                             "a backup"};
+      return core::Error{core::Errc::not_found, (folder / kSecret).string() +
+                                                    ": is missing; the audit trail was made with "
+                                                    "this key: restore the file from a backup"};
     TRY(make_key_file(folder / kSecret));
   }
   auto key = TRY(read_key_file(folder / kSecret));
@@ -72,7 +71,7 @@ core::Result<api::Secrets> secrets_of(const fs::path& folder, store::Store& stor
 core::Result<void> leave_to_owner(const fs::path& folder) {
   auto repaired = TRY(core::make_private(folder, "objects"));
   if (repaired > 0)
-    log_line({{"what", "others had access to files and folders; now their owner alone has"},
+    log_line({{"what", "others had access to files and folders; now only their owner has access"},
               {"folder", folder.string()},
               {"repaired", repaired}});
   return {};

@@ -28,8 +28,8 @@ core::Result<std::string> noted_address(const fs::path& folder) {
   address = address.substr(0, address.find_first_of("\r\n"));
   if (!address.empty()) return address;
   return core::Error{core::Errc::bad_input,
-                     fmt::format("{}: its address has a password and is not kept here: give it in "
-                                 "{}, or with --database and PGPASSFILE",
+                     fmt::format("{}: the address of the database has a password and is not stored "
+                                 "here: give it in {}, or with --database and PGPASSFILE",
                                  (folder / kAddressFile).string(), kAddressVariable)};
 }
 
@@ -44,10 +44,11 @@ core::Result<store::Store> Database::open() const {
 core::Result<Database> new_database(const fs::path& folder) {
   Database out{folder / kDatabase, asked_for()};
   if (out.is_shared() && is_there(out.file))
-    return core::Error{core::Errc::conflict,
-                       fmt::format("{}: the folder's records are in this file, yet a database is "
-                                   "named; to move them: backup, then restore --database",
-                                   out.file.string())};
+    return core::Error{
+        core::Errc::conflict,
+        fmt::format("{}: the records of this folder are in this file, but a database is named; to "
+                    "move the records: backup, then restore --database",
+                    out.file.string())};
   if (!out.is_shared() && is_there(folder / kAddressFile)) {
     auto noted = TRY(noted_address(folder));
     out.address = std::move(noted);
@@ -58,7 +59,7 @@ core::Result<Database> new_database(const fs::path& folder) {
 core::Result<Database> database_of(const fs::path& folder) {
   if (!is_there(folder / kDatabase) && !is_there(folder / kAddressFile))
     return core::Error{core::Errc::not_found,
-                       fmt::format("{}: not a server's data folder; make one with: "
+                       fmt::format("{}: this is not the data folder of a server; create one with: "
                                    "tractus-server init --data {}",
                                    folder.string(), folder.string())};
   return new_database(folder);
@@ -77,10 +78,11 @@ core::Result<void> use_address(const std::string& address) {
                                    "expected",
                                    address.substr(0, 64))};
   if (store::has_password(address))
-    return core::Error{core::Errc::bad_input,
-                       fmt::format("--database: holds a password, which anybody on this machine "
-                                   "can read there: use PGPASSFILE, or give the address in {}",
-                                   kAddressVariable)};
+    return core::Error{
+        core::Errc::bad_input,
+        fmt::format("--database: the address has a password, which everybody on this machine can "
+                    "read on the command line: use PGPASSFILE, or give the address in {}",
+                    kAddressVariable)};
   ::setenv(kAddressVariable, address.c_str(), 1);
   return {};
 }

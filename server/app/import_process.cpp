@@ -116,7 +116,7 @@ Result<Json> import_volume_in_subprocess(const fs::path& upload, const fs::path&
   if (whole && answer.contains("facts")) return answer;
   if (whole && answer.contains("error"))
     return Error{static_cast<Errc>(answer.value("code", 0)), answer.value("error", "")};
-  return Error{Errc::bad_input, "the upload is damaged: its reader gave up on it"};
+  return Error{Errc::bad_input, "the upload is damaged: the program that reads it failed"};
 }
 
 Run import_volume_command(CLI::App& command) {

@@ -58,7 +58,7 @@ core::Result<std::uint64_t> copy_objects(const fs::path& from, store::Store& nam
                          fmt::format("object {}: {}", entry.sha256, in.error().what)};
     bytes += entry.size_bytes;
     if (!shown(double(++done) / double(entries.size())))
-      return core::Error{core::Errc::cancelled, "stopped; nothing is left behind"};
+      return core::Error{core::Errc::cancelled, "stopped; nothing was written"};
   }
   return bytes;
 }
@@ -146,14 +146,16 @@ core::Result<core::Json> read_manifest(const fs::path& from) {
   if (!json) return json.error();
   if (!json->is_object() || json->value("format", "") != kFormat || !json->contains("files") ||
       !(*json)["files"].is_object())
-    return core::Error{core::Errc::bad_input, path.string() + ": is no " + kFormat};
+    return core::Error{core::Errc::bad_input,
+                       path.string() + ": is not a file of the format " + kFormat};
   return json;
 }
 
 core::Result<void> check_file(const fs::path& path, const core::Json& expected) {
   auto sha256 = TRY(store::file_sha256(path));
   if (expected.is_string() && sha256 == expected.get<std::string>()) return {};
-  return core::Error{core::Errc::corrupt, path.string() + ": is not what backup.json says it is"};
+  return core::Error{core::Errc::corrupt,
+                     path.string() + ": the file differs from its SHA-256 in backup.json"};
 }
 
 core::Result<core::ScratchFolder> scratch_for(const fs::path& target) {
@@ -194,7 +196,8 @@ core::Result<core::Json> restore(const fs::path& from, const fs::path& data, con
   TRY(check_file(from / kDatabase, manifest.value("database_sha256", core::Json())));
   for (const auto& [name, sha256] : manifest["files"].items()) {
     if (fs::path(name).is_absolute() || name.find("..") != std::string::npos)
-      return core::Error{core::Errc::bad_input, (from / kManifest).string() + ": odd name " + name};
+      return core::Error{core::Errc::bad_input,
+                         (from / kManifest).string() + ": invalid file name " + name};
     TRY(check_file(from / name, sha256));
   }
   auto scratch = TRY(scratch_for(data));

@@ -30,16 +30,16 @@ core::Result<std::int64_t> schema_of(const Database& database) {
 
 std::string coverage_text(const Examined& e) {
   if (e.found.covered_since_utc_us == 0)
-    return "the trail does not cover the rows of tables yet: that begins when this program serves "
-           "the folder";
+    return "the audit trail does not cover the rows of tables yet; this begins when this program "
+           "version serves the folder";
   return fmt::format(
-      "the trail covers the rows of {} tables since {}; {} anchors, the newest of {}",
+      "the audit trail covers the rows of {} tables since {}; {} anchors, the newest of {}",
       e.found.covered_tables, core::utc_text(e.found.covered_since_utc_us), e.anchors.anchors,
       core::utc_text(e.anchors.newest_utc_us));
 }
 
 std::string findings_text(const std::vector<std::string>& lines) {
-  if (lines.empty()) return "nothing is wrong";
+  if (lines.empty()) return "no errors found";
   std::string out;
   for (std::size_t i = 0; i < std::min(kShown, lines.size()); ++i)
     out += (i ? "\n" : "") + lines[i];
@@ -73,9 +73,9 @@ enum class Covered { must_be, may_be };
 core::Result<int> verified(const Common& common, Covered covered,
                            const std::optional<std::filesystem::path>& anchors = {}) {
   auto data = TRY(open_data(common.data));
-  auto examined = TRY(examine(data, core::terminal_progress("Looking over"), anchors));
+  auto examined = TRY(examine(data, core::terminal_progress("Checking"), anchors));
   if (covered == Covered::must_be && examined.found.covered_since_utc_us == 0)
-    examined.found.lines.push_back("audit trail: does not cover the rows of tables");
+    examined.found.lines.push_back("audit trail: it does not cover the rows of tables");
   return say_examined(common, examined);
 }
 
@@ -128,7 +128,7 @@ Run anchor_command(CLI::App& command) {
         [&](store::Writing& tx) { return store::add_act(tx, data.store.audit_key(), act); }));
     TRY(begin_anchors_again(data));
     say(common->json, {{"findings", wrong.findings}},
-        "the anchors begin again with the trail's present end; the trail says so");
+        "new anchors start at the present end of the audit trail; the audit trail records this");
     return 0;
   };
 }

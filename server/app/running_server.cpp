@@ -71,14 +71,14 @@ http::Service service_of(api::Backend& backend, const std::optional<std::filesys
   };
   const auto pages = [web](const http::RequestHead& head) {
     if (web) return http::StaticFiles(*web).answer(head);
-    return http::error_response(404, "not_found",
-                                "this server has no pages; see /api/openapi.json");
+    return http::error_response(
+        404, "not_found", "this server has no web pages; /api/openapi.json describes its API");
   };
   return {
       .admit = [&backend, is_api](
                    const http::RequestHead& head) -> std::variant<http::Admitted, http::Response> {
         if (is_api(head)) return api::admit(backend, api::routes(), head);
-        return http::error_response(405, "bad_input", "pages take no body");
+        return http::error_response(405, "bad_input", "requests for pages must not have a body");
       },
       .handle =
           [&backend, is_api, pages](const http::Request& request) {
@@ -119,7 +119,7 @@ void say_where(const ServeOptions& options, std::uint16_t port) {
 core::Result<std::pair<std::string, std::uint16_t>> listening_address(const std::string& text) {
   const core::Error wrong{
       core::Errc::bad_input,
-      fmt::format("--listen {}: ADDRESS:PORT is expected, as 127.0.0.1:8480", text)};
+      fmt::format("--listen {}: ADDRESS:PORT is expected, for example 127.0.0.1:8480", text)};
   const auto colon = text.rfind(':');
   if (colon == std::string::npos || colon == 0) return wrong;
   std::string address = text.substr(0, colon);
@@ -143,10 +143,11 @@ core::Result<ServeOptions> secured(ServeOptions options) {
   if (options.http.behind_proxy) return options;
   if (options.plain) {
     if (is_loopback(options.http.address)) return options;
-    return core::Error{core::Errc::bad_input,
-                       fmt::format("--plain: {} is reached by others; passwords and trials would "
-                                   "go unprotected. Leave --plain out, or use --behind-proxy",
-                                   options.http.address)};
+    return core::Error{
+        core::Errc::bad_input,
+        fmt::format("--plain: other machines can reach {}; passwords and trials would be sent "
+                    "without encryption. Leave --plain out, or use --behind-proxy",
+                    options.http.address)};
   }
   if (options.certificate) {
     options.http.tls = options.certificate;
@@ -201,7 +202,7 @@ core::Result<std::optional<api::Secrets::Key>> pseudonym_key_of(const std::files
   std::error_code failure;
   const bool there = std::filesystem::exists(path, failure);
   if (!there && !known.empty()) {
-    log_line({{"what", "the key of pseudonyms is missing: nothing can be exported"}});
+    log_line({{"what", "the key of pseudonyms is missing: exports are not possible"}});
     return Maybe();
   }
   if (!there) {
@@ -214,7 +215,9 @@ core::Result<std::optional<api::Secrets::Key>> pseudonym_key_of(const std::files
       return store::note_pseudonym_key(tx, fingerprint_of(key), core::utc_us());
     }));
   } else if (known != fingerprint_of(key)) {
-    log_line({{"what", "another key of pseudonyms lies there: nothing can be exported"}});
+    log_line({{"what",
+               "the key of pseudonyms differs from the key of earlier exports: exports are not "
+               "possible"}});
     return Maybe();
   }
   return Maybe(key);
@@ -234,8 +237,9 @@ core::Result<void> serve(const ServeOptions& given) {
   ServeOptions options = secure;
   options.http.scratch = space.get();
   if (options.web && !std::filesystem::is_regular_file(*options.web / "index.html"))
-    return core::Error{core::Errc::not_found,
-                       options.web->string() + ": no index.html there; build the web pages first"};
+    return core::Error{
+        core::Errc::not_found,
+        options.web->string() + ": the folder has no index.html; build the web pages first"};
   std::optional<api::OidcSettings> oidc_settings;
   if (options.oidc) {
     auto settings = TRY(api::read_oidc_settings(*options.oidc));

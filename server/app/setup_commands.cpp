@@ -71,9 +71,9 @@ Run init_command(CLI::App& command) {
                     {"name", *name},
                     {"authority", authority.string()},
                     {"authority_sha256", print}};
-    std::string line =
-        fmt::format("{}: account {} is ready; stations and browsers trust {} (SHA-256 {})",
-                    common->data.string(), *name, authority.string(), print);
+    std::string line = fmt::format(
+        "{}: account {} is ready; stations and browsers must trust the certificate {} (SHA-256 {})",
+        common->data.string(), *name, authority.string(), print);
     if (file->empty()) {
       said["password"] = password;
       line += fmt::format("; its password, shown only now: {}", password);
@@ -119,8 +119,8 @@ Run enrol_command(CLI::App& command) {
     }
     const std::string signer = data.secrets.case_key().public_hex;
     say(common->json, {{"station", *name}, {"token_file", out->string()}, {"case_signer", signer}},
-        fmt::format("station {} is enrolled; its token is in {}; to take cases made on this "
-                    "server: tractus-station trust --signer {}",
+        fmt::format("station {} is enrolled; its token is in {}; to let the station accept cases "
+                    "made on this server: tractus-station trust --signer {}",
                     *name, out->string(), signer));
     return 0;
   };

@@ -47,14 +47,18 @@ core::Result<Memory> opened(const fs::path& path) {
 core::Result<Certificate> read_certificate(const fs::path& path) {
   auto file = TRY(opened(path));
   Certificate out(PEM_read_bio_X509(file.get(), nullptr, nullptr, nullptr));
-  if (!out) return core::Error{core::Errc::corrupt, path.string() + ": no certificate in PEM"};
+  if (!out)
+    return core::Error{core::Errc::corrupt,
+                       path.string() + ": the file has no certificate in PEM format"};
   return out;
 }
 
 core::Result<Key> read_key(const fs::path& path) {
   auto file = TRY(opened(path));
   Key out(PEM_read_bio_PrivateKey(file.get(), nullptr, nullptr, nullptr));
-  if (!out) return core::Error{core::Errc::corrupt, path.string() + ": no key in PEM"};
+  if (!out)
+    return core::Error{core::Errc::corrupt,
+                       path.string() + ": the file has no private key in PEM format"};
   return out;
 }
 

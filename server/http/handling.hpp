@@ -15,7 +15,8 @@ using Ranked = std::variant<Standing, Response>;
 /// A library threw where a handler did not expect it: this request fails, the server goes on.
 inline Response broken(const std::exception& failure) {
   fmt::print(stderr, "tractus-server: a request failed: {}\n", failure.what());
-  return error_response(500, "io", "the server could not do this; its log says why");
+  return error_response(500, "io",
+                        "the request failed inside the server; the reason is in the server's log");
 }
 
 struct Handling {

@@ -20,7 +20,7 @@ core::Result<void> check_framing(const Parser& parser, const RequestHead& head) 
   if (message.version() < 11 ||
       lower_case(std::string(head.header("transfer-encoding"))) != "chunked")
     return core::Error{core::Errc::bad_input,
-                       "Transfer-Encoding: chunked is taken, in HTTP/1.1, and no other"};
+                       "Transfer-Encoding: only chunked is allowed, and only in HTTP/1.1"};
   return {};
 }
 

@@ -45,7 +45,7 @@ core::Result<std::string> percent_decoded(std::string_view text) {
       const int high = i + 2 < text.size() ? hex_digit(text[i + 1]) : -1;
       const int low = i + 2 < text.size() ? hex_digit(text[i + 2]) : -1;
       if (high < 0 || low < 0)
-        return core::Error{core::Errc::bad_input, "the address has an escape that is none"};
+        return core::Error{core::Errc::bad_input, "the address has an invalid percent escape"};
       c = static_cast<char>(high * 16 + low);
       i += 2;
     }
@@ -88,7 +88,7 @@ core::Result<void> read_target(std::string_view target, RequestHead& head) {
     if (!value) return value.error();
     if (!key->empty() && !head.query.emplace(*key, *value).second)
       return core::Error{core::Errc::bad_input,
-                         "the address names " + core::one_line(*key, 80) + " twice"};
+                         "the address has the parameter " + core::one_line(*key, 80) + " twice"};
     rest.remove_prefix(std::min(end + 1, rest.size()));
   }
   return {};
@@ -117,8 +117,9 @@ core::Result<std::optional<std::pair<std::uint64_t, std::uint64_t>>> byte_range(
   if (dash == std::string_view::npos) return Range();
   const auto first = whole_number(header.substr(0, dash));
   const auto last = whole_number(header.substr(dash + 1));
-  const core::Error beyond{core::Errc::out_of_range,
-                           fmt::format("the range asked for lies beyond the {} bytes", size)};
+  const core::Error beyond{
+      core::Errc::out_of_range,
+      fmt::format("the requested range lies beyond the end of the file, which has {} bytes", size)};
   if (!first) {  // the last so many bytes
     if (!last || dash != 0) return Range();
     if (*last == 0 || size == 0) return beyond;

@@ -32,10 +32,11 @@ void ScratchSpace::Share::shrink_to(std::uint64_t bytes) {
 core::Result<ScratchSpace::Share> ScratchSpace::reserve(const std::string& client,
                                                         std::uint64_t bytes) {
   const auto refusal = [&](const char* whose, std::uint64_t limit, std::uint64_t taken) {
-    return core::Error{core::Errc::unavailable,
-                       fmt::format("{} transfers under way have {} bytes, and with this one's {} "
-                                   "would have more than {}: try again when they are done",
-                                   whose, taken, bytes, limit)};
+    return core::Error{
+        core::Errc::unavailable,
+        fmt::format("{} transfers in progress use {} bytes; with the {} bytes of this transfer "
+                    "they would exceed {} bytes: try again when they are finished",
+                    whose, taken, bytes, limit)};
   };
   const std::lock_guard held(mutex_);
   const auto at = by_client_.find(client);

@@ -50,7 +50,8 @@ struct Queue {
 };
 
 Response too_many_at_once() {
-  auto response = error_response(503, "unavailable", "too many at once: try again in 2 s");
+  auto response =
+      error_response(503, "unavailable", "too many requests at the same time: try again in 2 s");
   return response.with("Retry-After", "2"), response;
 }
 
@@ -291,7 +292,7 @@ net::awaitable<std::optional<Response>> Server::State::read_body(Connection& c, 
   if (head.body_bytes > limit)
     co_return error_response(
         413, "too_large",
-        fmt::format("the body has {} bytes, at most {} are taken", head.body_bytes, limit));
+        fmt::format("the body has {} bytes, at most {} are allowed", head.body_bytes, limit));
   const bool to_file = how.to_file && options.scratch;
   if (to_file) {
     // A body that comes in pieces may be as long as the limit.
@@ -316,10 +317,12 @@ net::awaitable<std::optional<Response>> Server::State::read_body(Connection& c, 
     co_await beast::http::async_read(c.stream, c.buffer, parser, into(failure));
   c.waited = false;
   if (spooled.broken)
-    co_return error_response(503, "unavailable", "there is no room for this now: try again later");
+    co_return error_response(503, "unavailable",
+                             "the server has no disk space for this body now: try again later");
   if (!failure) co_return std::nullopt;
   auto refusal = answer_to(failure);
-  if (!refusal) refusal = error_response(400, "bad_input", "the request ended within its body");
+  if (!refusal)
+    refusal = error_response(400, "bad_input", "the request ended before the end of its body");
   co_return refusal;
 }
 

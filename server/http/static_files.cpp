@@ -77,7 +77,7 @@ std::string entity_tag(const fs::path& file) {
 
 Response StaticFiles::answer(const RequestHead& request) const {
   if (request.method != "GET" && request.method != "HEAD") {
-    Response refusal = plain(405, "pages are read with GET\n");
+    Response refusal = plain(405, "pages accept only GET and HEAD\n");
     return refusal.with("Allow", "GET, HEAD"), refusal;
   }
   const auto relative = inside(request.path);

@@ -17,19 +17,19 @@ namespace http {
 std::string_view text_of(CloseReason parting) {
   switch (parting) {
     case CloseReason::disconnected:
-      return "the other side hung up";
+      return "the other side closed the connection";
     case CloseReason::timed_out:
-      return "nothing was heard any more";
+      return "nothing was received in time";
     case CloseReason::too_large:
-      return "a message over the limit";
+      return "a message exceeded the size limit";
     case CloseReason::flood:
-      return "too many messages";
+      return "too many messages per second";
     case CloseReason::invalid_message:
-      return "a message that makes no sense";
+      return "a message was invalid";
     case CloseReason::no_longer_allowed:
-      return "not allowed any more";
+      return "the credentials are no longer valid";
     case CloseReason::too_slow:
-      return "what was said was not taken in time";
+      return "the receiver did not read the messages in time";
     case CloseReason::closed_by_server:
       return "dismissed";
   }

@@ -20,7 +20,7 @@ enum class CloseReason {
   too_slow,           ///< the other side did not read in time
   closed_by_server,   ///< WebSocketSender::end
 };
-/// "a message over the limit", …
+/// "a message exceeded the size limit", …
 std::string_view text_of(CloseReason reason);
 
 /// Sends messages. Safe from any thread; after the WebSocket was closed it drops them.

@@ -49,7 +49,7 @@ Result<assessment::Snapshot> kept_snapshot(const store::Objects& objects,
   auto description = TRY(core::read_json(objects.path_of(*run.description)));
   auto data = TRY(core::read_file(objects.path_of(*run.snapshot), kMostData_bytes));
   if (core::sha256(data) != *run.snapshot)
-    return Error{Errc::corrupt, "the frozen data are not what was frozen"};
+    return Error{Errc::corrupt, "the frozen data were changed: their SHA-256 differs"};
   auto table = TRY(assessment::Table::parse(data, description["name"].get<std::string>(), {},
                                             assessment::Missing::keep));
   return assessment::Snapshot{std::move(description), std::move(data), std::move(table)};
@@ -64,7 +64,7 @@ Result<assessment::Snapshot> frozen_now(store::Store& store, const store::Object
   }));
   const CohortTable made = cohort_table(released);
   if (made.rows == 0)
-    return Error{Errc::bad_input, "there is no scored trial to analyse that research may have"};
+    return Error{Errc::bad_input, "there is no scored trial that is released for research"};
   const auto bytes = core::bytes_of(made.csv);
   auto snapshot = assessment::frozen(
       core::Bytes(bytes.begin(), bytes.end()),

@@ -69,14 +69,14 @@ std::map<std::string, std::string> meanings_of(const std::vector<std::string>& m
   std::map<std::string, std::string> out = {
       {"trial", "pseudonym of the trial, the same in every export"},
       {"participant", "pseudonym of the person, the same in every export"},
-      {"study", "empty: of no study"},
-      {"number", "of the trial among the participant's in the study, from 1"},
-      {"level", "of training, as the study states it"},
-      {"experience_years", "as the study states it"},
-      {"case", "the case's title"},
+      {"study", "id of the study; empty if the trial belongs to no study"},
+      {"number", "number of the trial among the participant's trials in the study, counted from 1"},
+      {"level", "level of training, as the study states it"},
+      {"experience_years", "surgical experience in years, as the study states it"},
+      {"case", "title of the case"},
       {"rig", "palpation or probing"},
-      {"simulated", "1: by a simulated hand or machine"},
-      {"correct", "1: the answer about the breach was right"}};
+      {"simulated", "1 if a simulated hand or machine did the trial, else 0"},
+      {"correct", "1 if the answer about the breach was correct, else 0"}};
   for (const auto& info : metrics::all())
     if (std::ranges::find(metrics, info.id) != metrics.end())
       out[info.id] =

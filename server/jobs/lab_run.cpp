@@ -32,7 +32,7 @@ struct Asked {
 
 Result<store::ModelVersion> version_of(store::Reading& tx, const std::string& id) {
   auto model = TRY(store::model_of(tx, id));
-  if (!model) return Error{Errc::not_found, "the model is gone"};
+  if (!model) return Error{Errc::not_found, "the model no longer exists"};
   return *model;
 }
 
@@ -42,7 +42,7 @@ Result<Asked> asked(store::Store& store, const std::string& id) {
     if (!run) return Error{Errc::not_found, "no run " + id.substr(0, 64)};
     const auto model = TRY(version_of(tx, run->model_id));
     const auto set = TRY(store::measurement_set_of(tx, run->set_id));
-    if (!set) return Error{Errc::not_found, "the measurements are gone"};
+    if (!set) return Error{Errc::not_found, "the measurement set no longer exists"};
     Asked out{*run, model, std::nullopt, *set};
     if (!out.run.against_id) return out;
     auto against = TRY(version_of(tx, *out.run.against_id));

@@ -103,7 +103,8 @@ Result<cases::CarvingPlan> plan_from(core::Fields& fields) {
   }
   const Json* breach = fields.member("breach", false);
   if (!breach || breach->is_null()) return out;
-  if (!out.drilled) fields.wrong("breach", "whole bone has none: null, or no such field");
+  if (!out.drilled)
+    fields.wrong("breach", "a planned channel has no breach: give null, or leave the field out");
   auto read = TRY(breach_from(*breach, fields.where() + "/breach"));
   out.breach = read;
   return out;
@@ -126,7 +127,8 @@ Result<void> make_case(store::Store& store, const store::Objects& objects, const
                        const std::string& making_id, const std::function<bool()>& ending) {
   auto making =
       TRY(store.read([&](store::Reading& tx) { return store::case_making_of(tx, making_id); }));
-  if (!making) return core::Error{core::Errc::not_found, "no making of a case " + making_id};
+  if (!making)
+    return core::Error{core::Errc::not_found, "no job that makes a case has the id " + making_id};
   if (making->state == "done") return {};
   auto json = TRY(core::parse_json(making->plan, "plan"));
   core::Fields fields(json, "plan");

@@ -31,8 +31,8 @@ core::Result<std::string> publish_bundle(
     parts.push_back(std::move(part));
   }
   if (parts.front().sha256 != opened.id)
-    return core::Error{core::Errc::corrupt,
-                       (bundle / "case.json").string() + ": changed meanwhile"};
+    return core::Error{core::Errc::corrupt, (bundle / "case.json").string() +
+                                                ": the file was changed while it was read"};
   for (const cases::Part& part : opened.definition.parts) {
     std::error_code failure;
     if (part.secret && !fs::exists(bundle / part.name, failure)) continue;

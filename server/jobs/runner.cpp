@@ -183,7 +183,7 @@ bool Runner::ending() {
 core::Result<void> Runner::work_on(Lane& lane, const store::Job& job) {
   if (job.kind == "metrics") return assess_trial(store_, objects_, job.subject);
   if (job.attempts > kMostAttempts)
-    return core::Error{core::Errc::unavailable, "it ended the server before it was done"};
+    return core::Error{core::Errc::unavailable, "the server ended each time it ran this job"};
   const auto wants_to_end = [this, &lane] { return ending() || is_lost(lane); };
   if (job.kind == "case")
     return make_case(store_, objects_, keys_.cases, job.subject, wants_to_end);

@@ -12,8 +12,9 @@ core::Result<SourceVolume> released_volume(store::Store& store, const store::Obj
   if (!found) return core::Error{core::Errc::not_found, "no volume " + id.substr(0, 64)};
   const store::VolumeRecord& volume = *found;
   if (volume.state != "released")
-    return core::Error{core::Errc::conflict,
-                       "this volume is not released: somebody must look at it first"};
+    return core::Error{
+        core::Errc::conflict,
+        "this volume is not released: a person must look at its pictures and release it first"};
   auto file = TRY(volume::VolumeFile::open(objects.path_of(volume.sha256)));
   return SourceVolume{volume.name, volume.source, std::move(file)};
 }

@@ -164,7 +164,7 @@ void Hub::watches_no_more(const void* key) {
 
 core::Result<void> Hub::command(const std::string& station_id,
                                 const wire::StationCommand& command) {
-  const core::Error away{core::Errc::conflict, "the station is not connected just now"};
+  const core::Error away{core::Errc::conflict, "the station is not connected"};
   {
     const std::lock_guard held(mutex_);
     const auto found = stations_.find(station_id);

@@ -70,7 +70,7 @@ core::Result<std::shared_ptr<http::WebSocketHandler>> Hub::viewer_talk(const Vie
     for (const auto& [_, watching] : viewers_)
       own += watching.viewer.account_id == viewer.account_id;
     if (viewers_.size() >= kMostViewers || own >= kMostViewersOfOne)
-      return core::Error{core::Errc::unavailable, "too many look on already: close some first"};
+      return core::Error{core::Errc::unavailable, "too many live pages are open: close some first"};
   }
   return std::shared_ptr<http::WebSocketHandler>(
       std::make_shared<ViewerTalk>(*this, viewer, std::move(still_allowed)));

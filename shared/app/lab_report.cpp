@@ -161,11 +161,12 @@ std::string printed_diagnosis(const lab_io::LabResult& answer) {
   for (const lab::Estimate& e : d.final_fit.estimates)
     if (!e.pointer.starts_with("/")) out += estimate(e);
   for (const auto& [a, b] : d.confounded)
-    out += fmt::format("\nHardly told apart here: {} and {}.", lab::effect_label(a),
+    out += fmt::format("\nThese measurements hardly distinguish {} and {}.", lab::effect_label(a),
                        lab::effect_label(b));
   if (!d.confounded.empty()) out += "\n";
   if (d.discriminating_experiment)
-    out += fmt::format("\nRecord next: {}.\n", d.discriminating_experiment->recording);
+    out +=
+        fmt::format("\nRecommended next recording: {}.\n", d.discriminating_experiment->recording);
   return out + notes(d.notes);
 }
 
@@ -178,7 +179,7 @@ std::string printed_fit(const lab_io::LabResult& answer) {
       figure(given.rmse, given.judged_unit), figure(fit.rmse, given.judged_unit),
       figure(fit.held_out_rmse, given.judged_unit), figure(fit.noise_floor, given.judged_unit));
   for (const lab::Estimate& e : fit.estimates) out += estimate(e);
-  if (!fit.converged) out += "\nThe fit did not converge; take its figures with care.\n";
+  if (!fit.converged) out += "\nThe fit did not converge; its values are uncertain.\n";
   return out + notes(fit.remarks);
 }
 

@@ -22,7 +22,7 @@ struct Work {
 };
 
 constexpr const char* kSimulatedNote =
-    "The set says that its measurements are simulated themselves.";
+    "The measurement set states that its measurements are simulated.";
 
 Result<Work> compute(const models::ProbingModel& model, const fs::path& folder) {
   auto set = trial::read_probing_set(folder);

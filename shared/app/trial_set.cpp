@@ -90,12 +90,12 @@ core::Result<std::size_t> write_trial_set(std::span<const std::string> files,
     const auto trial = trial::read_trial(file);
     if (!trial) return trial.error();
     if (!ids.insert(trial->header.id).second)
-      return Error{Errc::bad_input, fmt::format("{}: this trial is there twice", file)};
+      return Error{Errc::bad_input, fmt::format("{}: this trial occurs twice", file)};
     const bool probes = trial->header.rig == trial::Rig::probing;
     if (probes ? !palpation.trials.empty() : !probing.trials.empty())
-      return Error{Errc::bad_input,
-                   fmt::format("{}: a trial of {}, the others are not; a set is of one rig", file,
-                               trial::name(trial->header.rig))};
+      return Error{Errc::bad_input, fmt::format("{}: this trial is of another rig ({}) than the "
+                                                "first trial; a set must contain trials of one rig",
+                                                file, trial::name(trial->header.rig))};
     auto added = probes ? add(probing, probing_of(*trial), *trial, file, samples)
                         : add(palpation, palpation_of(*trial), *trial, file, samples);
     if (!added) return added.error();

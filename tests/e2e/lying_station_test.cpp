@@ -242,9 +242,9 @@ TEST_F(Lying, GiantFramesAndFloodsOnALineAreHungUpOnAndNoted) {
     EXPECT_EQ(nonsense.close_code(), 1008);
   }
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
-  EXPECT_EQ(rows_of("station-2", "over the limit"), 1);
-  EXPECT_EQ(rows_of("station-2", "too many messages"), 1);
-  EXPECT_EQ(rows_of("station-2", "makes no sense"), 1);
+  EXPECT_EQ(rows_of("station-2", "exceeded the size limit"), 1);
+  EXPECT_EQ(rows_of("station-2", "too many messages per second"), 1);
+  EXPECT_EQ(rows_of("station-2", "a message was invalid"), 1);
 }
 
 TEST_F(Lying, TheTrailCannotBeFlooded) {

@@ -254,7 +254,8 @@ TEST_F(Room, ASensorThatSaysTheOppositeOrLiesOtherwiseIsSeenInTheTaps) {
       json["sensor"].value("says", "on_probe") == "on_probe" ? "by_probe" : "on_probe";
   const auto told = told_of(opposite);
   EXPECT_EQ(told.code, 0) << told.out;
-  EXPECT_NE(told.out.find("does the sensor say the opposite"), std::string::npos) << told.out;
+  EXPECT_NE(told.out.find("does the sensor report the opposite force"), std::string::npos)
+      << told.out;
   auto turned = json;
   turned["sensor"]["X_HS"]["q"] = {0.5, 0.5, 0.5, 0.5};  // x, y, z for y, z, x
   EXPECT_NE(told_of(turned).out.find("X_HS"), std::string::npos);

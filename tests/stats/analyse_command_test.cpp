@@ -62,7 +62,7 @@ TEST_F(Analyse, LocksFreezesRunsTwiceAndReports) {
   EXPECT_THAT(text_of("report/data.csv"), HasSubstr("excluded_because"));
   EXPECT_EQ(text_of("report/result.json"), text_of("once.json"));
   EXPECT_EQ(run("analyse report plan.json cohort report"), 2);
-  EXPECT_THAT(err_, HasSubstr("is there already"));
+  EXPECT_THAT(err_, HasSubstr("exists already"));
 }
 
 TEST_F(Analyse, RefusesAPlanOrDataThatWereChanged) {

@@ -59,7 +59,7 @@ core::Result<std::vector<CohortTrial>> CohortRows::read(Reading& tx, const std::
   auto rows = TRY(tx.query(kTrials(), {study_id, study_id, limit + 1}));
   if (rows.size() > static_cast<std::size_t>(limit))
     return core::Error{core::Errc::too_large, "the cohort has more than " + std::to_string(limit) +
-                                                  " trials: ask for one study"};
+                                                  " trials: choose one study"};
   std::vector<CohortTrial> out;
   for (const Row& row : rows) {
     out.push_back(trial_from(row));

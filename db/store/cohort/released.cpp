@@ -44,8 +44,9 @@ ReleasedTrial::ReleasedTrial(CohortTrial trial, Tier released, const std::string
 
 core::Result<std::string> ReleasedTrial::file(Tier wanted) const {
   if (tier >= wanted) return sha256_;
-  return core::Error{core::Errc::forbidden, "who did this trial agreed to " +
-                                                std::string(name(tier)) + ", and this is " +
+  return core::Error{core::Errc::forbidden, "the person who did this trial consented to the tier " +
+                                                std::string(name(tier)) +
+                                                ", but this request needs the tier " +
                                                 std::string(name(wanted))};
 }
 

@@ -20,8 +20,8 @@ core::Result<void> check_same_schema(const std::vector<Table>& from, const std::
   });
   if (same) return {};
   return core::Error{core::Errc::conflict,
-                     "the two databases have not the same tables and columns: bring both up to "
-                     "this program's schema first (tractus-server migrate)"};
+                     "the two databases have different tables or columns: migrate both to the "
+                     "schema of this program first (tractus-server migrate)"};
 }
 
 core::Result<void> check_empty(Reading& to, const std::vector<Table>& tables) {

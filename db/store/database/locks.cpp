@@ -57,7 +57,7 @@ class PostgresLocks final : public Locks {
             std::make_unique<Held>(*this, key_of(name), session, std::move(stripe)));
       if (std::chrono::steady_clock::now() > until)
         return core::Error{core::Errc::unavailable,
-                           "another server has been at this for ten seconds"};
+                           "another server has held this lock for ten seconds"};
       std::this_thread::sleep_for(kBetween);
     }
   }

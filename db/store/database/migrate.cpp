@@ -50,8 +50,8 @@ core::Result<void> migrate(Connection& connection, const std::vector<Migration>&
   const std::int64_t last = steps.empty() ? 0 : steps.back().version;
   if (!known.empty() && *known.rbegin() > last)
     return core::Error{core::Errc::conflict,
-                       fmt::format("the database has schema {}, this program knows up to {}: use "
-                                   "the newer program that made it",
+                       fmt::format("the database has schema {}, but this program supports schemas "
+                                   "up to {}: use the newer program that made the database",
                                    *known.rbegin(), last)};
   for (const Migration& step : steps) {
     if (known.contains(step.version)) continue;

@@ -31,7 +31,8 @@ class Postgres final : public Connection {
 
   core::Result<void> begin(Access access) override {
     const std::string words = beginning(most_ == Access::read ? Access::read : access);
-    core::Result<std::string> begun = core::Error{core::Errc::unavailable, "PostgreSQL: no begin"};
+    core::Result<std::string> begun =
+        core::Error{core::Errc::unavailable, "PostgreSQL: the transaction could not begin"};
     // A connection that broke while nobody looked is only found out by using it.
     for (int tries = 0; tries < 2; ++tries) {
       const bool fresh = !link_.connected();

@@ -17,7 +17,7 @@ core::Result<void> set_state(Writing& tx, const Job& job, const char* state,
                "where id = ? and owner = ? and state = 'claimed' returning id",
                {state, error, uncounted_attempts, now_utc_us, job.id, job.owner}));
   if (rows.empty())
-    return core::Error{core::Errc::conflict, "job " + job.id + " is another's by now"};
+    return core::Error{core::Errc::conflict, "job " + job.id + " now belongs to another server"};
   return {};
 }
 

@@ -77,7 +77,7 @@ core::Result<void> set_account(Writing& tx, const Account& account) {
                    bool_value(account.totp_confirmed), account.totp_step,
                    bool_value(account.must_change), account.id});
   if (!done && done.error().code == core::Errc::conflict)
-    return core::Error{core::Errc::conflict, "badge: another account has this one"};
+    return core::Error{core::Errc::conflict, "badge: another account already has this badge"};
   return done;
 }
 
@@ -86,7 +86,7 @@ core::Result<void> use_totp_step(Writing& tx, const std::string& account_id, std
       TRY(tx.query("update accounts set totp_step = ? where id = ? and totp_step < ? returning id",
                    {step, account_id, step}));
   if (rows.empty())
-    return core::Error{core::Errc::unauthorised, "the one-time code was used already"};
+    return core::Error{core::Errc::unauthorised, "the one-time code was already used"};
   return {};
 }
 
@@ -213,7 +213,7 @@ core::Result<std::string> use_enrolment_code(Writing& tx, const std::string& cod
       "and expires_utc_us > ? returning station_name",
       {now_utc_us, code_hash, now_utc_us}));
   if (rows.empty())
-    return core::Error{core::Errc::unauthorised, "this code is unknown, used or too old"};
+    return core::Error{core::Errc::unauthorised, "this code is unknown, already used or expired"};
   return rows.front().text(0);
 }
 

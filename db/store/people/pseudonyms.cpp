@@ -8,8 +8,9 @@ namespace tractus::store {
 
 core::Result<Pseudonyms> Pseudonyms::of(const std::optional<PseudonymKey>& key) {
   if (key) return Pseudonyms(*key);
-  return core::Error{core::Errc::unavailable,
-                     "this server has not got the key of its pseudonyms: nothing can be exported"};
+  return core::Error{
+      core::Errc::unavailable,
+      "this server does not have the key of its pseudonyms: exports are not possible"};
 }
 
 std::string Pseudonyms::hashed(char first, const std::string& text) const {

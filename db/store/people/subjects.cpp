@@ -10,7 +10,7 @@ core::Result<void> link_subject(Writing& tx, const Subject& link) {
   auto holder = TRY(account_of_subject(tx, link.issuer, link.subject));
   if (holder && holder->id != link.account_id)
     return core::Error{core::Errc::conflict,
-                       "subject: is the account " + holder->name + "'s already"};
+                       "subject: the account " + holder->name + " already has this subject"};
   TRY(tx.query("delete from oidc_subjects where issuer = ? and account_id = ?",
                {link.issuer, link.account_id}));
   if (link.subject.empty()) return {};

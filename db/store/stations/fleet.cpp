@@ -36,10 +36,10 @@ core::Result<void> add_station_note(Writing& tx, const StationNote& note, std::i
       tx.query("select count(*) from station_reports where station_id = ? and received_utc_us > ?",
                {note.station_id, now_utc_us - kDay_us}));
   if (today.front().integer(0) >= kMostNotesADay)
-    return core::Error{core::Errc::unavailable,
-                       fmt::format("{} reports came from this station within a day: no more are "
-                                   "taken today",
-                                   kMostNotesADay)};
+    return core::Error{
+        core::Errc::unavailable,
+        fmt::format("this station sent {} reports within a day: no more are accepted today",
+                    kMostNotesADay)};
   return done(tx.query(
       "insert into station_reports (station_id, kind, at_utc_us, received_utc_us, body) values "
       "(?, ?, ?, ?, ?) on conflict (station_id, kind, at_utc_us) do nothing",

@@ -89,7 +89,7 @@ core::Result<void> add_assigned_person(Writing& tx, const AssignmentId& id,
       tx.query("insert into assignment_people (study_id, account_id, participant) values (?, ?, ?)",
                {id.text(), account_id, participant}));
   if (!added && added.error().code == core::Errc::conflict)
-    return core::Error{core::Errc::conflict, "it is assigned to this person already"};
+    return core::Error{core::Errc::conflict, "the assignment already includes this person"};
   return added;
 }
 

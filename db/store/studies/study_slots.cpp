@@ -176,10 +176,10 @@ core::Result<Taken> take_slots(Writing& tx, const SeriesId& id, const Participan
                               {id.text(), participant.name}));
   for (const Slot& slot : open)
     if (slot.station_id && *slot.station_id != station_id)
-      return core::Error{core::Errc::conflict,
-                         fmt::format("{} is at another station: end there, or have the trials that "
-                                     "it holds released",
-                                     participant.name)};
+      return core::Error{
+          core::Errc::conflict,
+          fmt::format("{} has trials at another station: finish them there, or release them first",
+                      participant.name)};
   auto planned = TRY(planned_of(tx, id.text(), participant.name));
   Taken out{.slots = {}, .unfinished = open.size(), .planned = planned};
   open.resize(std::min<std::size_t>(open.size(), static_cast<std::size_t>(ahead)));
@@ -274,7 +274,7 @@ core::Result<void> set_trial_invalid(Writing& tx, const SeriesId& id, const std:
   auto trial = TRY(tx.query("select state, tool from study_trials where trial_id = ?", {trial_id}));
   if (trial.front().text(0) != "counts")
     return core::Error{core::Errc::conflict,
-                       fmt::format("trial {} does not count as it is", trial_id)};
+                       fmt::format("trial {} already does not count", trial_id)};
   const Tool tool{.burr = trial.front().text(1) == "burr"};
   TRY(set_trial(tx, trial_id, "invalid", stamp));
   TRY(add_study_event(tx, id.text(), stamp, "invalid", &*slot, trial_id));

@@ -32,7 +32,7 @@ core::Result<void> remove_comment(Writing& tx, const std::string& trial_id, cons
       "delete from trial_comments where trial_id = ? and id = ? and by_id = ? returning id",
       {trial_id, id, by_id}));
   if (rows.empty())
-    return core::Error{core::Errc::not_found, "no comment of yours by this name on the trial"};
+    return core::Error{core::Errc::not_found, "you have no comment with this id on the trial"};
   return {};
 }
 

@@ -45,7 +45,7 @@ core::Result<bool> is_named(Reading& tx, const std::string& sha256) {
 core::Result<void> add_volume(Writing& tx, const VolumeRecord& v) {
   auto twin = TRY(tx.query("select id, name from volumes where sha256 = ?", {v.sha256}));
   if (!twin.empty())
-    return core::Error{core::Errc::conflict, "these voxels are here already, as volume " +
+    return core::Error{core::Errc::conflict, "these voxels are already on this server, as volume " +
                                                  twin.front().text(0) + " \"" +
                                                  twin.front().text(1) + "\""};
   TRY(

@@ -56,7 +56,8 @@ Json making_json(const store::CaseMaking& making) {
 Result<http::Response> making_response(const Call& call, const std::string& id, int status) {
   const auto making = TRY(
       call.backend.store.read([&](store::Reading& tx) { return store::case_making_of(tx, id); }));
-  if (!making) return Error{Errc::not_found, "no making of a case " + id.substr(0, 32)};
+  if (!making)
+    return Error{Errc::not_found, "no job that makes a case has the id " + id.substr(0, 32)};
   return json_response(making_json(*making), status);
 }
 

@@ -96,7 +96,8 @@ core::Result<Preview> case_preview(Backend& backend, const std::string& case_id,
     longest = std::max(longest, box.end[a] - box.begin[a]);
   }
   if (voxels > kMaxVoxels)
-    return core::Error{core::Errc::too_large, "the volume is too fine round its tract to preview"};
+    return core::Error{core::Errc::too_large,
+                       "the volume has too many voxels around its tract for a preview"};
   auto read = TRY(file.read_box(box));
   const int step = (longest + max_side - 1) / max_side;
   return averaged(read, opacity_of(read, facts.definition.model.transfer), step);

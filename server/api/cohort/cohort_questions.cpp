@@ -46,9 +46,11 @@ Result<Json> unplanned(core::Fields& fields) {
   TRY(fields.done());
   const auto method = assessment::method_named(one["method"].get<std::string>());
   if (!method) return wrong("body: method: " + method.error().what);
-  if (method->formula.empty()) return wrong("body: method: " + method->id + " is of no data");
+  if (method->formula.empty())
+    return wrong("body: method: " + method->id + " analyses no data: run it with tractus stats");
   if (formula.empty())
-    return wrong("body: formula: " + method->id + " needs one, as " + method->formula);
+    return wrong("body: formula: " + method->id + " needs a formula, for example " +
+                 method->formula);
   one["formula"] = formula;
   one["question"] = method->summary;
   const Json plan = {{"format", "tractus-plan/1"},
@@ -70,7 +72,7 @@ Result<void> take_snapshot(Backend& backend, const std::string& sha256, store::A
       run.description = before.description;
       return check_still_released(backend, run.study, sha256);
     }
-  return wrong("body: snapshot: no analysis of this plan is of " + sha256.substr(0, 64));
+  return wrong("body: snapshot: no analysis of this plan used the data " + sha256.substr(0, 64));
 }
 
 Result<void> of_plan(Backend& backend, core::Fields& fields, store::AnalysisRun& run) {
@@ -110,7 +112,7 @@ Result<store::AnalysisPlan> locked_plan(Backend& backend, const Json& asked,
   store::AnalysisPlan out;
   out.study = fields.text_or("study", "", 64);
   const Json* seen = fields.member("data_seen", false);
-  if (seen && !seen->is_boolean()) fields.wrong("data_seen", "should be true or false");
+  if (seen && !seen->is_boolean()) fields.wrong("data_seen", "true or false is expected");
   TRY(fields.done());
   const auto scored =
       backend.store.read([&](store::Reading& tx) { return store::scored_trials(tx, out.study); });
@@ -162,10 +164,9 @@ Result<void> check_still_released(Backend& backend, const std::string& study,
     rest.remove_prefix(std::min(rest.size(), row.size() + 1));
   }
   if (gone == 0) return {};
-  return Error{Errc::forbidden,
-               fmt::format("{} trials of these data may not be had any more: analyse today's data "
-                           "instead",
-                           gone)};
+  return Error{Errc::forbidden, fmt::format("{} trials of these data are no longer released for "
+                                            "research: analyse the current data instead",
+                                            gone)};
 }
 
 Result<http::Response> dictionary_response(Backend& backend, const store::AnalysisRun& run) {

@@ -86,8 +86,9 @@ class Zip {
   }
   Error failure() const {
     if (out_.size <= kMostZip_bytes)
-      return {Errc::io, "the cohort's zip cannot be written: is the disk full?"};
-    return {Errc::too_large, "the cohort's zip is over 256 MiB: ask for one study or a lower tier"};
+      return {Errc::io, "the zip cannot be written: the disk is possibly full"};
+    return {Errc::too_large,
+            "the zip is larger than 256 MiB: export one study or use a lower tier"};
   }
   Output out_;
   std::unique_ptr<archive, Frees> writer_;

@@ -80,7 +80,7 @@ Result<http::Response> add_cohort_route(const Call& call) {
 
 Result<void> put(store::Writing& tx, const Call& call, const std::string& account_name) {
   auto account = TRY(store::account_named(tx, account_name));
-  if (!account) return Error{Errc::bad_input, "body: /name: there is no account of this name"};
+  if (!account) return Error{Errc::bad_input, "body: /name: there is no account with this name"};
   return join_cohort(tx, call.text("id"), *account, {call.caller.name, call.backend.now_utc_us()});
 }
 

@@ -31,7 +31,7 @@ Json backup_json(const Backup& backup) {
 
 Result<Backups*> of(const Call& call) {
   if (call.backend.backups) return call.backend.backups;
-  return core::Error{core::Errc::unavailable, "this server makes no backups by itself"};
+  return core::Error{core::Errc::unavailable, "this server cannot make backups on request"};
 }
 
 Result<http::Response> list_backups(const Call& call) {

@@ -105,7 +105,9 @@ Result<void> check_an_admin_stays(store::Reading& tx, const store::Account& chan
     return other.id != changing.id && other.role == name(Role::admin) && other.state == "active";
   });
   if (stays) return {};
-  return Error{Errc::conflict, "this is the last active administrator: make another one first"};
+  return Error{
+      Errc::conflict,
+      "this is the last active administrator: make another account an administrator first"};
 }
 
 /// One text field of the body.
@@ -142,8 +144,9 @@ Result<http::Response> set_role(const Call& call) {
 /// For other people's accounts only: the route for one's own account asks for the old password.
 Result<http::Response> reset_password(const Call& call) {
   if (call.text("id") == call.caller.id)
-    return Error{Errc::forbidden,
-                 "this is your own account: change its password by POST /api/v1/session/password"};
+    return Error{
+        Errc::forbidden,
+        "this is your own account: change its password with POST /api/v1/session/password"};
   const std::string password = made_password();
   auto hash = TRY(password_hash(password));
   TRY(changed(call, [&](store::Writing& tx, store::Account& account) {

@@ -14,7 +14,7 @@ namespace api {
 namespace {
 
 constexpr std::int64_t kTouch_us = 60ll * 1'000'000;
-constexpr const char* kCodeNeeded = "a one-time code is asked for";
+constexpr const char* kCodeNeeded = "a one-time code is required";
 
 bool matches(const std::string& hash, const std::string& password) {
   return crypto_pwhash_str_verify(hash.c_str(), password.data(), password.size()) == 0;
@@ -34,7 +34,7 @@ const std::string& nobodys_hash() {
 core::Result<Caller> by_token(Backend& backend, std::string_view token) {
   auto station = TRY(backend.store.read(
       [&](store::Reading& tx) { return store::station_of(tx, token_hash(token)); }));
-  if (!station) return core::Error{core::Errc::unauthorised, "this token is not known"};
+  if (!station) return core::Error{core::Errc::unauthorised, "this token is unknown"};
   return Caller{Role::station, station->id, station->name, ""};
 }
 
@@ -45,7 +45,7 @@ core::Result<Caller> by_cookie(Backend& backend, std::string_view token, Presenc
   const std::int64_t now = backend.now_utc_us();
   const bool over = !session || now - session->seen_utc_us > kSessionIdle_us ||
                     now - session->made_utc_us > kSessionAge_us;
-  if (over) return core::Error{core::Errc::unauthorised, "sign in first: the session is over"};
+  if (over) return core::Error{core::Errc::unauthorised, "the session has ended: sign in again"};
   if (presence == Presence::shown && now - session->seen_utc_us > kTouch_us) {
     TRY(backend.store.write_beside(
         [&](store::Writing& tx) { return store::touch_session(tx, hash, now); }));
@@ -53,7 +53,7 @@ core::Result<Caller> by_cookie(Backend& backend, std::string_view token, Presenc
   const store::Account& account = session->account;
   const auto role = role_named(account.role);
   if (!role || *role == Role::station || account.state != "active")
-    return core::Error{core::Errc::unauthorised, "the account is switched off"};
+    return core::Error{core::Errc::unauthorised, "the account is disabled"};
   return Caller{*role, account.id, account.name, hash, account.must_change};
 }
 

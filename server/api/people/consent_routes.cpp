@@ -87,14 +87,14 @@ Result<http::Response> list_consents(const Call& call) {
 Result<void> resolve(store::Reading& tx, const std::string& account, store::Consent& said) {
   if (!account.empty()) {
     auto known = TRY(store::account_named(tx, account));
-    if (!known) return Error{Errc::not_found, "account: there is none of this name"};
+    if (!known) return Error{Errc::not_found, "account: there is no account with this name"};
     said.account_id = known->id;
     return {};
   }
   auto study = TRY(store::find_study(tx, said.study_id));
   auto participant = TRY(store::participant_of(tx, study, said.participant));
   if (!participant)
-    return Error{Errc::not_found, "participant: there is none of this name in the study"};
+    return Error{Errc::not_found, "participant: the study has no participant with this name"};
   return {};
 }
 
@@ -110,7 +110,7 @@ Result<http::Response> note_consent(const Call& call) {
                       .noted_utc_us = call.backend.now_utc_us(),
                       .noted_by = call.caller.name};
   if (account.empty() == said.participant.empty())
-    fields.wrong("participant", "a participant of a study, or an account, is expected");
+    fields.wrong("participant", "either a participant of a study or an account is expected");
   TRY(fields.done());
   TRY(call.backend.store.write([&](store::Writing& tx) -> Result<void> {
     TRY(resolve(tx, account, said));

@@ -93,7 +93,7 @@ Result<std::string> der_of(const std::string& both) {
                  BN_bin2bn(raw(both) + 32, 32, nullptr));
   unsigned char* der = nullptr;
   const int size = i2d_ECDSA_SIG(signature.get(), &der);
-  if (size <= 0) return refused("has a signature that is none");
+  if (size <= 0) return refused("has an invalid signature");
   std::string out(reinterpret_cast<char*>(der), std::size_t(size));
   OPENSSL_free(der);
   return out;
@@ -127,16 +127,17 @@ Result<void> check_signature(std::string_view signed_part, const std::string& si
                              const Json& header, const Json& keys) {
   const std::string algorithm = text_field(header, "alg");
   if (algorithm != "RS256" && algorithm != "ES256")
-    return refused("is signed by another method than RS256 or ES256");
-  if (header.contains("crit")) return refused("asks for extensions");
+    return refused("is not signed with RS256 or ES256");
+  if (header.contains("crit"))
+    return refused("requires extensions (crit), which are not supported");
   const bool rsa = algorithm == "RS256";
   const auto fitting = candidates(keys, rsa ? "RSA" : "EC", algorithm, text_field(header, "kid"));
   if (fitting.empty())
-    return Error{Errc::not_found, "the provider's id_token is signed by a key that is not known"};
+    return Error{Errc::not_found, "the provider's id_token is signed with an unknown key"};
   if (fitting.size() > 1 && text_field(header, "kid").empty())
-    return refused("does not say by which of the provider's keys it is signed");
+    return refused("does not name the key (kid) with which it is signed");
   const Key key = rsa ? rsa_key(*fitting.front()) : ec_key(*fitting.front());
-  if (!key) return refused("is signed by a key that is none");
+  if (!key) return refused("is signed with an invalid key");
   if (rsa)
     return verifies(key.get(), signed_part, signature) ? Result<void>()
                                                        : refused("is not signed by the provider");
@@ -158,35 +159,37 @@ Result<void> check_audience(const Json& claims, const std::string& client_id) {
   bool among = false;
   if (audience.is_array())
     for (const Json& each : audience) among = among || each == Json(client_id);
-  if (!one && !among) return refused("is for another client");
+  if (!one && !among) return refused("is for another client (aud)");
   const std::string party = text_field(claims, "azp");
   if (audience.is_array() && audience.size() > 1 && party.empty())
-    return refused("is for several and does not say which asked");
-  if (!party.empty() && party != client_id) return refused("was asked for by another client");
+    return refused("is for several clients and does not name the authorised client (azp)");
+  if (!party.empty() && party != client_id) return refused("was issued to another client (azp)");
   return {};
 }
 
 Result<Identity> checked(const Json& claims, const Expected& expected) {
-  if (text_field(claims, "iss") != expected.issuer) return refused("is of another issuer");
+  if (text_field(claims, "iss") != expected.issuer) return refused("has another issuer (iss)");
   TRY(check_audience(claims, expected.client_id));
   const std::int64_t expires = seconds_field(claims, "exp"), made_at = seconds_field(claims, "iat");
   if (expires < 0 || expected.now_s > expires + kSkew_s) return refused("has expired");
-  if (made_at < 0 || made_at > expected.now_s + kSkew_s) return refused("is of the future");
+  if (made_at < 0 || made_at > expected.now_s + kSkew_s)
+    return refused("was issued in the future (iat)");
   if (expected.now_s - made_at > kMostAge_s) return refused("is too old");
   if (const std::int64_t from = seconds_field(claims, "nbf"); from > expected.now_s + kSkew_s)
-    return refused("does not hold yet");
+    return refused("is not valid yet (nbf)");
   if (expected.nonce.empty() || text_field(claims, "nonce") != expected.nonce)
     return refused("is not the answer to this sign-in");
   Identity out{text_field(claims, "sub"), text_field(claims, "sid")};
-  if (out.subject.empty() || out.subject.size() > kMostSubject) return refused("names nobody");
+  if (out.subject.empty() || out.subject.size() > kMostSubject)
+    return refused("names no person (sub)");
   return out;
 }
 
 Result<Json> part(std::string_view text) {
   const auto bytes = base64url_decoded(text);
-  if (!bytes) return refused("is none");
+  if (!bytes) return refused("is not a valid JSON Web Token");
   auto out = core::parse_json(*bytes, "ID token");
-  if (!out || !out->is_object()) return refused("is none");
+  if (!out || !out->is_object()) return refused("is not a valid JSON Web Token");
   return out;
 }
 
@@ -233,10 +236,10 @@ Result<Identity> identity_of(std::string_view token, const Json& keys, const Exp
   if (token.size() > kMostToken_bytes) return refused("is too long");
   const auto first = token.find('.'), last = token.rfind('.');
   if (first == std::string_view::npos || first == last || token.find('.', first + 1) != last)
-    return refused("is none");
+    return refused("is not a valid JSON Web Token");
   const auto header = TRY(part(token.substr(0, first)));
   const auto signature = base64url_decoded(token.substr(last + 1));
-  if (!signature) return refused("is none");
+  if (!signature) return refused("is not a valid JSON Web Token");
   TRY(check_signature(token.substr(0, last), *signature, header, keys));
   const auto claims = TRY(part(token.substr(first + 1, last - first - 1)));
   return checked(claims, expected);

@@ -71,7 +71,7 @@ TEST_F(IdToken, TheStandardsOwnExamplesAreSignedAsTheySay) {
     // Signature and issuer hold; the example has no audience.
     const auto seen = identity_of(token, kStandardKeys, {"joe", "tractus", "n-1", 1300819000});
     ASSERT_FALSE(seen);
-    EXPECT_EQ(seen.error().what, "the provider's id_token is for another client");
+    EXPECT_EQ(seen.error().what, "the provider's id_token is for another client (aud)");
     std::string changed = token;
     changed[changed.size() - 20] = changed[changed.size() - 20] == 'A' ? 'B' : 'A';
     const auto forged = identity_of(changed, kStandardKeys, {"joe", "tractus", "n-1", 1300819000});
@@ -88,24 +88,24 @@ TEST_F(IdToken, NamesThePersonWhenAllHolds) {
 
 TEST_F(IdToken, EveryClaimThatDoesNotHoldIsRefused) {
   const std::string token = "the provider's id_token ";
-  EXPECT_EQ(said_of("iss", "https://other"), token + "is of another issuer");
-  EXPECT_EQ(said_of("aud", "another"), token + "is for another client");
-  EXPECT_EQ(said_of("aud", Json()), token + "is for another client");
+  EXPECT_EQ(said_of("iss", "https://other"), token + "has another issuer (iss)");
+  EXPECT_EQ(said_of("aud", "another"), token + "is for another client (aud)");
+  EXPECT_EQ(said_of("aud", Json()), token + "is for another client (aud)");
   EXPECT_EQ(said_of("aud", {"another", "tractus"}),
-            token + "is for several and does not say which asked");
+            token + "is for several clients and does not name the authorised client (azp)");
   EXPECT_EQ(said_of("aud", Json::array({"tractus"})), "fine");
-  EXPECT_EQ(said_of("azp", "another"), token + "was asked for by another client");
+  EXPECT_EQ(said_of("azp", "another"), token + "was issued to another client (azp)");
   EXPECT_EQ(said_of("exp", kNow_s - 61), token + "has expired");
   EXPECT_EQ(said_of("exp", kNow_s - 59), "fine") << "a minute's difference of clocks";
   EXPECT_EQ(said_of("exp", Json()), token + "has expired");
   EXPECT_EQ(said_of("exp", "tomorrow"), token + "has expired");
-  EXPECT_EQ(said_of("iat", kNow_s + 61), token + "is of the future");
+  EXPECT_EQ(said_of("iat", kNow_s + 61), token + "was issued in the future (iat)");
   EXPECT_EQ(said_of("iat", kNow_s - 601), token + "is too old");
-  EXPECT_EQ(said_of("nbf", kNow_s + 61), token + "does not hold yet");
+  EXPECT_EQ(said_of("nbf", kNow_s + 61), token + "is not valid yet (nbf)");
   EXPECT_EQ(said_of("nonce", "n-2"), token + "is not the answer to this sign-in");
   EXPECT_EQ(said_of("nonce", Json()), token + "is not the answer to this sign-in");
-  EXPECT_EQ(said_of("sub", ""), token + "names nobody");
-  EXPECT_EQ(said_of("sub", std::string(256, 'x')), token + "names nobody");
+  EXPECT_EQ(said_of("sub", ""), token + "names no person (sub)");
+  EXPECT_EQ(said_of("sub", std::string(256, 'x')), token + "names no person (sub)");
 }
 
 TEST_F(IdToken, NoOtherMethodAndNoOtherKeyWillDo) {
@@ -115,7 +115,8 @@ TEST_F(IdToken, NoOtherMethodAndNoOtherKeyWillDo) {
   for (const char* method : {"none", "HS256", "RS512", "PS256"}) {
     const auto seen = judged(signer_->token(claims(), {{"alg", method}, {"kid", "k1"}}));
     ASSERT_FALSE(seen) << method;
-    EXPECT_NE(seen.error().what.find("another method"), std::string::npos) << method;
+    EXPECT_NE(seen.error().what.find("not signed with RS256 or ES256"), std::string::npos)
+        << method;
   }
   const std::string bare = base64url("{\"alg\":\"none\"}") + "." + base64url(claims().dump()) + ".";
   EXPECT_FALSE(judged(bare));

@@ -26,7 +26,8 @@ core::Result<void> Breaker::check() const {
   const std::lock_guard held(mutex_);
   const std::int64_t wait_s = closed_until_s_ - now_s_();
   if (failures_ == 0 || wait_s <= 0) return {};
-  return core::Error{core::Errc::unavailable, fmt::format("{}; asked again in {} s", why_, wait_s)};
+  return core::Error{core::Errc::unavailable,
+                     fmt::format("{}; the next attempt is possible in {} s", why_, wait_s)};
 }
 
 void Breaker::succeeded() {

@@ -38,7 +38,7 @@ Result<Json> json_at(const std::string& url, const OidcSettings& settings) {
   auto out = core::parse_json(got.body, "the provider's answer");
   if (got.status == 200 && out && out->is_object()) return out;
   return Error{Errc::unavailable,
-               "the provider does not answer as one: HTTP status " + std::to_string(got.status)};
+               "the provider answered with the HTTP status " + std::to_string(got.status)};
 }
 
 }  // namespace
@@ -86,10 +86,10 @@ Result<Json> Oidc::fetched_description() const {
   const auto unfit = [](const std::string& what) {
     return Error{Errc::corrupt, "the provider's description " + what};
   };
-  if (text_field(*json, "issuer") != settings_.issuer) return unfit("is of another issuer");
+  if (text_field(*json, "issuer") != settings_.issuer) return unfit("has another issuer");
   for (const char* key : {"authorization_endpoint", "token_endpoint", "jwks_uri"})
     if (!is_safe_address(text_field(*json, key)))
-      return unfit(std::string("has no safe address: ") + key);
+      return unfit(std::string("has no https address: ") + key);
   return json;
 }
 
@@ -117,7 +117,7 @@ Result<Json> Oidc::tokens(const std::string& code, const OidcAttempt& attempt) c
   breaker_.succeeded();
   auto json = core::parse_json(answer->body, "the provider's answer");
   if (answer->status == 200 && json && json->is_object()) return json;
-  return Error{Errc::unauthorised, "the provider does not take its code back"};
+  return Error{Errc::unauthorised, "the provider did not accept its authorization code"};
 }
 
 Result<std::string> Oidc::sign_in_address(const OidcAttempt& attempt) const {

@@ -35,7 +35,7 @@ std::string attempt_cookie(const Backend& backend, const std::string& value, std
 
 Result<const Oidc*> provider(const Call& call) {
   if (call.backend.oidc) return call.backend.oidc;
-  return Error{Errc::not_found, "this server has no provider of identities"};
+  return Error{Errc::not_found, "this server has no OpenID Connect provider"};
 }
 
 /// Redirects to the web pages, which show that the sign-in failed.
@@ -67,7 +67,8 @@ Result<http::Response> begin(const Call& call) {
 
 /// The sign-in attempt that this browser began, if the request answers that attempt.
 Result<OidcAttempt> attempt_of(const Call& call) {
-  const Error none{Errc::unauthorised, "this browser began no such sign-in, or too long ago"};
+  const Error none{Errc::unauthorised,
+                   "this browser did not begin this sign-in, or began it too long ago"};
   const std::string sealed(call.request.cookie(kAttemptCookie));
   if (sealed.empty()) return none;
   const auto opened = call.backend.secrets.opened(sealed);
@@ -125,7 +126,7 @@ Result<std::string> session_for(const Call& call, const Oidc& oidc, const std::s
 
 Result<std::string> signed_in(const Call& call, const Oidc& oidc) {
   if (call.has("error") || !call.has("code"))
-    return Error{Errc::unauthorised, "the provider did not sign anybody in"};
+    return Error{Errc::unauthorised, "the provider did not sign the person in"};
   if (call.has("iss") && call.text("iss") != oidc.settings().issuer)  // RFC 9207
     return Error{Errc::unauthorised, "this is another provider's answer"};
   const auto attempt = TRY(attempt_of(call));

@@ -19,7 +19,7 @@ using core::Error;
 using core::Result;
 
 constexpr std::uint64_t kMaxBody_bytes = 8192;
-constexpr const char* kCodesAreOn = "one-time codes are asked for already: end them first";
+constexpr const char* kCodesAreOn = "one-time codes are already on: turn them off first";
 constexpr std::size_t kTotpKey_bytes = 20;  // RFC 4226 section 4, R6: as long as SHA-1's output
 
 Result<store::Account> own_account(store::Reading& tx, const Call& call) {
@@ -68,7 +68,7 @@ Result<void> changed(const Call& call, const Change& change) {
 Result<void> take_code(const Call& call, store::Account& account, const std::string& code,
                        bool& wrong) {
   wrong = !use_code(call.backend, account, code);
-  if (wrong) return Error{Errc::forbidden, "body: /code: is wrong"};
+  if (wrong) return Error{Errc::forbidden, "body: /code: the one-time code is wrong"};
   return {};
 }
 
@@ -88,11 +88,11 @@ Result<std::optional<http::Response>> refusal_of(const Call& call, const Proof& 
       TRY(call.backend.store.read([&](store::Reading& tx) { return own_account(tx, call); }));
   if (!password_matches(account.password_hash, proof.password)) {
     TRY(note_failure(call.backend, attempt_of(call)));
-    return Error{Errc::forbidden, std::string("body: /") + proof.field + ": is not the password"};
+    return Error{Errc::forbidden, std::string("body: /") + proof.field + ": the password is wrong"};
   }
   if (!account.totp_confirmed || !proof.code.empty()) return std::optional<http::Response>();
   return std::optional(
-      http::error_response(403, "code_needed", "body: /code: a one-time code is asked for"));
+      http::error_response(403, "code_needed", "body: /code: a one-time code is required"));
 }
 
 /// Runs `change` after refusal_of() returned nothing, and marks the one-time code as used.
@@ -110,7 +110,8 @@ Result<http::Response> change_password(const Call& call) {
   core::Fields fields(json, "body");
   const Proof proof{"old", fields.text("old", kMaxPassword), fields.text_or("code", "", 16)};
   const std::string after = password_field(fields, "new", true);
-  if (proof.password == after) fields.wrong("new", "another password than before is expected");
+  if (proof.password == after)
+    fields.wrong("new", "a password that differs from the current password is expected");
   TRY(fields.done());
   auto refusal = TRY(refusal_of(call, proof));
   if (refusal) return std::move(*refusal);
@@ -151,7 +152,8 @@ Result<http::Response> confirm_codes(const Call& call) {
   bool wrong = false;
   return changed_by_code(call, wrong, [&](store::Writing&, store::Account& own) -> Result<void> {
     if (own.totp_secret.empty() || own.totp_confirmed)
-      return Error{Errc::conflict, "ask for a secret first"};
+      return Error{Errc::conflict,
+                   "there is no secret to confirm: call POST /api/v1/session/codes first"};
     TRY(take_code(call, own, code, wrong));
     own.totp_confirmed = true;
     return {};
@@ -166,7 +168,7 @@ Result<http::Response> end_codes(const Call& call) {
   auto refusal = TRY(refusal_of(call, proof));
   if (refusal) return std::move(*refusal);
   return changed_by_owner(call, proof, [](store::Writing&, store::Account& own) -> Result<void> {
-    if (!own.totp_confirmed) return Error{Errc::conflict, "no codes are asked for"};
+    if (!own.totp_confirmed) return Error{Errc::conflict, "one-time codes are already off"};
     own.totp_confirmed = false;
     own.totp_secret.clear();
     return {};

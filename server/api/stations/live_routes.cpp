@@ -44,7 +44,7 @@ Result<http::Response> stop(const Call& call) {
   wire::StationCommand command;
   command.reason = fields.text("reason", kMaxReason);
   if (command.reason.find_first_not_of(" \t\r\n") == std::string::npos)
-    fields.wrong("reason", "the person at the station reads it: a few words are expected");
+    fields.wrong("reason", "a reason is expected; the person at the station reads it");
   TRY(fields.done());
   return commanded(call, command);
 }

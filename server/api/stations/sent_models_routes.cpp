@@ -63,7 +63,8 @@ Result<std::optional<std::set<std::string>>> stations_asked(const Json& json) {
   const bool list = named && named->is_array() && !named->empty() &&
                     named->size() <= kMaxStations &&
                     std::ranges::all_of(*named, [](const Json& one) { return one.is_string(); });
-  if (all == list) fields.wrong("stations", "ids of stations, or \"all\": true, are expected");
+  if (all == list)
+    fields.wrong("stations", "either an array of station ids or \"all\": true is expected");
   TRY(fields.done());
   if (all) return std::optional<std::set<std::string>>();
   std::set<std::string> out;

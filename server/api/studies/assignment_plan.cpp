@@ -36,7 +36,7 @@ Result<AssignedCase> case_from(const Json& json, const std::string& where) {
   out.case_id = fields.text_or("case", "", 64);
   const Json* scenario = fields.member("scenario", false);
   if (out.case_id.empty() == (scenario == nullptr))
-    fields.wrong("case", "a case's id, or /scenario, is expected");
+    fields.wrong("case", "either the id of a case or a scenario is expected");
   TRY(fields.done());
   if (!scenario) return out;
   auto read = TRY(scenario_from(*scenario, where + "/scenario"));
@@ -56,7 +56,7 @@ Result<std::vector<AssignedCase>> cases_from(const Json* json) {
     const std::string where = fmt::format("/cases/{}", out.size());
     auto read = TRY(case_from(one, where));
     if (!ids.insert(read.case_id).second)
-      return Error{Errc::bad_input, where + ": is there twice; repeats are for that"};
+      return Error{Errc::bad_input, where + ": this case occurs twice; use repeats instead"};
     out.push_back(std::move(read));
   }
   return out;
@@ -95,7 +95,7 @@ store::Assignment assignment_from(core::Fields& fields) {
 }
 
 Error absent(const char* what, const std::string& name) {
-  return {Errc::not_found, fmt::format("{}: there is none named {}", what, name.substr(0, 64))};
+  return {Errc::not_found, fmt::format("{}: nothing has the name {}", what, name.substr(0, 64))};
 }
 
 /// The cohort's trainees and the people named.
@@ -182,7 +182,7 @@ Result<AssignmentPlan> AssignmentPlan::from_json(const Json& json) {
   const Json* cases = fields.member("cases", false);
   const Json* people = fields.member("people", false);
   if (out.protocol.empty() == (cases == nullptr))
-    fields.wrong("cases", "cases, or a protocol, are expected");
+    fields.wrong("cases", "either cases or a protocol is expected");
   TRY(fields.done());
   auto read = TRY(cases_from(cases));
   out.cases = std::move(read);
@@ -205,14 +205,14 @@ Result<std::string> make_assignment(const Call& call, const AssignmentPlan& plan
 Result<void> assign_to(store::Writing& tx, const store::AssignmentId& id,
                        const store::Account& account, const store::AuditStamp& stamp) {
   if (account.role != name(Role::trainee))
-    return Error{Errc::bad_input, account.name + ": is no trainee"};
+    return Error{Errc::bad_input, account.name + ": this account is not a trainee"};
   auto study = TRY(store::study_of(tx, id));
   auto scenarios = TRY(store::study_scenarios(tx, id));
   auto there = TRY(store::study_participants(tx, id));
   const std::string participant =
       account.pseudonym.empty() ? "P" + account.id.substr(0, 24) : account.pseudonym;
   if (std::ranges::find(there, participant, &store::Participant::name) != there.end())
-    return Error{Errc::conflict, account.name + ": it is assigned to this person already"};
+    return Error{Errc::conflict, account.name + ": the assignment already includes this person"};
   TRY(store::add_participant(tx, id, {.name = participant},
                              order_for(study, scenarios, int(there.size())), stamp));
   return store::add_assigned_person(tx, id, account.id, participant);
@@ -240,7 +240,8 @@ Result<void> join_cohort(store::Writing& tx, const std::string& cohort_id,
   if (!cohort) return Error{Errc::not_found, "no cohort " + cohort_id.substr(0, 32)};
   const bool learns = account.role == name(Role::trainee);
   if (!learns && account.role != name(Role::faculty))
-    return Error{Errc::bad_input, account.name + ": is neither a trainee nor of the faculty"};
+    return Error{Errc::bad_input,
+                 account.name + ": this account is neither a trainee nor a member of the faculty"};
   TRY(store::put_into_cohort(tx, cohort_id, account.id, account.role, stamp.at_utc_us));
   TRY(store::remove_invitation(tx, cohort_id, account.name));
   return learns ? assign_what_the_cohort_has(tx, cohort_id, account, stamp) : Result<void>();

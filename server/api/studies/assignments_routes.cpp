@@ -175,7 +175,7 @@ Result<http::Response> assign_person(const Call& call) {
           const store::AuditStamp& stamp) -> Result<void> {
         auto account = TRY(store::account_named(tx, name));
         if (!account)
-          return Error{Errc::not_found, "body: /name: there is no account of this name"};
+          return Error{Errc::not_found, "body: /name: there is no account with this name"};
         return assign_to(tx, id, *account, stamp);
       });
 }
@@ -201,7 +201,8 @@ Result<http::Response> free_person(const Call& call) {
       [&](store::Writing& tx, const store::AssignmentId& id,
           const store::AuditStamp& stamp) -> Result<void> {
         auto participant = TRY(store::participant_for(tx, id, call.text("account_id")));
-        if (participant.empty()) return Error{Errc::not_found, "it is not assigned to this person"};
+        if (participant.empty())
+          return Error{Errc::not_found, "the assignment does not include this person"};
         TRY(store::release_slots(tx, id, participant, stamp));
         return {};
       });

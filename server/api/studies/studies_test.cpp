@@ -107,7 +107,7 @@ TEST_F(StudyRoutes, RefuseAPlanThatIsNotOneAndNameTheField) {
   EXPECT_THAT(refused("/scenarios/1", {{"tuned", "hard"}}), HasSubstr("/scenarios/1"));
   EXPECT_THAT(refused("/scenarios/1", {{"tuned", "harder"}}), HasSubstr("/scenarios/1/tuned"));
   EXPECT_THAT(refused("/scenarios/0", 7), HasSubstr("/scenarios/0"));
-  EXPECT_THAT(refused("/participants/1/name", "P1"), HasSubstr("P1 is there twice"));
+  EXPECT_THAT(refused("/participants/1/name", "P1"), HasSubstr("P1 occurs twice"));
   EXPECT_THAT(refused("/participants/0/name", "a b"), HasSubstr("name"));
   EXPECT_THAT(refused("/participants/0/experience_years", -1), HasSubstr("experience_years"));
   EXPECT_THAT(refused("/colour", "red"), HasSubstr("colour"));

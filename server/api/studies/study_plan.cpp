@@ -79,7 +79,7 @@ Result<std::vector<scenarios::Scenario>> scenarios_from(const Json& json) {
     const std::string where = fmt::format("/scenarios/{}", out.size());
     auto scenario = TRY(scenario_from(one, where));
     if (!ids.insert(scenario.id()).second)
-      return Error{Errc::bad_input, where + ": is the same as one before; repeats are for that"};
+      return Error{Errc::bad_input, where + ": this scenario occurs twice; use repeats instead"};
     out.push_back(std::move(scenario));
   }
   return out;
@@ -92,7 +92,7 @@ Result<std::vector<store::Participant>> participants_from(const Json& json) {
     const std::string where = fmt::format("/participants/{}", out.size());
     auto participant = TRY(participant_from(one, where));
     if (std::ranges::find(out, participant.name, &store::Participant::name) != out.end())
-      return Error{Errc::bad_input, where + "/name: " + participant.name + " is there twice"};
+      return Error{Errc::bad_input, where + "/name: " + participant.name + " occurs twice"};
     out.push_back(std::move(participant));
   }
   return out;
@@ -102,7 +102,8 @@ Result<store::Study> study_from(const Json& json) {
   core::Fields fields(json, "");
   store::Study out;
   out.id = fields.text("id", kMaxName);
-  if (!is_study_id(out.id)) fields.wrong("id", "1 to 32 of a-z, 0-9 and - are expected");
+  if (!is_study_id(out.id))
+    fields.wrong("id", "1 to 32 of the characters a-z, 0-9 and - are expected");
   out.title = fields.text("title", kMaxTitle);
   out.repeats = fields.integer("repeats", 1, kMaxRepeats);
   out.ordering = fields.text_or("ordering", "random", kMaxName);
@@ -209,8 +210,9 @@ Result<void> enrol(Backend& backend, const std::string& study_id,
     if (std::ranges::find(there, participant.name, &store::Participant::name) != there.end())
       return Error{Errc::conflict, "name: " + participant.name + " is enrolled already"};
     if (there.size() >= kMaxParticipants)
-      return Error{Errc::conflict,
-                   fmt::format("{} participants are enrolled: that is the most", there.size())};
+      return Error{
+          Errc::conflict,
+          fmt::format("{} participants are enrolled: a study cannot have more", there.size())};
     auto scenarios = TRY(store::study_scenarios(tx, id));
     return store::add_participant(tx, id, participant,
                                   order_for(study, scenarios, int(there.size())),

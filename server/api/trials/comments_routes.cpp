@@ -139,7 +139,8 @@ Result<http::Response> reference_way(const Call& call) {
           if (one.trial_id == id) return store::trial_of(tx, id);
         return std::optional<store::TrialRecord>();
       }));
-  if (!record) return Error{Errc::not_found, "no such trial is offered as an example on this case"};
+  if (!record)
+    return Error{Errc::not_found, "no trial with this id is offered as an example on this case"};
   auto signals = TRY(signals_of(call.backend, id));
   if (signals->rig() == trial::Rig::palpation) {
     auto way = TRY(palpated(call.backend, *signals, record->summary.case_id));

@@ -45,13 +45,15 @@ core::Error without_path(core::Error error, const std::filesystem::path& path) {
 core::Result<void> check_bytes(const store::PartialFiles& partials, const store::Upload& upload) {
   const std::filesystem::path path = partials.path_of(upload.trial_id);
   if (partials.size_of(upload.trial_id) != upload.size_bytes)
-    return core::Error{core::Errc::corrupt,
-                       fmt::format("trial file: {} bytes were announced", upload.size_bytes)};
+    return core::Error{
+        core::Errc::corrupt,
+        fmt::format("trial file: its size is not the announced {} bytes", upload.size_bytes)};
   auto sha256 = TRY(store::file_sha256(path));
   if (sha256 != upload.sha256)
-    return core::Error{core::Errc::corrupt,
-                       fmt::format("sha256: the {} bytes received have {}, announced was {}",
-                                   upload.size_bytes, sha256, upload.sha256)};
+    return core::Error{
+        core::Errc::corrupt,
+        fmt::format("sha256: the {} received bytes have the SHA-256 {}, but {} was announced",
+                    upload.size_bytes, sha256, upload.sha256)};
   return {};
 }
 
@@ -71,18 +73,19 @@ core::Result<Promised> promised(store::Reading& tx, const store::Upload& upload)
 core::Result<void> check_identity(const store::Upload& upload, const Promised& promised,
                                   const trial::Trial& trial, const Tally& tally) {
   if (!trial.sealed)
-    return core::Error{core::Errc::bad_input, "trial file: it has no end; recover it first"};
+    return core::Error{core::Errc::bad_input,
+                       "trial file: the file has no end; run tractus trial recover first"};
   if (trial.header.id != upload.trial_id)
     return core::Error{core::Errc::bad_input,
-                       fmt::format("trial file: its id is {}, announced was {}", trial.header.id,
-                                   upload.trial_id)};
+                       fmt::format("trial file: its id is {}, but {} was announced",
+                                   trial.header.id, upload.trial_id)};
   if (trial.header.case_id != promised.case_id)
     return core::Error{core::Errc::bad_input,
-                       fmt::format("trial file: its case is {}, announced was {}",
+                       fmt::format("trial file: its case is {}, but {} was announced",
                                    trial.header.case_id, promised.case_id)};
   if (trial::name(trial.header.rig) != promised.kind)
     return core::Error{core::Errc::bad_input,
-                       fmt::format("trial file: it is of {}, its case is for {}",
+                       fmt::format("trial file: the trial is for {}, but its case is for {}",
                                    trial::name(trial.header.rig), promised.kind)};
   if (tally.samples == 0)
     return core::Error{core::Errc::bad_input, "trial file: it has no samples"};

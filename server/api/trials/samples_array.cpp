@@ -104,7 +104,7 @@ Result<void> write_samples_npy(const std::filesystem::path& trial_file, double r
   TRY(trial::scan_trial(trial_file, [&](const trial::Block& block) { block.each(take); },
                         {.max_samples = kMaxTrialSamples, .max_bytes = kMaxTrial_bytes}));
   if (array.is_full())
-    return Error{Errc::too_large, "the array is over 512 MiB: ask for fewer samples a second"};
+    return Error{Errc::too_large, "the array is larger than 512 MiB: use a lower rate_Hz"};
   if (array.finish()) return {};
   return core::system_error(to, "cannot write");
 }

@@ -115,7 +115,7 @@ core::Result<http::Response> trial_signals(const Call& call) {
   auto signals = TRY(signals_of(call.backend, call.text("id")));
   const auto channels = channels_of(call, *signals);
   if (channels.size() > trial::kChannels.size())
-    return core::Error{core::Errc::bad_input, "channels: each may be asked for once"};
+    return core::Error{core::Errc::bad_input, "channels: a channel may be named only once"};
   auto view = TRY(signals->view(channels, call.number("from_s"), call.number("to_s"),
                                 static_cast<std::size_t>(call.integer("points"))));
   core::Json shown = core::Json::object();
@@ -139,7 +139,9 @@ core::Result<http::Response> trial_path(const Call& call) {
 core::Result<http::Response> trial_force_depth(const Call& call) {
   auto signals = TRY(signals_of(call.backend, call.text("id")));
   if (signals->rig() != trial::Rig::probing)
-    return core::Error{core::Errc::not_found, "force against depth: not a probing trial"};
+    return core::Error{
+        core::Errc::not_found,
+        "force against depth exists only for probing trials; this is a palpation trial"};
   const auto curve = signals->force_against_depth(static_cast<std::size_t>(call.integer("points")));
   core::Json modes = core::Json::array();
   for (const trial::ProbingMode mode : curve.mode) modes.push_back(trial::name(mode));

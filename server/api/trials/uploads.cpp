@@ -34,7 +34,7 @@ core::Result<void> check_disk(const Backend& backend, std::uint64_t size_bytes) 
   if (free >= size_bytes && free - size_bytes >= kReserve_bytes) return {};
   return core::Error{
       core::Errc::unavailable,
-      fmt::format("the server's disk has {} bytes left: too few for another trial", free)};
+      fmt::format("the server's disk has {} free bytes: too few for another trial", free)};
 }
 
 namespace {
@@ -128,7 +128,7 @@ core::Result<std::optional<store::Upload>> announced_before(
       known.sha256 == announced.sha256)
     return upload;
   return core::Error{core::Errc::conflict,
-                     fmt::format("trial {} was announced differently before", trial_id)};
+                     fmt::format("trial {} was announced before with other data", trial_id)};
 }
 
 }  // namespace
@@ -145,7 +145,7 @@ core::Result<wire::UploadState> announce_upload(Backend& backend, const Caller& 
     return core::Error{core::Errc::bad_input, "trial_id: 32 hexadecimal characters are expected"};
   if (announced.size_bytes > kMaxTrial_bytes)
     return core::Error{core::Errc::too_large,
-                       fmt::format("size_bytes: {} bytes, at most {} are taken",
+                       fmt::format("size_bytes: {} bytes, at most {} are allowed",
                                    announced.size_bytes, kMaxTrial_bytes)};
   const auto held = TRY(hold_upload(backend, trial_id));
   // What is known already changes nothing, and is no row of the audit trail.
@@ -181,11 +181,11 @@ core::Result<Appended> append_upload(Backend& backend, const Caller& station,
     return core::Error{core::Errc::conflict, fmt::format("trial {} is complete", trial_id)};
   const std::uint64_t there = backend.partials.size_of(trial_id);
   if (offset_bytes != there) return Appended{{there, upload.state}, false};
-  if (bytes.empty()) return core::Error{core::Errc::bad_input, "the piece is empty"};
+  if (bytes.empty()) return core::Error{core::Errc::bad_input, "the chunk is empty"};
   if (bytes.size() > upload.size_bytes - std::min(there, upload.size_bytes))
     return core::Error{core::Errc::out_of_range,
-                       fmt::format("{} bytes at {} go beyond the {} announced", bytes.size(),
-                                   offset_bytes, upload.size_bytes)};
+                       fmt::format("{} bytes at offset {} exceed the announced size of {} bytes",
+                                   bytes.size(), offset_bytes, upload.size_bytes)};
   if (core::crc32c(bytes) != crc32c)
     return core::Error{core::Errc::corrupt,
                        fmt::format("X-Crc32c: the body's checksum is {:08x}, not {:08x}",
@@ -201,9 +201,9 @@ core::Result<wire::UploadState> commit_upload(Backend& backend, const Caller& st
   auto upload = TRY(own_upload(backend, station, trial_id));
   if (upload.state == "complete") return state_of(backend, upload);
   if (const std::uint64_t there = backend.partials.size_of(trial_id); there < upload.size_bytes)
-    return core::Error{
-        core::Errc::conflict,
-        fmt::format("{} of {} bytes are here: send the rest first", there, upload.size_bytes)};
+    return core::Error{core::Errc::conflict,
+                       fmt::format("the server has {} of {} bytes: send the rest first", there,
+                                   upload.size_bytes)};
   auto trial = checked_trial(backend, upload);
   if (!trial) {
     const auto code = trial.error().code;

@@ -40,7 +40,7 @@ core::Result<http::Response> append(const Call& call) {
                                     static_cast<std::uint64_t>(call.integer("offset_bytes")),
                                     crc32c, core::bytes_of(call.request.body)));
   if (appended.taken) return json_response(appended.state.to_json());
-  return json_response({{"error", "the upload stands elsewhere: go on from offset_bytes"},
+  return json_response({{"error", "the server expects another offset: continue from offset_bytes"},
                         {"code", name(core::Errc::conflict)},
                         {"offset_bytes", appended.state.offset_bytes}},
                        409);

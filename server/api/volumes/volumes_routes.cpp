@@ -49,9 +49,10 @@ Result<volume::VolumeFile> pictured(const Call& call) {
   auto v = TRY(volume_of_call(call));
   const bool decides = call.caller.role == Role::admin || call.caller.role == Role::director;
   if (v.state == "refused")
-    return Error{Errc::conflict, "this volume was refused: its voxels are no longer here"};
+    return Error{Errc::conflict, "this volume was refused: its voxels were removed"};
   if (v.state == "held" && !decides && call.caller.id != v.made_by_id)
-    return Error{Errc::forbidden, "this volume is held until somebody has looked at it"};
+    return Error{Errc::forbidden,
+                 "this volume is held: a person must look at its pictures and release it first"};
   return volume::VolumeFile::open(call.backend.objects.path_of(v.sha256));
 }
 
@@ -111,7 +112,8 @@ Result<http::Response> release(const Call& call) {
   core::Fields fields(json, "body");
   const Json* looked = fields.member("looked_at");
   if (looked && *looked != Json(true))
-    fields.wrong("looked_at", "true is expected: look at its pictures first, no text, no face");
+    fields.wrong("looked_at",
+                 "true is expected, after you looked at the pictures and saw no text and no face");
   TRY(fields.done());
   return decided(call, {"released", call.caller.name, "", call.backend.now_utc_us()});
 }
@@ -134,7 +136,7 @@ std::string three(const volume::Vec3& v) { return fmt::format("{},{},{}", v.x(),
 Result<Window> window_of(const Call& call) {
   const Window out{call.number("low"), call.number("high")};
   if (out.low < out.high) return out;
-  return Error{Errc::out_of_range, "low: less than high is expected"};
+  return Error{Errc::out_of_range, "low: a value smaller than high is expected"};
 }
 
 http::Response bytes_response(std::string bytes) {

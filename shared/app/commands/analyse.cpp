@@ -34,7 +34,7 @@ void print(const Json& json) {
 
 core::Result<void> refuse_existing(const fs::path& path) {
   if (!fs::exists(path)) return {};
-  return core::Error{core::Errc::conflict, path.string() + ": is there already"};
+  return core::Error{core::Errc::conflict, path.string() + ": exists already"};
 }
 
 Outcome make_new(const Options& o) {

@@ -51,11 +51,12 @@ std::string warning_of(const capture::Assembled& one) {
   constexpr double kRight_rad = 1.0;
   if (!one.push_off_rad || *one.push_off_rad < kRight_rad) return "";
   return fmt::format(
-      "warning: {}: in the taps the force points {:.0f}° off the way out of the surface: {}\n",
+      "warning: {}: in the taps the direction of the force differs by {:.0f}° from the direction "
+      "out of the surface: {}\n",
       one.trial.id, *one.push_off_rad * 180.0 / std::numbers::pi,
       *one.push_off_rad > std::numbers::pi - kRight_rad
-          ? "does the sensor say the opposite (\"says\")?"
-          : "is the sensor's place (X_HS) right?");
+          ? "does the sensor report the opposite force (\"says\")?"
+          : "is the pose of the sensor (X_HS) correct?");
 }
 
 std::string line_of(const capture::Assembled& one) {
@@ -69,7 +70,7 @@ std::string line_of(const capture::Assembled& one) {
                        one.clock.runs.size(), one.clock.runs.size() == 1 ? "" : "s");
   if (one.clock.drift != 0.0) out += fmt::format(", drift {:+.0f} ppm", 1e6 * one.clock.drift);
   if (one.unseen > 0.001)
-    out += fmt::format("; a body was not seen for {:.1f} % of it", 100.0 * one.unseen);
+    out += fmt::format("; a body was not tracked for {:.1f} % of the time", 100.0 * one.unseen);
   return out;
 }
 
@@ -97,7 +98,7 @@ core::Result<void> write_whole(const std::filesystem::path& target, trial::Palpa
 /// Refuses what could not be written at the end, before the work.
 core::Result<void> check(const Options& options, const std::filesystem::path& target) {
   if (std::filesystem::exists(target))
-    return Error{Errc::conflict, fmt::format("{}: is there already", options.out)};
+    return Error{Errc::conflict, fmt::format("{}: exists already", options.out)};
   if (!options.picture.empty()) return core::may_be_written(options.picture);
   return {};
 }
@@ -109,8 +110,8 @@ Outcome run(const Options& options) {
   const auto recipe = capture::Recipe::read(options.recipe);
   if (!recipe) return recipe.error();
   if (!std::filesystem::exists(recipe->folder / recipe->volume))
-    return Error{Errc::not_found,
-                 fmt::format("{}: /volume: '{}' is not there", options.recipe, recipe->volume)};
+    return Error{Errc::not_found, fmt::format("{}: /volume: the file '{}' does not exist",
+                                              options.recipe, recipe->volume)};
   trial::PalpationSet set;
   set.stated = recipe->stated;
 

@@ -89,7 +89,7 @@ core::Result<core::KeyPair> key_of(const Options& o) {
   if (!o.key.empty()) return core::KeyPair::open_or_make(o.key);
   const char *config = std::getenv("XDG_CONFIG_HOME"), *home = std::getenv("HOME");
   if (!(config && *config) && !(home && *home))
-    return Error{Errc::not_found, "no home folder to keep the signing key in: give --key FILE"};
+    return Error{Errc::not_found, "there is no home folder for the signing key: give --key FILE"};
   const auto base =
       config && *config ? std::filesystem::path(config) : std::filesystem::path(home) / ".config";
   return core::KeyPair::open_or_make(base / "tractus" / "signing.key");
@@ -158,7 +158,7 @@ void print_text(const cases::OpenedCase& made, const cases::Carved& carved) {
     fmt::print("{} breach at depth {:.1f} mm, through {:.1f} mm of bone and {:.1f} mm beyond\n",
                volume::name(breach->wall.wall), breach->wall.at_m * 1e3,
                breach->wall.thickness_m() * 1e3, breach->depth_m * 1e3);
-  if (!carved.drilled) fmt::print("the bone is whole: the tract is a plan, to be drilled\n");
+  if (!carved.drilled) fmt::print("the bone is whole: the tract is planned and not drilled\n");
   fmt::print(
       "{} x {} x {} voxels of {:.3g} x {:.3g} x {:.3g} mm; removed bone has the CT value {:g}\n",
       grid.dims[0], grid.dims[1], grid.dims[2], grid.spacing_m.x() * 1e3, grid.spacing_m.y() * 1e3,

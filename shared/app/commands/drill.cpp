@@ -36,7 +36,7 @@ struct Bone {
 
 core::Result<Bone> bone_of(const Options& o) {
   if (o.volume.empty() == o.case_folder.empty())
-    return Error{Errc::bad_input, "drill: one of --volume FILE and --case FOLDER is expected"};
+    return Error{Errc::bad_input, "drill: either --volume FILE or --case FOLDER is expected"};
   Bone bone;
   if (!o.case_folder.empty()) {
     auto opened = cases::open_case(o.case_folder);
@@ -85,15 +85,16 @@ void print_replay(const Json& told) {
              told.at("simulated").get<bool>() ? "  (SIMULATED hand)" : "");
   const Json &agrees = told.at("agrees"), &forces = told.at("forces");
   fmt::print("the voxels are {}\n",
-             agrees.is_null()     ? "those up to the last sample: the trial was "
-                                    "cut short and says nothing of its own"
-             : agrees.get<bool>() ? "those of the trial, by their hash"
-                                  : "NOT those of the trial: another volume, or another build");
+             agrees.is_null()
+                 ? "not compared: the trial was cut short and has no hash of its voxels"
+             : agrees.get<bool>()
+                 ? "the same as in the trial, by their hash"
+                 : "NOT the same as in the trial: another volume, or another build of the program");
   if (!forces.is_null())
-    fmt::print("{} forces felt again, within {:.1e} N{}\n",
+    fmt::print("{} forces computed again, largest difference {:.1e} N{}\n",
                forces.at("compared").get<std::uint64_t>(),
                forces.at("largest_difference_N").get<double>(),
-               forces.at("in_order").get<bool>() ? "" : "; a change was felt BEFORE its cause");
+               forces.at("in_order").get<bool>() ? "" : "; a force changed BEFORE its cause");
 }
 
 Outcome replay(const Options& o) {
@@ -125,7 +126,7 @@ Outcome replay(const Options& o) {
 
 void print_channel(const drilling::PilotHole& made, const volume::Tract& tract) {
   if (!made.depth_m) {
-    fmt::print("no voxel has lost half of itself: there is no channel\n");
+    fmt::print("no voxel lost half of its bone: there is no channel\n");
     return;
   }
   if (made.angle_rad)
@@ -136,13 +137,14 @@ void print_channel(const drilling::PilotHole& made, const volume::Tract& tract) 
                made.entry_offset_m->y() >= 0.0 ? "superior" : "inferior",
                *made.angle_rad * 180.0 / std::numbers::pi);
   else
-    fmt::print("too short to have a direction\n");
+    fmt::print("the channel is too short to have a direction\n");
   fmt::print("deepest at {:.1f} mm; the plan ends at {:.1f} mm\n", *made.depth_m * 1e3,
              tract.length_m * 1e3);
   for (const volume::Wall wall : volume::kWalls) {
     const auto beyond = made.beyond_m[std::size_t(wall)];
     if (!beyond)
-      fmt::print("{:>9}: not reached where that wall is known\n", volume::name(wall));
+      fmt::print("{:>9}: the channel does not reach the part where this wall is known\n",
+                 volume::name(wall));
     else if (*beyond > 0.0)
       fmt::print("{:>9}: BREACHED, {:.1f} mm beyond the bone\n", volume::name(wall), *beyond * 1e3);
     else
@@ -155,7 +157,8 @@ Outcome report(const Options& o) {
   const auto bone = bone_of(o);
   if (!bone) return bone.error();
   if (!bone->opened)
-    return Error{Errc::bad_input, "drill report: --case FOLDER is expected: it has the plan"};
+    return Error{Errc::bad_input,
+                 "drill report: --case FOLDER is expected, because the case contains the plan"};
   const auto again = drilling::redrill(o.trial, bone->volume);
   if (!again) return again.error();
   const cases::Case& definition = bone->opened->definition;

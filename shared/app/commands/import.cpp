@@ -46,7 +46,7 @@ void print_text(const Options& o, const volume_io::Imported& in, const std::stri
              g.spacing_m.y() * 1e3, g.spacing_m.z() * 1e3, range[0], range[1]);
   for (const auto& note : in.notes) fmt::print("note: {}\n", note);
   for (const auto& suspicion : in.suspicions)
-    fmt::print("look before you pass it on: {}\n", suspicion);
+    fmt::print("check the pictures before you pass the file on: {}\n", suspicion);
   fmt::print("{}  {}\n", id, o.target);
 }
 

@@ -135,7 +135,7 @@ bool is_simulated(const trial::PalpationSet& set) {
 }
 
 constexpr const char* kSimulatedNote =
-    "The set says that its measurements are simulated themselves.";
+    "The measurement set states that its measurements are simulated.";
 
 Json summary_of(const Work& work) {
   Json json{{"format", "tractus-replay/1"},
@@ -242,10 +242,11 @@ Outcome run(const Options& options) {
   if (!rig) return rig.error();
   const auto* probing = std::get_if<models::ProbingModel>(&*model);
   if ((*rig == "probing") != (probing != nullptr))
-    return Error{Errc::bad_input,
-                 fmt::format("{}: a model of the {} rig, but {} holds measurements of the {} rig",
-                             options.model.string(), probing ? "probing" : "palpation",
-                             options.measurements.string(), *rig)};
+    return Error{
+        Errc::bad_input,
+        fmt::format("{}: a model of the {} rig, but {} contains measurements of the {} rig",
+                    options.model.string(), probing ? "probing" : "palpation",
+                    options.measurements.string(), *rig)};
   if (probing) return replay_probing(*probing, unpacked->folder(), options);
   auto work =
       compute(std::get<models::PalpationModel>(std::move(*model)), unpacked->folder(), options);

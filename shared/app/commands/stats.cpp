@@ -90,15 +90,15 @@ void add_method(CLI::App& app, const assessment::Method& method,
 /// The published worked example: wrong breach answers of ten surgeons against years of experience.
 constexpr const char* kExample =
     "tractus stats ols --data surgeons.csv --formula \"wrong_breach ~ experience_years\"\n"
-    "  where surgeons.csv holds the published Table 2 (wrong answers in 6 breach trials):\n"
+    "  where surgeons.csv contains the published Table 2 (wrong answers in 6 breach trials):\n"
     "    surgeon,experience_years,wrong_breach\n"
     "    1,6,2\n    2,3,1\n    3,1,0\n    4,1,1\n    5,0.5,0\n"
     "    6,0.33,0\n    7,0.1,0\n    8,0,3\n    9,0,1\n    10,0,1\n"
-    "  It prints the published Table 3: years 0.1588, SE 0.1744, t 0.9106, p 0.3891 - and says\n"
-    "  that surgeon 1 alone steers the fit.\n"
+    "  It prints the published Table 3: years 0.1588, SE 0.1744, t 0.9106, p 0.3891, and a\n"
+    "  warning that surgeon 1 dominates the fit.\n"
     "  tractus stats rm-anova --data trials.csv --formula \"velocity ~ scenario*repetition + "
     "(1|surgeon)\"\n"
-    "  tractus stats METHOD --help   says what METHOD takes";
+    "  tractus stats METHOD --help   shows the options of METHOD";
 
 }  // namespace
 

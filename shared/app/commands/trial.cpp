@@ -58,7 +58,8 @@ Json ticks_json(const trial::TickCounts& t) {
 }
 
 const char* state_of(const trial::Trial& trial) {
-  if (!trial.sealed) return "not ended: its writer is at work or was stopped (see trial recover)";
+  if (!trial.sealed)
+    return "not ended: the recording program still runs or was stopped (see tractus trial recover)";
   return trial.complete ? "complete" : "interrupted";
 }
 
@@ -126,16 +127,17 @@ Outcome show(const Options& o) {
 }
 
 core::Error of_another(const Options& o, const trial::Trial& trial, const std::string& id) {
-  return {core::Errc::bad_input,
-          fmt::format("{}: is a trial of {:.12}…, {} holds {:.12}…", o.file, trial.header.case_id,
-                      o.case_folder.empty() ? o.scenario : o.case_folder, id)};
+  return {
+      core::Errc::bad_input,
+      fmt::format("{}: this trial is of {:.12}…, but {} contains {:.12}…", o.file,
+                  trial.header.case_id, o.case_folder.empty() ? o.scenario : o.case_folder, id)};
 }
 
 /// The case of a palpation trial into `subject`. Errors: those of the case, bad_input.
 core::Result<cases::OpenedCase> add_case(const Options& o, metrics::Subject& subject) {
   if (o.case_folder.empty())
     return core::Error{core::Errc::bad_input,
-                       o.file + ": is a trial of palpation, --case FOLDER is expected"};
+                       o.file + ": this is a palpation trial: --case FOLDER is expected"};
   auto opened = cases::open_case(o.case_folder);
   if (!opened) return opened;
   if (subject.trial.header.case_id != opened->id) return of_another(o, subject.trial, opened->id);

@@ -103,7 +103,7 @@ void say_end(const Options& o, const rig::Traffic& t, std::uint64_t stalls) {
                                   {"stalls", stalls}}
                            .dump());
   else
-    fmt::print("{} requests answered, {} refused, {} times garbage; held up {} times\n",
+    fmt::print("{} requests answered, {} refused, {} invalid; {} stalls of the simulation\n",
                t.answered.load(), t.refused.load(), t.garbage.load(), stalls);
 }
 
