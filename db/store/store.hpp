@@ -1,4 +1,4 @@
-/// Transactions: what reads and what writes are different types.
+/// Transactions: reading and writing transactions have different types.
 #pragma once
 
 #include <array>
@@ -19,18 +19,19 @@
 
 namespace tractus::store {
 
-/// A transaction that sees one unchanging state and cannot change it. Lent by Store::read for the
-/// length of a call.
+/// A read-only transaction on one snapshot of the database. Store::read lends it for the duration
+/// of a call.
 class Reading {
  public:
   explicit Reading(Connection& connection) : connection_(connection) {}
   Reading(const Reading&) = delete;
   Reading& operator=(const Reading&) = delete;
-  /// Errors: those of Connection::query; bad_input for a text that is not UTF-8 or holds a zero,
-  /// which PostgreSQL does not take.
+  /// Errors: those of Connection::query; bad_input for a text that is not UTF-8 or contains a zero
+  /// byte, which PostgreSQL does not accept.
   core::Result<Rows> query(std::string_view sql, std::initializer_list<Value> values = {});
   core::Result<Rows> query_with(std::string_view sql, std::span<const Value> values);
-  /// Row by row, in bounded memory. Errors: those of `seen` as well, which end it.
+  /// Calls `seen` with each row, with bounded memory. An error of `seen` ends the query and is
+  /// returned.
   core::Result<void> each(std::string_view sql,
                           const std::function<core::Result<void>(Row)>& seen) {
     return connection_.each(sql, {}, seen);
@@ -45,8 +46,7 @@ struct CoveredTable;  // coverage.hpp
 /// Keys of rows that a transaction has changed in tables that the audit trail covers.
 using ChangedRows = std::set<std::pair<const CoveredTable*, std::vector<Value>>>;
 
-/// A transaction that may change things: all of it happens, or none. Lent by Store::write for the
-/// length of a call.
+/// A writing transaction, which is atomic. Store::write lends it for the duration of a call.
 class Writing : public Reading {
  public:
   using Reading::Reading;
@@ -59,19 +59,19 @@ class Writing : public Reading {
   friend core::Result<std::uint64_t> copy_rows(Reading& from, Writing& to);
   friend core::Result<void> notify(Writing& tx, const std::string& channel,
                                    const std::string& payload);
-  std::vector<Signals::Noted> noted_;  ///< said when this commits
+  std::vector<Signals::Noted> noted_;  ///< signals that are sent when this transaction commits
   ChangedRows changed_;
 };
 
 /// The key of the audit trail's chain (audit.hpp).
 using AuditKey = std::array<std::byte, 32>;
-/// Notes the act of this thread (audit.hpp) when it has not been noted yet, and the digests of the
-/// rows that this transaction changed, if there are any.
+/// Writes the action of this thread (audit.hpp) into the audit trail, if it is not written yet, and
+/// the digests of the rows that this transaction changed, if there are any.
 core::Result<void> note_act(Writing& tx, const AuditKey& key, const std::string& changes);
 void act_was_noted() noexcept;
 bool act_waits() noexcept;
 
-/// Connections of one kind. Whoever finds none free waits.
+/// A pool of connections of one kind. A caller waits until a connection is free.
 class Pool {
  public:
   explicit Pool(std::vector<std::unique_ptr<Connection>> connections)
@@ -100,59 +100,60 @@ class Pool {
   std::vector<Connection*> free_;
 };
 
-/// One database. Safe from several threads; on PostgreSQL several processes may each have one. One
-/// writes at a time, among all of them; who reads waits for no writer, nor makes one wait.
+/// One database. Thread-safe; on PostgreSQL several processes may each have a Store. Only one write
+/// transaction runs at a time, among all processes; readers and writers do not block each other.
 class Store {
  public:
-  /// Opens or makes the SQLite database and brings its schema up to date. For one process.
+  /// Opens or creates the SQLite database and migrates its schema. For one process.
   static core::Result<Store> open(const std::filesystem::path& path);
-  /// Opens a PostgreSQL database, which must be there, and brings its schema up to date.
+  /// Opens a PostgreSQL database, which must exist, and migrates its schema.
   static core::Result<Store> open_postgres(const std::string& address);
-  /// Over given connections, already migrated: for tests.
+  /// Uses given connections to a migrated database: for tests.
   Store(std::unique_ptr<Connection> reader, std::unique_ptr<Connection> writer);
 
-  /// Runs `work(Reading&)`, which returns a Result, and hands its answer through.
+  /// Runs `work(Reading&)`, which returns a Result, and returns this Result.
   template <std::invocable<Reading&> Work>
   std::invoke_result_t<Work, Reading&> read(Work&& work) {
     const Pool::Lent lent(*readers_);
     return in_transaction<Reading>(*lent, Access::read, std::forward<Work>(work));
   }
 
-  /// Runs `work(Writing&)`, which returns a Result; commits when it and the commit succeed,
-  /// otherwise nothing has happened and the Error says why. What is being done by whom
-  /// (store::AuditScope) is noted in the audit trail, in the same transaction. No other write runs
-  /// meanwhile, in any process: what it reads stays so until it is done.
+  /// Runs `work(Writing&)`, which returns a Result, and commits if it succeeds; on an error nothing
+  /// is changed. The action of the current store::AuditScope is written into the audit trail in the
+  /// same transaction. No other write transaction runs meanwhile, in any process, so that the data
+  /// that `work` reads do not change.
   template <std::invocable<Writing&> Work>
   std::invoke_result_t<Work, Writing&> write(Work&& work) {
     return written(*writers_, Access::write, std::forward<Work>(work));
   }
 
-  /// As `write`, but on PostgreSQL without waiting for other writes, nor making them wait: for what
-  /// is right whatever others do meanwhile, and comes often: a change of one row by its key, with
-  /// what it expects there in its `where`. What has to be audited is a `write` all the same.
+  /// Like `write`, but on PostgreSQL it does not wait for other writes and does not make them wait.
+  /// For frequent changes that are correct whatever other transactions do: a change of one row by
+  /// its key, with the expected old values in its `where`. An audited change runs as `write`
+  /// nevertheless.
   template <std::invocable<Writing&> Work>
   std::invoke_result_t<Work, Writing&> write_beside(Work&& work) {
     if (!besides_ || act_waits()) return write(std::forward<Work>(work));
     return written(*besides_, Access::beside, std::forward<Work>(work));
   }
 
-  /// Keeps a name to oneself, among all processes on this database (locks.hpp). Not while holding
-  /// another, nor within a transaction.
+  /// Locks a name among all processes on this database (locks.hpp). Must not be called while
+  /// holding another name, nor within a transaction.
   core::Result<std::unique_ptr<NamedLock>> hold(const std::string& name) {
     return locks_->hold(name);
   }
   /// Whether other processes may work on this database at the same time.
   bool shared() const { return bool(besides_); }
 
-  /// Words to and from the other processes on this database (signals.hpp).
+  /// Signals to and from the other processes on this database (signals.hpp).
   Signals& signals() { return *signals_; }
 
-  /// Before anything is audited.
+  /// Must be called before the first audited change.
   void set_audit_key(const AuditKey& key) { audit_key_ = key; }
   const AuditKey& audit_key() const { return audit_key_; }
 
  private:
-  /// What goes with every write: its row of the audit trail, and what it wants said.
+  /// Completes every write: adds its row of the audit trail and its signals.
   core::Result<void> finish(Writing& tx, Access access, std::vector<Signals::Noted>& said);
 
   template <class Work>

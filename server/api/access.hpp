@@ -1,4 +1,5 @@
-/// May this caller ask this of this object? Decided here alone, on every call, before the handler.
+/// Access control: may this caller call this route for this object? Only these functions decide it,
+/// on every call, before the handler runs.
 #pragma once
 
 #include "db/store/people/people.hpp"
@@ -6,19 +7,20 @@
 
 namespace tractus::api {
 
-/// The widest that the grants say of the role; nothing: it is not among them.
+/// The widest scope that the grants give to the role; nothing if no grant names the role.
 std::optional<Scope> granted(const std::vector<Grant>& who, Role role);
-/// Of a route: nothing: the role may not call it at all.
+/// The widest scope of the role for a route; nothing if the role may not call the route.
 std::optional<Scope> granted(const RouteInfo& route, Role role);
 
-/// Does the caller stand to the object as `of` says? Of nothing that does not exist.
+/// Whether the caller has the relation `of` to the object; false for an object that does not exist.
 core::Result<bool> relates(store::Reading& tx, const Caller& caller, Scope of, Object object,
                            const std::string& id);
 
-/// Of the route's object, then of every other end of the relation that it makes or changes. Errors:
-/// not_found when an object is none of the caller's: what others have is not even told to exist;
-/// forbidden when the role may name no such end, or for a trial that is blind still
-/// (db/store/studies/blinding.hpp), whoever asks; those of parsing the body.
+/// Checks access to the route's object, then to every other end of the relation that the route
+/// makes or changes. Errors: not_found if the caller may not access an object, so that the answer
+/// does not reveal whether the object exists; forbidden if the role may not name such an end, or
+/// for every caller if the trial is blinded (db/store/studies/blinding.hpp); those of parsing the
+/// body.
 core::Result<void> check_access(Backend& backend, const RouteInfo& route, const Caller& caller,
                                 const std::map<std::string, std::string>& arguments,
                                 const std::string& body);

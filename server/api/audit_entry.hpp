@@ -1,4 +1,4 @@
-/// A call as the audit trail notes it.
+/// The entry of a call in the audit trail.
 #pragma once
 
 #include "db/store/operations/audit.hpp"
@@ -6,13 +6,13 @@
 
 namespace tractus::api {
 
-/// Who, what, of which object, with which words. Of a JSON body of up to 16 KiB the fields that are
-/// known never to hold a secret (acts.cpp has the list) and the names of the others; of any other
-/// body its size and SHA-256.
+/// The caller, the action, its object and its details. From a JSON body of up to 16 KiB the details
+/// contain the values of fields that never contain a secret (listed in audit_entry.cpp) and the
+/// names of all other fields; from any other body its size and SHA-256.
 store::AuditedAction audited_action(const RouteInfo& route, const Call& call,
                                     const std::map<std::string, std::string>& segments);
 
-/// "id=…": what a path's placeholders stand for, shortened.
+/// "id=…": the values of the path's placeholders, shortened.
 std::string object_text(const std::map<std::string, std::string>& segments);
 
 }  // namespace tractus::api

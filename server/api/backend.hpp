@@ -1,4 +1,4 @@
-/// What handlers work with. One per process; safe from several threads.
+/// The parts of the server that handlers use. One per process; thread-safe.
 #pragma once
 
 #include <functional>
@@ -19,10 +19,11 @@ class Hub;
 
 namespace tractus::api {
 
-/// What happened, as fields: never a name, an address, or anything that somebody typed.
+/// Writes an event to the log as fields, which must not contain names, addresses or text that a
+/// person typed.
 using Log = std::function<void(const core::Json& fields)>;
 
-/// jobs::import_volume, wherever it is run.
+/// Runs jobs::import_volume, in this process or in another one.
 using TakeVolume = std::function<core::Result<core::Json>(const std::filesystem::path& upload,
                                                           const std::filesystem::path& folder,
                                                           const std::array<std::byte, 32>& key)>;
@@ -34,20 +35,20 @@ struct Backend {
   const store::Objects& objects;
   const store::PartialFiles& partials;
   std::function<std::int64_t()> now_utc_us;
-  std::function<void()> work_waits;                ///< tells the job runner
-  Secrets secrets = Secrets::random();             ///< a server that lasts brings its own
-  bool secure_cookies = false;                     ///< browsers reach it by TLS
-  std::function<std::uint64_t()> free_bytes = {};  ///< on the disk; none: the system is asked
-  Log log = {};                                    ///< a line for whoever runs the server
-  bool logs_requests = false;                      ///< every one, not only those that fail
-  live::Hub* live = nullptr;                       ///< none: stations have no lines
-  Backups* backups = nullptr;                      ///< none: this process makes none
-  TakeVolume import_volume = {};                   ///< in a process of its own; none: in this one
+  std::function<void()> work_waits;     ///< wakes the job runner
+  Secrets secrets = Secrets::random();  ///< random keys are for tests; a server passes its own
+  bool secure_cookies = false;  ///< browsers use TLS, so that cookies have the attribute Secure
+  std::function<std::uint64_t()> free_bytes = {};  ///< none: asks the operating system
+  Log log = {};                                    ///< writes a line to the server's log
+  bool logs_requests = false;                      ///< log every request, not only failed ones
+  live::Hub* live = nullptr;                       ///< null: no live connections to stations
+  Backups* backups = nullptr;                      ///< null: this process makes no backups
+  TakeVolume import_volume = {};  ///< runs in another process; none: in this process
   /// For large bodies and answers.
   std::shared_ptr<http::ScratchSpace> scratch =
       std::make_shared<http::ScratchSpace>(std::filesystem::temp_directory_path());
-  const Oidc* oidc = nullptr;  ///< who else may vouch for people; none: nobody
-  /// Which pseudonym is whose (export.hpp): kept apart from all else. None: no export.
+  const Oidc* oidc = nullptr;  ///< OpenID Connect provider; null: none
+  /// Key of the pseudonyms (export.hpp), stored separately from all other keys. None: no exports.
   std::optional<std::array<std::byte, 32>> pseudonym_key = {};
   RefusalLimit refusals{};
   Telemetry telemetry{};

@@ -1,5 +1,4 @@
-/// Refusals in the audit trail: who asked for what is not theirs. Few enough that nobody can flood
-/// it.
+/// Refused requests in the audit trail, limited in rate so that nobody can flood the trail.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +11,15 @@
 
 namespace tractus::api {
 
-/// Of one caller kBurst refusals are noted at once and kPerMinute from then on, of all callers
-/// together kAllPerMinute; what is not noted is counted, and the next that is says how many.
-/// Memory: at most kCallers callers are told apart. Safe from several threads.
+/// Limits the rate of refusals in the audit trail: for one caller a burst of kBurst and then
+/// kPerMinute, for all callers together kAllPerMinute. Refusals above the limit are counted, and
+/// the next entry states their number. Distinguishes at most kCallers callers. Thread-safe.
 class RefusalLimit {
  public:
   static constexpr double kBurst = 10, kPerMinute = 5, kAllPerMinute = 120;
   static constexpr std::size_t kCallers = 1024;
 
-  /// Nothing: do not note this one. Else how many before it were not noted.
+  /// Nothing: do not write this refusal. Else the number of earlier refusals that were not written.
   std::optional<std::uint64_t> turn(const std::string& caller, std::int64_t now_utc_us);
 
  private:
@@ -39,15 +38,15 @@ class RefusalLimit {
 struct Backend;
 struct Caller;
 
-/// Is an answer of this status to a station a refusal that somebody should see? Not those of every
-/// day: an upload that stands elsewhere, a disk that is full, a token that is not known any more.
+/// Whether an answer of this status to a station is a refusal for the audit trail. Routine refusals
+/// are not: another upload offset, a full disk, a revoked token.
 bool is_refusal_of_station(const std::string& route, int status);
-/// The one line that an answer gives as its reason, at most 300 bytes.
+/// The error message of an answer, one line of at most 300 bytes.
 std::string words_of(const http::Response& response);
 
-/// Notes a refusal: what = "refused: ROUTE". `object` as acts.hpp names it, `why` in our words,
-/// `status` of the answer, 0 where a line was hung up.
-/// Never fails: a trail that cannot be written is the log's to say.
+/// Writes a refusal into the audit trail: what = "refused: ROUTE". `object` as in audit_entry.hpp,
+/// `why` is the reason, `status` is the status of the answer, 0 if a connection was closed. Never
+/// fails: an error when writing the trail is logged.
 void note_refusal(Backend& backend, const Caller& caller, const std::string& peer,
                   const std::string& route, const std::string& object, const std::string& why,
                   int status = 0);

@@ -19,7 +19,7 @@ namespace tractus::api {
 
 struct Backend;
 
-/// Who asks, after credentials were checked.
+/// The role of a caller, after the credentials were checked.
 enum class Role { admin, director, faculty, researcher, technician, trainee, station };
 inline constexpr std::array kRoles{Role::admin,      Role::director,   Role::faculty,
                                    Role::researcher, Role::technician, Role::trainee,
@@ -27,44 +27,45 @@ inline constexpr std::array kRoles{Role::admin,      Role::director,   Role::fac
 std::string_view name(Role role);
 std::optional<Role> role_named(std::string_view name);
 
-/// Of which objects a role may ask: its own, those of the people in the cohorts it leads, or all.
+/// The objects that a role may access: its own, those of the people in the cohorts that it leads,
+/// or all.
 enum class Scope { own, cohort, all };
 std::string_view name(Scope of);
 
-/// A role that may call a route; a bare Role means: of all objects.
+/// A role that may call a route, and for which objects; a Role alone means all objects.
 struct Grant {
   Role role;
   Scope of;
   Grant(Role who, Scope objects = Scope::all) : role(who), of(objects) {}
 };
 
-/// Every role but a station's, of all objects.
+/// Every role except station, for all objects.
 std::vector<Grant> people();
 
-/// What the route's object is, when a grant says less than "all". `none` with such a grant: the
-/// route has no object of its own, and its handler answers by Call::of alone.
+/// The kind of a route's object, for grants with a narrower scope than "all". `none` with such a
+/// grant: the route has no object, and its handler filters the answer by Call::of.
 enum class Object {
   none,
   trial,
   published_case,
   account,
-  person,  ///< an account as a member of cohorts, also one that leads them
+  person,  ///< an account as a member or leader of cohorts
   cohort,
   invitation,  ///< into a cohort, by the cohort's id
   assignment,
-  study,  ///< of research; `cohort` of it: its participants are through, nothing of it is blind
+  study,  ///< a research study; scope `cohort`: nothing of it is blinded any more
   model,
   station,
 };
 
-/// One end of a relation that a route makes or changes, beside the route's own object: what the
-/// object is brought together with. Checked before the handler (access.hpp).
+/// One end of a relation that a route makes or changes, besides the route's own object: the other
+/// object of the relation. Access to it is checked before the handler runs (access.hpp).
 struct End {
-  /// "account_id": the argument of this name. "/people/*": this field of the body, as a JSON
-  /// pointer in which * is every element. An end that is not there is not checked.
+  /// "account_id": the argument with this name. "/people/*": this field of the body, as a JSON
+  /// pointer in which * means every element. A missing end is not checked.
   std::string field;
   Object object;
-  std::vector<Grant> who;  ///< of which such objects each role may name one; others may name none
+  std::vector<Grant> who;  ///< the objects that each role may name; other roles may name none
   enum class By { id, account_name } by = By::id;
 };
 
@@ -72,33 +73,33 @@ struct Caller {
   Role role;
   std::string id;  ///< of the account or the station
   std::string name;
-  std::string session_hash;  ///< of the browser's session; empty for a station
-  bool must_change = false;  ///< may do nothing but choose a password
+  std::string session_hash;  ///< hash of the browser's session token; empty for a station
+  bool must_change = false;  ///< may only change the password
 };
 
-/// Where an argument stands and what it may be. Text in a path: one segment, decoded.
+/// The place, type and range of an argument. A text in a path is one segment, decoded.
 struct Parameter {
   enum class In { path, query, header };
   enum class Kind { text, integer, number };
   In in;
   std::string name;
   Kind kind;
-  std::string unit;  ///< of a number, else ""
+  std::string unit;  ///< unit of a number; "" for a text
   std::string meaning;
   bool required = true;
-  double low = 0.0, high = 0.0;         ///< of a number, both included
-  std::optional<std::string> fallback;  ///< taken when it is not given
+  double low = 0.0, high = 0.0;         ///< range of a number, inclusive
+  std::optional<std::string> fallback;  ///< default value of an optional argument
 };
 Parameter path_text(std::string name, std::string meaning);
 
-/// What a handler gets: checked credentials and arguments.
+/// The input of a handler: checked credentials and arguments.
 struct Call {
   Backend& backend;
   const http::Request& request;
-  const Caller& caller;  ///< nobody's for an open route
+  const Caller& caller;  ///< without id and name for an open route
   std::map<std::string, std::string>
-      arguments;          ///< by name; of declared ones alone, fallbacks filled in
-  Scope of = Scope::own;  ///< the widest that the route grants the caller's role
+      arguments;          ///< by name; only declared arguments, with default values
+  Scope of = Scope::own;  ///< the widest scope that the route grants to the caller's role
 
   bool has(const std::string& name) const { return arguments.contains(name); }
   const std::string& text(const std::string& name) const;
@@ -111,64 +112,65 @@ struct NamedSchema {
   core::Json schema;
 };
 
-/// The request's body as a file in `folder`, whether it came as one or is in memory. Errors: io.
+/// Provides the request's body as a file in `folder`, also if the body is in memory. Errors: io.
 core::Result<std::filesystem::path> body_in(const Call& call, const std::filesystem::path& folder,
                                             const std::string& name);
-/// A file as a whole answer, which is deleted once it is sent; it takes no more of the scratch
-/// space than it is long. Errors: io.
+/// A response with a file, which is deleted after sending; reduces the reservation in the scratch
+/// space to the length of the file. Errors: io.
 core::Result<http::Response> scratch_response(std::shared_ptr<http::ScratchFile> file,
                                               const char* content_type, const char* download_name);
 
-/// 426: this address is a WebSocket.
+/// The answer 426 to a request without upgrade at the address of a WebSocket.
 core::Result<http::Response> wants_websocket(const Call& call);
 
-/// A whole answer that is not JSON.
+/// The name for a body or answer that is not JSON.
 inline constexpr const char* kBytes = "bytes";
 
-/// A route as its file states it. One without `who` is nobody's: it is refused to all, and the
-/// tests of the catalogue fail.
+/// The declaration of a route. A route without `who` is refused to every caller, and the tests of
+/// the catalogue fail.
 struct RouteInfo {
   std::string method;      ///< "GET"
   std::string path;        ///< "/api/v1/trials/{id}"
-  std::string id;          ///< "trial", unique: the name of the web's function
-  std::string summary;     ///< one line
-  std::vector<Grant> who;  ///< may call it; nobody else
-  bool open = false;       ///< no credentials at all: signing in
+  std::string id;          ///< "trial", unique: the operationId
+  std::string summary;     ///< one line, which begins with what the route does
+  std::vector<Grant> who;  ///< the only roles that may call the route
+  bool open = false;       ///< needs no credentials, for example signing in
   Object object = Object::none;
   std::string object_parameter = "id";  ///< the argument that names the object
-  std::vector<End> ends = {};           ///< every other end of a relation that it makes or changes
-  bool before_password_change = false;  ///< also for who must choose a password first
-  bool audited = true;                  ///< a change by it is noted in the audit trail
-  http::Lane lane = http::Lane::quick;  ///< on which threads it is handled
+  std::vector<End> ends = {};  ///< the other ends of a relation that the route makes or changes
+  bool before_password_change = false;  ///< allowed before a required password change
+  bool audited = true;                  ///< changes by this route are written into the audit trail
+  http::Lane lane = http::Lane::quick;  ///< the threads that handle the route
   std::vector<Parameter> parameters;
   std::string body;  ///< name of the body's schema, kBytes, or "" for none
   std::uint64_t body_limit_bytes = 0;
-  bool body_to_file = false;         ///< it is large: handlers find it in Request::body_file
-  std::string answer;                ///< name of the answer's schema, kBytes, or "" for none (204)
-  std::vector<NamedSchema> schemas;  ///< those it names that no other route has named already
+  bool body_to_file = false;  ///< the body is large: the handler reads it from Request::body_file
+  std::string answer;         ///< name of the answer's schema, kBytes, or "" for none (204)
+  std::vector<NamedSchema> schemas;  ///< schemas that this route uses and no other route defines
   core::Result<http::Response> (*handle)(const Call& call);
-  /// Of a route that is a WebSocket: who answers in it, once everything was checked that is checked
-  /// of any route, and by cookie the Origin. `handle` then answers those who come without one.
+  /// For a WebSocket: makes its handler, after the checks of every route and, for a cookie, a check
+  /// of the Origin. `handle` then answers requests without an upgrade.
   core::Result<std::shared_ptr<http::WebSocketHandler>> (*converse)(
       const Call& call, std::function<bool()> may_stay) = nullptr;
 };
 
-/// Every file's routes, in file-name order.
+/// The routes of every file, sorted by file name.
 std::vector<std::vector<RouteInfo>> all();
-/// The same, in one.
+/// The same routes in one list.
 const std::vector<RouteInfo>& routes();
 
-/// A route of researchers and administrators at "/api/v1/" + path; "{id}" in it is a parameter.
+/// A route for researchers and administrators at "/api/v1/" + path; "{id}" in the path is a
+/// parameter.
 RouteInfo research_route(std::string method, std::string path, std::string id, std::string summary,
                          std::string answer, core::Result<http::Response> (*handle)(const Call&));
-/// The same route with a body, and with the schemas it is the first to name.
+/// The same route with a body, and with the schemas that it defines.
 RouteInfo taking(RouteInfo route, std::string body, std::uint64_t limit_bytes,
                  std::vector<NamedSchema> schemas);
 
-/// A report as a page of its own: it may show itself and do nothing else.
+/// Restricts a report page with a Content-Security-Policy: no scripts, no other resources.
 http::Response as_report(http::Response response);
 http::Response json_response(const core::Json& json, int status = 200);
-/// The system's causes as HTTP: the one place that knows.
+/// The HTTP status of an error code; the only place that defines this mapping.
 int status_of(core::Errc code);
 std::string_view name(core::Errc code);
 http::Response error_response(const core::Error& error);

@@ -1,5 +1,6 @@
-/// JSON Schema in few words: what the routes say of their fields, and from which the web's types
-/// are made.
+/// Short functions for JSON Schema: the routes describe their fields with them, and the types of
+/// the web pages are generated from the result. `meaning` is the description that readers of the
+/// API see.
 #pragma once
 
 #include <string>
@@ -13,23 +14,23 @@ namespace tractus::api::schema {
 
 using Field = std::pair<std::string, core::Json>;
 
-/// All fields are required unless `optional` wraps them; none other may be there.
+/// All fields are required unless `optional` wraps them; other fields are not allowed.
 core::Json object(const std::vector<Field>& fields);
 core::Json text(std::string_view meaning);
 core::Json one_of(const std::vector<std::string>& values, std::string_view meaning);
-/// `unit` as printed: "N", "s", "1".
+/// `unit`: for example "N", "s" or "1".
 core::Json number(std::string_view unit, std::string_view meaning);
 core::Json integer(std::string_view unit, std::string_view meaning);
 core::Json truth(std::string_view meaning);
 core::Json array(core::Json items, std::string_view meaning);
-/// Exactly so many items.
+/// An array of exactly `size` items.
 core::Json tuple(core::Json items, std::size_t size, std::string_view meaning);
 core::Json map(core::Json values, std::string_view meaning);
 core::Json nullable(core::Json inner);
 core::Json optional(core::Json inner);
-/// Any object: what it holds is another's matter.
+/// Any JSON object; its fields are described elsewhere.
 core::Json anything(std::string_view meaning);
-/// A schema named by some route's `schemas`.
+/// A reference to a schema that a route defines in `schemas`.
 core::Json ref(std::string_view name);
 
 }  // namespace tractus::api::schema

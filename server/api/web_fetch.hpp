@@ -1,4 +1,4 @@
-/// The server as a client of another: of a provider of identities.
+/// Requests of the server to another server, for example to an OpenID Connect provider.
 #pragma once
 
 #include <chrono>
@@ -17,18 +17,18 @@ struct Fetched {
 };
 
 struct Fetch {
-  std::string url;  ///< https; plain http to this machine's own addresses alone
-  std::optional<std::map<std::string, std::string>> form = {};  ///< sent by POST
-  std::string user = {}, password = {};                         ///< basic credentials; empty: none
-  std::filesystem::path authority = {};      ///< PEM file to trust; empty: the system's
-  std::chrono::milliseconds patience{5000};  ///< from the start to the last byte
+  std::string url;  ///< https; http is allowed only to loopback addresses
+  std::optional<std::map<std::string, std::string>> form = {};  ///< fields of a POST; none: GET
+  std::string user = {}, password = {};  ///< credentials for HTTP basic authentication; empty: none
+  std::filesystem::path authority = {};  ///< trusted PEM file; empty: the system's
+  std::chrono::milliseconds patience{5000};  ///< time limit from the start to the last byte
 };
 
-/// At most 1 MiB within `patience`, no redirects. Errors: bad_input (not such an address),
-/// unavailable (no answer), too_large.
+/// Reads at most 1 MiB within `patience`, without redirects. Errors: bad_input (the address is not
+/// allowed), unavailable (no answer), too_large.
 core::Result<Fetched> fetch(const Fetch& what);
 
-/// Is it https, or http to this machine's own addresses?
+/// Whether the address is https, or http to a loopback address.
 bool is_safe_address(const std::string& url);
 
 /// "a b" is "a%20b".

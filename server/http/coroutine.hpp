@@ -1,4 +1,5 @@
-/// What the coroutines of server.cpp and websocket.cpp share; for those two alone.
+/// Functions that the coroutines of server.cpp and websocket.cpp share; only these two files use
+/// them.
 #pragma once
 
 #include <utility>  // before Asio: 1.74 uses std::exchange without it
@@ -15,9 +16,9 @@ inline auto into(boost::system::error_code& failure) {
   return boost::asio::redirect_error(boost::asio::use_awaitable, failure);
 }
 
-/// Runs `work` on the pool and comes back to the connection's own thread with its answer. `work` is
-/// a plain value of pointers into the waiting coroutine's frame: gcc 12 destroys a lambda's
-/// captures twice when it is made within a co_await expression.
+/// Runs `work` on the pool and resumes the coroutine on the connection's own thread with the
+/// result. `work` is a plain value of pointers into the waiting coroutine's frame, because gcc 12
+/// destroys the captures of a lambda twice if the lambda is made within a co_await expression.
 template <class Work>
 boost::asio::awaitable<std::invoke_result_t<Work>> on_workers(boost::asio::thread_pool& pool,
                                                               Work work) {

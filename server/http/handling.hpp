@@ -1,5 +1,5 @@
-/// What workers do for a connection (see on_workers): each calls one function of the service. For
-/// server.cpp alone.
+/// Work that worker threads do for a connection (see on_workers): each type calls one function of
+/// the service. Only server.cpp uses it.
 #pragma once
 
 #include <fmt/format.h>
@@ -12,7 +12,7 @@ using Admission = std::variant<Admitted, Response>;
 using Opening = std::variant<Response, std::shared_ptr<WebSocketHandler>>;
 using Ranked = std::variant<Standing, Response>;
 
-/// A library threw where a handler did not expect it: this request fails, the server goes on.
+/// The response if a library throws unexpectedly: this request fails, and the server continues.
 inline Response broken(const std::exception& failure) {
   fmt::print(stderr, "tractus-server: a request failed: {}\n", failure.what());
   return error_response(500, "io",

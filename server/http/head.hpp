@@ -1,4 +1,5 @@
-/// A request's head as Beast parsed it, checked and made a plain value. For server.cpp alone.
+/// Checks the head of a request that Beast parsed, and converts it to a plain value. Only
+/// server.cpp uses it.
 #pragma once
 
 #include <boost/beast/http/parser.hpp>
@@ -13,11 +14,11 @@ using Parser = boost::beast::http::request_parser<boost::beast::http::string_bod
 
 std::string lower_case(boost::beast::string_view text);
 
-/// @param peer     the other side's address
-/// @param proxies  believed when they name the peer in X-Forwarded-For; null: none
-/// Errors: bad_input for a target that cannot be read, a head without exactly one Host, and a
-/// Transfer-Encoding other than chunked: what follows such a head would be read as the next
-/// request.
+/// @param peer     network address of the client
+/// @param proxies  proxies whose header X-Forwarded-For is trusted; null: none
+/// Errors: bad_input for an invalid target, a head without exactly one Host header, and a
+/// Transfer-Encoding other than chunked, because the bytes after such a head would be read as the
+/// next request.
 core::Result<RequestHead> head_of(const Parser& parser, std::string peer, const Networks* proxies);
 
 }  // namespace tractus::http

@@ -1,4 +1,4 @@
-/// Requests and responses as the rest of the server sees them: plain values, no sockets.
+/// Requests and responses as plain values without sockets, for the rest of the server.
 #pragma once
 
 #include <cstdint>
@@ -16,19 +16,20 @@
 
 namespace tractus::http {
 
-/// "%2F" and "+" undone. Errors: bad_input for an escape that is none, and for a zero byte.
+/// Decodes percent escapes ("%2F") and "+". Errors: bad_input for an invalid escape and for a zero
+/// byte.
 core::Result<std::string> percent_decoded(std::string_view text);
 
-/// What stands before the body.
+/// The part of a request before the body.
 struct RequestHead {
   std::string method;                          ///< "GET"
-  std::string path;                            ///< still escaped, begins with '/'
+  std::string path;                            ///< begins with '/', not decoded
   std::map<std::string, std::string> query;    ///< decoded
   std::map<std::string, std::string> headers;  ///< names in lower case
-  std::string peer;                            ///< address of the other side, without port
-  std::uint64_t body_bytes = 0;  ///< as announced; 0 when none is or it comes in pieces
+  std::string peer;                            ///< network address of the client, without port
+  std::uint64_t body_bytes = 0;                ///< announced length; 0 without a body or if chunked
 
-  /// The header's value, or "".
+  /// The value of the header, or "".
   std::string_view header(std::string_view lower_case_name) const;
   /// The value of a cookie, or "".
   std::string_view cookie(std::string_view name) const;
@@ -37,22 +38,24 @@ struct RequestHead {
 /// Splits "/path?query" into `head`. Errors: bad_input.
 core::Result<void> read_target(std::string_view target, RequestHead& head);
 
-/// Whom a proxy names last in X-Forwarded-For: what stands before that anybody may have written.
-/// Without the header, or when what it names is no address: the peer itself.
+/// The last address in X-Forwarded-For, which the proxy wrote; anybody may have written the
+/// addresses before it. Without the header, or if the last entry is not an address: the peer
+/// itself.
 std::string forwarded_peer(const RequestHead& head);
 
 struct Request : RequestHead {
   std::string body;
-  /// Where a large body lies instead, for as long as the request is handled; empty: in `body`.
+  /// File with a large body, which exists while the request is handled; empty: the body is in
+  /// `body`.
   std::filesystem::path body_file = {};
 };
 
-/// Part of a file, sent in pieces.
+/// A part of a file, which is sent in pieces.
 struct FileSlice {
   std::filesystem::path path;
   std::uint64_t offset = 0;
   std::uint64_t size = 0;
-  std::shared_ptr<const void> owner = {};  ///< kept until it is sent: as http::ScratchFile
+  std::shared_ptr<const void> owner = {};  ///< kept alive until the file is sent
 };
 
 struct Response {
@@ -71,14 +74,14 @@ struct Response {
 /// {"error": text, "code": code} as JSON.
 Response error_response(int status, std::string_view code, std::string_view text);
 
-/// Bytes [first, last] of a "Range: bytes=…" header for a file of `size` bytes. Nothing: no range
-/// asked, or one of a form we need not honour (several ranges, another unit). Errors: out_of_range
-/// when it lies wholly beyond the end (416).
+/// Bytes [first, last] of a "Range: bytes=…" header for a file of `size` bytes. Nothing if there is
+/// no range, or a range of an unsupported form (several ranges, another unit). Errors: out_of_range
+/// if the range lies wholly beyond the end (416).
 core::Result<std::optional<std::pair<std::uint64_t, std::uint64_t>>> byte_range(
     std::string_view header, std::uint64_t size);
 
-/// The file, or the part of it that the request's Range names: 200, 206 or 416. Errors: not_found,
-/// io.
+/// A response with the file, or with the part that the request's Range header names: 200, 206 or
+/// 416. Errors: not_found, io.
 core::Result<Response> file_response(const std::filesystem::path& path, const RequestHead& request,
                                      std::string content_type);
 

@@ -1,4 +1,4 @@
-/// Addresses and networks, as "10.0.0.0/8": whom a server believes.
+/// IP addresses and networks, for example "10.0.0.0/8", of the proxies that a server trusts.
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@
 
 namespace tractus::http {
 
-/// An IP address as 16 bytes; IPv4 as ::ffff:a.b.c.d. A zone ("%eth0") is left out. Nothing when
-/// the text is none.
+/// An IP address as 16 bytes; IPv4 as ::ffff:a.b.c.d. A zone ("%eth0") is ignored. Nothing if the
+/// text is not an IP address.
 std::optional<std::array<std::uint8_t, 16>> ip_address(const std::string& text);
 
 class Networks {

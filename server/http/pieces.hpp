@@ -1,4 +1,4 @@
-/// A file on its way to a socket, piece by piece, read by workers. For server.cpp alone.
+/// Sends a file to a socket piece by piece; worker threads read the file. Only server.cpp uses it.
 #pragma once
 
 #include <cstdint>
@@ -11,20 +11,20 @@ namespace tractus::http {
 inline constexpr std::size_t kPiece_bytes = 256 * 1024;  ///< read at once
 inline constexpr std::size_t kSent_bytes = 4u << 20;  ///< sent at once, when the kernel takes them
 
-/// A descriptor that closes itself.
+/// Owns a file descriptor and closes it.
 class File {
  public:
   explicit File(const std::filesystem::path& path);
-  /// Another name of a socket, so that it stays the same one whoever closes it meanwhile.
+  /// A duplicate of a socket's descriptor, which stays valid if the original descriptor is closed.
   static File again(int socket);
   ~File();
   File(const File&) = delete;
   File& operator=(const File&) = delete;
   explicit operator bool() const { return fd_ >= 0; }
-  /// Fills all of `piece`; false when the file is shorter or cannot be read.
+  /// Fills `piece` completely; false if the file is too short or cannot be read.
   bool read_at(std::uint64_t offset, std::string& piece) const;
-  /// Copies to a socket that does not block, within the kernel: how many bytes it took; nothing
-  /// when the file is shorter or the other side is gone.
+  /// Copies to a non-blocking socket within the kernel. Returns the number of bytes that the socket
+  /// accepted; nothing if the file is too short or the connection is closed.
   std::optional<std::uint64_t> send_to(const File& socket, std::uint64_t offset,
                                        std::uint64_t size) const;
 

@@ -1,4 +1,4 @@
-/// Room on the disk for large bodies and answers under way, shared among those who ask.
+/// Disk space for large bodies and answers in transfer, shared among the clients.
 #pragma once
 
 #include <cstdint>
@@ -13,13 +13,13 @@
 
 namespace tractus::http {
 
-/// Bytes under way at the same time.
+/// Largest numbers of bytes in transfer at the same time.
 struct ScratchLimits {
-  std::uint64_t per_client = 1536ull << 20;  ///< the largest body that a route takes, and more
+  std::uint64_t per_client = 1536ull << 20;  ///< more than the largest body that a route allows
   std::uint64_t in_all = 6ull << 30;
 };
 
-/// A folder and how much of it is in use. Safe from several threads.
+/// A folder and the number of its bytes in use. Thread-safe.
 class ScratchSpace {
  public:
   explicit ScratchSpace(std::filesystem::path folder, ScratchLimits limits = {})
@@ -27,7 +27,7 @@ class ScratchSpace {
   ScratchSpace(const ScratchSpace&) = delete;
   ScratchSpace& operator=(const ScratchSpace&) = delete;
 
-  /// Bytes that are reserved until this goes; not beyond the space that it is of.
+  /// A reservation of bytes until this object is destroyed; the space must outlive it.
   class Share {
    public:
     Share() = default;
@@ -36,7 +36,7 @@ class ScratchSpace {
     ~Share();
     Share(Share&& other) noexcept;
     Share& operator=(Share&& other) noexcept;
-    /// Gives back what is over `bytes`, once it is known that no more are needed.
+    /// Reduces the reservation to `bytes`, once it is known that no more are needed.
     void shrink_to(std::uint64_t bytes);
 
    private:
@@ -45,11 +45,11 @@ class ScratchSpace {
     std::uint64_t bytes_ = 0;
   };
 
-  /// @param client  account, station or whoever else asks; all of one share its limit
-  /// Errors: unavailable when the client, or all together, would have more than the limit.
+  /// @param client  id of the account or station; all transfers of one client share its limit
+  /// Errors: unavailable if the client, or all clients together, would exceed the limit.
   core::Result<Share> reserve(const std::string& client, std::uint64_t bytes);
   const std::filesystem::path& folder() const { return folder_; }
-  /// A name in the folder that nothing has.
+  /// An unused file name in the folder.
   std::filesystem::path new_name() const;
 
  private:
@@ -62,7 +62,7 @@ class ScratchSpace {
   std::uint64_t all_ = 0;
 };
 
-/// A file in the scratch folder, deleted with this.
+/// A file in the scratch folder; the destructor deletes it.
 struct ScratchFile {
   std::filesystem::path path;
   ScratchSpace::Share share;
@@ -74,8 +74,8 @@ struct ScratchFile {
   ScratchFile& operator=(const ScratchFile&) = delete;
 };
 
-/// A name for a file of at most so many bytes, which whoever asks for it makes. Errors:
-/// unavailable.
+/// Reserves space for a file of at most `bytes`, and a name for it; the caller creates the file.
+/// Errors: unavailable.
 core::Result<std::shared_ptr<ScratchFile>> scratch_file(ScratchSpace& space,
                                                         const std::string& client,
                                                         std::uint64_t bytes);

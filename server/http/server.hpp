@@ -1,4 +1,4 @@
-/// The listening side: sockets, limits, time-outs.
+/// The HTTP server: sockets, limits, time-outs.
 #pragma once
 
 #include <atomic>
@@ -19,47 +19,51 @@ namespace tractus::http {
 
 struct ServerOptions {
   std::string address = "127.0.0.1";
-  std::uint16_t port = 8480;  ///< 0: any free one
-  /// PEM files of a certificate chain and its key; none: plain HTTP.
+  std::uint16_t port = 8480;  ///< 0: any free port
+  /// PEM files of a certificate chain and its private key; none: HTTP without TLS.
   std::optional<std::pair<std::filesystem::path, std::filesystem::path>> tls;
-  bool behind_proxy = false;  ///< browsers reach it by TLS, by way of a proxy
-  /// Behind a proxy: whose X-Forwarded-For is believed; the peer is whom it names last.
+  bool behind_proxy = false;  ///< browsers use TLS to a reverse proxy in front of this server
+  /// Proxies whose X-Forwarded-For is trusted; the last address in it is then the peer.
   Networks proxies = Networks::loopback();
-  int workers = 4;  ///< threads on which handlers run, but for those of a lane
+  int workers = 4;  ///< number of worker threads for handlers, besides the threads of the lanes
   LaneLimits hashing = hashing_limits();
   LaneLimits remote{.threads = 4, .waiting_strangers = 8, .waiting = 32};
-  int max_connections = 512;  ///< for one more, that which has kept us waiting longest is closed
+  int max_connections = 512;  ///< a further one closes the longest idle connection
   std::uint32_t max_header_bytes = 16 * 1024;
   std::chrono::milliseconds header_time{
       10'000};  ///< from a request's first byte to the end of its head
   std::chrono::milliseconds idle_time{60'000};   ///< between requests
   std::chrono::milliseconds body_time{60'000};   ///< for a whole body
   std::chrono::milliseconds write_time{60'000};  ///< for each piece (256 KiB) of an answer
-  std::chrono::milliseconds drain_time{10'000};  ///< for requests under way once told to stop
-  ScratchSpace* scratch = nullptr;  ///< for bodies that go to a file; none: all stay in memory
-  std::chrono::milliseconds silence_time{30'000};  ///< of a WebSocket, pings unanswered
+  std::chrono::milliseconds drain_time{10'000};  ///< for requests in progress after `stop`
+  ScratchSpace* scratch = nullptr;  ///< for bodies in files; null: all bodies stay in memory
+  std::chrono::milliseconds silence_time{30'000};  ///< for a WebSocket that does not answer pings
   std::chrono::milliseconds talk_write_time{
-      5'000};  ///< for a WebSocket's listener to take a message
+      5'000};  ///< for the receiver of a WebSocket to read a message
 };
 
-/// How a body is taken.
+/// How the server receives a body.
 struct Admitted {
   std::uint64_t limit_bytes = 0;
   bool to_file = false;     ///< into ServerOptions::scratch
-  std::string client = {};  ///< who sends it, by whatever name ScratchSpace shall know it
+  std::string client = {};  ///< client for ScratchSpace::reserve
 };
 
-/// What the server does with requests. All are called on worker threads, several at a time.
+/// The functions with which the server answers requests. They are called on worker threads,
+/// concurrently.
 struct Service {
-  /// Sees the head before the body is read: how to take it, or a refusal.
+  /// Called with the head before the body is read. Returns how to receive the body, or a refusal.
   std::function<std::variant<Admitted, Response>(const RequestHead&)> admit;
   std::function<Response(const Request&)> handle;
-  /// A request for a WebSocket: a refusal, or who answers in it. Empty: none are held.
+  /// Called for a WebSocket request. Returns a refusal, or the handler of the WebSocket. Empty: the
+  /// server has no WebSockets.
   std::function<std::variant<Response, std::shared_ptr<WebSocketHandler>>(const RequestHead&)>
       converse = {};
-  /// Which threads handle it? Called on the input/output thread. Empty: the workers, always.
+  /// The threads that handle the request. Called on the input/output thread. Empty: always the
+  /// workers.
   std::function<Lane(const RequestHead&)> lane = {};
-  /// For a lane with a queue, once the body is there: whose request it is, or a refusal.
+  /// Called for a lane with a queue after the body was received. Returns who sent the request, or a
+  /// refusal.
   std::function<std::variant<Standing, Response>(const RequestHead&)> standing = {};
 };
 
@@ -74,8 +78,8 @@ class Server {
   std::uint16_t port() const;
   /// Returns after the last connection is closed, at the latest `drain_time` after `stop`.
   void run();
-  /// Closes the listening socket, lets requests under way finish. Safe from any thread, more than
-  /// once.
+  /// Closes the listening socket and lets requests in progress finish. May be called from any
+  /// thread and more than once.
   void stop();
 
  private:

@@ -1,5 +1,5 @@
-/// A request's body that goes to a file: in bounded memory, written by workers. For server.cpp
-/// alone.
+/// Stores the body of a request in a file, with bounded memory; worker threads write the file. Only
+/// server.cpp uses it.
 #pragma once
 
 #include "server/http/stream.hpp"
@@ -16,12 +16,12 @@
 
 namespace tractus::http {
 
-/// Gone with this.
+/// A file with a body; the destructor deletes it.
 struct SpooledFile {
-  std::filesystem::path path;  ///< empty: the body did not go to a file
-  ScratchSpace::Share share;   ///< of the space that its folder has
+  std::filesystem::path path;  ///< empty: the body was not stored in a file
+  ScratchSpace::Share share;   ///< reservation in the scratch space
   int fd = -1;
-  bool broken = false;  ///< it could not be written
+  bool broken = false;  ///< writing the file failed
 
   SpooledFile() = default;
   ~SpooledFile();
@@ -32,11 +32,11 @@ struct SpooledFile {
 struct SpoolLimits {
   const ScratchSpace* space;
   std::uint64_t max_bytes;
-  std::chrono::milliseconds patience;  ///< for each piece; and all of it at 256 KiB/s at least
+  std::chrono::milliseconds patience;  ///< for each piece; the whole body needs at least 256 KiB/s
 };
 
-/// Reads the body of a request whose head `parser` holds, to its end, into a new file of mode 0600.
-/// `parser` gives up its message and is not to be read from afterwards but for its empty body.
+/// Reads the whole body of the request whose head is in `parser` into a new file of mode 0600. The
+/// message is moved out of `parser`; afterwards only its empty body may be read.
 boost::asio::awaitable<boost::system::error_code> spool_body(
     Stream& stream, boost::beast::flat_buffer& buffer,
     boost::beast::http::request_parser<boost::beast::http::string_body>& parser,

@@ -7,25 +7,25 @@
 
 namespace tractus::http {
 
-/// Serves files of one folder and nothing above it: a path is taken apart into names, and a name
-/// that is "..", hidden, or holds a separator is not found. A path without extension is the
-/// application's own and answers index.html.
+/// Serves the files of one folder and nothing outside it: a path is split into names, and a name
+/// that is "..", hidden, or contains a separator is answered with 404. A path without extension
+/// belongs to the web application and is answered with index.html.
 class StaticFiles {
  public:
   explicit StaticFiles(std::filesystem::path folder) : folder_(std::move(folder)) {}
-  /// GET and HEAD alone (405 else). Files named with their content's hash may be kept for ever, the
-  /// rest is asked for again each time (ETag, 304).
+  /// Allows only GET and HEAD (else 405). Browsers may cache files with a content hash in their
+  /// name for ever, and revalidate other files on each request (ETag, 304).
   Response answer(const RequestHead& request) const;
 
  private:
   std::filesystem::path folder_;
 };
 
-/// Headers that every response carries: no sniffing, no framing, no scripts but our own (vtk.js
-/// needs WebAssembly and blob workers). An answer that does not say how long it may be kept is not
-/// kept at all (Cache-Control: no-store).
+/// Adds the headers of every response: no content sniffing, no framing, only scripts of this server
+/// (vtk.js needs WebAssembly and blob workers). A response without Cache-Control gets
+/// "Cache-Control: no-store".
 void add_security_headers(Response& response);
-/// A browser that was answered by TLS once asks by TLS alone, for a year (RFC 6797).
+/// Adds Strict-Transport-Security: a browser then uses only TLS for a year (RFC 6797).
 void require_tls(Response& response);
 
 }  // namespace tractus::http

@@ -1,5 +1,5 @@
-/// One connection's bytes, plain or by TLS: the same type to all that reads and writes, so that
-/// Beast is compiled once. For server.cpp alone.
+/// The byte stream of one connection, with or without TLS. One type for both, so that Beast is
+/// compiled only once. Only server.cpp uses it.
 #pragma once
 
 #include <utility>  // before Asio: 1.74 uses std::exchange without it
@@ -16,13 +16,14 @@
 
 namespace tractus::http {
 
-/// Meets Asio's AsyncReadStream and AsyncWriteStream. Time-outs are those of Beast's tcp_stream.
+/// Satisfies Asio's AsyncReadStream and AsyncWriteStream. Time-outs are those of Beast's
+/// tcp_stream.
 class Stream {
  public:
   using executor_type = boost::beast::tcp_stream::executor_type;
   using Failure = boost::system::error_code;
 
-  /// @param tls  outlives it; null: plain
+  /// @param tls  must outlive the stream; null: no TLS
   Stream(boost::asio::ip::tcp::socket socket, boost::asio::ssl::context* tls)
       : tcp_(std::move(socket)) {
     if (tls) tls_.emplace(tcp_, *tls);
@@ -40,7 +41,7 @@ class Stream {
   auto async_handshake(Token&& token) {
     return tls_->async_handshake(boost::asio::ssl::stream_base::server, std::forward<Token>(token));
   }
-  /// Says that no more comes, so that the other side knows nothing was cut off.
+  /// Sends the TLS close notification, so that the client can detect a truncated answer.
   template <class Token>
   auto async_shutdown(Token&& token) {
     return tls_->async_shutdown(std::forward<Token>(token));
@@ -76,9 +77,8 @@ class Stream {
   std::optional<boost::asio::ssl::stream<boost::beast::tcp_stream&>> tls_;
 };
 
-/// TLS 1.2 (ECDHE with AES-GCM or ChaCha20 alone) and 1.3, no renegotiation, no compression: what
-/// browsers and libcurl speak.
-/// Errors: bad_input, naming the file that is not what it should be.
+/// TLS 1.2 (only ECDHE with AES-GCM or ChaCha20) and TLS 1.3, without renegotiation and
+/// compression; browsers and libcurl support these. Errors: bad_input, naming the invalid file.
 core::Result<boost::asio::ssl::context> tls_context(const std::filesystem::path& certificate,
                                                     const std::filesystem::path& key);
 

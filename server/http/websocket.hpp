@@ -1,4 +1,4 @@
-/// One WebSocket over a connection, RFC 6455 by Beast. For server.cpp alone.
+/// One WebSocket over a connection, RFC 6455, implemented with Beast. Only server.cpp uses it.
 #pragma once
 
 #include <utility>  // before Asio: 1.74 uses std::exchange without it
@@ -14,11 +14,12 @@
 namespace tractus::http {
 
 struct WebSocketTimes {
-  std::chrono::milliseconds silence;  ///< without a byte; a ping is sent at half of it
-  std::chrono::milliseconds write;    ///< for one message to leave
+  std::chrono::milliseconds silence;  ///< without a received byte; a ping is sent after half of it
+  std::chrono::milliseconds write;    ///< largest time for sending one message
 };
 
-/// Accepts the upgrade and holds the conversation to its end. No compression, text alone.
+/// Accepts the upgrade and runs the WebSocket until it is closed. Text messages only, no
+/// compression.
 boost::asio::awaitable<void> hold_conversation(
     Stream& stream, const boost::beast::http::request<boost::beast::http::string_body>& upgrade,
     std::shared_ptr<WebSocketHandler> with, boost::asio::thread_pool& workers,

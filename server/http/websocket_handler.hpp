@@ -1,4 +1,5 @@
-/// A WebSocket as the rest of the server sees it: text messages in and out, no sockets.
+/// The interface of a WebSocket for the rest of the server: receives and sends text messages,
+/// without sockets.
 #pragma once
 
 #include <chrono>
@@ -27,10 +28,11 @@ std::string_view text_of(CloseReason reason);
 class WebSocketSender {
  public:
   virtual ~WebSocketSender() = default;
-  /// Queues a message, and replaces one that still waits under the same key: a slow receiver gets
-  /// the latest and delays nobody. A receiver with more than kMostWaiting keys waiting is closed.
+  /// Queues a message, which replaces a queued message with the same key: a slow receiver gets the
+  /// latest state and does not delay others. A WebSocket with more than kMostWaiting queued keys is
+  /// closed.
   virtual void send(const std::string& key, std::shared_ptr<const std::string> text) = 0;
-  /// Sends what waits, then closes the WebSocket.
+  /// Sends the queued messages, then closes the WebSocket.
   virtual void end() = 0;
 
   static constexpr std::size_t kMostWaiting = 4096;
@@ -39,23 +41,25 @@ class WebSocketSender {
 /// What one side of a WebSocket is allowed.
 struct WebSocketLimits {
   std::size_t max_message_bytes = 16 * 1024;
-  double messages_per_s = 60.0;  ///< pings too; as many again in one go
-  /// Between two deliveries: of the messages under one key only the latest is sent.
+  double messages_per_s = 60.0;  ///< includes pings; a burst may be as large again
+  /// Smallest time between two deliveries; of the messages with one key only the latest is sent.
   std::chrono::milliseconds pause{0};
 };
 
-/// The server's part in one WebSocket. `begin`, `on_message` and `ended` are called on the
-/// input/output thread and must not block; `still_allowed` on a worker.
+/// The server's side of one WebSocket. `begin`, `on_message` and `ended` are called on the
+/// input/output thread and must not block; `still_allowed` is called on a worker thread.
 class WebSocketHandler {
  public:
   virtual ~WebSocketHandler() = default;
   virtual WebSocketLimits limits() const = 0;
   virtual void begin(std::shared_ptr<WebSocketSender> sender) = 0;
-  /// A whole text message. False: it is invalid, and the WebSocket is closed.
+  /// Called with each complete text message. False: the message is invalid, and the WebSocket is
+  /// closed.
   virtual bool on_message(std::string_view text) = 0;
-  /// Asked every kRecheck: are the credentials that opened it still good?
+  /// Called every kRecheck. Returns whether the credentials that opened the WebSocket are still
+  /// valid.
   virtual bool still_allowed() = 0;
-  /// Once, after `begin`.
+  /// Called once, after `begin`, when the WebSocket is closed.
   virtual void ended(CloseReason reason) = 0;
 
   static constexpr std::chrono::seconds kRecheck{15};

@@ -1,4 +1,4 @@
-/// The stations of this server's database as they are just now.
+/// The current state of the stations of this server's database.
 #pragma once
 
 #include <condition_variable>
@@ -18,22 +18,24 @@ struct StationRef {
   std::string id, name;
 };
 
-/// Who looks on, and which people they may see.
+/// An account with an open live page, and the people whom it may see.
 struct Viewer {
   std::string account_id;
   enum class Sees { nobody, taught, everybody } sees = Sees::nobody;
 };
 
-/// Asked now and then on a worker: are the credentials that opened the line still good?
+/// Called regularly on a worker thread. Returns whether the credentials that opened the WebSocket
+/// are still valid.
 using MayStay = std::function<bool()>;
 
-/// Safe from several threads.
+/// Thread-safe.
 class Hub {
  public:
   struct Parts {
     store::Store& store;
     std::function<std::int64_t()> now_utc_us;
-    /// A station was hung up on for what it sent; from the hub's own thread.
+    /// Called on the hub's own thread when a station's connection was closed because of its
+    /// messages.
     std::function<void(const StationRef&, const std::string& why)> refused = {};
     std::function<void(const core::Json&)> log = {};
   };
@@ -42,29 +44,30 @@ class Hub {
   Hub(const Hub&) = delete;
   Hub& operator=(const Hub&) = delete;
 
-  /// Reads what is kept, listens to the other processes, starts the hub's thread. Without it a hub
-  /// works for itself alone (tests).
+  /// Reads the stored states, subscribes to the signals of the other processes, starts the hub's
+  /// thread. Without `start` a hub works only within its process (for tests).
   core::Result<void> start();
 
-  /// A line of a station's; a second one takes the first's place.
+  /// The handler for a station's WebSocket; a second connection of the station replaces the first.
   std::shared_ptr<http::WebSocketHandler> station_talk(const StationRef& station,
                                                        MayStay still_allowed);
-  /// Errors: unavailable when too many look on.
+  /// The handler for a viewer's WebSocket. Errors: unavailable if too many viewers are connected.
   core::Result<std::shared_ptr<http::WebSocketHandler>> viewer_talk(const Viewer& viewer,
                                                                     MayStay still_allowed);
 
-  /// StationState of the contract. Of a station that was never heard: away.
+  /// StationState as in the description of the API. A station that never connected is away.
   core::Json state_json(const StationRef& station, const Viewer& viewer) const;
-  /// Hands it to the station's line, whichever process holds it. Errors: conflict when none does.
+  /// Sends the command over the station's connection, which any process may hold. Errors: conflict
+  /// if the station is not connected.
   core::Result<void> command(const std::string& station_id, const wire::StationCommand& command);
-  /// Hangs up on a station that was shut out.
+  /// Closes the connection of a revoked station.
   void dismiss(const std::string& station_id);
-  /// Hangs up on those who look on by this account: its sessions were ended.
+  /// Closes the viewers' connections of this account, whose sessions were ended.
   void dismiss_viewers(const std::string& account_id);
-  /// What a report said, into the state that is shown.
+  /// Adds a station's report to the state that viewers see.
   void reported(const StationRef& station, const wire::StationReport& report);
 
-  /// Does at once what waits for the database; the hub's thread does it by itself.
+  /// Does the pending database work immediately; otherwise the hub's thread does it.
   void catch_up();
 
   static constexpr std::size_t kMostViewers = 128, kMostViewersOfOne = 12;
@@ -75,21 +78,21 @@ class Hub {
   struct Known {
     StationRef station;
     bool connected = false;
-    std::string held_by;  ///< the process; empty: this one
+    std::string held_by;  ///< id of the process with the station's connection; empty: this process
     wire::StationStatus told;
     std::int64_t since_utc_us = 0, seen_utc_us = 0;
     store::ShownTrial shown;
-    std::string shown_of;  ///< the case id that `shown` is of
+    std::string shown_of;  ///< case id to which `shown` belongs
     bool shown_due = false;
     std::shared_ptr<http::WebSocketSender> line;
-    bool untold = false, unkept = false;  ///< to the other processes, on the disk
+    bool untold = false, unkept = false;  ///< not yet sent to the other processes; not yet stored
     std::int64_t told_others_utc_us = 0;
   };
   struct Watching {
     Viewer viewer;
     std::shared_ptr<http::WebSocketSender> line;
   };
-  /// One state as text, made once for all who see the person and once for the others.
+  /// One state as text: with the person for viewers who may see the person, and without.
   struct Texts {
     std::shared_ptr<const std::string> with, without;
   };

@@ -1,4 +1,4 @@
-/// Cases that are made of volumes: what was asked, how far it is, what came of it.
+/// Jobs that make cases from volumes: request, progress, result.
 #pragma once
 
 #include <vector>
@@ -15,9 +15,9 @@ struct CaseMaking {
   std::string plan;  ///< JSON, as jobs::plan_from reads it
   std::string state = "queued";
   double share = 0.0;                  ///< of the work, 0 … 1
-  std::string phase;                   ///< what it is at, in words
-  std::string error;                   ///< why it failed
-  std::optional<std::string> case_id;  ///< once done
+  std::string phase;                   ///< current step, in words
+  std::string error;                   ///< reason for the failure
+  std::optional<std::string> case_id;  ///< id of the case; nothing until the job is done
   std::int64_t made_utc_us = 0;
   std::string made_by;
 };

@@ -7,7 +7,7 @@
 
 namespace tractus::store {
 
-/// What a case is: a volume with a tract, or a probing scenario (its one part, scenario.json, is
+/// Kinds of cases: a volume with a tract, or a probing scenario (whose only part, scenario.json, is
 /// secret).
 inline constexpr const char* kPalpation = "palpation";
 inline constexpr const char* kProbing = "probing";
@@ -19,8 +19,8 @@ struct CaseSummary {
   std::int64_t made_utc_us = 0;
   std::uint64_t trials = 0;  ///< counted on reading
   std::string kind = kPalpation;
-  bool retired = false;  ///< offered no more; what was assigned of it goes on
-  bool planned = false;  ///< the bone is whole: a channel is drilled first, and felt then
+  bool retired = false;  ///< new assignments cannot use it; existing ones continue
+  bool planned = false;  ///< the bone is whole: a trainee drills the channel, then palpates it
 };
 
 /// A file of the bundle, case.json and case.sig among them.
@@ -28,23 +28,23 @@ struct CasePart {
   std::string name;
   std::string sha256;  ///< of the object that holds it
   std::uint64_t size_bytes = 0;
-  bool secret = false;  ///< never for a station
+  bool secret = false;  ///< stations cannot read it
 };
 
-/// Notes the case, its parts and their objects. Publishing the same case again changes nothing (of
-/// one noted before `planned` was kept, that alone).
+/// Stores the case, its parts and their objects. Storing the same case again changes nothing,
+/// except the field `planned` of a case that an older version stored.
 core::Result<void> add_case(Writing& tx, const CaseSummary& summary,
                             const std::vector<CasePart>& parts, std::int64_t now_utc_us);
-/// Those for palpation, newest first: scenarios are nobody's to list.
+/// The palpation cases, newest first; scenarios are never listed.
 core::Result<std::vector<CaseSummary>> all_cases(Reading& tx);
 core::Result<std::optional<CaseSummary>> case_of(Reading& tx, const std::string& id);
-/// Offered no more, or again. Errors: not_found.
+/// Retires a case, or offers it again. Errors: not_found.
 core::Result<void> set_case_retired(Writing& tx, const std::string& id, bool retired,
                                     std::int64_t now_utc_us);
 core::Result<std::optional<CasePart>> case_part(Reading& tx, const std::string& case_id,
                                                 const std::string& name);
 
-/// Notes a file that lies among the objects; one that is known already stays as it is.
+/// Records a file that is among the objects; an already recorded file stays unchanged.
 core::Result<void> add_object(Writing& tx, const std::string& sha256, std::uint64_t size_bytes,
                               std::int64_t now_utc_us);
 

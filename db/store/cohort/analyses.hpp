@@ -7,23 +7,23 @@
 
 namespace tractus::store {
 
-/// Never changed: another plan is another row.
+/// A locked plan, which never changes: another plan is another row.
 struct AnalysisPlan {
   std::string id, title;
-  std::string study;             ///< whose trials it is of; empty: all
+  std::string study;             ///< id of the study whose trials the plan uses; empty: all trials
   std::string plan;              ///< object: tractus-plan/1 with its lock
-  bool data_seen = false;        ///< as the lock says
-  std::int64_t trials_then = 0;  ///< scored trials of it that the server held when it was locked
+  bool data_seen = false;        ///< as the lock states
+  std::int64_t trials_then = 0;  ///< scored trials for it on the server when it was locked
   std::int64_t made_utc_us = 0;
   std::string made_by;
 };
 
-/// "queued", "running", "done" or "failed".
+/// A run of an analysis. Its state is "queued", "running", "done" or "failed".
 struct AnalysisRun {
   std::string id;
-  std::optional<std::string> plan_id;  ///< none: one method, not planned beforehand
+  std::optional<std::string> plan_id;  ///< none: one method, without a locked plan
   std::string study;
-  std::string plan;  ///< object: what is asked
+  std::string plan;  ///< object: the plan that is run
   std::string state = "queued";
   double share = 0.0;                                ///< of the work, 0 … 1
   std::optional<std::string> snapshot, description;  ///< objects: the frozen CSV, snapshot.json
@@ -42,12 +42,12 @@ core::Result<void> add_analysis(Writing& tx, const AnalysisRun& run);
 core::Result<std::optional<AnalysisRun>> analysis_of(Reading& tx, const std::string& id);
 /// Newest first.
 core::Result<std::vector<AnalysisRun>> analyses_of_plan(Reading& tx, const std::string& plan_id);
-/// The first run of the same question on the same data that was done before this one.
+/// The first finished run of the same plan on the same data, before this run.
 core::Result<std::optional<AnalysisRun>> analysis_repeated_by(Reading& tx, const AnalysisRun& run);
 
 core::Result<void> note_analysis_share(Writing& tx, const std::string& id, double share,
                                        std::int64_t now_utc_us);
-/// The data the run is of, from now on.
+/// Records the frozen data of the run.
 core::Result<void> note_analysis_snapshot(Writing& tx, const std::string& id,
                                           const std::string& snapshot,
                                           const std::string& description, std::int64_t now_utc_us);

@@ -1,5 +1,5 @@
-/// Every trial with who did it, where it stands in a study and its scores. Research gets these rows
-/// through released.hpp alone; those who teach, of the people whom they may see.
+/// Every trial with its person, its place in a study and its scores. Research uses these rows only
+/// through released.hpp; faculty sees the rows of the people whom they may see.
 #pragma once
 
 #include <array>
@@ -14,18 +14,18 @@ struct CohortTrial {
   TrialSummary summary;
   bool complete = false;
   std::string rig;  ///< "palpation", "probing"
-  // Of a trial of a study; without one `study` is empty:
+  // For a trial of a study; for other trials `study` is empty:
   std::string study, participant, level;
-  std::string person;       ///< the account's name, where it was an assignment; never for research
-  std::int64_t number = 0;  ///< of its place in the participant's order, from 1
+  std::string person;       ///< name of the account, for an assignment; never for research
+  std::int64_t number = 0;  ///< place in the participant's order, counted from 1
   std::optional<double> experience_years = {};
   std::string place = {};                 ///< "counts", "invalid", "surplus"
-  std::map<std::string, double> metrics;  ///< by id; those without a value are absent
-  std::string sha256;                     ///< of the object that is its file
-  bool blind = false;                     ///< nobody may see it yet (blinding.hpp)
+  std::map<std::string, double> metrics;  ///< by id; metrics without a value are absent
+  std::string sha256;                     ///< SHA-256 of the object with the trial's file
+  bool blind = false;  ///< a blinded trial, which nobody may see yet (blinding.hpp)
 };
 
-/// The rows with nothing left out, for those who filter them.
+/// The unfiltered rows, only for the functions that filter them.
 class CohortRows {
   friend class ReleasedTrials;
   friend core::Result<std::map<std::string, std::string>> who_is_who(
@@ -34,14 +34,14 @@ class CohortRows {
                                                                     const std::string& study_id,
                                                                     const TrialFilter& whose,
                                                                     std::int64_t limit);
-  /// Oldest first. @param study_id  of this study or assignment alone; empty: all trials.
+  /// Oldest first. @param study_id  only trials of this study or assignment; empty: all trials.
   /// Errors: too_large for more than `limit` trials.
   static core::Result<std::vector<CohortTrial>> read(Reading& tx, const std::string& study_id,
                                                      std::int64_t limit);
 };
 
-/// For those who teach, with names and without asking for consent, oldest first: the trials that
-/// `whose` says, but for those that are blind. Errors: too_large for more than `limit` trials.
+/// The trials that `whose` selects, without blinded trials, for teaching: with names and
+/// independent of research consent, oldest first. Errors: too_large for more than `limit` trials.
 core::Result<std::vector<CohortTrial>> trials_for_teaching(Reading& tx, const std::string& study_id,
                                                            const TrialFilter& whose,
                                                            std::int64_t limit);

@@ -38,21 +38,22 @@ class Connection {
   /// for too long, or the database cannot be reached), io (anything else, with the database's
   /// words).
   virtual core::Result<Rows> query(std::string_view sql, std::span<const Value> values) = 0;
-  /// The same, row by row, in bounded memory; `seen` may end it with an Error. Nothing else may be
-  /// asked of the connection meanwhile.
+  /// The same, row by row, with bounded memory; `seen` may end it with an Error. The connection
+  /// must not run other statements meanwhile.
   virtual core::Result<void> each(std::string_view sql, std::span<const Value> values,
                                   const std::function<core::Result<void>(Row)>& seen) = 0;
   /// Runs several statements without values: a migration.
   virtual core::Result<void> script(std::string_view sql) = 0;
   virtual core::Result<void> begin(Access access) = 0;
-  /// What tables there are, and their columns in order; the database's own are not among them.
+  /// The tables and their columns in order, without the system tables of the database.
   virtual core::Result<std::vector<Table>> tables() = 0;
   /// Until the transaction ends, rows may refer to rows that come later. Call `check_references`
   /// before the commit.
   virtual core::Result<void> defer_references() = 0;
   virtual core::Result<void> check_references() = 0;
   virtual core::Result<void> commit() = 0;
-  /// Gives up the transaction, if there is one. Cannot fail: what was not committed is not there.
+  /// Rolls the transaction back, if there is one. Cannot fail: uncommitted changes are discarded
+  /// anyway.
   virtual void rollback() noexcept = 0;
 };
 
@@ -67,8 +68,8 @@ core::Result<std::unique_ptr<Connection>> open_sqlite(const std::filesystem::pat
 /// environment and PGPASSFILE. Reading is one unchanging state, READ ONLY. Errors come from
 /// `begin`: unavailable; bad_input (an address it cannot read, a database that is not UTF-8).
 std::unique_ptr<Connection> postgres_connection(const std::string& address, Access access);
-/// Whether an address holds a password, which must then not be shown. False for one that cannot be
-/// read.
+/// Whether an address contains a password, so that the address must not be shown. False for an
+/// invalid address.
 bool has_password(const std::string& address);
 
 }  // namespace tractus::store

@@ -1,5 +1,5 @@
-/// Names that one at a time may hold, among all threads of all processes that share a database: for
-/// work on files, which no transaction covers.
+/// Named locks among all threads of all processes that share a database: for work on files, which
+/// no transaction covers.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace tractus::store {
 
-/// Held while it lives.
+/// Holds a name; the destructor releases it.
 class NamedLock {
  public:
   NamedLock() = default;
@@ -18,19 +18,19 @@ class NamedLock {
   NamedLock& operator=(const NamedLock&) = delete;
 };
 
-/// Safe from several threads. A thread holds one name at a time.
+/// Thread-safe. A thread may hold only one name at a time.
 class Locks {
  public:
   Locks() = default;
   virtual ~Locks() = default;
   Locks(const Locks&) = delete;
   Locks& operator=(const Locks&) = delete;
-  /// Waits until nobody holds the name. Errors: unavailable: another process held it for ten
+  /// Waits until the name is free. Errors: unavailable: another process held the name for ten
   /// seconds, or the database cannot be reached.
   virtual core::Result<std::unique_ptr<NamedLock>> hold(const std::string& name) = 0;
 };
 
-/// Among the threads of this process: for a database that one process serves.
+/// Locks among the threads of this process: for a database that only one process uses.
 std::unique_ptr<Locks> local_locks();
 /// Among all processes on a PostgreSQL database. A process that dies, or is cut off from the
 /// database, holds nothing any more: what is done under a lock must be right even then (a piece of

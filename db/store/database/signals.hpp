@@ -1,6 +1,6 @@
-/// Short words between the processes that share a database, and within one: "something waits",
-/// "this changed". A signal is a hint and no record: what must not be lost is in a table, and
-/// whoever listens looks there.
+/// Short messages between the processes that share a database, and within one process: for example
+/// "a job was queued". A signal is a hint and is not stored: data that must not be lost are in a
+/// table, which a subscriber reads.
 #pragma once
 
 #include <functional>
@@ -15,7 +15,7 @@ namespace tractus::store {
 
 class Writing;
 
-/// What a listener hears.
+/// A signal as a subscriber receives it.
 struct Signal {
   std::string from;     ///< Signals::own_id of the sender, one's own included; empty: see `payload`
   std::string payload;  ///< as it was sent; empty, and `from` too: something may have been missed

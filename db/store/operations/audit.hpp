@@ -1,10 +1,10 @@
-/// The audit trail: who changed what, when, in a chain that shows tampering.
+/// The audit trail: who changed what and when, in a hash chain that makes tampering detectable.
 ///
-/// A row's hash is HMAC-SHA-256 over the previous row's hash and every field of its own, each with
-/// its length before it, by a key that is not in the database (RFC 2104). Whoever can write to the
-/// database alone can therefore neither alter, take out, insert nor reorder rows unseen. What the
-/// chain itself cannot show is that its newest rows were cut off: for that its end is noted
-/// elsewhere from time to time (ChainEnd) and compared.
+/// The hash of a row is HMAC-SHA-256 (RFC 2104) over the hash of the previous row and every field
+/// of the row, each preceded by its length, with a key that is not in the database. An attacker
+/// with write access only to the database therefore cannot alter, remove, insert or reorder rows
+/// undetected. The chain alone does not show that its newest rows were removed: therefore its end
+/// is regularly stored outside the database (ChainEnd) and compared.
 #pragma once
 
 #include <functional>
@@ -14,28 +14,28 @@
 
 namespace tractus::store {
 
-/// What is being done, by whom: noted in the same transaction as the first change it makes, so that
-/// there is no change without its row and no row without its change.
+/// An action and its actor. Its row is written in the same transaction as the first change of the
+/// action, so that there is no change without a row and no row without a change.
 struct AuditedAction {
   std::string who = {};       ///< name of the account or the station; "command line: USER"
-  std::string role = {};      ///< as api::Role names it, or "command line"
-  std::string peer = {};      ///< address it came from; empty: this machine
-  std::string what = {};      ///< the route's id, or the command
-  std::string object = {};    ///< the path's arguments
-  std::string detail = "{}";  ///< JSON; never holds a password or a code
+  std::string role = {};      ///< name of the api::Role, or "command line"
+  std::string peer = {};      ///< network address of the request; empty: this machine
+  std::string what = {};      ///< id of the route, or name of the command
+  std::string object = {};    ///< arguments in the path
+  std::string detail = "{}";  ///< JSON; never contains a password or a code
   std::int64_t at_utc_us = 0;
 };
 
-/// While it lives, the first write of this thread that succeeds is noted as this act.
+/// During its lifetime, the first successful write of this thread is recorded as this action.
 class AuditScope {
  public:
   explicit AuditScope(AuditedAction act);
   ~AuditScope();
   AuditScope(const AuditScope&) = delete;
   AuditScope& operator=(const AuditScope&) = delete;
-  /// Names who acts, once that is known: at signing in.
+  /// Sets the actor once it is known, during sign-in.
   static void is_by(const std::string& who, const std::string& role);
-  /// Keeps nothing of what was sent: it may be a secret in the wrong field.
+  /// Records no details of the request, which may contain a secret in the wrong field.
   static void without_detail();
 
  private:
@@ -53,14 +53,15 @@ struct AuditRow {
   std::string changes;  ///< digests of the covered rows that changed (coverage.hpp); "" for none
 };
 
-/// Newest first, of those before `number`; at most `limit`.
+/// Rows before `number`, newest first; at most `limit`.
 core::Result<std::vector<AuditRow>> audit_before(Reading& tx, std::int64_t number,
                                                  std::int64_t limit);
-/// Notes an act; one that changes nothing else, as a refusal, has no `changes`.
+/// Writes an action into the trail; an action without changes, for example a refusal, has no
+/// `changes`.
 core::Result<void> add_act(Writing& tx, const AuditKey& key, const AuditedAction& act,
                            const std::string& changes = "");
 
-/// `who` and `role` of what the server does by itself, as scoring a trial; and what it does then.
+/// `who` and `role` for actions of the server itself, for example scoring a trial; and their names.
 inline constexpr const char* kServer = "server";
 inline constexpr const char* kServerWork = "serverWork";
 inline constexpr const char* kBeginCoverage = "beginCoverage";
@@ -76,8 +77,8 @@ struct ChainEnd {
 };
 core::Result<ChainEnd> chain_end(Reading& tx);
 
-/// Recomputes the whole chain, in pieces. `seen` (if given) gets every row's number and stored
-/// hash. Errors: corrupt, with the number of the first row that does not hold.
+/// Recomputes the whole chain, in pieces. `seen` (if given) is called with every row. Errors:
+/// corrupt, with the number of the first invalid row.
 core::Result<ChainEnd> verify_chain(Reading& tx, const AuditKey& key,
                                     const std::function<void(const AuditRow&)>& seen = {});
 

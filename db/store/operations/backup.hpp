@@ -1,4 +1,4 @@
-/// A data folder copied while it is served, put back, and looked over.
+/// Backup of a data folder while the server runs, and checks of a data folder.
 #pragma once
 
 #include <filesystem>
@@ -11,8 +11,8 @@
 
 namespace tractus::store {
 
-/// A whole copy of the database as it stands at one moment, made beside whoever writes to it.
-/// Errors: io; conflict when `copy` is there already.
+/// Copies the database as it is at one moment, while other connections may write. Errors: io;
+/// conflict if `copy` exists.
 core::Result<void> copy_database(const std::filesystem::path& database,
                                  const std::filesystem::path& copy);
 
@@ -22,7 +22,7 @@ struct ObjectEntry {
 };
 core::Result<std::vector<ObjectEntry>> all_objects(Reading& tx);
 
-/// What is wrong, a line each; none: nothing is.
+/// Errors that the check found, one line each; empty if there are none.
 struct Findings {
   std::vector<std::string> lines;
   std::uint64_t objects = 0, bytes = 0;
@@ -32,7 +32,7 @@ struct Findings {
   std::size_t covered_tables = 0;
 };
 
-/// Ends of the audit trail as noted outside the database: number and hash.
+/// Ends of the audit trail that are stored outside the database: number and hash.
 using Anchors = std::vector<ChainEnd>;
 
 /// Everything that can be checked: the database's own structure and references, every object

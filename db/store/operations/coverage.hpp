@@ -22,7 +22,7 @@ struct CoveredTable {
   std::vector<std::string> columns;  ///< the others that the digest covers
 };
 
-/// What assessment and access rest on.
+/// The covered tables: those on which assessment and access depend.
 const std::vector<CoveredTable>& covered_tables();
 /// The covered table that a statement changes (insert into, update, delete from), or null.
 const CoveredTable* changed_table(std::string_view sql);
@@ -33,18 +33,20 @@ std::string returning_keys(std::string_view sql, const CoveredTable& table);
 /// has changed.
 core::Result<std::string> changes_text(Reading& tx, const AuditKey& key, const ChangedRows& rows);
 
-/// Begins to cover the rows that are there: writes their digests into the trail, once, and again
-/// when what is covered has changed with the program. Returns whether it did. What differs from the
-/// trail by then is counted in the trail, and stays a finding.
+/// Begins to cover the existing rows: writes their digests into the trail, once, and again if a new
+/// program version covers other tables. Returns whether it wrote digests. Rows that differ from the
+/// trail at that time are counted in the trail and remain a finding.
 core::Result<bool> begin_coverage(Store& store);
 
-/// The digests that the trail ends with. Give it every row of the trail in order, then compare.
+/// The newest digests of the trail. Call add() with every row of the trail in order, then
+/// compare().
 class TrailDigests {
  public:
   void add(const AuditRow& row);
-  /// Adds a line for every covered row that is not as the trail has it.
+  /// Adds a line for every covered row that differs from its digest in the trail.
   core::Result<void> compare(Reading& tx, const AuditKey& key, std::vector<std::string>& findings);
-  /// Since when rows are covered, UTC in microseconds; 0: they are not.
+  /// Time since which rows are covered, in microseconds since 1970-01-01 UTC; 0: rows are not
+  /// covered.
   std::int64_t since_utc_us() const { return since_utc_us_; }
   std::size_t tables() const { return tables_.size(); }
 

@@ -1,9 +1,9 @@
-/// Work for later, queued in the transaction that makes it necessary, claimed by any process.
+/// Jobs: work for later, queued in the transaction that makes it necessary, claimed by any process.
 ///
-/// A claim lasts for a while (its lease) and is renewed while the work goes on. The job of a
-/// process that died waits again when its lease is over; a process that was only slow is told by
-/// `renew_claims` and `finish_job` that the job is not its own any more. The clocks of the
-/// processes must agree to a few seconds, as they must for sessions.
+/// A claim has a lease, which is renewed while the work continues. When the lease of a dead process
+/// has expired, its job is queued again; a process that was only slow learns from `renew_claims`
+/// and `finish_job` that it lost the job. The clocks of the processes must agree within a few
+/// seconds, as they must for sessions.
 #pragma once
 
 #include <vector>
@@ -16,38 +16,37 @@ struct Job {
   std::string id;
   std::string kind;            ///< "metrics", "lab"
   std::string subject;         ///< the trial's or the run's id
-  std::uint64_t attempts = 0;  ///< this one included
-  std::string owner = {};      ///< who claimed it
+  std::uint64_t attempts = 0;  ///< number of attempts, including the current one
+  std::string owner = {};      ///< worker that claimed it
 };
 
-/// Who claims jobs, and how long a claim lasts unless it is renewed.
+/// A worker that claims jobs, and the length of its leases.
 struct Worker {
   std::string id = {};
   std::int64_t lease_us = 30'000'000;
 };
 
-/// The channel on which the kind of a new job is told (signals.hpp).
+/// The channel that signals the kind of a new job (signals.hpp).
 inline constexpr const char* kJobsChannel = "jobs";
 
 core::Result<void> queue_job(Writing& tx, const std::string& kind, const std::string& subject,
                              std::int64_t now_utc_us);
-/// The oldest that waits and is of one of these kinds, now claimed; none when nothing waits. Right
-/// beside other writes too (Store::write_beside): nobody waits for another's claim, and no job is
-/// claimed twice.
+/// Claims the oldest queued job of one of these kinds; none if no such job is queued. Also correct
+/// in Store::write_beside: workers do not wait for each other, and no job is claimed twice.
 core::Result<std::optional<Job>> claim_job(Writing& tx, const std::vector<std::string>& kinds,
                                            std::int64_t now_utc_us, const Worker& worker = {});
-/// The worker still works. Returns the ids of the jobs that are still its own.
+/// Renews the leases of the worker. Returns the ids of the jobs that the worker still owns.
 core::Result<std::vector<std::string>> renew_claims(Writing& tx, const Worker& worker,
                                                     std::int64_t now_utc_us);
-/// Errors of both: conflict when the job is another's by now.
+/// Errors of both: conflict if the job now belongs to another worker.
 core::Result<void> finish_job(Writing& tx, const Job& job, std::int64_t now_utc_us);
 core::Result<void> fail_job(Writing& tx, const Job& job, const std::string& why,
                             std::int64_t now_utc_us);
-/// Left off, by nobody's fault: it waits again, and the attempt does not count.
+/// Puts a job back into the queue after an interruption; the attempt does not count.
 core::Result<void> give_back_job(Writing& tx, const Job& job, std::int64_t now_utc_us);
-/// Jobs whose lease is over wait again. Returns how many.
+/// Puts jobs with an expired lease back into the queue. Returns their number.
 core::Result<std::uint64_t> requeue_lapsed_jobs(Writing& tx, std::int64_t now_utc_us);
-/// What a process that died had claimed waits again, whatever its lease: for the start of the one
+/// Puts all claimed jobs back into the queue, whatever their lease: for the start of the only
 /// process on a database that is not shared.
 core::Result<void> requeue_claimed_jobs(Writing& tx, std::int64_t now_utc_us);
 

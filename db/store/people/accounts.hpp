@@ -1,4 +1,4 @@
-/// Who may come in: accounts and their sessions for people, stations for machines.
+/// Accounts and sessions of people, and stations.
 #pragma once
 
 #include <vector>
@@ -9,24 +9,24 @@ namespace tractus::store {
 
 struct Account {
   std::string id;
-  std::string name;              ///< what is typed to sign in
+  std::string name;              ///< name with which the person signs in
   std::string role;              ///< "admin", "director", … as api::Role names them
   std::string password_hash;     ///< Argon2id, libsodium's text form
   std::string state = "active";  ///< "active", "disabled"
-  std::string pseudonym = {};    ///< for research; the only place that joins it to the name
-  std::string badge = {};        ///< what a station reads; empty: none
+  std::string pseudonym = {};    ///< pseudonym for research; only this row links it to the name
+  std::string badge = {};        ///< text that a station reads from the badge; empty: no badge
   std::string pin_hash = {};     ///< Argon2id; empty: no PIN
-  std::string totp_secret = {};  ///< sealed; empty: no one-time codes
-  bool totp_confirmed = false;   ///< a code was shown once: from now on one is asked for
-  std::int64_t totp_step = 0;    ///< the last used, so that no code works twice
-  bool must_change = false;      ///< the password was given by somebody else
+  std::string totp_secret = {};  ///< encrypted; empty: no one-time codes
+  bool totp_confirmed = false;   ///< confirmed: signing in requires a one-time code
+  std::int64_t totp_step = 0;  ///< time step of the last used code, so that no code is valid twice
+  bool must_change = false;    ///< another person set the password: the owner must change it first
   std::int64_t made_utc_us = 0;  ///< filled on reading
 };
 
 struct Session {
   Account account;
   std::int64_t made_utc_us = 0;
-  std::int64_t seen_utc_us = 0;  ///< of the last request, to the minute
+  std::int64_t seen_utc_us = 0;  ///< time of the last request, to the minute
 };
 
 struct Station {
@@ -43,8 +43,8 @@ struct StationEntry {
 
 /// Errors: conflict when the name, the badge or the pseudonym is taken.
 core::Result<void> add_account(Writing& tx, const Account& account, std::int64_t now_utc_us);
-/// Puts everything but id, name, pseudonym and time in place. Errors: conflict when the badge is
-/// taken.
+/// Updates all fields except id, name, pseudonym and time. Errors: conflict if another account has
+/// the badge.
 core::Result<void> set_account(Writing& tx, const Account& account);
 /// Errors: unauthorised when this step, or a later one, was used already: two requests with the
 /// same one-time code cannot both succeed.
@@ -63,10 +63,10 @@ core::Result<std::optional<Session>> session_of(Reading& tx, const std::string& 
 core::Result<void> touch_session(Writing& tx, const std::string& token_hash,
                                  std::int64_t now_utc_us);
 core::Result<void> remove_session(Writing& tx, const std::string& token_hash);
-/// All sessions of an account, but the one of this hash (empty: all).
+/// Removes all sessions of an account except the one with this hash (empty: all).
 core::Result<void> remove_sessions_of(Writing& tx, const std::string& account_id,
                                       const std::string& but_token_hash);
-/// Removes sessions not seen since one time or made before another.
+/// Removes sessions that are idle since one time or older than another.
 core::Result<void> remove_old_sessions(Writing& tx, std::int64_t unseen_since_utc_us,
                                        std::int64_t made_before_utc_us);
 
@@ -77,19 +77,19 @@ core::Result<void> add_station(Writing& tx, const Station& station, const std::s
 core::Result<std::optional<Station>> station_of(Reading& tx, const std::string& token_hash);
 /// By name.
 core::Result<std::vector<StationEntry>> all_stations(Reading& tx);
-/// Its token opens nothing from now on. Errors: not_found.
+/// Revokes the station: its token becomes invalid. Errors: not_found.
 core::Result<void> revoke_station(Writing& tx, const std::string& id, std::int64_t now_utc_us);
 
-/// A code for a station that is to come. Errors: conflict when a station has this name.
+/// Adds an enrolment code for a new station. Errors: conflict if a station has this name.
 core::Result<void> add_enrolment_code(Writing& tx, const std::string& code_hash,
                                       const std::string& station_name, std::int64_t now_utc_us,
                                       std::int64_t expires_utc_us);
-/// Uses a code up: the name of the station that it is for. Errors: unauthorised for one that is
-/// unknown, used or too old, told alike.
+/// Uses an enrolment code and returns the name of the new station. Errors: unauthorised, with the
+/// same message for an unknown, a used and an expired code.
 core::Result<std::string> use_enrolment_code(Writing& tx, const std::string& code_hash,
                                              std::int64_t now_utc_us);
 
-/// What is kept of a station's token. Errors: not_found.
+/// The stored hash of a station's token. Errors: not_found.
 core::Result<std::string> station_token_hash(Reading& tx, const std::string& station_id);
 /// Errors: not_found.
 core::Result<std::string> station_name(Reading& tx, const std::string& station_id);

@@ -1,4 +1,4 @@
-/// What research may have of whose trials.
+/// Consent of people to the use of their trials in research.
 #pragma once
 
 #include <array>
@@ -11,12 +11,12 @@
 
 namespace tractus::store {
 
-/// Each holds those before it. Motion alone tells people apart, so samples need a word of their
-/// own.
+/// Consent tiers; each tier includes the tiers before it. Samples need an explicit consent, because
+/// people can be recognised by their motion alone.
 enum class Tier {
   none,
   summary,  ///< counts and shares of a person's trials together
-  metrics,  ///< a row per trial and its scores
+  metrics,  ///< one row per trial and its scores
   reduced,  ///< samples, at most 100 a second
   full,     ///< every sample
 };
@@ -26,33 +26,33 @@ std::string_view name(Tier tier);
 std::optional<Tier> tier_named(std::string_view name);
 
 struct Consent {
-  std::string account_id;   ///< empty: of a participant who is nobody's account
-  std::string study_id;     ///< empty: everywhere
-  std::string participant;  ///< where there is no account
+  std::string account_id;   ///< empty for a participant without an account
+  std::string study_id;     ///< empty: all studies
+  std::string participant;  ///< pseudonym of a participant without an account
   Tier tier = Tier::none;
-  std::string basis;  ///< "own word", or where the form lies
+  std::string basis;  ///< "own word", or the place where the signed form is kept
   std::int64_t noted_utc_us = 0;
   std::string noted_by;
 };
 
-/// Puts it in the place of what was said before. What an account says of everywhere replaces all
-/// that it said of single studies.
+/// Replaces the earlier consent. A consent of an account for all studies also replaces its consents
+/// for single studies.
 core::Result<void> set_consent(Writing& tx, const Consent& consent);
 core::Result<std::vector<Consent>> consents_of(Reading& tx, const std::string& account_id);
 core::Result<std::vector<Consent>> all_consents(Reading& tx);
 
-/// Whose a trial is and what may be had of it, at one moment.
+/// The person and the consent tier of each trial, at one moment.
 class ConsentBook {
  public:
   static core::Result<ConsentBook> read(Reading& tx);
 
-  /// "account:ID", "participant:STUDY/NAME", "operator:NAME": one person across studies where an
-  /// account says so.
+  /// "account:ID", "participant:STUDY/NAME", "operator:NAME": an account identifies one person
+  /// across studies.
   std::string person_of(const CohortTrial& trial) const;
-  /// Of a simulated trial: full, nobody's data are in it. Of a study's participant without account:
-  /// what was noted, else metrics, which taking part in the study says; samples need a word of
-  /// their own. Of an assignment: what the account said of it, else of everywhere, else none. Of a
-  /// trial in no study: none.
+  /// For a simulated trial: full, because it contains no person's data. For a study participant
+  /// without an account: the recorded consent, else metrics, which participation in the study
+  /// implies; samples need an explicit consent. For an assignment: the account's consent for it,
+  /// else for all studies, else none. For a trial without a study: none.
   Tier tier_of(const CohortTrial& trial) const;
   Tier tier_of(const std::string& account_id, const std::string& study) const;
 
@@ -63,7 +63,7 @@ class ConsentBook {
   std::map<std::pair<std::string, std::string>, std::string> accounts_;  ///< of study, participant
 };
 
-/// Keys of pseudonyms, by fingerprint: the newest; empty when there was none yet.
+/// Fingerprint of the newest key of pseudonyms; empty if there was none yet.
 core::Result<std::string> pseudonym_key_known(Reading& tx);
 core::Result<void> note_pseudonym_key(Writing& tx, const std::string& fingerprint,
                                       std::int64_t now_utc_us);

@@ -1,4 +1,4 @@
-/// Invitations into cohorts: whom those who lead one would like to have in it. The person decides.
+/// Invitations into cohorts: a leader of a cohort invites a person, who accepts or declines.
 #pragma once
 
 #include <vector>
@@ -9,16 +9,16 @@ namespace tractus::store {
 
 struct Invitation {
   std::string cohort_id;
-  std::string account_name;  ///< as it was typed: there need not be an account of this name
+  std::string account_name;  ///< as typed; such an account need not exist
   std::int64_t made_utc_us = 0;
   std::string made_by = {};
   std::string cohort_name = {};  ///< filled on reading
 };
 
-/// At most so many wait in one cohort.
+/// Largest number of open invitations in one cohort.
 inline constexpr std::size_t kMostInvitations = 500;
 
-/// Changes nothing where there is one already. Errors: conflict when kMostInvitations wait.
+/// Changes nothing if the invitation exists. Errors: conflict if kMostInvitations are open.
 core::Result<void> invite(Writing& tx, const Invitation& invitation);
 /// By name.
 core::Result<std::vector<Invitation>> invitations_into(Reading& tx, const std::string& cohort_id);

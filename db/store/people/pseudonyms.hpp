@@ -1,6 +1,6 @@
-/// Names of people and trials for research: keyed hashes (BLAKE2b), the same in every release of
-/// data. The key lies in a file of its own, and nobody without it can say whose they are, not even
-/// with the database.
+/// Pseudonyms of people and trials for research: keyed hashes (BLAKE2b), the same in every export.
+/// The key is in a separate file; without the key nobody can link pseudonyms with people, even with
+/// the database.
 #pragma once
 
 #include <array>

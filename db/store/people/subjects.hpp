@@ -1,4 +1,4 @@
-/// Whom a provider of identities vouches for, where an administrator said which account that is.
+/// Links between accounts and persons of an OpenID Connect provider, which an administrator makes.
 #pragma once
 
 #include "db/store/people/accounts.hpp"
@@ -12,9 +12,9 @@ struct Subject {
   std::string linked_by;
 };
 
-/// One subject of an issuer for an account at a time: an older link of the account's is gone. An
-/// empty subject ends it. An account whose password was another's choice has none from now on.
-/// Errors: not_found (account); conflict when the subject is another account's.
+/// Links an account with one subject of an issuer, and removes an older link of the account. An
+/// empty subject only removes the link. A password that another person set for the account is
+/// removed. Errors: not_found (account); conflict if another account has the subject.
 core::Result<void> link_subject(Writing& tx, const Subject& link);
 core::Result<std::optional<Account>> account_of_subject(Reading& tx, const std::string& issuer,
                                                         const std::string& subject);

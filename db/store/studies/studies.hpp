@@ -1,5 +1,5 @@
-/// Blind studies: what is to be done by whom, and who changed what. A study is never deleted, nor
-/// is anything of it.
+/// Blinded studies: their trials, participants and changes. Studies and their data are never
+/// deleted.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace tractus::store {
 
-/// Who changes something, when and why: noted with every change as a StudyEvent.
+/// Actor, time and reason of a change: every change is recorded as a StudyEvent.
 struct AuditStamp {
   std::string who;
   std::int64_t at_utc_us = 0;
@@ -28,7 +28,7 @@ struct Study {
   std::string made_by = {};           ///< filled by add_study
 };
 
-/// A study and how far it is.
+/// A study and its progress.
 struct StudySummary {
   Study study;
   std::uint64_t participants = 0;
@@ -49,7 +49,7 @@ struct StudyScenario {
   std::string title;  ///< filled on reading
 };
 
-/// One trial to be done.
+/// One planned trial of a participant.
 struct Slot {
   std::string id;  ///< 64 random hexadecimal characters
   std::string study_id, participant;
@@ -59,7 +59,7 @@ struct Slot {
   std::string state;  ///< "waiting", "taken" (a station has it), "recorded", "invalid"
   std::optional<std::string> station_id;
   std::optional<std::string> repeat_of;  ///< the slot that it repeats
-  bool planned = false;  ///< of its case: one trial drills the channel, another then feels it
+  bool planned = false;  ///< whole bone: one trial drills the channel, the next palpates it
 };
 
 struct StudyEvent {
@@ -93,7 +93,7 @@ core::Result<std::optional<Participant>> participant_of(Reading& tx, const Serie
                                                         const std::string& name);
 core::Result<std::vector<StudyEvent>> study_events(Reading& tx, const StudyId& id,
                                                    std::int64_t limit);
-/// For the functions of this library that change something.
+/// Only for functions of this library that change studies.
 core::Result<void> add_series(Writing& tx, const Study& study, const std::string& kind,
                               const std::vector<std::string>& case_ids, const AuditStamp& stamp);
 core::Result<void> add_study_event(Writing& tx, const std::string& series_id,

@@ -1,4 +1,4 @@
-/// Talking about a trial: comments by those who teach, and trials offered as an example.
+/// Debriefing: comments of faculty on a trial, and trials that are offered as examples.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,7 @@ namespace tractus::store {
 struct Comment {
   std::string id;
   std::string trial_id;
-  std::optional<double> at_s;  ///< of this moment of the trial; nothing: of all of it
+  std::optional<double> at_s;  ///< moment of the trial; nothing: the whole trial
   std::string text;
   std::string by_id;  ///< of the account
   std::string by_name;
@@ -18,9 +18,9 @@ struct Comment {
 };
 
 core::Result<void> add_comment(Writing& tx, const Comment& comment);
-/// Those of the whole first, then by moment.
+/// Comments on the whole trial first, then sorted by moment.
 core::Result<std::vector<Comment>> comments_of(Reading& tx, const std::string& trial_id);
-/// Errors: not_found when this account made no such comment on the trial.
+/// Errors: not_found if this account has no such comment on the trial.
 core::Result<void> remove_comment(Writing& tx, const std::string& trial_id, const std::string& id,
                                   const std::string& by_id);
 
@@ -33,11 +33,12 @@ struct ReferenceTrial {
   bool simulated = false;
 };
 
-/// Offers it, or no longer; doing so twice changes nothing. Errors: not_found (no such trial).
+/// Offers the trial as an example, or withdraws it; a second call changes nothing. Errors:
+/// not_found.
 core::Result<void> set_reference(Writing& tx, const std::string& trial_id, bool reference,
                                  const std::string& who, std::int64_t now_utc_us);
 core::Result<bool> is_reference(Reading& tx, const std::string& trial_id);
-/// Those of the trial's case, the trial itself left out, newest first.
+/// The examples on the trial's case, without the trial itself, newest first.
 core::Result<std::vector<ReferenceTrial>> references_for(Reading& tx, const std::string& trial_id);
 
 }  // namespace tractus::store

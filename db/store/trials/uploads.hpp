@@ -1,5 +1,5 @@
-/// Uploads under way: what a station announced. How much of it is here, its file says
-/// (PartialFiles).
+/// Uploads in progress: the announcement of the station. The size of the partial file
+/// (PartialFiles) is the number of received bytes.
 #pragma once
 
 #include <vector>

@@ -8,8 +8,8 @@
 
 namespace tractus::store {
 
-/// DATA/objects/ab/cdef…: a file is there whole or not at all, never changes, and its name is its
-/// SHA-256.
+/// DATA/objects/ab/cdef…: a file exists completely or not at all, never changes, and its name is
+/// its SHA-256.
 class Objects {
  public:
   /// @param data  the data folder; `objects` in it is made when it is not there.
@@ -20,8 +20,8 @@ class Objects {
   bool has(const std::string& sha256) const;
 
   core::Result<std::string> put(core::ByteView bytes) const;
-  /// Copies a file in, in bounded memory, and checks that it is what it is said to be. Errors:
-  /// corrupt when it is not.
+  /// Copies a file to the objects, with bounded memory, and checks its SHA-256. Errors: corrupt if
+  /// the SHA-256 differs.
   core::Result<void> copy_in(const std::filesystem::path& file, const std::string& sha256) const;
   /// Gives a finished file, whose content was checked, a second name among the objects. The first
   /// name stays.
@@ -33,7 +33,7 @@ class Objects {
   std::filesystem::path root_;
 };
 
-/// DATA/uploads/TRIAL.part: grows by acknowledged pieces.
+/// DATA/uploads/TRIAL.part: grows by acknowledged chunks.
 class PartialFiles {
  public:
   static core::Result<PartialFiles> open(const std::filesystem::path& data);

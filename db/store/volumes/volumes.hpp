@@ -1,4 +1,4 @@
-/// CT volumes that people brought in: held, released or refused.
+/// CT volumes that people uploaded: held, released or refused.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@ namespace tractus::store {
 
 struct VolumeRecord {
   std::string id, name;
-  std::string source;            ///< where it came from and its licence, in its bringer's words
+  std::string source;            ///< origin and licence, as the uploading person stated them
   std::string state = "held";    ///< "held", "released", "refused"
   std::string sha256;            ///< of its .tvol among the objects; empty once refused
   std::uint64_t size_bytes = 0;  ///< of that file
@@ -22,21 +22,21 @@ struct VolumeRecord {
   std::string reason = {};  ///< of a refusal
 };
 
-/// Errors: conflict when the same voxels are here already and were not refused, naming which.
+/// Errors: conflict, naming the volume, if the same voxels are already stored and were not refused.
 core::Result<void> add_volume(Writing& tx, const VolumeRecord& volume);
 core::Result<std::optional<VolumeRecord>> volume_of(Reading& tx, const std::string& id);
 /// Newest first.
 core::Result<std::vector<VolumeRecord>> all_volumes(Reading& tx);
 
-/// Who decides what, and when.
+/// A decision about a held volume.
 struct Decision {
   std::string state;  ///< "released" or "refused"
   std::string by, reason;
   std::int64_t at_utc_us = 0;
 };
-/// Of a held volume, once. A refused one gives up its file: the answer is its SHA-256 when nothing
-/// else names that object, whose row is then gone too; else empty.
-/// Errors: not_found; conflict when it was decided already.
+/// Decides about a held volume, once. Returns the SHA-256 of a refused volume's file if no other
+/// record uses this object, whose row is then deleted; else an empty text. Errors: not_found;
+/// conflict if the volume was decided before.
 core::Result<std::string> decide_volume(Writing& tx, const std::string& id,
                                         const Decision& decision);
 

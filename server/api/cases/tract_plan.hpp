@@ -1,4 +1,4 @@
-/// A tract that somebody plans in a volume, looked at before anything is made of it.
+/// Checks a planned tract in a volume before a case is made from it.
 #pragma once
 
 #include "cases/carving.hpp"
@@ -6,16 +6,16 @@
 
 namespace tractus::api {
 
-/// Walls of the bone are told every so far along the tract.
+/// Distance between the depths along the tract at which the walls of the bone are reported.
 inline constexpr double kWallStep_m = 0.0005;
 
-/// What cases::place says of the plan, as the pages show it: {"length_m", "side", "tract", "walls",
-/// "breach", "problems"}. Never fails: what is wrong with the plan is among the problems, and what
-/// could not be found is null.
+/// The result of cases::place for the plan, in the JSON form of the routes: {"length_m", "side",
+/// "tract", "walls", "breach", "problems"}. Never fails: errors of the plan are among the problems,
+/// and values that could not be found are null.
 core::Json tract_json(const volume::Volume& ct, const volume::TransferFunction& transfer,
                       cases::CarvingPlan plan);
 
-/// The same for a plan that is not of this volume at all.
+/// The same for a plan that does not lie in the volume.
 core::Json no_tract_json(const cases::CarvingPlan& plan, const std::string& problem);
 
 }  // namespace tractus::api

@@ -1,4 +1,4 @@
-/// What is asked of a cohort: plans to lock, and analyses to run as jobs.
+/// Requests for cohort analyses: locks plans, and queues analyses as jobs.
 #pragma once
 
 #include "db/store/cohort/analyses.hpp"
@@ -7,20 +7,22 @@
 
 namespace tractus::api {
 
-/// {"plan", "study"?, "data_seen"?}: locks the plan in the caller's name and keeps it. Where the
-/// server holds scored trials of it already, its data count as seen, whatever was said. Errors:
-/// bad_input naming the field of the body or of the plan; conflict for a plan that has a lock.
+/// {"plan", "study"?, "data_seen"?}: locks the plan in the caller's name and stores it. If the
+/// server already has scored trials for the plan, the data count as seen, whatever "data_seen"
+/// states. Errors: bad_input naming the field of the body or of the plan; conflict for a plan that
+/// already has a lock.
 core::Result<store::AnalysisPlan> locked_plan(Backend& backend, const core::Json& asked,
                                               const std::string& who);
 
-/// {"plan", "snapshot"?}, or {"method", "formula", "options"?, "study"?}: a run, queued. A method
-/// without a plan becomes a plan of one analysis that nobody locked, and says so. Errors: bad_input
-/// naming the field, also for a snapshot that no analysis of the plan was of.
+/// {"plan", "snapshot"?}, or {"method", "formula", "options"?, "study"?}: queues a run. A method
+/// without a plan becomes an unlocked plan of one analysis, and the result states this. Errors:
+/// bad_input naming the field, also for a snapshot that no analysis of the plan used.
 core::Result<store::AnalysisRun> queued_analysis(Backend& backend, const core::Json& asked,
                                                  const std::string& who);
 
-/// May all of these data (an object: CSV, a row a trial) be had still? Errors: forbidden when a
-/// trial of them may not: consent was withdrawn, or they were frozen before it was asked.
+/// Checks that all trials of these data (an object: CSV, one row per trial) are still released for
+/// research. Errors: forbidden if a trial is not: its consent was withdrawn, or the data were
+/// frozen before consent was required.
 core::Result<void> check_still_released(Backend& backend, const std::string& study,
                                         const std::string& data);
 

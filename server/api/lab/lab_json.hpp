@@ -1,4 +1,4 @@
-/// The model lab's records as they are shown.
+/// Records of the model lab in the JSON form of the routes.
 #pragma once
 
 #include "db/store/lab/lab.hpp"
@@ -12,10 +12,10 @@ core::Json set_json(const store::MeasurementSet& set);
 /// A run without what it found, for lists: `ranking`, `diagnosis`, `fit`, `comparisons` and
 /// `tract_map` are null.
 core::Json run_json(const store::LabRun& run, const std::optional<store::ModelVersion>& published);
-/// With it, read from its objects. Errors: those of reading.
+/// A run with its results, which are read from objects. Errors: those of reading.
 core::Result<core::Json> whole_run_json(const Call& call, const store::LabRun& run);
 
-/// A run's own effects, as they were sent.
+/// The user effects of a run, as the request contained them.
 core::Json own_effects(const store::LabRun& run);
 
 std::vector<NamedSchema> lab_model_schemas();
@@ -26,7 +26,7 @@ std::vector<NamedSchema> lab_answer_schemas();
 /// research_route under /api/v1/lab.
 RouteInfo lab_route(std::string method, std::string tail, std::string id, std::string summary,
                     std::string answer, core::Result<http::Response> (*handle)(const Call&));
-/// An argument in the query that may be left out.
+/// An optional argument in the query.
 Parameter optional_text(std::string name, std::string meaning);
 core::Error absent(const char* what, const std::string& id);
 

@@ -1,4 +1,4 @@
-/// Backups as the routes see them; the program that serves a folder makes them.
+/// The interface of backups for the routes; the server program implements it.
 #pragma once
 
 #include <cstdint>
@@ -11,26 +11,26 @@
 namespace tractus::api {
 
 struct Backup {
-  std::string id;      ///< also the folder's name
+  std::string id;      ///< id, which is also the name of the folder
   std::string state;   ///< "making", "verifying", "done", "failed"
-  double share = 0.0;  ///< of what is being done
-  std::string error;   ///< of "failed": one line
+  double share = 0.0;  ///< completed share of the current work, 0 … 1
+  std::string error;   ///< reason for the state "failed", one line
   std::int64_t made_utc_us = 0;
-  std::string made_by;  ///< empty: by the command line
+  std::string made_by;  ///< name of the account; empty: made by a command
   std::uint64_t size_bytes = 0, trials = 0;
-  /// It was restored to a scratch folder and looked over; nothing: never yet.
+  /// Whether a restored copy passed the check; nothing: not checked yet.
   std::optional<bool> holds = {};
   std::int64_t verified_utc_us = 0;
-  std::vector<std::string> findings = {};  ///< what is wrong, a line each
+  std::vector<std::string> findings = {};  ///< errors that the check found, one line each
 };
 
-/// One is made or verified at a time, while the server serves. Safe from several threads.
+/// Makes or verifies one backup at a time, while the server runs. Thread-safe.
 class Backups {
  public:
   virtual ~Backups() = default;
   /// Newest first. Errors: io.
   virtual core::Result<std::vector<Backup>> list() = 0;
-  /// Errors: conflict while another is made or verified.
+  /// Errors: conflict while another backup is made or verified.
   virtual core::Result<Backup> make(const std::string& by) = 0;
   /// Errors: not_found; conflict as above.
   virtual core::Result<Backup> verify(const std::string& id) = 0;

@@ -1,5 +1,5 @@
-/// What the server counts of itself, in Prometheus' text form. Counts and times alone: no name, no
-/// address, no id of anybody.
+/// Operating statistics of the server in the Prometheus text format: only counts and durations,
+/// without names, addresses and ids of people.
 #pragma once
 
 #include <array>
@@ -12,13 +12,13 @@ namespace tractus::api {
 
 class Telemetry {
  public:
-  /// Upper ends of the histogram's buckets, s.
+  /// Upper bounds of the histogram's buckets, in seconds.
   static constexpr std::array<double, 9> kBuckets_s{0.001, 0.005, 0.01, 0.05, 0.1,
                                                     0.25,  1.0,   5.0,  30.0};
 
-  /// One answered request. @param route  its id; empty for one that fits no route
+  /// Counts one answered request. @param route  id of the route; empty if no route matched
   void count(const std::string& route, int status, double took_s, std::uint64_t body_bytes);
-  /// Lines of counters and histograms; gauges are the caller's to add with `gauge`.
+  /// The lines of counters and histograms; the caller adds gauges with `gauge`.
   std::string text() const;
   static std::string gauge(const std::string& name, const std::string& help, double value);
 

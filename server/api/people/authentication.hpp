@@ -1,4 +1,4 @@
-/// Who is it? Passwords, tokens and sessions.
+/// Authentication by passwords, tokens and sessions.
 #pragma once
 
 #include "db/store/people/accounts.hpp"
@@ -18,39 +18,41 @@ inline constexpr std::size_t kMaxName = 128, kMaxPassword = 1024;
 core::Result<std::string> password_hash(const std::string& password);
 /// 32 random bytes as 64 hexadecimal characters.
 std::string new_token();
-/// What is stored of a token. A stolen database opens no door; a plain hash is enough for what is
-/// random.
+/// The hash of a token that the database stores, so that a stolen database contains no valid
+/// tokens. An unsalted hash is sufficient because tokens are random.
 std::string token_hash(std::string_view token);
 
 struct Credentials {
   std::string name, password;
-  std::string code = {};  ///< one-time, where the account asks for one
+  std::string code = {};  ///< one-time code, if the account uses one-time codes
 };
 struct SignedIn {
   store::Account account;
-  std::string token;  ///< for the cookie; nobody else keeps it
+  std::string token;  ///< session token for the cookie; the server stores only its hash
 };
-/// Checks name and password in the same time whether the name exists or not, then the one-time code
-/// where the account has them; notes failure or success for the throttle, makes a session. Ask
-/// too_early first. Errors: unauthorised (see needs_code).
+/// Checks name and password, in the same time whether the name exists or not, then the one-time
+/// code if the account uses them; records failure or success for the throttle, and creates a
+/// session. Call too_early() first. Errors: unauthorised (see needs_code).
 core::Result<SignedIn> sign_in(Backend& backend, const Credentials& given,
                                const store::Attempt& attempt);
-/// Name and password were right, and a one-time code is asked for.
+/// Whether name and password were correct, but a one-time code is required.
 bool needs_code(const core::Error& error);
-/// Takes as long for an unknown person as for a known one. @param hash  empty: of nobody
+/// Takes the same time for an unknown person as for a known one. @param hash  empty: unknown person
 bool password_matches(const std::string& hash, const std::string& password);
-/// Is the account's password, badge, PIN and state what it was when they were checked? A change
-/// meanwhile ends sessions, and this one is not to begin after it. Errors: unauthorised.
+/// Checks that password, badge, PIN and state of the account are unchanged since they were checked.
+/// A change ends all sessions, and no session may start afterwards with the old credentials.
+/// Errors: unauthorised.
 core::Result<void> check_unchanged(store::Reading& tx, const store::Account& checked);
-/// Uses a one-time code up. Errors: unauthorised.
+/// Checks a one-time code and marks it as used. Errors: unauthorised.
 core::Result<void> use_code(Backend& backend, store::Account& account, const std::string& code);
-/// Closes the conversations (live views) of an account whose sessions were ended: those of this
-/// process at once, others when they are next looked over (http::WebSocketHandler::kRecheck).
+/// Closes the WebSockets (live pages) of an account whose sessions were ended: those of this
+/// process immediately, those of other processes at the next check
+/// (http::WebSocketHandler::kRecheck).
 void close_conversations(Backend& backend, const std::string& account_id);
 
-/// Does a request show that somebody is there? What a program asks by itself does not.
+/// Whether a request shows that a person is active. Periodic requests of a page do not.
 enum class Presence { shown, not_shown };
-/// The caller by bearer token (a station) or cookie (a session that is neither idle nor old).
+/// The caller with this bearer token (a station) or this cookie (a session that is not expired).
 /// Errors: unauthorised.
 core::Result<Caller> authenticate(Backend& backend, const http::RequestHead& head,
                                   Presence presence = Presence::shown);

@@ -1,5 +1,5 @@
-/// What a provider of identities says of who signed in, checked (OpenID Connect Core 1.0, section
-/// 3.1.3.7; RFC 7515, 7517, 7518, 8725).
+/// Validates the ID token of an OpenID Connect provider (OpenID Connect Core 1.0, section 3.1.3.7;
+/// RFC 7515, 7517, 7518, 8725).
 #pragma once
 
 #include <string>
@@ -9,27 +9,27 @@
 
 namespace tractus::api {
 
-/// What an id_token must be of and for.
+/// The expected values of an ID token's claims.
 struct Expected {
   std::string issuer, client_id, nonce;
   std::int64_t now_s = 0;
 };
 
 struct Identity {
-  std::string subject;  ///< the provider's name for the person, never another's
-  std::string sid;      ///< of the provider's session; may be empty
+  std::string subject;  ///< the provider's unique and permanent identifier of the person
+  std::string sid;      ///< id of the provider's session; may be empty
 };
 
-/// Clocks may differ by so much.
+/// Largest allowed difference of the clocks.
 inline constexpr std::int64_t kSkew_s = 60;
-/// A token older than this is not of the sign-in at hand.
+/// Largest age of a token; an older token does not belong to the current sign-in.
 inline constexpr std::int64_t kMostAge_s = 600;
 
-/// Checks signature (RS256 or ES256 alone, by the key of the set that the token names and that is
-/// of its kind), issuer, audience, authorised party, expiry, age, nonce and subject.
+/// Checks the signature (only RS256 or ES256, with the key that the token names), issuer, audience,
+/// authorised party, expiry, age, nonce and subject.
 /// @param keys  a JSON Web Key Set
-/// Errors: unauthorised, naming what does not hold; not_found when no key of the set is the one
-/// named (it may have been replaced: fetch the set again).
+/// Errors: unauthorised, naming the failed check; not_found if the set lacks the named key (the
+/// provider may have replaced its keys: fetch the set again).
 core::Result<Identity> identity_of(std::string_view id_token, const core::Json& keys,
                                    const Expected& expected);
 

@@ -1,5 +1,5 @@
-/// JSON documents of another server: asked for by one thread at a time, kept for a while, and not
-/// asked for again at once when the server fails.
+/// Cached JSON documents of another server: fetched by one thread at a time, kept for a while, and
+/// after a failure not fetched again immediately.
 #pragma once
 
 #include <condition_variable>
@@ -11,16 +11,17 @@
 
 namespace tractus::api {
 
-/// Seconds of a clock that never goes back.
+/// Seconds of a monotonic clock.
 using SteadyClock_s = std::function<std::int64_t()>;
 std::int64_t steady_now_s();
 
-/// A circuit breaker: after a failure the server is left alone for 2 s, after each further one for
-/// twice as long, at most for 60 s. Safe from several threads.
+/// A circuit breaker: no request for 2 s after a failure, twice as long after each further failure,
+/// at most 60 s. Thread-safe.
 class Breaker {
  public:
   explicit Breaker(SteadyClock_s now_s) : now_s_(std::move(now_s)) {}
-  /// May the server be asked? Errors: unavailable, with what failed and the seconds to wait.
+  /// Whether a request is allowed now. Errors: unavailable, with the last failure and the seconds
+  /// to wait.
   core::Result<void> check() const;
   void succeeded();
   void failed(const core::Error& error);
@@ -33,14 +34,14 @@ class Breaker {
   std::string why_;
 };
 
-/// One document. `ask` runs outside any lock; who wants the document meanwhile waits for its
-/// outcome instead of asking too. Safe from several threads.
+/// One document. `ask` runs without a lock; other threads that need the document meanwhile wait for
+/// the same result. Thread-safe.
 class KeptDocument {
  public:
   using Ask = std::function<core::Result<core::Json>()>;
   KeptDocument(Breaker& breaker, SteadyClock_s now_s)
       : breaker_(breaker), now_s_(std::move(now_s)) {}
-  /// The document, at most so old. Errors: those of `ask` and of the breaker.
+  /// The document, at most `age_s` old. Errors: those of `ask` and of the breaker.
   core::Result<core::Json> at_most(std::int64_t age_s, const Ask& ask);
 
  private:

@@ -1,5 +1,4 @@
-/// Signing in by a provider of identities: OpenID Connect, authorization code with PKCE (RFC 7636,
-/// RFC 9700).
+/// Sign-in with an OpenID Connect provider: authorization code flow with PKCE (RFC 7636, RFC 9700).
 #pragma once
 
 #include <chrono>
@@ -17,20 +16,20 @@ namespace tractus::api {
 struct OidcSettings {
   std::string issuer, client_id, client_secret, base, label;
   std::filesystem::path authority;
-  std::chrono::milliseconds patience{5000};  ///< with one answer of the provider, whole
+  std::chrono::milliseconds patience{5000};  ///< time limit for one complete answer of the provider
 };
 /// Errors: those of reading; bad_input naming file and field.
 core::Result<OidcSettings> read_oidc_settings(const std::filesystem::path& path);
 
-/// What one sign-in takes with it, in the browser's sealed cookie.
+/// The state of one sign-in attempt, which the browser keeps in an encrypted cookie.
 struct OidcAttempt {
   std::string state, nonce, verifier;
 };
 OidcAttempt new_attempt();
 
-/// One provider. Its description and keys are fetched when needed and kept for an hour; unknown
-/// keys are asked for again, at most every ten seconds. A provider that fails is left alone for a
-/// while (Breaker): each call takes a few `patience` at most. Safe from several threads.
+/// One provider. Its metadata and keys are fetched when needed and cached for an hour; for an
+/// unknown key they are fetched again, at most every ten seconds. After a failure no requests are
+/// sent for a while (Breaker), so that each call takes at most a few times `patience`. Thread-safe.
 class Oidc {
  public:
   explicit Oidc(OidcSettings settings, SteadyClock_s now_s = steady_now_s)
@@ -40,12 +39,13 @@ class Oidc {
         keys_(breaker_, now_s) {}
   const OidcSettings& settings() const { return settings_; }
 
-  /// Where the browser is sent to. Errors: unavailable, corrupt (the provider's description).
+  /// The address to which the browser is redirected. Errors: unavailable, corrupt (invalid metadata
+  /// of the provider).
   core::Result<std::string> sign_in_address(const OidcAttempt& attempt) const;
-  /// The code for an identity. Errors: unauthorised; those above.
+  /// Exchanges the authorization code for an identity. Errors: unauthorised; those above.
   core::Result<Identity> redeemed(const std::string& code, const OidcAttempt& attempt,
                                   std::int64_t now_s) const;
-  /// Where a browser ends the provider's own session; empty when it offers none.
+  /// The address at which a browser ends the provider's session; empty if the provider has none.
   core::Result<std::string> sign_out_address() const;
 
  private:

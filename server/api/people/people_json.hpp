@@ -1,4 +1,4 @@
-/// Accounts as the routes show and take them.
+/// Accounts in the JSON form of the routes.
 #pragma once
 
 #include "db/store/people/people.hpp"
@@ -6,15 +6,17 @@
 
 namespace tractus::api {
 
-/// At least so long; longer is better than odder (NIST SP 800-63B section 5.1.1).
+/// Smallest length of a password; length matters more than special characters (NIST SP 800-63B,
+/// section 5.1.1).
 inline constexpr std::size_t kMinPassword = 12;
 inline constexpr std::size_t kMinPin = 4, kMaxPin = 12, kMaxBadge = 64;
 
-/// Never a hash, a secret or the pseudonym: that one is for the export's key alone.
+/// The account without hashes, secrets and the pseudonym, which only the key table of the exports
+/// shows.
 core::Json account_json(const store::Account& account);
 core::Json account_schema();
 
-/// Fields of a body, checked; what is wrong is noted in `fields`.
+/// Reads and checks fields of a body; errors are added to `fields`.
 std::string password_field(core::Fields& fields, const char* key, bool needed);
 std::string pin_field(core::Fields& fields);
 std::string badge_field(core::Fields& fields);
@@ -22,9 +24,9 @@ std::string badge_field(core::Fields& fields);
 /// The account of the path's id. Errors: not_found.
 core::Result<store::Account> account_of_call(store::Reading& tx, const Call& call);
 
-/// A password of 16 characters that nobody chose: 80 bits, without letters that look alike.
+/// A random password of 16 characters: 80 bits, without letters that look alike.
 std::string made_password();
-/// "P" and eight characters: an account's name in research.
+/// A pseudonym of an account for research: "P" and eight characters.
 std::string new_pseudonym();
 
 }  // namespace tractus::api

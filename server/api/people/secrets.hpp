@@ -1,5 +1,5 @@
-/// Keys of the server that are not in its database: what is stolen with the database alone stays
-/// shut.
+/// Keys of the server that are not in its database, so that secrets in a stolen database cannot be
+/// decrypted.
 #pragma once
 
 #include <array>
@@ -17,16 +17,16 @@ class Secrets {
  public:
   using Key = std::array<std::byte, 32>;
   explicit Secrets(const Key& master) : master_(master) {}
-  /// Of this process alone: what it seals no other opens.
+  /// Random keys of this process; other processes cannot decrypt what it encrypts.
   static Secrets random();
 
   Key audit_key() const;
-  /// What the server signs the cases with that are made on it.
+  /// The key with which the server signs the cases that are made on it.
   core::KeyPair case_key() const;
-  Key uid_key() const;  ///< of the identifiers that replace a scan's own
+  Key uid_key() const;  ///< for the identifiers that replace those of a scan
   /// Authenticated encryption (XSalsa20-Poly1305) as hexadecimal text.
   std::string sealed(std::string_view text) const;
-  /// Errors: corrupt when it was not sealed by this key, or was changed.
+  /// Errors: corrupt if the text was not encrypted with this key, or was changed.
   core::Result<std::string> opened(const std::string& sealed_text) const;
 
  private:

@@ -1,4 +1,5 @@
-/// One-time codes by time: RFC 6238 (HMAC-SHA-1, 30 s, 6 digits), as every authenticator knows.
+/// Time-based one-time codes: RFC 6238 (HMAC-SHA-1, 30 s, 6 digits), which every authenticator
+/// supports.
 #pragma once
 
 #include <cstdint>
@@ -16,14 +17,14 @@ inline constexpr std::int64_t kTotpStep_s = 30;
 std::string hotp(core::ByteView secret, std::uint64_t counter, int digits = 6,
                  TotpHash hash = TotpHash::sha1);
 
-/// The step that `code` is of: this one, the one before or the one after, but none up to
-/// `last_used` (RFC 6238 section 5.2: a code is taken once).
+/// The time step of `code`: the current, the previous or the next step, but later than `last_used`
+/// (RFC 6238 section 5.2: a code is accepted only once).
 std::optional<std::int64_t> totp_step(core::ByteView secret, const std::string& code,
                                       std::int64_t now_utc_us, std::int64_t last_used);
 
-/// RFC 4648 section 6, without padding: what a person types.
+/// Base32 of RFC 4648 section 6, without padding, which a person can type.
 std::string base32(core::ByteView bytes);
-/// "otpauth://totp/…": what an authenticator scans.
+/// The address "otpauth://totp/…" for an authenticator, shown as a QR code.
 std::string totp_uri(core::ByteView secret, const std::string& account);
 
 }  // namespace tractus::api

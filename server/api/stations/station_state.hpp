@@ -1,4 +1,4 @@
-/// A station as the fleet's pages show it: kept facts and what it does just now.
+/// A station in the JSON form of the routes: stored facts and current state.
 #pragma once
 
 #include "db/store/people/accounts.hpp"
@@ -9,12 +9,12 @@
 
 namespace tractus::api {
 
-/// Which people at work the caller may see: everybody, those of the own cohorts, nobody.
+/// The people at stations whom the caller may see: all, those of the caller's cohorts, or none.
 live::Viewer viewer_of(const Caller& caller);
-/// The hub of a server that runs. Errors: unavailable in one that has none.
+/// The hub of live connections. Errors: unavailable if this server has none.
 core::Result<live::Hub*> hub_of(Backend& backend);
 
-/// StationState, and when the station was enrolled and shut out.
+/// StationState with the times of the station's enrolment and revocation.
 core::Json station_json(Backend& backend, const store::StationEntry& entry, const Caller& caller);
 /// Errors: not_found.
 core::Result<store::StationEntry> station_entry(Backend& backend, const std::string& id);

@@ -1,4 +1,4 @@
-/// An assignment as it is asked for, checked, made; and who is put into it.
+/// Reads and checks the plan of an assignment, creates the assignment, and adds people to it.
 #pragma once
 
 #include "db/store/studies/assignments.hpp"
@@ -7,34 +7,34 @@
 
 namespace tractus::api {
 
-/// One case of an assignment: published already, or a scenario that comes with it.
+/// One case of an assignment: a published case, or a scenario in the request.
 struct AssignedCase {
   std::string case_id;
-  std::string name;  ///< what the trainee is shown; empty: the trial's number
+  std::string name;  ///< name that the trainee sees; empty: the number of the trial
   std::optional<scenarios::Scenario> scenario = {};
 };
 
 struct AssignmentPlan {
   store::Assignment assignment;
-  std::string protocol;             ///< a study whose scenarios, order and repeats are taken
+  std::string protocol;             ///< id of a study whose scenarios, order and repeats are used
   std::vector<AssignedCase> cases;  ///< none with a protocol
-  std::vector<std::string> people;  ///< names of accounts, beside the cohort's
+  std::vector<std::string> people;  ///< names of accounts, in addition to the cohort's trainees
 
   /// Errors: bad_input with the field.
   static core::Result<AssignmentPlan> from_json(const core::Json& json);
 };
 
-/// Makes it, by the caller, who may name its cohort, people, cases and protocol (access.hpp).
-/// Returns its id. Errors: not_found (a case, a cohort, a person, a study that there is not).
+/// Creates the assignment for the caller, whose access to its cohort, people, cases and protocol
+/// was checked (access.hpp). Returns its id. Errors: not_found (a case, cohort, person or study).
 core::Result<std::string> make_assignment(const Call& call, const AssignmentPlan& plan);
 
-/// Puts an account into it, with an order of its own. Errors: conflict when it is in it already;
-/// bad_input for one that is no trainee's.
+/// Adds an account to the assignment, with its own order of trials. Errors: conflict if the
+/// assignment already includes the account; bad_input if the account is not a trainee.
 core::Result<void> assign_to(store::Writing& tx, const store::AssignmentId& id,
                              const store::Account& account, const store::AuditStamp& stamp);
-/// Puts an account into a cohort: faculty leads it; a trainee learns in it, and gets what it was
-/// assigned. An invitation is settled by it. Errors: not_found (the cohort), bad_input for an
-/// account of another role.
+/// Adds an account to a cohort: faculty as a leader; a trainee as a learner, who also gets the
+/// cohort's assignments. Removes an open invitation of the account. Errors: not_found (the cohort),
+/// bad_input for an account of another role.
 core::Result<void> join_cohort(store::Writing& tx, const std::string& cohort_id,
                                const store::Account& account, const store::AuditStamp& stamp);
 

@@ -1,4 +1,4 @@
-/// Studies as the pages get them.
+/// Studies in the JSON form of the routes.
 #pragma once
 
 #include "db/store/studies/study_slots.hpp"
@@ -18,8 +18,8 @@ struct StudyFacts {
 core::Result<StudyFacts> study_facts(store::Reading& tx, const store::StudyId& id);
 
 core::Json summary_json(const store::StudySummary& summary);
-/// Blind also to who runs the study: which scenario a slot has is told once nothing is left to do
-/// for its participant, and the seed once nothing is left for anybody.
+/// The study runs double-blind: the scenario of a slot is null while its participant still has
+/// trials to do, and the seed is null while any participant still has trials to do.
 core::Json study_json(const StudyFacts& facts);
 core::Json event_json(const store::StudyEvent& event);
 

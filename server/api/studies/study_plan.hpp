@@ -1,4 +1,4 @@
-/// A study as a person asks for it, and its way into the store.
+/// Reads and checks the plan of a study, and stores the study.
 #pragma once
 
 #include "db/store/cases/cases.hpp"
@@ -8,33 +8,33 @@
 
 namespace tractus::api {
 
-/// What POST /studies carries, checked.
+/// The body of POST /studies, checked.
 struct StudyPlan {
   store::Study study;
   std::vector<scenarios::Scenario> scenarios;
   std::vector<store::Participant> participants;
 
-  /// Errors: bad_input naming the field: an id that is no name, a scenario twice, one too large to
-  /// be handed out blind, a participant twice, …
+  /// Errors: bad_input naming the field: an invalid id, a scenario that occurs twice or is too
+  /// large to be sealed, a participant that occurs twice, …
   static core::Result<StudyPlan> from_json(const core::Json& json);
 };
 
-/// {"tuned": "hard"} or a whole tractus-scenario/1, fit to be handed out blind. Errors: bad_input.
+/// {"tuned": "hard"} or a whole tractus-scenario/1, small enough to be sealed. Errors: bad_input.
 core::Result<scenarios::Scenario> scenario_from(const core::Json& json, const std::string& where);
-/// The scenario's file among the objects.
+/// Stores the scenario's file among the objects.
 core::Result<store::CasePart> put_scenario(Backend& backend, const scenarios::Scenario& scenario);
-/// The cases in the order of the study's n-th participant (from 0): by its ordering, repeats and
-/// seed; "fixed": as they are named, round after round.
+/// The cases in the order of the study's n-th participant (from 0), which follows from the study's
+/// ordering, repeats and seed; "fixed": as listed, repeated.
 std::vector<std::string> order_for(const store::Study& study,
                                    const std::vector<store::StudyScenario>& scenarios, int n);
 
 core::Result<store::Participant> participant_from(const core::Json& json, const std::string& where);
 
-/// Scenarios among the objects, then all of it in one transaction: cases, study, participants with
-/// their orders. Errors: conflict when the study's id is taken.
+/// Stores the scenarios among the objects, then in one transaction cases, study and participants
+/// with their orders. Errors: conflict if a study with this id exists.
 core::Result<void> make_study(Backend& backend, const StudyPlan& plan, const std::string& who);
-/// One more participant: with the order that follows from the study's seed and their number.
-/// Errors: not_found, conflict (the name is taken).
+/// Adds a participant, whose order follows from the study's seed and the participant's number.
+/// Errors: not_found, conflict (the study already has a participant with this name).
 core::Result<void> enrol(Backend& backend, const std::string& study_id,
                          const store::Participant& participant, const std::string& who);
 

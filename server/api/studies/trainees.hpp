@@ -1,4 +1,4 @@
-/// How far each trainee is: the scored trials of a cohort, by who did them, in order.
+/// The learning state of each trainee, from the scored trials of a cohort in order of time.
 #pragma once
 
 #include "assessment/trainee.hpp"
@@ -8,7 +8,7 @@
 
 namespace tractus::api {
 
-/// The trials that a caller may know of, as a cohort, with the rule by which it is judged.
+/// The trials that the caller may see, as a cohort, with the rule of certification.
 struct Programme {
   assessment::Cohort cohort;
   std::vector<std::vector<store::CohortTrial>> trials;  ///< [trainee][attempt], as cohort.attempts
@@ -17,17 +17,17 @@ struct Programme {
   Backend* backend;
 };
 
-/// Of trials that count and are judged: complete, assessed, with an answer, in their place where
-/// they are of a study. Who did it is the account that it was assigned to, else the
-/// study's pseudonym, else the operator's name. Restricted
-/// to what the caller's grant reaches; argument "study" is optional.
-/// Errors: bad_input for a study there is not; too_large for more than 20 000 trials.
+/// Uses trials that count and are judged: complete, assessed, with an answer and, in a study, in
+/// their place. The trainee is the account to which the trial was assigned, else the study's
+/// pseudonym, else the operator's name. Contains only trials that the caller may see; the argument
+/// "study" is optional. Errors: bad_input for an unknown study; too_large for more than 20 000
+/// trials.
 core::Result<Programme> programme_of(const Call& call);
 
-/// {"rule", "trainees": [in short]}
+/// {"rule", "trainees": [summaries]}
 core::Json list_json(const Programme& programme);
-/// tractus-trainee/1 with its attempts and the calibration of the stated confidence. A confidence
-/// that cannot be read is null.
+/// tractus-trainee/1 with its attempts and the calibration of the stated confidence. An unreadable
+/// confidence is null.
 core::Json trainee_json(const Programme& programme, std::size_t trainee);
 
 }  // namespace tractus::api

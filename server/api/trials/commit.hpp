@@ -1,4 +1,4 @@
-/// From a whole partial file to a trial: the steps of commit_upload.
+/// The steps of commit_upload: from a complete partial file to a stored trial.
 #pragma once
 
 #include "db/store/trials/trials.hpp"
@@ -7,12 +7,13 @@
 
 namespace tractus::api {
 
-/// Reads the partial file, in bounded memory: SHA-256, then every frame. Errors: corrupt (another
-/// size or SHA-256, a frame that does not hold), bad_input (not sealed, another id or case, no
+/// Checks the partial file with bounded memory: its SHA-256, then every frame. Errors: corrupt
+/// (another size or SHA-256, an invalid frame), bad_input (not sealed, another id or case, no
 /// samples), too_large (too many samples).
 core::Result<store::TrialRecord> checked_trial(Backend& backend, const store::Upload& upload);
 
-/// The file among the objects, then one transaction: object, trial, upload complete, job.
+/// Moves the file to the objects, then in one transaction adds object, trial and job and completes
+/// the upload.
 core::Result<void> store_trial(Backend& backend, const store::Upload& upload,
                                const store::TrialRecord& trial);
 

@@ -1,4 +1,4 @@
-/// Trials as the pages get them.
+/// Trials in the JSON form of the routes.
 #pragma once
 
 #include "db/store/stations/fleet.hpp"
@@ -11,18 +11,18 @@
 
 namespace tractus::api {
 
-/// Where a trial stands in a study.
+/// The place of a trial in a study.
 struct StudyPlace {
   std::string title;  ///< of the study or assignment
   store::Slot slot;
   std::string state, reason;  ///< as store::StudyTrial
 };
 
-/// What the server knows beside the recording.
+/// Facts about a trial besides its recording.
 struct TrialFacts {
   std::optional<volume::Tract> tract = {};           ///< palpation
-  core::Json truth = {};                             ///< palpation: null where it is not known
-  std::optional<scenarios::Scenario> scenario = {};  ///< probing: the truth, too
+  core::Json truth = {};                             ///< palpation: null if the truth is not known
+  std::optional<scenarios::Scenario> scenario = {};  ///< probing: includes the truth
   std::optional<StudyPlace> study = {};
   std::optional<store::TrialClock> clock = {};
 };
@@ -31,8 +31,8 @@ core::Json summary_json(const store::TrialSummary& trial);
 core::Json trial_json(const store::TrialRecord& trial,
                       const std::vector<store::ScoreRecord>& scores, const TrialFacts& facts);
 
-/// Their schemas: TrialSummary, TrialList, Trial, Score, TrialEvent, Tract, Coverage, Truth,
-/// Answer, ProbingScenario, StudyPlace.
+/// The schemas TrialSummary, TrialList, Trial, Score, TrialEvent, Tract, Coverage, Truth, Answer,
+/// ProbingScenario, StudyPlace.
 std::vector<NamedSchema> trial_schemas();
 /// TrialSignals, Envelope, TrialPath.
 std::vector<NamedSchema> curve_schemas();

@@ -1,4 +1,4 @@
-/// A trial's decoded recording, from its file or as it was kept.
+/// The decoded recording of a trial, from its file or from the cache.
 #pragma once
 
 #include "db/store/trials/trials.hpp"

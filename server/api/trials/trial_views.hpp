@@ -1,4 +1,4 @@
-/// Decoded trials, kept while pages look at them.
+/// A cache of decoded trials for the web pages.
 #pragma once
 
 #include <functional>
@@ -12,8 +12,8 @@
 
 namespace tractus::api {
 
-/// The most recently asked for, at most `limit_bytes` of them together (the newest stays whatever
-/// its size). One is decoded at a time, so that many pages opened at once cost the memory of one.
+/// Keeps the most recently used trials, together at most `limit_bytes` (the newest always stays).
+/// Decodes one trial at a time, so that many pages opened at the same time need the memory of one.
 class TrialViews {
  public:
   using Decode = std::function<core::Result<trial::Signals>()>;
@@ -33,7 +33,7 @@ class TrialViews {
   void keep(Entry entry);
 
   std::size_t limit_bytes_;
-  std::mutex decoding_;       ///< held while one is decoded
+  std::mutex decoding_;       ///< held while a trial is decoded
   mutable std::mutex mutex_;  ///< guards what follows
   std::list<Entry> entries_;  ///< most recent first
   std::size_t bytes_ = 0;

@@ -1,4 +1,4 @@
-/// Trials on their way in: announced, received in pieces, committed.
+/// Uploads of trials: announced, received in chunks, committed.
 #pragma once
 
 #include "core/bytes.hpp"
@@ -10,12 +10,12 @@ namespace tractus::api {
 inline constexpr std::uint64_t kMaxTrial_bytes = 512ull << 20;
 inline constexpr std::uint64_t kMaxTrialSamples =
     3'600'000;                                         ///< 15 minutes at 4 kHz, 490 MB decoded
-inline constexpr std::uint64_t kMaxOpenUploads = 256;  ///< of one station
+inline constexpr std::uint64_t kMaxOpenUploads = 256;  ///< per station
 
-/// All answer not_found for an upload that another station announced: one station learns nothing of
-/// another. The same announcement again is the same upload. Errors: conflict (a different one under
-/// this id), not_found (no such case), too_large, unavailable (the disk is full, or the station
-/// leaves too many unfinished).
+/// All functions return not_found for an upload of another station, so that a station learns
+/// nothing about other stations. The same announcement again gives the same upload. Errors:
+/// conflict (another announcement with this id), not_found (no such case), too_large, unavailable
+/// (the disk is full, or the station has too many unfinished uploads).
 core::Result<wire::UploadState> announce_upload(Backend& backend, const Caller& station,
                                                 const std::string& trial_id,
                                                 const wire::UploadAnnouncement& announcement);
@@ -24,37 +24,37 @@ core::Result<wire::UploadState> upload_state(Backend& backend, const Caller& sta
 
 struct Appended {
   wire::UploadState state;
-  bool taken =
-      false;  ///< false: `offset_bytes` was not where the upload stands, nothing was written
+  bool taken = false;  ///< false: another offset was expected, nothing was written
 };
-/// Takes the piece that begins at `offset_bytes`. When it returns, the bytes are on the disk.
-/// Errors: corrupt (the checksum is not theirs), out_of_range (more than announced), conflict
-/// (complete already), io.
+/// Appends the chunk that begins at `offset_bytes`. When the function returns, the bytes are
+/// durable. Errors: corrupt (wrong checksum), out_of_range (more bytes than announced), conflict
+/// (already complete), io.
 core::Result<Appended> append_upload(Backend& backend, const Caller& station,
                                      const std::string& trial_id, std::uint64_t offset_bytes,
                                      std::uint32_t crc32c, core::ByteView bytes);
 
-/// Checks size, SHA-256 and the whole trial file, and that its id and case are those announced;
-/// then the trial, its file and the job that scores it are there together, or none is. Repeating it
-/// is harmless. Errors: conflict (bytes are missing), corrupt or bad_input (not the announced file,
-/// or not a whole trial: the upload then begins again at 0).
+/// Checks size, SHA-256 and the whole trial file, and that its id and case equal the announcement;
+/// then stores the trial, its file and the job that scores it atomically. A second call has no
+/// effect. Errors: conflict (bytes are missing), corrupt or bad_input (not the announced file, or
+/// not a complete trial: the upload then starts again at 0).
 core::Result<wire::UploadState> commit_upload(Backend& backend, const Caller& station,
                                               const std::string& trial_id);
 
-/// Left on the disk that trials go to.
+/// Free bytes on the disk on which trials are stored.
 std::uint64_t free_bytes(const Backend& backend);
-/// Is there room for `size_bytes` more, with the reserve for what is already running? Errors:
-/// unavailable.
+/// Checks that the disk has space for `size_bytes` more, besides the reserve for running work.
+/// Errors: unavailable.
 core::Result<void> check_disk(const Backend& backend, std::uint64_t size_bytes);
-/// The same beside what uploads of the last hour announced and have not sent yet (an older one is
-/// slow or abandoned). A trial is refused before it begins rather than lost when it ends.
+/// The same, besides the bytes that uploads of the last hour announced and have not sent yet (an
+/// older upload is slow or abandoned). Thus a trial is refused before it begins rather than lost at
+/// its end.
 core::Result<void> check_room(Backend& backend, std::uint64_t size_bytes);
-/// What a trial that is about to begin may need: ten minutes at 4 kHz of 160 B.
+/// Space for a trial that is about to begin: ten minutes at 4 kHz with 160 B per sample.
 inline constexpr std::uint64_t kTrialToCome_bytes = 384ull << 20;
 
-/// For the start, after a crash: what partial files hold is flushed, for they say from now on how
-/// much of an upload is here; files that belong to no open upload go. Whether they hold what they
-/// should, the commit finds by the SHA-256 of the whole.
+/// Recovery at the start, after a crash: flushes the partial files, whose sizes are the offsets of
+/// the uploads, and deletes files without an open upload. The commit later checks their contents
+/// with the SHA-256 of the whole file.
 core::Result<void> reconcile_uploads(Backend& backend);
 
 }  // namespace tractus::api

@@ -1,4 +1,4 @@
-/// From an upload's bytes to a volume among the objects.
+/// Imports an uploaded volume: from the bytes of the upload to a volume among the objects.
 #pragma once
 
 #include "core/json.hpp"
@@ -14,9 +14,9 @@ struct ImportedVolume {
   core::Json facts, report;  ///< as jobs::import_volume answers
 };
 
-/// Reads and de-identifies the call's body (Backend::import_volume) in a folder of its own that is
-/// gone afterwards, and puts the volume among the objects. One at a time: it takes the memory of a
-/// volume. Errors: unavailable while another is read; those of jobs::import_volume.
+/// Reads and de-identifies the body of the call (Backend::import_volume) in a temporary folder, and
+/// stores the volume among the objects. Only one import runs at a time, because it needs the memory
+/// of a volume. Errors: unavailable while another import runs; those of jobs::import_volume.
 core::Result<ImportedVolume> take_in(const Call& call);
 
 }  // namespace tractus::api

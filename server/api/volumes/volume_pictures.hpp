@@ -1,4 +1,4 @@
-/// Pictures of a volume for a page: a plane of the patient, and all of it coarsely.
+/// Pictures of a volume for a web page: one plane of the patient, and the whole volume coarsely.
 #pragma once
 
 #include "server/api/cases/preview.hpp"
@@ -13,9 +13,9 @@ struct Window {
 
 enum class Plane { axial, coronal, sagittal };
 
-/// A picture as radiologists hang it: axial with the patient's left at the right and the front at
-/// the top, coronal with left at the right and the head at the top, sagittal with the back at the
-/// right and the head at the top.
+/// A picture in radiological orientation: axial with the patient's left at the right and anterior
+/// at the top, coronal with left at the right and superior at the top, sagittal with posterior at
+/// the right and superior at the top.
 struct SlicePicture {
   std::array<int, 2> dims{};                         ///< width, height
   double spacing_m = 0.0;                            ///< of pixels, square
@@ -25,20 +25,21 @@ struct SlicePicture {
   std::string pixels;                                ///< [row][column], 0 outside the volume
 };
 
-/// The corners of the box of voxel centres along the patient's axes, LPS.
+/// Corners of the bounding box of the voxel centres along the patient's axes, LPS.
 struct Bounds {
   volume::Vec3 low_m, high_m;
 };
 Bounds bounds_of(const volume::Geometry& geometry);
 
-/// The plane at `at_m` along its normal (axial: z, coronal: y, sagittal: x), linear between voxels;
-/// no side has over `max_side` pixels, none is finer than the voxels. Reads the bricks it needs.
-/// Errors: out_of_range when the plane misses the volume; those of reading.
+/// The plane at `at_m` along its normal (axial: z, coronal: y, sagittal: x), with linear
+/// interpolation; no side has more than `max_side` pixels, and pixels are not finer than the
+/// voxels. Reads only the necessary bricks. Errors: out_of_range if the plane does not cut the
+/// volume; those of reading.
 core::Result<SlicePicture> slice_picture(const volume::VolumeFile& file, Plane plane, double at_m,
                                          int max_side, const Window& window);
 
-/// The whole volume by means of equal blocks of voxels, none of its sides over `max_side`; reads it
-/// slab by slab.
+/// The whole volume as means over equal blocks of voxels, with at most `max_side` voxels along each
+/// side; reads the volume slab by slab.
 core::Result<Preview> whole_preview(const volume::VolumeFile& file, int max_side,
                                     const Window& window);
 
