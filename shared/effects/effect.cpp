@@ -29,7 +29,8 @@ std::string_view name(Kind kind) {
 
 std::string unit_of(const Param& param) {
   using Ending = std::pair<std::string_view, std::string_view>;
-  static constexpr std::array<Ending, 15> kEndings{{{"_Ns2_per_m2", "N·s²/m²"},
+  static constexpr std::array<Ending, 16> kEndings{{{"_Ns2_per_m2", "N·s²/m²"},
+                                                    {"_Nm_per_rad", "N·m/rad"},
                                                     {"_Ns_per_m", "N·s/m"},
                                                     {"_N_per_m", "N/m"},
                                                     {"_s_per_rad", "s/rad"},

@@ -21,6 +21,13 @@ enum class Kind {
 };
 std::string_view name(Kind kind);
 
+/// On the probing rig: the recorded channel that shows an effect. A set that only turns is compared
+/// in its torque, every other in its force.
+enum class Channel {
+  force,   ///< fz_N, along the probe
+  torque,  ///< tz_Nm, about the probe
+};
+
 /// Of a parameter of shape, at which nothing vanishes.
 inline constexpr double kNoOff = std::numeric_limits<double>::quiet_NaN();
 
@@ -38,24 +45,45 @@ struct Param {
   /// What a model file means that does not give it; kNoOff: it must.
   double if_missing = kNoOff;
   std::string unit = {};  ///< where the name does not say it, see unit_of
+  /// A change that is felt but small, of the logarithm if logarithmic: the step of a fit's difference
+  /// quotients. 0: a hundredth of the initial value.
+  double step = 0.0;
+  /// Standard deviation (of the logarithm, if logarithmic) with which a fit believes the value it
+  /// starts from before the data speak.
+  double prior_sd = std::numeric_limits<double>::infinity();
 };
 /// "N/m" of stiffness_N_per_m, "1" of coefficient: what the name ends in, or what is stated.
 std::string unit_of(const Param& param);
 
+/// Where the search for an effect begins, one entry for each start: its numbers in the order of the
+/// params, components flattened. Of a strength only the scale counts, a fit estimates it first.
+using Starts = std::vector<std::vector<double>>;
+
 /// What is common to the effects of both rigs.
 struct EffectFacts {
-  std::string id;  ///< "coulomb_friction"
+  std::string id;     ///< "coulomb_friction"
+  std::string label;  ///< as within a sentence: "Coulomb friction"
   Kind kind = Kind::force;
   std::string summary;   ///< one line for a person
   std::string equation;  ///< as in the design, plain text
   std::string source;    ///< key of the bibliography with equation, or "own"
+  /// What to record so that the effect shows, as the object of "record": "slow strokes at …".
+  std::string experiment;
   std::vector<Param> params;
   /// States of the recording it needs beyond depth or pose: "omega_rad_s", "tz_Nm"; a set without
   /// them cannot show it.
   std::vector<std::string> needs = {};
   std::vector<std::string> parents = {};  ///< simpler effects it contains as a limit
-  bool free_per_trial = false;            ///< its course differs from trial to trial (sensor_drift)
-  bool passive = true;                    ///< gives back no more work than it got
+  Channel channel = Channel::force;       ///< of the probing rig
+  /// A slow course of the sensor that differs from trial to trial: the lab removes it from each
+  /// trial and reports its range, which is then its one parameter.
+  bool free_per_trial = false;
+  bool is_bias = false;  ///< a constant that the sensor adds to what it shows
+  bool is_dry = false;   ///< dry friction: at standstill it takes any value within its size
+  bool passive = true;   ///< gives back no more work than it got
+  /// Starts that do not depend on the recordings. Empty: the initial values, and a grid over the
+  /// range of each parameter of shape.
+  Starts starts = {};
   /// Do the numbers stand to each other as the law means it (breakaway ≥ friction)? A fit that ends
   /// elsewhere imitates something else. Null: always.
   bool (*admissible)(std::span<const double> values) = nullptr;

@@ -55,6 +55,12 @@ Param read_parameter(Fields& fields, const std::string& name) {
 
 bool is_expression(std::string_view id) { return id.starts_with(kExpressionPrefix); }
 
+std::string expression_label(std::string_view id) {
+  std::string name(id.substr(kExpressionPrefix.size()));
+  std::ranges::replace(name, '_', ' ');
+  return "your own effect “" + name + "”";
+}
+
 const ExpressionRig& probing_expressions() {
   static constexpr std::array<ExpressionState, 8> kStates{
       {{"x_m", "m", "depth"},
@@ -65,7 +71,9 @@ const ExpressionRig& probing_expressions() {
        {"t_s", "s", "time in the trial"},
        {"tz_Nm", "N*m", "torque: as recorded; live, the law's"},
        {"base_N", "N", "resistance of the bone without this effect"}}};
-  static constexpr ExpressionRig kRig{"probing", "fz_N", "N", kStates};
+  static constexpr ExpressionRig kRig{
+      "probing", "fz_N", "N", kStates,
+      "strokes in and out at three speeds, with holds and reversals, over the whole depth"};
   return kRig;
 }
 
@@ -86,6 +94,9 @@ core::Result<Expression> Expression::from_json(const Json& json, const std::stri
   facts.equation = fields.text("formula", 1000);
   facts.summary = fields.text_or("summary", "A user's own formula", 200);
   facts.source = "user";
+  facts.experiment = rig.experiment;
+  facts.is_dry =
+      true;  // as far as the sign of the speed is in it: what is smooth is 0 at standstill
   facts.passive = false;
   out.rig_ = rig.rig;
   out.adds_to_ = rig.adds_to;
@@ -93,6 +104,7 @@ core::Result<Expression> Expression::from_json(const Json& json, const std::stri
     out.quantities_.push_back({std::string(state.name), *Dimension::parse(state.unit)});
   const Json* parameters = fields.member("parameters");
   if (auto done = fields.done(); !done) return done.error();
+  facts.label = expression_label(facts.id);
   if (!parameters->is_object() || parameters->size() > kMostParameters)
     return Error{Errc::bad_input,
                  fmt::format("{}/parameters: an object of at most {} parameters is expected", where,

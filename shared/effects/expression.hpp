@@ -27,6 +27,7 @@ struct ExpressionRig {
   std::string_view adds_to;  ///< "fz_N"
   std::string_view unit;     ///< that the result must have: "N"
   std::span<const ExpressionState> states;
+  std::string_view experiment;  ///< what to record so that an unknown formula shows
 };
 /// fz_N, added to the resisting force: from x_m v_m_s a_m_s2 theta_rad omega_rad_s t_s tz_Nm
 /// base_N.
@@ -70,5 +71,7 @@ class Expression {
 
 /// Is it the id of a user's expression?
 bool is_expression(std::string_view id);
+/// "your own effect “my drag”" of "expression:my_drag".
+std::string expression_label(std::string_view id);
 
 }  // namespace tractus::effects

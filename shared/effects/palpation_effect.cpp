@@ -15,13 +15,13 @@ const std::vector<PalpationEffectInfo>& palpation_effects() {
   return kAll;
 }
 
-namespace {
-
-const PalpationEffectInfo* entry_of(std::string_view id) {
+const PalpationEffectInfo* find_palpation_effect(std::string_view id) {
   for (const PalpationEffectInfo& info : palpation_effects())
     if (info.facts.id == id) return &info;
   return nullptr;
 }
+
+namespace {
 
 core::Error unknown(std::string_view id) {
   return {core::Errc::not_found, fmt::format("'{}' is not an effect of palpation", id)};
@@ -35,14 +35,14 @@ core::Result<EffectFacts> palpation_facts(const EffectInstance& use) {
     if (!expression) return expression.error();
     return expression->facts();
   }
-  const auto* found = entry_of(use.id);
+  const auto* found = find_palpation_effect(use.id);
   if (!found) return unknown(use.id);
   return found->facts;
 }
 
 core::Result<PalpationEffect> make_palpation_effect(const EffectInstance& use) {
   if (is_expression(use.id)) return make_palpation_expression(use);
-  const auto* found = entry_of(use.id);
+  const auto* found = find_palpation_effect(use.id);
   if (!found) return unknown(use.id);
   if (auto ok = check(found->facts, use.values); !ok) return ok.error();
   return found->make(use.values);

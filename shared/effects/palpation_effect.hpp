@@ -122,7 +122,8 @@ inline Param bends_shank() {
           .high = 1.0,
           .off = kNoOff,
           .if_missing = 1.0,
-          .unit = "1"};
+          .unit = "1",
+          .step = 0.05};
 }
 
 class HandleWrench {
@@ -148,14 +149,28 @@ using PalpationEffect = std::variant<std::unique_ptr<MotionDelay>, std::unique_p
                                      std::unique_ptr<PointForce>, std::unique_ptr<HandleWrench>,
                                      std::unique_ptr<SensorOffset>, FreePerTrial>;
 
+/// What base and recordings show before an effect is added, for the numbers that its search begins
+/// with.
+struct PalpationStatistics {
+  double radius_m = 0.0;     ///< of the base's shank
+  double field_per_m = 0.0;  ///< |g| where the recordings touch bone, median
+};
+
 struct PalpationEffectInfo {
   EffectFacts facts;
   /// @param values  in the order of facts.params, components flattened, already within their ranges
   PalpationEffect (*make)(std::span<const double> values);
+  /// Starts that depend on base and recordings. Null: facts.starts.
+  Starts (*starts)(const PalpationStatistics& known) = nullptr;
+  /// A parameter of the base that the effect's numbers take the place of: where all of them equal
+  /// it, nothing is changed, and a fit moves it no longer in a model that has the effect. Null: none.
+  double laws::PalpationParameters::*replaces = nullptr;
 };
 
 /// The catalogue of palpation, in the order of the ids; made from the files of palpation/.
 const std::vector<PalpationEffectInfo>& palpation_effects();
+/// The entry of an id; null where the catalogue has none.
+const PalpationEffectInfo* find_palpation_effect(std::string_view id);
 
 /// What is known of an effect in a model, of the catalogue or a user's own; its numbers do not
 /// matter. Errors: not_found naming the id; bad_input naming what is wrong in a definition.

@@ -62,7 +62,9 @@ const ExpressionRig& palpation_expressions() {
        {"v_t_m_s", "m/s", "of it, across the wall's push"},
        {"base_N", "N", "size of the point's elastic force"},
        {"opacity", "1", "blurred opacity of the bone at the point"}}};
-  static constexpr ExpressionRig kRig{"palpation", "f_N", "N", kStates};
+  static constexpr ExpressionRig kRig{
+      "palpation", "f_N", "N", kStates,
+      "presses into one wall and slides along it, each at three speeds"};
   return kRig;
 }
 

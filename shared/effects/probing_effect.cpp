@@ -17,14 +17,13 @@ namespace {
 
 /// A user's formula, added to the resistance. A speed that counts as rest is 0 in it, so that sgn
 /// v_m_s does not chatter.
-class ExpressionForce final : public ProbingEffect {
+class ExpressionForce final : public ProbeForce {
  public:
   ExpressionForce(FormulaProgram program, std::span<const double> values)
       : program_(std::move(program)) {
     std::ranges::copy(values, program_.inputs().last(values.size()).begin());
   }
-  ProbingStage stage() const noexcept override { return ProbingStage::force; }
-  double force_N(const ProbingTick& tick, double base_N, const double*) const noexcept override {
+  double force_N(const ProbingTick& tick, double base_N, ProbingMemory&) const noexcept override {
     const auto in = program_.inputs();
     in[0] = tick.x_m;
     in[1] = std::abs(tick.v_m_s) <= tick.rest_m_s ? 0.0 : tick.v_m_s;
@@ -41,20 +40,14 @@ class ExpressionForce final : public ProbingEffect {
   FormulaProgram program_;
 };
 
-core::Result<std::unique_ptr<ProbingEffect>> make_expression(const EffectInstance& use) {
+core::Result<ProbingEffect> make_expression(const EffectInstance& use) {
   auto expression = Expression::of(use, probing_expressions());
   if (!expression) return expression.error();
   if (auto ok = check(expression->facts(), use.values); !ok) return ok.error();
   auto program = expression->program();
   if (!program) return program.error();
-  return std::unique_ptr<ProbingEffect>(
-      std::make_unique<ExpressionForce>(std::move(*program), use.values));
-}
-
-const ProbingEffectInfo* entry_of(std::string_view id) {
-  for (const ProbingEffectInfo& info : probing_effects())
-    if (info.facts.id == id) return &info;
-  return nullptr;
+  return ProbingEffect(std::unique_ptr<ProbeForce>(
+      std::make_unique<ExpressionForce>(std::move(*program), use.values)));
 }
 
 core::Error unknown(std::string_view id) {
@@ -68,20 +61,33 @@ const std::vector<ProbingEffectInfo>& probing_effects() {
   return kAll;
 }
 
+const ProbingEffectInfo* find_probing_effect(std::string_view id) {
+  for (const ProbingEffectInfo& info : probing_effects())
+    if (info.facts.id == id) return &info;
+  return nullptr;
+}
+
+std::vector<double> spread(double low, double high, int count) {
+  std::vector<double> out;
+  for (int k = 0; k < count; ++k)
+    out.push_back(low * std::pow(high / low, (k + 0.5) / double(count)));
+  return out;
+}
+
 core::Result<EffectFacts> probing_facts(const EffectInstance& use) {
   if (is_expression(use.id)) {
     const auto expression = Expression::of(use, probing_expressions());
     if (!expression) return expression.error();
     return expression->facts();
   }
-  const auto* found = entry_of(use.id);
+  const auto* found = find_probing_effect(use.id);
   if (!found) return unknown(use.id);
   return found->facts;
 }
 
-core::Result<std::unique_ptr<ProbingEffect>> make_probing_effect(const EffectInstance& use) {
+core::Result<ProbingEffect> make_probing_effect(const EffectInstance& use) {
   if (is_expression(use.id)) return make_expression(use);
-  const auto* found = entry_of(use.id);
+  const auto* found = find_probing_effect(use.id);
   if (!found) return unknown(use.id);
   if (auto ok = check(found->facts, use.values); !ok) return ok.error();
   return found->make(use.values);

@@ -1,11 +1,33 @@
-/// One physical effect on the probing rig, as replay, fit and the live loop run it. One file each
-/// in probing/.
+/// Effects of the probing law: the stages at which one may act, and the catalogue of them.
+///
+/// A stage is a class with one function; an effect is one stage's object, made once from its
+/// numbers. In the order in which force and torque come about:
+///
+///     depth      BoneDepth      the depth and speed that the bone sees
+///     scale      BoneScale      a factor on the bone's resistance K(x − x0) + D v
+///     force      ProbeForce     what adds to the resistance
+///     torque     ProbeTorque    what adds to the turning stage's torque
+///     delay      ForceDelay     when the force is recorded (measurement)
+///     recording  ForceSensor    what the force sensor says on top (measurement)
+///                TorqueSensor   what the torque sensor says on top (measurement)
+///
+/// Several of one stage add; the factors of `scale` multiply; the depths of `depth` follow one
+/// another as in the model.
+///
+/// All are const: what changes from tick to tick is in the caller's ProbingMemory, so that one object
+/// serves many recordings and the live loop at once. A tick may be only a candidate (the live loop
+/// seeks the speed at which resistance equals push); its caller then passes a copy of the memory.
+/// The first four never allocate, lock or fail; the last three may allocate and never run live.
+///
+/// Signs: x into the bone; forces are the push of the hand along x that the effect asks for.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <span>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "core/result.hpp"
@@ -45,80 +67,103 @@ inline double direction(double v_m_s, double rest_m_s) noexcept {
   return v_m_s < 0.0 ? -share : share;
 }
 
-/// Where in the law an effect acts, in the order in which they act. Several of one stage add (the
-/// factors of `scale` multiply, the depths of `depth` follow one another as in the model).
-enum class ProbingStage {
-  depth,      ///< the depth and speed that the bone sees
-  scale,      ///< a factor on the bone's resistance K(x − x0) + D v
-  force,      ///< added to the resistance
-  torque,     ///< added to the turning stage's torque
-  delay,      ///< moves the recorded force in time (measurement)
-  recording,  ///< added to the recorded force (measurement)
+/// What an effect keeps from one moment to the next.
+struct ProbingMemory {
+  /// Before the first moment: the depth there.
+  double depth_m = 0.0;
+  std::array<double, 3> own{};  ///< before the first moment: 0
 };
 
-/// Most numbers of state that one effect keeps.
-inline constexpr std::size_t kMaxProbingStates = 4;
-
-/// One effect with its numbers. Immutable: what changes from tick to tick is in the caller's
-/// `state`, so that one object serves many recordings and the live loop at once. A stage's function
-/// is called for a moment that may only be a candidate (the live loop seeks the speed at which
-/// resistance equals push); `commit` then says that the moment has been. Nothing here allocates,
-/// locks or fails, `record` excepted, which may allocate and never runs live.
-///
-/// Signs: x into the bone; forces are the push of the hand along x that the effect asks for.
-class ProbingEffect {
+class BoneDepth {
  public:
-  virtual ~ProbingEffect() = default;
-  virtual ProbingStage stage() const noexcept = 0;
+  virtual ~BoneDepth() = default;
+  /// Turns depth and speed of a tick into those that the bone sees, and moves the memory on to it.
+  virtual void see(ProbingTick& tick, ProbingMemory& memory) const noexcept = 0;
+};
 
-  /// Numbers of state, at most kMaxProbingStates.
-  virtual std::size_t states() const noexcept { return 0; }
-  /// The state before the first moment.
-  virtual void start(const ProbingTick& /*first*/, double* /*state*/) const noexcept {}
-  /// Moves the state over the moment that has been. At `depth`, depth and speed are those that came
-  /// into it.
-  virtual void commit(const ProbingTick& /*tick*/, double* /*state*/) const noexcept {}
+class BoneScale {
+ public:
+  virtual ~BoneScale() = default;
+  /// A factor on the bone's resistance.
+  virtual double scale(const ProbingTick& tick) const noexcept = 0;
+};
 
-  /// Stage depth: turns depth and speed of the tick into those that the bone sees.
-  virtual void see(ProbingTick& /*tick*/, const double* /*state*/) const noexcept {}
-  /// Stage scale: a factor.
-  virtual double scale(const ProbingTick& /*tick*/) const noexcept { return 1.0; }
-  /// Stage force: N. @param base_N  the bone's resistance after depth and scale.
-  virtual double force_N(const ProbingTick& /*tick*/, double /*base_N*/,
-                         const double* /*state*/) const noexcept {
-    return 0.0;
-  }
-  /// Stage torque: N·m about x that the hand must add at that moment, from depth, angle and turning
-  /// alone; without state.
-  virtual double torque_Nm(const ProbingTick& /*tick*/) const noexcept { return 0.0; }
-  /// force_N and commit in one: what a replay calls, sample after sample.
-  virtual double replay_N(const ProbingTick& tick, double base_N, double* state) const noexcept {
-    const double out_N = force_N(tick, base_N, state);
-    commit(tick, state);
-    return out_N;
-  }
-  /// Stages delay and recording: turns the law's force over a whole trial, N, into what the sensor
-  /// says.
-  virtual void record(const ProbingMotion& /*motion*/, std::span<double> /*fz_N*/) const {}
-  /// Stage recording: the same of the torque, N·m.
-  virtual void record_torque(const ProbingMotion& /*motion*/, std::span<double> /*tz_Nm*/) const {}
+class ProbeForce {
+ public:
+  virtual ~ProbeForce() = default;
+  /// What adds to the resistance, N; moves the memory on to the tick. @param base_N  the bone's
+  /// resistance after depth and scale.
+  virtual double force_N(const ProbingTick& tick, double base_N,
+                         ProbingMemory& memory) const noexcept = 0;
+};
+
+class ProbeTorque {
+ public:
+  virtual ~ProbeTorque() = default;
+  /// What adds to the turning stage's torque, N·m about x.
+  virtual double torque_Nm(const ProbingTick& tick) const noexcept = 0;
+};
+
+class ForceDelay {
+ public:
+  virtual ~ForceDelay() = default;
+  /// Moves the force over a whole trial, N, in time.
+  virtual void delay(const ProbingMotion& motion, std::span<double> fz_N) const = 0;
+};
+
+class ForceSensor {
+ public:
+  virtual ~ForceSensor() = default;
+  /// Adds to the force over a whole trial, N, what the sensor says on top.
+  virtual void record(const ProbingMotion& motion, std::span<double> fz_N) const = 0;
+};
+
+class TorqueSensor {
+ public:
+  virtual ~TorqueSensor() = default;
+  /// Adds to the torque over a whole trial, N·m, what the sensor says on top.
+  virtual void record(const ProbingMotion& motion, std::span<double> tz_Nm) const = 0;
+};
+
+/// An effect: the object of the stage that it acts at.
+using ProbingEffect = std::variant<std::unique_ptr<BoneDepth>, std::unique_ptr<BoneScale>,
+                                   std::unique_ptr<ProbeForce>, std::unique_ptr<ProbeTorque>,
+                                   std::unique_ptr<ForceDelay>, std::unique_ptr<ForceSensor>,
+                                   std::unique_ptr<TorqueSensor>>;
+
+/// What recordings show before an effect is added, for the numbers that its search begins with.
+struct ProbingStatistics {
+  double slow_m_s = 0.0;       ///< 2 % of the moving samples are slower
+  double fast_m_s = 0.0;       ///< 90 % of the moving samples are slower
+  double depth_range_m = 0.0;  ///< from the least depth to the greatest
+  double longest_s = 0.0;      ///< duration of the longest trial
+  /// The residual (measured − predicted) at moments of all trials: the depth, the residual in units
+  /// of its expected standard deviation, and that, N.
+  std::vector<double> depth_m = {}, residual = {}, residual_sd_N = {};
 };
 
 /// An entry of the catalogue.
 struct ProbingEffectInfo {
   EffectFacts facts;
   /// @param values  in the order of the params, components flattened; already within their ranges.
-  std::unique_ptr<ProbingEffect> (*make)(std::span<const double> values);
+  ProbingEffect (*make)(std::span<const double> values);
+  /// Starts that depend on the recordings; may find none. Null: facts.starts.
+  Starts (*starts)(const ProbingStatistics& recordings) = nullptr;
 };
 
-/// For ProbingEffectInfo::make.
-template <class Effect>
-std::unique_ptr<ProbingEffect> made(std::span<const double> values) {
-  return std::make_unique<Effect>(values);
+/// For ProbingEffectInfo::make: an effect at one stage.
+template <class Stage, class Effect>
+ProbingEffect made(std::span<const double> values) {
+  return std::unique_ptr<Stage>(std::make_unique<Effect>(values));
 }
+
+/// Values spread evenly in their logarithm between two limits, which are left out.
+std::vector<double> spread(double low, double high, int count);
 
 /// The catalogue, in the order of the ids; made from the files of probing/.
 const std::vector<ProbingEffectInfo>& probing_effects();
+/// The entry of an id; null where the catalogue has none.
+const ProbingEffectInfo* find_probing_effect(std::string_view id);
 
 /// What is known of an effect in a model, of the catalogue or a user's own; its numbers do not
 /// matter. Errors: not_found naming the id; bad_input naming what is wrong in a definition.
@@ -126,6 +171,6 @@ core::Result<EffectFacts> probing_facts(const EffectInstance& use);
 
 /// The effect of an id with its numbers. Errors: not_found naming the id; bad_input or out_of_range
 /// naming the parameter, its value and its range.
-core::Result<std::unique_ptr<ProbingEffect>> make_probing_effect(const EffectInstance& use);
+core::Result<ProbingEffect> make_probing_effect(const EffectInstance& use);
 
 }  // namespace tractus::effects

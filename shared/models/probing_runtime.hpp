@@ -24,6 +24,23 @@ struct ProbingForces {
 
 inline constexpr std::size_t kMaxProbingEffects = 32;
 
+/// The effects of a model by the stage at which they act, each in the model's order.
+struct ProbingStages {
+  std::vector<std::unique_ptr<effects::BoneDepth>> depths;
+  std::vector<std::unique_ptr<effects::BoneScale>> scales;
+  std::vector<std::unique_ptr<effects::ProbeForce>> forces;
+  std::vector<std::unique_ptr<effects::ProbeTorque>> torques;
+  std::vector<std::unique_ptr<effects::ForceDelay>> delays;
+  std::vector<std::unique_ptr<effects::ForceSensor>> force_sensors;
+  std::vector<std::unique_ptr<effects::TorqueSensor>> torque_sensors;
+
+  void add(effects::ProbingEffect effect);
+  /// Does one change the law's force, and so the live motion?
+  bool act_along_probe() const noexcept {
+    return !depths.empty() || !scales.empty() || !forces.empty();
+  }
+};
+
 /// What changes from tick to tick of the live loop.
 struct ProbingLive {
   laws::ProbingState at;   ///< depth of the tip and mode
@@ -31,7 +48,7 @@ struct ProbingLive {
   double t_s = 0.0;        ///< since the start
   double theta_rad = 0.0;  ///< turned since the start
   bool started = false;    ///< set by the first tick, which starts the effects where `at` is
-  std::array<double, kMaxProbingEffects * effects::kMaxProbingStates> effects{};
+  std::array<effects::ProbingMemory, kMaxProbingEffects> effects{};  ///< depths, then forces
 };
 
 /// The law with effects at their stages. With x̃ the depth that the bone sees and s the factor of
@@ -80,15 +97,13 @@ class ProbingRuntime {
   const laws::ProbingLaw& law() const noexcept { return law_; }
 
  private:
-  using Effects = std::vector<std::unique_ptr<effects::ProbingEffect>>;
-  ProbingRuntime(laws::ProbingLaw law, Effects effects);
-  void predict_law(const ProbingMotion& motion, std::span<double> fz_N) const;
+  ProbingRuntime(laws::ProbingLaw law, ProbingStages stages);
+  void predict_force(const ProbingMotion& motion, std::span<double> fz_N) const;
+  void predict_torque(const ProbingMotion& motion, std::span<double> tz_Nm) const;
+  double added_torque_Nm(const effects::ProbingTick& tick, double torque_Nm) const noexcept;
 
   laws::ProbingLaw law_;
-  Effects effects_;       // by stage
-  std::size_t live_ = 0;  // so many of them, from the first, act along x
-  std::size_t felt_ = 0;  // so many are the law's, those from live_ on about x; the rest is the
-                          // recording's
+  ProbingStages stages_;
 };
 
 }  // namespace tractus::models

@@ -7,8 +7,7 @@ namespace tractus {
 namespace models {
 namespace {
 
-using effects::ProbingEffect;
-using effects::ProbingStage;
+using effects::ProbingMemory;
 using effects::ProbingTick;
 
 constexpr double kNearlyZero_m = 1e-12;
@@ -58,26 +57,17 @@ double moving_speed(const Excess& excess, double near, double top) {
 
 }  // namespace
 
-ProbingStep::ProbingStep(const laws::ProbingLaw& law, Effects effects, double turning_rad_s,
-                         double dt_s, ProbingLive& live) noexcept
+ProbingStep::ProbingStep(const laws::ProbingLaw& law, const ProbingStages& stages,
+                         double turning_rad_s, double dt_s, ProbingLive& live) noexcept
     : law_(law),
-      effects_(effects),
+      stages_(stages),
       turning_rad_s_(turning_rad_s),
       dt_s_(dt_s),
       torque_Nm_(law.torque_Nm(live.at.x_m, live.theta_rad, turning_rad_s)),
       live_(live) {
   if (live_.started) return;
   live_.started = true;
-  const ProbingTick first{.t_s = live_.t_s,
-                          .x_m = live_.at.x_m,
-                          .theta_rad = live_.theta_rad,
-                          .omega_rad_s = turning_rad_s,
-                          .tz_Nm = torque_Nm_};
-  for (std::size_t e = 0; e < effects_.size(); ++e) effects_[e]->start(first, state_of(e));
-}
-
-double* ProbingStep::state_of(std::size_t effect) const noexcept {
-  return &live_.effects[effect * effects::kMaxProbingStates];
+  for (ProbingMemory& memory : live_.effects) memory = {.depth_m = live_.at.x_m};
 }
 
 ProbingTick ProbingStep::candidate(double v_m_s, double over_s) const noexcept {
@@ -93,9 +83,9 @@ ProbingTick ProbingStep::candidate(double v_m_s, double over_s) const noexcept {
 
 /// As the bone sees it.
 ProbingTick ProbingStep::seen(ProbingTick tick) const noexcept {
-  for (std::size_t e = 0; e < effects_.size(); ++e) {
-    if (effects_[e]->stage() != ProbingStage::depth) break;
-    effects_[e]->see(tick, state_of(e));
+  for (std::size_t e = 0; e < stages_.depths.size(); ++e) {
+    ProbingMemory memory = live_.effects[e];
+    stages_.depths[e]->see(tick, memory);
   }
   return tick;
 }
@@ -104,11 +94,11 @@ double ProbingStep::resistance_N(double v_m_s, const Piece& piece) const noexcep
   const ProbingTick tick = candidate(v_m_s, piece.left_s);
   const ProbingTick bone = seen(tick);
   double base_N = law_.force_N(std::min(std::max(bone.x_m, piece.low_m), piece.high_m), bone.v_m_s);
+  for (const auto& factor : stages_.scales) base_N *= factor->scale(tick);
   double added_N = 0.0;
-  for (std::size_t e = 0; e < effects_.size(); ++e) {
-    const ProbingEffect& effect = *effects_[e];
-    if (effect.stage() == ProbingStage::scale) base_N *= effect.scale(tick);
-    if (effect.stage() == ProbingStage::force) added_N += effect.force_N(tick, base_N, state_of(e));
+  for (std::size_t e = 0; e < stages_.forces.size(); ++e) {
+    ProbingMemory memory = live_.effects[stages_.depths.size() + e];
+    added_N += stages_.forces[e]->force_N(tick, base_N, memory);
   }
   return base_N + added_N;
 }
@@ -129,11 +119,11 @@ double ProbingStep::speed_m_s(double force_N, const Piece& piece) const noexcept
 
 void ProbingStep::commit(const ProbingTick& tick) noexcept {
   ProbingTick bone = tick;
-  for (std::size_t e = 0; e < effects_.size(); ++e) {
-    const ProbingTick before = effects_[e]->stage() == ProbingStage::depth ? bone : tick;
-    effects_[e]->see(bone, state_of(e));
-    effects_[e]->commit(before, state_of(e));
-  }
+  auto memory = live_.effects.begin();
+  for (const auto& depth : stages_.depths) depth->see(bone, *memory++);
+  double base_N = law_.force_N(bone.x_m, bone.v_m_s);
+  for (const auto& factor : stages_.scales) base_N *= factor->scale(tick);
+  for (const auto& force : stages_.forces) force->force_N(tick, base_N, *memory++);
   live_.at.x_m = tick.x_m;
   live_.v_m_s = tick.v_m_s;
   live_.t_s = tick.t_s;

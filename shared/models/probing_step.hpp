@@ -1,9 +1,6 @@
 /// One live tick of a probing law with effects: motion from force. Used by ProbingRuntime alone.
 #pragma once
 
-#include <memory>
-#include <span>
-
 #include "effects/probing_effect.hpp"
 #include "laws/probing_law.hpp"
 #include "models/probing_runtime.hpp"
@@ -14,9 +11,8 @@ namespace tractus::models {
 /// never acts beyond its end.
 class ProbingStep {
  public:
-  using Effects = std::span<const std::unique_ptr<effects::ProbingEffect>>;
-  ProbingStep(const laws::ProbingLaw& law, Effects effects, double turning_rad_s, double dt_s,
-              ProbingLive& live) noexcept;
+  ProbingStep(const laws::ProbingLaw& law, const ProbingStages& stages, double turning_rad_s,
+              double dt_s, ProbingLive& live) noexcept;
   /// Moves `live` over the tick; returns the mean speed, m/s.
   double take(double force_N) noexcept;
 
@@ -31,10 +27,9 @@ class ProbingStep {
   double speed_m_s(double force_N, const Piece& piece) const noexcept;
   double move(double v_m_s, const Piece& piece) noexcept;
   void commit(const effects::ProbingTick& tick) noexcept;
-  double* state_of(std::size_t effect) const noexcept;
 
   const laws::ProbingLaw& law_;
-  Effects effects_;
+  const ProbingStages& stages_;
   double turning_rad_s_, dt_s_;
   double torque_Nm_;  // the rotary stage's at the tick's start
   ProbingLive& live_;

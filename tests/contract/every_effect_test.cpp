@@ -232,8 +232,9 @@ TEST_P(EveryRenderedEffect, ConvergesWithTheStep) {
 /// work over a cycle is nothing, where the effect acts on the bone).
 double work_per_cycle_J(const ProbingEffectInfo& info, At at) {
   ProbingModel spring;
-  const bool on_bone = entry(info.facts.id).make(use_of(info, At::initial).values)->stage() <
-                       effects::ProbingStage::force;
+  const auto made = info.make(use_of(info, At::initial).values);
+  const bool on_bone = std::holds_alternative<std::unique_ptr<effects::BoneDepth>>(made) ||
+                       std::holds_alternative<std::unique_ptr<effects::BoneScale>>(made);
   if (on_bone) spring.layers = {{0.0, kTravel_m, 4000.0, 1e-9, 0.0}};
   const auto motion = cycles(4000.0, 6.0);
   const auto force_N = predicted(runtime_of(spring, {use_of(info, at)}), motion);
@@ -305,7 +306,8 @@ std::vector<std::string> all_ids() {
 }
 std::vector<std::string> ids() {
   auto out = all_ids();
-  std::erase_if(out, [](const auto& id) { return id.starts_with("rotary_"); });
+  std::erase_if(out,
+                [](const auto& id) { return entry(id).facts.channel == effects::Channel::torque; });
   return out;
 }
 std::vector<std::string> rendered_ids() {

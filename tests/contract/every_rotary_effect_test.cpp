@@ -1,4 +1,4 @@
-/// What every effect about the axis keeps to (ids that begin with rotary_).
+/// What every effect about the axis keeps to.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -148,7 +148,7 @@ TEST_P(EveryRotaryEffect, GivesBackNoMoreWorkThanItGot) {
 std::vector<std::string> ids() {
   std::vector<std::string> out;
   for (const auto& info : effects::probing_effects())
-    if (info.facts.id.starts_with("rotary_")) out.push_back(info.facts.id);
+    if (info.facts.channel == effects::Channel::torque) out.push_back(info.facts.id);
   return out;
 }
 INSTANTIATE_TEST_SUITE_P(Probing, EveryRotaryEffect, testing::ValuesIn(ids()),

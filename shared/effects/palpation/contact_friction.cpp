@@ -49,16 +49,20 @@ class ContactFriction final : public PointForce {
 namespace palpation {
 PalpationEffectInfo contact_friction() {
   return {.facts = {.id = "contact_friction",
+                    .label = "contact friction",
                     .kind = Kind::force,
                     .summary = "Dry friction where the probe slides on bone",
                     .equation = "F = −μ |F_n| v_t/|v_t| at each contact point",
                     .source = "own; sliding friction after Coulomb",
+                    .experiment = "slides along one wall to and fro at 5, 20 and 60 mm/s",
                     .params = {{.name = "coefficient",
                                 .meaning = "friction over normal force, μ",
                                 .initial = 0.2,
                                 .low = 0.0,
-                                .high = 1.5},
-                               bends_shank()}},
+                                .high = 1.5,
+                                .step = 2e-2},
+                               bends_shank()},
+                    .starts = {{0.1, 1.0}, {0.1, 0.0}}},
           .make = [](std::span<const double> values) -> PalpationEffect {
             return std::make_unique<ContactFriction>(values[0], values[1]);
           }};

@@ -42,15 +42,18 @@ class ContactHysteresis final : public ContactLoss {
 namespace palpation {
 PalpationEffectInfo contact_hysteresis() {
   return {.facts = {.id = "contact_hysteresis",
+                    .label = "contact hysteresis",
                     .kind = Kind::force,
                     .summary = "Contact force that is smaller on the way out than on the way in",
                     .equation = "F (1 − h) while leaving, F while entering",
                     .source = "own",
+                    .experiment = "slow presses into one wall and out again, ten times",
                     .params = {{.name = "loss",
                                 .meaning = "share of the force that is lost on the way out, h",
                                 .initial = 0.15,
                                 .low = 0.0,
-                                .high = 0.95}}},
+                                .high = 0.95,
+                                .step = 2e-2}}},
           .make = [](std::span<const double> values) -> PalpationEffect {
             return std::make_unique<ContactHysteresis>(values[0]);
           }};

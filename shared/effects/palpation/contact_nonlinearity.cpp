@@ -39,25 +39,33 @@ class ContactNonlinearity final : public ContactField {
 namespace palpation {
 PalpationEffectInfo contact_nonlinearity() {
   return {.facts = {.id = "contact_nonlinearity",
+                    .label = "contact nonlinearity",
                     .kind = Kind::force,
                     .summary = "Contact force that grows otherwise than in proportion to the field",
                     .equation = "F = c_f g (|g|/g₀)^(p−1)",
                     .source = "own",
+                    .experiment = "slow presses into one wall, from light to as hard as is safe",
                     .params = {{.name = "exponent",
                                 .meaning = "p; the force grows with the p-th power of the field",
                                 .initial = 1.2,
                                 .low = 0.3,
                                 .high = 3.0,
-                                .off = 1.0},
+                                .off = 1.0,
+                                .step = 2e-2},
                                {.name = "reference_gradient_per_m",
                                 .meaning = "g₀, the field at which nothing changes",
                                 .initial = 500.0,
                                 .low = 1.0,
                                 .high = 1e5,
-                                .off = NAN,
-                                .logarithmic = true}}},
+                                .off = kNoOff,
+                                .logarithmic = true,
+                                .prior_sd = 3.0}}},
           .make = [](std::span<const double> values) -> PalpationEffect {
             return std::make_unique<ContactNonlinearity>(values[0], values[1]);
+          },
+          // Barely stiffening about a field that occurs.
+          .starts = [](const PalpationStatistics& known) -> Starts {
+            return {{1.05, known.field_per_m}};
           }};
 }
 }  // namespace palpation

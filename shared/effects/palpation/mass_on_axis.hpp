@@ -24,14 +24,17 @@ struct MassOnAxis {
              .meaning = "mass below the sensor",
              .initial = 0.02,
              .low = 0.0,
-             .high = 2.0},
+             .high = 2.0,
+             .step = 5e-3},
             {.name = "centre_m",
              .meaning = "its centre from the sensor towards the tip",
              .initial = 0.05,
              .low = -0.2,
              .high = 1.0,
-             .off = NAN}};
+             .off = kNoOff,
+             .step = 5e-3}};
   }
+  static Starts starts() { return {{0.01, 0.05}}; }
 };
 
 }  // namespace tractus::effects

@@ -21,16 +21,20 @@ namespace palpation {
 PalpationEffectInfo pose_offset() {
   return {
       .facts = {.id = "pose_offset",
+                .label = "pose offset",
                 .kind = Kind::measurement,
                 .summary = "Recorded positions that are off by a constant in the volume's frame",
                 .equation = "p = recorded p + offset",
                 .source = "[Zoller2020, \"Parameter tuning\"]",
+                .experiment = "presses into opposite walls in three directions, with two rolls",
                 .params = {{.name = "offset_m",
                             .meaning = "added to recorded positions, x y z of V",
                             .initial = 0.0,
                             .low = -0.02,
                             .high = 0.02,
-                            .components = 3}}},
+                            .components = 3,
+                            .step = 2e-5}},
+                .starts = {{1e-5, 1e-5, 1e-5}}},
       .make = [](std::span<const double> values) -> PalpationEffect {
         return std::make_unique<PoseOffset>(Vec3(values[0], values[1], values[2]));
       }};

@@ -29,11 +29,14 @@ class ProbeInertia final : public HandleWrench {
 namespace palpation {
 PalpationEffectInfo probe_inertia() {
   return {.facts = {.id = "probe_inertia",
+                    .label = "probe inertia",
                     .kind = Kind::force,
                     .summary = "Inertia of the part of the probe below the sensor",
                     .equation = "F = −m a of a mass at centre_m along the handle's axis",
                     .source = "own; Newton's second law",
-                    .params = MassOnAxis::params()},
+                    .experiment = "quick shakes in free air along and across the probe",
+                    .params = MassOnAxis::params(),
+                    .starts = MassOnAxis::starts()},
           .make = [](std::span<const double> values) -> PalpationEffect {
             return std::make_unique<ProbeInertia>(MassOnAxis::of(values));
           }};

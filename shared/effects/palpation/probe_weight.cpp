@@ -26,11 +26,14 @@ class ProbeWeight final : public HandleWrench {
 namespace palpation {
 PalpationEffectInfo probe_weight() {
   return {.facts = {.id = "probe_weight",
+                    .label = "probe weight",
                     .kind = Kind::force,
                     .summary = "Weight of the part of the probe below the sensor",
                     .equation = "F = m g down, at centre_m along the handle's axis",
                     .source = "own; standard gravity 9.80665 m/s²",
-                    .params = MassOnAxis::params()},
+                    .experiment = "slow turns in free air about all three axes",
+                    .params = MassOnAxis::params(),
+                    .starts = MassOnAxis::starts()},
           .make = [](std::span<const double> values) -> PalpationEffect {
             return std::make_unique<ProbeWeight>(MassOnAxis::of(values));
           }};

@@ -7,10 +7,12 @@ namespace tractus::effects::palpation {
 
 PalpationEffectInfo sensor_drift() {
   return {.facts = {.id = "sensor_drift",
+                    .label = "sensor drift",
                     .kind = Kind::measurement,
                     .summary = "A slow trend of the sensor's zero, another one in each trial",
                     .equation = "recorded = true + slow trend over the trial, per axis",
                     .source = "own",
+                    .experiment = "two trials of 60 s with free air at their ends",
                     .params = {{.name = "range_N",
                                 .meaning = "from the lowest to the highest of the trend in a trial",
                                 .initial = 0.1,

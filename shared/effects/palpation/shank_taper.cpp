@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "effects/palpation_effect.hpp"
+#include "laws/palpation_law.hpp"
 
 namespace tractus {
 namespace effects {
@@ -63,7 +64,7 @@ Param radius(const char* name, const char* meaning, double initial) {
           .initial = initial,
           .low = 5e-5,
           .high = 0.02,
-          .off = NAN,
+          .off = kNoOff,
           .logarithmic = true};
 }
 
@@ -72,16 +73,23 @@ Param radius(const char* name, const char* meaning, double initial) {
 namespace palpation {
 PalpationEffectInfo shank_taper() {
   return {.facts = {.id = "shank_taper",
+                    .label = "shank taper",
                     .kind = Kind::structure,
                     .summary = "A shank whose radius changes linearly from handle to tip",
                     .equation = "r(z) = r_h + (r_t − r_h) z/L; k and φ from E I(z) v″ = F (L − z)",
                     .source = "own; beam theory",
+                    .experiment = "sideways presses with the tip alone, and with the shank a few "
+                                  "centimetres behind it",
                     .params = {radius("handle_radius_m", "radius where the shank leaves the handle",
                                       8e-4),
                                radius("tip_radius_m", "radius at the tip", 6e-4)}},
           .make = [](std::span<const double> values) -> PalpationEffect {
             return std::make_unique<ShankTaper>(values[0], values[1]);
-          }};
+          },
+          .starts = [](const PalpationStatistics& known) -> Starts {
+            return {{1.02 * known.radius_m, 1.02 * known.radius_m}};
+          },
+          .replaces = &laws::PalpationParameters::radius_m};
 }
 }  // namespace palpation
 

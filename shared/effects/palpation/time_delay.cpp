@@ -20,15 +20,18 @@ class TimeDelay final : public MotionDelay {
 namespace palpation {
 PalpationEffectInfo time_delay() {
   return {.facts = {.id = "time_delay",
+                    .label = "time delay",
                     .kind = Kind::measurement,
                     .summary = "Forces that are recorded late against the motion",
                     .equation = "recorded F(t) = F of the motion at t − delay",
                     .source = "own",
+                    .experiment = "quick taps on something hard, three a second",
                     .params = {{.name = "delay_s",
                                 .meaning = "how late; below 0: how early",
                                 .initial = 0.005,
                                 .low = -0.1,
-                                .high = 0.2}}},
+                                .high = 0.2,
+                                .step = 5e-4}}},
           .make = [](std::span<const double> values) -> PalpationEffect {
             return std::make_unique<TimeDelay>(values[0]);
           }};

@@ -91,15 +91,20 @@ namespace palpation {
 PalpationEffectInfo tip_ball() {
   return {
       .facts = {.id = "tip_ball",
+                .label = "tip ball",
                 .kind = Kind::structure,
                 .summary = "A ball at the tip: bone is felt over all of it",
                 .equation = "the tip's force is the mean of c_f g over a ball",
                 .source = "own; the ball tip that [Zoller2020, \"Discussion\"] leaves for later",
+                .experiment =
+                    "light touches of the end and of all walls, from free to just touching",
                 .params = {{.name = "radius_m",
                             .meaning = "radius of the ball, R",
                             .initial = 7e-4,
                             .low = 0.0,
-                            .high = 4e-3}}},
+                            .high = 4e-3,
+                            .step = 3e-5}},
+                .starts = {{5e-4}}},
       .make = [](std::span<const double> values) -> PalpationEffect {
         return std::make_unique<TipBall>(values[0]);
       }};

@@ -5,12 +5,11 @@ namespace tractus {
 namespace effects::probing {
 namespace {
 
-class DepthFriction final : public ProbingEffect {
+class DepthFriction final : public ProbeForce {
  public:
   explicit DepthFriction(std::span<const double> values) : slope_N_per_m_(values[0]) {}
-  ProbingStage stage() const noexcept override { return ProbingStage::force; }
   /// Before the entry (x < 0) nothing touches.
-  double force_N(const ProbingTick& tick, double, const double*) const noexcept override {
+  double force_N(const ProbingTick& tick, double, ProbingMemory&) const noexcept override {
     const double inside_m = tick.x_m > 0.0 ? tick.x_m : 0.0;
     return slope_N_per_m_ * inside_m * direction(tick.v_m_s, tick.rest_m_s);
   }
@@ -23,16 +22,19 @@ class DepthFriction final : public ProbingEffect {
 
 ProbingEffectInfo depth_friction() {
   return {{.id = "depth_friction",
+           .label = "depth friction",
            .kind = Kind::force,
            .summary = "Dry friction along the shank that grows with the contact length",
            .equation = "μ x sgn v, x ≥ 0",
            .source = "own",
+           .experiment = "short strokes of 3 mm in and out, at a small depth and at a great one",
            .params = {{.name = "slope_N_per_m",
                        .meaning = "μ, friction per depth",
                        .initial = 50.0,
                        .low = 0.0,
-                       .high = 2e4}}},
-          made<DepthFriction>};
+                       .high = 2e4}},
+           .is_dry = true},
+          made<ProbeForce, DepthFriction>};
 }
 
 }  // namespace effects::probing

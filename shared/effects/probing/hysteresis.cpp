@@ -1,4 +1,5 @@
 /// Friction that builds up over a displacement (Dahl): F = k z, ż = v − |v| z/δ.
+#include <algorithm>
 #include <cmath>
 
 #include "effects/probing_effect.hpp"
@@ -7,48 +8,43 @@ namespace tractus {
 namespace effects::probing {
 namespace {
 
-/// State: z and the depth it belongs to. The rate does not matter, only the path: over a step that
+/// Memory: z and the depth it belongs to. The rate does not matter, only the path: over a step that
 /// does not turn back, z → s δ + (z − s δ) e^(−|Δx|/δ) with s = sgn Δx, exactly.
-class Hysteresis final : public ProbingEffect {
+class Hysteresis final : public ProbeForce {
  public:
   explicit Hysteresis(std::span<const double> values)
       : stiffness_N_per_m_(values[0]), yield_m_(values[1]) {}
-  ProbingStage stage() const noexcept override { return ProbingStage::force; }
-  std::size_t states() const noexcept override { return 2; }
-  void start(const ProbingTick& first, double* state) const noexcept override {
-    state[kBent_m] = 0.0;
-    state[kDepth_m] = first.x_m;
-  }
-  double force_N(const ProbingTick& tick, double, const double* state) const noexcept override {
-    return stiffness_N_per_m_ * bent_m(tick, state);
-  }
-  void commit(const ProbingTick& tick, double* state) const noexcept override {
-    replay_N(tick, 0.0, state);
-  }
-  double replay_N(const ProbingTick& tick, double, double* state) const noexcept override {
-    state[kBent_m] = bent_m(tick, state);
-    state[kDepth_m] = tick.x_m;
-    return stiffness_N_per_m_ * state[kBent_m];
+  double force_N(const ProbingTick& tick, double, ProbingMemory& memory) const noexcept override {
+    double& bent_m = memory.own[0];
+    const double way_m = tick.x_m - memory.depth_m;
+    const double goal_m = std::copysign(yield_m_, way_m);
+    bent_m = goal_m + (bent_m - goal_m) * std::exp(-std::abs(way_m) / yield_m_);
+    memory.depth_m = tick.x_m;
+    return stiffness_N_per_m_ * bent_m;
   }
 
  private:
-  enum { kBent_m, kDepth_m };
-  double bent_m(const ProbingTick& tick, const double* state) const noexcept {
-    const double way_m = tick.x_m - state[kDepth_m];
-    const double goal_m = std::copysign(yield_m_, way_m);
-    return goal_m + (state[kBent_m] - goal_m) * std::exp(-std::abs(way_m) / yield_m_);
-  }
   double stiffness_N_per_m_, yield_m_;
 };
+
+/// Displacements that fit into the recorded depths, for a friction of 1 N.
+Starts starts(const ProbingStatistics& recordings) {
+  Starts out;
+  for (const double d : spread(1e-5, std::min(0.02, 0.5 * recordings.depth_range_m), 7))
+    out.push_back({1.0 / d, std::clamp(d, 1e-6, 0.02)});
+  return out;
+}
 
 }  // namespace
 
 ProbingEffectInfo hysteresis() {
   return {{.id = "hysteresis",
+           .label = "hysteresis",
            .kind = Kind::force,
            .summary = "Friction that builds up over a displacement, whatever the speed (Dahl)",
            .equation = "k z, dz/dt = v − |v| z/δ, z = 0 at the start",
            .source = "Olsson1998, the Dahl model",
+           .experiment = "small reversals of 0.1, 0.3, 1 and 3 mm at one depth and one speed",
            .params = {{.name = "stiffness_N_per_m",
                        .meaning = "k, stiffness as the motion turns back; k δ is the friction",
                        .initial = 1e4,
@@ -62,7 +58,8 @@ ProbingEffectInfo hysteresis() {
                        .off = kNoOff,
                        .logarithmic = true}},
            .parents = {"coulomb_friction"}},
-          made<Hysteresis>};
+          made<ProbeForce, Hysteresis>,
+          starts};
 }
 
 }  // namespace effects::probing

@@ -7,11 +7,10 @@ namespace tractus {
 namespace effects::probing {
 namespace {
 
-class QuadraticDrag final : public ProbingEffect {
+class QuadraticDrag final : public ProbeForce {
  public:
   explicit QuadraticDrag(std::span<const double> values) : coefficient_Ns2_per_m2_(values[0]) {}
-  ProbingStage stage() const noexcept override { return ProbingStage::force; }
-  double force_N(const ProbingTick& tick, double, const double*) const noexcept override {
+  double force_N(const ProbingTick& tick, double, ProbingMemory&) const noexcept override {
     return coefficient_Ns2_per_m2_ * tick.v_m_s * std::abs(tick.v_m_s);
   }
 
@@ -23,16 +22,18 @@ class QuadraticDrag final : public ProbingEffect {
 
 ProbingEffectInfo quadratic_drag() {
   return {{.id = "quadratic_drag",
+           .label = "quadratic drag",
            .kind = Kind::force,
            .summary = "Drag that grows with the square of the speed, as of a fluid pressed aside",
            .equation = "c v |v|",
            .source = "own",
+           .experiment = "strokes at 2, 10, 30 and 80 mm/s over the same depth",
            .params = {{.name = "coefficient_Ns2_per_m2",
                        .meaning = "c, drag per speed squared",
                        .initial = 1e3,
                        .low = 0.0,
                        .high = 1e7}}},
-          made<QuadraticDrag>};
+          made<ProbeForce, QuadraticDrag>};
 }
 
 }  // namespace effects::probing

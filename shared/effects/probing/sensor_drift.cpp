@@ -8,10 +8,9 @@ namespace {
 /// In measurements the course is free, differs from trial to trial, and is found from the
 /// residuals. As a model alone knows only its range, it is replayed as a straight ramp of that
 /// range over the trial, centred at zero.
-class SensorDrift final : public ProbingEffect {
+class SensorDrift final : public ForceSensor {
  public:
   explicit SensorDrift(std::span<const double> values) : range_N_(values[0]) {}
-  ProbingStage stage() const noexcept override { return ProbingStage::recording; }
   void record(const ProbingMotion& motion, std::span<double> fz_N) const override {
     if (motion.t_s.empty()) return;
     const double start_s = motion.t_s.front(), length_s = motion.t_s.back() - start_s;
@@ -29,10 +28,12 @@ class SensorDrift final : public ProbingEffect {
 ProbingEffectInfo sensor_drift() {
   return {
       {.id = "sensor_drift",
+       .label = "sensor drift",
        .kind = Kind::measurement,
        .summary = "A slow trend of the force sensor, free in each trial",
        .equation = "d(t) slow; replayed as range ((t − t_0)/T − 1/2)",
        .source = "own",
+       .experiment = "two long trials of 60 s of the same stroke, with free air at their ends",
        .params = {{.name = "range_N",
                    .meaning = "from the trend's least to its greatest value over a trial; below 0 "
                               "it falls",
@@ -41,7 +42,7 @@ ProbingEffectInfo sensor_drift() {
                    .high = 100.0}},
        .parents = {"sensor_bias"},
        .free_per_trial = true},
-      made<SensorDrift>};
+      made<ForceSensor, SensorDrift>};
 }
 
 }  // namespace effects::probing

@@ -23,12 +23,11 @@ double between(const std::vector<double>& t, const std::vector<double>& f, std::
   return f[i] + u * (rise + (1.0 - u) * ((1.0 - u) * from + u * to));
 }
 
-class TimeDelay final : public ProbingEffect {
+class TimeDelay final : public ForceDelay {
  public:
   explicit TimeDelay(std::span<const double> values) : delay_s_(values[0]) {}
-  ProbingStage stage() const noexcept override { return ProbingStage::delay; }
   /// Before the first sample the force is taken as that of the first.
-  void record(const ProbingMotion& motion, std::span<double> fz_N) const override {
+  void delay(const ProbingMotion& motion, std::span<double> fz_N) const override {
     if (delay_s_ == 0.0 || fz_N.empty()) return;
     const std::vector<double> law(fz_N.begin(), fz_N.end());
     std::size_t i = 0;
@@ -47,16 +46,18 @@ class TimeDelay final : public ProbingEffect {
 
 ProbingEffectInfo time_delay() {
   return {{.id = "time_delay",
+           .label = "time delay",
            .kind = Kind::measurement,
            .summary = "The force is recorded late against the motion",
            .equation = "F(t − delay)",
            .source = "own",
+           .experiment = "quick strokes of 3 mm at 1 to 5 per second, and a tap on something hard",
            .params = {{.name = "delay_s",
                        .meaning = "by which the force comes late",
                        .initial = 5e-3,
                        .low = 0.0,
                        .high = 0.2}}},
-          made<TimeDelay>};
+          made<ForceDelay, TimeDelay>};
 }
 
 }  // namespace effects::probing

@@ -5,10 +5,9 @@ namespace tractus {
 namespace effects::probing {
 namespace {
 
-class TorqueCrosstalk final : public ProbingEffect {
+class TorqueCrosstalk final : public ForceSensor {
  public:
   explicit TorqueCrosstalk(std::span<const double> values) : coefficient_per_m_(values[0]) {}
-  ProbingStage stage() const noexcept override { return ProbingStage::recording; }
   /// Nothing where no torque was recorded.
   void record(const ProbingMotion& motion, std::span<double> fz_N) const override {
     if (motion.tz_Nm.size() != fz_N.size()) return;
@@ -23,17 +22,19 @@ class TorqueCrosstalk final : public ProbingEffect {
 
 ProbingEffectInfo torque_crosstalk() {
   return {{.id = "torque_crosstalk",
+           .label = "torque crosstalk",
            .kind = Kind::measurement,
            .summary = "The sensor shows a part of the torque as force",
            .equation = "c t_z",
            .source = "own",
+           .experiment = "turning to and fro in place, without feed, in free air and in the bone",
            .params = {{.name = "coefficient_per_m",
                        .meaning = "c, force shown per torque",
                        .initial = 5.0,
                        .low = -1000.0,
                        .high = 1000.0}},
            .needs = {"tz_Nm"}},
-          made<TorqueCrosstalk>};
+          made<ForceSensor, TorqueCrosstalk>};
 }
 
 }  // namespace effects::probing
