@@ -6,6 +6,7 @@
 
 #include "core/file.hpp"
 #include "core/progress.hpp"
+#include "effects/catalogues.hpp"
 #include "lab/identify/verdict_text.hpp"
 
 namespace tractus {
@@ -58,7 +59,7 @@ std::string ranking(const lab::Diagnosis& d, const std::string& unit) {
   std::size_t n = 0;
   for (const lab::Ranked& r : d.ranking) {
     if (++n > 8 && r.probability < 0.005) continue;
-    out += "  " + left(lab::effect_label(r.id), 30) + right(percent(r.probability), 12) +
+    out += "  " + left(effects::label_of(r.id), 30) + right(percent(r.probability), 12) +
            right(r.held_out_rmse ? figure(*r.held_out_rmse, unit) : "–", 13) +
            (r.note.empty() ? "" : "  " + r.note) + "\n";
   }
@@ -152,7 +153,7 @@ std::string printed_diagnosis(const lab_io::LabResult& answer) {
                                 right("error", 12), right("held out", 13));
   for (const lab::Step& step : d.steps)
     out += "  " +
-           left(step.model.starts_with("+ ") ? "+ " + lab::effect_label(step.model.substr(2))
+           left(step.model.starts_with("+ ") ? "+ " + effects::label_of(step.model.substr(2))
                                              : step.model,
                 30) +
            right(figure(step.rmse, unit), 12) + right(figure(step.held_out_rmse, unit), 13) + "\n";
@@ -161,8 +162,8 @@ std::string printed_diagnosis(const lab_io::LabResult& answer) {
   for (const lab::Estimate& e : d.final_fit.estimates)
     if (!e.pointer.starts_with("/")) out += estimate(e);
   for (const auto& [a, b] : d.confounded)
-    out += fmt::format("\nThese measurements hardly distinguish {} and {}.", lab::effect_label(a),
-                       lab::effect_label(b));
+    out += fmt::format("\nThese measurements hardly distinguish {} and {}.", effects::label_of(a),
+                       effects::label_of(b));
   if (!d.confounded.empty()) out += "\n";
   if (d.discriminating_experiment)
     out +=

@@ -4,6 +4,7 @@
 
 #include "core/file.hpp"
 #include "core/progress.hpp"
+#include "effects/probing_effect.hpp"
 #include "replay/probing_replay.hpp"
 
 namespace tractus {
@@ -59,8 +60,8 @@ std::vector<std::string> notes(const Work& work, const models::ProbingModel& mod
         "theta_rad was not recorded in every trial: driven by the recorded push, the stage turns "
         "all the time there");
   for (const auto& use : model.effects)
-    if (use.id == "sensor_drift")
-      out.emplace_back("sensor_drift is free in each trial and is left out of a replay");
+    if (const auto facts = effects::probing_facts(use); facts && facts->free_per_trial)
+      out.push_back(fmt::format("{} is free in each trial and is left out of a replay", use.id));
   if (work.simulated) out.emplace_back(kSimulatedNote);
   return out;
 }

@@ -237,6 +237,51 @@ TEST(Architecture, BlindGeneratorsShareNothingWithTheProduct) {
   EXPECT_EQ(text_of(blind / "CMakeLists.txt").find("tractus::"), std::string::npos);
 }
 
+std::string without_comments(const std::string& text) {
+  return std::regex_replace(text, std::regex("//[^\n]*"), "");
+}
+
+/// The ids of the effects' catalogues, which are the names of their files.
+Names effect_ids() {
+  Names out;
+  for (const char* rig : {"probing", "palpation"})
+    for (const auto& entry : fs::directory_iterator(kRoot / "shared/effects" / rig))
+      if (entry.path().extension() == ".cpp") out.insert(entry.path().stem().string());
+  return out;
+}
+
+/// A text that is an id, begins a parameter's name ("ID/…"), or is the first words of an id.
+std::regex names_an_effect(const Names& ids) {
+  std::string whole, parts;
+  for (const std::string& id : ids) {
+    whole += (whole.empty() ? "" : "|") + id;
+    for (auto at = id.find('_'); at != std::string::npos; at = id.find('_', at + 1))
+      parts += (parts.empty() ? "" : "|") + id.substr(0, at + 1);
+  }
+  return std::regex("\"((" + whole + ")[\"/]|(" + parts + ")\")", std::regex::optimize);
+}
+
+/// What is known of an effect is in its file and asked of its facts; who names one elsewhere knows
+/// what the next effect's file cannot tell him.
+TEST(Architecture, AnEffectIsNamedInItsOwnFileAlone) {
+  const Names ids = effect_ids();
+  ASSERT_GT(ids.size(), 20u);
+  const std::regex named = names_an_effect(ids);
+  const auto found = [&](const std::string& code) {
+    return std::regex_search(without_comments(code), named);
+  };
+  EXPECT_TRUE(found(R"(use.id == "sensor_drift")"));
+  EXPECT_TRUE(found(R"(id.starts_with("rotary_"))"));
+  EXPECT_TRUE(found(R"(p.pointer == "pose_offset/offset_m")"));
+  EXPECT_FALSE(found(R"(return {"contact_share";)"));
+  EXPECT_FALSE(found(R"(std::string id;  ///< "coulomb_friction")"));
+  for (const auto& path : sources()) {
+    const std::string relative = fs::relative(path, kRoot).string();
+    if (relative.starts_with("shared/effects/") || is_of_tests(relative)) continue;
+    EXPECT_FALSE(found(text_of(path))) << relative << " names an effect: ask its facts";
+  }
+}
+
 TEST(Architecture, EveryFolderOfTheTableSaysWhatItIs) {
   for (const auto& [folder, _] : kAllowed) {
     if (!fs::exists(kRoot / folder)) continue;

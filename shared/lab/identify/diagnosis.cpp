@@ -68,9 +68,9 @@ std::string note_on(const Problem& problem, const Candidate& candidate,
   if (!seen->second.excited)
     return seen->second.independent_share > 0.0
                ? "not excited: whatever it would do, the model's own numbers do as well; record " +
-                     problem.recording(candidate.facts.id, "")
+                     experiment_for(problem, candidate.facts.id, "")
                : "not excited: these recordings never call on it; record " +
-                     problem.recording(candidate.facts.id, "");
+                     experiment_for(problem, candidate.facts.id, "");
   return "";
 }
 

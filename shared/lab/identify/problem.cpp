@@ -18,6 +18,43 @@ double node(const effects::Param& p, int k) {
   return p.low + (p.high - p.low) * (k + 0.5) / double(kNodesLinear);
 }
 
+const effects::EffectFacts* facts_of(const Problem& problem, std::string_view effect) {
+  for (const Candidate& candidate : problem.candidates())
+    if (candidate.facts.id == effect) return &candidate.facts;
+  return nullptr;
+}
+
+/// Every start with each value of one more number behind it.
+effects::Starts longer(const effects::Starts& starts, const std::vector<double>& values) {
+  effects::Starts out;
+  for (const auto& start : starts)
+    for (const double value : values) {
+      out.push_back(start);
+      out.back().push_back(value);
+    }
+  if (out.size() > kMostStarts) out.resize(kMostStarts);
+  return out;
+}
+
+/// The initial values, and a grid over the ranges of the numbers of shape.
+effects::Starts grid(const effects::EffectFacts& facts) {
+  effects::Starts out(1);
+  if (facts.free_per_trial) return out;
+  for (const effects::Param& p : facts.params) {
+    std::vector<double> values;
+    const int nodes = !std::isnan(p.off) ? 1 : p.logarithmic ? kNodesLogarithmic : kNodesLinear;
+    for (int k = 0; k < nodes; ++k) values.push_back(nodes == 1 ? p.initial : node(p, k));
+    for (int c = 0; c < p.components; ++c) out = longer(out, values);
+  }
+  return out;
+}
+
+double step_of(const effects::Param& p, bool logarithmic) {
+  if (p.step > 0.0) return p.step;
+  if (logarithmic) return kStep;
+  return p.initial != 0.0 ? kStep * std::abs(p.initial) : 0.1 * kStep * (p.high - p.low);
+}
+
 }  // namespace
 
 std::vector<Parameter> parameters_of(const effects::EffectFacts& facts) {
@@ -32,9 +69,8 @@ std::vector<Parameter> parameters_of(const effects::EffectFacts& facts) {
       parameter.low = p.low;
       parameter.high = p.high;
       parameter.logarithmic = p.logarithmic && p.low > 0.0;
-      parameter.step = parameter.logarithmic ? kStep
-                       : p.initial != 0.0    ? kStep * std::abs(p.initial)
-                                             : 0.1 * kStep * (p.high - p.low);
+      parameter.step = step_of(p, parameter.logarithmic);
+      parameter.prior_sd = p.prior_sd;
       parameter.shape = std::isnan(p.off);
       if (!parameter.shape) parameter.off = p.off;
       out.push_back(std::move(parameter));
@@ -49,27 +85,18 @@ void Problem::residuals_near(const Structure& structure, std::span<const double>
     residuals(structure, points[k], trial, out.col(Eigen::Index(k)));
 }
 
-std::vector<std::vector<double>> Problem::starts(std::string_view effect,
-                                                 const Eigen::VectorXd&) const {
-  std::vector<std::vector<double>> out;
-  for (const Candidate& candidate : candidates()) {
-    if (candidate.facts.id != effect) continue;
-    out.emplace_back();
-    if (candidate.facts.free_per_trial) return out;
-    for (const effects::Param& p : candidate.facts.params)
-      for (int c = 0; c < p.components; ++c) {
-        const int nodes = !std::isnan(p.off) ? 1 : p.logarithmic ? kNodesLogarithmic : kNodesLinear;
-        std::vector<std::vector<double>> longer;
-        for (const auto& start : out)
-          for (int k = 0; k < nodes; ++k) {
-            longer.push_back(start);
-            longer.back().push_back(nodes == 1 ? p.initial : node(p, k));
-          }
-        if (longer.size() > kMostStarts) longer.resize(kMostStarts);
-        out = std::move(longer);
-      }
-  }
-  return out;
+effects::Starts Problem::starts(std::string_view effect, const Eigen::VectorXd&) const {
+  const auto* facts = facts_of(*this, effect);
+  if (!facts) return {};
+  return facts->starts.empty() ? grid(*facts) : facts->starts;
+}
+
+std::string experiment_for(const Problem& problem, std::string_view a, std::string_view b) {
+  const auto* first = facts_of(problem, a);
+  const auto* second = facts_of(problem, b);
+  if (!first) return second ? second->experiment : "";
+  if (!second || second->experiment == first->experiment) return first->experiment;
+  return first->experiment + "; then " + second->experiment;
 }
 
 }  // namespace lab

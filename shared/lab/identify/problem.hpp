@@ -111,16 +111,16 @@ class Problem {
 
   /// Where to begin the search for an effect that is added: one vector per start, its numbers in
   /// the order of its parameters here (those free per trial have none). Of a strength only the
-  /// scale counts, the engine estimates it. By default a grid over the numbers of shape.
+  /// scale counts, the engine estimates it. By default what the effect states, or a grid over the
+  /// numbers of shape.
   /// @param residual  whitened, of all trials one under another, before the effect is added.
-  virtual std::vector<std::vector<double>> starts(std::string_view effect,
-                                                  const Eigen::VectorXd& residual) const;
+  virtual effects::Starts starts(std::string_view effect, const Eigen::VectorXd& residual) const;
 
   virtual Eigen::Index residual_size(int trial) const = 0;
   /// Residuals of one trial (measured − predicted) as the fit sees them: both sides through the
   /// same filter, decimated so that neighbours are nearly independent, divided by the noise that is
   /// expected there, so that a true model leaves variance 1; poorly known stretches weighted down.
-  /// Channel after channel, all that the fit uses. What is free per trial (sensor_drift) is
+  /// Channel after channel, all that the fit uses. What is free per trial is
   /// eliminated here. Same size for every structure.
   virtual void residuals(const Structure& structure, std::span<const double> values, int trial,
                          Eigen::Ref<Eigen::VectorXd> out) const = 0;
@@ -141,12 +141,10 @@ class Problem {
                               int trial) const = 0;
   virtual States states(int trial) const = 0;
 
-  /// Numbers to report of an effect that are not parameters of the fit (sensor_drift's range_N);
-  /// empty for most.
+  /// Numbers to report of an effect that are not parameters of the fit: the range of what is free
+  /// per trial; empty for all others.
   virtual std::vector<Derived> derived(const Structure& structure, std::span<const double> values,
                                        std::string_view effect) const = 0;
-  /// Which recording would separate two effects on this rig, or show one (`b` empty).
-  virtual std::string recording(std::string_view a, std::string_view b) const = 0;
   /// Remarks on the recording itself that belong into every answer: "tz_Nm was not recorded: …".
   virtual const std::vector<std::string>& notes() const = 0;
 
@@ -156,5 +154,8 @@ class Problem {
 
 /// Parameters of an effect of the catalogue as a fit moves them: none if it is free per trial.
 std::vector<Parameter> parameters_of(const effects::EffectFacts& facts);
+
+/// What to record so that two candidates are told apart, or one shows (`b` empty).
+std::string experiment_for(const Problem& problem, std::string_view a, std::string_view b);
 
 }  // namespace tractus::lab

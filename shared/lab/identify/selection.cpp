@@ -27,7 +27,6 @@ constexpr int kReshapeTries = 8;
 /// Shifts of all layers that one constant of the sensor explains: so much is left of them, where
 /// there are two and where there are more; what counts as a shift.
 constexpr double kBackOfTwo = 0.05, kBack = 0.15, kShifted_m = 5e-5, kNoWorse = 1.1;
-constexpr std::string_view kBias = "sensor_bias";
 
 /// The price of a number, in nats.
 constexpr double kPrice = 5.0;
@@ -280,15 +279,19 @@ double moved(const Solution& at, int& count) {
 /// over its stiffness. One constant that brings all of them back to where the model has them is the
 /// simpler reading.
 void Selection::explain_shifts() {
-  const auto seen = screens_.find(std::string(kBias));
-  if (seen == screens_.end() || !seen->second.excited || contains(chosen().structure, kBias))
-    return;
+  for (const Candidate& candidate : residual_.problem().candidates())
+    if (candidate.facts.is_bias) explain_shifts_by(candidate.facts.id);
+}
+
+void Selection::explain_shifts_by(const std::string& bias) {
+  const auto seen = screens_.find(bias);
+  if (seen == screens_.end() || !seen->second.excited || contains(chosen().structure, bias)) return;
   int layers = 0;
   const double before_m = moved(chosen(), layers);
   if (layers < 2 || before_m < kShifted_m) return;
   Solution from = chosen();
   differentiate(residual_, from);
-  const Solution& with = fitted(from, std::string(kBias), 1);
+  const Solution& with = fitted(from, bias, 1);
   const double after_m = moved(with, layers);
   if (after_m < (layers == 2 ? kBackOfTwo : kBack) * before_m &&
       with.mean_square() < kNoWorse * from.mean_square())

@@ -59,6 +59,7 @@ class Selection {
   void prefer_parents();
   void refuse_trends();
   void explain_shifts();
+  void explain_shifts_by(const std::string& bias);
   /// The cheapest of a size, most probable first.
   std::vector<const Solution*> best_of(std::size_t effects, std::size_t most) const;
   bool go_on(double share);

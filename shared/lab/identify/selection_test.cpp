@@ -106,9 +106,6 @@ class Toy final : public Problem {
                                std::string_view) const override {
     return {};
   }
-  std::string recording(std::string_view a, std::string_view) const override {
-    return "more of " + std::string(a);
-  }
   const std::vector<std::string>& notes() const override { return notes_; }
   core::Json model(const Structure&, std::span<const double>) const override { return {}; }
 
@@ -320,7 +317,6 @@ class Misra1a final : public Problem {
                                std::string_view) const override {
     return {};
   }
-  std::string recording(std::string_view, std::string_view) const override { return ""; }
   const std::vector<std::string>& notes() const override { return notes_; }
   core::Json model(const Structure&, std::span<const double>) const override { return {}; }
 

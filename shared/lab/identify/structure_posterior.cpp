@@ -106,7 +106,7 @@ std::optional<DiscriminatingExperiment> StructurePosterior::discriminating_exper
     const std::string a = ours.empty() ? "" : ours[0], b = theirs.empty() ? "" : theirs[0];
     DiscriminatingExperiment out;
     out.between = {a.empty() ? "nothing" : a, b.empty() ? "nothing" : b};
-    out.recording = problem.recording(a.empty() ? b : a, a.empty() ? "" : b);
+    out.recording = experiment_for(problem, a.empty() ? b : a, a.empty() ? "" : b);
     out.expected_gain = std::clamp(kSettled - now, 0.0, 1.0);
     return out;
   }

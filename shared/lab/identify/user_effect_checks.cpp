@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "effects/catalogues.hpp"
 #include "effects/formula.hpp"
 #include "lab/identify/least_squares.hpp"
 #include "lab/identify/verdict_text.hpp"
@@ -184,7 +185,7 @@ std::vector<std::string> likenesses(const Problem& problem, const std::vector<st
             fmt::format("{} and {} do nearly the same in these recordings ({:.3f} alike "
                         "once the model's own numbers are fitted): they can be told "
                         "apart only as a set",
-                        id, effect_label(other), alike));
+                        id, effects::label_of(other), alike));
     }
   }
   const std::size_t beside = problem.candidates().size() - own.size();

@@ -7,11 +7,11 @@
 #include <cmath>
 #include <vector>
 
+#include "effects/catalogues.hpp"
+
 namespace tractus {
 namespace lab {
 namespace {
-
-constexpr std::array kProper{"coulomb", "stribeck"};
 
 /// Units that a name may end in, longest first, and how people write them.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 22> kUnits{{
@@ -64,15 +64,6 @@ std::string times_floor(double rmse, double floor) {
 
 }  // namespace
 
-std::string effect_label(std::string_view id) {
-  std::string out(id.starts_with("expression:") ? id.substr(11) : id);
-  std::ranges::replace(out, '_', ' ');
-  for (const std::string_view proper : kProper)
-    if (const auto at = out.find(proper); at != std::string::npos)
-      out[at] = char(out[at] - 'a' + 'A');
-  return id.starts_with("expression:") ? "your own effect “" + out + "”" : out;
-}
-
 NameAndUnit name_and_unit(std::string_view name) {
   NameAndUnit out{std::string(name), ""};
   for (const auto& [suffix, unit] : kUnits)
@@ -116,7 +107,7 @@ std::string_view word(Verdict verdict) {
 
 VerdictText sentences(const Diagnosis& d, std::string_view unit) {
   std::vector<std::string> names;
-  for (const FoundEffect& found : d.effects) names.push_back(effect_label(found.id));
+  for (const FoundEffect& found : d.effects) names.push_back(effects::label_of(found.id));
   const std::string these = capital(joined(names));
   const std::string op = names.size() == 1 ? "is" : "are";
   const double after = d.steps.empty() ? d.base.held_out_rmse : d.steps.back().held_out_rmse;

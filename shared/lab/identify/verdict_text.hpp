@@ -9,9 +9,6 @@
 
 namespace tractus::lab {
 
-/// "coulomb_friction" → "Coulomb friction".
-std::string effect_label(std::string_view id);
-
 /// A name that ends in its unit, taken apart: "friction_N" → friction, N; "mass_kg" → mass, kg;
 /// without a unit, the name alone.
 struct NameAndUnit {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "effects/catalogues.hpp"
 #include "lab/identify/user_effect_checks.hpp"
 #include "lab/identify/verdict_text.hpp"
 #include "lab/report/answer.hpp"
@@ -71,7 +72,7 @@ std::string at_their_edge(const lab::Fit& fit) {
 std::string not_excited(const lab::Diagnosis& diagnosis) {
   std::vector<std::string> names;
   for (const lab::Ranked& ranked : diagnosis.ranking)
-    if (ranked.note.starts_with("not excited")) names.push_back(lab::effect_label(ranked.id));
+    if (ranked.note.starts_with("not excited")) names.push_back(effects::label_of(ranked.id));
   if (names.empty()) return {};
   return fmt::format(
       "these recordings cannot tell whether there is {}: their motion does not call "
@@ -79,19 +80,21 @@ std::string not_excited(const lab::Diagnosis& diagnosis) {
       fmt::join(names, ", "), names.size() == 1 ? "it" : "them");
 }
 
+std::string why_no_candidate(std::string_view rig, const std::string& id) {
+  const auto* facts = effects::find_facts(rig, id);
+  if (facts && facts->channel == effects::Channel::torque)
+    return fmt::format("'{}' acts about the axis and shows in sets that only turn", id);
+  return fmt::format(
+      "'{}': no such effect on the {} rig, or the model has it already; see tractus effects", id,
+      rig);
+}
+
 /// An id that this recording can show, or why not.
 Result<void> known(const lab::Problem& problem, const std::string& id) {
   const auto& all = problem.candidates();
   const auto it =
       std::ranges::find_if(all, [&](const lab::Candidate& c) { return c.facts.id == id; });
-  if (it == all.end())
-    return Error{
-        Errc::not_found,
-        id.starts_with("rotary_") && problem.rig() == "probing"
-            ? fmt::format("'{}' acts about the axis and shows in sets that only turn", id)
-            : fmt::format("'{}': no such effect on the {} rig, or the model has it already; "
-                          "see tractus effects",
-                          id, problem.rig())};
+  if (it == all.end()) return Error{Errc::not_found, why_no_candidate(problem.rig(), id)};
   if (!it->possible)
     return Error{Errc::bad_input, fmt::format("'{}' cannot be fitted: {}", id, it->why_not)};
   return {};

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "effects/catalogues.hpp"
 #include "lab/identify/verdict_text.hpp"
 #include "lab/report/report_parts.hpp"
 #include "plot/text.hpp"
@@ -43,7 +44,7 @@ std::string better_name(const ReportContent& content) {
   if (!content.diagnosis) return "fitted";
   const auto& effects = content.diagnosis->effects;
   if (effects.empty()) return "refitted";
-  return effects.size() == 1 ? "with " + effect_label(effects[0].id) : "with what was found";
+  return effects.size() == 1 ? "with " + effects::label_of(effects[0].id) : "with what was found";
 }
 
 }  // namespace page

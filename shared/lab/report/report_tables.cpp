@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "effects/catalogues.hpp"
 #include "lab/identify/verdict_text.hpp"
 #include "lab/report/report_parts.hpp"
 #include "plot/text.hpp"
@@ -84,7 +85,7 @@ NameAndUnit parameter_name(const std::string& pointer) {
   if (parts.size() >= 4 && parts[1] == "layers")
     out.name = fmt::format("layer {} · {}", std::atoi(parts[2].c_str()) + 1, out.name);
   else if (parts.size() > 1 && parts[parts.size() - 2] != "base")
-    out.name = effect_label(parts[parts.size() - 2]) + " · " + out.name;
+    out.name = effects::label_of(parts[parts.size() - 2]) + " · " + out.name;
   return out;
 }
 

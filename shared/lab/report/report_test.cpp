@@ -6,6 +6,7 @@
 #include <cmath>
 #include <regex>
 
+#include "effects/catalogues.hpp"
 #include "lab/identify/verdict_text.hpp"
 #include "lab/signal/phases.hpp"
 
@@ -127,7 +128,7 @@ TEST(Report, LeavesOutWhatThereIsNot) {
 }
 
 TEST(Words, NameEffectsAndUnits) {
-  EXPECT_EQ(effect_label("stribeck_friction"), "Stribeck friction");
+  EXPECT_EQ(effects::label_of("stribeck_friction"), "Stribeck friction");
   EXPECT_EQ(name_and_unit("coefficient_Ns2_per_m2").unit, "N·s²/m²");
   EXPECT_EQ(name_and_unit("yield_displacement_m").name, "yield displacement");
   EXPECT_EQ(figure(0.0123456, "N"), "0.0123 N");

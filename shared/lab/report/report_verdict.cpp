@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "effects/catalogues.hpp"
 #include "lab/identify/verdict_text.hpp"
 #include "lab/report/report_parts.hpp"
 #include "plot/text.hpp"
@@ -57,8 +58,8 @@ std::string ranked_row(const ReportContent& content, const Ranked& ranked) {
   return fmt::format(
       "<tr><td>{}{}{}<small>{}</small></td><td class=\"wide\">{}</td><td class=\"n\">{}</td>"
       "<td class=\"n\">{}</td></tr>\n",
-      found ? "<strong>" : "", escaped(effect_label(ranked.id)), found ? "</strong>" : "", small,
-      bar(ranked.probability, found ? "" : "quiet"), percent(ranked.probability),
+      found ? "<strong>" : "", escaped(effects::label_of(ranked.id)), found ? "</strong>" : "",
+      small, bar(ranked.probability, found ? "" : "quiet"), percent(ranked.probability),
       ranked.held_out_rmse ? figure(*ranked.held_out_rmse, unit) : "not tried");
 }
 
@@ -66,7 +67,7 @@ std::string ranked_row(const ReportContent& content, const Ranked& ranked) {
 std::string what_it_tells(const DiscriminatingExperiment& experiment) {
   std::vector<std::string> effects;
   for (const std::string& id : experiment.between)
-    if (id != "nothing") effects.push_back(effect_label(id));
+    if (id != "nothing") effects.push_back(effects::label_of(id));
   return effects.size() == 1 ? fmt::format("whether {} is there at all", effects[0])
                              : fmt::format("whether it is {}", fmt::join(effects, " or "));
 }
@@ -79,7 +80,7 @@ std::string bars(const Step& step, const std::string& unit, double largest, doub
   };
   const bool plus = step.model.starts_with("+ ");
   const std::string label =
-      plus ? "+ " + effect_label(step.model.substr(2)) : step.model + " model, refitted";
+      plus ? "+ " + effects::label_of(step.model.substr(2)) : step.model + " model, refitted";
   return fmt::format(
       "<div>{}</div><div class=\"track{}\"><div style=\"position:relative\">"
       "<div class=\"floor\" style=\"left:{:.2f}%\"></div>{}{}</div></div>\n",
@@ -169,7 +170,8 @@ std::string undecided(const ReportContent& content) {
   if (!content.diagnosis) return {};
   std::string body;
   for (const auto& [a, b] : content.diagnosis->confounded)
-    body += fmt::format("<li>{} and {}</li>\n", escaped(effect_label(a)), escaped(effect_label(b)));
+    body += fmt::format("<li>{} and {}</li>\n", escaped(effects::label_of(a)),
+                        escaped(effects::label_of(b)));
   if (!body.empty())
     body = "<p>These recordings can hardly tell apart:</p><ul>\n" + body + "</ul>\n";
   if (const auto& experiment = content.diagnosis->discriminating_experiment) {

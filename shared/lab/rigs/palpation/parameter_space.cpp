@@ -20,15 +20,17 @@ using laws::PalpationParameters;
 constexpr double kFactorSd = 0.25;    // of the logarithm
 constexpr double kRadiusSd = 0.1;     // of the logarithm; it counts four times
 constexpr double kLengthSd_m = 5e-4;  // of what a ruler measures
-constexpr double kReferenceSd = 3.0;  // of the logarithm of the reference of an exponent
 constexpr double kMostFactor = 20.0;  // a factor is found within this factor
+/// The step in a logarithm. Not too small: where a step takes a sample's shank from one rest to
+/// another, the derivative there is the jump over the step.
+constexpr double kLogarithmicStep = 2e-2;
 
 Parameter factor(double start, double prior_sd) {
   Parameter p{};
   p.start = start;
   p.low = start / kMostFactor;
   p.high = start * kMostFactor;
-  p.step = 2e-2;
+  p.step = kLogarithmicStep;
   p.logarithmic = true;
   p.prior_sd = prior_sd;
   return p;
@@ -49,40 +51,11 @@ bool covers(std::string_view pattern, std::string_view pointer) {
   return pointer == pattern || (pointer.starts_with(pattern) && pointer[pattern.size()] == '/');
 }
 
-/// Steps that are felt but small, by the parameters' names. Not too small: where a step takes a
-/// sample's shank from one rest to another, the derivative there is the jump over the step.
-double step_of(std::string_view pointer, double fallback) {
-  struct Step {
-    std::string_view in;
-    double step;
-  };
-  static constexpr Step kSteps[] = {
-      {"pose_offset/offset_m", 2e-5},
-      {"tip_ball/radius_m", 3e-5},
-      {"shank_curvature/bow_m", 2e-5},
-      {"shank_curvature/direction_rad", 5e-2},
-      {"sensor_bias/force_N", 1e-2},
-      {"sensor_bias/torque_Nm", 1e-3},
-      {"/mass_kg", 5e-3},
-      {"/centre_m", 5e-3},
-      {"time_delay/delay_s", 5e-4},
-      {"contact_nonlinearity/exponent", 2e-2},
-      {"coefficient", 2e-2},
-      {"loss", 2e-2},
-      {"contact_damping/damping", 1.0},
-      {"/bends_shank", 5e-2},
-  };
-  for (const Step& each : kSteps)
-    if (pointer.find(each.in) != std::string_view::npos) return each.step;
-  return fallback;
-}
-
 }  // namespace
 
 const effects::EffectFacts& PalpationParameterSpace::facts_of(std::string_view id) const {
   if (const auto* facts = user_effects_.facts(id)) return *facts;
-  for (const auto& info : effects::palpation_effects())
-    if (info.facts.id == id) return info.facts;
+  if (const auto* info = effects::find_palpation_effect(id)) return info->facts;
   core::require(false, "an effect of a structure is in the catalogue");
   std::abort();
 }
@@ -99,7 +72,7 @@ PalpationParameterSpace::PalpationParameterSpace(models::PalpationModel model, d
   const auto add = [this](const char* name, double PalpationParameters::*held,
                           Parameter parameter) {
     parameter.pointer = fmt::format("/base/{}", name);
-    if (fixed(parameter.pointer) || !(parameter.start > 0.0)) return;
+    if (fixed(parameter.pointer) || replaced(held) || !(parameter.start > 0.0)) return;
     slots_.push_back({name, held, std::move(parameter)});
   };
   add("force_factor_Nm", &PalpationParameters::force_factor_Nm,
@@ -110,32 +83,42 @@ PalpationParameterSpace::PalpationParameterSpace(models::PalpationModel model, d
     add("point_spacing_m", &PalpationParameters::point_spacing_m,
         length(p.point_spacing_m, 0.3 * p.point_spacing_m,
                std::min(3.0 * p.point_spacing_m, 0.95 * p.length_m / (p.points - 1))));
-  const bool tapers =
-      std::ranges::any_of(model_.effects, [](const auto& use) { return use.id == "shank_taper"; });
   add("youngs_modulus_Pa", &PalpationParameters::youngs_modulus_Pa,
       factor(p.youngs_modulus_Pa, kFactorSd));
   add("length_m", &PalpationParameters::length_m,
       length(p.length_m, std::max(0.8 * p.length_m, 1.01 * (p.points - 1) * p.point_spacing_m),
              1.2 * p.length_m));
-  if (!tapers) add("radius_m", &PalpationParameters::radius_m, factor(p.radius_m, kRadiusSd));
+  add("radius_m", &PalpationParameters::radius_m, factor(p.radius_m, kRadiusSd));
 }
 
 bool PalpationParameterSpace::fixed(const std::string& pointer) const {
   return std::ranges::any_of(model_.fixed, [&](const auto& p) { return covers(p, pointer); });
 }
 
+bool PalpationParameterSpace::replaced(double PalpationParameters::*held) const {
+  return std::ranges::any_of(model_.effects, [&](const auto& use) {
+    const auto* info = effects::find_palpation_effect(use.id);
+    return info && info->replaces == held;
+  });
+}
+
+std::string PalpationParameterSpace::drift(const Structure& structure) const {
+  for (const std::string& id : structure.effects)
+    if (facts_of(id).free_per_trial) return id;
+  return {};
+}
+
 std::vector<Parameter> PalpationParameterSpace::of_effect(const effects::EffectFacts& facts) const {
-  const std::string& id = facts.id;
+  const auto* info = effects::find_palpation_effect(facts.id);
+  const effects::Starts begin = starts(facts.id);
   auto out = parameters_of(facts);
-  for (Parameter& p : out) {
-    p.step = p.logarithmic ? 2e-2 : step_of(p.pointer, p.step);
-    if (p.pointer == "contact_nonlinearity/reference_gradient_per_m") {
-      p.start = std::clamp(field_per_m_, p.low, p.high);
-      p.prior_sd = kReferenceSd;
-    }
-    if (id == "shank_taper") {  // equal radii are the base's shank
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    Parameter& p = out[k];
+    if (p.logarithmic) p.step = kLogarithmicStep;
+    if (p.shape && !begin.empty()) p.start = std::clamp(begin.front()[k], p.low, p.high);
+    if (info && info->replaces) {
       p.shape = false;
-      p.start = p.off = model_.base.radius_m;
+      p.start = p.off = model_.base.*info->replaces;
     }
   }
   return out;
@@ -157,19 +140,10 @@ std::vector<Parameter> PalpationParameterSpace::parameters(const Structure& stru
   return out;
 }
 
-std::vector<std::vector<double>> PalpationParameterSpace::starts(std::string_view effect) const {
-  const double r = model_.base.radius_m;
-  if (effect == "shank_taper") return {{1.02 * r, 1.02 * r}};
-  if (effect == "shank_curvature")
-    return {{3e-4, 0.0}, {3e-4, M_PI_2}, {3e-4, -M_PI_2}, {3e-4, M_PI}};
-  if (effect == "contact_nonlinearity") return {{1.05, field_per_m_}};
-  if (effect == "tip_ball") return {{5e-4}};
-  if (effect == "contact_friction") return {{0.1, 1.0}, {0.1, 0.0}};
-  if (effect == "contact_damping") return {{10.0, 1.0}, {10.0, 0.0}};
-  if (effect == "pose_offset") return {{1e-5, 1e-5, 1e-5}};
-  if (effect == "sensor_bias") return {{1e-2, 1e-2, 1e-2, 1e-3, 1e-3, 1e-3}};
-  if (effect == "probe_weight" || effect == "probe_inertia") return {{0.01, 0.05}};
-  return {};
+effects::Starts PalpationParameterSpace::starts(std::string_view effect) const {
+  const auto* info = effects::find_palpation_effect(effect);
+  if (!info) return {};
+  return info->starts ? info->starts({model_.base.radius_m, field_per_m_}) : info->facts.starts;
 }
 
 models::PalpationModel PalpationParameterSpace::with(const Structure& structure,

@@ -11,8 +11,8 @@
 
 namespace tractus::lab {
 
-/// Which numbers of the base are free: those not fixed. The pose offset of the base is never
-/// fitted: the effect pose_offset is.
+/// Which numbers of the base are free: those not fixed, and not replaced by an effect of the model.
+/// The pose offset of the base is never fitted: the effect of that name is.
 class PalpationParameterSpace {
  public:
   /// @param field_per_m  a usual |g| where the recordings touch bone: where the search for an
@@ -22,9 +22,13 @@ class PalpationParameterSpace {
 
   /// Base, then the model's own effects, then those added.
   std::vector<Parameter> parameters(const Structure& structure) const;
-  /// Numbers to begin an effect's search with, each in the order of its parameters.
-  std::vector<std::vector<double>> starts(std::string_view effect) const;
-  /// The model with these values. `sensor_drift`, free per trial, is left out of it.
+  /// Starts that an effect of the catalogue states or takes from base and recordings; empty: none.
+  effects::Starts starts(std::string_view effect) const;
+  /// What is known of an effect of a structure.
+  const effects::EffectFacts& facts_of(std::string_view id) const;
+  /// The effect of the structure whose course is free in each trial; empty for none.
+  std::string drift(const Structure& structure) const;
+  /// The model with these values. What is free per trial is left out of it.
   models::PalpationModel with(const Structure& structure, std::span<const double> values) const;
   const models::PalpationModel& model() const { return model_; }
   const UserEffects& user_effects() const { return user_effects_; }
@@ -36,7 +40,7 @@ class PalpationParameterSpace {
     Parameter parameter;
   };
   bool fixed(const std::string& pointer) const;
-  const effects::EffectFacts& facts_of(std::string_view id) const;
+  bool replaced(double laws::PalpationParameters::*held) const;
   std::vector<Parameter> of_effect(const effects::EffectFacts& facts) const;
 
   models::PalpationModel model_;

@@ -11,7 +11,6 @@
 #include "effects/palpation_effect.hpp"
 #include "lab/identify/least_squares.hpp"
 #include "lab/identify/parallel.hpp"
-#include "lab/rigs/palpation/experiments.hpp"
 #include "lab/rigs/palpation/parameter_space.hpp"
 #include "lab/rigs/palpation/recording.hpp"
 #include "lab/rigs/palpation/trend.hpp"
@@ -34,12 +33,7 @@ constexpr double kInstants_Hz = 100.0;
 /// What a drift counts when structures are compared: the orders of one course, which the channels
 /// share as a rule, and more than the six numbers of a constant bias, which it contains.
 constexpr int kDriftCounts = 2 * Trend::kOrders;
-constexpr std::string_view kDrift = "sensor_drift";
 constexpr const char* kChannelNames[] = {"fx_N", "fy_N", "fz_N", "tx_Nm", "ty_Nm", "tz_Nm"};
-
-bool has_drift(const Structure& structure) {
-  return std::ranges::find(structure.effects, kDrift) != structure.effects.end();
-}
 
 class PalpationProblem final : public Problem {
  public:
@@ -64,8 +58,7 @@ class PalpationProblem final : public Problem {
   std::vector<Parameter> parameters(const Structure& structure) const override {
     return numbers_.parameters(structure);
   }
-  std::vector<std::vector<double>> starts(std::string_view effect,
-                                          const Eigen::VectorXd& residual) const override {
+  effects::Starts starts(std::string_view effect, const Eigen::VectorXd& residual) const override {
     auto own = numbers_.starts(effect);
     return own.empty() ? Problem::starts(effect, residual) : own;
   }
@@ -99,9 +92,6 @@ class PalpationProblem final : public Problem {
   States states(int k) const override;
   std::vector<Derived> derived(const Structure& structure, std::span<const double> values,
                                std::string_view effect) const override;
-  std::string recording(std::string_view a, std::string_view b) const override {
-    return palpation_recording(a, b);
-  }
   const std::vector<std::string>& notes() const override { return notes_; }
   core::Json model(const Structure& structure, std::span<const double> values) const override;
 
@@ -129,6 +119,7 @@ class PalpationProblem final : public Problem {
   bool touches() const { return touches_; }
 
  private:
+  bool has_drift(const Structure& structure) const { return !numbers_.drift(structure).empty(); }
   const PalpationRecording& trial(int k) const { return trials_[std::size_t(k)]; }
   static Trend trend_of(const PalpationRecording& r);
   void normalise();
@@ -348,7 +339,7 @@ States PalpationProblem::states(int k) const {
 std::vector<Derived> PalpationProblem::derived(const Structure& structure,
                                                std::span<const double> values,
                                                std::string_view effect) const {
-  if (effect != kDrift || !has_drift(structure)) return {};
+  if (effect.empty() || effect != numbers_.drift(structure)) return {};
   // Mean over the trials, and over the axes that drift: by half as much as the one that does most.
   double sum = 0.0, variance = 0.0;
   for (int k = 0; k < trials(); ++k) {
@@ -366,14 +357,15 @@ std::vector<Derived> PalpationProblem::derived(const Structure& structure,
     variance += (square.array() * drifts).sum() / (drifts.sum() * drifts.sum());
   }
   const double n = trials();
-  return {{"range_N", sum / n, std::sqrt(variance) / n}};
+  return {{numbers_.facts_of(effect).params.front().name, sum / n, std::sqrt(variance) / n}};
 }
 
 core::Json PalpationProblem::model(const Structure& structure,
                                    std::span<const double> values) const {
   models::PalpationModel model = numbers_.with(structure, values);
-  for (const Derived& range : derived(structure, values, kDrift))
-    model.effects.push_back({std::string(kDrift), {range.value}});
+  const std::string drift = numbers_.drift(structure);
+  for (const Derived& range : derived(structure, values, drift))
+    model.effects.push_back({drift, {range.value}});
   return model.to_json();
 }
 

@@ -50,8 +50,9 @@ bool covers(std::string_view pattern, std::string_view pointer) {
 
 const effects::EffectFacts& ProbingParameterSpace::facts_of(std::string_view id) const {
   if (const auto* facts = user_effects_.facts(id)) return *facts;
-  for (const auto& info : effects::probing_effects())
-    if (info.facts.id == id) return info.facts;
+  for (const effects::EffectFacts& facts : own_)
+    if (facts.id == id) return facts;
+  if (const auto* info = effects::find_probing_effect(id)) return info->facts;
   core::require(false, "an effect of a structure is in the catalogue");
   std::abort();
 }
@@ -156,6 +157,14 @@ void ProbingParameterSpace::add_layer(std::size_t k, const Reach& reach) {
 
 bool ProbingParameterSpace::has(std::string_view effect) const {
   return std::ranges::any_of(model_.effects, [&](const auto& use) { return use.id == effect; });
+}
+
+std::string ProbingParameterSpace::drift(const Structure& structure) const {
+  for (const effects::EffectFacts& facts : own_)
+    if (facts.free_per_trial) return facts.id;
+  for (const std::string& id : structure.effects)
+    if (facts_of(id).free_per_trial) return id;
+  return {};
 }
 
 std::vector<Parameter> ProbingParameterSpace::parameters(const Structure& structure) const {

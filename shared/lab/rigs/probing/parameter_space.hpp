@@ -26,17 +26,20 @@ class ProbingParameterSpace {
 
   /// Base, then the model's own effects, then those added.
   std::vector<Parameter> parameters(const Structure& structure) const;
-  /// The model with these values. What is free per trial (`sensor_drift`) is left out of it.
+  /// The model with these values. What is free per trial is left out of it.
   models::ProbingModel with(const Structure& structure, std::span<const double> values) const;
   const models::ProbingModel& model() const { return model_; }
   /// Does the given model have an effect of that id already?
   bool has(std::string_view effect) const;
+  /// What is known of an effect of the model or of a structure.
+  const effects::EffectFacts& facts_of(std::string_view id) const;
+  /// The effect of the model or of the structure whose course is free in each trial; empty for none.
+  std::string drift(const Structure& structure) const;
   /// Layers that no recording entered, in words.
   const std::vector<std::string>& notes() const { return notes_; }
   const UserEffects& user_effects() const { return user_effects_; }
 
  private:
-  const effects::EffectFacts& facts_of(std::string_view id) const;
   enum class Kind { stiffness, damping, equilibrium, start, end, viscous, detent, pitch };
   struct Slot {
     Kind kind;

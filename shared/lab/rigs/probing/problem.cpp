@@ -9,9 +9,9 @@
 #include "lab/identify/fit_report.hpp"
 #include "lab/identify/least_squares.hpp"
 #include "lab/identify/parallel.hpp"
-#include "lab/rigs/probing/experiments.hpp"
 #include "lab/rigs/probing/parameter_space.hpp"
 #include "lab/rigs/probing/recording.hpp"
+#include "lab/rigs/probing/statistics.hpp"
 #include "lab/signal/drift.hpp"
 #include "models/probing_runtime.hpp"
 
@@ -26,15 +26,6 @@ using core::Result;
 constexpr double kTravel_m = 1.0;  // the longest a model may have: a recording says how far it went
 /// Samples of a set that are looked at: memory and time stay bounded, and more would tell no more.
 constexpr std::size_t kMostSamples = 600'000, kLeastKept = 200;
-constexpr std::string_view kDrift = "sensor_drift", kRotary = "rotary_";
-
-/// Friction whose direction is that of the motion. At rest it takes whatever value within its size
-/// holds the probe (Coulomb's law is set-valued there), so a residual counts from there on.
-bool is_dry(std::string_view effect) {
-  return effect == "coulomb_friction" || effect == "stribeck_friction" ||
-         effect == "depth_friction" || effect == "rotary_coulomb_friction" ||
-         effect.starts_with("expression:");
-}
 
 class ProbingProblem final : public Problem {
  public:
@@ -56,8 +47,7 @@ class ProbingProblem final : public Problem {
   std::vector<Parameter> parameters(const Structure& structure) const override {
     return numbers_.parameters(structure);
   }
-  std::vector<std::vector<double>> starts(std::string_view effect,
-                                          const Eigen::VectorXd& residual) const override;
+  effects::Starts starts(std::string_view effect, const Eigen::VectorXd& residual) const override;
 
   Eigen::Index residual_size(int k) const override {
     return Eigen::Index(trial(k).measured_thin.size());
@@ -79,9 +69,6 @@ class ProbingProblem final : public Problem {
   States states(int k) const override;
   std::vector<Derived> derived(const Structure& structure, std::span<const double> values,
                                std::string_view effect) const override;
-  std::string recording(std::string_view a, std::string_view b) const override {
-    return probing_recording(a, b);
-  }
   core::Json model(const Structure& structure, std::span<const double> values) const override;
 
   void note(std::string words) { notes_.push_back(std::move(words)); }
@@ -99,10 +86,7 @@ class ProbingProblem final : public Problem {
   }
 
  private:
-  bool has_drift(const Structure& structure) const {
-    return numbers_.has(kDrift) ||
-           std::ranges::find(structure.effects, kDrift) != structure.effects.end();
-  }
+  bool has_drift(const Structure& structure) const { return !numbers_.drift(structure).empty(); }
   const ProbingRecording& trial(int k) const { return trials_[std::size_t(k)]; }
   static Drift drift_of(const ProbingRecording& r);
   void set_candidates();
@@ -113,8 +97,8 @@ class ProbingProblem final : public Problem {
     models::ProbingForces forces;
     std::vector<double> at_rest_N;  // (or N·m) one per sample of `rest`; empty without dry friction
   };
-  static std::vector<double> dry_at_rest(const models::ProbingModel& model,
-                                         const ProbingRecording& r);
+  std::vector<double> dry_at_rest(const models::ProbingModel& model,
+                                  const ProbingRecording& r) const;
   Predicted forces(const Structure& structure, std::span<const double> values,
                    const ProbingRecording& r) const {
     const models::ProbingModel model = numbers_.with(structure, values);
@@ -163,12 +147,14 @@ class ProbingProblem final : public Problem {
   bool turns_;
 };
 
+/// At rest dry friction takes whatever value within its size holds the probe (Coulomb's law is
+/// set-valued there), so a residual counts from there on.
 std::vector<double> ProbingProblem::dry_at_rest(const models::ProbingModel& model,
-                                                const ProbingRecording& r) {
+                                                const ProbingRecording& r) const {
   models::ProbingModel dry;
   dry.rotary.viscous_Nms_per_rad = dry.rotary.detent_Nm = 0.0;
   for (const effects::EffectInstance& use : model.effects)
-    if (is_dry(use.id)) dry.effects.push_back(use);
+    if (numbers_.facts_of(use.id).is_dry) dry.effects.push_back(use);
   if (dry.effects.empty() || r.rest.empty()) return {};
   const auto runtime = models::ProbingRuntime::make(dry, kTravel_m);
   core::require(bool(runtime), "values within their bounds make a model that runs");
@@ -202,14 +188,15 @@ void ProbingProblem::set_candidates() {
   for (const auto& info : effects::probing_effects()) all.push_back(info.facts);
   for (const auto& [use, facts] : numbers_.user_effects().all()) all.push_back(facts);
   for (const effects::EffectFacts& facts : all) {
-    // What acts about the axis shows in the torque, which is judged where the rig only turns.
-    if (numbers_.has(facts.id) || (!turns_ && facts.id.starts_with(kRotary))) continue;
+    // The torque is judged where the rig only turns, the force everywhere else.
+    const bool shows = (facts.channel == effects::Channel::torque) == turns_;
+    if (numbers_.has(facts.id) || (!turns_ && !shows)) continue;
     Candidate candidate{facts, true, ""};
     const auto lacks = [&](const std::string& why) {
       candidate.possible = false;
       candidate.why_not = why;
     };
-    if (turns_ && !facts.id.starts_with(kRotary)) lacks("depth and force were not recorded");
+    if (!shows) lacks("depth and force were not recorded");
     for (const std::string& need : facts.needs) {
       if (!angle && (need == "omega_rad_s" || need == "theta_rad"))
         lacks("theta_rad was not recorded in every trial");
@@ -232,10 +219,12 @@ void ProbingProblem::set_channels() {
   if (both) channels_.push_back({"tz_Nm", std::sqrt(other / count)});
 }
 
-std::vector<std::vector<double>> ProbingProblem::starts(std::string_view effect,
-                                                        const Eigen::VectorXd& residual) const {
-  auto own = probing_starts(effect, trials_, residual);
-  return own.empty() ? Problem::starts(effect, residual) : own;
+effects::Starts ProbingProblem::starts(std::string_view effect,
+                                       const Eigen::VectorXd& residual) const {
+  const auto* info = effects::find_probing_effect(effect);
+  effects::Starts found;
+  if (info && info->starts) found = info->starts(statistics_of(trials_, residual));
+  return found.empty() ? Problem::starts(effect, residual) : found;
 }
 
 Residuals ProbingProblem::full_rate(const Structure& structure, std::span<const double> values,
@@ -286,7 +275,7 @@ States ProbingProblem::states(int k) const {
 std::vector<Derived> ProbingProblem::derived(const Structure& structure,
                                              std::span<const double> values,
                                              std::string_view effect) const {
-  if (effect != kDrift || !has_drift(structure)) return {};
+  if (effect.empty() || effect != numbers_.drift(structure)) return {};
   double sum = 0.0, variance = 0.0;
   for (int k = 0; k < trials(); ++k) {
     const Eigen::VectorXd trend = drift(structure, values, k);
@@ -297,13 +286,14 @@ std::vector<Derived> ProbingProblem::derived(const Structure& structure,
         drifts_[std::size_t(k)].variance_between(t_s[std::size_t(high)], t_s[std::size_t(low)]);
   }
   const double n = trials();
-  return {{"range_N", sum / n, std::sqrt(variance) / n}};
+  return {{numbers_.facts_of(effect).params.front().name, sum / n, std::sqrt(variance) / n}};
 }
 
 core::Json ProbingProblem::model(const Structure& structure, std::span<const double> values) const {
   models::ProbingModel model = numbers_.with(structure, values);
-  for (const Derived& range : derived(structure, values, kDrift))
-    model.effects.push_back({std::string(kDrift), {range.value}});
+  const std::string drift = numbers_.drift(structure);
+  for (const Derived& range : derived(structure, values, drift))
+    model.effects.push_back({drift, {range.value}});
   return model.to_json();
 }
 
