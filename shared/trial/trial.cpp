@@ -143,19 +143,23 @@ std::optional<Answer> Trial::answer() const {
   return std::nullopt;
 }
 
+void TickCounts::count(std::uint16_t flags) noexcept {
+  ++samples;
+  not_converged += (flags & kNotConverged) != 0;
+  limited += (flags & kLimited) != 0;
+  late += (flags & kLate) != 0;
+  stale += (flags & kStale) != 0;
+  saturated += (flags & kSaturated) != 0;
+  missed += (flags & kMissed) != 0;
+  bus_lost += (flags & kBusLost) != 0;
+}
+
 void TickCounts::add(const Block& block) {
   std::uint32_t last = 0;
-  block.each([&](const auto& s) {
-    not_converged += (s.flags & kNotConverged) != 0;
-    limited += (s.flags & kLimited) != 0;
-    late += (s.flags & kLate) != 0;
-    stale += (s.flags & kStale) != 0;
-    saturated += (s.flags & kSaturated) != 0;
-    missed += (s.flags & kMissed) != 0;
-    bus_lost += (s.flags & kBusLost) != 0;
-    last = s.tick;
+  block.each([&](const auto& sample) {
+    count(sample.flags);
+    last = sample.tick;
   });
-  samples += block.size();
   if (block.size() > 0) skipped = std::uint64_t{last} + 1 - samples;
 }
 

@@ -173,13 +173,17 @@ std::string fault_of(const Sample& sample, const Sample* before);
 /// Likewise; also a mode that is none.
 std::string fault_of(const ProbingSample& sample, const ProbingSample* before);
 
-/// How the loop that recorded the samples fared.
+/// How the loop that recorded the samples fared: counted by the loop itself as it runs, and again
+/// by a reader of its samples.
 struct TickCounts {
   std::uint64_t samples = 0;
-  std::uint64_t not_converged = 0, limited = 0, late = 0, stale = 0, saturated = 0;
-  std::uint64_t missed = 0, bus_lost = 0;
+  std::uint64_t limited = 0, late = 0, stale = 0;
+  std::uint64_t not_converged = 0, saturated = 0;  ///< palpation alone
+  std::uint64_t missed = 0, bus_lost = 0;          ///< probing alone
   std::uint64_t skipped = 0;  ///< ticks from 0 to the last one that left no sample
 
+  /// One sample more, by its Flag bits. Real-time safe.
+  void count(std::uint16_t flags) noexcept;
   /// Blocks of one trial, in order.
   void add(const Block& block);
 };
