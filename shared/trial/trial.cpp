@@ -17,8 +17,6 @@ constexpr double kDeepest_m = 0.2;                  // of a breach that somebody
 constexpr long kMaxUtc_us = 4'102'444'800'000'000;  // the year 2100
 
 constexpr std::array<std::string_view, 2> kRigs{"palpation", "probing"};
-constexpr std::array<std::string_view, kProbingModes> kModes{"holding", "bone", "resistance",
-                                                             "breach", "stopped"};
 
 template <class T, std::size_t N>
 bool plausible(const std::array<T, N>& values) {
@@ -63,8 +61,6 @@ std::optional<Rig> rig_named(std::string_view name) {
   if (found == kRigs.end()) return std::nullopt;
   return Rig(found - kRigs.begin());
 }
-
-std::string_view name(ProbingMode mode) { return kModes[std::size_t(mode)]; }
 
 std::string fault_of(const Sample& s, const Sample* before) {
   if (auto fault = order_fault(s, before); !fault.empty()) return fault;

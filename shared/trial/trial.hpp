@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/json.hpp"
+#include "core/probing_mode.hpp"
 #include "math/geometry.hpp"
 
 namespace tractus::trial {
@@ -44,16 +45,9 @@ enum class Rig : std::uint8_t { palpation, probing };
 std::string_view name(Rig rig);
 std::optional<Rig> rig_named(std::string_view name);
 
-/// What the probing rig's controller was doing.
-enum class ProbingMode : std::uint8_t {
-  holding,     ///< the probe turns too slowly: the stage does not move
-  bone,        ///< in a layer
-  resistance,  ///< before a wall, resistance growing
-  breach,      ///< behind a wall: no stiffness, the breach's damping, rotary motor off
-  stopped,     ///< at the probe stop
-};
-inline constexpr int kProbingModes = 5;
-std::string_view name(ProbingMode mode);
+using core::kProbingModes;
+using core::name;  // of a mode
+using core::ProbingMode;
 
 /// One tick of a probing trial: what was read in one exchange with the rig, and what was commanded
 /// for the next period. 64 bytes, little-endian, no padding: also the layout on disk.

@@ -10,9 +10,6 @@ using devices::Exchange;
 using trial::ProbingMode;
 using trial::ProbingSample;
 
-static_assert(int(ProbingMode::holding) == int(laws::ProbingMode::holding) &&
-              int(ProbingMode::stopped) == int(laws::ProbingMode::stopped));
-
 constexpr double kAtStop_m = 2e-5;
 constexpr int kFarewells = 3;  // one would do, were none ever lost
 }  // namespace
@@ -73,10 +70,10 @@ void ProbingLoop::step_law(const ProbingGuard::LawInput& seen, ProbingSample& ou
   at_.at.x_m = x_m;
   out.law_m_s = float(law.advance(seen.fz_N, reading_.turning_rad_s, period_s_, at_));
   // Of the depth that was read, not of the one a period ahead.
-  const bool holds = at_.at.mode == laws::ProbingMode::holding;
+  const bool holds = at_.at.mode == ProbingMode::holding;
   out.mode = x_m >= travel_m_ - kAtStop_m ? ProbingMode::stopped
              : holds                      ? ProbingMode::holding
-                                          : ProbingMode(int(law.law().mode_at(x_m)));
+                                          : law.law().mode_at(x_m);
   torque_Nm = -law.torque_Nm(x_m, theta_rad_, reading_.turning_rad_s);
 }
 
