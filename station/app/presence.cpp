@@ -217,7 +217,7 @@ session::ProbingWatch Presence::watched(session::ProbingWatch inner,
 }
 
 void Presence::done(const session::TrialReport& report) {
-  parts_->ticks += report.counts.ticks;
+  parts_->ticks += report.counts.samples;
   parts_->late += report.counts.late;
   if (parts_->outside.stopped())
     is(State::stopped);

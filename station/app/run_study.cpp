@@ -150,13 +150,13 @@ void note(Study& study, const StudyWork& work, const SealedTrial& trial,
           const TrialReport& report) {
   study.trials.push_back({{"trial_id", report.trial_id},
                           {"number", trial.number},
-                          {"samples", report.counts.ticks},
+                          {"samples", report.counts.samples},
                           {"complete", report.complete},
                           {"fault", report.fault}});
   if (study.options.json) return;
   fmt::print("{}{}: trial {} of {} is recorded, {} samples{}\n", work.participant,
              report.simulated ? " (SIMULATED)" : "", trial.number, work.planned,
-             report.counts.ticks, report.fault.empty() ? "" : "  FAULT: " + report.fault);
+             report.counts.samples, report.fault.empty() ? "" : "  FAULT: " + report.fault);
   std::fflush(stdout);
 }
 

@@ -4,15 +4,13 @@
 
 #include <algorithm>
 #include <atomic>
-#include <future>
-#include <thread>
 
 #include "core/bytes.hpp"
 #include "station/devices/felt_breach.hpp"
 #include "station/devices/modbus_rig.hpp"
 #include "station/devices/rig_process.hpp"
+#include "station/loop/loop_thread.hpp"
 #include "station/loop/probing_loop.hpp"
-#include "station/loop/realtime.hpp"
 #include "station/loop/recorder.hpp"
 #include "station/session/fast_rig.hpp"
 #include "station/session/rig_entry.hpp"
@@ -114,18 +112,20 @@ struct ProbingTrialRun::Parts {
   Parts(const StationFolder& where, const ProbingTask& what, const RigSetup& how)
       : folder(where), task(what), setup(how) {}
   bool fast() const { return setup.speed == Speed::fast; }
+  loop::Pace pace() const { return fast() ? loop::Pace::as_fast_as_goes : loop::Pace::real_time; }
   core::Clock& clock() { return fast() ? static_cast<core::Clock&>(manual_clock) : real_clock; }
-  double elapsed_s() { return static_cast<double>(clock().now() - loop->started()) * 1e-9; }
+  double elapsed_s() {
+    return static_cast<double>(clock().now() - loop->periods().started()) * 1e-9;
+  }
   std::string operator_name() const;
   core::Result<void> make_device();
   core::Result<void> open_device();
   core::Result<void> make_file();
   core::Result<void> add_law(const laws::ProbingParameters& law);
   void after_tick(const trial::ProbingSample& sample);
-  void loop_thread(std::promise<void>& prepared, const std::future<void>& go);
   ProbingTrialSnapshot glimpse() const;
   void apply_remote_commands();
-  void watch_until(const std::future<void>& done, const ProbingWatch& watch);
+  void watch_until_end(const loop::LoopThread& thread, const ProbingWatch& watch);
   core::Result<void> append_end(const std::optional<trial::Answer>& answer);
 };
 
@@ -238,15 +238,6 @@ void ProbingTrialRun::Parts::after_tick(const trial::ProbingSample& sample) {
   if (fast() && sample.tick % kDrainEveryTicks == 0) recorder->drain();
 }
 
-void ProbingTrialRun::Parts::loop_thread(std::promise<void>& prepared,
-                                         const std::future<void>& go) {
-  std::optional<loop::Realtime> realtime;
-  if (!fast()) grant = realtime.emplace().grant();
-  prepared.set_value();
-  go.wait();
-  loop->run([this](const trial::ProbingSample& sample) { after_tick(sample); });
-}
-
 ProbingTrialSnapshot ProbingTrialRun::Parts::glimpse() const {
   const auto seen = live.read().value_or(loop::ProbingLoopSnapshot{});
   ProbingTrialSnapshot out{.trial_id = header.id,
@@ -264,9 +255,10 @@ void ProbingTrialRun::Parts::apply_remote_commands() {
   if (setup.outside->stopped()) loop->stop();
 }
 
-void ProbingTrialRun::Parts::watch_until(const std::future<void>& done, const ProbingWatch& watch) {
+void ProbingTrialRun::Parts::watch_until_end(const loop::LoopThread& thread,
+                                             const ProbingWatch& watch) {
   for (bool over = false; !over;) {
-    over = done.wait_for(kWatch) == std::future_status::ready;
+    over = thread.ended_within(kWatch);
     apply_remote_commands();
     if (watch && !watch(glimpse())) loop->stop();
   }
@@ -274,24 +266,20 @@ void ProbingTrialRun::Parts::watch_until(const std::future<void>& done, const Pr
 
 core::Result<void> ProbingTrialRun::run(const ProbingWatch& watch) {
   Parts& p = *parts_;
-  std::promise<void> prepared, go, done;
-  const std::future<void> ended = done.get_future(), started = go.get_future();
-  std::thread thread([&] {
-    p.loop_thread(prepared, started);
-    done.set_value();
+  loop::LoopThread thread(p.pace(), [&p] {
+    p.loop->run([&p](const trial::ProbingSample& sample) { p.after_tick(sample); });
   });
-  prepared.get_future().wait();
+  p.grant = thread.grant();
   const core::Json detail = {{"realtime", p.grant.to_json()}};
   if (!p.recorder->append({0.0, "start", detail})) p.loop->stop();  // the error is kept for stop()
   if (!p.fast()) p.recorder->start();
-  go.set_value();
-  p.watch_until(ended, watch);
+  thread.go();
+  p.watch_until_end(thread, watch);
   thread.join();
   if (p.setup.outside && p.setup.outside->stopped()) p.fault = stop_message(*p.setup.outside);
   if (p.guard->latched()) p.fault = loop::text_of(p.guard->fault());
-  if (p.loop->counts().ticks.lost > 0)
-    p.fault = fmt::format("{} samples were not recorded: the disk was too slow",
-                          p.loop->counts().ticks.lost);
+  if (const std::uint64_t lost = p.loop->periods().lost(); lost > 0)
+    p.fault = fmt::format("{} samples were not recorded: the disk was too slow", lost);
   return p.recorder->stop();
 }
 
@@ -325,40 +313,41 @@ core::Result<void> ProbingTrialRun::Parts::append_end(const std::optional<trial:
   if (answer)
     if (auto said = recorder->append({elapsed_s(), "answer", answer->to_json()}); !said)
       return said;
-  const loop::ProbingCounts& n = loop->counts();
+  const trial::TickCounts& n = loop->counts();
   return recorder->append({elapsed_s(),
                            "end",
-                           {{"ticks", n.ticks.ticks},
-                            {"late_ticks", n.ticks.late},
-                            {"skipped_ticks", n.ticks.skipped},
+                           {{"ticks", n.samples},
+                            {"late_ticks", n.late},
+                            {"skipped_ticks", n.skipped},
                             {"missed_periods", n.missed},
                             {"lost_exchanges", n.bus_lost},
                             {"restarts", guard->restarts()},
-                            {"limited", n.ticks.limited},
+                            {"limited", n.limited},
                             {"injected_J", loop->injected_J()}}});
 }
 
 core::Result<TrialReport> ProbingTrialRun::finish(const std::optional<trial::Answer>& answer) {
   Parts& p = *parts_;
   p.device->close();
-  const loop::ProbingCounts& n = p.loop->counts();
-  TrialReport report{.trial_id = p.header.id,
-                     .file = p.folder.trial_file(p.header.id),
-                     .complete = p.fault.empty(),
-                     .fault = p.fault,
-                     .duration_s = double(n.ticks.ticks + n.ticks.skipped) / p.setup.rate_Hz,
-                     .counts = n.ticks,
-                     .wake_p50_us = p.loop->wake().quantile_us(0.5),
-                     .wake_p99_us = p.loop->wake().quantile_us(0.99),
-                     .work_p50_us = p.loop->work().quantile_us(0.5),
-                     .work_p99_us = p.loop->work().quantile_us(0.99),
-                     .injected_J = p.loop->injected_J(),
-                     .grant = p.grant,
-                     .answer = p.fault.empty() ? answer : std::nullopt,
-                     .simulated = p.header.simulated,
-                     .bus = TrialReport::Bus{n.missed, n.bus_lost, p.guard->restarts(),
-                                             p.loop->round_trip().quantile_us(0.5),
-                                             p.loop->round_trip().quantile_us(0.99)}};
+  const loop::PeriodicLoop& periods = p.loop->periods();
+  TrialReport report{
+      .trial_id = p.header.id,
+      .file = p.folder.trial_file(p.header.id),
+      .complete = p.fault.empty(),
+      .fault = p.fault,
+      .duration_s = periods.passed_s(),
+      .counts = periods.counts(),
+      .lost = periods.lost(),
+      .wake_p50_us = periods.wake().quantile_us(0.5),
+      .wake_p99_us = periods.wake().quantile_us(0.99),
+      .work_p50_us = periods.work().quantile_us(0.5),
+      .work_p99_us = periods.work().quantile_us(0.99),
+      .injected_J = p.loop->injected_J(),
+      .grant = p.grant,
+      .answer = p.fault.empty() ? answer : std::nullopt,
+      .simulated = p.header.simulated,
+      .bus = TrialReport::Bus{p.guard->restarts(), p.loop->round_trip().quantile_us(0.5),
+                              p.loop->round_trip().quantile_us(0.99)}};
   if (auto ended = p.append_end(answer); !ended) return ended.error();
   if (auto sealed = p.recorder->finish(); !sealed) return sealed.error();
   auto queued = p.folder.outbox().queue(p.header.id, p.header.case_id, report.file);
