@@ -12,6 +12,7 @@
 #include "station/app/exchange.hpp"
 #include "station/app/presence.hpp"
 #include "station/app/trial_epilogue.hpp"
+#include "station/devices/catalogue.hpp"
 #include "station/rig/surgeon.hpp"
 #include "station/session/study_plan.hpp"
 #include "station/uplink/study.hpp"
@@ -61,7 +62,7 @@ core::Result<StudyWork> work_of(const Study& study, bool& away) {
 
 /// A person in front of the rig of a simulated participant, or the reverse, would spoil the data.
 core::Result<void> check_who(const Options& options, const StudyWork& work) {
-  const bool simulated = options.rig.device == "sim-rig";
+  const bool simulated = devices::is_simulated(options.rig.device);
   if (simulated == work.simulated) return {};
   return core::Error{
       core::Errc::bad_input,

@@ -184,7 +184,7 @@ TEST(HapticLoop, AllocatesNothingInTheTick) {
 }
 
 TEST(HapticLoop, AllocatesNothingInTheTickWithAnySimulatedDevice) {
-  for (const devices::DeviceInfo& info : devices::all()) {
+  for (const devices::DeviceInfo& info : devices::all(devices::DeviceKind::handle)) {
     if (!info.simulated) continue;
     auto made = info.make({});
     ASSERT_TRUE(made) << info.id;

@@ -7,8 +7,6 @@
 
 #include "core/bytes.hpp"
 #include "station/devices/felt_breach.hpp"
-#include "station/devices/modbus_rig.hpp"
-#include "station/devices/rig_process.hpp"
 #include "station/loop/loop_thread.hpp"
 #include "station/loop/probing_loop.hpp"
 #include "station/loop/recorder.hpp"
@@ -24,14 +22,10 @@ constexpr auto kWatch = std::chrono::milliseconds(30);
 
 core::Error wrong(std::string what) { return {core::Errc::out_of_range, std::move(what)}; }
 
-core::Result<void> check(const RigSetup& setup) {
-  if (setup.device != "rig" && setup.device != "sim-rig")
-    return core::Error{
-        core::Errc::not_found,
-        fmt::format("--device {}: rig or sim-rig is expected for a scenario", setup.device)};
-  if (setup.speed == Speed::fast && setup.device == "rig")
+core::Result<void> check(const RigSetup& setup, const devices::DeviceInfo& info) {
+  if (setup.speed == Speed::fast && !info.simulated)
     return core::Error{core::Errc::bad_input,
-                       "--speed fast: a rig runs in real time; sim-rig does not"};
+                       fmt::format("--speed fast: {} is held by a person", info.id)};
   if (!(setup.rate_Hz >= 100.0 && setup.rate_Hz <= 1000.0))
     return wrong(fmt::format("--rate {}: 100 … 1000 Hz are possible", setup.rate_Hz));
   if (setup.started_utc_us && setup.speed != Speed::fast)
@@ -90,9 +84,8 @@ struct ProbingTrialRun::Parts {
   const StationFolder& folder;
   ProbingTask task;
   RigSetup setup;
-  std::optional<devices::RigProcess> process;
-  std::string address;  // of a rig behind Modbus
-  std::unique_ptr<devices::RigDevice> device;
+  devices::DeviceInfo info;
+  std::optional<devices::MadeRig> rig;
   devices::RigIdentity identity;
   trial::Header header;
   core::MonotonicClock real_clock;
@@ -109,8 +102,9 @@ struct ProbingTrialRun::Parts {
   std::string fault;
   std::vector<trial::Event> retuned;
 
-  Parts(const StationFolder& where, const ProbingTask& what, const RigSetup& how)
-      : folder(where), task(what), setup(how) {}
+  Parts(const StationFolder& where, const ProbingTask& what, const RigSetup& how,
+        const devices::DeviceInfo& of)
+      : folder(where), task(what), setup(how), info(of) {}
   bool fast() const { return setup.speed == Speed::fast; }
   loop::Pace pace() const { return fast() ? loop::Pace::as_fast_as_goes : loop::Pace::real_time; }
   core::Clock& clock() { return fast() ? static_cast<core::Clock&>(manual_clock) : real_clock; }
@@ -130,47 +124,37 @@ struct ProbingTrialRun::Parts {
 };
 
 core::Result<void> ProbingTrialRun::Parts::make_device() {
-  if (fast()) {
-    device = fast_rig(setup);
-    return {};
-  }
-  address = setup.address;
-  if (setup.device == "sim-rig") {
-    auto started = devices::RigProcess::start({.program = setup.program,
-                                               .seed = setup.seed,
-                                               .skill = setup.skill,
-                                               .surgeon = setup.surgeon,
-                                               .bus_clock = false});
-    if (!started) return started.error();
-    process.emplace(std::move(*started));
-    address = process->address();
-  }
-  auto made = devices::modbus_rig(address);
+  auto made = fast() ? core::Result<devices::MadeRig>(fast_rig(setup))
+                     : info.make_rig({.address = setup.address,
+                                      .program = setup.program,
+                                      .seed = setup.seed,
+                                      .skill = setup.skill,
+                                      .surgeon = setup.surgeon});
   if (!made) return made.error();
-  device = std::move(*made);
+  rig.emplace(std::move(*made));
   return {};
 }
 
 core::Result<void> ProbingTrialRun::Parts::open_device() {
   if (auto made = make_device(); !made) return made;
-  auto found = device->open();
+  auto found = rig->device->open();
   if (!found) return found.error();
   identity = *found;
   if (identity.bus_clock != fast())
     return core::Error{core::Errc::unavailable,
-                       fmt::format("rig at {}: its clock is {}", address,
+                       fmt::format("rig at {}: its clock is {}", rig->address,
                                    identity.bus_clock ? "on the bus: not for real time"
                                                       : "its own: not for --speed fast")};
   if (task.law.travel_m > identity.travel_m + 1e-9)
     return wrong(fmt::format("the probe stop at {} m lies beyond the rig's travel of {} m",
                              task.law.travel_m, identity.travel_m));
   limits.max_speed_m_s = std::min(limits.max_speed_m_s, identity.top_speed_m_s);
-  return bring_to_entry(*device, clock(), setup.rate_Hz);
+  return bring_to_entry(*rig->device, clock(), setup.rate_Hz);
 }
 
 std::string ProbingTrialRun::Parts::operator_name() const {
   if (!task.operator_name.empty()) return task.operator_name;
-  if (setup.device != "sim-rig") return "not named";
+  if (!info.simulated) return "not named";
   if (!setup.surgeon) return "nobody";
   return fmt::format("simulated surgeon, seed {}, skill {:.2f}", setup.seed, setup.skill);
 }
@@ -181,7 +165,7 @@ core::Result<void> ProbingTrialRun::Parts::make_file() {
   header.station = folder.config().name;
   header.operator_name = operator_name();
   header.simulated = identity.simulated;
-  header.device = setup.device;
+  header.device = info.id;
   header.started_utc_us = setup.started_utc_us.value_or(core::utc_us());
   header.rate_Hz = setup.rate_Hz;
   header.rig = trial::Rig::probing;
@@ -191,7 +175,7 @@ core::Result<void> ProbingTrialRun::Parts::make_file() {
       fast() ? "manual: simulated time, run as fast as it goes" : "monotonic: real time";
   header.extra["limits"] = limits.to_json();
   if (setup.started_utc_us) header.extra["date"] = "simulated";
-  if (setup.device == "sim-rig")
+  if (info.simulated)
     header.extra["simulated_surgeon"] = {{"seed", setup.seed}, {"skill", setup.skill}};
   auto writer = trial::TrialWriter::create(folder.trial_file(header.id), header);
   if (!writer) return writer.error();
@@ -209,25 +193,28 @@ core::Result<void> ProbingTrialRun::Parts::add_law(const laws::ProbingParameters
 core::Result<std::unique_ptr<ProbingTrialRun>> ProbingTrialRun::make(const StationFolder& folder,
                                                                      const ProbingTask& task,
                                                                      const RigSetup& setup) {
-  if (auto fine = check(setup); !fine) return fine.error();
+  auto info = devices::find(setup.device, devices::DeviceKind::rig);
+  if (!info) return info.error();
+  if (auto fine = check(setup, *info); !fine) return fine.error();
   const double bytes =
       setup.duration_s * setup.rate_Hz * 1.1 * double(sizeof(trial::ProbingSample));
   if (auto room = folder.check_room(static_cast<std::uint64_t>(bytes)); !room) return room.error();
-  auto parts = std::make_unique<Parts>(folder, task, setup);
+  auto parts = std::make_unique<Parts>(folder, task, setup, *info);
   if (auto made = parts->add_law(task.law); !made) return made.error();
   if (auto opened = parts->open_device(); !opened) return opened.error();
   if (auto created = parts->make_file(); !created) return created.error();
   parts->guard.emplace(parts->limits, task.law.travel_m, 1.0 / setup.rate_Hz);
-  if (setup.device == "sim-rig" && setup.surgeon)
+  if (info->simulated && setup.surgeon)
     parts->felt.emplace(setup.seed, setup.skill, 1.0 / setup.rate_Hz);
-  parts->loop.emplace(loop::ProbingLoop::Parts{parts->clock(), parts->real_clock, *parts->device,
-                                               *parts->guard, parts->ring, parts->live},
-                      *parts->laws.front(), task.law.travel_m, setup.rate_Hz);
+  parts->loop.emplace(
+      loop::ProbingLoop::Parts{parts->clock(), parts->real_clock, *parts->rig->device,
+                               *parts->guard, parts->ring, parts->live},
+      *parts->laws.front(), task.law.travel_m, setup.rate_Hz);
   return std::unique_ptr<ProbingTrialRun>(new ProbingTrialRun(std::move(parts)));
 }
 
 ProbingTrialRun::ProbingTrialRun(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
-ProbingTrialRun::~ProbingTrialRun() { parts_->device->close(); }
+ProbingTrialRun::~ProbingTrialRun() { parts_->rig->device->close(); }
 const std::string& ProbingTrialRun::fault() const { return parts_->fault; }
 
 // In real time this is under the tick's rules: only atomics are read.
@@ -328,7 +315,7 @@ core::Result<void> ProbingTrialRun::Parts::append_end(const std::optional<trial:
 
 core::Result<TrialReport> ProbingTrialRun::finish(const std::optional<trial::Answer>& answer) {
   Parts& p = *parts_;
-  p.device->close();
+  p.rig->device->close();
   const loop::PeriodicLoop& periods = p.loop->periods();
   TrialReport report{
       .trial_id = p.header.id,

@@ -33,16 +33,6 @@ devices::KnownTract channel_of(const volume::Tract& in_D) {
           .radius_m = in_D.radius_m};
 }
 
-core::Result<devices::DeviceInfo> find_device(const std::string& id) {
-  std::string known;
-  for (devices::DeviceInfo& info : devices::all()) {
-    if (info.id == id) return std::move(info);
-    known += (known.empty() ? "" : ", ") + info.id;
-  }
-  return core::Error{core::Errc::not_found,
-                     fmt::format("--device {}: not known; there is {}", id, known)};
-}
-
 core::Json json_of(const trial::TickCounts& counts, std::uint64_t lost) {
   return {{"ticks", counts.samples},
           {"late_ticks", counts.late},
@@ -215,7 +205,7 @@ core::Result<void> TrialRun::Parts::make_file(const devices::DeviceInfo& info) {
 core::Result<std::unique_ptr<TrialRun>> TrialRun::make(const StationFolder& folder,
                                                        const PreparedCase& prepared,
                                                        const TrialSetup& setup) {
-  auto info = find_device(setup.device);
+  auto info = devices::find(setup.device, devices::DeviceKind::handle);
   if (!info) return info.error();
   if (setup.speed == Speed::fast && !info->simulated)
     return core::Error{core::Errc::bad_input,
