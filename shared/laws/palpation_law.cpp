@@ -74,11 +74,8 @@ PalpationStep PalpationLaw::step(const Pose& X_VH, PalpationState& state,
   state.deflection_m = out.deflection_m = found.deflection_m;
   out.iterations = found.iterations;
   out.converged = found.converged;
-  for (std::size_t i = 0; i < n; ++i) {  // (3)
-    const Vec3& F = out.force_H_N[i];
-    out.wrench_H.force_N += F;
-    out.wrench_H.torque_Nm += point_H_m(int(i), out.deflection_m).cross(F);
-  }
+  for (std::size_t i = 0; i < n; ++i)  // (3)
+    add_to_wrench(point_H_m(int(i), out.deflection_m), out.force_H_N[i], 1.0, 1.0, out.wrench_H);
   out.wrench_H.force_N *= parameters_.force_scale;
   out.wrench_H.torque_Nm *= parameters_.torque_scale;
   return out;

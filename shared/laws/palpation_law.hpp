@@ -44,6 +44,14 @@ struct PalpationStep {
       force_H_N;  ///< F_i at each point, before scaling, in H; the first `points` are set
 };
 
+/// Adds what a force on one point of the probe does to the handle's origin, a term of eq. (3):
+/// s_f F to the force, s_t p × F to the torque. All in H.
+inline void add_to_wrench(const Vec3& point_m, const Vec3& force_N, double force_scale,
+                          double torque_scale, math::Wrench& wrench) noexcept {
+  wrench.force_N += force_scale * force_N;
+  wrench.torque_Nm += torque_scale * point_m.cross(force_N);
+}
+
 /// The law of palpation [Zoller2020, eqs (2) to (4)]: how the bone pushes on a bending probe.
 ///
 ///     p_i = X_VH (z_i ẑ + φ(z_i) (δx x̂ + δy ŷ)),   z_i = L − i·spacing,   φ(z) = z²(3L − z)/(2L³)

@@ -91,6 +91,14 @@ double miss_N(const PalpationParameters& p, const ForceField& field, const Pose&
   return sum.norm();
 }
 
+TEST(AddToWrench, AddsTheScaledForceAndItsMomentAboutTheOrigin) {
+  math::Wrench wrench{Vec3(1, 0, 0), Vec3(0, 0, 1)};
+  // By hand: (0.01, −0.02, 0.13) × (2, 3, −1) = (0.02 − 0.39, 0.26 + 0.01, 0.03 + 0.04).
+  add_to_wrench(Vec3(0.01, -0.02, 0.13), Vec3(2, 3, -1), 0.5, 0.25, wrench);
+  EXPECT_LT((wrench.force_N - Vec3(2.0, 1.5, -0.5)).norm(), 1e-15);
+  EXPECT_LT((wrench.torque_Nm - Vec3(-0.0925, 0.0675, 1.0175)).norm(), 1e-15);
+}
+
 TEST(PalpationLaw, BendsATipInAUniformFieldByForceOverStiffness) {
   const Volume v = ramp();
   const ForceField field = field_of(v);

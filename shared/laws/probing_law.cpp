@@ -68,12 +68,6 @@ core::Result<void> check(const std::vector<CorticalWall>& walls, double travel_m
 
 }  // namespace
 
-std::string_view name(ProbingMode mode) {
-  constexpr std::array<std::string_view, 5> names{"holding", "bone", "resistance", "breach",
-                                                  "stopped"};
-  return names[std::size_t(mode)];
-}
-
 core::Result<ProbingLaw> ProbingLaw::make(ProbingParameters p) {
   if (!(p.travel_m > 0.0 && p.travel_m <= 1.0))
     return refused(fmt::format("travel_m: {} must be above 0 and at most 1", p.travel_m));

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/probing_mode.hpp"
 #include "core/result.hpp"
 
 namespace tractus::laws {
@@ -55,14 +56,7 @@ struct ProbingParameters {
   double max_speed_m_s = 0.23;          ///< of the actuator
 };
 
-enum class ProbingMode : unsigned char {
-  holding,     ///< turning too slowly: the stage does not move
-  bone,        ///< eq. (2) in a layer
-  resistance,  ///< eq. (2) within R_i of a wall, K and D grown
-  breach,      ///< eq. (3): K = 0, D_b, rotary motor off
-  stopped,     ///< at the probe stop
-};
-std::string_view name(ProbingMode mode);
+using core::ProbingMode;
 
 /// What changes from tick to tick.
 struct ProbingState {

@@ -238,8 +238,7 @@ void PalpationRuntime::add_unbending(const Contacts& contacts, const math::Pose&
     const Vec3 p_H = law_.point_H_m(int(i), step.deflection_m);
     const Vec3 F = X_VH.q.conjugate() * contacts.unbending_N(i, X_VH * p_H);
     step.force_H_N[i] += F;
-    step.wrench_H.force_N += base.force_scale * F;
-    step.wrench_H.torque_Nm += base.torque_scale * p_H.cross(F);
+    laws::add_to_wrench(p_H, F, base.force_scale, base.torque_scale, step.wrench_H);
   }
 }
 
@@ -343,6 +342,7 @@ std::size_t PalpationRuntime::field_samples() const noexcept {
 
 laws::PalpationStep PalpationRuntime::response(const math::Pose& X_VH, const Contacts& contacts,
                                                const math::Vec2& rest_m) const noexcept {
+  const laws::PalpationParameters& base = law_.parameters();
   const laws::Shank& shank = law_.shank();
   const auto n = std::size_t(shank.points);
   const math::Mat3 R = X_VH.q.toRotationMatrix();
@@ -372,9 +372,8 @@ laws::PalpationStep PalpationRuntime::response(const math::Pose& X_VH, const Con
   for (std::size_t i = 0; i < n; ++i) {
     const Vec3 F = R.transpose() * (force_N[i] + slope_N_per_m[i] * s);
     out.force_H_N[i] = F;
-    out.wrench_H.force_N += law_.parameters().force_scale * F;
-    out.wrench_H.torque_Nm +=
-        law_.parameters().torque_scale * law_.point_H_m(int(i), out.deflection_m).cross(F);
+    laws::add_to_wrench(law_.point_H_m(int(i), out.deflection_m), F, base.force_scale,
+                        base.torque_scale, out.wrench_H);
   }
   return out;
 }

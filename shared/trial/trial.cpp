@@ -17,8 +17,6 @@ constexpr double kDeepest_m = 0.2;                  // of a breach that somebody
 constexpr long kMaxUtc_us = 4'102'444'800'000'000;  // the year 2100
 
 constexpr std::array<std::string_view, 2> kRigs{"palpation", "probing"};
-constexpr std::array<std::string_view, kProbingModes> kModes{"holding", "bone", "resistance",
-                                                             "breach", "stopped"};
 
 template <class T, std::size_t N>
 bool plausible(const std::array<T, N>& values) {
@@ -63,8 +61,6 @@ std::optional<Rig> rig_named(std::string_view name) {
   if (found == kRigs.end()) return std::nullopt;
   return Rig(found - kRigs.begin());
 }
-
-std::string_view name(ProbingMode mode) { return kModes[std::size_t(mode)]; }
 
 std::string fault_of(const Sample& s, const Sample* before) {
   if (auto fault = order_fault(s, before); !fault.empty()) return fault;
@@ -143,19 +139,23 @@ std::optional<Answer> Trial::answer() const {
   return std::nullopt;
 }
 
+void TickCounts::count(std::uint16_t flags) noexcept {
+  ++samples;
+  not_converged += (flags & kNotConverged) != 0;
+  limited += (flags & kLimited) != 0;
+  late += (flags & kLate) != 0;
+  stale += (flags & kStale) != 0;
+  saturated += (flags & kSaturated) != 0;
+  missed += (flags & kMissed) != 0;
+  bus_lost += (flags & kBusLost) != 0;
+}
+
 void TickCounts::add(const Block& block) {
   std::uint32_t last = 0;
-  block.each([&](const auto& s) {
-    not_converged += (s.flags & kNotConverged) != 0;
-    limited += (s.flags & kLimited) != 0;
-    late += (s.flags & kLate) != 0;
-    stale += (s.flags & kStale) != 0;
-    saturated += (s.flags & kSaturated) != 0;
-    missed += (s.flags & kMissed) != 0;
-    bus_lost += (s.flags & kBusLost) != 0;
-    last = s.tick;
+  block.each([&](const auto& sample) {
+    count(sample.flags);
+    last = sample.tick;
   });
-  samples += block.size();
   if (block.size() > 0) skipped = std::uint64_t{last} + 1 - samples;
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/json.hpp"
+#include "core/probing_mode.hpp"
 #include "math/geometry.hpp"
 
 namespace tractus::trial {
@@ -44,16 +45,9 @@ enum class Rig : std::uint8_t { palpation, probing };
 std::string_view name(Rig rig);
 std::optional<Rig> rig_named(std::string_view name);
 
-/// What the probing rig's controller was doing.
-enum class ProbingMode : std::uint8_t {
-  holding,     ///< the probe turns too slowly: the stage does not move
-  bone,        ///< in a layer
-  resistance,  ///< before a wall, resistance growing
-  breach,      ///< behind a wall: no stiffness, the breach's damping, rotary motor off
-  stopped,     ///< at the probe stop
-};
-inline constexpr int kProbingModes = 5;
-std::string_view name(ProbingMode mode);
+using core::kProbingModes;
+using core::name;  // of a mode
+using core::ProbingMode;
 
 /// One tick of a probing trial: what was read in one exchange with the rig, and what was commanded
 /// for the next period. 64 bytes, little-endian, no padding: also the layout on disk.
@@ -173,13 +167,17 @@ std::string fault_of(const Sample& sample, const Sample* before);
 /// Likewise; also a mode that is none.
 std::string fault_of(const ProbingSample& sample, const ProbingSample* before);
 
-/// How the loop that recorded the samples fared.
+/// How the loop that recorded the samples fared: counted by the loop itself as it runs, and again
+/// by a reader of its samples.
 struct TickCounts {
   std::uint64_t samples = 0;
-  std::uint64_t not_converged = 0, limited = 0, late = 0, stale = 0, saturated = 0;
-  std::uint64_t missed = 0, bus_lost = 0;
+  std::uint64_t limited = 0, late = 0, stale = 0;
+  std::uint64_t not_converged = 0, saturated = 0;  ///< palpation alone
+  std::uint64_t missed = 0, bus_lost = 0;          ///< probing alone
   std::uint64_t skipped = 0;  ///< ticks from 0 to the last one that left no sample
 
+  /// One sample more, by its Flag bits. Real-time safe.
+  void count(std::uint16_t flags) noexcept;
   /// Blocks of one trial, in order.
   void add(const Block& block);
 };

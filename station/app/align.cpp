@@ -19,19 +19,15 @@ namespace {
 core::Result<std::unique_ptr<devices::Device>> device_for(
     const Options& options, std::span<const headset::FixturePoint> points,
     const math::Vec3& tip_H_m) {
-  const std::string& id = options.setup.device;
-  if (id == "sim-lambda6")
+  auto info = devices::find(options.setup.device, devices::DeviceKind::handle);
+  if (!info) return info.error();
+  if (info->simulated)
     return std::unique_ptr<devices::Device>(new headset::TouchingHand(points, tip_H_m));
-  for (const devices::DeviceInfo& info : devices::all()) {
-    if (info.id != id) continue;
-    devices::DeviceOptions how;
-    how.sdk = options.setup.sdk;
-    auto made = info.make(how);
-    if (!made) return made.error();
-    return std::move(made->device);
-  }
-  return core::Error{core::Errc::not_found,
-                     fmt::format("--device {}: lambda6 or sim-lambda6 is expected", id)};
+  devices::DeviceOptions how;
+  how.sdk = options.setup.sdk;
+  auto made = info->make(how);
+  if (!made) return made.error();
+  return std::move(made->device);
 }
 
 /// Has somebody pressed Enter? An input that has ended presses nothing more.

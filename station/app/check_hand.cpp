@@ -12,14 +12,6 @@ namespace {
 constexpr double kSimulatedTravel_m = 0.001;  // a simulated hand stays in its channel
 constexpr double kLongPlan_s = 3600.0;
 
-core::Result<devices::DeviceInfo> device_named(const std::string& id) {
-  for (devices::DeviceInfo& info : devices::all())
-    if (info.id == id) return std::move(info);
-  return core::Error{
-      core::Errc::not_found,
-      fmt::format("--device {}: lambda6, sim-lambda6, rig or sim-rig is expected", id)};
-}
-
 /// A device opened, with its limiter and its clock: real time for a machine, as fast as it goes for
 /// a simulated hand's.
 struct Opened {
@@ -45,7 +37,7 @@ struct Opened {
 core::Result<std::unique_ptr<Opened>> open_device(const Checked& checked, double plan_s,
                                                   devices::Homing homing) {
   const session::TrialSetup& setup = checked.options.setup;
-  auto info = device_named(setup.device);
+  auto info = devices::find(setup.device, devices::DeviceKind::handle);
   if (!info) return info.error();
   auto out = std::make_unique<Opened>();
   auto made = info->make({.duration_s = plan_s, .sdk = setup.sdk, .homing = homing});
@@ -116,7 +108,7 @@ core::Result<void> self_test_hand(Checked& checked) {
 }
 
 core::Result<void> calibrate_hand(Checked& checked) {
-  auto info = device_named(checked.options.setup.device);
+  auto info = devices::find(checked.options.setup.device, devices::DeviceKind::handle);
   if (!info) return info.error();
   if (!info->simulated)
     if (auto told = ask_person(checked.options,

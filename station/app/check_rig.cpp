@@ -5,8 +5,7 @@
 #include <algorithm>
 
 #include "station/app/checks.hpp"
-#include "station/devices/modbus_rig.hpp"
-#include "station/devices/rig_process.hpp"
+#include "station/devices/catalogue.hpp"
 #include "station/session/rig_entry.hpp"
 
 namespace tractus {
@@ -19,34 +18,26 @@ constexpr const char* kKeepClear =
     "turns.";
 
 struct OpenedRig {
-  std::optional<devices::RigProcess> process;  ///< of sim-rig
-  std::unique_ptr<devices::RigDevice> device;
+  devices::MadeRig made;
   devices::RigIdentity identity;
   core::MonotonicClock clock;
 
-  OpenedRig() = default;
+  explicit OpenedRig(devices::MadeRig rig) : made(std::move(rig)) {}
   OpenedRig(const OpenedRig&) = delete;
   OpenedRig& operator=(const OpenedRig&) = delete;
-  ~OpenedRig() {
-    if (device) device->close();
-  }
+  ~OpenedRig() { made.device->close(); }
 };
 
 core::Result<std::unique_ptr<OpenedRig>> open_rig(Checked& checked) {
   const session::RigSetup& setup = checked.options.rig;
-  auto out = std::make_unique<OpenedRig>();
-  std::string address = setup.address;
-  if (checked.options.setup.device == "sim-rig") {
-    auto started = devices::RigProcess::start(
-        {.program = setup.program, .seed = setup.seed, .surgeon = false});
-    if (!started) return started.error();
-    out->process.emplace(std::move(*started));
-    address = out->process->address();
-  }
-  auto made = devices::modbus_rig(address);
+  const auto info = devices::find(checked.options.setup.device, devices::DeviceKind::rig);
+  if (!info) return info.error();
+  auto made = info->make_rig(
+      {.address = setup.address, .program = setup.program, .seed = setup.seed, .surgeon = false});
   if (!made) return made.error();
-  out->device = std::move(*made);
-  auto identity = out->device->open();
+  auto out = std::make_unique<OpenedRig>(std::move(*made));
+  const std::string& address = out->made.address;
+  auto identity = out->made.device->open();
   if (!identity) return identity.error();
   if (identity->bus_clock)
     return core::Error{
@@ -62,7 +53,7 @@ check::RigBench bench_of(const Checked& checked, OpenedRig& rig,
                          std::function<bool(double)> progress) {
   check::RigBench out{.clock = rig.clock,
                       .wall = rig.clock,
-                      .device = *rig.device,
+                      .device = *rig.made.device,
                       .travel_m = rig.identity.travel_m,
                       .rate_Hz = checked.options.rig.rate_Hz,
                       .progress = std::move(progress)};
@@ -90,7 +81,7 @@ class Stoppable final : public devices::RigDevice {
 
 core::Result<void> move(Checked& checked, OpenedRig& rig,
                         const std::function<bool(double)>& progress) {
-  Stoppable stoppable(*rig.device, progress);
+  Stoppable stoppable(*rig.made.device, progress);
   auto there = session::bring_to_entry(stoppable, rig.clock, checked.options.rig.rate_Hz);
   if (!there && !progress(0.0)) return core::Error{core::Errc::cancelled, "stopped"};
   if (!there) return there;

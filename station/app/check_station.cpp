@@ -12,6 +12,7 @@
 #include "station/app/exchange.hpp"
 #include "station/app/presence.hpp"
 #include "station/check/machine_check.hpp"
+#include "station/devices/catalogue.hpp"
 #include "station/uplink/clock_offset.hpp"
 #include "station/uplink/reports.hpp"
 
@@ -38,7 +39,7 @@ std::optional<check::Offset> offset_to_server(const Options& options) {
 core::Result<void> check_machine(Checked& checked) {
   const Options& options = checked.options;
   std::vector<check::Finding>& out = checked.findings;
-  const bool rig = is_rig(options.setup.device);
+  const bool rig = devices::is_rig(options.setup.device);
   if (!rig && options.show != Show::none) out.push_back(check_display(options.show));
   const core::Progress shown = core::terminal_progress("Loop");
   out.push_back(check::check_wake_ups(
@@ -55,7 +56,7 @@ core::Result<void> check_calibration(Checked& checked) {
   const std::string& device = checked.options.setup.device;
   auto last = check::Calibration::read(checked.folder.calibration_file(device));
   if (!last) return last.error();
-  if (*last || !device.starts_with("sim-"))
+  if (*last || !devices::is_simulated(device))
     checked.findings.push_back(check::check_calibration(
         *last, core::utc_us(),
         checked.simulated ? check::Tested::simulation : check::Tested::machine));
@@ -187,7 +188,7 @@ core::Result<int> self_test(const Options& options) {
   Checked checked{options, *folder, *presence.outside()};
   check::SelfTest test{.at_utc_us = core::utc_us()};
   const auto device =
-      is_rig(options.setup.device) ? check_whole_rig(checked) : self_test_hand(checked);
+      devices::is_rig(options.setup.device) ? check_whole_rig(checked) : self_test_hand(checked);
   if (auto fine = recorded_outcome(device, checked); !fine) return unfinished(fine.error());
   if (auto done = check_calibration(checked); !done) return done.error();
   if (auto done = check_machine(checked); !done) return done.error();
@@ -218,7 +219,7 @@ core::Result<int> calibrate(const Options& options) {
   presence->is(Presence::State::preparing);
   Checked checked{options, *folder, *presence->outside()};
   const auto device =
-      is_rig(options.setup.device) ? check_whole_rig(checked) : calibrate_hand(checked);
+      devices::is_rig(options.setup.device) ? check_whole_rig(checked) : calibrate_hand(checked);
   if (auto fine = recorded_outcome(device, checked); !fine) return unfinished(fine.error());
   if (!all_passed(checked)) return not_calibrated(checked);
   presence.reset();  // it told the date that was due until now

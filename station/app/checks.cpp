@@ -8,6 +8,7 @@
 #include <cstdio>
 
 #include "station/app/exchange.hpp"
+#include "station/devices/catalogue.hpp"
 #include "station/loop/realtime.hpp"
 
 namespace tractus {
@@ -18,8 +19,6 @@ constexpr int kWait_ms = 100;
 
 core::Error stopped() { return {core::Errc::cancelled, "stopped"}; }
 }  // namespace
-
-bool is_rig(const std::string& device) { return device == "rig" || device == "sim-rig"; }
 
 core::Result<void> ask_person(const Options& options, const char* what) {
   if (options.stand_by) return {};
@@ -71,7 +70,7 @@ void say_calibration_due(const session::StationFolder& folder, const std::string
     line = last.error().what;
   else if (*last)
     line = check::due_warning(**last, core::utc_us());
-  else if (!device.starts_with("sim-"))
+  else if (!devices::is_simulated(device))
     line = fmt::format("{} was never calibrated here: run `tractus-station calibrate`", device);
   if (!line.empty()) std::fprintf(stderr, "warning: %s\n", line.c_str());
 }

@@ -13,8 +13,6 @@
 
 namespace tractus::app {
 
-bool is_rig(const std::string& device);
-
 /// Tells a person at the terminal what to do, and waits for Enter. With --stand-by nobody is asked.
 /// Errors: bad_input when there is neither, cancelled.
 core::Result<void> ask_person(const Options& options, const char* what);

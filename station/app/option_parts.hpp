@@ -7,6 +7,7 @@
 #include <map>
 
 #include "station/app/options.hpp"
+#include "station/devices/catalogue.hpp"
 
 namespace tractus::app {
 
@@ -46,6 +47,13 @@ CLI::Validator word_of(const std::map<std::string, T>& words) {
       },
       "{" + all + "}");
 }
+
+/// --device: one of these. What it is for is said in `help`.
+CLI::Option* add_device(CLI::App& app, std::string& device, const std::string& help,
+                        const std::vector<devices::DeviceInfo>& from);
+/// --sdk and --address, of the devices that are found by them.
+void add_sdk(CLI::App& app, Options& options);
+void add_address(CLI::App& app, Options& options);
 
 /// What a technician does at a station: limits, self-test, calibrate, align, record.
 void add_technician(CLI::App& app, Options& options);

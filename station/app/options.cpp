@@ -61,16 +61,24 @@ void add_started(CLI::App& app, Options& options) {
 }
 
 void add_rig(CLI::App& app, Options& options) {
-  app.add_option("--address", options.rig.address,
-                 "of the rig: HOST:PORT, or a serial line /dev/…[@BAUD]")
-      ->capture_default_str();
+  add_address(app, options);
   app.add_option("--rate", options.rig.rate_Hz, "Hz, of the rig's loop")
       ->check(between(100.0, 1000.0))
       ->capture_default_str();
-  app.add_option("--skill", options.rig.skill, "of sim-rig's simulated surgeon, 0 … 1")
+  app.add_option("--skill", options.rig.skill, "of a simulated rig's surgeon, 0 … 1")
       ->check(between(0.0, 1.0))
       ->capture_default_str();
-  app.add_flag("!--no-surgeon", options.rig.surgeon, "sim-rig: nobody pushes but who writes to it");
+  app.add_flag("!--no-surgeon", options.rig.surgeon,
+               "a simulated rig: nobody pushes but who writes to it");
+}
+
+/// A handle, or a rig for what is probed; an unknown name is refused by the trial.
+void add_any_device(CLI::App& app, Options& options, const char* probed) {
+  using devices::DeviceKind;
+  app.add_option("--device", options.setup.device,
+                 fmt::format("{}; {} {}", devices::listed(DeviceKind::handle),
+                             devices::listed(DeviceKind::rig), probed))
+      ->capture_default_str();
 }
 
 void add_tune(CLI::App& app, Options& options) {
@@ -81,11 +89,8 @@ void add_tune(CLI::App& app, Options& options) {
   app.add_option("--who", options.who, "the expert, as new versions name him")->required();
   app.add_option("--out", options.tuned_folder, "folder for new versions, named by their id")
       ->required();
-  app.add_option("--device", options.rig.device, "rig or sim-rig")
-      ->check(CLI::IsMember({"rig", "sim-rig"}))
-      ->capture_default_str();
-  app.add_option("--seed", options.rig.seed, "of sim-rig's simulated surgeon")
-      ->capture_default_str();
+  add_device(app, options.rig.device, "", devices::all(devices::DeviceKind::rig));
+  app.add_option("--seed", options.rig.seed, "of a simulated rig's surgeon")->capture_default_str();
   app.add_option("--speed", options.rig.speed, "real or fast")->transform(word_of(kSpeeds));
   app.add_option("--duration", options.rig.duration_s, "s, of a trial at most")
       ->check(between(1.0, 3600.0))
@@ -99,9 +104,7 @@ void add_tune(CLI::App& app, Options& options) {
 }
 
 void add_run(CLI::App& app, Options& options) {
-  app.add_option("--device", options.setup.device,
-                 "lambda6 or sim-lambda6; rig or sim-rig for a scenario")
-      ->capture_default_str();
+  add_any_device(app, options, "for a scenario");
   app.add_option("--tool", options.burr,
                  "probe: the channel is felt; burr: the bone is drilled while the device's button "
                  "is held (a case of tractus carve --no-channel)")
@@ -111,9 +114,7 @@ void add_run(CLI::App& app, Options& options) {
                  "JSON file with the burr's numbers, with --tool burr");
   app.add_option("--drilled", options.drilled,
                  "palpate what this trial drilled into the case: its id");
-  app.add_option(
-      "--sdk", options.setup.sdk,
-      "lambda6: the vendor's SDK, its folder or library; else $FDSDK, else as installed");
+  add_sdk(app, options);
   app.add_option("--case", options.case_name,
                  "a case's folder, or 8 or more characters of the id of one in the data folder");
   app.add_option("--model", options.model_file,
@@ -154,19 +155,17 @@ void add_run(CLI::App& app, Options& options) {
 void add_study(CLI::App& app, Options& options) {
   app.add_option("--study", options.study, "the study's short name")->required();
   app.add_option("--participant", options.participant, "a pseudonym")->required();
-  app.add_option("--device", options.rig.device, "rig, or sim-rig for a simulated participant")
-      ->check(CLI::IsMember({"rig", "sim-rig"}))
-      ->capture_default_str();
-  app.add_option("--address", options.rig.address,
-                 "of the rig: HOST:PORT, or a serial line /dev/…[@BAUD]")
-      ->capture_default_str();
+  add_device(app, options.rig.device, "; a simulated one for a simulated participant",
+             devices::all(devices::DeviceKind::rig));
+  add_address(app, options);
   app.add_option("--skill", options.rig.skill,
                  "of the simulated surgeon, 0 … 1; without, it follows from their experience")
       ->check(between(0.0, 1.0));
   app.add_option("--seed", options.rig.seed, "of the simulated surgeons")
       ->check(between(0.0, 9e15))
       ->capture_default_str();
-  app.add_option("--speed", options.rig.speed, "real, or fast: simulated time, sim-rig alone")
+  app.add_option("--speed", options.rig.speed,
+                 "real, or fast: simulated time, a simulated rig alone")
       ->transform(word_of(kSpeeds));
   add_started(app, options);
   app.add_option("--trials", options.trials, "at most so many now; all that are left if not given")
@@ -185,10 +184,8 @@ void add_assigned(CLI::App& app, Options& options) {
   add_server(app, options, true);
   app.add_option("--badge", options.badge, "the trainee's badge number")->required();
   app.add_option("--pin-file", options.pin_file, "its first line is the PIN; else asked for");
-  app.add_option("--device", options.setup.device,
-                 "lambda6 or sim-lambda6; rig or sim-rig for scenarios")
-      ->capture_default_str();
-  app.add_option("--sdk", options.setup.sdk, "lambda6: the vendor's SDK, its folder or library");
+  add_any_device(app, options, "for scenarios");
+  add_sdk(app, options);
   add_rig(app, options);
   add_started(app, options);
   app.add_option("--seed", options.setup.seed, "of the simulated hand")
@@ -228,20 +225,24 @@ void add_trust(CLI::App& app, Options& options) {
 std::optional<int> check_run(const CLI::App& app, Options& options) {
   session::RigSetup& rig = options.rig;
   rig.device = options.setup.device;
-  if (rig.device == "rig" || rig.device == "sim-rig") options.command = run_probing_trials;
+  if (devices::is_rig(rig.device)) options.command = run_probing_trials;
   if (options.data.empty()) return refuse("--data is required");
   if (options.command == run_trials) {
-    if (!options.scenario.empty()) return refuse("--scenario: --device rig or sim-rig is expected");
+    if (!options.scenario.empty())
+      return refuse(fmt::format("--scenario: --device {} is expected",
+                                devices::listed(devices::DeviceKind::rig)));
     if (!options.burr && !options.burr_file.empty()) return refuse("--burr: needs --tool burr");
     if (options.burr && !options.drilled.empty())
       return refuse("--drilled: is palpated, with --tool probe; a burr begins on the case's bone");
     return options.case_name.empty() ? std::optional(refuse("--case is required")) : std::nullopt;
   }
-  if (!options.case_name.empty()) return refuse("--case: is felt with sim-lambda6, not on the rig");
+  const std::string handles = devices::listed(devices::DeviceKind::handle);
+  if (!options.case_name.empty())
+    return refuse(fmt::format("--case: is felt with {}, not on the rig", handles));
   if (options.scenario.empty() && options.model_file.empty())
     return refuse("--scenario is required (or --model alone, without walls)");
   if (options.burr || !options.drilled.empty())
-    return refuse("--tool, --drilled: are of a case, with sim-lambda6 or lambda6");
+    return refuse(fmt::format("--tool, --drilled: are of a case, with {}", handles));
   if (options.show != Show::none || !options.picture.empty())
     return refuse("--view, --picture: the rig has none; its person feels alone");
   rig.seed = options.setup.seed;
@@ -262,6 +263,28 @@ void add_data(CLI::App& app, Options& options, bool needed) {
   auto* data = app.add_option("--data", options.data, "the station's folder; made when missing");
   if (needed) data->required();
   app.add_flag("--json", options.json, "one JSON document on standard output");
+}
+
+CLI::Option* add_device(CLI::App& app, std::string& device, const std::string& help,
+                        const std::vector<devices::DeviceInfo>& from) {
+  std::vector<std::string> ids;
+  for (const devices::DeviceInfo& info : from) ids.push_back(info.id);
+  return app.add_option("--device", device, devices::listed(from) + help)
+      ->check(CLI::IsMember(ids))
+      ->capture_default_str();
+}
+
+void add_sdk(CLI::App& app, Options& options) {
+  app.add_option("--sdk", options.setup.sdk,
+                 devices::listed(devices::AddressedBy::sdk) +
+                     ": the vendor's SDK, its folder or library; else $FDSDK, else as installed");
+}
+
+void add_address(CLI::App& app, Options& options) {
+  app.add_option("--address", options.rig.address,
+                 devices::listed(devices::AddressedBy::line) +
+                     ": HOST:PORT, or a serial line /dev/…[@BAUD]")
+      ->capture_default_str();
 }
 
 void add_server(CLI::App& app, Options& options, bool needed) {

@@ -12,9 +12,9 @@ constexpr std::size_t kLongestName = 64;
 
 void add_align(CLI::App& app, Options& options) {
   add_data(app, options, true);
-  app.add_option("--device", options.setup.device, "lambda6, or sim-lambda6 in a SIMULATED hand")
-      ->capture_default_str();
-  app.add_option("--sdk", options.setup.sdk, "lambda6: the vendor's SDK, its folder or library");
+  add_device(app, options.setup.device, "; a simulated one touches the points by itself",
+             devices::all(devices::DeviceKind::handle));
+  add_sdk(app, options);
   app.add_option(
          "--fixture", options.fixture,
          "the points to touch, in the headset's STAGE frame (m, y up): {\"format\": "
@@ -33,13 +33,9 @@ void add_align(CLI::App& app, Options& options) {
 void add_check(CLI::App& app, Options& options) {
   add_data(app, options, true);
   add_server(app, options, false);
-  app.add_option("--device", options.setup.device, "lambda6, sim-lambda6, rig or sim-rig")
-      ->check(CLI::IsMember({"lambda6", "sim-lambda6", "rig", "sim-rig"}))
-      ->capture_default_str();
-  app.add_option("--sdk", options.setup.sdk, "lambda6: the vendor's SDK, its folder or library");
-  app.add_option("--address", options.rig.address,
-                 "of the rig: HOST:PORT, or a serial line /dev/…[@BAUD]")
-      ->capture_default_str();
+  add_device(app, options.setup.device, "", devices::all());
+  add_sdk(app, options);
+  add_address(app, options);
   app.add_option("--rate", options.rig.rate_Hz, "Hz, of the rig's loop")
       ->check(between(100.0, 1000.0))
       ->capture_default_str();

@@ -13,6 +13,7 @@
 #include "station/app/commands.hpp"
 #include "station/app/exchange.hpp"
 #include "station/check/findings.hpp"
+#include "station/devices/catalogue.hpp"
 #include "station/loop/live_state.hpp"
 #include "station/uplink/clock_offset.hpp"
 #include "station/uplink/live.hpp"
@@ -76,7 +77,7 @@ struct Presence::Parts {
   Parts(const Options& given, const session::StationFolder& where) : options(given), folder(where) {
     const bool rig = given.command == run_probing_trials || given.command == run_study;
     device = rig ? given.rig.device : given.setup.device;
-    simulated = device.starts_with("sim-");
+    simulated = devices::is_simulated(device);
     if (const auto last = check::Calibration::read(where.calibration_file(device)); last && *last)
       calibration_due_utc_us = (*last)->due_utc_us;
     if (where.config().lowered_force_N) outside.lower_force(*where.config().lowered_force_N);
@@ -217,7 +218,7 @@ session::ProbingWatch Presence::watched(session::ProbingWatch inner,
 }
 
 void Presence::done(const session::TrialReport& report) {
-  parts_->ticks += report.counts.ticks;
+  parts_->ticks += report.counts.samples;
   parts_->late += report.counts.late;
   if (parts_->outside.stopped())
     is(State::stopped);

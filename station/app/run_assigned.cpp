@@ -12,6 +12,7 @@
 #include "station/app/exchange.hpp"
 #include "station/app/presence.hpp"
 #include "station/app/trial_epilogue.hpp"
+#include "station/devices/catalogue.hpp"
 #include "station/session/probing_trial.hpp"
 #include "station/session/station.hpp"
 #include "station/uplink/assigned.hpp"
@@ -141,9 +142,8 @@ core::Result<TrialReport> one_trial(const Options& options, Presence& presence,
                                     int number) {
   presence.is(Presence::State::preparing);
   const std::string& device = options.setup.device;
-  const bool is_rig = device == "rig" || device == "sim-rig";
   const bool probing = work.trial->rig == "probing";
-  if (is_rig != probing)
+  if (devices::is_rig(device) != probing)
     return core::Error{core::Errc::bad_input,
                        fmt::format("the next trial is for {}: --device {} is not for that",
                                    work.trial->rig, device)};

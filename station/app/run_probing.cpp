@@ -44,12 +44,12 @@ core::Result<scenarios::Scenario> scenario_named(const std::string& name) {
 
 void print_probing_report(const TrialReport& report, bool fast) {
   const auto& bus = *report.bus;
+  const trial::TickCounts& n = report.counts;
   fmt::print("trial {}{}\n", report.trial_id,
              report.simulated ? "  (SIMULATED rig and surgeon)" : "");
   fmt::print(
       "  {:.1f} s, {} samples, {} periods missed, {} skipped, {} without an answer, {} restarts\n",
-      report.duration_s, report.counts.ticks, bus.missed, report.counts.skipped, bus.lost,
-      bus.restarts);
+      report.duration_s, n.samples, n.missed, n.skipped, n.bus_lost, bus.restarts);
   fmt::print("  round trip p50 {:.0f} us, p99 {:.0f} us{}\n", bus.p50_us, bus.p99_us,
              fast ? "; simulated time, run as fast as the bus goes" : "");
   for (const auto& warning : report.grant.warnings) fmt::print("  warning: {}\n", warning);

@@ -12,6 +12,7 @@
 #include "station/app/exchange.hpp"
 #include "station/app/presence.hpp"
 #include "station/app/trial_epilogue.hpp"
+#include "station/devices/catalogue.hpp"
 #include "station/rig/surgeon.hpp"
 #include "station/session/study_plan.hpp"
 #include "station/uplink/study.hpp"
@@ -61,7 +62,7 @@ core::Result<StudyWork> work_of(const Study& study, bool& away) {
 
 /// A person in front of the rig of a simulated participant, or the reverse, would spoil the data.
 core::Result<void> check_who(const Options& options, const StudyWork& work) {
-  const bool simulated = options.rig.device == "sim-rig";
+  const bool simulated = devices::is_simulated(options.rig.device);
   if (simulated == work.simulated) return {};
   return core::Error{
       core::Errc::bad_input,
@@ -150,13 +151,13 @@ void note(Study& study, const StudyWork& work, const SealedTrial& trial,
           const TrialReport& report) {
   study.trials.push_back({{"trial_id", report.trial_id},
                           {"number", trial.number},
-                          {"samples", report.counts.ticks},
+                          {"samples", report.counts.samples},
                           {"complete", report.complete},
                           {"fault", report.fault}});
   if (study.options.json) return;
   fmt::print("{}{}: trial {} of {} is recorded, {} samples{}\n", work.participant,
              report.simulated ? " (SIMULATED)" : "", trial.number, work.planned,
-             report.counts.ticks, report.fault.empty() ? "" : "  FAULT: " + report.fault);
+             report.counts.samples, report.fault.empty() ? "" : "  FAULT: " + report.fault);
   std::fflush(stdout);
 }
 

@@ -100,13 +100,13 @@ core::Result<std::optional<drilling::Burr>> burr_of(const Options& options) {
 }
 
 void print_report(const TrialReport& report, bool fast) {
-  const loop::Counts& n = report.counts;
-  const double share = n.ticks ? 100.0 * double(n.late) / double(n.ticks) : 0.0;
+  const trial::TickCounts& n = report.counts;
+  const double share = n.samples ? 100.0 * double(n.late) / double(n.samples) : 0.0;
   fmt::print("trial {}{}\n", report.trial_id,
              report.simulated ? "  (SIMULATED hand and device)" : "");
   fmt::print(
       "  {:.1f} s, {} samples, {} late ({:.3f} %), {} skipped, {} not converged, {} limited\n",
-      report.duration_s, n.ticks, n.late, share, n.skipped, n.not_converged, n.limited);
+      report.duration_s, n.samples, n.late, share, n.skipped, n.not_converged, n.limited);
   if (fast)
     fmt::print("  simulated time, run as fast as it goes; tick p50 {:.0f} us\n",
                report.work_p50_us);

@@ -148,12 +148,8 @@ TEST(DeviceCheck, EndsAtZeroForceWhenSomebodyStopsIt) {
 }
 
 devices::MadeDevice simulated(double for_s) {
-  for (const devices::DeviceInfo& info : devices::all())
-    if (info.id == "sim-lambda6") {
-      auto made = info.make({.seed = 3, .duration_s = for_s});
-      return std::move(*made);
-    }
-  return {};
+  auto made = devices::find("sim-lambda6")->make({.seed = 3, .duration_s = for_s});
+  return std::move(*made);
 }
 
 TEST(DeviceCheck, PassesTheSimulatedLambda6InItsSimulatedHand) {

@@ -10,6 +10,7 @@
 #include "core/file.hpp"
 #include "core/try.hpp"
 #include "core/words.hpp"
+#include "station/devices/catalogue.hpp"
 
 namespace tractus {
 namespace check {
@@ -128,7 +129,7 @@ core::Result<std::optional<Calibration>> Calibration::read(const std::filesystem
 }
 
 std::string due_warning(const Calibration& last, std::int64_t now_utc_us) {
-  if (last.simulated && !last.kind.starts_with("sim-"))
+  if (last.simulated && !devices::is_simulated(last.kind))
     return fmt::format(
         "the calibration of {} was of a SIMULATED one: run `tractus-station calibrate`", last.kind);
   if (now_utc_us < last.due_utc_us - kSoon_us) return "";

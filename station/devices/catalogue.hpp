@@ -1,14 +1,17 @@
-/// Which devices there are. One file each in catalogue/: a file `sim_lambda6.cpp` defines
-/// `DeviceInfo sim_lambda6()`.
+/// Which devices there are, haptic handles and probing rigs. One file each in catalogue/: a file
+/// `sim_lambda6.cpp` defines `DeviceInfo sim_lambda6_device()`.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "station/devices/device.hpp"
+#include "station/devices/rig_device.hpp"
+#include "station/devices/rig_process.hpp"
 
 namespace tractus::devices {
 
@@ -68,15 +71,63 @@ struct MadeDevice {
   SimulatedTrainee* trainee = nullptr;
 };
 
+/// What a rig is told before it is made: a machine the first, a simulated one the others.
+struct RigOptions {
+  std::string address;                 ///< HOST:PORT, or a serial line "/dev/…[@BAUD]"
+  std::filesystem::path program = {};  ///< tractus-rig; empty: beside this program
+  std::uint64_t seed = 1;              ///< of the simulated surgeon and of the sensor
+  double skill = 0.5;                  ///< of the simulated surgeon, 0 … 1
+  bool surgeon = true;                 ///< a SIMULATED surgeon pushes; else nobody does
+};
+
+/// A rig and, when it is simulated, the process that plays it.
+struct MadeRig {
+  std::optional<RigProcess> process;
+  std::string address;  ///< where it answers
+  std::unique_ptr<RigDevice> device;
+};
+
+/// With what a trial is done.
+enum class DeviceKind : std::uint8_t {
+  handle,  ///< a haptic handle: a case is palpated or drilled
+  rig,     ///< a probing rig: a scenario is probed
+};
+
+/// How a person says where a device is.
+enum class AddressedBy : std::uint8_t {
+  nothing,  ///< it is simulated and made here
+  sdk,      ///< --sdk: the vendor's library, which finds it on the USB
+  line,     ///< --address: HOST:PORT, or a serial line
+};
+
 struct DeviceInfo {
   std::string id;       ///< "sim-lambda6"
   std::string summary;  ///< one line
+  DeviceKind kind = DeviceKind::handle;
   bool simulated = false;
-  /// Errors: out_of_range naming the option.
-  core::Result<MadeDevice> (*make)(const DeviceOptions& options);
+  AddressedBy addressed_by = AddressedBy::nothing;
+  /// Of a handle; null of a rig. Errors: out_of_range naming the option.
+  core::Result<MadeDevice> (*make)(const DeviceOptions& options) = nullptr;
+  /// Of a rig; null of a handle. Errors: bad_input (address), unavailable (no process).
+  core::Result<MadeRig> (*make_rig)(const RigOptions& options) = nullptr;
 };
 
 /// Every device, in file-name order.
 std::vector<DeviceInfo> all();
+/// Those of one kind.
+std::vector<DeviceInfo> all(DeviceKind kind);
+/// Nothing when there is none of that name.
+std::optional<DeviceInfo> find(const std::string& id);
+/// Errors: not_found naming those of the kind.
+core::Result<DeviceInfo> find(const std::string& id, DeviceKind kind);
+
+bool is_rig(const std::string& id);
+/// A name that the catalogue does not know is no simulated device.
+bool is_simulated(const std::string& id);
+
+/// For --help and refusals: "lambda6 or sim-lambda6".
+std::string listed(const std::vector<DeviceInfo>& devices);
+std::string listed(DeviceKind kind);
+std::string listed(AddressedBy addressed_by);
 
 }  // namespace tractus::devices

@@ -148,7 +148,7 @@ TEST(Drilling, ReplaysFromItsSamplesWhateverTheWorkersPace) {
   bench.drilling->start(real);
   const auto samples = bench.run(16000, [&] {
     // The worker gets a share of the processors, however busy the machine is.
-    if (bench.loop->counts().ticks % 64 == 0)
+    if (bench.loop->counts().samples % 64 == 0)
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
   });
   ASSERT_EQ(samples.size(), 16000u);
@@ -217,7 +217,7 @@ TEST(Drilling, ShowsWhatChangedAndNothingTwice) {
   EXPECT_FALSE(bench.drilling->show(shown));
   bench.run(8000, [&] {
     bench.drilling->work();
-    if (bench.loop->counts().ticks % 500 == 0) boxes += bool(bench.drilling->show(shown));
+    if (bench.loop->counts().samples % 500 == 0) boxes += bool(bench.drilling->show(shown));
   });
   bench.drilling->show(shown);
   EXPECT_FALSE(bench.drilling->show(shown));

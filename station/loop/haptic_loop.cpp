@@ -26,44 +26,18 @@ bool plausible(const math::Pose& pose) {
 }
 }  // namespace
 
-double TimeHistogram::quantile_us(double share) const noexcept {
-  const auto wanted = static_cast<std::uint64_t>(std::ceil(share * static_cast<double>(count_)));
-  std::uint64_t seen = 0;
-  for (std::size_t bin = 0; bin < bins_.size(); ++bin) {
-    seen += bins_[bin];
-    if (seen >= wanted && seen > 0) return static_cast<double>(bin + 1);
-  }
-  return 0.0;
-}
-
 HapticLoop::HapticLoop(Parts parts, const math::Pose& X_VD, const Vec3& pose_offset_m,
                        double rate_Hz)
-    : parts_(parts),
-      X_VD_(X_VD),
-      pose_offset_m_(pose_offset_m),
-      period_(static_cast<core::Instant_ns>(std::llround(1e9 / rate_Hz))) {
+    : parts_(parts), X_VD_(X_VD), pose_offset_m_(pose_offset_m), periods_(parts.clock, rate_Hz) {
   core::require(rate_Hz >= 100.0 && rate_Hz <= 20000.0, "a loop runs at 100 … 20000 Hz");
 }
 
 void HapticLoop::run(const std::function<void()>& each_tick) noexcept {
-  start_ = parts_.clock.now();
-  core::Instant_ns deadline = start_;
-  std::uint32_t number = 0;
-  while (!stop_.load(std::memory_order_relaxed)) {
-    parts_.clock.sleep_until(deadline);
-    const core::Instant_ns now = parts_.clock.now();
-    const core::Instant_ns behind = now - deadline;
-    const bool late = behind > period_ / 4;
-    tick(now, number, late);
-    wake_.add(behind);
-    work_.add(parts_.clock.now() - now);
-    if (each_tick) each_tick();
-    if (parts_.limiter.guard() == Guard::latched) break;
-    const auto missed = static_cast<std::uint32_t>(std::max(behind, core::Instant_ns{0}) / period_);
-    counts_.skipped += missed;
-    number += 1 + missed;
-    deadline += (1 + core::Instant_ns{missed}) * period_;
-  }
+  periods_.run([this](const PeriodicLoop::Tick& at) { tick(at.now, at.number, at.late); },
+               [&] {
+                 if (each_tick) each_tick();
+                 return parts_.limiter.guard() != Guard::latched;
+               });
   static_cast<void>(
       parts_.device.write({}));  // a device that fails here is at zero by its own watchdog
 }
@@ -74,7 +48,7 @@ void HapticLoop::tick(core::Instant_ns now, std::uint32_t number, bool late) noe
   const bool usable = status == Status::ok && plausible(sample.X_DH);
   if (usable) X_DH_ = sample.X_DH;  // else the last good pose stands, flagged
   const math::Pose X_VH = X_VD_ * X_DH_;
-  const double t_s = static_cast<double>(now - start_) * 1e-9;
+  const double t_s = static_cast<double>(now - periods_.started()) * 1e-9;
   const std::uint32_t patches = parts_.tool ? parts_.tool->apply(t_s) : 0;
   laws::PalpationStep step;
   if (usable)
@@ -110,7 +84,7 @@ void HapticLoop::tick(core::Instant_ns now, std::uint32_t number, bool late) noe
       (sample.saturated ? trial::kSaturated : 0) | (sample.buttons & 1u ? trial::kPressed : 0));
   out.patches = patches;
   if (parts_.tool) parts_.tool->worked(out);
-  record(out);
+  periods_.count(out.flags, parts_.ring.push(out));
   parts_.live.write(
       {.t_s = out.t_s,
        .p_VH_m = array_of(Vec3(X_VH.p + pose_offset_m_)),
@@ -119,7 +93,7 @@ void HapticLoop::tick(core::Instant_ns now, std::uint32_t number, bool late) noe
        .rendered_force_N = array_of(rendered_H),
        .rendered_torque_Nm = array_of(Vec3(q_DH.conjugate() * passed.wrench.torque_Nm)),
        .tick = number,
-       .late_ticks = static_cast<std::uint32_t>(counts_.late),
+       .late_ticks = static_cast<std::uint32_t>(counts().late),
        .buttons = sample.buttons});
 }
 
@@ -134,16 +108,7 @@ math::Wrench HapticLoop::wanted_of(const laws::PalpationStep& step, const device
   if (parts_.passivity == Passivity::observed || !usable) return wanted_D;
   return safety::PassivityController::damped(wanted_D, energy_.given_J(), sample.velocity_m_s,
                                              sample.angular_velocity_rad_s,
-                                             static_cast<double>(period_) * 1e-9);
-}
-
-void HapticLoop::record(const trial::Sample& sample) noexcept {
-  ++counts_.ticks;
-  counts_.late += (sample.flags & trial::kLate) != 0;
-  counts_.not_converged += (sample.flags & trial::kNotConverged) != 0;
-  counts_.limited += (sample.flags & trial::kLimited) != 0;
-  counts_.stale += (sample.flags & trial::kStale) != 0;
-  counts_.lost += !parts_.ring.push(sample);
+                                             static_cast<double>(periods_.period()) * 1e-9);
 }
 
 }  // namespace loop

@@ -1,7 +1,6 @@
 /// The haptic loop: device → model → limiter → device, and a sample to the recorder.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <functional>
 
@@ -9,6 +8,7 @@
 #include "station/loop/contact.hpp"
 #include "station/loop/limiter.hpp"
 #include "station/loop/live_state.hpp"
+#include "station/loop/periodic_loop.hpp"
 #include "station/loop/ring.hpp"
 #include "station/loop/tool.hpp"
 #include "station/safety/energy.hpp"
@@ -18,42 +18,13 @@ namespace tractus::loop {
 
 using SampleRing = Ring<trial::Sample>;
 
-/// What a loop counted. Read after `run`, or by the loop's own thread.
-struct Counts {
-  std::uint64_t ticks = 0;
-  std::uint64_t late = 0;     ///< woke more than a quarter period after the deadline
-  std::uint64_t skipped = 0;  ///< deadlines that passed whole: never chased
-  std::uint64_t not_converged = 0;
-  std::uint64_t limited = 0;
-  std::uint64_t stale = 0;
-  std::uint64_t lost = 0;  ///< samples that the full ring refused: a fault of the recording
-};
-
-/// How long the tick's parts took, in bins of 1 µs up to 1 ms and one for all above. Real-time safe
-/// to fill.
-class TimeHistogram {
- public:
-  void add(core::Instant_ns duration) noexcept {
-    const auto bin = duration < 0 ? 0 : duration / 1000;
-    ++bins_[std::size_t(bin < kBins - 1 ? bin : kBins - 1)];
-    ++count_;
-  }
-  /// Upper edge of the bin that holds the share-quantile, µs.
-  double quantile_us(double share) const noexcept;
-
- private:
-  static constexpr core::Instant_ns kBins = 1001;
-  std::array<std::uint32_t, kBins> bins_{};
-  std::uint64_t count_ = 0;
-};
-
 /// What is done about energy that the device puts into the hand (safety/energy.hpp).
 enum class Passivity {
   observed,    ///< logged alone
   controlled,  ///< and taken back by damping
 };
 
-/// Owns nothing but its counters. Knows no file, no network, no lock.
+/// Owns nothing but its counts. Knows no file, no network, no lock.
 class HapticLoop {
  public:
   struct Parts {
@@ -78,29 +49,21 @@ class HapticLoop {
   /// One tick of the given stamp and number: what `run` calls. Real-time safe.
   void tick(core::Instant_ns now, std::uint32_t number, bool late) noexcept;
   /// From any thread.
-  void stop() noexcept { stop_.store(true, std::memory_order_relaxed); }
+  void stop() noexcept { periods_.stop(); }
 
-  const Counts& counts() const noexcept { return counts_; }
+  const PeriodicLoop& periods() const noexcept { return periods_; }
+  const trial::TickCounts& counts() const noexcept { return periods_.counts(); }
   const safety::EnergyObserver& energy() const noexcept { return energy_; }
-  const TimeHistogram& wake() const noexcept { return wake_; }  ///< wake-up after the deadline
-  const TimeHistogram& work() const noexcept { return work_; }  ///< the whole tick
-  core::Instant_ns started() const noexcept { return start_; }
-  core::Instant_ns period() const noexcept { return period_; }
 
  private:
-  void record(const trial::Sample& sample) noexcept;
   math::Wrench wanted_of(const laws::PalpationStep& step, const devices::Sample& sample,
                          bool usable) noexcept;
   Parts parts_;
   math::Pose X_VD_;
   math::Pose X_DH_;  ///< the last good one
   math::Vec3 pose_offset_m_;
-  core::Instant_ns period_;
-  core::Instant_ns start_ = 0;
-  Counts counts_;
+  PeriodicLoop periods_;
   safety::EnergyObserver energy_;
-  TimeHistogram wake_, work_;
-  std::atomic<bool> stop_ = false;
 };
 
 }  // namespace tractus::loop

@@ -10,9 +10,6 @@ using devices::Exchange;
 using trial::ProbingMode;
 using trial::ProbingSample;
 
-static_assert(int(ProbingMode::holding) == int(laws::ProbingMode::holding) &&
-              int(ProbingMode::stopped) == int(laws::ProbingMode::stopped));
-
 constexpr double kAtStop_m = 2e-5;
 constexpr int kFarewells = 3;  // one would do, were none ever lost
 }  // namespace
@@ -23,29 +20,22 @@ ProbingLoop::ProbingLoop(Parts parts, const models::ProbingRuntime& law, double 
       law_(&law),
       travel_m_(travel_m),
       period_s_(1.0 / rate_Hz),
-      period_(static_cast<core::Instant_ns>(std::llround(1e9 / rate_Hz))) {
+      periods_(parts.clock, rate_Hz) {
   core::require(rate_Hz >= 100.0 && rate_Hz <= 1000.0, "the rig's loop runs at 100 … 1000 Hz");
 }
 
 void ProbingLoop::run(const std::function<void(const ProbingSample&)>& each_tick) noexcept {
-  start_ = parts_.clock.now();
-  core::Instant_ns deadline = start_;
-  std::uint32_t number = 0;
-  while (!stop_.load(std::memory_order_relaxed) && stopped_s_ < kStopped_s) {
-    parts_.clock.sleep_until(deadline);
-    const core::Instant_ns now = parts_.clock.now();
-    const core::Instant_ns behind = now - deadline;
-    ProbingSample sample = tick(now, number, behind > period_ / 4);
-    record(sample, deadline);
-    wake_.add(behind);
-    work_.add(parts_.clock.now() - now);
-    if (each_tick) each_tick(sample);
-    if (parts_.guard.latched()) break;
-    const auto missed = static_cast<std::uint32_t>(std::max(behind, core::Instant_ns{0}) / period_);
-    counts_.ticks.skipped += missed;
-    number += 1 + missed;
-    deadline += (1 + core::Instant_ns{missed}) * period_;
-  }
+  ProbingSample sample;
+  periods_.run(
+      [&](const PeriodicLoop::Tick& at) {
+        sample = tick(at.now, at.number, at.late);
+        record(sample, at.deadline);
+        if (stopped_s_ >= kStopped_s) stop();
+      },
+      [&] {
+        if (each_tick) each_tick(sample);
+        return !parts_.guard.latched();
+      });
   for (int k = 0; k < kFarewells; ++k)
     if (parts_.device.exchange({}, reading_) == Exchange::gone) break;
 }
@@ -73,10 +63,10 @@ void ProbingLoop::step_law(const ProbingGuard::LawInput& seen, ProbingSample& ou
   at_.at.x_m = x_m;
   out.law_m_s = float(law.advance(seen.fz_N, reading_.turning_rad_s, period_s_, at_));
   // Of the depth that was read, not of the one a period ahead.
-  const bool holds = at_.at.mode == laws::ProbingMode::holding;
+  const bool holds = at_.at.mode == ProbingMode::holding;
   out.mode = x_m >= travel_m_ - kAtStop_m ? ProbingMode::stopped
              : holds                      ? ProbingMode::holding
-                                          : ProbingMode(int(law.law().mode_at(x_m)));
+                                          : law.law().mode_at(x_m);
   torque_Nm = -law.torque_Nm(x_m, theta_rad_, reading_.turning_rad_s);
 }
 
@@ -98,7 +88,7 @@ ProbingSample ProbingLoop::tick(core::Instant_ns now, std::uint32_t number, bool
   command_ = passed.command;
   if (out.mode != ProbingMode::stopped && !parts_.guard.enabled()) out.mode = ProbingMode::holding;
   stopped_s_ = out.mode == ProbingMode::stopped ? stopped_s_ + period_s_ : 0.0;
-  out.t_s = static_cast<double>(now - start_) * 1e-9;
+  out.t_s = static_cast<double>(now - periods_.started()) * 1e-9;
   out.x_m = reading_.x_m;
   out.theta_rad = theta_rad_;
   out.speed_m_s = float(reading_.speed_m_s);
@@ -116,21 +106,15 @@ ProbingSample ProbingLoop::tick(core::Instant_ns now, std::uint32_t number, bool
 }
 
 void ProbingLoop::record(ProbingSample& sample, core::Instant_ns deadline) noexcept {
-  if (parts_.clock.now() > deadline + period_) sample.flags |= trial::kMissed;
-  Counts& n = counts_.ticks;
-  ++n.ticks;
-  n.late += (sample.flags & trial::kLate) != 0;
-  n.limited += (sample.flags & trial::kLimited) != 0;
-  n.stale += (sample.flags & trial::kStale) != 0;
-  counts_.missed += (sample.flags & trial::kMissed) != 0;
-  counts_.bus_lost += (sample.flags & trial::kBusLost) != 0;
-  n.lost += !parts_.ring.push(sample);
+  if (parts_.clock.now() > deadline + periods_.period()) sample.flags |= trial::kMissed;
+  periods_.count(sample.flags, parts_.ring.push(sample));
+  const trial::TickCounts& n = counts();
   parts_.live.write({.t_s = sample.t_s,
                      .x_m = sample.x_m,
                      .speed_m_s = double(sample.speed_m_s),
                      .fz_N = double(sample.fz_N),
                      .turning_rad_s = double(sample.turning_rad_s),
-                     .missed = counts_.missed + counts_.bus_lost + n.skipped,
+                     .missed = n.missed + n.bus_lost + n.skipped,
                      .tick = sample.tick,
                      .mode = sample.mode});
 }

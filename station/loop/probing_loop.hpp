@@ -2,11 +2,15 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 
 #include "models/probing_runtime.hpp"
 #include "station/devices/rig_device.hpp"
-#include "station/loop/haptic_loop.hpp"
+#include "station/loop/live_state.hpp"
+#include "station/loop/periodic_loop.hpp"
 #include "station/loop/probing_guard.hpp"
+#include "station/loop/ring.hpp"
+#include "trial/trial.hpp"
 
 namespace tractus::loop {
 
@@ -20,16 +24,9 @@ struct ProbingLoopSnapshot {
   trial::ProbingMode mode = trial::ProbingMode::holding;
 };
 
-/// What a loop counted beyond Counts.
-struct ProbingCounts {
-  Counts ticks;
-  std::uint64_t missed = 0;    ///< exchanges that ended after the next period had begun
-  std::uint64_t bus_lost = 0;  ///< exchanges that failed
-};
-
 /// One exchange a period, absolute deadlines. In each tick goes out what the last one decided, and
 /// what comes back is judged, the law is stepped at the depth where the stage is, and the guard
-/// lets through what may be. Owns nothing but its counters. In the tick: no throw, no allocation,
+/// lets through what may be. Owns nothing but its counts. In the tick: no throw, no allocation,
 /// no lock; the exchange may block for RigDevice::kAnswer_ms.
 class ProbingLoop {
  public:
@@ -49,7 +46,7 @@ class ProbingLoop {
   /// `each_tick` (may be empty) runs after each tick under the tick's rules. The drive is left off.
   void run(const std::function<void(const trial::ProbingSample&)>& each_tick = {}) noexcept;
   /// From any thread.
-  void stop() noexcept { stop_.store(true, std::memory_order_relaxed); }
+  void stop() noexcept { periods_.stop(); }
   /// From any thread: another law from the next tick on; it and the one before must outlive the
   /// run.
   void exchange_law(const models::ProbingRuntime& law) noexcept {
@@ -60,11 +57,9 @@ class ProbingLoop {
 
   /// The highest that the stage ever gave the pushing hand beyond what it took, J: −∫ F dx.
   double injected_J() const noexcept { return injected_J_; }
-  const ProbingCounts& counts() const noexcept { return counts_; }
-  const TimeHistogram& wake() const noexcept { return wake_; }
-  const TimeHistogram& work() const noexcept { return work_; }
+  const PeriodicLoop& periods() const noexcept { return periods_; }
+  const trial::TickCounts& counts() const noexcept { return periods_.counts(); }
   const TimeHistogram& round_trip() const noexcept { return round_trip_; }
-  core::Instant_ns started() const noexcept { return start_; }
 
  private:
   trial::ProbingSample tick(core::Instant_ns now, std::uint32_t number, bool late) noexcept;
@@ -77,7 +72,7 @@ class ProbingLoop {
   Parts parts_;
   std::atomic<const models::ProbingRuntime*> law_;
   double travel_m_, period_s_;
-  core::Instant_ns period_, start_ = 0;
+  PeriodicLoop periods_;
   models::ProbingLive at_;
   devices::RigReading reading_;
   devices::RigCommand command_;
@@ -85,9 +80,7 @@ class ProbingLoop {
   double theta_rad_ = 0.0, stopped_s_ = 0.0;
   double last_push_N_ = 0.0, last_x_m_ = 0.0, given_J_ = 0.0, injected_J_ = 0.0;
   bool angle_known_ = false;
-  ProbingCounts counts_;
-  TimeHistogram wake_, work_, round_trip_;
-  std::atomic<bool> stop_ = false;
+  TimeHistogram round_trip_;
 };
 
 }  // namespace tractus::loop

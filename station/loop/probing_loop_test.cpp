@@ -151,7 +151,7 @@ TEST(ProbingLoop, CountsWhatWasLateSkippedOrLostAndSaysSoInTheSamples) {
   EXPECT_EQ(bench.samples[380].round_trip_s, 0.0f);
   EXPECT_EQ(bench.samples[380].command_m_s, 0.0f);
   EXPECT_EQ(bench.loop.counts().missed, counts.missed);
-  EXPECT_EQ(bench.loop.counts().ticks.skipped, counts.skipped);
+  EXPECT_EQ(bench.loop.counts().skipped, counts.skipped);
 }
 
 TEST(ProbingLoop, EndsWithTheGuardAndLeavesTheDriveOff) {

@@ -51,8 +51,8 @@ class FastRig final : public devices::RigDevice {
 
 }  // namespace
 
-std::unique_ptr<devices::RigDevice> fast_rig(const RigSetup& setup) {
-  return std::make_unique<FastRig>(setup);
+devices::MadeRig fast_rig(const RigSetup& setup) {
+  return {std::nullopt, "this process", std::make_unique<FastRig>(setup)};
 }
 
 }  // namespace session

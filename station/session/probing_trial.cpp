@@ -4,15 +4,11 @@
 
 #include <algorithm>
 #include <atomic>
-#include <future>
-#include <thread>
 
 #include "core/bytes.hpp"
 #include "station/devices/felt_breach.hpp"
-#include "station/devices/modbus_rig.hpp"
-#include "station/devices/rig_process.hpp"
+#include "station/loop/loop_thread.hpp"
 #include "station/loop/probing_loop.hpp"
-#include "station/loop/realtime.hpp"
 #include "station/loop/recorder.hpp"
 #include "station/session/fast_rig.hpp"
 #include "station/session/rig_entry.hpp"
@@ -26,14 +22,10 @@ constexpr auto kWatch = std::chrono::milliseconds(30);
 
 core::Error wrong(std::string what) { return {core::Errc::out_of_range, std::move(what)}; }
 
-core::Result<void> check(const RigSetup& setup) {
-  if (setup.device != "rig" && setup.device != "sim-rig")
-    return core::Error{
-        core::Errc::not_found,
-        fmt::format("--device {}: rig or sim-rig is expected for a scenario", setup.device)};
-  if (setup.speed == Speed::fast && setup.device == "rig")
+core::Result<void> check(const RigSetup& setup, const devices::DeviceInfo& info) {
+  if (setup.speed == Speed::fast && !info.simulated)
     return core::Error{core::Errc::bad_input,
-                       "--speed fast: a rig runs in real time; sim-rig does not"};
+                       fmt::format("--speed fast: {} is held by a person", info.id)};
   if (!(setup.rate_Hz >= 100.0 && setup.rate_Hz <= 1000.0))
     return wrong(fmt::format("--rate {}: 100 … 1000 Hz are possible", setup.rate_Hz));
   if (setup.started_utc_us && setup.speed != Speed::fast)
@@ -92,9 +84,8 @@ struct ProbingTrialRun::Parts {
   const StationFolder& folder;
   ProbingTask task;
   RigSetup setup;
-  std::optional<devices::RigProcess> process;
-  std::string address;  // of a rig behind Modbus
-  std::unique_ptr<devices::RigDevice> device;
+  devices::DeviceInfo info;
+  std::optional<devices::MadeRig> rig;
   devices::RigIdentity identity;
   trial::Header header;
   core::MonotonicClock real_clock;
@@ -111,66 +102,59 @@ struct ProbingTrialRun::Parts {
   std::string fault;
   std::vector<trial::Event> retuned;
 
-  Parts(const StationFolder& where, const ProbingTask& what, const RigSetup& how)
-      : folder(where), task(what), setup(how) {}
+  Parts(const StationFolder& where, const ProbingTask& what, const RigSetup& how,
+        const devices::DeviceInfo& of)
+      : folder(where), task(what), setup(how), info(of) {}
   bool fast() const { return setup.speed == Speed::fast; }
+  loop::Pace pace() const { return fast() ? loop::Pace::as_fast_as_goes : loop::Pace::real_time; }
   core::Clock& clock() { return fast() ? static_cast<core::Clock&>(manual_clock) : real_clock; }
-  double elapsed_s() { return static_cast<double>(clock().now() - loop->started()) * 1e-9; }
+  double elapsed_s() {
+    return static_cast<double>(clock().now() - loop->periods().started()) * 1e-9;
+  }
   std::string operator_name() const;
   core::Result<void> make_device();
   core::Result<void> open_device();
   core::Result<void> make_file();
   core::Result<void> add_law(const laws::ProbingParameters& law);
   void after_tick(const trial::ProbingSample& sample);
-  void loop_thread(std::promise<void>& prepared, const std::future<void>& go);
   ProbingTrialSnapshot glimpse() const;
   void apply_remote_commands();
-  void watch_until(const std::future<void>& done, const ProbingWatch& watch);
+  void watch_until_end(const loop::LoopThread& thread, const ProbingWatch& watch);
   core::Result<void> append_end(const std::optional<trial::Answer>& answer);
 };
 
 core::Result<void> ProbingTrialRun::Parts::make_device() {
-  if (fast()) {
-    device = fast_rig(setup);
-    return {};
-  }
-  address = setup.address;
-  if (setup.device == "sim-rig") {
-    auto started = devices::RigProcess::start({.program = setup.program,
-                                               .seed = setup.seed,
-                                               .skill = setup.skill,
-                                               .surgeon = setup.surgeon,
-                                               .bus_clock = false});
-    if (!started) return started.error();
-    process.emplace(std::move(*started));
-    address = process->address();
-  }
-  auto made = devices::modbus_rig(address);
+  auto made = fast() ? core::Result<devices::MadeRig>(fast_rig(setup))
+                     : info.make_rig({.address = setup.address,
+                                      .program = setup.program,
+                                      .seed = setup.seed,
+                                      .skill = setup.skill,
+                                      .surgeon = setup.surgeon});
   if (!made) return made.error();
-  device = std::move(*made);
+  rig.emplace(std::move(*made));
   return {};
 }
 
 core::Result<void> ProbingTrialRun::Parts::open_device() {
   if (auto made = make_device(); !made) return made;
-  auto found = device->open();
+  auto found = rig->device->open();
   if (!found) return found.error();
   identity = *found;
   if (identity.bus_clock != fast())
     return core::Error{core::Errc::unavailable,
-                       fmt::format("rig at {}: its clock is {}", address,
+                       fmt::format("rig at {}: its clock is {}", rig->address,
                                    identity.bus_clock ? "on the bus: not for real time"
                                                       : "its own: not for --speed fast")};
   if (task.law.travel_m > identity.travel_m + 1e-9)
     return wrong(fmt::format("the probe stop at {} m lies beyond the rig's travel of {} m",
                              task.law.travel_m, identity.travel_m));
   limits.max_speed_m_s = std::min(limits.max_speed_m_s, identity.top_speed_m_s);
-  return bring_to_entry(*device, clock(), setup.rate_Hz);
+  return bring_to_entry(*rig->device, clock(), setup.rate_Hz);
 }
 
 std::string ProbingTrialRun::Parts::operator_name() const {
   if (!task.operator_name.empty()) return task.operator_name;
-  if (setup.device != "sim-rig") return "not named";
+  if (!info.simulated) return "not named";
   if (!setup.surgeon) return "nobody";
   return fmt::format("simulated surgeon, seed {}, skill {:.2f}", setup.seed, setup.skill);
 }
@@ -181,7 +165,7 @@ core::Result<void> ProbingTrialRun::Parts::make_file() {
   header.station = folder.config().name;
   header.operator_name = operator_name();
   header.simulated = identity.simulated;
-  header.device = setup.device;
+  header.device = info.id;
   header.started_utc_us = setup.started_utc_us.value_or(core::utc_us());
   header.rate_Hz = setup.rate_Hz;
   header.rig = trial::Rig::probing;
@@ -191,7 +175,7 @@ core::Result<void> ProbingTrialRun::Parts::make_file() {
       fast() ? "manual: simulated time, run as fast as it goes" : "monotonic: real time";
   header.extra["limits"] = limits.to_json();
   if (setup.started_utc_us) header.extra["date"] = "simulated";
-  if (setup.device == "sim-rig")
+  if (info.simulated)
     header.extra["simulated_surgeon"] = {{"seed", setup.seed}, {"skill", setup.skill}};
   auto writer = trial::TrialWriter::create(folder.trial_file(header.id), header);
   if (!writer) return writer.error();
@@ -209,25 +193,28 @@ core::Result<void> ProbingTrialRun::Parts::add_law(const laws::ProbingParameters
 core::Result<std::unique_ptr<ProbingTrialRun>> ProbingTrialRun::make(const StationFolder& folder,
                                                                      const ProbingTask& task,
                                                                      const RigSetup& setup) {
-  if (auto fine = check(setup); !fine) return fine.error();
+  auto info = devices::find(setup.device, devices::DeviceKind::rig);
+  if (!info) return info.error();
+  if (auto fine = check(setup, *info); !fine) return fine.error();
   const double bytes =
       setup.duration_s * setup.rate_Hz * 1.1 * double(sizeof(trial::ProbingSample));
   if (auto room = folder.check_room(static_cast<std::uint64_t>(bytes)); !room) return room.error();
-  auto parts = std::make_unique<Parts>(folder, task, setup);
+  auto parts = std::make_unique<Parts>(folder, task, setup, *info);
   if (auto made = parts->add_law(task.law); !made) return made.error();
   if (auto opened = parts->open_device(); !opened) return opened.error();
   if (auto created = parts->make_file(); !created) return created.error();
   parts->guard.emplace(parts->limits, task.law.travel_m, 1.0 / setup.rate_Hz);
-  if (setup.device == "sim-rig" && setup.surgeon)
+  if (info->simulated && setup.surgeon)
     parts->felt.emplace(setup.seed, setup.skill, 1.0 / setup.rate_Hz);
-  parts->loop.emplace(loop::ProbingLoop::Parts{parts->clock(), parts->real_clock, *parts->device,
-                                               *parts->guard, parts->ring, parts->live},
-                      *parts->laws.front(), task.law.travel_m, setup.rate_Hz);
+  parts->loop.emplace(
+      loop::ProbingLoop::Parts{parts->clock(), parts->real_clock, *parts->rig->device,
+                               *parts->guard, parts->ring, parts->live},
+      *parts->laws.front(), task.law.travel_m, setup.rate_Hz);
   return std::unique_ptr<ProbingTrialRun>(new ProbingTrialRun(std::move(parts)));
 }
 
 ProbingTrialRun::ProbingTrialRun(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
-ProbingTrialRun::~ProbingTrialRun() { parts_->device->close(); }
+ProbingTrialRun::~ProbingTrialRun() { parts_->rig->device->close(); }
 const std::string& ProbingTrialRun::fault() const { return parts_->fault; }
 
 // In real time this is under the tick's rules: only atomics are read.
@@ -236,15 +223,6 @@ void ProbingTrialRun::Parts::after_tick(const trial::ProbingSample& sample) {
     felt->feel(double(sample.speed_m_s), double(sample.fz_N), sample.x_m);
   if (sample.t_s >= setup.duration_s || recorder->failed()) loop->stop();
   if (fast() && sample.tick % kDrainEveryTicks == 0) recorder->drain();
-}
-
-void ProbingTrialRun::Parts::loop_thread(std::promise<void>& prepared,
-                                         const std::future<void>& go) {
-  std::optional<loop::Realtime> realtime;
-  if (!fast()) grant = realtime.emplace().grant();
-  prepared.set_value();
-  go.wait();
-  loop->run([this](const trial::ProbingSample& sample) { after_tick(sample); });
 }
 
 ProbingTrialSnapshot ProbingTrialRun::Parts::glimpse() const {
@@ -264,9 +242,10 @@ void ProbingTrialRun::Parts::apply_remote_commands() {
   if (setup.outside->stopped()) loop->stop();
 }
 
-void ProbingTrialRun::Parts::watch_until(const std::future<void>& done, const ProbingWatch& watch) {
+void ProbingTrialRun::Parts::watch_until_end(const loop::LoopThread& thread,
+                                             const ProbingWatch& watch) {
   for (bool over = false; !over;) {
-    over = done.wait_for(kWatch) == std::future_status::ready;
+    over = thread.ended_within(kWatch);
     apply_remote_commands();
     if (watch && !watch(glimpse())) loop->stop();
   }
@@ -274,24 +253,20 @@ void ProbingTrialRun::Parts::watch_until(const std::future<void>& done, const Pr
 
 core::Result<void> ProbingTrialRun::run(const ProbingWatch& watch) {
   Parts& p = *parts_;
-  std::promise<void> prepared, go, done;
-  const std::future<void> ended = done.get_future(), started = go.get_future();
-  std::thread thread([&] {
-    p.loop_thread(prepared, started);
-    done.set_value();
+  loop::LoopThread thread(p.pace(), [&p] {
+    p.loop->run([&p](const trial::ProbingSample& sample) { p.after_tick(sample); });
   });
-  prepared.get_future().wait();
+  p.grant = thread.grant();
   const core::Json detail = {{"realtime", p.grant.to_json()}};
   if (!p.recorder->append({0.0, "start", detail})) p.loop->stop();  // the error is kept for stop()
   if (!p.fast()) p.recorder->start();
-  go.set_value();
-  p.watch_until(ended, watch);
+  thread.go();
+  p.watch_until_end(thread, watch);
   thread.join();
   if (p.setup.outside && p.setup.outside->stopped()) p.fault = stop_message(*p.setup.outside);
   if (p.guard->latched()) p.fault = loop::text_of(p.guard->fault());
-  if (p.loop->counts().ticks.lost > 0)
-    p.fault = fmt::format("{} samples were not recorded: the disk was too slow",
-                          p.loop->counts().ticks.lost);
+  if (const std::uint64_t lost = p.loop->periods().lost(); lost > 0)
+    p.fault = fmt::format("{} samples were not recorded: the disk was too slow", lost);
   return p.recorder->stop();
 }
 
@@ -325,40 +300,41 @@ core::Result<void> ProbingTrialRun::Parts::append_end(const std::optional<trial:
   if (answer)
     if (auto said = recorder->append({elapsed_s(), "answer", answer->to_json()}); !said)
       return said;
-  const loop::ProbingCounts& n = loop->counts();
+  const trial::TickCounts& n = loop->counts();
   return recorder->append({elapsed_s(),
                            "end",
-                           {{"ticks", n.ticks.ticks},
-                            {"late_ticks", n.ticks.late},
-                            {"skipped_ticks", n.ticks.skipped},
+                           {{"ticks", n.samples},
+                            {"late_ticks", n.late},
+                            {"skipped_ticks", n.skipped},
                             {"missed_periods", n.missed},
                             {"lost_exchanges", n.bus_lost},
                             {"restarts", guard->restarts()},
-                            {"limited", n.ticks.limited},
+                            {"limited", n.limited},
                             {"injected_J", loop->injected_J()}}});
 }
 
 core::Result<TrialReport> ProbingTrialRun::finish(const std::optional<trial::Answer>& answer) {
   Parts& p = *parts_;
-  p.device->close();
-  const loop::ProbingCounts& n = p.loop->counts();
-  TrialReport report{.trial_id = p.header.id,
-                     .file = p.folder.trial_file(p.header.id),
-                     .complete = p.fault.empty(),
-                     .fault = p.fault,
-                     .duration_s = double(n.ticks.ticks + n.ticks.skipped) / p.setup.rate_Hz,
-                     .counts = n.ticks,
-                     .wake_p50_us = p.loop->wake().quantile_us(0.5),
-                     .wake_p99_us = p.loop->wake().quantile_us(0.99),
-                     .work_p50_us = p.loop->work().quantile_us(0.5),
-                     .work_p99_us = p.loop->work().quantile_us(0.99),
-                     .injected_J = p.loop->injected_J(),
-                     .grant = p.grant,
-                     .answer = p.fault.empty() ? answer : std::nullopt,
-                     .simulated = p.header.simulated,
-                     .bus = TrialReport::Bus{n.missed, n.bus_lost, p.guard->restarts(),
-                                             p.loop->round_trip().quantile_us(0.5),
-                                             p.loop->round_trip().quantile_us(0.99)}};
+  p.rig->device->close();
+  const loop::PeriodicLoop& periods = p.loop->periods();
+  TrialReport report{
+      .trial_id = p.header.id,
+      .file = p.folder.trial_file(p.header.id),
+      .complete = p.fault.empty(),
+      .fault = p.fault,
+      .duration_s = periods.passed_s(),
+      .counts = periods.counts(),
+      .lost = periods.lost(),
+      .wake_p50_us = periods.wake().quantile_us(0.5),
+      .wake_p99_us = periods.wake().quantile_us(0.99),
+      .work_p50_us = periods.work().quantile_us(0.5),
+      .work_p99_us = periods.work().quantile_us(0.99),
+      .injected_J = p.loop->injected_J(),
+      .grant = p.grant,
+      .answer = p.fault.empty() ? answer : std::nullopt,
+      .simulated = p.header.simulated,
+      .bus = TrialReport::Bus{p.guard->restarts(), p.loop->round_trip().quantile_us(0.5),
+                              p.loop->round_trip().quantile_us(0.99)}};
   if (auto ended = p.append_end(answer); !ended) return ended.error();
   if (auto sealed = p.recorder->finish(); !sealed) return sealed.error();
   auto queued = p.folder.outbox().queue(p.header.id, p.header.case_id, report.file);

@@ -18,14 +18,13 @@ namespace tractus::session {
 
 /// Where the rig is, and who is on it.
 struct RigSetup {
-  std::string device = "sim-rig";  ///< "sim-rig": starts tractus-rig itself, SIMULATED; "rig"
-  std::string address =
-      "127.0.0.1:1502";           ///< of "rig": HOST:PORT, or a serial line "/dev/…[@BAUD]"
-  std::filesystem::path program;  ///< of "sim-rig": tractus-rig; empty: beside this program
-  std::uint64_t seed = 1;         ///< of the simulated surgeon, the sensor and the answer
-  double skill = 0.5;             ///< of the simulated surgeon, 0 … 1
-  bool surgeon = true;            ///< of "sim-rig": a SIMULATED surgeon pushes; else nobody does
-  Speed speed = Speed::real;      ///< fast: "sim-rig" alone, in this process, without the bus
+  std::string device = "sim-rig";          ///< of the catalogue, a rig
+  std::string address = "127.0.0.1:1502";  ///< of a machine: HOST:PORT, or "/dev/…[@BAUD]"
+  std::filesystem::path program;           ///< of a simulated one; empty: beside this program
+  std::uint64_t seed = 1;                  ///< of the simulated surgeon, the sensor and the answer
+  double skill = 0.5;                      ///< of the simulated surgeon, 0 … 1
+  bool surgeon = true;                     ///< a SIMULATED surgeon pushes; else nobody does
+  Speed speed = Speed::real;  ///< fast: simulated alone, in this process, without the bus
   std::optional<std::int64_t> started_utc_us = {};  ///< fast alone: a SIMULATED date; else now
   double rate_Hz = 1000.0;                          ///< 100 … 1000
   double duration_s = 120.0;                        ///< at most so long

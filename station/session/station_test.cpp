@@ -107,7 +107,7 @@ TEST_F(Sessions, RecordsEveryTickOfATrialAndSaysThatItIsSimulated) {
   const auto read = trial::read_trial(report.file);
   ASSERT_TRUE(read) << read.error().what;
   EXPECT_TRUE(read->complete);
-  EXPECT_EQ(read->samples.size(), report.counts.ticks);
+  EXPECT_EQ(read->samples.size(), report.counts.samples);
   EXPECT_NEAR(double(read->samples.size()), 8.0 * 4000.0, 10.0);  // 8 s at 4 kHz
   EXPECT_TRUE(read->header.simulated);
   EXPECT_EQ(read->header.operator_name, "simulated hand, seed 3");

@@ -2,9 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <future>
-#include <thread>
-
 #include "station/loop/placement.hpp"
 #include "station/loop/recorder.hpp"
 #include "station/session/trial_drilling.hpp"
@@ -36,21 +33,14 @@ devices::KnownTract channel_of(const volume::Tract& in_D) {
           .radius_m = in_D.radius_m};
 }
 
-core::Result<devices::DeviceInfo> find_device(const std::string& id) {
-  std::string known;
-  for (devices::DeviceInfo& info : devices::all()) {
-    if (info.id == id) return std::move(info);
-    known += (known.empty() ? "" : ", ") + info.id;
-  }
-  return core::Error{core::Errc::not_found,
-                     fmt::format("--device {}: not known; there is {}", id, known)};
-}
-
-core::Json json_of(const loop::Counts& counts) {
-  return {{"ticks", counts.ticks},           {"late_ticks", counts.late},
-          {"skipped_ticks", counts.skipped}, {"not_converged", counts.not_converged},
-          {"limited", counts.limited},       {"stale", counts.stale},
-          {"lost_samples", counts.lost}};
+core::Json json_of(const trial::TickCounts& counts, std::uint64_t lost) {
+  return {{"ticks", counts.samples},
+          {"late_ticks", counts.late},
+          {"skipped_ticks", counts.skipped},
+          {"not_converged", counts.not_converged},
+          {"limited", counts.limited},
+          {"stale", counts.stale},
+          {"lost_samples", lost}};
 }
 }  // namespace
 
@@ -67,10 +57,10 @@ core::Json TrialReport::to_json() const {
                     {"work_p99_us", work_p99_us},
                     {"injected_J", injected_J},
                     {"realtime", grant.to_json()}};
-  out.update(json_of(counts));
+  out.update(json_of(counts, lost));
   if (bus)
-    out["bus"] = {{"missed_periods", bus->missed},
-                  {"lost_exchanges", bus->lost},
+    out["bus"] = {{"missed_periods", counts.missed},
+                  {"lost_exchanges", counts.bus_lost},
                   {"restarts", bus->restarts},
                   {"round_trip_p50_us", bus->p50_us},
                   {"round_trip_p99_us", bus->p99_us}};
@@ -111,20 +101,18 @@ struct TrialRun::Parts {
         limiter(where.config().limits, static_cast<core::Instant_ns>(1e9 / how.rate_Hz)) {}
 
   bool fast() const { return setup.speed == Speed::fast; }
+  loop::Pace pace() const { return fast() ? loop::Pace::as_fast_as_goes : loop::Pace::real_time; }
   core::Clock& clock() { return fast() ? static_cast<core::Clock&>(manual_clock) : real_clock; }
-  /// Of the recorded ticks.
-  double recorded_s() const {
-    return static_cast<double>(loop->counts().ticks + loop->counts().skipped) / setup.rate_Hz;
+  double elapsed_s() {
+    return static_cast<double>(clock().now() - loop->periods().started()) * 1e-9;
   }
-  double elapsed_s() { return static_cast<double>(clock().now() - loop->started()) * 1e-9; }
   TrialSnapshot glimpse() const;
   core::Result<void> open_device(const devices::DeviceInfo& info, const math::Pose& X_VD);
   core::Result<void> take_tool();
   core::Result<void> make_file(const devices::DeviceInfo& info);
   void finish_drilling();
   void after_tick();
-  void loop_thread(std::promise<void>& ready, const std::future<void>& go);
-  void watch_until(const std::future<void>& done, const Watch& watch);
+  void watch_until_end(const loop::LoopThread& thread, const Watch& watch);
   void apply_remote_commands();
   core::Result<void> append_end(const TrialReport& report);
 };
@@ -217,7 +205,7 @@ core::Result<void> TrialRun::Parts::make_file(const devices::DeviceInfo& info) {
 core::Result<std::unique_ptr<TrialRun>> TrialRun::make(const StationFolder& folder,
                                                        const PreparedCase& prepared,
                                                        const TrialSetup& setup) {
-  auto info = find_device(setup.device);
+  auto info = devices::find(setup.device, devices::DeviceKind::handle);
   if (!info) return info.error();
   if (setup.speed == Speed::fast && !info->simulated)
     return core::Error{core::Errc::bad_input,
@@ -251,22 +239,14 @@ bool TrialRun::faulted() const { return !parts_->fault.empty(); }
 
 // In real time this is under the tick's rules: only atomics are read.
 void TrialRun::Parts::after_tick() {
-  const loop::Counts& counts = loop->counts();
+  const trial::TickCounts& counts = loop->counts();
   const bool over = made.trainee && made.trainee->done();
   const double longest_s = setup.duration_s + (made.trainee ? kGrace_s : 0.0);
-  const auto passed = static_cast<double>(counts.ticks + counts.skipped);
+  const auto passed = static_cast<double>(counts.samples + counts.skipped);
   if (over || passed >= longest_s * setup.rate_Hz || recorder->failed()) loop->stop();
   if (drilling && drilling->fell_behind()) loop->stop();
-  if (drilling && fast() && counts.ticks % drilling::kChunkTicks == 0) drilling->work();
-  if (fast() && counts.ticks % kDrainEveryTicks == 0) recorder->drain();
-}
-
-void TrialRun::Parts::loop_thread(std::promise<void>& ready, const std::future<void>& go) {
-  std::optional<loop::Realtime> realtime;
-  if (!fast()) grant = realtime.emplace().grant();
-  ready.set_value();
-  go.wait();
-  loop->run([this] { after_tick(); });
+  if (drilling && fast() && counts.samples % drilling::kChunkTicks == 0) drilling->work();
+  if (fast() && counts.samples % kDrainEveryTicks == 0) recorder->drain();
 }
 
 void TrialRun::Parts::apply_remote_commands() {
@@ -275,9 +255,9 @@ void TrialRun::Parts::apply_remote_commands() {
   if (setup.outside->stopped()) loop->stop();
 }
 
-void TrialRun::Parts::watch_until(const std::future<void>& done, const Watch& watch) {
+void TrialRun::Parts::watch_until_end(const loop::LoopThread& thread, const Watch& watch) {
   for (bool over = false; !over;) {
-    over = done.wait_for(kWatch) == std::future_status::ready;
+    over = thread.ended_within(kWatch);
     apply_remote_commands();
     if (watch && !watch(glimpse())) loop->stop();
   }
@@ -285,27 +265,21 @@ void TrialRun::Parts::watch_until(const std::future<void>& done, const Watch& wa
 
 core::Result<void> TrialRun::run(const Watch& watch) {
   Parts& p = *parts_;
-  std::promise<void> prepared, go, done;
-  const std::future<void> ended = done.get_future(), started = go.get_future();
-  std::thread thread([&] {
-    p.loop_thread(prepared, started);
-    done.set_value();
-  });
-  prepared.get_future().wait();
+  loop::LoopThread thread(p.pace(), [&p] { p.loop->run([&p] { p.after_tick(); }); });
+  p.grant = thread.grant();
   const core::Json detail = {{"realtime", p.grant.to_json()}};
   if (!p.recorder->append({0.0, "start", detail})) p.loop->stop();  // the error is kept for stop()
   p.limiter.arm();
   if (!p.fast()) p.recorder->start();
   if (p.drilling && !p.fast()) p.drilling->start(p.real_clock);
-  go.set_value();
-  p.watch_until(ended, watch);
+  thread.go();
+  p.watch_until_end(thread, watch);
   thread.join();
   p.finish_drilling();
   if (p.setup.outside && p.setup.outside->stopped()) p.fault = stop_message(*p.setup.outside);
   if (p.limiter.guard() == loop::Guard::latched) p.fault = loop::text_of(p.limiter.fault());
-  if (p.loop->counts().lost > 0)
-    p.fault =
-        fmt::format("{} samples were not recorded: the disk was too slow", p.loop->counts().lost);
+  if (const std::uint64_t lost = p.loop->periods().lost(); lost > 0)
+    p.fault = fmt::format("{} samples were not recorded: the disk was too slow", lost);
   p.limiter.disarm();
   return p.recorder->stop();
 }
@@ -340,23 +314,25 @@ core::Result<void> TrialRun::Parts::append_end(const TrialReport& report) {
     const trial::Event answered{elapsed_s(), "answer", report.answer->to_json()};
     if (auto said = recorder->append(answered); !said) return said;
   }
-  core::Json detail = json_of(report.counts);
+  core::Json detail = json_of(report.counts, report.lost);
   detail["injected_J"] = report.injected_J;
   return recorder->append({elapsed_s(), "end", detail});
 }
 
 core::Result<TrialReport> TrialRun::finish(const std::optional<trial::Answer>& answer) {
   Parts& p = *parts_;
+  const loop::PeriodicLoop& periods = p.loop->periods();
   TrialReport report{.trial_id = p.header.id,
                      .file = p.folder.trial_file(p.header.id),
                      .complete = p.fault.empty(),
                      .fault = p.fault,
-                     .duration_s = p.recorded_s(),
-                     .counts = p.loop->counts(),
-                     .wake_p50_us = p.loop->wake().quantile_us(0.5),
-                     .wake_p99_us = p.loop->wake().quantile_us(0.99),
-                     .work_p50_us = p.loop->work().quantile_us(0.5),
-                     .work_p99_us = p.loop->work().quantile_us(0.99),
+                     .duration_s = periods.passed_s(),
+                     .counts = periods.counts(),
+                     .lost = periods.lost(),
+                     .wake_p50_us = periods.wake().quantile_us(0.5),
+                     .wake_p99_us = periods.wake().quantile_us(0.99),
+                     .work_p50_us = periods.work().quantile_us(0.5),
+                     .work_p99_us = periods.work().quantile_us(0.99),
                      .injected_J = p.loop->energy().injected_J(),
                      .grant = p.grant,
                      .answer = answer,

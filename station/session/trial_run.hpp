@@ -8,7 +8,7 @@
 #include "drilling/burr.hpp"
 #include "station/devices/catalogue.hpp"
 #include "station/loop/haptic_loop.hpp"
-#include "station/loop/realtime.hpp"
+#include "station/loop/loop_thread.hpp"
 #include "station/session/prepared_case.hpp"
 #include "station/session/remote_supervisor.hpp"
 #include "station/session/tip_way.hpp"
@@ -47,7 +47,8 @@ struct TrialReport {
   bool complete = false;
   std::string fault;  ///< one line; empty when there was none
   double duration_s = 0.0;
-  loop::Counts counts;
+  trial::TickCounts counts;
+  std::uint64_t lost = 0;  ///< samples that were not recorded
   double wake_p50_us = 0.0, wake_p99_us = 0.0, work_p50_us = 0.0, work_p99_us = 0.0;
   double injected_J = 0.0;  ///< energy that the hand was given beyond what it gave (safety/energy)
   loop::RealtimeGrant grant;
@@ -56,8 +57,6 @@ struct TrialReport {
   core::Json headset = {};  ///< figures of a headset's view; null without one
   /// Of a probing trial.
   struct Bus {
-    std::uint64_t missed = 0;           ///< exchanges that ended after the next period had begun
-    std::uint64_t lost = 0;             ///< exchanges that failed
     int restarts = 0;                   ///< after stops by the machine's own watchdog
     double p50_us = 0.0, p99_us = 0.0;  ///< round trip
   };

@@ -16,22 +16,23 @@ namespace {
 
 /// What the samples tell in passing.
 struct Tally {
-  std::uint64_t samples = 0, late = 0, not_converged = 0;
+  trial::TickCounts ticks;
   double first_s = 0.0, last_s = 0.0;
-  std::uint32_t first_tick = 0, last_tick = 0;
+  std::uint32_t first_tick = 0;  ///< those before it are not skipped: nobody recorded them
 
   void add(const trial::Block& part) {
-    part.each([this](const auto& sample) {
-      if (samples++ == 0) {
+    bool first = ticks.samples == 0;
+    part.each([&](const auto& sample) {
+      if (first) {
         first_s = sample.t_s;
         first_tick = sample.tick;
       }
-      late += (sample.flags & trial::kLate) ? 1 : 0;
-      not_converged += (sample.flags & trial::kNotConverged) ? 1 : 0;
+      first = false;
       last_s = sample.t_s;
-      last_tick = sample.tick;
     });
+    ticks.add(part);
   }
+  std::uint64_t skipped() const { return ticks.skipped - first_tick; }
 };
 
 /// The message without the path of our disk: it goes to the station.
@@ -87,7 +88,7 @@ core::Result<void> check_identity(const store::Upload& upload, const Promised& p
     return core::Error{core::Errc::bad_input,
                        fmt::format("trial file: the trial is for {}, but its case is for {}",
                                    trial::name(trial.header.rig), promised.kind)};
-  if (tally.samples == 0)
+  if (tally.ticks.samples == 0)
     return core::Error{core::Errc::bad_input, "trial file: it has no samples"};
   return {};
 }
@@ -117,13 +118,13 @@ store::TrialRecord record_of(const store::Upload& upload, const trial::Trial& tr
   out.summary.simulated = trial.header.simulated;
   out.summary.started_utc_us = trial.header.started_utc_us;
   out.summary.duration_s = tally.last_s - tally.first_s;
-  out.summary.samples = tally.samples;
+  out.summary.samples = tally.ticks.samples;
   out.station_id = upload.station_id;
   out.sha256 = upload.sha256;
   out.complete = trial.complete;
-  out.late_ticks = tally.late;
-  out.not_converged = tally.not_converged;
-  out.skipped_ticks = std::uint64_t{tally.last_tick} - tally.first_tick + 1 - tally.samples;
+  out.late_ticks = tally.ticks.late;
+  out.not_converged = tally.ticks.not_converged;
+  out.skipped_ticks = tally.skipped();
   out.header = trial.header.to_json().dump();
   out.events = events_text(trial.events);
   return out;

@@ -211,10 +211,12 @@ core::Result<MadeDevice> make(const DeviceOptions& options) {
 
 }  // namespace
 
-DeviceInfo lambda6() {
+DeviceInfo lambda6_device() {
   return {.id = "lambda6",
           .summary = "Force Dimension lambda.6, six driven degrees of freedom, held by a person",
+          .kind = DeviceKind::handle,
           .simulated = false,
+          .addressed_by = AddressedBy::sdk,
           .make = make};
 }
 

@@ -186,12 +186,14 @@ core::Result<MadeDevice> make(const DeviceOptions& options) {
 
 }  // namespace
 
-DeviceInfo sim_lambda6() {
+DeviceInfo sim_lambda6_device() {
   return {.id = "sim-lambda6",
           .summary =
               "SIMULATED lambda.6: a handle with mass and friction, held by a simulated hand that "
               "palpates, or drills",
+          .kind = DeviceKind::handle,
           .simulated = true,
+          .addressed_by = AddressedBy::nothing,
           .make = make};
 }
 

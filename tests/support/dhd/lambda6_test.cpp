@@ -68,10 +68,7 @@ class Lambda6 : public testing::Test {
     umockdev_testbed_remove_device(bed_, kDevice.c_str());
   }
   std::unique_ptr<Device> made(Homing homing = Homing::refuse) {
-    for (const DeviceInfo& info : all())
-      if (info.id == "lambda6")
-        return std::move(info.make({.sdk = TRACTUS_STANDIN_DIR, .homing = homing})->device);
-    return nullptr;
+    return std::move(find("lambda6")->make({.sdk = TRACTUS_STANDIN_DIR, .homing = homing})->device);
   }
   /// Waits for another thread's doing, for at most five seconds.
   static bool eventually(const std::function<bool()>& holds) {

@@ -1,0 +1,32 @@
+/// The simulated probing rig: `tractus-rig`, started here, behind the same Modbus as the machine.
+#include "station/devices/catalogue.hpp"
+#include "station/devices/modbus_rig.hpp"
+
+namespace tractus::devices {
+namespace {
+
+core::Result<MadeRig> make(const RigOptions& options) {
+  auto process = RigProcess::start({.program = options.program,
+                                    .seed = options.seed,
+                                    .skill = options.skill,
+                                    .surgeon = options.surgeon,
+                                    .bus_clock = false});
+  if (!process) return process.error();
+  std::string address = process->address();
+  auto device = modbus_rig(address);
+  if (!device) return device.error();
+  return MadeRig{std::move(*process), std::move(address), std::move(*device)};
+}
+
+}  // namespace
+
+DeviceInfo sim_rig_device() {
+  return {.id = "sim-rig",
+          .summary = "SIMULATED probing rig in a process of its own, with a simulated surgeon",
+          .kind = DeviceKind::rig,
+          .simulated = true,
+          .addressed_by = AddressedBy::nothing,
+          .make_rig = make};
+}
+
+}  // namespace tractus::devices
