@@ -75,10 +75,10 @@ void say_calibration_due(const session::StationFolder& folder, const std::string
   if (!line.empty()) std::fprintf(stderr, "warning: %s\n", line.c_str());
 }
 
-session::ProbingWatch warned(session::ProbingWatch inner, const session::StationFolder& folder,
-                             const std::string& device) {
+session::Watch warned(session::Watch inner, const session::StationFolder& folder,
+                      const std::string& device) {
   return [inner = std::move(inner), &folder, device,
-          said = false](const session::ProbingTrialSnapshot& seen) mutable {
+          said = false](const session::TrialSnapshot& seen) mutable {
     if (!said) say_calibration_due(folder, device);
     said = true;
     return inner(seen);

@@ -51,7 +51,7 @@ check::Finding check_display(Show show);
 /// one. For a trial that begins.
 void say_calibration_due(const session::StationFolder& folder, const std::string& device);
 /// `inner`, and that line when it is called first: the trial has begun.
-session::ProbingWatch warned(session::ProbingWatch inner, const session::StationFolder& folder,
-                             const std::string& device);
+session::Watch warned(session::Watch inner, const session::StationFolder& folder,
+                      const std::string& device);
 
 }  // namespace tractus::app

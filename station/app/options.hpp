@@ -7,7 +7,8 @@
 
 #include "station/app/trial_viewer.hpp"
 #include "station/sensors/record.hpp"
-#include "station/session/probing_trial.hpp"
+#include "station/session/palpation_rig.hpp"
+#include "station/session/probing_rig.hpp"
 
 namespace tractus::app {
 

@@ -47,15 +47,6 @@ const char* text_of(Presence::State state) {
   return kNames[static_cast<int>(state)];
 }
 
-double depth_m(const loop::Live& live, const session::PreparedCase& prepared) {
-  const auto& [w, x, y, z] = live.q_VH;
-  const math::Quat turn(w, x, y, z);
-  const math::Vec3 tip_H(live.deflection_m[0], live.deflection_m[1], prepared.model.base.length_m);
-  const math::Vec3 tip = math::Vec3(live.p_VH_m[0], live.p_VH_m[1], live.p_VH_m[2]) + turn * tip_H;
-  const volume::Tract& tract = prepared.opened.definition.tract;
-  return (tip - tract.entry_m).dot(tract.axis);
-}
-
 }  // namespace
 
 struct Presence::Parts {
@@ -179,38 +170,18 @@ session::RemoteSupervisor* Presence::outside() noexcept { return &parts_->outsid
 
 void Presence::is(State state) noexcept { parts_->state = state; }
 
-session::Watch Presence::watched(session::Watch inner, const std::string& case_id,
-                                 const session::PreparedCase& prepared) {
-  return [this, inner = std::move(inner), case_id, &prepared](const session::TrialSnapshot& now) {
+session::Watch Presence::watched(session::Watch inner) {
+  return [this, inner = std::move(inner)](const session::TrialSnapshot& now) {
     RunningTrial seen;
-    put(seen.trial_id, now.trial_id);
-    put(seen.case_id, case_id);
-    seen.t_s = now.live.t_s;
-    const auto& force = now.live.rendered_force_N;
-    seen.force_N = math::Vec3(force[0], force[1], force[2]).norm();
-    seen.depth_m = std::clamp(depth_m(now.live, prepared), -1.0, 1.0);
-    seen.samples = now.samples_safe;
-    seen.late = now.live.late_ticks;
-    parts_->seen.write(seen);
-    is(State::trial);
-    return !inner || inner(now);
-  };
-}
-
-session::ProbingWatch Presence::watched(session::ProbingWatch inner,
-                                        const session::ProbingTask& task) {
-  return [this, inner = std::move(inner), case_id = task.case_id,
-          blind = task.blind](const session::ProbingTrialSnapshot& now) {
-    RunningTrial seen;
-    put(seen.trial_id, now.trial_id);
-    put(seen.case_id, case_id);
-    seen.probing = true;
-    seen.blind = blind;
+    put(seen.trial_id, now.header.id);
+    put(seen.case_id, now.header.case_id);
+    seen.probing = now.header.rig == trial::Rig::probing;
+    seen.blind = now.blind;
     seen.t_s = std::max(now.t_s, 0.0);
-    seen.force_N = std::abs(now.push_N);
-    seen.depth_m = std::clamp(now.x_m, -1.0, 1.0);
+    seen.force_N = now.force_N;
+    seen.depth_m = std::clamp(now.depth_m, -1.0, 1.0);
     seen.samples = now.samples_safe;
-    seen.late = now.missed;
+    seen.late = now.late;
     parts_->seen.write(seen);
     is(State::trial);
     return !inner || inner(now);

@@ -5,7 +5,6 @@
 #include <memory>
 
 #include "station/app/options.hpp"
-#include "station/session/prepared_case.hpp"
 #include "station/session/station_folder.hpp"
 
 namespace tractus::app {
@@ -24,11 +23,7 @@ class Presence {
   session::RemoteSupervisor* outside() noexcept;
   void is(State state) noexcept;
   /// Shows the trial to those who look on, and goes on with `inner`.
-  /// @param case_id  what the server knows the case by
-  /// @param prepared  outlives the watch
-  session::Watch watched(session::Watch inner, const std::string& case_id,
-                         const session::PreparedCase& prepared);
-  session::ProbingWatch watched(session::ProbingWatch inner, const session::ProbingTask& task);
+  session::Watch watched(session::Watch inner);
   /// After a trial: idle again, or fault, or stopped.
   void done(const session::TrialReport& report);
   /// Nobody stopped it, or a person at the terminal says that it goes on. False: it was stopped,

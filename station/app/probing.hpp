@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "station/session/probing_trial.hpp"
+#include "station/session/probing_rig.hpp"
 
 namespace tractus::app {
 

@@ -13,7 +13,6 @@
 #include "station/app/presence.hpp"
 #include "station/app/trial_epilogue.hpp"
 #include "station/devices/catalogue.hpp"
-#include "station/session/probing_trial.hpp"
 #include "station/session/station.hpp"
 #include "station/uplink/assigned.hpp"
 #include "study/sealed_law.hpp"
@@ -84,13 +83,12 @@ core::Result<TrialReport> work_on_bone(const Options& options, Presence& presenc
   if (!onlooker) return onlooker.error();
   if (auto ready = station.prepare(prepared, options.setup.seed + trial.number); !ready)
     return ready.error();
-  onlooker->follow(station.trial()->live());
+  onlooker->follow(*station.live());
   say_calibration_due(folder, options.setup.device);
   const auto watch = [&](const session::TrialSnapshot& seen) {
     return onlooker->look(seen) && !stopped_by_hand();
   };
-  if (auto ran = station.run(presence.watched(watch, trial.slot, *prepared)); !ran)
-    return ran.error();
+  if (auto ran = station.run(presence.watched(watch)); !ran) return ran.error();
   presence.is(Presence::State::questions);
   const core::Json headset = onlooker->end_headset();
   if (!headset.is_null())
@@ -128,13 +126,13 @@ core::Result<TrialReport> probe(const Options& options, Presence& presence,
   setup.seed = options.setup.seed + trial.number;
   setup.started_utc_us = started_of(options, number);
   setup.outside = presence.outside();
-  const auto watch = [](const session::ProbingTrialSnapshot&) { return !stopped_by_hand(); };
-  return session::run_probing_trial(
-      folder, task, setup, warned(presence.watched(watch, task), folder, setup.device),
-      [&](const session::ProbingTrialRun& run) -> core::Result<std::optional<trial::Answer>> {
-        presence.is(Presence::State::questions);
-        return answer_of(options, run.simulated_answer());
-      });
+  const auto watch = [](const session::TrialSnapshot&) { return !stopped_by_hand(); };
+  return session::run_probing_trial(folder, task, setup,
+                                    warned(presence.watched(watch), folder, setup.device),
+                                    [&](const std::optional<trial::Answer>& simulated) {
+                                      presence.is(Presence::State::questions);
+                                      return answer_of(options, simulated);
+                                    });
 }
 
 core::Result<TrialReport> one_trial(const Options& options, Presence& presence,

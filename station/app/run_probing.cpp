@@ -58,17 +58,15 @@ void print_probing_report(const TrialReport& report, bool fast) {
 }
 
 namespace {
-session::ProbingWatch watch_of(const Options& options, const ProbingTask& task) {
-  const double travel_m = task.law.travel_m;
-  return [&options, travel_m, blind = task.blind, said = std::uint64_t{0},
-          shown =
-              core::terminal_progress("Trial")](const session::ProbingTrialSnapshot& seen) mutable {
+session::Watch watch_of(const Options& options) {
+  return [&options, said = std::uint64_t{0},
+          shown = core::terminal_progress("Trial")](const session::TrialSnapshot& seen) mutable {
     if (options.follow && seen.samples_safe != said) {
       said = seen.samples_safe;
       fmt::print(stderr, "{}\n",
-                 core::Json{{"trial_id", seen.trial_id}, {"samples_safe", said}}.dump());
+                 core::Json{{"trial_id", seen.header.id}, {"samples_safe", said}}.dump());
     }
-    if (!blind) shown(std::min(1.0, seen.x_m / travel_m));
+    if (!seen.blind) shown(seen.progress);
     return !asked_to_stop();
   };
 }
@@ -81,12 +79,12 @@ core::Result<TrialReport> one_trial(const Options& options, Presence& presence,
   setup.outside = presence.outside();
   presence.is(Presence::State::preparing);
   auto report = session::run_probing_trial(
-      folder, task, setup,
-      warned(presence.watched(watch_of(options, task), task), folder, setup.device),
-      [&](const session::ProbingTrialRun& trial) -> core::Result<std::optional<trial::Answer>> {
+      folder, task, setup, warned(presence.watched(watch_of(options)), folder, setup.device),
+      [&](const std::optional<trial::Answer>& simulated)
+          -> core::Result<std::optional<trial::Answer>> {
         presence.is(Presence::State::questions);
         if (asked_to_stop()) return std::optional<trial::Answer>();
-        return answer_of(options, trial.simulated_answer());
+        return answer_of(options, simulated);
       });
   if (report) presence.done(*report);
   return report;

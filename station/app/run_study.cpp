@@ -105,12 +105,12 @@ std::optional<trial::Answer> asked() {
   return out;
 }
 
-session::ProbingWatch watch_of(const Options& options) {
-  return [&options, said = std::uint64_t{0}](const session::ProbingTrialSnapshot& seen) mutable {
+session::Watch watch_of(const Options& options) {
+  return [&options, said = std::uint64_t{0}](const session::TrialSnapshot& seen) mutable {
     if (options.follow && seen.samples_safe != said) {
       said = seen.samples_safe;
       fmt::print(stderr, "{}\n",
-                 core::Json{{"trial_id", seen.trial_id}, {"samples_safe", said}}.dump());
+                 core::Json{{"trial_id", seen.header.id}, {"samples_safe", said}}.dump());
     }
     return !asked_to_stop();
   };
@@ -135,11 +135,11 @@ core::Result<TrialReport> one_trial(const Study& study, const StudyWork& work,
     setup.skill = rig::SurgeonParameters::skill_of_experience(work.experience_years.value_or(0.0));
   auto report = session::run_probing_trial(
       study.folder, task, setup,
-      warned(study.presence.watched(watch_of(study.options), task), study.folder, setup.device),
-      [&](const session::ProbingTrialRun& run) -> core::Result<std::optional<trial::Answer>> {
+      warned(study.presence.watched(watch_of(study.options)), study.folder, setup.device),
+      [&](const std::optional<trial::Answer>& simulated)
+          -> core::Result<std::optional<trial::Answer>> {
         study.presence.is(Presence::State::questions);
         if (asked_to_stop()) return std::optional<trial::Answer>();
-        auto simulated = run.simulated_answer();
         return simulated ? simulated : asked();
       });
   if (report) study.presence.done(*report);

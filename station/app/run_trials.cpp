@@ -38,7 +38,7 @@ session::Watch watch_of(const Options& options, const core::Progress& shown,
     if (options.follow && seen.samples_safe != said) {
       said = seen.samples_safe;
       fmt::print(stderr, "{}\n",
-                 core::Json{{"trial_id", seen.trial_id}, {"samples_safe", said}}.dump());
+                 core::Json{{"trial_id", seen.header.id}, {"samples_safe", said}}.dump());
     }
     shown(seen.progress);
     const bool looking = onlooker.look(seen);
@@ -56,11 +56,10 @@ core::Result<TrialReport> one_trial(const Options& options, Presence& presence,
   auto onlooker = TrialViewer::make(*prepared, how);
   if (!onlooker) return onlooker.error();
   if (auto ready = station.prepare(prepared, seed); !ready) return ready.error();
-  onlooker->follow(station.trial()->live());
+  onlooker->follow(*station.live());
   say_calibration_due(folder, options.setup.device);
   const core::Progress shown = core::terminal_progress(fmt::format("Trial, seed {}", seed));
-  const auto watch =
-      presence.watched(watch_of(options, shown, *onlooker), prepared->opened.id, *prepared);
+  const auto watch = presence.watched(watch_of(options, shown, *onlooker));
   if (auto ran = station.run(watch); !ran) return ran.error();
   presence.is(Presence::State::questions);
   const core::Json headset = onlooker->end_headset();

@@ -168,15 +168,15 @@ void TrialViewer::look_at_bone(loop::Drilling& drilling) {
 bool TrialViewer::look(const session::TrialSnapshot& seen) {
   if (headset_) tell_headset();
   if (!view_ && !headset_ && picture_.empty()) return true;
-  way_ = &seen.way;
-  drilling_ = seen.drilling;
+  way_ = &seen.picture->way;
+  drilling_ = seen.picture->drilling;
   if (const auto now = std::chrono::steady_clock::now(); drilling_ && now >= next_look_at_bone_) {
     look_at_bone(*drilling_);
     next_look_at_bone_ = now + kBetweenLooksAtBone;
   }
   if (!view_) return true;
   way_->show(path_);
-  view_->draw(moment_of(*prepared_, seen.live).state, path_.points_m);
+  view_->draw(moment_of(*prepared_, seen.picture->live).state, path_.points_m);
   return !view_->closed();
 }
 

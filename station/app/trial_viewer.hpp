@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "station/headset/headset_thread.hpp"
-#include "station/session/trial_run.hpp"
+#include "station/session/palpation_rig.hpp"
 #include "station/view/view.hpp"
 
 namespace tractus::app {

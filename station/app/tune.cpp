@@ -60,15 +60,14 @@ class Expert {
       : options_(options), tuning_(std::move(scenario)) {}
 
   /// False: the trial is to end.
-  bool press(char c, session::ProbingTrialRun& trial) {
+  bool press(char c, session::ProbingRig& rig) {
     if (c == 'q') return false;
     if (c >= '1' && c <= '8') chosen_ = std::size_t(c - '1');
     if (c == '+' || c == '-') take(tuning_.nudge(chosen_, c == '+' ? 1 : -1));
     if (c == 'u') tuning_.undo();
     if (c == 's') take(save());
     if (c == '+' || c == '-' || c == 'u')
-      if (auto law = tuning_.now().expanded(); law)
-        take(trial.retune(*law, tuning_.now().to_json()));
+      if (auto law = tuning_.now().expanded(); law) take(rig.retune(*law, tuning_.now().to_json()));
     if (c != '\n') show();
     return true;
   }
@@ -110,17 +109,16 @@ core::Result<session::TrialReport> one_trial(const Options& options,
   auto task = session::task_of(expert.tuning().now());
   if (!task) return task.error();
   task->operator_name = options.who;
-  auto made = session::ProbingTrialRun::make(folder, *task, options.rig);
-  if (!made) return made.error();
-  session::ProbingTrialRun& trial = **made;
+  auto trial = session::probing_trial(folder, *task, options.rig);
+  if (!trial) return trial.error();
   say_calibration_due(folder, options.rig.device);
-  const auto ran = trial.run([&](const session::ProbingTrialSnapshot&) {
+  const auto ran = trial->runner->run([&](const session::TrialSnapshot&) {
     for (auto c = key(); c; c = key())
-      if (!expert.press(*c, trial)) return false;
+      if (!expert.press(*c, *trial->rig)) return false;
     return !asked_to_stop();
   });
   if (!ran) return ran.error();
-  return trial.finish(std::nullopt);
+  return trial->runner->finish(std::nullopt);
 }
 }  // namespace
 

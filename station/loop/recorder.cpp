@@ -5,27 +5,15 @@ namespace {
 constexpr std::size_t kBlock = 1024;
 }
 
-template <class S>
-RecorderOf<S>::RecorderOf(Ring<S>& ring, trial::TrialWriter writer, core::Clock& clock)
-    : ring_(ring),
-      writer_(std::move(writer)),
-      clock_(clock),
-      last_flush_(clock.now()),
-      block_(kBlock) {}
+TrialRecorder::TrialRecorder(trial::TrialWriter writer, core::Clock& clock)
+    : writer_(std::move(writer)), clock_(clock), last_flush_(clock.now()) {}
 
-template <class S>
-RecorderOf<S>::~RecorderOf() {
-  static_cast<void>(stop());
-}  // the error, if any, was kept for whoever asked
-
-template <class S>
-void RecorderOf<S>::start() {
+void TrialRecorder::start() {
   core::require(!thread_.joinable(), "a recorder is started once");
   thread_ = std::thread([this] { loop(); });
 }
 
-template <class S>
-void RecorderOf<S>::loop() {
+void TrialRecorder::loop() {
   core::Instant_ns next = clock_.now();
   while (!stop_.load(std::memory_order_relaxed)) {
     drain();
@@ -34,21 +22,13 @@ void RecorderOf<S>::loop() {
   }
 }
 
-template <class S>
-void RecorderOf<S>::drain() {
-  for (;;) {
-    const std::size_t taken = ring_.pop(block_);
-    if (taken == 0) break;
-    const auto samples = std::span<const S>(block_).first(taken);
-    if (!failed()) keep(writer_.append(samples));
-    if (told_ && !failed()) told_(samples);
-  }
+void TrialRecorder::drain() {
+  take_all();
   const core::Instant_ns now = clock_.now();
   if (now - last_flush_ >= kFlush_ns) flush(now);
 }
 
-template <class S>
-void RecorderOf<S>::flush(core::Instant_ns now) {
+void TrialRecorder::flush(core::Instant_ns now) {
   last_flush_ = now;
   const std::uint64_t written = writer_.samples_written();
   if (failed() || written == samples_safe()) return;
@@ -56,15 +36,13 @@ void RecorderOf<S>::flush(core::Instant_ns now) {
   if (!failed()) safe_.store(written, std::memory_order_relaxed);
 }
 
-template <class S>
-void RecorderOf<S>::keep(const core::Result<void>& outcome) {
+void TrialRecorder::keep(const core::Result<void>& outcome) {
   if (outcome || failed()) return;
   first_error_ = outcome;
   failed_.store(true, std::memory_order_relaxed);
 }
 
-template <class S>
-core::Result<void> RecorderOf<S>::stop() {
+core::Result<void> TrialRecorder::stop() {
   if (thread_.joinable()) {
     stop_.store(true, std::memory_order_relaxed);
     thread_.join();
@@ -74,16 +52,34 @@ core::Result<void> RecorderOf<S>::stop() {
   return first_error_;
 }
 
-template <class S>
-core::Result<void> RecorderOf<S>::append(const trial::Event& event) {
+core::Result<void> TrialRecorder::append(const trial::Event& event) {
   keep(writer_.append(event));
   return first_error_;
 }
 
-template <class S>
-core::Result<void> RecorderOf<S>::finish() {
+core::Result<void> TrialRecorder::finish() {
   if (!failed()) keep(writer_.finish());
   return first_error_;
+}
+
+template <class S>
+RecorderOf<S>::RecorderOf(Ring<S>& ring, trial::TrialWriter writer, core::Clock& clock)
+    : TrialRecorder(std::move(writer), clock), ring_(ring), block_(kBlock) {}
+
+template <class S>
+RecorderOf<S>::~RecorderOf() {
+  static_cast<void>(stop());
+}  // the error, if any, was kept for whoever asked
+
+template <class S>
+void RecorderOf<S>::take_all() {
+  for (;;) {
+    const std::size_t taken = ring_.pop(block_);
+    if (taken == 0) break;
+    const auto samples = std::span<const S>(block_).first(taken);
+    if (!failed()) keep(writer_.append(samples));
+    if (told_ && !failed()) told_(samples);
+  }
 }
 
 template class RecorderOf<trial::Sample>;

@@ -13,26 +13,20 @@
 
 namespace tractus::loop {
 
-/// Takes samples out of the ring and appends them to the trial file, as the ring's one consumer.
+/// Takes samples out of a ring and appends them to the trial file, as the ring's one consumer.
 /// With `start`, a thread of its own does so every 5 ms and has the file on the disk every 10 ms: a
 /// loss of power costs 20 ms at most if the disk answers within 10. Without, whoever calls `drain`
 /// is the consumer (a loop under a manual clock). The first error stops recording for good and is
 /// kept; `failed` tells so at once.
-template <class S>
-class RecorderOf {
+class TrialRecorder {
  public:
   static constexpr core::Instant_ns kPoll_ns = 5'000'000;
   static constexpr core::Instant_ns kFlush_ns = 10'000'000;
 
-  /// `clock` paces polling and flushing; ring and clock must outlive this.
-  RecorderOf(Ring<S>& ring, trial::TrialWriter writer, core::Clock& clock);
-  ~RecorderOf();
-  RecorderOf(const RecorderOf&) = delete;
-  RecorderOf& operator=(const RecorderOf&) = delete;
+  virtual ~TrialRecorder() = default;
+  TrialRecorder(const TrialRecorder&) = delete;
+  TrialRecorder& operator=(const TrialRecorder&) = delete;
 
-  /// Before `start`: `take` has every sample that was recorded, in order, from the thread that
-  /// records; it must be quick.
-  void tell(std::function<void(std::span<const S>)> take) { told_ = std::move(take); }
   void start();
   /// Ends the thread if there is one, takes out the rest and flushes. Errors: the first of
   /// recording.
@@ -48,21 +42,42 @@ class RecorderOf {
   /// Samples that are on the disk for good; from any thread.
   std::uint64_t samples_safe() const noexcept { return safe_.load(std::memory_order_relaxed); }
 
- private:
+ protected:
+  /// `clock` paces polling and flushing and must outlive this.
+  TrialRecorder(trial::TrialWriter writer, core::Clock& clock);
+  /// Moves what is in the ring into the file.
+  virtual void take_all() = 0;
   void keep(const core::Result<void>& outcome);
+  trial::TrialWriter writer_;
+
+ private:
   void flush(core::Instant_ns now);
   void loop();
 
-  Ring<S>& ring_;
-  trial::TrialWriter writer_;
   core::Clock& clock_;
   core::Instant_ns last_flush_;
-  std::vector<S> block_;
-  std::function<void(std::span<const S>)> told_;
   core::Result<void> first_error_;
   std::atomic<bool> failed_ = false, stop_ = false;
   std::atomic<std::uint64_t> safe_ = 0;
   std::thread thread_;
+};
+
+/// Of one kind of samples.
+template <class S>
+class RecorderOf final : public TrialRecorder {
+ public:
+  /// `ring` must outlive this.
+  RecorderOf(Ring<S>& ring, trial::TrialWriter writer, core::Clock& clock);
+  ~RecorderOf() override;
+  /// Before `start`: `take` has every sample that was recorded, in order, from the thread that
+  /// records; it must be quick.
+  void tell(std::function<void(std::span<const S>)> take) { told_ = std::move(take); }
+
+ private:
+  void take_all() override;
+  Ring<S>& ring_;
+  std::vector<S> block_;
+  std::function<void(std::span<const S>)> told_;
 };
 
 using Recorder = RecorderOf<trial::Sample>;

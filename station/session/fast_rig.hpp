@@ -2,7 +2,7 @@
 #pragma once
 
 #include "station/devices/catalogue.hpp"
-#include "station/session/probing_trial.hpp"
+#include "station/session/probing_rig.hpp"
 
 namespace tractus::session {
 

@@ -25,9 +25,9 @@ core::Result<void> Station::prepare(std::shared_ptr<const PreparedCase> prepared
   state_ = State::idle;
   prepared_ = std::move(prepared);
   setup_.seed = seed;
-  auto made = TrialRun::make(folder_, *prepared_, setup_);
+  auto made = palpation_trial(folder_, *prepared_, setup_);
   if (!made) return made.error();
-  trial_ = std::move(*made);
+  trial_.emplace(std::move(*made));
   state_ = State::ready;
   return {};
 }
@@ -35,24 +35,24 @@ core::Result<void> Station::prepare(std::shared_ptr<const PreparedCase> prepared
 core::Result<void> Station::run(const Watch& watch) {
   if (state_ != State::ready) return not_now("start");
   state_ = State::running;
-  auto ran = trial_->run(watch);
-  state_ = !ran || trial_->faulted() ? State::fault : State::answering;
+  auto ran = trial_->runner->run(watch);
+  state_ = !ran || !trial_->runner->fault().empty() ? State::fault : State::answering;
   return ran;
 }
 
 std::optional<trial::Answer> Station::simulated_answer() const {
-  return state_ == State::answering ? trial_->simulated_answer() : std::nullopt;
+  return state_ == State::answering ? trial_->runner->simulated_answer() : std::nullopt;
 }
 
 core::Result<void> Station::note(const std::string& kind, const core::Json& detail) {
   const bool ended = state_ == State::answering || (state_ == State::fault && trial_);
-  return ended ? trial_->note(kind, detail) : core::Result<void>(not_now("note an event"));
+  return ended ? trial_->runner->note(kind, detail) : core::Result<void>(not_now("note an event"));
 }
 
 core::Result<TrialReport> Station::answer(const std::optional<trial::Answer>& answer) {
   const bool faulted = state_ == State::fault && trial_;
   if (state_ != State::answering && !faulted) return not_now("take an answer");
-  auto report = trial_->finish(faulted ? std::nullopt : answer);
+  auto report = trial_->runner->finish(faulted ? std::nullopt : answer);
   trial_.reset();
   state_ = report && !faulted ? State::done : State::fault;
   return report;

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string_view>
 
-#include "station/session/trial_run.hpp"
+#include "station/session/palpation_rig.hpp"
 
 namespace tractus::session {
 
@@ -31,8 +31,9 @@ class Station {
   core::Result<TrialReport> answer(const std::optional<trial::Answer>& answer);
   /// What the simulated hand says, in `answering`.
   std::optional<trial::Answer> simulated_answer() const;
-  /// The trial that is prepared or running; null elsewhere.
-  const TrialRun* trial() const { return trial_.get(); }
+  /// Of the trial that is prepared or running, readable from any thread without a lock; null
+  /// elsewhere.
+  const loop::LiveState* live() const { return trial_ ? &trial_->rig->live() : nullptr; }
 
  private:
   core::Error not_now(const char* action) const;
@@ -40,7 +41,7 @@ class Station {
   TrialSetup setup_;
   State state_ = State::idle;
   std::shared_ptr<const PreparedCase> prepared_;
-  std::unique_ptr<TrialRun> trial_;
+  std::optional<PalpationTrial> trial_;
 };
 
 }  // namespace tractus::session

@@ -178,9 +178,9 @@ TEST_F(Sessions, AnInterruptedTrialIsSealedAndQueuedAtTheNextStart) {
   StationFolder where = folder();
   const auto ready = prepared(where);
   {
-    auto run = TrialRun::make(where, *ready, fast());
-    ASSERT_TRUE(run);
-    ASSERT_TRUE((*run)->run());
+    auto trial = palpation_trial(where, *ready, fast());
+    ASSERT_TRUE(trial);
+    ASSERT_TRUE(trial->runner->run());
   }  // gone without an end
   const auto recovered = where.recover();
   ASSERT_TRUE(recovered);
@@ -201,9 +201,9 @@ TrialReport drilled(const StationFolder& where, const PreparedCase& bone, double
   setup.speed = Speed::fast;
   setup.burr = drilling::Burr{};
   setup.case_known_as = std::string(64, 'b');
-  auto run = TrialRun::make(where, bone, setup);
-  EXPECT_TRUE(run && (*run)->run(watch));
-  auto report = (*run)->finish({});
+  auto trial = palpation_trial(where, bone, setup);
+  EXPECT_TRUE(trial && trial->runner->run(watch));
+  auto report = trial->runner->finish({});
   EXPECT_TRUE(report) << report.error().what;
   return *report;
 }
@@ -255,7 +255,7 @@ TEST_F(Sessions, ADrillingThatTookNothingAwayIsFeltAsWholeBone) {
 TEST_F(Sessions, ATrialWithoutASampleIsSetAside) {
   StationFolder where = folder();
   const auto ready = prepared(where);
-  { ASSERT_TRUE(TrialRun::make(where, *ready, fast())); }
+  { ASSERT_TRUE(palpation_trial(where, *ready, fast())); }
   ASSERT_TRUE(where.recover());
   for (const auto& entry : fs::directory_iterator(where.trials()))
     EXPECT_EQ(entry.path().extension(), ".empty");
