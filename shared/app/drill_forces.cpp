@@ -2,17 +2,17 @@
 
 #include <algorithm>
 
+#include "core/try.hpp"
+
 namespace tractus::commands {
 using math::Vec3;
 
 core::Result<std::unique_ptr<DrillForces>> DrillForces::make(const volume::Volume& bone,
                                                              const models::PalpationModel& model) {
-  auto field = volume::ForceField::make(bone, model.transfer, model.field);
-  if (!field) return field.error();
-  std::unique_ptr<DrillForces> made(new DrillForces(std::move(*field)));
-  auto runtime = models::PalpationRuntime::make(model, made->field_);
-  if (!runtime) return runtime.error();
-  made->runtime_.emplace(std::move(*runtime));
+  auto field = TRY(volume::ForceField::make(bone, model.transfer, model.field));
+  std::unique_ptr<DrillForces> made(new DrillForces(std::move(field)));
+  auto runtime = TRY(models::PalpationRuntime::make(model, made->field_));
+  made->runtime_.emplace(std::move(runtime));
   return made;
 }
 

@@ -6,6 +6,7 @@
 
 #include "core/file.hpp"
 #include "core/progress.hpp"
+#include "core/try.hpp"
 #include "effects/catalogues.hpp"
 #include "lab/identify/verdict_text.hpp"
 
@@ -93,9 +94,8 @@ void add_own_option(CLI::App& app, LabOptions& options) {
 Result<lab_io::Case> opened(const LabOptions& options) {
   lab_io::Sources sources = options.sources;
   for (const auto& file : options.own) {
-    auto own = lab_io::read_own(file);
-    if (!own) return own.error();
-    sources.own.push_back(std::move(*own));
+    auto own = TRY(lab_io::read_own(file));
+    sources.own.push_back(std::move(own));
   }
   return lab_io::open_case(sources, core::terminal_progress("reading"));
 }
@@ -112,9 +112,7 @@ Result<void> writable(const std::filesystem::path& file) {
 
 Result<void> write_files(const lab_io::LabResult& answer, const std::filesystem::path& model,
                          const std::filesystem::path& report) {
-  if (!report.empty())
-    if (auto done = core::write_file(report, core::bytes_of(lab::report(answer.content))); !done)
-      return done;
+  if (!report.empty()) TRY(core::write_file(report, core::bytes_of(lab::report(answer.content))));
   if (!model.empty() && answer.model) return core::write_json(model, *answer.model);
   return {};
 }

@@ -4,6 +4,7 @@
 
 #include "core/file.hpp"
 #include "core/progress.hpp"
+#include "core/try.hpp"
 #include "effects/probing_effect.hpp"
 #include "replay/probing_replay.hpp"
 
@@ -26,18 +27,16 @@ constexpr const char* kSimulatedNote =
     "The measurement set states that its measurements are simulated.";
 
 Result<Work> compute(const models::ProbingModel& model, const fs::path& folder) {
-  auto set = trial::read_probing_set(folder);
-  if (!set) return set.error();
+  auto set = TRY(trial::read_probing_set(folder));
   Work work;
-  work.set = std::move(*set);
+  work.set = std::move(set);
   const auto stated = work.set.stated.find("simulated");
   work.simulated = stated != work.set.stated.end() && stated->is_boolean() && stated->get<bool>();
   const auto bar = core::terminal_progress("replaying");
   for (const auto& recording : work.set.trials) {
     auto replayed =
-        replay::replay(model, recording, work.set.noise, (folder / recording.file).string());
-    if (!replayed) return replayed.error();
-    work.replayed.push_back(std::move(*replayed));
+        TRY(replay::replay(model, recording, work.set.noise, (folder / recording.file).string()));
+    work.replayed.push_back(std::move(replayed));
     if (bar && !bar(double(work.replayed.size()) / double(work.set.trials.size())))
       return core::Error{core::Errc::cancelled, "stopped"};
   }
@@ -81,9 +80,8 @@ Json summary_of(const Work& work, const models::ProbingModel& model) {
 }
 
 Result<void> write(const Work& work, const models::ProbingModel& model, const fs::path& to) {
-  auto scratch = core::ScratchFolder::make(to);
-  if (!scratch) return scratch.error();
-  const fs::path trials = scratch->path() / "trials";
+  auto scratch = TRY(core::ScratchFolder::make(to));
+  const fs::path trials = scratch.path() / "trials";
   std::error_code failure;
   fs::create_directory(trials, failure);
   if (failure)
@@ -95,37 +93,32 @@ Result<void> write(const Work& work, const models::ProbingModel& model, const fs
     if (work.simulated) figure.note = kSimulatedNote;
     for (const auto& [suffix, text] : {std::pair{".csv", replay::csv(recording, work.replayed[k])},
                                        std::pair{".svg", plot::svg(figure)}})
-      if (auto done = core::write_file(trials / (recording.id + suffix), core::bytes_of(text));
-          !done)
-        return done;
+      TRY(core::write_file(trials / (recording.id + suffix), core::bytes_of(text)));
   }
   if (auto done =
-          core::write_file(scratch->path() / "table.csv", core::bytes_of(replay::csv(work.rows)));
+          core::write_file(scratch.path() / "table.csv", core::bytes_of(replay::csv(work.rows)));
       !done)
     return done;
-  if (auto done = core::write_json(scratch->path() / "summary.json", summary_of(work, model));
-      !done)
-    return done;
-  return scratch->keep_as(to);
+  TRY(core::write_json(scratch.path() / "summary.json", summary_of(work, model)));
+  return scratch.keep_as(to);
 }
 
 }  // namespace
 
 Outcome replay_probing(const models::ProbingModel& model, const fs::path& folder,
                        const ReplayOptions& options) {
-  auto work = compute(model, folder);
-  if (!work) return work.error();
-  if (auto written = write(*work, model, options.out); !written) return written.error();
+  auto work = TRY(compute(model, folder));
+  TRY(write(work, model, options.out));
   if (options.json) {
-    fmt::print("{}\n", summary_of(*work, model).dump(2));
+    fmt::print("{}\n", summary_of(work, model).dump(2));
     return 0;
   }
-  fmt::print("{}", replay::printed(work->rows));
-  for (const auto& row : work->rows)
+  fmt::print("{}", replay::printed(work.rows));
+  for (const auto& row : work.rows)
     if (row.scope == "all" && row.channel == "x_m")
       fmt::print("Driven by the recorded push, the model is off in depth by {:.3g} mm (rms).\n",
                  1e3 * row.rmse);
-  for (const std::string& note : notes(*work, model)) fmt::print("- {}\n", note);
+  for (const std::string& note : notes(work, model)) fmt::print("- {}\n", note);
   fmt::print("Written to {}\n", options.out.string());
   return 0;
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "scenarios/demand.hpp"
 
 namespace tractus {
@@ -29,18 +30,17 @@ void shade(const laws::ProbingParameters& p, plot::Panel& panel) {
 
 core::Result<plot::Figure> scenario_picture(const scenarios::Scenario& scenario,
                                             std::span<const double> speeds_m_s) {
-  const auto found = scenarios::resistance(scenario, speeds_m_s);
-  if (!found) return found.error();
+  const auto found = TRY(scenarios::resistance(scenario, speeds_m_s));
   plot::Panel panel;
   panel.x_label = "depth, mm";
   panel.y_label = "push, N";
   panel.height_px = 340;
-  shade(found->parameters, panel);
-  for (std::size_t k = 0; k < found->speeds_m_s.size(); ++k) {
+  shade(found.parameters, panel);
+  for (std::size_t k = 0; k < found.speeds_m_s.size(); ++k) {
     plot::Line line;
-    line.label = fmt::format("{:g} mm/s", 1e3 * found->speeds_m_s[k]);
-    for (const double x_m : found->depth_m) line.x.push_back(1e3 * x_m);
-    line.y = found->force_N[k];
+    line.label = fmt::format("{:g} mm/s", 1e3 * found.speeds_m_s[k]);
+    for (const double x_m : found.depth_m) line.x.push_back(1e3 * x_m);
+    line.y = found.force_N[k];
     panel.lines.push_back(std::move(line));
   }
   plot::Mark surgeon;

@@ -4,6 +4,7 @@
 
 #include <set>
 
+#include "core/try.hpp"
 #include "trial/measurement_set.hpp"
 #include "trial/probing_set.hpp"
 #include "trial/trial_file.hpp"
@@ -96,13 +97,11 @@ core::Result<std::size_t> write_trial_set(std::span<const std::string> files,
       return Error{Errc::bad_input, fmt::format("{}: this trial is of another rig ({}) than the "
                                                 "first trial; a set must contain trials of one rig",
                                                 file, trial::name(trial->header.rig))};
-    auto added = probes ? add(probing, probing_of(*trial), *trial, file, samples)
-                        : add(palpation, palpation_of(*trial), *trial, file, samples);
-    if (!added) return added.error();
+    TRY(probes ? add(probing, probing_of(*trial), *trial, file, samples)
+               : add(palpation, palpation_of(*trial), *trial, file, samples));
   }
-  auto written = probing.trials.empty() ? trial::write_palpation_set(folder, palpation)
-                                        : trial::write_probing_set(folder, probing);
-  if (!written) return written.error();
+  TRY(probing.trials.empty() ? trial::write_palpation_set(folder, palpation)
+                             : trial::write_probing_set(folder, probing));
   return samples;
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace effects {
 namespace {
@@ -103,7 +105,7 @@ core::Result<Expression> Expression::from_json(const Json& json, const std::stri
   for (const ExpressionState& state : rig.states)
     out.quantities_.push_back({std::string(state.name), *Dimension::parse(state.unit)});
   const Json* parameters = fields.member("parameters");
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   facts.label = expression_label(facts.id);
   if (!parameters->is_object() || parameters->size() > kMostParameters)
     return Error{Errc::bad_input,
@@ -122,7 +124,7 @@ core::Result<Expression> Expression::from_json(const Json& json, const std::stri
     auto unit = Dimension::parse(out.units_.back());
     if (!unit) own.wrong("unit", unit.error().what);
     facts.params.back().unit = out.units_.back();
-    if (auto done = own.done(); !done) return done.error();
+    TRY(own.done());
     out.quantities_.push_back({name, *unit});
   }
   const auto found = check_formula(facts.equation, out.quantities_, *Dimension::parse(rig.unit));
@@ -147,15 +149,13 @@ core::Result<Expression> Expression::from_json(const Json& json, const std::stri
 
 core::Result<Expression> Expression::read(const std::filesystem::path& path,
                                           const ExpressionRig& rig) {
-  auto json = core::read_json(path);
-  if (!json) return json.error();
-  return from_json(*json, path.string() + ": ", rig);
+  auto json = TRY(core::read_json(path));
+  return from_json(json, path.string() + ": ", rig);
 }
 
 core::Result<Expression> Expression::of(const EffectInstance& use, const ExpressionRig& rig) {
-  auto json = core::parse_json(use.definition, use.id);
-  if (!json) return json.error();
-  auto out = from_json(*json, use.id + ": ", rig);
+  auto json = TRY(core::parse_json(use.definition, use.id));
+  auto out = from_json(json, use.id + ": ", rig);
   if (out && out->facts().id != use.id)
     return Error{Errc::bad_input,
                  fmt::format("{}: its definition is of '{}'", use.id, out->facts().id)};

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "effects/palpation_expression.hpp"
 
 namespace tractus {
@@ -31,9 +32,8 @@ core::Error unknown(std::string_view id) {
 
 core::Result<EffectFacts> palpation_facts(const EffectInstance& use) {
   if (is_expression(use.id)) {
-    const auto expression = Expression::of(use, palpation_expressions());
-    if (!expression) return expression.error();
-    return expression->facts();
+    const auto expression = TRY(Expression::of(use, palpation_expressions()));
+    return expression.facts();
   }
   const auto* found = find_palpation_effect(use.id);
   if (!found) return unknown(use.id);
@@ -44,7 +44,7 @@ core::Result<PalpationEffect> make_palpation_effect(const EffectInstance& use) {
   if (is_expression(use.id)) return make_palpation_expression(use);
   const auto* found = find_palpation_effect(use.id);
   if (!found) return unknown(use.id);
-  if (auto ok = check(found->facts, use.values); !ok) return ok.error();
+  TRY(check(found->facts, use.values));
   return found->make(use.values);
 }
 

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace effects {
 namespace {
@@ -69,13 +71,11 @@ const ExpressionRig& palpation_expressions() {
 }
 
 core::Result<PalpationEffect> make_palpation_expression(const EffectInstance& use) {
-  auto expression = Expression::of(use, palpation_expressions());
-  if (!expression) return expression.error();
-  if (auto ok = check(expression->facts(), use.values); !ok) return ok.error();
-  auto program = expression->program();
-  if (!program) return program.error();
+  auto expression = TRY(Expression::of(use, palpation_expressions()));
+  TRY(check(expression.facts(), use.values));
+  auto program = TRY(expression.program());
   return PalpationEffect(std::unique_ptr<PointForce>(
-      std::make_unique<ExpressionAgainstMotion>(std::move(*program), use.values)));
+      std::make_unique<ExpressionAgainstMotion>(std::move(program), use.values)));
 }
 
 }  // namespace effects

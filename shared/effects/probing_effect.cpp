@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/try.hpp"
 #include "effects/expression.hpp"
 
 namespace tractus {
@@ -41,13 +42,11 @@ class ExpressionForce final : public ProbeForce {
 };
 
 core::Result<ProbingEffect> make_expression(const EffectInstance& use) {
-  auto expression = Expression::of(use, probing_expressions());
-  if (!expression) return expression.error();
-  if (auto ok = check(expression->facts(), use.values); !ok) return ok.error();
-  auto program = expression->program();
-  if (!program) return program.error();
+  auto expression = TRY(Expression::of(use, probing_expressions()));
+  TRY(check(expression.facts(), use.values));
+  auto program = TRY(expression.program());
   return ProbingEffect(std::unique_ptr<ProbeForce>(
-      std::make_unique<ExpressionForce>(std::move(*program), use.values)));
+      std::make_unique<ExpressionForce>(std::move(program), use.values)));
 }
 
 core::Error unknown(std::string_view id) {
@@ -76,9 +75,8 @@ std::vector<double> spread(double low, double high, int count) {
 
 core::Result<EffectFacts> probing_facts(const EffectInstance& use) {
   if (is_expression(use.id)) {
-    const auto expression = Expression::of(use, probing_expressions());
-    if (!expression) return expression.error();
-    return expression->facts();
+    const auto expression = TRY(Expression::of(use, probing_expressions()));
+    return expression.facts();
   }
   const auto* found = find_probing_effect(use.id);
   if (!found) return unknown(use.id);
@@ -89,7 +87,7 @@ core::Result<ProbingEffect> make_probing_effect(const EffectInstance& use) {
   if (is_expression(use.id)) return make_expression(use);
   const auto* found = find_probing_effect(use.id);
   if (!found) return unknown(use.id);
-  if (auto ok = check(found->facts, use.values); !ok) return ok.error();
+  TRY(check(found->facts, use.values));
   return found->make(use.values);
 }
 

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace laws {
 namespace {
@@ -80,8 +82,8 @@ core::Result<ProbingLaw> ProbingLaw::make(ProbingParameters p) {
     return refused(
         "rotary: viscous_Nms_per_rad 0 … 10, detent_Nm 0 … 10 and detent_pitch_rad 0.001 … 7 are "
         "expected");
-  if (auto ok = check(p.layers, p.travel_m); !ok) return ok.error();
-  if (auto ok = check(p.walls, p.travel_m); !ok) return ok.error();
+  TRY(check(p.layers, p.travel_m));
+  TRY(check(p.walls, p.travel_m));
   ProbingLaw law(std::move(p));
   law.lay_out();
   return law;

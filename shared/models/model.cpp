@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/try.hpp"
 #include "effects/palpation_effect.hpp"
 #include "models/parts.hpp"
 
@@ -93,7 +94,7 @@ OptionalError read_base(Fields& fields, PalpationModel& model) {
     p.pose_offset_m = {offset[0], offset[1], offset[2]};
   }
   if (auto fault = read_field_kind(base, model)) return fault;
-  if (auto done = base.done(); !done) return done.error();
+  TRY(base.done());
   if (p.pose_offset_m.norm() > 1.0)
     return bad(base.where(), "pose_offset_m", "is longer than 1 m; metres are expected");
   if (const double reach = (p.points - 1) * p.point_spacing_m; reach >= p.length_m)
@@ -114,14 +115,13 @@ core::Result<PalpationModel> PalpationModel::from_json(const Json& json, const s
   if (auto fault = read_base(fields, model)) return *fault;
   if (auto fault = read_fixed(fields, model.to_json(), model.fixed)) return *fault;
   if (auto fault = read_effects(fields, effects::palpation_facts, model.effects)) return *fault;
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   return model;
 }
 
 core::Result<PalpationModel> PalpationModel::read(const std::filesystem::path& path) {
-  auto json = core::read_json(path);
-  if (!json) return json.error();
-  return from_json(*json, path.string() + ": ");
+  auto json = TRY(core::read_json(path));
+  return from_json(json, path.string() + ": ");
 }
 
 Json PalpationModel::to_json() const {

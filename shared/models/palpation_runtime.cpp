@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/try.hpp"
 #include "math/spline.hpp"
 
 namespace tractus {
@@ -39,15 +40,14 @@ HandleMotion later(const HandleMotion& from, double dt_s) {
 core::Result<PalpationMotion> PalpationMotion::through(std::span<const double> t_s,
                                                        std::span<const math::Pose> X_VH,
                                                        const Vec3& down) {
-  const auto spline = math::PoseSpline::make(t_s, X_VH);
-  if (!spline) return spline.error();
+  const auto spline = TRY(math::PoseSpline::make(t_s, X_VH));
   PalpationMotion out;
   out.t_s.assign(t_s.begin(), t_s.end());
   out.handle.reserve(t_s.size());
   for (std::size_t k = 0; k < t_s.size(); ++k)
-    out.handle.push_back({X_VH[k], spline->velocity_m_s(t_s[k]),
-                          spline->angular_velocity_rad_s(t_s[k]), spline->acceleration_m_s2(t_s[k]),
-                          spline->angular_acceleration_rad_s2(t_s[k]), down});
+    out.handle.push_back({X_VH[k], spline.velocity_m_s(t_s[k]),
+                          spline.angular_velocity_rad_s(t_s[k]), spline.acceleration_m_s2(t_s[k]),
+                          spline.angular_acceleration_rad_s2(t_s[k]), down});
   return out;
 }
 
@@ -177,9 +177,8 @@ class PalpationRuntime::Contacts final : public laws::ContactForces {
 core::Result<PalpationRuntime> PalpationRuntime::make(const PalpationModel& model,
                                                       const volume::Volume& volume,
                                                       const core::Progress& progress) {
-  auto made = volume::ForceField::make(volume, model.transfer, model.field, progress);
-  if (!made) return made.error();
-  auto field = std::make_unique<volume::ForceField>(std::move(*made));
+  auto made = TRY(volume::ForceField::make(volume, model.transfer, model.field, progress));
+  auto field = std::make_unique<volume::ForceField>(std::move(made));
   auto runtime = make(model, *field);
   if (runtime) runtime->owned_ = std::move(field);
   return runtime;
@@ -187,19 +186,16 @@ core::Result<PalpationRuntime> PalpationRuntime::make(const PalpationModel& mode
 
 core::Result<PalpationRuntime> PalpationRuntime::make(const PalpationModel& model,
                                                       const volume::ForceField& field) {
-  auto law = laws::PalpationLaw::make(model.base, field);
-  if (!law) return law.error();
-  PalpationRuntime runtime(field, std::move(*law));
+  auto law = TRY(laws::PalpationLaw::make(model.base, field));
+  PalpationRuntime runtime(field, std::move(law));
   std::vector<effects::EffectInstance> uses = model.effects;
   std::ranges::sort(uses, {}, &effects::EffectInstance::id);  // the catalogue's order
-  for (const effects::EffectInstance& use : uses)
-    if (auto added = runtime.add(use); !added) return added.error();
+  for (const effects::EffectInstance& use : uses) TRY(runtime.add(use));
   return runtime;
 }
 
 core::Result<void> PalpationRuntime::add(const effects::EffectInstance& use) {
-  auto effect = effects::make_palpation_effect(use);
-  if (!effect) return effect.error();
+  auto effect = TRY(effects::make_palpation_effect(use));
   const auto keep = [this]<class Stage>(Stage stage) {
     using effects::PalpationEffect;
     if constexpr (std::is_same_v<Stage, std::unique_ptr<effects::MotionDelay>>) {
@@ -227,7 +223,7 @@ core::Result<void> PalpationRuntime::add(const effects::EffectInstance& use) {
       static_assert(std::is_same_v<Stage, effects::FreePerTrial>);
     }
   };
-  std::visit([&](auto& stage) { keep(std::move(stage)); }, *effect);
+  std::visit([&](auto& stage) { keep(std::move(stage)); }, effect);
   return {};
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/require.hpp"
+#include "core/try.hpp"
 #include "effects/expression.hpp"
 
 namespace tractus {
@@ -125,8 +126,8 @@ core::Result<effects::EffectInstance> read_use(const Json& json, const std::stri
   Fields numbers(given ? *given : none, where + "/parameters");
   if (given)
     for (const effects::Param& param : facts->params) read_parameter(numbers, param, use.values);
-  if (auto done = fields.done(); !done) return done.error();
-  if (auto done = numbers.done(); !done) return done.error();
+  TRY(fields.done());
+  TRY(numbers.done());
   return use;
 }
 
@@ -139,12 +140,11 @@ OptionalError read_effects(Fields& fields, FactsOf facts_of,
   const std::string& where = fields.where();
   if (!list->is_array()) return bad(where, "effects", "an array is expected");
   for (std::size_t k = 0; k < list->size(); ++k) {
-    auto use = read_use((*list)[k], fmt::format("{}/effects/{}", where, k), facts_of);
-    if (!use) return use.error();
-    if (std::ranges::find(uses, use->id, &effects::EffectInstance::id) != uses.end())
+    auto use = TRY(read_use((*list)[k], fmt::format("{}/effects/{}", where, k), facts_of));
+    if (std::ranges::find(uses, use.id, &effects::EffectInstance::id) != uses.end())
       return bad(where, fmt::format("effects/{}/id", k),
-                 fmt::format("'{}' is in the list already", use->id));
-    uses.push_back(std::move(*use));
+                 fmt::format("'{}' is in the list already", use.id));
+    uses.push_back(std::move(use));
   }
   return std::nullopt;
 }

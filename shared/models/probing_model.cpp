@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "core/try.hpp"
 #include "effects/probing_effect.hpp"
 #include "models/parts.hpp"
 
@@ -36,7 +37,7 @@ OptionalError read_layers(Fields& base, ProbingModel& model) {
     model.layers.push_back({number(fields, "start_m"), number(fields, "thickness_m"),
                             number(fields, "stiffness_N_per_m"), number(fields, "damping_Ns_per_m"),
                             number(fields, "equilibrium_m")});
-    if (auto done = fields.done(); !done) return done.error();
+    TRY(fields.done());
   }
   return std::nullopt;
 }
@@ -49,7 +50,7 @@ OptionalError read_rotary(Fields& base, ProbingModel& model) {
   r.viscous_Nms_per_rad = fields.number_or("viscous_Nms_per_rad", r.viscous_Nms_per_rad, 0.0, 10.0);
   r.detent_Nm = fields.number_or("detent_Nm", r.detent_Nm, 0.0, 10.0);
   r.detent_pitch_rad = fields.number_or("detent_pitch_rad", r.detent_pitch_rad, 1e-3, 7.0);
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   return std::nullopt;
 }
 
@@ -60,7 +61,7 @@ OptionalError read_base(Fields& fields, ProbingModel& model) {
   if (!object->is_object()) return base.done().error();
   if (auto fault = read_layers(base, model)) return fault;
   if (auto fault = read_rotary(base, model)) return fault;
-  if (auto done = base.done(); !done) return done.error();
+  TRY(base.done());
   if (auto law = model.law(kLongestTravel_m); !law)
     return core::Error{core::Errc::bad_input, base.where() + "/" + law.error().what};
   return std::nullopt;
@@ -81,14 +82,13 @@ Result<ProbingModel> ProbingModel::from_json(const Json& json, const std::string
   if (auto fault = read_base(fields, model)) return *fault;
   if (auto fault = read_fixed(fields, model.to_json(), model.fixed)) return *fault;
   if (auto fault = read_effects(fields, effects::probing_facts, model.effects)) return *fault;
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   return model;
 }
 
 Result<ProbingModel> ProbingModel::read(const std::filesystem::path& path) {
-  auto json = core::read_json(path);
-  if (!json) return json.error();
-  return from_json(*json, path.string() + ": ");
+  auto json = TRY(core::read_json(path));
+  return from_json(json, path.string() + ": ");
 }
 
 Json ProbingModel::to_json() const {
@@ -115,19 +115,16 @@ Json ProbingModel::to_json() const {
 Result<Model> model_from_json(const Json& json, const std::string& where) {
   const bool probing = json.is_object() && json.contains("rig") && json["rig"] == "probing";
   if (probing) {
-    auto model = ProbingModel::from_json(json, where);
-    if (!model) return model.error();
-    return Model(std::move(*model));
+    auto model = TRY(ProbingModel::from_json(json, where));
+    return Model(std::move(model));
   }
-  auto model = PalpationModel::from_json(json, where);
-  if (!model) return model.error();
-  return Model(std::move(*model));
+  auto model = TRY(PalpationModel::from_json(json, where));
+  return Model(std::move(model));
 }
 
 Result<Model> read_model(const std::filesystem::path& path) {
-  auto json = core::read_json(path);
-  if (!json) return json.error();
-  return model_from_json(*json, path.string() + ": ");
+  auto json = TRY(core::read_json(path));
+  return model_from_json(json, path.string() + ": ");
 }
 
 }  // namespace models

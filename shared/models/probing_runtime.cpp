@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/try.hpp"
 #include "models/probing_step.hpp"
 
 namespace tractus {
@@ -101,19 +102,17 @@ core::Result<ProbingRuntime> ProbingRuntime::make(const ProbingModel& model, dou
 
 core::Result<ProbingRuntime> ProbingRuntime::make(laws::ProbingParameters parameters,
                                                   std::span<const effects::EffectInstance> uses) {
-  auto law = laws::ProbingLaw::make(std::move(parameters));
-  if (!law) return law.error();
+  auto law = TRY(laws::ProbingLaw::make(std::move(parameters)));
   if (uses.size() > kMaxProbingEffects)
     return core::Error{
         core::Errc::too_large,
         fmt::format("{} effects where at most {} are expected", uses.size(), kMaxProbingEffects)};
   ProbingStages stages;
   for (const effects::EffectInstance& use : uses) {
-    auto effect = effects::make_probing_effect(use);
-    if (!effect) return effect.error();
-    stages.add(std::move(*effect));
+    auto effect = TRY(effects::make_probing_effect(use));
+    stages.add(std::move(effect));
   }
-  return ProbingRuntime(std::move(*law), std::move(stages));
+  return ProbingRuntime(std::move(law), std::move(stages));
 }
 
 void ProbingRuntime::predict_force(const ProbingMotion& motion, std::span<double> fz_N) const {

@@ -5,6 +5,7 @@
 
 #include <cstdio>
 
+#include "core/try.hpp"
 #include "station/app/commands.hpp"
 #include "station/app/exchange.hpp"
 #include "station/app/trial_epilogue.hpp"
@@ -19,15 +20,13 @@ namespace {
 core::Result<std::unique_ptr<devices::Device>> device_for(
     const Options& options, std::span<const headset::FixturePoint> points,
     const math::Vec3& tip_H_m) {
-  auto info = devices::find(options.setup.device, devices::DeviceKind::handle);
-  if (!info) return info.error();
-  if (info->simulated)
+  auto info = TRY(devices::find(options.setup.device, devices::DeviceKind::handle));
+  if (info.simulated)
     return std::unique_ptr<devices::Device>(new headset::TouchingHand(points, tip_H_m));
   devices::DeviceOptions how;
   how.sdk = options.setup.sdk;
-  auto made = info->make(how);
-  if (!made) return made.error();
-  return std::move(made->device);
+  auto made = TRY(info.make(how));
+  return std::move(made.device);
 }
 
 /// Has somebody pressed Enter? An input that has ended presses nothing more.
@@ -83,30 +82,24 @@ void print(const Options& options, const headset::KeptAlignment& kept) {
 }  // namespace
 
 core::Result<int> align_room(const Options& options) {
-  auto folder = session::StationFolder::open(options.data);
-  if (!folder) return folder.error();
-  auto lock = folder->lock();  // nobody has the device in a trial meanwhile
+  auto folder = TRY(session::StationFolder::open(options.data));
+  auto lock = folder.lock();  // nobody has the device in a trial meanwhile
   if (!lock) return lock.error();
-  auto points = headset::read_fixture(options.fixture);
-  if (!points) return points.error();
+  auto points = TRY(headset::read_fixture(options.fixture));
   const math::Vec3 tip_H_m(0.0, 0.0, 1e-3 * options.tip_mm);
-  auto device = device_for(options, *points, tip_H_m);
-  if (!device) return device.error();
-  auto limits = (*device)->open();
-  if (!limits) return limits.error();
+  auto device = TRY(device_for(options, points, tip_H_m));
+  auto limits = TRY(device->open());
   core::MonotonicClock clock;
   Enter enter;
-  auto touched = headset::touch_points(**device, clock, *points, tip_H_m, talk_of(enter));
-  (*device)->close();
+  auto touched = headset::touch_points(*device, clock, points, tip_H_m, talk_of(enter));
+  device->close();
   if (!touched) return touched.error();
-  auto found = headset::align(*touched, 1e-3 * options.limit_mm);
-  if (!found) return found.error();
-  const headset::KeptAlignment kept{.alignment = *found,
+  auto found = TRY(headset::align(*touched, 1e-3 * options.limit_mm));
+  const headset::KeptAlignment kept{.alignment = found,
                                     .device = options.setup.device,
-                                    .simulated = limits->simulated,
+                                    .simulated = limits.simulated,
                                     .made_utc_us = core::utc_us()};
-  if (auto written = headset::keep_alignment(options.data, kept, *touched); !written)
-    return written.error();
+  TRY(headset::keep_alignment(options.data, kept, *touched));
   print(options, kept);
   return 0;
 }

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/try.hpp"
 #include "station/app/checks.hpp"
 #include "station/devices/catalogue.hpp"
 
@@ -37,18 +38,15 @@ struct Opened {
 core::Result<std::unique_ptr<Opened>> open_device(const Checked& checked, double plan_s,
                                                   devices::Homing homing) {
   const session::TrialSetup& setup = checked.options.setup;
-  auto info = devices::find(setup.device, devices::DeviceKind::handle);
-  if (!info) return info.error();
+  auto info = TRY(devices::find(setup.device, devices::DeviceKind::handle));
   auto out = std::make_unique<Opened>();
-  auto made = info->make({.duration_s = plan_s, .sdk = setup.sdk, .homing = homing});
-  if (!made) return made.error();
-  out->made = std::move(*made);
-  auto limits = out->made.device->open();
-  if (!limits) return limits.error();
-  out->limits = *limits;
-  out->hand_simulated = info->simulated;
-  if (out->limits.name.empty()) out->limits.name = info->id;
-  if (info->simulated)
+  auto made = TRY(info.make({.duration_s = plan_s, .sdk = setup.sdk, .homing = homing}));
+  out->made = std::move(made);
+  auto limits = TRY(out->made.device->open());
+  out->limits = limits;
+  out->hand_simulated = info.simulated;
+  if (out->limits.name.empty()) out->limits.name = info.id;
+  if (info.simulated)
     out->clock = std::make_unique<core::ManualClock>();
   else
     out->clock = std::make_unique<core::MonotonicClock>();
@@ -73,27 +71,24 @@ core::Result<void> tell(const Checked& checked, const Opened& opened, const char
 }
 
 core::Result<void> travel(Checked& checked) {
-  auto opened = open_device(checked, checked.options.for_s, devices::Homing::refuse);
-  if (!opened) return opened.error();
-  checked.device = (*opened)->limits.name;
-  checked.simulated = (*opened)->simulated();
+  auto opened = TRY(open_device(checked, checked.options.for_s, devices::Homing::refuse));
+  checked.device = opened->limits.name;
+  checked.simulated = opened->simulated();
   check::DeviceGoals goals;
-  if ((*opened)->hand_simulated) goals.travel_m = kSimulatedTravel_m;
+  if (opened->hand_simulated) goals.travel_m = kSimulatedTravel_m;
   const std::string what =
       fmt::format("Nothing will push. Take the handle and, for {:.0f} s, move it to every end.",
                   checked.options.for_s);
-  if (auto told = tell(checked, **opened, what.c_str()); !told) return told;
-  return run_check("Travel", checked, **opened, [&](const check::Bench& bench) {
+  TRY(tell(checked, *opened, what.c_str()));
+  return run_check("Travel", checked, *opened, [&](const check::Bench& bench) {
     return check::check_travel(bench, goals, checked.options.for_s, checked.findings);
   });
 }
 
 core::Result<void> forces(Checked& checked, Opened& opened) {
-  if (auto told = tell(checked, opened,
-                       "Hold the handle loosely in the middle; it will be pushed and turned "
-                       "gently, with a newton, for ten seconds.");
-      !told)
-    return told;
+  TRY(tell(checked, opened,
+           "Hold the handle loosely in the middle; it will be pushed and turned "
+           "gently, with a newton, for ten seconds."));
   return run_check("Forces", checked, opened, [&](const check::Bench& bench) {
     return check::check_forces(bench, {}, checked.findings);
   });
@@ -101,26 +96,21 @@ core::Result<void> forces(Checked& checked, Opened& opened) {
 }  // namespace
 
 core::Result<void> self_test_hand(Checked& checked) {
-  if (auto moved = travel(checked); !moved) return moved;
-  auto opened = open_device(checked, kLongPlan_s, devices::Homing::refuse);
-  if (!opened) return opened.error();
-  return forces(checked, **opened);
+  TRY(travel(checked));
+  auto opened = TRY(open_device(checked, kLongPlan_s, devices::Homing::refuse));
+  return forces(checked, *opened);
 }
 
 core::Result<void> calibrate_hand(Checked& checked) {
-  auto info = devices::find(checked.options.setup.device, devices::DeviceKind::handle);
-  if (!info) return info.error();
-  if (!info->simulated)
-    if (auto told = ask_person(checked.options,
-                               "The handle will move by itself to find its zero: clear its way and "
-                               "keep hands off.");
-        !told)
-      return told;
-  auto opened = open_device(checked, kLongPlan_s, devices::Homing::move);
-  if (!opened) return opened.error();
-  checked.device = (*opened)->limits.name;
-  checked.simulated = (*opened)->simulated();
-  return forces(checked, **opened);
+  auto info = TRY(devices::find(checked.options.setup.device, devices::DeviceKind::handle));
+  if (!info.simulated)
+    TRY(ask_person(checked.options,
+                   "The handle will move by itself to find its zero: clear its way and "
+                   "keep hands off."));
+  auto opened = TRY(open_device(checked, kLongPlan_s, devices::Homing::move));
+  checked.device = opened->limits.name;
+  checked.simulated = opened->simulated();
+  return forces(checked, *opened);
 }
 
 }  // namespace app

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/try.hpp"
 #include "station/app/checks.hpp"
 #include "station/devices/catalogue.hpp"
 #include "station/session/rig_entry.hpp"
@@ -30,22 +31,19 @@ struct OpenedRig {
 
 core::Result<std::unique_ptr<OpenedRig>> open_rig(Checked& checked) {
   const session::RigSetup& setup = checked.options.rig;
-  const auto info = devices::find(checked.options.setup.device, devices::DeviceKind::rig);
-  if (!info) return info.error();
-  auto made = info->make_rig(
-      {.address = setup.address, .program = setup.program, .seed = setup.seed, .surgeon = false});
-  if (!made) return made.error();
-  auto out = std::make_unique<OpenedRig>(std::move(*made));
+  const auto info = TRY(devices::find(checked.options.setup.device, devices::DeviceKind::rig));
+  auto made = TRY(info.make_rig(
+      {.address = setup.address, .program = setup.program, .seed = setup.seed, .surgeon = false}));
+  auto out = std::make_unique<OpenedRig>(std::move(made));
   const std::string& address = out->made.address;
-  auto identity = out->made.device->open();
-  if (!identity) return identity.error();
-  if (identity->bus_clock)
+  auto identity = TRY(out->made.device->open());
+  if (identity.bus_clock)
     return core::Error{
         core::Errc::unavailable,
         fmt::format("rig at {}: its clock is on the bus: not for real time", address)};
-  out->identity = *identity;
-  checked.simulated = identity->simulated;
-  checked.device = identity->simulated ? "SIMULATED probing rig" : "probing rig at " + address;
+  out->identity = identity;
+  checked.simulated = identity.simulated;
+  checked.device = identity.simulated ? "SIMULATED probing rig" : "probing rig at " + address;
   return out;
 }
 
@@ -93,33 +91,29 @@ core::Result<void> press_emergency_stop(Checked& checked, OpenedRig& rig) {
   if (checked.simulated || !::isatty(STDIN_FILENO)) return {};
   return run_shown("Emergency stop", Pace::real_time, checked.outside,
                    [&](const std::function<bool(double)>& progress) -> core::Result<void> {
-                     auto found = check::check_emergency_stop(
+                     auto found = TRY(check::check_emergency_stop(
                          bench_of(checked, rig, progress), kPatience_s,
-                         [](const char* what) { fmt::print(stderr, "\n{}\n", what); });
-                     if (!found) return found.error();
-                     checked.findings.push_back(std::move(*found));
+                         [](const char* what) { fmt::print(stderr, "\n{}\n", what); }));
+                     checked.findings.push_back(std::move(found));
                      return {};
                    });
 }
 
 core::Result<void> check_all(Checked& checked, OpenedRig& rig) {
-  if (!checked.simulated)
-    if (auto told = ask_person(checked.options, kLetGo); !told) return told;
+  if (!checked.simulated) TRY(ask_person(checked.options, kLetGo));
   bool may_move = false;
   auto rested = run_shown("At rest", Pace::real_time, checked.outside,
                           [&](const std::function<bool(double)>& progress) -> core::Result<void> {
-                            auto fine = check::check_rig_at_rest(bench_of(checked, rig, progress),
-                                                                 {}, checked.findings);
-                            if (!fine) return fine.error();
-                            may_move = *fine;
+                            auto fine = TRY(check::check_rig_at_rest(
+                                bench_of(checked, rig, progress), {}, checked.findings));
+                            may_move = fine;
                             return {};
                           });
   if (!rested || !may_move) return rested;
-  if (auto pressed = press_emergency_stop(checked, rig); !pressed) return pressed;
+  TRY(press_emergency_stop(checked, rig));
   if (!checked.findings.back().passed && checked.findings.back().name.starts_with("emergency"))
     return {};  // a rig whose e-stop does not work is not moved
-  if (!checked.simulated)
-    if (auto told = ask_person(checked.options, kKeepClear); !told) return told;
+  if (!checked.simulated) TRY(ask_person(checked.options, kKeepClear));
   return run_shown(
       "Motion", Pace::real_time, checked.outside,
       [&](const std::function<bool(double)>& progress) { return move(checked, rig, progress); });
@@ -127,9 +121,8 @@ core::Result<void> check_all(Checked& checked, OpenedRig& rig) {
 }  // namespace
 
 core::Result<void> check_whole_rig(Checked& checked) {
-  auto rig = open_rig(checked);
-  if (!rig) return rig.error();
-  return check_all(checked, **rig);
+  auto rig = TRY(open_rig(checked));
+  return check_all(checked, *rig);
 }
 
 }  // namespace app

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "station/app/checks.hpp"
 #include "station/app/commands.hpp"
 #include "station/app/exchange.hpp"
@@ -45,7 +46,7 @@ core::Result<void> check_machine(Checked& checked) {
   out.push_back(check::check_wake_ups(
       rig ? options.rig.rate_Hz : kHandRate_Hz, std::min(kWatched_s, options.for_s),
       [&](double share) { return shown(share) && !asked_to_stop(); }));
-  if (auto done = check::check_disk(checked.folder.trials(), out); !done) return done;
+  TRY(check::check_disk(checked.folder.trials(), out));
   out.push_back(check::check_clock());
   out.push_back(check::check_time_of_day(offset_to_server(options)));
   return {};
@@ -54,11 +55,10 @@ core::Result<void> check_machine(Checked& checked) {
 /// Not of a simulated device that nobody ever calibrated: there is nothing to calibrate.
 core::Result<void> check_calibration(Checked& checked) {
   const std::string& device = checked.options.setup.device;
-  auto last = check::Calibration::read(checked.folder.calibration_file(device));
-  if (!last) return last.error();
-  if (*last || !devices::is_simulated(device))
+  auto last = TRY(check::Calibration::read(checked.folder.calibration_file(device)));
+  if (last || !devices::is_simulated(device))
     checked.findings.push_back(check::check_calibration(
-        *last, core::utc_us(),
+        last, core::utc_us(),
         checked.simulated ? check::Tested::simulation : check::Tested::machine));
   return {};
 }
@@ -86,17 +86,15 @@ core::Result<void> check_page(const Options& options) {
 /// Into the folder; to the server when there is one, else with the next exchange; as a page.
 core::Result<void> keep(const Checked& checked, const check::Report& report) {
   const Options& options = checked.options;
-  auto left = report.leave(checked.folder.reports());
-  if (!left) return left.error();
+  TRY(report.leave(checked.folder.reports()));
   if (!options.page.empty()) {
     const std::string page = report.to_html(name_of(checked.folder));
     if (auto written = core::write_file(options.page, core::bytes_of(page)); !written)
       warn("there is no page: " + written.error().what);
   }
   if (options.server_url.empty()) return {};
-  auto server = connect(options);
-  if (!server) return server.error();
-  auto handed = uplink::hand_over_reports(**server, checked.folder.reports());
+  auto server = TRY(connect(options));
+  auto handed = uplink::hand_over_reports(*server, checked.folder.reports());
   if (!handed) {
     warn("the report waits for the server: " + handed.error().what);
     return {};
@@ -178,27 +176,25 @@ int not_calibrated(const Checked& checked) {
 }  // namespace
 
 core::Result<int> self_test(const Options& options) {
-  if (auto fine = check_page(options); !fine) return fine.error();
-  auto folder = session::StationFolder::open(options.data);
-  if (!folder) return folder.error();
-  auto lock = folder->lock();
-  if (!lock) return lock.error();
-  Presence presence(options, *folder);
+  TRY(check_page(options));
+  auto folder = TRY(session::StationFolder::open(options.data));
+  auto lock = TRY(folder.lock());
+  Presence presence(options, folder);
   presence.is(Presence::State::preparing);
-  Checked checked{options, *folder, *presence.outside()};
+  Checked checked{options, folder, *presence.outside()};
   check::SelfTest test{.at_utc_us = core::utc_us()};
   const auto device =
       devices::is_rig(options.setup.device) ? check_whole_rig(checked) : self_test_hand(checked);
   if (auto fine = recorded_outcome(device, checked); !fine) return unfinished(fine.error());
-  if (auto done = check_calibration(checked); !done) return done.error();
-  if (auto done = check_machine(checked); !done) return done.error();
+  TRY(check_calibration(checked));
+  TRY(check_machine(checked));
   if (asked_to_stop()) return unfinished({core::Errc::cancelled, ""});
   test.device = checked.device.empty() ? options.setup.device : checked.device;
   test.simulated = checked.simulated;
   test.findings = checked.findings;
-  check::Report report = report_for(*folder);
+  check::Report report = report_for(folder);
   report.self_test = std::move(test);
-  if (auto kept = keep(checked, report); !kept) return kept.error();
+  TRY(keep(checked, report));
   if (options.json)
     fmt::print("{}\n", report.to_json().dump(2));
   else
@@ -207,17 +203,14 @@ core::Result<int> self_test(const Options& options) {
 }
 
 core::Result<int> calibrate(const Options& options) {
-  if (auto fine = check_page(options); !fine) return fine.error();
-  auto folder = session::StationFolder::open(options.data);
-  if (!folder) return folder.error();
-  auto lock = folder->lock();
-  if (!lock) return lock.error();
-  const std::filesystem::path file = folder->calibration_file(options.setup.device);
-  auto last = check::Calibration::read(file);
-  if (!last) return last.error();
-  auto presence = std::make_unique<Presence>(options, *folder);
+  TRY(check_page(options));
+  auto folder = TRY(session::StationFolder::open(options.data));
+  auto lock = TRY(folder.lock());
+  const std::filesystem::path file = folder.calibration_file(options.setup.device);
+  auto last = TRY(check::Calibration::read(file));
+  auto presence = std::make_unique<Presence>(options, folder);
   presence->is(Presence::State::preparing);
-  Checked checked{options, *folder, *presence->outside()};
+  Checked checked{options, folder, *presence->outside()};
   const auto device =
       devices::is_rig(options.setup.device) ? check_whole_rig(checked) : calibrate_hand(checked);
   if (auto fine = recorded_outcome(device, checked); !fine) return unfinished(fine.error());
@@ -229,14 +222,14 @@ core::Result<int> calibrate(const Options& options) {
                           .kind = options.setup.device,
                           .who = options.who,
                           .simulated = checked.simulated};
-  describe(checked, *last, made);
+  describe(checked, last, made);
   std::error_code there;
   std::filesystem::create_directories(file.parent_path(), there);
-  if (auto kept = core::write_json(file, made.to_json()); !kept) return kept.error();
-  check::Report report = report_for(*folder);
+  TRY(core::write_json(file, made.to_json()));
+  check::Report report = report_for(folder);
   report.calibration = std::move(made);
   report.checks = checked.findings;
-  if (auto kept = keep(checked, report); !kept) return kept.error();
+  TRY(keep(checked, report));
   if (options.json) {
     fmt::print("{}\n", report.to_json().dump(2));
     return 0;

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "station/app/commands.hpp"
 #include "station/session/station_folder.hpp"
 #include "station/uplink/http_server.hpp"
@@ -28,8 +29,7 @@ struct Enrolled {
 };
 
 core::Result<Enrolled> enrolled_as(const Options& options, const std::string& key) {
-  auto server = uplink::HttpServer::make_nameless(options.server_url, options.authority);
-  if (!server) return server.error();
+  auto server = TRY(uplink::HttpServer::make_nameless(options.server_url, options.authority));
   const std::string body =
       core::Json{{"code", options.code}, {"token_sha256", core::sha256(core::bytes_of(key))}}
           .dump();
@@ -37,37 +37,34 @@ core::Result<Enrolled> enrolled_as(const Options& options, const std::string& ke
                                 .path = "/api/v1/stations/enrol",
                                 .headers = {{"Content-Type", "application/json"}},
                                 .body = core::bytes_of(body)};
-  auto answer = (*server)->send(request);
-  if (!answer) return answer.error();
-  auto json = uplink::json_of(request, *answer);
-  if (!json) return json.error();
-  core::Fields fields(*json, "answer");
+  auto answer = TRY(server->send(request));
+  auto json = TRY(uplink::json_of(request, answer));
+  core::Fields fields(json, "answer");
   fields.skip("id");
   Enrolled out{fields.text("name", 128), fields.text_or("case_signer", "", 64)};
-  if (auto done = fields.done(); !done) return done.error();
+  TRY(fields.done());
   return out;
 }
 
 /// Cases that are made on this server are taken from now on.
 core::Result<void> trust(const std::filesystem::path& data, const std::string& case_signer) {
   if (data.empty() || case_signer.empty()) return {};
-  auto folder = session::StationFolder::open(data);
-  if (!folder) return folder.error();
-  return folder->trust(case_signer);
+  auto folder = TRY(session::StationFolder::open(data));
+  return folder.trust(case_signer);
 }
 
 }  // namespace
 
 core::Result<int> enrol_station(const Options& options) {
   const std::string key = core::hex(core::random_bytes(32));
-  if (auto written = write_key(options.token_file, key); !written) return written.error();
+  TRY(write_key(options.token_file, key));
   auto enrolled = enrolled_as(options, key);
   if (!enrolled) {
     std::error_code ignored;
     std::filesystem::remove(options.token_file, ignored);
     return enrolled.error();
   }
-  if (auto trusted = trust(options.data, enrolled->case_signer); !trusted) return trusted.error();
+  TRY(trust(options.data, enrolled->case_signer));
   const std::string file = options.token_file.string();
   if (options.json)
     fmt::print("{}\n", core::Json{{"station", enrolled->name},

@@ -8,6 +8,7 @@
 #include <cstdio>
 
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "station/app/commands.hpp"
 #include "station/uplink/http_server.hpp"
 #include "station/uplink/models.hpp"
@@ -40,19 +41,16 @@ class PatientClock final : public core::Clock {
 }  // namespace
 
 core::Result<std::string> token_of(const Options& options) {
-  auto bytes = core::read_file(options.token_file, 64 * 1024);
-  if (!bytes) return bytes.error();
-  std::string token(core::text_of(*bytes));
+  auto bytes = TRY(core::read_file(options.token_file, 64 * 1024));
+  std::string token(core::text_of(bytes));
   while (!token.empty() && (token.back() == '\n' || token.back() == '\r')) token.pop_back();
   return token;
 }
 
 core::Result<std::unique_ptr<uplink::Server>> connect(const Options& options) {
-  auto token = token_of(options);
-  if (!token) return token.error();
-  auto server = uplink::HttpServer::make(options.server_url, *token, options.authority);
-  if (!server) return server.error();
-  return std::unique_ptr<uplink::Server>(std::move(*server));
+  auto token = TRY(token_of(options));
+  auto server = TRY(uplink::HttpServer::make(options.server_url, token, options.authority));
+  return std::unique_ptr<uplink::Server>(std::move(server));
 }
 
 void ask_to_stop() noexcept { stop_asked = true; }
@@ -104,21 +102,18 @@ bool anything_waits(const session::StationFolder& folder) {
 }  // namespace
 
 core::Result<core::Json> fetch_cases(const Options& options, const session::StationFolder& folder) {
-  auto server = connect(options);
-  if (!server) return server.error();
-  auto report = uplink::sync_cases(**server, folder.cases(), folder.trusted(),
-                                   stoppable(core::terminal_progress("Cases")));
-  if (!report) return report.error();
-  tell_refused(**server, report->refused);
-  hand_over_notes(**server, folder);
-  return report->to_json();
+  auto server = TRY(connect(options));
+  auto report = TRY(uplink::sync_cases(*server, folder.cases(), folder.trusted(),
+                                       stoppable(core::terminal_progress("Cases"))));
+  tell_refused(*server, report.refused);
+  hand_over_notes(*server, folder);
+  return report.to_json();
 }
 
 core::Result<uplink::ModelReport> fetch_models(const Options& options,
                                                const session::StationFolder& folder) {
-  auto server = connect(options);
-  if (!server) return server.error();
-  return uplink::sync_models(**server, folder.models());
+  auto server = TRY(connect(options));
+  return uplink::sync_models(*server, folder.models());
 }
 
 core::Result<std::filesystem::path> model_file_of(const Options& options,
@@ -131,41 +126,35 @@ core::Result<std::filesystem::path> model_file_of(const Options& options,
 
 core::Result<uplink::UploadReport> hand_over(const Options& options,
                                              const session::StationFolder& folder) {
-  auto lock = folder.upload_lock();
-  if (!lock) return lock.error();
-  auto server = connect(options);
-  if (!server) return server.error();
-  hand_over_notes(**server, folder);
-  const auto offset = anything_waits(folder) ? clock_offset(**server, folder) : std::nullopt;
+  auto lock = TRY(folder.upload_lock());
+  auto server = TRY(connect(options));
+  hand_over_notes(*server, folder);
+  const auto offset = anything_waits(folder) ? clock_offset(*server, folder) : std::nullopt;
   PatientClock clock;
   uplink::Patience patience;
   patience.give_up_after_ns = static_cast<core::Instant_ns>(options.wait_s * 1e9);
-  return uplink::upload_all(**server, folder.outbox(), folder.trials(), clock, patience,
+  return uplink::upload_all(*server, folder.outbox(), folder.trials(), clock, patience,
                             stoppable(core::terminal_progress("Upload")), offset);
 }
 
 core::Result<int> sync_cases(const Options& options) {
-  auto folder = session::StationFolder::open(options.data);
-  if (!folder) return folder.error();
-  auto lock = folder->lock();
-  if (!lock) return lock.error();
-  auto report = fetch_cases(options, *folder);
-  if (!report) return report.error();
-  auto models = fetch_models(options, *folder);
-  if (!models) return models.error();
-  (*report)["models"] = models->to_json();
-  const bool refused = !(*report)["refused"].empty() || !models->refused.empty();
+  auto folder = TRY(session::StationFolder::open(options.data));
+  auto lock = TRY(folder.lock());
+  auto report = TRY(fetch_cases(options, folder));
+  auto models = TRY(fetch_models(options, folder));
+  report["models"] = models.to_json();
+  const bool refused = !report["refused"].empty() || !models.refused.empty();
   if (options.json) {
-    fmt::print("{}\n", report->dump(2));
+    fmt::print("{}\n", report.dump(2));
     return refused ? 1 : 0;
   }
-  fmt::print("{} cases fetched, {} were here, {} refused\n", (*report)["fetched"].size(),
-             (*report)["present"].size(), (*report)["refused"].size());
-  for (const auto& line : (*report)["refused"]) fmt::print("  {}\n", line.get<std::string>());
-  if (!models->fetched.empty() || !models->present.empty() || !models->refused.empty())
-    fmt::print("{} models fetched, {} were here, {} refused\n", models->fetched.size(),
-               models->present.size(), models->refused.size());
-  for (const auto& line : models->refused) fmt::print("  {}\n", line);
+  fmt::print("{} cases fetched, {} were here, {} refused\n", report["fetched"].size(),
+             report["present"].size(), report["refused"].size());
+  for (const auto& line : report["refused"]) fmt::print("  {}\n", line.get<std::string>());
+  if (!models.fetched.empty() || !models.present.empty() || !models.refused.empty())
+    fmt::print("{} models fetched, {} were here, {} refused\n", models.fetched.size(),
+               models.present.size(), models.refused.size());
+  for (const auto& line : models.refused) fmt::print("  {}\n", line);
   return refused ? 1 : 0;
 }
 
@@ -177,22 +166,19 @@ std::string text_of(const uplink::UploadReport& report) {
 }
 
 core::Result<int> upload_trials(const Options& options) {
-  auto folder = session::StationFolder::open(options.data);
-  if (!folder) return folder.error();
+  auto folder = TRY(session::StationFolder::open(options.data));
   // What a crash left is queued first, unless a station is recording here just now.
-  if (auto lock = folder->lock(); lock)
-    if (auto recovered = folder->recover(); !recovered) return recovered.error();
-  auto report = hand_over(options, *folder);
-  if (!report) return report.error();
-  fmt::print("{}\n", options.json ? report->to_json().dump(2) : text_of(*report));
-  return report->waiting || report->refused ? 1 : 0;
+  if (auto lock = folder.lock(); lock) TRY(folder.recover());
+  auto report = TRY(hand_over(options, folder));
+  fmt::print("{}\n", options.json ? report.to_json().dump(2) : text_of(report));
+  return report.waiting || report.refused ? 1 : 0;
 }
 
 core::Result<int> show_limits(const Options& options) {
   auto folder = session::StationFolder::open(options.data);
   if (!folder) return folder.error();
   if (options.restore) {
-    if (auto restored = folder->restore_force(); !restored) return restored.error();
+    TRY(folder->restore_force());
     folder = session::StationFolder::open(options.data);
     if (!folder) return folder.error();
   }
@@ -215,17 +201,15 @@ core::Result<int> show_limits(const Options& options) {
 }
 
 core::Result<int> trust_signer(const Options& options) {
-  auto folder = session::StationFolder::open(options.data);
-  if (!folder) return folder.error();
+  auto folder = TRY(session::StationFolder::open(options.data));
   std::string key = options.signer_hex;
   if (key.empty()) {
-    auto opened = cases::open_case(options.signer_of_case);
-    if (!opened) return opened.error();
-    key = opened->signer_public_hex;
+    auto opened = TRY(cases::open_case(options.signer_of_case));
+    key = opened.signer_public_hex;
   }
-  if (auto trusted = folder->trust(key); !trusted) return trusted.error();
+  TRY(folder.trust(key));
   if (options.json)
-    fmt::print("{}\n", core::Json{{"signers", folder->trusted()}}.dump(2));
+    fmt::print("{}\n", core::Json{{"signers", folder.trusted()}}.dump(2));
   else
     fmt::print("cases signed by {} are taken\n", key);
   return 0;

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "core/progress.hpp"
+#include "core/try.hpp"
 #include "station/app/commands.hpp"
 
 namespace tractus {
@@ -39,13 +40,12 @@ core::Result<int> record_room(const Options& options) {
   // A folder's name may end in a slash.
   const auto folder = options.room.has_filename() ? options.room : options.room.parent_path();
   const auto shown = core::terminal_progress("Recording");
-  const auto done = sensors::record(options.record, folder, shown);
-  if (!done) return done.error();
+  const auto done = TRY(sensors::record(options.record, folder, shown));
   if (options.json)
-    fmt::print("{}\n", done->json().dump(2));
+    fmt::print("{}\n", done.json().dump(2));
   else
-    fmt::print("{}", words_of(*done, folder));
-  return done->ended_by.empty() ? 0 : 1;
+    fmt::print("{}", words_of(done, folder));
+  return done.ended_by.empty() ? 0 : 1;
 }
 
 }  // namespace app

@@ -7,6 +7,7 @@
 #include <cstdlib>
 
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "station/app/checks.hpp"
 #include "station/app/commands.hpp"
 #include "station/app/exchange.hpp"
@@ -27,9 +28,8 @@ using wire::AssignedWork;
 /// From a file, or typed unseen at the terminal.
 core::Result<std::string> pin_of(const Options& options) {
   if (!options.pin_file.empty()) {
-    auto bytes = core::read_file(options.pin_file, 4096);
-    if (!bytes) return bytes.error();
-    std::string pin(core::text_of(*bytes));
+    auto bytes = TRY(core::read_file(options.pin_file, 4096));
+    std::string pin(core::text_of(bytes));
     return pin.substr(0, pin.find_first_of("\r\n"));
   }
   if (!::isatty(STDIN_FILENO))
@@ -43,8 +43,7 @@ bool stopped_by_hand() { return asked_to_stop(); }
 /// The case, with the channel that the trainee drilled if that is what is felt.
 core::Result<std::shared_ptr<const session::PreparedCase>> prepare(
     const Options& options, const session::StationFolder& folder, const AssignedTrial& trial) {
-  if (!session::find_case(folder, trial.case_id))
-    if (auto fetched = fetch_cases(options, folder); !fetched) return fetched.error();
+  if (!session::find_case(folder, trial.case_id)) TRY(fetch_cases(options, folder));
   auto made = session::prepare_case(folder, trial.case_id, {},
                                     core::terminal_progress("Preparing the case"), trial.drilled);
   const bool lost = !made && made.error().code == core::Errc::not_found;
@@ -69,9 +68,8 @@ core::Result<TrialReport> work_on_bone(const Options& options, Presence& presenc
                                        const session::StationFolder& folder,
                                        const AssignedWork& work, int number) {
   const AssignedTrial& trial = *work.trial;
-  const auto made = prepare(options, folder, trial);
-  if (!made) return made.error();
-  const std::shared_ptr<const session::PreparedCase>& prepared = *made;
+  const auto made = TRY(prepare(options, folder, trial));
+  const std::shared_ptr<const session::PreparedCase>& prepared = made;
   session::TrialSetup setup = options.setup;
   setup.case_known_as = trial.slot;
   setup.operator_name = work.participant;
@@ -79,26 +77,22 @@ core::Result<TrialReport> work_on_bone(const Options& options, Presence& presenc
   setup.started_utc_us = started_of(options, number);
   if (trial.drills) setup.burr = drilling::Burr{};
   session::Station station(folder, setup);
-  auto onlooker = TrialViewer::make(*prepared, look_of(options));
-  if (!onlooker) return onlooker.error();
-  if (auto ready = station.prepare(prepared, options.setup.seed + trial.number); !ready)
-    return ready.error();
-  onlooker->follow(*station.live());
+  auto onlooker = TRY(TrialViewer::make(*prepared, look_of(options)));
+  TRY(station.prepare(prepared, options.setup.seed + trial.number));
+  onlooker.follow(*station.live());
   say_calibration_due(folder, options.setup.device);
   const auto watch = [&](const session::TrialSnapshot& seen) {
-    return onlooker->look(seen) && !stopped_by_hand();
+    return onlooker.look(seen) && !stopped_by_hand();
   };
-  if (auto ran = station.run(presence.watched(watch)); !ran) return ran.error();
+  TRY(station.run(presence.watched(watch)));
   presence.is(Presence::State::questions);
-  const core::Json headset = onlooker->end_headset();
-  if (!headset.is_null())
-    if (auto noted = station.note("headset", headset); !noted) return noted.error();
+  const core::Json headset = onlooker.end_headset();
+  if (!headset.is_null()) TRY(station.note("headset", headset));
   std::optional<trial::Answer> said;
   const bool asks = !trial.drills;  // who drills made the channel: there is nothing to guess
   if (station.state() == session::State::answering && asks && !stopped_by_hand()) {
-    auto answer = answer_of(options, station.simulated_answer());
-    if (!answer) return answer.error();
-    said = *answer;
+    auto answer = TRY(answer_of(options, station.simulated_answer()));
+    said = answer;
   }
   auto report = station.answer(said);
   if (report) report->headset = headset;
@@ -108,15 +102,13 @@ core::Result<TrialReport> work_on_bone(const Options& options, Presence& presenc
 core::Result<TrialReport> probe(const Options& options, Presence& presence,
                                 const session::StationFolder& folder, const AssignedWork& work,
                                 int number) {
-  auto token = token_of(options);
-  if (!token) return token.error();
-  const study::StationKey key(core::sha256(core::bytes_of(*token)));
+  auto token = TRY(token_of(options));
+  const study::StationKey key(core::sha256(core::bytes_of(token)));
   const AssignedTrial& trial = *work.trial;
-  auto law = study::opened_law(trial.sealed, trial.slot, key);
-  if (!law) return law.error();
+  auto law = TRY(study::opened_law(trial.sealed, trial.slot, key));
   session::ProbingTask task;
   task.case_id = trial.slot;
-  task.law = std::move(*law);
+  task.law = std::move(law);
   task.operator_name = work.participant;
   task.extra = {{"number", trial.number}};
   task.blind = true;
@@ -170,29 +162,26 @@ core::Result<Tally> rounds(const Options& options, Presence& presence,
                            const uplink::Ticket& ticket) {
   Tally tally;
   for (int i = 0; !stopped_by_hand() && presence.may_resume(); ++i) {
-    auto work = uplink::next_trial(server, ticket);
-    if (!work) return work.error();
-    tally.left = work->left;
-    if (!work->trial || i == options.trials) return tally;
-    const AssignedTrial& trial = *work->trial;
+    auto work = TRY(uplink::next_trial(server, ticket));
+    tally.left = work.left;
+    if (!work.trial || i == options.trials) return tally;
+    const AssignedTrial& trial = *work.trial;
     if (!options.json)
       fmt::print("{}: {}, {} of {}{}\n", trial.assignment, trial.name, trial.number, trial.planned,
                  task_of(trial));
-    auto report = one_trial(options, presence, folder, *work, i);
-    if (!report) return report.error();
-    tally.trials.push_back({{"trial_id", report->trial_id},
+    auto report = TRY(one_trial(options, presence, folder, work, i));
+    tally.trials.push_back({{"trial_id", report.trial_id},
                             {"number", trial.number},
                             {"name", trial.name},
                             {"tool", trial.drills ? "burr" : "probe"},
-                            {"complete", report->complete},
-                            {"fault", report->fault}});
-    if (!report->headset.is_null()) {
-      tally.trials.back()["headset"] = report->headset;
-      if (!options.json) fmt::print("  {}\n", headset_text(report->headset));
+                            {"complete", report.complete},
+                            {"fault", report.fault}});
+    if (!report.headset.is_null()) {
+      tally.trials.back()["headset"] = report.headset;
+      if (!options.json) fmt::print("  {}\n", headset_text(report.headset));
     }
-    tally.faulted = !report->complete;
-    auto handed = hand_over(options, folder);
-    if (!handed) return handed.error();
+    tally.faulted = !report.complete;
+    TRY(hand_over(options, folder));
     const bool stopped = presence.outside()->stopped();
     if (tally.faulted && !(stopped && presence.may_resume()))
       return tally;  // a person looks at the device first
@@ -203,31 +192,25 @@ core::Result<Tally> rounds(const Options& options, Presence& presence,
 }  // namespace
 
 core::Result<int> run_assigned(const Options& options) {
-  auto folder = session::StationFolder::open(options.data);
-  if (!folder) return folder.error();
-  auto lock = folder->lock();
-  if (!lock) return lock.error();
-  auto recovered = folder->recover();
-  if (!recovered) return recovered.error();
-  say_recovered(*recovered);
-  auto pin = pin_of(options);
-  if (!pin) return pin.error();
-  auto server = connect(options);
-  if (!server) return server.error();
-  if (auto before = hand_over(options, *folder); !before) return before.error();
-  auto ticket = uplink::sign_in(**server, options.badge, *pin);
-  if (!ticket) return ticket.error();
-  Presence presence(options, *folder);
-  auto tally = rounds(options, presence, *folder, **server, *ticket);
-  uplink::sign_out(**server, *ticket);
+  auto folder = TRY(session::StationFolder::open(options.data));
+  auto lock = TRY(folder.lock());
+  auto recovered = TRY(folder.recover());
+  say_recovered(recovered);
+  auto pin = TRY(pin_of(options));
+  auto server = TRY(connect(options));
+  TRY(hand_over(options, folder));
+  auto ticket = TRY(uplink::sign_in(*server, options.badge, pin));
+  Presence presence(options, folder);
+  auto tally = rounds(options, presence, folder, *server, ticket);
+  uplink::sign_out(*server, ticket);
   if (!tally) return tally.error();
   if (options.json)
     fmt::print(
         "{}\n",
-        core::Json{{"name", ticket->name}, {"trials", tally->trials}, {"left", tally->left}}.dump(
+        core::Json{{"name", ticket.name}, {"trials", tally->trials}, {"left", tally->left}}.dump(
             2));
   else
-    fmt::print("{}: {}\n", ticket->name,
+    fmt::print("{}: {}\n", ticket.name,
                tally->left == 0 ? "nothing is left to be done"
                                 : fmt::format("{} trials are left", tally->left));
   return tally->faulted ? 1 : 0;

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "core/progress.hpp"
+#include "core/try.hpp"
 #include "station/app/checks.hpp"
 #include "station/app/commands.hpp"
 #include "station/app/exchange.hpp"
@@ -21,17 +22,14 @@ constexpr double kModelTravel_m = 0.05;  // of a model that is felt without a sc
 
 core::Result<ProbingTask> task_of(const Options& options, const session::StationFolder& folder) {
   std::optional<models::ProbingModel> model;
-  const auto file = model_file_of(options, folder);
-  if (!file) return file.error();
-  if (!file->empty()) {
-    auto read = models::ProbingModel::read(*file);
-    if (!read) return read.error();
-    model = std::move(*read);
+  const auto file = TRY(model_file_of(options, folder));
+  if (!file.empty()) {
+    auto read = TRY(models::ProbingModel::read(file));
+    model = std::move(read);
   }
   if (options.scenario.empty()) return session::task_of(*model, kModelTravel_m);
-  auto scenario = scenario_named(options.scenario);
-  if (!scenario) return scenario.error();
-  return session::task_of(*scenario, model);
+  auto scenario = TRY(scenario_named(options.scenario));
+  return session::task_of(scenario, model);
 }
 
 }  // namespace
@@ -92,35 +90,30 @@ core::Result<TrialReport> one_trial(const Options& options, Presence& presence,
 }  // namespace
 
 core::Result<int> run_probing_trials(const Options& options) {
-  auto folder = session::StationFolder::open(options.data);
-  if (!folder) return folder.error();
-  auto lock = folder->lock();
-  if (!lock) return lock.error();
-  auto recovered = folder->recover();
-  if (!recovered) return recovered.error();
-  say_recovered(*recovered);
-  auto task = task_of(options, *folder);
-  if (!task) return task.error();
+  auto folder = TRY(session::StationFolder::open(options.data));
+  auto lock = TRY(folder.lock());
+  auto recovered = TRY(folder.recover());
+  say_recovered(recovered);
+  auto task = TRY(task_of(options, folder));
 
-  Presence presence(options, *folder);
+  Presence presence(options, folder);
   core::Json trials = core::Json::array();
   bool faulted = false;
   for (int i = 0; i < options.trials && !asked_to_stop() && presence.may_resume(); ++i) {
-    auto report = one_trial(options, presence, *folder, *task, options.rig.seed + std::uint64_t(i));
-    if (!report) return report.error();
-    faulted = faulted || !report->complete;
-    auto scores = session::scores_of(report->file);
-    if (!scores) return scores.error();
-    trials.push_back(json_of(*report, *scores));
+    auto report =
+        TRY(one_trial(options, presence, folder, task, options.rig.seed + std::uint64_t(i)));
+    faulted = faulted || !report.complete;
+    auto scores = TRY(session::scores_of(report.file));
+    trials.push_back(json_of(report, scores));
     if (options.json) continue;
-    print_probing_report(*report, options.rig.speed == session::Speed::fast);
-    print_scores(*scores);
+    print_probing_report(report, options.rig.speed == session::Speed::fast);
+    print_scores(scores);
   }
-  const core::Json uploads = hand_over_after(options, *folder);
+  const core::Json uploads = hand_over_after(options, folder);
   if (options.json)
     fmt::print(
         "{}\n",
-        core::Json{{"case_id", task->case_id}, {"trials", trials}, {"upload", uploads}}.dump(2));
+        core::Json{{"case_id", task.case_id}, {"trials", trials}, {"upload", uploads}}.dump(2));
   return faulted ? 1 : 0;
 }
 

@@ -7,6 +7,7 @@
 #include <iostream>
 
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "station/app/checks.hpp"
 #include "station/app/commands.hpp"
 #include "station/app/exchange.hpp"
@@ -37,20 +38,18 @@ struct Study {
 };
 
 core::Result<study::StationKey> key_of(const Options& options) {
-  auto token = token_of(options);
-  if (!token) return token.error();
-  return study::StationKey(core::sha256(core::bytes_of(*token)));
+  auto token = TRY(token_of(options));
+  return study::StationKey(core::sha256(core::bytes_of(token)));
 }
 
 /// From the server; from the disk when it does not answer.
 core::Result<StudyWork> work_of(const Study& study, bool& away) {
   const Options& o = study.options;
-  auto server = connect(o);
-  if (!server) return server.error();
-  auto work = uplink::take_trials(**server, o.study, o.participant, kAhead);
+  auto server = TRY(connect(o));
+  auto work = uplink::take_trials(*server, o.study, o.participant, kAhead);
   away = !work && work.error().code == core::Errc::unavailable;
   if (work) {
-    if (auto kept = session::keep_work(study.folder, *work); !kept) return kept.error();
+    TRY(session::keep_work(study.folder, *work));
     return work;
   }
   if (!away) return work;
@@ -118,11 +117,10 @@ session::Watch watch_of(const Options& options) {
 
 core::Result<TrialReport> one_trial(const Study& study, const StudyWork& work,
                                     const SealedTrial& trial) {
-  auto law = study::opened_law(trial.sealed, trial.slot, study.key);
-  if (!law) return law.error();
+  auto law = TRY(study::opened_law(trial.sealed, trial.slot, study.key));
   session::ProbingTask task;
   task.case_id = trial.slot;
-  task.law = std::move(*law);
+  task.law = std::move(law);
   task.operator_name = work.participant;
   task.extra = {{"study", work.study}, {"number", trial.number}};
   task.blind = true;
@@ -176,56 +174,47 @@ core::Result<std::uint64_t> rounds(Study& study, bool& faulted) {
   while (true) {
     handed(study);
     bool away = false;
-    auto work = work_of(study, away);
-    if (!work) return work.error();
-    if (auto fits = check_who(study.options, *work); !fits) return fits.error();
-    auto todo = session::still_to_do(study.folder, *work);
-    if (!todo) return todo.error();
-    for (const SealedTrial& trial : *todo) {
-      if (left == 0 || asked_to_stop() || !study.presence.may_resume()) return todo->size();
-      auto report = one_trial(study, *work, trial);
-      if (!report) return report.error();
-      note(study, *work, trial, *report);
+    auto work = TRY(work_of(study, away));
+    TRY(check_who(study.options, work));
+    auto todo = TRY(session::still_to_do(study.folder, work));
+    for (const SealedTrial& trial : todo) {
+      if (left == 0 || asked_to_stop() || !study.presence.may_resume()) return todo.size();
+      auto report = TRY(one_trial(study, work, trial));
+      note(study, work, trial, report);
       handed(study);
       --left;
-      faulted = !report->complete;
+      faulted = !report.complete;
       if (faulted && study.presence.outside()->stopped() && study.presence.may_resume()) break;
-      if (faulted) return todo->size();  // a person looks at the rig first
+      if (faulted) return todo.size();  // a person looks at the rig first
     }
-    if (todo->empty() || away) return away ? 0 : work->unfinished;
+    if (todo.empty() || away) return away ? 0 : work.unfinished;
   }
 }
 
 }  // namespace
 
 core::Result<int> run_study(const Options& options) {
-  auto folder = session::StationFolder::open(options.data);
-  if (!folder) return folder.error();
-  auto lock = folder->lock();
-  if (!lock) return lock.error();
-  auto recovered = folder->recover();
-  if (!recovered) return recovered.error();
-  say_recovered(*recovered);
-  auto key = key_of(options);
-  if (!key) return key.error();
-  if (auto server = connect(options); !server) return server.error();  // of no shape: said once
-  Presence presence(options, *folder);
-  Study study{options, *folder, *key, presence};
+  auto folder = TRY(session::StationFolder::open(options.data));
+  auto lock = TRY(folder.lock());
+  auto recovered = TRY(folder.recover());
+  say_recovered(recovered);
+  auto key = TRY(key_of(options));
+  TRY(connect(options));  // of no shape: said once
+  Presence presence(options, folder);
+  Study study{options, folder, key, presence};
   bool faulted = false;
-  auto left = rounds(study, faulted);
-  if (!left) return left.error();
+  auto left = TRY(rounds(study, faulted));
   const core::Json upload = handed(study);
   if (options.json)
     fmt::print("{}\n", core::Json{{"study", options.study},
                                   {"participant", options.participant},
                                   {"trials", study.trials},
-                                  {"left", *left},
+                                  {"left", left},
                                   {"upload", upload}}
                            .dump(2));
   else
-    fmt::print(
-        "{}: {}\n", options.participant,
-        *left == 0 ? "nothing is left to be done" : fmt::format("{} trials are left", *left));
+    fmt::print("{}: {}\n", options.participant,
+               left == 0 ? "nothing is left to be done" : fmt::format("{} trials are left", left));
   if (const auto waiting = upload.value("waiting", 0); waiting > 0 && !options.json)
     fmt::print("{} trials wait for the server\n", waiting);
   return faulted ? 1 : 0;

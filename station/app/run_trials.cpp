@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <iostream>
 
+#include "core/try.hpp"
 #include "station/app/checks.hpp"
 #include "station/app/commands.hpp"
 #include "station/app/exchange.hpp"
@@ -23,12 +24,11 @@ core::Result<std::shared_ptr<const session::PreparedCase>> prepare(
     if (auto fetched = fetch_cases(options, folder); !fetched)
       std::fprintf(stderr, "warning: cases were not fetched: %s\n", fetched.error().what.c_str());
   }
-  const auto model = model_file_of(options, folder);
-  if (!model) return model.error();
-  auto made = session::prepare_case(folder, options.case_name, *model,
-                                    core::terminal_progress("Preparing the case"), options.drilled);
-  if (!made) return made.error();
-  return std::shared_ptr<const session::PreparedCase>(std::move(*made));
+  const auto model = TRY(model_file_of(options, folder));
+  auto made =
+      TRY(session::prepare_case(folder, options.case_name, model,
+                                core::terminal_progress("Preparing the case"), options.drilled));
+  return std::shared_ptr<const session::PreparedCase>(std::move(made));
 }
 
 session::Watch watch_of(const Options& options, const core::Progress& shown,
@@ -53,26 +53,23 @@ core::Result<TrialReport> one_trial(const Options& options, Presence& presence,
   presence.is(Presence::State::preparing);
   ViewOptions how = look_of(options);
   how.burr = setup.burr;
-  auto onlooker = TrialViewer::make(*prepared, how);
-  if (!onlooker) return onlooker.error();
-  if (auto ready = station.prepare(prepared, seed); !ready) return ready.error();
-  onlooker->follow(*station.live());
+  auto onlooker = TRY(TrialViewer::make(*prepared, how));
+  TRY(station.prepare(prepared, seed));
+  onlooker.follow(*station.live());
   say_calibration_due(folder, options.setup.device);
   const core::Progress shown = core::terminal_progress(fmt::format("Trial, seed {}", seed));
-  const auto watch = presence.watched(watch_of(options, shown, *onlooker));
-  if (auto ran = station.run(watch); !ran) return ran.error();
+  const auto watch = presence.watched(watch_of(options, shown, onlooker));
+  TRY(station.run(watch));
   presence.is(Presence::State::questions);
-  const core::Json headset = onlooker->end_headset();
-  if (!headset.is_null())
-    if (auto noted = station.note("headset", headset); !noted) return noted.error();
-  if (auto left = onlooker->leave_picture(); !left)
+  const core::Json headset = onlooker.end_headset();
+  if (!headset.is_null()) TRY(station.note("headset", headset));
+  if (auto left = onlooker.leave_picture(); !left)
     std::fprintf(stderr, "warning: no picture: %s\n", left.error().what.c_str());
   std::optional<trial::Answer> said;
   const bool asks = !options.burr;  // who drills made the channel: there is nothing to guess
   if (station.state() == session::State::answering && asks && !asked_to_stop()) {
-    auto answer = answer_of(options, station.simulated_answer());
-    if (!answer) return answer.error();
-    said = *answer;
+    auto answer = TRY(answer_of(options, station.simulated_answer()));
+    said = answer;
   }
   auto report = station.answer(said);
   if (report) report->headset = headset;
@@ -91,11 +88,9 @@ void print_drilled(const TrialReport::Drilled& drilled) {
 core::Result<std::optional<drilling::Burr>> burr_of(const Options& options) {
   if (!options.burr) return std::optional<drilling::Burr>();
   if (options.burr_file.empty()) return std::optional(drilling::Burr{});
-  const auto json = core::read_json(options.burr_file);
-  if (!json) return json.error();
-  auto burr = drilling::Burr::from_json(*json, options.burr_file.string());
-  if (!burr) return burr.error();
-  return std::optional(*burr);
+  const auto json = TRY(core::read_json(options.burr_file));
+  auto burr = TRY(drilling::Burr::from_json(json, options.burr_file.string()));
+  return std::optional(burr);
 }
 
 void print_report(const TrialReport& report, bool fast) {
@@ -134,46 +129,39 @@ bool may_resume(const TrialReport& last) {
 }  // namespace
 
 core::Result<int> run_trials(const Options& options) {
-  const auto burr = burr_of(options);
-  if (!burr) return burr.error();
-  auto folder = session::StationFolder::open(options.data);
-  if (!folder) return folder.error();
-  auto lock = folder->lock();
-  if (!lock) return lock.error();
-  auto recovered = folder->recover();
-  if (!recovered) return recovered.error();
-  say_recovered(*recovered);
-  Presence presence(options, *folder);
+  const auto burr = TRY(burr_of(options));
+  auto folder = TRY(session::StationFolder::open(options.data));
+  auto lock = TRY(folder.lock());
+  auto recovered = TRY(folder.recover());
+  say_recovered(recovered);
+  Presence presence(options, folder);
   presence.is(Presence::State::preparing);
-  auto prepared = prepare(options, *folder);
-  if (!prepared) return prepared.error();
+  auto prepared = TRY(prepare(options, folder));
 
   session::TrialSetup setup = options.setup;
   setup.outside = presence.outside();
-  setup.burr = *burr;
-  session::Station station(*folder, setup);
+  setup.burr = burr;
+  session::Station station(folder, setup);
   core::Json trials = core::Json::array();
   bool faulted = false;
   for (int i = 0; i < options.trials && !asked_to_stop() && presence.may_resume(); ++i) {
-    auto report = one_trial(options, presence, *folder, station, *prepared, setup,
-                            options.setup.seed + std::uint64_t(i));
-    if (!report) return report.error();
-    faulted = faulted || !report->complete;
-    auto scores = session::scores_of(report->file, &(*prepared)->opened.definition.tract);
-    if (!scores) return scores.error();
-    trials.push_back(json_of(*report, *scores));
+    auto report = TRY(one_trial(options, presence, folder, station, prepared, setup,
+                                options.setup.seed + std::uint64_t(i)));
+    faulted = faulted || !report.complete;
+    auto scores = TRY(session::scores_of(report.file, &prepared->opened.definition.tract));
+    trials.push_back(json_of(report, scores));
     if (!options.json) {
-      print_report(*report, options.setup.speed == session::Speed::fast);
-      print_scores(*scores);
+      print_report(report, options.setup.speed == session::Speed::fast);
+      print_scores(scores);
     }
-    if (i + 1 < options.trials && !may_resume(*report)) break;
+    if (i + 1 < options.trials && !may_resume(report)) break;
   }
-  const core::Json uploads = hand_over_after(options, *folder);
+  const core::Json uploads = hand_over_after(options, folder);
   if (options.json)
     fmt::print(
         "{}\n",
-        core::Json{{"case_id", (*prepared)->opened.id}, {"trials", trials}, {"upload", uploads}}
-            .dump(2));
+        core::Json{{"case_id", prepared->opened.id}, {"trials", trials}, {"upload", uploads}}.dump(
+            2));
   return faulted ? 1 : 0;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "core/try.hpp"
 #include "station/headset/alignment.hpp"
 #include "station/loop/drilling.hpp"
 #include "station/loop/placement.hpp"
@@ -40,9 +41,8 @@ view::ProbeState state_of(const session::PreparedCase& prepared, const trial::Sa
 
 /// The alignment that holds for this device, if there is one.
 core::Result<std::optional<math::Pose>> room_of(const ViewOptions& look) {
-  auto kept = headset::kept_alignment(look.data);
-  if (!kept) return kept.error();
-  if (*kept && (*kept)->device == look.device) return std::optional((*kept)->alignment.X_SD);
+  auto kept = TRY(headset::kept_alignment(look.data));
+  if (kept && kept->device == look.device) return std::optional(kept->alignment.X_SD);
   return std::optional<math::Pose>{};
 }
 
@@ -54,7 +54,7 @@ core::Result<TrialViewer> TrialViewer::make(const session::PreparedCase& prepare
   made.prepared_ = &prepared;
   made.picture_ = look.picture;
   made.burr_ = look.burr;
-  if (auto opened = made.open(look); !opened) return opened.error();
+  TRY(made.open(look));
   return made;
 }
 
@@ -91,16 +91,15 @@ core::Result<void> TrialViewer::open(const ViewOptions& look) {
 }
 
 core::Result<void> TrialViewer::open_headset(const ViewOptions& look) {
-  auto X_SD = room_of(look);
-  if (!X_SD) return X_SD.error();
+  auto X_SD = TRY(room_of(look));
   // With the model's pose offset left out: it is in the poses that the loop gives, not in the room.
   const auto& definition = prepared_->opened.definition;
   const math::Pose X_VD =
       loop::place_device(definition.tract, prepared_->model.base.length_m, math::Vec3::Zero());
-  auto started = headset::HeadsetThread::start(
+  auto started = TRY(headset::HeadsetThread::start(
       {.scene = scene(),
        .X_VD = X_VD,
-       .X_SD = *X_SD,
+       .X_SD = X_SD,
        .latest = [&prepared = *prepared_, followed = live_]() -> std::optional<headset::Moment> {
          const loop::LiveState* live = followed->load();
          const auto seen = live ? live->read() : std::nullopt;
@@ -113,10 +112,9 @@ core::Result<void> TrialViewer::open_headset(const ViewOptions& look) {
              if (!held || !carved->fresh) return;
              take(*carved->fresh, *carved->bone, carved->worn);
              carved->fresh.reset();
-           }});
-  if (!started) return started.error();
-  headset_ = std::move(*started);
-  if (!*X_SD)
+           }}));
+  headset_ = std::move(started);
+  if (!X_SD)
     std::fprintf(stderr,
                  "headset: the room is not aligned with %s: the scene stands before the person "
                  "(tractus-station align)\n",
@@ -145,9 +143,8 @@ core::Json TrialViewer::end_headset() {
 }
 
 core::Result<void> TrialViewer::open(view::Mode mode) {
-  auto view = view::View::make(scene(), mode, kWidth_px, kHeight_px);
-  if (!view) return view.error();
-  view_ = std::move(*view);
+  auto view = TRY(view::View::make(scene(), mode, kWidth_px, kHeight_px));
+  view_ = std::move(view);
   return {};
 }
 
@@ -187,8 +184,7 @@ core::Result<void> TrialViewer::leave_picture() {
   const auto& sample = burr_ ? path_.withdrawn : path_.deepest;
   if (!sample) return {};
   if (drilling_) look_at_bone(*drilling_);
-  if (!view_)
-    if (auto opened = open(view::Mode::offscreen); !opened) return opened.error();
+  if (!view_) TRY(open(view::Mode::offscreen));
   view_->draw(state_of(*prepared_, *sample), path_.points_m);
   return view_->save_png(picture_);
 }

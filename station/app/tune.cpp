@@ -10,6 +10,7 @@
 
 #include "core/clock.hpp"
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "station/app/checks.hpp"
 #include "station/app/commands.hpp"
 #include "station/app/exchange.hpp"
@@ -88,12 +89,11 @@ class Expert {
     if (!outcome) std::fprintf(stderr, "refused: %s\n", outcome.error().what.c_str());
   }
   core::Result<void> save() {
-    auto made = tuning_.save(options_.who, core::utc_us());
-    if (!made) return made.error();
-    const auto path = options_.tuned_folder / (made->id().substr(0, 12) + ".json");
+    auto made = TRY(tuning_.save(options_.who, core::utc_us()));
+    const auto path = options_.tuned_folder / (made.id().substr(0, 12) + ".json");
     std::error_code ignored;
     std::filesystem::create_directories(options_.tuned_folder, ignored);
-    if (auto written = core::write_json(path, made->to_json()); !written) return written;
+    TRY(core::write_json(path, made.to_json()));
     saved_.push_back(path.string());
     std::fprintf(stderr, "saved %s\n", path.c_str());
     return {};
@@ -106,44 +106,36 @@ class Expert {
 
 core::Result<session::TrialReport> one_trial(const Options& options,
                                              const session::StationFolder& folder, Expert& expert) {
-  auto task = session::task_of(expert.tuning().now());
-  if (!task) return task.error();
-  task->operator_name = options.who;
-  auto trial = session::probing_trial(folder, *task, options.rig);
-  if (!trial) return trial.error();
+  auto task = TRY(session::task_of(expert.tuning().now()));
+  task.operator_name = options.who;
+  auto trial = TRY(session::probing_trial(folder, task, options.rig));
   say_calibration_due(folder, options.rig.device);
-  const auto ran = trial->runner->run([&](const session::TrialSnapshot&) {
+  TRY(trial.runner->run([&](const session::TrialSnapshot&) {
     for (auto c = key(); c; c = key())
-      if (!expert.press(*c, *trial->rig)) return false;
+      if (!expert.press(*c, *trial.rig)) return false;
     return !asked_to_stop();
-  });
-  if (!ran) return ran.error();
-  return trial->runner->finish(std::nullopt);
+  }));
+  return trial.runner->finish(std::nullopt);
 }
 }  // namespace
 
 core::Result<int> tune_scenario(const Options& options) {
-  auto scenario = scenario_named(options.scenario);
-  if (!scenario) return scenario.error();
-  auto folder = session::StationFolder::open(options.data);
-  if (!folder) return folder.error();
-  auto lock = folder->lock();
-  if (!lock) return lock.error();
-  auto recovered = folder->recover();
-  if (!recovered) return recovered.error();
-  say_recovered(*recovered);
+  auto scenario = TRY(scenario_named(options.scenario));
+  auto folder = TRY(session::StationFolder::open(options.data));
+  auto lock = TRY(folder.lock());
+  auto recovered = TRY(folder.recover());
+  say_recovered(recovered);
   const RawTerminal terminal;
-  Expert expert(options, std::move(*scenario));
+  Expert expert(options, std::move(scenario));
   std::fputs(kKeys, stderr);
   expert.show();
   bool faulted = false;
   core::Json trials = core::Json::array();
   for (int i = 0; i < options.trials && !asked_to_stop(); ++i) {
-    auto report = one_trial(options, *folder, expert);
-    if (!report) return report.error();
-    faulted = faulted || !report->complete;
-    trials.push_back(report->to_json());
-    if (!options.json) print_probing_report(*report, options.rig.speed == session::Speed::fast);
+    auto report = TRY(one_trial(options, folder, expert));
+    faulted = faulted || !report.complete;
+    trials.push_back(report.to_json());
+    if (!options.json) print_probing_report(report, options.rig.speed == session::Speed::fast);
   }
   if (options.json)
     fmt::print("{}\n", core::Json{{"trials", trials},

@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <vector>
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace devices {
 namespace {
@@ -59,7 +61,7 @@ core::Result<DhdLibrary> DhdLibrary::load(const fs::path& given) {
         fmt::format("lambda6: Force Dimension's SDK was not found ({}); install it and name its "
                     "folder with --sdk or FDSDK",
                     why)};
-  if (auto resolved = out.resolve(); !resolved) return resolved.error();
+  TRY(out.resolve());
   return out;
 }
 

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace loop {
 namespace {
@@ -16,16 +18,14 @@ core::Result<std::unique_ptr<Drilling>> Drilling::make(const volume::Volume& bon
                                                        const core::Progress& progress) {
   auto& base = model.base;
   base.radius_m = burr.shank_radius_m;
-  auto erosion = drilling::Erosion::make(
-      bone, model.transfer, burr, {.length_m = base.length_m, .pose_offset_m = base.pose_offset_m});
-  if (!erosion) return erosion.error();
-  auto field = volume::ForceField::make(bone, model.transfer, model.field, progress);
-  if (!field) return field.error();
+  auto erosion = TRY(
+      drilling::Erosion::make(bone, model.transfer, burr,
+                              {.length_m = base.length_m, .pose_offset_m = base.pose_offset_m}));
+  auto field = TRY(volume::ForceField::make(bone, model.transfer, model.field, progress));
   std::unique_ptr<Drilling> made(
-      new Drilling({burr, model.transfer}, std::move(*erosion), std::move(*field)));
-  auto runtime = models::PalpationRuntime::make(model, made->field_);
-  if (!runtime) return runtime.error();
-  made->runtime_.emplace(std::move(*runtime));
+      new Drilling({burr, model.transfer}, std::move(erosion), std::move(field)));
+  auto runtime = TRY(models::PalpationRuntime::make(model, made->field_));
+  made->runtime_.emplace(std::move(runtime));
   return made;
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace loop {
 namespace {
@@ -75,7 +77,7 @@ core::Result<HandLimits> HandLimits::from_json(const core::Json& json, const std
       fields.number_or("max_turn_rad_s", normal.max_turn_rad_s, 0.5, kCeiling.max_turn_rad_s);
   out.max_jump_m = fields.number_or("max_jump_m", normal.max_jump_m, 0.0005, kCeiling.max_jump_m);
   out.ramp_s = fields.number_or("ramp_s", normal.ramp_s, kCeiling.ramp_s, 30.0);
-  if (auto checked = fields.done(); !checked) return checked.error();
+  TRY(fields.done());
   return out;
 }
 

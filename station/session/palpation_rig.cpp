@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/try.hpp"
 #include "station/loop/placement.hpp"
 #include "station/session/trial_drilling.hpp"
 
@@ -45,9 +46,8 @@ double depth_m(const loop::Live& live, const PreparedCase& prepared) {
 core::Result<std::unique_ptr<PalpationRig>> PalpationRig::make(const StationConfig& config,
                                                                const PreparedCase& prepared,
                                                                const TrialSetup& setup) {
-  const auto info = devices::find(setup.device, devices::DeviceKind::handle);
-  if (!info) return info.error();
-  return std::unique_ptr<PalpationRig>(new PalpationRig(config, prepared, setup, *info));
+  const auto info = TRY(devices::find(setup.device, devices::DeviceKind::handle));
+  return std::unique_ptr<PalpationRig>(new PalpationRig(config, prepared, setup, info));
 }
 
 PalpationRig::PalpationRig(const StationConfig& config, const PreparedCase& prepared,
@@ -76,7 +76,7 @@ TrialTerms PalpationRig::terms() const {
 
 core::Result<void> PalpationRig::prepare(TrialTime& time) {
   time_ = &time;
-  if (auto taken = take_tool(); !taken) return taken;
+  TRY(take_tool());
   return open_device();
 }
 
@@ -88,9 +88,8 @@ core::Result<void> PalpationRig::take_tool() {
   if (!prepared_.drilled.empty())
     return core::Error{core::Errc::bad_input,
                        "--drilled: a bone that was drilled is palpated; a burr begins anew"};
-  auto drills = loop::Drilling::make(prepared_.volume, prepared_.model, *setup_.burr);
-  if (!drills) return drills.error();
-  drilling_ = std::move(*drills);
+  auto drills = TRY(loop::Drilling::make(prepared_.volume, prepared_.model, *setup_.burr));
+  drilling_ = std::move(drills);
   contact_.emplace(drilling_->runtime());
   return {};
 }
@@ -98,24 +97,22 @@ core::Result<void> PalpationRig::take_tool() {
 core::Result<void> PalpationRig::open_device() {
   const auto& base = prepared_.model.base;
   const auto& tract = prepared_.opened.definition.tract;
-  auto device =
+  auto device = TRY(
       info_.make({.seed = setup_.seed,
                   .duration_s = setup_.duration_s,
                   .probe_length_m = base.length_m,
                   .channel = channel_of(loop::tract_in_device(tract, X_VD_, base.pose_offset_m)),
                   .tool = setup_.burr ? devices::Tool::burr : devices::Tool::probe,
-                  .sdk = setup_.sdk});
-  if (!device) return device.error();
-  made_ = std::move(*device);
-  auto limits = made_.device->open();
-  if (!limits) return limits.error();
+                  .sdk = setup_.sdk}));
+  made_ = std::move(device);
+  auto limits = TRY(made_.device->open());
   loop::HandLimits device_limits = loop::HandLimits::kCeiling;
-  device_limits.max_force_N = limits->max_force_N;
-  device_limits.max_torque_Nm = limits->max_torque_Nm;
+  device_limits.max_force_N = limits.max_force_N;
+  device_limits.max_torque_Nm = limits.max_torque_Nm;
   if (setup_.outside)
     device_limits.max_force_N = std::min(device_limits.max_force_N, setup_.outside->force_N());
   limiter_.lower(device_limits);
-  opened_ = *limits;
+  opened_ = limits;
   return {};
 }
 
@@ -238,9 +235,8 @@ core::Result<void> PalpationRig::keep(const StationFolder& folder,
 core::Result<PalpationTrial> palpation_trial(const StationFolder& folder,
                                              const PreparedCase& prepared,
                                              const TrialSetup& setup) {
-  auto rig = PalpationRig::make(folder.config(), prepared, setup);
-  if (!rig) return rig.error();
-  return PalpationTrial::make(folder, std::move(*rig));
+  auto rig = TRY(PalpationRig::make(folder.config(), prepared, setup));
+  return PalpationTrial::make(folder, std::move(rig));
 }
 
 }  // namespace session

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/try.hpp"
 #include "station/session/trial_drilling.hpp"
 #include "volume/volume_file.hpp"
 
@@ -55,28 +56,21 @@ core::Result<std::unique_ptr<PreparedCase>> prepare_case(const StationFolder& fo
                                                          const fs::path& model_file,
                                                          const core::Progress& progress,
                                                          const std::string& drilled) {
-  auto path = find_case(folder, which);
-  if (!path) return path.error();
-  auto opened = cases::open_case(*path);
-  if (!opened) return opened.error();
-  if (auto trusted = check_signer(folder, *opened); !trusted) return trusted.error();
-  auto model = model_for(*opened, model_file);
-  if (!model) return model.error();
-  auto file = volume::VolumeFile::open(opened->folder / "volume.tvol");
-  if (!file) return file.error();
-  auto voxels = file->read_all(part_of(progress, 0.0, 0.5));
-  if (!voxels) return voxels.error();
+  auto path = TRY(find_case(folder, which));
+  auto opened = TRY(cases::open_case(path));
+  TRY(check_signer(folder, opened));
+  auto model = TRY(model_for(opened, model_file));
+  auto file = TRY(volume::VolumeFile::open(opened.folder / "volume.tvol"));
+  auto voxels = TRY(file.read_all(part_of(progress, 0.0, 0.5)));
   drilling::ErodedShares worn;
   if (!drilled.empty()) {
-    auto put = put_drilled(folder, drilled, opened->id, *voxels);
-    if (!put) return put.error();
-    worn = std::move(*put);
+    auto put = TRY(put_drilled(folder, drilled, opened.id, voxels));
+    worn = std::move(put);
   }
-  auto runtime = models::PalpationRuntime::make(*model, *voxels, part_of(progress, 0.5, 1.0));
-  if (!runtime) return runtime.error();
+  auto runtime = TRY(models::PalpationRuntime::make(model, voxels, part_of(progress, 0.5, 1.0)));
   if (progress) progress(1.0);
-  return std::unique_ptr<PreparedCase>(new PreparedCase{std::move(*opened), std::move(*model),
-                                                        std::move(*voxels), std::move(*runtime),
+  return std::unique_ptr<PreparedCase>(new PreparedCase{std::move(opened), std::move(model),
+                                                        std::move(voxels), std::move(runtime),
                                                         drilled, std::move(worn)});
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/try.hpp"
 #include "station/session/fast_rig.hpp"
 #include "station/session/rig_entry.hpp"
 
@@ -18,11 +19,10 @@ core::Error wrong(std::string what) { return {core::Errc::out_of_range, std::mov
 
 core::Result<std::unique_ptr<ProbingRig>> ProbingRig::make(const ProbingTask& task,
                                                            const RigSetup& setup) {
-  const auto info = devices::find(setup.device, devices::DeviceKind::rig);
-  if (!info) return info.error();
-  std::unique_ptr<ProbingRig> made(new ProbingRig(task, setup, *info));
-  if (auto fine = made->check(); !fine) return fine.error();
-  if (auto law = made->add_law(task.law); !law) return law.error();
+  const auto info = TRY(devices::find(setup.device, devices::DeviceKind::rig));
+  std::unique_ptr<ProbingRig> made(new ProbingRig(task, setup, info));
+  TRY(made->check());
+  TRY(made->add_law(task.law));
   return made;
 }
 
@@ -54,21 +54,19 @@ TrialTerms ProbingRig::terms() const {
 
 core::Result<void> ProbingRig::prepare(TrialTime& time) {
   time_ = &time;
-  auto made = time.fast() ? core::Result<devices::MadeRig>(fast_rig(setup_))
-                          : info_.make_rig({.address = setup_.address,
-                                            .program = setup_.program,
-                                            .seed = setup_.seed,
-                                            .skill = setup_.skill,
-                                            .surgeon = setup_.surgeon});
-  if (!made) return made.error();
-  made_.emplace(std::move(*made));
+  auto made = TRY(time.fast() ? core::Result<devices::MadeRig>(fast_rig(setup_))
+                              : info_.make_rig({.address = setup_.address,
+                                                .program = setup_.program,
+                                                .seed = setup_.seed,
+                                                .skill = setup_.skill,
+                                                .surgeon = setup_.surgeon}));
+  made_.emplace(std::move(made));
   return open_device();
 }
 
 core::Result<void> ProbingRig::open_device() {
-  auto found = made_->device->open();
-  if (!found) return found.error();
-  identity_ = *found;
+  auto found = TRY(made_->device->open());
+  identity_ = found;
   if (identity_.bus_clock != time_->fast())
     return core::Error{core::Errc::unavailable,
                        fmt::format("rig at {}: its clock is {}", made_->address,
@@ -111,9 +109,8 @@ void ProbingRig::record(trial::TrialWriter writer) {
 }
 
 core::Result<void> ProbingRig::add_law(const laws::ProbingParameters& law) {
-  auto made = models::ProbingRuntime::make(law, task_.effects);
-  if (!made) return made.error();
-  laws_.push_back(std::make_unique<models::ProbingRuntime>(std::move(*made)));
+  auto made = TRY(models::ProbingRuntime::make(law, task_.effects));
+  laws_.push_back(std::make_unique<models::ProbingRuntime>(std::move(made)));
   return {};
 }
 
@@ -162,7 +159,7 @@ std::optional<trial::Answer> ProbingRig::simulated_answer() const {
 core::Result<void> ProbingRig::retune(const laws::ProbingParameters& law, core::Json what) {
   if (law.travel_m != task_.law.travel_m)
     return wrong("the probe stop cannot be moved while a trial runs");
-  if (auto made = add_law(law); !made) return made;
+  TRY(add_law(law));
   loop_->exchange_law(*laws_.back());
   const auto seen = live_.read().value_or(loop::ProbingLoopSnapshot{});
   retuned_.push_back({seen.t_s, "retuned", std::move(what)});
@@ -192,18 +189,16 @@ core::Json ProbingRig::end_detail(const TrialReport& report) const {
 
 core::Result<ProbingTrial> probing_trial(const StationFolder& folder, const ProbingTask& task,
                                          const RigSetup& setup) {
-  auto rig = ProbingRig::make(task, setup);
-  if (!rig) return rig.error();
-  return ProbingTrial::make(folder, std::move(*rig));
+  auto rig = TRY(ProbingRig::make(task, setup));
+  return ProbingTrial::make(folder, std::move(rig));
 }
 
 core::Result<TrialReport> run_probing_trial(const StationFolder& folder, const ProbingTask& task,
                                             const RigSetup& setup, const Watch& watch,
                                             const Ask& ask) {
-  auto made = probing_trial(folder, task, setup);
-  if (!made) return made.error();
-  TrialRunner& trial = *made->runner;
-  if (auto ran = trial.run(watch); !ran) return ran.error();
+  auto made = TRY(probing_trial(folder, task, setup));
+  TrialRunner& trial = *made.runner;
+  TRY(trial.run(watch));
   if (!trial.fault().empty()) return trial.finish(std::nullopt);
   if (!ask) return trial.finish(trial.simulated_answer());
   auto said = ask(trial.simulated_answer());

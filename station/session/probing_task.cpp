@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/bytes.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace session {
@@ -20,11 +21,10 @@ std::vector<laws::Layer> within_travel(std::vector<laws::Layer> layers, double t
 
 core::Result<ProbingTask> task_of(const scenarios::Scenario& scenario,
                                   const std::optional<models::ProbingModel>& model) {
-  auto law = scenario.expanded();
-  if (!law) return law.error();
+  auto law = TRY(scenario.expanded());
   ProbingTask task;
   task.case_id = scenario.id();
-  task.law = std::move(*law);
+  task.law = std::move(law);
   task.extra["scenario"] = scenario.to_json();
   if (model) {
     task.law.layers = within_travel(model->layers, task.law.travel_m);
@@ -32,7 +32,7 @@ core::Result<ProbingTask> task_of(const scenarios::Scenario& scenario,
     task.effects = model->effects;
     task.extra["model"] = model->to_json();
   }
-  if (auto fits = models::ProbingRuntime::make(task.law, task.effects); !fits) return fits.error();
+  TRY(models::ProbingRuntime::make(task.law, task.effects));
   return task;
 }
 
@@ -46,7 +46,7 @@ core::Result<ProbingTask> task_of(const models::ProbingModel& model, double trav
   task.law.travel_m = travel_m;
   task.effects = model.effects;
   task.extra["model"] = json;
-  if (auto fits = models::ProbingRuntime::make(task.law, task.effects); !fits) return fits.error();
+  TRY(models::ProbingRuntime::make(task.law, task.effects));
   return task;
 }
 

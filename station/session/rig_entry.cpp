@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace session {
 namespace {
@@ -54,7 +56,7 @@ core::Result<devices::RigReading> cleared(Way& way) {
   auto reading = way.ask({});
   for (int k = 0; reading && (reading->status & registers::kFaulted); ++k) {
     if (k == kResets) return not_ready(fmt::format("fault {} does not clear", int(reading->fault)));
-    if (auto reset = way.ask({.reset_fault = true}); !reset) return reset;
+    TRY(way.ask({.reset_fault = true}));
     reading = way.ask({});
   }
   return reading;

@@ -4,6 +4,8 @@
 
 #include <array>
 
+#include "core/try.hpp"
+
 namespace tractus::session {
 
 std::string_view name(State state) {
@@ -25,9 +27,8 @@ core::Result<void> Station::prepare(std::shared_ptr<const PreparedCase> prepared
   state_ = State::idle;
   prepared_ = std::move(prepared);
   setup_.seed = seed;
-  auto made = palpation_trial(folder_, *prepared_, setup_);
-  if (!made) return made.error();
-  trial_.emplace(std::move(*made));
+  auto made = TRY(palpation_trial(folder_, *prepared_, setup_));
+  trial_.emplace(std::move(made));
   state_ = State::ready;
   return {};
 }

@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "trial/trial_file.hpp"
 
 namespace tractus {
@@ -50,10 +51,10 @@ core::Result<StationFolder> StationFolder::open(const fs::path& root) {
       return core::Error{core::Errc::io, fmt::format("{}: cannot make the folder: {}",
                                                      (root / name).string(), failure.message())};
   }
-  if (auto repaired = core::make_private(root, "cases"); !repaired) return repaired.error();
-  if (auto read = folder.read_config(); !read) return read.error();
-  if (auto read = folder.read_lowered(); !read) return read.error();
-  if (auto read = folder.read_trusted(); !read) return read.error();
+  TRY(core::make_private(root, "cases"));
+  TRY(folder.read_config());
+  TRY(folder.read_lowered());
+  TRY(folder.read_trusted());
   return folder;
 }
 
@@ -68,9 +69,8 @@ core::Result<void> StationFolder::read_config() {
   config_.name = fields.text_or("name", config_.name, 64);
   if (config_.name.empty()) fields.wrong("name", "is empty");
   if (const core::Json* limits = fields.member("limits", false)) {
-    auto read = loop::HandLimits::from_json(*limits, path.string() + ": /limits");
-    if (!read) return read.error();
-    config_.limits = *read;
+    auto read = TRY(loop::HandLimits::from_json(*limits, path.string() + ": /limits"));
+    config_.limits = read;
   }
   return fields.done();
 }
@@ -87,7 +87,7 @@ core::Result<void> StationFolder::read_lowered() {
 
 core::Result<void> StationFolder::lower_force(double force_N) const {
   StationFolder now(root_);  // another process may have lowered it since
-  if (auto read = now.read_lowered(); !read) return read;
+  TRY(now.read_lowered());
   if (now.config_.lowered_force_N && *now.config_.lowered_force_N <= force_N) return {};
   return core::write_json(root_ / "lowered.json", {{"force_N", force_N}});
 }
@@ -108,7 +108,7 @@ core::Result<void> StationFolder::read_trusted() {
   const core::Json* signers = fields.member("signers");
   if (signers && !signers->is_array())
     fields.wrong("signers", "an array of public keys is expected");
-  if (auto checked = fields.done(); !checked) return checked;
+  TRY(fields.done());
   for (const auto& one : *signers) {
     if (!one.is_string() || !is_public_key(one.get<std::string>()))
       return core::Error{
@@ -163,15 +163,14 @@ core::Result<void> StationFolder::recover_file(const fs::path& file, Recovered& 
 }
 
 core::Result<Recovered> StationFolder::recover() const {
-  if (auto cleared = clear_leftovers(); !cleared) return cleared.error();
+  TRY(clear_leftovers());
   Recovered out;
   std::error_code failure;
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(trials(), failure))
     if (entry.path().extension() == ".ttrial") files.push_back(entry.path());
   std::ranges::sort(files);
-  for (const fs::path& file : files)
-    if (auto done = recover_file(file, out); !done) return done.error();
+  for (const fs::path& file : files) TRY(recover_file(file, out));
   return out;
 }
 

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "core/file.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace session {
@@ -29,17 +30,15 @@ core::Result<void> keep_work(const StationFolder& folder, const wire::StudyWork&
 core::Result<wire::StudyWork> kept_work(const StationFolder& folder, const std::string& study,
                                         const std::string& participant) {
   const fs::path path = file_of(folder, study, participant);
-  auto json = core::read_json(path);
-  if (!json) return json.error();
-  return wire::StudyWork::from_json(*json, path.string() + ": ");
+  auto json = TRY(core::read_json(path));
+  return wire::StudyWork::from_json(json, path.string() + ": ");
 }
 
 core::Result<std::vector<wire::SealedTrial>> still_to_do(const StationFolder& folder,
                                                          const wire::StudyWork& work) {
-  auto entries = folder.outbox().entries();
-  if (!entries) return entries.error();
+  auto entries = TRY(folder.outbox().entries());
   std::set<std::string> spent;
-  for (const auto& entry : *entries) spent.insert(entry.case_id);
+  for (const auto& entry : entries) spent.insert(entry.case_id);
   std::vector<wire::SealedTrial> out;
   for (const wire::SealedTrial& trial : work.trials)
     if (!spent.contains(trial.slot)) out.push_back(trial);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "drilling/channel.hpp"
 
 namespace tractus {
@@ -56,9 +57,8 @@ core::Result<drilling::ErodedShares> put_drilled(const StationFolder& folder,
     if (again) left = drilling::drilled_of(again->erosion);
   }
   if (kept) {
-    auto read = drilling::read_drilled(state, trial_id, case_id, bone.geometry.dims);
-    if (!read) return read.error();
-    left = std::move(*read);
+    auto read = TRY(drilling::read_drilled(state, trial_id, case_id, bone.geometry.dims));
+    left = std::move(read);
   }
   left.put_into(bone);
   return worn;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/bytes.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace session {
@@ -28,12 +29,12 @@ TrialRunner::TrialRunner(const StationFolder& folder, std::unique_ptr<Rig> rig)
 core::Result<std::unique_ptr<TrialRunner>> TrialRunner::make(const StationFolder& folder,
                                                              std::unique_ptr<Rig> rig) {
   const TrialTerms terms = rig->terms();
-  if (auto fine = check(terms, rig->device()); !fine) return fine.error();
+  TRY(check(terms, rig->device()));
   const double bytes = terms.duration_s * terms.rate_Hz * 1.1 * double(rig->sample_bytes());
-  if (auto room = folder.check_room(static_cast<std::uint64_t>(bytes)); !room) return room.error();
+  TRY(folder.check_room(static_cast<std::uint64_t>(bytes)));
   std::unique_ptr<TrialRunner> made(new TrialRunner(folder, std::move(rig)));
-  if (auto ready = made->rig_->prepare(made->time_); !ready) return ready.error();
-  if (auto created = made->make_file(); !created) return created.error();
+  TRY(made->rig_->prepare(made->time_));
+  TRY(made->make_file());
   return made;
 }
 
@@ -47,9 +48,8 @@ core::Result<void> TrialRunner::make_file() {
       time_.fast() ? "manual: simulated time, run as fast as it goes" : "monotonic: real time";
   if (terms_.started_utc_us) header_.extra["date"] = "simulated";
   rig_->describe(header_);
-  auto writer = trial::TrialWriter::create(folder_.trial_file(header_.id), header_);
-  if (!writer) return writer.error();
-  rig_->record(std::move(*writer));
+  auto writer = TRY(trial::TrialWriter::create(folder_.trial_file(header_.id), header_));
+  rig_->record(std::move(writer));
   return {};
 }
 
@@ -123,21 +123,18 @@ TrialReport TrialRunner::report_of(const std::optional<trial::Answer>& answer) {
 core::Result<void> TrialRunner::append_end(const TrialReport& report) {
   loop::TrialRecorder& recorder = rig_->recorder();
   for (const trial::Event& event : rig_->closing_events(report, elapsed_s()))
-    if (auto said = recorder.append(event); !said) return said;
+    TRY(recorder.append(event));
   if (!fault_.empty()) return recorder.append({elapsed_s(), "fault", {{"what", fault_}}});
-  if (report.answer)
-    if (auto said = recorder.append({elapsed_s(), "answer", report.answer->to_json()}); !said)
-      return said;
+  if (report.answer) TRY(recorder.append({elapsed_s(), "answer", report.answer->to_json()}));
   return recorder.append({elapsed_s(), "end", rig_->end_detail(report)});
 }
 
 core::Result<TrialReport> TrialRunner::finish(const std::optional<trial::Answer>& answer) {
   TrialReport report = report_of(answer);
-  if (auto ended = append_end(report); !ended) return ended.error();
-  if (auto sealed = rig_->recorder().finish(); !sealed) return sealed.error();
-  auto queued = folder_.outbox().queue(header_.id, header_.case_id, report.file);
-  if (!queued) return queued.error();
-  if (auto kept = rig_->keep(folder_, header_); !kept) return kept.error();
+  TRY(append_end(report));
+  TRY(rig_->recorder().finish());
+  TRY(folder_.outbox().queue(header_.id, header_.case_id, report.file));
+  TRY(rig_->keep(folder_, header_));
   return report;
 }
 

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "core/try.hpp"
 #include "station/session/rig.hpp"
 
 namespace tractus::session {
@@ -56,9 +57,8 @@ struct TrialOn {
 
   static core::Result<TrialOn> make(const StationFolder& folder, std::unique_ptr<SomeRig> rig) {
     SomeRig* own = rig.get();
-    auto runner = TrialRunner::make(folder, std::move(rig));
-    if (!runner) return runner.error();
-    return TrialOn{std::move(*runner), own};
+    auto runner = TRY(TrialRunner::make(folder, std::move(rig)));
+    return TrialOn{std::move(runner), own};
   }
 };
 

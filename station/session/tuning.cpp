@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/require.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace session {
@@ -52,7 +53,7 @@ core::Result<void> Tuning::nudge(std::size_t parameter, int direction) {
   const double step = std::max(kShare * std::abs(value), kAll[parameter].least_step);
   value += direction > 0 ? step : -step;
   keep_stop_at_breach_end(now_, next);
-  if (auto law = next.expanded(); !law) return law.error();
+  TRY(next.expanded());
   before_.push_back(std::move(now_));
   now_ = std::move(next);
   return {};

@@ -11,6 +11,7 @@
 #include "assessment/snapshot.hpp"
 #include "core/clock.hpp"
 #include "core/file.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace commands {
@@ -38,32 +39,29 @@ core::Result<void> refuse_existing(const fs::path& path) {
 }
 
 Outcome make_new(const Options& o) {
-  if (auto fine = refuse_existing(o.plan); !fine) return fine.error();
-  if (auto fine = core::write_json(o.plan, assessment::example_plan()); !fine) return fine.error();
+  TRY(refuse_existing(o.plan));
+  TRY(core::write_json(o.plan, assessment::example_plan()));
   std::printf("%s: a plan to edit; then: tractus analyse lock %s --who NAME\n", o.plan.c_str(),
               o.plan.c_str());
   return 0;
 }
 
 Outcome lock(const Options& o) {
-  const auto json = core::read_json(o.plan);
-  if (!json) return json.error();
+  const auto json = TRY(core::read_json(o.plan));
   const assessment::Lock by{o.who, core::utc_text(core::utc_us()), o.data_seen, ""};
-  const auto locked = assessment::locked(*json, o.plan, by);
-  if (!locked) return locked.error();
-  if (auto fine = core::write_json(o.plan, *locked); !fine) return fine.error();
+  const auto locked = TRY(assessment::locked(json, o.plan, by));
+  TRY(core::write_json(o.plan, locked));
   if (o.json)
-    print((*locked)["lock"]);
+    print(locked["lock"]);
   else
     std::printf("%s: locked by %s on %s, SHA-256 %s\n", o.plan.c_str(), by.who.c_str(),
-                by.utc.c_str(), (*locked)["lock"]["sha256"].get<std::string>().c_str());
+                by.utc.c_str(), locked["lock"]["sha256"].get<std::string>().c_str());
   return 0;
 }
 
 Outcome freeze(const Options& o) {
-  if (auto fine = refuse_existing(o.out); !fine) return fine.error();
-  auto data = core::read_file(o.data, 512ull << 20);
-  if (!data) return data.error();
+  TRY(refuse_existing(o.out));
+  auto data = TRY(core::read_file(o.data, 512ull << 20));
   assessment::Freezing by{o.name.empty() ? fs::path(o.data).filename().string() : o.name,
                           core::utc_text(core::utc_us()),
                           o.source,
@@ -75,14 +73,13 @@ Outcome freeze(const Options& o) {
       return wrong(fmt::format("--meaning '{}': COLUMN=TEXT is expected", meaning));
     by.meanings[meaning.substr(0, at)] = meaning.substr(at + 1);
   }
-  const auto snapshot = assessment::frozen(std::move(*data), by);
-  if (!snapshot) return snapshot.error();
-  if (auto fine = assessment::write(*snapshot, o.out); !fine) return fine.error();
+  const auto snapshot = TRY(assessment::frozen(std::move(data), by));
+  TRY(assessment::write(snapshot, o.out));
   if (o.json)
-    print(snapshot->description);
+    print(snapshot.description);
   else
-    std::printf("%s: %zu rows, %zu columns, SHA-256 %s\n", o.out.c_str(), snapshot->table.rows(),
-                snapshot->table.columns().size(), snapshot->sha256().c_str());
+    std::printf("%s: %zu rows, %zu columns, SHA-256 %s\n", o.out.c_str(), snapshot.table.rows(),
+                snapshot.table.columns().size(), snapshot.sha256().c_str());
   return 0;
 }
 
@@ -92,19 +89,15 @@ struct Ran {
 };
 
 core::Result<Ran> ran(const Options& o) {
-  const auto json = core::read_json(o.plan);
-  if (!json) return json.error();
-  const auto plan = Plan::from_json(*json, o.plan);
-  if (!plan) return plan.error();
-  if (auto fine = assessment::check_lock(*plan, o.plan); !fine) return fine.error();
-  auto snapshot = assessment::Snapshot::read(o.data);
-  if (!snapshot) return snapshot.error();
-  const auto& d = snapshot->description;
-  auto analysed = assessment::analyse(*plan, snapshot->table,
-                                      {d["name"], snapshot->sha256(), d["frozen_utc"],
-                                       d.value("source", ""), d.value("simulated", false)});
-  if (!analysed) return analysed.error();
-  return Ran{std::move(*snapshot), std::move(*analysed)};
+  const auto json = TRY(core::read_json(o.plan));
+  const auto plan = TRY(Plan::from_json(json, o.plan));
+  TRY(assessment::check_lock(plan, o.plan));
+  auto snapshot = TRY(assessment::Snapshot::read(o.data));
+  const auto& d = snapshot.description;
+  auto analysed = TRY(assessment::analyse(plan, snapshot.table,
+                                          {d["name"], snapshot.sha256(), d["frozen_utc"],
+                                           d.value("source", ""), d.value("simulated", false)}));
+  return Ran{std::move(snapshot), std::move(analysed)};
 }
 
 std::string text_of(const Json& result) {
@@ -121,39 +114,33 @@ void print_results(const Json& result) {
 }
 
 Outcome run(const Options& o) {
-  const auto done = ran(o);
-  if (!done) return done.error();
-  const std::string text = text_of(done->analysed.result);
-  if (!o.out.empty())
-    if (auto fine = core::write_file(o.out, core::bytes_of(text)); !fine) return fine.error();
+  const auto done = TRY(ran(o));
+  const std::string text = text_of(done.analysed.result);
+  if (!o.out.empty()) TRY(core::write_file(o.out, core::bytes_of(text)));
   if (o.json)
     std::fputs(text.c_str(), stdout);
   else
-    print_results(done->analysed.result);
+    print_results(done.analysed.result);
   if (o.against.empty()) return 0;
-  const auto before = core::read_file(o.against, 512ull << 20);
-  if (!before) return before.error();
-  const bool same = core::text_of(*before) == text;
+  const auto before = TRY(core::read_file(o.against, 512ull << 20));
+  const bool same = core::text_of(before) == text;
   std::fprintf(stderr, "%s: %s\n", o.against.c_str(),
                same ? "the same to the last digit" : "NOT the same");
   return same ? 0 : 1;
 }
 
 Outcome report(const Options& o) {
-  if (auto fine = refuse_existing(o.out); !fine) return fine.error();
-  const auto done = ran(o);
-  if (!done) return done.error();
-  auto scratch = core::ScratchFolder::make(o.out);
-  if (!scratch) return scratch.error();
+  TRY(refuse_existing(o.out));
+  const auto done = TRY(ran(o));
+  auto scratch = TRY(core::ScratchFolder::make(o.out));
   const std::pair<const char*, std::string> files[] = {
-      {"report.html", assessment::report_page(done->analysed)},
-      {"result.json", text_of(done->analysed.result)},
-      {"data.csv", assessment::marked(done->snapshot.table, done->analysed.excluded_because)},
-      {"dictionary.json", text_of(assessment::dictionary_of_marked(done->snapshot.description))}};
+      {"report.html", assessment::report_page(done.analysed)},
+      {"result.json", text_of(done.analysed.result)},
+      {"data.csv", assessment::marked(done.snapshot.table, done.analysed.excluded_because)},
+      {"dictionary.json", text_of(assessment::dictionary_of_marked(done.snapshot.description))}};
   for (const auto& [name, text] : files)
-    if (auto fine = core::write_file(scratch->path() / name, core::bytes_of(text)); !fine)
-      return fine.error();
-  if (auto fine = scratch->keep_as(o.out); !fine) return fine.error();
+    TRY(core::write_file(scratch.path() / name, core::bytes_of(text)));
+  TRY(scratch.keep_as(o.out));
   if (o.json)
     print({{"folder", o.out},
            {"files", {"report.html", "result.json", "data.csv", "dictionary.json"}}});

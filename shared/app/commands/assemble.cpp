@@ -11,6 +11,7 @@
 #include "app/taps_picture.hpp"
 #include "core/file.hpp"
 #include "core/progress.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace commands {
@@ -81,10 +82,9 @@ core::Result<void> write_whole(const std::filesystem::path& target, trial::Palpa
   if (recipe.volume.empty()) return trial::write_palpation_set(target, set);
   const fs::path from = (recipe.folder / recipe.volume).lexically_normal();
   set.volume = from.has_filename() ? from.filename().string() : "volume";
-  auto scratch = core::ScratchFolder::make(target);
-  if (!scratch) return scratch.error();
-  const fs::path inner = scratch->path() / "set";
-  if (auto written = trial::write_palpation_set(inner, set); !written) return written;
+  auto scratch = TRY(core::ScratchFolder::make(target));
+  const fs::path inner = scratch.path() / "set";
+  TRY(trial::write_palpation_set(inner, set));
   std::error_code failure;
   fs::copy(from, inner / set.volume, fs::copy_options::recursive, failure);
   if (failure)
@@ -106,35 +106,32 @@ core::Result<void> check(const Options& options, const std::filesystem::path& ta
 Outcome run(const Options& options) {
   std::filesystem::path target = options.out;
   if (!target.has_filename()) target = target.parent_path();  // a folder's name may end in a slash
-  if (auto fine = check(options, target); !fine) return fine.error();
-  const auto recipe = capture::Recipe::read(options.recipe);
-  if (!recipe) return recipe.error();
-  if (!std::filesystem::exists(recipe->folder / recipe->volume))
+  TRY(check(options, target));
+  const auto recipe = TRY(capture::Recipe::read(options.recipe));
+  if (!std::filesystem::exists(recipe.folder / recipe.volume))
     return Error{Errc::not_found, fmt::format("{}: /volume: the file '{}' does not exist",
-                                              options.recipe, recipe->volume)};
+                                              options.recipe, recipe.volume)};
   trial::PalpationSet set;
-  set.stated = recipe->stated;
+  set.stated = recipe.stated;
 
   const auto shown = core::terminal_progress("Assembling");
   Json trials = Json::array();
   std::string lines, warnings;
   std::vector<app::ShownTaps> shown_taps;
-  for (std::size_t k = 0; k < recipe->recordings.size(); ++k) {
-    if (!shown(double(k) / double(recipe->recordings.size())))
+  for (std::size_t k = 0; k < recipe.recordings.size(); ++k) {
+    if (!shown(double(k) / double(recipe.recordings.size())))
       return Error{Errc::cancelled, "stopped; nothing was written"};
-    auto one = capture::assemble(*recipe, recipe->recordings[k]);
-    if (!one) return one.error();
-    trials.push_back(json_of(*one));
-    lines += line_of(*one) + "\n";
-    warnings += warning_of(*one);
-    shown_taps.push_back({one->trial.id, one->clock, std::move(one->taps)});
-    set.trials.push_back(std::move(one->trial));
+    auto one = TRY(capture::assemble(recipe, recipe.recordings[k]));
+    trials.push_back(json_of(one));
+    lines += line_of(one) + "\n";
+    warnings += warning_of(one);
+    shown_taps.push_back({one.trial.id, one.clock, std::move(one.taps)});
+    set.trials.push_back(std::move(one.trial));
   }
-  if (auto written = write_whole(target, set, *recipe); !written) return written.error();
+  TRY(write_whole(target, set, recipe));
   if (!options.picture.empty()) {
     const std::string drawn = plot::svg(app::taps_figure(shown_taps));
-    if (auto done = core::write_file(options.picture, core::bytes_of(drawn)); !done)
-      return done.error();
+    TRY(core::write_file(options.picture, core::bytes_of(drawn)));
   }
   std::fputs(warnings.c_str(), stderr);
   if (options.json)

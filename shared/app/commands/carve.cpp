@@ -12,6 +12,7 @@
 #include "cases/carving.hpp"
 #include "core/clock.hpp"
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "volume/io/read_volume.hpp"
 
 namespace tractus {
@@ -34,9 +35,8 @@ struct Options {
 template <class Plan>
 core::Result<void> read_length(const std::string& text, const char* option, Plan& into) {
   if (text.empty()) return {};
-  const auto length = length_m(text, option);
-  if (!length) return length.error();
-  into = *length;
+  const auto length = TRY(length_m(text, option));
+  into = length;
   return {};
 }
 
@@ -55,25 +55,20 @@ core::Result<void> read_breach(const Options& o, cases::CarvingPlan& plan) {
         fmt::format("--breach: '{}': medial, lateral, superior, inferior or anterior is expected",
                     o.breach)};
   plan.breach = volume::BreachPlan{.wall = *wall};
-  if (auto read = read_length(o.breach_depth, "--breach-depth", plan.breach->depth_m); !read)
-    return read;
+  TRY(read_length(o.breach_depth, "--breach-depth", plan.breach->depth_m));
   return read_length(o.breach_at, "--breach-at", plan.breach->at_m);
 }
 
 core::Result<cases::CarvingPlan> plan_of(const Options& o) {
   cases::CarvingPlan plan;
-  const auto entry = point_m(o.entry, "--entry"), target = point_m(o.target, "--target");
-  if (!entry) return entry.error();
-  if (!target) return target.error();
-  plan.entry_m = *entry;
-  plan.target_m = *target;
-  if (auto read = read_length(o.length, "--length", plan.length_m); !read) return read.error();
-  if (auto read = read_length(o.radius, "--radius", plan.radius_m); !read) return read.error();
-  if (auto read = read_length(o.midline, "--midline-x", plan.midline_x_m); !read)
-    return read.error();
-  if (auto read = read_length(o.spacing, "--spacing", plan.spacing_m); !read) return read.error();
-  if (auto read = read_length(o.margin, "--margin", plan.margin_m); !read) return read.error();
-  if (auto read = read_breach(o, plan); !read) return read.error();
+  plan.entry_m = TRY(point_m(o.entry, "--entry"));
+  plan.target_m = TRY(point_m(o.target, "--target"));
+  TRY(read_length(o.length, "--length", plan.length_m));
+  TRY(read_length(o.radius, "--radius", plan.radius_m));
+  TRY(read_length(o.midline, "--midline-x", plan.midline_x_m));
+  TRY(read_length(o.spacing, "--spacing", plan.spacing_m));
+  TRY(read_length(o.margin, "--margin", plan.margin_m));
+  TRY(read_breach(o, plan));
   plan.drilled = !o.no_channel;
   return plan;
 }
@@ -197,8 +192,7 @@ Error about(const std::string& file, const Error& error) {
 /// The picture of its own goes away again if the case cannot be written.
 Outcome write(const Options& o, cases::NewCase definition, const core::KeyPair& key,
               const cases::Carved& carved) {
-  if (!o.png.empty())
-    if (auto drawn = definition.draw(o.png); !drawn) return drawn.error();
+  if (!o.png.empty()) TRY(definition.draw(o.png));
   const auto made =
       cases::write_case(o.out, std::move(definition), key, core::terminal_progress("writing"));
   if (!made) {
@@ -211,23 +205,19 @@ Outcome write(const Options& o, cases::NewCase definition, const core::KeyPair& 
 }
 
 Outcome run(const Options& o) {
-  const auto plan = plan_of(o);
-  if (!plan) return plan.error();
-  const auto model = model_of(o);
-  if (!model) return model.error();
+  const auto plan = TRY(plan_of(o));
+  const auto model = TRY(model_of(o));
   if (std::error_code ignored; std::filesystem::exists(o.out, ignored))
     return Error{Errc::conflict,
                  fmt::format("{}: exists already; remove it or choose another name", o.out)};
-  const auto ct = volume_io::read_volume(o.volume, core::terminal_progress("reading"));
-  if (!ct) return ct.error();
+  const auto ct = TRY(volume_io::read_volume(o.volume, core::terminal_progress("reading")));
   const auto carved =
-      cases::carve(ct->volume, model->transfer, *plan, core::terminal_progress("carving"));
+      cases::carve(ct.volume, model.transfer, plan, core::terminal_progress("carving"));
   if (!carved) return about(o.volume, carved.error());
-  auto surroundings = cases::drilled_surroundings(ct->volume, *carved);
+  auto surroundings = cases::drilled_surroundings(ct.volume, *carved);
   if (!surroundings) return about(o.volume, surroundings.error());
-  const auto key = key_of(o);
-  if (!key) return key.error();
-  return write(o, case_of(o, *carved, *model, ct->source, std::move(*surroundings)), *key, *carved);
+  const auto key = TRY(key_of(o));
+  return write(o, case_of(o, *carved, model, ct.source, std::move(*surroundings)), key, *carved);
 }
 
 void add_options(CLI::App& app, Options& o) {

@@ -8,6 +8,7 @@
 
 #include "app/command.hpp"
 #include "core/clock.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace commands {
@@ -48,19 +49,18 @@ Outcome verify(const Options& o) {
 }
 
 Outcome show(const Options& o) {
-  const auto opened = cases::open_case(o.folder);
-  if (!opened) return opened.error();
+  const auto opened = TRY(cases::open_case(o.folder));
   if (o.json) {
-    Json out = {{"case", opened->id}, {"signer", opened->signer_public_hex}};
-    out["manifest"] = opened->definition.to_json();
+    Json out = {{"case", opened.id}, {"signer", opened.signer_public_hex}};
+    out["manifest"] = opened.definition.to_json();
     std::puts(out.dump(2).c_str());
     return 0;
   }
-  const auto& made = opened->definition;
+  const auto& made = opened.definition;
   const auto& tract = made.tract;
   const math::Vec3 entry = tract.entry_m * 1e3, end = tract.end_m() * 1e3;
   fmt::print("{}\nsource  {}\nmade    {}\ncase    {}\nsigner  {}\n", made.title, made.source,
-             core::utc_text(made.made_utc_us), opened->id, opened->signer_public_hex);
+             core::utc_text(made.made_utc_us), opened.id, opened.signer_public_hex);
   fmt::print(
       "tract   ({:.1f}, {:.1f}, {:.1f}) to ({:.1f}, {:.1f}, {:.1f}) mm, {:.1f} mm long, {:.1f} mm "
       "wide\n",
@@ -70,7 +70,7 @@ Outcome show(const Options& o) {
              made.model.base.length_m * 1e3);
   for (const auto& part : made.parts)
     fmt::print("part    {:<12} {:>10} bytes  {:.12}…  {}\n", part.name, part.size_bytes,
-               part.sha256, state_of(*opened, part));
+               part.sha256, state_of(opened, part));
   return 0;
 }
 

@@ -5,17 +5,17 @@
 
 #include "app/command.hpp"
 #include "app/lab_report.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace commands {
 namespace {
 
 Outcome run(const LabOptions& options) {
-  if (auto ready = writable(options.report); !ready) return ready.error();
-  const auto opened_case = opened(options);
-  if (!opened_case) return opened_case.error();
-  const auto answer = lab_io::compared(*opened_case);
-  if (auto written = write_files(answer, {}, options.report); !written) return written.error();
+  TRY(writable(options.report));
+  const auto opened_case = TRY(opened(options));
+  const auto answer = lab_io::compared(opened_case);
+  TRY(write_files(answer, {}, options.report));
   fmt::print("{}", options.json ? answer.json.dump(2) + "\n" : printed_comparison(answer));
   return 0;
 }

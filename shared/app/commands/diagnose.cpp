@@ -6,6 +6,7 @@
 #include "app/command.hpp"
 #include "app/lab_report.hpp"
 #include "core/progress.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace commands {
@@ -16,19 +17,15 @@ struct Options : LabOptions {
 };
 
 Outcome run(const Options& options) {
-  for (const auto& file : {options.report, options.out_model})
-    if (auto ready = writable(file); !ready) return ready.error();
-  const auto opened_case = opened(options);
-  if (!opened_case) return opened_case.error();
+  for (const auto& file : {options.report, options.out_model}) TRY(writable(file));
+  const auto opened_case = TRY(opened(options));
   lab_io::DiagnoseRequest wish{.options = {}, .report = !options.report.empty()};
   wish.options.threads = options.sources.threads;
   const auto bar = core::terminal_progress("trying effects");
-  const auto answer = lab_io::diagnosed(*opened_case, wish, bar);
-  if (!answer) return answer.error();
+  const auto answer = TRY(lab_io::diagnosed(opened_case, wish, bar));
   if (bar) bar(1.0);
-  if (auto written = write_files(*answer, options.out_model, options.report); !written)
-    return written.error();
-  fmt::print("{}", options.json ? answer->json.dump(2) + "\n" : printed_diagnosis(*answer));
+  TRY(write_files(answer, options.out_model, options.report));
+  fmt::print("{}", options.json ? answer.json.dump(2) + "\n" : printed_diagnosis(answer));
   return 0;
 }
 

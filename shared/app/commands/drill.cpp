@@ -10,6 +10,7 @@
 #include "app/drill_forces.hpp"
 #include "cases/case.hpp"
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "drilling/channel.hpp"
 #include "volume/volume_file.hpp"
 
@@ -39,17 +40,14 @@ core::Result<Bone> bone_of(const Options& o) {
     return Error{Errc::bad_input, "drill: either --volume FILE or --case FOLDER is expected"};
   Bone bone;
   if (!o.case_folder.empty()) {
-    auto opened = cases::open_case(o.case_folder);
-    if (!opened) return opened.error();
-    bone.opened = std::move(*opened);
+    auto opened = TRY(cases::open_case(o.case_folder));
+    bone.opened = std::move(opened);
   }
   const std::filesystem::path path =
       bone.opened ? bone.opened->folder / cases::kVolumePart : std::filesystem::path(o.volume);
-  const auto file = volume::VolumeFile::open(path);
-  if (!file) return file.error();
-  auto volume = file->read_all(core::terminal_progress("reading"));
-  if (!volume) return volume.error();
-  bone.volume = std::move(*volume);
+  const auto file = TRY(volume::VolumeFile::open(path));
+  auto volume = TRY(file.read_all(core::terminal_progress("reading")));
+  bone.volume = std::move(volume);
   return bone;
 }
 
@@ -57,9 +55,8 @@ core::Result<Bone> bone_of(const Options& o) {
 core::Result<std::unique_ptr<DrillForces>> forces_of(const Options& o, const Bone& bone) {
   if (!bone.opened || !bone.opened->definition.model.effects.empty())
     return std::unique_ptr<DrillForces>();
-  const auto trial = trial::scan_trial(o.trial, [](const trial::Block&) {});
-  if (!trial) return trial.error();
-  const auto setup = drilling::Setup::of(trial->header);
+  const auto trial = TRY(trial::scan_trial(o.trial, [](const trial::Block&) {}));
+  const auto setup = drilling::Setup::of(trial.header);
   if (!setup) return Error{setup.error().code, o.trial + ": " + setup.error().what};
   models::PalpationModel model = bone.opened->definition.model;
   model.base.radius_m = setup->burr.shank_radius_m;
@@ -98,30 +95,26 @@ void print_replay(const Json& told) {
 }
 
 Outcome replay(const Options& o) {
-  const auto bone = bone_of(o);
-  if (!bone) return bone.error();
-  const auto made = forces_of(o, *bone);
-  if (!made) return made.error();
-  DrillForces* const forces = made->get();
-  const auto again = drilling::redrill(
-      o.trial, bone->volume,
+  const auto bone = TRY(bone_of(o));
+  const auto made = TRY(forces_of(o, bone));
+  DrillForces* const forces = made.get();
+  const auto again = TRY(drilling::redrill(
+      o.trial, bone.volume,
       [forces](const trial::Sample& sample) {
         if (forces) forces->feel(sample);
       },
       [forces](const drilling::Change& change, const volume::Volume& drilled) {
         if (forces) forces->follow(change, drilled);
-      });
-  if (!again) return again.error();
+      }));
   if (!o.out.empty()) {
-    const auto written = volume::write_volume(o.out, again->erosion.volume(),
-                                              {"trial " + again->header.id, "drilled again"},
-                                              core::terminal_progress("writing"));
-    if (!written) return written.error();
+    TRY(volume::write_volume(o.out, again.erosion.volume(),
+                             {"trial " + again.header.id, "drilled again"},
+                             core::terminal_progress("writing")));
   }
-  const Json told = json_of(*again, forces);
+  const Json told = json_of(again, forces);
   o.json ? void(std::puts(told.dump(2).c_str())) : print_replay(told);
   const bool felt = !forces || (forces->in_order() && forces->largest_N() <= kSame_N);
-  return again->agrees().value_or(true) && felt ? 0 : 1;
+  return again.agrees().value_or(true) && felt ? 0 : 1;
 }
 
 void print_channel(const drilling::PilotHole& made, const volume::Tract& tract) {
@@ -154,23 +147,21 @@ void print_channel(const drilling::PilotHole& made, const volume::Tract& tract) 
 }
 
 Outcome report(const Options& o) {
-  const auto bone = bone_of(o);
-  if (!bone) return bone.error();
-  if (!bone->opened)
+  const auto bone = TRY(bone_of(o));
+  if (!bone.opened)
     return Error{Errc::bad_input,
                  "drill report: --case FOLDER is expected, because the case contains the plan"};
-  const auto again = drilling::redrill(o.trial, bone->volume);
-  if (!again) return again.error();
-  const cases::Case& definition = bone->opened->definition;
+  const auto again = TRY(drilling::redrill(o.trial, bone.volume));
+  const cases::Case& definition = bone.opened->definition;
   const drilling::PilotHole made =
-      drilling::channel_of(again->erosion, definition.model.transfer, definition.tract);
-  Json told = json_of(*again, nullptr);
+      drilling::channel_of(again.erosion, definition.model.transfer, definition.tract);
+  Json told = json_of(again, nullptr);
   told["channel"] = made.to_json();
   if (o.json)
     std::puts(told.dump(2).c_str());
   else
     print_replay(told), print_channel(made, definition.tract);
-  return again->agrees().value_or(true) ? 0 : 1;
+  return again.agrees().value_or(true) ? 0 : 1;
 }
 
 void add_options(CLI::App& app, Options& o) {

@@ -5,6 +5,7 @@
 
 #include "app/command.hpp"
 #include "core/json.hpp"
+#include "core/try.hpp"
 #include "effects/effect.hpp"
 #include "effects/palpation_effect.hpp"
 #include "effects/palpation_expression.hpp"
@@ -36,14 +37,11 @@ const ExpressionRig& formulas_of(std::string_view rig) {
 }
 
 core::Result<std::vector<Entry>> from_file(const std::string& file) {
-  const auto json = core::read_json(file);
-  if (!json) return json.error();
-  const bool palpation =
-      json->is_object() && json->contains("rig") && (*json)["rig"] == "palpation";
+  const auto json = TRY(core::read_json(file));
+  const bool palpation = json.is_object() && json.contains("rig") && json["rig"] == "palpation";
   const std::string rig = palpation ? "palpation" : "probing";
-  const auto own = Expression::from_json(*json, file + ": ", formulas_of(rig));
-  if (!own) return own.error();
-  return std::vector<Entry>{{rig, own->facts()}};
+  const auto own = TRY(Expression::from_json(json, file + ": ", formulas_of(rig)));
+  return std::vector<Entry>{{rig, own.facts()}};
 }
 
 core::Result<std::vector<Entry>> chosen(const Options& o) {
@@ -95,15 +93,14 @@ void print_states() {
 }
 
 Outcome run(const Options& o) {
-  const auto entries = chosen(o);
-  if (!entries) return entries.error();
+  const auto entries = TRY(chosen(o));
   if (!o.json) {
-    for (const Entry& entry : *entries) print(entry);
+    for (const Entry& entry : entries) print(entry);
     if (o.id.empty() && o.file.empty()) print_states();
     return 0;
   }
   Json list = Json::array();
-  for (const Entry& entry : *entries) list.push_back(lab_io::effect_json(entry.rig, entry.facts));
+  for (const Entry& entry : entries) list.push_back(lab_io::effect_json(entry.rig, entry.facts));
   fmt::print("{}\n", Json{{"effects", std::move(list)}}.dump(2));
   return 0;
 }

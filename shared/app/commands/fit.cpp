@@ -6,6 +6,7 @@
 #include "app/command.hpp"
 #include "app/lab_report.hpp"
 #include "core/progress.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace commands {
@@ -17,17 +18,13 @@ struct Options : LabOptions {
 };
 
 Outcome run(const Options& options) {
-  for (const auto& file : {options.report, options.out})
-    if (auto ready = writable(file); !ready) return ready.error();
-  const auto opened_case = opened(options);
-  if (!opened_case) return opened_case.error();
+  for (const auto& file : {options.report, options.out}) TRY(writable(file));
+  const auto opened_case = TRY(opened(options));
   const auto bar = core::terminal_progress("fitting");
-  const auto answer = lab_io::fitted(*opened_case, options.add, options.sources.threads, bar);
-  if (!answer) return answer.error();
+  const auto answer = TRY(lab_io::fitted(opened_case, options.add, options.sources.threads, bar));
   if (bar) bar(1.0);
-  if (auto written = write_files(*answer, options.out, options.report); !written)
-    return written.error();
-  fmt::print("{}", options.json ? answer->json.dump(2) + "\n" : printed_fit(*answer));
+  TRY(write_files(answer, options.out, options.report));
+  fmt::print("{}", options.json ? answer.json.dump(2) + "\n" : printed_fit(answer));
   return 0;
 }
 

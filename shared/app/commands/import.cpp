@@ -6,6 +6,7 @@
 
 #include "app/command.hpp"
 #include "core/progress.hpp"
+#include "core/try.hpp"
 #include "volume/io/burnt_text.hpp"
 #include "volume/io/read_volume.hpp"
 #include "volume/volume_file.hpp"
@@ -51,16 +52,13 @@ void print_text(const Options& o, const volume_io::Imported& in, const std::stri
 }
 
 Outcome run(const Options& o) {
-  auto in = volume_io::read_volume(o.source, core::terminal_progress("reading"));
-  if (!in) return in.error();
-  for (auto& found : volume_io::text_suspicions(in->volume))
-    in->suspicions.push_back(std::move(found));
-  if (!o.report.empty())
-    if (auto written = core::write_json(o.report, in->report); !written) return written.error();
-  const auto id = volume::write_volume(o.target, in->volume, {in->source, joined(in->notes)},
-                                       core::terminal_progress("writing"));
-  if (!id) return id.error();
-  o.json ? print_json(o, *in, *id) : print_text(o, *in, *id);
+  auto in = TRY(volume_io::read_volume(o.source, core::terminal_progress("reading")));
+  for (auto& found : volume_io::text_suspicions(in.volume))
+    in.suspicions.push_back(std::move(found));
+  if (!o.report.empty()) TRY(core::write_json(o.report, in.report));
+  const auto id = TRY(volume::write_volume(o.target, in.volume, {in.source, joined(in.notes)},
+                                           core::terminal_progress("writing")));
+  o.json ? print_json(o, in, id) : print_text(o, in, id);
   return 0;
 }
 

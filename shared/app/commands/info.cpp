@@ -7,6 +7,7 @@
 
 #include "app/command.hpp"
 #include "core/progress.hpp"
+#include "core/try.hpp"
 #include "volume/io/picture.hpp"
 #include "volume/io/read_volume.hpp"
 #include "volume/volume_file.hpp"
@@ -138,16 +139,13 @@ Outcome run(const Options& o) {
   if (stored) {
     facts = facts_of(*stored);
     if (!o.png.empty()) {
-      const auto whole = stored->read_all(progress);
-      if (!whole) return whole.error();
-      if (auto drawn = write_picture(o, *whole); !drawn) return drawn.error();
+      const auto whole = TRY(stored->read_all(progress));
+      TRY(write_picture(o, whole));
     }
   } else {
-    const auto in = volume_io::read_volume(o.file, progress);
-    if (!in) return in.error();
-    facts = facts_of(*in);
-    if (!o.png.empty())
-      if (auto drawn = write_picture(o, in->volume); !drawn) return drawn.error();
+    const auto in = TRY(volume_io::read_volume(o.file, progress));
+    facts = facts_of(in);
+    if (!o.png.empty()) TRY(write_picture(o, in.volume));
   }
   o.json ? print_json(facts) : print_text(facts);
   return 0;

@@ -11,6 +11,7 @@
 #include "app/probing_replay.hpp"
 #include "core/file.hpp"
 #include "core/progress.hpp"
+#include "core/try.hpp"
 #include "lab/io/unpacked.hpp"
 #include "replay/pictures.hpp"
 #include "replay/table.hpp"
@@ -54,9 +55,8 @@ Result<fs::path> volume_path(const Options& options, const Work& work) {
 
 Result<models::PalpationRuntime> make_runtime(const Work& work) {
   auto imported =
-      volume_io::read_volume(work.volume, core::terminal_progress("reading the volume"));
-  if (!imported) return imported.error();
-  return models::PalpationRuntime::make(work.model, imported->volume,
+      TRY(volume_io::read_volume(work.volume, core::terminal_progress("reading the volume")));
+  return models::PalpationRuntime::make(work.model, imported.volume,
                                         core::terminal_progress("making the field"));
 }
 
@@ -91,23 +91,20 @@ void add_rows(Work& work) {
 
 Result<Work> compute(models::PalpationModel model, const fs::path& folder, const Options& options) {
   Work work;
-  auto set = trial::read_palpation_set(folder);
-  if (!set) return set.error();
+  auto set = TRY(trial::read_palpation_set(folder));
   work.model = std::move(model);
-  work.set = std::move(*set);
+  work.set = std::move(set);
   const auto down = trial::stated_down(work.set);
   if (!down) return Error{down.error().code, (folder / down.error().what).string()};
-  auto volume = volume_path(options, work);
-  if (!volume) return volume.error();
-  work.volume = *volume;
-  auto runtime = make_runtime(work);
-  if (!runtime) return runtime.error();
+  auto volume = TRY(volume_path(options, work));
+  work.volume = volume;
+  auto runtime = TRY(make_runtime(work));
   const auto bar = core::terminal_progress("replaying");
   const auto start = std::chrono::steady_clock::now();
   for (std::size_t k = 0; k < work.set.trials.size(); ++k) {
     const double width = 1.0 / double(work.set.trials.size());
     auto replayed =
-        replay::replay(*runtime, work.set.trials[k], *down, part_of(bar, width * double(k), width));
+        replay::replay(runtime, work.set.trials[k], *down, part_of(bar, width * double(k), width));
     if (!replayed) return Error{replayed.error().code, (folder / replayed.error().what).string()};
     work.replayed.push_back(std::move(*replayed));
   }
@@ -176,17 +173,14 @@ Result<void> write_trials(const Work& work, const fs::path& folder) {
     if (is_simulated(work.set)) figure.note += std::string(" ") + kSimulatedNote;
     for (const auto& [suffix, text] : {std::pair{".csv", csv_of(recording, work.replayed[k])},
                                        std::pair{".svg", plot::svg(figure)}})
-      if (auto written = core::write_file(folder / (recording.id + suffix), core::bytes_of(text));
-          !written)
-        return written;
+      TRY(core::write_file(folder / (recording.id + suffix), core::bytes_of(text)));
   }
   return {};
 }
 
 Result<void> write(const Work& work, const Options& options) {
-  auto scratch = core::ScratchFolder::make(options.out);
-  if (!scratch) return scratch.error();
-  if (auto written = write_trials(work, scratch->path() / "trials"); !written) return written;
+  auto scratch = TRY(core::ScratchFolder::make(options.out));
+  TRY(write_trials(work, scratch.path() / "trials"));
   std::vector<math::Wrench> measured, simulated;
   for (std::size_t k = 0; k < work.set.trials.size(); ++k) {
     const auto& m = work.set.trials[k].wrench_H;
@@ -199,11 +193,9 @@ Result<void> write(const Work& work, const Options& options) {
   const auto distributions = plot::svg(figure);
   for (const auto& [name, text] : {std::pair{"distributions.svg", distributions},
                                    std::pair{"table.csv", replay::csv(work.rows)}})
-    if (auto written = core::write_file(scratch->path() / name, core::bytes_of(text)); !written)
-      return written;
-  if (auto written = core::write_json(scratch->path() / "summary.json", summary_of(work)); !written)
-    return written;
-  return scratch->keep_as(options.out);
+    TRY(core::write_file(scratch.path() / name, core::bytes_of(text)));
+  TRY(core::write_json(scratch.path() / "summary.json", summary_of(work)));
+  return scratch.keep_as(options.out);
 }
 
 void say(const Work& work, const Options& options) {
@@ -234,25 +226,21 @@ Outcome run(const Options& options) {
   if (fs::exists(options.out, ignored))
     return Error{Errc::conflict, fmt::format("{}: exists already; remove it or choose another name",
                                              options.out.string())};
-  auto model = models::read_model(options.model);
-  if (!model) return model.error();
-  const auto unpacked = lab_io::Unpacked::open(options.measurements);
-  if (!unpacked) return unpacked.error();
-  const auto rig = trial::rig_of_set(unpacked->folder());
-  if (!rig) return rig.error();
-  const auto* probing = std::get_if<models::ProbingModel>(&*model);
-  if ((*rig == "probing") != (probing != nullptr))
+  auto model = TRY(models::read_model(options.model));
+  const auto unpacked = TRY(lab_io::Unpacked::open(options.measurements));
+  const auto rig = TRY(trial::rig_of_set(unpacked.folder()));
+  const auto* probing = std::get_if<models::ProbingModel>(&model);
+  if ((rig == "probing") != (probing != nullptr))
     return Error{
         Errc::bad_input,
         fmt::format("{}: a model of the {} rig, but {} contains measurements of the {} rig",
                     options.model.string(), probing ? "probing" : "palpation",
-                    options.measurements.string(), *rig)};
-  if (probing) return replay_probing(*probing, unpacked->folder(), options);
+                    options.measurements.string(), rig)};
+  if (probing) return replay_probing(*probing, unpacked.folder(), options);
   auto work =
-      compute(std::get<models::PalpationModel>(std::move(*model)), unpacked->folder(), options);
-  if (!work) return work.error();
-  if (auto written = write(*work, options); !written) return written.error();
-  say(*work, options);
+      TRY(compute(std::get<models::PalpationModel>(std::move(model)), unpacked.folder(), options));
+  TRY(write(work, options));
+  say(work, options);
   return 0;
 }
 

@@ -9,6 +9,7 @@
 #include "app/scenario_picture.hpp"
 #include "core/clock.hpp"
 #include "core/file.hpp"
+#include "core/try.hpp"
 #include "plot/figure.hpp"
 #include "scenarios/demand.hpp"
 #include "scenarios/version.hpp"
@@ -34,8 +35,7 @@ Outcome make_new(const Options& o) {
     return Error{Errc::conflict,
                  fmt::format("{}: exists already; a version is never overwritten", o.out)};
   const auto parent =
-      o.from.empty() ? scenarios::tuned(*scenarios::kind_of(o.kind)) : Scenario::read(o.from);
-  if (!parent) return parent.error();
+      TRY(o.from.empty() ? scenarios::tuned(*scenarios::kind_of(o.kind)) : Scenario::read(o.from));
   std::vector<scenarios::Change> changes;
   if (!o.name.empty()) changes.push_back({"name", o.name});
   for (const std::string& text : o.changes) {
@@ -43,9 +43,9 @@ Outcome make_new(const Options& o) {
     if (!change) return Error{change.error().code, "--set " + change.error().what};
     changes.push_back(std::move(*change));
   }
-  const auto made = scenarios::next_version(*parent, changes, o.who, core::utc_us());
+  const auto made = scenarios::next_version(parent, changes, o.who, core::utc_us());
   if (!made) return Error{made.error().code, fmt::format("{}: {}", o.out, made.error().what)};
-  if (auto written = core::write_json(o.out, made->to_json()); !written) return written.error();
+  TRY(core::write_json(o.out, made->to_json()));
   if (o.json)
     fmt::print("{}\n",
                Json{{"file", o.out}, {"id", made->id()}, {"parent", made->origin.parent}}.dump(2));
@@ -88,28 +88,24 @@ void print(const Scenario& scenario, const scenarios::Demand& demand) {
 }
 
 Outcome check(const Options& o) {
-  const auto scenario = Scenario::read(o.file);
-  if (!scenario) return scenario.error();
-  const auto demand = scenarios::demand(*scenario);
-  if (!demand) return demand.error();
+  const auto scenario = TRY(Scenario::read(o.file));
+  const auto demand = TRY(scenarios::demand(scenario));
   if (o.json)
     fmt::print("{}\n",
-               json_of(*scenario, *demand).dump(2, ' ', false, Json::error_handler_t::replace));
+               json_of(scenario, demand).dump(2, ' ', false, Json::error_handler_t::replace));
   else
-    print(*scenario, *demand);
-  return demand->excessive.empty() ? 0 : 1;
+    print(scenario, demand);
+  return demand.excessive.empty() ? 0 : 1;
 }
 
 Outcome draw(const Options& o) {
-  const auto scenario = Scenario::read(o.file);
-  if (!scenario) return scenario.error();
+  const auto scenario = TRY(Scenario::read(o.file));
   std::vector<double> speeds_m_s;
   for (const double speed : o.speeds_mm_s) speeds_m_s.push_back(1e-3 * speed);
-  const auto figure = scenario_picture(*scenario, speeds_m_s);
-  if (!figure) return figure.error();
-  if (auto ok = core::write_file(o.out, core::bytes_of(plot::svg(*figure))); !ok) return ok.error();
+  const auto figure = TRY(scenario_picture(scenario, speeds_m_s));
+  TRY(core::write_file(o.out, core::bytes_of(plot::svg(figure))));
   if (o.json)
-    fmt::print("{}\n", Json{{"file", o.out}, {"id", scenario->id()}}.dump(2));
+    fmt::print("{}\n", Json{{"file", o.out}, {"id", scenario.id()}}.dump(2));
   else
     fmt::print("Written to {}\n", o.out);
   return 0;

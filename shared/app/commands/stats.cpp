@@ -9,6 +9,7 @@
 #include "app/command.hpp"
 #include "assessment/report.hpp"
 #include "core/file.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace commands {
@@ -28,14 +29,11 @@ Outcome run(const assessment::Method& method, const Options& o) {
   if (method.formula.empty()) {
     found = assessment::run(method, given);
   } else {
-    const auto formula = assessment::parse_formula(o.formula);
-    if (!formula) return formula.error();
+    const auto formula = TRY(assessment::parse_formula(o.formula));
     const auto missing = o.drop_missing ? assessment::Missing::drop : assessment::Missing::refuse;
-    const auto table = assessment::Table::read(o.data, formula->columns(), missing);
-    if (!table) return table.error();
-    const auto options = assessment::complete(method, given);
-    if (!options) return options.error();
-    found = method.run({*formula, *table, o.formula, *options});
+    const auto table = TRY(assessment::Table::read(o.data, formula.columns(), missing));
+    const auto options = TRY(assessment::complete(method, given));
+    found = method.run({formula, table, o.formula, options});
   }
   if (!found) return found.error();
   if (!o.svg.empty()) {
@@ -43,8 +41,7 @@ Outcome run(const assessment::Method& method, const Options& o) {
       return core::Error{core::Errc::bad_input, "--svg: " + method.id + " draws no picture"};
     plot::Figure figure = found->figures[0];
     figure.title = o.formula;
-    if (auto fine = core::write_file(o.svg, core::bytes_of(plot::svg(figure))); !fine)
-      return fine.error();
+    TRY(core::write_file(o.svg, core::bytes_of(plot::svg(figure))));
   }
   if (o.json)
     std::puts(found->report.dump(2, ' ', false, core::Json::error_handler_t::replace).c_str());
@@ -112,9 +109,8 @@ Command stats_command() {
             for (const auto& method : assessment::methods::all())
               add_method(app, method, options, *chosen);
             return [options, chosen]() -> Outcome {
-              const auto method = assessment::method_named(*chosen);
-              if (!method) return method.error();
-              return run(*method, *options);
+              const auto method = TRY(assessment::method_named(*chosen));
+              return run(method, *options);
             };
           }};
 }

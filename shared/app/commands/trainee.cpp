@@ -9,6 +9,7 @@
 
 #include "app/command.hpp"
 #include "core/file.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace commands {
@@ -66,25 +67,23 @@ Outcome list_all(const assessment::Cohort& cohort, const assessment::Certificati
 }
 
 Outcome run(const Options& o) {
-  const auto rates = statistics::Rates::make(o.adequate, o.inadequate);
-  if (!rates) return rates.error();
-  const auto table = assessment::Table::read(o.data, o.columns.all(), assessment::Missing::keep);
-  if (!table) return table.error();
-  const auto cohort = assessment::cohort_of(*table, o.columns);
-  if (!cohort) return cohort.error();
-  const auto rule = assessment::certification(*rates);
+  const auto rates = TRY(statistics::Rates::make(o.adequate, o.inadequate));
+  const auto table =
+      TRY(assessment::Table::read(o.data, o.columns.all(), assessment::Missing::keep));
+  const auto cohort = TRY(assessment::cohort_of(table, o.columns));
+  const auto rule = assessment::certification(rates);
   const assessment::TraineeRules rules{
-      *rates, o.threshold > 0.0 ? std::optional(o.threshold) : std::nullopt, o.relapse};
-  if (o.who.empty()) return list_all(*cohort, rule, rules, o.json);
-  const auto at = std::ranges::find(cohort->trainees, o.who);
-  if (at == cohort->trainees.end())
+      rates, o.threshold > 0.0 ? std::optional(o.threshold) : std::nullopt, o.relapse};
+  if (o.who.empty()) return list_all(cohort, rule, rules, o.json);
+  const auto at = std::ranges::find(cohort.trainees, o.who);
+  if (at == cohort.trainees.end())
     return core::Error{core::Errc::not_found, fmt::format("{}: there is no '{}' in column '{}'",
                                                           o.data, o.who, o.columns.trainee)};
   const auto report = assessment::trainee_report(
-      *cohort, static_cast<std::size_t>(at - cohort->trainees.begin()), rule, rules);
+      cohort, static_cast<std::size_t>(at - cohort.trainees.begin()), rule, rules);
   if (!o.html.empty()) {
     const std::string page = assessment::trainee_page(report, o.simulated);
-    if (auto fine = core::write_file(o.html, core::bytes_of(page)); !fine) return fine.error();
+    TRY(core::write_file(o.html, core::bytes_of(page)));
   }
   if (o.json)
     std::puts(report.report.dump(2, ' ', false, Json::error_handler_t::replace).c_str());

@@ -14,6 +14,7 @@
 #include "cases/case.hpp"
 #include "core/clock.hpp"
 #include "core/progress.hpp"
+#include "core/try.hpp"
 #include "metrics/metric.hpp"
 #include "scenarios/scenario.hpp"
 #include "trial/trial_file.hpp"
@@ -112,17 +113,15 @@ Outcome show(const Options& o) {
   const double bytes = double(std::filesystem::file_size(o.file, unknown));
   const auto progress = core::terminal_progress("reading");
   Passed passed;
-  const auto trial = trial::scan_trial(o.file, [&](const trial::Block& block) {
+  const auto trial = TRY(trial::scan_trial(o.file, [&](const trial::Block& block) {
     passed.add(block);
     if (csv) csv->add(block);
     const auto each = block.probing.empty() ? sizeof(trial::Sample) : sizeof(trial::ProbingSample);
     progress(double(passed.ticks.samples * each) / bytes);
-  });
-  if (!trial) return trial.error();
+  }));
   progress(1.0);
-  if (csv)
-    if (auto done = csv->finish(trial->header.rig); !done) return done.error();
-  o.json ? print_json(*trial, passed) : print_text(*trial, passed);
+  if (csv) TRY(csv->finish(trial.header.rig));
+  o.json ? print_json(trial, passed) : print_text(trial, passed);
   return 0;
 }
 
@@ -142,20 +141,18 @@ core::Result<cases::OpenedCase> add_case(const Options& o, metrics::Subject& sub
   if (!opened) return opened;
   if (subject.trial.header.case_id != opened->id) return of_another(o, subject.trial, opened->id);
   if (std::filesystem::exists(opened->folder / cases::kTruthPart)) {
-    const auto truth = cases::read_truth(*opened);
-    if (!truth) return truth.error();
-    subject.truth = metrics::Truth{.breached = truth->breached};
+    const auto truth = TRY(cases::read_truth(*opened));
+    subject.truth = metrics::Truth{.breached = truth.breached};
   }
   return opened;
 }
 
 core::Result<void> add_scenario(const Options& o, metrics::Subject& subject) {
   if (o.scenario.empty()) return {};
-  const auto scenario = scenarios::Scenario::read(o.scenario);
-  if (!scenario) return scenario.error();
-  if (subject.trial.header.case_id != scenario->id())
-    return of_another(o, subject.trial, scenario->id());
-  subject.truth = metrics::Truth{.breached = {}, .walls = int(scenario->walls_m.size())};
+  const auto scenario = TRY(scenarios::Scenario::read(o.scenario));
+  if (subject.trial.header.case_id != scenario.id())
+    return of_another(o, subject.trial, scenario.id());
+  subject.truth = metrics::Truth{.breached = {}, .walls = int(scenario.walls_m.size())};
   return {};
 }
 
@@ -165,11 +162,10 @@ Outcome score(const Options& o) {
   metrics::Subject subject{*trial};
   std::optional<cases::OpenedCase> opened;
   if (trial->header.rig == trial::Rig::probing) {
-    if (auto added = add_scenario(o, subject); !added) return added.error();
+    TRY(add_scenario(o, subject));
   } else {
-    auto added = add_case(o, subject);
-    if (!added) return added.error();
-    opened = std::move(*added);
+    auto added = TRY(add_case(o, subject));
+    opened = std::move(added);
     subject.tract = &opened->definition.tract;
   }
   const auto scores = metrics::score_all(subject);
@@ -192,24 +188,22 @@ Outcome score(const Options& o) {
 }
 
 Outcome recover(const Options& o) {
-  const auto kept = trial::recover_trial(o.file);
-  if (!kept) return kept.error();
+  const auto kept = TRY(trial::recover_trial(o.file));
   if (o.json)
-    std::puts(Json({{"samples", *kept}}).dump(2).c_str());
+    std::puts(Json({{"samples", kept}}).dump(2).c_str());
   else
-    fmt::print("{} samples, ended\n", *kept);
+    fmt::print("{} samples, ended\n", kept);
   return 0;
 }
 
 Outcome measurements(const Options& o) {
-  const auto samples = write_trial_set(o.files, o.out);
-  if (!samples) return samples.error();
+  const auto samples = TRY(write_trial_set(o.files, o.out));
   if (o.json)
-    std::puts(Json({{"trials", o.files.size()}, {"samples", *samples}, {"folder", o.out}})
+    std::puts(Json({{"trials", o.files.size()}, {"samples", samples}, {"folder", o.out}})
                   .dump(2)
                   .c_str());
   else
-    fmt::print("{} trials, {} samples in {}\n", o.files.size(), *samples, o.out);
+    fmt::print("{} trials, {} samples in {}\n", o.files.size(), samples, o.out);
   return 0;
 }
 }  // namespace

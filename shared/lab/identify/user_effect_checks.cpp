@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/try.hpp"
 #include "effects/catalogues.hpp"
 #include "effects/formula.hpp"
 #include "lab/identify/least_squares.hpp"
@@ -142,7 +143,7 @@ Result<void> check_own_effect(const Problem& problem, const std::string& id) {
                  "formula: no parameter is a factor of all of it, so it can never be off; write it "
                  "as a parameter times the rest"};
   const Values start = starts_of(parameters);
-  if (auto fine = finite(problem, with, start, "at its initial numbers"); !fine) return fine;
+  TRY(finite(problem, with, start, "at its initial numbers"));
   Values off = start;
   for (std::size_t k = base; k < parameters.size(); ++k) {
     const Parameter& p = parameters[k];

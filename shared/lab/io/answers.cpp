@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "core/try.hpp"
 #include "effects/catalogues.hpp"
 #include "lab/identify/user_effect_checks.hpp"
 #include "lab/identify/verdict_text.hpp"
@@ -113,53 +114,50 @@ LabResult compared(const Case& opened) {
 
 Result<LabResult> diagnosed(const Case& opened, const DiagnoseRequest& wish,
                             const core::Progress& progress) {
-  auto diagnosis =
-      lab::diagnose(*opened.problem, wish.options, part_of(progress, 0.0, wish.report ? 0.9 : 1.0));
-  if (!diagnosis) return diagnosis.error();
+  auto diagnosis = TRY(lab::diagnose(*opened.problem, wish.options,
+                                     part_of(progress, 0.0, wish.report ? 0.9 : 1.0)));
   LabResult out = begun(opened);
-  if (auto edge = at_their_edge(diagnosis->final_fit); !edge.empty())
-    diagnosis->notes.insert(diagnosis->notes.begin(), std::move(edge));
-  if (auto blind = not_excited(*diagnosis); !blind.empty())
-    diagnosis->notes.push_back(std::move(blind));
+  if (auto edge = at_their_edge(diagnosis.final_fit); !edge.empty())
+    diagnosis.notes.insert(diagnosis.notes.begin(), std::move(edge));
+  if (auto blind = not_excited(diagnosis); !blind.empty())
+    diagnosis.notes.push_back(std::move(blind));
   if (!opened.own.empty())
     for (std::string& remark : lab::likenesses(*opened.problem, opened.own,
-                                               diagnosis->base_fit.values, wish.options.threads))
-      diagnosis->notes.push_back(std::move(remark));
-  out.json = lab::to_json(*diagnosis);
+                                               diagnosis.base_fit.values, wish.options.threads))
+      diagnosis.notes.push_back(std::move(remark));
+  out.json = lab::to_json(diagnosis);
   out.json["primary"] = opened.problem->channels().front().name;
-  out.model = opened.problem->model(diagnosis->final_fit.structure, diagnosis->final_fit.values);
+  out.model = opened.problem->model(diagnosis.final_fit.structure, diagnosis.final_fit.values);
   if (wish.report) {
     compare_given(opened, out);
-    compare_better(opened, diagnosis->final_fit, out);
-    if (!diagnosis->effects.empty()) compare_refitted(opened, diagnosis->base_fit, out);
+    compare_better(opened, diagnosis.final_fit, out);
+    if (!diagnosis.effects.empty()) compare_refitted(opened, diagnosis.base_fit, out);
     out.json["where"] = lab::to_json(out.content.before.comparison)["where"];
   }
-  out.content.diagnosis = std::move(*diagnosis);
+  out.content.diagnosis = std::move(diagnosis);
   return out;
 }
 
 Result<LabResult> fitted(const Case& opened, std::vector<std::string> effects, int threads,
                          const core::Progress& progress) {
   effects.insert(effects.end(), opened.own.begin(), opened.own.end());
-  for (const std::string& id : effects)
-    if (auto found = known(*opened.problem, id); !found) return found.error();
+  for (const std::string& id : effects) TRY(known(*opened.problem, id));
   std::ranges::sort(effects);
   effects.erase(std::unique(effects.begin(), effects.end()), effects.end());
   auto fit =
-      lab::fit(*opened.problem, {effects}, {.threads = threads}, part_of(progress, 0.0, 0.9));
-  if (!fit) return fit.error();
+      TRY(lab::fit(*opened.problem, {effects}, {.threads = threads}, part_of(progress, 0.0, 0.9)));
   LabResult out = begun(opened);
   compare_given(opened, out);
-  compare_better(opened, *fit, out);
+  compare_better(opened, fit, out);
   if (!opened.own.empty())
     for (std::string& remark : lab::likenesses(
              *opened.problem, opened.own,
-             std::span(fit->values).first(opened.problem->parameters({}).size()), threads))
-      fit->remarks.push_back(std::move(remark));
-  out.json = lab::to_json(*fit, out.content.before.comparison);
+             std::span(fit.values).first(opened.problem->parameters({}).size()), threads))
+      fit.remarks.push_back(std::move(remark));
+  out.json = lab::to_json(fit, out.content.before.comparison);
   out.json["primary"] = opened.problem->channels().front().name;
-  out.model = opened.problem->model(fit->structure, fit->values);
-  out.content.fit = std::move(*fit);
+  out.model = opened.problem->model(fit.structure, fit.values);
+  out.content.fit = std::move(fit);
   return out;
 }
 

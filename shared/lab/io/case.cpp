@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/try.hpp"
 #include "effects/expression.hpp"
 #include "effects/palpation_expression.hpp"
 #include "lab/identify/user_effect_checks.hpp"
@@ -51,16 +52,15 @@ Result<lab::UserEffects> take_own(const Sources& sources, const effects::Express
                                   const std::vector<effects::EffectInstance>& in_model) {
   std::vector<std::pair<effects::EffectInstance, effects::EffectFacts>> user_effects;
   for (const OwnEffect& one : sources.own) {
-    const auto expression = effects::Expression::from_json(one.definition, one.where, rig);
-    if (!expression) return expression.error();
-    effects::EffectInstance use = expression->use();
+    const auto expression = TRY(effects::Expression::from_json(one.definition, one.where, rig));
+    effects::EffectInstance use = expression.use();
     const auto same = [&](const auto& other) { return other.id == use.id; };
     if (std::ranges::any_of(in_model, same))
       return Error{Errc::bad_input,
                    fmt::format("{}id: the model has an effect '{}' already", one.where, use.id)};
     if (std::ranges::any_of(user_effects, [&](const auto& other) { return same(other.first); }))
       return Error{Errc::bad_input, fmt::format("{}id: '{}' is given twice", one.where, use.id)};
-    effects::EffectFacts facts = expression->facts();
+    effects::EffectFacts facts = expression.facts();
     for (effects::Param& p : facts.params)  // a search cannot begin where the effect is off
       if (p.initial == p.off)
         p.initial = p.off + kFirstStep * (p.high > p.off ? p.high - p.off : p.low - p.off);
@@ -147,37 +147,32 @@ Result<void> check_reach(const models::ProbingModel& model, const trial::Probing
 
 Result<Case> open_probing(models::ProbingModel model, const Sources& sources,
                           const fs::path& folder, const core::Progress& progress) {
-  auto own = take_own(sources, effects::probing_expressions(), model.effects);
-  if (!own) return own.error();
-  auto set = trial::read_probing_set(folder);
-  if (!set) return set.error();
-  if (auto fits = check_reach(model, *set); !fits) return fits.error();
-  Case opened = begun(model.name, *set, sources);
+  auto own = TRY(take_own(sources, effects::probing_expressions(), model.effects));
+  auto set = TRY(trial::read_probing_set(folder));
+  TRY(check_reach(model, set));
+  Case opened = begun(model.name, set, sources);
   return with(std::move(opened),
               lab::make_probing_problem(
-                  model, std::move(*set),
-                  {.threads = sources.threads, .user_effects = std::move(*own)}, progress));
+                  model, std::move(set),
+                  {.threads = sources.threads, .user_effects = std::move(own)}, progress));
 }
 
 Result<Case> open_palpation(models::PalpationModel model, const Sources& sources,
                             const fs::path& folder, const core::Progress& progress) {
-  auto own = take_own(sources, effects::palpation_expressions(), model.effects);
-  if (!own) return own.error();
-  auto set = trial::read_palpation_set(folder);
-  if (!set) return set.error();
-  if (model.volume.empty() && set->volume.empty())
+  auto own = TRY(take_own(sources, effects::palpation_expressions(), model.effects));
+  auto set = TRY(trial::read_palpation_set(folder));
+  if (model.volume.empty() && set.volume.empty())
     return Error{Errc::bad_input,
                  fmt::format("{}: names no \"volume\", and neither does {}/set.json",
                              sources.model.string(), sources.measurements.string())};
   const fs::path path =
-      model.volume.empty() ? folder / set->volume : sources.model.parent_path() / model.volume;
-  const auto imported = volume_io::read_volume(path, part_of(progress, 0.0, 0.2));
-  if (!imported) return imported.error();
-  Case opened = begun(model.name, *set, sources);
-  if (set->tract) opened.tract = json_of(*set->tract);
+      model.volume.empty() ? folder / set.volume : sources.model.parent_path() / model.volume;
+  const auto imported = TRY(volume_io::read_volume(path, part_of(progress, 0.0, 0.2)));
+  Case opened = begun(model.name, set, sources);
+  if (set.tract) opened.tract = json_of(*set.tract);
   return with(std::move(opened), lab::make_palpation_problem(
-                                     model, std::move(*set), imported->volume,
-                                     {.threads = sources.threads, .user_effects = std::move(*own)},
+                                     model, std::move(set), imported.volume,
+                                     {.threads = sources.threads, .user_effects = std::move(own)},
                                      part_of(progress, 0.2, 0.8)));
 }
 
@@ -189,23 +184,21 @@ core::Progress part_of(const core::Progress& whole, double from, double width) {
 }
 
 Result<Case> open_case(const Sources& sources, const core::Progress& progress) {
-  const auto model = models::read_model(sources.model);
-  if (!model) return model.error();
-  const auto unpacked = Unpacked::open(sources.measurements, {}, part_of(progress, 0.0, 0.2));
-  if (!unpacked) return unpacked.error();
-  const auto rig = trial::rig_of_set(unpacked->folder());
-  if (!rig) return named(rig.error(), *unpacked, sources.measurements);
-  const auto* probing = std::get_if<models::ProbingModel>(&*model);
+  const auto model = TRY(models::read_model(sources.model));
+  const auto unpacked = TRY(Unpacked::open(sources.measurements, {}, part_of(progress, 0.0, 0.2)));
+  const auto rig = trial::rig_of_set(unpacked.folder());
+  if (!rig) return named(rig.error(), unpacked, sources.measurements);
+  const auto* probing = std::get_if<models::ProbingModel>(&model);
   if ((*rig == "probing") != (probing != nullptr))
     return Error{Errc::bad_input,
                  fmt::format("{}: a model of the {} rig, but {} holds measurements of the {} rig",
                              sources.model.string(), probing ? "probing" : "palpation",
                              sources.measurements.string(), *rig)};
   const auto rest = part_of(progress, 0.2, 0.8);
-  auto opened = probing ? open_probing(*probing, sources, unpacked->folder(), rest)
-                        : open_palpation(std::get<models::PalpationModel>(*model), sources,
-                                         unpacked->folder(), rest);
-  if (!opened) return named(opened.error(), *unpacked, sources.measurements);
+  auto opened = probing ? open_probing(*probing, sources, unpacked.folder(), rest)
+                        : open_palpation(std::get<models::PalpationModel>(model), sources,
+                                         unpacked.folder(), rest);
+  if (!opened) return named(opened.error(), unpacked, sources.measurements);
   if (auto fine = check_sensors(*opened); !fine)
     return Error{fine.error().code, sources.measurements.string() + ": " + fine.error().what};
   return with_own(std::move(*opened), sources);

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/require.hpp"
+#include "core/try.hpp"
 #include "effects/palpation_effect.hpp"
 #include "effects/palpation_expression.hpp"
 #include "effects/probing_effect.hpp"
@@ -70,9 +71,8 @@ core::Result<Json> own_effect_json(const OwnEffect& own) {
                          own.definition["rig"] == "palpation";
   const std::string_view rig = palpation ? "palpation" : "probing";
   const auto expression =
-      effects::Expression::from_json(own.definition, own.where, formulas_of(rig));
-  if (!expression) return expression.error();
-  return effect_json(rig, expression->facts());
+      TRY(effects::Expression::from_json(own.definition, own.where, formulas_of(rig)));
+  return effect_json(rig, expression.facts());
 }
 
 }  // namespace lab_io

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "core/json.hpp"
+#include "core/try.hpp"
 
 namespace tractus {
 namespace lab_io {
@@ -160,22 +161,20 @@ std::string kept_samples(const lab::Side& before, const lab::Side* after) {
 
 Result<SampleView> view_samples(const std::filesystem::path& path, const SampleQuery& wish) {
   std::ifstream file(path, std::ios::binary);
-  const auto header = read_header(file, path);
-  if (!header) return header.error();
-  const auto place = place_of(*header, wish, std::uint64_t(file.tellg()));
-  if (!place) return place.error();
-  const std::uint64_t n = place->samples;
+  const auto header = TRY(read_header(file, path));
+  const auto place = TRY(place_of(header, wish, std::uint64_t(file.tellg())));
+  const std::uint64_t n = place.samples;
   std::vector<double> t_s(n);
   std::vector<float> measured(n), simulated(n);
   std::vector<std::int8_t> region(n);
-  const std::uint64_t channel_at = place->at + 8 * n + 8 * n * place->channel;
-  if (!read_array(file, place->at, t_s) || !read_array(file, channel_at, measured) ||
+  const std::uint64_t channel_at = place.at + 8 * n + 8 * n * place.channel;
+  if (!read_array(file, place.at, t_s) || !read_array(file, channel_at, measured) ||
       !read_array(file, channel_at + 4 * n, simulated) ||
-      !read_array(file, place->at + 8 * n + 8 * n * place->channels, region))
+      !read_array(file, place.at + 8 * n + 8 * n * place.channels, region))
     return Error{Errc::corrupt, path.filename().string() + ": ends too early"};
   SampleView view;
-  view.noise_floor = place->noise_floor;
-  view.regions.resize(place->regions);
+  view.noise_floor = place.noise_floor;
+  view.regions.resize(place.regions);
   if (n == 0) return view;
   const double start = t_s.front();
   for (double& t : t_s) t -= start;
@@ -184,7 +183,7 @@ Result<SampleView> view_samples(const std::filesystem::path& path, const SampleQ
   const auto end = std::size_t(std::ranges::upper_bound(t_s, wish.to_s) - t_s.begin());
   if (first >= end) return view;
   const std::size_t per = (end - first + wish.points - 1) / std::max<std::size_t>(1, wish.points);
-  view.samples_per_point = per * (*header)["every"].get<std::uint64_t>();
+  view.samples_per_point = per * header["every"].get<std::uint64_t>();
   std::vector<float> residual(n);
   for (std::size_t k = first; k < end; ++k) residual[k] = measured[k] - simulated[k];
   for (std::size_t k = first; k < end; k += per) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/try.hpp"
 #include "effects/palpation_expression.hpp"
 
 namespace tractus {
@@ -23,19 +24,17 @@ Result<OwnEffect> read_own(const std::filesystem::path& path) {
     return Error{Errc::too_large,
                  fmt::format("{}: {} bytes; an effect of one's own takes {} at most", path.string(),
                              size, kMost_bytes)};
-  auto json = core::read_json(path);
-  if (!json) return json.error();
-  return OwnEffect{std::move(*json), path.string() + ": "};
+  auto json = TRY(core::read_json(path));
+  return OwnEffect{std::move(json), path.string() + ": "};
 }
 
 Result<std::vector<std::string>> ids_of(const std::vector<OwnEffect>& own, const std::string& rig) {
   std::vector<std::string> out;
   for (const OwnEffect& one : own) {
-    const auto expression = effects::Expression::from_json(
+    const auto expression = TRY(effects::Expression::from_json(
         one.definition, one.where,
-        rig == "probing" ? effects::probing_expressions() : effects::palpation_expressions());
-    if (!expression) return expression.error();
-    out.push_back(expression->facts().id);
+        rig == "probing" ? effects::probing_expressions() : effects::palpation_expressions()));
+    out.push_back(expression.facts().id);
   }
   return out;
 }

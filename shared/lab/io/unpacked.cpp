@@ -12,6 +12,8 @@
 #include <memory>
 #include <string>
 
+#include "core/try.hpp"
+
 namespace tractus {
 namespace lab_io {
 namespace {
@@ -70,7 +72,7 @@ class Unpacking {
       const int got = archive_read_next_header(reader_.get(), &entry);
       if (got == ARCHIVE_EOF) break;
       if (got != ARCHIVE_OK && got != ARCHIVE_WARN) return damaged();
-      if (auto taken = take(entry); !taken) return taken;
+      TRY(take(entry));
     }
     if (files_ == 0)
       return Error{Errc::bad_input, fmt::format("{}: holds no file; {}", zip_.string(), kExpected)};
@@ -163,13 +165,10 @@ Result<Unpacked> Unpacked::open(const fs::path& path, const UnpackLimits& limits
     return Error{Errc::not_found, fmt::format("{}: not there; {}", path.string(), kExpected)};
   if (!fs::is_regular_file(status))
     return Error{Errc::bad_input, fmt::format("{}: {}", path.string(), kExpected)};
-  auto scratch = core::ScratchFolder::make(fs::temp_directory_path() / "tractus-set");
-  if (!scratch) return scratch.error();
-  if (auto done = Unpacking(path, scratch->path(), limits, progress).run(); !done)
-    return done.error();
-  auto folder = set_folder(scratch->path(), path);
-  if (!folder) return folder.error();
-  return Unpacked(*folder, std::move(*scratch));
+  auto scratch = TRY(core::ScratchFolder::make(fs::temp_directory_path() / "tractus-set"));
+  TRY(Unpacking(path, scratch.path(), limits, progress).run());
+  auto folder = TRY(set_folder(scratch.path(), path));
+  return Unpacked(folder, std::move(scratch));
 }
 
 }  // namespace lab_io

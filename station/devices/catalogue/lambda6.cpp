@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/try.hpp"
 #include "station/devices/catalogue.hpp"
 #include "station/devices/dhd_library.hpp"
 #include "station/devices/usb_presence.hpp"
@@ -44,11 +45,10 @@ class Lambda6 final : public Device {
 
   core::Result<Limits> open() override {
     close();
-    auto library = DhdLibrary::load(options_.sdk);
-    if (!library) return library.error();
-    library_.emplace(std::move(*library));
+    auto library = TRY(DhdLibrary::load(options_.sdk));
+    library_.emplace(std::move(library));
     api_ = &library_->api();
-    if (auto found = find_on_usb(); !found) return found.error();
+    TRY(find_on_usb());
     const int id = api_->open();
     if (id < 0) return refused("cannot be opened");
     id_ = static_cast<char>(id);
@@ -113,13 +113,11 @@ class Lambda6 final : public Device {
 
  private:
   core::Result<void> find_on_usb() {
-    auto found = look_for_usb(kForceDimension);
-    if (!found) return found.error();
-    if (found->presence != UsbPresence::present)
-      return core::Error{core::Errc::unavailable, text_of(*found, "lambda6")};
-    auto watch = UsbWatch::start(kForceDimension);
-    if (!watch) return watch.error();
-    watch_ = std::move(*watch);
+    auto found = TRY(look_for_usb(kForceDimension));
+    if (found.presence != UsbPresence::present)
+      return core::Error{core::Errc::unavailable, text_of(found, "lambda6")};
+    auto watch = TRY(UsbWatch::start(kForceDimension));
+    watch_ = std::move(watch);
     return {};
   }
 
@@ -136,10 +134,10 @@ class Lambda6 final : public Device {
                       "expected",
                       api_->system_name(id_)));
     has_gripper_ = api_->has_gripper(id_);
-    if (auto homed = home(); !homed) return homed;
+    TRY(home());
     if (api_->gravity(kGravity_m_s2, id_) < 0 || api_->compensate_gravity(1, id_) < 0)
       return refused("its gravity compensation cannot be switched on");
-    if (auto watched = set_watchdog(); !watched) return watched;
+    TRY(set_watchdog());
     // The factory's velocity guard stays as it is. Forces wait for the first command: from then on
     // somebody keeps the watchdog quiet.
     if (api_->enable_force(0, id_) < 0) return refused("its forces cannot be switched");

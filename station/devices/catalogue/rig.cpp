@@ -1,4 +1,5 @@
 /// The probing rig: a machine behind Modbus, held by a person.
+#include "core/try.hpp"
 #include "station/devices/catalogue.hpp"
 #include "station/devices/modbus_rig.hpp"
 
@@ -6,9 +7,8 @@ namespace tractus::devices {
 namespace {
 
 core::Result<MadeRig> make(const RigOptions& options) {
-  auto device = modbus_rig(options.address);
-  if (!device) return device.error();
-  return MadeRig{std::nullopt, options.address, std::move(*device)};
+  auto device = TRY(modbus_rig(options.address));
+  return MadeRig{std::nullopt, options.address, std::move(device)};
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 /// The simulated probing rig: `tractus-rig`, started here, behind the same Modbus as the machine.
+#include "core/try.hpp"
 #include "station/devices/catalogue.hpp"
 #include "station/devices/modbus_rig.hpp"
 
@@ -6,16 +7,14 @@ namespace tractus::devices {
 namespace {
 
 core::Result<MadeRig> make(const RigOptions& options) {
-  auto process = RigProcess::start({.program = options.program,
-                                    .seed = options.seed,
-                                    .skill = options.skill,
-                                    .surgeon = options.surgeon,
-                                    .bus_clock = false});
-  if (!process) return process.error();
-  std::string address = process->address();
-  auto device = modbus_rig(address);
-  if (!device) return device.error();
-  return MadeRig{std::move(*process), std::move(address), std::move(*device)};
+  auto process = TRY(RigProcess::start({.program = options.program,
+                                        .seed = options.seed,
+                                        .skill = options.skill,
+                                        .surgeon = options.surgeon,
+                                        .bus_clock = false}));
+  std::string address = process.address();
+  auto device = TRY(modbus_rig(address));
+  return MadeRig{std::move(process), std::move(address), std::move(device)};
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <mutex>
 
 #include "core/require.hpp"
+#include "core/try.hpp"
 #include "effects/palpation_effect.hpp"
 #include "lab/identify/least_squares.hpp"
 #include "lab/identify/parallel.hpp"
@@ -378,8 +379,7 @@ Result<std::unique_ptr<Problem>> make_palpation_problem(const models::PalpationM
                                                         const core::Progress& progress) {
   const auto down = trial::stated_down(set);
   if (!down) return Error{down.error().code, (set.folder / down.error().what).string()};
-  auto field = volume::ForceField::make(volume, model.transfer, model.field);
-  if (!field) return field.error();
+  auto field = TRY(volume::ForceField::make(volume, model.transfer, model.field));
   if (progress && !progress(0.3)) return Error{Errc::cancelled, "stopped"};
   std::vector<PalpationRecording> recordings(set.trials.size());
   std::vector<std::string> wrong(set.trials.size());
@@ -395,7 +395,7 @@ Result<std::unique_ptr<Problem>> make_palpation_problem(const models::PalpationM
   for (const std::string& what : wrong)
     if (!what.empty()) return Error{Errc::bad_input, what};
   if (progress && !progress(0.6)) return Error{Errc::cancelled, "stopped"};
-  auto problem = std::make_unique<PalpationProblem>(std::move(*field), model, options.user_effects,
+  auto problem = std::make_unique<PalpationProblem>(std::move(field), model, options.user_effects,
                                                     std::move(recordings), set.tract);
   // As the file has it first, then as a fit has it, and again: which rests the shank finds depends
   // on the numbers, and the numbers on the rests.
