@@ -187,7 +187,7 @@ TEST(Architecture, JsonIsParsedByCoreAlone) {
 
 /// A guard without a name ends in the line that takes it: TRY(lock()) would guard nothing.
 TEST(Architecture, GuardsHaveANameBeyondTry) {
-  const std::regex guard("(^|[;{}])[ \\n]*TRY\\([^;]*(hold_upload|hold|lock|Lock::take)\\(");
+  const std::regex guard("(^|[;{}])[ \\n]*TRY\\([^;]*(\\b(hold_upload|hold|lock)|Lock::take)\\(");
   EXPECT_TRUE(std::regex_search(std::string("{\n  TRY(FolderLock::take(path));"), guard));
   EXPECT_FALSE(std::regex_search(std::string(";\n  const auto held = TRY(hold(x));"), guard));
   for (const auto& path : sources()) {
