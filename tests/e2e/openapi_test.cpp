@@ -1,5 +1,6 @@
 /// The description of the API, held to by a linter that others use (Redocly, tests/openapi).
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cstdio>
 #include <cstdlib>
@@ -44,7 +45,8 @@ class OpenApi : public ::testing::Test {
       said.append(piece.data(), n);
     return {::pclose(out) == 0, said};
   }
-  fs::path folder_ = fs::path(::testing::TempDir()) / "tractus-openapi";
+  fs::path folder_ =
+      fs::path(::testing::TempDir()) / ("tractus-openapi-" + std::to_string(::getpid()));
   core::Json described_;
 };
 
