@@ -7,6 +7,15 @@ import {createInterface} from 'node:readline';
 import Provider from 'oidc-provider';
 
 const [algorithm = 'RS256'] = process.argv.slice(2);
+const kinds = {
+  RS256: {name: 'RSASSA-PKCS1-v1_5', modulusLength: 2048, publicExponent: new Uint8Array([1, 0, 1]), hash: 'SHA-256'},
+  ES256: {name: 'ECDSA', namedCurve: 'P-256'},
+};
+const pair = await crypto.subtle.generateKey(kinds[algorithm], true, ['sign', 'verify']);
+const signingKey = {...(await crypto.subtle.exportKey('jwk', pair.privateKey)), use: 'sig', alg: algorithm, kid: 'one'};
+delete signingKey.key_ops;
+delete signingKey.ext;
+
 let answer = (_request, response) => response.writeHead(503).end();
 const server = createServer((request, response) => answer(request, response));
 server.listen(0, '127.0.0.1', () => {
@@ -24,7 +33,7 @@ server.listen(0, '127.0.0.1', () => {
       }],
       cookies: {keys: ['of a test']},
       features: {devInteractions: {enabled: true}, rpInitiatedLogout: {enabled: true}},
-      jwks: {keys: [globalThis.signingKey]},
+      jwks: {keys: [signingKey]},
       pkce: {required: () => true},
       findAccount: (_context, id) => ({accountId: id, claims: () => ({sub: id})}),
     });
@@ -34,12 +43,3 @@ server.listen(0, '127.0.0.1', () => {
   lines.on('close', () => process.exit(0));
   console.log(issuer);
 });
-
-const kinds = {
-  RS256: {name: 'RSASSA-PKCS1-v1_5', modulusLength: 2048, publicExponent: new Uint8Array([1, 0, 1]), hash: 'SHA-256'},
-  ES256: {name: 'ECDSA', namedCurve: 'P-256'},
-};
-const pair = await crypto.subtle.generateKey(kinds[algorithm], true, ['sign', 'verify']);
-globalThis.signingKey = {...(await crypto.subtle.exportKey('jwk', pair.privateKey)), use: 'sig', alg: algorithm, kid: 'one'};
-delete globalThis.signingKey.key_ops;
-delete globalThis.signingKey.ext;
