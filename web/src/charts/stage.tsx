@@ -108,7 +108,7 @@ export function Stage({ content, colours, palette, label, summary, caption, butt
           <>
             {button('Cut open: hide the superior half of the bone', 'Cut open', () => setShown('cut'), shown === 'cut')}
             {button('Show the whole bone', 'Whole', () => setShown('whole'), shown === 'whole')}
-            {button('Hide the bone', 'No bone', () => setShown('none'), shown === 'none')}
+            {button('Hide the bone', 'Hide', () => setShown('none'), shown === 'none')}
           </>
         ) : null}
       </div>

@@ -154,7 +154,7 @@ describe.skipIf(bin === undefined)('a palpation case with a medial breach', () =
     await faculty.getByLabel('Breach', { exact: true }).selectOption('medial');
     const said = faculty.locator('[data-part="breach"]');
     await said.waitFor();
-    expect(await said.innerText()).toMatch(/^The medial wall gives way at a depth of \d/);
+    expect(await said.innerText()).toMatch(/^The medial wall is breached at a depth of \d/);
     await faculty.locator('[data-part="scene"][data-ready]').waitFor();
     await faculty.waitForLoadState('networkidle');
     await faculty.waitForTimeout(1000);
