@@ -164,7 +164,7 @@ describe.each([
       await check('study');
       await page.locator('[data-participant] button[aria-expanded]').first().click();
       await page
-        .getByRole('button', { name: /^Mark trial/ })
+        .getByRole('button', { name: /^Mark as invalid: trial/ })
         .first()
         .click();
       await page.getByRole('dialog').waitFor();

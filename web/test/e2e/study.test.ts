@@ -104,7 +104,7 @@ describe.runIf(inject('fixture'))('the page of a study', () => {
     const { page } = seen;
     await open(page);
     await page.locator('[data-participant="S01"] button[aria-expanded]').click();
-    await page.getByRole('button', { name: 'Mark trial 2 of S01 as invalid' }).click();
+    await page.getByRole('button', { name: 'Mark as invalid: trial 2 of S01' }).click();
     const dialog = page.getByRole('dialog');
     const deed = dialog.getByRole('button', { name: 'Mark as invalid' });
     expect(await deed.isDisabled()).toBe(true);

@@ -136,7 +136,7 @@ function Trainees({ one, store, may }: { readonly one: Assignment; readonly stor
                 may && person.done < person.planned ? (
                   <Button
                     look="quiet"
-                    label={`Release the reservation: ${person.name}`}
+                    label={`Release reservation: ${person.name}`}
                     onClick={() => setReleasing(person)}
                   >
                     Release reservation…

@@ -58,7 +58,7 @@ function TrialCells({
         {trial.state === 'counts' ? (
           <Button
             look="quiet"
-            label={`Mark trial ${slot.number} of ${participant} as invalid`}
+            label={`Mark as invalid: trial ${slot.number} of ${participant}`}
             onClick={() => ask({ kind: 'invalid', participant, trial: trial.id, number: slot.number })}
           >
             Mark as invalid…

@@ -133,7 +133,7 @@ describe('the participants', () => {
     );
     await userEvent.click(screen.getByRole('button', { name: /P01/, expanded: false }));
     const table = screen.getByRole('table', { name: 'Trials of P01' });
-    await userEvent.click(within(table).getByRole('button', { name: 'Mark trial 1 of P01 as invalid' }));
+    await userEvent.click(within(table).getByRole('button', { name: 'Mark as invalid: trial 1 of P01' }));
     expect(ask).toHaveBeenCalledWith({ kind: 'invalid', participant: 'P01', trial: 't1', number: 1 });
   });
 
