@@ -178,7 +178,10 @@ def open_modes(folder):
     """Files and folders that the group or others may read, write or enter."""
     out = []
     for path in [folder, *sorted(folder.rglob("*"))]:
-        mode = path.lstat().st_mode & 0o777
+        try:
+            mode = path.lstat().st_mode & 0o777
+        except FileNotFoundError:  # the server ended a body's file meanwhile
+            continue
         if mode & 0o077 and not path.is_symlink() and path.name not in PUBLIC:
             out.append(f"{path.relative_to(folder.parent)} {mode:04o}")
     return out
