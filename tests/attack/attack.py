@@ -45,6 +45,9 @@ def warm_up(world):
     announced(world.ours.station, "e" * 32, world.ours.next_slot()["slot"], bytes(1 << 16))
     flood.block(world, "json_body", 600)
     flood.block(world, "path_and_query", 600)
+    # Each route once by those who may: caches of connections and the allocator's arenas stay after a first pass, and a second
+    # pass adds nothing to them.
+    relations.asked_about_strangers(world)
 
 
 def options_of(words):

@@ -170,7 +170,8 @@ TEST_F(PrivateFiles, OneAccountCannotFillTheScratchFolder) {
     EXPECT_EQ(files_in(world_.data / "scratch"), 6u);
     const RawAnswer refused = send_raw(server.port(), Waiting::text(admin, kLargest), 3000);
     EXPECT_TRUE(refused.text.starts_with("HTTP/1.1 503")) << refused.text;
-    EXPECT_NE(refused.text.find("your transfers in progress use"), std::string::npos) << refused.text;
+    EXPECT_NE(refused.text.find("your transfers in progress use"), std::string::npos)
+        << refused.text;
   }
   for (int tries = 0; tries < 100 && files_in(world_.data / "scratch") > 0; ++tries)
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
