@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/require.hpp"
+#include "lab/settings.hpp"
 #include "lab/signal/spectrum.hpp"
 
 namespace tractus {
@@ -13,8 +14,7 @@ namespace lab {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t kBins = 48;
-constexpr std::size_t kMostForQuantiles = 200'000;
+constexpr const auto& kDistribution = kSettings.comparison;
 
 using Series = std::function<double(const TrialSamples&, std::size_t sample)>;
 
@@ -45,11 +45,12 @@ double quantile(const std::vector<double>& sorted, double share) {
 Histogram histogram(const std::vector<double>& sorted, double low, double high) {
   Histogram out;
   if (!(high > low)) high = low + std::max(1e-12, 1e-9 * std::abs(low));
-  for (std::size_t k = 0; k <= kBins; ++k)
-    out.edges.push_back(low + (high - low) * double(k) / double(kBins));
-  out.shares.assign(kBins, 0.0);
+  for (std::size_t k = 0; k <= kDistribution.bins; ++k)
+    out.edges.push_back(low + (high - low) * double(k) / double(kDistribution.bins));
+  out.shares.assign(kDistribution.bins, 0.0);
   for (const double value : sorted) {
-    const double bin = std::clamp((value - low) / (high - low) * double(kBins), 0.0, kBins - 1.0);
+    const double bin = std::clamp((value - low) / (high - low) * double(kDistribution.bins), 0.0,
+                                  kDistribution.bins - 1.0);
     out.shares[std::size_t(bin)] += 1.0 / double(sorted.size());
   }
   return out;
@@ -63,7 +64,7 @@ struct Described {
 
 Described described(const Samples& samples, const Series& series) {
   Described out;
-  const std::size_t every = 1 + total(samples) / kMostForQuantiles;
+  const std::size_t every = 1 + total(samples) / kDistribution.most_for_quantiles;
   std::size_t n = 0;
   for (const TrialSamples& trial : samples.trials)
     for (std::size_t k = 0; k < trial.t_s.size(); ++k, ++n) {

@@ -6,14 +6,14 @@
 #include <optional>
 
 #include "core/require.hpp"
+#include "lab/settings.hpp"
 #include "lab/signal/phases.hpp"
 
 namespace tractus {
 namespace lab {
 namespace {
 
-constexpr std::size_t kMostRows = 400'000;
-constexpr double kSensorNoise_N = 0.01;  // a palpation sensor's [Zoller2020, its floor]
+constexpr const auto& kDescription = kSettings.description;
 /// Units that a state's name may end in, longest first.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kUnits{{{"_rad_s", "rad/s"},
                                                                                {"_m_s2", "m/s²"},
@@ -100,7 +100,7 @@ void add_features(const States& states, const Residuals& residuals, bool probing
                *along = state(states, "speed_along_force_m_s");
   if (!probing && force && speed && along)
     add({"phase", "", kPalpationPhases},
-        every(palpation_phases(*force, *speed, *along, kSensorNoise_N), trial.stride));
+        every(palpation_phases(*force, *speed, *along, kDescription.sensor_noise_N), trial.stride));
   for (std::size_t s = 0; s < states.names.size(); ++s) {
     Feature feature = feature_named(states.names[s]);
     if (feature.unit == "m/s²" || feature.name == "time" || states.names[s] == "theta_rad")
@@ -189,7 +189,7 @@ Samples samples_of(const Problem& problem, const Structure& structure,
     TrialSamples trial;
     trial.id = problem.trial_id(t);
     trial.t_s = std::move(residuals.t_s);
-    trial.stride = 1 + total / kMostRows;
+    trial.stride = 1 + total / kDescription.most_rows;
     for (const auto& [from, to] : chosen.pairs) {
       trial.measured.push_back(at_times(source, to, trial.t_s));
       Column simulated = trial.measured.back();

@@ -8,16 +8,16 @@
 #include <numeric>
 
 #include "lab/compare/error_tree.hpp"
+#include "lab/settings.hpp"
 
 namespace tractus {
 namespace lab {
 namespace {
 
-constexpr std::size_t kStretches = 40;  // of a single trial
-constexpr std::size_t kMostEdges = 40;
+constexpr const auto& kRegions = kSettings.regions;
 
-/// Round numbers inside the feature's 2 to 98 % range, at most kMostEdges: 1, 2, 2.5 or 5 times a
-/// power of ten apart.
+/// Round numbers inside the feature's 2 to 98 % range, at most kRegions.most_edges: 1, 2, 2.5 or 5
+/// times a power of ten apart.
 std::vector<double> round_edges(std::vector<float> values) {
   if (values.empty()) return {};
   const auto at = [&](double share) {
@@ -27,7 +27,7 @@ std::vector<double> round_edges(std::vector<float> values) {
   };
   const double low = at(0.02), high = at(0.98);
   if (!(high > low)) return {};
-  const double finest = (high - low) / double(kMostEdges);
+  const double finest = (high - low) / double(kRegions.most_edges);
   const double decade = std::pow(10.0, std::floor(std::log10(finest)));
   double step = 10.0 * decade;
   for (const double factor : {5.0, 2.5, 2.0, 1.0})
@@ -52,14 +52,14 @@ struct Halves {
   std::vector<std::uint8_t> fills;  // [block]
 
   explicit Halves(std::size_t trials)
-      : by_trials(trials > 1), fills(by_trials ? trials : kStretches) {
+      : by_trials(trials > 1), fills(by_trials ? trials : kRegions.stretches) {
     std::vector<std::size_t> order(fills.size());
     std::iota(order.begin(), order.end(), 0u);
     std::ranges::sort(order, {}, [](std::size_t k) { return scrambled(k); });
     for (std::size_t k = 0; k < order.size() / 2; ++k) fills[order[k]] = 1;
   }
   std::uint32_t block(std::size_t trial, const TrialSamples& samples, std::size_t sample) const {
-    return std::uint32_t(by_trials ? trial : kStretches * sample / samples.t_s.size());
+    return std::uint32_t(by_trials ? trial : kRegions.stretches * sample / samples.t_s.size());
   }
 };
 

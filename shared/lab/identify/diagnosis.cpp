@@ -10,6 +10,7 @@
 #include "lab/identify/residual_dependence.hpp"
 #include "lab/identify/selection.hpp"
 #include "lab/identify/structure_posterior.hpp"
+#include "lab/settings.hpp"
 
 namespace tractus {
 namespace lab {
@@ -19,9 +20,7 @@ using core::Errc;
 using core::Error;
 using core::Result;
 
-constexpr std::size_t kFewTrials = 4;
-/// That more than the effects named is missing where they leave more than the floor.
-constexpr double kMoreIsMissing = 0.95;
+constexpr const auto& kAnswer = kSettings.diagnosis;
 
 /// Numbers of an effect as a model file has them.
 FoundEffect found(const Problem& problem, const Fit& fit, const std::string& id) {
@@ -60,7 +59,7 @@ std::vector<Step> steps(const Residual& residual, Selection& selection, const Di
   return out;
 }
 
-std::string note_on(const Problem& problem, const Candidate& candidate,
+std::string note_on(const ParameterSpace& space, const Candidate& candidate,
                     const Selection& selection) {
   if (!candidate.possible) return candidate.why_not;
   const auto seen = selection.screens().find(candidate.facts.id);
@@ -68,9 +67,9 @@ std::string note_on(const Problem& problem, const Candidate& candidate,
   if (!seen->second.excited)
     return seen->second.independent_share > 0.0
                ? "not excited: whatever it would do, the model's own numbers do as well; record " +
-                     experiment_for(problem, candidate.facts.id, "")
+                     experiment_for(space, candidate.facts.id, "")
                : "not excited: these recordings never call on it; record " +
-                     experiment_for(problem, candidate.facts.id, "");
+                     experiment_for(space, candidate.facts.id, "");
   return "";
 }
 
@@ -152,7 +151,7 @@ Result<Diagnosis> diagnose(const Problem& problem, const DiagnoseOptions& option
         final.structure.effects.size()));
   }
   out.probability = out.verdict == Verdict::unexplained ? posterior.outside()
-                    : out.verdict == Verdict::partly    ? kMoreIsMissing
+                    : out.verdict == Verdict::partly    ? kAnswer.more_is_missing
                                                         : posterior.of_structure(final.structure);
   for (const std::string& id : named ? selection.order() : std::vector<std::string>{}) {
     out.effects.push_back(found(problem, out.final_fit, id));
@@ -174,12 +173,12 @@ Result<Diagnosis> diagnose(const Problem& problem, const DiagnoseOptions& option
   out.ranking = ranking(residual, selection, posterior);
   out.confounded = posterior.confounded();
   out.discriminating_experiment = posterior.discriminating_experiment(problem);
-  if (std::size_t(problem.trials()) < kFewTrials)
+  if (std::size_t(problem.trials()) < kAnswer.few_trials)
     out.notes.push_back(
         fmt::format("{} trial{} only: stretches of time were held out instead of trials, and the "
                     "probabilities are worth less; record {} more",
                     problem.trials(), problem.trials() == 1 ? "" : "s",
-                    kFewTrials - std::size_t(problem.trials())));
+                    kAnswer.few_trials - std::size_t(problem.trials())));
   return out;
 }
 

@@ -6,14 +6,14 @@
 #include <cmath>
 
 #include "lab/identify/effect_screen.hpp"
+#include "lab/settings.hpp"
 #include "lab/signal/drift.hpp"
 
 namespace tractus {
 namespace lab {
 namespace {
 
-constexpr std::array kMemories_s{0.5, 2.0, 8.0};
-constexpr std::size_t kRowsPerTrial = 400;
+constexpr const auto& kDrift = kSettings.drift_on_motion;
 
 /// One trial's trend, and the memories of its speed as slow as a trend may be.
 struct Slow {
@@ -36,7 +36,7 @@ Slow slow_of(const Problem& problem, const Solution& at, std::string_view effect
   const Structure less = minus(at.structure, effect);
   const Residuals with = problem.full_rate(at.structure, at.values, trial),
                   without = problem.full_rate(less, at.values, trial);
-  const std::size_t stride = 1 + with.t_s.size() / kRowsPerTrial;
+  const std::size_t stride = 1 + with.t_s.size() / kDrift.rows_per_trial;
   std::vector<double> t_s;
   for (std::size_t k = 0; k < with.t_s.size(); k += stride) t_s.push_back(with.t_s[k]);
   const auto rows = Eigen::Index(t_s.size());
@@ -48,9 +48,9 @@ Slow slow_of(const Problem& problem, const Solution& at, std::string_view effect
     return out;
   };
   Slow out{thinned([&](std::size_t k) { return without.channels[0][k] - with.channels[0][k]; }),
-           Eigen::MatrixXd::Ones(rows, Eigen::Index(kMemories_s.size()) + 1)};
-  for (std::size_t m = 0; m < kMemories_s.size(); ++m) {
-    const auto left = memory(with.t_s, v_m_s, kMemories_s[m]);
+           Eigen::MatrixXd::Ones(rows, Eigen::Index(kDrift.memories_s.size()) + 1)};
+  for (std::size_t m = 0; m < kDrift.memories_s.size(); ++m) {
+    const auto left = memory(with.t_s, v_m_s, kDrift.memories_s[m]);
     const Eigen::VectorXd raw = thinned([&](std::size_t k) { return left[k]; });
     out.memories.col(Eigen::Index(m)) = trends.at(t_s, trends.fit(raw));
   }
@@ -62,7 +62,7 @@ Slow slow_of(const Problem& problem, const Solution& at, std::string_view effect
 double drift_r2_on_motion(const Residual& residual, const Solution& at, std::string_view effect) {
   const Problem& problem = residual.problem();
   if (!contains(at.structure, effect)) return 0.0;
-  constexpr auto kColumns = Eigen::Index(kMemories_s.size()) + 1;
+  constexpr auto kColumns = Eigen::Index(kDrift.memories_s.size()) + 1;
   Eigen::MatrixXd a = Eigen::MatrixXd::Zero(kColumns, kColumns);
   Eigen::VectorXd b = Eigen::VectorXd::Zero(kColumns);
   double squares = 0.0;

@@ -6,15 +6,13 @@
 #include <cmath>
 
 #include "core/require.hpp"
+#include "lab/settings.hpp"
 
 namespace tractus {
 namespace lab {
 namespace {
 
-/// Responds less than this (mean square, in units of the noise, at the start's strength) counts as
-/// not at all; an own share below the next as none of its own.
-constexpr double kNoResponse = 1e-12, kNoShare = 1e-7;
-constexpr double kTimid = 0.05;  // of the start's strength, where the look would have none
+constexpr const auto& kScreen = kSettings.screen;
 
 /// The numbers of one effect within a structure's parameters.
 struct Block {
@@ -121,13 +119,13 @@ void look_at(const Residual& residual, const Solution& at, const Base& base,
   const double n = double(at.residual.size());
   for (std::size_t i = 0; i < strengths.size(); ++i) {
     const auto k = Eigen::Index(i);
-    const double share = norms(k) > kNoResponse * n ? rest.a(k, k) / norms(k) : 0.0;
+    const double share = norms(k) > kScreen.no_response * n ? rest.a(k, k) / norms(k) : 0.0;
     out.independent_share = std::max(out.independent_share, share);
-    if (share > kNoShare) out.excited = true;
+    if (share > kScreen.no_share) out.excited = true;
     const std::size_t at_value = block.first + strengths[i];
     const Parameter& p = parameters[at_value];
     double c = coefficients(k);
-    if (c == 0.0) c = kTimid;
+    if (c == 0.0) c = kScreen.first_strength;
     const double unit = points[i][at_value] - off[at_value];
     found.values[at_value] = std::clamp(off[at_value] + c * unit, p.low, p.high);
   }

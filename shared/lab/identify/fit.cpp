@@ -9,6 +9,7 @@
 #include "lab/identify/effect_screen.hpp"
 #include "lab/identify/fit_report.hpp"
 #include "lab/identify/parallel.hpp"
+#include "lab/settings.hpp"
 
 namespace tractus {
 namespace lab {
@@ -18,12 +19,7 @@ using core::Errc;
 using core::Error;
 using core::Result;
 
-constexpr int kFewestTrials = 4;  // fewer: stretches of time are held out
-constexpr int kStretches = 8;     // over all trials
-constexpr double kKnownTogether = 0.98;
-constexpr double kMostOfOneFold = 0.9;
-constexpr double kFewClusters = 3.0;  // Student's 95 % point over the normal's, squared, to 1/k
-constexpr double kUninformed = 0.95;  // of what was believed beforehand is left
+constexpr const auto& kValidation = kSettings.validation;
 
 /// Which residuals a fold holds out.
 struct Fold {
@@ -35,7 +31,9 @@ struct Fold {
 std::vector<Fold> folds_of(const Residual& residual) {
   const Problem& problem = residual.problem();
   std::vector<Fold> out;
-  const int pieces = residual.trials() >= kFewestTrials ? 1 : kStretches / residual.trials();
+  const int pieces = residual.trials() >= kValidation.fewest_trials
+                         ? 1
+                         : kValidation.stretches / residual.trials();
   for (int k = 0; k < residual.trials(); ++k) {
     const Eigen::Index first = residual.offset(k), all = residual.offset(k + 1) - first;
     for (int p = 0; p < pieces; ++p) {
@@ -66,7 +64,7 @@ std::vector<double> without(const Solution& at, const Gram& whole, const Gram& f
   Eigen::VectorXd along = eigen.eigenvectors().transpose() * (unit.asDiagonal() * fold.b(moved));
   for (Eigen::Index k = 0; k < along.size(); ++k) {
     const double share = eigen.eigenvalues()(k);  // of what is known of this direction
-    along(k) = share > kMostOfOneFold ? 0.0 : along(k) / (1.0 - share);
+    along(k) = share > kValidation.most_of_one_fold ? 0.0 : along(k) / (1.0 - share);
   }
   const Eigen::VectorXd step = unit.asDiagonal() * (eigen.eigenvectors() * along);
   for (std::size_t i = 0; i < moved.size(); ++i) {
@@ -84,9 +82,9 @@ struct Squares {
 };
 
 /// Sums of squares at the full rate between two times of a trial.
-Squares squares(const Problem& problem, const Structure& structure, std::span<const double> values,
-                int trial, double from_s, double to_s) {
-  const Residuals r = problem.full_rate(structure, values, trial);
+Squares squares(const ResidualModel& model, const Structure& structure,
+                std::span<const double> values, int trial, double from_s, double to_s) {
+  const Residuals r = model.full_rate(structure, values, trial);
   Squares out;
   out.channels.assign(r.channels.size(), 0.0);
   for (std::size_t k = 0; k < r.t_s.size(); ++k) {
@@ -115,7 +113,7 @@ Eigen::VectorXd disagreement(const Residual& residual, const Solution& at,
   for (const Fold& fold : folds)
     out += (covariance * gram(at, weights, fold.first, fold.count).b).cwiseAbs2();
   const double k = double(folds.size());
-  return out * (k / (k - 1.0)) * (1.0 + kFewClusters / k);
+  return out * (k / (k - 1.0)) * (1.0 + kValidation.few_clusters / k);
 }
 
 /// Standard errors, correlation and their words.
@@ -135,7 +133,7 @@ void inform(const Residual& residual, const Solution& at, const Eigen::VectorXd&
         whole.a(k, k) - (std::isfinite(p.prior_sd) ? 1.0 / (p.prior_sd * p.prior_sd) : 0.0);
     const double sd = std::sqrt(std::max({0.0, covariance(k, k) * inflation, robust(k)}));
     e.informed = own > 0.0 && covariance(k, k) > 0.0 &&
-                 !(std::sqrt(covariance(k, k)) > kUninformed * p.prior_sd);
+                 !(std::sqrt(covariance(k, k)) > kValidation.uninformed * p.prior_sd);
     e.sd = !e.informed     ? std::numeric_limits<double>::infinity()
            : p.logarithmic ? sd * e.value
                            : sd;
@@ -155,7 +153,7 @@ void inform(const Residual& residual, const Solution& at, const Eigen::VectorXd&
   }
   for (Eigen::Index k = 0; k < n; ++k)
     for (Eigen::Index j = k + 1; j < n; ++j)
-      if (std::abs(fit.correlation(k, j)) > kKnownTogether)
+      if (std::abs(fit.correlation(k, j)) > kValidation.known_together)
         fit.remarks.push_back(fmt::format("{} and {}: known only together (correlation {:.3f})",
                                           fit.estimates[std::size_t(k)].pointer,
                                           fit.estimates[std::size_t(j)].pointer,
@@ -166,7 +164,7 @@ void hold_out(const Residual& residual, const Solution& at, const Gram& whole,
               const Eigen::VectorXd& weights, Fit& fit) {
   const Problem& problem = residual.problem();
   const auto folds = folds_of(residual);
-  fit.folds = residual.trials() >= kFewestTrials ? "trials" : "stretches of time";
+  fit.folds = residual.trials() >= kValidation.fewest_trials ? "trials" : "stretches of time";
   fit.trial_score.resize(Eigen::Index(folds.size()));
   std::vector<Squares> held(folds.size());
   parallel(int(folds.size()), residual.threads(), [&](int f) {

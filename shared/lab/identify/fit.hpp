@@ -35,13 +35,13 @@ struct TrialError {
 
 struct Fit {
   Structure structure;
-  std::vector<double> values;        ///< in the order of Problem::parameters
+  std::vector<double> values;        ///< in the order of ParameterSpace::parameters
   std::vector<Estimate> estimates;   ///< one per value
   Eigen::MatrixXd correlation;       ///< [value][value], 0 with those not informed
   double rmse = 0.0;                 ///< of the primary channel over all trials
   double held_out_rmse = 0.0;        ///< NaN when not asked for
   double rmse_all = 0.0;             ///< with the samples that are not trusted
-  std::vector<double> channel_rmse;  ///< one per Problem::channels()
+  std::vector<double> channel_rmse;  ///< one per RecordedTrials::channels()
   std::vector<TrialError> trials;    ///< one per trial
   Eigen::VectorXd trial_score;       ///< held-out mean squared whitened residual per fold
   double whitened_rms = 0.0;         ///< root mean square of the whitened residuals: 1 at the floor

@@ -7,22 +7,13 @@
 #include <map>
 
 #include "lab/identify/parallel.hpp"
+#include "lab/settings.hpp"
 
 namespace tractus {
 namespace lab {
 namespace {
 
-constexpr double kHuber = 4.0;
-/// The scale is taken where only single samples lie beyond, not whole stretches that a model does
-/// not explain: this quantile of |r|, which for a normal distribution is so many standard
-/// deviations.
-constexpr double kScaleQuantile = 0.97, kScaleOfNormal = 2.17;
-/// Directions with less than this share of the greatest eigenvalue (columns scaled to one) count as
-/// unknown.
-constexpr double kRank = 1e-11;
-constexpr int kRoughRounds = 3;
-constexpr int kMostTries = 12;  // ever shorter steps from one point
-constexpr double kFinestRough = 0.001;
+constexpr const auto& kSolver = kSettings.least_squares;
 
 double step_inside(const Parameter& p, double u) {
   return u + p.step <= coordinate(p, p.high) ? p.step : -p.step;
@@ -90,7 +81,7 @@ class Search {
       double promised = 0.0;
       int tries = 0;
       bool better = false;
-      for (; tries < kMostTries && !better; ++tries) {
+      for (; tries < kSolver.most_tries && !better; ++tries) {
         next = stepped(equations, damping, promised);
         if (!(promised > 0.0)) {  // the step was cut at a bound and leads nowhere: a shorter one
           damping = std::max(damping * 10.0, 1e-4);
@@ -269,19 +260,19 @@ double robust_scale(const Eigen::VectorXd& residual) {
   if (residual.size() == 0) return 1.0;
   std::vector<double> all(residual.data(), residual.data() + residual.size());
   for (double& v : all) v = std::abs(v);
-  const auto at = all.begin() + std::ptrdiff_t(kScaleQuantile * double(all.size() - 1));
+  const auto at = all.begin() + std::ptrdiff_t(kSolver.scale_quantile * double(all.size() - 1));
   std::ranges::nth_element(all, at);
-  return std::max(1.0, *at / kScaleOfNormal);
+  return std::max(1.0, *at / kSolver.scale_of_normal);
 }
 
 Eigen::VectorXd robust_weights(const Eigen::VectorXd& residual, double scale) {
-  const double most = kHuber * scale;
+  const double most = kSolver.huber * scale;
   return residual.unaryExpr(
       [most](double r) { return std::abs(r) <= most ? 1.0 : most / std::abs(r); });
 }
 
 double robust_loss(const Eigen::Ref<const Eigen::VectorXd>& residual, double scale) {
-  const double most = kHuber * scale;
+  const double most = kSolver.huber * scale;
   double sum = 0.0;
   for (Eigen::Index k = 0; k < residual.size(); ++k) {
     const double r = std::abs(residual(k));
@@ -313,7 +304,7 @@ Eigen::VectorXd solve(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
   for (double& v : unit) v = v > 0.0 ? 1.0 / v : 0.0;
   const Eigen::MatrixXd scaled = unit.asDiagonal() * a * unit.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
-  const double least = kRank * std::max(eigen.eigenvalues().maxCoeff(), 1e-300);
+  const double least = kSolver.rank * std::max(eigen.eigenvalues().maxCoeff(), 1e-300);
   Eigen::VectorXd along = eigen.eigenvectors().transpose() * (unit.asDiagonal() * b);
   for (Eigen::Index k = 0; k < along.size(); ++k)
     along(k) = eigen.eigenvalues()(k) > least ? along(k) / eigen.eigenvalues()(k) : 0.0;
@@ -328,13 +319,14 @@ void differentiate(const Residual& residual, Solution& solution) {
 
 Solution polish(const Residual& residual, Solution at, const SearchOptions& options) {
   bool any = false;
-  for (int round = 0; round < kRoughRounds; ++round) {
+  for (int round = 0; round < kSolver.rough_rounds; ++round) {
     std::vector<double> values = at.values;
     double least = at.loss;
     bool moved_any = false;
     for (std::size_t c = 0; c < at.parameters.size(); ++c) {
       const Parameter& p = at.parameters[c];
-      for (double step = p.rough; p.rough > 0.0 && step > kFinestRough * p.rough; step *= 0.5) {
+      for (double step = p.rough; p.rough > 0.0 && step > kSolver.finest_rough * p.rough;
+           step *= 0.5) {
         std::vector<std::vector<double>> points(2, values);
         points[0][c] = std::clamp(values[c] - step, p.low, p.high);
         points[1][c] = std::clamp(values[c] + step, p.low, p.high);

@@ -23,7 +23,7 @@ class Residual {
   /// Several points at once, as columns.
   Eigen::MatrixXd operator()(const Structure& structure,
                              const std::vector<std::vector<double>>& points) const;
-  /// The same near `values`, for differences (see Problem::residuals_near).
+  /// The same near `values`, for differences (see ResidualModel::residuals_near).
   Eigen::MatrixXd near(const Structure& structure, std::span<const double> values,
                        const std::vector<std::vector<double>>& points) const;
   const Problem& problem() const { return problem_; }

@@ -6,15 +6,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lab/settings.hpp"
+
 namespace tractus {
 namespace lab {
 namespace {
 
-constexpr int kKnots = 24;
-constexpr std::size_t kRowsPerTrial = 1500;
-constexpr double kWorthNaming = 0.05;
-constexpr std::size_t kNamed = 3;
-constexpr double kRidge = 1e-3;
+constexpr const auto& kDependence = kSettings.dependence;
 
 /// One state of all trials, thinned, with the error at the same moments.
 struct Columns {
@@ -31,7 +29,7 @@ Columns columns(const Problem& problem, const Solution& at) {
     if (out.names.empty()) out.names = states.names, out.states.resize(states.names.size());
     out.errors.emplace_back();
     for (auto& state : out.states) state.emplace_back();
-    const std::size_t stride = 1 + r.t_s.size() / kRowsPerTrial;
+    const std::size_t stride = 1 + r.t_s.size() / kDependence.rows_per_trial;
     for (std::size_t i = 0; i < r.t_s.size(); i += stride) {
       if (!(r.trusted[i] > 0.0)) continue;
       out.errors.back().push_back(r.channels[0][i]);
@@ -48,8 +46,8 @@ std::vector<double> quantiles(const std::vector<std::vector<double>>& trials) {
   std::ranges::sort(all);
   std::vector<double> out;
   if (all.empty()) return out;
-  for (int k = 0; k < kKnots; ++k) {
-    const double v = all[std::size_t(double(all.size() - 1) * k / (kKnots - 1))];
+  for (int k = 0; k < kDependence.knots; ++k) {
+    const double v = all[std::size_t(double(all.size() - 1) * k / (kDependence.knots - 1))];
     if (out.empty() || v > out.back()) out.push_back(v);
   }
   return out;
@@ -75,7 +73,7 @@ double predicted_share(const std::vector<std::vector<double>>& state,
   };
   double left = 0.0, all = 0.0;
   for (std::size_t half = 0; half < 2; ++half) {
-    Eigen::MatrixXd a = Eigen::MatrixXd::Identity(n, n) * kRidge;
+    Eigen::MatrixXd a = Eigen::MatrixXd::Identity(n, n) * kDependence.ridge;
     Eigen::VectorXd b = Eigen::VectorXd::Zero(n);
     for (std::size_t t = 0; t < errors.size(); ++t)
       for (std::size_t i = 0; i < errors[t].size(); ++i) {
@@ -117,9 +115,9 @@ ResidualDependence residual_dependence(const Residual& residual, const Solution&
     shares.emplace_back(predicted_share(all.states[s], all.errors), readable(all.names[s]));
   std::ranges::stable_sort(shares, std::greater<>(), &std::pair<double, std::string>::first);
   ResidualDependence out;
-  if (shares.size() > kNamed) shares.resize(kNamed);
+  if (shares.size() > kDependence.named) shares.resize(kDependence.named);
   for (const auto& [share, name] : shares) {
-    if (share < kWorthNaming) break;
+    if (share < kDependence.worth_naming) break;
     out.explained = std::max(out.explained, share);
     out.words += fmt::format("{}{} ({:.0f} %)", out.words.empty() ? "" : ", ", name, 100.0 * share);
   }

@@ -8,30 +8,13 @@
 
 #include "lab/identify/drift_on_motion.hpp"
 #include "lab/identify/fit_report.hpp"
+#include "lab/settings.hpp"
 
 namespace tractus {
 namespace lab {
 namespace {
 
-/// A further effect must lower the whitened mean square by so much, in units of chance: 2·nats per
-/// number added.
-constexpr double kClearLoss = 30.0;
-/// Singles that are grown into pairs, pairs into triples; effects tried on each.
-constexpr std::size_t kGrown = 4, kTriedOnEach = 6;
-constexpr int kTries = 2;
-/// So many of the best of a size are fitted to the end before they are compared.
-constexpr std::size_t kRefined = 3;
-/// Above this the best of a size is begun anew from other shapes, so many of each effect.
-constexpr double kReshaped = 0.9;
-constexpr int kReshapeTries = 8;
-/// Shifts of all layers that one constant of the sensor explains: so much is left of them, where
-/// there are two and where there are more; what counts as a shift.
-constexpr double kBackOfTwo = 0.05, kBack = 0.15, kShifted_m = 5e-5, kNoWorse = 1.1;
-
-/// The price of a number, in nats.
-constexpr double kPrice = 5.0;
-/// Below this a mean square says nothing more: the noise is known no better.
-constexpr double kLeastSquare = 0.02;
+constexpr const auto& kSelection = kSettings.selection;
 
 double numbers_beyond(const Residual& residual, const Solution& larger, const Solution& smaller) {
   const Problem& problem = residual.problem();
@@ -55,8 +38,9 @@ std::pair<double, double> mean_squares(const Solution& a, const Solution& b) {
 
 double cost(const Residual& residual, const Solution& s, const Solution& base) {
   return 0.5 * residual.problem().selection_thresholds().observations_per_trial *
-             double(residual.trials()) * std::log(std::max(kLeastSquare, s.mean_square())) +
-         0.5 * (s.prior - base.prior) + kPrice * numbers_beyond(residual, s, base);
+             double(residual.trials()) *
+             std::log(std::max(kSelection.least_mean_square, s.mean_square())) +
+         0.5 * (s.prior - base.prior) + kSelection.price_nats * numbers_beyond(residual, s, base);
 }
 
 std::string name(const Structure& structure) {
@@ -89,7 +73,7 @@ bool Selection::clearly_better(const Solution& larger, const Solution& smaller,
   const double numbers = std::max(1.0, numbers_beyond(residual_, larger, smaller));
   const double gained = double(residual_.size()) * (before - after) / std::max(1.0, after) +
                         smaller.prior - larger.prior;
-  return gained > kClearLoss * numbers &&
+  return gained > kSelection.clear_loss * numbers &&
          before - after > residual_.problem().selection_thresholds().least_gain_share * before &&
          before - after > share * excess(base().mean_square());
 }
@@ -132,13 +116,13 @@ void Selection::singles() {
     if (!options_.only.empty() && std::ranges::find(options_.only, id) == options_.only.end())
       continue;
     LinearScreen seen = linear_screen(residual_, base(), id);
-    if (seen.excited) tried_[id] = extend(residual_, base(), seen, id, kTries);
+    if (seen.excited) tried_[id] = extend(residual_, base(), seen, id, kSelection.tries);
     screens_[id] = std::move(seen);
   }
 }
 
 void Selection::refine(std::size_t effects) {
-  for (const Solution* s : best_of(effects, kRefined)) {
+  for (const Solution* s : best_of(effects, kSelection.refined)) {
     Solution& at = tried_[name(s->structure)];
     at = polish(residual_, search(residual_, at.structure, at.values, nullptr,
                                   {.max_iterations = 8, .tolerance = 1e-5}));
@@ -149,7 +133,7 @@ void Selection::refine(std::size_t effects) {
 /// anew from all shapes of each of its effects, if it is not at the floor.
 void Selection::reshape(std::size_t effects) {
   const auto best = best_of(effects, 1);
-  if (best.empty() || effects < 2 || best.front()->mean_square() < kReshaped) return;
+  if (best.empty() || effects < 2 || best.front()->mean_square() < kSelection.reshape_above) return;
   const Structure structure = best.front()->structure;
   for (const std::string& id : structure.effects) {
     const auto part = tried_.find(name(minus(structure, id)));
@@ -158,20 +142,20 @@ void Selection::reshape(std::size_t effects) {
     from = polish(residual_, search(residual_, from.structure, from.values, nullptr,
                                     {.max_iterations = 8, .tolerance = 1e-4}));
     differentiate(residual_, from);
-    fitted(from, id, kReshapeTries);
+    fitted(from, id, kSelection.reshape_tries);
   }
 }
 
 void Selection::grow() {
   refine(1);
-  const SelectionThresholds sharp = residual_.problem().selection_thresholds();
+  const SelectionThresholds& thresholds = residual_.problem().selection_thresholds();
   const auto first = best_of(1, 1);
-  if (base().mean_square() < sharp.stop_if_given_below && !first.empty() &&
+  if (base().mean_square() < thresholds.stop_if_given_below && !first.empty() &&
       !clearly_better(*first.front(), base()))
     return;
   for (int size = 1; size < options_.max_effects; ++size) {
-    const auto best = best_of(std::size_t(size), kGrown);
-    if (best.empty() || best.front()->mean_square() < sharp.stop_below) return;
+    const auto best = best_of(std::size_t(size), kSelection.grown);
+    if (best.empty() || best.front()->mean_square() < thresholds.stop_below) return;
     std::vector<std::pair<const Solution*, std::string>> todo;
     for (const Solution* from : best) {
       std::vector<std::pair<double, std::string>> gains;
@@ -185,9 +169,9 @@ void Selection::grow() {
         gains.emplace_back(now.starts.front().gain, id);
       }
       std::ranges::sort(gains, std::greater<>());
-      if (gains.size() > kTriedOnEach) gains.resize(kTriedOnEach);
+      if (gains.size() > kSelection.tried_on_each) gains.resize(kSelection.tried_on_each);
       for (const auto& [gain, id] : gains)
-        if (gain > kClearLoss) todo.emplace_back(&tried_[name(at.structure)], id);
+        if (gain > kSelection.clear_loss) todo.emplace_back(&tried_[name(at.structure)], id);
     }
     for (const auto& [from, id] : todo) {
       if (!go_on(0.6 + 0.15 * size)) return;
@@ -238,8 +222,8 @@ void Selection::prefer_parents() {
       if (!tried_.contains(name(less))) continue;
       Solution from = tried_.at(name(less));
       differentiate(residual_, from);
-      const Solution& simpler = fitted(from, parent, kTries);
-      if (!clearly_better(chosen(), simpler, kLeastGainOverParent))
+      const Solution& simpler = fitted(from, parent, kSelection.tries);
+      if (!clearly_better(chosen(), simpler, kSelection.least_gain_over_parent))
         chosen_ = name(simpler.structure);
     }
   }
@@ -288,13 +272,13 @@ void Selection::explain_shifts_by(const std::string& bias) {
   if (seen == screens_.end() || !seen->second.excited || contains(chosen().structure, bias)) return;
   int layers = 0;
   const double before_m = moved(chosen(), layers);
-  if (layers < 2 || before_m < kShifted_m) return;
+  if (layers < 2 || before_m < kSelection.shifted_m) return;
   Solution from = chosen();
   differentiate(residual_, from);
   const Solution& with = fitted(from, bias, 1);
   const double after_m = moved(with, layers);
-  if (after_m < (layers == 2 ? kBackOfTwo : kBack) * before_m &&
-      with.mean_square() < kNoWorse * from.mean_square())
+  if (after_m < (layers == 2 ? kSelection.restored_of_two : kSelection.restored) * before_m &&
+      with.mean_square() < kSelection.no_worse * from.mean_square())
     chosen_ = name(with.structure);
 }
 
@@ -311,7 +295,7 @@ bool Selection::run(const std::function<void()>& after_singles) {
   if (after_singles) after_singles();
   grow();
   if (stopped_) return false;
-  for (const Solution* pair : best_of(2, kRefined))
+  for (const Solution* pair : best_of(2, kSelection.refined))
     for (const std::string& id : pair->structure.effects)
       part(Solution(*pair), minus(pair->structure, id));
   refine(1);

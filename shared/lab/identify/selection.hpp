@@ -12,10 +12,6 @@
 
 namespace tractus::lab {
 
-/// A child that refines its parent's law need bring less than a further effect (see Sharpness):
-/// this share of what the given model left over the floor.
-inline constexpr double kLeastGainOverParent = 2e-4;
-
 /// Every structure that was fitted, kept by its name.
 class Selection {
  public:

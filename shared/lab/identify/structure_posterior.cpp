@@ -4,24 +4,13 @@
 #include <array>
 #include <cmath>
 
+#include "lab/settings.hpp"
+
 namespace tractus {
 namespace lab {
 namespace {
 
-/// Named at all: at most this share is left.
-constexpr double kMostLeft = 0.25;
-/// As good as the one chosen, for all purposes: within this factor of its excess.
-constexpr double kAsGood = 1.5;
-constexpr double kSettled = 0.95;
-/// That so many effects at the floor only imitate something else together: shares of wrong answers
-/// among those of the development seeds.
-constexpr std::array kImitated{0.01, 0.01, 0.04, 0.6};
-/// Where more is left than the floor: that what is missing is in no catalogue, and that the effects
-/// found only stand in for it.
-constexpr double kOutside = 0.9, kStandIn = 0.7;
-/// Odds (logarithm) of the one chosen against one that costs less but was refused: no clear gain,
-/// or a child that its parent does as well as.
-constexpr double kRefused = 1.4;
+constexpr const auto& kPosterior = kSettings.posterior;
 
 std::vector<std::string> only_in(const Structure& a, const Structure& b) {
   std::vector<std::string> out;
@@ -33,13 +22,13 @@ std::vector<std::string> only_in(const Structure& a, const Structure& b) {
 }  // namespace
 
 bool at_floor(const Problem& problem, double mean_square, double before) {
-  const SelectionThresholds sharp = problem.selection_thresholds();
-  return mean_square < sharp.at_floor ||
-         excess(mean_square) < sharp.least_excess_share * excess(before);
+  const SelectionThresholds& thresholds = problem.selection_thresholds();
+  return mean_square < thresholds.at_floor ||
+         excess(mean_square) < thresholds.least_excess_share * excess(before);
 }
 
 bool explains(double mean_square, double before) {
-  return excess(mean_square) < kMostLeft * excess(before);
+  return excess(mean_square) < kPosterior.most_left * excess(before);
 }
 
 StructurePosterior::StructurePosterior(const Residual& residual, const Selection& selection,
@@ -56,11 +45,12 @@ StructurePosterior::StructurePosterior(const Residual& residual, const Selection
   const double best = *std::ranges::max_element(scores);
   // Its rivals were refused for reasons of their own.
   for (std::size_t k = 0; k < scores.size(); ++k)
-    if (entries_[k].structure == chosen_) scores[k] = std::max(of_chosen, best + kRefused);
-  const std::size_t count = std::min(chosen_.effects.size(), kImitated.size() - 1);
-  outside_ = at_floor(residual.problem(), chosen.mean_square(), base) ? kImitated[count]
-             : chosen_.effects.empty()                                ? kOutside
-                                                                      : kStandIn;
+    if (entries_[k].structure == chosen_)
+      scores[k] = std::max(of_chosen, best + kPosterior.refused_log_odds);
+  const std::size_t count = std::min(chosen_.effects.size(), kPosterior.imitated.size() - 1);
+  outside_ = at_floor(residual.problem(), chosen.mean_square(), base) ? kPosterior.imitated[count]
+             : chosen_.effects.empty()                                ? kPosterior.outside
+                                                                      : kPosterior.stand_in;
   double sum = 0.0;
   for (const double s : scores) sum += std::exp(s - best);
   for (std::size_t k = 0; k < scores.size(); ++k)
@@ -90,24 +80,25 @@ std::vector<std::pair<std::string, std::string>> StructurePosterior::confounded(
     if (e.structure.effects.size() != chosen_.effects.size()) continue;
     const auto ours = only_in(chosen_, e.structure), theirs = only_in(e.structure, chosen_);
     if (ours.size() == 1 && theirs.size() == 1 &&
-        (e.mean_square < 1.15 * chosen || excess(e.mean_square) < kAsGood * excess(chosen)))
+        (e.mean_square < 1.15 * chosen ||
+         excess(e.mean_square) < kPosterior.as_good * excess(chosen)))
       out.emplace_back(theirs[0], ours[0]);
   }
   return out;
 }
 
 std::optional<DiscriminatingExperiment> StructurePosterior::discriminating_experiment(
-    const Problem& problem) const {
+    const ParameterSpace& space) const {
   const double now = of_structure(chosen_);
-  if (now > kSettled) return {};
+  if (now > kPosterior.settled) return {};
   for (const Entry& e : entries_) {
     if (e.structure == chosen_) continue;
     const auto ours = only_in(chosen_, e.structure), theirs = only_in(e.structure, chosen_);
     const std::string a = ours.empty() ? "" : ours[0], b = theirs.empty() ? "" : theirs[0];
     DiscriminatingExperiment out;
     out.between = {a.empty() ? "nothing" : a, b.empty() ? "nothing" : b};
-    out.recording = experiment_for(problem, a.empty() ? b : a, a.empty() ? "" : b);
-    out.expected_gain = std::clamp(kSettled - now, 0.0, 1.0);
+    out.recording = experiment_for(space, a.empty() ? b : a, a.empty() ? "" : b);
+    out.expected_gain = std::clamp(kPosterior.settled - now, 0.0, 1.0);
     return out;
   }
   return {};

@@ -30,7 +30,8 @@ class StructurePosterior {
   double of_effect(const std::string& id) const;
   /// Pairs of an effect named and one that does nearly as well in its place.
   std::vector<std::pair<std::string, std::string>> confounded() const;
-  std::optional<DiscriminatingExperiment> discriminating_experiment(const Problem& problem) const;
+  std::optional<DiscriminatingExperiment> discriminating_experiment(
+      const ParameterSpace& space) const;
 
  private:
   struct Entry {

@@ -11,6 +11,7 @@
 #include "effects/formula.hpp"
 #include "lab/identify/least_squares.hpp"
 #include "lab/identify/verdict_text.hpp"
+#include "lab/settings.hpp"
 
 namespace tractus {
 namespace lab {
@@ -21,10 +22,7 @@ using core::Error;
 using core::Result;
 using Values = std::vector<double>;
 
-constexpr double kAlike = 0.95;
-/// Less than this share of its response is its own: the base's numbers do the rest.
-constexpr double kLeastOwn = 0.02;
-constexpr double kNeutral = 1e-9;  // of the residual's own size
+constexpr const auto& kChecks = kSettings.user_effects;
 
 Values starts_of(const std::vector<Parameter>& parameters) {
   Values out;
@@ -55,7 +53,7 @@ Result<void> neutral(const Problem& problem, const Structure& with, const Values
     problem.residuals({}, std::span(off).first(base), k, without);
     problem.residuals(with, off, k, added);
     const double change = (added - without).cwiseAbs().maxCoeff();
-    if (!(change <= kNeutral * (1.0 + without.cwiseAbs().maxCoeff())))
+    if (!(change <= kChecks.neutral * (1.0 + without.cwiseAbs().maxCoeff())))
       return Error{Errc::bad_input,
                    "formula: it does not vanish where its parameters are off; write it as a "
                    "parameter times the rest"};
@@ -174,14 +172,14 @@ std::vector<std::string> likenesses(const Problem& problem, const std::vector<st
     double independent_share = 0.0;
     for (const Response& response : mine->second)
       independent_share = std::max(independent_share, response.independent_share);
-    if (independent_share < kLeastOwn)
+    if (independent_share < kChecks.least_own)
       out.push_back(
           fmt::format("{}: in these recordings the model's own numbers imitate all but "
                       "{:.2g} % of what it does",
                       id, 100.0 * independent_share));
     for (const auto& [other, responses] : all) {
       if (other == id) continue;
-      if (const double alike = likeness(mine->second, responses); alike > kAlike)
+      if (const double alike = likeness(mine->second, responses); alike > kChecks.alike)
         out.push_back(
             fmt::format("{} and {} do nearly the same in these recordings ({:.3f} alike "
                         "once the model's own numbers are fitted): they can be told "

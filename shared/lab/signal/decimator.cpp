@@ -5,14 +5,13 @@
 #include <numbers>
 
 #include "core/require.hpp"
+#include "lab/settings.hpp"
 
 namespace tractus {
 namespace lab {
 namespace {
 
-constexpr double kCutoff = 0.35;      // of the rate after thinning
-constexpr double kHalfPeriods = 2.2;  // of the rate after thinning, on each side
-constexpr double kWorthThinning = 1.5;
+constexpr const auto& kDecimation = kSettings.decimation;
 
 double blackman(double share) {  // share −1 … 1 of the half width
   const double a = std::numbers::pi * share;
@@ -23,16 +22,16 @@ double blackman(double share) {  // share −1 … 1 of the half width
 
 Decimator::Decimator(double spacing_s, double rate_Hz) {
   const double factor = 1.0 / (spacing_s * rate_Hz);
-  if (factor < kWorthThinning) {
+  if (factor < kDecimation.least_factor) {
     taps_ = {1.0};
     return;
   }
   stride_ = std::size_t(std::lround(factor));
-  const auto half = std::size_t(std::ceil(kHalfPeriods * double(stride_)));
+  const auto half = std::size_t(std::ceil(kDecimation.half_periods * double(stride_)));
   double sum = 0.0;
   for (std::size_t k = 0; k <= 2 * half; ++k) {
     const double at = double(k) - double(half);
-    const double phase = 2.0 * std::numbers::pi * kCutoff / double(stride_) * at;
+    const double phase = 2.0 * std::numbers::pi * kDecimation.cutoff / double(stride_) * at;
     taps_.push_back((at == 0.0 ? 1.0 : std::sin(phase) / phase) * blackman(at / double(half + 1)));
     sum += taps_.back();
   }

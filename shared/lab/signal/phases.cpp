@@ -4,12 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "lab/settings.hpp"
+
 namespace tractus {
 namespace lab {
 namespace {
 
-constexpr double kNearReversal_s = 0.1, kSlowShare = 1.0 / 30.0, kLeastSpeed = 2e-5;
-constexpr double kLeastForce_N = 0.05, kStill_m_s = 0.002;
+constexpr const auto& kPhases = kSettings.phases;
 enum Phase { hold, advance, retract, reversal, crossing_layer };
 enum Way { in, out, still };
 
@@ -28,7 +29,7 @@ Courses courses(std::span<const double> t_s, std::span<const double> velocity,
   const std::size_t n = t_s.size();
   Courses out{std::vector<float>(n), std::vector<float>(n), std::vector<float>(n)};
   if (n == 0) return out;
-  const double slow = std::max(kSlowShare * brisk(velocity), kLeastSpeed);
+  const double slow = std::max(kPhases.slow_share * brisk(velocity), kPhases.least_speed);
   std::vector<double> reversals_s;
   int last = 0;
   double since = t_s[0];
@@ -45,7 +46,8 @@ Courses courses(std::span<const double> t_s, std::span<const double> velocity,
     while (next + 1 < reversals_s.size() &&
            std::abs(reversals_s[next + 1] - t_s[k]) <= std::abs(reversals_s[next] - t_s[k]))
       ++next;
-    if (std::abs(reversals_s[next] - t_s[k]) <= kNearReversal_s) out.phase[k] = Phase::reversal;
+    if (std::abs(reversals_s[next] - t_s[k]) <= kPhases.near_reversal_s)
+      out.phase[k] = Phase::reversal;
   }
   for (std::size_t k = 0; k < crossing.size(); ++k)
     if (crossing[k] > 0.5) out.phase[k] = Phase::crossing_layer;
@@ -58,8 +60,8 @@ std::vector<float> palpation_phases(std::span<const double> force_N,
   enum { free, contact, sliding, pressing };
   std::vector<float> out(force_N.size());
   for (std::size_t k = 0; k < out.size(); ++k) {
-    const bool touching = force_N[k] >= std::max(kLeastForce_N, 4.0 * noise_N);
-    const bool still = speed_m_s[k] < kStill_m_s;
+    const bool touching = force_N[k] >= std::max(kPhases.least_force_N, 4.0 * noise_N);
+    const bool still = speed_m_s[k] < kPhases.still_m_s;
     const bool along = std::abs(along_m_s[k]) > std::sqrt(0.5) * speed_m_s[k];
     out[k] = float(!touching ? free : still ? contact : along ? pressing : sliding);
   }

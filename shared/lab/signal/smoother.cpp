@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/require.hpp"
+#include "lab/settings.hpp"
 
 namespace tractus {
 namespace lab {
@@ -152,14 +153,7 @@ void average(std::span<double> y, std::size_t reach, std::vector<double>& sums) 
   }
 }
 
-constexpr double kLowestCutoff_Hz = 0.8, kHighestCutoff_Hz = 200.0, kRatio = 1.35;
-/// Stretches over which a cut-off is judged: the shorter sees kinks, the longer (in periods of the
-/// cut-off) a steady bias.
-constexpr double kReach_s = 0.02, kReachSamples = 10.0, kReachPeriods = 0.5;
-/// A stretch that fits worse than this (in standard errors of its mean square) is too smooth.
-constexpr double kSignificant = 4.0;
-/// What a single stretch adds to the choice for the whole at most, in squares of the noise.
-constexpr double kMostMisfit = 1.5;
+constexpr const auto& kSmoothing = kSettings.smoothing;
 
 /// The bank of cut-offs tried on one stretch of signal.
 class Bank {
@@ -167,16 +161,18 @@ class Bank {
   Bank(Filter& filter, std::span<const double> variance, double spacing_s)
       : variance_(variance), size_(variance.size()), spacing_s_(spacing_s) {
     const std::size_t size = size_;
-    const double highest = std::min(kHighestCutoff_Hz, 0.2 / spacing_s);
+    const double highest = std::min(kSmoothing.highest_cutoff_Hz, 0.2 / spacing_s);
     std::vector<double> q(size), sums;
-    for (double f = std::min(kLowestCutoff_Hz, highest); f <= highest * 1.001; f *= kRatio) {
+    for (double f = std::min(kSmoothing.lowest_cutoff_Hz, highest); f <= highest * 1.001;
+         f *= kSmoothing.cutoff_ratio) {
       std::ranges::fill(q, intensity(f));
       filter.forward(q);
       std::vector<double> score(size);
       filter.leave_out(score);
       std::vector<double> longer = score;
       average(score, shorter(), sums);
-      average(longer, std::max(shorter(), std::size_t(kReachPeriods / (f * spacing_s))), sums);
+      average(longer, std::max(shorter(), std::size_t(kSmoothing.reach_periods / (f * spacing_s))),
+              sums);
       cutoff_Hz_.push_back(f);
       short_.push_back(std::move(score));
       long_.push_back(std::move(longer));
@@ -205,10 +201,11 @@ class Bank {
     return std::pow(2.0 * std::numbers::pi * cutoff_Hz * spacing_s_, 6);
   }
   std::size_t shorter() const {
-    return std::size_t(std::max(kReach_s / spacing_s_, kReachSamples));
+    return std::size_t(std::max(kSmoothing.reach_s / spacing_s_, kSmoothing.reach_samples));
   }
   std::size_t longer(std::size_t j) const {
-    return std::max(shorter(), std::size_t(kReachPeriods / (cutoff_Hz_[j] * spacing_s_)));
+    return std::max(shorter(),
+                    std::size_t(kSmoothing.reach_periods / (cutoff_Hz_[j] * spacing_s_)));
   }
 
   std::size_t best_for_all() const {
@@ -217,7 +214,7 @@ class Bank {
     for (std::size_t j = 0; j < cutoff_Hz_.size(); ++j) {
       double sum = 0.0;
       for (std::size_t k = 0; k < size_; ++k)
-        sum += std::min(long_[j][k], kMostMisfit) / variance_[k];
+        sum += std::min(long_[j][k], kSmoothing.greatest_misfit) / variance_[k];
       if (sum < least) least = sum, best = j;
     }
     return best;
@@ -225,7 +222,7 @@ class Bank {
 
   bool too_smooth(std::size_t j, std::size_t k) const {
     const auto over = [](double mean, std::size_t reach) {
-      return mean > 1.0 + kSignificant * std::sqrt(2.0 / double(2 * reach + 1));
+      return mean > 1.0 + kSmoothing.significant_errors * std::sqrt(2.0 / double(2 * reach + 1));
     };
     return over(short_[j][k], shorter()) || over(long_[j][k], longer(j));
   }
@@ -282,8 +279,6 @@ void smooth_stretch(std::span<const double> t_s, std::span<const double> y, doub
   });
 }
 
-constexpr std::size_t kStretch = 1u << 17, kOverlap = 1u << 11;
-
 }  // namespace
 
 double noise_sd(std::span<const double> y) {
@@ -328,12 +323,14 @@ Smoothed smooth(std::span<const double> t_s, std::span<const double> y, double n
     all->resize(n);
   for (std::size_t from = 0; from < n;) {
     // The overlap is smoothed by both stretches; the middle of it is where one takes over.
-    const std::size_t end = n - from <= kStretch + kOverlap ? n : from + kStretch;
+    const std::size_t end = n - from <= kSmoothing.stretch_samples + kSmoothing.overlap_samples
+                                ? n
+                                : from + kSmoothing.stretch_samples;
     smooth_stretch(t_s.subspan(from, end - from), y.subspan(from, end - from), noise_sd,
-                   std::span(variance).subspan(from, end - from), from == 0 ? 0 : kOverlap / 2,
-                   from, out);
+                   std::span(variance).subspan(from, end - from),
+                   from == 0 ? 0 : kSmoothing.overlap_samples / 2, from, out);
     if (end == n) break;
-    from = end - kOverlap;
+    from = end - kSmoothing.overlap_samples;
   }
   return out;
 }

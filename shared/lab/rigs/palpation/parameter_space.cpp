@@ -7,6 +7,7 @@
 
 #include "core/require.hpp"
 #include "effects/palpation_effect.hpp"
+#include "lab/settings.hpp"
 
 namespace tractus {
 namespace lab {
@@ -14,23 +15,14 @@ namespace {
 
 using laws::PalpationParameters;
 
-// How well the numbers of a model file are believed before the data speak. They decide only what a
-// recording leaves open: force_factor_Nm and the scales are felt in two products, modulus and
-// radius in one.
-constexpr double kFactorSd = 0.25;    // of the logarithm
-constexpr double kRadiusSd = 0.1;     // of the logarithm; it counts four times
-constexpr double kLengthSd_m = 5e-4;  // of what a ruler measures
-constexpr double kMostFactor = 20.0;  // a factor is found within this factor
-/// The step in a logarithm. Not too small: where a step takes a sample's shank from one rest to
-/// another, the derivative there is the jump over the step.
-constexpr double kLogarithmicStep = 2e-2;
+constexpr const auto& kPrior = kSettings.palpation_prior;
 
 Parameter factor(double start, double prior_sd) {
   Parameter p{};
   p.start = start;
-  p.low = start / kMostFactor;
-  p.high = start * kMostFactor;
-  p.step = kLogarithmicStep;
+  p.low = start / kPrior.most_factor;
+  p.high = start * kPrior.most_factor;
+  p.step = kPrior.logarithmic_step;
   p.logarithmic = true;
   p.prior_sd = prior_sd;
   return p;
@@ -42,7 +34,7 @@ Parameter length(double start, double low, double high) {
   p.low = low;
   p.high = high;
   p.step = 2e-5;
-  p.prior_sd = kLengthSd_m;
+  p.prior_sd = kPrior.length_sd_m;
   return p;
 }
 
@@ -76,19 +68,19 @@ PalpationParameterSpace::PalpationParameterSpace(models::PalpationModel model, d
     slots_.push_back({name, held, std::move(parameter)});
   };
   add("force_factor_Nm", &PalpationParameters::force_factor_Nm,
-      factor(p.force_factor_Nm, kFactorSd));
-  add("force_scale", &PalpationParameters::force_scale, factor(p.force_scale, kFactorSd));
-  add("torque_scale", &PalpationParameters::torque_scale, factor(p.torque_scale, kFactorSd));
+      factor(p.force_factor_Nm, kPrior.factor_sd));
+  add("force_scale", &PalpationParameters::force_scale, factor(p.force_scale, kPrior.factor_sd));
+  add("torque_scale", &PalpationParameters::torque_scale, factor(p.torque_scale, kPrior.factor_sd));
   if (p.points > 1)
     add("point_spacing_m", &PalpationParameters::point_spacing_m,
         length(p.point_spacing_m, 0.3 * p.point_spacing_m,
                std::min(3.0 * p.point_spacing_m, 0.95 * p.length_m / (p.points - 1))));
   add("youngs_modulus_Pa", &PalpationParameters::youngs_modulus_Pa,
-      factor(p.youngs_modulus_Pa, kFactorSd));
+      factor(p.youngs_modulus_Pa, kPrior.factor_sd));
   add("length_m", &PalpationParameters::length_m,
       length(p.length_m, std::max(0.8 * p.length_m, 1.01 * (p.points - 1) * p.point_spacing_m),
              1.2 * p.length_m));
-  add("radius_m", &PalpationParameters::radius_m, factor(p.radius_m, kRadiusSd));
+  add("radius_m", &PalpationParameters::radius_m, factor(p.radius_m, kPrior.radius_sd));
 }
 
 bool PalpationParameterSpace::fixed(const std::string& pointer) const {
@@ -114,7 +106,7 @@ std::vector<Parameter> PalpationParameterSpace::of_effect(const effects::EffectF
   auto out = parameters_of(facts);
   for (std::size_t k = 0; k < out.size(); ++k) {
     Parameter& p = out[k];
-    if (p.logarithmic) p.step = kLogarithmicStep;
+    if (p.logarithmic) p.step = kPrior.logarithmic_step;
     if (p.shape && !begin.empty()) p.start = std::clamp(begin.front()[k], p.low, p.high);
     if (info && info->replaces) {
       p.shape = false;

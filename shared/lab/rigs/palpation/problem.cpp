@@ -16,6 +16,7 @@
 #include "lab/rigs/palpation/recording.hpp"
 #include "lab/rigs/palpation/trend.hpp"
 #include "lab/rigs/palpation/weights.hpp"
+#include "lab/settings.hpp"
 
 namespace tractus {
 namespace lab {
@@ -26,11 +27,7 @@ using core::Error;
 using core::Result;
 using math::Vec3;
 
-constexpr int kRounds = 2;
-/// Samples prepared of all trials together, and moments that a fit compares of them, no more than
-/// so many a second.
-constexpr std::size_t kMostSamples = 400'000, kMostInstants = 4000;
-constexpr double kInstants_Hz = 100.0;
+constexpr const auto& kCompared = kSettings.palpation_fit;
 /// What a drift counts when structures are compared: the orders of one course, which the channels
 /// share as a rule, and more than the six numbers of a constant bias, which it contains.
 constexpr int kDriftCounts = 2 * Trend::kOrders;
@@ -61,7 +58,7 @@ class PalpationProblem final : public Problem {
   }
   effects::Starts starts(std::string_view effect, const Eigen::VectorXd& residual) const override {
     auto own = numbers_.starts(effect);
-    return own.empty() ? Problem::starts(effect, residual) : own;
+    return own.empty() ? ParameterSpace::starts(effect, residual) : own;
   }
   Eigen::Index residual_size(int k) const override {
     return 6 * Eigen::Index(trial(k).instants.size());
@@ -71,15 +68,8 @@ class PalpationProblem final : public Problem {
     whitened(structure, values, k, out);
     if (has_drift(structure)) trends_[std::size_t(k)].remove(out);
   }
-  SelectionThresholds selection_thresholds() const override {
-    return {.at_floor = 1.1,
-            .least_excess_share = 0.0,
-            .stop_below = 0.9,
-            .stop_if_given_below = 1.1,
-            .least_gain_share = 0.01,
-            .least_gain_of_excess = 0.0,
-            .observations_per_trial = 300.0,
-            .drift_r2_on_motion = 1.01};
+  const SelectionThresholds& selection_thresholds() const override {
+    return kSettings.palpation_thresholds;
   }
   bool differs_cheaply() const override { return true; }
   void residuals_near(const Structure& structure, std::span<const double> values,
@@ -224,7 +214,7 @@ void PalpationProblem::set_instants() {
     samples += r.size(), seconds += r.seconds();
     if (!r.note.empty()) notes_.push_back(r.note);
   }
-  const double wanted = std::min(double(kMostInstants), kInstants_Hz * seconds);
+  const double wanted = std::min(double(kCompared.most_instants), kCompared.instants_Hz * seconds);
   for (auto& r : trials_)
     choose_instants(r, std::max<std::size_t>(1, std::size_t(std::ceil(double(samples) / wanted))));
 }
@@ -386,7 +376,7 @@ Result<std::unique_ptr<Problem>> make_palpation_problem(const models::PalpationM
   parallel(int(set.trials.size()), options.threads, [&](int k) {
     auto& t = set.trials[std::size_t(k)];
     const std::string where = (set.folder / t.file).string();
-    auto ready = prepare(std::move(t), *down, where, kMostSamples / set.trials.size());
+    auto ready = prepare(std::move(t), *down, where, kCompared.most_samples / set.trials.size());
     if (ready)
       recordings[std::size_t(k)] = std::move(*ready);
     else
@@ -407,11 +397,11 @@ Result<std::unique_ptr<Problem>> make_palpation_problem(const models::PalpationM
                  fmt::format("{}: in no trial does the model's probe touch bone; are poses and "
                              "volume in the same frame, in metres?",
                              set.folder.string())};
-  for (int round = 0; round < kRounds && !values.empty(); ++round) {
+  for (int round = 0; round < kCompared.rounds && !values.empty(); ++round) {
     const Residual residual(*problem, options.threads);
     values = search(residual, {}, values).values;
     problem->focus(values, options.threads);
-    if (progress && !progress(0.6 + 0.4 * (round + 1) / kRounds))
+    if (progress && !progress(0.6 + 0.4 * (round + 1) / kCompared.rounds))
       return Error{Errc::cancelled, "stopped"};
   }
   return std::unique_ptr<Problem>(std::move(problem));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lab/settings.hpp"
 #include "lab/signal/smoother.hpp"
 
 namespace tractus {
@@ -17,10 +18,7 @@ using core::Result;
 using math::Vec3;
 
 constexpr const char* kChannels[] = {"fx_N", "fy_N", "fz_N", "tx_Nm", "ty_Nm", "tz_Nm"};
-constexpr std::size_t kFewestSamples = 60;
-constexpr double kSlowestRate_Hz = 40.0;
-/// Faster recordings are thinned to no more than this after smoothing.
-constexpr double kFastest_Hz = 250.0;
+constexpr const auto& kPrepared = kSettings.palpation_recording;
 /// The step that a channel's values were rounded to, 0 if they were not: all lie on a grid of it.
 double rounding_step(const std::vector<double>& y, double most) {
   double least = HUGE_VAL;
@@ -182,9 +180,9 @@ Result<PalpationRecording> prepare(trial::PalpationMeasurement&& trial, const Ve
                                    const std::string& where, std::size_t most_samples) {
   PalpationRecording out;
   const std::size_t recorded = trial.t_s.size();
-  if (recorded < kFewestSamples)
-    return wrong(where,
-                 fmt::format("{} samples, at least {} are expected", recorded, kFewestSamples));
+  if (recorded < kPrepared.fewest_samples)
+    return wrong(where, fmt::format("{} samples, at least {} are expected", recorded,
+                                    kPrepared.fewest_samples));
   if (recorded > most_samples) {
     cut(trial, most_samples);
     out.note = fmt::format(
@@ -194,11 +192,12 @@ Result<PalpationRecording> prepare(trial::PalpationMeasurement&& trial, const Ve
   }
   const std::size_t n = trial.t_s.size();
   const double spacing_s = (trial.t_s.back() - trial.t_s.front()) / double(n - 1);
-  if (spacing_s * kSlowestRate_Hz > 1.001)
+  if (spacing_s * kPrepared.slowest_rate_Hz > 1.001)
     return wrong(where, fmt::format("{:.3g} samples per second, at least {} are expected",
-                                    1.0 / spacing_s, kSlowestRate_Hz));
+                                    1.0 / spacing_s, kPrepared.slowest_rate_Hz));
   out.id = trial.id;
-  const auto stride = std::size_t(std::max(1.0, std::ceil(0.999 / (spacing_s * kFastest_Hz))));
+  const auto stride =
+      std::size_t(std::max(1.0, std::ceil(0.999 / (spacing_s * kPrepared.fastest_Hz))));
   smooth_poses(trial, down, stride, out);
   std::vector<double> column(n);
   for (int c = 0; c < 6; ++c) {

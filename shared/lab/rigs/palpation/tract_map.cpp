@@ -5,12 +5,13 @@
 #include <limits>
 #include <numbers>
 
+#include "lab/settings.hpp"
+
 namespace tractus {
 namespace lab {
 namespace {
 
-constexpr std::size_t kDepths = 12, kAngles = 16;
-constexpr double kLeastSamples = 5.0;
+constexpr const auto& kMap = kSettings.tract_map;
 
 struct Range {
   double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -38,12 +39,12 @@ std::optional<TractMap> tract_map(const Samples& samples) {
   const Range range = touched(samples, depth);
   if (!(range.high > range.low)) return std::nullopt;
   TractMap map;
-  for (std::size_t k = 0; k <= kDepths; ++k)
-    map.depth_m.push_back(range.low + (range.high - range.low) * double(k) / double(kDepths));
+  for (std::size_t k = 0; k <= kMap.depths; ++k)
+    map.depth_m.push_back(range.low + (range.high - range.low) * double(k) / double(kMap.depths));
   const double turn = 2.0 * std::numbers::pi;
-  for (std::size_t k = 0; k <= kAngles; ++k)
-    map.angle_rad.push_back(turn * double(k) / double(kAngles));
-  std::vector<double> squares(kDepths * kAngles, 0.0), counts(squares.size(), 0.0);
+  for (std::size_t k = 0; k <= kMap.angles; ++k)
+    map.angle_rad.push_back(turn * double(k) / double(kMap.angles));
+  std::vector<double> squares(kMap.depths * kMap.angles, 0.0), counts(squares.size(), 0.0);
   double all = 0.0;
   for (const TrialSamples& trial : samples.trials)
     for (std::size_t row = 0; row < trial.rows(); ++row) {
@@ -54,12 +55,12 @@ std::optional<TractMap> tract_map(const Samples& samples) {
       const auto bin = [](double share, std::size_t bins) {
         return std::min(bins - 1, std::size_t(share * double(bins)));
       };
-      const std::size_t cell = bin(d, kDepths) * kAngles + bin(a, kAngles);
+      const std::size_t cell = bin(d, kMap.depths) * kMap.angles + bin(a, kMap.angles);
       const double square = samples.squared(trial, row * trial.stride);
       squares[cell] += square, counts[cell] += 1.0, all += square;
     }
   for (std::size_t c = 0; c < squares.size(); ++c) {
-    const bool known = counts[c] >= kLeastSamples;
+    const bool known = counts[c] >= kMap.least_samples;
     map.rmse.push_back(known ? std::sqrt(squares[c] / counts[c])
                              : std::numeric_limits<double>::quiet_NaN());
     map.share.push_back(all > 0.0 ? squares[c] / all : 0.0);

@@ -5,31 +5,15 @@
 #include <array>
 #include <cmath>
 
+#include "lab/settings.hpp"
+
 namespace tractus {
 namespace lab {
 namespace {
 
 using math::Vec3;
 
-/// A sample whose expected error exceeds the sensor's by this factor is not trusted.
-constexpr double kPoorlyKnown = 10.0;
-constexpr double kContact_N = 0.05;
-/// A pressed point, and how many standard errors of its speed have a sign.
-constexpr double kPressed_N = 0.3, kSignErrors = 3.0;
-/// Friction and losses are thought of as this share of the contact force.
-constexpr double kRubbing = 0.1;
-/// A probe's inertia is thought of as that of this mass.
-constexpr double kMass_kg = 0.15;
-constexpr double kEdge_voxels = 2.0;
-/// The shank has snapped when the tip went by more than this beyond what the hand explains; the
-/// moment is known to this.
-constexpr double kSnapRatio = 2.0, kSnap_m = 3e-5;
-constexpr double kSnapKnown_s = 0.015;
-/// Rests nearer than this are one; what a change of rest must save, in squares of the usual error,
-/// of which a sample counts no more than so many.
-constexpr double kSameRest_m = 2e-6, kChange = 4.0, kMostMissed = 5.0;
-constexpr std::size_t kWays = 3;
-constexpr double kPlaceStep_m = 2e-6, kTurnStep_rad = 2e-5;
+constexpr const auto& kWeights = kSettings.palpation_weights;
 
 /// The motion moved as a whole: along axis 0 … 2 of V, or turned about axis 3 … 5 at the handle.
 models::PalpationMotion moved(const models::PalpationMotion& motion, int way, double step) {
@@ -54,7 +38,7 @@ std::vector<Mat6> motion_covariance(const models::PalpationRuntime& runtime,
   models::PalpationAnswer there;
   const auto every = r.all();
   for (int way = 0; way < 6; ++way) {
-    const double step = way < 3 ? kPlaceStep_m : kTurnStep_rad;
+    const double step = way < 3 ? kWeights.place_step_m : kWeights.turn_step_rad;
     models::FieldMemo memo;
     runtime.respond_at(moved(r.motion, way, step), every, at.deflection_m, there, memo);
     for (std::size_t k = 0; k < n; ++k) {
@@ -68,9 +52,9 @@ std::vector<Mat6> motion_covariance(const models::PalpationRuntime& runtime,
 
 /// The rests that the shank may have been in: those it comes to from before and from after, and the
 /// one near the bending that the measured force across the probe would make.
-std::array<models::PalpationAnswer, kWays> possible(const models::PalpationRuntime& runtime,
-                                                    const PalpationRecording& r) {
-  std::array<models::PalpationAnswer, kWays> out;
+std::array<models::PalpationAnswer, kWeights.candidates> possible(
+    const models::PalpationRuntime& runtime, const PalpationRecording& r) {
+  std::array<models::PalpationAnswer, kWeights.candidates> out;
   runtime.predict(r.motion, out[0]);
   runtime.predict(r.motion, out[1], true);
   std::vector<math::Vec2> bent;
@@ -82,9 +66,9 @@ std::array<models::PalpationAnswer, kWays> possible(const models::PalpationRunti
 }
 
 /// The course through the possible rests that the measured wrench tells of: the least sum of
-/// squared errors (no more than kMostMissed² of their usual size each) and of kChange per change of
-/// rest [Viterbi1967]. Where a bent shank can rest in several places, when it goes from one to
-/// another is decided by less than a model knows.
+/// squared errors (no more than kWeights.most_errors² of their usual size each) and of
+/// kWeights.change_cost per change of rest [Viterbi1967]. Where a bent shank can rest in several
+/// places, when it goes from one to another is decided by less than a model knows.
 class Course {
  public:
   Course(const models::PalpationRuntime& runtime, const PalpationRecording& r)
@@ -97,17 +81,17 @@ class Course {
   }
 
   models::PalpationAnswer best() const {
-    std::vector<std::array<std::size_t, kWays>> from(r_.size());
-    std::array<double, kWays> sum{};
+    std::vector<std::array<std::size_t, kWeights.candidates>> from(r_.size());
+    std::array<double, kWeights.candidates> sum{};
     for (std::size_t k = 0; k < r_.size(); ++k) {
-      std::array<double, kWays> next{};
-      for (std::size_t b = 0; b < kWays; ++b) {
+      std::array<double, kWeights.candidates> next{};
+      for (std::size_t b = 0; b < kWeights.candidates; ++b) {
         from[k][b] = b;
-        for (std::size_t a = 0; a < kWays && k > 0; ++a)
+        for (std::size_t a = 0; a < kWeights.candidates && k > 0; ++a)
           if (sum[a] + change(a, b, k - 1) < sum[from[k][b]] + change(from[k][b], b, k - 1))
             from[k][b] = a;
         next[b] = sum[from[k][b]] + (k > 0 ? change(from[k][b], b, k - 1) : 0.0) +
-                  std::min(squares(b, k) / usual_, kMostMissed * kMostMissed);
+                  std::min(squares(b, k) / usual_, kWeights.most_errors * kWeights.most_errors);
       }
       sum = next;
     }
@@ -129,13 +113,13 @@ class Course {
   }
   /// What it costs to go from one way at sample k to another at the next.
   double change(std::size_t from, std::size_t to, std::size_t k) const {
-    const bool same =
-        (ways_[from].deflection_m[k] - ways_[to].deflection_m[k]).norm() < kSameRest_m;
-    return from == to || same ? 0.0 : kChange;
+    const bool same = (ways_[from].deflection_m[k] - ways_[to].deflection_m[k]).norm() <
+                      kWeights.same_equilibrium_m;
+    return from == to || same ? 0.0 : kWeights.change_cost;
   }
 
   const PalpationRecording& r_;
-  std::array<models::PalpationAnswer, kWays> ways_;
+  std::array<models::PalpationAnswer, kWeights.candidates> ways_;
   double usual_;
 };
 
@@ -156,7 +140,8 @@ std::vector<std::size_t> snaps(const models::PalpationRuntime& runtime, const Pa
     const double by_hand = (unbent_tip(runtime, r.motion.handle[k]).p_m -
                             unbent_tip(runtime, r.motion.handle[k - 1]).p_m)
                                .norm();
-    if ((at.deflection_m[k] - at.deflection_m[k - 1]).norm() > kSnapRatio * by_hand + kSnap_m)
+    if ((at.deflection_m[k] - at.deflection_m[k - 1]).norm() >
+        kWeights.snap_ratio * by_hand + kWeights.snap_m)
       out.push_back(k);
   }
   return out;
@@ -164,7 +149,7 @@ std::vector<std::size_t> snaps(const models::PalpationRuntime& runtime, const Pa
 
 /// Samples before and after which a snap may have been.
 std::size_t snap_reach(const PalpationRecording& r) {
-  return 1 + std::size_t(kSnapKnown_s * double(r.size() - 1) / r.seconds());
+  return 1 + std::size_t(kWeights.snap_known_s * double(r.size() - 1) / r.seconds());
 }
 
 /// A contact point that bone pushes on.
@@ -201,9 +186,11 @@ std::vector<Pressed> pressed(const models::PalpationRuntime& runtime, const Palp
 /// Does a pressed point move so slowly along or across its force that the sign is not known?
 bool sign_unknown(const models::PalpationRuntime& runtime, const PalpationRecording& r,
                   const models::PalpationAnswer& at, std::size_t k) {
-  return std::ranges::any_of(pressed(runtime, r, at, k, kPressed_N), [](const Pressed& point) {
-    return std::min(point.along_m_s(), point.across_m_s()) < kSignErrors * point.sd_m_s;
-  });
+  return std::ranges::any_of(pressed(runtime, r, at, k, kWeights.pressed_N),
+                             [](const Pressed& point) {
+                               return std::min(point.along_m_s(), point.across_m_s()) <
+                                      kWeights.sign_errors * point.sd_m_s;
+                             });
 }
 
 /// From a force at a point of H to the wrench that is felt of it, the force as it is felt.
@@ -218,15 +205,15 @@ Eigen::Matrix<double, 6, 3> lever(const models::PalpationRuntime& runtime, const
 
 /// Covariance of a sample's wrench by what is not known of where its pressed points move: a force
 /// with the velocity's direction in it (friction across the wall's normal, a loss along it) of
-/// kRubbing of the contact force may point elsewhere.
+/// kWeights.loss_share of the contact force may point elsewhere.
 Mat6 by_direction(const models::PalpationRuntime& runtime, const PalpationRecording& r,
                   const models::PalpationAnswer& at, std::size_t k) {
   const math::Mat3 to_H = r.motion.handle[k].X_VH.q.conjugate().toRotationMatrix();
   Mat6 out = Mat6::Zero();
-  for (const Pressed& point : pressed(runtime, r, at, k, kContact_N)) {
+  for (const Pressed& point : pressed(runtime, r, at, k, kWeights.contact_N)) {
     const double turned = 1.0 / std::max(1.0, point.across_m_s() / point.sd_m_s);
     const double reversed = 2.0 * std::exp(-0.5 * std::pow(point.along_m_s() / point.sd_m_s, 2));
-    const double size = kRubbing * point.force_V_N.norm();
+    const double size = kWeights.loss_share * point.force_V_N.norm();
     const Vec3 n = to_H * point.normal();
     const math::Mat3 along = n * n.transpose();
     const math::Mat3 force =
@@ -237,8 +224,8 @@ Mat6 by_direction(const models::PalpationRuntime& runtime, const PalpationRecord
   return out;
 }
 
-/// What a sample's points feel within kEdge_voxels of the volume's edge or beyond it, N: nobody
-/// knows how bone goes on there.
+/// What a sample's points feel within kWeights.edge_voxels of the volume's edge or beyond it, N:
+/// nobody knows how bone goes on there.
 double at_the_edge_N(const models::PalpationRuntime& runtime, const PalpationRecording& r,
                      const models::PalpationAnswer& at, std::size_t k) {
   const laws::PalpationParameters& base = runtime.law().parameters();
@@ -251,8 +238,8 @@ double at_the_edge_N(const models::PalpationRuntime& runtime, const PalpationRec
     Vec3 inside = u;
     for (int a = 0; a < 3; ++a) {
       const double last = grid.dims[std::size_t(a)] - 1;
-      inside[a] = std::clamp(u[a], std::min(kEdge_voxels, 0.5 * last),
-                             std::max(last - kEdge_voxels, 0.5 * last));
+      inside[a] = std::clamp(u[a], std::min(kWeights.edge_voxels, 0.5 * last),
+                             std::max(last - kWeights.edge_voxels, 0.5 * last));
     }
     if (inside == u) continue;
     most_per_m = std::max({most_per_m, runtime.field().gradient_per_m(p).norm(),
@@ -267,11 +254,12 @@ void set_trust(const models::PalpationRuntime& runtime, PalpationRecording& r,
                const std::vector<std::size_t>& snapped) {
   const Vec6 sensor = r.sensor_squares();
   const double most_N = std::sqrt(sensor.head<3>().sum());
-  const double most = std::pow(kPoorlyKnown * most_N, 2);
+  const double most = std::pow(kWeights.poorly_known_factor * most_N, 2);
   for (std::size_t k = 0; k < r.size(); ++k)
     r.trusted[k] = at.converged[k] && by_motion[k].topLeftCorner<3, 3>().trace() <= most &&
                            at_the_edge_N(runtime, r, at, k) <= most_N &&
-                           kMass_kg * r.a_sd_m_s2[k] <= most_N && !sign_unknown(runtime, r, at, k)
+                           kWeights.mass_kg * r.a_sd_m_s2[k] <= most_N &&
+                           !sign_unknown(runtime, r, at, k)
                        ? 1.0
                        : 0.0;
   const std::size_t reach = snap_reach(r);
@@ -286,7 +274,7 @@ void set_trust(const models::PalpationRuntime& runtime, PalpationRecording& r,
       r.floor += sensor + Vec6(by_motion[k].diagonal());
       trusted += 1.0;
     }
-    if (at.wrench_H[k].force_N.norm() < kContact_N) continue;
+    if (at.wrench_H[k].force_N.norm() < kWeights.contact_N) continue;
     const Vec3 tip = runtime.tip_m(r.motion.handle[k].X_VH, at.deflection_m[k]);
     r.field_per_m.push_back(runtime.field().gradient_per_m(tip).norm());
   }
@@ -309,7 +297,7 @@ void weigh(const models::PalpationRuntime& runtime, PalpationRecording& r) {
     Mat6 known = by_motion[now];
     known.diagonal() += sensor;
     const double edge_N = at_the_edge_N(runtime, r, at, now);
-    const double unknown_N = std::hypot(kMass_kg * r.a_sd_m_s2[now], edge_N);
+    const double unknown_N = std::hypot(kWeights.mass_kg * r.a_sd_m_s2[now], edge_N);
     Mat6 expected = known + by_direction(runtime, r, at, now);
     const auto tip = lever(runtime, runtime.law().point_H_m(0, math::Vec2::Zero()));
     expected += unknown_N * unknown_N * tip * tip.transpose();

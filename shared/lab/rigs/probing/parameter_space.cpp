@@ -7,21 +7,13 @@
 
 #include "core/require.hpp"
 #include "effects/probing_effect.hpp"
+#include "lab/settings.hpp"
 
 namespace tractus {
 namespace lab {
 namespace {
 
-// How well the numbers of a model file are believed before the data speak. Wide against what a
-// recording tells, so that they decide only what it leaves open.
-constexpr double kFactorSd = 0.5;  // of the logarithm of a stiffness or damping
-constexpr double kPlaceSd_m = 5e-4;
-constexpr double kPlaceStep_m = 2e-5;
-constexpr double kRough_m = 4e-4;  // within which a border is also sought by trial
-constexpr double kNear_m = 1e-3;   // a border this near to the recording may be moved by it
-constexpr double kSameBorder_m = 1e-9;
-constexpr double kLeastLayer_m = 1e-4;
-constexpr double kMostFactor = 50.0;  // a stiffness or damping is found within this factor
+constexpr const auto& kPrior = kSettings.probing_prior;
 
 Parameter factor(double start, double low, double high) {
   Parameter p{};
@@ -30,7 +22,7 @@ Parameter factor(double start, double low, double high) {
   p.high = high;
   p.logarithmic = true;
   p.step = 1e-3;
-  p.prior_sd = kFactorSd;
+  p.prior_sd = kPrior.factor_sd;
   return p;
 }
 
@@ -113,39 +105,39 @@ void ProbingParameterSpace::add_layer(std::size_t k, const Reach& reach) {
   }
   if (layer.stiffness_N_per_m > 0.0)
     add(Kind::stiffness, k, "stiffness_N_per_m",
-        factor(layer.stiffness_N_per_m, layer.stiffness_N_per_m / kMostFactor,
-               std::min(2e5, layer.stiffness_N_per_m * kMostFactor)));
+        factor(layer.stiffness_N_per_m, layer.stiffness_N_per_m / kPrior.most_factor,
+               std::min(2e5, layer.stiffness_N_per_m * kPrior.most_factor)));
   add(Kind::damping, k, "damping_Ns_per_m",
-      factor(layer.damping_Ns_per_m, layer.damping_Ns_per_m / kMostFactor,
-             std::min(1e6, layer.damping_Ns_per_m * kMostFactor)));
+      factor(layer.damping_Ns_per_m, layer.damping_Ns_per_m / kPrior.most_factor,
+             std::min(1e6, layer.damping_Ns_per_m * kPrior.most_factor)));
   Parameter place{};
-  place.step = kPlaceStep_m;
-  place.prior_sd = kPlaceSd_m;
+  place.step = kPrior.place_step_m;
+  place.prior_sd = kPrior.place_sd_m;
   if (layer.stiffness_N_per_m > 0.0) {
     place.start = layer.equilibrium_m;
     place.low = layer.equilibrium_m - 0.1;
     place.high = layer.equilibrium_m + 0.1;
     add(Kind::equilibrium, k, "equilibrium_m", place);
   }
-  place.rough = kRough_m;
+  place.rough = kPrior.rough_m;
   const auto near = [&](double border_m) {
-    return border_m > reach.least_m - kNear_m && border_m < reach.most_m + kNear_m;
+    return border_m > reach.least_m - kPrior.near_m && border_m < reach.most_m + kPrior.near_m;
   };
   const double before_m =
       k == 0 ? 0.0 : model_.layers[k - 1].start_m + model_.layers[k - 1].thickness_m;
-  const bool joined = k > 0 && layer.start_m - before_m < kSameBorder_m;
+  const bool joined = k > 0 && layer.start_m - before_m < kPrior.same_border_m;
   if (near(layer.start_m) && reach.least_m < layer.start_m) {
     place.start = layer.start_m;
     // A border stays on its side of the middle of each of its layers, so that none passes another.
     place.low = joined ? model_.layers[k - 1].start_m +
-                             std::max(0.55 * model_.layers[k - 1].thickness_m, kLeastLayer_m)
+                             std::max(0.55 * model_.layers[k - 1].thickness_m, kPrior.least_layer_m)
                        : before_m;
     place.low = std::min(place.low, layer.start_m);
-    place.high = layer.start_m + std::max(0.0, 0.45 * layer.thickness_m - kLeastLayer_m);
+    place.high = layer.start_m + std::max(0.0, 0.45 * layer.thickness_m - kPrior.least_layer_m);
     if (place.high > place.low) add(Kind::start, k, "start_m", place);
   }
   const bool followed =
-      k + 1 < model_.layers.size() && model_.layers[k + 1].start_m - end_m < kSameBorder_m;
+      k + 1 < model_.layers.size() && model_.layers[k + 1].start_m - end_m < kPrior.same_border_m;
   if (!followed && near(end_m) && reach.most_m > end_m) {
     place.start = layer.thickness_m;
     place.low = 0.55 * layer.thickness_m;
@@ -212,7 +204,7 @@ models::ProbingModel ProbingParameterSpace::with(const Structure& structure,
         layer.start_m = v;
         if (slot.layer > 0) {
           const laws::Layer& before = model_.layers[slot.layer - 1];
-          if (was.start_m - before.start_m - before.thickness_m < kSameBorder_m)
+          if (was.start_m - before.start_m - before.thickness_m < kPrior.same_border_m)
             out.layers[slot.layer - 1].thickness_m = v - out.layers[slot.layer - 1].start_m;
         }
         break;

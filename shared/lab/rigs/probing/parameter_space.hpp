@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "lab/identify/problem.hpp"
+#include "lab/identify/parameter_space.hpp"
 #include "lab/identify/user_effects.hpp"
 #include "models/probing_model.hpp"
 

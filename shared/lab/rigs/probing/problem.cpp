@@ -12,6 +12,7 @@
 #include "lab/rigs/probing/parameter_space.hpp"
 #include "lab/rigs/probing/recording.hpp"
 #include "lab/rigs/probing/statistics.hpp"
+#include "lab/settings.hpp"
 #include "lab/signal/drift.hpp"
 #include "models/probing_runtime.hpp"
 
@@ -23,9 +24,7 @@ using core::Errc;
 using core::Error;
 using core::Result;
 
-constexpr double kTravel_m = 1.0;  // the longest a model may have: a recording says how far it went
-/// Samples of a set that are looked at: memory and time stay bounded, and more would tell no more.
-constexpr std::size_t kMostSamples = 600'000, kLeastKept = 200;
+constexpr const auto& kPrepared = kSettings.probing_recording;
 
 class ProbingProblem final : public Problem {
  public:
@@ -49,6 +48,9 @@ class ProbingProblem final : public Problem {
   }
   effects::Starts starts(std::string_view effect, const Eigen::VectorXd& residual) const override;
 
+  const SelectionThresholds& selection_thresholds() const override {
+    return kSettings.probing_thresholds;
+  }
   Eigen::Index residual_size(int k) const override {
     return Eigen::Index(trial(k).measured_thin.size());
   }
@@ -76,7 +78,7 @@ class ProbingProblem final : public Problem {
   /// Weighs the residuals anew with the borders and dampings that these values have.
   void focus(std::span<const double> values) {
     if (turns_) return;
-    const auto law = numbers_.with({}, values).law(kTravel_m);
+    const auto law = numbers_.with({}, values).law(kPrepared.longest_model_m);
     core::require(bool(law), "a fitted model runs");
     for (std::size_t k = 0; k < trials_.size(); ++k) {
       weigh(*law, trials_[k]);
@@ -102,7 +104,7 @@ class ProbingProblem final : public Problem {
   Predicted forces(const Structure& structure, std::span<const double> values,
                    const ProbingRecording& r) const {
     const models::ProbingModel model = numbers_.with(structure, values);
-    const auto runtime = models::ProbingRuntime::make(model, kTravel_m);
+    const auto runtime = models::ProbingRuntime::make(model, kPrepared.longest_model_m);
     core::require(bool(runtime), "values within their bounds make a model that runs");
     Predicted out;
     runtime->predict(r.motion, out.forces);
@@ -156,7 +158,7 @@ std::vector<double> ProbingProblem::dry_at_rest(const models::ProbingModel& mode
   for (const effects::EffectInstance& use : model.effects)
     if (numbers_.facts_of(use.id).is_dry) dry.effects.push_back(use);
   if (dry.effects.empty() || r.rest.empty()) return {};
-  const auto runtime = models::ProbingRuntime::make(dry, kTravel_m);
+  const auto runtime = models::ProbingRuntime::make(dry, kPrepared.longest_model_m);
   core::require(bool(runtime), "values within their bounds make a model that runs");
   effects::ProbingMotion back = r.at_rest;
   for (double& v : back.v_m_s) v = -v;
@@ -224,7 +226,7 @@ effects::Starts ProbingProblem::starts(std::string_view effect,
   const auto* info = effects::find_probing_effect(effect);
   effects::Starts found;
   if (info && info->starts) found = info->starts(statistics_of(trials_, residual));
-  return found.empty() ? Problem::starts(effect, residual) : found;
+  return found.empty() ? ParameterSpace::starts(effect, residual) : found;
 }
 
 Residuals ProbingProblem::full_rate(const Structure& structure, std::span<const double> values,
@@ -301,11 +303,11 @@ core::Json ProbingProblem::model(const Structure& structure, std::span<const dou
 std::string shorten(trial::ProbingSet& set) {
   std::size_t total = 0;
   for (const auto& t : set.trials) total += t.t_s.size();
-  if (total <= kMostSamples) return {};
-  const double share = double(kMostSamples) / double(total);
+  if (total <= kPrepared.most_samples) return {};
+  const double share = double(kPrepared.most_samples) / double(total);
   for (auto& t : set.trials) {
-    const auto kept =
-        std::min(t.t_s.size(), kLeastKept + std::size_t(share * double(t.t_s.size())));
+    const auto kept = std::min(
+        t.t_s.size(), kPrepared.least_kept_samples + std::size_t(share * double(t.t_s.size())));
     for (auto* all : {&t.t_s, &t.x_m, &t.theta_rad, &t.fz_N, &t.tz_Nm}) {
       if (all->empty()) continue;
       all->resize(kept);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "lab/settings.hpp"
 #include "lab/signal/smoother.hpp"
 
 namespace tractus {
@@ -16,20 +17,7 @@ using core::Errc;
 using core::Error;
 using core::Result;
 
-constexpr std::size_t kFewestSamples = 60;
-constexpr double kSlowestRate_Hz = 50.0;
-constexpr double kThinRate_Hz = 100.0;
-/// A sample counts as at rest below so many standard errors of its speed.
-constexpr double kRestErrors = 3.0;
-/// Round a border so much is not trusted at the full rate.
-constexpr double kBorder_s = 0.005;
-constexpr std::size_t kBorderSamples = 3;
-/// How well the place of a border can be told.
-constexpr double kOnBorder_m = 2e-6;
-/// Within this a probe stands; after so long it is looked at ever more rarely.
-constexpr double kSamePlace_m = 3e-5, kLongStand_s = 2.0;
-/// The motion is well known where its noise makes less than this share of the sensor's.
-constexpr double kWellKnown = 0.5, kLeastTrusted = 0.3;
+constexpr const auto& kPrepared = kSettings.probing_recording;
 
 /// The smallest difference of two neighbours that are not equal, if all others are multiples of it;
 /// else 0: how coarsely a channel was written down.
@@ -107,7 +95,7 @@ void prepare_turning(trial::ProbingMeasurement& trial, const trial::StatedNoise&
     motion.theta_rad = std::move(theta.value);
     motion.omega_rad_s = std::move(theta.rate);
     out.omega_sd_rad_s = std::move(theta.rate_sd);
-    motion.rest_rad_s = kRestErrors * middle_of(out.omega_sd_rad_s);
+    motion.rest_rad_s = kPrepared.rest_errors * middle_of(out.omega_sd_rad_s);
   }
   motion.tz_Nm = std::move(trial.tz_Nm);
 }
@@ -129,7 +117,7 @@ void prepare_sliding(trial::ProbingMeasurement& trial, const trial::StatedNoise&
   out.x_sd_m = std::move(x.value_sd);
   for (double& sd : out.x_sd_m) sd = std::hypot(sd, noise.correlated);
   out.v_sd_m_s = std::move(x.rate_sd);
-  motion.rest_m_s = kRestErrors * middle_of(out.v_sd_m_s);
+  motion.rest_m_s = kPrepared.rest_errors * middle_of(out.v_sd_m_s);
 }
 
 /// Outputs that say something new: while the probe stands, the longer it stands the rarer, as what
@@ -140,11 +128,12 @@ std::vector<std::size_t> informative(const ProbingRecording& r) {
   double place_m = m.x_m.front(), since_s = m.t_s.front(), next_s = since_s;
   for (std::size_t j = 0; j < r.decimator.size(r.size()); ++j) {
     const std::size_t k = r.decimator.middle(j);
-    if (std::abs(m.x_m[k] - place_m) > kSamePlace_m) place_m = m.x_m[k], since_s = m.t_s[k];
+    if (std::abs(m.x_m[k] - place_m) > kPrepared.same_place_m)
+      place_m = m.x_m[k], since_s = m.t_s[k];
     const double stood_s = m.t_s[k] - since_s;
-    if (stood_s > kLongStand_s && m.t_s[k] < next_s) continue;
+    if (stood_s > kPrepared.long_stand_s && m.t_s[k] < next_s) continue;
     out.push_back(j);
-    next_s = m.t_s[k] + stood_s / (kLongStand_s * kThinRate_Hz);
+    next_s = m.t_s[k] + stood_s / (kPrepared.long_stand_s * kPrepared.thin_rate_Hz);
   }
   return out;
 }
@@ -155,7 +144,7 @@ void find_rest(ProbingRecording& r) {
   effects::ProbingMotion& out = r.at_rest;
   out.rest_m_s = 0.0;
   for (std::size_t k = 0; k < r.size(); ++k) {
-    const double told_m_s = std::max(2.0 * m.rest_m_s, kRestErrors * r.v_sd_m_s[k]);
+    const double told_m_s = std::max(2.0 * m.rest_m_s, kPrepared.rest_errors * r.v_sd_m_s[k]);
     if (std::abs(m.v_m_s[k]) >= told_m_s) continue;
     r.rest.push_back(k);
     out.t_s.push_back(m.t_s[k]);
@@ -171,7 +160,8 @@ void find_turning_rest(ProbingRecording& r) {
   effects::ProbingMotion& out = r.at_rest;
   out.rest_rad_s = 0.0;
   for (std::size_t k = 0; k < r.size(); ++k) {
-    const double told_rad_s = std::max(2.0 * m.rest_rad_s, kRestErrors * r.omega_sd_rad_s[k]);
+    const double told_rad_s =
+        std::max(2.0 * m.rest_rad_s, kPrepared.rest_errors * r.omega_sd_rad_s[k]);
     if (std::abs(m.omega_rad_s[k]) >= told_rad_s) continue;
     r.rest.push_back(k);
     out.t_s.push_back(m.t_s[k]);
@@ -215,12 +205,13 @@ Result<ProbingRecording> prepare(trial::ProbingMeasurement&& trial,
                                  const trial::StatedNoise& stated, bool turns,
                                  const std::string& where) {
   const std::size_t n = trial.t_s.size();
-  if (n < kFewestSamples)
-    return wrong(where, fmt::format("{} samples, at least {} are expected", n, kFewestSamples));
+  if (n < kPrepared.fewest_samples)
+    return wrong(where,
+                 fmt::format("{} samples, at least {} are expected", n, kPrepared.fewest_samples));
   const double spacing_s = (trial.t_s.back() - trial.t_s.front()) / double(n - 1);
-  if (spacing_s * kSlowestRate_Hz > 1.001)
+  if (spacing_s * kPrepared.slowest_rate_Hz > 1.001)
     return wrong(where, fmt::format("{:.3g} samples per second, at least {} are expected",
-                                    1.0 / spacing_s, kSlowestRate_Hz));
+                                    1.0 / spacing_s, kPrepared.slowest_rate_Hz));
   ProbingRecording out;
   out.id = trial.id;
   out.motion.t_s = std::move(trial.t_s);
@@ -229,7 +220,7 @@ Result<ProbingRecording> prepare(trial::ProbingMeasurement&& trial,
   if (!turns) out.other = trial.tz_Nm;
   const Noise noise = noise_of(out.measured, turns ? stated.tz_Nm : stated.fz_N);
   out.noise_sd = noise.sd;
-  out.decimator = Decimator(spacing_s, kThinRate_Hz);
+  out.decimator = Decimator(spacing_s, kPrepared.thin_rate_Hz);
   out.slow_noise_sd =
       std::hypot(noise.sd * std::sqrt(out.decimator.noise_gain()) *
                      (out.decimator.stride() > 1 ? colour(out.measured, noise.sd) : 1.0),
@@ -264,19 +255,21 @@ void weigh(const laws::ProbingLaw& law, ProbingRecording& r) {
   }
   const auto found = jumps(law, r);
   r.trusted.assign(n, 1.0);
-  const auto reach =
-      std::max(kBorderSamples, std::size_t(kBorder_s / (r.seconds() / double(n - 1))));
+  const auto reach = std::max(kPrepared.border_samples,
+                              std::size_t(kPrepared.border_s / (r.seconds() / double(n - 1))));
   // What the motion's noise makes of the force must stay well under the sensor's own noise, at the
   // least in the better half of the samples.
   std::vector<double> ordered = motion_variance;
-  const auto half_way = ordered.begin() + std::ptrdiff_t(kLeastTrusted * double(n));
+  const auto half_way = ordered.begin() + std::ptrdiff_t(kPrepared.least_trusted_share * double(n));
   std::ranges::nth_element(ordered, half_way);
-  const double most = std::max(*half_way, kWellKnown * kWellKnown * r.noise_sd * r.noise_sd);
+  const double most = std::max(
+      *half_way, kPrepared.well_known_share * kPrepared.well_known_share * r.noise_sd * r.noise_sd);
   for (std::size_t k = 0; k < n; ++k)
     if (motion_variance[k] > most) r.trusted[k] = 0.0;
   for (const double border : borders_of(law))
     for (std::size_t k = 0; k < n; ++k)  // on which side is nobody's to tell
-      if (std::abs(m.x_m[k] - border) < kOnBorder_m + 3.0 * r.x_sd_m[k]) r.trusted[k] = 0.0;
+      if (std::abs(m.x_m[k] - border) < kPrepared.on_border_m + 3.0 * r.x_sd_m[k])
+        r.trusted[k] = 0.0;
   for (const Jump& jump : found)
     for (std::size_t k = jump.sample < reach ? 0 : jump.sample - reach;
          k < std::min(n, jump.sample + reach); ++k)

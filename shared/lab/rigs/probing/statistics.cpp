@@ -3,26 +3,26 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lab/settings.hpp"
+
 namespace tractus {
 namespace lab {
 namespace {
 
-constexpr std::size_t kEvery = 7;         // sample: neighbours move alike
-constexpr double kNeverMoved_m_s = 1e-3;  // stands in for a speed of recordings that rest
-constexpr double kSlowShare = 0.02, kFastShare = 0.9;
+constexpr const auto& kStatistics = kSettings.probing_statistics;
 
 /// Speeds of the moving samples.
 std::vector<double> speeds(std::span<const ProbingRecording> trials) {
   std::vector<double> out;
   for (const auto& r : trials)
-    for (std::size_t k = 0; k < r.size(); k += kEvery)
+    for (std::size_t k = 0; k < r.size(); k += kStatistics.every_samples)
       if (const double v = std::abs(r.motion.v_m_s[k]); v > r.motion.rest_m_s) out.push_back(v);
   return out;
 }
 
 /// The speed that a share of them stays under.
 double speed(std::vector<double>& all, double share) {
-  if (all.empty()) return kNeverMoved_m_s;
+  if (all.empty()) return kStatistics.never_moved_m_s;
   const auto at = all.begin() + std::ptrdiff_t(share * double(all.size() - 1));
   std::ranges::nth_element(all, at);
   return *at;
@@ -44,8 +44,8 @@ effects::ProbingStatistics statistics_of(std::span<const ProbingRecording> trial
                                          const Eigen::VectorXd& residual) {
   effects::ProbingStatistics out;
   std::vector<double> moving = speeds(trials);
-  out.slow_m_s = speed(moving, kSlowShare);
-  out.fast_m_s = speed(moving, kFastShare);
+  out.slow_m_s = speed(moving, kStatistics.slow_quantile);
+  out.fast_m_s = speed(moving, kStatistics.fast_quantile);
   out.depth_range_m = depth_range(trials);
   for (const auto& r : trials) {
     out.longest_s = std::max(out.longest_s, r.seconds());

@@ -1,4 +1,5 @@
-#include "lab/identify/problem.hpp"
+#include "lab/identify/parameter_space.hpp"
+#include "lab/settings.hpp"
 
 #include <fmt/format.h>
 
@@ -9,17 +10,15 @@ namespace tractus {
 namespace lab {
 namespace {
 
-constexpr int kNodesLogarithmic = 8, kNodesLinear = 4;
-constexpr std::size_t kMostStarts = 64;
-constexpr double kStep = 0.01;  // of the initial value, or of the logarithm
+constexpr const auto& kStarts = kSettings.starts;
 
 double node(const effects::Param& p, int k) {
-  if (p.logarithmic) return p.low * std::pow(p.high / p.low, (k + 0.5) / double(kNodesLogarithmic));
-  return p.low + (p.high - p.low) * (k + 0.5) / double(kNodesLinear);
+  if (p.logarithmic) return p.low * std::pow(p.high / p.low, (k + 0.5) / double(kStarts.nodes_logarithmic));
+  return p.low + (p.high - p.low) * (k + 0.5) / double(kStarts.nodes_linear);
 }
 
-const effects::EffectFacts* facts_of(const Problem& problem, std::string_view effect) {
-  for (const Candidate& candidate : problem.candidates())
+const effects::EffectFacts* facts_of(const ParameterSpace& space, std::string_view effect) {
+  for (const Candidate& candidate : space.candidates())
     if (candidate.facts.id == effect) return &candidate.facts;
   return nullptr;
 }
@@ -32,7 +31,7 @@ effects::Starts longer(const effects::Starts& starts, const std::vector<double>&
       out.push_back(start);
       out.back().push_back(value);
     }
-  if (out.size() > kMostStarts) out.resize(kMostStarts);
+  if (out.size() > kStarts.most_starts) out.resize(kStarts.most_starts);
   return out;
 }
 
@@ -42,7 +41,7 @@ effects::Starts grid(const effects::EffectFacts& facts) {
   if (facts.free_per_trial) return out;
   for (const effects::Param& p : facts.params) {
     std::vector<double> values;
-    const int nodes = !std::isnan(p.off) ? 1 : p.logarithmic ? kNodesLogarithmic : kNodesLinear;
+    const int nodes = !std::isnan(p.off) ? 1 : p.logarithmic ? kStarts.nodes_logarithmic : kStarts.nodes_linear;
     for (int k = 0; k < nodes; ++k) values.push_back(nodes == 1 ? p.initial : node(p, k));
     for (int c = 0; c < p.components; ++c) out = longer(out, values);
   }
@@ -51,8 +50,8 @@ effects::Starts grid(const effects::EffectFacts& facts) {
 
 double step_of(const effects::Param& p, bool logarithmic) {
   if (p.step > 0.0) return p.step;
-  if (logarithmic) return kStep;
-  return p.initial != 0.0 ? kStep * std::abs(p.initial) : 0.1 * kStep * (p.high - p.low);
+  if (logarithmic) return kStarts.step;
+  return p.initial != 0.0 ? kStarts.step * std::abs(p.initial) : 0.1 * kStarts.step * (p.high - p.low);
 }
 
 }  // namespace
@@ -78,22 +77,15 @@ std::vector<Parameter> parameters_of(const effects::EffectFacts& facts) {
   return out;
 }
 
-void Problem::residuals_near(const Structure& structure, std::span<const double>,
-                             const std::vector<std::vector<double>>& points, int trial,
-                             Eigen::Ref<Eigen::MatrixXd> out) const {
-  for (std::size_t k = 0; k < points.size(); ++k)
-    residuals(structure, points[k], trial, out.col(Eigen::Index(k)));
-}
-
-effects::Starts Problem::starts(std::string_view effect, const Eigen::VectorXd&) const {
+effects::Starts ParameterSpace::starts(std::string_view effect, const Eigen::VectorXd&) const {
   const auto* facts = facts_of(*this, effect);
   if (!facts) return {};
   return facts->starts.empty() ? grid(*facts) : facts->starts;
 }
 
-std::string experiment_for(const Problem& problem, std::string_view a, std::string_view b) {
-  const auto* first = facts_of(problem, a);
-  const auto* second = facts_of(problem, b);
+std::string experiment_for(const ParameterSpace& space, std::string_view a, std::string_view b) {
+  const auto* first = facts_of(space, a);
+  const auto* second = facts_of(space, b);
   if (!first) return second ? second->experiment : "";
   if (!second || second->experiment == first->experiment) return first->experiment;
   return first->experiment + "; then " + second->experiment;

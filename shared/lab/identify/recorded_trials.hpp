@@ -1,0 +1,40 @@
+/// What was recorded, as the engine sees it: trials, channels, states.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tractus::lab {
+
+/// One channel that is compared.
+struct Channel {
+  std::string name;        ///< "fz_N"; palpation's primary "force_N", the norm of the force's error
+  double noise_floor = 0;  ///< rmse that a true model would have: the channel's own noise with the
+                           ///< motion's noise as it passes through the base model
+};
+
+/// Named states of one trial at the full rate ("depth_m", "speed_m_s", …), for finding where an
+/// error sits and on what it depends: [state][sample], one sample per Residuals::t_s.
+struct States {
+  std::vector<std::string> names;
+  std::vector<std::vector<double>> values;
+};
+
+/// Const methods may be called from several threads at once.
+class RecordedTrials {
+ public:
+  virtual ~RecordedTrials() = default;
+
+  virtual std::string_view rig() const = 0;
+  virtual int trials() const = 0;
+  virtual std::string trial_id(int trial) const = 0;
+  virtual double seconds(int trial) const = 0;
+  /// What was compared; the first is the primary.
+  virtual const std::vector<Channel>& channels() const = 0;
+  virtual States states(int trial) const = 0;
+  /// Remarks on the recording itself that belong into every answer: "tz_Nm was not recorded: …".
+  virtual const std::vector<std::string>& notes() const = 0;
+};
+
+}  // namespace tractus::lab

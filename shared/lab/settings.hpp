@@ -1,0 +1,466 @@
+/// All numbers of the lab that are neither data nor physics, in one place. The last word of each
+/// comment says how the number was set:
+///   derived   follows from the formula that is given
+///   numeric   keeps a numerical method well behaved
+///   bound     bounds memory, time or the length of an answer
+///   physical  an estimate of the apparatus or of a hand
+///   prior     what is believed before the data speak, wide against what a recording tells
+///   tuned     chosen on simulated development sets (tests/blind), not derived
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+namespace tractus::lab {
+
+/// Cut-off frequencies that the smoother tries for a motion, and how it judges them.
+struct SmoothingSettings {
+  /// The lowest cut-off that is tried. Tuned.
+  double lowest_cutoff_Hz = 0.8;
+  /// The highest; hands and drives move below it. Physical.
+  double highest_cutoff_Hz = 200.0;
+  /// From one cut-off to the next. Numeric.
+  double cutoff_ratio = 1.35;
+  /// A cut-off is judged over stretches of at least this length: the shorter sees kinks. Tuned.
+  double reach_s = 0.02;
+  /// And of at least so many samples. Tuned.
+  double reach_samples = 10.0;
+  /// The longer stretch, in periods of the cut-off: it sees a steady bias. Tuned.
+  double reach_periods = 0.5;
+  /// A stretch whose mean square exceeds its expected value by more than so many standard errors is
+  /// too smooth. Tuned.
+  double significant_errors = 4.0;
+  /// What a single stretch adds to the choice for the whole at most, in squares of the noise.
+  /// Tuned.
+  double greatest_misfit = 1.5;
+  /// Long recordings are smoothed in stretches of so many samples. Bound.
+  std::size_t stretch_samples = 1u << 17;
+  /// By which neighbouring stretches overlap. Bound.
+  std::size_t overlap_samples = 1u << 11;
+};
+
+/// Phases of a recording.
+struct PhasesSettings {
+  /// A sample this near to a reversal belongs to it. Tuned.
+  double near_reversal_s = 0.1;
+  /// Slower than this share of the brisk speed counts as holding. Tuned.
+  double slow_share = 1.0 / 30.0;
+  /// And slower than this, m/s or rad/s. Physical.
+  double least_speed = 2e-5;
+  /// Palpation: less is no contact. Physical.
+  double least_force_N = 0.05;
+  /// Palpation: a slower tip is still. Physical.
+  double still_m_s = 0.002;
+};
+
+/// The low-pass filter before thinning.
+struct DecimationSettings {
+  /// Cut-off, as a share of the rate after thinning. Numeric.
+  double cutoff = 0.35;
+  /// Half the filter's length, in periods of the rate after thinning. Numeric.
+  double half_periods = 2.2;
+  /// A recording that is faster than needed by less than this is not thinned. Bound.
+  double least_factor = 1.5;
+};
+
+/// How a probing is prepared.
+struct ProbingRecordingSettings {
+  /// A shorter recording is refused. Tuned.
+  std::size_t fewest_samples = 60;
+  /// A slower recording is refused. Tuned.
+  double slowest_rate_Hz = 50.0;
+  /// The rate at which residuals are compared: neighbours are nearly independent. Tuned.
+  double thin_rate_Hz = 100.0;
+  /// A sample is at rest below so many standard errors of its speed. Tuned.
+  double rest_errors = 3.0;
+  /// Time round a layer's border that is not judged at the full rate. Tuned.
+  double border_s = 0.005;
+  /// Or so many samples, if that is longer. Tuned.
+  std::size_t border_samples = 3;
+  /// A sample this near to a border may lie on either side. Physical.
+  double on_border_m = 2e-6;
+  /// A probe that stays within this stands. Tuned.
+  double same_place_m = 3e-5;
+  /// After standing so long it is looked at ever more rarely. Tuned.
+  double long_stand_s = 2.0;
+  /// The motion is well known where its noise makes less than this share of the sensor's. Tuned.
+  double well_known_share = 0.5;
+  /// At least this share of the samples, the best known ones, is judged. Tuned.
+  double least_trusted_share = 0.3;
+  /// The longest a model may be: the recording itself says how far it went. Bound.
+  double longest_model_m = 1.0;
+  /// Samples of a set that are used. Bound.
+  std::size_t most_samples = 600'000;
+  /// Samples that each trial of a thinned set keeps at least. Bound.
+  std::size_t least_kept_samples = 200;
+};
+
+/// Speeds and places that an effect's start values depend on.
+struct ProbingStatisticsSettings {
+  /// One sample of so many is read: neighbours move alike. Bound.
+  std::size_t every_samples = 7;
+  /// Stands for the speed of a recording that only rests. Numeric.
+  double never_moved_m_s = 1e-3;
+  /// The quantile of the speeds that counts as slow. Tuned.
+  double slow_quantile = 0.02;
+  /// And as fast. Tuned.
+  double fast_quantile = 0.9;
+};
+
+/// How well a probing model's numbers are believed before the data speak, and how far they may
+/// move.
+struct ProbingPriorSettings {
+  /// Of the logarithm of a stiffness or damping. Prior.
+  double factor_sd = 0.5;
+  /// Of the place of a border or of rest. Prior.
+  double place_sd_m = 5e-4;
+  /// Step of finite differences in a place. Numeric.
+  double place_step_m = 2e-5;
+  /// A border is also sought by trial within this: the loss is rough in it. Tuned.
+  double rough_m = 4e-4;
+  /// A border this near to the recorded depths may be moved by the fit. Tuned.
+  double near_m = 1e-3;
+  /// Borders nearer than this are one. Numeric.
+  double same_border_m = 1e-9;
+  /// The thinnest layer that a fit may leave. Physical.
+  double least_layer_m = 1e-4;
+  /// A stiffness or damping is sought within this factor of its start. Prior.
+  double most_factor = 50.0;
+};
+
+/// How a palpation is prepared.
+struct PalpationRecordingSettings {
+  /// A shorter recording is refused. Tuned.
+  std::size_t fewest_samples = 60;
+  /// A slower recording is refused. Tuned.
+  double slowest_rate_Hz = 40.0;
+  /// A faster recording is thinned to this after smoothing. Bound.
+  double fastest_Hz = 250.0;
+};
+
+/// What a fit of palpations compares.
+struct PalpationFitSettings {
+  /// Equilibria are assigned to the samples and the model fitted so many times in turn. Tuned.
+  int rounds = 2;
+  /// Samples prepared of all trials together. Bound.
+  std::size_t most_samples = 400'000;
+  /// Moments compared of all trials together. Bound.
+  std::size_t most_instants = 4000;
+  /// And no more than so many a second of a trial. Bound.
+  double instants_Hz = 100.0;
+};
+
+/// How the motion's errors weigh on a palpation's samples, and which equilibrium the shank was in.
+struct PalpationWeightsSettings {
+  /// A sample whose expected error exceeds the sensor's by this factor is not judged. Tuned.
+  double poorly_known_factor = 10.0;
+  /// Less force at a point is no contact. Physical.
+  double contact_N = 0.05;
+  /// A point under more force is pressed: its speed must have a sign. Tuned.
+  double pressed_N = 0.3;
+  /// A speed above so many of its standard errors has a sign. Tuned.
+  double sign_errors = 3.0;
+  /// Friction and losses are assumed to be this share of the contact force. Prior.
+  double loss_share = 0.1;
+  /// The mass with which a probe's inertia is assumed to act. Physical.
+  double mass_kg = 0.15;
+  /// What is felt so near to the volume's edge is not known. Physical.
+  double edge_voxels = 2.0;
+  /// The shank has snapped if its deflection changed by more than this times what the hand moved.
+  /// Tuned.
+  double snap_ratio = 2.0;
+  /// Plus this. Tuned.
+  double snap_m = 3e-5;
+  /// The moment of a snap is known within this. Tuned.
+  double snap_known_s = 0.015;
+  /// Equilibria nearer than this are one. Numeric.
+  double same_equilibrium_m = 2e-6;
+  /// What a change of equilibrium must save, in squares of the usual error. Tuned.
+  double change_cost = 4.0;
+  /// A sample counts at most as so many usual errors. Tuned.
+  double most_errors = 5.0;
+  /// Equilibria that are tried: from the last sample, from rest, and reached backwards in time.
+  /// Numeric.
+  std::size_t candidates = 3;
+  /// Step of finite differences in a place. Numeric.
+  double place_step_m = 2e-6;
+  /// And in an angle. Numeric.
+  double turn_step_rad = 2e-5;
+};
+
+/// How well a palpation model's numbers are believed before the data speak, and how far they may
+/// move. They decide only what a recording leaves open: force factor and scales are felt in two
+/// products, modulus and radius in one.
+struct PalpationPriorSettings {
+  /// Of the logarithm of a factor. Prior.
+  double factor_sd = 0.25;
+  /// Of the logarithm of the shank's radius, which counts four times. Prior.
+  double radius_sd = 0.1;
+  /// Of a length that a ruler measured. Prior.
+  double length_sd_m = 5e-4;
+  /// A factor is sought within this factor of its start. Prior.
+  double most_factor = 20.0;
+  /// Step of finite differences in a logarithm; where a step takes a sample's shank from one
+  /// equilibrium to another, the derivative is the jump over the step: so not too small. Tuned.
+  double logarithmic_step = 2e-2;
+};
+
+/// Cells of the unrolled wall.
+struct TractMapSettings {
+  /// Cells along the tract. Bound.
+  std::size_t depths = 12;
+  /// Cells round it. Bound.
+  std::size_t angles = 16;
+  /// A cell with fewer samples says nothing. Tuned.
+  double least_samples = 5.0;
+};
+
+/// Where a search for an effect begins, if its facts do not say.
+struct StartsSettings {
+  /// Nodes of the grid over a logarithmic range. Bound.
+  int nodes_logarithmic = 8;
+  /// Over a linear range. Bound.
+  int nodes_linear = 4;
+  /// Start values of an effect at most. Bound.
+  std::size_t most_starts = 64;
+  /// Step of finite differences: share of the initial value, or change of its logarithm. Numeric.
+  double step = 0.01;
+};
+
+/// The robust Levenberg–Marquardt method.
+struct LeastSquaresSettings {
+  /// Huber's threshold, in standard deviations. Tuned.
+  double huber = 4.0;
+  /// The scale is taken at this quantile of |residual|, where only single samples lie beyond.
+  /// Tuned.
+  double scale_quantile = 0.97;
+  /// That quantile of |z|, z standard normal. Derived.
+  double scale_of_normal = 2.17;
+  /// Directions below this share of the greatest eigenvalue, columns scaled to one, are unknown.
+  /// Numeric.
+  double rank = 1e-11;
+  /// Rounds of the search by trial for rough parameters. Bound.
+  int rough_rounds = 3;
+  /// Ever shorter steps from one point. Bound.
+  int most_tries = 12;
+  /// The finest step of that search, as a share of its range. Bound.
+  double finest_rough = 0.001;
+};
+
+/// The linear screen of an effect.
+struct ScreenSettings {
+  /// A smaller mean square, in units of the noise, is no response. Numeric.
+  double no_response = 1e-12;
+  /// A smaller share of its own is none. Numeric.
+  double no_share = 1e-7;
+  /// The strength to begin with, as a share of the start's, if the screen finds none. Numeric.
+  double first_strength = 0.05;
+};
+
+/// The search over structures.
+struct SelectionSettings {
+  /// A further effect must lower the loss, 2 nats, by so much for each number added. Tuned.
+  double clear_loss = 30.0;
+  /// Structures of a size that are grown by one effect. Bound.
+  std::size_t grown = 4;
+  /// Effects tried on each. Bound.
+  std::size_t tried_on_each = 6;
+  /// Start values that are fitted in full. Bound.
+  int tries = 2;
+  /// The best of a size are fitted to the end before they are compared. Bound.
+  std::size_t refined = 3;
+  /// If the best of a size leaves a greater mean square, it is begun anew from other shapes. Tuned.
+  double reshape_above = 0.9;
+  /// So many of each effect. Bound.
+  int reshape_tries = 8;
+  /// A constant of the sensor replaces shifts of all layers if it leaves less than this share of
+  /// them, where there are two layers. Tuned.
+  double restored_of_two = 0.05;
+  /// And where there are more. Tuned.
+  double restored = 0.15;
+  /// What counts as a shift. Tuned.
+  double shifted_m = 5e-5;
+  /// And the mean square may grow by no more than this factor. Tuned.
+  double no_worse = 1.1;
+  /// The price of a number. Tuned.
+  double price_nats = 5.0;
+  /// An effect that refines its parent's law needs to bring only this share of what the given model
+  /// left over the floor. Tuned.
+  double least_gain_over_parent = 2e-4;
+  /// A mean square below this says nothing more: the noise is known no better. Tuned.
+  double least_mean_square = 0.02;
+};
+
+/// Probabilities over structures.
+struct PosteriorSettings {
+  /// An effect is named at all only if at most this share of the excess is left. Tuned.
+  double most_left = 0.25;
+  /// Within this factor of the chosen structure's excess another is as good. Tuned.
+  double as_good = 1.5;
+  /// The probability at which no further experiment is recommended. Tuned.
+  double settled = 0.95;
+  /// Probability that so many effects at the floor only imitate something else: shares of wrong
+  /// answers on the development sets. Tuned.
+  std::array<double, 4> imitated{0.01, 0.01, 0.04, 0.6};
+  /// Probability that what is missing is in no catalogue, if nothing was found and more than the
+  /// floor is left. Tuned.
+  double outside = 0.9;
+  /// And that the effects found only stand in for it. Tuned.
+  double stand_in = 0.7;
+  /// Logarithm of the odds of the chosen structure against one that costs less but was refused.
+  /// Tuned.
+  double refused_log_odds = 1.4;
+};
+
+/// Held-out errors and standard errors of a fit.
+struct ValidationSettings {
+  /// Of fewer trials, stretches of time are held out. Tuned.
+  int fewest_trials = 4;
+  /// So many over all trials. Tuned.
+  int stretches = 8;
+  /// Numbers with a greater correlation are reported as known only together. Tuned.
+  double known_together = 0.98;
+  /// A direction that one fold alone informs to more than this share is not corrected for it.
+  /// Numeric.
+  double most_of_one_fold = 0.9;
+  /// Student's 95 % point over the normal's, squared, to first order in 1/k. Derived.
+  double few_clusters = 3.0;
+  /// A number whose standard error is more than this share of its prior's is not informed by the
+  /// data. Tuned.
+  double uninformed = 0.95;
+};
+
+/// The answer.
+struct DiagnosisSettings {
+  /// Of fewer trials the answer says that more would help. Tuned.
+  std::size_t few_trials = 4;
+  /// Stated probability that more than the named effects is missing, if they leave more than the
+  /// floor. Tuned.
+  double more_is_missing = 0.95;
+};
+
+/// A drift that follows the motion is no sensor's.
+struct DriftOnMotionSettings {
+  /// Time constants of the motion's memory that is held against the drift. Physical.
+  std::array<double, 3> memories_s{0.5, 2.0, 8.0};
+  /// Moments of a trial that are compared. Bound.
+  std::size_t rows_per_trial = 400;
+};
+
+/// On which signals an unexplained residual depends.
+struct DependenceSettings {
+  /// Knots of the curve over a signal. Tuned.
+  int knots = 24;
+  /// Moments of a trial that are used. Bound.
+  std::size_t rows_per_trial = 1500;
+  /// A signal that explains less of the variance is not named. Tuned.
+  double worth_naming = 0.05;
+  /// Signals that are named at most. Bound.
+  std::size_t named = 3;
+  /// Added to the normal equations' diagonal. Numeric.
+  double ridge = 1e-3;
+};
+
+/// Checks of an effect that a user wrote.
+struct UserEffectsSettings {
+  /// An effect whose responses correlate more with another's says the same. Tuned.
+  double alike = 0.95;
+  /// An effect with less than this share of its response beside the base's numbers adds nothing.
+  /// Tuned.
+  double least_own = 0.02;
+  /// At its off value an effect may change the residual by this share of its size. Numeric.
+  double neutral = 1e-9;
+};
+
+/// Regions that hold the error.
+struct RegionsSettings {
+  /// Stretches of a single trial, every other one for borders. Tuned.
+  std::size_t stretches = 40;
+  /// Round numbers inside a feature's range that a border may take. Bound.
+  std::size_t most_edges = 40;
+};
+
+/// Readable features of each moment.
+struct DescriptionSettings {
+  /// Moments that are described. Bound.
+  std::size_t most_rows = 400'000;
+  /// A palpation sensor's noise if the recording cannot tell [Zoller2020]. Physical.
+  double sensor_noise_N = 0.01;
+};
+
+/// Distributions of an error.
+struct ComparisonSettings {
+  /// Bins of a histogram. Bound.
+  std::size_t bins = 48;
+  /// Samples from which quantiles are taken. Bound.
+  std::size_t most_for_quantiles = 200'000;
+};
+
+/// Thresholds of the selection on a rig, as mean squares of the whitened residual: how near to 1 a
+/// true model comes there. All tuned.
+struct SelectionThresholds {
+  /// Below this nothing is left to explain.
+  double at_floor;
+  /// Less than this share of the given model's excess is as good as nothing.
+  double least_excess_share;
+  /// Below this no further effect is looked for,
+  double stop_below;
+  /// nor if the given model is below this and no effect betters it.
+  double stop_if_given_below;
+  /// Share of the mean square that a further effect must take away,
+  double least_gain_share;
+  /// and share of the given model's excess.
+  double least_gain_of_excess;
+  /// Independent observations that a trial is worth.
+  double observations_per_trial;
+  /// A trend of which the motion's memory explains this share is no sensor's; above 1: never asked.
+  double drift_r2_on_motion;
+};
+
+/// The lab's settings, by stage.
+struct Settings {
+  SelectionThresholds probing_thresholds{.at_floor = 1.8,
+                                         .least_excess_share = 0.001,
+                                         .stop_below = 1.25,
+                                         .stop_if_given_below = 0.0,
+                                         .least_gain_share = 0.12,
+                                         .least_gain_of_excess = 0.004,
+                                         .observations_per_trial = 12.0,
+                                         .drift_r2_on_motion = 0.45};
+  SelectionThresholds palpation_thresholds{.at_floor = 1.1,
+                                           .least_excess_share = 0.0,
+                                           .stop_below = 0.9,
+                                           .stop_if_given_below = 1.1,
+                                           .least_gain_share = 0.01,
+                                           .least_gain_of_excess = 0.0,
+                                           .observations_per_trial = 300.0,
+                                           .drift_r2_on_motion = 1.01};
+  SmoothingSettings smoothing;
+  PhasesSettings phases;
+  DecimationSettings decimation;
+  ProbingRecordingSettings probing_recording;
+  ProbingStatisticsSettings probing_statistics;
+  ProbingPriorSettings probing_prior;
+  PalpationRecordingSettings palpation_recording;
+  PalpationFitSettings palpation_fit;
+  PalpationWeightsSettings palpation_weights;
+  PalpationPriorSettings palpation_prior;
+  TractMapSettings tract_map;
+  StartsSettings starts;
+  LeastSquaresSettings least_squares;
+  ScreenSettings screen;
+  SelectionSettings selection;
+  PosteriorSettings posterior;
+  ValidationSettings validation;
+  DiagnosisSettings diagnosis;
+  DriftOnMotionSettings drift_on_motion;
+  DependenceSettings dependence;
+  UserEffectsSettings user_effects;
+  RegionsSettings regions;
+  DescriptionSettings description;
+  ComparisonSettings comparison;
+};
+
+inline constexpr Settings kSettings{};
+
+}  // namespace tractus::lab
