@@ -1,7 +1,6 @@
 #include "server/app/running_server.hpp"
 
 #include <fmt/format.h>
-#include <malloc.h>
 #include <pthread.h>
 #include <signal.h>
 
@@ -22,6 +21,7 @@
 #include "server/api/trials/uploads.hpp"
 #include "server/app/anchoring.hpp"
 #include "server/app/backups.hpp"
+#include "server/app/freed_memory.hpp"
 #include "server/app/import_process.hpp"
 #include "server/app/log.hpp"
 #include "server/http/certificates.hpp"
@@ -65,7 +65,8 @@ class StopSignals {
   std::thread thread_;
 };
 
-http::Service service_of(api::Backend& backend, const std::optional<std::filesystem::path>& web) {
+http::Service service_of(api::Backend& backend, FreedMemory& memory,
+                         const std::optional<std::filesystem::path>& web) {
   const auto is_api = [](const http::RequestHead& head) {
     return head.path == "/api" || head.path.starts_with("/api/");
   };
@@ -81,12 +82,10 @@ http::Service service_of(api::Backend& backend, const std::optional<std::filesys
         return http::error_response(405, "bad_input", "requests for pages must not have a body");
       },
       .handle =
-          [&backend, is_api, pages](const http::Request& request) {
+          [&backend, &memory, is_api, pages](const http::Request& request) {
+            memory.note_request();
             if (!is_api(request)) return pages(request);
-            http::Response response = api::answer(backend, api::routes(), request);
-            // What a large body took is not kept for the next one.
-            if (!request.body_file.empty()) ::malloc_trim(0);
-            return response;
+            return api::answer(backend, api::routes(), request);
           },
       .converse =
           [&backend](const http::RequestHead& head) {
@@ -281,7 +280,8 @@ core::Result<void> serve(const ServeOptions& given) {
   TRY(begin_trail(data));
   TRY(api::reconcile_uploads(backend));
   TRY(hub.start());
-  auto server = TRY(http::Server::open(options.http, service_of(backend, options.web)));
+  FreedMemory memory;
+  auto server = TRY(http::Server::open(options.http, service_of(backend, memory, options.web)));
   std::optional<api::Oidc> oidc;
   if (oidc_settings) {
     if (oidc_settings->base.empty()) oidc_settings->base = address_of(options, server.port());
