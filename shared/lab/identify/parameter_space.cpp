@@ -1,10 +1,11 @@
 #include "lab/identify/parameter_space.hpp"
-#include "lab/settings.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+
+#include "lab/settings.hpp"
 
 namespace tractus {
 namespace lab {
@@ -13,7 +14,8 @@ namespace {
 constexpr const auto& kStarts = kSettings.starts;
 
 double node(const effects::Param& p, int k) {
-  if (p.logarithmic) return p.low * std::pow(p.high / p.low, (k + 0.5) / double(kStarts.nodes_logarithmic));
+  if (p.logarithmic)
+    return p.low * std::pow(p.high / p.low, (k + 0.5) / double(kStarts.nodes_logarithmic));
   return p.low + (p.high - p.low) * (k + 0.5) / double(kStarts.nodes_linear);
 }
 
@@ -41,7 +43,9 @@ effects::Starts grid(const effects::EffectFacts& facts) {
   if (facts.free_per_trial) return out;
   for (const effects::Param& p : facts.params) {
     std::vector<double> values;
-    const int nodes = !std::isnan(p.off) ? 1 : p.logarithmic ? kStarts.nodes_logarithmic : kStarts.nodes_linear;
+    const int nodes = !std::isnan(p.off) ? 1
+                      : p.logarithmic    ? kStarts.nodes_logarithmic
+                                         : kStarts.nodes_linear;
     for (int k = 0; k < nodes; ++k) values.push_back(nodes == 1 ? p.initial : node(p, k));
     for (int c = 0; c < p.components; ++c) out = longer(out, values);
   }
@@ -51,7 +55,8 @@ effects::Starts grid(const effects::EffectFacts& facts) {
 double step_of(const effects::Param& p, bool logarithmic) {
   if (p.step > 0.0) return p.step;
   if (logarithmic) return kStarts.step;
-  return p.initial != 0.0 ? kStarts.step * std::abs(p.initial) : 0.1 * kStarts.step * (p.high - p.low);
+  return p.initial != 0.0 ? kStarts.step * std::abs(p.initial)
+                          : 0.1 * kStarts.step * (p.high - p.low);
 }
 
 }  // namespace

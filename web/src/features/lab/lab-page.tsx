@@ -2,7 +2,7 @@ import { useQuery } from '@tanstack/react-query';
 import { useState } from 'react';
 import { useLocation } from 'wouter';
 import { measurementsQuery, modelsQuery } from '@/api';
-import { Button, useTitle } from '@/ui';
+import { Button, Skeleton, useTitle } from '@/ui';
 import styles from './lab.module.css';
 import { ModelsCard } from './models-card';
 import { RunsCard } from './runs-card';
@@ -15,8 +15,10 @@ export function LabPage() {
   const [, go] = useLocation();
   const [pickedSet, setSet] = useState<string | null>(null);
   const [pickedModel, setModel] = useState<string | null>(null);
-  const sets = useQuery(measurementsQuery).data?.measurements,
-    models = useQuery(modelsQuery).data?.models;
+  const setsAsked = useQuery(measurementsQuery),
+    modelsAsked = useQuery(modelsQuery);
+  const sets = setsAsked.data?.measurements,
+    models = modelsAsked.data?.models;
   const set = sets?.find(({ id }) => id === pickedSet) ?? sets?.[0];
   const fitting = models?.filter(({ rig }) => !set?.rig || rig === set.rig);
   const model = fitting?.find(({ id }) => id === pickedModel) ?? fitting?.[0];
@@ -29,31 +31,38 @@ export function LabPage() {
           add this effect, and check that the error decreases.
         </p>
       </div>
-      <div className={styles.two}>
-        <SetsCard chosen={set?.id ?? null} choose={setSet} />
-        <ModelsCard rig={set?.rig ?? null} chosen={model?.id ?? null} choose={setModel} />
-      </div>
-      <div className={styles.go}>
-        <p className={styles.muted}>
-          {set && model ? (
-            <>
-              Compare <strong>{model.name}</strong> with <strong>{set.name}</strong>
-            </>
-          ) : (
-            'Select measurements and a model.'
-          )}
-        </p>
-        <Button
-          look="solid"
-          disabled={!set || !model}
-          onClick={() => {
-            if (set && model) go(workAddress(model.id, set.id));
-          }}
-        >
-          Compare
-        </Button>
-      </div>
-      <RunsCard />
+      {/* Both lists at once: one that came later would push the rest of the page down. */}
+      {setsAsked.isPending || modelsAsked.isPending ? (
+        <Skeleton height="60vh" />
+      ) : (
+        <>
+          <div className={styles.two}>
+            <SetsCard chosen={set?.id ?? null} choose={setSet} />
+            <ModelsCard rig={set?.rig ?? null} chosen={model?.id ?? null} choose={setModel} />
+          </div>
+          <div className={styles.go}>
+            <p className={styles.muted}>
+              {set && model ? (
+                <>
+                  Compare <strong>{model.name}</strong> with <strong>{set.name}</strong>
+                </>
+              ) : (
+                'Select measurements and a model.'
+              )}
+            </p>
+            <Button
+              look="solid"
+              disabled={!set || !model}
+              onClick={() => {
+                if (set && model) go(workAddress(model.id, set.id));
+              }}
+            >
+              Compare
+            </Button>
+          </div>
+          <RunsCard />
+        </>
+      )}
     </div>
   );
 }

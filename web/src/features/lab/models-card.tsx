@@ -2,7 +2,7 @@ import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { useRef, type ChangeEvent } from 'react';
 import { Link } from 'wouter';
 import { addModel, modelsQuery, type ModelVersion, type Rig } from '@/api';
-import { Badge, Button, Card, Notice, Skeleton } from '@/ui';
+import { Badge, Button, Card, Notice } from '@/ui';
 import { formatDateTime, isoDateTime } from '@/units';
 import styles from './lab.module.css';
 
@@ -101,14 +101,8 @@ export function ModelsCard({ rig, chosen, choose }: Props) {
             {query.error.message}
           </Notice>
         ) : null}
-        <fieldset className={styles.choices} aria-busy={query.isPending}>
+        <fieldset className={styles.choices}>
           <legend className="hidden-visually">Versions of models, newest first</legend>
-          {query.isPending ? (
-            <>
-              <Skeleton height="44px" />
-              <Skeleton height="44px" />
-            </>
-          ) : null}
           {models?.map((model) => (
             <ModelRow key={model.id} model={model} chosen={model.id === chosen} choose={() => choose(model.id)} />
           ))}

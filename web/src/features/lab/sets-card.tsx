@@ -1,6 +1,6 @@
 import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { addMeasurements, measurementsQuery, type MeasurementSet } from '@/api';
-import { Badge, Card, Notice, Skeleton, Term } from '@/ui';
+import { Badge, Card, Notice, Term } from '@/ui';
 import { formatCount, formatDateTime, isoDateTime } from '@/units';
 import { DropZone } from './drop-zone';
 import styles from './lab.module.css';
@@ -99,14 +99,8 @@ export function SetsCard({ chosen, choose }: Props) {
             {query.error.message}
           </Notice>
         ) : null}
-        <fieldset className={styles.choices} aria-busy={query.isPending}>
+        <fieldset className={styles.choices}>
           <legend className="hidden-visually">Measurement sets, newest first</legend>
-          {query.isPending ? (
-            <>
-              <Skeleton height="44px" />
-              <Skeleton height="44px" />
-            </>
-          ) : null}
           {sets?.map((set) => (
             <SetRow key={set.id} set={set} chosen={set.id === chosen} choose={() => choose(set.id)} />
           ))}
