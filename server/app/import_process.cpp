@@ -54,8 +54,8 @@ std::vector<char*> pointers(std::vector<std::string>& texts) {
 }
 
 Result<pid_t> start(const fs::path& upload, const fs::path& folder, Pipe& in, Pipe& out) {
-  std::vector<std::string> words{"tractus-server", "take-volume", "--upload",
-                                 upload.string(),  "--folder",    folder.string()};
+  std::vector<std::string> words{"tractus-server", "import-volume", "--upload",
+                                 upload.string(),  "--folder",      folder.string()};
   std::vector<std::string> environment = environment_in(folder);
   posix_spawn_file_actions_t actions;
   posix_spawnattr_t attributes;
@@ -75,7 +75,7 @@ Result<pid_t> start(const fs::path& upload, const fs::path& folder, Pipe& in, Pi
   posix_spawnattr_destroy(&attributes);
   if (failed == 0) return child;
   errno = failed;
-  return core::system_error("take-volume", "cannot start its process");
+  return core::system_error("import-volume", "cannot start its process");
 }
 
 std::string all_of(int fd) {
@@ -100,7 +100,7 @@ void limit(int what, rlim_t most) {
 Result<Json> import_volume_in_subprocess(const fs::path& upload, const fs::path& folder,
                                          const std::array<std::byte, 32>& key) {
   Pipe in, out;
-  if (!in.open() || !out.open()) return core::system_error("take-volume", "cannot open a pipe");
+  if (!in.open() || !out.open()) return core::system_error("import-volume", "cannot open a pipe");
   auto child = TRY(start(upload, folder, in, out));
   in.shut(0), out.shut(1);
   const std::string text = core::hex(key);

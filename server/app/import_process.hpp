@@ -7,7 +7,7 @@
 
 namespace tractus::app {
 
-/// jobs::import_volume by `tractus-server take-volume`, this very program. The child has 16 GiB of
+/// jobs::import_volume by `tractus-server import-volume`, this very program. The child has 16 GiB of
 /// address space, 15 minutes of processor time, and the key through a pipe. Errors: its own;
 /// bad_input when it ended without a word.
 core::Result<core::Json> import_volume_in_subprocess(const std::filesystem::path& upload,

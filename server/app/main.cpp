@@ -75,7 +75,7 @@ constexpr Command kCommands[] = {
      "tractus-server migrate --data /srv/tractus", app::migrate_command},
     {"openapi", "Print the description of the API in OpenAPI 3.1 format",
      "tractus-server openapi > openapi.json", app::openapi_command},
-    {"take-volume", "", "tractus-server take-volume --upload FILE --folder FOLDER",
+    {"import-volume", "", "tractus-server import-volume --upload FILE --folder FOLDER",
      app::import_volume_command},  // run by the server as a child process
 };
 

@@ -45,7 +45,7 @@ core::Result<plot::Figure> scenario_picture(const scenarios::Scenario& scenario,
   }
   plot::Mark surgeon;
   surgeon.at = scenarios::kSurgeon_N;
-  surgeon.label = "what a surgeon pushes";
+  surgeon.label = "force of a surgeon";
   surgeon.colour = "#5b6470";
   panel.marks.push_back(surgeon);
   plot::Figure figure;

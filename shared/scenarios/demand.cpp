@@ -77,14 +77,14 @@ core::Result<Demand> demand(const Scenario& scenario) {
   for (const double speed_m_s : {kSlow_m_s, kFast_m_s})
     out.pushes.push_back(push_at(law, depths, speed_m_s));
   if (const Push& slow = out.pushes.front(); slow.peak_N > kSurgeon_N)
-    out.excessive.push_back(
-        fmt::format("the bone takes up to {:.0f} N at {:.0f} mm/s; a surgeon pushes about {:.0f} N",
-                    slow.peak_N, 1e3 * slow.speed_m_s, kSurgeon_N));
+    out.excessive.push_back(fmt::format(
+        "the bone takes up to {:.0f} N at {:.0f} mm/s; surgeons push with about {:.0f} N",
+        slow.peak_N, 1e3 * slow.speed_m_s, kSurgeon_N));
   for (const laws::CorticalWall& wall : parameters.walls) {
     const WallDemand at = wall_at(law, wall);
     if (at.threshold_N > kSurgeon_N)
       out.excessive.push_back(fmt::format(
-          "the wall at {:.4g} m gives way at {:.0f} N only; a surgeon pushes about {:.0f} N",
+          "the wall at {:.4g} m breaks only at {:.0f} N; surgeons push with about {:.0f} N",
           at.position_m, at.threshold_N, kSurgeon_N));
     if (at.speed_m_s > kTopSpeed_m_s || at.thrust_N < at.threshold_N)
       out.excessive.push_back(fmt::format(

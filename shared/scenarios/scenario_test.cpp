@@ -213,7 +213,7 @@ TEST(Demand, NamesWhatASurgeonCannotDo) {
   ASSERT_TRUE(asked);
   EXPECT_NEAR(asked->walls[0].threshold_N, 249.2, 0.01);
   ASSERT_EQ(asked->excessive.size(), 2u);  // the surgeon, and the actuator at 249.2 / 1200 m/s
-  EXPECT_THAT(asked->excessive[0], HasSubstr("gives way at 249 N only"));
+  EXPECT_THAT(asked->excessive[0], HasSubstr("breaks only at 249 N"));
   EXPECT_THAT(asked->excessive[1], HasSubstr("the actuator has"));
 }
 

@@ -69,7 +69,7 @@ void add_rig(CLI::App& app, Options& options) {
       ->check(between(0.0, 1.0))
       ->capture_default_str();
   app.add_flag("!--no-surgeon", options.rig.surgeon,
-               "a simulated rig: nobody pushes but who writes to it");
+               "a simulated rig: only what is written to it moves it");
 }
 
 /// A handle, or a rig for what is probed; an unknown name is refused by the trial.

@@ -81,7 +81,7 @@ void print(const Scenario& scenario, const scenarios::Demand& demand) {
                push.mean_N, push.peak_N);
   for (const auto& wall : demand.walls)
     fmt::print(
-        "wall at {:4.1f} mm  gives way at {:.1f} N, {:.1f} N behind it; {:.3f} m/s if the push "
+        "wall at {:4.1f} mm  breaks at {:.1f} N, {:.1f} N behind it; {:.3f} m/s if the push "
         "stays, where the actuator has {:.0f} N\n",
         1e3 * wall.position_m, wall.threshold_N, wall.behind_N, wall.speed_m_s, wall.thrust_N);
   for (const auto& sentence : demand.excessive) fmt::print("too much: {}\n", sentence);

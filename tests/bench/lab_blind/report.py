@@ -19,7 +19,7 @@ def rates(rows):
         "single named": of(("single",), "named"),
         "single with a second effect": of(("single",), "extra"),
         "nothing: complete": of(("none", "base_wrong"), "right"),
-        "  base handed as is": of(("none",), "right"),
+        "  base supplied as is": of(("none",), "right"),
         "  base far off": of(("base_wrong",), "right"),
         "outside announced": of(("outside",), "right"),
         "both of two": of(("pair",), "right"),

@@ -85,7 +85,7 @@ def judged(truth, ids, verdict):
 
 def conditions(truth):
     """What a set is like, in words, for rates by condition."""
-    out = ["handed base " + str(truth.get("handed"))]
+    out = ["supplied base model " + str(truth.get("supplied"))]
     if truth.get("stuck_share", 0) > 0.02:
         out.append("hand stuck by friction")
     out += [word for key, word in (("air", "begins in air"), ("averaging", "samples averaged")) if truth.get(key)]

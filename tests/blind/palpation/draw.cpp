@@ -74,8 +74,8 @@ bool hides(const PalpationPlan& plan, const std::string& id) {
   return std::ranges::any_of(plan.effects, [&](const Hidden& e) { return e.id == id; });
 }
 
-void draw_handed(PalpationPlan& plan, Random& r) {
-  plan.handed = plan.truth;
+void draw_supplied(PalpationPlan& plan, Random& r) {
+  plan.supplied = plan.truth;
   plan.fixed = {"youngs_modulus_Pa", "length_m", "point_spacing_m"};
   if (hides(plan, "pose_offset") || r.chance(0.85)) plan.fixed.push_back("pose_offset_m");
   const bool wrong = plan.kind == "base_wrong";
@@ -89,10 +89,10 @@ void draw_handed(PalpationPlan& plan, Random& r) {
   }
   plan.how = "off";
   const double off = wrong ? 0.4 : 0.2;
-  plan.handed.force_factor_Nm *= 1 + r.uniform(-off, off);
-  if (!scale_known) plan.handed.force_scale *= 1 + r.uniform(-0.5 * off, 0.5 * off);
-  plan.handed.torque_scale *= 1 + r.uniform(-0.5 * off, 0.5 * off);
-  if (!radius_known) plan.handed.radius_m *= 1 + r.uniform(-0.2 * off, 0.2 * off);
+  plan.supplied.force_factor_Nm *= 1 + r.uniform(-off, off);
+  if (!scale_known) plan.supplied.force_scale *= 1 + r.uniform(-0.5 * off, 0.5 * off);
+  plan.supplied.torque_scale *= 1 + r.uniform(-0.5 * off, 0.5 * off);
+  if (!radius_known) plan.supplied.radius_m *= 1 + r.uniform(-0.2 * off, 0.2 * off);
 }
 
 }  // namespace
@@ -120,7 +120,7 @@ PalpationPlan draw_palpation(const PalpationRequest& request) {
   const std::string drawn = draw_kind(r);
   plan.kind = request.kind.empty() ? drawn : request.kind;
   Random of_ids = r.split(), of_effects = r.split(), of_volume = r.split(), of_probe = r.split(),
-         of_handed = r.split(), of_trials = r.split();
+         of_supplied = r.split(), of_trials = r.split();
   draw_volume(plan, of_volume);
   draw_probe(plan, of_probe);
   plan.field = of_probe.chance(0.75) ? FieldKind::kPaper : FieldKind::kPotential;
@@ -129,7 +129,7 @@ PalpationPlan draw_palpation(const PalpationRequest& request) {
     plan.effects.push_back(draw_hidden(of_effects, id, plan.truth, plan.tract));
     plan.strengths.push_back(of_effects.uniform(0.045, 0.095));
   }
-  draw_handed(plan, of_handed);
+  draw_supplied(plan, of_supplied);
   for (int i = 0; i < request.trials; ++i)
     plan.trial_seeds.push_back(static_cast<std::uint64_t>(of_trials.unit() * 1e15));
   const bool brisk = hides(plan, "contact_damping") || hides(plan, "probe_inertia");

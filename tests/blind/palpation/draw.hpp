@@ -1,5 +1,5 @@
 #pragma once
-/// What a palpation set is: volume, probe, hidden effects and the model handed over, all from a
+/// What a palpation set is: volume, probe, hidden effects and the supplied model, all from a
 /// seed.
 #include <cstdint>
 
@@ -24,7 +24,7 @@ struct PalpationPlan {
   Tract tract;
   Transfer transfer;
   FieldKind field = FieldKind::kPaper;
-  Probe truth, handed;
+  Probe truth, supplied;
   std::string how;
   std::vector<std::string> fixed;  ///< names of base parameters
   std::vector<Hidden> effects;

@@ -45,7 +45,7 @@ int main(int argc, char** argv) {
   what->add_option("--pair", pair, "two effects")->expected(2);
   what->add_option("--outside", outside, "something the catalogue does not have");
   what->add_flag("--none", none, "nothing");
-  what->add_flag("--base-wrong", base_wrong, "nothing, and the handed numbers far off");
+  what->add_flag("--base-wrong", base_wrong, "nothing, and the supplied numbers far off");
   app.add_option("--trials", request.trials)->check(CLI::Range(1, 1000));
   app.add_option("--duration", request.duration_s, "s per trial")->check(CLI::Range(1.0, 600.0));
   app.add_flag("--tract", request.states_tract, "let set.json state where the channel is");

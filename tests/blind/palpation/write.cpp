@@ -76,10 +76,10 @@ bool write_set(const PalpationSet& set, const fs::path& folder) {
   bool good = write_nrrd(plan.volume, folder / "volume.nrrd") &&
               put(folder / "model.json", {{"format", "tractus-model/1"},
                                           {"rig", "palpation"},
-                                          {"name", "handed base (simulated set)"},
+                                          {"name", "supplied base model (simulated set)"},
                                           {"volume", "volume.nrrd"},
                                           {"transfer", transfer},
-                                          {"base", base_json(plan.handed, plan.field)},
+                                          {"base", base_json(plan.supplied, plan.field)},
                                           {"fixed", fixed_json(plan)},
                                           {"effects", Json::array()}});
   Json trials = Json::array();
@@ -113,7 +113,7 @@ bool write_truth(const PalpationSet& set, const fs::path& file) {
                     {"sensor_floor", set.sensor_floor_N},
                     {"pose_floor", set.pose_floor_N},
                     {"jumps", set.jump_share},
-                    {"handed", plan.how},
+                    {"supplied", plan.how},
                     {"fixed", plan.fixed},
                     {"volume", plan.source},
                     {"field", plan.field == FieldKind::kPaper ? "paper" : "potential"},

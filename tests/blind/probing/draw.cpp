@@ -163,9 +163,9 @@ void scale_base(SetPlan& plan, double factor) {
   }
 }
 
-void draw_handed(SetPlan& plan) {
+void draw_supplied(SetPlan& plan) {
   Random r(plan.request.seed ^ 0xBA5E);
-  Handed& out = plan.handed;
+  SuppliedBase& out = plan.supplied;
   out.base = plan.truth;
   const bool wrong = plan.kind == "base_wrong";
   const double choice = wrong ? 1.0 : r.unit();

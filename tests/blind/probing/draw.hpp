@@ -25,8 +25,8 @@ struct Recording {
   bool rotation_channels = true;
 };
 
-/// The model that the lab is handed: the base alone, perhaps wrong in its numbers.
-struct Handed {
+/// The model that the lab is given: the base alone, perhaps wrong in its numbers.
+struct SuppliedBase {
   Base base;
   std::vector<std::string> fixed;  ///< JSON pointers
   std::string how;
@@ -36,7 +36,7 @@ struct SetPlan {
   Request request;
   std::string kind;
   Base truth;
-  Handed handed;
+  SuppliedBase supplied;
   std::vector<HiddenEffect> effects;
   std::vector<double> strengths;  ///< wanted, share of the force's RMS
   std::vector<TrialPlan> trials;
@@ -52,8 +52,8 @@ SetPlan draw_plan(const Request& request);
 /// Forces of the base alone brought to a person's size: stiffness and damping scaled to `rms_N`.
 void scale_base(SetPlan& plan, double factor);
 
-/// The handed model drawn about the truth (call when the truth is final).
-void draw_handed(SetPlan& plan);
+/// The supplied model drawn about the truth (call when the truth is final).
+void draw_supplied(SetPlan& plan);
 
 HiddenEffect draw_effect(Random& random, const std::string& id, const Base& base);
 /// The parameters that set an effect's size; the others are its shape.

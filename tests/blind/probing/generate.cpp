@@ -214,7 +214,7 @@ GeneratedSet generate(const Request& request) {
     again.seed = request.seed + 1000003ULL * static_cast<std::uint64_t>(attempt);
     SetPlan plan = draw_plan(again);
     tune(plan);
-    draw_handed(plan);
+    draw_supplied(plan);
     set = record(std::move(plan));
     set.accepted = acceptable(set);
     if (set.accepted) break;

@@ -8,7 +8,7 @@ namespace blind {
 namespace {
 
 bool fixed(const SetPlan& plan, const std::string& name) {
-  return std::ranges::any_of(plan.handed.fixed,
+  return std::ranges::any_of(plan.supplied.fixed,
                              [&](const std::string& p) { return p.ends_with("/" + name); });
 }
 

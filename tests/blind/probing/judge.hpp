@@ -13,7 +13,7 @@ struct JudgedPoint {
   std::vector<double> added_N;
 };
 
-/// RMS of each added force after projection on the base parameters that the handed model leaves
+/// RMS of each added force after projection on the base parameters that the supplied model leaves
 /// free. One per effect, and last for all together.
 std::vector<double> projected_rms(const std::vector<JudgedPoint>& points, const SetPlan& plan);
 

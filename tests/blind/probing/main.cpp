@@ -46,7 +46,8 @@ int main(int argc, char** argv) {
   what->add_option("--pair", pair, "two effects")->expected(2);
   what->add_option("--outside", outside, "something the catalogue does not have");
   what->add_flag("--none", none, "nothing");
-  what->add_flag("--base-wrong", base_wrong, "nothing, and the handed numbers off by up to a half");
+  what->add_flag("--base-wrong", base_wrong,
+                 "nothing, and the supplied numbers off by up to a half");
   app.add_option("--trials", request.trials)->check(CLI::Range(1, 1000));
   app.add_option("--duration", request.duration_s, "s per trial")->check(CLI::Range(1.0, 600.0));
   app.add_option("--rate", request.rate_Hz, "Hz")->check(CLI::Range(10.0, 20000.0));

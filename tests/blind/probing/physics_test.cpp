@@ -165,10 +165,10 @@ TEST(BlindProbing, BiasIsAbsorbedUnlessTheEquilibriumIsKnown) {
   for (int i = 0; i < 500; ++i)
     points.push_back({0.01 + 0.004 * std::sin(0.1 * i), 4e-3 * std::cos(0.1 * i), {2.0}});
   EXPECT_LT(projected_rms(points, plan)[0], 1e-9);
-  plan.handed.fixed = {"/base/layers/*/equilibrium_m"};
+  plan.supplied.fixed = {"/base/layers/*/equilibrium_m"};
   EXPECT_GT(projected_rms(points, plan)[0], 0.1);
-  plan.handed.fixed = {"/base/layers/*/stiffness_N_per_m", "/base/layers/*/damping_Ns_per_m",
-                       "/base/layers/*/start_m", "/base/layers/*/equilibrium_m"};
+  plan.supplied.fixed = {"/base/layers/*/stiffness_N_per_m", "/base/layers/*/damping_Ns_per_m",
+                         "/base/layers/*/start_m", "/base/layers/*/equilibrium_m"};
   EXPECT_DOUBLE_EQ(projected_rms(points, plan)[0], 2.0);  // nothing is left to hide it
 }
 

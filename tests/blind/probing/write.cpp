@@ -69,12 +69,12 @@ bool write_set(const GeneratedSet& set, const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder / "measurements", error);
   if (error) return false;
-  const Handed& handed = set.plan.handed;
+  const SuppliedBase& supplied = set.plan.supplied;
   Json model = {{"format", "tractus-model/1"},
                 {"rig", "probing"},
-                {"name", "handed base (simulated set)"},
-                {"base", base_json(handed.base)}};
-  if (!handed.fixed.empty()) model["fixed"] = handed.fixed;
+                {"name", "supplied base model (simulated set)"},
+                {"base", base_json(supplied.base)}};
+  if (!supplied.fixed.empty()) model["fixed"] = supplied.fixed;
   model["effects"] = Json::array();
   Json trials = Json::array();
   bool good = put(folder / "model.json", model);
@@ -108,8 +108,8 @@ bool write_truth(const GeneratedSet& set, const fs::path& file) {
        {"attainable", set.attainable_N},
        {"attainable_away", set.attainable_away_N},
        {"stuck_share", set.stuck_share},
-       {"handed", plan.handed.how},
-       {"fixed", plan.handed.fixed},
+       {"supplied", plan.supplied.how},
+       {"fixed", plan.supplied.fixed},
        {"modes", modes},
        {"averaging", plan.recording.averaging},
        {"rotation_channels", plan.recording.rotation_channels},

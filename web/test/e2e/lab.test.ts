@@ -84,7 +84,7 @@ describe.skipIf(bin === undefined)('a set with a hidden effect', () => {
   it('leads from the files to a better model whose error is at the noise floor', async () => {
     await page.goto('/lab');
     await page.locator('[data-part="model-file"]').setInputFiles(join(served.folder, 'set/model.json'));
-    await page.getByText('handed base').first().waitFor();
+    await page.getByText('supplied base model').first().waitFor();
     const choosing = page.waitForEvent('filechooser');
     await page.getByRole('button', { name: 'Choose folder' }).click();
     await (await choosing).setFiles(join(served.folder, 'set/measurements'));
@@ -139,7 +139,7 @@ describe.skipIf(bin === undefined)('a set with a hidden effect', () => {
         '--scenario',
         'hard',
         '--model',
-        'handed base (simulated set)',
+        'supplied base model (simulated set)',
         '--data',
         join(served.folder, 'station'),
         '--speed',
@@ -165,7 +165,7 @@ describe.skipIf(bin === undefined)('a set with a hidden effect', () => {
   it('takes a formula of one’s own once its units fit, and fits it', async () => {
     await page.goto('/lab');
     await page
-      .getByRole('radio', { name: /handed base.*/ })
+      .getByRole('radio', { name: /supplied base model.*/ })
       .last()
       .check();
     await page.getByRole('button', { name: 'Compare' }).click();
