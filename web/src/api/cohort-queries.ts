@@ -101,49 +101,18 @@ export const analysisSchema = v.object({
   same_digits: v.nullable(v.boolean()),
 });
 
-/** The scored trials, column by column: numbers where every cell is one. */
-export interface CohortTable {
-  readonly columns: readonly { readonly name: string; readonly numbers: boolean; readonly levels: readonly string[] }[];
-  readonly rows: readonly Readonly<Record<string, string>>[];
-}
-
-/** A line of a CSV whose cells may stand in quotes. */
-export function cellsOf(line: string): string[] {
-  const cells: string[] = [];
-  for (const match of line.matchAll(/("(?:[^"]|"")*"|[^,]*)(,|$)/g)) {
-    const text = match[1] ?? '';
-    cells.push(text.startsWith('"') ? text.slice(1, -1).replaceAll('""', '"') : text);
-    if (match[2] === '') break;
-  }
-  return cells;
-}
-
-export function tableOf(csv: string): CohortTable {
-  const [head = '', ...lines] = csv.split('\n').filter((line) => line !== '');
-  const names = cellsOf(head);
-  const rows = lines.map((line) => {
-    const cells = cellsOf(line);
-    return Object.fromEntries(names.map((name, i) => [name, cells[i] ?? '']));
-  });
-  return {
-    rows,
-    columns: names.map((name) => {
-      const values = [...new Set(rows.map((one) => one[name] ?? '').filter((text) => text !== ''))];
-      return {
-        name,
-        numbers: values.length > 0 && values.every((text) => Number.isFinite(Number(text))),
-        levels: values.slice(0, 40),
-      };
-    }),
-  };
-}
-
 const tablePath = (study: string) => address('/api/v1/cohort/table', {}, study === '' ? {} : { study });
 export const cohortTableAddress = (study: string) => `/api/v1${tablePath(study)}`;
 export const cohortTableQuery = (study: string) =>
   queryOptions({
     queryKey: ['cohort', 'table', study],
-    queryFn: async ({ signal }) => tableOf(new TextDecoder().decode((await bytes(tablePath(study), { signal })).data)),
+    queryFn: async ({ signal }) => {
+      const [{ tableOf }, { data }] = await Promise.all([
+        import('./cohort-table'),
+        bytes(tablePath(study), { signal }),
+      ]);
+      return tableOf(new TextDecoder().decode(data));
+    },
   });
 
 export const plansQuery = queryOptions({

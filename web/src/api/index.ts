@@ -14,6 +14,7 @@ export type * from './live-schemas';
 export * from './backup-queries';
 export * from './trainee-queries';
 export * from './cohort-queries';
+export type { CohortTable } from './cohort-table';
 export * from './teaching-queries';
 export { kKinds, kReleases, kWalls } from './teaching-schemas';
 export type * from './teaching-schemas';

@@ -4,7 +4,7 @@ import * as v from 'valibot';
 import { address } from './address';
 import { requestJson } from './client';
 
-const offerSchema = v.object({ offered: v.boolean(), label: v.nullable(v.string()) });
+export const offerSchema = v.object({ offered: v.boolean(), label: v.nullable(v.string()) });
 
 export const oidcOfferQuery = queryOptions({
   queryKey: ['oidc'],

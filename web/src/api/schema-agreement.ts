@@ -15,17 +15,23 @@ import type {
   sentModelSchema,
 } from './lab-schemas';
 import type { backupListSchema } from './backup-queries';
+import type { analysisRunSchema, planListSchema } from './cohort-queries';
 import type {
   accountListSchema,
   auditCheckSchema,
   auditSchema,
+  codesSchema,
   cohortListSchema,
   cohortSchema,
+  enrolmentSchema,
   invitationListSchema,
+  newAccountSchema,
+  newPasswordSchema,
   stationListSchema,
 } from './network-schemas';
-import type { stationPageSchema } from './live-schemas';
-import type { traineeListSchema } from './trainee-queries';
+import type { stationPageSchema, stationStateSchema } from './live-schemas';
+import type { offerSchema } from './oidc-queries';
+import type { metricsSchema, traineeListSchema } from './trainee-queries';
 import type { studyEventsSchema, studyListSchema, studySchema } from './study-schemas';
 import type {
   forceDepthSchema,
@@ -67,6 +73,15 @@ export interface Agreed {
   readonly sentModel: Takes<typeof sentModelSchema, Served['SentModel']>;
   readonly backups: Takes<typeof backupListSchema, Served['Backups']>;
   readonly studyEvents: Takes<typeof studyEventsSchema, Served['StudyEvents']>;
+  readonly newAccount: Takes<typeof newAccountSchema, Served['NewAccountMade']>;
+  readonly newPassword: Takes<typeof newPasswordSchema, Served['PasswordMade']>;
+  readonly codes: Takes<typeof codesSchema, Served['CodesBegun']>;
+  readonly enrolment: Takes<typeof enrolmentSchema, Served['EnrolmentCode']>;
+  readonly stationState: Takes<typeof stationStateSchema, Served['StationState']>;
+  readonly offer: Takes<typeof offerSchema, Served['OidcOffer']>;
+  readonly metrics: Takes<typeof metricsSchema, Served['MetricList']>;
+  readonly plans: Takes<typeof planListSchema, Served['PlanList']>;
+  readonly analysisRun: Takes<typeof analysisRunSchema, Served['CohortAnalysis']>;
 }
 
 export const kAgreed: Agreed = {
@@ -97,4 +112,13 @@ export const kAgreed: Agreed = {
   trainees: true,
   sentModel: true,
   backups: true,
+  newAccount: true,
+  newPassword: true,
+  codes: true,
+  enrolment: true,
+  stationState: true,
+  offer: true,
+  metrics: true,
+  plans: true,
+  analysisRun: true,
 };

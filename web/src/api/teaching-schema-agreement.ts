@@ -1,4 +1,4 @@
-/** The same promise as in agreed.ts, for teaching: what the server describes is what is parsed. */
+/** The same promise as in schema-agreement.ts, for teaching: what the server describes is what is parsed. */
 import type * as v from 'valibot';
 import type { components } from './generated/schema';
 import type {
@@ -6,12 +6,14 @@ import type {
   assignmentSchema,
   caseListSchema,
   commentListSchema,
+  makingListSchema,
   makingSchema,
   plannedTractSchema,
   referenceListSchema,
   referenceWaySchema,
   scenarioCheckSchema,
   scenarioListSchema,
+  sourceVolumeListSchema,
 } from './teaching-schemas';
 
 type Served = components['schemas'];
@@ -28,6 +30,8 @@ export interface TeachingAgreed {
   readonly comments: Takes<typeof commentListSchema, Served['TrialComments']>;
   readonly references: Takes<typeof referenceListSchema, Served['ReferenceTrials']>;
   readonly way: Takes<typeof referenceWaySchema, Served['ReferenceWay']>;
+  readonly makings: Takes<typeof makingListSchema, Served['CaseMakings']>;
+  readonly volumes: Takes<typeof sourceVolumeListSchema, Served['VolumeList']>;
 }
 
 export const kTeachingAgreed: TeachingAgreed = {
@@ -41,4 +45,6 @@ export const kTeachingAgreed: TeachingAgreed = {
   comments: true,
   references: true,
   way: true,
+  makings: true,
+  volumes: true,
 };

@@ -1,5 +1,6 @@
+import { scaleLinear } from 'd3-scale';
 import { describe, expect, it } from 'vitest';
-import { linePath, nearestPoint, placeOf, roundStep, ticksOf, type Scale } from './depth-scale';
+import { linePath, nearestPoint, ticksOf } from './depth-scale';
 import { columnOf, coveredBySide, heatOf, heatPaths, sideOf } from './coverage';
 import { clamp, panned, whole, zoomed } from './range';
 import { opacityAt } from './scene/slice';
@@ -203,21 +204,32 @@ describe('the CT on the cut', () => {
 });
 
 describe('the scale of force against depth', () => {
-  const across: Scale = { from: 0, to: 0.05, start_px: 50, end_px: 550 };
-  const up: Scale = { from: 0, to: 100, start_px: 300, end_px: 0 };
+  const across = scaleLinear([0, 0.05], [50, 550]);
+  const up = scaleLinear([0, 100], [300, 0]);
 
-  it('puts values where they belong and the path through them', () => {
-    expect(placeOf(across, 0.025)).toBe(300);
-    expect(placeOf(up, 100)).toBe(0);
+  it('puts the path through the points that are numbers', () => {
     expect(linePath([0, 0.05], [0, 100], across, up)).toBe('M50 300L550 0');
     expect(linePath([0, Number.NaN, 0.05], [0, 5, 100], across, up)).toBe('M50 300L550 0');
   });
 
   it('has round ticks, no more than fit', () => {
-    expect(roundStep(48, 6)).toBe(10);
-    expect(roundStep(0.9, 5)).toBeCloseTo(0.2);
-    expect(ticksOf(0, 48, 10)).toEqual([0, 10, 20, 30, 40]);
-    expect(roundStep(0, 5)).toBe(1);
+    const texts = (to: number, most: number) => ticksOf(scaleLinear([0, to], [0, 1]), most).map(({ text }) => text);
+    expect(texts(48, 6)).toEqual(['0', '10', '20', '30', '40']);
+    expect(texts(0.9, 5)).toEqual(['0.0', '0.2', '0.4', '0.6', '0.8']);
+    for (let most = 2; most < 12; ++most)
+      for (let to = 0.013; to < 2e4; to *= 1.37) expect(texts(to, most).length).toBeLessThanOrEqual(most + 1);
+  });
+
+  it('has a label on a lonely tick', () => {
+    expect(ticksOf(scaleLinear([0.37, 0.37], [0, 1]), 4)).toEqual([{ at: 0.37, text: '0.37' }]);
+  });
+
+  it('marks decades of a logarithmic axis, and parts of them where there is room', () => {
+    const texts = (from: number, to: number, most: number) =>
+      ticks({ title: '', from, to, log: true }, most).map(({ text }) => text);
+    expect(texts(0.02, 2000, 5)).toEqual(['0.1', '1', '10', '100', '1000']);
+    expect(texts(1e-6, 1e6, 5)).toEqual(['0.000001', '0.0001', '0.01', '1', '100', '10000', '1000000']);
+    expect(texts(0.5, 15, 9)).toEqual(['1', '2', '3', '10']);
   });
 
   it('has at least three ticks on a low axis of depth', () => {

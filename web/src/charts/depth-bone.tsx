@@ -1,5 +1,5 @@
 import styles from './depth-chart.module.css';
-import { placeOf, type Scale } from './depth-scale';
+import { ends, type Scale } from './depth-scale';
 
 export interface Bone {
   readonly travel_m: number;
@@ -17,12 +17,13 @@ interface Props {
 /** Layers as shades by stiffness, the growing resistance before a wall, the wall, the soft tissue behind it, the probe stop. */
 export function BoneBehind({ bone, across, up }: Props) {
   const stiffest = bone.layers.reduce((top, layer) => Math.max(top, layer.stiffness_N_per_m), 1);
-  const height = up.start_px - up.end_px;
+  const [bottom, top] = ends(up);
+  const height = bottom - top;
   const band = (from_m: number, to_m: number) => {
-    const x = placeOf(across, from_m);
-    return { x, y: up.end_px, width: Math.max(placeOf(across, to_m) - x, 0), height };
+    const x = across(from_m);
+    return { x, y: top, width: Math.max(across(to_m) - x, 0), height };
   };
-  const stop = placeOf(across, bone.travel_m);
+  const stop = across(bone.travel_m);
   return (
     <g data-part="bone">
       {bone.layers.map((layer) => (
@@ -37,17 +38,11 @@ export function BoneBehind({ bone, across, up }: Props) {
         <g key={wall.at_m} data-part="wall">
           <rect {...band(wall.growsFrom_m, wall.at_m)} className={styles.grow} />
           <rect {...band(wall.at_m, wall.breachTo_m)} className={styles.breach} />
-          <line
-            x1={placeOf(across, wall.at_m)}
-            x2={placeOf(across, wall.at_m)}
-            y1={up.end_px}
-            y2={up.start_px}
-            className={styles.wall}
-          />
+          <line x1={across(wall.at_m)} x2={across(wall.at_m)} y1={top} y2={bottom} className={styles.wall} />
         </g>
       ))}
-      <line x1={stop} x2={stop} y1={up.end_px} y2={up.start_px} className={styles.stop} />
-      <text x={stop - 4} y={up.end_px - 6} textAnchor="end" className={styles.name}>
+      <line x1={stop} x2={stop} y1={top} y2={bottom} className={styles.stop} />
+      <text x={stop - 4} y={top - 6} textAnchor="end" className={styles.name}>
         probe stop
       </text>
     </g>

@@ -1,9 +1,10 @@
+import { scaleLinear } from 'd3-scale';
 import { useId, useMemo, useRef, useSyncExternalStore, type PointerEvent } from 'react';
-import { axisTitle, formatForce, formatLength, kForce, kLength, metre, newton, tickLabels } from '@/units';
+import { axisTitle, formatForce, formatLength, kForce, kLength, metre, newton } from '@/units';
 import type { Cursor } from './cursor';
 import { BoneBehind, type Bone } from './depth-bone';
 import styles from './depth-chart.module.css';
-import { linePath, nearestPoint, placeOf, roundStep, ticksOf, type Scale } from './depth-scale';
+import { ends, linePath, nearestPoint, ticksOf, type Scale } from './depth-scale';
 import { lowerBound } from './tiles';
 import { useWidth } from './use-width';
 
@@ -39,41 +40,34 @@ function scales(
       0,
     ) * 1.08;
   return {
-    across: { from: shallowest, to: deepest * 1.02, start_px: kLeft, end_px: width - kRight },
-    up: { from: weakest, to: strongest, start_px: kDepthHeight_px - kBottom, end_px: kTop },
+    across: scaleLinear([shallowest, deepest * 1.02], [kLeft, width - kRight]),
+    up: scaleLinear([weakest, strongest], [kDepthHeight_px - kBottom, kTop]),
   };
 }
 
 function Axes({ across, up }: { readonly across: Scale; readonly up: Scale }) {
-  const mm = {
-    step: roundStep((across.to - across.from) * kLength.perSi, Math.max(2, (across.end_px - across.start_px) / 80)),
-    from: across.from * kLength.perSi,
-    to: across.to * kLength.perSi,
-  };
-  const depths = ticksOf(mm.from, mm.to, mm.step);
-  const step = roundStep(up.to - up.from, 6);
-  const forces = ticksOf(up.from, up.to, step);
-  const depthNames = tickLabels(depths, mm.step),
-    forceNames = tickLabels(forces, step);
+  const [left, right] = ends(across);
+  const [bottom] = ends(up);
+  const mm = across.copy().domain(across.domain().map((depth_m) => depth_m * kLength.perSi));
   return (
     <g className={styles.axes}>
-      {forces.map((force, i) => (
-        <g key={force} transform={`translate(0 ${placeOf(up, force)})`}>
-          <line x1={across.start_px} x2={across.end_px} />
-          <text x={across.start_px - 6} dy="0.35em" textAnchor="end">
-            {forceNames[i]}
+      {ticksOf(up, 6).map(({ at, text }) => (
+        <g key={at} transform={`translate(0 ${up(at)})`}>
+          <line x1={left} x2={right} />
+          <text x={left - 6} dy="0.35em" textAnchor="end">
+            {text}
           </text>
         </g>
       ))}
-      {depths.map((depth, i) => (
-        <g key={depth} transform={`translate(${placeOf(across, depth / kLength.perSi)} ${up.start_px})`}>
+      {ticksOf(mm, Math.max(2, (right - left) / 80)).map(({ at, text }) => (
+        <g key={at} transform={`translate(${mm(at)} ${bottom})`}>
           <line y1={0} y2={5} />
           <text y={18} textAnchor="middle">
-            {depthNames[i]}
+            {text}
           </text>
         </g>
       ))}
-      <text x={across.end_px} y={kDepthHeight_px - 2} textAnchor="end">
+      <text x={right} y={kDepthHeight_px - 2} textAnchor="end">
         {axisTitle('Depth', kLength)}
       </text>
     </g>
@@ -86,14 +80,16 @@ function Here({ props, across, up }: { readonly props: Props; readonly across: S
   const moment = useSyncExternalStore(cursor.subscribe, cursor.now);
   if (moment === null || t_s.length === 0) return null;
   const i = Math.min(lowerBound(t_s, moment), t_s.length - 1);
-  const x = placeOf(across, depth_m[i] ?? 0),
-    y = placeOf(up, force_N[i] ?? 0);
+  const x = across(depth_m[i] ?? 0),
+    y = up(force_N[i] ?? 0);
+  const [left] = ends(across);
+  const [bottom, top] = ends(up);
   const reading = `${formatForce(newton(force_N[i] ?? 0))} at ${formatLength(metre(depth_m[i] ?? 0))}`;
   return (
     <g className={styles.here}>
-      <line x1={x} x2={x} y1={up.end_px} y2={up.start_px} />
+      <line x1={x} x2={x} y1={top} y2={bottom} />
       <circle cx={x} cy={y} r={5} />
-      <text x={across.start_px + 4} y={14}>
+      <text x={left + 4} y={14}>
         {reading}
       </text>
     </g>
@@ -123,6 +119,7 @@ export function DepthChart(props: Props) {
     () => scales({ depth_m, force_N, bone }, Math.max(width, 200)),
     [depth_m, force_N, bone, width],
   );
+  const [bottom, top] = ends(up);
   const path = useMemo(() => linePath(depth_m, force_N, across, up), [depth_m, force_N, across, up]);
   const point = (event: PointerEvent<SVGSVGElement>) => {
     const box = event.currentTarget.getBoundingClientRect();
@@ -145,9 +142,9 @@ export function DepthChart(props: Props) {
             <Axes across={across} up={up} />
             <path d={path} className={styles.curve} data-part="depth-curve" />
             {felt_m === null ? null : (
-              <g className={styles.felt} transform={`translate(${placeOf(across, felt_m)} 0)`}>
-                <line y1={up.end_px} y2={up.start_px} />
-                <path d={`M-6 ${up.end_px - 10}h12l-6 9z`} />
+              <g className={styles.felt} transform={`translate(${across(felt_m)} 0)`}>
+                <line y1={top} y2={bottom} />
+                <path d={`M-6 ${top - 10}h12l-6 9z`} />
               </g>
             )}
             <Here props={props} across={across} up={up} />

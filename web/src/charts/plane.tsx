@@ -1,6 +1,7 @@
+import { scaleLinear, scaleLog } from 'd3-scale';
 import { useId, useRef, type ReactNode } from 'react';
 import { tickLabels } from '@/units';
-import { roundStep, ticksOf } from './depth-scale';
+import { ticksOf, type Tick } from './depth-scale';
 import styles from './plane.module.css';
 import { useWidth } from './use-width';
 
@@ -10,7 +11,7 @@ export interface PlaneAxis {
   readonly from: number;
   readonly to: number;
   readonly log?: boolean;
-  readonly ticks?: readonly { at: number; text: string }[];
+  readonly ticks?: readonly Tick[];
 }
 
 export interface Places {
@@ -34,30 +35,26 @@ const kLeft = 50,
   kTop = 22,
   kBottom = 36;
 
-const turned = (axis: PlaneAxis, value: number) => (axis.log ? Math.log10(Math.max(value, 1e-300)) : value);
-
+/** What is not positive has no place on a logarithmic axis; it lies far below. */
 function placing(axis: PlaneAxis, start_px: number, end_px: number): (value: number) => number {
-  const from = turned(axis, axis.from),
-    to = turned(axis, axis.to);
-  const span = to - from || 1;
-  return (value) => start_px + ((turned(axis, value) - from) / span) * (end_px - start_px);
+  const domain = [axis.from, axis.to],
+    range = [start_px, end_px];
+  if (!axis.log) return scaleLinear(domain, range);
+  const scale = scaleLog(domain, range);
+  return (value) => scale(Math.max(value, 1e-300));
 }
 
-/** Round places of an axis with their labels: decades of a logarithmic one. */
-export function ticks(axis: PlaneAxis, most: number): readonly { at: number; text: string }[] {
+/** Round places of an axis with their labels. */
+export function ticks(axis: PlaneAxis, most: number): readonly Tick[] {
   if (axis.ticks) return axis.ticks;
-  if (!axis.log) {
-    const step = roundStep(axis.to - axis.from, most);
-    const at = ticksOf(axis.from, axis.to, step);
-    const texts = tickLabels(at, step);
-    return at.map((value, i) => ({ at: value, text: texts[i] ?? '' }));
-  }
-  const first = Math.ceil(Math.log10(axis.from) - 1e-9),
-    last = Math.floor(Math.log10(axis.to) + 1e-9);
-  const every = Math.max(1, Math.ceil((last - first + 1) / most));
-  return Array.from({ length: last - first + 1 }, (_, i) => first + i)
-    .filter((power) => (power - first) % every === 0)
-    .map((power) => ({ at: 10 ** power, text: tickLabels([10 ** power], 10 ** power)[0] ?? '' }));
+  const domain = [axis.from, axis.to];
+  if (!axis.log) return ticksOf(scaleLinear(domain, [0, 1]), most);
+  const scale = scaleLog(domain, [0, 1]);
+  const fitting = scale.tickFormat(most / 2); // empty where a label would touch its neighbour
+  return scale
+    .ticks(most)
+    .filter((at) => fitting(at) !== '')
+    .map((at) => ({ at, text: tickLabels([at], at)[0] ?? '' }));
 }
 
 /** Ticks that fit a vertical axis without crowding. */

@@ -1,4 +1,4 @@
-import type { ReactNode } from 'react';
+import { Fragment, type ReactNode } from 'react';
 import { Scroll } from './scroll';
 import { Skeleton } from './skeleton';
 import styles from './table.module.css';
@@ -7,25 +7,40 @@ export interface Column<Row> {
   readonly name: ReactNode;
   readonly cell: (row: Row) => ReactNode;
   readonly number?: boolean;
+  /** How the rows are sorted by this column, if they are. */
+  readonly sorted?: 'ascending' | 'descending' | undefined;
 }
 
-interface Props<Row> {
+export interface TableProps<Row> {
   readonly caption: string;
   readonly columns: readonly Column<Row>[];
   /** undefined while they are on their way. */
   readonly rows: readonly Row[] | undefined;
   readonly keyOf: (row: Row, index: number) => string;
   readonly empty: ReactNode;
-  readonly minWidth?: number;
+  readonly minWidth?: number | undefined;
+  /** How many rows hold the place of those on their way. */
+  readonly waiting?: number | undefined;
+  readonly className?: string | undefined;
+  /** What stands below a row, over its whole width. */
+  readonly detail?: ((row: Row) => ReactNode) | undefined;
 }
 
-const kWaiting = 4;
-
 /** A plain table: its first column names the row. */
-export function Table<Row>({ caption, columns, rows, keyOf, empty, minWidth }: Props<Row>) {
+export function Table<Row>({
+  caption,
+  columns,
+  rows,
+  keyOf,
+  empty,
+  minWidth,
+  waiting = 4,
+  className,
+  detail,
+}: TableProps<Row>) {
   if (rows?.length === 0) return <p className={styles.empty}>{empty}</p>;
   return (
-    <Scroll label={caption}>
+    <Scroll label={caption} className={className}>
       <table
         className={styles.table}
         aria-busy={rows === undefined}
@@ -34,8 +49,8 @@ export function Table<Row>({ caption, columns, rows, keyOf, empty, minWidth }: P
         <caption className="hidden-visually">{caption}</caption>
         <thead>
           <tr>
-            {columns.map(({ name, number }, i) => (
-              <th key={i} scope="col" className={number ? styles.number : undefined}>
+            {columns.map(({ name, number, sorted }, i) => (
+              <th key={i} scope="col" className={number ? styles.number : undefined} aria-sort={sorted}>
                 {name}
               </th>
             ))}
@@ -43,7 +58,7 @@ export function Table<Row>({ caption, columns, rows, keyOf, empty, minWidth }: P
         </thead>
         <tbody>
           {rows === undefined
-            ? Array.from({ length: kWaiting }, (_, i) => (
+            ? Array.from({ length: waiting }, (_, i) => (
                 <tr key={i}>
                   {columns.map((__, c) => (
                     <td key={c}>
@@ -52,21 +67,33 @@ export function Table<Row>({ caption, columns, rows, keyOf, empty, minWidth }: P
                   ))}
                 </tr>
               ))
-            : rows.map((row, i) => (
-                <tr key={keyOf(row, i)}>
-                  {columns.map(({ cell, number }, c) =>
-                    c === 0 ? (
-                      <th key={c} scope="row">
-                        {cell(row)}
-                      </th>
-                    ) : (
-                      <td key={c} className={number ? styles.number : undefined}>
-                        {cell(row)}
-                      </td>
-                    ),
-                  )}
-                </tr>
-              ))}
+            : rows.map((row, i) => {
+                const more = detail?.(row);
+                return (
+                  <Fragment key={keyOf(row, i)}>
+                    <tr>
+                      {columns.map(({ cell, number }, c) =>
+                        c === 0 ? (
+                          <th key={c} scope="row">
+                            {cell(row)}
+                          </th>
+                        ) : (
+                          <td key={c} className={number ? styles.number : undefined}>
+                            {cell(row)}
+                          </td>
+                        ),
+                      )}
+                    </tr>
+                    {more ? (
+                      <tr>
+                        <td colSpan={columns.length} className={styles.detail}>
+                          {more}
+                        </td>
+                      </tr>
+                    ) : null}
+                  </Fragment>
+                );
+              })}
         </tbody>
       </table>
     </Scroll>

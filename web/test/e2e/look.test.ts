@@ -160,9 +160,9 @@ describe.each([
       await check('studies');
 
       await page.goto(`/studies/${study.id}`);
-      await page.locator('[data-participant]').first().waitFor();
+      await page.locator('tbody button[aria-expanded]').first().waitFor();
       await check('study');
-      await page.locator('[data-participant] button[aria-expanded]').first().click();
+      await page.locator('tbody button[aria-expanded]').first().click();
       await page
         .getByRole('button', { name: /^Mark as invalid: trial/ })
         .first()

@@ -104,7 +104,7 @@ it('the first key leads over the header to the content', async () => {
   await page.keyboard.press('Tab');
   await page.keyboard.press('Enter');
   await page.keyboard.press('Tab');
-  const focused = await page.evaluate(() => document.activeElement?.closest('tbody') !== null);
+  const focused = await page.evaluate(() => document.activeElement?.closest('main') !== null);
   expect(focused).toBe(true);
   await context.close();
 });

@@ -63,20 +63,21 @@ it.runIf(inject('fixture'))(
 
 describe.runIf(inject('fixture'))('the page of a study', () => {
   const kId = 'twelve-trials';
+  const rowOf = (page: Page, name: string) => page.getByRole('row', { name: new RegExp(`^${name} `) });
   const open = async (page: Page) => {
     await page.goto(`/studies/${kId}`);
-    await page.locator('[data-participant="S08"]').waitFor();
+    await rowOf(page, 'S08').waitFor();
   };
 
   it('follows what comes in, without a jump', async () => {
     const { page } = seen;
     await open(page);
-    const done = page.locator('[data-participant="S08"] [data-part="done"]');
+    const done = rowOf(page, 'S08').locator('[data-part="done"]');
     expect(await done.innerText()).toBe('0 of 12');
-    const place = await page.locator('[data-participant="S10"]').boundingBox();
+    const place = await rowOf(page, 'S10').boundingBox();
     await page.evaluate(async (id) => fetch(`/api/v1/studies/${id}/bring/S08`), kId);
     await expect.poll(() => done.innerText(), { timeout: 6_000 }).toBe('1 of 12');
-    expect((await page.locator('[data-participant="S10"]').boundingBox())?.y).toBe(place?.y);
+    expect((await rowOf(page, 'S10').boundingBox())?.y).toBe(place?.y);
     await page.getByText('uploaded a trial of S08').first().waitFor();
   });
 
@@ -103,7 +104,7 @@ describe.runIf(inject('fixture'))('the page of a study', () => {
   it('marks a trial as not counting with a reason; it stays and its place is repeated', async () => {
     const { page } = seen;
     await open(page);
-    await page.locator('[data-participant="S01"] button[aria-expanded]').click();
+    await page.getByRole('button', { name: 'S01', expanded: false }).click();
     await page.getByRole('button', { name: 'Mark as invalid: trial 2 of S01' }).click();
     const dialog = page.getByRole('dialog');
     const deed = dialog.getByRole('button', { name: 'Mark as invalid' });
@@ -155,6 +156,6 @@ it('a probing trial shows its signals, its force against depth with the wall beh
     .first()
     .waitFor();
   await page.locator(`a[href="/studies/${study.id}"]`).click();
-  await page.locator('[data-participant]').first().waitFor();
+  await page.getByRole('table', { name: 'Participants and their trials' }).waitFor();
   expect(faults).toEqual([]);
 });

@@ -10,7 +10,7 @@ import {
   studiesQuery,
   type PlanSummary,
 } from '@/api';
-import { Badge, Card, Facts, Notice, Select, Skeleton, Table, useTitle } from '@/ui';
+import { Badge, Card, DataTable, Facts, Notice, Select, Skeleton, useTitle } from '@/ui';
 import { formatCount, formatDateTime } from '@/units';
 import styles from './analysis.module.css';
 import { QuestionForm } from './question-form';
@@ -125,16 +125,30 @@ export function AnalysisPage() {
             {plans.error.message}
           </Notice>
         ) : (
-          <Table<PlanSummary>
-            caption="Locked plans, newest first"
+          <DataTable<PlanSummary>
+            caption="Locked plans"
+            order="newest first"
             rows={plans.data?.plans}
             keyOf={({ id }) => id}
             empty="No plan has been locked yet."
             columns={[
-              { name: 'Plan', cell: (one) => <Link href={`/analysis/plans/${one.id}`}>{one.title}</Link> },
-              { name: 'Data', cell: (one) => one.study ?? 'all trials' },
-              { name: 'Locked', cell: (one) => `${formatDateTime(one.made_utc_us)}, ${one.made_by}` },
-              { name: 'Trials when locked', cell: (one) => formatCount(one.trials_then), number: true },
+              {
+                name: 'Plan',
+                by: (one) => one.title,
+                cell: (one) => <Link href={`/analysis/plans/${one.id}`}>{one.title}</Link>,
+              },
+              { name: 'Data', by: (one) => one.study, cell: (one) => one.study ?? 'all trials' },
+              {
+                name: 'Locked',
+                by: (one) => one.made_utc_us,
+                cell: (one) => `${formatDateTime(one.made_utc_us)}, ${one.made_by}`,
+              },
+              {
+                name: 'Trials when locked',
+                by: (one) => one.trials_then,
+                cell: (one) => formatCount(one.trials_then),
+                number: true,
+              },
               {
                 name: 'Timing',
                 cell: (one) =>

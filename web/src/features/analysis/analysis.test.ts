@@ -1,13 +1,24 @@
 import { describe, expect, it } from 'vitest';
-import { cellsOf, tableOf, type MetricFacts } from '@/api';
+import type { MetricFacts } from '@/api';
+import { tableOf } from '@/api/cohort-table';
 import { columnName, defaultPredictor, endpointsOf } from './columns';
 import { kMethods } from './methods';
 import { kBlankPlan, planOf } from './plan-draft';
 import { cell } from './report-view';
 
 describe('the cohort’s table', () => {
-  it('keeps a comma that stands in quotes', () => {
-    expect(cellsOf('t1,"In, out and in again",,1')).toEqual(['t1', 'In, out and in again', '', '1']);
+  it('keeps commas, quotation marks and line breaks that stand in quotes', () => {
+    const { rows } = tableOf(
+      'trial,case,level,right\nt1,"In, out and in again",,1\nt2,"a ""hard"" case\nin bone",,0\n',
+    );
+    expect(rows).toEqual([
+      { trial: 't1', case: 'In, out and in again', level: '', right: '1' },
+      { trial: 't2', case: 'a "hard" case\nin bone', level: '', right: '0' },
+    ]);
+  });
+
+  it('is refused where a quotation mark is missing', () => {
+    expect(() => tableOf('trial,case\nt1,"Hard bone\n')).toThrow('row 1');
   });
 
   it('knows which columns are numbers, empty cells aside', () => {

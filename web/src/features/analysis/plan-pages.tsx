@@ -2,7 +2,20 @@ import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { useState } from 'react';
 import { Link, useLocation, useSearch } from 'wouter';
 import { cohortTableQuery, lockPlan, metricsQuery, planQuery, runPlan, type AnalysisRun } from '@/api';
-import { AskDialog, Badge, Button, Card, Field, Notice, Select, Skeleton, Table, Term, useTitle } from '@/ui';
+import {
+  AskDialog,
+  Badge,
+  Button,
+  Card,
+  DataTable,
+  Field,
+  Notice,
+  Select,
+  Skeleton,
+  Table,
+  Term,
+  useTitle,
+} from '@/ui';
 import { formatCount, formatDateTime, formatShare } from '@/units';
 import styles from './analysis.module.css';
 import { kBlankPlan, kCorrections, planOf, type PlanDraft } from './plan-draft';
@@ -249,18 +262,21 @@ export function PlanPage({ id }: { readonly id: string }) {
         />
       </Card>
       <Card title="Runs of this plan">
-        <Table<AnalysisRun>
-          caption="Runs, newest first"
+        <DataTable<AnalysisRun>
+          caption="Runs"
+          order="newest first"
           rows={plan.analyses}
           keyOf={(one) => one.id}
           empty="This plan has not been run yet."
           columns={[
             {
               name: 'Started',
+              by: (one) => one.made_utc_us,
               cell: (one) => <Link href={`/analysis/runs/${one.id}`}>{formatDateTime(one.made_utc_us)}</Link>,
             },
             {
               name: 'State',
+              by: (one) => one.state,
               cell: (one) => (
                 <Badge tone={kState[one.state]}>
                   {one.state === 'running' ? `running, ${formatShare(one.share)}` : one.state}

@@ -13,7 +13,7 @@ import {
   type Assignment,
   type Release,
 } from '@/api';
-import { AskDialog, Button, Card, Facts, Field, Notice, ReasonDialog, Skeleton, Table, useTitle } from '@/ui';
+import { AskDialog, Button, Card, DataTable, Facts, Field, Notice, ReasonDialog, Skeleton, useTitle } from '@/ui';
 import { formatDateTime } from '@/units';
 import styles from './assignments.module.css';
 import { fromField, toField } from './dates';
@@ -114,7 +114,7 @@ function Trainees({ one, store, may }: { readonly one: Assignment; readonly stor
   return (
     <Card title="Trainees">
       <div className={styles.stack}>
-        <Table<Trainee>
+        <DataTable<Trainee>
           caption="Trainees"
           rows={one.trainees}
           keyOf={({ account_id }) => account_id}
@@ -122,10 +122,12 @@ function Trainees({ one, store, may }: { readonly one: Assignment; readonly stor
           columns={[
             {
               name: 'Name',
+              by: (person) => person.name,
               cell: (person) => <Link href={`/trainees/${encodeURIComponent(person.participant)}`}>{person.name}</Link>,
             },
             {
               name: 'Done',
+              by: (person) => person.done / person.planned,
               cell: (person) => (
                 <Done done={person.done} planned={person.planned} label={`Trials done by ${person.name}`} />
               ),

@@ -2,15 +2,16 @@ import { useQuery } from '@tanstack/react-query';
 import { useState } from 'react';
 import { Link } from 'wouter';
 import { assignmentsQuery, sessionQuery, type AssignmentSummary } from '@/api';
-import { Badge, Card, Notice, Table, useTitle, type Column } from '@/ui';
+import { Badge, Card, DataTable, Notice, useTitle, type DataColumn } from '@/ui';
 import { formatCount } from '@/units';
 import styles from './assignments.module.css';
 import { Invitations } from './invitations';
 import { Done, Drilling, DueDate } from './parts';
 import { kReleaseLabels } from './labels';
 
+const releaseName = ({ release }: AssignmentSummary) => kReleaseLabels[release].name;
 const releaseCell = (one: AssignmentSummary) => (
-  <Badge tone={one.release === 'held' ? 'neutral' : 'good'}>{kReleaseLabels[one.release].name}</Badge>
+  <Badge tone={one.release === 'held' ? 'neutral' : 'good'}>{releaseName(one)}</Badge>
 );
 
 /** Assignments of one's trainees, or of the trainee who is signed in. */
@@ -21,8 +22,9 @@ export function AssignmentsPage() {
   const own = role === 'trainee';
   const may = role === 'admin' || role === 'faculty';
   useTitle(own ? 'My work' : 'Assignments');
-  const name: Column<AssignmentSummary> = {
+  const name: DataColumn<AssignmentSummary> = {
     name: 'Assignment',
+    by: (one) => one.title,
     cell: (one) => (
       <>
         <Link href={`/assignments/${one.id}`}>{one.title}</Link>
@@ -32,9 +34,14 @@ export function AssignmentsPage() {
       </>
     ),
   };
-  const due: Column<AssignmentSummary> = { name: 'Due', cell: (one) => <DueDate one={one} now_us={now_us} /> };
-  const done: Column<AssignmentSummary> = {
+  const due: DataColumn<AssignmentSummary> = {
+    name: 'Due',
+    by: (one) => one.due_utc_us,
+    cell: (one) => <DueDate one={one} now_us={now_us} />,
+  };
+  const done: DataColumn<AssignmentSummary> = {
     name: 'Done',
+    by: (one) => one.done / one.planned,
     cell: (one) => <Done done={one.done} planned={one.planned} label={`Trials done of ${one.title}`} />,
   };
   const all = query.data?.assignments;
@@ -66,7 +73,7 @@ export function AssignmentsPage() {
       {query.isError ? null : own ? (
         <>
           <Card title="To do">
-            <Table<AssignmentSummary>
+            <DataTable<AssignmentSummary>
               caption="Assignments to do"
               rows={open}
               keyOf={({ id }) => id}
@@ -75,31 +82,32 @@ export function AssignmentsPage() {
             />
           </Card>
           <Card title="Done">
-            <Table<AssignmentSummary>
+            <DataTable<AssignmentSummary>
               caption="Assignments done"
               rows={over}
               keyOf={({ id }) => id}
               empty="No completed assignments yet."
-              columns={[name, done, { name: 'Results', cell: releaseCell }]}
+              columns={[name, done, { name: 'Results', by: releaseName, cell: releaseCell }]}
             />
           </Card>
         </>
       ) : (
         <Card title="Assignments">
-          <Table<AssignmentSummary>
+          <DataTable<AssignmentSummary>
             caption="Assignments"
             rows={all}
             keyOf={({ id }) => id}
             empty={may ? 'No assignments yet. Create a new assignment.' : 'No assignments yet.'}
             minWidth={760}
+            filter={{ label: 'Filter by assignment or cohort', text: (one) => `${one.title} ${one.cohort_name}` }}
             columns={[
               name,
-              { name: 'Cohort', cell: (one) => one.cohort_name || '–' },
-              { name: 'Trainees', cell: (one) => formatCount(one.people ?? 0), number: true },
+              { name: 'Cohort', by: (one) => one.cohort_name, cell: (one) => one.cohort_name || '–' },
+              { name: 'Trainees', by: (one) => one.people, cell: (one) => formatCount(one.people ?? 0), number: true },
               due,
               done,
-              { name: 'Results', cell: releaseCell },
-              { name: 'Created by', cell: (one) => one.made_by },
+              { name: 'Results', by: releaseName, cell: releaseCell },
+              { name: 'Created by', by: (one) => one.made_by, cell: (one) => one.made_by },
             ]}
           />
         </Card>

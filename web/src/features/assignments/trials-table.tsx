@@ -1,6 +1,6 @@
 import { Link } from 'wouter';
 import type { Assignment } from '@/api';
-import { Badge, Button, Table } from '@/ui';
+import { Badge, Button, DataTable } from '@/ui';
 import { formatCount, formatDateTime } from '@/units';
 import styles from './assignments.module.css';
 
@@ -43,15 +43,17 @@ export function TrialsTable({ one, may, own = false, onInvalid }: Props) {
     </Link>
   );
   return (
-    <Table<Done>
+    <DataTable<Done>
       caption="Trials"
       rows={one.trials}
       keyOf={({ trial_id }) => trial_id}
       empty="No trials have been uploaded yet."
       minWidth={own ? 480 : 680}
+      {...(own ? {} : { filter: { label: 'Filter by trainee', text: whose } })}
       columns={[
         {
           name: 'Trial',
+          by: (trial) => `${whose(trial)}${named(trial)}`,
           cell: (trial) => (
             <>
               {whose(trial)}
@@ -59,10 +61,14 @@ export function TrialsTable({ one, may, own = false, onInvalid }: Props) {
             </>
           ),
         },
-        { name: 'Date', cell: (trial) => (trial.started_utc_us === null ? '–' : formatDateTime(trial.started_utc_us)) },
-        { name: 'Answer', cell: answer },
-        { name: 'Comments', cell: (trial) => formatCount(trial.comments), number: true },
-        { name: 'State', cell: (trial) => <State trial={trial} /> },
+        {
+          name: 'Date',
+          by: (trial) => trial.started_utc_us,
+          cell: (trial) => (trial.started_utc_us === null ? '–' : formatDateTime(trial.started_utc_us)),
+        },
+        { name: 'Answer', by: (trial) => trial.correct, cell: answer },
+        { name: 'Comments', by: (trial) => trial.comments, cell: (trial) => formatCount(trial.comments), number: true },
+        { name: 'State', by: (trial) => kStates[trial.state], cell: (trial) => <State trial={trial} /> },
         {
           name: <span className="hidden-visually">Actions</span>,
           cell: (trial) => (

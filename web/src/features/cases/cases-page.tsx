@@ -11,7 +11,7 @@ import {
   type Making,
   type SourceVolume,
 } from '@/api';
-import { Badge, Button, Card, Notice, Progress, Table, useTitle } from '@/ui';
+import { Badge, Button, Card, DataTable, Notice, Progress, Table, useTitle } from '@/ui';
 import { formatCount, formatDateTime, formatShare, share } from '@/units';
 import styles from './cases.module.css';
 
@@ -27,16 +27,20 @@ function Volumes() {
         </Notice>
       ) : (
         <div className={styles.stack}>
-          <Table<SourceVolume>
+          <DataTable<SourceVolume>
             caption="Released volumes"
             rows={released}
             keyOf={({ id }) => id}
             empty="No released volumes yet. An administrator or the programme director reviews every imported volume before its release."
             columns={[
-              { name: 'Volume', cell: (one) => <Link href={`/cases/new/${one.id}`}>{one.name}</Link> },
-              { name: 'Source', cell: (one) => one.source },
+              {
+                name: 'Volume',
+                by: (one) => one.name,
+                cell: (one) => <Link href={`/cases/new/${one.id}`}>{one.name}</Link>,
+              },
+              { name: 'Source', by: (one) => one.source, cell: (one) => one.source },
               { name: 'Voxels', cell: (one) => one.dims.map(formatCount).join(' × '), number: true },
-              { name: 'Imported', cell: (one) => formatDateTime(one.made_utc_us) },
+              { name: 'Imported', by: (one) => one.made_utc_us, cell: (one) => formatDateTime(one.made_utc_us) },
             ]}
           />
           {held > 0 ? (
@@ -124,19 +128,25 @@ export function CasesPage() {
       ) : (
         <Card title="Cases" aside={may ? <Link href="/assignments/new">Assign cases</Link> : undefined}>
           <div className={styles.stack}>
-            <Table<CaseSummary>
+            <DataTable<CaseSummary>
               caption="Cases"
               rows={query.data?.cases}
               keyOf={({ id }) => id}
               empty="No cases yet. Create one from a volume."
               minWidth={640}
+              filter={{ label: 'Filter by case or source', text: (one) => `${one.title} ${one.source}` }}
               columns={[
-                { name: 'Case', cell: (one) => <Link href={`/cases/${one.id}`}>{one.title}</Link> },
-                { name: 'Source', cell: (one) => one.source },
-                { name: 'Created', cell: (one) => formatDateTime(one.made_utc_us) },
-                { name: 'Trials', cell: (one) => formatCount(one.trials), number: true },
+                {
+                  name: 'Case',
+                  by: (one) => one.title,
+                  cell: (one) => <Link href={`/cases/${one.id}`}>{one.title}</Link>,
+                },
+                { name: 'Source', by: (one) => one.source, cell: (one) => one.source },
+                { name: 'Created', by: (one) => one.made_utc_us, cell: (one) => formatDateTime(one.made_utc_us) },
+                { name: 'Trials', by: (one) => one.trials, cell: (one) => formatCount(one.trials), number: true },
                 {
                   name: 'State',
+                  by: (one) => one.retired,
                   cell: (one) =>
                     one.retired ? (
                       <Badge>retired</Badge>

@@ -1,7 +1,7 @@
 import { useState } from 'react';
 import { Link } from 'wouter';
 import type { Effect, Ranked } from '@/api';
-import { Badge, Bar, Button, Scroll, Term } from '@/ui';
+import { Badge, Bar, Button, DataTable, Term } from '@/ui';
 import { formatFigure, formatShare, share } from '@/units';
 import { kHeldOutMeaning } from './error-steps';
 import styles from './lab.module.css';
@@ -18,107 +18,104 @@ interface Props {
 
 const kFew = 6;
 
-function Row({
-  ranked,
-  effect,
-  worst,
-  unit,
-  addressToTry,
-}: {
-  readonly ranked: Ranked;
-  readonly effect: Effect | undefined;
-  readonly worst: number;
-  readonly unit: string;
-  readonly addressToTry: (id: string) => string;
-}) {
-  const kind = effect ? kEffectKinds[effect.kind] : null;
-  return (
-    <tr>
-      <th scope="row">
-        {effectName(ranked.id)}
-        {effect ? (
-          <span className={styles.law}>
-            <code>{effect.equation}</code>
-            <span className={styles.muted}>{effect.summary}</span>
-          </span>
-        ) : null}
-      </th>
-      <td>{kind ? <Term definition={kind.description}>{kind.label}</Term> : <Badge>custom</Badge>}</td>
-      <td>
-        <span className={styles.bar}>
-          <Bar share={ranked.probability ?? 0} />
-          <span>{ranked.probability === null ? '–' : formatShare(share(ranked.probability))}</span>
-        </span>
-      </td>
-      <td>
-        {ranked.held_out_rmse === null ? (
-          <span className={styles.muted}>{ranked.note === '' ? 'not tested' : ranked.note}</span>
-        ) : (
-          <span className={styles.bar}>
-            <Bar share={ranked.held_out_rmse / worst} tone="bad" />
-            <span>{formatFigure(ranked.held_out_rmse, unit)}</span>
-          </span>
-        )}
-      </td>
-      <td className={styles.number}>
-        <Link href={addressToTry(ranked.id)} aria-label={`Try: ${effectName(ranked.id)}`}>
-          Try
-        </Link>
-      </td>
-    </tr>
-  );
+function Law({ effect }: { readonly effect: Effect | undefined }) {
+  return effect ? (
+    <span className={styles.law}>
+      <code>{effect.equation}</code>
+      <span className={styles.muted}>{effect.summary}</span>
+    </span>
+  ) : null;
 }
 
 /** All effects with equation, probability and held-out error. */
 export function Ranking({ ranking, effects, unit, without, addressToTry }: Props) {
   const [all, setAll] = useState(false);
   const worst = ranking.reduce((top, { held_out_rmse }) => Math.max(top, held_out_rmse ?? 0), without ?? 1e-12);
-  const shown = all ? ranking : ranking.slice(0, kFew);
+  const effectOf = ({ id }: Ranked) => effects.find((one) => one.id === id);
+  const kindOf = (ranked: Ranked) => {
+    const effect = effectOf(ranked);
+    return effect ? kEffectKinds[effect.kind] : null;
+  };
   return (
-    <>
-      <Scroll label="Effects, the most probable first">
-        <table className={`${styles.table} ${styles.ranking}`} data-part="ranking">
-          <caption className="hidden-visually">Effects, the most probable first</caption>
-          <thead>
-            <tr>
-              <th scope="col">Effect and equation</th>
-              <th scope="col">Kind</th>
-              <th scope="col">
-                <Term definition="Probability that exactly this effect is missing, computed from the error on held-out trials. Of the answers given with 80 %, about 80 % are correct.">
-                  Probability
-                </Term>
-              </th>
-              <th scope="col">
-                <Term align="end" definition={kHeldOutMeaning}>
-                  Held-out error with this effect
-                </Term>
-              </th>
-              <th scope="col">
-                <span className="hidden-visually">Actions</span>
-              </th>
-            </tr>
-          </thead>
-          <tbody>
-            {shown.map((ranked) => (
-              <Row
-                key={ranked.id}
-                ranked={ranked}
-                effect={effects.find(({ id }) => id === ranked.id)}
-                worst={worst}
-                unit={unit}
-                addressToTry={addressToTry}
-              />
-            ))}
-          </tbody>
-        </table>
-      </Scroll>
-      {ranking.length > kFew ? (
-        <p>
-          <Button look="quiet" onClick={() => setAll(!all)}>
-            {all ? 'Show only the first six' : `Show all ${ranking.length}`}
-          </Button>
-        </p>
-      ) : null}
-    </>
+    <DataTable<Ranked>
+      caption="Effects"
+      order="the most probable first"
+      className={styles.ranking}
+      rows={ranking}
+      keyOf={({ id }) => id}
+      empty="No effects."
+      pageSize={all ? ranking.length : kFew}
+      below={
+        ranking.length > kFew ? (
+          <p>
+            <Button look="quiet" onClick={() => setAll(!all)}>
+              {all ? 'Show only the first six' : `Show all ${ranking.length}`}
+            </Button>
+          </p>
+        ) : null
+      }
+      columns={[
+        {
+          name: 'Effect and equation',
+          by: ({ id }) => effectName(id),
+          cell: (ranked) => (
+            <>
+              {effectName(ranked.id)}
+              <Law effect={effectOf(ranked)} />
+            </>
+          ),
+        },
+        {
+          name: 'Kind',
+          by: (ranked) => kindOf(ranked)?.label ?? 'custom',
+          cell: (ranked) => {
+            const kind = kindOf(ranked);
+            return kind ? <Term definition={kind.description}>{kind.label}</Term> : <Badge>custom</Badge>;
+          },
+        },
+        {
+          name: (
+            <Term definition="Probability that exactly this effect is missing, computed from the error on held-out trials. Of the answers given with 80 %, about 80 % are correct.">
+              Probability
+            </Term>
+          ),
+          title: 'Probability',
+          by: ({ probability }) => probability,
+          cell: ({ probability }) => (
+            <span className={styles.bar}>
+              <Bar share={probability ?? 0} />
+              <span>{probability === null ? '–' : formatShare(share(probability))}</span>
+            </span>
+          ),
+        },
+        {
+          name: (
+            <Term align="end" definition={kHeldOutMeaning}>
+              Held-out error with this effect
+            </Term>
+          ),
+          title: 'Held-out error with this effect',
+          by: ({ held_out_rmse }) => held_out_rmse,
+          cell: ({ held_out_rmse, note }) =>
+            held_out_rmse === null ? (
+              <span className={styles.muted}>{note === '' ? 'not tested' : note}</span>
+            ) : (
+              <span className={styles.bar}>
+                <Bar share={held_out_rmse / worst} tone="bad" />
+                <span>{formatFigure(held_out_rmse, unit)}</span>
+              </span>
+            ),
+        },
+        {
+          name: <span className="hidden-visually">Actions</span>,
+          number: true,
+          cell: ({ id }) => (
+            <Link href={addressToTry(id)} aria-label={`Try: ${effectName(id)}`}>
+              Try
+            </Link>
+          ),
+        },
+      ]}
+    />
   );
 }

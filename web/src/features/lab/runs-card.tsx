@@ -1,7 +1,7 @@
 import { useQuery } from '@tanstack/react-query';
 import { Link } from 'wouter';
 import { labRunsQuery, measurementsQuery, modelsQuery, type LabRunSummary } from '@/api';
-import { Badge, Card, Notice, Progress, Scroll, Skeleton, type Tone } from '@/ui';
+import { Badge, Card, DataTable, Notice, Progress, type Tone } from '@/ui';
 import { formatDateTime, formatShare, isoDateTime } from '@/units';
 import styles from './lab.module.css';
 import { effectName, joined, kRunLabels, stepOfRun, workAddress } from './names';
@@ -14,38 +14,10 @@ const kState: Record<LabRunSummary['state'], { label: string; tone: Tone }> = {
   cancelled: { label: 'cancelled', tone: 'warn' },
 };
 
-function Row({ run, model, set }: { readonly run: LabRunSummary; readonly model: string; readonly set: string }) {
-  const { label, tone } = kState[run.state];
-  const added = [
-    ...run.add,
-    ...run.own.map((name) => (name.startsWith('expression:') ? name : `expression:${name}`)),
-  ].map(effectName);
-  return (
-    <tr>
-      <td>
-        <Link href={workAddress(run.model, run.measurements, stepOfRun[run.kind])} className={styles.strong}>
-          {kRunLabels[run.kind]}
-        </Link>
-        {added.length > 0 ? <span className={styles.muted}> with {joined(added)}</span> : null}
-      </td>
-      <td>{model}</td>
-      <td>{set}</td>
-      <td>
-        {run.state === 'running' ? (
-          <span className={styles.going}>
-            <Progress done={run.share} of={1} label="Progress" />
-            <span>{formatShare(run.share)}</span>
-          </span>
-        ) : (
-          <Badge tone={tone}>{label}</Badge>
-        )}
-      </td>
-      <td>
-        <time dateTime={isoDateTime(run.made_utc_us)}>{formatDateTime(run.made_utc_us)}</time>, {run.made_by}
-      </td>
-    </tr>
+const addedTo = (run: LabRunSummary) =>
+  [...run.add, ...run.own.map((name) => (name.startsWith('expression:') ? name : `expression:${name}`))].map(
+    effectName,
   );
-}
 
 /** The recent runs of the lab. */
 export function RunsCard() {
@@ -61,31 +33,54 @@ export function RunsCard() {
           {runs.error.message}
         </Notice>
       ) : null}
-      {runs.isPending ? <Skeleton height="120px" /> : null}
-      {runs.data?.runs.length === 0 ? (
-        <p className={styles.muted}>No runs yet. Select measurements and a model above.</p>
-      ) : null}
-      {runs.data && runs.data.runs.length > 0 ? (
-        <Scroll label="Runs, newest first">
-          <table className={styles.table}>
-            <caption className="hidden-visually">Runs, newest first</caption>
-            <thead>
-              <tr>
-                <th scope="col">Run</th>
-                <th scope="col">Model</th>
-                <th scope="col">Measurements</th>
-                <th scope="col">State</th>
-                <th scope="col">Started</th>
-              </tr>
-            </thead>
-            <tbody>
-              {runs.data.runs.slice(0, 20).map((run) => (
-                <Row key={run.id} run={run} model={modelName(run.model)} set={setName(run.measurements)} />
-              ))}
-            </tbody>
-          </table>
-        </Scroll>
-      ) : null}
+      {runs.isError && !runs.data ? null : (
+        <DataTable<LabRunSummary>
+          caption="Runs"
+          order="newest first"
+          rows={runs.data?.runs}
+          keyOf={({ id }) => id}
+          empty="No runs yet. Select measurements and a model above."
+          pageSize={20}
+          columns={[
+            {
+              name: 'Run',
+              by: (run) => kRunLabels[run.kind],
+              cell: (run) => (
+                <>
+                  <Link href={workAddress(run.model, run.measurements, stepOfRun[run.kind])} className={styles.strong}>
+                    {kRunLabels[run.kind]}
+                  </Link>
+                  {addedTo(run).length > 0 ? <span className={styles.muted}> with {joined(addedTo(run))}</span> : null}
+                </>
+              ),
+            },
+            { name: 'Model', by: (run) => modelName(run.model), cell: (run) => modelName(run.model) },
+            { name: 'Measurements', by: (run) => setName(run.measurements), cell: (run) => setName(run.measurements) },
+            {
+              name: 'State',
+              by: (run) => kState[run.state].label,
+              cell: (run) =>
+                run.state === 'running' ? (
+                  <span className={styles.going}>
+                    <Progress done={run.share} of={1} label="Progress" />
+                    <span>{formatShare(run.share)}</span>
+                  </span>
+                ) : (
+                  <Badge tone={kState[run.state].tone}>{kState[run.state].label}</Badge>
+                ),
+            },
+            {
+              name: 'Started',
+              by: (run) => run.made_utc_us,
+              cell: (run) => (
+                <>
+                  <time dateTime={isoDateTime(run.made_utc_us)}>{formatDateTime(run.made_utc_us)}</time>, {run.made_by}
+                </>
+              ),
+            },
+          ]}
+        />
+      )}
     </Card>
   );
 }

@@ -1,6 +1,6 @@
 import { useInfiniteQuery, useMutation } from '@tanstack/react-query';
 import { auditQuery, checkAudit, type AuditRow } from '@/api';
-import { Button, Card, Notice, Table, Term } from '@/ui';
+import { Button, Card, DataTable, Notice, Term } from '@/ui';
 import { formatClock, formatCount } from '@/units';
 import { Frame } from './frame';
 import styles from './network.module.css';
@@ -63,26 +63,37 @@ export function AuditPage() {
           {query.error.message}
         </Notice>
       ) : null}
-      <Card title="Changes, newest first">
-        <Table<AuditRow>
-          caption="Changes, newest first"
+      <Card title="Changes">
+        <DataTable<AuditRow>
+          caption="Changes"
+          order="newest first"
+          partial={query.hasNextPage}
           minWidth={760}
           rows={rows}
           keyOf={({ number }) => String(number)}
           empty="No changes yet."
+          filter={{
+            label: 'Filter by account, action or object',
+            text: (one) => `${one.who} ${one.role} ${sentenceCase(one.what)} ${one.object} ${detailOf(one.detail)}`,
+          }}
           columns={[
-            { name: 'Row', cell: (one) => formatCount(one.number) },
-            { name: 'Time', cell: (one) => formatClock(one.at_utc_us) },
+            { name: 'Row', by: (one) => one.number, cell: (one) => formatCount(one.number) },
+            { name: 'Time', by: (one) => one.at_utc_us, cell: (one) => formatClock(one.at_utc_us) },
             {
               name: 'Account',
+              by: (one) => one.who,
               cell: (one) => (
                 <>
                   {one.who} <span className={styles.muted}>{one.role}</span>
                 </>
               ),
             },
-            { name: 'Action', cell: (one) => sentenceCase(one.what) },
-            { name: 'Object', cell: (one) => <span className={styles.muted}>{one.object}</span> },
+            { name: 'Action', by: (one) => sentenceCase(one.what), cell: (one) => sentenceCase(one.what) },
+            {
+              name: 'Object',
+              by: (one) => one.object,
+              cell: (one) => <span className={styles.muted}>{one.object}</span>,
+            },
             { name: 'Details', cell: (one) => <span className={styles.muted}>{detailOf(one.detail)}</span> },
             {
               name: (

@@ -1,10 +1,11 @@
 import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { backupsQuery, makeBackup, verifyBackup, type Backup } from '@/api';
-import { Badge, Bar, Button, Card, Notice, Table, Term } from '@/ui';
+import { Badge, Bar, Button, Card, DataTable, Notice, Term } from '@/ui';
 import { formatBytes, formatCount, formatDateTime, formatShare, share } from '@/units';
 import { Frame } from './frame';
 import styles from './network.module.css';
 
+const maker = ({ made_by }: Backup) => (made_by === '' ? 'command line' : made_by);
 const isBusy = ({ state }: Backup) => state === 'making' || state === 'verifying';
 
 function State({ backup }: { readonly backup: Backup }) {
@@ -84,26 +85,29 @@ export function BackupsPage() {
                 : 'No backup has been verified yet. Verify a backup to be sure that it can be restored.'}
             </p>
           ) : null}
-          <Table<Backup>
-            caption="Backups, newest first"
+          <DataTable<Backup>
+            caption="Backups"
+            order="newest first"
             minWidth={720}
             rows={query.data?.backups}
             keyOf={({ id }) => id}
             empty="No backups yet. Create the first one."
             columns={[
-              { name: 'Created', cell: (one) => formatDateTime(one.made_utc_us) },
-              { name: 'Created by', cell: (one) => (one.made_by === '' ? 'command line' : one.made_by) },
+              { name: 'Created', by: (one) => one.made_utc_us, cell: (one) => formatDateTime(one.made_utc_us) },
+              { name: 'Created by', by: maker, cell: maker },
               {
                 name: 'Trials',
+                by: (one) => one.trials,
                 cell: (one) => (one.state === 'making' || one.state === 'failed' ? '–' : formatCount(one.trials)),
                 number: true,
               },
               {
                 name: 'Size',
+                by: (one) => one.size_bytes,
                 cell: (one) => (one.state === 'making' || one.state === 'failed' ? '–' : formatBytes(one.size_bytes)),
                 number: true,
               },
-              { name: 'State', cell: (one) => <State backup={one} /> },
+              { name: 'State', by: (one) => one.state, cell: (one) => <State backup={one} /> },
               {
                 name: (
                   <Term

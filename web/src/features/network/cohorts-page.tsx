@@ -12,7 +12,7 @@ import {
   type Cohort,
   type CohortSummary,
 } from '@/api';
-import { Badge, Button, Card, Field, Notice, Skeleton, Table } from '@/ui';
+import { Badge, Button, Card, DataTable, Field, Notice, Skeleton } from '@/ui';
 import { formatCount, formatDateTime } from '@/units';
 import { Frame } from './frame';
 import { InvitedPeople } from './invited';
@@ -153,18 +153,20 @@ function Members({ id, role }: { readonly id: string; readonly role: string | un
             ) : null}
           </p>
         ) : null}
-        <Table<Person>
+        <DataTable<Person>
           caption="People of the cohort"
           rows={query.data.people}
           keyOf={({ account_id }) => account_id}
           empty="No members yet."
+          filter={{ label: 'Filter by name', text: (one) => one.name }}
           columns={[
-            { name: 'Name', cell: (one) => one.name },
+            { name: 'Name', by: (one) => one.name, cell: (one) => one.name },
             {
               name: 'Role',
+              by: (one) => one.part,
               cell: (one) => (one.part === 'faculty' ? <Badge tone="accent">faculty</Badge> : 'trainee'),
             },
-            { name: 'State', cell: (one) => one.state },
+            { name: 'State', by: (one) => one.state, cell: (one) => one.state },
             {
               name: <span className="hidden-visually">Actions</span>,
               cell: (one) =>
@@ -208,7 +210,7 @@ export function CohortsPage() {
       <div className={styles.two}>
         <Card title="Cohorts">
           <div className={styles.stack}>
-            <Table<CohortSummary>
+            <DataTable<CohortSummary>
               caption="Cohorts"
               rows={query.data?.cohorts}
               keyOf={({ id }) => id}
@@ -216,14 +218,15 @@ export function CohortsPage() {
               columns={[
                 {
                   name: 'Cohort',
+                  by: (one) => one.name,
                   cell: (one) => (
                     <Link href={`/network/cohorts?id=${one.id}`} aria-current={one.id === chosen ? 'true' : undefined}>
                       {one.name}
                     </Link>
                   ),
                 },
-                { name: 'Trainees', cell: (one) => formatCount(one.trainees), number: true },
-                { name: 'Created', cell: (one) => formatDateTime(one.made_utc_us) },
+                { name: 'Trainees', by: (one) => one.trainees, cell: (one) => formatCount(one.trainees), number: true },
+                { name: 'Created', by: (one) => one.made_utc_us, cell: (one) => formatDateTime(one.made_utc_us) },
               ]}
             />
             {may ? <NewCohortForm /> : null}

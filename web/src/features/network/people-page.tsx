@@ -12,7 +12,7 @@ import {
   type Account,
   type Role,
 } from '@/api';
-import { AskDialog, Badge, Button, Card, Field, Notice, Select, Table } from '@/ui';
+import { AskDialog, Badge, Button, Card, DataTable, Field, Notice, Select } from '@/ui';
 import { formatDateTime } from '@/units';
 import { Frame } from './frame';
 import styles from './network.module.css';
@@ -147,6 +147,9 @@ function BadgeDialog({
   );
 }
 
+const stateOf = ({ state, must_change }: Account) =>
+  state === 'disabled' ? 'disabled' : must_change ? 'first password not changed yet' : 'active';
+
 /** Accounts and their roles. */
 export function PeoplePage() {
   const client = useQueryClient();
@@ -184,16 +187,21 @@ export function PeoplePage() {
       ) : null}
       <NewAccountCard />
       <Card title="Accounts">
-        <Table<Account>
+        <DataTable<Account>
           caption="Accounts"
           minWidth={860}
           rows={query.data?.accounts}
           keyOf={({ id }) => id}
           empty="No accounts yet."
+          filter={{
+            label: 'Filter by name, role or badge',
+            text: (one) => `${one.name} ${roleName(one.role)} ${one.badge ?? ''}`,
+          }}
           columns={[
-            { name: 'Name', cell: (one) => one.name },
+            { name: 'Name', by: (one) => one.name, cell: (one) => one.name },
             {
               name: 'Role',
+              by: (one) => roleName(one.role),
               cell: (one) => (
                 <span className={styles.role}>
                   <select
@@ -215,18 +223,23 @@ export function PeoplePage() {
             },
             {
               name: 'State',
+              by: stateOf,
               cell: (one) =>
                 one.state === 'disabled' ? (
-                  <Badge tone="warn">disabled</Badge>
+                  <Badge tone="warn">{stateOf(one)}</Badge>
                 ) : one.must_change ? (
-                  <Badge>first password not changed yet</Badge>
+                  <Badge>{stateOf(one)}</Badge>
                 ) : (
-                  <Badge tone="good">active</Badge>
+                  <Badge tone="good">{stateOf(one)}</Badge>
                 ),
             },
-            { name: 'Badge', cell: (one) => `${one.badge ?? '–'}${one.has_pin ? ', PIN' : ''}` },
-            { name: 'One-time codes', cell: (one) => (one.has_codes ? 'on' : 'off') },
-            { name: 'Created', cell: (one) => formatDateTime(one.made_utc_us) },
+            {
+              name: 'Badge',
+              by: (one) => one.badge,
+              cell: (one) => `${one.badge ?? '–'}${one.has_pin ? ', PIN' : ''}`,
+            },
+            { name: 'One-time codes', by: (one) => one.has_codes, cell: (one) => (one.has_codes ? 'on' : 'off') },
+            { name: 'Created', by: (one) => one.made_utc_us, cell: (one) => formatDateTime(one.made_utc_us) },
             {
               name: <span className="hidden-visually">Actions</span>,
               cell: (one) => (

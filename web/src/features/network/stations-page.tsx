@@ -2,7 +2,7 @@ import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { useState, type FormEvent } from 'react';
 import { enrolStation, revokeStation, sessionQuery, stationsQuery, type Station } from '@/api';
 import { Link } from 'wouter';
-import { AskDialog, Badge, Button, Card, Field, Notice, Table } from '@/ui';
+import { AskDialog, Badge, Button, Card, DataTable, Field, Notice } from '@/ui';
 import { formatDateTime } from '@/units';
 import { Frame } from './frame';
 import styles from './network.module.css';
@@ -54,12 +54,17 @@ function Enrol() {
   );
 }
 
-function StateOf({ station }: { readonly station: Station }) {
-  if (station.revoked_utc_us !== null) return <Badge tone="warn">revoked</Badge>;
-  if (!station.connected) return <Badge>offline</Badge>;
-  return (
-    <Badge tone={station.state === 'fault' ? 'bad' : 'good'}>{station.state === 'fault' ? 'fault' : 'connected'}</Badge>
-  );
+const kTones = { revoked: 'warn', offline: 'neutral', fault: 'bad', connected: 'good' } as const;
+
+function stateOf(station: Station): keyof typeof kTones {
+  if (station.revoked_utc_us !== null) return 'revoked';
+  if (!station.connected) return 'offline';
+  return station.state === 'fault' ? 'fault' : 'connected';
+}
+
+function StateBadge({ station }: { readonly station: Station }) {
+  const state = stateOf(station);
+  return <Badge tone={kTones[state]}>{state}</Badge>;
 }
 
 /** The enrolled stations. */
@@ -84,24 +89,28 @@ export function StationsPage() {
       </p>
       {may ? <Enrol /> : null}
       <Card title="Stations">
-        <Table<Station>
+        <DataTable<Station>
           caption="Stations"
           minWidth={760}
           rows={query.data?.stations}
           keyOf={({ id }) => id}
           empty="No stations are enrolled yet."
+          filter={{ label: 'Filter by name or state', text: (one) => `${one.name} ${stateOf(one)}` }}
           columns={[
             {
               name: 'Station',
+              by: (one) => one.name,
               cell: (one) => (may ? <Link href={`/network/stations/${one.id}`}>{one.name}</Link> : one.name),
             },
-            { name: 'State', cell: (one) => <StateOf station={one} /> },
+            { name: 'State', by: stateOf, cell: (one) => <StateBadge station={one} /> },
             {
               name: 'Last contact',
+              by: (one) => one.last_seen_utc_us,
               cell: (one) => (one.last_seen_utc_us === null ? 'never' : formatDateTime(one.last_seen_utc_us)),
             },
             {
               name: 'Self-test',
+              by: (one) => one.self_test?.passed,
               cell: (one) =>
                 one.self_test === null ? (
                   <span className={styles.muted}>not reported yet</span>
@@ -113,12 +122,13 @@ export function StationsPage() {
             },
             {
               name: 'Calibration',
+              by: (one) => one.calibration_due_utc_us,
               cell: (one) => {
                 const due = calibrationLabel(one.calibration_due_utc_us, query.dataUpdatedAt * 1000);
                 return <Badge tone={due.tone}>{due.text}</Badge>;
               },
             },
-            { name: 'Enrolled', cell: (one) => formatDateTime(one.enrolled_utc_us) },
+            { name: 'Enrolled', by: (one) => one.enrolled_utc_us, cell: (one) => formatDateTime(one.enrolled_utc_us) },
             {
               name: <span className="hidden-visually">Actions</span>,
               cell: (one) =>

@@ -1,7 +1,7 @@
 import { useMutation, useQuery, useQueryClient } from '@tanstack/react-query';
 import { Link } from 'wouter';
 import { publishScenario, scenariosQuery, type ScenarioVersion } from '@/api';
-import { Badge, Button, Card, Notice, Table, useTitle } from '@/ui';
+import { Badge, Button, Card, DataTable, Notice, Table, useTitle } from '@/ui';
 import { formatDateTime } from '@/units';
 import styles from './scenarios.module.css';
 import { kKindLabels } from './labels';
@@ -47,22 +47,31 @@ export function ScenariosPage() {
       </Card>
       <Card title="Saved versions">
         <div className={styles.stack}>
-          <Table<ScenarioVersion>
+          <DataTable<ScenarioVersion>
             caption="Versions"
             minWidth={640}
             rows={query.data?.scenarios}
             keyOf={({ id }) => id}
             empty="No saved versions yet."
             columns={[
-              { name: 'Scenario', cell: (one) => <Link href={`/scenarios/${one.id}`}>{one.name}</Link> },
-              { name: 'Kind', cell: ({ kind }) => kKindLabels[kind] },
-              { name: 'Created', cell: (one) => `${formatDateTime(one.made_utc_us)} by ${one.made_by}` },
+              {
+                name: 'Scenario',
+                by: (one) => one.name,
+                cell: (one) => <Link href={`/scenarios/${one.id}`}>{one.name}</Link>,
+              },
+              { name: 'Kind', by: ({ kind }) => kKindLabels[kind], cell: ({ kind }) => kKindLabels[kind] },
+              {
+                name: 'Created',
+                by: (one) => one.made_utc_us,
+                cell: (one) => `${formatDateTime(one.made_utc_us)} by ${one.made_by}`,
+              },
               {
                 name: 'Based on',
                 cell: (one) => (one.parent === null ? '–' : (names.get(one.parent) ?? one.parent.slice(0, 12))),
               },
               {
                 name: 'State',
+                by: (one) => one.published,
                 cell: (one) => (one.published ? <Badge tone="good">published</Badge> : <Badge>not published</Badge>),
               },
               {

@@ -14,7 +14,18 @@ describe('participants written one a line', () => {
     ]);
   });
 
+  it('may hold commas, quotation marks and line breaks in quoted cells', () => {
+    expect(participantsOf('P01,"resident, ""senior""",0.5\nP02,"fellow\nabroad"\n')).toEqual({
+      faults: [],
+      participants: [
+        { name: 'P01', level: 'resident, "senior"', experience_years: 0.5 },
+        { name: 'P02', level: 'fellow\nabroad' },
+      ],
+    });
+  });
+
   it.each([
+    ['P1,"resident', 'quotation mark'],
     ['Dr Smith, senior', 'not a valid pseudonym'],
     ['P1, 100', '0 to 80'],
     ['P1, a, b', 'expected pseudonym, level, years'],

@@ -1,4 +1,5 @@
 /** A study as it is being written: text in, what the server takes out, with a sentence for everything that is missing. */
+import Papa from 'papaparse';
 import type { NewParticipant, NewStudy } from '@/api';
 
 export const kTuned = [
@@ -52,8 +53,9 @@ export function idOf(title: string): string {
 
 const kPseudonym = /^[A-Za-z0-9_-]{1,32}$/;
 
-function participant(line: string): NewParticipant | string {
-  const [name = '', ...rest] = line.split(',').map((part) => part.trim());
+function participant(cells: readonly string[]): NewParticipant | string {
+  const [name = '', ...rest] = cells.map((part) => part.trim());
+  const line = cells.join(',').trim();
   if (!kPseudonym.test(name)) return `“${name}” is not a valid pseudonym: use 1 to 32 letters, digits, - or _.`;
   const simulated = rest.some((part) => part.toLowerCase() === 'simulated');
   const others = rest.filter((part) => part !== '' && part.toLowerCase() !== 'simulated');
@@ -76,13 +78,12 @@ export interface Enrolled {
 }
 
 export function participantsOf(text: string): Enrolled {
+  const { data: lines, errors } = Papa.parse<string[]>(text, { delimiter: ',', skipEmptyLines: 'greedy' });
+  if (errors.length > 0) return { participants: [], faults: ['A quotation mark is missing or misplaced.'] };
   const participants: NewParticipant[] = [],
     faults: string[] = [];
-  for (const line of text
-    .split('\n')
-    .map((one) => one.trim())
-    .filter(Boolean)) {
-    const read = participant(line);
+  for (const cells of lines) {
+    const read = participant(cells);
     if (typeof read === 'string') faults.push(read);
     else if (participants.some(({ name }) => name === read.name)) faults.push(`${read.name} is listed twice.`);
     else participants.push(read);

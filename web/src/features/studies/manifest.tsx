@@ -1,7 +1,9 @@
 /** The list of studies, and a new one. */
+import { lazy } from 'react';
 import type { Feature } from '@/ui';
-import { NewStudyPage } from './new-study-page';
 import { StudiesPage } from './studies-page';
+
+const NewStudyPage = lazy(() => import('./new-study-page').then(({ NewStudyPage: page }) => ({ default: page })));
 
 export const feature: Feature = {
   menu: [{ to: '/studies', name: 'Studies', roles: ['admin', 'researcher'], order: 80 }],

@@ -1,82 +1,62 @@
 import { useQuery } from '@tanstack/react-query';
 import { Link } from 'wouter';
 import { studiesQuery, type StudySummary } from '@/api';
-import { Badge, Notice, Progress, Skeleton, useTitle } from '@/ui';
+import { Badge, DataTable, Notice, Progress, useTitle, type DataColumn } from '@/ui';
 import { formatCount, formatDateTime, isoDateTime } from '@/units';
 import styles from './studies-page.module.css';
 
-const kColumns = ['Study', 'State', 'Participants', 'Trials done', 'Created'] as const;
-const kWaiting = 4;
+type State = 'complete' | 'paused' | 'running';
+const kTones = { complete: 'good', paused: 'warn', running: 'accent' } as const;
 
-function Row({ study }: { readonly study: StudySummary }) {
-  return (
-    <tr>
-      <td>
+const stateOf = (study: StudySummary): State =>
+  study.planned > 0 && study.done === study.planned ? 'complete' : study.state === 'paused' ? 'paused' : 'running';
+
+const kColumns: readonly DataColumn<StudySummary>[] = [
+  {
+    name: 'Study',
+    by: (study) => study.title,
+    cell: (study) => (
+      <>
         <Link href={`/studies/${encodeURIComponent(study.id)}`} className={styles.link}>
           {study.title}
         </Link>{' '}
         <span className={styles.id}>{study.id}</span>
-      </td>
-      <td>
-        {study.planned > 0 && study.done === study.planned ? (
-          <Badge tone="good">complete</Badge>
-        ) : study.state === 'paused' ? (
-          <Badge tone="warn">paused</Badge>
-        ) : (
-          <Badge tone="accent">running</Badge>
-        )}
-      </td>
-      <td className={styles.number}>{formatCount(study.participants)}</td>
-      <td>
-        <span className={styles.progress}>
-          <Progress
-            done={study.done}
-            of={study.planned}
-            label={`${formatCount(study.done)} of ${formatCount(study.planned)} trials done`}
-          />
-          <span>
-            {formatCount(study.done)} of {formatCount(study.planned)}
-          </span>
+      </>
+    ),
+  },
+  { name: 'State', by: stateOf, cell: (study) => <Badge tone={kTones[stateOf(study)]}>{stateOf(study)}</Badge> },
+  {
+    name: 'Participants',
+    by: (study) => study.participants,
+    cell: (study) => formatCount(study.participants),
+    number: true,
+  },
+  {
+    name: 'Trials done',
+    by: (study) => study.done,
+    cell: (study) => (
+      <span className={styles.progress}>
+        <Progress
+          done={study.done}
+          of={study.planned}
+          label={`${formatCount(study.done)} of ${formatCount(study.planned)} trials done`}
+        />
+        <span>
+          {formatCount(study.done)} of {formatCount(study.planned)}
         </span>
-      </td>
-      <td>
+      </span>
+    ),
+  },
+  {
+    name: 'Created',
+    by: (study) => study.made_utc_us,
+    cell: (study) => (
+      <>
         <time dateTime={isoDateTime(study.made_utc_us)}>{formatDateTime(study.made_utc_us)}</time>, {study.made_by}
-      </td>
-    </tr>
-  );
-}
-
-function Table({ studies }: { readonly studies: readonly StudySummary[] | undefined }) {
-  return (
-    <div className={styles.frame}>
-      <table className={styles.table} aria-busy={studies === undefined}>
-        <caption className="hidden-visually">Studies, newest first</caption>
-        <thead>
-          <tr>
-            {kColumns.map((column) => (
-              <th key={column} scope="col" className={column === 'Participants' ? styles.number : undefined}>
-                {column}
-              </th>
-            ))}
-          </tr>
-        </thead>
-        <tbody>
-          {studies === undefined
-            ? Array.from({ length: kWaiting }, (_, i) => (
-                <tr key={i}>
-                  {kColumns.map((column) => (
-                    <td key={column}>
-                      <Skeleton width="80%" />
-                    </td>
-                  ))}
-                </tr>
-              ))
-            : studies.map((study) => <Row key={study.id} study={study} />)}
-        </tbody>
-      </table>
-    </div>
-  );
-}
+      </>
+    ),
+  },
+];
 
 export function StudiesPage() {
   useTitle('Studies');
@@ -106,7 +86,16 @@ export function StudiesPage() {
           one.
         </Notice>
       ) : query.data || query.isPending ? (
-        <Table studies={query.data?.studies} />
+        <DataTable
+          caption="Studies"
+          order="newest first"
+          className={styles.frame}
+          rows={query.data?.studies}
+          keyOf={({ id }) => id}
+          empty="No studies yet."
+          filter={{ label: 'Filter by title or short name', text: (study) => `${study.title} ${study.id}` }}
+          columns={kColumns}
+        />
       ) : null}
     </>
   );

@@ -1,7 +1,7 @@
 import { useState } from 'react';
 import { Link } from 'wouter';
 import type { Participant, Slot, Study } from '@/api';
-import { Badge, Button } from '@/ui';
+import { Badge, Button, DataTable, type DataColumn } from '@/ui';
 import { formatCount, kNone } from '@/units';
 import type { StudyAction } from './action-dialog';
 import { ParticipantTrials } from './participant-trials';
@@ -12,8 +12,6 @@ interface Props {
   readonly study: Study;
   readonly ask: (action: StudyAction) => void;
 }
-
-const kColumns = ['Participant', 'Status', 'Trials in order', 'Done', 'Recognised', ''] as const;
 
 function Cell({ slot }: { readonly slot: Slot }) {
   const mark = markOf(slot),
@@ -36,78 +34,87 @@ function Cell({ slot }: { readonly slot: Slot }) {
   );
 }
 
-interface RowProps {
-  readonly participant: Participant;
-  readonly open: boolean;
-  readonly toggle: () => void;
-  readonly ask: (action: StudyAction) => void;
-}
-
-function Row({ participant, open, toggle, ask }: RowProps) {
-  const status = statusOf(participant);
-  const { name } = participant;
-  return (
-    <>
-      <tr data-participant={name}>
-        <th scope="row">
-          <button type="button" className={styles.name} aria-expanded={open} onClick={toggle}>
-            <span aria-hidden="true">{open ? '▾' : '▸'}</span> {name}
-          </button>
-          <span className={styles.level}>
-            {levelOf(participant)}
-            {participant.simulated ? (
-              <>
-                {' '}
-                <Badge tone="warn">simulated</Badge>
-              </>
-            ) : null}
-          </span>
-        </th>
-        <td>
-          <Badge tone={status.tone}>{status.text}</Badge>
-          <span className={styles.level}>{participant.last_station ?? ''}</span>
-        </td>
-        <td>
-          <ol className={styles.cells}>
-            {participant.slots.map((slot) => (
-              <Cell key={slot.number} slot={slot} />
-            ))}
-          </ol>
-        </td>
-        <td className={styles.number} data-part="done">
-          {progressOf(participant)}
-        </td>
-        <td className={styles.number} data-part="recognised">
-          {participant.judged === 0
-            ? kNone
-            : `${formatCount(participant.recognised)} of ${formatCount(participant.judged)}`}
-        </td>
-        <td className={styles.actions}>
-          {participant.state === 'paused' ? (
-            <Button label={`Resume ${name}`} onClick={() => ask({ kind: 'resume', participant: name })}>
-              Resume
-            </Button>
-          ) : (
-            <Button
-              label={`Pause ${name}`}
-              disabled={status.text === 'complete'}
-              onClick={() => ask({ kind: 'pause', participant: name })}
-            >
-              Pause
-            </Button>
-          )}
-        </td>
-      </tr>
-      {open ? (
-        <tr>
-          <td colSpan={kColumns.length} className={styles.inside}>
-            <ParticipantTrials participant={participant} ask={ask} />
-          </td>
-        </tr>
-      ) : null}
-    </>
-  );
-}
+const columnsOf = (
+  opened: ReadonlySet<string>,
+  toggle: (name: string) => void,
+  ask: Props['ask'],
+): readonly DataColumn<Participant>[] => [
+  {
+    name: 'Participant',
+    by: ({ name }) => name,
+    cell: (one) => (
+      <>
+        <button
+          type="button"
+          className={styles.name}
+          aria-expanded={opened.has(one.name)}
+          onClick={() => toggle(one.name)}
+        >
+          <span aria-hidden="true">{opened.has(one.name) ? '▾' : '▸'}</span> {one.name}
+        </button>
+        <span className={styles.level}>
+          {levelOf(one)}
+          {one.simulated ? (
+            <>
+              {' '}
+              <Badge tone="warn">simulated</Badge>
+            </>
+          ) : null}
+        </span>
+      </>
+    ),
+  },
+  {
+    name: 'Status',
+    by: (one) => statusOf(one).text,
+    cell: (one) => (
+      <>
+        <Badge tone={statusOf(one).tone}>{statusOf(one).text}</Badge>
+        <span className={styles.level}>{one.last_station ?? ''}</span>
+      </>
+    ),
+  },
+  {
+    name: 'Trials in order',
+    cell: (one) => (
+      <ol className={styles.cells}>
+        {one.slots.map((slot) => (
+          <Cell key={slot.number} slot={slot} />
+        ))}
+      </ol>
+    ),
+  },
+  {
+    name: 'Done',
+    by: ({ done }) => done,
+    cell: (one) => <span data-part="done">{progressOf(one)}</span>,
+    number: true,
+  },
+  {
+    name: 'Recognised',
+    by: ({ judged, recognised }) => (judged === 0 ? null : recognised / judged),
+    cell: ({ judged, recognised }) => (judged === 0 ? kNone : `${formatCount(recognised)} of ${formatCount(judged)}`),
+    number: true,
+  },
+  {
+    name: <span className="hidden-visually">Actions</span>,
+    number: true,
+    cell: (one) =>
+      one.state === 'paused' ? (
+        <Button label={`Resume ${one.name}`} onClick={() => ask({ kind: 'resume', participant: one.name })}>
+          Resume
+        </Button>
+      ) : (
+        <Button
+          label={`Pause ${one.name}`}
+          disabled={statusOf(one).text === 'complete'}
+          onClick={() => ask({ kind: 'pause', participant: one.name })}
+        >
+          Pause
+        </Button>
+      ),
+  },
+];
 
 /** A line per participant with a cell per trial; a press on the name shows the trials one by one. */
 export function People({ study, ask }: Props) {
@@ -120,35 +127,19 @@ export function People({ study, ask }: Props) {
     });
   return (
     <>
-      <div className={styles.frame}>
-        <table className={styles.table}>
-          <caption className="hidden-visually">Participants and their trials</caption>
-          <thead>
-            <tr>
-              {kColumns.map((column) => (
-                <th
-                  key={column}
-                  scope="col"
-                  className={column === 'Done' || column === 'Recognised' ? styles.number : undefined}
-                >
-                  {column === '' ? <span className="hidden-visually">Actions</span> : column}
-                </th>
-              ))}
-            </tr>
-          </thead>
-          <tbody>
-            {study.participants.map((one) => (
-              <Row
-                key={one.name}
-                participant={one}
-                open={opened.has(one.name)}
-                toggle={() => toggle(one.name)}
-                ask={ask}
-              />
-            ))}
-          </tbody>
-        </table>
-      </div>
+      <DataTable<Participant>
+        caption="Participants and their trials"
+        className={styles.frame}
+        rows={study.participants}
+        keyOf={({ name }) => name}
+        empty="No participants yet."
+        filter={{
+          label: 'Filter by pseudonym, level or status',
+          text: (one) => `${one.name} ${levelOf(one)} ${statusOf(one).text}`,
+        }}
+        columns={columnsOf(opened, toggle, ask)}
+        detail={(one) => (opened.has(one.name) ? <ParticipantTrials participant={one} ask={ask} /> : null)}
+      />
       <ul className={styles.key} aria-label="Legend">
         {(Object.keys(kMarkLabel) as (keyof typeof kMarkLabel)[]).map((mark) => (
           <li key={mark}>

@@ -10,19 +10,8 @@ export type Show = 'all' | TraineeSummary['state'] | 'inactive';
 export const isInactive = (one: Pick<TraineeSummary, 'last_utc_us'>, now_utc_us: number) =>
   now_utc_us - one.last_utc_us > kInactive_days * kDay_us;
 
-export function shownOf(
-  trainees: readonly TraineeSummary[],
-  show: Show,
-  search: string,
-  now_utc_us: number,
-): TraineeSummary[] {
-  const wanted = search.trim().toLowerCase();
-  return trainees.filter(
-    (one) =>
-      (show === 'all' || (show === 'inactive' ? isInactive(one, now_utc_us) : one.state === show)) &&
-      one.trainee.toLowerCase().includes(wanted),
-  );
-}
+export const shownOf = (trainees: readonly TraineeSummary[], show: Show, now_utc_us: number): TraineeSummary[] =>
+  trainees.filter((one) => show === 'all' || (show === 'inactive' ? isInactive(one, now_utc_us) : one.state === show));
 
 const kWindow = 10;
 

@@ -1,7 +1,7 @@
 import { useQuery } from '@tanstack/react-query';
 import { Link } from 'wouter';
 import { ApiError, metricsQuery, sessionQuery, traineeQuery, type Attempt, type Trainee } from '@/api';
-import { Badge, Button, Card, Facts, Notice, Skeleton, Table, Term, useTitle } from '@/ui';
+import { Badge, Button, Card, DataTable, Facts, Notice, Skeleton, Term, useTitle } from '@/ui';
 import { formatCount, formatDateTime, formatShare } from '@/units';
 import { CusumChart } from './cusum-chart';
 import { LearningChart } from './learning-chart';
@@ -54,14 +54,16 @@ function Head({ trainee }: { readonly trainee: Trainee }) {
 function Attempts({ trainee, mayOpen }: { readonly trainee: Trainee; readonly mayOpen: boolean }) {
   return (
     <Card title="Trials" className={styles.unprinted ?? ''}>
-      <Table<Attempt>
-        caption="Trials in order, newest first"
+      <DataTable<Attempt>
+        caption="Trials"
+        order="newest first"
         rows={[...trainee.attempts].reverse()}
         keyOf={({ trial }) => trial}
         empty="No trials."
         columns={[
           {
             name: 'Trial',
+            by: (one) => one.number,
             cell: (one) =>
               mayOpen ? (
                 <Link href={`/trials/${encodeURIComponent(one.trial)}`}>{formatCount(one.number)}</Link>
@@ -69,10 +71,11 @@ function Attempts({ trainee, mayOpen }: { readonly trainee: Trainee; readonly ma
                 formatCount(one.number)
               ),
           },
-          { name: 'Started', cell: (one) => formatDateTime(one.started_utc_us) },
-          { name: 'Scenario', cell: (one) => one.scenario },
+          { name: 'Started', by: (one) => one.started_utc_us, cell: (one) => formatDateTime(one.started_utc_us) },
+          { name: 'Scenario', by: (one) => one.scenario, cell: (one) => one.scenario },
           {
             name: 'Answer',
+            by: (one) => one.correct,
             cell: (one) => (
               <Badge tone={one.correct ? 'good' : 'bad'}>{one.correct ? '✓ correct' : '✗ incorrect'}</Badge>
             ),

@@ -2,7 +2,7 @@ import { useQuery } from '@tanstack/react-query';
 import { useState } from 'react';
 import { Link } from 'wouter';
 import { traineesQuery, type TraineeSummary } from '@/api';
-import { Badge, Card, Field, Notice, Select, Table, Term, useTitle } from '@/ui';
+import { Badge, Card, DataTable, Notice, Select, Term, useTitle } from '@/ui';
 import { formatCount, formatDateTime, formatShare } from '@/units';
 import { Whisker } from './recognition';
 import { isInactive, shownOf, type Show } from './standing';
@@ -14,10 +14,9 @@ export function TraineesPage() {
   useTitle('Trainees');
   const query = useQuery(traineesQuery);
   const [show, setShow] = useState<Show>('all');
-  const [search, setSearch] = useState('');
   const [now] = useState(() => Date.now() * 1000);
   const all = query.data?.trainees;
-  const tally = (state: Show) => formatCount(all ? shownOf(all, state, '', now).length : 0);
+  const tally = (state: Show) => formatCount(all ? shownOf(all, state, now).length : 0);
   const rule = query.data?.rule;
   return (
     <div className={styles.page}>
@@ -33,7 +32,7 @@ export function TraineesPage() {
       <Card
         title={all ? `${formatCount(all.length)} ${all.length === 1 ? 'trainee' : 'trainees'}` : 'Trainees'}
         aside={
-          <span className={styles.tools}>
+          <span className={styles.pick}>
             <Select
               label={<span className="hidden-visually">Filter</span>}
               value={show}
@@ -46,25 +45,20 @@ export function TraineesPage() {
                 { value: 'inactive', text: `Inactive for two months (${tally('inactive')})` },
               ]}
             />
-            <Field
-              label={<span className="hidden-visually">Search by name</span>}
-              placeholder="Search by name"
-              type="search"
-              value={search}
-              onChange={(event) => setSearch(event.target.value)}
-            />
           </span>
         }
       >
-        <Table<TraineeSummary>
+        <DataTable<TraineeSummary>
           caption="Trainees"
           minWidth={820}
-          rows={all && shownOf(all, show, search, now)}
+          rows={all && shownOf(all, show, now)}
           keyOf={({ trainee }) => trainee}
+          filter={{ label: 'Search by name', text: (one) => one.trainee }}
           empty={all?.length === 0 ? 'No scored trials yet.' : 'No trainees match the filter.'}
           columns={[
             {
               name: 'Trainee',
+              by: (one) => one.trainee,
               cell: (one) => (
                 <>
                   <Link href={`/trainees/${encodeURIComponent(one.trainee)}`}>{one.trainee}</Link>{' '}
@@ -74,11 +68,15 @@ export function TraineesPage() {
             },
             {
               name: <Term definition={kCusum}>State</Term>,
+              title: 'State',
+              by: (one) => kStateLabels[one.state].label,
               cell: (one) => <Badge tone={kStateLabels[one.state].tone}>{kStateLabels[one.state].label}</Badge>,
             },
-            { name: 'Trials', cell: (one) => formatCount(one.trials), number: true },
+            { name: 'Trials', by: (one) => one.trials, cell: (one) => formatCount(one.trials), number: true },
             {
               name: <Term definition={kInterval}>Correct</Term>,
+              title: 'Correct',
+              by: (one) => one.share,
               cell: (one) => (
                 <span className={styles.interval}>
                   <Whisker value={one.share} low={one.wilson_low} high={one.wilson_high} />
@@ -88,9 +86,10 @@ export function TraineesPage() {
                 </span>
               ),
             },
-            { name: 'Next', cell: (one) => one.next.scenario },
+            { name: 'Next', by: (one) => one.next.scenario, cell: (one) => one.next.scenario },
             {
               name: 'Last trial',
+              by: (one) => one.last_utc_us,
               cell: (one) => (
                 <>
                   {formatDateTime(one.last_utc_us)} {isInactive(one, now) ? <Badge tone="warn">inactive</Badge> : null}

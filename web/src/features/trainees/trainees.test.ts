@@ -26,10 +26,10 @@ describe('the list of trainees', () => {
     expect(isInactive(one({}), 61 * kDay_us)).toBe(true);
   });
 
-  it('is narrowed by state and by name', () => {
-    const all = [one({}), one({ trainee: 'S02', state: 'relapsed' }), one({ trainee: 'T03', state: 'relapsed' })];
-    expect(shownOf(all, 'relapsed', 's', 0).map(({ trainee }) => trainee)).toEqual(['S02']);
-    expect(shownOf(all, 'all', '', 0)).toHaveLength(3);
+  it('is narrowed by state', () => {
+    const all = [one({}), one({ trainee: 'S02', state: 'relapsed' }), one({ trainee: 'T03' })];
+    expect(shownOf(all, 'relapsed', 0).map(({ trainee }) => trainee)).toEqual(['S02']);
+    expect(shownOf(all, 'all', 0)).toHaveLength(3);
   });
 });
 

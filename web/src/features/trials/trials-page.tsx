@@ -34,7 +34,7 @@ export function TrialsPage() {
       {trials?.length === 0 ? (
         <Notice title="No trials yet.">A trial appears here after a station has uploaded it completely.</Notice>
       ) : trials !== undefined || query.isPending ? (
-        <TrialsTable trials={trials} />
+        <TrialsTable trials={trials} partial={query.hasNextPage} />
       ) : null}
       {query.hasNextPage ? (
         <div className={styles.more}>

@@ -1,11 +1,8 @@
 import { Link } from 'wouter';
 import type { TrialSummary } from '@/api';
-import { Badge, Skeleton } from '@/ui';
+import { Badge, DataTable, type DataColumn } from '@/ui';
 import { formatDateTime, formatDuration, isoDateTime } from '@/units';
 import styles from './trials-table.module.css';
-
-const kWaiting = 8;
-const kColumns = ['Started', 'Case', 'Operator', 'Station', 'Duration', 'Answer', 'State'] as const;
 
 function AnswerCell({ trial }: { readonly trial: TrialSummary }) {
   if (trial.correct === true) return <Badge tone="good">✓ correct</Badge>;
@@ -24,68 +21,65 @@ function StateCell({ trial }: { readonly trial: TrialSummary }) {
   }
 }
 
-function Row({ trial }: { readonly trial: TrialSummary }) {
-  return (
-    <tr>
-      <td>
-        <time dateTime={isoDateTime(trial.started_utc_us)}>{formatDateTime(trial.started_utc_us)}</time>
-      </td>
-      <td>
-        <Link href={`/trials/${encodeURIComponent(trial.id)}`} className={styles.link}>
-          {trial.case_title}
-        </Link>
-      </td>
-      <td>
-        <span className={styles.operator}>
-          {trial.operator_name}
-          {trial.simulated ? <Badge tone="warn">simulated</Badge> : null}
-        </span>
-      </td>
-      <td>{trial.station}</td>
-      <td className={styles.number}>{formatDuration(trial.duration_s)}</td>
-      <td>
-        <AnswerCell trial={trial} />
-      </td>
-      <td>
-        <StateCell trial={trial} />
-      </td>
-    </tr>
-  );
+const kColumns: readonly DataColumn<TrialSummary>[] = [
+  {
+    name: 'Started',
+    by: (trial) => trial.started_utc_us,
+    cell: (trial) => <time dateTime={isoDateTime(trial.started_utc_us)}>{formatDateTime(trial.started_utc_us)}</time>,
+  },
+  {
+    name: 'Case',
+    by: (trial) => trial.case_title,
+    cell: (trial) => (
+      <Link href={`/trials/${encodeURIComponent(trial.id)}`} className={styles.link}>
+        {trial.case_title}
+      </Link>
+    ),
+  },
+  {
+    name: 'Operator',
+    by: (trial) => trial.operator_name,
+    cell: (trial) => (
+      <span className={styles.operator}>
+        {trial.operator_name}
+        {trial.simulated ? <Badge tone="warn">simulated</Badge> : null}
+      </span>
+    ),
+  },
+  { name: 'Station', by: (trial) => trial.station, cell: (trial) => trial.station },
+  {
+    name: 'Duration',
+    by: (trial) => trial.duration_s,
+    cell: (trial) => formatDuration(trial.duration_s),
+    number: true,
+  },
+  { name: 'Answer', by: (trial) => trial.correct, cell: (trial) => <AnswerCell trial={trial} /> },
+  { name: 'State', by: (trial) => trial.state, cell: (trial) => <StateCell trial={trial} /> },
+];
+
+interface Props {
+  /** `undefined` while loading: rows of the same height hold the place. */
+  readonly trials: readonly TrialSummary[] | undefined;
+  /** The server has older ones. */
+  readonly partial?: boolean;
 }
 
-function WaitingRow() {
+export function TrialsTable({ trials, partial = false }: Props) {
   return (
-    <tr>
-      {kColumns.map((column) => (
-        <td key={column}>
-          <Skeleton width="80%" />
-        </td>
-      ))}
-    </tr>
-  );
-}
-
-/** `undefined` while loading: rows of the same height hold the place. */
-export function TrialsTable({ trials }: { readonly trials: readonly TrialSummary[] | undefined }) {
-  return (
-    <div className={styles.frame}>
-      <table className={styles.table} aria-busy={trials === undefined}>
-        <caption className="hidden-visually">Trials, newest first</caption>
-        <thead>
-          <tr>
-            {kColumns.map((column) => (
-              <th key={column} scope="col" className={column === 'Duration' ? styles.number : undefined}>
-                {column}
-              </th>
-            ))}
-          </tr>
-        </thead>
-        <tbody>
-          {trials === undefined
-            ? Array.from({ length: kWaiting }, (_, index) => <WaitingRow key={index} />)
-            : trials.map((trial) => <Row key={trial.id} trial={trial} />)}
-        </tbody>
-      </table>
-    </div>
+    <DataTable
+      caption="Trials"
+      order="newest first"
+      className={styles.frame}
+      rows={trials}
+      keyOf={({ id }) => id}
+      empty="No trials yet."
+      waiting={8}
+      partial={partial}
+      filter={{
+        label: 'Filter by case, operator or station',
+        text: (trial) => `${trial.case_title} ${trial.operator_name} ${trial.station}`,
+      }}
+      columns={kColumns}
+    />
   );
 }

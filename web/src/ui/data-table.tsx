@@ -1,0 +1,211 @@
+import {
+  columnFilteringFeature,
+  createFilteredRowModel,
+  createPaginatedRowModel,
+  createSortedRowModel,
+  globalFilteringFeature,
+  rowPaginationFeature,
+  rowSortingFeature,
+  sortFn_alphanumeric,
+  sortFn_text,
+  tableFeatures,
+  useTable,
+} from '@tanstack/react-table';
+import type { ColumnDef } from '@tanstack/react-table';
+import { useState, type ReactNode } from 'react';
+import { formatCount } from '@/units';
+import { Button } from './button';
+import styles from './data-table.module.css';
+import { Field } from './field';
+import { Table, type Column, type TableProps } from './table';
+
+/** What rows are sorted by: text, a number, or nothing, which comes last. */
+type Value = string | number | boolean | null | undefined;
+
+export interface DataColumn<Row> extends Omit<Column<Row>, 'sorted'> {
+  /** What the rows are sorted by; a column without it has no button. */
+  readonly by?: (row: Row) => Value;
+  /** The column's name in plain text, where `name` is more than text. */
+  readonly title?: string;
+}
+
+interface Props<Row> extends Omit<TableProps<Row>, 'columns'> {
+  readonly columns: readonly DataColumn<Row>[];
+  /** The order in which the rows come, said until a column sorts them. */
+  readonly order?: string;
+  /** A field that narrows the rows to those whose text contains what is typed. */
+  readonly filter?: { readonly label: string; readonly text: (row: Row) => string };
+  readonly pageSize?: number;
+  /** The server hands out rows part by part, so there are no pages here; true: it has more of them. */
+  readonly partial?: boolean;
+  /** Stands below in place of the buttons for the pages. */
+  readonly below?: ReactNode;
+}
+
+interface Line<Row> {
+  readonly row: Row;
+  readonly text: string;
+  readonly values: readonly (Value | undefined)[];
+}
+
+const features = tableFeatures({
+  rowSortingFeature,
+  columnFilteringFeature,
+  globalFilteringFeature,
+  rowPaginationFeature,
+  sortedRowModel: createSortedRowModel(),
+  filteredRowModel: createFilteredRowModel(),
+  paginatedRowModel: createPaginatedRowModel(),
+  sortFns: { alphanumeric: sortFn_alphanumeric, text: sortFn_text },
+});
+
+const kSigns = { ascending: '▲', descending: '▼', none: '↕' } as const;
+
+const titleOf = <Row,>({ title, name }: DataColumn<Row>) => title ?? (typeof name === 'string' ? name : '');
+
+/** A column's name as the button that sorts by it; where the name is a term with its definition, the button stands beside it. */
+function Head<Row>({
+  column,
+  sorted,
+  onPress,
+}: {
+  readonly column: DataColumn<Row>;
+  readonly sorted: Column<Row>['sorted'];
+  readonly onPress: () => void;
+}) {
+  const plain = typeof column.name === 'string';
+  return (
+    <>
+      {plain ? null : column.name}
+      <button
+        type="button"
+        className={styles.sort}
+        onClick={onPress}
+        aria-label={plain ? undefined : `Sort by ${titleOf(column)}`}
+      >
+        {plain ? column.name : null}
+        <span aria-hidden="true" className={styles.sign}>
+          {kSigns[sorted ?? 'none']}
+        </span>
+      </button>
+    </>
+  );
+}
+
+function Pages({
+  label,
+  page,
+  size,
+  of,
+  onPage,
+}: {
+  readonly label: string;
+  readonly page: number;
+  readonly size: number;
+  readonly of: number;
+  readonly onPage: (page: number) => void;
+}) {
+  const end = (page + 1) * size;
+  return (
+    <nav className={styles.pages} aria-label={label}>
+      <Button disabled={page === 0} onClick={() => onPage(page - 1)}>
+        Previous
+      </Button>
+      <span role="status">
+        {formatCount(page * size + 1)}–{formatCount(Math.min(end, of))} of {formatCount(of)}
+      </span>
+      <Button disabled={end >= of} onClick={() => onPage(page + 1)}>
+        Next
+      </Button>
+    </nav>
+  );
+}
+
+/** A table with many rows: sorted by its headers, narrowed by a text, shown page by page. */
+export function DataTable<Row>({
+  columns,
+  rows,
+  caption,
+  order,
+  filter,
+  pageSize: most = 50,
+  partial,
+  below,
+  empty,
+  ...rest
+}: Props<Row>) {
+  const [page, setPage] = useState(0);
+  const [typed, setTyped] = useState('');
+  const pageSize = partial === undefined ? most : Number.MAX_SAFE_INTEGER;
+  // The lines hold the values of now: what a column sorts by may come from another answer than the rows.
+  const lines = (rows ?? []).map((row) => ({
+    row,
+    text: filter?.text(row) ?? '',
+    values: columns.map(({ by }) => by?.(row) ?? undefined),
+  }));
+  const table = useTable<typeof features, Line<Row>>({
+    features,
+    data: lines,
+    columns: [
+      ...columns.map(({ by }, i): ColumnDef<typeof features, Line<Row>> => ({
+        id: String(i),
+        accessorFn: ({ values }) => values[i],
+        enableSorting: by !== undefined,
+        enableGlobalFilter: false,
+        sortUndefined: 'last',
+      })),
+      { id: 'text', accessorFn: ({ text }) => text },
+    ],
+    state: { pagination: { pageIndex: page, pageSize }, globalFilter: typed.trim() },
+    autoResetAll: false,
+  });
+  const last = Math.max(table.getPageCount() - 1, 0);
+  if (page > last) setPage(last);
+  const found = table.getPrePaginatedRowModel().rows.length;
+  const [sorting] = table.state.sorting;
+  const sortedBy = sorting && columns[Number(sorting.id)];
+
+  const headed = columns.map((column, i): Column<Row> => {
+    if (!column.by) return column;
+    const sorted = column !== sortedBy ? undefined : sorting?.desc ? 'descending' : 'ascending';
+    const press = () => {
+      table.getColumn(String(i))?.toggleSorting();
+      setPage(0);
+    };
+    return { ...column, sorted, name: <Head column={column} sorted={sorted} onPress={press} /> };
+  });
+  const ordered = sortedBy ? `sorted by ${titleOf(sortedBy)}` : order;
+  return (
+    <div className={styles.stack}>
+      {filter ? (
+        <div className={styles.tools}>
+          <span role="status">{typed === '' ? '' : `${formatCount(found)} of ${formatCount(lines.length)}`}</span>
+          <Field
+            label={<span className="hidden-visually">{filter.label}</span>}
+            placeholder={filter.label}
+            type="search"
+            value={typed}
+            onChange={(event) => {
+              setTyped(event.target.value);
+              setPage(0);
+            }}
+          />
+        </div>
+      ) : null}
+      {partial && (typed !== '' || sortedBy) ? (
+        <p className={styles.muted}>Only the rows loaded so far are searched and sorted.</p>
+      ) : null}
+      <Table<Row>
+        {...rest}
+        columns={headed}
+        caption={ordered === undefined ? caption : `${caption}, ${ordered}`}
+        rows={rows && table.getRowModel().rows.map(({ original }) => original.row)}
+        empty={rows?.length === 0 ? empty : 'No rows match.'}
+      />
+      {below ??
+        (last > 0 ? (
+          <Pages label={`Pages: ${caption}`} page={page} size={pageSize} of={found} onPage={setPage} />
+        ) : null)}
+    </div>
+  );
+}
