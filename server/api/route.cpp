@@ -3,51 +3,15 @@
 #include <algorithm>
 #include <charconv>
 
+#include "core/errc_words.hpp"
 #include "core/file.hpp"
 
 namespace tractus::api {
-
-std::string_view name(Role role) {
-  switch (role) {
-    case Role::admin:
-      return "admin";
-    case Role::director:
-      return "director";
-    case Role::faculty:
-      return "faculty";
-    case Role::researcher:
-      return "researcher";
-    case Role::technician:
-      return "technician";
-    case Role::trainee:
-      return "trainee";
-    case Role::station:
-      return "station";
-  }
-  return "station";
-}
-
-std::optional<Role> role_named(std::string_view text) {
-  const auto found = std::ranges::find_if(kRoles, [&](Role role) { return name(role) == text; });
-  return found == kRoles.end() ? std::nullopt : std::optional(*found);
-}
 
 std::vector<Grant> people() {
   std::vector<Grant> out(kRoles.begin(), kRoles.end());
   std::erase_if(out, [](const Grant& grant) { return grant.role == Role::station; });
   return out;
-}
-
-std::string_view name(Scope of) {
-  switch (of) {
-    case Scope::own:
-      return "own";
-    case Scope::cohort:
-      return "cohort";
-    case Scope::all:
-      return "all";
-  }
-  return "own";
 }
 
 Parameter path_text(std::string name, std::string meaning) {
@@ -185,34 +149,6 @@ int status_of(core::Errc code) {
       return 500;
   }
   return 500;
-}
-
-std::string_view name(core::Errc code) {
-  switch (code) {
-    case core::Errc::bad_input:
-      return "bad_input";
-    case core::Errc::out_of_range:
-      return "out_of_range";
-    case core::Errc::not_found:
-      return "not_found";
-    case core::Errc::corrupt:
-      return "corrupt";
-    case core::Errc::io:
-      return "io";
-    case core::Errc::conflict:
-      return "conflict";
-    case core::Errc::unauthorised:
-      return "unauthorised";
-    case core::Errc::forbidden:
-      return "forbidden";
-    case core::Errc::too_large:
-      return "too_large";
-    case core::Errc::unavailable:
-      return "unavailable";
-    case core::Errc::cancelled:
-      return "cancelled";
-  }
-  return "io";
 }
 
 http::Response error_response(const core::Error& error) {

@@ -1,7 +1,6 @@
 /// A route as data: the server dispatches by it, and the description is made from it.
 #pragma once
 
-#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -10,6 +9,7 @@
 
 #include "core/json.hpp"
 #include "core/result.hpp"
+#include "db/store/people/role.hpp"
 #include "server/http/lane.hpp"
 #include "server/http/message.hpp"
 #include "server/http/scratch_space.hpp"
@@ -19,18 +19,17 @@ namespace tractus::api {
 
 struct Backend;
 
-/// The role of a caller, after the credentials were checked.
-enum class Role { admin, director, faculty, researcher, technician, trainee, station };
-inline constexpr std::array kRoles{Role::admin,      Role::director,   Role::faculty,
-                                   Role::researcher, Role::technician, Role::trainee,
-                                   Role::station};
-std::string_view name(Role role);
-std::optional<Role> role_named(std::string_view name);
+using core::name;
+using store::kRoles;
+using store::Role;  // of a caller, after the credentials were checked
 
 /// The objects that a role may access: its own, those of the people in the cohorts that it leads,
 /// or all.
 enum class Scope { own, cohort, all };
-std::string_view name(Scope of);
+constexpr auto words(Scope) {
+  using enum Scope;
+  return std::to_array<core::Word<Scope>>({{own, "own"}, {cohort, "cohort"}, {all, "all"}});
+}
 
 /// A role that may call a route, and for which objects; a Role alone means all objects.
 struct Grant {
@@ -172,7 +171,6 @@ http::Response as_report(http::Response response);
 http::Response json_response(const core::Json& json, int status = 200);
 /// The HTTP status of an error code; the only place that defines this mapping.
 int status_of(core::Errc code);
-std::string_view name(core::Errc code);
 http::Response error_response(const core::Error& error);
 
 }  // namespace tractus::api

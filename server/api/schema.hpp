@@ -18,6 +18,11 @@ using Field = std::pair<std::string, core::Json>;
 core::Json object(const std::vector<Field>& fields);
 core::Json text(std::string_view meaning);
 core::Json one_of(const std::vector<std::string>& values, std::string_view meaning);
+/// A word of an enum.
+template <core::Named E>
+core::Json one_of(std::string_view meaning) {
+  return one_of(core::names<E>(), meaning);
+}
 /// `unit`: for example "N", "s" or "1".
 core::Json number(std::string_view unit, std::string_view meaning);
 core::Json integer(std::string_view unit, std::string_view meaning);

@@ -30,11 +30,7 @@ math::Vec3 point(core::Fields& fields, const char* key) {
 Result<volume::BreachPlan> breach_from(const Json& json, const std::string& where) {
   core::Fields fields(json, where);
   volume::BreachPlan out;
-  const auto wall = volume::wall_named(fields.text("wall", 16));
-  if (wall)
-    out.wall = *wall;
-  else
-    fields.wrong("wall", "medial, lateral, superior, inferior or anterior is expected");
+  out.wall = fields.word<volume::Wall>("wall");
   out.depth_m = fields.number_or("depth_m", out.depth_m, -kAny_m, kAny_m);
   if (fields.has("at_m")) out.at_m = fields.number("at_m", -kAny_m, kAny_m);
   TRY(fields.done());

@@ -180,7 +180,7 @@ core::Result<Truth> Truth::from_json(const Json& json, const std::string& where)
   const Json* breached = fields.member("breached");
   if (breached && !breached->is_null()) {
     const auto text = fields.text("breached");
-    truth.breached = volume::wall_named(text);
+    truth.breached = core::from_name<volume::Wall>(text);
     if (!truth.breached) fields.wrong("breached", fmt::format("'{}' is not a wall", text));
   }
   const Json* at = fields.member("breach_m");

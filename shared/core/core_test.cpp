@@ -11,6 +11,7 @@
 #include "core/clock.hpp"
 #include "core/file.hpp"
 #include "core/json.hpp"
+#include "core/named.hpp"
 #include "core/progress.hpp"
 #include "core/signing.hpp"
 #include "core/words.hpp"
@@ -45,6 +46,44 @@ TEST(Signature, HoldsForTheMessageAndForNothingElse) {
   EXPECT_FALSE(verify(bytes_of("cast"), signature, key.public_hex));
   EXPECT_FALSE(verify(bytes_of("case"), signature, KeyPair::generate().public_hex));
   EXPECT_FALSE(verify(bytes_of("case"), "zz", key.public_hex));
+}
+
+enum class Light { on, off };
+constexpr auto words(Light) {
+  return std::to_array<Word<Light>>({{Light::on, "on"}, {Light::off, "dark"}});
+}
+
+TEST(Named, ReadsAndWritesTheWordsOfItsTable) {
+  EXPECT_EQ(name(Light::off), "dark");
+  EXPECT_EQ(from_name<Light>("dark"), Light::off);
+  EXPECT_FALSE(from_name<Light>("off"));
+  EXPECT_EQ(names<Light>(), (std::vector<std::string>{"on", "dark"}));
+}
+
+enum class Gap { first, second };
+constexpr auto words(Gap) { return std::to_array<Word<Gap>>({{Gap::first, "first"}}); }
+
+TEST(Named, ATableWithoutAValueIsNoticedByTheCompiler) {
+  static_assert(is_whole<Light>());
+  static_assert(!is_whole<Gap>());
+}
+
+TEST(Named, AnUnknownWordInJsonIsAnErrorWithThoseAllowed) {
+  const Json json{{"light", "dim"}};
+  Fields fields(json, "room: ");
+  fields.word<Light>("light");
+  const auto done = fields.done();
+  ASSERT_FALSE(done);
+  EXPECT_EQ(done.error().what, "room: /light: 'dim' is none of on, dark");
+}
+
+TEST(Named, AWordThatIsMissingIsTheGivenOneOrAnError) {
+  const Json json = Json::object();
+  Fields lenient(json, "room: "), strict(json, "room: ");
+  EXPECT_EQ(lenient.word_or("light", Light::off), Light::off);
+  EXPECT_TRUE(lenient.done());
+  strict.word<Light>("light");
+  EXPECT_EQ(strict.done().error().what, "room: /light: is missing");
 }
 
 class FileTest : public testing::Test {

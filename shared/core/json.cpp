@@ -137,6 +137,10 @@ void Fields::wrong(const char* key, std::string why) {
   if (first_error_.empty()) first_error_ = fmt::format("{}/{}: {}", where_, key, why);
 }
 
+void Fields::unknown_word(const char* key, const std::string& given, const std::string& allowed) {
+  wrong(key, fmt::format("'{}' is none of {}", one_line(given), allowed));
+}
+
 const Json* Fields::member(const char* key, bool needed) {
   const Json* found = find(key);
   if (!found && needed) wrong(key, "is missing");

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "core/named.hpp"
 #include "core/result.hpp"
 
 namespace tractus::core {
@@ -49,6 +50,15 @@ class Fields {
   long integer_or(const char* key, long fallback, long low, long high);
   std::string text(const char* key, std::size_t limit = 4096);
   std::string text_or(const char* key, std::string fallback, std::size_t limit = 4096);
+  /// A word of an enum.
+  template <Named E>
+  E word(const char* key) {
+    return word_of<E>(key, text(key, kLongestWord));
+  }
+  template <Named E>
+  E word_or(const char* key, E fallback) {
+    return word_of<E>(key, text_or(key, std::string(name(fallback)), kLongestWord));
+  }
   /// Exactly `size` finite numbers.
   std::vector<double> numbers(const char* key, std::size_t size);
   /// The raw member, or null (with the error noted when `needed`).
@@ -63,6 +73,14 @@ class Fields {
   const std::string& where() const { return where_; }
 
  private:
+  static constexpr std::size_t kLongestWord = 64;
+  template <Named E>
+  E word_of(const char* key, const std::string& given) {
+    const auto known = from_name<E>(given);
+    if (!known) unknown_word(key, given, names_listed<E>());
+    return known.value_or(E{});
+  }
+  void unknown_word(const char* key, const std::string& given, const std::string& allowed);
   const Json* find(const char* key);
   const Json& object_;
   std::string where_;

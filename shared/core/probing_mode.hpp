@@ -1,10 +1,9 @@
 /// What the probing rig's controller was doing: one word for the law, the loop and the file.
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
-#include <string_view>
+
+#include "core/named.hpp"
 
 namespace tractus::core {
 
@@ -18,11 +17,13 @@ enum class ProbingMode : std::uint8_t {
 };
 inline constexpr int kProbingModes = 5;
 
-/// @param mode  one of those above
-constexpr std::string_view name(ProbingMode mode) {
-  constexpr std::array<std::string_view, kProbingModes> kNames{"holding", "bone", "resistance",
-                                                               "breach", "stopped"};
-  return kNames[std::size_t(mode)];
+constexpr auto words(ProbingMode) {
+  using enum ProbingMode;
+  return std::to_array<Word<ProbingMode>>({{holding, "holding"},
+                                           {bone, "bone"},
+                                           {resistance, "resistance"},
+                                           {breach, "breach"},
+                                           {stopped, "stopped"}});
 }
 
 }  // namespace tractus::core

@@ -15,18 +15,6 @@ namespace {
 constexpr double kRounding = 1e-12;
 }  // namespace
 
-std::string_view name(Kind kind) {
-  switch (kind) {
-    case Kind::force:
-      return "force";
-    case Kind::structure:
-      return "structure";
-    case Kind::measurement:
-      return "measurement";
-  }
-  return "";
-}
-
 std::string unit_of(const Param& param) {
   using Ending = std::pair<std::string_view, std::string_view>;
   static constexpr std::array<Ending, 16> kEndings{{{"_Ns2_per_m2", "N·s²/m²"},

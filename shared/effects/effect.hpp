@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/named.hpp"
 #include "core/result.hpp"
 
 namespace tractus::effects {
@@ -19,7 +20,12 @@ enum class Kind {
   structure,    ///< changes what the law sees or how it answers
   measurement,  ///< corrects the comparison; never rendered to a hand
 };
-std::string_view name(Kind kind);
+constexpr auto words(Kind) {
+  using enum Kind;
+  return std::to_array<core::Word<Kind>>(
+      {{force, "force"}, {structure, "structure"}, {measurement, "measurement"}});
+}
+using core::name;
 
 /// On the probing rig: the recorded channel that shows an effect. A set that only turns is compared
 /// in its torque, every other in its force.

@@ -13,18 +13,6 @@ std::vector<std::pair<MetricInfo, Score>> score_all(const Subject& subject) {
   return out;
 }
 
-std::string_view name(ShownAs shown_as) {
-  switch (shown_as) {
-    case ShownAs::number:
-      return "number";
-    case ShownAs::share:
-      return "share";
-    case ShownAs::correct_or_incorrect:
-      break;
-  }
-  return "correct_or_incorrect";
-}
-
 core::Json to_json(const MetricInfo& info) {
   return {{"id", info.id},
           {"label", info.label},

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/json.hpp"
+#include "core/named.hpp"
 #include "trial/trial.hpp"
 #include "volume/tract.hpp"
 
@@ -56,7 +57,12 @@ enum class ShownAs {
   share,                ///< as a percentage
   correct_or_incorrect  ///< 1: "correct", 0: "incorrect"; such a metric judges the trainee's answer
 };
-std::string_view name(ShownAs shown_as);
+constexpr auto words(ShownAs) {
+  using enum ShownAs;
+  return std::to_array<core::Word<ShownAs>>(
+      {{number, "number"}, {share, "share"}, {correct_or_incorrect, "correct_or_incorrect"}});
+}
+using core::name;
 
 /// Place in a table of statistics: one row for each quantity, one column for each statistic.
 struct TableCell {

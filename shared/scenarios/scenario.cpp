@@ -16,8 +16,6 @@ using core::Errc;
 using core::Error;
 using core::Result;
 
-constexpr std::array<std::string_view, kKinds> kNames{"hard", "soft", "lateral_breach",
-                                                      "in_out_in"};
 constexpr double kNearly_m = 1e-9;
 constexpr double kThinnestLayer_m = 1e-4;
 constexpr std::size_t kMaxWalls = 16, kMaxStretches = 256;
@@ -117,14 +115,6 @@ void add_lattice(const Scenario& s, double from_m, double to_m, std::vector<laws
 }
 
 }  // namespace
-
-std::string_view name(Kind kind) { return kNames[std::size_t(kind)]; }
-
-std::optional<Kind> kind_of(std::string_view name) {
-  const auto found = std::ranges::find(kNames, name);
-  if (found == kNames.end()) return std::nullopt;
-  return Kind(found - kNames.begin());
-}
 
 Result<void> Scenario::check() const {
   TRY(scenarios::check(

@@ -21,8 +21,14 @@ enum class Kind : unsigned char {
   in_out_in        ///< through the wall and back into bone
 };
 inline constexpr int kKinds = 4;
-std::string_view name(Kind kind);
-std::optional<Kind> kind_of(std::string_view name);
+constexpr auto words(Kind) {
+  using enum Kind;
+  return std::to_array<core::Word<Kind>>({{hard, "hard"},
+                                          {soft, "soft"},
+                                          {lateral_breach, "lateral_breach"},
+                                          {in_out_in, "in_out_in"}});
+}
+using core::name;
 
 /// Normal probing [Probing, Table 1, left].
 struct Bone {

@@ -101,11 +101,7 @@ Result<Scenario> Scenario::from_json(const Json& json, const std::string& where)
     fields.wrong("format", fmt::format("'{}' is not a format of scenarios; '{}' is expected",
                                        format, kFormat));
   s.name = fields.text("name", 256);
-  if (const auto text = fields.text("kind"); const auto kind = kind_of(text))
-    s.kind = *kind;
-  else
-    fields.wrong("kind",
-                 fmt::format("'{}': hard, soft, lateral_breach or in_out_in is expected", text));
+  s.kind = fields.word<Kind>("kind");
   s.density = number(fields, "density", 1.0);
   s.travel_m = number(fields, "travel_m");
   if (const Json* walls = fields.member("walls_m", false))

@@ -60,16 +60,6 @@ std::vector<int> balanced(const OrderPlan& plan, int participant) {
 
 }  // namespace
 
-std::string_view name(Ordering ordering) {
-  return ordering == Ordering::random ? "random" : "balanced";
-}
-
-std::optional<Ordering> ordering_of(std::string_view name) {
-  if (name == "random") return Ordering::random;
-  if (name == "balanced") return Ordering::balanced;
-  return std::nullopt;
-}
-
 std::vector<std::vector<int>> williams_square(int k) {
   core::require(k >= 1, "a square has at least one condition");
   std::vector<std::vector<int>> rows;

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
-#include <string_view>
 #include <vector>
+
+#include "core/named.hpp"
 
 namespace tractus::study {
 
@@ -12,8 +12,11 @@ enum class Ordering : unsigned char {
   random,   ///< every participant a shuffle of all trials of their own [Probing, section 5]
   balanced  ///< in blocks, each scenario once per block, by rows of a Williams square
 };
-std::string_view name(Ordering ordering);
-std::optional<Ordering> ordering_of(std::string_view name);
+constexpr auto words(Ordering) {
+  return std::to_array<core::Word<Ordering>>(
+      {{Ordering::random, "random"}, {Ordering::balanced, "balanced"}});
+}
+using core::name;
 
 /// What an order follows from. The same plan gives the same orders on every machine.
 struct OrderPlan {

@@ -97,8 +97,8 @@ TEST(RandomOrder, FavoursNoScenarioAtAnyPlace) {
 
 TEST(Ordering, IsReadByTheNameItIsWrittenWith) {
   for (const auto ordering : {Ordering::random, Ordering::balanced})
-    EXPECT_EQ(ordering_of(name(ordering)), ordering);
-  EXPECT_FALSE(ordering_of("alphabetical"));
+    EXPECT_EQ(core::from_name<Ordering>(name(ordering)), ordering);
+  EXPECT_FALSE(core::from_name<Ordering>("alphabetical"));
 }
 
 }  // namespace

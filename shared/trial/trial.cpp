@@ -16,8 +16,6 @@ constexpr double kMaxRate_Hz = 1e5;
 constexpr double kDeepest_m = 0.2;                  // of a breach that somebody felt
 constexpr long kMaxUtc_us = 4'102'444'800'000'000;  // the year 2100
 
-constexpr std::array<std::string_view, 2> kRigs{"palpation", "probing"};
-
 template <class T, std::size_t N>
 bool plausible(const std::array<T, N>& values) {
   return std::ranges::all_of(values, [](T v) { return std::abs(v) <= T(kMaxMagnitude); });
@@ -53,14 +51,6 @@ core::Json object_of(core::Fields& fields, const char* key) {
   return *found;
 }
 }  // namespace
-
-std::string_view name(Rig rig) { return kRigs[std::size_t(rig)]; }
-
-std::optional<Rig> rig_named(std::string_view name) {
-  const auto found = std::ranges::find(kRigs, name);
-  if (found == kRigs.end()) return std::nullopt;
-  return Rig(found - kRigs.begin());
-}
 
 std::string fault_of(const Sample& s, const Sample* before) {
   if (auto fault = order_fault(s, before); !fault.empty()) return fault;
@@ -198,10 +188,7 @@ core::Result<Header> Header::from_json(const core::Json& json, const std::string
   header.device = fields.text("device", kMaxName);
   header.started_utc_us = fields.integer("started_utc_us", 0, kMaxUtc_us);
   header.rate_Hz = fields.number("rate_Hz", 1e-3, kMaxRate_Hz);
-  if (const auto text = fields.text_or("rig", "palpation", 64); const auto rig = rig_named(text))
-    header.rig = *rig;
-  else
-    fields.wrong("rig", "\"palpation\" or \"probing\" is expected");
+  header.rig = fields.word_or("rig", Rig::palpation);
   header.probe = object_of(fields, "probe");
   header.extra = object_of(fields, "extra");
   TRY(fields.done());

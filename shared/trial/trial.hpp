@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/json.hpp"
+#include "core/named.hpp"
 #include "core/probing_mode.hpp"
 #include "math/geometry.hpp"
 
@@ -42,11 +43,12 @@ static_assert(sizeof(Sample) == 136);
 
 /// The two simulators. A trial is of one of them and holds its kind of samples alone.
 enum class Rig : std::uint8_t { palpation, probing };
-std::string_view name(Rig rig);
-std::optional<Rig> rig_named(std::string_view name);
+constexpr auto words(Rig) {
+  return std::to_array<core::Word<Rig>>({{Rig::palpation, "palpation"}, {Rig::probing, "probing"}});
+}
 
 using core::kProbingModes;
-using core::name;  // of a mode
+using core::name;
 using core::ProbingMode;
 
 /// One tick of a probing trial: what was read in one exchange with the rig, and what was commanded

@@ -3,9 +3,8 @@
 #pragma once
 
 #include <array>
-#include <optional>
-#include <string_view>
 
+#include "core/named.hpp"
 #include "math/geometry.hpp"
 
 namespace tractus::volume {
@@ -13,19 +12,16 @@ namespace tractus::volume {
 using math::Vec3;
 
 enum class Wall { medial, lateral, superior, inferior, anterior };
-inline constexpr std::array kWalls{Wall::medial, Wall::lateral, Wall::superior, Wall::inferior,
-                                   Wall::anterior};
-
-constexpr std::string_view name(Wall wall) {
-  constexpr std::array<std::string_view, 5> names{"medial", "lateral", "superior", "inferior",
-                                                  "anterior"};
-  return names[std::size_t(wall)];
+constexpr auto words(Wall) {
+  using enum Wall;
+  return std::to_array<core::Word<Wall>>({{medial, "medial"},
+                                          {lateral, "lateral"},
+                                          {superior, "superior"},
+                                          {inferior, "inferior"},
+                                          {anterior, "anterior"}});
 }
-inline std::optional<Wall> wall_named(std::string_view text) {
-  for (const Wall wall : kWalls)
-    if (name(wall) == text) return wall;
-  return std::nullopt;
-}
+using core::name;
+inline constexpr auto kWalls = core::values<Wall>();
 
 /// A straight channel from its entry along `axis`. The side walls' directions are unit vectors in
 /// V, perpendicular to the axis; medial = −lateral, inferior = −superior, and the two pairs are

@@ -35,7 +35,8 @@ core::Result<ProbingTask> task_of(const Options& options, const session::Station
 }  // namespace
 
 core::Result<scenarios::Scenario> scenario_named(const std::string& name) {
-  if (const auto kind = scenarios::kind_of(name); kind && !std::filesystem::exists(name))
+  if (const auto kind = core::from_name<scenarios::Kind>(name);
+      kind && !std::filesystem::exists(name))
     return scenarios::tuned(*kind);
   return scenarios::Scenario::read(name);
 }

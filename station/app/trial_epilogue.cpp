@@ -21,7 +21,7 @@ core::Result<std::optional<trial::Answer>> answer_of(
     if (!(std::cin >> wall)) return std::optional<trial::Answer>();
   }
   if (wall == "none") return std::optional(trial::Answer{});
-  if (volume::wall_named(wall))
+  if (core::from_name<volume::Wall>(wall))
     return std::optional(trial::Answer{.breach = true, .wall = wall, .confidence = std::nullopt});
   return core::Error{core::Errc::bad_input, fmt::format("{}: no such wall", wall)};
 }

@@ -2,17 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <array>
-
 #include "core/try.hpp"
 
 namespace tractus::session {
-
-std::string_view name(State state) {
-  constexpr std::array<std::string_view, 6> names{"idle",      "ready", "running",
-                                                  "answering", "done",  "fault"};
-  return names[std::size_t(state)];
-}
 
 core::Error Station::not_now(const char* action) const {
   return {core::Errc::conflict,

@@ -3,14 +3,23 @@
 
 #include <memory>
 #include <optional>
-#include <string_view>
 
+#include "core/named.hpp"
 #include "station/session/palpation_rig.hpp"
 
 namespace tractus::session {
 
 enum class State { idle, ready, running, answering, done, fault };
-std::string_view name(State state);
+constexpr auto words(State) {
+  using enum State;
+  return std::to_array<core::Word<State>>({{idle, "idle"},
+                                           {ready, "ready"},
+                                           {running, "running"},
+                                           {answering, "answering"},
+                                           {done, "done"},
+                                           {fault, "fault"}});
+}
+using core::name;
 
 /// One station, one trial at a time. Every deed says in which states it is allowed; elsewhere it is
 /// Errc::conflict and nothing happens. Not for several threads.

@@ -1,6 +1,9 @@
 #include "db/store/database/value.hpp"
 
+#include <fmt/format.h>
+
 #include "core/require.hpp"
+#include "core/words.hpp"
 
 namespace tractus {
 namespace store {
@@ -63,6 +66,12 @@ std::optional<bool> Row::truth_or_null(std::size_t column) const {
 }
 std::optional<std::string> Row::text_or_null(std::size_t column) const {
   return is_null(value(column)) ? std::nullopt : std::optional(text(column));
+}
+
+core::Error Row::unknown_word(std::string_view what, const std::string& found,
+                              const std::string& allowed) {
+  return {core::Errc::corrupt,
+          fmt::format("database: {}: '{}' is none of {}", what, core::one_line(found), allowed)};
 }
 
 }  // namespace store

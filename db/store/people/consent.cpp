@@ -1,34 +1,22 @@
 #include "db/store/people/consent.hpp"
 
 #include "core/try.hpp"
+#include "db/store/rows.hpp"
 
 namespace tractus {
 namespace store {
 namespace {
 
-constexpr std::array<std::string_view, 5> kNames{"none", "summary", "metrics", "reduced", "full"};
 constexpr const char* kConsent =
     "select account_id, study_id, participant, tier, basis, noted_utc_us, noted_by from consents ";
 
-core::Result<std::vector<Consent>> consents_from(core::Result<Rows> rows) {
-  if (!rows) return rows.error();
-  std::vector<Consent> out;
-  for (const Row& row : *rows)
-    out.push_back({row.text(0), row.text(1), row.text(2),
-                   tier_named(row.text(3)).value_or(Tier::none), row.text(4), row.integer(5),
-                   row.text(6)});
-  return out;
+core::Result<Consent> consent_from(const Row& row) {
+  const auto tier = TRY(row.word<Tier>(3, "consents.tier"));
+  return Consent{row.text(0), row.text(1),    row.text(2), tier,
+                 row.text(4), row.integer(5), row.text(6)};
 }
 
 }  // namespace
-
-std::string_view name(Tier tier) { return kNames[static_cast<std::size_t>(tier)]; }
-
-std::optional<Tier> tier_named(std::string_view name) {
-  for (std::size_t i = 0; i < kNames.size(); ++i)
-    if (kNames[i] == name) return kTiers[i];
-  return std::nullopt;
-}
 
 core::Result<void> set_consent(Writing& tx, const Consent& c) {
   if (!c.account_id.empty() && c.study_id.empty())
@@ -38,19 +26,20 @@ core::Result<void> set_consent(Writing& tx, const Consent& c) {
       "noted_by) values (?, ?, ?, ?, ?, ?, ?) on conflict (account_id, study_id, participant) do "
       "update set tier = excluded.tier, basis = excluded.basis, noted_utc_us = "
       "excluded.noted_utc_us, noted_by = excluded.noted_by",
-      {c.account_id, c.study_id, c.participant, std::string(name(c.tier)), c.basis, c.noted_utc_us,
+      {c.account_id, c.study_id, c.participant, name_value(c.tier), c.basis, c.noted_utc_us,
        c.noted_by}));
   return {};
 }
 
 core::Result<std::vector<Consent>> consents_of(Reading& tx, const std::string& account_id) {
-  return consents_from(
-      tx.query(std::string(kConsent) + "where account_id = ? order by study_id", {account_id}));
+  return all_of(
+      tx.query(std::string(kConsent) + "where account_id = ? order by study_id", {account_id}),
+      consent_from);
 }
 
 core::Result<std::vector<Consent>> all_consents(Reading& tx) {
-  return consents_from(
-      tx.query(std::string(kConsent) + "order by account_id, study_id, participant"));
+  return all_of(tx.query(std::string(kConsent) + "order by account_id, study_id, participant"),
+                consent_from);
 }
 
 core::Result<ConsentBook> ConsentBook::read(Reading& tx) {

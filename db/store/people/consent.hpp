@@ -20,10 +20,16 @@ enum class Tier {
   reduced,  ///< samples, at most 100 a second
   full,     ///< every sample
 };
-inline constexpr std::array kTiers{Tier::none, Tier::summary, Tier::metrics, Tier::reduced,
-                                   Tier::full};
-std::string_view name(Tier tier);
-std::optional<Tier> tier_named(std::string_view name);
+constexpr auto words(Tier) {
+  using enum Tier;
+  return std::to_array<core::Word<Tier>>({{none, "none"},
+                                          {summary, "summary"},
+                                          {metrics, "metrics"},
+                                          {reduced, "reduced"},
+                                          {full, "full"}});
+}
+using core::name;
+inline constexpr auto kTiers = core::values<Tier>();
 
 struct Consent {
   std::string account_id;   ///< empty for a participant without an account

@@ -54,8 +54,8 @@ TEST_F(ConsentTest, WhatAnAccountSaysOfEverywhereReplacesWhatItSaidOfStudies) {
 }
 
 TEST_F(ConsentTest, TiersAreNamedBothWays) {
-  for (const Tier tier : kTiers) EXPECT_EQ(tier_named(name(tier)), tier);
-  EXPECT_FALSE(tier_named("all"));
+  for (const Tier tier : kTiers) EXPECT_EQ(core::from_name<Tier>(name(tier)), tier);
+  EXPECT_FALSE(core::from_name<Tier>("all"));
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "server/api/schema.hpp"
 #include "server/jobs/make_case.hpp"
 #include "server/jobs/source_volume.hpp"
+#include "volume/tract.hpp"
 
 namespace tractus {
 namespace api {
@@ -130,8 +131,7 @@ std::vector<schema::Field> plan_fields() {
 
 std::vector<NamedSchema> tract_schemas() {
   using namespace schema;
-  const Json wall =
-      one_of({"medial", "lateral", "superior", "inferior", "anterior"}, "Wall of the tract");
+  const Json wall = one_of<volume::Wall>("Wall of the tract");
   const Json point = tuple(number("m", "One coordinate x, y or z, in metres"), 3,
                            "Point in the volume's frame (LPS), in metres");
   const Json thinnest =

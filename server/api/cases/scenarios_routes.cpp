@@ -99,7 +99,7 @@ Error absent(const std::string& id) { return {Errc::not_found, "no scenario " + 
 
 /// The contents of a version; for the name of a kind, those of the tuned scenario of this kind.
 Result<Scenario> contents(Backend& backend, const std::string& id) {
-  if (const auto kind = scenarios::kind_of(id)) return scenarios::tuned(*kind);
+  if (const auto kind = core::from_name<scenarios::Kind>(id)) return scenarios::tuned(*kind);
   const auto version = TRY(
       backend.store.read([&](store::Reading& tx) { return store::scenario_version_of(tx, id); }));
   if (!version) return absent(id);
@@ -221,7 +221,7 @@ std::vector<NamedSchema> curve_schemas() {
 
 std::vector<NamedSchema> version_schemas() {
   using namespace schema;
-  const Json kind = one_of({"hard", "soft", "lateral_breach", "in_out_in"}, "Kind of the scenario");
+  const Json kind = one_of<scenarios::Kind>("Kind of the scenario");
   const Json tuned = object({{"kind", kind},
                              {"name", text("Name of the scenario")},
                              {"id", text("Id of the scenario's version")}});

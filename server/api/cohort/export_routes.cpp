@@ -72,7 +72,7 @@ Result<http::Response> export_samples(const Call& call) {
 }
 
 Result<http::Response> export_cohort(const Call& call) {
-  const auto tier = store::tier_named(call.text("tier"));
+  const auto tier = core::from_name<Tier>(call.text("tier"));
   if (!tier || *tier == Tier::none)
     return Error{Errc::bad_input, "tier: summary, metrics, reduced or full is expected"};
   auto zip = TRY(cohort_zip(call.backend, call.caller.id, study_of_call(call), *tier));

@@ -23,8 +23,7 @@ core::Result<http::Response> list_metrics(const Call&) {
 std::vector<RouteInfo> metrics_routes() {
   auto fields = metric_fields();
   fields.emplace_back("rig",
-                      schema::nullable(schema::one_of(
-                          {"palpation", "probing"},
+                      schema::nullable(schema::one_of<trial::Rig>(
                           "Rig whose trials have this metric; null: trials of both rigs have it")));
   const core::Json info = schema::object(fields);
   return {

@@ -19,14 +19,6 @@ using store::Tier;
 constexpr std::uint64_t kMaxBody_bytes = 4096;
 constexpr std::size_t kMaxBasis = 500;
 
-Tier tier_field(core::Fields& fields) {
-  const std::string word = fields.text("tier", 16);
-  const auto tier = store::tier_named(word);
-  if (!word.empty() && !tier)
-    fields.wrong("tier", "none, summary, metrics, reduced or full is expected");
-  return tier.value_or(Tier::none);
-}
-
 Result<Json> own_answer(store::Reading& tx, const std::string& account) {
   const auto book = TRY(store::ConsentBook::read(tx));
   auto assigned = TRY(store::assignments_of(tx, {.done_by = account}));
@@ -50,7 +42,7 @@ Result<http::Response> say_own(const Call& call) {
   store::Consent said{.account_id = call.caller.id,
                       .study_id = fields.text_or("study", "", 64),
                       .participant = "",
-                      .tier = tier_field(fields),
+                      .tier = fields.word<Tier>("tier"),
                       .basis = "own word",
                       .noted_utc_us = call.backend.now_utc_us(),
                       .noted_by = call.caller.name};
@@ -105,7 +97,7 @@ Result<http::Response> note_consent(const Call& call) {
   store::Consent said{.account_id = "",
                       .study_id = fields.text_or("study", "", 64),
                       .participant = fields.text_or("participant", "", 128),
-                      .tier = tier_field(fields),
+                      .tier = fields.word<Tier>("tier"),
                       .basis = fields.text("basis", kMaxBasis),
                       .noted_utc_us = call.backend.now_utc_us(),
                       .noted_by = call.caller.name};
@@ -137,10 +129,9 @@ RouteInfo route(std::string method, std::string path, std::string id, std::strin
 
 std::vector<RouteInfo> consent_routes() {
   using namespace schema;
-  const Json tier =
-      one_of({"none", "summary", "metrics", "reduced", "full"},
-             "Consent tier, the most data that research may use: none = nothing, summary = counts, "
-             "metrics = scores, reduced = samples at 100 Hz, full = every sample");
+  const Json tier = one_of<Tier>(
+      "Consent tier, the most data that research may use: none = nothing, summary = counts, "
+      "metrics = scores, reduced = samples at 100 Hz, full = every sample");
   RouteInfo own =
       route("GET", "session/consent", "ownConsent",
             "Show which data of the caller's trials research may use", people(), own_consent);

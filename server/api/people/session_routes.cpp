@@ -64,11 +64,9 @@ core::Result<http::Response> sign_out_route(const Call& call) {
 
 std::vector<RouteInfo> session_routes() {
   const std::string path = "/api/v1/session";
-  std::vector<std::string> roles;
-  for (const Role role : kRoles) roles.emplace_back(name(role));
   const core::Json identity = schema::object(
       {{"name", schema::text("Name of the account or the station")},
-       {"role", schema::one_of(roles, "Role, which decides what the caller may do")},
+       {"role", schema::one_of<Role>("Role, which decides what the caller may do")},
        {"id", schema::text("Id of the account or the station")},
        {"must_change",
         schema::truth("True if the person must choose a new password before any other request")}});

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/try.hpp"
+#include "trial/trial.hpp"
 
 namespace tractus::api {
 
@@ -41,7 +42,7 @@ std::vector<schema::Field> station_state_fields() {
   using namespace schema;
   const core::Json trial = object(
       {{"trial_id", text("Id of the running trial")},
-       {"rig", one_of({"palpation", "probing"}, "Rig on which the trial runs")},
+       {"rig", one_of<trial::Rig>("Rig on which the trial runs")},
        {"case_title", nullable(text("Title of the palpation case; for an assigned trial the name "
                                     "that does not reveal the case; null for a scenario"))},
        {"person",

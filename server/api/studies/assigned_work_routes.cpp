@@ -12,6 +12,7 @@
 #include "server/api/trials/uploads.hpp"
 #include "server/jobs/scenario_facts.hpp"
 #include "study/sealed_law.hpp"
+#include "trial/trial.hpp"
 #include "wire/assigned_work.hpp"
 
 namespace tractus {
@@ -209,7 +210,7 @@ std::vector<RouteInfo> assigned_work_routes() {
        object(
            {{"slot", text("Id of the slot, 64 hexadecimal characters; the station writes it as "
                           "case_id into the trial file and the upload")},
-            {"rig", one_of({"palpation", "probing"}, "Rig for the trial")},
+            {"rig", one_of<trial::Rig>("Rig for the trial")},
             {"name", text("Name of the trial that the trainee sees")},
             {"assignment", text("Title of the assignment")},
             {"number", integer("1",

@@ -45,13 +45,9 @@ Result<scenarios::Scenario> read_scenario(const Json& json, const std::string& w
   if (!json.is_object() || !json.contains("tuned"))
     return scenarios::Scenario::from_json(json, where + ": ");
   core::Fields fields(json, where);
-  const std::string kind = fields.text("tuned", kMaxName);
+  const auto kind = fields.word<scenarios::Kind>("tuned");
   TRY(fields.done());
-  const auto known = scenarios::kind_of(kind);
-  if (!known)
-    return Error{Errc::bad_input,
-                 where + "/tuned: hard, soft, lateral_breach or in_out_in is expected"};
-  return scenarios::tuned(*known);
+  return scenarios::tuned(kind);
 }
 
 /// Can it be handed out blind? Tried with a key of no station.

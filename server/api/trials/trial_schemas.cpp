@@ -1,12 +1,12 @@
+#include "metrics/metric.hpp"
 #include "server/api/schema.hpp"
 #include "server/api/trials/trial_json.hpp"
+#include "trial/trial.hpp"
 
 namespace tractus {
 namespace api {
 namespace {
 using namespace schema;
-
-const std::vector<std::string> kWalls{"medial", "lateral", "superior", "inferior", "anterior"};
 
 core::Json point(std::string_view meaning) {
   return tuple(number("m", "One coordinate x, y or z, in metres"), 3, meaning);
@@ -36,7 +36,7 @@ std::vector<Field> summary_fields() {
 core::Json trial_schema() {
   std::vector<Field> fields = summary_fields();
   const std::vector<Field> more{
-      {"rig", one_of({"palpation", "probing"}, "Rig on which the trial ran")},
+      {"rig", one_of<trial::Rig>("Rig on which the trial ran")},
       {"device", text("Name of the device, for example sim-lambda6, lambda6, sim-rig or rig")},
       {"rate_Hz", number("Hz", "Rate of the haptic loop, in Hz")},
       {"complete", truth("True if the trial was ended, false if it was interrupted")},
@@ -67,7 +67,8 @@ core::Json trial_schema() {
 
 core::Json truth_schema() {
   return object(
-      {{"breached", nullable(one_of(kWalls, "Wall with the breach; null if there is no breach"))},
+      {{"breached",
+        nullable(one_of<volume::Wall>("Wall with the breach; null if there is no breach"))},
        {"breach_m",
         nullable(point("Centre of the breach in the volume's frame (LPS), in metres; null if there "
                        "is no breach or if a trainee drilled the channel"))},
@@ -127,18 +128,17 @@ core::Json score_schema() {
 }  // namespace
 
 std::vector<schema::Field> metric_fields() {
-  return {
-      {"id", text("Id of the metric, which never changes")},
-      {"label", text("Name of the metric on pages")},
-      {"unit", text("Unit of the metric, for example N, s or 1")},
-      {"definition", text("Definition of the metric, one sentence")},
-      {"source", text("Source of the definition: paper and table, or own definition")},
-      {"shown_as", one_of({"number", "share", "correct_or_incorrect"},
-                          "How pages show the value: number = with its unit, share = as a "
-                          "percentage, correct_or_incorrect = as correct (1) or incorrect (0)")},
-      {"cell", nullable(object({{"row", text("Quantity, for example Transverse force")},
-                                {"symbol", text("Symbol of the quantity, for example F_xy")},
-                                {"column", text("Statistic, for example Mean, SD or Max")}}))}};
+  return {{"id", text("Id of the metric, which never changes")},
+          {"label", text("Name of the metric on pages")},
+          {"unit", text("Unit of the metric, for example N, s or 1")},
+          {"definition", text("Definition of the metric, one sentence")},
+          {"source", text("Source of the definition: paper and table, or own definition")},
+          {"shown_as", one_of<metrics::ShownAs>(
+                           "How pages show the value: number = with its unit, share = as a "
+                           "percentage, correct_or_incorrect = as correct (1) or incorrect (0)")},
+          {"cell", nullable(object({{"row", text("Quantity, for example Transverse force")},
+                                    {"symbol", text("Symbol of the quantity, for example F_xy")},
+                                    {"column", text("Statistic, for example Mean, SD or Max")}}))}};
 }
 
 std::vector<NamedSchema> trial_schemas() {
@@ -153,15 +153,15 @@ std::vector<NamedSchema> trial_schemas() {
                 text("Kind of the event, for example start, answer, end, fault or interrupted")},
                {"detail", anything("Details of the event, which depend on its kind")}})},
       {"Answer",
-       object(
-           {{"breach", truth("True if the trainee answered that there is a breach")},
-            {"wall", nullable(one_of(kWalls, "Wall of the breach; null if the answer names none"))},
-            {"confidence",
-             nullable(
-                 number("1", "Confidence in the answer, 0 to 1; null if the trainee gave none"))},
-            {"depth_m", nullable(number("m",
-                                        "Probing: depth of the breach in the answer, in metres; "
-                                        "null if the answer names none"))}})},
+       object({{"breach", truth("True if the trainee answered that there is a breach")},
+               {"wall", nullable(one_of<volume::Wall>(
+                            "Wall of the breach; null if the answer names none"))},
+               {"confidence",
+                nullable(number(
+                    "1", "Confidence in the answer, 0 to 1; null if the trainee gave none"))},
+               {"depth_m", nullable(number("m",
+                                           "Probing: depth of the breach in the answer, in metres; "
+                                           "null if the answer names none"))}})},
       {"ProbingScenario", scenario_schema()},
       {"StudyPlace",
        object(
@@ -225,8 +225,7 @@ std::vector<NamedSchema> curve_schemas() {
                                  "Depth of the tip from the entry at each time")},
                {"force_N", array(number("N", "Pushing force of the hand, in newtons"),
                                  "Pushing force of the hand at each time, positive into the bone")},
-               {"mode", array(one_of({"holding", "bone", "resistance", "breach", "stopped"},
-                                     "Mode of the controller"),
+               {"mode", array(one_of<core::ProbingMode>("Mode of the controller"),
                               "Mode of the controller at each time")}})}};
 }
 

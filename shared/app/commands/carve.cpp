@@ -48,7 +48,7 @@ core::Result<void> read_breach(const Options& o, cases::CarvingPlan& plan) {
         return Error{Errc::bad_input, fmt::format("{}: needs --breach WALL", option)};
     return {};
   }
-  const auto wall = volume::wall_named(o.breach);
+  const auto wall = core::from_name<volume::Wall>(o.breach);
   if (!wall)
     return Error{
         Errc::bad_input,

@@ -35,7 +35,8 @@ Outcome make_new(const Options& o) {
     return Error{Errc::conflict,
                  fmt::format("{}: exists already; a version is never overwritten", o.out)};
   const auto parent =
-      TRY(o.from.empty() ? scenarios::tuned(*scenarios::kind_of(o.kind)) : Scenario::read(o.from));
+      TRY(o.from.empty() ? scenarios::tuned(*core::from_name<scenarios::Kind>(o.kind))
+                         : Scenario::read(o.from));
   std::vector<scenarios::Change> changes;
   if (!o.name.empty()) changes.push_back({"name", o.name});
   for (const std::string& text : o.changes) {

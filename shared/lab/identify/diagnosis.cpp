@@ -104,20 +104,6 @@ Verdict verdict(const Problem& problem, const Solution& base, const Solution& ch
 
 }  // namespace
 
-std::string_view name(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::complete:
-      return "complete";
-    case Verdict::missing:
-      return "missing";
-    case Verdict::partly:
-      return "partly";
-    case Verdict::unexplained:
-      break;
-  }
-  return "unexplained";
-}
-
 Result<Diagnosis> diagnose(const Problem& problem, const DiagnoseOptions& options,
                            const core::Progress& progress) {
   for (const std::string& id : options.only)

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/named.hpp"
 #include "lab/identify/fit.hpp"
 
 namespace tractus::lab {
@@ -17,7 +18,14 @@ enum class Verdict {
   partly,       ///< effects found, more remains
   unexplained,  ///< something is missing that is not in the catalogue
 };
-std::string_view name(Verdict verdict);
+constexpr auto words(Verdict) {
+  using enum Verdict;
+  return std::to_array<core::Word<Verdict>>({{complete, "complete"},
+                                             {missing, "missing"},
+                                             {partly, "partly"},
+                                             {unexplained, "unexplained"}});
+}
+using core::name;
 
 struct FoundParameter {
   std::string name;               ///< as in a model file: "friction_N"

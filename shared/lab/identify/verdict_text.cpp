@@ -100,11 +100,6 @@ std::string figure(double value, std::string_view unit) {
   return unit.empty() ? figure(value) : fmt::format("{} {}", figure(value), unit);
 }
 
-std::string_view word(Verdict verdict) {
-  constexpr std::array<std::string_view, 4> kWords{"complete", "missing", "partly", "unexplained"};
-  return kWords[std::size_t(verdict)];
-}
-
 VerdictText sentences(const Diagnosis& d, std::string_view unit) {
   std::vector<std::string> names;
   for (const FoundEffect& found : d.effects) names.push_back(effects::label_of(found.id));

@@ -24,9 +24,6 @@ std::string figure_with_uncertainty(double value, double within);
 /// With its unit: "1.07 N".
 std::string figure(double value, std::string_view unit);
 
-/// "complete", "missing", "partly", "unexplained".
-std::string_view word(Verdict verdict);
-
 /// The verdict as a headline ("Coulomb friction is missing.") and a sentence with the figures.
 struct VerdictText {
   std::string headline, detail;

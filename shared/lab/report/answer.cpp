@@ -199,7 +199,7 @@ Json to_json(const TractMap& map) {
 
 Json to_json(const Diagnosis& d) {
   Json out{{"format", "tractus-diagnosis/1"},
-           {"verdict", word(d.verdict)},
+           {"verdict", name(d.verdict)},
            {"probability", number(d.probability)},
            {"base", Json{{"rmse", number(d.base.rmse)},
                          {"held_out_rmse", number(d.base.held_out_rmse)},

@@ -115,7 +115,7 @@ std::string verdict(const ReportContent& content) {
   return fmt::format(
       "<section class=\"verdict {}\">\n<h2>{}</h2>\n<p>{}</p>\n"
       "<dl class=\"figures\">\n{}</dl>\n</section>\n",
-      content.diagnosis ? word(content.diagnosis->verdict) : "", escaped(said.headline),
+      content.diagnosis ? name(content.diagnosis->verdict) : "", escaped(said.headline),
       unbroken(escaped(said.detail), unit), figures);
 }
 
