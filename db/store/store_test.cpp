@@ -102,7 +102,7 @@ TEST_P(StoreContract, AWholeNumberInADoubleColumnComesBackAsADouble) {
 TEST_P(StoreContract, AWriteThatFailsLeavesNothing) {
   Opened db(GetParam());
   auto outcome = db.store.write([](Writing& tx) -> core::Result<void> {
-    TRY(add_account(tx, {"1", "ada", "admin", "hash"}, 5));
+    TRY(add_account(tx, {"1", "ada", Role::admin, "hash"}, 5));
     return core::Error{core::Errc::cancelled, "changed my mind"};
   });
   ASSERT_FALSE(outcome);
@@ -127,7 +127,7 @@ TEST_P(StoreContract, AReaderSeesOneStateWhileAWriterCommits) {
       db.store.read([&](Reading& tx) -> core::Result<std::pair<std::uint64_t, std::uint64_t>> {
         const auto before = rows_in(tx, "accounts").value();
         TRY(db.store.write([](Writing& w) {
-          return add_account(w, {"1", "ada", "admin", "hash"}, 5);
+          return add_account(w, {"1", "ada", Role::admin, "hash"}, 5);
         }));
         return std::pair(before, rows_in(tx, "accounts").value());
       });
@@ -147,7 +147,7 @@ TEST_P(StoreContract, ANameIsTakenOnce) {
   Opened db(GetParam());
   const auto add = [&](const char* id) {
     return db.store.write([&](Writing& tx) {
-      return add_account(tx, {id, "ada", "admin", "hash"}, 5);
+      return add_account(tx, {id, "ada", Role::admin, "hash"}, 5);
     });
   };
   EXPECT_TRUE(add("1"));
@@ -162,7 +162,7 @@ TEST_P(StoreContract, WhatWasCommittedIsThereAfterReopening) {
   {
     auto store = database.open();
     ASSERT_TRUE(store.write([](Writing& tx) {
-      return add_account(tx, {"1", "ada", "admin", "hash"}, 5);
+      return add_account(tx, {"1", "ada", Role::admin, "hash"}, 5);
     }));
   }
   auto store = database.open();
@@ -342,7 +342,7 @@ TEST_P(Logins, AnOriginIsKnownByTheAccountThatGotInFromIt) {
   };
   auto done = db.store.write([&](Writing& tx) -> core::Result<void> {
     for (const auto& [id, name] : {std::pair{"1", "ada"}, {"2", "bob"}})
-      TRY(add_account(tx, {id, name, "admin", "hash"}, 0));
+      TRY(add_account(tx, {id, name, Role::admin, "hash"}, 0));
     return note_origin(tx, "1", in, 10, 0);
   });
   ASSERT_TRUE(done) << done.error().what;

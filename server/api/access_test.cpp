@@ -90,7 +90,8 @@ class Access : public PeopleTest {
       TRY(tx.query("update accounts set must_change = 0, state = 'active' where must_change = 1"));
       for (const char* who : {"tom", "fay"}) TRY(store::invite(tx, {"c-inv", who}));
       for (const char* who : {"tom", "tia"})
-        TRY(store::put_into_cohort(tx, std::string("c-") + who, who, "trainee", 0));
+        TRY(store::put_into_cohort(tx, std::string("c-") + who, who, store::CohortPart::trainee,
+                                   0));
       return {};
     });
     EXPECT_TRUE(mended);

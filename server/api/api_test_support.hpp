@@ -24,7 +24,7 @@ class ApiTest : public ::testing::Test {
   ApiTest() {
     const std::string hash = quick_hash();
     auto furnished = store_.write([&](store::Writing& tx) -> core::Result<void> {
-      TRY(store::add_account(tx, {"1", "ada", "admin", hash}, 0));
+      TRY(store::add_account(tx, {"1", "ada", Role::admin, hash}, 0));
       TRY(store::add_station(tx, {"s1", "station-1"}, token_hash("token-1"), 0));
       TRY(store::add_station(tx, {"s2", "station-2"}, token_hash("token-2"), 0));
       return store::add_case(tx, {kCase, "L3", "made", 1, 0}, {}, 0);

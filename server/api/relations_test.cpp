@@ -53,10 +53,12 @@ class Relations : public PeopleTest {
     const auto mended = store_.write([](store::Writing& tx) -> core::Result<void> {
       for (const char* sql : {"delete from cohort_people", "delete from cohort_invitations"})
         TRY(tx.query(sql));
-      for (const auto& [cohort, who, part] : {std::array{"c-tom", "fay", "faculty"},
-                                              {"c-tom", "tom", "trainee"},
-                                              {"c-tia", "flo", "faculty"},
-                                              {"c-tia", "tia", "trainee"}})
+      for (const auto& [cohort, who, part] :
+           std::vector<std::tuple<const char*, const char*, store::CohortPart>>{
+               {"c-tom", "fay", store::CohortPart::faculty},
+               {"c-tom", "tom", store::CohortPart::trainee},
+               {"c-tia", "flo", store::CohortPart::faculty},
+               {"c-tia", "tia", store::CohortPart::trainee}})
         TRY(store::put_into_cohort(tx, cohort, who, part, 0));
       for (const char* who : {"tom", "fay"}) TRY(store::invite(tx, {"c-inv", who}));
       return {};

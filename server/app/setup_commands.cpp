@@ -33,7 +33,7 @@ Outcome make_account(DataFolder& data, const std::string& name, const std::strin
   auto hash = TRY(api::password_hash(password));
   const store::AuditScope acting(command_act("init", {{"name", name}}));
   return data.store.write([&](store::Writing& tx) {
-    return store::add_account(tx, {core::new_id(), name, "admin", hash}, core::utc_us());
+    return store::add_account(tx, {core::new_id(), name, store::Role::admin, hash}, core::utc_us());
   });
 }
 

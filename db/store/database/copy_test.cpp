@@ -21,7 +21,7 @@ using test_support::TestDatabase;
 /// Rows that refer to others, to themselves, and hold every type there is in the schema.
 core::Result<void> furnish(Writing& tx) {
   const std::string kA(64, 'a');
-  TRY(add_account(tx, {"1", "ada", "admin", "hash"}, 1));
+  TRY(add_account(tx, {"1", "ada", Role::admin, "hash"}, 1));
   TRY(add_station(tx, {"s", "station-1"}, "token", 1));
   TRY(add_case(tx, {kA, "L3", "made", 1, 0}, {{"case.json", kA, 9, false}}, 1));
   const Study study{.id = "study", .title = "\xc3\xa9", .ordering = "random"};

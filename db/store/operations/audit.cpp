@@ -69,7 +69,7 @@ AuditScope::AuditScope(AuditedAction act) : act_(std::move(act)) {
 
 AuditScope::~AuditScope() { t_now = nullptr; }
 
-void AuditScope::is_by(const std::string& who, const std::string& role) {
+void AuditScope::is_by(const std::string& who, std::string_view role) {
   if (!t_now) return;
   t_now->act_.who = who;
   t_now->act_.role = role;

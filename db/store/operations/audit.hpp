@@ -34,7 +34,7 @@ class AuditScope {
   AuditScope(const AuditScope&) = delete;
   AuditScope& operator=(const AuditScope&) = delete;
   /// Sets the actor once it is known, during sign-in.
-  static void is_by(const std::string& who, const std::string& role);
+  static void is_by(const std::string& who, std::string_view role);
   /// Records no details of the request, which may contain a secret in the wrong field.
   static void without_detail();
 

@@ -1,6 +1,7 @@
 #include "db/store/people/accounts.hpp"
 
 #include "core/try.hpp"
+#include "db/store/rows.hpp"
 
 namespace tractus {
 namespace store {
@@ -18,20 +19,29 @@ constexpr const char* kAccount =
 constexpr std::size_t kAccountColumns = 13;
 
 /// Columns of kAccount.
-Account account_from(const Row& row) {
-  return {.id = row.text(0),
-          .name = row.text(1),
-          .role = row.text(2),
-          .password_hash = row.text(3),
-          .state = row.text(4),
-          .pseudonym = row.text(5),
-          .badge = row.text(6),
-          .pin_hash = row.text(7),
-          .totp_secret = row.text(8),
-          .totp_confirmed = row.truth(9),
-          .totp_step = row.integer(10),
-          .must_change = row.truth(11),
-          .made_utc_us = row.integer(12)};
+core::Result<Account> account_from(const Row& row) {
+  const auto role = TRY(row.word<Role>(2, "accounts.role"));
+  const auto state = TRY(row.word<AccountState>(4, "accounts.state"));
+  return Account{.id = row.text(0),
+                 .name = row.text(1),
+                 .role = role,
+                 .password_hash = row.text(3),
+                 .state = state,
+                 .pseudonym = row.text(5),
+                 .badge = row.text(6),
+                 .pin_hash = row.text(7),
+                 .totp_secret = row.text(8),
+                 .totp_confirmed = row.truth(9),
+                 .totp_step = row.integer(10),
+                 .must_change = row.truth(11),
+                 .made_utc_us = row.integer(12)};
+}
+
+/// Columns of kAccount and two times.
+core::Result<Session> session_from(const Row& row) {
+  auto account = TRY(account_from(row));
+  return Session{std::move(account), row.integer(kAccountColumns),
+                 row.integer(kAccountColumns + 1)};
 }
 
 Value text_or_null(const std::string& text) { return text.empty() ? Value() : Value(text); }
@@ -39,10 +49,10 @@ Value text_or_null(const std::string& text) { return text.empty() ? Value() : Va
 /// The account whose `column` has this value.
 core::Result<std::optional<Account>> account_by(Reading& tx, const char* column,
                                                 const std::string& value) {
-  auto rows = TRY(tx.query(
-      std::string("select ") + kAccount + " from accounts a where a." + column + " = ?", {value}));
-  if (rows.empty()) return std::optional<Account>();
-  return std::optional(account_from(rows.front()));
+  return one_of(
+      tx.query(std::string("select ") + kAccount + " from accounts a where a." + column + " = ?",
+               {value}),
+      account_from);
 }
 
 core::Result<std::string> station_text(Reading& tx, const std::string& column,
@@ -55,12 +65,13 @@ core::Result<std::string> station_text(Reading& tx, const std::string& column,
 }  // namespace
 
 core::Result<void> add_account(Writing& tx, const Account& account, std::int64_t now_utc_us) {
-  auto done = run(tx,
-                  "insert into accounts (id, name, role, password_hash, made_utc_us, state, "
-                  "pseudonym, badge, pin_hash, must_change) values (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-                  {account.id, account.name, account.role, account.password_hash, now_utc_us,
-                   account.state, text_or_null(account.pseudonym), text_or_null(account.badge),
-                   text_or_null(account.pin_hash), bool_value(account.must_change)});
+  auto done =
+      run(tx,
+          "insert into accounts (id, name, role, password_hash, made_utc_us, state, "
+          "pseudonym, badge, pin_hash, must_change) values (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+          {account.id, account.name, name_value(account.role), account.password_hash, now_utc_us,
+           name_value(account.state), text_or_null(account.pseudonym), text_or_null(account.badge),
+           text_or_null(account.pin_hash), bool_value(account.must_change)});
   if (!done && done.error().code == core::Errc::conflict)
     return core::Error{core::Errc::conflict, "an account named " + account.name +
                                                  ", or one with this badge, exists already"};
@@ -72,10 +83,10 @@ core::Result<void> set_account(Writing& tx, const Account& account) {
                   "update accounts set role = ?, password_hash = ?, state = ?, badge = ?, "
                   "pin_hash = ?, totp_secret = ?, totp_confirmed = ?, totp_step = ?, "
                   "must_change = ? where id = ?",
-                  {account.role, account.password_hash, account.state, text_or_null(account.badge),
-                   text_or_null(account.pin_hash), text_or_null(account.totp_secret),
-                   bool_value(account.totp_confirmed), account.totp_step,
-                   bool_value(account.must_change), account.id});
+                  {name_value(account.role), account.password_hash, name_value(account.state),
+                   text_or_null(account.badge), text_or_null(account.pin_hash),
+                   text_or_null(account.totp_secret), bool_value(account.totp_confirmed),
+                   account.totp_step, bool_value(account.must_change), account.id});
   if (!done && done.error().code == core::Errc::conflict)
     return core::Error{core::Errc::conflict, "badge: another account already has this badge"};
   return done;
@@ -103,10 +114,8 @@ core::Result<std::optional<Account>> account_with_badge(Reading& tx, const std::
 }
 
 core::Result<std::vector<Account>> all_accounts(Reading& tx) {
-  auto rows = TRY(tx.query(std::string("select ") + kAccount + " from accounts a order by a.name"));
-  std::vector<Account> out;
-  for (const Row& row : rows) out.push_back(account_from(row));
-  return out;
+  return all_of(tx.query(std::string("select ") + kAccount + " from accounts a order by a.name"),
+                account_from);
 }
 
 core::Result<std::uint64_t> account_count(Reading& tx) {
@@ -123,15 +132,12 @@ core::Result<void> add_session(Writing& tx, const std::string& token_hash,
 }
 
 core::Result<std::optional<Session>> session_of(Reading& tx, const std::string& token_hash) {
-  auto rows = TRY(
+  return one_of(
       tx.query(std::string("select ") + kAccount +
                    ", s.made_utc_us, s.seen_utc_us "
                    "from sessions s join accounts a on a.id = s.account_id where s.token_hash = ?",
-               {token_hash}));
-  if (rows.empty()) return std::optional<Session>();
-  const Row& row = rows.front();
-  return std::optional(
-      Session{account_from(row), row.integer(kAccountColumns), row.integer(kAccountColumns + 1)});
+               {token_hash}),
+      session_from);
 }
 
 core::Result<void> touch_session(Writing& tx, const std::string& token_hash,

@@ -3,16 +3,26 @@
 
 #include <vector>
 
+#include "db/store/people/role.hpp"
 #include "db/store/store.hpp"
 
 namespace tractus::store {
 
+enum class AccountState {
+  active,
+  disabled,  ///< cannot sign in
+};
+constexpr auto words(AccountState) {
+  return std::to_array<core::Word<AccountState>>(
+      {{AccountState::active, "active"}, {AccountState::disabled, "disabled"}});
+}
+
 struct Account {
   std::string id;
-  std::string name;              ///< name with which the person signs in
-  std::string role;              ///< "admin", "director", … as api::Role names them
-  std::string password_hash;     ///< Argon2id, libsodium's text form
-  std::string state = "active";  ///< "active", "disabled"
+  std::string name;  ///< name with which the person signs in
+  Role role = Role::trainee;
+  std::string password_hash;  ///< Argon2id, libsodium's text form
+  AccountState state = AccountState::active;
   std::string pseudonym = {};    ///< pseudonym for research; only this row links it to the name
   std::string badge = {};        ///< text that a station reads from the badge; empty: no badge
   std::string pin_hash = {};     ///< Argon2id; empty: no PIN

@@ -1,6 +1,7 @@
 #include "db/store/people/people.hpp"
 
 #include "core/try.hpp"
+#include "db/store/rows.hpp"
 
 namespace tractus {
 namespace store {
@@ -27,6 +28,13 @@ constexpr const char* kCohort =
 
 Cohort cohort_from(const Row& row) {
   return {row.text(0), row.text(1), row.integer(2), row.text(3), row.count(4)};
+}
+
+core::Result<CohortPerson> person_from(const Row& row) {
+  const auto role = TRY(row.word<Role>(2, "accounts.role"));
+  const auto part = TRY(row.word<CohortPart>(3, "cohort_people.part"));
+  const auto state = TRY(row.word<AccountState>(4, "accounts.state"));
+  return CohortPerson{row.text(0), row.text(1), role, part, state, row.text(5)};
 }
 
 }  // namespace
@@ -57,23 +65,22 @@ core::Result<std::vector<Cohort>> cohorts_of(Reading& tx, const std::string& acc
 }
 
 core::Result<std::vector<CohortPerson>> people_of(Reading& tx, const std::string& cohort_id) {
-  auto rows = TRY(tx.query(
-      "select a.id, a.name, a.role, p.part, a.state, coalesce(a.pseudonym, '') from cohort_people "
-      "p join accounts a on a.id = p.account_id where p.cohort_id = ? order by a.name",
-      {cohort_id}));
-  std::vector<CohortPerson> out;
-  for (const Row& row : rows)
-    out.push_back({row.text(0), row.text(1), row.text(2), row.text(3), row.text(4), row.text(5)});
-  return out;
+  return all_of(
+      tx.query(
+          "select a.id, a.name, a.role, p.part, a.state, coalesce(a.pseudonym, '') from "
+          "cohort_people p join accounts a on a.id = p.account_id where p.cohort_id = ? order by "
+          "a.name",
+          {cohort_id}),
+      person_from);
 }
 
 core::Result<void> put_into_cohort(Writing& tx, const std::string& cohort_id,
-                                   const std::string& account_id, const std::string& part,
+                                   const std::string& account_id, CohortPart part,
                                    std::int64_t now_utc_us) {
   return done(
       tx.query("insert into cohort_people (cohort_id, account_id, part, since_utc_us) values "
                "(?, ?, ?, ?) on conflict (cohort_id, account_id) do update set part = ?",
-               {cohort_id, account_id, part, now_utc_us, part}));
+               {cohort_id, account_id, name_value(part), now_utc_us, name_value(part)}));
 }
 
 core::Result<void> take_from_cohort(Writing& tx, const std::string& cohort_id,

@@ -16,10 +16,21 @@ struct Cohort {
   std::uint64_t trainees = 0;  ///< counted on reading
 };
 
+/// What a person is in a cohort.
+enum class CohortPart {
+  trainee,
+  faculty,  ///< a leader
+};
+constexpr auto words(CohortPart) {
+  return std::to_array<core::Word<CohortPart>>(
+      {{CohortPart::trainee, "trainee"}, {CohortPart::faculty, "faculty"}});
+}
+
 struct CohortPerson {
-  std::string account_id, name, role;
-  std::string part;  ///< "trainee", or "faculty" (a leader)
-  std::string state = {};
+  std::string account_id, name;
+  Role role = Role::trainee;
+  CohortPart part = CohortPart::trainee;
+  AccountState state = AccountState::active;
   std::string pseudonym = {};
 };
 
@@ -32,7 +43,7 @@ core::Result<std::vector<Cohort>> cohorts_of(Reading& tx, const std::string& acc
 core::Result<std::vector<CohortPerson>> people_of(Reading& tx, const std::string& cohort_id);
 /// A person who already belongs to the cohort gets this part.
 core::Result<void> put_into_cohort(Writing& tx, const std::string& cohort_id,
-                                   const std::string& account_id, const std::string& part,
+                                   const std::string& account_id, CohortPart part,
                                    std::int64_t now_utc_us);
 core::Result<void> take_from_cohort(Writing& tx, const std::string& cohort_id,
                                     const std::string& account_id);

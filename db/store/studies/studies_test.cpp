@@ -224,7 +224,7 @@ TEST_P(Studies, OnlyATrialThatCountsOfThisStudyCanBeMarkedInvalid) {
 /// The row's kind decides, whatever the id looks like.
 TEST_P(Studies, AStudyAndAnAssignmentAreNotFoundAsEachOther) {
   write([](Writing& tx) -> core::Result<void> {
-    TRY(add_account(tx, {"fay", "fay", "faculty", "x"}, 0));
+    TRY(add_account(tx, {"fay", "fay", Role::faculty, "x"}, 0));
     const Study like_an_assignment{.id = "a-study", .title = "", .ordering = "random"};
     TRY(add_study(tx, like_an_assignment, {kA}, kAda));
     const Assignment assignment{.study = {.id = "spine", .title = "", .ordering = "random"},

@@ -15,6 +15,7 @@ namespace {
 using core::Errc;
 using core::Error;
 using core::Result;
+using store::CohortPart;
 
 constexpr std::uint64_t kMaxBody_bytes = 4096;
 
@@ -50,8 +51,8 @@ Result<http::Response> cohort_response(store::Store& store, const std::string& i
     for (const auto& person : people)
       out["people"].push_back({{"account_id", person.account_id},
                                {"name", person.name},
-                               {"part", person.part},
-                               {"state", person.state}});
+                               {"part", name(person.part)},
+                               {"state", name(person.state)}});
     return out;
   }));
   return json_response(answer, status);
@@ -73,7 +74,8 @@ Result<http::Response> add_cohort_route(const Call& call) {
   TRY(call.backend.store.write([&](store::Writing& tx) -> Result<void> {
     TRY(store::add_cohort(tx, cohort));
     if (call.caller.role != Role::faculty) return {};
-    return store::put_into_cohort(tx, cohort.id, call.caller.id, "faculty", cohort.made_utc_us);
+    return store::put_into_cohort(tx, cohort.id, call.caller.id, CohortPart::faculty,
+                                  cohort.made_utc_us);
   }));
   return cohort_response(call.backend.store, cohort.id, 201);
 }
@@ -166,10 +168,10 @@ std::vector<NamedSchema> cohort_schemas() {
       {"CohortPerson",
        object({{"account_id", text("Id of the person's account")},
                {"name", text("Name of the account")},
-               {"part", one_of({"trainee", "faculty"},
-                               "Part in the cohort: a trainee learns, faculty leads the cohort")},
-               {"state", one_of({"active", "disabled"},
-                                "State of the account; a disabled account cannot sign in")}})},
+               {"part", one_of<CohortPart>(
+                            "Part in the cohort: a trainee learns, faculty leads the cohort")},
+               {"state", one_of<store::AccountState>(
+                             "State of the account; a disabled account cannot sign in")}})},
       {"Cohort", object(whole)}};
 }
 

@@ -19,6 +19,7 @@ namespace {
 using core::Errc;
 using core::Error;
 using core::Result;
+using store::AccountState;
 
 constexpr std::uint64_t kMaxBody_bytes = 8192;
 
@@ -30,12 +31,11 @@ Result<http::Response> list_accounts(const Call& call) {
   return json_response({{"accounts", list}});
 }
 
-std::string role_field(core::Fields& fields) {
-  std::string out = fields.text("role", 32);
-  const auto role = role_named(out);
-  if (!role || *role == Role::station)
+Role role_field(core::Fields& fields) {
+  const auto role = fields.word<Role>("role");
+  if (role == Role::station)
     fields.wrong("role", "admin, director, faculty, researcher, technician or trainee is expected");
-  return out;
+  return role;
 }
 
 /// The account that a request's body describes; without a password, one is generated.
@@ -102,7 +102,8 @@ Result<http::Response> changed(const Call& call, Work work) {
 Result<void> check_an_admin_stays(store::Reading& tx, const store::Account& changing) {
   auto all = TRY(store::all_accounts(tx));
   const bool stays = std::ranges::any_of(all, [&](const store::Account& other) {
-    return other.id != changing.id && other.role == name(Role::admin) && other.state == "active";
+    return other.id != changing.id && other.role == Role::admin &&
+           other.state == AccountState::active;
   });
   if (stays) return {};
   return Error{
@@ -110,21 +111,13 @@ Result<void> check_an_admin_stays(store::Reading& tx, const store::Account& chan
       "this is the last active administrator: make another account an administrator first"};
 }
 
-/// One text field of the body.
-Result<std::string> field(const Call& call, const char* key) {
+Result<http::Response> set_state(const Call& call) {
   auto json = TRY(core::parse_json(call.request.body, "body"));
   core::Fields fields(json, "body");
-  std::string out = std::string(key) == "role" ? role_field(fields) : fields.text(key, 32);
+  const auto state = fields.word<AccountState>("state");
   TRY(fields.done());
-  return out;
-}
-
-Result<http::Response> set_state(const Call& call) {
-  auto state = TRY(field(call, "state"));
-  if (state != "active" && state != "disabled")
-    return Error{Errc::bad_input, "body: /state: active or disabled is expected"};
   return changed(call, [&](store::Writing& tx, store::Account& account) -> Result<void> {
-    if (state == "disabled" && account.role == name(Role::admin))
+    if (state == AccountState::disabled && account.role == Role::admin)
       TRY(check_an_admin_stays(tx, account));
     account.state = state;
     return {};
@@ -132,10 +125,12 @@ Result<http::Response> set_state(const Call& call) {
 }
 
 Result<http::Response> set_role(const Call& call) {
-  auto role = TRY(field(call, "role"));
+  auto json = TRY(core::parse_json(call.request.body, "body"));
+  core::Fields fields(json, "body");
+  const Role role = role_field(fields);
+  TRY(fields.done());
   return changed(call, [&](store::Writing& tx, store::Account& account) -> Result<void> {
-    if (account.role == name(Role::admin) && role != name(Role::admin))
-      TRY(check_an_admin_stays(tx, account));
+    if (account.role == Role::admin && role != Role::admin) TRY(check_an_admin_stays(tx, account));
     account.role = role;
     return {};
   });
@@ -231,8 +226,8 @@ std::vector<RouteInfo> accounts_routes() {
   state.body = "AccountState";
   state.schemas = {
       {"AccountState",
-       object({{"state", one_of({"active", "disabled"},
-                                "New state of the account; a disabled account cannot sign in")}})}};
+       object({{"state", one_of<AccountState>(
+                             "New state of the account; a disabled account cannot sign in")}})}};
   RouteInfo role =
       route("/{id}/role", "setAccountRole",
             "Change the role of an account; this ends the account's sessions", "Account", set_role);

@@ -51,10 +51,9 @@ core::Result<Caller> by_cookie(Backend& backend, std::string_view token, Presenc
         [&](store::Writing& tx) { return store::touch_session(tx, hash, now); }));
   }
   const store::Account& account = session->account;
-  const auto role = role_named(account.role);
-  if (!role || *role == Role::station || account.state != "active")
+  if (account.role == Role::station || account.state != store::AccountState::active)
     return core::Error{core::Errc::unauthorised, "the account is disabled"};
-  return Caller{*role, account.id, account.name, hash, account.must_change};
+  return Caller{account.role, account.id, account.name, hash, account.must_change};
 }
 
 }  // namespace
@@ -108,7 +107,7 @@ core::Result<store::Account> account_opened(Backend& backend, const Credentials&
       backend.store.read([&](store::Reading& tx) { return store::account_named(tx, given.name); }));
   const bool right = password_matches(account ? account->password_hash : "", given.password);
   if (!account) store::AuditScope::without_detail();
-  if (!account || !right || account->state != "active")
+  if (!account || !right || account->state != store::AccountState::active)
     return core::Error{core::Errc::unauthorised, "name or password is wrong"};
   if (!account->totp_confirmed) return std::move(*account);
   if (given.code.empty()) return core::Error{core::Errc::unauthorised, kCodeNeeded};
@@ -127,7 +126,7 @@ core::Result<SignedIn> sign_in(Backend& backend, const Credentials& given,
     TRY(note_failure(backend, attempt));
     return account.error();
   }
-  store::AuditScope::is_by(account->name, account->role);
+  store::AuditScope::is_by(account->name, name(account->role));
   const std::int64_t now = backend.now_utc_us();
   const std::string token = new_token();
   TRY(backend.store.write([&](store::Writing& tx) -> core::Result<void> {

@@ -105,19 +105,19 @@ Result<std::string> session_for(const Call& call, const Oidc& oidc, const std::s
   auto account = TRY(call.backend.store.read([&](store::Reading& tx) {
     return store::account_of_subject(tx, oidc.settings().issuer, subject);
   }));
-  if (!account || account->state != "active") {
+  if (!account || account->state != store::AccountState::active) {
     note_unknown(call, subject);
     return Error{Errc::unauthorised, "no account here is linked with this identity"};
   }
   const std::string token = new_token();
   const store::AuditScope acting({.who = account->name,
-                                  .role = account->role,
+                                  .role = std::string(name(account->role)),
                                   .peer = call.request.peer,
                                   .what = "oidcSignIn",
                                   .at_utc_us = call.backend.now_utc_us()});
   TRY(call.backend.store.write([&](store::Writing& tx) -> Result<void> {
     auto linked = TRY(store::account_of_subject(tx, oidc.settings().issuer, subject));
-    if (!linked || linked->id != account->id || linked->state != "active")
+    if (!linked || linked->id != account->id || linked->state != store::AccountState::active)
       return Error{Errc::unauthorised, "the account was changed just now: try again"};
     return store::add_session(tx, token_hash(token), account->id, call.backend.now_utc_us());
   }));

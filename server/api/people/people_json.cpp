@@ -27,8 +27,8 @@ std::string letters(std::size_t count) {
 core::Json account_json(const store::Account& account) {
   return {{"id", account.id},
           {"name", account.name},
-          {"role", account.role},
-          {"state", account.state},
+          {"role", name(account.role)},
+          {"state", name(account.state)},
           {"badge", account.badge.empty() ? core::Json() : core::Json(account.badge)},
           {"has_pin", !account.pin_hash.empty()},
           {"has_codes", account.totp_confirmed},
@@ -46,7 +46,7 @@ core::Json account_schema() {
        {"name", text("Name with which the person signs in")},
        {"role", one_of(roles, "Role, which decides what the account may do")},
        {"state",
-        one_of({"active", "disabled"}, "State of the account; a disabled account cannot sign in")},
+        one_of<store::AccountState>("State of the account; a disabled account cannot sign in")},
        {"badge",
         nullable(
             text("Text of the badge that a station's reader reads; null if there is no badge"))},

@@ -17,14 +17,14 @@ class PeopleTest : public ApiTest {
   PeopleTest() {
     const auto furnished = store_.write([&](store::Writing& tx) -> core::Result<void> {
       for (const auto& [name, role] :
-           std::vector<std::pair<std::string, std::string>>{{"dora", "director"},
-                                                            {"fay", "faculty"},
-                                                            {"flo", "faculty"},
-                                                            {"rex", "researcher"},
-                                                            {"ted", "technician"},
-                                                            {"tom", "trainee"},
-                                                            {"tia", "trainee"},
-                                                            {"ann", "admin"}}) {
+           std::vector<std::pair<std::string, Role>>{{"dora", Role::director},
+                                                     {"fay", Role::faculty},
+                                                     {"flo", Role::faculty},
+                                                     {"rex", Role::researcher},
+                                                     {"ted", Role::technician},
+                                                     {"tom", Role::trainee},
+                                                     {"tia", Role::trainee},
+                                                     {"ann", Role::admin}}) {
         store::Account account{
             .id = name, .name = name, .role = role, .password_hash = quick_hash()};
         account.pseudonym = "P-" + name;
@@ -40,8 +40,8 @@ class PeopleTest : public ApiTest {
   static core::Result<void> furnish_cohort(store::Writing& tx, const std::string& cohort,
                                            const std::string& leader, const std::string& trainee) {
     TRY(store::add_cohort(tx, {cohort, cohort, 0, leader}));
-    TRY(store::put_into_cohort(tx, cohort, leader, "faculty", 0));
-    TRY(store::put_into_cohort(tx, cohort, trainee, "trainee", 0));
+    TRY(store::put_into_cohort(tx, cohort, leader, store::CohortPart::faculty, 0));
+    TRY(store::put_into_cohort(tx, cohort, trainee, store::CohortPart::trainee, 0));
     const store::AuditStamp stamp{leader, 1};
     const std::string study = "a-" + trainee, who = "P-" + trainee;
     auto assigned =

@@ -42,8 +42,8 @@ core::Result<http::Response> sign_in_route(const Call& call) {
     return http::error_response(401, "code_needed", in.error().what);
   if (!in) return in.error();
   const store::Account& account = in->account;
-  auto response =
-      json_response(identity_json(account.id, account.name, account.role, account.must_change));
+  auto response = json_response(
+      identity_json(account.id, account.name, name(account.role), account.must_change));
   response.with("Set-Cookie", cookie(call.backend, in->token, kSessionAge_us / 1'000'000));
   return response;
 }

@@ -111,7 +111,7 @@ Result<http::Response> enrol(const Call& call) {
   auto added = call.backend.store.write([&](store::Writing& tx) -> Result<void> {
     auto name = TRY(store::use_enrolment_code(tx, token_hash(code), now));
     station.name = name;
-    store::AuditScope::is_by(name, std::string(api::name(Role::station)));
+    store::AuditScope::is_by(name, core::name(Role::station));
     return store::add_station(tx, station, key, now);
   });
   if (!added && added.error().code == Errc::unauthorised) TRY(note_failure(call.backend, attempt));

@@ -22,6 +22,7 @@ namespace {
 using core::Errc;
 using core::Error;
 using core::Result;
+using store::AccountState;
 
 constexpr std::uint64_t kMaxBody_bytes = 1024;
 
@@ -37,7 +38,7 @@ Result<store::Account> let_in(Backend& backend, const store::Attempt& attempt,
       [&](store::Reading& tx) { return store::account_with_badge(tx, attempt.name); }));
   const bool right = password_matches(account ? account->pin_hash : "", pin);
   if (!account) store::AuditScope::without_detail();
-  if (right && account->state == "active" && account->role == name(Role::trainee))
+  if (right && account->state == AccountState::active && account->role == Role::trainee)
     return std::move(*account);
   TRY(note_failure(backend, attempt));
   return Error{Errc::unauthorised, "badge or PIN is wrong"};
@@ -73,7 +74,7 @@ Result<store::Account> holder(const Call& call, std::string& hash) {
       TRY(call.backend.store.read([&](store::Reading& tx) { return store::session_of(tx, hash); }));
   const std::int64_t now = call.backend.now_utc_us();
   if (!session || now - session->seen_utc_us > kSessionIdle_us ||
-      now - session->made_utc_us > kSessionAge_us || session->account.state != "active")
+      now - session->made_utc_us > kSessionAge_us || session->account.state != AccountState::active)
     return Error{Errc::forbidden, "sign in at this station first"};
   return std::move(session->account);
 }
@@ -155,7 +156,7 @@ Result<http::Response> next_trial(const Call& call) {
   std::string hash;
   auto account = TRY(holder(call, hash));
   TRY(check_room(call.backend, kTrialToCome_bytes));
-  store::AuditScope::is_by(account.name + " at " + call.caller.name, account.role);
+  store::AuditScope::is_by(account.name + " at " + call.caller.name, name(account.role));
   auto given = TRY(call.backend.store.write([&](store::Writing& tx) -> Result<Given> {
     TRY(store::touch_session(tx, hash, call.backend.now_utc_us()));
     return take(tx, call, account);

@@ -107,7 +107,7 @@ Result<std::vector<store::Account>> people_meant(store::Reading& tx, const Assig
     if (!there) return absent("/cohort", cohort);
     auto people = TRY(store::people_of(tx, cohort));
     for (const auto& person : people) {
-      if (person.part != "trainee") continue;
+      if (person.part != store::CohortPart::trainee) continue;
       auto account = TRY(store::account_of(tx, person.account_id));
       out.push_back(std::move(*account));
     }
@@ -204,7 +204,7 @@ Result<std::string> make_assignment(const Call& call, const AssignmentPlan& plan
 
 Result<void> assign_to(store::Writing& tx, const store::AssignmentId& id,
                        const store::Account& account, const store::AuditStamp& stamp) {
-  if (account.role != name(Role::trainee))
+  if (account.role != Role::trainee)
     return Error{Errc::bad_input, account.name + ": this account is not a trainee"};
   auto study = TRY(store::study_of(tx, id));
   auto scenarios = TRY(store::study_scenarios(tx, id));
@@ -238,11 +238,12 @@ Result<void> join_cohort(store::Writing& tx, const std::string& cohort_id,
                          const store::Account& account, const store::AuditStamp& stamp) {
   auto cohort = TRY(store::cohort_of(tx, cohort_id));
   if (!cohort) return Error{Errc::not_found, "no cohort " + cohort_id.substr(0, 32)};
-  const bool learns = account.role == name(Role::trainee);
-  if (!learns && account.role != name(Role::faculty))
+  const bool learns = account.role == Role::trainee;
+  if (!learns && account.role != Role::faculty)
     return Error{Errc::bad_input,
                  account.name + ": this account is neither a trainee nor a member of the faculty"};
-  TRY(store::put_into_cohort(tx, cohort_id, account.id, account.role, stamp.at_utc_us));
+  const auto part = learns ? store::CohortPart::trainee : store::CohortPart::faculty;
+  TRY(store::put_into_cohort(tx, cohort_id, account.id, part, stamp.at_utc_us));
   TRY(store::remove_invitation(tx, cohort_id, account.name));
   return learns ? assign_what_the_cohort_has(tx, cohort_id, account, stamp) : Result<void>();
 }
