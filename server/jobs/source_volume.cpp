@@ -11,7 +11,7 @@ core::Result<SourceVolume> released_volume(store::Store& store, const store::Obj
   const auto found = TRY(store.read([&](store::Reading& tx) { return store::volume_of(tx, id); }));
   if (!found) return core::Error{core::Errc::not_found, "no volume " + id.substr(0, 64)};
   const store::VolumeRecord& volume = *found;
-  if (volume.state != "released")
+  if (volume.state != store::VolumeState::released)
     return core::Error{
         core::Errc::conflict,
         "this volume is not released: a person must look at its pictures and release it first"};

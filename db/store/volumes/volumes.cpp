@@ -1,6 +1,7 @@
 #include "db/store/volumes/volumes.hpp"
 
 #include "core/try.hpp"
+#include "db/store/rows.hpp"
 
 namespace tractus {
 namespace store {
@@ -10,12 +11,12 @@ constexpr const char* kVolume =
     "select id, name, source, state, sha256, size_bytes, facts, report, made_utc_us, made_by, "
     "made_by_id, decided_utc_us, decided_by, reason from volumes ";
 
-VolumeRecord volume_from(const Row& row) {
+core::Result<VolumeRecord> volume_from(const Row& row) {
   VolumeRecord out;
   out.id = row.text(0);
   out.name = row.text(1);
   out.source = row.text(2);
-  out.state = row.text(3);
+  out.state = TRY(row.word<VolumeState>(3, "volumes.state"));
   out.sha256 = row.text_or_null(4).value_or("");
   out.size_bytes = row.count(5);
   out.facts = row.text(6);
@@ -51,38 +52,34 @@ core::Result<void> add_volume(Writing& tx, const VolumeRecord& v) {
   TRY(
       tx.query("insert into volumes (id, name, source, state, sha256, size_bytes, facts, report, "
                "made_utc_us, made_by, made_by_id) values (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-               {v.id, v.name, v.source, v.state, v.sha256, count_value(v.size_bytes), v.facts,
-                v.report, v.made_utc_us, v.made_by, v.made_by_id}));
+               {v.id, v.name, v.source, name_value(v.state), v.sha256, count_value(v.size_bytes),
+                v.facts, v.report, v.made_utc_us, v.made_by, v.made_by_id}));
   return {};
 }
 
 core::Result<std::optional<VolumeRecord>> volume_of(Reading& tx, const std::string& id) {
-  auto rows = TRY(tx.query(std::string(kVolume) + "where id = ?", {id}));
-  if (rows.empty()) return std::optional<VolumeRecord>();
-  return std::optional(volume_from(rows.front()));
+  return one_of(tx.query(std::string(kVolume) + "where id = ?", {id}), volume_from);
 }
 
 core::Result<std::vector<VolumeRecord>> all_volumes(Reading& tx) {
-  auto rows = TRY(tx.query(std::string(kVolume) + "order by made_utc_us desc, id", {}));
-  std::vector<VolumeRecord> out;
-  for (const Row& row : rows) out.push_back(volume_from(row));
-  return out;
+  return all_of(tx.query(std::string(kVolume) + "order by made_utc_us desc, id", {}), volume_from);
 }
 
 core::Result<std::string> decide_volume(Writing& tx, const std::string& id,
                                         const Decision& decision) {
   auto known = TRY(volume_of(tx, id));
   if (!known) return core::Error{core::Errc::not_found, "there is no volume " + id.substr(0, 64)};
-  if (known->state != "held")
-    return core::Error{core::Errc::conflict, "volume " + id + " was " + known->state +
+  if (known->state != VolumeState::held)
+    return core::Error{core::Errc::conflict, "volume " + id + " was " +
+                                                 std::string(core::name(known->state)) +
                                                  " already, by " + known->decided_by.value_or("")};
   const std::string sha256 = known->sha256;
-  const bool refused = decision.state == "refused";
+  const bool refused = decision.state == VolumeState::refused;
   TRY(tx.query(
       "update volumes set state = ?, sha256 = ?, decided_utc_us = ?, decided_by = ?, reason = ? "
       "where id = ?",
-      {decision.state, refused ? Value() : Value(sha256), decision.at_utc_us, decision.by,
-       decision.reason, id}));
+      {name_value(decision.state), refused ? Value() : Value(sha256), decision.at_utc_us,
+       decision.by, decision.reason, id}));
   if (!refused) return std::string();
   auto named = TRY(is_named(tx, sha256));
   if (named) return std::string();

@@ -7,10 +7,21 @@
 
 namespace tractus::store {
 
+enum class VolumeState {
+  held,      ///< nobody has decided about it
+  released,  ///< cases may be made of it
+  refused,
+};
+constexpr auto words(VolumeState) {
+  using enum VolumeState;
+  return std::to_array<core::Word<VolumeState>>(
+      {{held, "held"}, {released, "released"}, {refused, "refused"}});
+}
+
 struct VolumeRecord {
   std::string id, name;
-  std::string source;            ///< origin and licence, as the uploading person stated them
-  std::string state = "held";    ///< "held", "released", "refused"
+  std::string source;  ///< origin and licence, as the uploading person stated them
+  VolumeState state = VolumeState::held;
   std::string sha256;            ///< of its .tvol among the objects; empty once refused
   std::uint64_t size_bytes = 0;  ///< of that file
   std::string facts = "{}";      ///< JSON: format, modality, geometry, range, suspicions, notes
@@ -30,7 +41,7 @@ core::Result<std::vector<VolumeRecord>> all_volumes(Reading& tx);
 
 /// A decision about a held volume.
 struct Decision {
-  std::string state;  ///< "released" or "refused"
+  VolumeState state = VolumeState::released;  ///< or refused
   std::string by, reason;
   std::int64_t at_utc_us = 0;
 };

@@ -48,9 +48,9 @@ class CaseMaking : public PeopleTest {
     EXPECT_TRUE(volume::write_volume(path, v, {"made", ""}));
     sha_ = store::file_sha256(path).value();
     EXPECT_TRUE(objects_.copy_in(path, sha_));
-    add_volume("released", "released");
+    add_volume("released", store::VolumeState::released);
   }
-  void add_volume(const std::string& id, const std::string& state) {
+  void add_volume(const std::string& id, store::VolumeState state) {
     store::VolumeRecord record;
     record.id = record.name = id;
     record.source = "made for a test";
@@ -166,7 +166,7 @@ TEST_F(CaseMaking, AMakingThatFailsSaysWhyAndLeavesNoCase) {
 }
 
 TEST_F(CaseMaking, AVolumeThatNobodyHasLookedAtIsNotUsed) {
-  add_volume("held", "held");
+  add_volume("held", store::VolumeState::held);
   EXPECT_EQ(post("fay", "/volumes/held/tract", plan()).status, 409);
   EXPECT_EQ(post("fay", "/cases", plan({{"volume", "held"}, {"title", "t"}})).status, 409);
   EXPECT_EQ(post("fay", "/cases", plan({{"volume", "none"}, {"title", "t"}})).status, 404);

@@ -18,11 +18,12 @@ using core::Errc;
 using core::Error;
 using core::Json;
 using core::Result;
+using store::VolumeState;
 
 constexpr std::size_t kMaxName = 200, kMaxSource = 1000, kMaxReason = 1000;
 
 Json volume_json(const store::VolumeRecord& v) {
-  Json out{{"id", v.id}, {"name", v.name}, {"source", v.source}, {"state", v.state}};
+  Json out{{"id", v.id}, {"name", v.name}, {"source", v.source}, {"state", name(v.state)}};
   const Json facts = core::stored_json(v.facts);
   for (const char* key : {"format", "modality", "dims", "spacing_m", "origin_m", "directions",
                           "range", "notes", "suspicions"})
@@ -30,7 +31,7 @@ Json volume_json(const store::VolumeRecord& v) {
   out["size_bytes"] = v.size_bytes;
   out["made_utc_us"] = v.made_utc_us;
   out["made_by"] = v.made_by;
-  out["released_by"] = v.state == "released" ? Json(v.decided_by.value_or("")) : Json();
+  out["released_by"] = v.state == VolumeState::released ? Json(v.decided_by.value_or("")) : Json();
   out["decided_utc_us"] = v.decided_utc_us ? Json(*v.decided_utc_us) : Json();
   out["reason"] = v.reason;
   return out;
@@ -48,9 +49,9 @@ Result<store::VolumeRecord> volume_of_call(const Call& call) {
 Result<volume::VolumeFile> pictured(const Call& call) {
   auto v = TRY(volume_of_call(call));
   const bool decides = call.caller.role == Role::admin || call.caller.role == Role::director;
-  if (v.state == "refused")
+  if (v.state == VolumeState::refused)
     return Error{Errc::conflict, "this volume was refused: its voxels were removed"};
-  if (v.state == "held" && !decides && call.caller.id != v.made_by_id)
+  if (v.state == VolumeState::held && !decides && call.caller.id != v.made_by_id)
     return Error{Errc::forbidden,
                  "this volume is held: a person must look at its pictures and release it first"};
   return volume::VolumeFile::open(call.backend.objects.path_of(v.sha256));
@@ -115,7 +116,7 @@ Result<http::Response> release(const Call& call) {
     fields.wrong("looked_at",
                  "true is expected, after you looked at the pictures and saw no text and no face");
   TRY(fields.done());
-  return decided(call, {"released", call.caller.name, "", call.backend.now_utc_us()});
+  return decided(call, {VolumeState::released, call.caller.name, "", call.backend.now_utc_us()});
 }
 
 Result<http::Response> refuse(const Call& call) {
@@ -123,7 +124,7 @@ Result<http::Response> refuse(const Call& call) {
   core::Fields fields(json, "body");
   const std::string reason = fields.text("reason", kMaxReason);
   TRY(fields.done());
-  return decided(call, {"refused", call.caller.name, reason, call.backend.now_utc_us()});
+  return decided(call, {VolumeState::refused, call.caller.name, reason, call.backend.now_utc_us()});
 }
 
 Result<http::Response> report(const Call& call) {
@@ -237,9 +238,9 @@ std::vector<NamedSchema> schemas() {
       {{"id", text("Id of the volume, 32 hexadecimal characters")},
        {"name", text("Name of the volume, shown to people")},
        {"source", text("Origin of the volume and its licence")},
-       {"state", one_of({"held", "released", "refused"},
-                        "State of the volume: held = waits for a person's review, released = cases "
-                        "can be made from it, refused = its voxels were removed")},
+       {"state", one_of<VolumeState>(
+                     "State of the volume: held = waits for a person's review, released = cases "
+                     "can be made from it, refused = its voxels were removed")},
        {"format", text("File format from which the volume was read")},
        {"modality", nullable(text("DICOM modality; null if the file states none"))},
        {"dims", tuple(integer("1", "Number of voxels along one axis"), 3,
