@@ -38,7 +38,7 @@ core::Result<void> furnish(Writing& tx) {
   TRY(add_account(tx, {"1", "ada", Role::admin, "hash"}, 1));
   TRY(add_station(tx, {"s", "station-1"}, "token", 1));
   TRY(add_case(tx, {kCase, "L3", "made", 1, 0}, {{"case.json", kCase, 9, false}}, 1));
-  return add_upload(tx, {kTrial, "s", kCase, 10, kSha, "receiving"}, 1);
+  return add_upload(tx, {kTrial, "s", kCase, 10, kSha, UploadPhase::receiving}, 1);
 }
 
 TrialRecord trial() {

@@ -9,16 +9,14 @@ constexpr long kMaxTrial_bytes = 8l << 30;
 }
 
 core::Json UploadState::to_json() const {
-  return {{"offset_bytes", offset_bytes}, {"state", state}};
+  return {{"offset_bytes", offset_bytes}, {"state", core::name(state)}};
 }
 
 core::Result<UploadState> UploadState::from_json(const core::Json& json, const std::string& where) {
   core::Fields fields(json, where);
   UploadState out;
   out.offset_bytes = static_cast<std::uint64_t>(fields.integer("offset_bytes", 0, kMaxTrial_bytes));
-  out.state = fields.text("state", 32);
-  if (out.state != "receiving" && out.state != "complete")
-    fields.wrong("state", "receiving or complete is expected");
+  out.state = fields.word<trial::UploadPhase>("state");
   TRY(fields.done());
   return out;
 }

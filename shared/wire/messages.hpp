@@ -6,14 +6,14 @@
 #include <string>
 
 #include "core/json.hpp"
+#include "trial/upload_phase.hpp"
 
 namespace tractus::wire {
 
-/// Where an upload stands. `state`: "receiving" until all bytes are there and committed, then
-/// "complete".
+/// Where an upload stands.
 struct UploadState {
   std::uint64_t offset_bytes = 0;
-  std::string state;
+  trial::UploadPhase state = trial::UploadPhase::receiving;
 
   core::Json to_json() const;
   static core::Result<UploadState> from_json(const core::Json& json, const std::string& where);

@@ -95,7 +95,7 @@ std::optional<uplink::ClockOffset> clock_offset(uplink::Server& server,
 bool anything_waits(const session::StationFolder& folder) {
   const auto entries = folder.outbox().entries();
   return entries && std::ranges::any_of(*entries, [](const uplink::OutboxEntry& entry) {
-           return entry.state == "queued";
+           return entry.state == uplink::OutboxState::queued;
          });
 }
 

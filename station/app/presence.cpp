@@ -91,8 +91,10 @@ void Presence::Parts::look_around() {
   if (waiting && (now - outbox_at < kOutboxEvery || state == State::trial)) return;
   outbox_at = now;
   if (const auto entries = folder.outbox().entries())
-    waiting = static_cast<std::uint64_t>(std::ranges::count_if(
-        *entries, [](const uplink::OutboxEntry& entry) { return entry.state == "queued"; }));
+    waiting = static_cast<std::uint64_t>(
+        std::ranges::count_if(*entries, [](const uplink::OutboxEntry& entry) {
+          return entry.state == uplink::OutboxState::queued;
+        }));
 }
 
 wire::StationStatus Presence::Parts::told() {

@@ -18,7 +18,7 @@ constexpr std::size_t kPiece_bytes = 1u << 20;
 
 core::Json OutboxEntry::to_json() const {
   return {{"trial_id", trial_id}, {"case_id", case_id},           {"size_bytes", size_bytes},
-          {"sha256", sha256},     {"offset_bytes", offset_bytes}, {"state", state},
+          {"sha256", sha256},     {"offset_bytes", offset_bytes}, {"state", core::name(state)},
           {"reason", reason}};
 }
 
@@ -30,7 +30,7 @@ core::Result<OutboxEntry> OutboxEntry::from_json(const core::Json& json, const s
   out.size_bytes = static_cast<std::uint64_t>(fields.integer("size_bytes", 1, kMaxTrial_bytes));
   out.sha256 = fields.text("sha256", 64);
   out.offset_bytes = static_cast<std::uint64_t>(fields.integer("offset_bytes", 0, kMaxTrial_bytes));
-  out.state = fields.text("state", 16);
+  out.state = fields.word<OutboxState>("state");
   out.reason = fields.text_or("reason", "");
   if (!core::is_id(out.trial_id))
     fields.wrong("trial_id", "32 hexadecimal characters are expected");
@@ -38,8 +38,6 @@ core::Result<OutboxEntry> OutboxEntry::from_json(const core::Json& json, const s
     fields.wrong("case_id", "64 hexadecimal characters are expected");
   if (!core::is_sha256(out.sha256))
     fields.wrong("sha256", "64 hexadecimal characters are expected");
-  if (out.state != "queued" && out.state != "complete" && out.state != "refused")
-    fields.wrong("state", "queued, complete or refused is expected");
   TRY(fields.done());
   return out;
 }

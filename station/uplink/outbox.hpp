@@ -9,6 +9,13 @@
 
 namespace tractus::uplink {
 
+enum class OutboxState { queued, complete, refused };
+constexpr auto words(OutboxState) {
+  using enum OutboxState;
+  return std::to_array<core::Word<OutboxState>>(
+      {{queued, "queued"}, {complete, "complete"}, {refused, "refused"}});
+}
+
 /// One finished trial on its way: `outbox/<trial id>.json`.
 struct OutboxEntry {
   std::string trial_id;
@@ -16,8 +23,8 @@ struct OutboxEntry {
   std::uint64_t size_bytes = 0;
   std::string sha256;              ///< of the trial file
   std::uint64_t offset_bytes = 0;  ///< what the server has said it holds
-  std::string state = "queued";    ///< "queued", "complete", "refused"
-  std::string reason;              ///< of a refusal, one line
+  OutboxState state = OutboxState::queued;
+  std::string reason;  ///< of a refusal, one line
 
   core::Json to_json() const;
   static core::Result<OutboxEntry> from_json(const core::Json& json, const std::string& where);

@@ -120,7 +120,7 @@ core::Result<void> upload_trial(Server& server, const fs::path& trial_file, Outb
   auto state = TRY(announce(server, path, entry));
   if (state.offset_bytes > entry.size_bytes) return confused(entry, state.offset_bytes);
   entry.offset_bytes = state.offset_bytes;
-  if (state.state != "complete") {
+  if (state.state != trial::UploadPhase::complete) {
     TRY(send_rest(server, path, trial_file, entry, progress));
     const std::string note = note_of(offset);
     const Request request{.method = "POST",
@@ -128,13 +128,13 @@ core::Result<void> upload_trial(Server& server, const fs::path& trial_file, Outb
                           .headers = {{"Content-Type", "application/json"}},
                           .body = core::bytes_of(note)};
     auto committed = TRY(state_of(request, server.send(request)));
-    if (committed.state != "complete")
+    if (committed.state != trial::UploadPhase::complete)
       return core::Error{
           core::Errc::unavailable,
           fmt::format("upload of {}: not complete after the commit", entry.trial_id)};
   }
   entry.offset_bytes = entry.size_bytes;
-  entry.state = "complete";
+  entry.state = OutboxState::complete;
   return {};
 }
 
@@ -147,7 +147,8 @@ core::Result<UploadReport> upload_all(Server& server, const Outbox& outbox,
                                       const Patience& patience, const core::Progress& progress,
                                       const std::optional<ClockOffset>& offset) {
   auto entries = TRY(outbox.entries());
-  std::erase_if(entries, [](const OutboxEntry& entry) { return entry.state != "queued"; });
+  std::erase_if(entries,
+                [](const OutboxEntry& entry) { return entry.state != OutboxState::queued; });
   UploadReport report;
   core::Instant_ns wait = patience.first_wait_ns, last_progress = clock.now();
   for (std::size_t i = 0; i < entries.size();) {
@@ -157,7 +158,7 @@ core::Result<UploadReport> upload_all(Server& server, const Outbox& outbox,
         upload_trial(server, trials_folder / (entry.trial_id + ".ttrial"), entry, progress, offset);
     if (!outcome && outcome.error().code == core::Errc::unauthorised) return outcome.error();
     const bool later = !outcome && passes(outcome.error().code);
-    if (!outcome && !later) entry.state = "refused", entry.reason = outcome.error().what;
+    if (!outcome && !later) entry.state = OutboxState::refused, entry.reason = outcome.error().what;
     TRY(outbox.write(entry));
     if (entry.offset_bytes > before || !later)
       last_progress = clock.now(), wait = patience.first_wait_ns;

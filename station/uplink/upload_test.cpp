@@ -53,7 +53,7 @@ class Uploading : public testing::Test {
     }
     const auto entries = outbox_->entries();
     ASSERT_TRUE(entries);
-    for (const auto& entry : *entries) EXPECT_EQ(entry.state, "complete");
+    for (const auto& entry : *entries) EXPECT_EQ(entry.state, OutboxState::complete);
   }
 
   fs::path root_;
@@ -151,7 +151,7 @@ TEST_F(Uploading, KeepsATrialThatTheServerRefusesAndTakesTheNext) {
   EXPECT_EQ(report->handed_over, 1);
   const auto entries = outbox_->entries();
   ASSERT_TRUE(entries);
-  EXPECT_EQ(entries->front().state, "refused");
+  EXPECT_EQ(entries->front().state, OutboxState::refused);
   EXPECT_NE(entries->front().reason.find("another trial has this id"), std::string::npos);
   EXPECT_TRUE(fs::exists(trials() / (kFirst + ".ttrial")));
 }

@@ -70,7 +70,7 @@ class Studies : public test_support::BothDatabases {
   void bring(const std::string& trial_id, const Slot& slot, bool complete = true,
              const Tool& tool = {}) {
     write([&](Writing& tx) -> core::Result<void> {
-      TRY(add_upload(tx, {trial_id, "s1", slot.case_id, 1, kA, "receiving"}, 9));
+      TRY(add_upload(tx, {trial_id, "s1", slot.case_id, 1, kA, UploadPhase::receiving}, 9));
       TRY(announce_for_slot(tx, trial_id, slot.id, 9));
       return record_for_slot(tx, trial_id, complete, {"station-s1", 10}, tool);
     });

@@ -1,6 +1,7 @@
 #include "db/store/trials/uploads.hpp"
 
 #include "core/try.hpp"
+#include "db/store/rows.hpp"
 
 namespace tractus {
 namespace store {
@@ -9,8 +10,9 @@ namespace {
 constexpr const char* kUpload =
     "select trial_id, station_id, case_id, size_bytes, sha256, state from uploads ";
 
-Upload upload_from(const Row& row) {
-  return {row.text(0), row.text(1), row.text(2), row.count(3), row.text(4), row.text(5)};
+core::Result<Upload> upload_from(const Row& row) {
+  const auto state = TRY(row.word<UploadPhase>(5, "uploads.state"));
+  return Upload{row.text(0), row.text(1), row.text(2), row.count(3), row.text(4), state};
 }
 
 core::Result<void> done(const core::Result<Rows>& rows) {
@@ -21,9 +23,7 @@ core::Result<void> done(const core::Result<Rows>& rows) {
 }  // namespace
 
 core::Result<std::optional<Upload>> upload_of(Reading& tx, const std::string& trial_id) {
-  auto rows = TRY(tx.query(std::string(kUpload) + "where trial_id = ?", {trial_id}));
-  if (rows.empty()) return std::optional<Upload>();
-  return std::optional(upload_from(rows.front()));
+  return one_of(tx.query(std::string(kUpload) + "where trial_id = ?", {trial_id}), upload_from);
 }
 
 core::Result<std::vector<Upload>> open_uploads(Reading& tx) {
@@ -31,12 +31,10 @@ core::Result<std::vector<Upload>> open_uploads(Reading& tx) {
 }
 
 core::Result<std::vector<Upload>> open_uploads_since(Reading& tx, std::int64_t utc_us) {
-  auto rows = TRY(tx.query(
-      std::string(kUpload) + "where state = 'receiving' and announced_utc_us > ? order by trial_id",
-      {utc_us}));
-  std::vector<Upload> out;
-  for (const Row& row : rows) out.push_back(upload_from(row));
-  return out;
+  return all_of(tx.query(std::string(kUpload) +
+                             "where state = 'receiving' and announced_utc_us > ? order by trial_id",
+                         {utc_us}),
+                upload_from);
 }
 
 core::Result<std::uint64_t> open_upload_count(Reading& tx, const std::string& station_id) {
@@ -50,7 +48,7 @@ core::Result<void> add_upload(Writing& tx, const Upload& upload, std::int64_t no
       tx.query("insert into uploads (trial_id, station_id, case_id, size_bytes, sha256, state, "
                "announced_utc_us) values (?, ?, ?, ?, ?, ?, ?)",
                {upload.trial_id, upload.station_id, upload.case_id, count_value(upload.size_bytes),
-                upload.sha256, upload.state, now_utc_us}));
+                upload.sha256, name_value(upload.state), now_utc_us}));
 }
 
 core::Result<void> complete_upload(Writing& tx, const std::string& trial_id) {

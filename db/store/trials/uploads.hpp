@@ -5,8 +5,11 @@
 #include <vector>
 
 #include "db/store/store.hpp"
+#include "trial/upload_phase.hpp"
 
 namespace tractus::store {
+
+using trial::UploadPhase;
 
 struct Upload {
   std::string trial_id;
@@ -14,7 +17,7 @@ struct Upload {
   std::string case_id;
   std::uint64_t size_bytes = 0;
   std::string sha256;
-  std::string state;  ///< "receiving" or "complete"
+  UploadPhase state = UploadPhase::receiving;
 };
 
 core::Result<std::optional<Upload>> upload_of(Reading& tx, const std::string& trial_id);

@@ -35,7 +35,8 @@ class DrilledTruth : public ApiTest {
                                        {"detail", {{"channel", {{"beyond_m", beyond_m}}}}}}})
                        .dump();
     const auto done = store_.write([&](store::Writing& tx) -> core::Result<void> {
-      TRY(store::add_upload(tx, {kDrilling, "s1", of, 1, trial.sha256, "receiving"}, 1));
+      TRY(store::add_upload(
+          tx, {kDrilling, "s1", of, 1, trial.sha256, store::UploadPhase::receiving}, 1));
       TRY(store::add_object(tx, trial.sha256, 1, 1));
       return store::add_trial(tx, trial, 1);
     });

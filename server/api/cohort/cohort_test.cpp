@@ -94,7 +94,7 @@ class Cohort : public ApiTest {
     trial.complete = true;
     trial.header = trial.events = "{}";
     const auto added = store_.write([&](store::Writing& tx) -> core::Result<void> {
-      TRY(store::add_upload(tx, {id, "s1", kCase, 1, sha, "receiving"}, 1));
+      TRY(store::add_upload(tx, {id, "s1", kCase, 1, sha, store::UploadPhase::receiving}, 1));
       if (!slot.empty()) TRY(store::announce_for_slot(tx, id, slot, 1));
       TRY(store::add_object(tx, sha, 1, 1));
       TRY(store::add_trial(tx, trial, 1));

@@ -68,7 +68,7 @@ class PeopleTest : public ApiTest {
     trial.sha256 = sha;
     trial.complete = true;
     trial.header = trial.events = "{}";
-    TRY(store::add_upload(tx, {id, "s1", kCase, 1, sha, "receiving"}, 1));
+    TRY(store::add_upload(tx, {id, "s1", kCase, 1, sha, store::UploadPhase::receiving}, 1));
     TRY(store::announce_for_slot(tx, id, slot, 1));
     TRY(store::add_object(tx, sha, 1, 1));
     TRY(store::add_trial(tx, trial, 1));

@@ -60,7 +60,7 @@ namespace {
 
 /// The file is the truth: what it holds was flushed before it was acknowledged.
 wire::UploadState state_of(const Backend& backend, const store::Upload& upload) {
-  const bool complete = upload.state == "complete";
+  const bool complete = upload.state == store::UploadPhase::complete;
   return {complete ? upload.size_bytes : backend.partials.size_of(upload.trial_id), upload.state};
 }
 
@@ -106,8 +106,9 @@ core::Result<void> insert(store::Writing& tx, const Backend& backend, const Call
     return core::Error{
         core::Errc::unavailable,
         fmt::format("{} uploads of this station are unfinished: finish some first", open)};
-  const store::Upload upload{trial_id,         station.id, case_id, announced.size_bytes,
-                             announced.sha256, "receiving"};
+  const store::Upload upload{trial_id,         station.id,
+                             case_id,          announced.size_bytes,
+                             announced.sha256, store::UploadPhase::receiving};
   TRY(store::add_upload(tx, upload, now_utc_us));
   return slot ? store::announce_for_slot(tx, trial_id, slot->id, now_utc_us) : core::Result<void>();
 }
@@ -157,7 +158,7 @@ core::Result<wire::UploadState> announce_upload(Backend& backend, const Caller& 
     if (again) return {};
     return insert(tx, backend, station, trial_id, announced);
   }));
-  return wire::UploadState{backend.partials.size_of(trial_id), "receiving"};
+  return wire::UploadState{backend.partials.size_of(trial_id), store::UploadPhase::receiving};
 }
 
 core::Result<wire::UploadState> upload_state(Backend& backend, const Caller& station,
@@ -177,7 +178,7 @@ core::Result<Appended> append_upload(Backend& backend, const Caller& station,
   if (!first) return first.error();
   const auto held = TRY(hold_upload(backend, trial_id));
   auto upload = TRY(own_upload(backend, station, trial_id));
-  if (upload.state != "receiving")
+  if (upload.state != store::UploadPhase::receiving)
     return core::Error{core::Errc::conflict, fmt::format("trial {} is complete", trial_id)};
   const std::uint64_t there = backend.partials.size_of(trial_id);
   if (offset_bytes != there) return Appended{{there, upload.state}, false};
@@ -199,7 +200,7 @@ core::Result<wire::UploadState> commit_upload(Backend& backend, const Caller& st
   TRY(own_upload(backend, station, trial_id));
   const auto held = TRY(hold_upload(backend, trial_id));
   auto upload = TRY(own_upload(backend, station, trial_id));
-  if (upload.state == "complete") return state_of(backend, upload);
+  if (upload.state == store::UploadPhase::complete) return state_of(backend, upload);
   if (const std::uint64_t there = backend.partials.size_of(trial_id); there < upload.size_bytes)
     return core::Error{core::Errc::conflict,
                        fmt::format("the server has {} of {} bytes: send the rest first", there,
@@ -216,7 +217,7 @@ core::Result<wire::UploadState> commit_upload(Backend& backend, const Caller& st
   TRY(store_trial(backend, upload, *trial));
   backend.partials.remove(trial_id);
   backend.work_waits();
-  return wire::UploadState{upload.size_bytes, "complete"};
+  return wire::UploadState{upload.size_bytes, store::UploadPhase::complete};
 }
 
 namespace {
@@ -226,7 +227,8 @@ core::Result<void> reconcile_one(Backend& backend, const std::string& trial_id) 
   const auto held = TRY(hold_upload(backend, trial_id));
   auto upload =
       TRY(backend.store.read([&](store::Reading& tx) { return store::upload_of(tx, trial_id); }));
-  if (upload && upload->state == "receiving") return backend.partials.flush(trial_id);
+  if (upload && upload->state == store::UploadPhase::receiving)
+    return backend.partials.flush(trial_id);
   return backend.partials.remove(trial_id), core::Result<void>();
 }
 

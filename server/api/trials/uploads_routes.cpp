@@ -99,10 +99,9 @@ std::vector<RouteInfo> uploads_routes() {
             {"size_bytes", schema::integer("B", "Size of the trial file, in bytes")},
             {"sha256", schema::text("SHA-256 of the trial file")}})},
       {"UploadState",
-       schema::object(
-           {{"offset_bytes",
-             schema::integer("B", "Number of bytes that the server has stored durably")},
-            {"state", schema::one_of({"receiving", "complete"},
+       schema::object({{"offset_bytes",
+                        schema::integer("B", "Number of bytes that the server has stored durably")},
+                       {"state", schema::one_of<trial::UploadPhase>(
                                      "State of the upload; complete: the trial is stored")}})}};
   put.handle = announce;
 

@@ -71,7 +71,8 @@ class Upload {
     auto made = store_.write([&](store::Writing& tx) -> core::Result<void> {
       if (auto done = store::add_station(tx, {"s", "s"}, "t", 1); !done) return done;
       if (auto done = store::add_case(tx, {"c", "c", "", 1, 0}, {}, 1); !done) return done;
-      return store::add_upload(tx, {id_, "s", "c", 1u << 30, "x", "receiving"}, 1);
+      return store::add_upload(tx, {id_, "s", "c", 1u << 30, "x", store::UploadPhase::receiving},
+                               1);
     });
     core::require(bool(made), "the upload is announced");
   }
