@@ -110,6 +110,23 @@ TEST_P(StoreContract, AWriteThatFailsLeavesNothing) {
   EXPECT_EQ(db.store.read([](Reading& tx) { return account_count(tx); }).value(), 0u);
 }
 
+TEST_P(StoreContract, ARowWithAWordThatNobodyKnowsIsCorrupt) {
+  Opened db(GetParam());
+  const auto made = db.store.write([](Writing& tx) -> core::Result<void> {
+    TRY(add_account(tx, {"1", "ada", Role::admin, "hash"}, 5));
+    TRY(tx.query("update accounts set state = 'asleep' where id = '1'"));
+    return {};
+  });
+  ASSERT_TRUE(made) << made.error().what;
+  const auto one = db.store.read([](Reading& tx) { return account_of(tx, "1"); });
+  ASSERT_FALSE(one);
+  EXPECT_EQ(one.error().code, core::Errc::corrupt);
+  EXPECT_EQ(one.error().what, "database: accounts.state: 'asleep' is none of active, disabled");
+  const auto all = db.store.read([](Reading& tx) { return all_accounts(tx); });
+  ASSERT_FALSE(all);
+  EXPECT_EQ(all.error().code, core::Errc::corrupt);
+}
+
 TEST_P(StoreContract, AReadingConnectionIsRefusedWritesByTheDatabase) {
   Opened db(GetParam());
   auto outcome = db.store.read([](Reading& tx) -> core::Result<void> {
