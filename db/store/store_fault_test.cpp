@@ -98,7 +98,7 @@ TEST_P(StoreFaults, ACommittedTrialIsWholeOrAbsent) {
     TRY(add_object(tx, kSha, 10, 2));
     TRY(add_trial(tx, trial(), 2));
     TRY(complete_upload(tx, kTrial));
-    return queue_job(tx, "metrics", kTrial, 2);
+    return queue_job(tx, JobKind::metrics, kTrial, 2);
   });
   // begin, four statements, the trial's row read for its digest, the trail's end, its new row,
   // commit

@@ -266,11 +266,11 @@ TEST_P(MigrationSteps, StudiesAndAssignmentsOfAnOlderDatabaseGetTheirKind) {
 TEST_P(JobQueue, AreClaimedOnceInTheOrderTheyWereQueued) {
   Opened db(GetParam());
   auto claimed = db.store.write([](Writing& tx) -> core::Result<std::vector<std::string>> {
-    TRY(queue_job(tx, "metrics", "later", 20));
-    TRY(queue_job(tx, "metrics", "sooner", 10));
+    TRY(queue_job(tx, JobKind::metrics, "later", 20));
+    TRY(queue_job(tx, JobKind::metrics, "sooner", 10));
     std::vector<std::string> subjects;
     while (true) {
-      auto job = TRY(claim_job(tx, {"metrics"}, 30));
+      auto job = TRY(claim_job(tx, {JobKind::metrics}, 30));
       if (!job.has_value()) return subjects;
       subjects.push_back(job->subject);
     }
@@ -282,10 +282,10 @@ TEST_P(JobQueue, AreClaimedOnceInTheOrderTheyWereQueued) {
 TEST_P(JobQueue, WhatADeadProcessHadClaimedWaitsAgainAndCountsItsAttempts) {
   Opened db(GetParam());
   auto again = db.store.write([](Writing& tx) -> core::Result<std::optional<Job>> {
-    TRY(queue_job(tx, "metrics", "t", 10));
-    TRY(claim_job(tx, {"metrics"}, 20));
+    TRY(queue_job(tx, JobKind::metrics, "t", 10));
+    TRY(claim_job(tx, {JobKind::metrics}, 20));
     TRY(requeue_claimed_jobs(tx, 30));
-    return claim_job(tx, {"metrics"}, 40);
+    return claim_job(tx, {JobKind::metrics}, 40);
   });
   ASSERT_TRUE(again) << again.error().what;
   ASSERT_TRUE(again->has_value());
@@ -296,13 +296,13 @@ TEST_P(JobQueue, AJobWhoseLeaseIsOverWaitsAgainAndIsItsFormerOwnersNoMore) {
   Opened db(GetParam());
   const Worker slow{"slow", 100}, quick{"quick", 100};
   auto outcome = db.store.write([&](Writing& tx) -> core::Result<void> {
-    TRY(queue_job(tx, "metrics", "t", 10));
-    auto first = TRY(claim_job(tx, {"metrics"}, 20, slow));
+    TRY(queue_job(tx, JobKind::metrics, "t", 10));
+    auto first = TRY(claim_job(tx, {JobKind::metrics}, 20, slow));
     EXPECT_EQ(requeue_lapsed_jobs(tx, 119).value(), 0u) << "the lease holds until 120";
     EXPECT_EQ(renew_claims(tx, slow, 50).value(), std::vector<std::string>{first->id});
     EXPECT_EQ(requeue_lapsed_jobs(tx, 150).value(), 0u) << "renewed at 50, until 150";
     EXPECT_EQ(requeue_lapsed_jobs(tx, 151).value(), 1u);
-    auto second = TRY(claim_job(tx, {"metrics"}, 160, quick));
+    auto second = TRY(claim_job(tx, {JobKind::metrics}, 160, quick));
     EXPECT_EQ(second->attempts, 2u);
     EXPECT_TRUE(renew_claims(tx, slow, 170).value().empty());
     auto late = finish_job(tx, *first, 180);
@@ -315,10 +315,10 @@ TEST_P(JobQueue, AJobWhoseLeaseIsOverWaitsAgainAndIsItsFormerOwnersNoMore) {
 TEST_P(JobQueue, AJobLeftOffWaitsAgainAndTheAttemptDoesNotCount) {
   Opened db(GetParam());
   auto again = db.store.write([](Writing& tx) -> core::Result<std::optional<Job>> {
-    TRY(queue_job(tx, "lab", "t", 10));
-    auto first = TRY(claim_job(tx, {"lab"}, 20));
+    TRY(queue_job(tx, JobKind::lab, "t", 10));
+    auto first = TRY(claim_job(tx, {JobKind::lab}, 20));
     TRY(give_back_job(tx, *first, 30));
-    return claim_job(tx, {"lab"}, 40);
+    return claim_job(tx, {JobKind::lab}, 40);
   });
   ASSERT_TRUE(again && again->has_value());
   EXPECT_EQ((*again)->attempts, 1u);

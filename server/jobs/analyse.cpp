@@ -116,7 +116,7 @@ Result<void> analyse(store::Store& store, const store::Objects& objects,
                      const std::optional<store::PseudonymKey>& key, const std::string& analysis_id,
                      const std::function<bool()>& ending) {
   auto run = TRY(asked(store, analysis_id));
-  if (run.state != "queued" && run.state != "running") return {};
+  if (run.state != store::WorkState::queued && run.state != store::WorkState::running) return {};
   const auto note = [&](double share) {
     return store.write([&](store::Writing& tx) {
       return store::note_analysis_share(tx, run.id, share, core::utc_us());

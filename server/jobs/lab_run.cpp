@@ -88,8 +88,8 @@ class LabRun {
   Result<Outcome> work() {
     if (!watch_.at("reading the measurements", 0.0, 1.0)(0.0))
       return Error{Errc::cancelled, "stopped"};
-    if (of_.run.kind == "comparison") return compare();
-    return of_.run.kind == "fit" ? fit() : diagnose();
+    if (of_.run.kind == store::LabRunKind::comparison) return compare();
+    return of_.run.kind == store::LabRunKind::fit ? fit() : diagnose();
   }
 
  private:
@@ -198,7 +198,8 @@ Result<void> keep(store::Store& store, const store::Objects& objects, store::Lab
 Result<void> run_lab(store::Store& store, const store::Objects& objects, const std::string& run_id,
                      const std::function<bool()>& ending) {
   const auto of = TRY(asked(store, run_id));
-  if (of.run.state != "queued" && of.run.state != "running") return {};
+  if (of.run.state != store::LabRunState::queued && of.run.state != store::LabRunState::running)
+    return {};
   const auto outcome = TRY(LabRun(store, objects, of, ending).work());
   return keep(store, objects, of.run, outcome);
 }

@@ -125,7 +125,7 @@ Result<void> make_case(store::Store& store, const store::Objects& objects, const
       TRY(store.read([&](store::Reading& tx) { return store::case_making_of(tx, making_id); }));
   if (!making)
     return core::Error{core::Errc::not_found, "no job that makes a case has the id " + making_id};
-  if (making->state == "done") return {};
+  if (making->state == store::WorkState::done) return {};
   auto json = TRY(core::parse_json(making->plan, "plan"));
   core::Fields fields(json, "plan");
   const auto plan = TRY(plan_from(fields));

@@ -20,19 +20,27 @@
 namespace tractus {
 namespace jobs {
 namespace {
+using store::JobKind;
 constexpr std::uint64_t kMostAttempts = 3;  // of what is not a score
 constexpr int kLabNiceness = 10;
 
 /// What a person sees of a job that failed.
 core::Result<void> show_failure(store::Writing& tx, const store::Job& job,
                                 const core::Error& error) {
-  if (job.kind == "analysis")
-    return store::fail_analysis(tx, job.subject, error.what, core::utc_us());
-  if (job.kind == "case") return store::fail_making(tx, job.subject, error.what, core::utc_us());
-  if (job.kind != "lab") return store::set_assessment_failed(tx, job.subject, error.what);
   const bool cancelled = error.code == core::Errc::cancelled;
-  return store::end_lab_run(tx, job.subject, cancelled ? "cancelled" : "failed", error.what,
-                            core::utc_us());
+  switch (job.kind) {
+    case JobKind::metrics:
+      return store::set_assessment_failed(tx, job.subject, error.what);
+    case JobKind::lab:
+      return store::end_lab_run(
+          tx, job.subject, cancelled ? store::LabRunState::cancelled : store::LabRunState::failed,
+          error.what, core::utc_us());
+    case JobKind::analysis:
+      return store::fail_analysis(tx, job.subject, error.what, core::utc_us());
+    case JobKind::making:
+      return store::fail_making(tx, job.subject, error.what, core::utc_us());
+  }
+  return {};
 }
 }  // namespace
 
@@ -157,7 +165,8 @@ core::Result<void> Runner::conclude(Lane& lane, const store::Job& job,
     return store_.write(
         [&](store::Writing& tx) { return store::give_back_job(tx, job, core::utc_us()); });
   if (!done) {
-    log_(fmt::format("job {} of {} failed: {}", job.kind, job.subject, done.error().what));
+    log_(fmt::format("job {} of {} failed: {}", core::name(job.kind), job.subject,
+                     done.error().what));
     return note_failure(job, done.error());
   }
   return store_.write_beside(
@@ -181,13 +190,13 @@ bool Runner::ending() {
 }
 
 core::Result<void> Runner::work_on(Lane& lane, const store::Job& job) {
-  if (job.kind == "metrics") return assess_trial(store_, objects_, job.subject);
+  if (job.kind == JobKind::metrics) return assess_trial(store_, objects_, job.subject);
   if (job.attempts > kMostAttempts)
     return core::Error{core::Errc::unavailable, "the server ended each time it ran this job"};
   const auto wants_to_end = [this, &lane] { return ending() || is_lost(lane); };
-  if (job.kind == "case")
+  if (job.kind == JobKind::making)
     return make_case(store_, objects_, keys_.cases, job.subject, wants_to_end);
-  return job.kind == "analysis"
+  return job.kind == JobKind::analysis
              ? analyse(store_, objects_, keys_.pseudonyms, job.subject, wants_to_end)
              : run_lab(store_, objects_, job.subject, wants_to_end);
 }

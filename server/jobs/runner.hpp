@@ -47,7 +47,7 @@ class Runner {
 
  private:
   struct Lane {
-    std::vector<std::string> kinds;
+    std::vector<store::JobKind> kinds;
     bool woken = true;
     std::string job = {};  ///< the id of the one in hand
     bool lost = false;     ///< it is another process's by now
@@ -76,7 +76,8 @@ class Runner {
   std::mutex mutex_;  ///< guards ending_ and the lanes' woken, job, lost
   bool ending_ = false;
   std::condition_variable changed_;
-  Lane scores_{{"metrics"}}, cases_{{"case"}}, lab_{{"lab", "analysis"}};
+  Lane scores_{{store::JobKind::metrics}}, cases_{{store::JobKind::making}},
+      lab_{{store::JobKind::lab, store::JobKind::analysis}};
   std::thread keeper_;
   std::unique_ptr<store::Listening> listening_;
 };

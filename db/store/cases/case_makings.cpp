@@ -1,6 +1,7 @@
 #include "db/store/cases/case_makings.hpp"
 
 #include "core/try.hpp"
+#include "db/store/rows.hpp"
 
 namespace tractus {
 namespace store {
@@ -10,13 +11,11 @@ constexpr const char* kMaking =
     "select id, volume_id, title, plan, state, share, phase, error, case_id, made_utc_us, made_by "
     "from case_makings ";
 
-core::Result<std::vector<CaseMaking>> all_of(core::Result<Rows> rows) {
-  if (!rows) return rows.error();
-  std::vector<CaseMaking> out;
-  for (const Row& row : *rows)
-    out.push_back({row.text(0), row.text(1), row.text(2), row.text(3), row.text(4), row.number(5),
-                   row.text(6), row.text(7), row.text_or_null(8), row.integer(9), row.text(10)});
-  return out;
+core::Result<CaseMaking> making_from(const Row& row) {
+  const auto state = TRY(row.word<WorkState>(4, "case_makings.state"));
+  return CaseMaking{row.text(0),   row.text(1), row.text(2), row.text(3),         state,
+                    row.number(5), row.text(6), row.text(7), row.text_or_null(8), row.integer(9),
+                    row.text(10)};
 }
 
 core::Result<void> done(core::Result<Rows> rows) {
@@ -27,21 +26,21 @@ core::Result<void> done(core::Result<Rows> rows) {
 }  // namespace
 
 core::Result<void> add_case_making(Writing& tx, const CaseMaking& making) {
-  return done(tx.query(
-      "insert into case_makings (id, volume_id, title, plan, state, share, phase, error, "
-      "made_utc_us, made_by, changed_utc_us) values (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-      {making.id, making.volume_id, making.title, making.plan, making.state, making.share,
-       making.phase, making.error, making.made_utc_us, making.made_by, making.made_utc_us}));
+  return done(
+      tx.query("insert into case_makings (id, volume_id, title, plan, state, share, phase, error, "
+               "made_utc_us, made_by, changed_utc_us) values (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+               {making.id, making.volume_id, making.title, making.plan, name_value(making.state),
+                making.share, making.phase, making.error, making.made_utc_us, making.made_by,
+                making.made_utc_us}));
 }
 
 core::Result<std::optional<CaseMaking>> case_making_of(Reading& tx, const std::string& id) {
-  auto found = TRY(all_of(tx.query(std::string(kMaking) + "where id = ?", {id})));
-  if (found.empty()) return std::optional<CaseMaking>();
-  return std::optional(std::move(found.front()));
+  return one_of(tx.query(std::string(kMaking) + "where id = ?", {id}), making_from);
 }
 
 core::Result<std::vector<CaseMaking>> case_makings(Reading& tx, std::int64_t limit) {
-  return all_of(tx.query(std::string(kMaking) + "order by made_utc_us desc, id limit ?", {limit}));
+  return all_of(tx.query(std::string(kMaking) + "order by made_utc_us desc, id limit ?", {limit}),
+                making_from);
 }
 
 core::Result<void> note_making(Writing& tx, const std::string& id, double share,

@@ -3,17 +3,17 @@
 
 #include <vector>
 
-#include "db/store/store.hpp"
+#include "db/store/operations/jobs.hpp"
 
 namespace tractus::store {
 
-/// State: "queued", "running", "done" or "failed".
+/// A case in the making.
 struct CaseMaking {
   std::string id;
   std::string volume_id;
   std::string title;
   std::string plan;  ///< JSON, as jobs::plan_from reads it
-  std::string state = "queued";
+  WorkState state = WorkState::queued;
   double share = 0.0;                  ///< of the work, 0 … 1
   std::string phase;                   ///< current step, in words
   std::string error;                   ///< reason for the failure

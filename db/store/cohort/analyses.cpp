@@ -1,6 +1,7 @@
 #include "db/store/cohort/analyses.hpp"
 
 #include "core/try.hpp"
+#include "db/store/rows.hpp"
 
 namespace tractus {
 namespace store {
@@ -18,22 +19,27 @@ AnalysisPlan plan_from(const Row& row) {
           row.truth(4), row.integer(5), row.integer(6), row.text(7)};
 }
 
-AnalysisRun run_from(const Row& row) {
-  return {row.text(0),         row.text_or_null(1), row.text(2),          row.text(3),
-          row.text(4),         row.number(5),       row.text_or_null(6),  row.text_or_null(7),
-          row.text_or_null(8), row.text_or_null(9), row.text_or_null(10), row.text(11),
-          row.integer(12),     row.text(13)};
+core::Result<AnalysisRun> run_from(const Row& row) {
+  const auto state = TRY(row.word<WorkState>(4, "analyses.state"));
+  return AnalysisRun{row.text(0),
+                     row.text_or_null(1),
+                     row.text(2),
+                     row.text(3),
+                     state,
+                     row.number(5),
+                     row.text_or_null(6),
+                     row.text_or_null(7),
+                     row.text_or_null(8),
+                     row.text_or_null(9),
+                     row.text_or_null(10),
+                     row.text(11),
+                     row.integer(12),
+                     row.text(13)};
 }
 
 core::Result<void> done(core::Result<Rows> rows) {
   if (!rows) return rows.error();
   return {};
-}
-
-core::Result<std::optional<AnalysisRun>> first_run(core::Result<Rows> rows) {
-  if (!rows) return rows.error();
-  if (rows->empty()) return std::optional<AnalysisRun>();
-  return std::optional(run_from(rows->front()));
 }
 
 }  // namespace
@@ -63,29 +69,29 @@ core::Result<void> add_analysis(Writing& tx, const AnalysisRun& run) {
   return done(tx.query(
       "insert into analyses (id, plan_id, study, plan, state, share, snapshot, description, error, "
       "made_utc_us, made_by, changed_utc_us) values (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-      {run.id, or_null(run.plan_id), run.study, run.plan, run.state, run.share,
+      {run.id, or_null(run.plan_id), run.study, run.plan, name_value(run.state), run.share,
        or_null(run.snapshot), or_null(run.description), run.error, run.made_utc_us, run.made_by,
        run.made_utc_us}));
 }
 
 core::Result<std::optional<AnalysisRun>> analysis_of(Reading& tx, const std::string& id) {
-  return first_run(tx.query(std::string(kRun) + "where id = ?", {id}));
+  return one_of(tx.query(std::string(kRun) + "where id = ?", {id}), run_from);
 }
 
 core::Result<std::vector<AnalysisRun>> analyses_of_plan(Reading& tx, const std::string& plan_id) {
-  auto rows = TRY(
-      tx.query(std::string(kRun) + "where plan_id = ? order by made_utc_us desc, id", {plan_id}));
-  std::vector<AnalysisRun> out;
-  for (const Row& row : rows) out.push_back(run_from(row));
-  return out;
+  return all_of(
+      tx.query(std::string(kRun) + "where plan_id = ? order by made_utc_us desc, id", {plan_id}),
+      run_from);
 }
 
 core::Result<std::optional<AnalysisRun>> analysis_repeated_by(Reading& tx, const AnalysisRun& run) {
   if (!run.snapshot || !run.description) return std::optional<AnalysisRun>();
-  return first_run(tx.query(
-      std::string(kRun) + "where plan = ? and snapshot = ? and description = ? and state = 'done' "
-                          "and made_utc_us < ? and id <> ? order by made_utc_us, id limit 1",
-      {run.plan, *run.snapshot, *run.description, run.made_utc_us, run.id}));
+  return one_of(
+      tx.query(std::string(kRun) +
+                   "where plan = ? and snapshot = ? and description = ? and state = 'done' "
+                   "and made_utc_us < ? and id <> ? order by made_utc_us, id limit 1",
+               {run.plan, *run.snapshot, *run.description, run.made_utc_us, run.id}),
+      run_from);
 }
 
 core::Result<void> note_analysis_share(Writing& tx, const std::string& id, double share,

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "db/store/store.hpp"
+#include "db/store/operations/jobs.hpp"
 
 namespace tractus::store {
 
@@ -18,13 +18,13 @@ struct AnalysisPlan {
   std::string made_by;
 };
 
-/// A run of an analysis. Its state is "queued", "running", "done" or "failed".
+/// A run of an analysis.
 struct AnalysisRun {
   std::string id;
   std::optional<std::string> plan_id;  ///< none: one method, without a locked plan
   std::string study;
   std::string plan;  ///< object: the plan that is run
-  std::string state = "queued";
+  WorkState state = WorkState::queued;
   double share = 0.0;                                ///< of the work, 0 … 1
   std::optional<std::string> snapshot, description;  ///< objects: the frozen CSV, snapshot.json
   std::optional<std::string> result, report, data;   ///< objects, once done

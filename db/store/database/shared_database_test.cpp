@@ -85,7 +85,7 @@ TEST_P(SharedDatabase, AWriteSeesWhatTheOneBeforeItDid) {
 TEST_P(SharedDatabase, EveryJobIsClaimedOnceByWhoeverComesFirst) {
   constexpr int kJobs = 60;
   ASSERT_TRUE(one_.write([](Writing& tx) -> core::Result<void> {
-    for (int i = 0; i < kJobs; ++i) TRY(queue_job(tx, "metrics", std::to_string(i), i));
+    for (int i = 0; i < kJobs; ++i) TRY(queue_job(tx, JobKind::metrics, std::to_string(i), i));
     return {};
   }));
   std::mutex mutex;
@@ -93,7 +93,7 @@ TEST_P(SharedDatabase, EveryJobIsClaimedOnceByWhoeverComesFirst) {
   const auto work = [&](Store& store, const std::string& id) {
     while (true) {
       auto job = store.write_beside(
-          [&](Writing& tx) { return claim_job(tx, {"metrics"}, 100, Worker{id}); });
+          [&](Writing& tx) { return claim_job(tx, {JobKind::metrics}, 100, Worker{id}); });
       ASSERT_TRUE(job) << job.error().what;
       if (!job->has_value()) return;
       const std::lock_guard held(mutex);

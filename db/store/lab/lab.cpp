@@ -1,6 +1,7 @@
 #include "db/store/lab/lab.hpp"
 
 #include "core/try.hpp"
+#include "db/store/rows.hpp"
 
 namespace tractus {
 namespace store {
@@ -15,12 +16,13 @@ constexpr const char* kRun =
     "select id, kind, model_id, against_id, set_id, wish, state, share, phase, stop, ranking, "
     "result, report, samples, model_sha256, error, made_utc_us, made_by from lab_runs ";
 
-ModelVersion model_from(const Row& row) {
-  return {row.text(0),         row.text(1),    row.text(2), row.text(3), row.text_or_null(4),
-          row.text_or_null(5), row.integer(6), row.text(7), row.text(8)};
+core::Result<ModelVersion> model_from(const Row& row) {
+  return ModelVersion{row.text(0),    row.text(1),         row.text(2),
+                      row.text(3),    row.text_or_null(4), row.text_or_null(5),
+                      row.integer(6), row.text(7),         row.text(8)};
 }
 
-MeasurementSet set_from(const Row& row) {
+core::Result<MeasurementSet> set_from(const Row& row) {
   MeasurementSet out{row.text(0), row.text(1),         row.integer(2),
                      row.text(3), row.text_or_null(4), row.truth_or_null(5)};
   if (out.rig) out.trials = row.count(6), out.samples = row.count(7);
@@ -28,15 +30,15 @@ MeasurementSet set_from(const Row& row) {
   return out;
 }
 
-LabRun run_from(const Row& row) {
+core::Result<LabRun> run_from(const Row& row) {
   LabRun out;
   out.id = row.text(0);
-  out.kind = row.text(1);
+  out.kind = TRY(row.word<LabRunKind>(1, "lab_runs.kind"));
   out.model_id = row.text(2);
   out.against_id = row.text_or_null(3);
   out.set_id = row.text(4);
   out.wish = row.text(5);
-  out.state = row.text(6);
+  out.state = TRY(row.word<LabRunState>(6, "lab_runs.state"));
   out.share = row.number(7);
   out.phase = row.text(8);
   out.stop = row.truth(9);
@@ -49,21 +51,6 @@ LabRun run_from(const Row& row) {
   out.made_utc_us = row.integer(16);
   out.made_by = row.text(17);
   return out;
-}
-
-template <class T>
-core::Result<std::vector<T>> all_of(core::Result<Rows> rows, T (*from)(const Row&)) {
-  if (!rows) return rows.error();
-  std::vector<T> out;
-  for (const Row& row : *rows) out.push_back(from(row));
-  return out;
-}
-
-template <class T>
-core::Result<std::optional<T>> one_of(core::Result<Rows> rows, T (*from)(const Row&)) {
-  if (!rows) return rows.error();
-  if (rows->empty()) return std::optional<T>();
-  return std::optional<T>(from(rows->front()));
 }
 
 core::Result<void> done(core::Result<Rows> rows) {
@@ -118,9 +105,9 @@ core::Result<void> add_lab_run(Writing& tx, const LabRun& run) {
       "insert into lab_runs (id, kind, model_id, against_id, set_id, wish, state, share, phase, "
       "stop, error, made_utc_us, made_by, changed_utc_us) "
       "values (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-      {run.id, run.kind, run.model_id, or_null(run.against_id), run.set_id, run.wish, run.state,
-       run.share, run.phase, bool_value(run.stop), run.error, run.made_utc_us, run.made_by,
-       run.made_utc_us}));
+      {run.id, name_value(run.kind), run.model_id, or_null(run.against_id), run.set_id, run.wish,
+       name_value(run.state), run.share, run.phase, bool_value(run.stop), run.error,
+       run.made_utc_us, run.made_by, run.made_utc_us}));
 }
 
 core::Result<std::optional<LabRun>> lab_run_of(Reading& tx, const std::string& id) {
@@ -128,12 +115,13 @@ core::Result<std::optional<LabRun>> lab_run_of(Reading& tx, const std::string& i
 }
 
 core::Result<std::vector<LabRun>> lab_runs(Reading& tx, const LabRunFilter& filter) {
+  const std::string kind(filter.kind ? core::name(*filter.kind) : "");
   return all_of(
       tx.query(std::string(kRun) + "where (? = '' or kind = ?) and (? = '' or model_id = ? or "
                                    "against_id = ?) and (? = '' or set_id = ?) "
                                    "order by made_utc_us desc, id limit ?",
-               {filter.kind, filter.kind, filter.model_id, filter.model_id, filter.model_id,
-                filter.set_id, filter.set_id, filter.limit}),
+               {kind, kind, filter.model_id, filter.model_id, filter.model_id, filter.set_id,
+                filter.set_id, filter.limit}),
       run_from);
 }
 
@@ -158,11 +146,11 @@ core::Result<void> finish_lab_run(Writing& tx, const LabRun& run, std::int64_t n
        now_utc_us, run.id}));
 }
 
-core::Result<void> end_lab_run(Writing& tx, const std::string& id, const std::string& state,
+core::Result<void> end_lab_run(Writing& tx, const std::string& id, LabRunState state,
                                const std::string& why, std::int64_t now_utc_us) {
   return done(tx.query(
       "update lab_runs set state = ?, phase = '', error = ?, changed_utc_us = ? where id = ?",
-      {state, why, now_utc_us, id}));
+      {name_value(state), why, now_utc_us, id}));
 }
 
 core::Result<void> ask_to_stop(Writing& tx, const std::string& id, std::int64_t now_utc_us) {

@@ -32,16 +32,32 @@ struct MeasurementSet {
   std::uint64_t size_bytes = 0;  ///< of the zip; read, not written
 };
 
-/// Something asked of a model and a set. State: "queued", "running", "done", "failed" or
-/// "cancelled".
+enum class LabRunKind { diagnosis, comparison, fit };
+constexpr auto words(LabRunKind) {
+  using enum LabRunKind;
+  return std::to_array<core::Word<LabRunKind>>(
+      {{diagnosis, "diagnosis"}, {comparison, "comparison"}, {fit, "fit"}});
+}
+
+enum class LabRunState { queued, running, done, failed, cancelled };
+constexpr auto words(LabRunState) {
+  using enum LabRunState;
+  return std::to_array<core::Word<LabRunState>>({{queued, "queued"},
+                                                 {running, "running"},
+                                                 {done, "done"},
+                                                 {failed, "failed"},
+                                                 {cancelled, "cancelled"}});
+}
+
+/// Something asked of a model and a set.
 struct LabRun {
   std::string id;
-  std::string kind;  ///< "diagnosis", "comparison", "fit"
+  LabRunKind kind = LabRunKind::diagnosis;
   std::string model_id;
   std::optional<std::string> against_id;  ///< of a comparison: the other version
   std::string set_id;
   std::string wish = "{}";  ///< JSON {"add": [id], "own": [tractus-effect/1]}
-  std::string state = "queued";
+  LabRunState state = LabRunState::queued;
   double share = 0.0;                                         ///< of the work, 0 … 1
   std::string phase;                                          ///< what it is at, in words
   bool stop = false;                                          ///< someone asked to stop it
@@ -67,9 +83,10 @@ core::Result<std::vector<MeasurementSet>> all_measurement_sets(Reading& tx);
 
 core::Result<void> add_lab_run(Writing& tx, const LabRun& run);
 core::Result<std::optional<LabRun>> lab_run_of(Reading& tx, const std::string& id);
-/// Those that fit, newest first. Empty text: any.
+/// Those that fit, newest first. Empty: any.
 struct LabRunFilter {
-  std::string kind, model_id, set_id;
+  std::optional<LabRunKind> kind;
+  std::string model_id, set_id;
   std::int64_t limit = 50;
 };
 core::Result<std::vector<LabRun>> lab_runs(Reading& tx, const LabRunFilter& filter);
@@ -80,8 +97,8 @@ core::Result<bool> note_lab_share(Writing& tx, const std::string& id, double sha
 core::Result<void> note_lab_ranking(Writing& tx, const std::string& id, const std::string& json);
 /// `run`'s objects, with what is left of the rest: done.
 core::Result<void> finish_lab_run(Writing& tx, const LabRun& run, std::int64_t now_utc_us);
-/// @param state  "failed" or "cancelled".
-core::Result<void> end_lab_run(Writing& tx, const std::string& id, const std::string& state,
+/// @param state  failed or cancelled
+core::Result<void> end_lab_run(Writing& tx, const std::string& id, LabRunState state,
                                const std::string& why, std::int64_t now_utc_us);
 /// One that waits is cancelled at once, one that runs when it next looks; one that ended stays.
 core::Result<void> ask_to_stop(Writing& tx, const std::string& id, std::int64_t now_utc_us);

@@ -23,20 +23,20 @@ core::Result<void> set_state(Writing& tx, const Job& job, const char* state,
 
 }  // namespace
 
-core::Result<void> queue_job(Writing& tx, const std::string& kind, const std::string& subject,
+core::Result<void> queue_job(Writing& tx, JobKind kind, const std::string& subject,
                              std::int64_t now_utc_us) {
   TRY(tx.query(
       "insert into jobs (id, kind, subject, state, attempts, error, queued_utc_us, changed_utc_us) "
       "values (?, ?, ?, 'queued', 0, '', ?, ?)",
-      {core::new_id(), kind, subject, now_utc_us, now_utc_us}));
-  return notify(tx, kJobsChannel, kind);
+      {core::new_id(), name_value(kind), subject, now_utc_us, now_utc_us}));
+  return notify(tx, kJobsChannel, std::string(core::name(kind)));
 }
 
-core::Result<std::optional<Job>> claim_job(Writing& tx, const std::vector<std::string>& kinds,
+core::Result<std::optional<Job>> claim_job(Writing& tx, const std::vector<JobKind>& kinds,
                                            std::int64_t now_utc_us, const Worker& worker) {
   core::require(!kinds.empty(), "whoever claims a job says of which kinds");
   std::string listed = ",";
-  for (const std::string& kind : kinds) listed += kind + ",";
+  for (const JobKind kind : kinds) listed += std::string(core::name(kind)) + ",";
   auto rows = TRY(tx.query(
       "update jobs set state = 'claimed', attempts = attempts + 1, owner = ?, "
       "lease_until_utc_us = ?, changed_utc_us = ? "
@@ -46,7 +46,8 @@ core::Result<std::optional<Job>> claim_job(Writing& tx, const std::vector<std::s
       {worker.id, now_utc_us + worker.lease_us, now_utc_us, listed}));
   if (rows.empty()) return std::optional<Job>();
   const Row& row = rows.front();
-  return std::optional(Job{row.text(0), row.text(1), row.text(2), row.count(3), worker.id});
+  const auto kind = TRY(row.word<JobKind>(1, "jobs.kind"));
+  return std::optional(Job{row.text(0), kind, row.text(2), row.count(3), worker.id});
 }
 
 core::Result<std::vector<std::string>> renew_claims(Writing& tx, const Worker& worker,
@@ -70,7 +71,7 @@ core::Result<void> fail_job(Writing& tx, const Job& job, const std::string& why,
 
 core::Result<void> give_back_job(Writing& tx, const Job& job, std::int64_t now_utc_us) {
   TRY(set_state(tx, job, "queued", "", 1, now_utc_us));
-  return notify(tx, kJobsChannel, job.kind);
+  return notify(tx, kJobsChannel, std::string(core::name(job.kind)));
 }
 
 core::Result<std::uint64_t> requeue_lapsed_jobs(Writing& tx, std::int64_t now_utc_us) {

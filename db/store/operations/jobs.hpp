@@ -8,13 +8,35 @@
 
 #include <vector>
 
+#include "core/named.hpp"
 #include "db/store/store.hpp"
 
 namespace tractus::store {
 
+/// What a job works on.
+enum class JobKind {
+  metrics,   ///< the scores of a trial
+  lab,       ///< a run of the model lab
+  analysis,  ///< a run of a cohort's analysis
+  making,    ///< a case made from a volume
+};
+constexpr auto words(JobKind) {
+  using enum JobKind;
+  return std::to_array<core::Word<JobKind>>(
+      {{metrics, "metrics"}, {lab, "lab"}, {analysis, "analysis"}, {making, "case"}});
+}
+
+/// How far the work on an analysis or a case has come.
+enum class WorkState { queued, running, done, failed };
+constexpr auto words(WorkState) {
+  using enum WorkState;
+  return std::to_array<core::Word<WorkState>>(
+      {{queued, "queued"}, {running, "running"}, {done, "done"}, {failed, "failed"}});
+}
+
 struct Job {
   std::string id;
-  std::string kind;            ///< "metrics", "lab"
+  JobKind kind = JobKind::metrics;
   std::string subject;         ///< the trial's or the run's id
   std::uint64_t attempts = 0;  ///< number of attempts, including the current one
   std::string owner = {};      ///< worker that claimed it
@@ -29,11 +51,11 @@ struct Worker {
 /// The channel that signals the kind of a new job (signals.hpp).
 inline constexpr const char* kJobsChannel = "jobs";
 
-core::Result<void> queue_job(Writing& tx, const std::string& kind, const std::string& subject,
+core::Result<void> queue_job(Writing& tx, JobKind kind, const std::string& subject,
                              std::int64_t now_utc_us);
 /// Claims the oldest queued job of one of these kinds; none if no such job is queued. Also correct
 /// in Store::write_beside: workers do not wait for each other, and no job is claimed twice.
-core::Result<std::optional<Job>> claim_job(Writing& tx, const std::vector<std::string>& kinds,
+core::Result<std::optional<Job>> claim_job(Writing& tx, const std::vector<JobKind>& kinds,
                                            std::int64_t now_utc_us, const Worker& worker = {});
 /// Renews the leases of the worker. Returns the ids of the jobs that the worker still owns.
 core::Result<std::vector<std::string>> renew_claims(Writing& tx, const Worker& worker,

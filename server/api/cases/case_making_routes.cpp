@@ -45,7 +45,7 @@ Json making_json(const store::CaseMaking& making) {
   return {{"id", making.id},
           {"volume", making.volume_id},
           {"title", making.title},
-          {"state", making.state},
+          {"state", name(making.state)},
           {"share", making.share},
           {"phase", making.phase},
           {"error", making.error},
@@ -96,7 +96,7 @@ Result<http::Response> make(const Call& call) {
   TRY(jobs::released_volume(call.backend.store, call.backend.objects, making.volume_id));
   TRY(call.backend.store.write([&](store::Writing& tx) -> Result<void> {
     TRY(store::add_case_making(tx, making));
-    return store::queue_job(tx, "case", making.id, making.made_utc_us);
+    return store::queue_job(tx, store::JobKind::making, making.id, making.made_utc_us);
   }));
   call.backend.work_waits();
   return making_response(call, making.id, 201);
@@ -193,7 +193,7 @@ std::vector<NamedSchema> making_schemas() {
        object({{"id", text("Id of the job that makes the case")},
                {"volume", text("Id of the volume from which the case is made")},
                {"title", text("Title for faculty")},
-               {"state", one_of({"queued", "running", "done", "failed"}, "State of the job")},
+               {"state", one_of<store::WorkState>("State of the job")},
                {"share", number("1", "Completed share of the work, 0 to 1")},
                {"phase", text("Current step of the work; empty if the job is not running")},
                {"error", text("Reason for the failure; empty if the job did not fail")},

@@ -145,7 +145,7 @@ Result<store::AnalysisRun> queued_analysis(Backend& backend, const Json& asked,
   TRY(fields.has("plan") ? of_plan(backend, fields, run) : of_method(backend, fields, run));
   TRY(backend.store.write([&](store::Writing& tx) -> Result<void> {
     TRY(store::add_analysis(tx, run));
-    return store::queue_job(tx, "analysis", run.id, run.made_utc_us);
+    return store::queue_job(tx, store::JobKind::analysis, run.id, run.made_utc_us);
   }));
   return run;
 }

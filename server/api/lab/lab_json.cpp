@@ -71,13 +71,13 @@ Json run_json(const store::LabRun& run, const std::optional<store::ModelVersion>
   Json own = Json::array();
   for (const Json& effect : wish["own"]) own.push_back(effect.value("id", ""));
   Json out{{"id", run.id},
-           {"kind", run.kind},
+           {"kind", name(run.kind)},
            {"model", run.model_id},
            {"against", or_null(run.against_id)},
            {"measurements", run.set_id},
            {"add", wish["add"]},
            {"own", own},
-           {"state", run.state},
+           {"state", name(run.state)},
            {"share", run.share},
            {"phase", run.phase},
            {"error", run.error},
@@ -144,7 +144,7 @@ std::vector<NamedSchema> lab_run_schemas() {
       {"LabRun",
        object(
            {{"id", text("Id of the run")},
-            {"kind", one_of({"diagnosis", "comparison", "fit"}, "Kind of the run")},
+            {"kind", one_of<store::LabRunKind>("Kind of the run")},
             {"model", text("Id of the model version that is compared with the measurements")},
             {"against",
              nullable(
@@ -152,8 +152,7 @@ std::vector<NamedSchema> lab_run_schemas() {
             {"measurements", text("Id of the measurement set")},
             {"add", array(text("Id of an effect"), "Effects that the user added to a fit")},
             {"own", array(text("Id of a user effect, expression:NAME"), "User effects of the run")},
-            {"state",
-             one_of({"queued", "running", "done", "failed", "cancelled"}, "State of the run")},
+            {"state", one_of<store::LabRunState>("State of the run")},
             {"share", number("1", "Completed share of the work, 0 to 1")},
             {"phase", text("Current step of the work in words")},
             {"error", text("Reason for the failure; empty if the run did not fail")},

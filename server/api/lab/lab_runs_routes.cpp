@@ -22,6 +22,7 @@ using core::Errc;
 using core::Error;
 using core::Json;
 using core::Result;
+using store::LabRunKind;
 
 constexpr std::uint64_t kMaxAsk_bytes = 256 << 10;
 constexpr std::size_t kMostOwn = 8, kMostAdded = 16;
@@ -30,8 +31,8 @@ constexpr double kLongest_s = 1e6;
 /// Reads the user effects and the effects that the user adds, if the kind of run allows them.
 Result<void> read_wish(core::Fields& fields, store::LabRun& run) {
   Json wish{{"add", Json::array()}, {"own", Json::array()}};
-  if (run.kind == "fit" && fields.has("add")) wish["add"] = *fields.member("add");
-  if (run.kind != "comparison" && fields.has("own")) wish["own"] = *fields.member("own");
+  if (run.kind == LabRunKind::fit && fields.has("add")) wish["add"] = *fields.member("add");
+  if (run.kind != LabRunKind::comparison && fields.has("own")) wish["own"] = *fields.member("own");
   const auto texts = [](const Json& all) {
     return all.is_array() && all.size() <= kMostAdded &&
            std::ranges::all_of(all, [](const Json& one) { return one.is_string(); });
@@ -44,7 +45,7 @@ Result<void> read_wish(core::Fields& fields, store::LabRun& run) {
   return {};
 }
 
-Result<store::LabRun> wanted(const Call& call, const char* kind) {
+Result<store::LabRun> wanted(const Call& call, LabRunKind kind) {
   const auto json = TRY(core::parse_json(call.request.body, "body"));
   core::Fields fields(json, "");
   store::LabRun run;
@@ -54,7 +55,7 @@ Result<store::LabRun> wanted(const Call& call, const char* kind) {
   run.set_id = fields.text("measurements", 64);
   run.made_utc_us = call.backend.now_utc_us();
   run.made_by = call.caller.name;
-  if (run.kind == "comparison" && fields.has("against")) {
+  if (run.kind == LabRunKind::comparison && fields.has("against")) {
     if (json["against"].is_null())
       fields.skip("against");
     else
@@ -88,25 +89,33 @@ Result<void> check(store::Reading& tx, const store::LabRun& run) {
   return {};
 }
 
-Result<http::Response> start(const Call& call, const char* kind) {
+Result<http::Response> start(const Call& call, LabRunKind kind) {
   const auto run = TRY(wanted(call, kind));
   TRY(call.backend.store.write([&](store::Writing& tx) -> Result<void> {
     TRY(check(tx, run));
     TRY(store::add_lab_run(tx, run));
-    return store::queue_job(tx, "lab", run.id, run.made_utc_us);
+    return store::queue_job(tx, store::JobKind::lab, run.id, run.made_utc_us);
   }));
   call.backend.work_waits();
   return json_response(run_json(run, std::nullopt), 201);
 }
 
-Result<http::Response> start_diagnosis(const Call& call) { return start(call, "diagnosis"); }
-Result<http::Response> start_comparison(const Call& call) { return start(call, "comparison"); }
-Result<http::Response> start_fit(const Call& call) { return start(call, "fit"); }
+Result<http::Response> start_diagnosis(const Call& call) {
+  return start(call, LabRunKind::diagnosis);
+}
+Result<http::Response> start_comparison(const Call& call) {
+  return start(call, LabRunKind::comparison);
+}
+Result<http::Response> start_fit(const Call& call) { return start(call, LabRunKind::fit); }
 
 Result<http::Response> list_runs(const Call& call) {
   using Runs = std::vector<std::pair<store::LabRun, std::optional<store::ModelVersion>>>;
+  const auto kind = core::from_name<LabRunKind>(call.text("kind"));
+  if (!kind && !call.text("kind").empty())
+    return Error{Errc::bad_input,
+                 "kind: one of " + core::names_listed<LabRunKind>() + " is expected"};
   const auto runs = TRY(call.backend.store.read([&](store::Reading& tx) -> Result<Runs> {
-    const auto found = TRY(store::lab_runs(tx, {.kind = call.text("kind"),
+    const auto found = TRY(store::lab_runs(tx, {.kind = kind,
                                                 .model_id = call.text("model"),
                                                 .set_id = call.text("measurements"),
                                                 .limit = call.integer("limit")}));
@@ -222,8 +231,8 @@ Result<http::Response> publish(const Call& call) {
   const auto run = TRY(run_of(call));
   auto words = TRY(words_of(call));
   if (!run.model)
-    return Error{Errc::conflict,
-                 fmt::format("this {} has no model to publish: it is {}", run.kind, run.state)};
+    return Error{Errc::conflict, fmt::format("this {} has no model to publish: it is {}",
+                                             name(run.kind), name(run.state))};
   const auto file = TRY(named_model(call, run, words.name));
   bool made = false;
   auto version =

@@ -243,12 +243,12 @@ TEST_F(LabRoutes, RefusesWhatIsWrong) {
 /// The runner's thread for scores claims by kind: what waits for the lab before it is no hindrance.
 TEST_F(LabRoutes, AScoreIsClaimedBeforeALabRunThatWaitsLonger) {
   auto queued_both = store_.write([](store::Writing& tx) -> core::Result<void> {
-    TRY(store::queue_job(tx, "lab", "first", 1));
-    return store::queue_job(tx, "metrics", "second", 2);
+    TRY(store::queue_job(tx, store::JobKind::lab, "first", 1));
+    return store::queue_job(tx, store::JobKind::metrics, "second", 2);
   });
   ASSERT_TRUE(queued_both);
-  const auto claimed =
-      store_.write([](store::Writing& tx) { return store::claim_job(tx, {"metrics"}, 3); });
+  const auto claimed = store_.write(
+      [](store::Writing& tx) { return store::claim_job(tx, {store::JobKind::metrics}, 3); });
   ASSERT_TRUE(claimed);
   ASSERT_TRUE(*claimed);
   EXPECT_EQ((*claimed)->subject, "second");

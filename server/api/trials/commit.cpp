@@ -159,7 +159,7 @@ core::Result<void> store_trial(Backend& backend, const store::Upload& upload,
     auto station = TRY(store::station_name(tx, upload.station_id));
     TRY(store::record_for_slot(tx, upload.trial_id, trial.complete, {station, now},
                                tool_of(trial)));
-    return store::queue_job(tx, "metrics", upload.trial_id, now);
+    return store::queue_job(tx, store::JobKind::metrics, upload.trial_id, now);
   });
 }
 

@@ -59,7 +59,8 @@ TEST_F(Uploads, BecomeATrialAJobAndAnObject) {
   EXPECT_EQ(world::bytes_of(objects_.path_of((*trial)->sha256)), bytes_);
   EXPECT_EQ(partials_.size_of(kTrial), 0u);
   EXPECT_EQ(woken_, 1);
-  auto job = store_.write([](store::Writing& tx) { return store::claim_job(tx, {"metrics"}, 1); });
+  auto job = store_.write(
+      [](store::Writing& tx) { return store::claim_job(tx, {store::JobKind::metrics}, 1); });
   ASSERT_TRUE(job && *job);
   EXPECT_EQ((*job)->subject, kTrial);
 }
