@@ -61,7 +61,7 @@ BackupFolder::~BackupFolder() {
 
 core::Result<api::Backup> BackupFolder::read(const std::string& id) const {
   auto manifest = TRY(core::read_json(folder_ / id / kManifest));
-  api::Backup out{.id = id, .state = "done", .error = {}, .made_by = {}};
+  api::Backup out{.id = id, .state = api::BackupState::done, .error = {}, .made_by = {}};
   out.made_utc_us = manifest.value("made_utc_us", std::int64_t{0});
   out.size_bytes = size_of(folder_ / id);
   if (manifest.contains("rows") && manifest["rows"].is_object())
@@ -120,7 +120,7 @@ void BackupFolder::start(const api::Backup& backup, std::function<void(api::Back
   thread_ = std::thread([this, one = backup, work = std::move(work)]() mutable {
     work(one);
     const std::lock_guard done(mutex_);
-    if (one.state == "failed") failed_ = one;
+    if (one.state == api::BackupState::failed) failed_ = one;
     current_.reset();
   });
 }
@@ -128,7 +128,7 @@ void BackupFolder::start(const api::Backup& backup, std::function<void(api::Back
 void BackupFolder::make_now(api::Backup& backup) {
   auto made = back_up(data_, folder_ / backup.id, progress());
   if (made) return keep(backup);
-  backup.state = "failed";
+  backup.state = api::BackupState::failed;
   backup.error = made.error().what;
 }
 
@@ -159,7 +159,8 @@ core::Result<api::Backup> BackupFolder::make(const std::string& by) {
   std::error_code failure;
   fs::create_directories(folder_, failure);
   const std::int64_t now = core::utc_us();
-  api::Backup backup{.id = name_of(now), .state = "making", .error = {}, .made_by = by};
+  api::Backup backup{
+      .id = name_of(now), .state = api::BackupState::making, .error = {}, .made_by = by};
   backup.made_utc_us = now;
   if (fs::exists(folder_ / backup.id, failure))
     return core::Error{core::Errc::conflict, "a backup was already made in this second: try again"};
@@ -175,7 +176,7 @@ core::Result<api::Backup> BackupFolder::verify(const std::string& id) {
   if (!is_name(id) || !fs::exists(folder_ / id / kManifest, failure))
     return core::Error{core::Errc::not_found, "no backup " + id.substr(0, 64)};
   auto backup = TRY(read(id));
-  backup.state = "verifying";
+  backup.state = api::BackupState::verifying;
   start(backup, [this](api::Backup& one) { verify_now(one); });
   return backup;
 }

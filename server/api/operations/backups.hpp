@@ -6,15 +6,23 @@
 #include <string>
 #include <vector>
 
+#include "core/named.hpp"
 #include "core/result.hpp"
 
 namespace tractus::api {
 
+enum class BackupState { making, verifying, done, failed };
+constexpr auto words(BackupState) {
+  using enum BackupState;
+  return std::to_array<core::Word<BackupState>>(
+      {{making, "making"}, {verifying, "verifying"}, {done, "done"}, {failed, "failed"}});
+}
+
 struct Backup {
-  std::string id;      ///< id, which is also the name of the folder
-  std::string state;   ///< "making", "verifying", "done", "failed"
+  std::string id;  ///< id, which is also the name of the folder
+  BackupState state = BackupState::done;
   double share = 0.0;  ///< completed share of the current work, 0 … 1
-  std::string error;   ///< reason for the state "failed", one line
+  std::string error;   ///< reason for the state failed, one line
   std::int64_t made_utc_us = 0;
   std::string made_by;  ///< name of the account; empty: made by a command
   std::uint64_t size_bytes = 0, trials = 0;

@@ -14,7 +14,7 @@ using core::Result;
 
 Json backup_json(const Backup& backup) {
   Json out{{"id", backup.id},
-           {"state", backup.state},
+           {"state", name(backup.state)},
            {"share", backup.share},
            {"error", backup.error},
            {"made_utc_us", backup.made_utc_us},
@@ -86,7 +86,7 @@ std::vector<RouteInfo> backups_routes() {
              array(text("One error"), "Errors that the check found; empty if there are none")}})},
       {"Backup",
        object({{"id", text("Id of the backup, which is also the name of its folder")},
-               {"state", one_of({"making", "verifying", "done", "failed"}, "State of the backup")},
+               {"state", one_of<BackupState>("State of the backup")},
                {"share", number("1", "Completed share of the backup or of its check, 0 to 1")},
                {"error", text("Reason for the failure; empty if the backup did not fail")},
                {"made_utc_us",
