@@ -85,7 +85,7 @@ core::Result<Redrilled> redrill(
   erosion->finish(take);
   Redrilled out{read.header, std::move(*erosion), Json()};
   for (const trial::Event& event : read.events)
-    if (event.kind == "drilled") out.said = event.detail;
+    if (event.is(trial::EventKind::drilled)) out.said = event.detail;
   return out;
 }
 

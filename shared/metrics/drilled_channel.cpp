@@ -7,7 +7,7 @@ bool drills(const trial::Trial& trial) { return trial.header.extra.contains("dri
 const core::Json* drilled_detail(const Subject& subject) {
   const core::Json* found = nullptr;
   for (const trial::Event& event : subject.trial.events)
-    if (event.kind == "drilled" && event.detail.is_object()) found = &event.detail;
+    if (event.is(trial::EventKind::drilled) && event.detail.is_object()) found = &event.detail;
   return found;
 }
 

@@ -121,7 +121,7 @@ core::Result<Answer> Answer::from_json(const core::Json& json, const std::string
 
 std::optional<Answer> Trial::answer() const {
   for (auto event = events.rbegin(); event != events.rend(); ++event) {
-    if (event->kind != "answer") continue;
+    if (!event->is(EventKind::answer)) continue;
     auto answer = Answer::from_json(event->detail, "answer");
     if (!answer) return std::nullopt;
     return std::move(answer).value();

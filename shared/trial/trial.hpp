@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/json.hpp"
@@ -97,12 +98,39 @@ struct Block {
   }
 };
 
-/// Something that happened at a time: "start", "answer", "drilled", "end", "fault",
-/// "interrupted".
+/// The events that this version writes.
+enum class EventKind {
+  start,
+  headset,  ///< what the headset counted
+  retuned,  ///< an expert changed the law
+  drilled,
+  answer,
+  end,
+  fault,
+  interrupted,  ///< the file was left open, and closed by another process
+};
+constexpr auto words(EventKind) {
+  using enum EventKind;
+  return std::to_array<core::Word<EventKind>>({{start, "start"},
+                                               {headset, "headset"},
+                                               {retuned, "retuned"},
+                                               {drilled, "drilled"},
+                                               {answer, "answer"},
+                                               {end, "end"},
+                                               {fault, "fault"},
+                                               {interrupted, "interrupted"}});
+}
+
+/// Something that happened at a time.
 struct Event {
   double t_s = 0.0;
-  std::string kind;
-  core::Json detail = core::Json::object();  ///< object; for "answer" see Answer
+  std::string kind;                          ///< the word of an EventKind; a file may hold others
+  core::Json detail = core::Json::object();  ///< object; for an answer see Answer
+
+  static Event of(double t_s, EventKind kind, core::Json detail = core::Json::object()) {
+    return {t_s, std::string(core::name(kind)), std::move(detail)};
+  }
+  bool is(EventKind wanted) const { return kind == core::name(wanted); }
 
   core::Json to_json() const;
   /// Errors: bad_input naming `where` and the field.

@@ -189,7 +189,7 @@ core::Result<void> Scanner::take_end() {
   if (std::memcmp(payload.data(), expected.data(), expected.size()) != 0)
     return wrong(core::Errc::corrupt, "the SHA-256 of the file does not hold");
   trial_.sealed = true;
-  for (const Event& event : trial_.events) trial_.complete |= event.kind == "end";
+  for (const Event& event : trial_.events) trial_.complete |= event.is(EventKind::end);
   return {};
 }
 
@@ -240,10 +240,10 @@ core::Result<std::uint64_t> recover_trial(const std::filesystem::path& path) {
                        "the checksum of the end frame does not hold");
   const double last_s = scanner.last_s();
   const auto& events = scanner.trial().events;
-  const bool said = !events.empty() && events.back().kind == "interrupted";
+  const bool said = !events.empty() && events.back().is(EventKind::interrupted);
   auto frames = TRY(FrameWriter::resume(std::move(locked).value(), reader));
   if (!said) {
-    const Event event{last_s, "interrupted", core::Json::object()};
+    const Event event = Event::of(last_s, EventKind::interrupted);
     TRY(frames.append(FrameType::event, json_payload(event.to_json())));
   }
   TRY(frames.seal(scanner.samples()));

@@ -87,7 +87,7 @@ core::Result<TrialReport> work_on_bone(const Options& options, Presence& presenc
   TRY(station.run(presence.watched(watch)));
   presence.is(Presence::State::questions);
   const core::Json headset = onlooker.end_headset();
-  if (!headset.is_null()) TRY(station.note("headset", headset));
+  if (!headset.is_null()) TRY(station.note(trial::EventKind::headset, headset));
   std::optional<trial::Answer> said;
   const bool asks = !trial.drills;  // who drills made the channel: there is nothing to guess
   if (station.state() == session::State::answering && asks && !stopped_by_hand()) {

@@ -62,7 +62,7 @@ core::Result<TrialReport> one_trial(const Options& options, Presence& presence,
   TRY(station.run(watch));
   presence.is(Presence::State::questions);
   const core::Json headset = onlooker.end_headset();
-  if (!headset.is_null()) TRY(station.note("headset", headset));
+  if (!headset.is_null()) TRY(station.note(trial::EventKind::headset, headset));
   if (auto left = onlooker.leave_picture(); !left)
     std::fprintf(stderr, "warning: no picture: %s\n", left.error().what.c_str());
   std::optional<trial::Answer> said;

@@ -215,7 +215,7 @@ void PalpationRig::complete(TrialReport& report) {
 std::vector<trial::Event> PalpationRig::closing_events(const TrialReport& report,
                                                        double t_s) const {
   if (!report.drilled) return {};
-  return {{t_s, "drilled", report.drilled->detail}};
+  return {trial::Event::of(t_s, trial::EventKind::drilled, report.drilled->detail)};
 }
 
 core::Json PalpationRig::end_detail(const TrialReport& report) const {

@@ -162,7 +162,7 @@ core::Result<void> ProbingRig::retune(const laws::ProbingParameters& law, core::
   TRY(add_law(law));
   loop_->exchange_law(*laws_.back());
   const auto seen = live_.read().value_or(loop::ProbingLoopSnapshot{});
-  retuned_.push_back({seen.t_s, "retuned", std::move(what)});
+  retuned_.push_back(trial::Event::of(seen.t_s, trial::EventKind::retuned, std::move(what)));
   return {};
 }
 

@@ -37,7 +37,7 @@ std::optional<trial::Answer> Station::simulated_answer() const {
   return state_ == State::answering ? trial_->runner->simulated_answer() : std::nullopt;
 }
 
-core::Result<void> Station::note(const std::string& kind, const core::Json& detail) {
+core::Result<void> Station::note(trial::EventKind kind, const core::Json& detail) {
   const bool ended = state_ == State::answering || (state_ == State::fault && trial_);
   return ended ? trial_->runner->note(kind, detail) : core::Result<void>(not_now("note an event"));
 }

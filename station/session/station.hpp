@@ -35,7 +35,7 @@ class Station {
   /// ready → running → answering, or fault.
   core::Result<void> run(const Watch& watch = {});
   /// answering, fault: an event for the trial's file.
-  core::Result<void> note(const std::string& kind, const core::Json& detail);
+  core::Result<void> note(trial::EventKind kind, const core::Json& detail);
   /// answering → done; fault → fault (a fault takes no answer, but the trial is sealed and kept).
   core::Result<TrialReport> answer(const std::optional<trial::Answer>& answer);
   /// What the simulated hand says, in `answering`.

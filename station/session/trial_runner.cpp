@@ -8,6 +8,9 @@
 namespace tractus {
 namespace session {
 namespace {
+using trial::Event;
+using trial::EventKind;
+
 constexpr auto kWatch = std::chrono::milliseconds(30);
 
 core::Result<void> check(const TrialTerms& terms, const devices::DeviceInfo& device) {
@@ -72,7 +75,8 @@ core::Result<void> TrialRunner::run(const Watch& watch) {
   grant_ = thread.grant();
   loop::TrialRecorder& recorder = rig_->recorder();
   const core::Json detail = {{"realtime", grant_.to_json()}};
-  if (!recorder.append({0.0, "start", detail})) rig_->stop();  // the error is kept for stop()
+  if (!recorder.append(Event::of(0.0, EventKind::start, detail)))
+    rig_->stop();  // the error is kept for stop()
   if (!time_.fast()) recorder.start();
   rig_->arm();
   thread.go();
@@ -96,8 +100,8 @@ double TrialRunner::elapsed_s() {
   return static_cast<double>(time_.loop().now() - rig_->periods().started()) * 1e-9;
 }
 
-core::Result<void> TrialRunner::note(const std::string& kind, const core::Json& detail) {
-  return rig_->recorder().append({elapsed_s(), kind, detail});
+core::Result<void> TrialRunner::note(trial::EventKind kind, const core::Json& detail) {
+  return rig_->recorder().append(Event::of(elapsed_s(), kind, detail));
 }
 
 TrialReport TrialRunner::report_of(const std::optional<trial::Answer>& answer) {
@@ -124,9 +128,11 @@ core::Result<void> TrialRunner::append_end(const TrialReport& report) {
   loop::TrialRecorder& recorder = rig_->recorder();
   for (const trial::Event& event : rig_->closing_events(report, elapsed_s()))
     TRY(recorder.append(event));
-  if (!fault_.empty()) return recorder.append({elapsed_s(), "fault", {{"what", fault_}}});
-  if (report.answer) TRY(recorder.append({elapsed_s(), "answer", report.answer->to_json()}));
-  return recorder.append({elapsed_s(), "end", rig_->end_detail(report)});
+  if (!fault_.empty())
+    return recorder.append(Event::of(elapsed_s(), EventKind::fault, {{"what", fault_}}));
+  if (report.answer)
+    TRY(recorder.append(Event::of(elapsed_s(), EventKind::answer, report.answer->to_json())));
+  return recorder.append(Event::of(elapsed_s(), EventKind::end, rig_->end_detail(report)));
 }
 
 core::Result<TrialReport> TrialRunner::finish(const std::optional<trial::Answer>& answer) {

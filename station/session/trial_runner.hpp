@@ -26,7 +26,7 @@ class TrialRunner {
   /// What the simulated hand answers; nothing for a device that a person holds.
   std::optional<trial::Answer> simulated_answer() const { return rig_->simulated_answer(); }
   /// After `run`: an event of the trial's file that no other call writes.
-  core::Result<void> note(const std::string& kind, const core::Json& detail);
+  core::Result<void> note(trial::EventKind kind, const core::Json& detail);
   /// Writes the answer (if any, and no fault) and the end, seals the file and queues it for upload.
   core::Result<TrialReport> finish(const std::optional<trial::Answer>& answer);
 
