@@ -118,7 +118,7 @@ TEST_P(StoreFaults, APublishedCaseIsWholeOrAbsent) {
 
 /// A study of which a station has a trial, all of whose bytes are here.
 core::Result<void> furnish_study(Writing& tx) {
-  const Study study{.id = "study", .title = "", .ordering = "random"};
+  const Study study{.id = "study", .title = "", .ordering = CaseOrder::random};
   auto id = TRY(add_study(tx, study, {kCase}, {"ada", 1}));
   TRY(add_participant(tx, id, {.name = "P1"}, {kCase, kCase}, {"ada", 1}));
   auto slots = TRY(study_slots(tx, id));

@@ -39,7 +39,7 @@ class Relations : public PeopleTest {
     const auto made = store_.write([](store::Writing& tx) -> core::Result<void> {
       TRY(store::add_cohort(tx, {"c-inv", "inviting", 0, "ann"}));
       for (const char* id : {"through", "running"}) {
-        const store::Study study{.id = id, .title = "", .ordering = "random"};
+        const store::Study study{.id = id, .title = "", .ordering = store::CaseOrder::random};
         auto added = TRY(store::add_study(tx, study, {kCase}, {"rex", 1}));
         TRY(store::add_participant(tx, added, {.name = "P1"}, {kCase}, {"rex", 1}));
       }

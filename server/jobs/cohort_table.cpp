@@ -32,8 +32,8 @@ std::string row_of(const store::ReleasedTrial& t, const std::vector<std::string>
   std::string out =
       fmt::format("{},{},{},{},{},{},{},{},{},{}", t.id, cell(t.participant), cell(t.study),
                   t.study.empty() ? "" : std::to_string(t.number), cell(t.level),
-                  cell(t.experience_years), cell(t.case_title), cell(t.rig), t.simulated ? 1 : 0,
-                  t.correct ? (*t.correct ? "1" : "0") : "");
+                  cell(t.experience_years), cell(t.case_title), trial::name(t.rig),
+                  t.simulated ? 1 : 0, t.correct ? (*t.correct ? "1" : "0") : "");
   for (const auto& id : metrics) {
     const auto at = t.metrics.find(id);
     out += ',' + (at == t.metrics.end() ? "" : cell(std::optional(at->second)));
@@ -57,7 +57,8 @@ std::vector<std::string> metrics_of(const std::vector<store::ReleasedTrial>& tri
 std::vector<store::ReleasedTrial> counting(std::vector<store::ReleasedTrial> trials,
                                            CohortTable& out) {
   std::erase_if(trials, [&](const store::ReleasedTrial& trial) {
-    const bool counts = trial.complete && (trial.study.empty() || trial.place == "counts");
+    const bool counts =
+        trial.complete && (trial.study.empty() || trial.place == store::StudyTrialState::counts);
     if (!counts) ++out.invalid;
     if (counts && !trial.assessed) ++out.unscored;
     return !counts || !trial.assessed;

@@ -12,10 +12,11 @@ constexpr std::size_t kMaxName = 200, kMaxSealed = 64 * 1024;
 }  // namespace
 
 core::Json AssignedTrial::to_json() const {
-  core::Json out{
-      {"slot", slot},     {"rig", rig},         {"name", name},       {"assignment", assignment},
-      {"number", number}, {"planned", planned}, {"case_id", case_id}, {"sealed", sealed}};
-  if (drills) out["tool"] = "burr";
+  core::Json out{{"slot", slot},       {"rig", core::name(rig)},
+                 {"name", name},       {"assignment", assignment},
+                 {"number", number},   {"planned", planned},
+                 {"case_id", case_id}, {"sealed", sealed}};
+  if (drills) out["tool"] = core::name(trial::Tool::burr);
   if (!drilled.empty()) out["drilled"] = drilled;
   return out;
 }
@@ -26,24 +27,20 @@ core::Result<AssignedTrial> AssignedTrial::from_json(const core::Json& json,
   AssignedTrial out;
   out.slot = fields.text("slot", 64);
   if (!core::is_sha256(out.slot)) fields.wrong("slot", "64 hexadecimal characters are expected");
-  out.rig = fields.text("rig", 16);
-  if (out.rig != "palpation" && out.rig != "probing")
-    fields.wrong("rig", "palpation or probing is expected");
+  out.rig = fields.word<trial::Rig>("rig");
   out.name = fields.text("name", kMaxName);
   out.assignment = fields.text("assignment", kMaxName);
   out.number = static_cast<std::uint64_t>(fields.integer("number", 1, kMaxCount));
   out.planned = static_cast<std::uint64_t>(fields.integer("planned", 1, kMaxCount));
   out.case_id = fields.text("case_id", 64);
-  if (out.rig == "palpation" && !core::is_sha256(out.case_id))
+  if (out.rig == trial::Rig::palpation && !core::is_sha256(out.case_id))
     fields.wrong("case_id", "64 hexadecimal characters are expected");
   out.sealed = fields.text("sealed", kMaxSealed);
-  const std::string tool = fields.text_or("tool", "probe", 16);
-  if (tool != "probe" && tool != "burr") fields.wrong("tool", "probe or burr is expected");
-  out.drills = tool == "burr";
+  out.drills = fields.word_or("tool", trial::Tool::probe) == trial::Tool::burr;
   out.drilled = fields.text_or("drilled", "", 64);
   if (!out.drilled.empty() && !core::is_id(out.drilled))
     fields.wrong("drilled", "a trial's id is expected");
-  if ((out.drills || !out.drilled.empty()) && out.rig != "palpation")
+  if ((out.drills || !out.drilled.empty()) && out.rig != trial::Rig::palpation)
     fields.wrong("rig", "palpation is expected: the other rig drills nothing");
   if (out.drills && !out.drilled.empty())
     fields.wrong("drilled", "is felt with the probe: a burr begins on whole bone");

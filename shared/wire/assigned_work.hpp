@@ -5,14 +5,16 @@
 #include <optional>
 
 #include "core/json.hpp"
+#include "trial/tool.hpp"
+#include "trial/trial.hpp"
 
 namespace tractus::wire {
 
 /// One trial to be done now. Of a scenario, nothing tells which it is; of a palpation case, its id
 /// alone, so that the station finds it on its disk.
 struct AssignedTrial {
-  std::string slot;          ///< 64 hexadecimal characters: the trial's case_id in file and upload
-  std::string rig;           ///< "palpation", "probing"
+  std::string slot;  ///< 64 hexadecimal characters: the trial's case_id in file and upload
+  trial::Rig rig = trial::Rig::palpation;
   std::string name;          ///< what the trainee is shown
   std::string assignment;    ///< its title
   std::uint64_t number = 0;  ///< of the assignment's trials of this trainee, from 1

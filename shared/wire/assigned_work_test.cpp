@@ -9,7 +9,7 @@ namespace {
 AssignedTrial palpation() {
   AssignedTrial out;
   out.slot = std::string(64, 'a');
-  out.rig = "palpation";
+  out.rig = trial::Rig::palpation;
   out.name = "Case A";
   out.assignment = "Week 2";
   out.number = 1;

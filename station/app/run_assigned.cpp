@@ -132,11 +132,11 @@ core::Result<TrialReport> one_trial(const Options& options, Presence& presence,
                                     int number) {
   presence.is(Presence::State::preparing);
   const std::string& device = options.setup.device;
-  const bool probing = work.trial->rig == "probing";
+  const bool probing = work.trial->rig == trial::Rig::probing;
   if (devices::is_rig(device) != probing)
     return core::Error{core::Errc::bad_input,
                        fmt::format("the next trial is for {}: --device {} is not for that",
-                                   work.trial->rig, device)};
+                                   trial::name(work.trial->rig), device)};
   auto report = probing ? probe(options, presence, folder, work, number)
                         : work_on_bone(options, presence, folder, work, number);
   if (report) presence.done(*report);

@@ -1,6 +1,7 @@
 #include "db/store/cases/cases.hpp"
 
 #include "core/try.hpp"
+#include "db/store/rows.hpp"
 
 namespace tractus {
 namespace store {
@@ -11,9 +12,10 @@ constexpr const char* kSummary =
     "(select count(*) from trials t where t.case_id = c.id), c.kind, "
     "case when c.retired_utc_us is null then 0 else 1 end, c.planned from cases c ";
 
-CaseSummary summary_from(const Row& row) {
-  return {row.text(0),  row.text(1), row.text(2),  row.integer(3),
-          row.count(4), row.text(5), row.truth(6), row.truth(7)};
+core::Result<CaseSummary> summary_from(const Row& row) {
+  const auto kind = TRY(row.word<trial::Rig>(5, "cases.kind"));
+  return CaseSummary{row.text(0),  row.text(1), row.text(2),  row.integer(3),
+                     row.count(4), kind,        row.truth(6), row.truth(7)};
 }
 
 }  // namespace
@@ -32,8 +34,8 @@ core::Result<void> add_case(Writing& tx, const CaseSummary& summary,
   auto done = tx.query(
       "insert into cases (id, title, source, made_utc_us, published_utc_us, kind, planned) "
       "values (?, ?, ?, ?, ?, ?, ?) on conflict (id) do update set planned = ?",
-      {summary.id, summary.title, summary.source, summary.made_utc_us, now_utc_us, summary.kind,
-       bool_value(summary.planned), bool_value(summary.planned)});
+      {summary.id, summary.title, summary.source, summary.made_utc_us, now_utc_us,
+       name_value(summary.kind), bool_value(summary.planned), bool_value(summary.planned)});
   if (!done) return done.error();
   for (const CasePart& part : parts) {
     TRY(add_object(tx, part.sha256, part.size_bytes, now_utc_us));
@@ -48,18 +50,14 @@ core::Result<void> add_case(Writing& tx, const CaseSummary& summary,
 }
 
 core::Result<std::vector<CaseSummary>> all_cases(Reading& tx) {
-  auto rows = TRY(
+  return all_of(
       tx.query(std::string(kSummary) + "where c.kind = ? order by c.published_utc_us desc, c.id",
-               {std::string(kPalpation)}));
-  std::vector<CaseSummary> out;
-  for (const Row& row : rows) out.push_back(summary_from(row));
-  return out;
+               {name_value(trial::Rig::palpation)}),
+      summary_from);
 }
 
 core::Result<std::optional<CaseSummary>> case_of(Reading& tx, const std::string& id) {
-  auto rows = TRY(tx.query(std::string(kSummary) + "where c.id = ?", {id}));
-  if (rows.empty()) return std::optional<CaseSummary>();
-  return std::optional(summary_from(rows.front()));
+  return one_of(tx.query(std::string(kSummary) + "where c.id = ?", {id}), summary_from);
 }
 
 core::Result<void> set_case_retired(Writing& tx, const std::string& id, bool retired,

@@ -4,13 +4,9 @@
 #include <vector>
 
 #include "db/store/store.hpp"
+#include "trial/trial.hpp"
 
 namespace tractus::store {
-
-/// Kinds of cases: a volume with a tract, or a probing scenario (whose only part, scenario.json, is
-/// secret).
-inline constexpr const char* kPalpation = "palpation";
-inline constexpr const char* kProbing = "probing";
 
 struct CaseSummary {
   std::string id;  ///< SHA-256 of case.json; of a scenario, its version's id
@@ -18,7 +14,8 @@ struct CaseSummary {
   std::string source;
   std::int64_t made_utc_us = 0;
   std::uint64_t trials = 0;  ///< counted on reading
-  std::string kind = kPalpation;
+  /// Palpation: a volume with a tract. Probing: a scenario, whose only part, scenario.json, is secret.
+  trial::Rig kind = trial::Rig::palpation;
   bool retired = false;  ///< new assignments cannot use it; existing ones continue
   bool planned = false;  ///< the bone is whole: a trainee drills the channel, then palpates it
 };

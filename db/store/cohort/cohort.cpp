@@ -25,7 +25,10 @@ const std::string& kTrials() {
   return sql;
 }
 
-CohortTrial trial_from(const Row& row) {
+core::Result<CohortTrial> trial_from(const Row& row) {
+  const auto state = TRY(row.word<AssessmentState>(9, "trials.state"));
+  const auto rig = TRY(row.word<trial::Rig>(12, "cases.kind"));
+  const auto place = TRY(row.word_or_null<StudyTrialState>(18, "study_trials.state"));
   CohortTrial out{.summary = {.id = row.text(0),
                               .case_id = row.text(1),
                               .case_title = row.text(2),
@@ -35,16 +38,16 @@ CohortTrial trial_from(const Row& row) {
                               .started_utc_us = row.integer(6),
                               .duration_s = row.number(7),
                               .samples = row.count(8),
-                              .state = row.text(9),
+                              .state = state,
                               .correct = row.truth_or_null(10)},
                   .complete = row.truth(11),
-                  .rig = row.text(12),
+                  .rig = rig,
                   .study = row.text_or_null(13).value_or(""),
                   .participant = row.text_or_null(14).value_or(""),
                   .level = row.text_or_null(15).value_or(""),
                   .person = row.text_or_null(19).value_or(""),
                   .experience_years = row.number_or_null(17),
-                  .place = row.text_or_null(18).value_or(""),
+                  .place = place,
                   .metrics = {},
                   .sha256 = row.text(20),
                   .blind = row.truth(21)};
@@ -62,7 +65,8 @@ core::Result<std::vector<CohortTrial>> CohortRows::read(Reading& tx, const std::
                                                   " trials: choose one study"};
   std::vector<CohortTrial> out;
   for (const Row& row : rows) {
-    out.push_back(trial_from(row));
+    auto trial = TRY(trial_from(row));
+    out.push_back(std::move(trial));
     auto scores = TRY(scores_of(tx, out.back().summary.id));
     for (const ScoreRecord& score : scores)
       if (score.value) out.back().metrics.emplace(score.metric_id, *score.value);

@@ -5,23 +5,24 @@
 #include <array>
 #include <map>
 
-#include "db/store/studies/studies.hpp"
+#include "db/store/studies/study_slots.hpp"
 #include "db/store/trials/trials.hpp"
+#include "trial/trial.hpp"
 
 namespace tractus::store {
 
 struct CohortTrial {
   TrialSummary summary;
   bool complete = false;
-  std::string rig;  ///< "palpation", "probing"
+  trial::Rig rig = trial::Rig::palpation;
   // For a trial of a study; for other trials `study` is empty:
   std::string study, participant, level;
   std::string person;       ///< name of the account, for an assignment; never for research
   std::int64_t number = 0;  ///< place in the participant's order, counted from 1
   std::optional<double> experience_years = {};
-  std::string place = {};                 ///< "counts", "invalid", "surplus"
-  std::map<std::string, double> metrics;  ///< by id; metrics without a value are absent
-  std::string sha256;                     ///< SHA-256 of the object with the trial's file
+  std::optional<StudyTrialState> place = {};  ///< of a trial of a study
+  std::map<std::string, double> metrics;      ///< by id; metrics without a value are absent
+  std::string sha256;                         ///< SHA-256 of the object with the trial's file
   bool blind = false;  ///< a blinded trial, which nobody may see yet (blinding.hpp)
 };
 

@@ -15,14 +15,15 @@ class ReleasedTrial {
   std::string id;           ///< pseudonym of the trial
   std::string participant;  ///< pseudonym of the person, or of the simulated hand
   std::string study;        ///< id of the study or assignment; empty: none
-  std::string level, case_title, rig;
+  std::string level, case_title;
+  trial::Rig rig;
   std::int64_t number = 0;  ///< of its place in the participant's order, from 1
   std::optional<double> experience_years;
   double days = 0.0;  ///< days since the participant's first trial on this server
   double duration_s = 0.0;
   std::uint64_t samples = 0;
   bool simulated = false, complete = false;
-  std::string place;  ///< "counts", "invalid", "surplus"
+  std::optional<StudyTrialState> place;  ///< of a trial of a study
   bool assessed = false;
   std::optional<bool> correct;
   std::map<std::string, double> metrics;  ///< by id; those without a value are absent

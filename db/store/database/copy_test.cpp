@@ -24,7 +24,7 @@ core::Result<void> furnish(Writing& tx) {
   TRY(add_account(tx, {"1", "ada", Role::admin, "hash"}, 1));
   TRY(add_station(tx, {"s", "station-1"}, "token", 1));
   TRY(add_case(tx, {kA, "L3", "made", 1, 0}, {{"case.json", kA, 9, false}}, 1));
-  const Study study{.id = "study", .title = "\xc3\xa9", .ordering = "random"};
+  const Study study{.id = "study", .title = "\xc3\xa9", .ordering = CaseOrder::random};
   auto id = TRY(add_study(tx, study, {kA}, {"ada", 1}));
   const Participant person{.name = "P1", .experience_years = 1.0 / 3.0};
   TRY(add_participant(tx, id, person, {kA, kA}, {"ada", 1}));

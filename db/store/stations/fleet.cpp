@@ -113,7 +113,7 @@ core::Result<ShownTrial> shown_trial(Reading& tx, const std::string& station_id,
   }
   auto known = TRY(case_of(tx, case_id));
   ShownTrial out;
-  if (known && known->kind == kPalpation) out.case_title = known->title;
+  if (known && known->kind == trial::Rig::palpation) out.case_title = known->title;
   return out;
 }
 

@@ -2,6 +2,7 @@
 
 #include "core/require.hpp"
 #include "core/try.hpp"
+#include "db/store/rows.hpp"
 
 namespace tractus {
 namespace store {
@@ -33,25 +34,19 @@ std::optional<std::int64_t> integer_or_null(const Row& row, std::size_t column) 
   return held ? std::optional(*held) : std::nullopt;
 }
 
-Assignment assignment_from(const Row& row) {
-  return {.study = {.id = row.text(0),
-                    .title = row.text(1),
-                    .state = row.text(2),
-                    .ordering = row.text(3),
-                    .repeats = row.integer(4),
-                    .seed = row.integer(5),
-                    .on_invalid = row.text(6),
-                    .made_utc_us = row.integer(7),
-                    .made_by = row.text(8)},
-          .cohort_id = row.text_or_null(9),
-          .due_utc_us = integer_or_null(row, 10),
-          .release = row.text(11),
-          .made_by_id = row.text(12),
-          .cohort_name = row.text(13),
-          .people = row.count(14),
-          .done = row.count(15),
-          .planned = row.count(16),
-          .to_drill = row.count(17)};
+core::Result<Assignment> assignment_from(const Row& row) {
+  auto study = TRY(study_from(row));
+  const auto release = TRY(row.word<Release>(11, "assignments.release"));
+  return Assignment{.study = std::move(study),
+                    .cohort_id = row.text_or_null(9),
+                    .due_utc_us = integer_or_null(row, 10),
+                    .release = release,
+                    .made_by_id = row.text(12),
+                    .cohort_name = row.text(13),
+                    .people = row.count(14),
+                    .done = row.count(15),
+                    .planned = row.count(16),
+                    .to_drill = row.count(17)};
 }
 
 }  // namespace
@@ -59,11 +54,12 @@ Assignment assignment_from(const Row& row) {
 core::Result<AssignmentId> add_assignment(Writing& tx, const Assignment& a,
                                           const std::vector<std::string>& case_ids,
                                           const AuditStamp& stamp) {
-  TRY(add_series(tx, a.study, "assignment", case_ids, stamp));
+  TRY(add_series(tx, a.study, SeriesKind::assignment, case_ids, stamp));
   TRY(done(tx.query(
       "insert into assignments (study_id, cohort_id, due_utc_us, release, made_by_id) values "
       "(?, ?, ?, ?, ?)",
-      {a.study.id, or_null(a.cohort_id), or_null(a.due_utc_us), a.release, a.made_by_id})));
+      {a.study.id, or_null(a.cohort_id), or_null(a.due_utc_us), name_value(a.release),
+       a.made_by_id})));
   return find_assignment(tx, a.study.id);
 }
 
@@ -93,11 +89,11 @@ core::Result<void> add_assigned_person(Writing& tx, const AssignmentId& id,
   return added;
 }
 
-core::Result<void> set_release(Writing& tx, const AssignmentId& id, const std::string& release,
+core::Result<void> set_release(Writing& tx, const AssignmentId& id, Release release,
                                const AuditStamp& stamp) {
-  TRY(done(
-      tx.query("update assignments set release = ? where study_id = ?", {release, id.text()})));
-  return add_study_event(tx, id.text(), stamp, "results " + release);
+  TRY(done(tx.query("update assignments set release = ? where study_id = ?",
+                    {name_value(release), id.text()})));
+  return add_study_event(tx, id.text(), stamp, "results " + std::string(core::name(release)));
 }
 
 core::Result<void> set_due(Writing& tx, const AssignmentId& id,
@@ -109,16 +105,16 @@ core::Result<void> set_due(Writing& tx, const AssignmentId& id,
 
 core::Result<std::vector<Assignment>> assignments_of(Reading& tx, const AssignmentFilter& whose) {
   const std::string &me = whose.done_by, &leader = whose.led_by;
-  auto rows = TRY(tx.query(
-      std::string(kAssignment) +
-          "where (? = '' or a.made_by_id = ? or exists (select 1 from cohort_people f where "
-          "f.cohort_id = a.cohort_id and f.account_id = ? and f.part = 'faculty')) and (? = '' or "
-          "exists (select 1 from assignment_people p where p.study_id = a.study_id and "
-          "p.account_id = ?)) order by a.due_utc_us is null, a.due_utc_us, s.made_utc_us, s.id",
-      {me, me, me, me, me, me, leader, leader, leader, me, me}));
-  std::vector<Assignment> out;
-  for (const Row& row : rows) out.push_back(assignment_from(row));
-  return out;
+  return all_of(
+      tx.query(
+          std::string(kAssignment) +
+              "where (? = '' or a.made_by_id = ? or exists (select 1 from cohort_people f where "
+              "f.cohort_id = a.cohort_id and f.account_id = ? and f.part = 'faculty')) and (? = '' "
+              "or "
+              "exists (select 1 from assignment_people p where p.study_id = a.study_id and "
+              "p.account_id = ?)) order by a.due_utc_us is null, a.due_utc_us, s.made_utc_us, s.id",
+          {me, me, me, me, me, me, leader, leader, leader, me, me}),
+      assignment_from);
 }
 
 core::Result<Assignment> assignment_of(Reading& tx, const AssignmentId& id,

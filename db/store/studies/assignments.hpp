@@ -7,11 +7,23 @@
 
 namespace tractus::store {
 
+/// When trainees see their results.
+enum class Release {
+  held,      ///< not yet
+  released,  ///< now
+  at_once,   ///< each when it exists
+};
+constexpr auto words(Release) {
+  using enum Release;
+  return std::to_array<core::Word<Release>>(
+      {{held, "held"}, {released, "released"}, {at_once, "at_once"}});
+}
+
 struct Assignment {
   Study study;  ///< the series of trials; its id is the assignment's
   std::optional<std::string> cohort_id = {};
   std::optional<std::int64_t> due_utc_us = {};
-  std::string release = "held";  ///< "held", "released", or "at_once": each result when it exists
+  Release release = Release::held;
   std::string made_by_id = {};
   // Filled on reading:
   std::string cohort_name = {};
@@ -40,7 +52,7 @@ core::Result<std::string> assigned_name(Reading& tx, const AssignmentId& id,
 core::Result<void> add_assigned_person(Writing& tx, const AssignmentId& id,
                                        const std::string& account_id,
                                        const std::string& participant);
-core::Result<void> set_release(Writing& tx, const AssignmentId& id, const std::string& release,
+core::Result<void> set_release(Writing& tx, const AssignmentId& id, Release release,
                                const AuditStamp& stamp);
 core::Result<void> set_due(Writing& tx, const AssignmentId& id,
                            const std::optional<std::int64_t>& due_utc_us, const AuditStamp& stamp);

@@ -9,21 +9,23 @@ namespace {
 constexpr std::size_t kShown = 32;  ///< characters of a foreign id in an error
 
 /// Errors: not_found where there is no row of this id and kind.
-core::Result<void> check_kind(Reading& tx, const std::string& id, const std::string& kind) {
-  auto rows = TRY(tx.query("select 1 from studies where id = ? and kind = ?", {id, kind}));
+core::Result<void> check_kind(Reading& tx, const std::string& id, SeriesKind kind) {
+  auto rows =
+      TRY(tx.query("select 1 from studies where id = ? and kind = ?", {id, name_value(kind)}));
   if (!rows.empty()) return {};
-  return core::Error{core::Errc::not_found, "no " + kind + " " + id.substr(0, kShown)};
+  return core::Error{core::Errc::not_found,
+                     "no " + std::string(core::name(kind)) + " " + id.substr(0, kShown)};
 }
 
 }  // namespace
 
 core::Result<StudyId> find_study(Reading& tx, const std::string& id) {
-  TRY(check_kind(tx, id, "study"));
+  TRY(check_kind(tx, id, SeriesKind::study));
   return StudyId(id);
 }
 
 core::Result<AssignmentId> find_assignment(Reading& tx, const std::string& id) {
-  TRY(check_kind(tx, id, "assignment"));
+  TRY(check_kind(tx, id, SeriesKind::assignment));
   return AssignmentId(id);
 }
 

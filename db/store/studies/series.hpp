@@ -8,6 +8,12 @@
 
 namespace tractus::store {
 
+enum class SeriesKind { study, assignment };
+constexpr auto words(SeriesKind) {
+  using enum SeriesKind;
+  return std::to_array<core::Word<SeriesKind>>({{study, "study"}, {assignment, "assignment"}});
+}
+
 class StudyId;
 class AssignmentId;
 

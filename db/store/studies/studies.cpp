@@ -3,6 +3,7 @@
 #include "core/bytes.hpp"
 #include "core/require.hpp"
 #include "core/try.hpp"
+#include "db/store/rows.hpp"
 
 namespace tractus {
 namespace store {
@@ -20,13 +21,14 @@ core::Result<void> done(const core::Result<Rows>& rows) {
   return {};
 }
 
-Study study_from(const Row& row) {
-  return {row.text(0),    row.text(1), row.text(2),    row.text(3), row.integer(4),
-          row.integer(5), row.text(6), row.integer(7), row.text(8)};
+core::Result<StudySummary> summary_from(const Row& row) {
+  auto study = TRY(study_from(row));
+  return StudySummary{std::move(study), row.count(9), row.count(10), row.count(11)};
 }
 
-Participant participant_from(const Row& row) {
-  return {row.text(0), row.text(1), row.text(2), row.number_or_null(3), row.truth(4)};
+core::Result<Participant> participant_from(const Row& row) {
+  const auto state = TRY(row.word<StudyState>(1, "study_participants.state"));
+  return Participant{row.text(0), state, row.text(2), row.number_or_null(3), row.truth(4)};
 }
 
 Value text_or_null(const std::string& text) { return text.empty() ? Value() : Value(text); }
@@ -45,6 +47,14 @@ core::Result<void> add_slots(Writing& tx, const std::string& study_id, const std
 
 }  // namespace
 
+core::Result<Study> study_from(const Row& row) {
+  const auto state = TRY(row.word<StudyState>(2, "studies.state"));
+  const auto ordering = TRY(row.word<CaseOrder>(3, "studies.ordering"));
+  const auto on_invalid = TRY(row.word<Repetition>(6, "studies.on_invalid"));
+  return Study{row.text(0),    row.text(1), state,          ordering,   row.integer(4),
+               row.integer(5), on_invalid,  row.integer(7), row.text(8)};
+}
+
 core::Result<void> add_study_event(Writing& tx, const std::string& series_id,
                                    const AuditStamp& stamp, const std::string& what,
                                    const Slot* slot, const std::string& trial_id,
@@ -58,13 +68,13 @@ core::Result<void> add_study_event(Writing& tx, const std::string& series_id,
        text_or_null(trial_id), stamp.reason}));
 }
 
-core::Result<void> add_series(Writing& tx, const Study& study, const std::string& kind,
+core::Result<void> add_series(Writing& tx, const Study& study, SeriesKind kind,
                               const std::vector<std::string>& case_ids, const AuditStamp& stamp) {
   auto added = tx.query(
       "insert into studies (id, title, state, ordering, repeats, seed, on_invalid, made_utc_us, "
       "made_by, kind) values (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-      {study.id, study.title, study.state, study.ordering, study.repeats, study.seed,
-       study.on_invalid, stamp.at_utc_us, stamp.who, kind});
+      {study.id, study.title, name_value(study.state), name_value(study.ordering), study.repeats,
+       study.seed, name_value(study.on_invalid), stamp.at_utc_us, stamp.who, name_value(kind)});
   if (!added) return added.error();
   for (std::size_t i = 0; i < case_ids.size(); ++i) {
     added = tx.query("insert into study_scenarios (study_id, position, case_id) values (?, ?, ?)",
@@ -76,7 +86,7 @@ core::Result<void> add_series(Writing& tx, const Study& study, const std::string
 
 core::Result<StudyId> add_study(Writing& tx, const Study& study,
                                 const std::vector<std::string>& case_ids, const AuditStamp& stamp) {
-  TRY(add_series(tx, study, "study", case_ids, stamp));
+  TRY(add_series(tx, study, SeriesKind::study, case_ids, stamp));
   return find_study(tx, study.id);
 }
 
@@ -87,37 +97,35 @@ core::Result<void> add_participant(Writing& tx, const SeriesId& id, const Partic
       "insert into study_participants (study_id, name, position, state, level, experience_years, "
       "simulated, enrolled_utc_us) values (?, ?, (select count(*) from study_participants where "
       "study_id = ?), ?, ?, ?, ?, ?)",
-      {id.text(), participant.name, id.text(), participant.state, participant.level,
+      {id.text(), participant.name, id.text(), name_value(participant.state), participant.level,
        or_null(participant.experience_years), bool_value(participant.simulated), stamp.at_utc_us}));
   TRY(add_slots(tx, id.text(), participant.name, case_order, stamp));
   return add_study_event(tx, id.text(), stamp, "enrolled", nullptr, {}, participant.name);
 }
 
-core::Result<void> set_study_state(Writing& tx, const StudyId& id, const std::string& state,
+core::Result<void> set_study_state(Writing& tx, const StudyId& id, StudyState state,
                                    const AuditStamp& stamp) {
-  TRY(tx.query("update studies set state = ? where id = ?", {state, id.text()}));
-  return add_study_event(tx, id.text(), stamp, state);
+  TRY(tx.query("update studies set state = ? where id = ?", {name_value(state), id.text()}));
+  return add_study_event(tx, id.text(), stamp, std::string(core::name(state)));
 }
 
 core::Result<void> set_participant_state(Writing& tx, const StudyId& id, const std::string& name,
-                                         const std::string& state, const AuditStamp& stamp) {
+                                         StudyState state, const AuditStamp& stamp) {
   TRY(tx.query("update study_participants set state = ? where study_id = ? and name = ?",
-               {state, id.text(), name}));
-  return add_study_event(tx, id.text(), stamp, state, nullptr, {}, name);
+               {name_value(state), id.text(), name}));
+  return add_study_event(tx, id.text(), stamp, std::string(core::name(state)), nullptr, {}, name);
 }
 
 core::Result<std::vector<StudySummary>> all_studies(Reading& tx) {
-  auto rows = TRY(tx.query(
-      std::string(kStudy) +
-      ", (select count(*) from study_participants p where p.study_id = s.id), "
-      "(select count(*) from study_slots k where k.study_id = s.id and k.state = 'recorded'), "
-      "(select count(*) from study_slots k where k.study_id = s.id and k.state <> 'invalid') "
-      "from studies s where s.kind = 'study' "
-      "order by s.made_utc_us desc, s.id"));
-  std::vector<StudySummary> out;
-  for (const Row& row : rows)
-    out.push_back({study_from(row), row.count(9), row.count(10), row.count(11)});
-  return out;
+  return all_of(
+      tx.query(
+          std::string(kStudy) +
+          ", (select count(*) from study_participants p where p.study_id = s.id), "
+          "(select count(*) from study_slots k where k.study_id = s.id and k.state = 'recorded'), "
+          "(select count(*) from study_slots k where k.study_id = s.id and k.state <> 'invalid') "
+          "from studies s where s.kind = 'study' "
+          "order by s.made_utc_us desc, s.id"),
+      summary_from);
 }
 
 core::Result<Study> study_of(Reading& tx, const SeriesId& id) {
@@ -137,19 +145,16 @@ core::Result<std::vector<StudyScenario>> study_scenarios(Reading& tx, const Seri
 }
 
 core::Result<std::vector<Participant>> study_participants(Reading& tx, const SeriesId& id) {
-  auto rows = TRY(tx.query(std::string(kParticipant) + "where study_id = ? order by position, name",
-                           {id.text()}));
-  std::vector<Participant> out;
-  for (const Row& row : rows) out.push_back(participant_from(row));
-  return out;
+  return all_of(tx.query(std::string(kParticipant) + "where study_id = ? order by position, name",
+                         {id.text()}),
+                participant_from);
 }
 
 core::Result<std::optional<Participant>> participant_of(Reading& tx, const SeriesId& id,
                                                         const std::string& name) {
-  auto rows = TRY(
-      tx.query(std::string(kParticipant) + "where study_id = ? and name = ?", {id.text(), name}));
-  if (rows.empty()) return std::optional<Participant>();
-  return std::optional(participant_from(rows.front()));
+  return one_of(
+      tx.query(std::string(kParticipant) + "where study_id = ? and name = ?", {id.text(), name}),
+      participant_from);
 }
 
 core::Result<std::vector<StudyEvent>> study_events(Reading& tx, const StudyId& id,

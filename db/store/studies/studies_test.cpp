@@ -27,8 +27,9 @@ class Studies : public test_support::BothDatabases {
       for (const char* id : {"s1", "s2"})
         TRY(add_station(tx, {id, std::string("station-") + id}, id, 1));
       for (const std::string& id : {kA, kB})
-        TRY(add_case(tx, {id, "scenario", "", 1, 0, kProbing}, {}, 1));
-      return add_case(tx, {kWhole, "whole bone", "", 1, 0, kPalpation, false, true}, {}, 1);
+        TRY(add_case(tx, {id, "scenario", "", 1, 0, trial::Rig::probing}, {}, 1));
+      return add_case(tx, {kWhole, "whole bone", "", 1, 0, trial::Rig::palpation, false, true}, {},
+                      1);
     });
   }
   template <class Work>
@@ -36,11 +37,11 @@ class Studies : public test_support::BothDatabases {
     auto done = store_.write(work);
     ASSERT_TRUE(done) << done.error().what;
   }
-  void make(const std::string& on_invalid) {
+  void make(Repetition on_invalid) {
     write([&](Writing& tx) -> core::Result<void> {
       const Study study{.id = "study",
                         .title = "A study",
-                        .ordering = "random",
+                        .ordering = CaseOrder::random,
                         .repeats = 2,
                         .seed = 3,
                         .on_invalid = on_invalid};
@@ -50,10 +51,10 @@ class Studies : public test_support::BothDatabases {
     });
   }
   /// A trial that drills and one that feels it, then an ordinary one.
-  void make_drilling(const std::string& on_invalid) {
+  void make_drilling(Repetition on_invalid) {
     write([&](Writing& tx) -> core::Result<void> {
       const Study study{
-          .id = "study", .title = "Drill", .ordering = "fixed", .on_invalid = on_invalid};
+          .id = "study", .title = "Drill", .ordering = CaseOrder::fixed, .on_invalid = on_invalid};
       TRY(add_study(tx, study, {kWhole, kB}, kAda));
       return add_participant(tx, find_study(tx, "study").value(), {.name = "P1"}, {kWhole, kB},
                              kAda);
@@ -86,7 +87,7 @@ class Studies : public test_support::BothDatabases {
     const auto found =
         store_.read([](Reading& tx) { return study_slots(tx, find_study(tx, "study").value()); });
     for (const Slot& slot : found.value()) {
-      out += slot.state.front();
+      out += name(slot.state).front();
       out += slot.case_id.front();
       out += ' ';
     }
@@ -103,7 +104,7 @@ class Studies : public test_support::BothDatabases {
     const auto found =
         store_.read([](Reading& tx) { return study_trials(tx, find_study(tx, "study").value()); });
     for (const auto& trial : found.value())
-      if (trial.trial_id == trial_id) return trial.state;
+      if (trial.trial_id == trial_id) return std::string(name(trial.state));
     return "absent";
   }
 
@@ -113,7 +114,7 @@ class Studies : public test_support::BothDatabases {
 TRACTUS_ON_BOTH_DATABASES(Studies);
 
 TEST_P(Studies, HandOutTheNextTrialAndTheSameOneWhenAskedAgain) {
-  make("at_end");
+  make(Repetition::at_end);
   const auto first = take("s1", 1), again = take("s1", 1);
   ASSERT_TRUE(first && again);
   ASSERT_EQ(first->slots.size(), 1u);
@@ -127,7 +128,7 @@ TEST_P(Studies, HandOutTheNextTrialAndTheSameOneWhenAskedAgain) {
 }
 
 TEST_P(Studies, GiveOneParticipantToOneStationAtATime) {
-  make("at_end");
+  make(Repetition::at_end);
   ASSERT_TRUE(take("s1", 2));
   const auto refused = take("s2", 1);
   ASSERT_FALSE(refused);
@@ -142,25 +143,25 @@ TEST_P(Studies, GiveOneParticipantToOneStationAtATime) {
 }
 
 TEST_P(Studies, HandOutNothingWhilePaused) {
-  make("at_end");
-  const auto set = [&](bool whole, const char* state) {
+  make(Repetition::at_end);
+  const auto set = [&](bool whole, StudyState state) {
     write([&](Writing& tx) {
       return whole ? set_study_state(tx, find_study(tx, "study").value(), state, kAda)
                    : set_participant_state(tx, find_study(tx, "study").value(), "P1", state, kAda);
     });
   };
   for (const bool whole : {true, false}) {
-    set(whole, "paused");
+    set(whole, StudyState::paused);
     const auto refused = take("s1", 1);
     ASSERT_FALSE(refused);
     EXPECT_THAT(refused.error().what, HasSubstr("paused"));
-    set(whole, "running");
+    set(whole, StudyState::running);
     EXPECT_TRUE(take("s1", 1));
   }
 }
 
 TEST_P(Studies, KeepAnInvalidTrialAndRepeatItsSlotAtTheEnd) {
-  make("at_end");
+  make(Repetition::at_end);
   bring("t1", take("s1", 1)->slots[0]);
   write([](Writing& tx) {
     return set_trial_invalid(tx, find_study(tx, "study").value(), "t1", kAda);
@@ -170,7 +171,7 @@ TEST_P(Studies, KeepAnInvalidTrialAndRepeatItsSlotAtTheEnd) {
 }
 
 TEST_P(Studies, RepeatAnInvalidTrialAtOnceOrNeverWhenTheStudySaysSo) {
-  make("at_once");
+  make(Repetition::at_once);
   bring("t1", take("s1", 1)->slots[0]);
   write([](Writing& tx) {
     return set_trial_invalid(tx, find_study(tx, "study").value(), "t1", kAda);
@@ -187,14 +188,14 @@ TEST_P(Studies, RepeatAnInvalidTrialAtOnceOrNeverWhenTheStudySaysSo) {
 }
 
 TEST_P(Studies, ATrialCutShortDoesNotCountAndIsRepeated) {
-  make("at_end");
+  make(Repetition::at_end);
   bring("t1", take("s1", 1)->slots[0], false);
   EXPECT_EQ(state_of("t1"), "invalid");
   EXPECT_EQ(states(), "ia wb wb wa ");
 }
 
 TEST_P(Studies, ASecondTrialForASlotIsKeptAndDoesNotCount) {
-  make("at_end");
+  make(Repetition::at_end);
   const auto slot = take("s1", 1)->slots[0];
   bring("t1", slot);
   bring("t2", slot);
@@ -204,10 +205,11 @@ TEST_P(Studies, ASecondTrialForASlotIsKeptAndDoesNotCount) {
 }
 
 TEST_P(Studies, OnlyATrialThatCountsOfThisStudyCanBeMarkedInvalid) {
-  make("at_end");
+  make(Repetition::at_end);
   bring("t1", take("s1", 1)->slots[0]);
   write([](Writing& tx) -> core::Result<void> {
-    auto other = add_study(tx, {.id = "other", .title = "", .ordering = "random"}, {kA}, kAda);
+    auto other =
+        add_study(tx, {.id = "other", .title = "", .ordering = CaseOrder::random}, {kA}, kAda);
     return other ? core::Result<void>() : other.error();
   });
   const auto mark = [&](const char* study, const char* trial) {
@@ -225,10 +227,10 @@ TEST_P(Studies, OnlyATrialThatCountsOfThisStudyCanBeMarkedInvalid) {
 TEST_P(Studies, AStudyAndAnAssignmentAreNotFoundAsEachOther) {
   write([](Writing& tx) -> core::Result<void> {
     TRY(add_account(tx, {"fay", "fay", Role::faculty, "x"}, 0));
-    const Study like_an_assignment{.id = "a-study", .title = "", .ordering = "random"};
+    const Study like_an_assignment{.id = "a-study", .title = "", .ordering = CaseOrder::random};
     TRY(add_study(tx, like_an_assignment, {kA}, kAda));
-    const Assignment assignment{.study = {.id = "spine", .title = "", .ordering = "random"},
-                                .made_by_id = "fay"};
+    const Assignment assignment{
+        .study = {.id = "spine", .title = "", .ordering = CaseOrder::random}, .made_by_id = "fay"};
     auto added = add_assignment(tx, assignment, {kA}, kAda);
     return added ? core::Result<void>() : added.error();
   });
@@ -248,13 +250,13 @@ static_assert(!std::is_constructible_v<StudyId, AssignmentId>);
 static_assert(!std::is_constructible_v<StudyId, std::string>);
 
 TEST_P(Studies, NoteEveryChangeWithWhoDidIt) {
-  make("at_end");
+  make(Repetition::at_end);
   bring("t1", take("s1", 1)->slots[0]);
   write([](Writing& tx) {
     return set_trial_invalid(tx, find_study(tx, "study").value(), "t1", kAda);
   });
   write([](Writing& tx) {
-    return set_study_state(tx, find_study(tx, "study").value(), "paused", kAda);
+    return set_study_state(tx, find_study(tx, "study").value(), StudyState::paused, kAda);
   });
   EXPECT_THAT(happened(),
               ElementsAre("ada made", "ada enrolled", "station-s1 taken", "station-s1 recorded",
@@ -265,7 +267,7 @@ const Tool kBurr{.burr = true};
 Tool feeling(const std::string& drilled) { return {.burr = false, .drilled = drilled}; }
 
 TEST_P(Studies, WholeBoneIsDoneWhenItsChannelWasDrilledAndThatVeryChannelFelt) {
-  make_drilling("at_end");
+  make_drilling(Repetition::at_end);
   const Slot slot = take("s1", 1)->slots[0];
   EXPECT_EQ(drilling(), "");
   bring("t1", slot, true, kBurr);
@@ -281,7 +283,7 @@ TEST_P(Studies, WholeBoneIsDoneWhenItsChannelWasDrilledAndThatVeryChannelFelt) {
 }
 
 TEST_P(Studies, WholeBoneIsNotDoneByAPalpationOfAnotherChannelOrOfNone) {
-  make_drilling("at_end");
+  make_drilling(Repetition::at_end);
   const Slot slot = take("s1", 1)->slots[0];
   bring("t1", slot);
   EXPECT_EQ(state_of("t1"), "surplus");
@@ -294,14 +296,14 @@ TEST_P(Studies, WholeBoneIsNotDoneByAPalpationOfAnotherChannelOrOfNone) {
 }
 
 TEST_P(Studies, ADrillingCutShortIsRepeatedAsAnyTrial) {
-  make_drilling("at_once");
+  make_drilling(Repetition::at_once);
   bring("t1", take("s1", 1)->slots[0], false, kBurr);
   EXPECT_EQ(states(), "iw ww wb ");
   EXPECT_EQ(drilling(), "");
 }
 
 TEST_P(Studies, APalpationCutShortOrInvalidIsDoneAgainOnTheChannelThatIsThere) {
-  make_drilling("at_end");
+  make_drilling(Repetition::at_end);
   const Slot slot = take("s1", 1)->slots[0];
   bring("t1", slot, true, kBurr);
   bring("t2", slot, false, feeling("t1"));
@@ -317,7 +319,7 @@ TEST_P(Studies, APalpationCutShortOrInvalidIsDoneAgainOnTheChannelThatIsThere) {
 }
 
 TEST_P(Studies, APalpationThatDoesNotCountEndsWholeBoneWhereNothingIsRepeated) {
-  make_drilling("never");
+  make_drilling(Repetition::never);
   const Slot slot = take("s1", 1)->slots[0];
   bring("t1", slot, true, kBurr);
   bring("t2", slot, false, feeling("t1"));
@@ -325,7 +327,7 @@ TEST_P(Studies, APalpationThatDoesNotCountEndsWholeBoneWhereNothingIsRepeated) {
 }
 
 TEST_P(Studies, WithADrillingThatDoesNotCountGoesThePalpationOfItsChannel) {
-  make_drilling("at_end");
+  make_drilling(Repetition::at_end);
   const Slot slot = take("s1", 1)->slots[0];
   bring("t1", slot, true, kBurr);
   bring("t2", slot, true, feeling("t1"));
@@ -337,7 +339,7 @@ TEST_P(Studies, WithADrillingThatDoesNotCountGoesThePalpationOfItsChannel) {
 }
 
 TEST_P(Studies, AFreedChannelThatWasNotFeltIsDrilledAnewWherever) {
-  make_drilling("at_end");
+  make_drilling(Repetition::at_end);
   bring("t1", take("s1", 1)->slots[0], true, kBurr);
   write([](Writing& tx) -> core::Result<void> {
     auto freed = release_slots(tx, find_study(tx, "study").value(), "P1", kAda);
@@ -350,7 +352,7 @@ TEST_P(Studies, AFreedChannelThatWasNotFeltIsDrilledAnewWherever) {
 
 TEST_P(Studies, ACaseNotedBeforeWasKnownToBePlannedIsPutRightByPublishingItAgain) {
   write([](Writing& tx) {
-    return add_case(tx, {kA, "", "", 1, 0, kPalpation, false, true}, {}, 2);
+    return add_case(tx, {kA, "", "", 1, 0, trial::Rig::palpation, false, true}, {}, 2);
   });
   const auto known = store_.read([](Reading& tx) { return case_of(tx, kA); });
   EXPECT_TRUE((*known)->planned);

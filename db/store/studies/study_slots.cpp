@@ -6,6 +6,7 @@
 
 #include "core/bytes.hpp"
 #include "core/try.hpp"
+#include "db/store/rows.hpp"
 
 namespace tractus {
 namespace store {
@@ -21,25 +22,45 @@ core::Result<void> done(const core::Result<Rows>& rows) {
   return {};
 }
 
-Slot slot_from(const Row& row) {
-  return {.id = row.text(0),
-          .study_id = row.text(1),
-          .participant = row.text(2),
-          .position = row.integer(3),
-          .attempt = row.integer(4),
-          .case_id = row.text(5),
-          .state = row.text(6),
-          .station_id = row.text_or_null(7),
-          .repeat_of = row.text_or_null(8),
-          .planned = row.truth(9)};
+core::Result<Slot> slot_from(const Row& row) {
+  const auto state = TRY(row.word<SlotState>(6, "study_slots.state"));
+  return Slot{.id = row.text(0),
+              .study_id = row.text(1),
+              .participant = row.text(2),
+              .position = row.integer(3),
+              .attempt = row.integer(4),
+              .case_id = row.text(5),
+              .state = state,
+              .station_id = row.text_or_null(7),
+              .repeat_of = row.text_or_null(8),
+              .planned = row.truth(9)};
+}
+
+/// Columns trial_id, slot_id, state, reason, changed_utc_us.
+core::Result<StudyTrial> judged_trial_from(const Row& row) {
+  const auto state = TRY(row.word<StudyTrialState>(2, "study_trials.state"));
+  return StudyTrial{row.text(0), row.text(1), state, row.text(3), row.integer(4)};
+}
+
+/// Columns of study_trials.
+core::Result<StudyTrial> study_trial_from(const Row& row) {
+  auto out = TRY(judged_trial_from(row));
+  out.station = row.text(5);
+  out.duration_s = row.number_or_null(6);
+  out.sha256 = row.text_or_null(9);
+  out.correct = row.truth_or_null(10);
+  out.assessment = TRY(row.word_or_null<AssessmentState>(11, "trials.state"));
+  out.tool = TRY(row.word<trial::Tool>(12, "study_trials.tool"));
+  if (out.sha256) {
+    out.samples = row.integer(7);
+    out.started_utc_us = row.integer(8);
+  }
+  return out;
 }
 
 core::Result<std::vector<Slot>> slots_where(Reading& tx, const std::string& tail,
                                             std::initializer_list<Value> values) {
-  auto rows = TRY(tx.query(kSlot + tail, values));
-  std::vector<Slot> out;
-  for (const Row& row : rows) out.push_back(slot_from(row));
-  return out;
+  return all_of(tx.query(kSlot + tail, values), slot_from);
 }
 
 core::Result<std::optional<Slot>> first(const core::Result<std::vector<Slot>>& found) {
@@ -48,24 +69,25 @@ core::Result<std::optional<Slot>> first(const core::Result<std::vector<Slot>>& f
   return std::optional(found->front());
 }
 
-core::Result<void> set_slot(Writing& tx, const std::string& id, const char* state,
+core::Result<void> set_slot(Writing& tx, const std::string& id, SlotState state,
                             const std::optional<std::string>& station_id, std::int64_t now_utc_us) {
   return done(
       tx.query("update study_slots set state = ?, station_id = ?, changed_utc_us = ? where id = ?",
-               {std::string(state), or_null(station_id), now_utc_us, id}));
+               {name_value(state), or_null(station_id), now_utc_us, id}));
 }
 
-core::Result<void> set_trial(Writing& tx, const std::string& trial_id, const std::string& state,
+core::Result<void> set_trial(Writing& tx, const std::string& trial_id, StudyTrialState state,
                              const AuditStamp& stamp) {
   return done(tx.query(
       "update study_trials set state = ?, reason = ?, changed_utc_us = ? where trial_id = ?",
-      {state, stamp.reason, stamp.at_utc_us, trial_id}));
+      {name_value(state), stamp.reason, stamp.at_utc_us, trial_id}));
 }
 
 /// Where a repetition of `slot` stands: after everything, or at its own place.
-core::Result<std::pair<std::int64_t, std::int64_t>> place_of_repetition(
-    Writing& tx, const Slot& slot, const std::string& on_invalid) {
-  const bool at_end = on_invalid == "at_end";
+core::Result<std::pair<std::int64_t, std::int64_t>> place_of_repetition(Writing& tx,
+                                                                        const Slot& slot,
+                                                                        Repetition on_invalid) {
+  const bool at_end = on_invalid == Repetition::at_end;
   auto rows = TRY(
       at_end ? tx.query("select max(position) + 1, 0 from study_slots where study_id = ? and "
                         "participant = ?",
@@ -76,10 +98,10 @@ core::Result<std::pair<std::int64_t, std::int64_t>> place_of_repetition(
   return std::pair(rows.front().integer(0), rows.front().integer(1));
 }
 
-core::Result<std::string> on_invalid_of(Reading& tx, const std::string& series_id) {
+core::Result<Repetition> on_invalid_of(Reading& tx, const std::string& series_id) {
   auto rows = TRY(tx.query("select on_invalid from studies where id = ?", {series_id}));
   core::require(!rows.empty(), "a slot has its study");
-  return rows.front().text(0);
+  return rows.front().word<Repetition>(0, "studies.on_invalid");
 }
 
 /// The slot did not yield a trial that counts: it is closed, and repeated as the study says. That
@@ -87,11 +109,11 @@ core::Result<std::string> on_invalid_of(Reading& tx, const std::string& series_i
 core::Result<void> close_and_repeat(Writing& tx, const Slot& slot, const Tool& tool,
                                     const AuditStamp& stamp) {
   auto on_invalid = TRY(on_invalid_of(tx, slot.study_id));
-  const bool never = on_invalid == "never";
+  const bool never = on_invalid == Repetition::never;
   if (slot.planned && !tool.burr && !never)
-    return set_slot(tx, slot.id, slot.station_id ? "taken" : "waiting", slot.station_id,
-                    stamp.at_utc_us);
-  TRY(set_slot(tx, slot.id, "invalid", slot.station_id, stamp.at_utc_us));
+    return set_slot(tx, slot.id, slot.station_id ? SlotState::taken : SlotState::waiting,
+                    slot.station_id, stamp.at_utc_us);
+  TRY(set_slot(tx, slot.id, SlotState::invalid, slot.station_id, stamp.at_utc_us));
   if (never) return {};
   auto place = TRY(place_of_repetition(tx, slot, on_invalid));
   Slot again = slot;
@@ -106,19 +128,20 @@ core::Result<void> close_and_repeat(Writing& tx, const Slot& slot, const Tool& t
 
 /// What becomes of a trial, and why.
 struct Judged {
-  std::string state, reason = {};
+  StudyTrialState state;
+  std::string reason = {};
 };
 
 /// @param drilling  drilling_of the slot
 Judged judged(const Slot& slot, bool complete, const Tool& tool, const std::string& drilling) {
-  if (slot.state != "waiting" && slot.state != "taken")
-    return {"surplus", "its place in the order has a trial already"};
+  if (slot.state != SlotState::waiting && slot.state != SlotState::taken)
+    return {StudyTrialState::surplus, "its place in the order has a trial already"};
   if (slot.planned && tool.burr && !drilling.empty())
-    return {"surplus", "a channel was drilled for it already"};
+    return {StudyTrialState::surplus, "a channel was drilled for it already"};
   if (slot.planned && !tool.burr && (drilling.empty() || tool.drilled != drilling))
-    return {"surplus", "it did not feel the channel that was drilled for it"};
-  if (!complete) return {"invalid", "cut short before its end"};
-  return {"counts"};
+    return {StudyTrialState::surplus, "it did not feel the channel that was drilled for it"};
+  if (!complete) return {StudyTrialState::invalid, "cut short before its end"};
+  return {StudyTrialState::counts};
 }
 
 /// The trials of a slot that count no longer do.
@@ -126,7 +149,7 @@ core::Result<void> discount(Writing& tx, const Slot& slot, const AuditStamp& sta
   auto rows = TRY(tx.query(
       "select trial_id from study_trials where slot_id = ? and state = 'counts'", {slot.id}));
   for (const Row& row : rows) {
-    TRY(set_trial(tx, row.text(0), "invalid", stamp));
+    TRY(set_trial(tx, row.text(0), StudyTrialState::invalid, stamp));
     TRY(add_study_event(tx, slot.study_id, stamp, "invalid", &slot, row.text(0)));
   }
   return {};
@@ -138,10 +161,10 @@ core::Error paused(const std::string& what) {
 
 core::Result<void> give(Writing& tx, Slot& slot, const std::string& station_id,
                         const AuditStamp& stamp) {
-  if (slot.state == "taken") return {};
-  slot.state = "taken";
+  if (slot.state == SlotState::taken) return {};
+  slot.state = SlotState::taken;
   slot.station_id = station_id;
-  TRY(set_slot(tx, slot.id, "taken", station_id, stamp.at_utc_us));
+  TRY(set_slot(tx, slot.id, SlotState::taken, station_id, stamp.at_utc_us));
   return add_study_event(tx, slot.study_id, stamp, "taken", &slot);
 }
 
@@ -168,8 +191,8 @@ core::Result<Taken> take_slots(Writing& tx, const SeriesId& id, const Participan
                                const std::string& station_id, std::int64_t ahead,
                                const AuditStamp& stamp) {
   auto study = TRY(study_of(tx, id));
-  if (study.state == "paused") return paused("study " + id.text());
-  if (participant.state == "paused") return paused("participant " + participant.name);
+  if (study.state == StudyState::paused) return paused("study " + id.text());
+  if (participant.state == StudyState::paused) return paused("participant " + participant.name);
   auto open = TRY(slots_where(tx,
                               "where k.study_id = ? and k.participant = ? and "
                               "k.state in ('waiting', 'taken') order by k.position, k.attempt",
@@ -197,7 +220,7 @@ core::Result<std::uint64_t> release_slots(Writing& tx, const SeriesId& id,
   unfelt.reason = "freed before its channel was felt";
   for (const Slot& slot : held) {
     TRY(discount(tx, slot, unfelt));
-    TRY(set_slot(tx, slot.id, "waiting", std::nullopt, stamp.at_utc_us));
+    TRY(set_slot(tx, slot.id, SlotState::waiting, std::nullopt, stamp.at_utc_us));
     TRY(add_study_event(tx, id.text(), stamp, "released", &slot));
   }
   return held.size();
@@ -220,14 +243,10 @@ core::Result<std::optional<Slot>> slot_of_trial(Reading& tx, const std::string& 
 }
 
 core::Result<std::optional<StudyTrial>> study_trial_of(Reading& tx, const std::string& trial_id) {
-  auto rows = TRY(tx.query(
-      "select trial_id, slot_id, state, reason, changed_utc_us from study_trials where trial_id = "
-      "?",
-      {trial_id}));
-  if (rows.empty()) return std::optional<StudyTrial>();
-  const Row& row = rows.front();
-  return std::optional(
-      StudyTrial{row.text(0), row.text(1), row.text(2), row.text(3), row.integer(4)});
+  return one_of(tx.query("select trial_id, slot_id, state, reason, changed_utc_us from "
+                         "study_trials where trial_id = ?",
+                         {trial_id}),
+                judged_trial_from);
 }
 
 core::Result<void> announce_for_slot(Writing& tx, const std::string& trial_id,
@@ -256,13 +275,15 @@ core::Result<void> record_for_slot(Writing& tx, const std::string& trial_id, boo
   if (!what.reason.empty()) said.reason = what.reason;
   TRY(set_trial(tx, trial_id, what.state, said));
   TRY(tx.query("update study_trials set tool = ? where trial_id = ?",
-               {std::string(tool.burr ? "burr" : "probe"), trial_id}));
-  const bool counts = what.state == "counts", to_be_felt = slot.planned && tool.burr;
-  const std::string event = !counts ? what.state : to_be_felt ? "drilled" : "recorded";
+               {name_value(tool.burr ? trial::Tool::burr : trial::Tool::probe), trial_id}));
+  const bool counts = what.state == StudyTrialState::counts, to_be_felt = slot.planned && tool.burr;
+  const std::string event = !counts      ? std::string(core::name(what.state))
+                            : to_be_felt ? "drilled"
+                                         : "recorded";
   TRY(add_study_event(tx, slot.study_id, said, event, &slot, trial_id));
-  if (what.state == "invalid") return close_and_repeat(tx, slot, tool, said);
+  if (what.state == StudyTrialState::invalid) return close_and_repeat(tx, slot, tool, said);
   if (!counts || to_be_felt) return {};
-  return set_slot(tx, slot.id, "recorded", slot.station_id, stamp.at_utc_us);
+  return set_slot(tx, slot.id, SlotState::recorded, slot.station_id, stamp.at_utc_us);
 }
 
 core::Result<void> set_trial_invalid(Writing& tx, const SeriesId& id, const std::string& trial_id,
@@ -272,46 +293,29 @@ core::Result<void> set_trial_invalid(Writing& tx, const SeriesId& id, const std:
     return core::Error{core::Errc::not_found,
                        fmt::format("study {} has no trial {}", id.text(), trial_id.substr(0, 32))};
   auto trial = TRY(tx.query("select state, tool from study_trials where trial_id = ?", {trial_id}));
-  if (trial.front().text(0) != "counts")
+  const auto state = TRY(trial.front().word<StudyTrialState>(0, "study_trials.state"));
+  if (state != StudyTrialState::counts)
     return core::Error{core::Errc::conflict,
                        fmt::format("trial {} already does not count", trial_id)};
-  const Tool tool{.burr = trial.front().text(1) == "burr"};
-  TRY(set_trial(tx, trial_id, "invalid", stamp));
+  const auto with = TRY(trial.front().word<trial::Tool>(1, "study_trials.tool"));
+  const Tool tool{.burr = with == trial::Tool::burr};
+  TRY(set_trial(tx, trial_id, StudyTrialState::invalid, stamp));
   TRY(add_study_event(tx, id.text(), stamp, "invalid", &*slot, trial_id));
   if (tool.burr) TRY(discount(tx, *slot, stamp));
   return close_and_repeat(tx, *slot, tool, stamp);
 }
 
 core::Result<std::vector<StudyTrial>> study_trials(Reading& tx, const SeriesId& id) {
-  auto rows = TRY(tx.query(
-      "select x.trial_id, x.slot_id, x.state, x.reason, x.changed_utc_us, s.name, t.duration_s, "
-      "t.samples, t.started_utc_us, t.sha256, t.correct, t.state, x.tool from study_trials x "
-      "join study_slots k on k.id = x.slot_id join uploads u on u.trial_id = x.trial_id "
-      "join stations s on s.id = u.station_id left join trials t on t.id = x.trial_id "
-      "where k.study_id = ? order by x.changed_utc_us, x.trial_id",
-      {id.text()}));
-  std::vector<StudyTrial> out;
-  for (const Row& row : rows) {
-    StudyTrial one{.trial_id = row.text(0),
-                   .slot_id = row.text(1),
-                   .state = row.text(2),
-                   .reason = row.text(3),
-                   .changed_utc_us = row.integer(4),
-                   .station = row.text(5),
-                   .tool = row.text(12),
-                   .duration_s = row.number_or_null(6),
-                   .samples = {},
-                   .started_utc_us = {},
-                   .sha256 = row.text_or_null(9),
-                   .correct = row.truth_or_null(10),
-                   .assessment = row.text_or_null(11)};
-    if (one.sha256) {
-      one.samples = row.integer(7);
-      one.started_utc_us = row.integer(8);
-    }
-    out.push_back(std::move(one));
-  }
-  return out;
+  return all_of(
+      tx.query(
+          "select x.trial_id, x.slot_id, x.state, x.reason, x.changed_utc_us, s.name, "
+          "t.duration_s, "
+          "t.samples, t.started_utc_us, t.sha256, t.correct, t.state, x.tool from study_trials x "
+          "join study_slots k on k.id = x.slot_id join uploads u on u.trial_id = x.trial_id "
+          "join stations s on s.id = u.station_id left join trials t on t.id = x.trial_id "
+          "where k.study_id = ? order by x.changed_utc_us, x.trial_id",
+          {id.text()}),
+      study_trial_from);
 }
 
 }  // namespace store

@@ -2,23 +2,37 @@
 #pragma once
 
 #include "db/store/studies/studies.hpp"
+#include "db/store/trials/trials.hpp"
+#include "trial/tool.hpp"
 
 namespace tractus::store {
+
+enum class StudyTrialState {
+  arriving,  ///< its upload is not complete
+  counts,
+  invalid,
+  surplus,  ///< its slot had a trial already
+};
+constexpr auto words(StudyTrialState) {
+  using enum StudyTrialState;
+  return std::to_array<core::Word<StudyTrialState>>(
+      {{arriving, "arriving"}, {counts, "counts"}, {invalid, "invalid"}, {surplus, "surplus"}});
+}
 
 /// The state of a trial in a study.
 struct StudyTrial {
   std::string trial_id, slot_id;
-  std::string state;  ///< "arriving", "counts", "invalid", "surplus" (its slot already had a trial)
+  StudyTrialState state = StudyTrialState::arriving;
   std::string reason;
   std::int64_t changed_utc_us = 0;
-  std::string station = {};  ///< station that announced the trial
-  std::string tool = {};     ///< after the upload: "burr" (the trial drilled) or "probe"
+  std::string station = {};               ///< station that announced the trial
+  trial::Tool tool = trial::Tool::probe;  ///< known after the upload
   // Set when the upload is complete:
   std::optional<double> duration_s = {};
   std::optional<std::int64_t> samples = {}, started_utc_us = {};
   std::optional<std::string> sha256 = {};  ///< of the file
   std::optional<bool> correct = {};
-  std::optional<std::string> assessment = {};  ///< "assessing", "assessed", "failed"
+  std::optional<AssessmentState> assessment = {};
 };
 
 /// By participant as enrolled, then in their order.

@@ -1,6 +1,7 @@
 #include "db/store/trials/trials.hpp"
 
 #include "core/try.hpp"
+#include "db/store/rows.hpp"
 #include "db/store/studies/blinding.hpp"
 
 namespace tractus {
@@ -14,18 +15,19 @@ constexpr const char* kSummaryColumns =
 constexpr const char* kFrom =
     " from trials t join cases c on c.id = t.case_id join stations s on s.id = t.station_id ";
 
-TrialSummary summary_from(const Row& row) {
-  return {.id = row.text(0),
-          .case_id = row.text(1),
-          .case_title = row.text(2),
-          .station = row.text(3),
-          .operator_name = row.text(4),
-          .simulated = row.truth(5),
-          .started_utc_us = row.integer(6),
-          .duration_s = row.number(7),
-          .samples = row.count(8),
-          .state = row.text(9),
-          .correct = row.truth_or_null(10)};
+core::Result<TrialSummary> summary_from(const Row& row) {
+  const auto state = TRY(row.word<AssessmentState>(9, "trials.state"));
+  return TrialSummary{.id = row.text(0),
+                      .case_id = row.text(1),
+                      .case_title = row.text(2),
+                      .station = row.text(3),
+                      .operator_name = row.text(4),
+                      .simulated = row.truth(5),
+                      .started_utc_us = row.integer(6),
+                      .duration_s = row.number(7),
+                      .samples = row.count(8),
+                      .state = state,
+                      .correct = row.truth_or_null(10)};
 }
 
 core::Result<void> done(const core::Result<Rows>& rows) {
@@ -65,7 +67,8 @@ core::Result<std::optional<TrialRecord>> trial_of(Reading& tx, const std::string
                    {id}));
   if (rows.empty()) return std::optional<TrialRecord>();
   const Row& row = rows.front();
-  return std::optional(TrialRecord{.summary = summary_from(row),
+  auto summary = TRY(summary_from(row));
+  return std::optional(TrialRecord{.summary = std::move(summary),
                                    .station_id = row.text(11),
                                    .sha256 = row.text(12),
                                    .complete = row.truth(13),
@@ -84,20 +87,21 @@ core::Result<std::vector<TrialSummary>> trials_before(Reading& tx, std::int64_t 
   constexpr const char* kAssigned =
       "exists (select 1 from study_trials st join study_slots sl on sl.id = st.slot_id join "
       "assignment_people p on p.study_id = sl.study_id and p.participant = sl.participant ";
-  auto rows = TRY(tx.query(
-      std::string(kSummaryColumns) + kFrom + "where t.started_utc_us < ? and not " + blinded_sql() +
-          " and (? = '' or " + kAssigned +
-          "join cohort_people c on c.account_id = p.account_id and c.part = 'trainee' join "
-          "cohort_people f on f.cohort_id = c.cohort_id and f.part = 'faculty' where st.trial_id = "
-          "t.id and f.account_id = ?)) and (? = '' or " +
-          kAssigned +
-          "join assignments a on a.study_id = sl.study_id where st.trial_id = t.id and "
-          "p.account_id = ? and a.release <> 'held')) order by t.started_utc_us desc, t.id desc "
-          "limit ?",
-      {before_utc_us, whose.taught_by, whose.taught_by, whose.seen_by, whose.seen_by, limit}));
-  std::vector<TrialSummary> out;
-  for (const Row& row : rows) out.push_back(summary_from(row));
-  return out;
+  return all_of(
+      tx.query(
+          std::string(kSummaryColumns) + kFrom + "where t.started_utc_us < ? and not " +
+              blinded_sql() + " and (? = '' or " + kAssigned +
+              "join cohort_people c on c.account_id = p.account_id and c.part = 'trainee' join "
+              "cohort_people f on f.cohort_id = c.cohort_id and f.part = 'faculty' where "
+              "st.trial_id = "
+              "t.id and f.account_id = ?)) and (? = '' or " +
+              kAssigned +
+              "join assignments a on a.study_id = sl.study_id where st.trial_id = t.id and "
+              "p.account_id = ? and a.release <> 'held')) order by t.started_utc_us desc, t.id "
+              "desc "
+              "limit ?",
+          {before_utc_us, whose.taught_by, whose.taught_by, whose.seen_by, whose.seen_by, limit}),
+      summary_from);
 }
 
 core::Result<void> set_assessment(Writing& tx, const std::string& id,

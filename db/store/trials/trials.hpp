@@ -7,6 +7,14 @@
 
 namespace tractus::store {
 
+/// How far the computation of a trial's scores has come.
+enum class AssessmentState { assessing, assessed, failed };
+constexpr auto words(AssessmentState) {
+  using enum AssessmentState;
+  return std::to_array<core::Word<AssessmentState>>(
+      {{assessing, "assessing"}, {assessed, "assessed"}, {failed, "failed"}});
+}
+
 /// What a list shows of a trial.
 struct TrialSummary {
   std::string id, case_id, case_title, station, operator_name;
@@ -14,7 +22,7 @@ struct TrialSummary {
   std::int64_t started_utc_us = 0;
   double duration_s = 0.0;
   std::uint64_t samples = 0;
-  std::string state;            ///< "assessing", "assessed", "failed"
+  AssessmentState state = AssessmentState::assessing;
   std::optional<bool> correct;  ///< the answer against the truth, when there is an answer
 };
 

@@ -44,7 +44,7 @@ core::Result<http::Response> part_named(const Call& call, const std::string& par
         TRY(call.backend.store.read([&](store::Reading& tx) { return store::case_of(tx, id); }));
     // The answer must not even reveal that this server has the scenario, because the versions of
     // scenarios are not secret.
-    if (known && known->kind == store::kProbing) return absent;
+    if (known && known->kind == trial::Rig::probing) return absent;
     return core::Error{core::Errc::forbidden, "this part is secret"};
   }
   const bool json = part_name.ends_with(".json");

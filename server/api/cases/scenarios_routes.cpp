@@ -139,8 +139,8 @@ Result<Draft> draft_from(const Call& call) {
 /// secret.
 Result<void> offer(store::Writing& tx, const store::ScenarioVersion& version,
                    const store::CasePart& part, std::int64_t now_utc_us) {
-  const store::CaseSummary summary{version.id, version.name,   version.made_by, now_utc_us,
-                                   0,          store::kProbing};
+  const store::CaseSummary summary{version.id, version.name,       version.made_by, now_utc_us,
+                                   0,          trial::Rig::probing};
   TRY(store::add_case(tx, summary, {part}, now_utc_us));
   return store::set_case_retired(tx, version.id, false, now_utc_us);
 }

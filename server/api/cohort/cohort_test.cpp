@@ -28,8 +28,10 @@ class Cohort : public ApiTest {
     backend_.pseudonym_key.emplace();
     backend_.pseudonym_key->fill(std::byte{7});
     const auto made = store_.write([&](store::Writing& tx) -> core::Result<void> {
-      const store::Study study{
-          .id = "spine", .title = "", .ordering = "random", .on_invalid = "never"};
+      const store::Study study{.id = "spine",
+                               .title = "",
+                               .ordering = store::CaseOrder::random,
+                               .on_invalid = store::Repetition::never};
       TRY(store::add_study(tx, study, {kCase}, deed_));
       const std::vector<std::string> cases(4, kCase);
       for (const auto& person :

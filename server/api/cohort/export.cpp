@@ -142,12 +142,13 @@ std::string trials_csv(const store::ReleasedTrials& trials) {
   std::string out = header_of("trials");
   for (const store::ReleasedTrial& t : trials.all()) {
     const bool in_study = !t.study.empty();
-    out += fmt::format("{},{},{},{},{},{},{},{},{},{:.4f},{},{},{},{},{}\r\n", t.id,
-                       cell(t.participant), cell(t.study), in_study ? std::to_string(t.number) : "",
-                       cell(t.level), cell(t.experience_years), cell(t.case_title), cell(t.rig),
-                       t.simulated ? 1 : 0, t.days, t.duration_s, t.samples, t.complete ? 1 : 0,
-                       in_study ? (t.place == "counts" ? "1" : "0") : "",
-                       t.correct ? (*t.correct ? "1" : "0") : "");
+    out +=
+        fmt::format("{},{},{},{},{},{},{},{},{},{:.4f},{},{},{},{},{}\r\n", t.id,
+                    cell(t.participant), cell(t.study), in_study ? std::to_string(t.number) : "",
+                    cell(t.level), cell(t.experience_years), cell(t.case_title), trial::name(t.rig),
+                    t.simulated ? 1 : 0, t.days, t.duration_s, t.samples, t.complete ? 1 : 0,
+                    in_study ? (t.place == store::StudyTrialState::counts ? "1" : "0") : "",
+                    t.correct ? (*t.correct ? "1" : "0") : "");
   }
   return out;
 }
@@ -159,7 +160,8 @@ std::string summary_csv(const store::ReleasedTrials& trials) {
   };
   std::map<std::array<std::string, 3>, Sum> sums;
   for (const store::ReleasedTrial& t : trials.all()) {
-    Sum& sum = sums.try_emplace({t.participant, t.study, t.rig}, Sum{&t}).first->second;
+    Sum& sum = sums.try_emplace({t.participant, t.study, std::string(trial::name(t.rig))}, Sum{&t})
+                   .first->second;
     ++sum.trials;
     sum.answered += t.correct.has_value();
     sum.correct += t.correct.value_or(false);

@@ -12,7 +12,7 @@ namespace tractus::api::testing {
 
 class PeopleTest : public ApiTest {
  protected:
-  static constexpr const char* kRelease = "released";
+  static constexpr store::Release kRelease = store::Release::released;
 
   PeopleTest() {
     const auto furnished = store_.write([&](store::Writing& tx) -> core::Result<void> {
@@ -44,13 +44,13 @@ class PeopleTest : public ApiTest {
     TRY(store::put_into_cohort(tx, cohort, trainee, store::CohortPart::trainee, 0));
     const store::AuditStamp stamp{leader, 1};
     const std::string study = "a-" + trainee, who = "P-" + trainee;
-    auto assigned =
-        TRY(store::add_assignment(tx,
-                                  {.study = {.id = study, .title = "", .ordering = "random"},
-                                   .cohort_id = cohort,
-                                   .release = kRelease,
-                                   .made_by_id = leader},
-                                  {kCase}, stamp));
+    auto assigned = TRY(store::add_assignment(
+        tx,
+        {.study = {.id = study, .title = "", .ordering = store::CaseOrder::random},
+         .cohort_id = cohort,
+         .release = kRelease,
+         .made_by_id = leader},
+        {kCase}, stamp));
     TRY(store::add_participant(tx, assigned, {.name = who}, {kCase}, stamp));
     TRY(store::add_assigned_person(tx, assigned, trainee, who));
     auto slots = TRY(store::study_slots(tx, assigned));

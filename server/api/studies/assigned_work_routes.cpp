@@ -109,7 +109,7 @@ Result<wire::AssignedTrial> trial_of_slot(store::Reading& tx, const store::Assig
                             .case_id = "",
                             .sealed = ""};
   if (trial.name.empty()) trial.name = "Trial " + std::to_string(trial.number);
-  if (trial.rig == store::kPalpation) trial.case_id = slot.case_id;
+  if (trial.rig == trial::Rig::palpation) trial.case_id = slot.case_id;
   if (slot.planned) {
     auto drilling = TRY(store::drilling_of(tx, slot.id));
     trial.drills = drilling.empty();
@@ -121,11 +121,11 @@ Result<wire::AssignedTrial> trial_of_slot(store::Reading& tx, const store::Assig
 /// Hands out the account's next slot of one assignment, if there is one now.
 Result<void> take_of(store::Writing& tx, const Call& call, const store::Assignment& assignment,
                      const store::Account& account, Given& given) {
-  if (assignment.study.state == "paused") return {};
+  if (assignment.study.state == store::StudyState::paused) return {};
   auto id = TRY(store::find_assignment(tx, assignment.study.id));
   auto participant = TRY(store::participant_for(tx, id, account.id));
   auto person = TRY(store::participant_of(tx, id, participant));
-  if (!person || person->state == "paused") return {};
+  if (!person || person->state == store::StudyState::paused) return {};
   auto taken = TRY(store::take_slots(tx, id, *person, call.caller.id, 1,
                                      {call.caller.name, call.backend.now_utc_us()}));
   given.work.left += taken.unfinished;
@@ -161,7 +161,7 @@ Result<http::Response> next_trial(const Call& call) {
     TRY(store::touch_session(tx, hash, call.backend.now_utc_us()));
     return take(tx, call, account);
   }));
-  if (given.slot && given.work.trial->rig == store::kProbing) {
+  if (given.slot && given.work.trial->rig == trial::Rig::probing) {
     auto scenario =
         TRY(jobs::scenario_of(call.backend.store, call.backend.objects, given.slot->case_id));
     auto law = TRY(scenario.expanded());
@@ -221,9 +221,9 @@ std::vector<RouteInfo> assigned_work_routes() {
             {"case_id", text("Id of the palpation case; empty for a probing trial")},
             {"sealed", text("Parameters of the scenario, encrypted for the calling station; empty "
                             "for a palpation trial")},
-            {"tool", optional(one_of({"probe", "burr"},
-                                     "burr: the bone is whole, and the trainee drills the channel "
-                                     "in this trial; probe (default): the trainee palpates"))},
+            {"tool", optional(one_of<trial::Tool>(
+                         "burr: the bone is whole, and the trainee drills the channel "
+                         "in this trial; probe (default): the trainee palpates"))},
             {"drilled", optional(text("Id of the trial at this station that drilled the channel "
                                       "which the trainee now palpates"))}})},
       {"AssignedWork",

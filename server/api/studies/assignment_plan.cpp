@@ -25,10 +25,6 @@ using core::Result;
 constexpr std::size_t kMaxCases = 64, kMaxPeople = 500, kMaxTitle = 200, kMaxText = 128;
 constexpr long kMaxRepeats = 20, kMaxTime_us = 9'000'000'000'000'000, kMaxSeed = 1L << 53;
 
-bool is_one_of(const std::string& text, std::initializer_list<const char*> words) {
-  return std::ranges::any_of(words, [&](const char* word) { return text == word; });
-}
-
 Result<AssignedCase> case_from(const Json& json, const std::string& where) {
   core::Fields fields(json, where);
   AssignedCase out;
@@ -76,20 +72,14 @@ store::Assignment assignment_from(core::Fields& fields) {
   store::Assignment out;
   out.study.id = "a-" + core::new_id().substr(0, 24);
   out.study.title = fields.text("title", kMaxTitle);
-  out.study.ordering = fields.text_or("ordering", "random", 16);
-  if (!is_one_of(out.study.ordering, {"fixed", "random", "balanced"}))
-    fields.wrong("ordering", "fixed, random or balanced is expected");
+  out.study.ordering = fields.word_or("ordering", store::CaseOrder::random);
   out.study.repeats = fields.integer_or("repeats", 1, 1, kMaxRepeats);
-  out.study.on_invalid = fields.text_or("on_invalid", "at_end", 16);
-  if (!is_one_of(out.study.on_invalid, {"at_end", "at_once", "never"}))
-    fields.wrong("on_invalid", "at_end, at_once or never is expected");
+  out.study.on_invalid = fields.word_or("on_invalid", store::Repetition::at_end);
   long drawn = 0;
   for (const std::byte b : core::random_bytes(4)) drawn = drawn * 256 + std::to_integer<long>(b);
   out.study.seed = fields.integer_or("seed", drawn, 0, kMaxSeed);
   if (fields.has("due_utc_us")) out.due_utc_us = fields.integer("due_utc_us", 0, kMaxTime_us);
-  out.release = fields.text_or("release", "held", 16);
-  if (!is_one_of(out.release, {"held", "released", "at_once"}))
-    fields.wrong("release", "held, released or at_once is expected");
+  out.release = fields.word_or("release", store::Release::held);
   if (fields.has("cohort")) out.cohort_id = fields.text("cohort", 64);
   return out;
 }
@@ -131,7 +121,7 @@ Result<std::vector<std::string>> note_cases(store::Writing& tx, const Assignment
     if (one.scenario) {
       const store::CaseSummary summary{
           one.case_id, one.scenario->name, one.scenario->origin.who, stamp.at_utc_us,
-          0,           store::kProbing};
+          0,           trial::Rig::probing};
       TRY(store::add_case(tx, summary, {parts[part++]}, stamp.at_utc_us));
     } else {
       auto known = TRY(store::case_of(tx, one.case_id));

@@ -15,6 +15,7 @@ using core::Errc;
 using core::Error;
 using core::Json;
 using core::Result;
+using store::Release;
 
 constexpr std::uint64_t kMaxPlan_bytes = 4u << 20, kMaxBody_bytes = 4096;
 constexpr long kMaxTime_us = 9'000'000'000'000'000;
@@ -25,9 +26,9 @@ Json time_or_null(const std::optional<std::int64_t>& time) { return time ? Json(
 Json assignment_json(const store::Assignment& a, Scope of) {
   Json out{{"id", a.study.id},
            {"title", a.study.title},
-           {"state", a.study.state},
+           {"state", name(a.study.state)},
            {"due_utc_us", time_or_null(a.due_utc_us)},
-           {"release", a.release},
+           {"release", name(a.release)},
            {"done", a.done},
            {"planned", a.planned},
            {"to_drill", a.to_drill},
@@ -36,7 +37,7 @@ Json assignment_json(const store::Assignment& a, Scope of) {
            {"made_utc_us", a.study.made_utc_us},
            {"made_by", a.study.made_by}};
   if (of == Scope::own) return out;
-  out["ordering"] = a.study.ordering;
+  out["ordering"] = name(a.study.ordering);
   out["repeats"] = a.study.repeats;
   out["people"] = a.people;
   return out;
@@ -68,8 +69,8 @@ Result<Json> trials_json(store::Reading& tx, const store::AssignmentId& id,
     out.push_back({{"trial_id", trial.trial_id},
                    {"participant", place->second->participant},
                    {"number", place->second->position + 1},
-                   {"tool", trial.tool},
-                   {"state", trial.state},
+                   {"tool", name(trial.tool)},
+                   {"state", name(trial.state)},
                    {"reason", trial.reason},
                    {"correct", trial.correct ? Json(*trial.correct) : Json()},
                    {"comments", comments.size()},
@@ -91,7 +92,7 @@ Result<Json> whole_json(store::Reading& tx, const std::string& asked, Scope of,
   auto found = TRY(store::assignment_of(tx, id, of == Scope::own ? me : ""));
   Json out = assignment_json(found, of);
   if (of == Scope::own) {
-    if (found.release == "held") return out;
+    if (found.release == Release::held) return out;
     auto own = TRY(own_trials_json(tx, id, me));
     out["trials"] = std::move(own);
     return out;
@@ -141,14 +142,9 @@ Result<http::Response> changed(const Call& call, Read read, Work work) {
 }
 
 Result<http::Response> set_release(const Call& call) {
-  std::string release;
+  Release release = Release::held;
   return changed(
-      call,
-      [&](core::Fields& fields) {
-        release = fields.text("release", 16);
-        if (release != "held" && release != "released" && release != "at_once")
-          fields.wrong("release", "held, released or at_once is expected");
-      },
+      call, [&](core::Fields& fields) { release = fields.word<Release>("release"); },
       [&](store::Writing& tx, const store::AssignmentId& id, const store::AuditStamp& stamp) {
         return store::set_release(tx, id, release, stamp);
       });
@@ -231,14 +227,14 @@ std::vector<schema::Field> summary_fields() {
   return {
       {"id", text("Id of the assignment, which never changes")},
       {"title", text("Title of the assignment")},
-      {"state", one_of({"running", "paused"},
-                       "State of the assignment; paused: stations receive no trials of it")},
+      {"state", one_of<store::StudyState>(
+                    "State of the assignment; paused: stations receive no trials of it")},
       {"due_utc_us",
        nullable(
            integer("us", "Due time, in microseconds since 1970-01-01 UTC; null if there is none"))},
-      {"release", one_of({"held", "released", "at_once"},
-                         "When trainees see their results: held = not yet, released = now, at_once "
-                         "= as soon as a trial is uploaded")},
+      {"release",
+       one_of<Release>("When trainees see their results: held = not yet, released = now, at_once "
+                       "= as soon as a trial is uploaded")},
       {"done", integer("1", "Number of trials that count; for a trainee only the own trials")},
       {"planned", integer("1", "Number of planned trials; for a trainee only the own trials")},
       {"to_drill",
@@ -249,8 +245,8 @@ std::vector<schema::Field> summary_fields() {
       {"cohort_name", text("Name of the cohort; empty if the assignment has none")},
       {"made_utc_us", integer("us", "Time of creation, in microseconds since 1970-01-01 UTC")},
       {"made_by", text("Name of the account that created the assignment")},
-      {"ordering", optional(one_of({"fixed", "random", "balanced"},
-                                   "Order of the cases; missing in the answer to a trainee"))},
+      {"ordering", optional(one_of<store::CaseOrder>(
+                       "Order of the cases; missing in the answer to a trainee"))},
       {"repeats", optional(integer(
                       "1", "Number of repeats of each case; missing in the answer to a trainee"))},
       {"people",
@@ -281,25 +277,24 @@ std::vector<NamedSchema> read_schemas() {
                {"done", integer("1", "Number of the person's trials that count")},
                {"planned", integer("1", "Number of the person's planned trials")}})},
       {"AssignedTrialDone",
-       object(
-           {{"trial_id", text("Id of the trial, 32 hexadecimal characters")},
-            {"participant", text("Pseudonym of the person")},
-            {"number",
-             integer("1", "Number of the trial among the person's trials, counted from 1")},
-            {"tool", one_of({"probe", "burr"},
-                            "Tool; burr: the trial drilled the channel and has no answer")},
-            {"state",
-             one_of({"arriving", "counts", "invalid", "surplus"},
+       object({{"trial_id", text("Id of the trial, 32 hexadecimal characters")},
+               {"participant", text("Pseudonym of the person")},
+               {"number",
+                integer("1", "Number of the trial among the person's trials, counted from 1")},
+               {"tool",
+                one_of<trial::Tool>("Tool; burr: the trial drilled the channel and has no answer")},
+               {"state",
+                one_of<store::StudyTrialState>(
                     "arriving: the upload is not complete; counts: the trial counts; invalid: it "
                     "was marked invalid; surplus: its place in the order already had a trial")},
-            {"reason", text("Reason why the trial does not count; empty if it counts")},
-            {"correct", nullable(truth("True if the answer agrees with the truth; null if the "
-                                       "answer or the truth is missing"))},
-            {"comments", integer("1", "Number of comments on the trial")},
-            {"started_utc_us",
-             nullable(integer("us",
-                              "Start of the trial, in microseconds since 1970-01-01 UTC; null "
-                              "until the upload is complete"))}})},
+               {"reason", text("Reason why the trial does not count; empty if it counts")},
+               {"correct", nullable(truth("True if the answer agrees with the truth; null if the "
+                                          "answer or the truth is missing"))},
+               {"comments", integer("1", "Number of comments on the trial")},
+               {"started_utc_us",
+                nullable(integer("us",
+                                 "Start of the trial, in microseconds since 1970-01-01 UTC; null "
+                                 "until the upload is complete"))}})},
       {"Assignment", object(whole)}};
 }
 
@@ -325,9 +320,9 @@ std::vector<NamedSchema> plan_schemas() {
                                      "also those who join later"))},
             {"people", optional(array(text("Name of an account"),
                                       "More trainees, in addition to those of the cohort"))},
-            {"ordering", optional(one_of({"fixed", "random", "balanced"},
-                                         "Order of the cases: fixed as listed, random, or balanced "
-                                         "by Williams squares; default random"))},
+            {"ordering", optional(one_of<store::CaseOrder>(
+                             "Order of the cases: fixed as listed, random, or balanced "
+                             "by Williams squares; default random"))},
             {"repeats",
              optional(integer("1", "Number of repeats of each case, 1 to 20; default 1"))},
             {"seed",
@@ -336,13 +331,11 @@ std::vector<NamedSchema> plan_schemas() {
             {"due_utc_us", optional(integer("us",
                                             "Due time, in microseconds since 1970-01-01 UTC; if it "
                                             "is missing, there is none"))},
-            {"release",
-             optional(one_of({"held", "released", "at_once"},
-                             "When trainees see their results: held (default) = not yet, released "
-                             "= now, at_once = as soon as a trial is uploaded"))},
-            {"on_invalid",
-             optional(one_of({"at_end", "at_once", "never"},
-                             "When an invalid trial is repeated; default at_end"))}})}};
+            {"release", optional(one_of<Release>(
+                            "When trainees see their results: held (default) = not yet, released "
+                            "= now, at_once = as soon as a trial is uploaded"))},
+            {"on_invalid", optional(one_of<store::Repetition>(
+                               "When an invalid trial is repeated; default at_end"))}})}};
 }
 
 RouteInfo adding_route() {
@@ -380,9 +373,9 @@ std::vector<RouteInfo> assignments_routes() {
             "Set when trainees see their results of an assignment", "Release", set_release);
   release.schemas = {
       {"Release",
-       object({{"release", one_of({"held", "released", "at_once"},
-                                  "When trainees see their results: held = not yet, released = "
-                                  "now, at_once = as soon as a trial is uploaded")}})}};
+       object({{"release",
+                one_of<Release>("When trainees see their results: held = not yet, released = "
+                                "now, at_once = as soon as a trial is uploaded")}})}};
   RouteInfo due = route("POST", "/{id}/due", "setDue",
                         "Change or remove the due time of an assignment", "Due", set_due);
   due.schemas = {

@@ -104,8 +104,8 @@ TEST_F(Assignments, AScenarioIsSealedForTheStation) {
 TEST_F(Assignments, WholeBoneIsToBeDrilledAndThenItsChannelFelt) {
   const std::string whole(64, 'e');
   ASSERT_TRUE(store_.write([&](store::Writing& tx) {
-    return store::add_case(tx, {whole, "L5, whole", "made", 3, 0, store::kPalpation, false, true},
-                           {}, 0);
+    return store::add_case(
+        tx, {whole, "L5, whole", "made", 3, 0, trial::Rig::palpation, false, true}, {}, 0);
   }));
   const std::string id = assigned(two_cases({{"cases", {{{"case", whole}}, {{"case", kCase}}}}}));
   const std::string in = ticket();

@@ -228,7 +228,8 @@ TEST_F(StudyRoutes, ATrialComesBackUnderItsSlotsNameAndIsOneOfItsScenario) {
   const std::string trial(32, 'a'), slot = next_slot();
   bring(trial, slot);
   const Caller one{Role::station, "s1", "station-1", ""};
-  EXPECT_EQ(commit_upload(backend_, one, trial)->state, "complete") << "repeating it is harmless";
+  EXPECT_EQ(commit_upload(backend_, one, trial)->state, trial::UploadPhase::complete)
+      << "repeating it is harmless";
   const auto study = read("/probing-1");
   const auto& place = study["participants"][0]["slots"][0];
   ASSERT_EQ(place["trials"].size(), 1u);

@@ -9,6 +9,8 @@ namespace tractus {
 namespace api {
 namespace {
 
+using store::StudyState;
+
 constexpr std::uint64_t kMaxDeed_bytes = 4096;
 constexpr std::size_t kMaxReason = 500;
 
@@ -18,7 +20,8 @@ core::Error no_participant(const std::string& name) {
 
 /// Reads the body's "reason" (and "state", where there is one).
 struct Said {
-  std::string reason, state;
+  std::string reason;
+  StudyState state = StudyState::running;
 };
 core::Result<Said> said(const Call& call, bool with_state, bool needs_reason) {
   auto json = TRY(core::parse_json(call.request.body, "body"));
@@ -27,9 +30,7 @@ core::Result<Said> said(const Call& call, bool with_state, bool needs_reason) {
   out.reason = fields.text_or("reason", "", kMaxReason);
   if (needs_reason && out.reason.find_first_not_of(" \t\n") == std::string::npos)
     fields.wrong("reason", "a reason is expected");
-  if (with_state) out.state = fields.text("state", 32);
-  if (with_state && out.state != "running" && out.state != "paused")
-    fields.wrong("state", "running or paused is expected");
+  if (with_state) out.state = fields.word<StudyState>("state");
   TRY(fields.done());
   return out;
 }
@@ -116,9 +117,9 @@ std::vector<RouteInfo> study_actions_routes() {
   const Parameter name = path_text("name", "Pseudonym of the participant");
   RouteInfo whole = route("/state", "setStudyState", "Pause or continue a study", "StateChange");
   whole.schemas = {
-      {"StateChange", object({{"state", one_of({"running", "paused"},
-                                               "New state; paused: stations receive no trials")},
-                              {"reason", optional(reason)}})},
+      {"StateChange",
+       object({{"state", one_of<StudyState>("New state; paused: stations receive no trials")},
+               {"reason", optional(reason)}})},
       {"Reason", object({{"reason", reason}})}};
   whole.handle = set_state;
   RouteInfo one = route("/participants/{name}/state", "setParticipantState",

@@ -10,19 +10,24 @@ namespace api {
 namespace {
 
 using core::Json;
+using store::SlotState;
 
 template <class T>
 Json or_null(const std::optional<T>& value) {
   return value ? Json(*value) : Json();
 }
+template <core::Named E>
+Json name_or_null(const std::optional<E>& value) {
+  return value ? Json(name(*value)) : Json();
+}
 
 Json study_fields(const store::Study& study) {
   return {{"id", study.id},
           {"title", study.title},
-          {"state", study.state},
-          {"ordering", study.ordering},
+          {"state", name(study.state)},
+          {"ordering", name(study.ordering)},
           {"repeats", study.repeats},
-          {"on_invalid", study.on_invalid},
+          {"on_invalid", name(study.on_invalid)},
           {"made_utc_us", study.made_utc_us},
           {"made_by", study.made_by}};
 }
@@ -30,7 +35,7 @@ Json study_fields(const store::Study& study) {
 /// @param told  whether the result may state if the answer was correct
 Json trial_json(const store::StudyTrial& trial, bool told) {
   return {{"id", trial.trial_id},
-          {"state", trial.state},
+          {"state", name(trial.state)},
           {"reason", trial.reason},
           {"station", trial.station},
           {"changed_utc_us", trial.changed_utc_us},
@@ -38,12 +43,12 @@ Json trial_json(const store::StudyTrial& trial, bool told) {
           {"duration_s", or_null(trial.duration_s)},
           {"samples", or_null(trial.samples)},
           {"sha256", or_null(trial.sha256)},
-          {"assessment", or_null(trial.assessment)},
+          {"assessment", name_or_null(trial.assessment)},
           {"correct", told ? or_null(trial.correct) : Json()}};
 }
 
 bool unfinished(const store::Slot& slot) {
-  return slot.state == "waiting" || slot.state == "taken";
+  return slot.state == SlotState::waiting || slot.state == SlotState::taken;
 }
 
 /// The trials, titles and numbers from which the participants' rows are made.
@@ -67,7 +72,7 @@ Json slot_json(const store::Slot& slot, const Index& index, bool told) {
   Json repeats;
   if (slot.repeat_of) repeats = index.numbers.at(*slot.repeat_of);
   return {{"number", index.numbers.at(slot.id)},
-          {"state", slot.state},
+          {"state", name(slot.state)},
           {"repeat_of", repeats},
           {"scenario", told ? Json(index.titles.at(slot.case_id)) : Json()},
           {"trials", trials}};
@@ -77,12 +82,12 @@ struct Tally {
   int done = 0, planned = 0, judged = 0, recognised = 0;
 
   void add(const store::Slot& slot, const Index& index) {
-    planned += slot.state != "invalid";
-    done += slot.state == "recorded";
+    planned += slot.state != SlotState::invalid;
+    done += slot.state == SlotState::recorded;
     const auto found = index.trials.find(slot.id);
     if (found == index.trials.end()) return;
     for (const auto* trial : found->second) {
-      if (trial->state != "counts" || !trial->correct) continue;
+      if (trial->state != store::StudyTrialState::counts || !trial->correct) continue;
       ++judged;
       recognised += *trial->correct;
     }
@@ -106,7 +111,7 @@ Json participant_json(const StudyFacts& facts, const store::Participant& who, co
   bool left = false, at_station = false;
   for (const auto& slot : facts.slots) {
     left = left || (slot.participant == who.name && unfinished(slot));
-    at_station = at_station || (slot.participant == who.name && slot.state == "taken");
+    at_station = at_station || (slot.participant == who.name && slot.state == SlotState::taken);
   }
   Tally tally;
   Json slots = Json::array();
@@ -116,7 +121,7 @@ Json participant_json(const StudyFacts& facts, const store::Participant& who, co
     slots.push_back(slot_json(slot, index, !left));
   }
   return {{"name", who.name},
-          {"state", who.state},
+          {"state", name(who.state)},
           {"level", who.level},
           {"experience_years", or_null(who.experience_years)},
           {"simulated", who.simulated},

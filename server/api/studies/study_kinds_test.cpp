@@ -13,7 +13,7 @@ class StudyKinds : public PeopleTest {
  protected:
   StudyKinds() {
     const auto made = store_.write([](store::Writing& tx) -> core::Result<void> {
-      const store::Study study{.id = "a-study", .title = "", .ordering = "random"};
+      const store::Study study{.id = "a-study", .title = "", .ordering = store::CaseOrder::random};
       const store::AuditStamp stamp{"rex", 1};
       auto id = TRY(store::add_study(tx, study, {testing::kCase}, stamp));
       return store::add_participant(tx, id, {.name = "P-tom"}, {testing::kCase}, stamp);

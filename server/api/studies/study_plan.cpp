@@ -94,6 +94,16 @@ Result<std::vector<store::Participant>> participants_from(const Json& json) {
   return out;
 }
 
+store::CaseOrder case_order(study::Ordering ordering) {
+  return ordering == study::Ordering::random ? store::CaseOrder::random
+                                             : store::CaseOrder::balanced;
+}
+
+/// @param order  not fixed
+study::Ordering ordering_of(store::CaseOrder order) {
+  return order == store::CaseOrder::random ? study::Ordering::random : study::Ordering::balanced;
+}
+
 Result<store::Study> study_from(const Json& json) {
   core::Fields fields(json, "");
   store::Study out;
@@ -102,11 +112,8 @@ Result<store::Study> study_from(const Json& json) {
     fields.wrong("id", "1 to 32 of the characters a-z, 0-9 and - are expected");
   out.title = fields.text("title", kMaxTitle);
   out.repeats = fields.integer("repeats", 1, kMaxRepeats);
-  out.ordering = fields.text_or("ordering", "random", kMaxName);
-  if (!study::ordering_of(out.ordering)) fields.wrong("ordering", "random or balanced is expected");
-  out.on_invalid = fields.text_or("on_invalid", "at_end", kMaxName);
-  if (out.on_invalid != "at_end" && out.on_invalid != "at_once" && out.on_invalid != "never")
-    fields.wrong("on_invalid", "at_end, at_once or never is expected");
+  out.ordering = case_order(fields.word_or("ordering", study::Ordering::random));
+  out.on_invalid = fields.word_or("on_invalid", store::Repetition::at_end);
   const auto drawn = core::random_bytes(4);
   long seed = 0;
   for (const std::byte b : drawn) seed = seed * 256 + std::to_integer<long>(b);
@@ -129,14 +136,13 @@ Result<scenarios::Scenario> scenario_from(const Json& json, const std::string& w
 std::vector<std::string> order_for(const store::Study& study,
                                    const std::vector<store::StudyScenario>& scenarios, int n) {
   std::vector<std::string> out;
-  if (study.ordering == "fixed") {
+  if (study.ordering == store::CaseOrder::fixed) {
     for (std::int64_t round = 0; round < study.repeats; ++round)
       for (const auto& scenario : scenarios) out.push_back(scenario.case_id);
     return out;
   }
   const study::OrderPlan plan{static_cast<int>(scenarios.size()), static_cast<int>(study.repeats),
-                              study::ordering_of(study.ordering).value(),
-                              static_cast<std::uint64_t>(study.seed)};
+                              ordering_of(study.ordering), static_cast<std::uint64_t>(study.seed)};
   for (const int i : study::order_of(plan, n)) out.push_back(scenarios[std::size_t(i)].case_id);
   return out;
 }
@@ -184,8 +190,8 @@ Result<void> make_study(Backend& backend, const StudyPlan& plan, const std::stri
     std::vector<std::string> ids;
     for (std::size_t i = 0; i < named.size(); ++i) {
       const auto& scenario = plan.scenarios[i];
-      const store::CaseSummary summary{named[i].case_id, scenario.name, scenario.origin.who, now, 0,
-                                       store::kProbing};
+      const store::CaseSummary summary{
+          named[i].case_id, scenario.name, scenario.origin.who, now, 0, trial::Rig::probing};
       TRY(store::add_case(tx, summary, {parts[i]}, now));
       ids.push_back(named[i].case_id);
     }

@@ -1,22 +1,22 @@
 #include "server/api/schema.hpp"
 #include "server/api/studies/study_json.hpp"
+#include "study/order.hpp"
 
 namespace tractus {
 namespace api {
 namespace {
 using namespace schema;
 
-const std::vector<std::string> kStates{"running", "paused"};
-
 std::vector<Field> study_fields() {
   return {
       {"id", text("Id of the study, 1 to 32 of the characters a-z, 0-9 and -")},
       {"title", text("Title of the study")},
-      {"state", one_of(kStates, "State of the study; paused: stations receive no trials of it")},
-      {"ordering", one_of({"random", "balanced"},
-                          "Order of the scenarios: random, or balanced by Williams squares")},
+      {"state",
+       one_of<store::StudyState>("State of the study; paused: stations receive no trials of it")},
+      {"ordering",
+       one_of<study::Ordering>("Order of the scenarios: random, or balanced by Williams squares")},
       {"repeats", integer("1", "Number of repeats of each scenario")},
-      {"on_invalid", one_of({"at_end", "at_once", "never"}, "When an invalid trial is repeated")},
+      {"on_invalid", one_of<store::Repetition>("When an invalid trial is repeated")},
       {"made_utc_us", integer("us", "Time of creation, in microseconds since 1970-01-01 UTC")},
       {"made_by", text("Name of the account that created the study")}};
 }
@@ -27,9 +27,9 @@ core::Json trial_schema() {
   return object(
       {{"id", text("Id of the trial, 32 hexadecimal characters")},
        {"state",
-        one_of({"arriving", "counts", "invalid", "surplus"},
-               "arriving: the upload is not complete; counts: the trial counts; invalid: it was "
-               "marked invalid; surplus: its place in the order already had a trial")},
+        one_of<store::StudyTrialState>(
+            "arriving: the upload is not complete; counts: the trial counts; invalid: it was "
+            "marked invalid; surplus: its place in the order already had a trial")},
        {"reason", text("Reason why the trial does not count; empty if it counts")},
        {"station", text("Name of the station")},
        {"changed_utc_us",
@@ -42,9 +42,9 @@ core::Json trial_schema() {
                                       "until the upload is complete"))},
        {"samples", nullable(integer("1", "Number of samples; null until the upload is complete"))},
        {"sha256", nullable(text("SHA-256 of the trial file; null until the upload is complete"))},
-       {"assessment", nullable(one_of({"assessing", "assessed", "failed"},
-                                      "State of the assessment that computes the scores; null "
-                                      "until the upload is complete"))},
+       {"assessment", nullable(one_of<store::AssessmentState>(
+                          "State of the assessment that computes the scores; null "
+                          "until the upload is complete"))},
        {"correct", nullable(truth("True if the answer agrees with the truth; null if either is "
                                   "missing, or while the participant still has trials to do"))}});
 }
@@ -53,8 +53,8 @@ core::Json participant_schema() {
   return object(
       {{"name", text("Pseudonym of the participant")},
        {"state",
-        one_of(kStates,
-               "State of the participant; paused: stations receive no trials of the participant")},
+        one_of<store::StudyState>(
+            "State of the participant; paused: stations receive no trials of the participant")},
        {"level", text("Level of training, for example resident or fellow; may be empty")},
        {"experience_years",
         nullable(number("a", "Surgical experience, in years; null if it is not known"))},
@@ -100,8 +100,8 @@ std::vector<NamedSchema> study_schemas() {
       {"StudySlot",
        object({{"number",
                 progress_field("Number of the slot in the participant's order, counted from 1")},
-               {"state", one_of({"waiting", "taken", "recorded", "invalid"},
-                                "State of the slot; taken: a station has received it")},
+               {"state",
+                one_of<store::SlotState>("State of the slot; taken: a station has received it")},
                {"repeat_of",
                 nullable(progress_field(
                     "Number of the slot that this slot repeats; null if it repeats none"))},
@@ -123,23 +123,22 @@ std::vector<NamedSchema> study_deed_schemas() {
             {"simulated",
              optional(truth("True if the participant is a simulated surgeon; default false"))}})},
       {"NewStudy",
-       object(
-           {{"id", text("Id of the study, 1 to 32 of the characters a-z, 0-9 and -")},
-            {"title", text("Title of the study")},
-            {"scenarios", array(anything("Scenario in the format tractus-scenario/1, or a tuned "
-                                         "scenario as {\"tuned\": \"hard\"}"),
-                                "Scenarios of the study, 1 to 16")},
-            {"repeats", integer("1", "Number of repeats of each scenario, 1 to 20")},
-            {"ordering", optional(one_of({"random", "balanced"},
-                                         "Order of the scenarios: random, or balanced by Williams "
-                                         "squares; default random"))},
-            {"on_invalid", optional(one_of({"at_end", "at_once", "never"},
-                                           "When an invalid trial is repeated; default at_end"))},
-            {"seed",
-             optional(integer(
-                 "1", "Seed of the random orders; if it is missing, the server draws one"))},
-            {"participants",
-             array(ref("NewParticipant"), "Participants of the study; may be empty")}})},
+       object({{"id", text("Id of the study, 1 to 32 of the characters a-z, 0-9 and -")},
+               {"title", text("Title of the study")},
+               {"scenarios", array(anything("Scenario in the format tractus-scenario/1, or a tuned "
+                                            "scenario as {\"tuned\": \"hard\"}"),
+                                   "Scenarios of the study, 1 to 16")},
+               {"repeats", integer("1", "Number of repeats of each scenario, 1 to 20")},
+               {"ordering", optional(one_of<study::Ordering>(
+                                "Order of the scenarios: random, or balanced by Williams "
+                                "squares; default random"))},
+               {"on_invalid", optional(one_of<store::Repetition>(
+                                  "When an invalid trial is repeated; default at_end"))},
+               {"seed",
+                optional(integer(
+                    "1", "Seed of the random orders; if it is missing, the server draws one"))},
+               {"participants",
+                array(ref("NewParticipant"), "Participants of the study; may be empty")}})},
       {"StudyEvent",
        object({{"at_utc_us",
                 integer("us", "Time of the change, in microseconds since 1970-01-01 UTC")},

@@ -23,8 +23,9 @@ constexpr double kAdequate = 0.10, kInadequate = 0.25;
 constexpr std::array kConfidence{0.0, 0.55, 0.65, 0.75, 0.85, 0.95, 1.0};
 
 bool counts(const store::CohortTrial& trial) {
-  return trial.complete && trial.summary.state == "assessed" && trial.summary.correct &&
-         (trial.study.empty() || trial.place == "counts");
+  return trial.complete && trial.summary.state == store::AssessmentState::assessed &&
+         trial.summary.correct &&
+         (trial.study.empty() || trial.place == store::StudyTrialState::counts);
 }
 
 /// Who may ask for a trainee's page may know the trainee: an assignment's trials go by the

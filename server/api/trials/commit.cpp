@@ -60,8 +60,8 @@ core::Result<void> check_bytes(const store::PartialFiles& partials, const store:
 
 /// What the announcement promised of the file.
 struct Promised {
-  std::string case_id;  ///< what the station knows the case by
-  std::string kind;     ///< of the case: the rig
+  std::string case_id;                     ///< what the station knows the case by
+  trial::Rig rig = trial::Rig::palpation;  ///< of the case
 };
 
 core::Result<Promised> promised(store::Reading& tx, const store::Upload& upload) {
@@ -84,10 +84,10 @@ core::Result<void> check_identity(const store::Upload& upload, const Promised& p
     return core::Error{core::Errc::bad_input,
                        fmt::format("trial file: its case is {}, but {} was announced",
                                    trial.header.case_id, promised.case_id)};
-  if (trial::name(trial.header.rig) != promised.kind)
+  if (trial.header.rig != promised.rig)
     return core::Error{core::Errc::bad_input,
                        fmt::format("trial file: the trial is for {}, but its case is for {}",
-                                   trial::name(trial.header.rig), promised.kind)};
+                                   trial::name(trial.header.rig), trial::name(promised.rig))};
   if (tally.ticks.samples == 0)
     return core::Error{core::Errc::bad_input, "trial file: it has no samples"};
   return {};

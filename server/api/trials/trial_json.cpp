@@ -56,7 +56,7 @@ core::Json study_json(const StudyPlace& place) {
           {"title", place.title},
           {"participant", place.slot.participant},
           {"number", place.slot.position + 1},
-          {"state", place.state},
+          {"state", name(place.state)},
           {"reason", place.reason}};
 }
 
@@ -84,7 +84,7 @@ core::Json summary_json(const store::TrialSummary& trial) {
           {"started_utc_us", trial.started_utc_us},
           {"duration_s", trial.duration_s},
           {"samples", trial.samples},
-          {"state", trial.state},
+          {"state", name(trial.state)},
           {"correct", trial.correct ? core::Json(*trial.correct) : core::Json()}};
 }
 

@@ -15,7 +15,8 @@ namespace tractus::api {
 struct StudyPlace {
   std::string title;  ///< of the study or assignment
   store::Slot slot;
-  std::string state, reason;  ///< as store::StudyTrial
+  store::StudyTrialState state = store::StudyTrialState::arriving;
+  std::string reason = {};
 };
 
 /// Facts about a trial besides its recording.

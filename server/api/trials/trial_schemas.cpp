@@ -27,8 +27,7 @@ std::vector<Field> summary_fields() {
       {"started_utc_us", integer("us", "Start of the trial, in microseconds since 1970-01-01 UTC")},
       {"duration_s", number("s", "Time from the first to the last sample, in seconds")},
       {"samples", integer("1", "Number of recorded samples")},
-      {"state", one_of({"assessing", "assessed", "failed"},
-                       "State of the assessment that computes the scores")},
+      {"state", one_of<store::AssessmentState>("State of the assessment that computes the scores")},
       {"correct", nullable(truth("True if the answer agrees with the truth; null if the answer or "
                                  "the truth is missing"))}};
 }
@@ -164,18 +163,17 @@ std::vector<NamedSchema> trial_schemas() {
                                            "null if the answer names none"))}})},
       {"ProbingScenario", scenario_schema()},
       {"StudyPlace",
-       object(
-           {{"id", text("Id of the study or assignment")},
-            {"title", text("Title of the study or assignment")},
-            {"participant", text("Pseudonym of the participant")},
-            {"number",
-             integer("1",
-                     "Number of the trial's place in the participant's order, counted from 1")},
-            {"state",
-             one_of({"arriving", "counts", "invalid", "surplus"},
+       object({{"id", text("Id of the study or assignment")},
+               {"title", text("Title of the study or assignment")},
+               {"participant", text("Pseudonym of the participant")},
+               {"number",
+                integer("1",
+                        "Number of the trial's place in the participant's order, counted from 1")},
+               {"state",
+                one_of<store::StudyTrialState>(
                     "arriving: the upload is not complete; counts: the trial counts; invalid: it "
                     "was marked invalid; surplus: its place in the order already had a trial")},
-            {"reason", text("Reason why the trial does not count; empty if it counts")}})},
+               {"reason", text("Reason why the trial does not count; empty if it counts")}})},
       {"Truth", truth_schema()},
       {"Score", score_schema()},
       {"Tract", tract_schema()},
