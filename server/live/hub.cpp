@@ -34,7 +34,7 @@ core::Json Hub::json_of(const Known& known, const Viewer& viewer) const {
   if (known.connected && told.trial) {
     const wire::LiveTrial& t = *told.trial;
     trial = {{"trial_id", t.trial_id},
-             {"rig", t.rig},
+             {"rig", core::name(t.rig)},
              {"case_title", or_null(known.shown.case_title)},
              {"person", sees_person(known, viewer) ? or_null(known.shown.person) : core::Json()},
              {"t_s", t.t_s},
@@ -47,7 +47,7 @@ core::Json Hub::json_of(const Known& known, const Viewer& viewer) const {
       {"id", known.station.id},
       {"name", known.station.name},
       {"connected", known.connected},
-      {"state", known.connected ? told.state : "away"},
+      {"state", core::name(known.connected ? told.state : wire::StationState::away)},
       {"since_utc_us", known.since_utc_us},
       {"last_seen_utc_us", known.seen_utc_us > 0 ? core::Json(known.seen_utc_us) : core::Json()},
       {"version", or_null(told.version)},
@@ -113,7 +113,7 @@ void Hub::connected(const StationRef& station, std::shared_ptr<http::WebSocketSe
   it.connected = true;
   it.held_by.clear();
   it.since_utc_us = it.seen_utc_us = parts_.now_utc_us();
-  it.told.state = "idle";
+  it.told.state = wire::StationState::idle;
   it.told.trial.reset();
   it.untold = it.unkept = due_ = true;
   show(it);

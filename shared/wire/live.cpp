@@ -62,7 +62,7 @@ std::vector<std::string> lines_in(core::Fields& fields, const char* key, std::si
 }
 
 core::Json trial_json(const LiveTrial& trial) {
-  return {{"trial_id", trial.trial_id},        {"rig", trial.rig},
+  return {{"trial_id", trial.trial_id},        {"rig", core::name(trial.rig)},
           {"case_id", trial.case_id},          {"t_s", trial.t_s},
           {"samples", trial.samples},          {"force_N", or_null(trial.force_N)},
           {"depth_m", or_null(trial.depth_m)}, {"late_ticks", trial.late_ticks}};
@@ -72,7 +72,7 @@ core::Result<LiveTrial> trial_from(const core::Json& json, const std::string& wh
   core::Fields fields(json, where);
   LiveTrial out;
   out.trial_id = fields.text("trial_id", 32);
-  out.rig = fields.text("rig", 16);
+  out.rig = fields.word<trial::Rig>("rig");
   out.case_id = fields.text("case_id", 64);
   out.t_s = fields.number("t_s", 0.0, kMostTime_s);
   out.samples = static_cast<std::uint64_t>(fields.integer("samples", 0, kMost));
@@ -83,8 +83,6 @@ core::Result<LiveTrial> trial_from(const core::Json& json, const std::string& wh
     fields.wrong("trial_id", "32 hexadecimal characters are expected");
   if (!core::is_sha256(out.case_id))
     fields.wrong("case_id", "64 hexadecimal characters are expected");
-  if (out.rig != "palpation" && out.rig != "probing")
-    fields.wrong("rig", "palpation or probing is expected");
   TRY(fields.done());
   return out;
 }
@@ -133,12 +131,6 @@ core::Result<StationReport::Calibration> calibration_from(const core::Json& json
 
 }  // namespace
 
-const std::vector<std::string>& station_states() {
-  static const std::vector<std::string> states{"away",      "idle",    "preparing", "trial",
-                                               "questions", "stopped", "fault"};
-  return states;
-}
-
 core::Json SelfTestSummary::to_json() const {
   return {{"at_utc_us", at_utc_us}, {"passed", passed}, {"failed", failed}};
 }
@@ -156,7 +148,7 @@ core::Result<SelfTestSummary> SelfTestSummary::from_json(const core::Json& json,
 
 core::Json StationStatus::to_json() const {
   return {{"kind", "state"},
-          {"state", state},
+          {"state", core::name(state)},
           {"version", version},
           {"device", device},
           {"simulated", or_null(simulated)},
@@ -175,10 +167,8 @@ core::Result<StationStatus> StationStatus::from_json(const core::Json& json,
   core::Fields fields(json, where);
   StationStatus out;
   if (fields.text("kind", 16) != "state") fields.wrong("kind", "state is expected");
-  out.state = fields.text("state", 16);
-  const auto& states = station_states();
-  if (out.state == "away" || std::ranges::find(states, out.state) == states.end())
-    fields.wrong("state", "is none of those agreed");
+  out.state = fields.word<StationState>("state");
+  if (out.state == StationState::away) fields.wrong("state", "a station that speaks is not away");
   out.version = text_in(fields, "version", kName);
   out.device = text_in(fields, "device", kName);
   out.simulated = maybe_truth_in(fields, "simulated");
@@ -203,23 +193,17 @@ core::Result<StationStatus> StationStatus::from_json(const core::Json& json,
 }
 
 core::Json StationCommand::to_json() const {
-  if (kind == Kind::stop) return {{"kind", "stop"}, {"reason", reason}};
-  return {{"kind", "limits"}, {"force_N", force_N}};
+  if (kind == Kind::stop) return {{"kind", core::name(kind)}, {"reason", reason}};
+  return {{"kind", core::name(kind)}, {"force_N", force_N}};
 }
 
 core::Result<StationCommand> StationCommand::from_json(const core::Json& json,
                                                        const std::string& where) {
   core::Fields fields(json, where);
   StationCommand out;
-  const std::string kind = fields.text("kind", 16);
-  if (kind == "stop") {
-    out.reason = fields.text("reason", kWords);
-  } else if (kind == "limits") {
-    out.kind = Kind::limits;
-    out.force_N = fields.number("force_N", 0.0, kMostForce_N);
-  } else {
-    fields.wrong("kind", "stop or limits is expected");
-  }
+  out.kind = fields.word<Kind>("kind");
+  if (out.kind == Kind::stop) out.reason = fields.text("reason", kWords);
+  if (out.kind == Kind::limits) out.force_N = fields.number("force_N", 0.0, kMostForce_N);
   TRY(fields.done());
   return out;
 }

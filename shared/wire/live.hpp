@@ -8,13 +8,14 @@
 #include <vector>
 
 #include "core/json.hpp"
+#include "trial/trial.hpp"
 
 namespace tractus::wire {
 
 /// The trial that runs, as its loop last left it.
 struct LiveTrial {
   std::string trial_id;
-  std::string rig;      ///< "palpation", "probing"
+  trial::Rig rig = trial::Rig::palpation;
   std::string case_id;  ///< what the station knows the case by: its id, or the slot's when blind
   double t_s = 0.0;
   std::uint64_t samples = 0;
@@ -33,9 +34,29 @@ struct SelfTestSummary {
   static core::Result<SelfTestSummary> from_json(const core::Json& json, const std::string& where);
 };
 
+enum class StationState {
+  away,  ///< the server's word for a station that is not connected
+  idle,
+  preparing,
+  trial,
+  questions,
+  stopped,
+  fault,
+};
+constexpr auto words(StationState) {
+  using enum StationState;
+  return std::to_array<core::Word<StationState>>({{away, "away"},
+                                                  {idle, "idle"},
+                                                  {preparing, "preparing"},
+                                                  {trial, "trial"},
+                                                  {questions, "questions"},
+                                                  {stopped, "stopped"},
+                                                  {fault, "fault"}});
+}
+
 /// {"kind":"state",…}: the whole of it, each time.
 struct StationStatus {
-  std::string state = "idle";  ///< one of kStationStates but "away"
+  StationState state = StationState::idle;  ///< not away
   std::string version, device;
   std::optional<bool> simulated;
   std::optional<LiveTrial> trial;
@@ -51,18 +72,21 @@ struct StationStatus {
   /// Errors: bad_input naming the field; numbers are finite and within sense, texts short.
   static core::Result<StationStatus> from_json(const core::Json& json, const std::string& where);
 };
-/// "away", "idle", "preparing", "trial", "questions", "stopped", "fault".
-const std::vector<std::string>& station_states();
-
 /// What a station is told: to stop, or to give its hands less.
 struct StationCommand {
-  enum class Kind { stop, limits } kind = Kind::stop;
+  enum class Kind { stop, limits };
+  Kind kind = Kind::stop;
   std::string reason;    ///< of a stop
   double force_N = 0.0;  ///< of limits: at most so much, if the station's own limit is above it
 
   core::Json to_json() const;
   static core::Result<StationCommand> from_json(const core::Json& json, const std::string& where);
 };
+
+constexpr auto words(StationCommand::Kind) {
+  using enum StationCommand::Kind;
+  return std::to_array<core::Word<StationCommand::Kind>>({{stop, "stop"}, {limits, "limits"}});
+}
 
 /// POST /api/v1/station/report: what a self-test or a calibration at the station came to.
 struct StationReport {

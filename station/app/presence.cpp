@@ -41,12 +41,6 @@ void put(char (&to)[N], const std::string& from) {
   to[size] = '\0';
 }
 
-const char* text_of(Presence::State state) {
-  static constexpr const char* kNames[] = {"idle",      "preparing", "trial",
-                                           "questions", "stopped",   "fault"};
-  return kNames[static_cast<int>(state)];
-}
-
 }  // namespace
 
 struct Presence::Parts {
@@ -100,7 +94,7 @@ void Presence::Parts::look_around() {
 wire::StationStatus Presence::Parts::told() {
   look_around();
   wire::StationStatus out;
-  out.state = text_of(state);
+  out.state = state;
   out.version = TRACTUS_VERSION;
   out.device = device;
   out.simulated = simulated;
@@ -114,7 +108,7 @@ wire::StationStatus Presence::Parts::told() {
   wire::LiveTrial& trial = out.trial.emplace();
   trial.trial_id = now->trial_id;
   trial.case_id = now->case_id;
-  trial.rig = now->probing ? "probing" : "palpation";
+  trial.rig = now->probing ? trial::Rig::probing : trial::Rig::palpation;
   trial.t_s = now->t_s;
   trial.samples = now->samples;
   trial.late_ticks = now->late;

@@ -6,12 +6,13 @@
 
 #include "station/app/options.hpp"
 #include "station/session/station_folder.hpp"
+#include "wire/live.hpp"
 
 namespace tractus::app {
 
 class Presence {
  public:
-  enum class State { idle, preparing, trial, questions, stopped, fault };
+  using State = wire::StationState;
 
   /// Opens the line when a server was named; without, everything here does nothing.
   Presence(const Options& options, const session::StationFolder& folder);

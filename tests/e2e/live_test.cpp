@@ -21,13 +21,13 @@ namespace fs = std::filesystem;
 
 wire::StationStatus at_work(double t_s) {
   wire::StationStatus told;
-  told.state = "trial";
+  told.state = wire::StationState::trial;
   told.version = "test";
   told.device = "sim-lambda6";
   told.simulated = true;
   wire::LiveTrial& trial = told.trial.emplace();
   trial.trial_id = std::string(32, 'a');
-  trial.rig = "palpation";
+  trial.rig = trial::Rig::palpation;
   trial.case_id = std::string(64, 'b');
   trial.t_s = t_s;
   trial.samples = static_cast<std::uint64_t>(t_s * 4000);

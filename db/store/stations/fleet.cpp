@@ -43,15 +43,15 @@ core::Result<void> add_station_note(Writing& tx, const StationNote& note, std::i
   return done(tx.query(
       "insert into station_reports (station_id, kind, at_utc_us, received_utc_us, body) values "
       "(?, ?, ?, ?, ?) on conflict (station_id, kind, at_utc_us) do nothing",
-      {note.station_id, note.kind, note.at_utc_us, now_utc_us, note.body}));
+      {note.station_id, name_value(note.kind), note.at_utc_us, now_utc_us, note.body}));
 }
 
 core::Result<std::vector<StationNote>> station_notes(Reading& tx, const std::string& station_id,
-                                                     const std::string& kind, std::int64_t limit) {
+                                                     NoteKind kind, std::int64_t limit) {
   auto rows = TRY(tx.query(
       "select at_utc_us, body from station_reports where station_id = ? and kind = ? order by "
       "at_utc_us desc limit ?",
-      {station_id, kind, limit}));
+      {station_id, name_value(kind), limit}));
   std::vector<StationNote> out;
   for (const Row& row : rows) out.push_back({station_id, kind, row.integer(0), row.text(1)});
   return out;

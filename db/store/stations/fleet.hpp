@@ -5,6 +5,7 @@
 #include <set>
 #include <vector>
 
+#include "core/named.hpp"
 #include "db/store/store.hpp"
 
 namespace tractus::store {
@@ -18,10 +19,17 @@ struct StationLast {
 core::Result<void> set_station_last(Writing& tx, const StationLast& last);
 core::Result<std::vector<StationLast>> stations_last(Reading& tx);
 
+enum class NoteKind { self_test, calibration };
+constexpr auto words(NoteKind) {
+  using enum NoteKind;
+  return std::to_array<core::Word<NoteKind>>(
+      {{self_test, "self_test"}, {calibration, "calibration"}});
+}
+
 /// One self-test or calibration, JSON as reported.
 struct StationNote {
   std::string station_id;
-  std::string kind;  ///< "self_test", "calibration"
+  NoteKind kind = NoteKind::self_test;
   std::int64_t at_utc_us = 0;
   std::string body;
 };
@@ -31,7 +39,7 @@ core::Result<void> add_station_note(Writing& tx, const StationNote& note, std::i
 inline constexpr std::int64_t kMostNotesADay = 200;
 /// Newest first, at most `limit`.
 core::Result<std::vector<StationNote>> station_notes(Reading& tx, const std::string& station_id,
-                                                     const std::string& kind, std::int64_t limit);
+                                                     NoteKind kind, std::int64_t limit);
 
 /// The station's clock compared with the server's clock at the upload of a trial.
 struct TrialClock {

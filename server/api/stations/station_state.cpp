@@ -62,7 +62,7 @@ std::vector<schema::Field> station_state_fields() {
       {"id", text("Id of the station, which never changes")},
       {"name", text("Name of the station")},
       {"connected", truth("True if the station's connection to the server is open")},
-      {"state", one_of(wire::station_states(), "State of the station; away: not connected")},
+      {"state", one_of<wire::StationState>("State of the station; away: not connected")},
       {"since_utc_us", integer("us",
                                "Time when the station entered this state, in microseconds since "
                                "1970-01-01 UTC; 0 if the station never connected")},

@@ -19,14 +19,13 @@ namespace {
 using core::Errc;
 using core::Error;
 using core::Result;
+using store::NoteKind;
 
 constexpr std::uint64_t kMaxBody_bytes = 4096;
 constexpr std::int64_t kCodeLife_us = 3600ll * 1'000'000;
 
 constexpr std::uint64_t kMaxReport_bytes = 64 * 1024;
 constexpr std::int64_t kNotesShown = 20;
-constexpr const char* kSelfTest = "self_test";
-constexpr const char* kCalibration = "calibration";
 
 Result<http::Response> list_stations(const Call& call) {
   auto found =
@@ -37,7 +36,7 @@ Result<http::Response> list_stations(const Call& call) {
 }
 
 /// The newest reports of a kind, as the station sent them.
-Result<core::Json> notes(store::Reading& tx, const std::string& id, const char* kind) {
+Result<core::Json> notes(store::Reading& tx, const std::string& id, NoteKind kind) {
   auto found = TRY(store::station_notes(tx, id, kind, kNotesShown));
   core::Json out = core::Json::array();
   for (const store::StationNote& note : found) {
@@ -51,8 +50,8 @@ Result<http::Response> one_station(const Call& call) {
   const std::string& id = call.text("id");
   auto entry = TRY(station_entry(call.backend, id));
   core::Json out = station_json(call.backend, entry, call.caller);
-  for (const auto& [field, kind] :
-       {std::pair("self_tests", kSelfTest), std::pair("calibrations", kCalibration)}) {
+  for (const auto& [field, kind] : {std::pair("self_tests", NoteKind::self_test),
+                                    std::pair("calibrations", NoteKind::calibration)}) {
     auto list = TRY(call.backend.store.read(
         [&, kind = kind](store::Reading& tx) { return notes(tx, id, kind); }));
     out[field] = std::move(list);
@@ -69,11 +68,14 @@ Result<http::Response> report(const Call& call) {
   TRY(call.backend.store.write([&](store::Writing& tx) -> Result<void> {
     if (said.self_test)
       TRY(store::add_station_note(
-          tx, {id, kSelfTest, said.self_test->at_utc_us, said.self_test->to_json().dump()}, now));
+          tx,
+          {id, NoteKind::self_test, said.self_test->at_utc_us, said.self_test->to_json().dump()},
+          now));
     if (!said.calibration) return {};
-    return store::add_station_note(
-        tx, {id, kCalibration, said.calibration->at_utc_us, said.calibration->to_json().dump()},
-        now);
+    return store::add_station_note(tx,
+                                   {id, NoteKind::calibration, said.calibration->at_utc_us,
+                                    said.calibration->to_json().dump()},
+                                   now);
   }));
   if (call.backend.live) call.backend.live->reported({id, call.caller.name}, said);
   return http::Response{.status = 204, .headers = {}, .body = std::string()};

@@ -150,13 +150,13 @@ void Station::say_states(const std::stop_token& stop) {
                                  .authority = server_.authority()};
   auto line = uplink::open_server_socket(to, stopped);
   wire::StationStatus told;
-  told.state = "trial";
+  told.state = wire::StationState::trial;
   told.version = "load";
   told.device = "sim-lambda6";
   told.simulated = true;
   wire::LiveTrial& trial = told.trial.emplace();
   trial.trial_id = id_;
-  trial.rig = "palpation";
+  trial.rig = trial::Rig::palpation;
   trial.case_id = server_.case_id();
   const auto begun = Clock::now();
   for (auto due = begun; line && !stop.stop_requested();) {
