@@ -90,7 +90,9 @@ TEST(Metrics, EveryEntryExplainsItselfUnderItsFilesName) {
   std::set<std::string> ids;
   for (const auto& info : all()) {
     ids.insert(info.id);
-    EXPECT_FALSE(info.label.empty() || info.unit.empty() || info.source.empty()) << info.id;
+    EXPECT_FALSE(info.label.empty()) << info.id << " has no label";
+    EXPECT_FALSE(info.unit.empty()) << info.id << " has no unit; a number without one has \"1\"";
+    EXPECT_FALSE(info.source.empty()) << info.id << " has no source";
     EXPECT_TRUE(info.definition.ends_with('.')) << info.id;
     EXPECT_TRUE(std::ifstream(std::string(TRACTUS_SOURCE_DIR) + "/shared/metrics/catalogue/" +
                               info.id + ".cpp")

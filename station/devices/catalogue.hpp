@@ -35,7 +35,7 @@ enum class Homing : std::uint8_t {
 /// What the hand holds.
 enum class Tool : std::uint8_t { probe, burr };
 
-/// What a device is told before it is made: a simulated one the first six, a machine the last two.
+/// Options of a device: the first five of a simulated one, the last two of a machine.
 struct DeviceOptions {
   std::uint64_t seed = 1;        ///< of everything random in a simulated device
   double duration_s = 30.0;      ///< of a simulated hand's plan

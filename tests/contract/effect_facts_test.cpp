@@ -92,7 +92,7 @@ class EveryEffectsFacts : public testing::TestWithParam<std::string> {
 
 /// A phrase within a sentence: there, and without a sentence's end.
 void expect_phrase(const std::string& text, const char* what) {
-  EXPECT_FALSE(text.empty()) << what;
+  EXPECT_FALSE(text.empty()) << "state what is missing: " << what;
   EXPECT_FALSE(text.ends_with('.') || text.ends_with(' ')) << what << ": " << text;
 }
 
@@ -113,7 +113,9 @@ TEST_P(EveryEffectsFacts, NameEachParameterWithItsUnit) {
   for (const Param& p : f_.params) {
     EXPECT_TRUE(names.insert(p.name).second) << p.name << " is there twice";
     expect_phrase(p.meaning, p.name.c_str());
-    EXPECT_FALSE(unit_of(p).empty()) << p.name;
+    EXPECT_TRUE(!p.unit.empty() || unit_of(p) != "1")
+        << p.name
+        << " does not end in a unit, as delay_s does; if it has none, state .unit = \"1\"";
     if (p.name.find("_per_") != std::string::npos) {
       EXPECT_NE(unit_of(p).find('/'), std::string::npos) << p.name << " in " << unit_of(p);
     }
@@ -204,7 +206,10 @@ TEST_P(EveryProbingEffectsFacts, NameTheChannelOfItsStage) {
 }
 
 TEST_P(EveryProbingEffectsFacts, AreOfDryFrictionWhereItJumpsAsTheMotionTurnsBack) {
-  EXPECT_EQ(info_.facts.is_dry, at(1e-12) - at(-1e-12) > 1e-6);
+  EXPECT_EQ(info_.facts.is_dry, at(1e-12) - at(-1e-12) > 1e-6)
+      << "at a speed of 1e-12 m/s forwards it exerts " << at(1e-12) << ", backwards " << at(-1e-12)
+      << "; is_dry states whether it jumps up there. Friction opposes the motion: its force is "
+         "positive while the probe advances";
 }
 
 TEST_P(EveryProbingEffectsFacts, AreOfABiasWhereTheSensorAddsAConstant) {

@@ -18,7 +18,8 @@ TEXT = {".hpp", ".cpp", ".md", ".py", ".ts", ".tsx"}
 
 
 def tracked(suffixes):
-    listed = subprocess.run(["git", "-C", ROOT, "ls-files"], capture_output=True, text=True, check=True).stdout.splitlines()
+    kept = ["git", "-C", ROOT, "ls-files", "--cached", "--others", "--exclude-standard"]  # new files too
+    listed = subprocess.run(kept, capture_output=True, text=True, check=True).stdout.splitlines()
     return [ROOT / name for name in listed if pathlib.Path(name).suffix in suffixes and (ROOT / name).exists()]
 
 

@@ -53,7 +53,8 @@ def known_words():
 
 def names():
     """Every declared name and every file's name, each with the file."""
-    listed = subprocess.run(["git", "ls-files", *FOLDERS], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    kept = ["git", "ls-files", "--cached", "--others", "--exclude-standard"]  # new files too
+    listed = subprocess.run([*kept, *FOLDERS], cwd=ROOT, capture_output=True, text=True, check=True).stdout
     for path in listed.split():
         if pathlib.Path(path).suffix not in SOURCES or not (ROOT / path).is_file() or "/generated/" in path:
             continue

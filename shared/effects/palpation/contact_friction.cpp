@@ -60,6 +60,7 @@ PalpationEffectInfo contact_friction() {
                                 .initial = 0.2,
                                 .low = 0.0,
                                 .high = 1.5,
+                                .unit = "1",
                                 .step = 2e-2},
                                bends_shank()},
                     .starts = {{0.1, 1.0}, {0.1, 0.0}}},

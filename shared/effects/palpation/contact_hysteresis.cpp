@@ -53,6 +53,7 @@ PalpationEffectInfo contact_hysteresis() {
                                 .initial = 0.15,
                                 .low = 0.0,
                                 .high = 0.95,
+                                .unit = "1",
                                 .step = 2e-2}}},
           .make = [](std::span<const double> values) -> PalpationEffect {
             return std::make_unique<ContactHysteresis>(values[0]);

@@ -51,6 +51,7 @@ PalpationEffectInfo contact_nonlinearity() {
                                 .low = 0.3,
                                 .high = 3.0,
                                 .off = 1.0,
+                                .unit = "1",
                                 .step = 2e-2},
                                {.name = "reference_gradient_per_m",
                                 .meaning = "g₀, the field at which nothing changes",

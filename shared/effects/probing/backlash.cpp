@@ -50,7 +50,8 @@ ProbingEffectInfo backlash() {
                        .low = -0.25,
                        .high = 1.25,
                        .off = kNoOff,
-                       .if_missing = 0.0}},
+                       .if_missing = 0.0,
+                       .unit = "1"}},
            .passive = false,  // the spring returns at a greater depth than it was loaded at
            // A small play and a great one; it interrupts the damping, or it does not.
            .starts = {{1e-4, 0.0}, {1e-4, 1.0}, {1e-3, 0.0}, {1e-3, 1.0}}},
