@@ -189,7 +189,7 @@ export function PeoplePage() {
       <Card title="Accounts">
         <DataTable<Account>
           caption="Accounts"
-          minWidth={860}
+          minWidth={1040}
           rows={query.data?.accounts}
           keyOf={({ id }) => id}
           empty="No accounts yet."
