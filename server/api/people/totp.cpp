@@ -1,51 +1,36 @@
 #include "server/api/people/totp.hpp"
 
 #include <fmt/format.h>
-#include <openssl/evp.h>
-#include <openssl/hmac.h>
+#include <liboath/oath.h>
 #include <sodium.h>
 
 #include <array>
-#include <cctype>
+#include <cstdlib>
+#include <memory>
 
 #include "core/require.hpp"
+#include "server/api/web_fetch.hpp"
 
 namespace tractus {
 namespace api {
 namespace {
+constexpr unsigned kDigits = 6;
 
-const EVP_MD* digest(TotpHash hash) {
-  switch (hash) {
-    case TotpHash::sha1:
-      return EVP_sha1();
-    case TotpHash::sha256:
-      return EVP_sha256();
-    case TotpHash::sha512:
-      return EVP_sha512();
-  }
-  return EVP_sha1();
-}
-
+struct Frees {
+  void operator()(char* text) const { std::free(text); }
+};
 }  // namespace
 
-std::string hotp(core::ByteView secret, std::uint64_t counter, int digits, TotpHash hash) {
-  std::array<unsigned char, 8> message{};
-  for (std::size_t i = 0; i < 8; ++i)
-    message[i] = static_cast<unsigned char>(counter >> (56 - 8 * i));
-  std::array<unsigned char, EVP_MAX_MD_SIZE> mac{};
-  unsigned size = 0;
-  const auto* made = HMAC(digest(hash), secret.data(), static_cast<int>(secret.size()),
-                          message.data(), message.size(), mac.data(), &size);
-  core::require(made != nullptr && size >= 20, "an HMAC can be made");
-  const std::size_t offset = mac[size - 1] & 15u;
-  const std::uint32_t binary = (std::uint32_t{mac[offset]} & 0x7fu) << 24 |
-                               std::uint32_t{mac[offset + 1]} << 16 |
-                               std::uint32_t{mac[offset + 2]} << 8 | mac[offset + 3];
-  std::uint32_t modulus = 1;
-  for (int i = 0; i < digits; ++i) modulus *= 10;
-  return fmt::format("{:0{}}", binary % modulus, digits);
+std::string hotp(core::ByteView secret, std::uint64_t counter) {
+  std::array<char, kDigits + 1> code{};
+  const int made =
+      oath_hotp_generate(core::text_of(secret).data(), secret.size(), counter, kDigits,
+                         /*add_checksum=*/false, OATH_HOTP_DYNAMIC_TRUNCATION, code.data());
+  core::require(made == OATH_OK, "liboath makes a code");
+  return code.data();
 }
 
+/// Not by oath_totp_validate: it compares with strcmp, and does not know the last code used.
 std::optional<std::int64_t> totp_step(core::ByteView secret, const std::string& code,
                                       std::int64_t now_utc_us, std::int64_t last_used) {
   const std::int64_t now = now_utc_us / 1'000'000 / kTotpStep_s;
@@ -59,26 +44,18 @@ std::optional<std::int64_t> totp_step(core::ByteView secret, const std::string& 
 }
 
 std::string base32(core::ByteView bytes) {
-  constexpr std::string_view kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZ234567";
-  std::string out;
-  std::uint32_t held = 0;
-  int bits = 0;
-  for (const std::byte byte : bytes) {
-    held = held << 8 | std::to_integer<std::uint32_t>(byte);
-    for (bits += 8; bits >= 5; bits -= 5) out += kAlphabet[held >> (bits - 5) & 31u];
-  }
-  if (bits > 0) out += kAlphabet[held << (5 - bits) & 31u];
-  return out;
+  char* text = nullptr;
+  std::size_t size = 0;
+  const int made = oath_base32_encode(core::text_of(bytes).data(), bytes.size(), &text, &size);
+  const std::unique_ptr<char, Frees> held(text);
+  core::require(made == OATH_OK, "memory for a secret's text");
+  const std::string padded(text, size);
+  return padded.substr(0, padded.find('='));
 }
 
 std::string totp_uri(core::ByteView secret, const std::string& account) {
-  std::string label;
-  for (const char c : account) {
-    const auto byte = static_cast<unsigned char>(c);
-    label += std::isalnum(byte) ? std::string(1, c) : fmt::format("%{:02X}", byte);
-  }
-  return fmt::format("otpauth://totp/Tractus:{}?secret={}&issuer=Tractus&digits=6&period={}", label,
-                     base32(secret), kTotpStep_s);
+  return fmt::format("otpauth://totp/Tractus:{}?secret={}&issuer=Tractus&digits={}&period={}",
+                     percent_encoded(account), base32(secret), kDigits, kTotpStep_s);
 }
 
 }  // namespace api

@@ -1,5 +1,5 @@
 /// Time-based one-time codes: RFC 6238 (HMAC-SHA-1, 30 s, 6 digits), which every authenticator
-/// supports.
+/// supports. By liboath; that a code is accepted only once is ours.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,10 @@
 
 namespace tractus::api {
 
-enum class TotpHash { sha1, sha256, sha512 };
 inline constexpr std::int64_t kTotpStep_s = 30;
 
-/// RFC 4226 section 5.3: the last `digits` decimal digits of the truncated HMAC of the counter.
-std::string hotp(core::ByteView secret, std::uint64_t counter, int digits = 6,
-                 TotpHash hash = TotpHash::sha1);
+/// RFC 4226 section 5.3: the last six decimal digits of the truncated HMAC of the counter.
+std::string hotp(core::ByteView secret, std::uint64_t counter);
 
 /// The time step of `code`: the current, the previous or the next step, but later than `last_used`
 /// (RFC 6238 section 5.2: a code is accepted only once).
