@@ -5,6 +5,8 @@
 #include <memory>
 #include <mutex>
 
+#include "core/require.hpp"
+
 namespace tractus {
 namespace api {
 namespace {
@@ -17,6 +19,9 @@ constexpr std::size_t kMost_bytes = 1u << 20;
 
 struct Cleans {
   void operator()(CURL* handle) const { curl_easy_cleanup(handle); }
+};
+struct Frees {
+  void operator()(char* text) const { curl_free(text); }
 };
 
 std::size_t take(char* bytes, std::size_t one, std::size_t count, void* into) {
@@ -41,18 +46,11 @@ bool is_safe_address(const std::string& url) {
 }
 
 std::string percent_encoded(const std::string& text) {
-  constexpr std::string_view kHex = "0123456789ABCDEF";
-  std::string out;
-  for (const char c : text) {
-    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                       c == '-' || c == '.' || c == '_' || c == '~';
-    const auto byte = static_cast<unsigned char>(c);
-    if (plain)
-      out += c;
-    else
-      out += {'%', kHex[byte >> 4], kHex[byte & 15]};
-  }
-  return out;
+  if (text.empty()) return {};  // to libcurl, no length is that of a C string
+  const std::unique_ptr<char, Frees> out(
+      curl_easy_escape(nullptr, text.data(), static_cast<int>(text.size())));
+  core::require(out != nullptr, "memory for an address");
+  return out.get();
 }
 
 Result<Fetched> fetch(const Fetch& what) {

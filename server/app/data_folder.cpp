@@ -6,7 +6,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-#include <charconv>
+#include <algorithm>
 #include <chrono>
 
 #include "core/clock.hpp"
@@ -42,11 +42,7 @@ core::Result<api::Secrets::Key> read_key_file(const fs::path& path) {
   if (!core::is_sha256(text))
     return core::Error{core::Errc::corrupt,
                        path.string() + ": 64 hexadecimal characters are expected"};
-  for (std::size_t i = 0; i < key.size(); ++i) {
-    unsigned value = 0;
-    std::from_chars(text.data() + 2 * i, text.data() + 2 * i + 2, value, 16);
-    key[i] = static_cast<std::byte>(value);
-  }
+  std::ranges::copy(*core::hex_decoded(text), key.begin());
   return key;
 }
 

@@ -8,8 +8,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cstdio>
 
 #include "core/file.hpp"
@@ -131,11 +131,7 @@ Run import_volume_command(CLI::App& command) {
     if (!core::is_sha256(text))
       return Error{Errc::bad_input, "standard input: 64 hexadecimal characters are expected"};
     volume_io::UidKey key{};
-    for (std::size_t i = 0; i < key.size(); ++i) {
-      unsigned value = 0;
-      std::from_chars(text.data() + 2 * i, text.data() + 2 * i + 2, value, 16);
-      key[i] = static_cast<std::byte>(value);
-    }
+    std::ranges::copy(*core::hex_decoded(text), key.begin());
     const auto taken = jobs::import_volume(*upload, *folder, key);
     const Json answer =
         taken ? *taken

@@ -7,6 +7,7 @@
 #include "core/file.hpp"
 #include "core/progress.hpp"
 #include "core/try.hpp"
+#include "core/words.hpp"
 #include "effects/catalogues.hpp"
 #include "lab/identify/verdict_text.hpp"
 
@@ -22,16 +23,14 @@ std::string percent(double share) {
   return std::isfinite(share) ? fmt::format("{:.3g} %", 100.0 * share) : "–";
 }
 
-/// `text` in a column of `width` characters; fmt counts bytes where it should count characters.
+/// `text` in a column of `width` characters.
 std::string left(std::string_view text, std::size_t width) {
-  std::size_t seen = 0;
-  for (const char c : text) seen += (static_cast<unsigned char>(c) & 0xc0) != 0x80;
+  const std::size_t seen = core::characters(text);
   return std::string(text) + std::string(seen < width ? width - seen : 1, ' ');
 }
 
 std::string right(std::string_view text, std::size_t width) {
-  std::size_t seen = 0;
-  for (const char c : text) seen += (static_cast<unsigned char>(c) & 0xc0) != 0x80;
+  const std::size_t seen = core::characters(text);
   return std::string(seen < width ? width - seen : 1, ' ') + std::string(text);
 }
 

@@ -21,6 +21,23 @@ bool all_hex(std::string_view text) noexcept {
   return std::ranges::all_of(
       text, [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); });
 }
+
+std::string base64(ByteView bytes, int variant) {
+  std::string out(sodium_base64_encoded_len(bytes.size(), variant), '\0');
+  sodium_bin2base64(out.data(), out.size(), raw(bytes), bytes.size(), variant);
+  out.pop_back();
+  return out;
+}
+
+std::optional<Bytes> base64_decoded(std::string_view text, int variant) {
+  Bytes out(text.size() / 4 * 3 + 3);
+  std::size_t size = 0;
+  if (sodium_base642bin(reinterpret_cast<unsigned char*>(out.data()), out.size(), text.data(),
+                        text.size(), nullptr, &size, nullptr, variant) != 0)
+    return std::nullopt;
+  out.resize(size);
+  return out;
+}
 }  // namespace
 
 struct Sha256::State {
@@ -68,12 +85,24 @@ std::string hex(ByteView bytes) {
   return out;
 }
 
-std::string base64(ByteView bytes) {
-  std::string out(sodium_base64_ENCODED_LEN(bytes.size(), sodium_base64_VARIANT_ORIGINAL), '\0');
-  sodium_bin2base64(out.data(), out.size(), raw(bytes), bytes.size(),
-                    sodium_base64_VARIANT_ORIGINAL);
-  out.pop_back();
+std::optional<Bytes> hex_decoded(std::string_view text) {
+  Bytes out(text.size() / 2);
+  std::size_t size = 0;
+  if (sodium_hex2bin(reinterpret_cast<unsigned char*>(out.data()), out.size(), text.data(),
+                     text.size(), nullptr, &size, nullptr) != 0)
+    return std::nullopt;
   return out;
+}
+
+std::string base64(ByteView bytes) { return base64(bytes, sodium_base64_VARIANT_ORIGINAL); }
+std::string base64url(ByteView bytes) {
+  return base64(bytes, sodium_base64_VARIANT_URLSAFE_NO_PADDING);
+}
+std::optional<Bytes> base64_decoded(std::string_view text) {
+  return base64_decoded(text, sodium_base64_VARIANT_ORIGINAL);
+}
+std::optional<Bytes> base64url_decoded(std::string_view text) {
+  return base64_decoded(text, sodium_base64_VARIANT_URLSAFE_NO_PADDING);
 }
 
 Bytes random_bytes(std::size_t length) {

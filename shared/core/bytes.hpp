@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -45,8 +46,16 @@ class Sha256 {
 /// 64 characters 0-9a-f?
 bool is_sha256(std::string_view text) noexcept;
 
+/// Text forms of bytes, by libsodium: lower-case hexadecimal, base64 of RFC 4648 section 4 (padded)
+/// and of section 5 (not padded). Decoded is only what is whole: no blanks, no digits left over, of
+/// base64 only the one text that encoding gives.
 std::string hex(ByteView bytes);
 std::string base64(ByteView bytes);
+std::string base64url(ByteView bytes);
+std::optional<Bytes> hex_decoded(std::string_view text);  ///< of either case
+std::optional<Bytes> base64_decoded(std::string_view text);
+std::optional<Bytes> base64url_decoded(std::string_view text);
+
 /// `length` random bytes of the system's generator: keys, tokens, salts.
 Bytes random_bytes(std::size_t length);
 /// A new name nobody has: 32 hexadecimal characters, the first 12 the UTC milliseconds, so that

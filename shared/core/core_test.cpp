@@ -39,6 +39,40 @@ TEST(Id, IsNewAndRecognised) {
   EXPECT_FALSE(is_id("../../etc/passwd"));
 }
 
+/// RFC 4648 section 10: the texts of f, fo, … in each form.
+TEST(Text, OfBytesIsThatOfTheStandard) {
+  struct Row {
+    const char *plain, *padded, *url, *hex;
+  };
+  for (const Row& row :
+       {Row{"", "", "", ""}, Row{"f", "Zg==", "Zg", "66"}, Row{"fo", "Zm8=", "Zm8", "666f"},
+        Row{"foo", "Zm9v", "Zm9v", "666f6f"}, Row{"foob", "Zm9vYg==", "Zm9vYg", "666f6f62"},
+        Row{"foobar", "Zm9vYmFy", "Zm9vYmFy", "666f6f626172"},
+        Row{"\xfb\xff", "+/8=", "-_8", "fbff"}}) {
+    const auto bytes = bytes_of(row.plain);
+    const Bytes held(bytes.begin(), bytes.end());
+    EXPECT_EQ(base64(bytes), row.padded);
+    EXPECT_EQ(base64url(bytes), row.url);
+    EXPECT_EQ(hex(bytes), row.hex);
+    EXPECT_EQ(base64_decoded(row.padded), held);
+    EXPECT_EQ(base64url_decoded(row.url), held);
+    EXPECT_EQ(hex_decoded(row.hex), held);
+  }
+  EXPECT_EQ(hex_decoded("FBff"), hex_decoded("fbff"));
+}
+
+/// Digits left over or missing, another alphabet, blanks, and bits that another text would have 0.
+TEST(Text, ThatIsNotOfBytesIsRefused) {
+  for (const char* wrong : {"Z", "Zg==", "Zg=", "Z g", "+/8", "Zh", "Zg\n", "Zm9vY", "="})
+    EXPECT_FALSE(base64url_decoded(wrong)) << wrong;
+  for (const char* wrong :
+       {"Z", "Zg", "Zg=", "Zg===", "Zh==", "-_8=", "Zg==Zg==", "Zg==\n", "===="})
+    EXPECT_FALSE(base64_decoded(wrong)) << wrong;
+  for (const char* wrong : {"6", "66 6f", "6g", "66\n", "0x66", "66:6f", "666"})
+    EXPECT_FALSE(hex_decoded(wrong)) << wrong;
+  EXPECT_FALSE(base64_decoded(std::string_view("Zg\0=", 4)));
+}
+
 TEST(Signature, HoldsForTheMessageAndForNothingElse) {
   const auto key = KeyPair::generate();
   const auto signature = sign(bytes_of("case"), key);
@@ -232,6 +266,12 @@ TEST(Words, OneLineKeepsCharactersWholeAndNothingThatMovesACursor) {
   EXPECT_EQ(one_line("ab\u00e9\u00e9", 6), "ab\u00e9\u00e9");
   EXPECT_EQ(one_line("ab\u00e9\u00e9", 5), "ab\u00e9\u2026");  // the cut falls within the second e
   EXPECT_EQ(one_line("", 0), "");
+}
+
+TEST(Words, AreCountedByCharactersNotByBytes) {
+  EXPECT_EQ(characters(""), 0u);
+  EXPECT_EQ(characters("N\u00b7m"), 3u);
+  EXPECT_EQ(characters("\u2265 \U0001F980"), 3u);
 }
 
 }  // namespace

@@ -13,13 +13,6 @@ const unsigned char* raw(ByteView bytes) {
   return reinterpret_cast<const unsigned char*>(bytes.data());
 }
 
-bool unhex(std::string_view text, std::span<unsigned char> out) noexcept {
-  std::size_t length = 0;
-  return sodium_hex2bin(out.data(), out.size(), text.data(), text.size(), nullptr, &length,
-                        nullptr) == 0 &&
-         length == out.size() && text.size() == 2 * out.size();
-}
-
 std::string public_part(const Bytes& secret) {
   std::array<std::byte, crypto_sign_PUBLICKEYBYTES> key{};
   crypto_sign_ed25519_sk_to_pk(reinterpret_cast<unsigned char*>(key.data()), raw(secret));
@@ -74,11 +67,13 @@ std::string sign(ByteView message, const KeyPair& key) {
 
 bool verify(ByteView message, std::string_view signature_hex,
             std::string_view public_hex) noexcept {
-  std::array<unsigned char, crypto_sign_BYTES> signature{};
-  std::array<unsigned char, crypto_sign_PUBLICKEYBYTES> open_key{};
-  return unhex(signature_hex, signature) && unhex(public_hex, open_key) &&
-         crypto_sign_verify_detached(signature.data(), raw(message), message.size(),
-                                     open_key.data()) == 0;
+  if (signature_hex.size() != 2 * crypto_sign_BYTES ||
+      public_hex.size() != 2 * crypto_sign_PUBLICKEYBYTES)
+    return false;
+  const auto signature = hex_decoded(signature_hex), open_key = hex_decoded(public_hex);
+  return signature && open_key &&
+         crypto_sign_verify_detached(raw(*signature), raw(message), message.size(),
+                                     raw(*open_key)) == 0;
 }
 
 }  // namespace core

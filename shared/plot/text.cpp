@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/words.hpp"
 #include "plot/trace.hpp"
 
 namespace tractus {
@@ -73,9 +74,7 @@ std::string written(const Text& at, std::string_view text) {
 }
 
 double text_width(std::string_view text, double size_px) {
-  const auto letters = std::ranges::count_if(
-      text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; });
-  return 0.56 * size_px * double(letters);
+  return 0.56 * size_px * double(core::characters(text));
 }
 
 }  // namespace plot

@@ -96,13 +96,13 @@ Result<laws::ProbingParameters> opened_law(std::string_view sealed, std::string_
   const Error broken{Errc::corrupt,
                      "the trial was not sealed for this station, or changed since: ask the server "
                      "for it again"};
-  std::string box(kBox_bytes, '\0'), plain(kPlain_bytes, '\0');
-  std::size_t size = 0;
-  if (sodium_base642bin(raw(box), box.size(), sealed.data(), sealed.size(), nullptr, &size, nullptr,
-                        sodium_base64_VARIANT_ORIGINAL) != 0 ||
-      size != kBox_bytes ||
-      crypto_secretbox_xchacha20poly1305_open_easy(raw(plain), raw(box) + kNonce, size - kNonce,
-                                                   raw(box), raw(hash(trial, key.bytes_))) != 0)
+  std::string plain(kPlain_bytes, '\0');
+  if (sealed.size() != kSealed_characters) return broken;
+  const auto bytes = core::base64_decoded(sealed);
+  if (!bytes || bytes->size() != kBox_bytes) return broken;
+  const auto* box = raw(core::text_of(*bytes));
+  if (crypto_secretbox_xchacha20poly1305_open_easy(raw(plain), box + kNonce, kBox_bytes - kNonce,
+                                                   box, raw(hash(trial, key.bytes_))) != 0)
     return broken;
   plain.resize(plain.find_last_not_of('\0') + 1);
   auto json = core::parse_json(plain, "sealed trial");

@@ -66,8 +66,7 @@ core::Bytes end_payload(std::uint64_t samples, const std::string& sha256_hex) {
   core::require(core::is_sha256(sha256_hex), "a SHA-256 is 64 hexadecimal characters");
   core::Bytes out(kEndPayload_bytes);
   put(out.data(), samples);
-  for (std::size_t i = 0; i < 32; ++i)
-    out[8 + i] = std::byte(std::stoi(sha256_hex.substr(2 * i, 2), nullptr, 16));
+  std::ranges::copy(*core::hex_decoded(sha256_hex), out.begin() + 8);
   return out;
 }
 

@@ -1,6 +1,7 @@
 #include "db/store/database/value.hpp"
 
 #include <fmt/format.h>
+#include <utf8.h>
 
 #include "core/require.hpp"
 #include "core/words.hpp"
@@ -14,36 +15,10 @@ const T& held(const Value& value) {
   return std::get<T>(value);
 }
 bool is_null(const Value& value) { return std::holds_alternative<std::monostate>(value); }
-/// The length of the character that begins with `lead`, and the least and most that its second byte
-/// may be (RFC 3629, section 4); 0: none begins so.
-struct Lead {
-  std::size_t length;
-  unsigned char low, high;
-};
-Lead lead_of(unsigned char lead) {
-  if (lead > 0 && lead < 0x80) return {1, 0, 0};
-  if (lead >= 0xc2 && lead <= 0xdf) return {2, 0x80, 0xbf};
-  if (lead == 0xe0) return {3, 0xa0, 0xbf};
-  if (lead == 0xed) return {3, 0x80, 0x9f};
-  if (lead > 0xe0 && lead <= 0xef) return {3, 0x80, 0xbf};
-  if (lead == 0xf0) return {4, 0x90, 0xbf};
-  if (lead > 0xf0 && lead < 0xf4) return {4, 0x80, 0xbf};
-  if (lead == 0xf4) return {4, 0x80, 0x8f};
-  return {0, 0, 0};
-}
 }  // namespace
 
 bool is_text(std::string_view text) {
-  for (std::size_t i = 0; i < text.size();) {
-    const Lead lead = lead_of(static_cast<unsigned char>(text[i]));
-    if (lead.length == 0 || text.size() - i < lead.length) return false;
-    for (std::size_t k = 1; k < lead.length; ++k) {
-      const auto byte = static_cast<unsigned char>(text[i + k]);
-      if (byte < (k == 1 ? lead.low : 0x80) || byte > (k == 1 ? lead.high : 0xbf)) return false;
-    }
-    i += lead.length;
-  }
-  return true;
+  return text.find('\0') == std::string_view::npos && utf8::is_valid(text.begin(), text.end());
 }
 
 const Value& Row::value(std::size_t column) const {

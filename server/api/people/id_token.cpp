@@ -9,6 +9,7 @@
 #include <array>
 #include <memory>
 
+#include "core/bytes.hpp"
 #include "core/try.hpp"
 
 namespace tractus {
@@ -38,7 +39,7 @@ Error refused(const std::string& why) {
   return {Errc::unauthorised, "the provider's id_token " + why};
 }
 
-const unsigned char* raw(const std::string& bytes) {
+const unsigned char* raw(core::ByteView bytes) {
   return reinterpret_cast<const unsigned char*>(bytes.data());
 }
 
@@ -59,8 +60,8 @@ Key made(const char* kind, OSSL_PARAM_BLD* builder) {
 
 /// RFC 7518 section 6.3.1. Keys under 2048 bits are none (section 3.3).
 Key rsa_key(const Json& jwk) {
-  const auto n = base64url_decoded(text_field(jwk, "n")),
-             e = base64url_decoded(text_field(jwk, "e"));
+  const auto n = core::base64url_decoded(text_field(jwk, "n")),
+             e = core::base64url_decoded(text_field(jwk, "e"));
   if (!n || !e || n->empty() || e->empty() || n->size() > 1024 || e->size() > 8) return nullptr;
   const Number modulus(BN_bin2bn(raw(*n), int(n->size()), nullptr)),
       exponent(BN_bin2bn(raw(*e), int(e->size()), nullptr));
@@ -73,11 +74,12 @@ Key rsa_key(const Json& jwk) {
 
 /// RFC 7518 section 6.2.1, P-256 alone.
 Key ec_key(const Json& jwk) {
-  const auto x = base64url_decoded(text_field(jwk, "x")),
-             y = base64url_decoded(text_field(jwk, "y"));
+  const auto x = core::base64url_decoded(text_field(jwk, "x")),
+             y = core::base64url_decoded(text_field(jwk, "y"));
   if (text_field(jwk, "crv") != "P-256" || !x || !y || x->size() != 32 || y->size() != 32)
     return nullptr;
-  const std::string point = std::string(1, '\x04') + *x + *y;  // uncompressed, SEC 1 section 2.3.3
+  core::Bytes point{std::byte{4}};  // uncompressed, SEC 1 section 2.3.3
+  for (const auto& part : {*x, *y}) point.insert(point.end(), part.begin(), part.end());
   const Builder builder(OSSL_PARAM_BLD_new());
   OSSL_PARAM_BLD_push_utf8_string(builder.get(), OSSL_PKEY_PARAM_GROUP_NAME, "prime256v1", 0);
   OSSL_PARAM_BLD_push_octet_string(builder.get(), OSSL_PKEY_PARAM_PUB_KEY, point.data(),
@@ -86,7 +88,7 @@ Key ec_key(const Json& jwk) {
 }
 
 /// The two numbers of 32 bytes (RFC 7518 section 3.4) as OpenSSL takes them.
-Result<std::string> der_of(const std::string& both) {
+Result<core::Bytes> der_of(const core::Bytes& both) {
   if (both.size() != 64) return refused("has a signature of the wrong length");
   const Signature signature(ECDSA_SIG_new());
   ECDSA_SIG_set0(signature.get(), BN_bin2bn(raw(both), 32, nullptr),
@@ -94,12 +96,13 @@ Result<std::string> der_of(const std::string& both) {
   unsigned char* der = nullptr;
   const int size = i2d_ECDSA_SIG(signature.get(), &der);
   if (size <= 0) return refused("has an invalid signature");
-  std::string out(reinterpret_cast<char*>(der), std::size_t(size));
+  const auto bytes = std::as_bytes(std::span(der, std::size_t(size)));
+  core::Bytes out(bytes.begin(), bytes.end());
   OPENSSL_free(der);
   return out;
 }
 
-bool verifies(EVP_PKEY* key, std::string_view message, const std::string& signature) {
+bool verifies(EVP_PKEY* key, std::string_view message, const core::Bytes& signature) {
   const Digest digest(EVP_MD_CTX_new());
   return digest && EVP_DigestVerifyInit(digest.get(), nullptr, EVP_sha256(), nullptr, key) == 1 &&
          EVP_DigestVerify(digest.get(), raw(signature), signature.size(),
@@ -123,7 +126,7 @@ std::vector<const Json*> candidates(const Json& keys, const std::string& kind,
   return out;
 }
 
-Result<void> check_signature(std::string_view signed_part, const std::string& signature,
+Result<void> check_signature(std::string_view signed_part, const core::Bytes& signature,
                              const Json& header, const Json& keys) {
   const std::string algorithm = text_field(header, "alg");
   if (algorithm != "RS256" && algorithm != "ES256")
@@ -186,51 +189,14 @@ Result<Identity> checked(const Json& claims, const Expected& expected) {
 }
 
 Result<Json> part(std::string_view text) {
-  const auto bytes = base64url_decoded(text);
+  const auto bytes = core::base64url_decoded(text);
   if (!bytes) return refused("is not a valid JSON Web Token");
-  auto out = core::parse_json(*bytes, "ID token");
+  auto out = core::parse_json(core::text_of(*bytes), "ID token");
   if (!out || !out->is_object()) return refused("is not a valid JSON Web Token");
   return out;
 }
 
 }  // namespace
-
-std::string base64url(std::string_view bytes) {
-  constexpr std::string_view kLetters =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
-  std::string out;
-  std::uint32_t held = 0;
-  int bits = 0;
-  for (const char c : bytes) {
-    held = held << 8 | static_cast<unsigned char>(c);
-    bits += 8;
-    while (bits >= 6) bits -= 6, out += kLetters[held >> bits & 63];
-  }
-  if (bits > 0) out += kLetters[held << (6 - bits) & 63];
-  return out;
-}
-
-Result<std::string> base64url_decoded(std::string_view text) {
-  const Error wrong{Errc::bad_input, "is not base64url"};
-  if (text.size() % 4 == 1) return wrong;
-  std::string out;
-  std::uint32_t held = 0;
-  int bits = 0;
-  for (const char c : text) {
-    const int value = c >= 'A' && c <= 'Z'   ? c - 'A'
-                      : c >= 'a' && c <= 'z' ? c - 'a' + 26
-                      : c >= '0' && c <= '9' ? c - '0' + 52
-                      : c == '-'             ? 62
-                      : c == '_'             ? 63
-                                             : -1;
-    if (value < 0) return wrong;
-    held = held << 6 | static_cast<std::uint32_t>(value);
-    bits += 6;
-    if (bits >= 8) bits -= 8, out += static_cast<char>(held >> bits & 255);
-  }
-  if ((held & ((1u << bits) - 1)) != 0) return wrong;  // another text for the same bytes
-  return out;
-}
 
 Result<Identity> identity_of(std::string_view token, const Json& keys, const Expected& expected) {
   if (token.size() > kMostToken_bytes) return refused("is too long");
@@ -238,7 +204,7 @@ Result<Identity> identity_of(std::string_view token, const Json& keys, const Exp
   if (first == std::string_view::npos || first == last || token.find('.', first + 1) != last)
     return refused("is not a valid JSON Web Token");
   const auto header = TRY(part(token.substr(0, first)));
-  const auto signature = base64url_decoded(token.substr(last + 1));
+  const auto signature = core::base64url_decoded(token.substr(last + 1));
   if (!signature) return refused("is not a valid JSON Web Token");
   TRY(check_signature(token.substr(0, last), *signature, header, keys));
   const auto claims = TRY(part(token.substr(first + 1, last - first - 1)));

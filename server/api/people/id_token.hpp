@@ -33,9 +33,4 @@ inline constexpr std::int64_t kMostAge_s = 600;
 core::Result<Identity> identity_of(std::string_view id_token, const core::Json& keys,
                                    const Expected& expected);
 
-/// RFC 4648 section 5, without padding.
-std::string base64url(std::string_view bytes);
-/// Errors: bad_input.
-core::Result<std::string> base64url_decoded(std::string_view text);
-
 }  // namespace tractus::api

@@ -7,9 +7,12 @@
 #include <openssl/evp.h>
 #include <openssl/rsa.h>
 
+#include "core/bytes.hpp"
 #include "server/api/people/id_token.hpp"
 
 namespace tractus::api::testing {
+
+inline std::string encoded(std::string_view text) { return core::base64url(core::bytes_of(text)); }
 
 /// An RSA key of the test's own.
 class Signer {
@@ -25,7 +28,7 @@ class Signer {
   }
   std::string token(const core::Json& claims,
                     const core::Json& header = {{"alg", "RS256"}, {"kid", "k1"}}) const {
-    const std::string text = base64url(header.dump()) + "." + base64url(claims.dump());
+    const std::string text = encoded(header.dump()) + "." + encoded(claims.dump());
     EVP_MD_CTX* context = EVP_MD_CTX_new();
     std::string signature(256, '\0');
     std::size_t size = signature.size();
@@ -34,7 +37,7 @@ class Signer {
                              reinterpret_cast<const unsigned char*>(text.data()), text.size()),
               1);
     EVP_MD_CTX_free(context);
-    return text + "." + base64url(signature);
+    return text + "." + encoded(signature);
   }
 
  private:
@@ -44,7 +47,7 @@ class Signer {
     std::string bytes(std::size_t(BN_num_bytes(value)), '\0');
     BN_bn2bin(value, reinterpret_cast<unsigned char*>(bytes.data()));
     BN_free(value);
-    return base64url(bytes);
+    return encoded(bytes);
   }
   EVP_PKEY* key_;
 };

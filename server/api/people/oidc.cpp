@@ -16,7 +16,7 @@ using core::Result;
 
 constexpr std::int64_t kKept_s = 3600, kAgain_s = 10;
 
-std::string random_text() { return base64url(core::text_of(core::random_bytes(32))); }
+std::string random_text() { return core::base64url(core::random_bytes(32)); }
 
 std::string text_field(const Json& object, const char* key) {
   const auto at = object.find(key);
@@ -25,11 +25,7 @@ std::string text_field(const Json& object, const char* key) {
 
 /// RFC 7636 section 4.2, S256.
 std::string challenge_of(const std::string& verifier) {
-  const std::string hex = core::sha256(core::bytes_of(verifier));
-  std::string bytes;
-  for (std::size_t i = 0; i < hex.size(); i += 2)
-    bytes += static_cast<char>(std::stoi(hex.substr(i, 2), nullptr, 16));
-  return base64url(bytes);
+  return core::base64url(*core::hex_decoded(core::sha256(core::bytes_of(verifier))));
 }
 
 Result<Json> json_at(const std::string& url, const OidcSettings& settings) {

@@ -3,7 +3,6 @@
 #include <sodium.h>
 
 #include <algorithm>
-#include <vector>
 
 #include "core/require.hpp"
 
@@ -56,17 +55,14 @@ core::Result<std::string> Secrets::opened(const std::string& sealed_text) const 
   const core::Error wrong{core::Errc::corrupt,
                           "a sealed secret does not open with this server's key"};
   constexpr std::size_t kOver = crypto_secretbox_NONCEBYTES + crypto_secretbox_MACBYTES;
-  std::vector<unsigned char> bytes(sealed_text.size() / 2);
-  std::size_t size = 0;
-  if (sodium_hex2bin(bytes.data(), bytes.size(), sealed_text.data(), sealed_text.size(), nullptr,
-                     &size, nullptr) != 0 ||
-      size < kOver)
-    return wrong;
+  const auto bytes = core::hex_decoded(sealed_text);
+  if (!bytes || bytes->size() < kOver) return wrong;
   const Key key = derived(kSealing);
-  std::string out(size - kOver, '\0');
-  if (crypto_secretbox_open_easy(
-          reinterpret_cast<unsigned char*>(out.data()), bytes.data() + crypto_secretbox_NONCEBYTES,
-          size - crypto_secretbox_NONCEBYTES, bytes.data(), raw(key.data())) != 0)
+  std::string out(bytes->size() - kOver, '\0');
+  if (crypto_secretbox_open_easy(reinterpret_cast<unsigned char*>(out.data()),
+                                 raw(bytes->data()) + crypto_secretbox_NONCEBYTES,
+                                 bytes->size() - crypto_secretbox_NONCEBYTES, raw(bytes->data()),
+                                 raw(key.data())) != 0)
     return wrong;
   return out;
 }
