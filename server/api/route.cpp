@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <charconv>
 
-#include "core/errc_words.hpp"
 #include "core/file.hpp"
 
 namespace tractus::api {

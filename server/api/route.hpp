@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/errc_words.hpp"
 #include "core/json.hpp"
 #include "core/result.hpp"
 #include "db/store/people/role.hpp"
