@@ -12,10 +12,10 @@ namespace tractus {
 namespace app {
 namespace {
 constexpr const char* kExamples = R"(Examples:
-  tractus-station trust  --data st --case case/                 whose cases this station takes
+  tractus-station trust  --data st --case case/                 accept cases with this signature
   tractus-station --device sim-lambda6 --case case/ --data st   a trial in real time, SIMULATED hand
-  tractus-station --case undrilled/ --data st --tool burr       make the channel; then palpate it:
-  tractus-station --case undrilled/ --data st --drilled 0193c8… the id that the drilling said
+  tractus-station --case undrilled/ --data st --tool burr       drill the channel; then palpate it:
+  tractus-station --case undrilled/ --data st --drilled 0193c8… with the id that the drilling printed
   tractus-station --case 3f9ac2d1 --data st --speed fast --seed 7 --trials 5 --json
   tractus-station --case 3f9ac2d1 --data st --server http://127.0.0.1:8480 --token-file st.token
   tractus-station --device sim-rig --scenario lateral_breach --data st --speed fast   SIMULATED rig
@@ -25,7 +25,7 @@ constexpr const char* kExamples = R"(Examples:
   tractus-station assigned --badge 4711 --data st --server URL --token-file st.token
   tractus-station --device lambda6 --sdk /opt/sdk --case 3f9ac2d1 --data st
   tractus-station --device lambda6 --case 3f9ac2d1 --data st --view headset
-  tractus-station align  --device lambda6 --data st --fixture table.json   where the device stands in the room
+  tractus-station align  --device lambda6 --data st --fixture table.json   place of the device in the room
   tractus-station sync   --data st --server URL --token-file st.token
   tractus-station upload --data st --server URL --token-file st.token --wait 600
   tractus-station record --netft 192.168.1.1 --igtl tracker.local --body probe --body bone --out room/
@@ -324,33 +324,33 @@ Parsed parse(int argc, char** argv) {
   add_run(app, options);
 
   CLI::App* sync =
-      add_command(app, options, sync_cases, "sync", "fetch the cases that the server has");
+      add_command(app, options, sync_cases, "sync", "download the cases of the server");
   add_data(*sync, options, true);
   add_server(*sync, options, true);
   CLI::App* study =
-      add_command(app, options, run_study, "study", "a participant's trials of a blind study");
+      add_command(app, options, run_study, "study", "run a participant's trials of a blind study");
   add_data(*study, options, true);
   add_server(*study, options, true);
   add_study(*study, options);
   CLI::App* upload =
-      add_command(app, options, upload_trials, "upload", "hand over the trials that wait");
+      add_command(app, options, upload_trials, "upload", "upload the trials that wait");
   add_data(*upload, options, true);
   add_server(*upload, options, true);
-  upload->add_option("--wait", options.wait_s, "s to go on trying when the server does not answer")
+  upload->add_option("--wait", options.wait_s, "s to retry if the server does not answer")
       ->check(between(0.0, 1e7));
   add_assigned(*add_command(app, options, run_assigned, "assigned",
-                            "sign in with badge and PIN; do what is assigned, in order"),
+                            "sign in with badge and PIN and run the assigned trials in order"),
                options);
-  add_enrol(
-      *add_command(app, options, enrol_station, "enrol",
-                   "make a key for this station and let the server know it, by a one-time code"),
-      options);
+  add_enrol(*add_command(app, options, enrol_station, "enrol",
+                         "register this station at the server with a one-time code"),
+            options);
   add_tune(
-      *add_command(app, options, tune_scenario, "tune",
-                   "feel a scenario and nudge its eight parameters by keys; save new versions"),
+      *add_command(
+          app, options, tune_scenario, "tune",
+          "change the eight parameters of a scenario by keys while it is felt; save new versions"),
       options);
   add_trust(*add_command(app, options, trust_signer, "trust",
-                         "take cases that are signed by this key from now on"),
+                         "accept cases that are signed with this key"),
             options);
   add_technician(app, options);
 

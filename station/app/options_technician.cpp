@@ -118,25 +118,25 @@ std::optional<int> check_record(const Options& options) {
 }  // namespace
 
 void add_technician(CLI::App& app, Options& options) {
-  CLI::App* limits =
-      add_command(app, options, show_limits, "limits",
-                  "how much force a hand gets; --restore takes back what was lowered from afar");
+  CLI::App* limits = add_command(app, options, show_limits, "limits",
+                                 "show the limits of force; --restore undoes remote reductions");
   add_data(*limits, options, true);
-  limits->add_flag("--restore", options.restore, "this station's own limits hold again");
+  limits->add_flag("--restore", options.restore, "use this station's own limits again");
   add_self_test(*add_command(app, options, self_test, "self-test",
-                             "device, loop, display, disk and clock put to the question"),
+                             "test device, loop, display, disk and clock"),
                 options);
-  add_calibrate(*add_command(app, options, calibrate, "calibrate",
-                             "find the device's zero, check it, note it and when it is due again"),
-                options);
+  add_calibrate(
+      *add_command(app, options, calibrate, "calibrate",
+                   "find and check the zero of the device, and note when calibration is due again"),
+      options);
   add_align(
       *add_command(app, options, align_room, "align",
-                   "touch three points with the handle, so that the headset shows it where it is"),
+                   "touch three points with the handle so that the headset shows it in its place"),
       options);
-  add_record(
-      *add_command(app, options, record_room, "record",
-                   "a force/torque sensor and motion capture at once, for a measurement set"),
-      options);
+  add_record(*add_command(
+                 app, options, record_room, "record",
+                 "record a force/torque sensor and motion capture together for a measurement set"),
+             options);
 }
 
 std::optional<int> check_technician(const Options& options) {

@@ -75,7 +75,7 @@ const std::map<std::string, Names> kAllowed = {
     {"station/loop",
      {"shared/core", "shared/math", "shared/volume", "shared/laws", "shared/effects",
       "shared/models", "shared/trial", "shared/drilling", "station/devices", "station/safety"}},
-    // Devices and this machine put to the question: every force through the loop's limiters.
+    // Tests of devices and of this machine: every force passes through the loop's limiters.
     {"station/check",
      {"shared/core", "shared/math", "shared/plot", "station/devices", "station/loop",
       "station/safety"}},
