@@ -6,23 +6,14 @@
 #include <set>
 
 #include "core/bytes.hpp"
+#include "core/csv.hpp"
 #include "metrics/metric.hpp"
 
 namespace tractus {
 namespace jobs {
 namespace {
 
-/// Without what would end a cell or a row, or be a formula to a spreadsheet; in quotes where it has
-/// a comma.
-std::string cell(std::string text) {
-  if (!text.empty() && std::string("=+-@").find(text.front()) != std::string::npos)
-    text.insert(text.begin(), '\'');
-  for (char& c : text) {
-    if (static_cast<unsigned char>(c) < 32 || c == 127) c = ' ';
-    if (c == '"') c = '\'';
-  }
-  return text.find(',') == std::string::npos ? text : '"' + text + '"';
-}
+std::string cell(std::string_view text) { return core::csv_person_cell(text); }
 
 std::string cell(const std::optional<double>& number) {
   return number ? fmt::format("{}", *number) : "";

@@ -6,6 +6,7 @@
 
 #include "assessment/formula.hpp"
 #include "assessment/report.hpp"
+#include "core/csv.hpp"
 #include "core/file.hpp"
 #include "core/try.hpp"
 
@@ -137,9 +138,7 @@ core::Result<void> write(const Snapshot& snapshot, const std::filesystem::path& 
 std::string marked(const Table& table, const std::vector<std::string>& excluded_because) {
   std::string out;
   const auto add = [&](std::string_view cell, bool last) {
-    const bool quoted = cell.find(',') != std::string_view::npos;
-    out += quoted ? "\"" + std::string(cell) + "\"" : std::string(cell);
-    out += last ? "\n" : ",";
+    out += core::csv_cell(cell) + (last ? '\n' : ',');
   };
   for (const auto& column : table.columns()) add(column, false);
   add("excluded_because", true);

@@ -8,8 +8,10 @@
 #include <cmath>
 #include <optional>
 
+#include "core/csv.hpp"
 #include "core/file.hpp"
 #include "core/try.hpp"
+#include "core/words.hpp"
 
 namespace tractus {
 namespace assessment {
@@ -19,45 +21,11 @@ constexpr std::uint64_t kLargest = 512ull << 20;
 
 core::Error wrong(std::string what) { return {core::Errc::bad_input, std::move(what)}; }
 
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
-
-/// Cuts at commas outside quotes; quotes round a cell go. False: a quote is left open.
-bool split(std::string_view line, std::vector<std::string_view>& cells) {
-  cells.clear();
-  bool quoted = false;
-  std::size_t start = 0;
-  for (std::size_t i = 0; i <= line.size(); ++i) {
-    if (i < line.size() && line[i] == '"') quoted = !quoted;
-    if (i < line.size() && (line[i] != ',' || quoted)) continue;
-    auto cell = trimmed(line.substr(start, i - start));
-    if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"')
-      cell = trimmed(cell.substr(1, cell.size() - 2));
-    cells.push_back(cell);
-    start = i + 1;
-  }
-  return !quoted;
-}
-
-/// Takes the next line off the front.
-std::string_view next_line(std::string_view& rest) {
-  const auto end = rest.find('\n');
-  const auto line = rest.substr(0, end);
-  rest = end == std::string_view::npos ? std::string_view() : rest.substr(end + 1);
-  return line;
-}
-
-std::string shown(std::string_view text, std::size_t most = 40) {
-  return std::string(text.substr(0, most)) + (text.size() > most ? "…" : "");
-}
-
 std::string no_column(const std::string& file, const std::string& column,
                       const std::vector<std::string_view>& header) {
-  const auto listed = header.size() > 20 ? fmt::format("{} others", header.size())
-                                         : shown(fmt::format("{}", fmt::join(header, ", ")), 400);
+  const auto listed = header.size() > 20
+                          ? fmt::format("{} others", header.size())
+                          : core::one_line(fmt::format("{}", fmt::join(header, ", ")), 400);
   return fmt::format("{}: there is no column '{}'; the columns are {}", file, column, listed);
 }
 
@@ -92,14 +60,14 @@ std::string Table::add_row(std::size_t line, std::span<const std::string_view> c
   return "";
 }
 
-core::Result<void> Table::read_header(std::string_view line,
-                                      std::vector<std::string_view>& header) {
-  if (std::ranges::any_of(line, [](char c) {
-        return (static_cast<unsigned char>(c) < 32 && c != '\t' && c != '\r') || c == 127;
-      }))
-    return wrong(name_ + ":1: this is no text file");
-  if (!split(line, header) || (header.size() == 1 && header[0].empty()))
-    return wrong(name_ + ":1: the header line is empty or leaves a quote open");
+core::Result<void> Table::read_header(const std::vector<std::string_view>& header) {
+  for (const auto cell : header)
+    if (std::ranges::any_of(cell, [](char c) {
+          return (static_cast<unsigned char>(c) < 32 && c != '\t') || c == 127;
+        }))
+      return wrong(name_ + ":1: this is no text file");
+  if (header.empty() || core::is_blank(header))
+    return wrong(name_ + ":1: the header line is empty");
   if (wanted_.empty()) wanted_.assign(header.begin(), header.end());
   for (const auto& column : wanted_) {
     const auto at = std::ranges::find(header, column);
@@ -121,22 +89,20 @@ core::Result<Table> Table::parse(core::Bytes bytes, const std::string& name,
                                  std::span<const std::string> columns, Missing missing) {
   Table out;
   out.name_ = name;
-  out.bytes_ = std::make_shared<const core::Bytes>(std::move(bytes));
+  const auto held = std::make_shared<core::Bytes>(std::move(bytes));
+  out.bytes_ = held;
   out.wanted_.assign(columns.begin(), columns.end());
-  std::string_view rest = core::text_of(*out.bytes_);
-  if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
+  core::CsvReader reader({reinterpret_cast<char*>(held->data()), held->size()}, name);
   std::vector<std::string_view> header, cells;
-  TRY(out.read_header(next_line(rest), header));
+  TRY(reader.next(header));
+  TRY(out.read_header(header));
   out.cells_.resize(out.wanted_.size());
-  for (std::size_t line = 2; !rest.empty(); ++line) {
-    const auto text = next_line(rest);
-    if (trimmed(text).empty()) continue;
-    if (!split(text, cells))
-      return wrong(fmt::format("{}:{}: a quote stays open", out.name_, line));
+  while (TRY(reader.next(cells))) {
+    if (core::is_blank(cells)) continue;
     if (cells.size() != header.size())
-      return wrong(fmt::format("{}:{}: {} cells, the header has {}", out.name_, line, cells.size(),
-                               header.size()));
-    if (const auto why = out.add_row(line, cells, missing); !why.empty()) return wrong(why);
+      return reader.wrong(fmt::format("{} cells, the header has {}", cells.size(), header.size()));
+    if (const auto why = out.add_row(reader.line(), cells, missing); !why.empty())
+      return wrong(why);
   }
   if (out.lines_.empty()) return wrong(out.name_ + ": there is no row to analyse");
   return out;
@@ -166,7 +132,7 @@ core::Result<bool> Table::holds_numbers(const std::string& column) const {
                      fmt::format("{}:{}: column '{}' holds numbers, and here '{}'; C({}) takes all "
                                  "of them as labels",
                                  name_, lines_[static_cast<std::size_t>(text - cells.begin())],
-                                 column, text->substr(0, 40), column)};
+                                 column, core::one_line(*text, 40), column)};
 }
 
 core::Result<statistics::Vector> Table::numbers(const std::string& column) const {
@@ -176,7 +142,7 @@ core::Result<statistics::Vector> Table::numbers(const std::string& column) const
     const auto value = number_in(cells[i]);
     if (!value)
       return wrong(fmt::format("{}:{}: column '{}' should be a number and is '{}'", name_,
-                               lines_[i], column, shown(cells[i])));
+                               lines_[i], column, core::one_line(cells[i], 40)));
     out[static_cast<Eigen::Index>(i)] = *value;
   }
   return out;

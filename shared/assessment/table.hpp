@@ -19,8 +19,7 @@ namespace tractus::assessment {
 /// What to do with a row that has an empty cell (also NA, NaN) in a column that is used.
 enum class Missing { refuse, drop, keep };
 
-/// The named columns of a comma-separated file with a header line. UTF-8 with or without byte-order
-/// mark, LF or CRLF, blanks round a cell, cells in double quotes without line breaks.
+/// The named columns of a comma-separated file with a header line, as core::CsvReader reads it.
 class Table {
  public:
   /// @param columns  those to keep; empty: all.
@@ -57,7 +56,7 @@ class Table {
   core::Result<Table> selected(std::span<const std::string> columns, Missing missing) const;
 
  private:
-  core::Result<void> read_header(std::string_view line, std::vector<std::string_view>& header);
+  core::Result<void> read_header(const std::vector<std::string_view>& header);
   /// Keeps the row's wanted cells; otherwise says what is wrong.
   std::string add_row(std::size_t line, std::span<const std::string_view> cells, Missing missing);
   std::string name_;

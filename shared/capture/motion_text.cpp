@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <optional>
 #include <string_view>
 
 #include "capture/force.hpp"
 #include "capture/motion.hpp"
+#include "core/csv.hpp"
 #include "core/try.hpp"
 #include "core/words.hpp"
 #include "trial/csv.hpp"
@@ -18,26 +18,12 @@ namespace tractus {
 namespace capture::detail {
 namespace {
 namespace fs = std::filesystem;
+using core::CsvReader;
 using core::Errc;
 using core::Error;
 using math::Vec3;
 
 constexpr std::size_t kMaxFrames = 2'000'000, kMaxLine = 1 << 20;
-
-std::vector<std::string_view> split(std::string_view line, char by) {
-  std::vector<std::string_view> out;
-  while (true) {
-    const std::size_t end = line.find(by);
-    std::string_view cell = line.substr(0, end);
-    while (!cell.empty() && (cell.back() == '\r' || cell.back() == ' ')) cell.remove_suffix(1);
-    while (!cell.empty() && cell.front() == ' ') cell.remove_prefix(1);
-    if (cell.size() > 1 && cell.front() == '"' && cell.back() == '"')
-      cell = cell.substr(1, cell.size() - 2);
-    out.push_back(cell);
-    if (end == std::string_view::npos) return out;
-    line.remove_prefix(end + 1);
-  }
-}
 
 std::optional<double> number(std::string_view cell) {
   double value = 0.0;
@@ -47,41 +33,10 @@ std::optional<double> number(std::string_view cell) {
   return value;
 }
 
-/// Lines of a file, counted, of bounded length.
-class Lines {
- public:
-  explicit Lines(const fs::path& path) : path_(path), file_(path) {}
-  bool next() {
-    ++number_;
-    line_.clear();
-    for (int c = file_.get(); c != std::ifstream::traits_type::eof(); c = file_.get()) {
-      if (c == '\n') return true;
-      if (line_.size() == kMaxLine) return too_long_ = true, false;
-      line_ += char(c);
-    }
-    return !line_.empty();
-  }
-  bool too_long() const { return too_long_; }
-  std::string_view line() const { return line_; }
-  Error too_many() const {
-    return {Errc::too_large, fmt::format("{}: more than {} frames", path_.string(), kMaxFrames)};
-  }
-  Error wrong(const std::string& what) const {
-    return {Errc::bad_input, fmt::format("{}:{}: {}", path_.string(), number_, what)};
-  }
+using Cells = std::vector<std::string_view>;
 
- private:
-  fs::path path_;
-  std::ifstream file_;
-  std::string line_;
-  std::size_t number_ = 0;
-  bool too_long_ = false;
-};
-
-/// What is wrong when lines end early, if anything is.
-std::optional<Error> cut_short(const Lines& lines) {
-  if (!lines.too_long()) return std::nullopt;
-  return lines.wrong(fmt::format("a line of more than {} bytes", kMaxLine));
+Error too_many(const fs::path& path) {
+  return {Errc::too_large, fmt::format("{}: more than {} frames", path.string(), kMaxFrames)};
 }
 
 void add(BodyTrack& track, double t_s, const math::Pose& pose) {
@@ -97,14 +52,14 @@ struct QtmHeader {
 };
 
 /// Where "NAME X" stands, or "X": there may be an empty column between two bodies.
-std::vector<std::size_t> first_columns(const std::vector<std::string_view>& names) {
+std::vector<std::size_t> first_columns(const Cells& names) {
   std::vector<std::size_t> out;
   for (std::size_t k = 0; k < names.size(); ++k)
     if (names[k] == "X" || names[k].ends_with(" X")) out.push_back(k);
   return out;
 }
 
-std::vector<std::string> names_of(const std::vector<std::string_view>& cells) {
+std::vector<std::string> names_of(const Cells& cells) {
   std::vector<std::string> out;
   for (std::size_t k = 1; k < cells.size(); ++k)
     if (!cells[k].empty()) out.push_back(core::one_line(cells[k]));
@@ -113,7 +68,7 @@ std::vector<std::string> names_of(const std::vector<std::string_view>& cells) {
 
 /// A body's sixteen columns: X Y Z (mm), three angles, residual, Rot[0 … 8] by columns of the
 /// matrix. QTM writes zeros and a residual of −1 (or empty cells) where it saw nothing.
-std::optional<math::Pose> qtm_pose(const std::vector<std::string_view>& cells, std::size_t from) {
+std::optional<math::Pose> qtm_pose(const Cells& cells, std::size_t from) {
   std::array<double, 16> v{};
   for (std::size_t k = 0; k < 16; ++k) {
     const auto value = number(cells[from + k]);
@@ -126,8 +81,9 @@ std::optional<math::Pose> qtm_pose(const std::vector<std::string_view>& cells, s
   return math::Pose{1e-3 * Vec3(v[0], v[1], v[2]), math::Quat(turn).normalized()};
 }
 
-/// @param begun  the first row is the line that was read last
-core::Result<Motion> qtm_rows(Lines& lines, const QtmHeader& header, bool numbered, bool begun) {
+/// @param begun  `cells` are already those of the first row
+core::Result<Motion> qtm_rows(CsvReader& lines, Cells& cells, const fs::path& path,
+                              const QtmHeader& header, bool numbered, bool begun) {
   Motion out;
   out.rate_Hz = header.rate_Hz;
   const bool six = !header.bodies.empty();
@@ -135,10 +91,9 @@ core::Result<Motion> qtm_rows(Lines& lines, const QtmHeader& header, bool number
   const std::size_t from = numbered ? 2 : 0, each = six ? 16 : 3;
   std::size_t frame = 0;
   double last_s = -1e300;
-  for (bool more = begun || lines.next(); more; more = lines.next()) {
-    if (frame == kMaxFrames) return lines.too_many();
-    if (lines.line().empty() || lines.line() == "\r") continue;
-    const auto cells = split(lines.line(), '\t');
+  for (bool more = begun || TRY(lines.next(cells)); more; more = TRY(lines.next(cells))) {
+    if (frame == kMaxFrames) return too_many(path);
+    if (core::is_blank(cells)) continue;
     if (cells.size() < from + each * names)
       return lines.wrong(
           fmt::format("{} columns where {} are expected", cells.size(), from + each * names));
@@ -165,16 +120,15 @@ core::Result<Motion> qtm_rows(Lines& lines, const QtmHeader& header, bool number
       out.markers[header.markers[n]].p_C_m.push_back(1e-3 * Vec3(*x, *y, *z));
     }
   }
-  if (const auto why = cut_short(lines)) return *why;
   return out;
 }
 }  // namespace
 
 core::Result<Motion> read_qtm(const fs::path& path) {
-  Lines lines(path);
+  auto lines = TRY(CsvReader::open(path, kMaxLine, '\t'));
   QtmHeader header;
-  while (lines.next()) {
-    const auto cells = split(lines.line(), '\t');
+  Cells cells;
+  while (TRY(lines.next(cells))) {
     if (cells[0] == "FREQUENCY" && cells.size() > 1)
       header.rate_Hz = number(cells[1]).value_or(0.0);
     if (cells[0] == "BODY_NAMES") header.bodies = names_of(cells);
@@ -190,10 +144,9 @@ core::Result<Motion> read_qtm(const fs::path& path) {
     if (columns && !header.bodies.empty()) header.from = first_columns(cells);
     const std::size_t wanted =
         header.bodies.empty() ? 3 * header.markers.size() : 16 * header.bodies.size();
-    return qtm_rows(lines, header, cells[0] == "Frame" || (numbers && cells.size() >= wanted + 2),
-                    numbers);
+    const bool numbered = cells[0] == "Frame" || (numbers && cells.size() >= wanted + 2);
+    return qtm_rows(lines, cells, path, header, numbered, numbers);
   }
-  if (const auto why = cut_short(lines)) return *why;
   return Error{Errc::bad_input,
                fmt::format("{}: no row of numbers after the header", path.string())};
 }
@@ -238,19 +191,18 @@ MotiveColumns motive_columns(const std::vector<std::vector<std::string>>& rows) 
   return out;
 }
 
-std::optional<double> cell_at(const std::vector<std::string_view>& cells, int at) {
+std::optional<double> cell_at(const Cells& cells, int at) {
   return std::size_t(at) < cells.size() ? number(cells[std::size_t(at)]) : std::nullopt;
 }
 
-std::optional<Vec3> motive_point(const std::vector<std::string_view>& cells,
-                                 const std::array<int, 7>& at, double unit_m) {
+std::optional<Vec3> motive_point(const Cells& cells, const std::array<int, 7>& at, double unit_m) {
   const auto x = cell_at(cells, at[4]), y = cell_at(cells, at[5]), z = cell_at(cells, at[6]);
   if (!x || !y || !z) return std::nullopt;
   return unit_m * Vec3(*x, *y, *z);
 }
 
-std::optional<math::Pose> motive_pose(const std::vector<std::string_view>& cells,
-                                      const std::array<int, 7>& at, double unit_m) {
+std::optional<math::Pose> motive_pose(const Cells& cells, const std::array<int, 7>& at,
+                                      double unit_m) {
   std::array<double, 7> v{};
   for (std::size_t k = 0; k < 7; ++k) {
     const auto value = cell_at(cells, at[k]);
@@ -276,9 +228,8 @@ struct MotiveHeader {
   MotiveColumns columns;
 };
 
-core::Result<MotiveHeader> motive_header(Lines& lines) {
+core::Result<MotiveHeader> motive_header(CsvReader& lines, const Cells& first) {
   MotiveHeader out;
-  const auto first = split(lines.line(), ',');
   bool quaternions = false;
   for (std::size_t k = 0; k + 1 < first.size(); ++k) {
     if (first[k] == "Export Frame Rate") out.rate_Hz = number(first[k + 1]).value_or(0.0);
@@ -294,9 +245,9 @@ core::Result<MotiveHeader> motive_header(Lines& lines) {
     if (first[k] == "Rotation Type") quaternions = first[k + 1] == "Quaternion";
   }
   std::vector<std::vector<std::string>> head;
-  while (lines.next()) {
-    if (lines.line().find_first_not_of(",\r") == std::string_view::npos) continue;
-    const auto cells = split(lines.line(), ',');
+  Cells cells;
+  while (TRY(lines.next(cells))) {
+    if (std::ranges::all_of(cells, [](auto cell) { return cell.empty(); })) continue;
     head.emplace_back(cells.begin(), cells.end());
     if (cells[0] == "Frame") break;
     if (head.size() > 8) return lines.wrong("no row that begins with Frame in the header");
@@ -313,16 +264,17 @@ core::Result<MotiveHeader> motive_header(Lines& lines) {
 }  // namespace
 
 core::Result<Motion> read_motive(const fs::path& path) {
-  Lines lines(path);
-  if (!lines.next()) return Error{Errc::bad_input, fmt::format("{}: is empty", path.string())};
-  const auto header = TRY(motive_header(lines));
+  auto lines = TRY(CsvReader::open(path, kMaxLine));
+  Cells cells;
+  if (!TRY(lines.next(cells)))
+    return Error{Errc::bad_input, fmt::format("{}: is empty", path.string())};
+  const auto header = TRY(motive_header(lines, cells));
   const MotiveColumns& columns = header.columns;
   Motion out;
   out.rate_Hz = header.rate_Hz;
   double last_s = -1e300;
-  for (std::size_t frame = 0; lines.next(); ++frame) {
-    if (frame == kMaxFrames) return lines.too_many();
-    const auto cells = split(lines.line(), ',');
+  for (std::size_t frame = 0; TRY(lines.next(cells)); ++frame) {
+    if (frame == kMaxFrames) return too_many(path);
     if (cells.size() <= std::size_t(columns.time)) continue;
     const auto t_s = number(cells[std::size_t(columns.time)]);
     if (!t_s || *t_s <= last_s) return lines.wrong("a time that runs forward is expected");
@@ -336,7 +288,6 @@ core::Result<Motion> read_motive(const fs::path& path) {
         out.markers[name].p_C_m.push_back(*point);
       }
   }
-  if (const auto why = cut_short(lines)) return *why;
   return out;
 }
 

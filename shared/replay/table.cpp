@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/csv.hpp"
+
 namespace tractus {
 namespace replay {
 namespace {
@@ -17,14 +19,6 @@ double across(const math::Vec3& v) { return std::hypot(v.x(), v.y()); }
 std::string cell(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
 
 core::Json number(double value) { return std::isfinite(value) ? core::Json(value) : core::Json(); }
-
-/// RFC 4180: quoted where a comma or a quote asks for it.
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
-  return out + "\"";
-}
 
 /// Three decimals and a sign for "less than that", as the source prints.
 std::string short_number(double value, int decimals) {
@@ -84,9 +78,9 @@ std::string csv(std::span<const Row> rows) {
   for (const Row& row : rows)
     for (std::size_t c = 0; c < kChannels.size(); ++c) {
       const Summary& s = row.channels[c];
-      out +=
-          fmt::format("{},{},{},{},{},{},{},{},{}\n", row.scope, quoted(row.name), row.source,
-                      kChannels[c].id, s.samples, s.above, cell(s.mean), cell(s.sd), cell(s.max));
+      out += fmt::format("{},{},{},{},{},{},{},{},{}\n", row.scope, core::csv_cell(row.name),
+                         row.source, kChannels[c].id, s.samples, s.above, cell(s.mean), cell(s.sd),
+                         cell(s.max));
     }
   return out;
 }

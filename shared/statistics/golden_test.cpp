@@ -5,21 +5,13 @@
 #include <limits>
 #include <sstream>
 
+#include "core/csv.hpp"
+
 namespace tractus {
 namespace statistics::golden {
 namespace {
 
 const std::string kRoot = std::string(TRACTUS_SOURCE_DIR) + "/tests/golden/statistics-reference/";
-
-std::vector<std::string> cells(const std::string& line) {
-  std::vector<std::string> out;
-  std::stringstream stream(line);
-  for (std::string cell; std::getline(stream, cell, ',');) {
-    if (!cell.empty() && cell.back() == '\r') cell.pop_back();
-    out.push_back(cell);
-  }
-  return out;
-}
 
 std::vector<std::string> lines_of(const std::string& path) {
   std::ifstream file(kRoot + path);
@@ -64,10 +56,13 @@ Matrix matrix_of(const core::Json& rows) {
 }
 
 Csv::Csv(const std::string& path) {
-  const auto lines = lines_of(path);
-  header_ = cells(lines.at(0));
-  for (std::size_t i = 1; i < lines.size(); ++i)
-    if (!lines[i].empty()) rows_.push_back(cells(lines[i]));
+  auto reader = core::CsvReader::open(kRoot + path, 1 << 20);
+  EXPECT_TRUE(reader) << path;
+  std::vector<std::string_view> cells;
+  while (*reader->next(cells))
+    if (!core::is_blank(cells)) rows_.emplace_back(cells.begin(), cells.end());
+  header_ = rows_.at(0);
+  rows_.erase(rows_.begin());
 }
 
 std::vector<std::string> Csv::texts(const std::string& column) const {

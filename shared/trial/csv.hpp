@@ -25,13 +25,12 @@ using CsvRow = std::function<std::string(std::size_t line, std::span<const doubl
 /// Reads the named columns of a comma-separated file, wherever they stand; other columns may hold
 /// anything.
 ///
-/// Taken: UTF-8 with or without a byte-order mark, LF or CRLF, blanks round a cell, quoted cells
-/// without line breaks, empty lines at the end. Decimal points alone. Nothing is guessed: an empty
-/// cell is not zero.
+/// Taken: what core::CsvReader takes, empty lines at the end. Decimal points alone. Nothing is
+/// guessed: an empty cell is not zero.
 ///
 /// Errors, each one line that begins "FILE:LINE: ": a column that is missing or stands there twice,
 /// a row with more or fewer cells than the header, a cell that is empty, not a number, not finite
-/// or beyond a double, an empty line between rows, a line over the limit (bad_input); too many rows
+/// or beyond a double, an empty line between rows, those of core::CsvReader (bad_input); too many rows
 /// (too_large); not_found, io.
 /// @returns the number of rows.
 core::Result<std::size_t> read_csv(const std::filesystem::path& path,

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <set>
 
 #include "assessment/method.hpp"
@@ -10,6 +9,7 @@
 #include "assessment/snapshot.hpp"
 #include "core/bytes.hpp"
 #include "core/clock.hpp"
+#include "core/csv.hpp"
 #include "core/file.hpp"
 #include "core/try.hpp"
 #include "db/store/cases/cases.hpp"
@@ -27,7 +27,7 @@ using core::Error;
 using core::Json;
 using core::Result;
 
-constexpr std::uint64_t kMostData_bytes = 512ull << 20;
+constexpr std::size_t kMostRow_bytes = 1 << 20;
 constexpr std::size_t kMaxFormula_bytes = 4096;
 
 Error wrong(std::string what) { return {Errc::bad_input, std::move(what)}; }
@@ -155,14 +155,11 @@ Result<void> check_still_released(Backend& backend, const std::string& study,
   const auto released = TRY(released_trials(backend, study, store::Tier::metrics));
   std::set<std::string, std::less<>> ids;
   for (const auto& trial : released.all()) ids.insert(trial.id);
-  const auto bytes = TRY(core::read_file(backend.objects.path_of(data), kMostData_bytes));
-  std::string_view rest(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  auto rows = TRY(core::CsvReader::open(backend.objects.path_of(data), kMostRow_bytes));
+  std::vector<std::string_view> cells;
   std::size_t gone = 0;
-  for (bool header = true; !rest.empty(); header = false) {
-    const std::string_view row = rest.substr(0, rest.find('\n'));
-    if (!header && !ids.contains(row.substr(0, row.find(',')))) ++gone;
-    rest.remove_prefix(std::min(rest.size(), row.size() + 1));
-  }
+  TRY(rows.next(cells));  // the header
+  while (TRY(rows.next(cells))) gone += !ids.contains(cells.front());
   if (gone == 0) return {};
   return Error{Errc::forbidden, fmt::format("{} trials of these data are no longer released for "
                                             "research: analyse the current data instead",

@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "core/csv.hpp"
 #include "core/try.hpp"
 #include "db/store/people/accounts.hpp"
 #include "metrics/metric.hpp"
@@ -16,15 +17,7 @@ using core::Errc;
 using core::Error;
 using core::Result;
 
-/// One cell. What begins like a formula is kept from being one (OWASP, CSV injection).
-std::string cell(std::string text) {
-  if (!text.empty() && std::string_view("=+-@\t\r").find(text.front()) != std::string_view::npos)
-    text.insert(text.begin(), '\'');
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + '"';
-}
+std::string cell(std::string_view text) { return core::csv_person_cell(text); }
 
 std::string cell(const std::optional<double>& number) {
   return number ? fmt::format("{}", *number) : "";

@@ -1,0 +1,43 @@
+#include "assessment/table.hpp"
+
+#include <gtest/gtest.h>
+
+#include "assessment/snapshot.hpp"
+
+namespace tractus {
+namespace assessment {
+namespace {
+
+core::Result<Table> table_of(const std::string& text) {
+  const auto bytes = core::bytes_of(text);
+  return Table::parse({bytes.begin(), bytes.end()}, "t.csv", {}, Missing::keep);
+}
+
+TEST(Table, HoldsQuotedCellsAsTheyWereMeant) {
+  const auto table = table_of(
+      "\xef\xbb\xbfwho,said,n\r\n"
+      "a,\"one, \"\"two\"\"\",1\r\n"
+      "b,\"line\r\nbreak\",2\r\n");
+  ASSERT_TRUE(table) << table.error().what;
+  EXPECT_EQ(table->columns(), (std::vector<std::string>{"who", "said", "n"}));
+  EXPECT_EQ(table->texts("said"), (std::vector<std::string_view>{"one, \"two\"", "line\r\nbreak"}));
+  EXPECT_TRUE(table->is_numeric("n"));
+  EXPECT_EQ(table->line(1), 3u);
+
+  const auto again = table_of(marked(*table, {"", "not \"there\""}));
+  ASSERT_TRUE(again) << again.error().what;
+  EXPECT_EQ(again->texts("said"), table->texts("said"));
+  EXPECT_EQ(again->texts("excluded_because")[1], "not \"there\"");
+}
+
+TEST(Table, SaysInWhichLineItStumbled) {
+  EXPECT_EQ(table_of("a,b\n\"1\n\",2\n3\n").error().what, "t.csv:4: 1 cells, the header has 2");
+  EXPECT_EQ(table_of("a,b\n1,\"2\n3,4\n").error().what, "t.csv:2: a quote stays open");
+  EXPECT_EQ(table_of("\n1\n").error().what, "t.csv:1: the header line is empty");
+  EXPECT_EQ(table_of("").error().what, "t.csv:1: the header line is empty");
+  EXPECT_EQ(table_of(std::string("a,\x01\n1,2\n")).error().what, "t.csv:1: this is no text file");
+}
+
+}  // namespace
+}  // namespace assessment
+}  // namespace tractus
