@@ -148,7 +148,7 @@ Presence::Presence(const Options& options, const session::StationFolder& folder)
   std::string url = options.server_url;
   while (url.ends_with('/')) url.pop_back();
   const uplink::ServerAddress to{.url = url,
-                                 .authorization = "Authorization: Bearer " + *token,
+                                 .headers = {{"Authorization", "Bearer " + *token}},
                                  .authority = options.authority};
   p.line = std::make_unique<uplink::LiveUplink>(uplink::LiveUplink::Parts{
       .open =

@@ -3,9 +3,12 @@
 
 #include <atomic>
 #include <filesystem>
+#include <map>
 #include <memory>
+#include <optional>
+#include <string>
 
-#include "station/uplink/websocket.hpp"
+#include "core/result.hpp"
 
 namespace tractus::uplink {
 
@@ -15,18 +18,20 @@ class ServerSocket {
   /// Errors: unavailable when the line is broken, or the other side does not read.
   virtual core::Result<void> send(const std::string& text) = 0;
   /// The next text, or nothing when none came within `patience_ms`. Pings are answered within.
-  /// Errors: unavailable when the line is broken or closed; bad_input, too_large.
+  /// Errors: unavailable when the line is broken or closed, with the server's reason; bad_input for
+  /// what no server may send, too_large (over 64 KiB). After an error it is of no use any more.
   virtual core::Result<std::optional<std::string>> receive(int patience_ms) = 0;
 };
 
 struct ServerAddress {
-  std::string url;            ///< "https://host:port"
-  std::string authorization;  ///< header line, "Authorization: Bearer TOKEN"
+  std::string url;                             ///< "https://host:port"
+  std::map<std::string, std::string> headers;  ///< {"Authorization", "Bearer TOKEN"}
   std::filesystem::path authority = {};
   std::string path = "/api/v1/live/station";
 };
-/// By libcurl, certificate checked as HttpServer does. @param stopped  ends the waiting early
-/// Errors: unavailable, unauthorised, bad_input.
+/// Connected by libcurl, certificate checked as HttpServer does; the WebSocket is Boost.Beast's.
+/// @param stopped  ends the waiting early
+/// Errors: unavailable, unauthorised, forbidden, bad_input.
 core::Result<std::unique_ptr<ServerSocket>> open_server_socket(const ServerAddress& to,
                                                                const std::atomic<bool>& stopped);
 

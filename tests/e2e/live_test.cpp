@@ -320,7 +320,7 @@ TEST_F(Live, AReportIsInTheFleetsListOnceHoweverOftenItCame) {
   EXPECT_EQ(client_.ask("POST", "/api/v1/station/report", headers, bad.dump()).status, 400);
 }
 
-/// By libcurl, as stations do, with the house's own authority.
+/// By libcurl and Beast, as stations do, with the house's own authority.
 TEST(LiveOverTls, AStationsLineWorksAndATamperedAuthorityOpensNone) {
   const ServedWorld world;
   ServerProcess server(world.data, {}, Transport::tls);
@@ -330,7 +330,7 @@ TEST(LiveOverTls, AStationsLineWorksAndATamperedAuthorityOpensNone) {
   const Headers admin = world.admin(client);
   const std::atomic<bool> stopped = false;
   uplink::ServerAddress to{.url = "https://127.0.0.1:" + std::to_string(server.port()),
-                           .authorization = "Authorization: " + world.station_1.at("Authorization"),
+                           .headers = world.station_1,
                            .authority = world.data / "tls/authority.pem"};
   auto line = uplink::open_server_socket(to, stopped);
   ASSERT_TRUE(line) << line.error().what;
@@ -345,7 +345,7 @@ TEST(LiveOverTls, AStationsLineWorksAndATamperedAuthorityOpensNone) {
   EXPECT_FALSE(uplink::open_server_socket(to, stopped))
       << "an authority nobody named is not trusted";
   to.authority = world.data / "tls/authority.pem";
-  to.authorization = "Authorization: Bearer wrong";
+  to.headers["Authorization"] = "Bearer wrong";
   const auto refused = uplink::open_server_socket(to, stopped);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, core::Errc::unauthorised);

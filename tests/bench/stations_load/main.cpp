@@ -43,7 +43,7 @@ class Wall {
           const std::atomic<bool> stopped = false;
           auto line =
               uplink::open_server_socket({.url = server.url(),
-                                          .authorization = cookie + "\r\nOrigin: " + server.url(),
+                                          .headers = {{"Cookie", cookie}, {"Origin", server.url()}},
                                           .authority = server.authority(),
                                           .path = "/api/v1/live"},
                                          stopped);

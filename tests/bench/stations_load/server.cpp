@@ -165,7 +165,7 @@ core::Result<std::string> Server::cookie() const {
   const CURLcode code = curl_easy_perform(curl);
   curl_slist_free_all(headers);
   curl_easy_cleanup(curl);
-  if (code == CURLE_OK && !cookie.empty()) return "Cookie: " + cookie;
+  if (code == CURLE_OK && !cookie.empty()) return cookie;
   return core::Error{core::Errc::unavailable, "the admin cannot sign in"};
 }
 

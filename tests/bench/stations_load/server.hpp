@@ -23,7 +23,7 @@ class Server {
   const std::filesystem::path& authority() const { return authority_; }  ///< empty: plain
   const std::string& case_id() const { return case_id_; }
   const std::string& token(std::size_t station) const { return tokens_[station]; }
-  /// "Cookie: …", of the admin.
+  /// The admin's, as the header Cookie has it.
   core::Result<std::string> cookie() const;
   /// Resident memory, bytes, and processor time so far, s.
   double resident_bytes() const;

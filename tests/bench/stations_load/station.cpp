@@ -146,7 +146,7 @@ void Station::send_trial() {
 void Station::say_states(const std::stop_token& stop) {
   const std::atomic<bool> stopped = false;
   const uplink::ServerAddress to{.url = server_.url(),
-                                 .authorization = "Authorization: Bearer " + server_.token(number_),
+                                 .headers = {{"Authorization", "Bearer " + server_.token(number_)}},
                                  .authority = server_.authority()};
   auto line = uplink::open_server_socket(to, stopped);
   wire::StationStatus told;

@@ -32,7 +32,7 @@ WebSocket::WebSocket(int port, const std::string& path, const Headers& headers)
   for (const auto& [name, value] : headers)
     lines += (lines.empty() ? "" : "\r\n") + name + ": " + value;
   const std::string host = "127.0.0.1:" + std::to_string(port);
-  if (!send_bytes(uplink::websocket_request(host, path, lines, "dGhlIHNhbXBsZSBub25jZQ=="))) return;
+  if (!send_bytes(websocket_request(host, path, lines, "dGhlIHNhbXBsZSBub25jZQ=="))) return;
   std::string head;
   for (char c = 0; head.find("\r\n\r\n") == std::string::npos && ::recv(fd_, &c, 1, 0) == 1;)
     head += c;
@@ -56,7 +56,7 @@ bool WebSocket::send_bytes(const std::string& bytes) {
 }
 
 bool WebSocket::say(const std::string& text) {
-  return send_bytes(uplink::websocket_frame(uplink::Opcode::text, text, kMask));
+  return send_bytes(websocket_frame(Opcode::text, text, kMask));
 }
 
 bool WebSocket::receive(int patience_ms) {
@@ -81,10 +81,9 @@ std::optional<core::Json> WebSocket::hear(int patience_ms) {
       continue;
     }
     const auto& [opcode, payload] = **event;
-    if (opcode == uplink::Opcode::text) return core::Json::parse(payload, nullptr, false);
-    if (opcode == uplink::Opcode::ping)
-      send_bytes(uplink::websocket_frame(uplink::Opcode::pong, payload, kMask));
-    if (opcode != uplink::Opcode::close) continue;
+    if (opcode == Opcode::text) return core::Json::parse(payload, nullptr, false);
+    if (opcode == Opcode::ping) send_bytes(websocket_frame(Opcode::pong, payload, kMask));
+    if (opcode != Opcode::close) continue;
     closed_ = true;
     if (payload.size() >= 2)
       close_code_ =

@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "station/uplink/websocket.hpp"
 #include "tests/support/server/process.hpp"
+#include "tests/support/server/websocket_frames.hpp"
 
 namespace tractus::world {
 
@@ -45,7 +45,7 @@ class WebSocket {
   int fd_ = -1, status_ = 0, close_code_ = 0;
   bool closed_ = false;
   std::string close_words_;
-  uplink::WebSocketReader reader_;
+  WebSocketReader reader_;
 };
 
 /// What a browser sends along: its cookie, and the page it is on.

@@ -1,5 +1,5 @@
 /// WebSocket frames as a client sends and takes them, RFC 6455: text alone, no extension. Bytes in,
-/// bytes out, no sockets.
+/// bytes out, no sockets. Server and station have Boost.Beast at both ends; the tests do not.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 #include "core/bytes.hpp"
 #include "core/result.hpp"
 
-namespace tractus::uplink {
+namespace tractus::world {
 
 enum class Opcode : std::uint8_t { text = 0x1, close = 0x8, ping = 0x9, pong = 0xA };
 
@@ -21,10 +21,6 @@ std::string websocket_frame(Opcode opcode, std::string_view payload,
 /// @param key  16 random bytes in base64
 std::string websocket_request(const std::string& host, const std::string& path,
                               const std::string& authorization, const std::string& key);
-/// Is this head (to its empty line) the acceptance of that key? Errors: unauthorised, forbidden,
-/// conflict, unavailable by its status; bad_input when it is no acceptance.
-core::Result<void> check_acceptance(std::string_view head, const std::string& key);
-
 /// What the other side said: a whole text, a ping, or its goodbye.
 struct WebSocketEvent {
   Opcode opcode;
@@ -52,4 +48,4 @@ class WebSocketReader {
   bool within_ = false;  ///< a text whose end has not come
 };
 
-}  // namespace tractus::uplink
+}  // namespace tractus::world

@@ -1,9 +1,9 @@
-#include "station/uplink/websocket.hpp"
+#include "tests/support/server/websocket_frames.hpp"
 
 #include <gtest/gtest.h>
 
 namespace tractus {
-namespace uplink {
+namespace world {
 namespace {
 
 std::string bytes(std::initializer_list<int> values) {
@@ -33,21 +33,6 @@ TEST(WebSocketFrame, SaysItsLengthInTheShortestOfThreeWays) {
             bytes({0x81, 0xFE, 0x00, 0x7E}));
   EXPECT_EQ(websocket_frame(Opcode::text, std::string(65536, 'x'), kMask).substr(0, 10),
             bytes({0x81, 0xFF, 0, 0, 0, 0, 0, 1, 0, 0}));
-}
-
-TEST(WebSocketAcceptance, IsThatOfTheStandardsExample) {
-  // Section 1.3: the key and the accept value that follows from it.
-  const std::string key = "dGhlIHNhbXBsZSBub25jZQ==";
-  const std::string fine =
-      "HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
-      "Sec-WebSocket-Accept: s3pPLMBiTxaQ9kYGzzhZRbK+xOo=\r\n\r\n";
-  EXPECT_TRUE(check_acceptance(fine, key));
-  EXPECT_FALSE(check_acceptance(fine, "AGhlIHNhbXBsZSBub25jZQ=="));
-  const auto refused = check_acceptance("HTTP/1.1 401 Unauthorized\r\n\r\n", key);
-  ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().code, core::Errc::unauthorised);
-  for (const char* rubbish : {"", "HTTP/1.1 ", "HTTP/1.1 abc\r\n\r\n", "HTTP/1.1 101 OK\r\n\r\n"})
-    EXPECT_FALSE(check_acceptance(rubbish, key)) << rubbish;
 }
 
 TEST(WebSocketReader, GivesMessagesHoweverTheirBytesAreCut) {
@@ -91,5 +76,5 @@ TEST(WebSocketReader, DoesNotWaitForWhatIsTooLong) {
 }
 
 }  // namespace
-}  // namespace uplink
+}  // namespace world
 }  // namespace tractus

@@ -1,65 +1,25 @@
-#include "station/uplink/websocket.hpp"
+#include "tests/support/server/websocket_frames.hpp"
 
 #include <fmt/format.h>
-#include <openssl/evp.h>
 
-#include <algorithm>
+#include <utility>
 
 #include "core/require.hpp"
 #include "core/try.hpp"
 
 namespace tractus {
-namespace uplink {
+namespace world {
 namespace {
 
 constexpr std::uint8_t kFinal = 0x80, kReserved = 0x70, kOpcode = 0x0F, kMasked = 0x80;
 constexpr std::uint8_t kContinuation = 0x0;
-constexpr const char* kGuid = "258EAFA5-E914-47DA-95CA-C5AB0DC85B11";  // RFC 6455 section 1.3
 
 core::Error wrong(const char* what) {
-  return {core::Errc::bad_input, fmt::format("live line: {}", what)};
-}
-
-std::string sha1(const std::string& text) {
-  std::array<unsigned char, EVP_MAX_MD_SIZE> out{};
-  unsigned int size = 0;
-  const int done = EVP_Digest(text.data(), text.size(), out.data(), &size, EVP_sha1(), nullptr);
-  core::require(done == 1, "OpenSSL computes a digest");
-  return {reinterpret_cast<const char*>(out.data()), size};
+  return {core::Errc::bad_input, fmt::format("WebSocket: {}", what)};
 }
 
 std::uint8_t byte_at(std::string_view bytes, std::size_t at) {
   return static_cast<std::uint8_t>(bytes[at]);
-}
-
-std::string lower_case(std::string_view text) {
-  std::string out(text);
-  std::ranges::transform(out, out.begin(), [](unsigned char c) {
-    return static_cast<char>(c >= 'A' && c <= 'Z' ? c + 32 : c);
-  });
-  return out;
-}
-
-/// The value of a header, lower-case name, or "".
-std::string_view header(std::string_view head, std::string_view name) {
-  const std::string lower = lower_case(head);
-  const auto at = lower.find(fmt::format("\r\n{}:", name));
-  if (at == std::string::npos) return {};
-  std::string_view value = head.substr(at + 3 + name.size());
-  value = value.substr(0, value.find('\r'));
-  value.remove_prefix(std::min(value.find_first_not_of(' '), value.size()));
-  return value.substr(0, value.find_last_not_of(' ') + 1);
-}
-
-core::Errc code_of(int status) {
-  switch (status) {
-    case 401:
-      return core::Errc::unauthorised;
-    case 403:
-      return core::Errc::forbidden;
-    default:
-      return status >= 500 || status == 429 ? core::Errc::unavailable : core::Errc::bad_input;
-  }
 }
 
 }  // namespace
@@ -93,21 +53,6 @@ std::string websocket_request(const std::string& host, const std::string& path,
       path, host, key, authorization);
 }
 
-core::Result<void> check_acceptance(std::string_view head, const std::string& key) {
-  if (head.size() < 12 || !head.starts_with("HTTP/1.1 ")) return wrong("no answer of HTTP/1.1");
-  const std::string digits(head.substr(9, 3));
-  const int status = std::ranges::all_of(digits, [](char c) { return c >= '0' && c <= '9'; })
-                         ? std::stoi(digits)
-                         : 0;
-  if (status != 101)
-    return core::Error{code_of(status), fmt::format("live line: the server answers {}", status)};
-  const std::string made = sha1(key + kGuid);
-  if (lower_case(header(head, "upgrade")) != "websocket" ||
-      header(head, "sec-websocket-accept") != core::base64(core::bytes_of(made)))
-    return wrong("the server's acceptance is not of this request");
-  return {};
-}
-
 core::Result<std::optional<WebSocketReader::Head>> WebSocketReader::head() const {
   const std::string_view bytes = waiting_;
   if (bytes.size() < 2) return std::optional<Head>();
@@ -124,7 +69,7 @@ core::Result<std::optional<WebSocketReader::Head>> WebSocketReader::head() const
   const bool control = (out.opcode & 0x8) != 0;
   if (control && (size > 125 || !out.last)) return wrong("a control frame that is too long");
   if (size > kMost_bytes || size + message_.size() > kMost_bytes)
-    return core::Error{core::Errc::too_large, "live line: the server sends too long a message"};
+    return core::Error{core::Errc::too_large, "WebSocket: the server sends too long a message"};
   out.payload = size;
   return std::optional(out);
 }
@@ -149,5 +94,5 @@ core::Result<std::optional<WebSocketEvent>> WebSocketReader::next() {
   }
 }
 
-}  // namespace uplink
+}  // namespace world
 }  // namespace tractus
