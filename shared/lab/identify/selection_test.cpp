@@ -61,6 +61,9 @@ class Toy final : public Problem {
     for (auto& c : candidates_)
       if (c.facts.id == id) c.facts.admissible = admissible;
   }
+  const SelectionThresholds& selection_thresholds() const override {
+    return kSettings.probing_thresholds;
+  }
   std::string_view rig() const override { return "toy"; }
   int trials() const override { return trials_; }
   std::string trial_id(int k) const override { return std::to_string(k); }
