@@ -40,7 +40,7 @@ export function makeClient(): QueryClient {
   return client;
 }
 
-const open = (role: string) => kMenu.filter(({ roles }) => roles.includes(role));
+const open = (role: string) => kMenu.filter(({ roles }) => roles.some((one) => one === role));
 
 function Brand() {
   const [at] = useLocation();

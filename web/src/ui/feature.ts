@@ -8,11 +8,14 @@ export interface Page {
   readonly show: (at: (name: string) => string) => ReactNode;
 }
 
+/** Roles of people, as the server names them (db/store/people/role.hpp). */
+export type Role = 'admin' | 'director' | 'faculty' | 'researcher' | 'technician' | 'trainee';
+
 export interface MenuEntry {
   readonly to: string;
   readonly name: string;
   /** Whose menu it is in. The server decides again on every call. */
-  readonly roles: readonly string[];
+  readonly roles: readonly Role[];
   /** Entries stand in rising order. */
   readonly order: number;
 }
