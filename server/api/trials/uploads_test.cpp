@@ -47,7 +47,7 @@ TEST_F(Uploads, BecomeATrialAJobAndAnObject) {
   sent(bytes_);
   auto state = commit_upload(backend_, kOne, kTrial);
   ASSERT_TRUE(state) << state.error().what;
-  EXPECT_EQ(state->state, store::UploadPhase::complete);
+  EXPECT_EQ(state->state, trial::UploadPhase::complete);
   auto trial = store_.read([](store::Reading& tx) { return store::trial_of(tx, kTrial); });
   ASSERT_TRUE(trial && *trial);
   EXPECT_EQ((*trial)->summary.samples, 250u);
@@ -72,7 +72,7 @@ TEST_F(Uploads, CommittingTwiceIsCommittingOnce) {
   EXPECT_EQ(trials(), 1u);
   auto again = announce_upload(backend_, kOne, kTrial, announcement(bytes_));
   ASSERT_TRUE(again);
-  EXPECT_EQ(again->state, store::UploadPhase::complete);
+  EXPECT_EQ(again->state, trial::UploadPhase::complete);
 }
 
 TEST_F(Uploads, TheSameAnnouncementIsTheSameUploadAndAnotherAConflict) {
