@@ -294,6 +294,9 @@ TEST(Fit, RefusesAnEffectThatIsNotThereAndOneThatCannotBeShown) {
 /// NIST StRD nonlinear regression, Misra1a: y = b1 (1 − e^(−b2 x)).
 class Misra1a final : public Problem {
  public:
+  const SelectionThresholds& selection_thresholds() const override {
+    return kSettings.probing_thresholds;
+  }
   std::string_view rig() const override { return "nist"; }
   int trials() const override { return 1; }
   std::string trial_id(int) const override { return "misra1a"; }
