@@ -134,7 +134,8 @@ void check_units(const core::Json& json, const std::string& where) {
   if (!json.is_object()) return;
   const auto type = json.value("type", core::Json());
   if (type == "number" || type == "integer") {
-    EXPECT_TRUE(json.contains("x-unit")) << where;
+    EXPECT_NE(json.value("x-unit", ""), "")
+        << where << " is a number without a unit; a count has the unit \"1\"";
   }
   if (json.contains("properties"))
     for (const auto& [name, field] : json["properties"].items()) {

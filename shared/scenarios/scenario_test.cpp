@@ -100,7 +100,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"/walls_m", "3", "walls_m: an array of depths"},
         Refusal{"/kind", "\"hard\"", "walls_m: 'hard' has no wall"},
         Refusal{"/kind", "\"lateral_breach\"", "travel_m: 0.05 lies behind the breach"},
-        Refusal{"/kind", "\"medial\"", "kind: 'medial': hard, soft"},
+        Refusal{"/kind", "\"medial\"", "kind: 'medial' is none of hard, soft"},
         Refusal{"/travel_m", "0.027", "travel_m: 0.027 leaves less than a layer"},
         Refusal{"/travel_m", "50", "travel_m: 50 is outside"},
         Refusal{"/density", "0", "density: 0 is outside"},

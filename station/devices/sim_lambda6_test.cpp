@@ -167,30 +167,6 @@ TEST(SimLambda6, GivesNoMoreThanTwentyNewtonsAndSaysSo) {
   EXPECT_LT(sample.velocity_m_s.norm(), 0.03);
 }
 
-TEST(SimLambda6, RefusesNumbersThatMeanNothing) {
-  for (const DeviceInfo& info : all(DeviceKind::handle)) {
-    if (!info.simulated) continue;
-    DeviceOptions options = options_of(1);
-    options.duration_s = std::nan("");
-    EXPECT_FALSE(info.make(options)) << info.id;
-  }
-}
-
-TEST(EveryDevice, IsClosedBeforeItIsOpenedAndMayBeClosedTwice) {
-  for (const DeviceInfo& info : all(DeviceKind::handle)) {
-    if (!info.simulated) continue;
-    auto device = info.make(options_of(1));
-    ASSERT_TRUE(device) << info.id;
-    Sample sample;
-    EXPECT_EQ(device->device->read(0, sample), Status::fault) << info.id;
-    EXPECT_TRUE(device->device->open()) << info.id;
-    EXPECT_EQ(device->device->write({Vec3::Constant(NAN), Vec3::Zero()}), Status::fault) << info.id;
-    device->device->close();
-    device->device->close();
-    EXPECT_EQ(device->device->write({}), Status::fault) << info.id;
-  }
-}
-
 }  // namespace
 }  // namespace devices
 }  // namespace tractus

@@ -250,7 +250,10 @@ TEST_P(EveryRenderedEffect, GivesBackNoMoreWorkThanItGotUnlessItSaysSo) {
     EXPECT_LT(work_J, -1e-4) << "says that it is not passive, and is";
     return;
   }
-  EXPECT_GT(work_J, -1e-8);
+  EXPECT_GT(work_J, -1e-8)
+      << "it returns more than it takes, " << -work_J
+      << " J a cycle: its sign may be wrong (a force that resists an advancing probe is positive); "
+         "if it is meant to, state .passive = false";
   EXPECT_GT(work_per_cycle_J(info_, At::high), -1e-4);
 }
 

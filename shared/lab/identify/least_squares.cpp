@@ -131,7 +131,8 @@ class Search {
     stale_ = false;
   }
 
-  /// Broyden's update: the jacobian that would have told of the last step.
+  /// J ← J + (Δr − J Δu) Δuᵀ / ΔuᵀΔu [Broyden1965]: the jacobian that would have predicted the last
+  /// step, with u in units of the parameters' steps.
   void secant(Solution& next) const {
     Eigen::VectorXd step(Eigen::Index(at_.values.size()));
     for (Eigen::Index k = 0; k < step.size(); ++k) {
@@ -155,7 +156,9 @@ class Search {
     return g;
   }
 
-  /// The damped step, cut at the bounds; parameters at a bound that the step would push out stay.
+  /// The step that solves (A + λ diag A) Δu = −b, A = JᵀWJ, b = JᵀWr [Marquardt1963], cut at the
+  /// bounds; parameters at a bound that the step would push out stay. `promised` is the decrease of
+  /// the loss by its quadratic model.
   Solution stepped(const Gram& g, double damping, double& promised) const {
     const Eigen::Index n = g.b.size();
     std::vector<bool> held(std::size_t(n), false);

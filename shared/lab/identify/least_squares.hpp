@@ -77,11 +77,12 @@ Solution polish(const Residual& residual, Solution at, const SearchOptions& opti
 /// Recomputes all columns of the jacobian at the solution.
 void differentiate(const Residual& residual, Solution& solution);
 
-/// Huber's weights at kHuber times the scale.
+/// w(r) = min(1, c·scale/|r|), c = LeastSquaresSettings::huber [Huber1964], by which the normal
+/// equations are weighted anew at each point [Holland1977].
 Eigen::VectorXd robust_weights(const Eigen::VectorXd& residual, double scale);
 /// From a high quantile of |r|, at least 1.
 double robust_scale(const Eigen::VectorXd& residual);
-/// Sum of ρ over a stretch: r² within, linear beyond.
+/// Sum over a stretch of ρ(r) = r² up to c·scale, c·scale (2|r| − c·scale) beyond [Huber1964].
 double robust_loss(const Eigen::Ref<const Eigen::VectorXd>& residual, double scale);
 
 /// Normal equations of a stretch of the residual with its weights.

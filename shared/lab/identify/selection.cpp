@@ -36,6 +36,9 @@ std::pair<double, double> mean_squares(const Solution& a, const Solution& b) {
 
 }  // namespace
 
+/// n/2 ln S + Δprior/2 + price·k, in nats: as Schwarz's criterion [Schwarz1978], with n the
+/// independent observations, S the mean square, k the numbers beyond the base, and a fixed price of
+/// a number where his is ½ ln n.
 double cost(const Residual& residual, const Solution& s, const Solution& base) {
   return 0.5 * residual.problem().selection_thresholds().observations_per_trial *
              double(residual.trials()) *

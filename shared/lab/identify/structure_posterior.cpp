@@ -51,6 +51,7 @@ StructurePosterior::StructurePosterior(const Residual& residual, const Selection
   outside_ = at_floor(residual.problem(), chosen.mean_square(), base) ? kPosterior.imitated[count]
              : chosen_.effects.empty()                                ? kPosterior.outside
                                                                       : kPosterior.stand_in;
+  // P(structure) ∝ exp(−cost), structures equally likely beforehand [Kass1995].
   double sum = 0.0;
   for (const double s : scores) sum += std::exp(s - best);
   for (std::size_t k = 0; k < scores.size(); ++k)

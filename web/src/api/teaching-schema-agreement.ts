@@ -1,4 +1,4 @@
-/** The same promise as in schema-agreement.ts, for teaching: what the server describes is what is parsed. */
+/** As schema-agreement.ts, for teaching: what the server describes is what is parsed. */
 import type * as v from 'valibot';
 import type { components } from './generated/schema';
 import type {
