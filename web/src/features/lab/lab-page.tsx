@@ -31,8 +31,9 @@ export function LabPage() {
           add this effect, and check that the error decreases.
         </p>
       </div>
-      {/* Both lists at once: one that came later would push the rest of the page down. */}
-      {setsAsked.isPending || modelsAsked.isPending ? (
+      {/* Both lists at once: one that came later would push the rest of the page down. Fetched, not pending: a list that failed is
+          fetched again when it is shown, and would be hidden by that. */}
+      {!setsAsked.isFetched || !modelsAsked.isFetched ? (
         <Skeleton height="60vh" />
       ) : (
         <>
