@@ -4,6 +4,7 @@
 
 #include "core/try.hpp"
 #include "db/store/studies/blinding.hpp"
+#include "db/store/trials/summary_row.hpp"
 
 namespace tractus {
 namespace store {
@@ -11,8 +12,8 @@ namespace {
 
 const std::string& kTrials() {
   static const std::string sql =
-      "select t.id, t.case_id, c.title, s.name, t.operator_name, t.simulated, t.started_utc_us, "
-      "t.duration_s, t.samples, t.state, t.correct, t.complete, c.kind, l.study_id, l.participant, "
+      std::string("select ") + kSummaryColumns +
+      ", t.complete, c.kind, l.study_id, l.participant, "
       "p.level, l.position, p.experience_years, m.state, u.name, t.sha256, case when " +
       blinded_sql() +
       " then 1 else 0 end from trials t "
@@ -26,20 +27,10 @@ const std::string& kTrials() {
 }
 
 core::Result<CohortTrial> trial_from(const Row& row) {
-  const auto state = TRY(row.word<AssessmentState>(9, "trials.state"));
+  auto summary = TRY(summary_from(row));
   const auto rig = TRY(row.word<trial::Rig>(12, "cases.kind"));
   const auto place = TRY(row.word_or_null<StudyTrialState>(18, "study_trials.state"));
-  CohortTrial out{.summary = {.id = row.text(0),
-                              .case_id = row.text(1),
-                              .case_title = row.text(2),
-                              .station = row.text(3),
-                              .operator_name = row.text(4),
-                              .simulated = row.truth(5),
-                              .started_utc_us = row.integer(6),
-                              .duration_s = row.number(7),
-                              .samples = row.count(8),
-                              .state = state,
-                              .correct = row.truth_or_null(10)},
+  CohortTrial out{.summary = std::move(summary),
                   .complete = row.truth(11),
                   .rig = rig,
                   .study = row.text_or_null(13).value_or(""),

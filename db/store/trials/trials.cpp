@@ -3,32 +3,14 @@
 #include "core/try.hpp"
 #include "db/store/rows.hpp"
 #include "db/store/studies/blinding.hpp"
+#include "db/store/trials/summary_row.hpp"
 
 namespace tractus {
 namespace store {
 namespace {
 
-/// Columns 0–10, as summary_from reads them.
-constexpr const char* kSummaryColumns =
-    "select t.id, t.case_id, c.title, s.name, t.operator_name, t.simulated, t.started_utc_us, "
-    "t.duration_s, t.samples, t.state, t.correct";
 constexpr const char* kFrom =
     " from trials t join cases c on c.id = t.case_id join stations s on s.id = t.station_id ";
-
-core::Result<TrialSummary> summary_from(const Row& row) {
-  const auto state = TRY(row.word<AssessmentState>(9, "trials.state"));
-  return TrialSummary{.id = row.text(0),
-                      .case_id = row.text(1),
-                      .case_title = row.text(2),
-                      .station = row.text(3),
-                      .operator_name = row.text(4),
-                      .simulated = row.truth(5),
-                      .started_utc_us = row.integer(6),
-                      .duration_s = row.number(7),
-                      .samples = row.count(8),
-                      .state = state,
-                      .correct = row.truth_or_null(10)};
-}
 
 core::Result<void> done(const core::Result<Rows>& rows) {
   if (!rows) return rows.error();
@@ -45,6 +27,21 @@ core::Result<void> add_score(Writing& tx, const std::string& trial_id, std::int6
 
 }  // namespace
 
+core::Result<TrialSummary> summary_from(const Row& row) {
+  const auto state = TRY(row.word<AssessmentState>(9, "trials.state"));
+  return TrialSummary{.id = row.text(0),
+                      .case_id = row.text(1),
+                      .case_title = row.text(2),
+                      .station = row.text(3),
+                      .operator_name = row.text(4),
+                      .simulated = row.truth(5),
+                      .started_utc_us = row.integer(6),
+                      .duration_s = row.number(7),
+                      .samples = row.count(8),
+                      .state = state,
+                      .correct = row.truth_or_null(10)};
+}
+
 core::Result<void> add_trial(Writing& tx, const TrialRecord& trial, std::int64_t now_utc_us) {
   const TrialSummary& s = trial.summary;
   return done(tx.query(
@@ -60,7 +57,7 @@ core::Result<void> add_trial(Writing& tx, const TrialRecord& trial, std::int64_t
 
 core::Result<std::optional<TrialRecord>> trial_of(Reading& tx, const std::string& id) {
   auto rows =
-      TRY(tx.query(std::string(kSummaryColumns) +
+      TRY(tx.query(std::string("select ") + kSummaryColumns +
                        ", t.station_id, t.sha256, t.complete, t.late_ticks, t.not_converged, "
                        "t.skipped_ticks, t.header, t.events, t.failure, t.coverage" +
                        kFrom + "where t.id = ?",
@@ -89,7 +86,7 @@ core::Result<std::vector<TrialSummary>> trials_before(Reading& tx, std::int64_t 
       "assignment_people p on p.study_id = sl.study_id and p.participant = sl.participant ";
   return all_of(
       tx.query(
-          std::string(kSummaryColumns) + kFrom + "where t.started_utc_us < ? and not " +
+          std::string("select ") + kSummaryColumns + kFrom + "where t.started_utc_us < ? and not " +
               blinded_sql() + " and (? = '' or " + kAssigned +
               "join cohort_people c on c.account_id = p.account_id and c.part = 'trainee' join "
               "cohort_people f on f.cohort_id = c.cohort_id and f.part = 'faculty' where "
