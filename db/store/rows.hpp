@@ -33,4 +33,13 @@ core::Result<std::optional<T>> one_of(const core::Result<Rows>& rows,
   return std::optional<T>(std::move(*record));
 }
 
+/// Success where no row is expected. Errors: the answer's.
+inline core::Result<void> done(const core::Result<Rows>& rows) {
+  if (!rows) return rows.error();
+  return {};
+}
+
+/// Null for an empty text.
+inline Value text_or_null(const std::string& text) { return text.empty() ? Value() : Value(text); }
+
 }  // namespace tractus::store

@@ -62,10 +62,11 @@ if(TRACTUS_PCH)
   endif()
 endif()
 
-# What every target of ours gets: optimisation by folder, the precompiled header, and several files compiled as one
-# (TRACTUS_UNITY) unless it says APART.
+option(TRACTUS_UNITY "Compile the files of a folder several at a time" ON)
+
+# What every target of ours gets: optimisation by folder, the precompiled header, and several files
+# compiled as one (TRACTUS_UNITY), for most of a file's time is the headers': names of a folder's anonymous namespaces are unique.
 function(tractus_compile target kind)
-  cmake_parse_arguments(ARG "APART" "" "" ${ARGN})
   cmake_path(RELATIVE_PATH CMAKE_CURRENT_SOURCE_DIR BASE_DIRECTORY ${CMAKE_SOURCE_DIR} OUTPUT_VARIABLE folder)
   if(folder IN_LIST TRACTUS_HOT_FOLDERS AND kind STREQUAL "library")
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O3>)
@@ -78,11 +79,11 @@ function(tractus_compile target kind)
     target_precompile_headers(${target} REUSE_FROM tractus_precompiled_${kind})
     target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)  # for ccache
   endif()
-  if(TRACTUS_UNITY AND NOT ARG_APART)
+  if(TRACTUS_UNITY AND kind STREQUAL "library")
+    target_compile_options(${target} PRIVATE -Wno-subobject-linkage)  # warns of anonymous namespaces in included files
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 6)
   endif()
 endfunction()
-option(TRACTUS_UNITY "Compile the files of a folder several at a time" OFF)
 
 # The root that #include lines start from: shared/ sees only itself, the others the whole repository.
 function(tractus_include_roots target)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "effects/catalogues.hpp"
 #include "server/api/schema.hpp"
 
 namespace tractus {
@@ -137,8 +138,9 @@ core::Json openapi(const std::vector<RouteInfo>& table) {
             {"description",
              "Cases, trials and their assessment. Values are in SI units unless a field states "
              "another unit; the name of a field ends with its unit."},
-            {"license", {{"name", "All rights reserved"}, {"identifier", "LicenseRef-Tractus"}}}}},
+            {"license", {{"name", "Apache-2.0"}, {"identifier", "Apache-2.0"}}}}},
           {"servers", core::Json::array({{{"url", "/"}, {"description", "This server"}}})},
+          {"x-effect-labels", effects::labels()},
           {"tags", tags},
           {"paths", paths},
           {"components",

@@ -1,5 +1,7 @@
 #include "server/api/route.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 
@@ -152,6 +154,10 @@ int status_of(core::Errc code) {
 
 http::Response error_response(const core::Error& error) {
   return http::error_response(status_of(error.code), name(error.code), error.what);
+}
+
+core::Error absent(const char* what, const std::string& id) {
+  return {core::Errc::not_found, fmt::format("no {} {} here", what, id.substr(0, 64))};
 }
 
 }  // namespace tractus::api

@@ -174,4 +174,7 @@ http::Response json_response(const core::Json& json, int status = 200);
 int status_of(core::Errc code);
 http::Response error_response(const core::Error& error);
 
+/// "no model 0f3a here".
+core::Error absent(const char* what, const std::string& id);
+
 }  // namespace tractus::api

@@ -20,11 +20,11 @@ constexpr std::size_t kMost_bytes = 1u << 20;
 struct Cleans {
   void operator()(CURL* handle) const { curl_easy_cleanup(handle); }
 };
-struct Frees {
+struct FreesText {
   void operator()(char* text) const { curl_free(text); }
 };
 
-std::size_t take(char* bytes, std::size_t one, std::size_t count, void* into) {
+std::size_t take_bytes(char* bytes, std::size_t one, std::size_t count, void* into) {
   auto& out = *static_cast<std::string*>(into);
   if (out.size() + one * count > kMost_bytes) return 0;
   out.append(bytes, one * count);
@@ -47,7 +47,7 @@ bool is_safe_address(const std::string& url) {
 
 std::string percent_encoded(const std::string& text) {
   if (text.empty()) return {};  // to libcurl, no length is that of a C string
-  const std::unique_ptr<char, Frees> out(
+  const std::unique_ptr<char, FreesText> out(
       curl_easy_escape(nullptr, text.data(), static_cast<int>(text.size())));
   core::require(out != nullptr, "memory for an address");
   return out.get();
@@ -71,7 +71,7 @@ Result<Fetched> fetch(const Fetch& what) {
   curl_easy_setopt(curl, CURLOPT_FOLLOWLOCATION, 0L);
   curl_easy_setopt(curl, CURLOPT_TIMEOUT_MS, static_cast<long>(what.patience.count()));
   curl_easy_setopt(curl, CURLOPT_NOSIGNAL, 1L);
-  curl_easy_setopt(curl, CURLOPT_WRITEFUNCTION, take);
+  curl_easy_setopt(curl, CURLOPT_WRITEFUNCTION, take_bytes);
   curl_easy_setopt(curl, CURLOPT_WRITEDATA, &out.body);
   if (what.form) curl_easy_setopt(curl, CURLOPT_POSTFIELDS, form.c_str());
   if (!what.user.empty()) {

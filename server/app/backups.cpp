@@ -15,7 +15,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kMostFindings = 100;
-constexpr const char* kManifest = "backup.json";
 
 std::uint64_t size_of(const fs::path& folder) {
   std::uint64_t bytes = 0;
@@ -60,7 +59,7 @@ BackupFolder::~BackupFolder() {
 }
 
 core::Result<api::Backup> BackupFolder::read(const std::string& id) const {
-  auto manifest = TRY(core::read_json(folder_ / id / kManifest));
+  auto manifest = TRY(core::read_json(folder_ / id / kBackupManifest));
   api::Backup out{.id = id, .state = api::BackupState::done, .error = {}, .made_by = {}};
   out.made_utc_us = manifest.value("made_utc_us", std::int64_t{0});
   out.size_bytes = size_of(folder_ / id);
@@ -93,7 +92,7 @@ core::Result<std::vector<api::Backup>> BackupFolder::list() {
   std::error_code failure;
   for (const auto& entry : fs::directory_iterator(folder_, failure)) {
     const std::string id = entry.path().filename().string();
-    if (!is_name(id) || !fs::exists(entry.path() / kManifest, failure)) continue;
+    if (!is_name(id) || !fs::exists(entry.path() / kBackupManifest, failure)) continue;
     if (current_ && current_->id == id) continue;
     if (auto one = read(id); one) out.push_back(std::move(*one));
   }
@@ -173,7 +172,7 @@ core::Result<api::Backup> BackupFolder::verify(const std::string& id) {
   if (current_)
     return core::Error{core::Errc::conflict, "another backup is being made or verified"};
   std::error_code failure;
-  if (!is_name(id) || !fs::exists(folder_ / id / kManifest, failure))
+  if (!is_name(id) || !fs::exists(folder_ / id / kBackupManifest, failure))
     return core::Error{core::Errc::not_found, "no backup " + id.substr(0, 64)};
   auto backup = TRY(read(id));
   backup.state = api::BackupState::verifying;

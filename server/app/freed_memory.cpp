@@ -8,7 +8,7 @@ namespace tractus {
 namespace app {
 namespace {
 
-constexpr std::chrono::seconds kBetween{2};
+constexpr std::chrono::seconds kBetweenReturns{2};
 
 }  // namespace
 
@@ -25,7 +25,7 @@ FreedMemory::~FreedMemory() {
 
 void FreedMemory::run() {
   std::unique_lock held(mutex_);
-  while (!changed_.wait_for(held, kBetween, [this] { return ending_; }))
+  while (!changed_.wait_for(held, kBetweenReturns, [this] { return ending_; }))
     if (requests_.exchange(false, std::memory_order_relaxed)) ::malloc_trim(0);
 }
 

@@ -15,7 +15,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kFormat = "tractus-backup/1";
-constexpr const char* kManifest = "backup.json";
 constexpr std::uint64_t kMaxSmall_bytes = 64u << 20;
 
 /// Keys, certificates and the trail's anchors: copied as they are, for their owner alone.
@@ -141,7 +140,7 @@ core::Result<void> move_records(const fs::path& folder, const Database& target) 
 }
 
 core::Result<core::Json> read_manifest(const fs::path& from) {
-  const fs::path path = from / kManifest;
+  const fs::path path = from / kBackupManifest;
   auto json = core::read_json(path);
   if (!json) return json.error();
   if (!json->is_object() || json->value("format", "") != kFormat || !json->contains("files") ||
@@ -185,7 +184,7 @@ core::Result<core::Json> back_up(const fs::path& data, const fs::path& out,
   // Closing folds the log into the database's file: its hash is that of the file as it lies there.
   auto database = TRY(store::file_sha256(to / kDatabase));
   manifest["database_sha256"] = database;
-  TRY(core::write_json(to / kManifest, manifest));
+  TRY(core::write_json(to / kBackupManifest, manifest));
   TRY(scratch.keep_as(out));
   return manifest;
 }
@@ -197,7 +196,7 @@ core::Result<core::Json> restore(const fs::path& from, const fs::path& data, con
   for (const auto& [name, sha256] : manifest["files"].items()) {
     if (fs::path(name).is_absolute() || name.find("..") != std::string::npos)
       return core::Error{core::Errc::bad_input,
-                         (from / kManifest).string() + ": invalid file name " + name};
+                         (from / kBackupManifest).string() + ": invalid file name " + name};
     TRY(check_file(from / name, sha256));
   }
   auto scratch = TRY(scratch_for(data));

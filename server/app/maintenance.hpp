@@ -7,6 +7,8 @@
 
 namespace tractus::app {
 
+inline constexpr const char* kBackupManifest = "backup.json";  ///< in every backup's folder
+
 /// Copies a folder, served or not, to a new folder `out`: the records as they stand at one moment
 /// (those of a PostgreSQL database too, as a SQLite file, so that a backup is whole by itself),
 /// every object it names (checked on the way), what of unfinished uploads is acknowledged, keys and

@@ -14,10 +14,9 @@ namespace tractus {
 namespace http {
 namespace {
 
-constexpr std::size_t kPiece_bytes = 256 * 1024;
 constexpr double kLeastRate_bytes_s = 256.0 * 1024.0;
 
-struct Opening {
+struct OpeningFile {
   SpooledFile* file;
   const SpoolLimits* limits;
   bool operator()() const {
@@ -56,7 +55,7 @@ boost::asio::awaitable<boost::system::error_code> spool_body(
     const SpoolLimits& limits, boost::asio::thread_pool& workers, SpooledFile& into_file) {
   namespace bh = boost::beast::http;
   boost::system::error_code failure;
-  if (!co_await on_workers(workers, Opening{&into_file, &limits})) {
+  if (!co_await on_workers(workers, OpeningFile{&into_file, &limits})) {
     into_file.broken = true;
     co_return failure;
   }

@@ -23,7 +23,7 @@ using core::Result;
 constexpr std::int64_t kMostTrials = 100'000;
 constexpr std::uint64_t kMostData_bytes = 512ull << 20;
 
-Result<store::AnalysisRun> asked(store::Store& store, const std::string& id) {
+Result<store::AnalysisRun> asked_analysis(store::Store& store, const std::string& id) {
   const auto run = TRY(store.read([&](store::Reading& tx) { return store::analysis_of(tx, id); }));
   if (!run) return Error{Errc::not_found, "no analysis " + id.substr(0, 64)};
   return *run;
@@ -115,7 +115,7 @@ Result<void> record(store::Store& store, const store::Objects& objects, store::A
 Result<void> analyse(store::Store& store, const store::Objects& objects,
                      const std::optional<store::PseudonymKey>& key, const std::string& analysis_id,
                      const std::function<bool()>& ending) {
-  auto run = TRY(asked(store, analysis_id));
+  auto run = TRY(asked_analysis(store, analysis_id));
   if (run.state != store::WorkState::queued && run.state != store::WorkState::running) return {};
   const auto note = [&](double share) {
     return store.write([&](store::Writing& tx) {

@@ -18,7 +18,7 @@ using core::Json;
 using core::Result;
 
 constexpr double kAny_m = 1e3;
-constexpr std::chrono::milliseconds kBetween{300};
+constexpr std::chrono::milliseconds kBetweenReports{300};
 /// Shares of the whole that are over when a step begins.
 constexpr double kCarving = 0.2, kWriting = 0.6;
 
@@ -54,7 +54,7 @@ class Noting {
     if (ending_()) return false;
     const auto now = std::chrono::steady_clock::now();
     if (now < next_) return true;
-    next_ = now + kBetween;
+    next_ = now + kBetweenReports;
     // A database that is busy for once stops nothing.
     (void)store_.write([&](store::Writing& tx) {
       return store::note_making(tx, id_, share, phase, core::utc_us());

@@ -6,14 +6,6 @@ namespace tractus {
 namespace live {
 namespace {
 
-template <class T>
-core::Json or_null(const std::optional<T>& value) {
-  return value ? core::Json(*value) : core::Json();
-}
-core::Json or_null(const std::string& text) {
-  return text.empty() ? core::Json() : core::Json(text);
-}
-
 std::shared_ptr<const std::string> text_of(const core::Json& json) {
   return std::make_shared<const std::string>(
       json.dump(-1, ' ', false, core::Json::error_handler_t::replace));
@@ -33,15 +25,16 @@ core::Json Hub::json_of(const Known& known, const Viewer& viewer) const {
   core::Json trial;
   if (known.connected && told.trial) {
     const wire::LiveTrial& t = *told.trial;
-    trial = {{"trial_id", t.trial_id},
-             {"rig", core::name(t.rig)},
-             {"case_title", or_null(known.shown.case_title)},
-             {"person", sees_person(known, viewer) ? or_null(known.shown.person) : core::Json()},
-             {"t_s", t.t_s},
-             {"samples", t.samples},
-             {"force_N", or_null(t.force_N)},
-             {"depth_m", or_null(t.depth_m)},
-             {"late_ticks", t.late_ticks}};
+    trial = {
+        {"trial_id", t.trial_id},
+        {"rig", core::name(t.rig)},
+        {"case_title", core::or_null(known.shown.case_title)},
+        {"person", sees_person(known, viewer) ? core::or_null(known.shown.person) : core::Json()},
+        {"t_s", t.t_s},
+        {"samples", t.samples},
+        {"force_N", core::or_null(t.force_N)},
+        {"depth_m", core::or_null(t.depth_m)},
+        {"late_ticks", t.late_ticks}};
   }
   return {
       {"id", known.station.id},
@@ -50,16 +43,16 @@ core::Json Hub::json_of(const Known& known, const Viewer& viewer) const {
       {"state", core::name(known.connected ? told.state : wire::StationState::away)},
       {"since_utc_us", known.since_utc_us},
       {"last_seen_utc_us", known.seen_utc_us > 0 ? core::Json(known.seen_utc_us) : core::Json()},
-      {"version", or_null(told.version)},
-      {"device", or_null(told.device)},
-      {"simulated", or_null(told.simulated)},
+      {"version", core::or_null(told.version)},
+      {"device", core::or_null(told.device)},
+      {"simulated", core::or_null(told.simulated)},
       {"trial", trial},
-      {"clock_offset_s", or_null(told.clock_offset_s)},
-      {"clock_error_s", or_null(told.clock_error_s)},
-      {"free_disk_bytes", or_null(told.free_disk_bytes)},
-      {"late_share", or_null(told.late_share)},
-      {"waiting_trials", or_null(told.waiting_trials)},
-      {"calibration_due_utc_us", or_null(told.calibration_due_utc_us)},
+      {"clock_offset_s", core::or_null(told.clock_offset_s)},
+      {"clock_error_s", core::or_null(told.clock_error_s)},
+      {"free_disk_bytes", core::or_null(told.free_disk_bytes)},
+      {"late_share", core::or_null(told.late_share)},
+      {"waiting_trials", core::or_null(told.waiting_trials)},
+      {"calibration_due_utc_us", core::or_null(told.calibration_due_utc_us)},
       {"self_test", told.self_test ? told.self_test->to_json() : core::Json()}};
 }
 

@@ -23,9 +23,6 @@ struct Work {
   bool simulated = false;  ///< the set says that its measurements are simulated themselves
 };
 
-constexpr const char* kSimulatedNote =
-    "The measurement set states that its measurements are simulated.";
-
 Result<Work> compute(const models::ProbingModel& model, const fs::path& folder) {
   auto set = TRY(trial::read_probing_set(folder));
   Work work;

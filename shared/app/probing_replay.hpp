@@ -18,4 +18,7 @@ struct ReplayOptions {
 Outcome replay_probing(const models::ProbingModel& model, const std::filesystem::path& folder,
                        const ReplayOptions& options);
 
+inline constexpr const char* kSimulatedNote =
+    "The measurement set states that its measurements are simulated.";
+
 }  // namespace tractus::commands

@@ -16,8 +16,8 @@ core::Result<std::vector<bool>> yes_no(const Table& table, const std::string& co
     const auto cell = cells[i];
     const bool yes = cell == "1" || cell == "true" || cell == "yes" || cell == "TRUE";
     if (!yes && cell != "0" && cell != "false" && cell != "no" && cell != "FALSE")
-      return bad_input(fmt::format("{}:{}: column '{}' should be 0 or 1 and is '{}'", table.name(),
-                                   table.line(i), column, cell.substr(0, 40)));
+      return core::bad_input(fmt::format("{}:{}: column '{}' should be 0 or 1 and is '{}'",
+                                         table.name(), table.line(i), column, cell.substr(0, 40)));
     out.push_back(yes);
   }
   return out;
@@ -36,7 +36,7 @@ core::Result<statistics::Vector> trials_of(const Analysis& of, Eigen::Index rows
 
 core::Result<std::vector<Counted>> counted_groups(const Analysis& of) {
   if (of.formula.terms.size() > 1 || !of.formula.group.empty())
-    return bad_input(
+    return core::bad_input(
         "proportions are of all rows (y ~ 1) or by one column (y ~ column); with (1|person) or "
         "more columns use logistic");
   const auto y = TRY(of.table.numbers(of.formula.response));
@@ -55,7 +55,7 @@ core::Result<std::vector<Counted>> counted_groups(const Analysis& of) {
       const auto row = static_cast<Eigen::Index>(i);
       const auto one = statistics::Proportion::make(y[row], trials[row]);
       if (!one)
-        return bad_input(
+        return core::bad_input(
             fmt::format("{}:{}: {} of {} is no count of successes: whole numbers, 0 to "
                         "the trials, are expected",
                         of.table.name(), of.table.line(i), y[row], trials[row]));

@@ -44,7 +44,7 @@ core::Result<Filter> Filter::parse(const std::string& text) {
     const auto at = part.find_first_of("=!<>");
     const auto end = part.find_first_not_of("=!<>", at == std::string_view::npos ? 0 : at);
     if (at == std::string_view::npos || end == std::string_view::npos)
-      return bad_input(
+      return core::bad_input(
           fmt::format("condition '{}': COLUMN = VALUE is expected, or != < <= > >=", part));
     Condition one{std::string(trimmed(part.substr(0, at))),
                   std::string(part.substr(at, end - at)),
@@ -53,11 +53,11 @@ core::Result<Filter> Filter::parse(const std::string& text) {
     const bool known = one.op == "=" || one.op == "!=" || one.op == "<" || one.op == "<=" ||
                        one.op == ">" || one.op == ">=";
     if (one.column.empty() || one.value.empty() || !known)
-      return bad_input(
+      return core::bad_input(
           fmt::format("condition '{}': COLUMN = VALUE is expected, or != < <= > >=", part));
     one.number = number_in(one.value);
     if (is_order(one.op) && !one.number)
-      return bad_input(
+      return core::bad_input(
           fmt::format("condition '{}': '{}' is no number to compare with", part, one.value));
     out.columns_.push_back(one.column);
     out.conditions_.push_back(std::move(one));
@@ -69,7 +69,7 @@ core::Result<std::vector<bool>> Filter::rows_of(const Table& table) const {
   std::vector<bool> out(table.rows(), true);
   for (const auto& one : conditions_) {
     if (!table.has(one.column))
-      return bad_input(fmt::format("{}: there is no column '{}'", table.name(), one.column));
+      return core::bad_input(fmt::format("{}: there is no column '{}'", table.name(), one.column));
     const auto& cells = table.texts(one.column);
     for (std::size_t i = 0; i < cells.size(); ++i) {
       if (!out[i]) continue;
@@ -81,8 +81,9 @@ core::Result<std::vector<bool>> Filter::rows_of(const Table& table) const {
       }
       const auto number = number_in(cell);
       if (is_order(one.op) && !number)
-        return bad_input(fmt::format("{}:{}: column '{}' should be a number and is '{}'",
-                                     table.name(), table.line(i), one.column, cell.substr(0, 40)));
+        return core::bad_input(fmt::format("{}:{}: column '{}' should be a number and is '{}'",
+                                           table.name(), table.line(i), one.column,
+                                           cell.substr(0, 40)));
       if (number && one.number)
         out[i] = holds(one.op, *number, *one.number);
       else

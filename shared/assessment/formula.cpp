@@ -17,8 +17,6 @@ namespace {
 
 constexpr std::size_t kMostLevels = 200, kMostColumns = 2000, kMostTerms = 200;
 
-core::Error wrong(std::string what) { return {core::Errc::bad_input, std::move(what)}; }
-
 /// Reads a formula left to right; the first thing wrong stays.
 class Reader {
  public:
@@ -184,10 +182,11 @@ struct Columns {
 core::Result<Columns> factor_columns(const Table& table, const Variable& of, bool all_levels) {
   const auto levels = levels_of(table, of.column);
   if (levels.size() < 2)
-    return wrong(fmt::format("{}: column '{}' is '{}' in every row: there is nothing to compare",
-                             table.name(), of.column, levels[0]));
+    return core::bad_input(
+        fmt::format("{}: column '{}' is '{}' in every row: there is nothing to compare",
+                    table.name(), of.column, levels[0]));
   if (levels.size() > kMostLevels)
-    return wrong(
+    return core::bad_input(
         fmt::format("{}: column '{}' is text with {} different values: too many for a "
                     "factor (at most {}); is it a number misread?",
                     table.name(), of.column, levels.size(), kMostLevels));
@@ -218,8 +217,9 @@ core::Result<Columns> columns_of(const Table& table, const Variable& of, bool al
   if (of.as == Variable::As::log) {
     Eigen::Index at = 0;
     if (!(values.minCoeff(&at) > 0.0))
-      return wrong(fmt::format("{}:{}: column '{}' is {} and has no logarithm", table.name(),
-                               table.line(static_cast<std::size_t>(at)), of.column, values[at]));
+      return core::bad_input(fmt::format("{}:{}: column '{}' is {} and has no logarithm",
+                                         table.name(), table.line(static_cast<std::size_t>(at)),
+                                         of.column, values[at]));
     values = values.log().eval();
   }
   return out;
@@ -301,13 +301,13 @@ core::Result<Formula> parse_formula(const std::string& text) {
     read_term(in, out);
   } while (in.error().empty() && in.take('+'));
   if (!in.at_end()) in.fail("'+', '*', ':' or the end is expected");
-  if (!in.error().empty()) return wrong(in.error());
+  if (!in.error().empty()) return core::bad_input(in.error());
   std::ranges::stable_sort(out.terms, {}, [](const Term& t) { return t.variables.size(); });
   for (const auto& term : out.terms)
     for (const auto& variable : term.variables)
       if (variable.column == out.response || variable.column == out.trials)
-        return wrong(fmt::format("--formula '{}': '{}' stands on both sides", core::one_line(text),
-                                 core::one_line(variable.column)));
+        return core::bad_input(fmt::format("--formula '{}': '{}' stands on both sides",
+                                           core::one_line(text), core::one_line(variable.column)));
   return out;
 }
 
@@ -350,14 +350,14 @@ core::Result<ModelMatrix> model_matrix(const Formula& formula, const Table& tabl
     auto next = TRY(term_columns(formula, table, formula.terms[t], cell_means));
     if (is_factor(formula.terms[t].variables[0], table)) cell_means = false;
     if (all.values.size() + next.values.size() > kMostColumns)
-      return wrong(fmt::format("the formula makes over {} columns", kMostColumns));
+      return core::bad_input(fmt::format("the formula makes over {} columns", kMostColumns));
     for (std::size_t j = 0; j < next.values.size(); ++j) {
       all.values.push_back(std::move(next.values[j]));
       all.names.push_back(std::move(next.names[j]));
       out.term_of.push_back(static_cast<int>(t));
     }
   }
-  if (all.values.empty()) return wrong("the formula has no term: nothing to estimate");
+  if (all.values.empty()) return core::bad_input("the formula has no term: nothing to estimate");
   out.design.names = std::move(all.names);
   out.design.columns.resize(rows, static_cast<Eigen::Index>(all.values.size()));
   for (std::size_t j = 0; j < all.values.size(); ++j)

@@ -11,8 +11,6 @@ namespace tractus {
 namespace assessment {
 namespace {
 
-core::Error wrong(std::string what) { return {core::Errc::bad_input, std::move(what)}; }
-
 /// What is wrong with a value of an option; empty if nothing.
 std::string fault_of(const Option& option, const std::string& value) {
   if (option.text || value.empty()) return "";
@@ -58,12 +56,12 @@ core::Result<std::map<std::string, std::string>> complete(
     const auto at = given.find(option.name);
     const std::string& value = at == given.end() ? option.fallback : at->second;
     if (const auto why = fault_of(option, value); !why.empty())
-      return wrong(fmt::format("{}: {}", method.id, why));
+      return core::bad_input(fmt::format("{}: {}", method.id, why));
     out.emplace(option.name, value.empty() ? option.fallback : value);
   }
   for (const auto& [name, _] : given)
     if (!out.contains(name))
-      return wrong(fmt::format("{}: there is no option '{}'", method.id, name));
+      return core::bad_input(fmt::format("{}: there is no option '{}'", method.id, name));
   return out;
 }
 

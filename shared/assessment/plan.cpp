@@ -44,7 +44,7 @@ core::Result<Exclusion> exclusion_of(const Json& json, const std::string& where)
   if (reason.empty() && fields.has("reason")) fields.wrong("reason", "should say why");
   TRY(fields.done());
   auto filter = Filter::parse(condition);
-  if (!filter) return bad_input(where + "/where: " + filter.error().what);
+  if (!filter) return core::bad_input(where + "/where: " + filter.error().what);
   return Exclusion{std::move(*filter), condition, reason};
 }
 
@@ -52,10 +52,10 @@ core::Result<std::map<std::string, std::string>> options_of(const Json* json,
                                                             const std::string& where) {
   std::map<std::string, std::string> out;
   if (!json) return out;
-  if (!json->is_object()) return bad_input(where + "/options: should be an object");
+  if (!json->is_object()) return core::bad_input(where + "/options: should be an object");
   for (const auto& [key, value] : json->items()) {
     if (!value.is_string() && !value.is_number())
-      return bad_input(where + "/options/" + key + ": should be a text or a number");
+      return core::bad_input(where + "/options/" + key + ": should be a text or a number");
     out.emplace(key, value.is_string() ? value.get<std::string>() : value.dump());
   }
   return out;
@@ -69,18 +69,20 @@ bool is_name(const std::string& id) {
 
 /// Method, options, formula and condition are what they should be.
 core::Result<void> check_analysis(PlannedAnalysis& one, const std::string& where) {
-  if (!is_name(one.id)) return bad_input(where + "/id: letters, digits, '-' and '_' are expected");
+  if (!is_name(one.id))
+    return core::bad_input(where + "/id: letters, digits, '-' and '_' are expected");
   const auto method = method_named(one.method);
-  if (!method) return bad_input(where + "/method: " + method.error().what);
+  if (!method) return core::bad_input(where + "/method: " + method.error().what);
   const auto complete_options = complete(*method, one.options);
-  if (!complete_options) return bad_input(where + "/options: " + complete_options.error().what);
+  if (!complete_options)
+    return core::bad_input(where + "/options: " + complete_options.error().what);
   if (!method->formula.empty()) {
     const auto formula = parse_formula(one.formula);
-    if (!formula) return bad_input(where + "/formula: " + formula.error().what);
+    if (!formula) return core::bad_input(where + "/formula: " + formula.error().what);
   }
   if (one.where.empty()) return {};
   auto filter = Filter::parse(one.where);
-  if (!filter) return bad_input(where + "/where: " + filter.error().what);
+  if (!filter) return core::bad_input(where + "/where: " + filter.error().what);
   one.filter = std::move(*filter);
   return {};
 }
@@ -125,7 +127,7 @@ core::Result<Published> published_of(const Json& json, const std::string& where)
 
 core::Result<std::optional<Lock>> lock_of(const Json* json, const std::string& where) {
   if (!json) return std::optional<Lock>();
-  if (!json->is_object()) return bad_input(where + "/lock: should be an object");
+  if (!json->is_object()) return core::bad_input(where + "/lock: should be an object");
   Fields fields(*json, where + "/lock");
   Lock out{fields.text("who"), fields.text("utc"), false, fields.text("sha256")};
   const Json* seen = fields.member("data_seen");
@@ -151,14 +153,16 @@ core::Result<void> check_names(const Plan& plan, const std::string& name) {
   std::set<std::string> ids;
   for (const auto& one : plan.analyses)
     if (!ids.insert(one.id).second)
-      return bad_input(fmt::format("{}: /analyses: the id '{}' stands there twice", name, one.id));
+      return core::bad_input(
+          fmt::format("{}: /analyses: the id '{}' stands there twice", name, one.id));
   for (const auto& one : plan.published) {
     if (!one.analysis.empty() && !ids.contains(one.analysis))
-      return bad_input(
+      return core::bad_input(
           fmt::format("{}: /published: there is no analysis '{}'", name, one.analysis));
     for (const auto& [analysis, _] : one.numbers)
       if (!ids.contains(analysis))
-        return bad_input(fmt::format("{}: /published: there is no analysis '{}'", name, analysis));
+        return core::bad_input(
+            fmt::format("{}: /published: there is no analysis '{}'", name, analysis));
   }
   return {};
 }
@@ -179,7 +183,7 @@ std::optional<statistics::Adjustment> adjustment_named(const std::string& name) 
 }
 
 core::Result<Plan> Plan::from_json(const Json& json, const std::string& name) {
-  if (!json.is_object()) return bad_input(name + ": should be a JSON object");
+  if (!json.is_object()) return core::bad_input(name + ": should be a JSON object");
   Fields fields(json, name + ": ");
   Plan out;
   if (const auto format = fields.text("format"); format != "tractus-plan/1")
@@ -221,7 +225,7 @@ core::Result<Json> locked(const Json& plan, const std::string& name, const Lock&
     return core::Error{core::Errc::conflict,
                        fmt::format("{}: {} locked it on {}; a changed plan is a new plan", name,
                                    parsed.lock->who, parsed.lock->utc)};
-  if (by.who.empty()) return bad_input("a lock needs the name of whoever makes it");
+  if (by.who.empty()) return core::bad_input("a lock needs the name of whoever makes it");
   Json out = plan;
   out["lock"] = {
       {"who", by.who}, {"utc", by.utc}, {"data_seen", by.data_seen}, {"sha256", parsed.sha256}};

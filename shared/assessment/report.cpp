@@ -17,7 +17,7 @@ using core::Json;
 
 constexpr std::size_t kShownRows = 40;
 
-std::string cell(const Json& value) {
+std::string printed_cell(const Json& value) {
   if (value.is_null()) return "-";
   if (value.is_number_integer()) return fmt::format("{}", value.get<long>());
   if (value.is_number()) {
@@ -37,7 +37,8 @@ std::string table_text(const std::string& title, const Json& rows) {
   std::vector<std::size_t> widths;
   for (const auto& key : keys) {
     std::size_t width = key.size();
-    for (std::size_t i = 0; i < shown; ++i) width = std::max(width, cell(rows[i][key]).size());
+    for (std::size_t i = 0; i < shown; ++i)
+      width = std::max(width, printed_cell(rows[i][key]).size());
     widths.push_back(width);
   }
   const auto line = [&](const std::function<std::string(const std::string&)>& text_of) {
@@ -48,7 +49,7 @@ std::string table_text(const std::string& title, const Json& rows) {
   };
   line([](const std::string& key) { return key; });
   for (std::size_t i = 0; i < shown; ++i)
-    line([&](const std::string& key) { return cell(rows[i][key]); });
+    line([&](const std::string& key) { return printed_cell(rows[i][key]); });
   if (shown < rows.size()) out += fmt::format("  … and {} more (--json)\n", rows.size() - shown);
   return out;
 }
@@ -58,7 +59,7 @@ std::string block_text(const std::string& title, const Json& block) {
   std::size_t width = 28;
   for (const auto& [key, value] : block.items()) width = std::max(width, key.size() + 2);
   for (const auto& [key, value] : block.items())
-    out += fmt::format("  {:<{}}{}\n", key, width, cell(value));
+    out += fmt::format("  {:<{}}{}\n", key, width, printed_cell(value));
   return out;
 }
 
@@ -116,17 +117,15 @@ Json normality_check(const statistics::Vector& residuals) {
                                   : "nothing against it, which in few rows says little");
 }
 
-core::Error bad_input(std::string what) { return {core::Errc::bad_input, std::move(what)}; }
-
 core::Error located(const Analysis& of, const core::Error& error) {
   return {error.code, of.table.name() + ": " + error.what};
 }
 
 core::Result<Problem> problem_of(const Analysis& of, bool grouped) {
   if (!grouped && !of.formula.group.empty())
-    return bad_input("(1|" + of.formula.group + ") needs 'lmm': this method knows no groups");
+    return core::bad_input("(1|" + of.formula.group + ") needs 'lmm': this method knows no groups");
   if (!of.formula.trials.empty() || of.formula.trials_number != 1)
-    return bad_input("successes/trials on the left is for counts, as 'logistic' takes them");
+    return core::bad_input("successes/trials on the left is for counts, as 'logistic' takes them");
   auto model = TRY(model_matrix(of.formula, of.table));
   auto y = TRY(of.table.numbers(of.formula.response));
   return Problem{std::move(model), std::move(y)};
@@ -140,7 +139,8 @@ std::vector<std::string> group_labels(const Analysis& of) {
 core::Result<std::string> single_column(const Analysis& of, const char* method) {
   if (of.formula.terms.size() != 1 || of.formula.terms[0].variables.size() != 1 ||
       !of.formula.trials.empty() || of.formula.trials_number != 1 || !of.formula.intercept)
-    return bad_input(fmt::format("{} compares the levels of one column: write y ~ column", method));
+    return core::bad_input(
+        fmt::format("{} compares the levels of one column: write y ~ column", method));
   return of.formula.terms[0].variables[0].column;
 }
 
@@ -189,8 +189,9 @@ core::Result<Cells> cells_of(const Analysis& of, const std::vector<std::string>&
     for (std::size_t i = 0; i < place.size(); ++i)
       place[i] = place[i] * out.levels.back().size() + own[i];
     if (out.subjects.size() * cells > 2 * of.table.rows())
-      return bad_input(fmt::format("{}: {} subjects × {} levels, but {} rows: most cells are empty",
-                                   of.table.name(), out.subjects.size(), cells, of.table.rows()));
+      return core::bad_input(
+          fmt::format("{}: {} subjects × {} levels, but {} rows: most cells are empty",
+                      of.table.name(), out.subjects.size(), cells, of.table.rows()));
   }
   out.names = combinations(out.levels);
   const auto who = places_of(of.table, group, out.subjects);
@@ -199,7 +200,7 @@ core::Result<Cells> cells_of(const Analysis& of, const std::vector<std::string>&
     double& cell =
         out.values(static_cast<Eigen::Index>(who[i]), static_cast<Eigen::Index>(place[i]));
     if (!std::isnan(cell))
-      return bad_input(
+      return core::bad_input(
           fmt::format("{}: {} '{}' has more than one row for '{}': average them first, or use lmm",
                       of.table.name(), group, out.subjects[who[i]], out.names[place[i]]));
     cell = y[static_cast<Eigen::Index>(i)];
@@ -207,7 +208,7 @@ core::Result<Cells> cells_of(const Analysis& of, const std::vector<std::string>&
   for (Eigen::Index i = 0; i < out.values.rows(); ++i)
     for (Eigen::Index j = 0; j < out.values.cols(); ++j)
       if (std::isnan(out.values(i, j)))
-        return bad_input(fmt::format(
+        return core::bad_input(fmt::format(
             "{}: {} '{}' has no row for '{}' (lmm takes such data)", of.table.name(), group,
             out.subjects[static_cast<std::size_t>(i)], out.names[static_cast<std::size_t>(j)]));
   return out;
@@ -226,7 +227,7 @@ std::string printed(const Json& report) {
     std::ranges::replace(title, '_', ' ');
     if (key == "notes" || key == "tests") continue;
     const bool head = key == "method" || key == "file" || key == "formula";
-    if (value.is_string() && !head) out += fmt::format("\n{}: {}\n", title, cell(value));
+    if (value.is_string() && !head) out += fmt::format("\n{}: {}\n", title, printed_cell(value));
     if (value.is_object()) out += block_text(title, value);
     if (value.is_array() && !value.empty()) out += table_text(title, value);
   }

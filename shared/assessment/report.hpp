@@ -35,8 +35,6 @@ core::Json normality_check(const statistics::Vector& residuals);
 
 /// The error with the file's name in front.
 core::Error located(const Analysis& of, const core::Error& error);
-core::Error bad_input(std::string what);
-
 /// Design and response of a regression. Errors: bad_input for (1|group) unless `grouped`, for
 /// successes/trials, and as model_matrix().
 struct Problem {

@@ -26,7 +26,7 @@ core::Result<std::vector<Sequence>> sequences_of(const Analysis& of, const std::
     Sequence sequence{parts.names[j], {}};
     for (std::size_t k = 0; k < rows.size(); ++k) {
       if (k > 0 && time(rows[k]) == time(rows[k - 1]))
-        return bad_input(fmt::format(
+        return core::bad_input(fmt::format(
             "{}:{}: '{}' is {} twice for '{}': the order of trials is not "
             "known",
             of.table.name(), of.table.line(rows[k]), order, time(rows[k]), sequence.name));

@@ -16,7 +16,7 @@ namespace {
 
 using core::Json;
 
-constexpr std::size_t kMostLevels = 50;
+constexpr std::size_t kMostListedLevels = 50;
 
 Json described(const Table& table, const std::string& column, const std::string& meaning) {
   const auto& cells = table.texts(column);
@@ -46,7 +46,7 @@ Json described(const Table& table, const std::string& column, const std::string&
     return out;
   }
   const auto levels = levels_of(table, column);
-  if (levels.size() <= kMostLevels)
+  if (levels.size() <= kMostListedLevels)
     out["levels"] = levels;
   else
     out["different_values"] = levels.size();
@@ -55,7 +55,7 @@ Json described(const Table& table, const std::string& column, const std::string&
 
 core::Result<std::string> text_member(const Json& json, const char* key, const std::string& where) {
   if (!json.is_object() || !json.contains(key) || !json[key].is_string())
-    return bad_input(fmt::format("{}: /{}: a text is expected", where, key));
+    return core::bad_input(fmt::format("{}: /{}: a text is expected", where, key));
   return json[key].get<std::string>();
 }
 
@@ -101,7 +101,7 @@ core::Result<Snapshot> frozen(core::Bytes data, const Freezing& by) {
                std::move(table)};
   for (const auto& [column, _] : by.meanings)
     if (!out.table.has(column))
-      return bad_input(
+      return core::bad_input(
           fmt::format("{}: the dictionary names '{}', which is no column", by.name, column));
   for (const auto& column : out.table.columns()) {
     const auto meaning = by.meanings.find(column);
@@ -117,7 +117,7 @@ core::Result<Snapshot> Snapshot::read(const std::filesystem::path& folder) {
   for (const char* key : {"format", "name", "frozen_utc", "sha256"})
     TRY(text_member(description, key, path.string()));
   if (description["format"] != "tractus-snapshot/1")
-    return bad_input(path.string() + ": /format: should be \"tractus-snapshot/1\"");
+    return core::bad_input(path.string() + ": /format: should be \"tractus-snapshot/1\"");
   auto data = TRY(core::read_file(folder / "data.csv", 512ull << 20));
   if (core::sha256(data) != description["sha256"].get<std::string>())
     return core::Error{

@@ -19,8 +19,6 @@ namespace {
 
 constexpr std::uint64_t kLargest = 512ull << 20;
 
-core::Error wrong(std::string what) { return {core::Errc::bad_input, std::move(what)}; }
-
 std::string no_column(const std::string& file, const std::string& column,
                       const std::vector<std::string_view>& header) {
   const auto listed = header.size() > 20
@@ -65,15 +63,15 @@ core::Result<void> Table::read_header(const std::vector<std::string_view>& heade
     if (std::ranges::any_of(cell, [](char c) {
           return (static_cast<unsigned char>(c) < 32 && c != '\t') || c == 127;
         }))
-      return wrong(name_ + ":1: this is no text file");
+      return core::bad_input(name_ + ":1: this is no text file");
   if (header.empty() || core::is_blank(header))
-    return wrong(name_ + ":1: the header line is empty");
+    return core::bad_input(name_ + ":1: the header line is empty");
   if (wanted_.empty()) wanted_.assign(header.begin(), header.end());
   for (const auto& column : wanted_) {
     const auto at = std::ranges::find(header, column);
-    if (at == header.end()) return wrong(no_column(name_, column, header));
+    if (at == header.end()) return core::bad_input(no_column(name_, column, header));
     if (std::ranges::count(header, column) > 1)
-      return wrong(fmt::format("{}: column '{}' stands there twice", name_, column));
+      return core::bad_input(fmt::format("{}: column '{}' stands there twice", name_, column));
     places_.push_back(static_cast<std::size_t>(at - header.begin()));
   }
   return {};
@@ -102,9 +100,9 @@ core::Result<Table> Table::parse(core::Bytes bytes, const std::string& name,
     if (cells.size() != header.size())
       return reader.wrong(fmt::format("{} cells, the header has {}", cells.size(), header.size()));
     if (const auto why = out.add_row(reader.line(), cells, missing); !why.empty())
-      return wrong(why);
+      return core::bad_input(why);
   }
-  if (out.lines_.empty()) return wrong(out.name_ + ": there is no row to analyse");
+  if (out.lines_.empty()) return core::bad_input(out.name_ + ": there is no row to analyse");
   return out;
 }
 
@@ -141,8 +139,8 @@ core::Result<statistics::Vector> Table::numbers(const std::string& column) const
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const auto value = number_in(cells[i]);
     if (!value)
-      return wrong(fmt::format("{}:{}: column '{}' should be a number and is '{}'", name_,
-                               lines_[i], column, core::one_line(cells[i], 40)));
+      return core::bad_input(fmt::format("{}:{}: column '{}' should be a number and is '{}'", name_,
+                                         lines_[i], column, core::one_line(cells[i], 40)));
     out[static_cast<Eigen::Index>(i)] = *value;
   }
   return out;
@@ -168,16 +166,17 @@ core::Result<Table> Table::selected(std::span<const std::string> columns, Missin
   for (const auto& column : columns) {
     const auto at = std::ranges::find(wanted_, column);
     if (at == wanted_.end())
-      return wrong(no_column(name_, column, {wanted_.begin(), wanted_.end()}));
+      return core::bad_input(no_column(name_, column, {wanted_.begin(), wanted_.end()}));
     out.places_.push_back(static_cast<std::size_t>(at - wanted_.begin()));
   }
   out.cells_.resize(columns.size());
   std::vector<std::string_view> row(wanted_.size());
   for (std::size_t i = 0; i < rows(); ++i) {
     for (const std::size_t j : out.places_) row[j] = cells_[j][i];
-    if (const auto why = out.add_row(lines_[i], row, missing); !why.empty()) return wrong(why);
+    if (const auto why = out.add_row(lines_[i], row, missing); !why.empty())
+      return core::bad_input(why);
   }
-  if (out.lines_.empty()) return wrong(name_ + ": there is no row to analyse");
+  if (out.lines_.empty()) return core::bad_input(name_ + ": there is no row to analyse");
   return out;
 }
 

@@ -14,12 +14,6 @@ namespace tractus {
 namespace assessment {
 namespace {
 
-/// The first place (from 1) where `sums` reach `limit`; 0: none.
-std::size_t first_at(const std::vector<double>& sums, double limit) {
-  const auto at = std::ranges::find_if(sums, [&](double s) { return s >= limit - 1e-9; });
-  return at == sums.end() ? 0 : static_cast<std::size_t>(at - sums.begin()) + 1;
-}
-
 core::Result<std::vector<std::vector<double>>> scores_of(const Table& table,
                                                          const std::vector<std::string>& columns) {
   std::vector<std::vector<double>> out;
@@ -30,8 +24,9 @@ core::Result<std::vector<std::vector<double>>> scores_of(const Table& table,
       if (is_missing(cells[i])) continue;
       const auto number = number_in(cells[i]);
       if (!number)
-        return bad_input(fmt::format("{}:{}: column '{}' should be a number and is '{}'",
-                                     table.name(), table.line(i), column, cells[i].substr(0, 40)));
+        return core::bad_input(fmt::format("{}:{}: column '{}' should be a number and is '{}'",
+                                           table.name(), table.line(i), column,
+                                           cells[i].substr(0, 40)));
       values[i] = *number;
     }
     out.push_back(std::move(values));
@@ -86,7 +81,7 @@ core::Result<Cohort> cohort_of(const Table& table, const TraineeColumns& columns
     std::vector<Attempt> attempts;
     for (const std::size_t i : rows) {
       if (!attempts.empty() && attempts.back().order == when(i))
-        return bad_input(
+        return core::bad_input(
             fmt::format("{}:{}: '{}' is {} twice for '{}': the order of trials is not "
                         "known",
                         table.name(), table.line(i), columns.order, when(i), parts.names[j]));
@@ -106,13 +101,13 @@ Standing standing(const std::vector<Attempt>& attempts, const statistics::Rates&
   for (const auto& one : attempts) failures.push_back(!one.right);
   Standing out;
   out.sums = statistics::lc_cusum(failures, rates);
-  out.signalled_at = first_at(out.sums, threshold);
+  out.signalled_at = statistics::first_at(out.sums, threshold);
   if (out.signalled_at == 0) return out;
   out.state = Standing::State::competent;
   failures.erase(failures.begin(),
                  failures.begin() + static_cast<std::ptrdiff_t>(out.signalled_at));
   out.relapse_sums = statistics::deterioration_cusum(failures, rates);
-  if (const auto at = first_at(out.relapse_sums, relapse)) {
+  if (const auto at = statistics::first_at(out.relapse_sums, relapse)) {
     out.relapsed_at = out.signalled_at + at;
     out.state = Standing::State::relapsed;
   }

@@ -188,26 +188,24 @@ ClockFit line_through(std::vector<TapPair> runs) {
   out.runs = std::move(runs);
   return out;
 }
-core::Error wrong(const std::string& what) { return {core::Errc::bad_input, what}; }
-
 /// Steps 1 and 2: the same taps in both.
 core::Result<std::vector<TapPair>> pairs_of(const Tapped& tapped, int count) {
   const auto force = force_taps(tapped.force_t_s, tapped.force_N, count);
   if (force.empty())
-    return wrong(
+    return core::bad_input(
         fmt::format("no run of {} taps in the force (peaks over 0.5 N, 0.12 to 1.5 s "
                     "apart): tap against a solid surface, or state offset_s",
                     count));
   const auto motion = motion_taps(tapped.motion_t_s, tapped.tip_m, count);
   if (motion.empty())
-    return wrong(
+    return core::bad_input(
         fmt::format("no run of {} taps in the motion (the tip down and up by 2 mm or "
                     "more): is tip_z_m right? Or state offset_s",
                     count));
   double nearest_s = 0.0;
   const auto all = candidates(force, motion, nearest_s);
   if (all.empty())
-    return wrong(
+    return core::bad_input(
         fmt::format("the taps' rhythm differs by {:.0f} ms between force and motion, at "
                     "most {:.0f} ms is expected: are these two recordings of one trial? "
                     "Or state offset_s",
@@ -218,7 +216,7 @@ core::Result<std::vector<TapPair>> pairs_of(const Tapped& tapped, int count) {
     if (auto pair = fine(tapped, one)) out.push_back(std::move(*pair));
   }
   if (out.empty())
-    return wrong(
+    return core::bad_input(
         "force and motion do not go together in the taps: is the tool's frame (X_BH, "
         "tip_z_m) right, and the surface solid? Or state offset_s");
   return out;
@@ -234,7 +232,7 @@ core::Result<ClockFit> align(const Tapped& tapped, int count) {
     const double apart_s = std::abs(one.taps_s.front() - best.front().taps_s.front());
     if (std::abs(one.offset_s - best.front().offset_s) > 2.0 * kAgree_s + kMostDrift * apart_s &&
         score(agreeing(pairs, one)) > kRival * score(best))
-      return wrong(
+      return core::bad_input(
           fmt::format("two offsets fit the taps as well, {:.3f} s and {:.3f} s: tap with "
                       "an uneven rhythm, or state offset_s",
                       best.front().offset_s, one.offset_s));

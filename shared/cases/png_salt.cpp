@@ -6,7 +6,7 @@ namespace tractus {
 namespace cases {
 namespace {
 
-constexpr std::string_view kSignature("\x89PNG\r\n\x1a\n", 8);
+constexpr std::string_view kPngSignature("\x89PNG\r\n\x1a\n", 8);
 constexpr std::string_view kEnd("\0\0\0\0IEND\xae\x42\x60\x82", 12);
 
 /// CRC-32 as the PNG specification gives it, annex D.
@@ -28,7 +28,7 @@ std::string big_endian(std::uint32_t value) {
 
 core::Result<core::Bytes> salted_png(core::ByteView png, std::string_view salt_hex) {
   const std::string_view text = core::text_of(png);
-  if (!text.starts_with(kSignature) || !text.ends_with(kEnd))
+  if (!text.starts_with(kPngSignature) || !text.ends_with(kEnd))
     return core::Error{core::Errc::corrupt, "the picture does not begin and end as a PNG does"};
   const std::string body = std::string("tEXtsalt") + '\0' + std::string(salt_hex);
   std::string out(text.substr(0, text.size() - kEnd.size()));

@@ -13,7 +13,7 @@
 namespace tractus {
 namespace core {
 namespace {
-const unsigned char* raw(ByteView bytes) {
+const unsigned char* raw_bytes(ByteView bytes) {
   return reinterpret_cast<const unsigned char*>(bytes.data());
 }
 
@@ -24,7 +24,7 @@ bool all_hex(std::string_view text) noexcept {
 
 std::string base64(ByteView bytes, int variant) {
   std::string out(sodium_base64_encoded_len(bytes.size(), variant), '\0');
-  sodium_bin2base64(out.data(), out.size(), raw(bytes), bytes.size(), variant);
+  sodium_bin2base64(out.data(), out.size(), raw_bytes(bytes), bytes.size(), variant);
   out.pop_back();
   return out;
 }
@@ -62,7 +62,7 @@ Sha256::~Sha256() = default;
 Sha256::Sha256(Sha256&&) noexcept = default;
 Sha256& Sha256::operator=(Sha256&&) noexcept = default;
 void Sha256::add(ByteView part) noexcept {
-  crypto_hash_sha256_update(&state_->sodium, raw(part), part.size());
+  crypto_hash_sha256_update(&state_->sodium, raw_bytes(part), part.size());
 }
 std::string Sha256::hex() {
   std::array<std::byte, crypto_hash_sha256_BYTES> digest{};
@@ -80,7 +80,7 @@ bool is_sha256(std::string_view text) noexcept { return text.size() == 64 && all
 
 std::string hex(ByteView bytes) {
   std::string out(bytes.size() * 2 + 1, '\0');
-  sodium_bin2hex(out.data(), out.size(), raw(bytes), bytes.size());
+  sodium_bin2hex(out.data(), out.size(), raw_bytes(bytes), bytes.size());
   out.pop_back();
   return out;
 }

@@ -40,6 +40,7 @@ class ManualClock final : public Clock {
 /// Wall-clock time of day, UTC, microseconds since 1970: for records that people read, never for
 /// intervals.
 std::int64_t utc_us() noexcept;
+inline constexpr std::int64_t kDay_us = 86'400'000'000;
 /// "2026-03-01T12:00:00.123456Z" of such a time.
 std::string utc_text(std::int64_t us);
 

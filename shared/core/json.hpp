@@ -88,4 +88,17 @@ class Fields {
   std::vector<std::string> seen_;
 };
 
+/// Null for no value and for an empty text.
+template <class T>
+Json or_null(const std::optional<T>& value) {
+  return value ? Json(*value) : Json();
+}
+inline Json or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
+
+/// A member that is a text; empty if there is none of that name, or it is none.
+inline std::string text_member(const Json& object, const char* key) {
+  const auto at = object.find(key);
+  return at != object.end() && at->is_string() ? at->get<std::string>() : std::string();
+}
+
 }  // namespace tractus::core

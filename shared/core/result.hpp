@@ -31,6 +31,8 @@ struct Error {
   std::string what;
 };
 
+inline Error bad_input(std::string what) { return {Errc::bad_input, std::move(what)}; }
+
 /// A value of T or an Error. Ignoring one does not compile.
 template <class T>
 class [[nodiscard]] Result {

@@ -9,13 +9,14 @@
 namespace tractus {
 namespace core {
 namespace {
-const unsigned char* raw(ByteView bytes) {
+const unsigned char* unsigned_bytes(ByteView bytes) {
   return reinterpret_cast<const unsigned char*>(bytes.data());
 }
 
 std::string public_part(const Bytes& secret) {
   std::array<std::byte, crypto_sign_PUBLICKEYBYTES> key{};
-  crypto_sign_ed25519_sk_to_pk(reinterpret_cast<unsigned char*>(key.data()), raw(secret));
+  crypto_sign_ed25519_sk_to_pk(reinterpret_cast<unsigned char*>(key.data()),
+                               unsigned_bytes(secret));
   return hex(key);
 }
 }  // namespace
@@ -36,7 +37,7 @@ KeyPair KeyPair::from_seed(const std::array<std::byte, 32>& seed) {
   KeyPair pair;
   pair.secret.resize(crypto_sign_SECRETKEYBYTES);
   crypto_sign_seed_keypair(open_key.data(), reinterpret_cast<unsigned char*>(pair.secret.data()),
-                           raw(seed));
+                           unsigned_bytes(seed));
   pair.public_hex = public_part(pair.secret);
   return pair;
 }
@@ -60,8 +61,8 @@ Result<KeyPair> KeyPair::open_or_make(const std::filesystem::path& path) {
 
 std::string sign(ByteView message, const KeyPair& key) {
   std::array<std::byte, crypto_sign_BYTES> signature{};
-  crypto_sign_detached(reinterpret_cast<unsigned char*>(signature.data()), nullptr, raw(message),
-                       message.size(), raw(key.secret));
+  crypto_sign_detached(reinterpret_cast<unsigned char*>(signature.data()), nullptr,
+                       unsigned_bytes(message), message.size(), unsigned_bytes(key.secret));
   return hex(signature);
 }
 
@@ -72,8 +73,8 @@ bool verify(ByteView message, std::string_view signature_hex,
     return false;
   const auto signature = hex_decoded(signature_hex), open_key = hex_decoded(public_hex);
   return signature && open_key &&
-         crypto_sign_verify_detached(raw(*signature), raw(message), message.size(),
-                                     raw(*open_key)) == 0;
+         crypto_sign_verify_detached(unsigned_bytes(*signature), unsigned_bytes(message),
+                                     message.size(), unsigned_bytes(*open_key)) == 0;
 }
 
 }  // namespace core

@@ -27,5 +27,12 @@ std::string label_of(std::string_view id) {
   return out;
 }
 
+std::map<std::string, std::string> labels() {
+  std::map<std::string, std::string> out;
+  for (const auto& info : probing_effects()) out[info.facts.id] = info.facts.label;
+  for (const auto& info : palpation_effects()) out[info.facts.id] = info.facts.label;
+  return out;
+}
+
 }  // namespace effects
 }  // namespace tractus

@@ -24,7 +24,7 @@ const PalpationEffectInfo* find_palpation_effect(std::string_view id) {
 
 namespace {
 
-core::Error unknown(std::string_view id) {
+core::Error unknown_palpation_effect(std::string_view id) {
   return {core::Errc::not_found, fmt::format("'{}' is not an effect of palpation", id)};
 }
 
@@ -36,14 +36,14 @@ core::Result<EffectFacts> palpation_facts(const EffectInstance& use) {
     return expression.facts();
   }
   const auto* found = find_palpation_effect(use.id);
-  if (!found) return unknown(use.id);
+  if (!found) return unknown_palpation_effect(use.id);
   return found->facts;
 }
 
 core::Result<PalpationEffect> make_palpation_effect(const EffectInstance& use) {
   if (is_expression(use.id)) return make_palpation_expression(use);
   const auto* found = find_palpation_effect(use.id);
-  if (!found) return unknown(use.id);
+  if (!found) return unknown_palpation_effect(use.id);
   TRY(check(found->facts, use.values));
   return found->make(use.values);
 }

@@ -49,7 +49,7 @@ core::Result<ProbingEffect> make_expression(const EffectInstance& use) {
       std::make_unique<ExpressionForce>(std::move(program), use.values)));
 }
 
-core::Error unknown(std::string_view id) {
+core::Error unknown_probing_effect(std::string_view id) {
   return {core::Errc::not_found, fmt::format("'{}' is not an effect of the probing rig", id)};
 }
 
@@ -79,14 +79,14 @@ core::Result<EffectFacts> probing_facts(const EffectInstance& use) {
     return expression.facts();
   }
   const auto* found = find_probing_effect(use.id);
-  if (!found) return unknown(use.id);
+  if (!found) return unknown_probing_effect(use.id);
   return found->facts;
 }
 
 core::Result<ProbingEffect> make_probing_effect(const EffectInstance& use) {
   if (is_expression(use.id)) return make_expression(use);
   const auto* found = find_probing_effect(use.id);
-  if (!found) return unknown(use.id);
+  if (!found) return unknown_probing_effect(use.id);
   TRY(check(found->facts, use.values));
   return found->make(use.values);
 }

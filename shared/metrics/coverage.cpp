@@ -50,7 +50,7 @@ double Coverage::share(std::optional<volume::Wall> side) const {
 
 namespace {
 
-std::optional<Coverage> computed(const Subject& subject) {
+std::optional<Coverage> computed_coverage(const Subject& subject) {
   const auto probe = trial::probe_shape(subject.trial.header);
   if (!probe || !subject.tract) return std::nullopt;
   const volume::Tract& tract = *subject.tract;
@@ -70,7 +70,7 @@ std::optional<Coverage> computed(const Subject& subject) {
 
 const std::optional<Coverage>& coverage(const Subject& subject) {
   auto& kept = subject.derived.coverage;
-  if (!kept) kept = std::make_shared<const std::optional<Coverage>>(computed(subject));
+  if (!kept) kept = std::make_shared<const std::optional<Coverage>>(computed_coverage(subject));
   return *kept;
 }
 

@@ -35,7 +35,7 @@ TipMotion even(const Samples& samples, const Point& point, const Force& force) {
   return out;
 }
 
-TipMotion computed(const Subject& subject) {
+TipMotion computed_motion(const Subject& subject) {
   if (subject.trial.header.rig == trial::Rig::probing) {
     const auto motion = probing_motion(subject.trial);
     if (motion.empty()) return {{}, {}, "the probe never turned fast enough to move"};
@@ -56,7 +56,7 @@ TipMotion computed(const Subject& subject) {
 
 const TipMotion& tip_motion(const Subject& subject) {
   auto& kept = subject.derived.tip_motion;
-  if (!kept) kept = std::make_shared<const TipMotion>(computed(subject));
+  if (!kept) kept = std::make_shared<const TipMotion>(computed_motion(subject));
   return *kept;
 }
 

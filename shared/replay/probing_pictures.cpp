@@ -6,7 +6,7 @@ namespace tractus {
 namespace replay {
 namespace {
 
-constexpr const char* kPlace = "#7b3fa0";  // where the probe is
+constexpr const char* kProbePlace = "#7b3fa0";  // where the probe is
 constexpr const char* kMeasured = "#1b3f7f";
 constexpr const char* kSimulated = "#62a9de";
 constexpr const char* kError = "#a8480b";
@@ -66,7 +66,7 @@ plot::Figure trial_figure(const trial::ProbingMeasurement& recording,
     plot::Panel& push = figure.panels.front();
     push.right_label = "depth, mm";
     push.lines.insert(push.lines.begin(),
-                      {"depth", recording.t_s, scaled(recording.x_m, 1e3), kPlace, 1.0, true});
+                      {"depth", recording.t_s, scaled(recording.x_m, 1e3), kProbePlace, 1.0, true});
   }
   if (!recording.tz_Nm.empty() && !replayed.forces.tz_Nm.empty())
     add_channel(figure, recording.t_s, recording.tz_Nm, replayed.forces.tz_Nm, "Torque",

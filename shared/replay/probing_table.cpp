@@ -4,6 +4,7 @@
 #include <limits>
 #include <map>
 
+#include "replay/cells.hpp"
 #include "replay/probing_replay.hpp"
 
 namespace tractus {
@@ -62,9 +63,6 @@ void add_rows(const std::string& scope, const std::string& name, const Channels&
               std::vector<ProbingRow>& out) {
   for (const auto& [channel, sums] : channels) out.push_back(sums.row(scope, name, channel));
 }
-
-std::string cell(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
-core::Json number(double value) { return std::isfinite(value) ? core::Json(value) : core::Json(); }
 
 core::Json side(const ProbingRow::Side& side) {
   return {{"mean", number(side.mean)}, {"sd", number(side.sd)}, {"max", number(side.max)}};

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/csv.hpp"
+#include "replay/cells.hpp"
 
 namespace tractus {
 namespace replay {
@@ -15,10 +16,6 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 double across(const math::Vec3& v) { return std::hypot(v.x(), v.y()); }
-
-std::string cell(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
-
-core::Json number(double value) { return std::isfinite(value) ? core::Json(value) : core::Json(); }
 
 /// Three decimals and a sign for "less than that", as the source prints.
 std::string short_number(double value, int decimals) {

@@ -21,21 +21,21 @@ using core::Json;
 using core::Result;
 
 /// A column beyond time: where its numbers go and how large they may be.
-struct Column {
+struct SetColumn {
   std::string_view name;
   std::vector<double> ProbingMeasurement::*numbers;
   double largest;
   const char* unit;
 };
 constexpr std::array kColumns{
-    Column{kProbingColumns[1], &ProbingMeasurement::x_m, 10.0, "m"},
-    Column{kProbingColumns[2], &ProbingMeasurement::theta_rad, 1e6, "rad"},
-    Column{kProbingColumns[3], &ProbingMeasurement::fz_N, 1e6, "N"},
-    Column{kProbingColumns[4], &ProbingMeasurement::tz_Nm, 1e6, "N·m"},
+    SetColumn{kProbingColumns[1], &ProbingMeasurement::x_m, 10.0, "m"},
+    SetColumn{kProbingColumns[2], &ProbingMeasurement::theta_rad, 1e6, "rad"},
+    SetColumn{kProbingColumns[3], &ProbingMeasurement::fz_N, 1e6, "N"},
+    SetColumn{kProbingColumns[4], &ProbingMeasurement::tz_Nm, 1e6, "N·m"},
 };
 
 /// The columns of a file that are ours, or what it lacks.
-Result<std::vector<Column>> columns_of(const fs::path& path) {
+Result<std::vector<SetColumn>> columns_of(const fs::path& path) {
   const auto header = TRY(csv_header(path));
   const auto there = [&](std::string_view name) {
     return std::ranges::find(header, name) != header.end();
@@ -47,8 +47,8 @@ Result<std::vector<Column>> columns_of(const fs::path& path) {
                  fmt::format("{}:1: column {} is missing; x_m with fz_N is expected, or theta_rad "
                              "with tz_Nm where the rig only turns",
                              path.string(), there("x_m") ? "fz_N" : "x_m")};
-  std::vector<Column> columns;
-  for (const Column& column : kColumns)
+  std::vector<SetColumn> columns;
+  for (const SetColumn& column : kColumns)
     if (there(column.name)) columns.push_back(column);
   return columns;
 }
@@ -56,7 +56,7 @@ Result<std::vector<Column>> columns_of(const fs::path& path) {
 Result<std::size_t> read_rows(const fs::path& path, ProbingMeasurement& trial) {
   const auto columns = TRY(columns_of(path));
   std::vector<std::string_view> names{"t_s"};
-  for (const Column& column : columns) names.push_back(column.name);
+  for (const SetColumn& column : columns) names.push_back(column.name);
   const auto rows = read_csv(path, names, [&](std::size_t, std::span<const double> v) {
     if (auto why = wrong_time(trial.t_s, v[0]); !why.empty()) return why;
     for (std::size_t c = 0; c < columns.size(); ++c)
@@ -93,12 +93,12 @@ StatedNoise noise_of(const Json& stated) {
 
 std::string csv_of(const ProbingMeasurement& trial) {
   std::string out = "t_s";
-  for (const Column& column : kColumns)
+  for (const SetColumn& column : kColumns)
     if (!(trial.*column.numbers).empty()) out += fmt::format(",{}", column.name);
   out += '\n';
   for (std::size_t k = 0; k < trial.t_s.size(); ++k) {
     out += fmt::format("{}", trial.t_s[k]);
-    for (const Column& column : kColumns)
+    for (const SetColumn& column : kColumns)
       if (!(trial.*column.numbers).empty()) out += fmt::format(",{}", (trial.*column.numbers)[k]);
     out += '\n';
   }

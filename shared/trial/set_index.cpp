@@ -22,7 +22,7 @@ using core::Json;
 using core::Result;
 
 constexpr std::size_t kMaxTrials = 10'000;
-constexpr double kMaxTime_s = 1e9;
+constexpr double kMaxSetTime_s = 1e9;
 
 /// Letters, digits, '.', '_' and '-', not led by a dot: safe as part of a file's name.
 bool is_trial_id(std::string_view id) {
@@ -96,8 +96,8 @@ std::string wrong_time(std::span<const double> before, double t_s) {
     return fmt::format("column t_s: {} is there twice", t_s);
   if (!before.empty() && t_s < before.back())
     return fmt::format("column t_s: time runs backwards, {} after {}", t_s, before.back());
-  if (std::abs(t_s) > kMaxTime_s)
-    return fmt::format("column t_s: {} is over {} s", t_s, kMaxTime_s);
+  if (std::abs(t_s) > kMaxSetTime_s)
+    return fmt::format("column t_s: {} is over {} s", t_s, kMaxSetTime_s);
   return {};
 }
 

@@ -21,7 +21,7 @@ namespace volume {
 namespace {
 namespace fs = std::filesystem;
 
-constexpr std::size_t kBatch = 16;  ///< bricks compressed side by side
+constexpr std::size_t kWrittenBatch = 16;  ///< bricks compressed side by side
 
 /// A file written beside its name, renamed onto it by `keep`, removed otherwise.
 class FileBeside {
@@ -88,9 +88,9 @@ struct Index {
 core::Result<Index> write_bricks(FileBeside& file, const Volume& volume, std::size_t bricks,
                                  std::uint64_t offset, const core::Progress& progress) {
   Index index;
-  std::vector<StoredBrick> batch(kBatch);
-  for (std::size_t first = 0; first < bricks; first += kBatch) {
-    const std::size_t count = std::min(kBatch, bricks - first);
+  std::vector<StoredBrick> batch(kWrittenBatch);
+  for (std::size_t first = 0; first < bricks; first += kWrittenBatch) {
+    const std::size_t count = std::min(kWrittenBatch, bricks - first);
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t b) {
       batch[b] = stored_brick(volume, brick_box(volume.geometry.dims, first + b));
     });

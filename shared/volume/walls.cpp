@@ -11,7 +11,7 @@ namespace tractus {
 namespace volume {
 namespace {
 
-constexpr double kStep_m = 1e-4;
+constexpr double kWallStep_m = 1e-4;
 constexpr double kFelt = 0.03;       // opacity from which a run of bone goes on
 constexpr double kLeastPeak = 0.06;  // a run that never reaches it is noise or marrow
 constexpr double kFirmPeak =
@@ -75,7 +75,7 @@ core::Result<WallFound> WallFinder::first_run(const Bundle& bundle, WallFound fo
   std::vector<double> run;  // opacity from the run's first step on
   double start = 0.0, peak = 0.0;
   std::size_t last = 0;  // of the run, still bone
-  for (double d = from_m; d <= from_m + kReach_m; d += kStep_m) {
+  for (double d = from_m; d <= from_m + kReach_m; d += kWallStep_m) {
     const auto opacity = opacity_at(bundle, d);
     if (!opacity)
       return refused(fmt::format("{}: the volume ends before the wall is left", name(found.wall)));
@@ -85,7 +85,7 @@ core::Result<WallFound> WallFinder::first_run(const Bundle& bundle, WallFound fo
     peak = std::max(peak, *opacity);
     if (*opacity >= kFelt) last = run.size() - 1;
     const double free_m = peak < kFirmPeak ? kOutsideOfFaint_m : kOutside_m;
-    if (double(run.size() - 1 - last) * kStep_m < free_m) continue;
+    if (double(run.size() - 1 - last) * kWallStep_m < free_m) continue;
     if (peak < kLeastPeak) {
       run.clear(), peak = 0.0, last = 0;
       continue;
@@ -93,8 +93,8 @@ core::Result<WallFound> WallFinder::first_run(const Bundle& bundle, WallFound fo
     std::size_t first = 0;
     while (run[first] < peak / 2) ++first;
     while (run[last] < peak / 2) --last;
-    found.inner_m = start + double(first) * kStep_m;
-    found.outer_m = start + double(last) * kStep_m;
+    found.inner_m = start + double(first) * kWallStep_m;
+    found.outer_m = start + double(last) * kWallStep_m;
     return found;
   }
   const bool bone = !run.empty() && peak >= kLeastPeak;
@@ -157,7 +157,7 @@ core::Result<WallFound> WallFinder::thinnest(const Tract& tract, Wall wall) cons
 double WallFinder::behind_entry_m(const Tract& tract) const {
   const Bundle bundle(tract.entry_m, -tract.axis, tract.radius_m);
   double last = 0.0;
-  for (double d = 0.0; d <= kMouthReach_m && d - last <= kMouthGap_m; d += kStep_m) {
+  for (double d = 0.0; d <= kMouthReach_m && d - last <= kMouthGap_m; d += kWallStep_m) {
     const auto opacity = opacity_at(bundle, d);
     if (!opacity) break;
     if (*opacity >= kFelt) last = d;

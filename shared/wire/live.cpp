@@ -15,10 +15,6 @@ constexpr double kMostOffset_s = 1e10;
 constexpr std::size_t kName = 64, kWords = 400, kMostFailed = 64, kMostChecks = 128;
 
 template <class T>
-core::Json or_null(const std::optional<T>& value) {
-  return value ? core::Json(*value) : core::Json();
-}
-template <class T>
 core::Json object_or_null(const std::optional<T>& value) {
   return value ? value->to_json() : core::Json();
 }
@@ -62,10 +58,14 @@ std::vector<std::string> lines_in(core::Fields& fields, const char* key, std::si
 }
 
 core::Json trial_json(const LiveTrial& trial) {
-  return {{"trial_id", trial.trial_id},        {"rig", core::name(trial.rig)},
-          {"case_id", trial.case_id},          {"t_s", trial.t_s},
-          {"samples", trial.samples},          {"force_N", or_null(trial.force_N)},
-          {"depth_m", or_null(trial.depth_m)}, {"late_ticks", trial.late_ticks}};
+  return {{"trial_id", trial.trial_id},
+          {"rig", core::name(trial.rig)},
+          {"case_id", trial.case_id},
+          {"t_s", trial.t_s},
+          {"samples", trial.samples},
+          {"force_N", core::or_null(trial.force_N)},
+          {"depth_m", core::or_null(trial.depth_m)},
+          {"late_ticks", trial.late_ticks}};
 }
 
 core::Result<LiveTrial> trial_from(const core::Json& json, const std::string& where) {
@@ -151,14 +151,14 @@ core::Json StationStatus::to_json() const {
           {"state", core::name(state)},
           {"version", version},
           {"device", device},
-          {"simulated", or_null(simulated)},
+          {"simulated", core::or_null(simulated)},
           {"trial", trial ? trial_json(*trial) : core::Json()},
-          {"clock_offset_s", or_null(clock_offset_s)},
-          {"clock_error_s", or_null(clock_error_s)},
-          {"free_disk_bytes", or_null(free_disk_bytes)},
-          {"late_share", or_null(late_share)},
-          {"waiting_trials", or_null(waiting_trials)},
-          {"calibration_due_utc_us", or_null(calibration_due_utc_us)},
+          {"clock_offset_s", core::or_null(clock_offset_s)},
+          {"clock_error_s", core::or_null(clock_error_s)},
+          {"free_disk_bytes", core::or_null(free_disk_bytes)},
+          {"late_share", core::or_null(late_share)},
+          {"waiting_trials", core::or_null(waiting_trials)},
+          {"calibration_due_utc_us", core::or_null(calibration_due_utc_us)},
           {"self_test", object_or_null(self_test)}};
 }
 
@@ -213,9 +213,9 @@ core::Json StationReport::SelfTest::to_json() const {
   for (const Check& check : checks)
     list.push_back({{"name", check.name},
                     {"passed", check.passed},
-                    {"value", or_null(check.value)},
+                    {"value", core::or_null(check.value)},
                     {"unit", check.unit},
-                    {"limit", or_null(check.limit)},
+                    {"limit", core::or_null(check.limit)},
                     {"words", check.words}});
   return {{"at_utc_us", at_utc_us}, {"passed", passed}, {"checks", list}};
 }
@@ -229,13 +229,13 @@ SelfTestSummary StationReport::SelfTest::summary() const {
 
 core::Json StationReport::Calibration::to_json() const {
   return {{"at_utc_us", at_utc_us},
-          {"due_utc_us", or_null(due_utc_us)},
+          {"due_utc_us", core::or_null(due_utc_us)},
           {"kind", kind},
           {"words", words}};
 }
 
 core::Json StationReport::to_json() const {
-  core::Json out{{"version", version}, {"free_disk_bytes", or_null(free_disk_bytes)}};
+  core::Json out{{"version", version}, {"free_disk_bytes", core::or_null(free_disk_bytes)}};
   if (self_test) out["self_test"] = self_test->to_json();
   if (calibration) out["calibration"] = calibration->to_json();
   if (!refused.empty()) out["refused"] = refused;

@@ -8,8 +8,8 @@
 namespace tractus {
 namespace wire {
 namespace {
-constexpr std::size_t kMaxName = 32, kMaxSealed = 64 * 1024, kMaxTrials = 1000;
-constexpr long kMaxCount = 100'000;
+constexpr std::size_t kMaxStudyName = 32, kMaxStudySealed = 64 * 1024, kMaxTrials = 1000;
+constexpr long kMaxStudyCount = 100'000;
 
 bool truth_of(core::Fields& fields, const char* key) {
   const core::Json* found = fields.member(key);
@@ -19,7 +19,7 @@ bool truth_of(core::Fields& fields, const char* key) {
 }  // namespace
 
 bool is_study_name(std::string_view text) noexcept {
-  return !text.empty() && text.size() <= kMaxName && std::ranges::all_of(text, [](char c) {
+  return !text.empty() && text.size() <= kMaxStudyName && std::ranges::all_of(text, [](char c) {
     return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '-' ||
            c == '_';
   });
@@ -34,8 +34,8 @@ core::Result<SealedTrial> SealedTrial::from_json(const core::Json& json, const s
   SealedTrial out;
   out.slot = fields.text("slot", 64);
   if (!core::is_sha256(out.slot)) fields.wrong("slot", "64 hexadecimal characters are expected");
-  out.number = static_cast<std::uint64_t>(fields.integer("number", 1, kMaxCount));
-  out.sealed = fields.text("sealed", kMaxSealed);
+  out.number = static_cast<std::uint64_t>(fields.integer("number", 1, kMaxStudyCount));
+  out.sealed = fields.text("sealed", kMaxStudySealed);
   TRY(fields.done());
   return out;
 }
@@ -55,14 +55,14 @@ core::Json StudyWork::to_json() const {
 core::Result<StudyWork> StudyWork::from_json(const core::Json& json, const std::string& where) {
   core::Fields fields(json, where);
   StudyWork out;
-  out.study = fields.text("study", kMaxName);
-  out.participant = fields.text("participant", kMaxName);
+  out.study = fields.text("study", kMaxStudyName);
+  out.participant = fields.text("participant", kMaxStudyName);
   out.simulated = truth_of(fields, "simulated");
   const core::Json* years = fields.member("experience_years");
   if (years && !years->is_null())
     out.experience_years = fields.number("experience_years", 0.0, 80.0);
-  out.unfinished = static_cast<std::uint64_t>(fields.integer("unfinished", 0, kMaxCount));
-  out.planned = static_cast<std::uint64_t>(fields.integer("planned", 0, kMaxCount));
+  out.unfinished = static_cast<std::uint64_t>(fields.integer("unfinished", 0, kMaxStudyCount));
+  out.planned = static_cast<std::uint64_t>(fields.integer("planned", 0, kMaxStudyCount));
   const core::Json* list = fields.member("trials");
   if (list && (!list->is_array() || list->size() > kMaxTrials))
     fields.wrong("trials", "an array is expected");

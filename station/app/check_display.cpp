@@ -10,7 +10,7 @@ namespace app {
 namespace {
 constexpr double kPicture_s = 0.1;  // ten pictures a second
 constexpr int kSide = 64, kPictures = 10;
-constexpr int kWidth_px = 1280, kHeight_px = 800;  // as in a trial
+constexpr int kCheckWidth_px = 1280, kCheckHeight_px = 800;  // as in a trial
 
 /// A SIMULATED block of bone, soft on one side.
 volume::Volume block_of_bone() {
@@ -41,7 +41,7 @@ check::Finding check_display(Show show) {
   const auto transfer = volume::TransferFunction::bone();
   auto view = view::View::make({block, transfer, tract_in_block(), {}},
                                show == Show::window ? view::Mode::window : view::Mode::offscreen,
-                               kWidth_px, kHeight_px);
+                               kCheckWidth_px, kCheckHeight_px);
   if (!view) {
     out.words = "nothing can be drawn: " + view.error().what;
     return out;
@@ -57,8 +57,8 @@ check::Finding check_display(Show show) {
   out.value = took.quantile_s(0.9);
   out.passed = *out.value <= kPicture_s;
   out.words = fmt::format(
-      "a picture of {} × {} of a volume of {}³, drawn {} the screen: {}{}", kWidth_px, kHeight_px,
-      kSide, show == Show::window ? "on" : "off", took.text(),
+      "a picture of {} × {} of a volume of {}³, drawn {} the screen: {}{}", kCheckWidth_px,
+      kCheckHeight_px, kSide, show == Show::window ? "on" : "off", took.text(),
       out.passed ? ""
                  : "; its graphics card or the driver is missing (--view none where nobody looks)");
   return out;

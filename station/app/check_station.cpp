@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdio>
 
+#include "core/clock.hpp"
 #include "core/file.hpp"
 #include "core/try.hpp"
 #include "station/app/checks.hpp"
@@ -20,7 +21,6 @@
 namespace tractus {
 namespace app {
 namespace {
-constexpr std::int64_t kDay_us = 86'400'000'000;
 constexpr double kHandRate_Hz = 4000.0, kWatched_s = 5.0;  // at most
 
 void warn(const std::string& line) { std::fprintf(stderr, "warning: %s\n", line.c_str()); }
@@ -218,7 +218,7 @@ core::Result<int> calibrate(const Options& options) {
   presence.reset();  // it told the date that was due until now
   const std::int64_t now = core::utc_us();
   check::Calibration made{.at_utc_us = now,
-                          .due_utc_us = now + options.due_days * kDay_us,
+                          .due_utc_us = now + options.due_days * core::kDay_us,
                           .kind = options.setup.device,
                           .who = options.who,
                           .simulated = checked.simulated};

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cstdio>
 
+#include "core/clock.hpp"
 #include "core/file.hpp"
 #include "core/try.hpp"
 #include "station/app/commands.hpp"
@@ -83,13 +84,12 @@ void tell_refused(uplink::Server& server, const std::vector<std::string>& refuse
 /// How the clocks stand, as far as it can be known just now.
 std::optional<uplink::ClockOffset> clock_offset(uplink::Server& server,
                                                 const session::StationFolder& folder) {
-  constexpr std::int64_t kDay_us = 24ll * 3600 * 1'000'000;
   core::MonotonicClock clock;
   if (auto measured = uplink::measure_clock(server, clock, core::utc_us)) {
     uplink::keep_clock(folder.clock(), *measured);
     return *measured;
   }
-  return uplink::kept_clock(folder.clock(), core::utc_us(), kDay_us);
+  return uplink::kept_clock(folder.clock(), core::utc_us(), core::kDay_us);
 }
 
 bool anything_waits(const session::StationFolder& folder) {

@@ -57,7 +57,7 @@ void print_probing_report(const TrialReport& report, bool fast) {
 }
 
 namespace {
-session::Watch watch_of(const Options& options) {
+session::Watch probing_watch(const Options& options) {
   return [&options, said = std::uint64_t{0},
           shown = core::terminal_progress("Trial")](const session::TrialSnapshot& seen) mutable {
     if (options.follow && seen.samples_safe != said) {
@@ -78,7 +78,7 @@ core::Result<TrialReport> one_trial(const Options& options, Presence& presence,
   setup.outside = presence.outside();
   presence.is(Presence::State::preparing);
   auto report = session::run_probing_trial(
-      folder, task, setup, warned(presence.watched(watch_of(options)), folder, setup.device),
+      folder, task, setup, warned(presence.watched(probing_watch(options)), folder, setup.device),
       [&](const std::optional<trial::Answer>& simulated)
           -> core::Result<std::optional<trial::Answer>> {
         presence.is(Presence::State::questions);

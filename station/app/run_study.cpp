@@ -104,7 +104,7 @@ std::optional<trial::Answer> asked() {
   return out;
 }
 
-session::Watch watch_of(const Options& options) {
+session::Watch study_watch(const Options& options) {
   return [&options, said = std::uint64_t{0}](const session::TrialSnapshot& seen) mutable {
     if (options.follow && seen.samples_safe != said) {
       said = seen.samples_safe;
@@ -133,7 +133,7 @@ core::Result<TrialReport> one_trial(const Study& study, const StudyWork& work,
     setup.skill = rig::SurgeonParameters::skill_of_experience(work.experience_years.value_or(0.0));
   auto report = session::run_probing_trial(
       study.folder, task, setup,
-      warned(study.presence.watched(watch_of(study.options)), study.folder, setup.device),
+      warned(study.presence.watched(study_watch(study.options)), study.folder, setup.device),
       [&](const std::optional<trial::Answer>& simulated)
           -> core::Result<std::optional<trial::Answer>> {
         study.presence.is(Presence::State::questions);

@@ -31,8 +31,8 @@ core::Result<std::shared_ptr<const session::PreparedCase>> prepare(
   return std::shared_ptr<const session::PreparedCase>(std::move(made));
 }
 
-session::Watch watch_of(const Options& options, const core::Progress& shown,
-                        TrialViewer& onlooker) {
+session::Watch palpation_watch(const Options& options, const core::Progress& shown,
+                               TrialViewer& onlooker) {
   return [&options, &shown, &onlooker,
           said = std::uint64_t{0}](const session::TrialSnapshot& seen) mutable {
     if (options.follow && seen.samples_safe != said) {
@@ -58,7 +58,7 @@ core::Result<TrialReport> one_trial(const Options& options, Presence& presence,
   onlooker.follow(*station.live());
   say_calibration_due(folder, options.setup.device);
   const core::Progress shown = core::terminal_progress(fmt::format("Trial, seed {}", seed));
-  const auto watch = presence.watched(watch_of(options, shown, onlooker));
+  const auto watch = presence.watched(palpation_watch(options, shown, onlooker));
   TRY(station.run(watch));
   presence.is(Presence::State::questions);
   const core::Json headset = onlooker.end_headset();

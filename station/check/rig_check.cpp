@@ -63,19 +63,19 @@ class Shown {
 };
 
 /// Moves the stage as the guard lets it.
-class Driver {
+class RigDriver {
  public:
-  explicit Driver(RigBench& bench)
+  explicit RigDriver(RigBench& bench)
       : bench_(bench),
         pace_(bench),
         shown_(bench, kMotion_s),
         guard_(bench.limits, bench.travel_m, 1.0 / bench.rate_Hz) {}
-  ~Driver() {
+  ~RigDriver() {
     RigReading unread;
     static_cast<void>(bench_.device.exchange({}, unread));
   }
-  Driver(const Driver&) = delete;
-  Driver& operator=(const Driver&) = delete;
+  RigDriver(const RigDriver&) = delete;
+  RigDriver& operator=(const RigDriver&) = delete;
 
   /// One exchange; what is wanted leaves with the next. Errors: unavailable, cancelled.
   core::Result<RigReading> tick(double speed_m_s, double torque_Nm = 0.0) {
@@ -235,7 +235,7 @@ void judge_rise(const std::vector<std::pair<double, double>>& speeds, const RigG
   out.push_back(found);
 }
 
-core::Result<void> check_travel_in(Driver& driver, const RigGoals& goals,
+core::Result<void> check_travel_in(RigDriver& driver, const RigGoals& goals,
                                    std::vector<Finding>& out) {
   const double from_m = driver.reading().x_m, asked_before_m = driver.asked_m();
   std::vector<std::pair<double, double>> speeds;
@@ -248,7 +248,7 @@ core::Result<void> check_travel_in(Driver& driver, const RigGoals& goals,
 }
 
 /// Outwards, slowly, and then no word from us: the machine has to stop by itself.
-core::Result<void> check_watchdog(Driver& driver, const RigGoals& goals,
+core::Result<void> check_watchdog(RigDriver& driver, const RigGoals& goals,
                                   std::vector<Finding>& out) {
   const double speed_m_s = 0.5 * goals.speed_m_s;
   TRY(driver.run(kMoving_s, -speed_m_s));
@@ -271,7 +271,7 @@ core::Result<void> check_watchdog(Driver& driver, const RigGoals& goals,
   return {};
 }
 
-core::Result<void> check_return(Driver& driver, const RigBench& bench, const RigGoals& goals,
+core::Result<void> check_return(RigDriver& driver, const RigBench& bench, const RigGoals& goals,
                                 std::vector<Finding>& out) {
   TRY(driver.enable());
   for (int k = 0; k < int(kReturn_s * bench.rate_Hz) && driver.reading().x_m > 0.25 * goals.home_m;
@@ -291,7 +291,7 @@ core::Result<void> check_return(Driver& driver, const RigBench& bench, const Rig
 }
 
 /// A pulse, and one back that stops it.
-core::Result<void> check_turn(Driver& driver, const RigGoals& goals, std::vector<Finding>& out) {
+core::Result<void> check_turn(RigDriver& driver, const RigGoals& goals, std::vector<Finding>& out) {
   const std::int32_t from = driver.reading().angle_urad;
   TRY(driver.run(kPulse_s, 0.0, goals.turn_Nm));
   TRY(driver.run(kPulse_s, 0.0, -goals.turn_Nm));
@@ -367,7 +367,7 @@ core::Result<bool> check_rig_at_rest(RigBench bench, const RigGoals& goals,
 
 core::Result<void> check_rig_motion(RigBench bench, const RigGoals& goals,
                                     std::vector<Finding>& out) {
-  Driver driver(bench);
+  RigDriver driver(bench);
   TRY(driver.enable());
   TRY(check_travel_in(driver, goals, out));
   TRY(check_watchdog(driver, goals, out));

@@ -2,7 +2,7 @@
 
 namespace tractus::loop {
 namespace {
-constexpr std::size_t kBlock = 1024;
+constexpr std::size_t kBlockRows = 1024;
 }
 
 TrialRecorder::TrialRecorder(trial::TrialWriter writer, core::Clock& clock)
@@ -64,7 +64,7 @@ core::Result<void> TrialRecorder::finish() {
 
 template <class S>
 RecorderOf<S>::RecorderOf(Ring<S>& ring, trial::TrialWriter writer, core::Clock& clock)
-    : TrialRecorder(std::move(writer), clock), ring_(ring), block_(kBlock) {}
+    : TrialRecorder(std::move(writer), clock), ring_(ring), block_(kBlockRows) {}
 
 template <class S>
 RecorderOf<S>::~RecorderOf() {

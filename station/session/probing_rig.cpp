@@ -11,8 +11,8 @@
 namespace tractus {
 namespace session {
 namespace {
-constexpr std::size_t kRing = 8192;              // eight seconds
-constexpr std::uint64_t kDrainEveryTicks = 100;  // of a fast trial
+constexpr std::size_t kProbingRing = 8192;              // eight seconds
+constexpr std::uint64_t kDrainProbingEveryTicks = 100;  // of a fast trial
 
 core::Error wrong(std::string what) { return {core::Errc::out_of_range, std::move(what)}; }
 }  // namespace
@@ -28,7 +28,7 @@ core::Result<std::unique_ptr<ProbingRig>> ProbingRig::make(const ProbingTask& ta
 
 ProbingRig::ProbingRig(const ProbingTask& task, const RigSetup& setup,
                        const devices::DeviceInfo& info)
-    : task_(task), setup_(setup), info_(info), ring_(kRing) {}
+    : task_(task), setup_(setup), info_(info), ring_(kProbingRing) {}
 
 ProbingRig::~ProbingRig() {
   if (made_) made_->device->close();
@@ -123,7 +123,7 @@ void ProbingRig::after_tick(const trial::ProbingSample& sample) {
   if (felt_ && guard_->enabled())
     felt_->feel(double(sample.speed_m_s), double(sample.fz_N), sample.x_m);
   if (sample.t_s >= setup_.duration_s || recorder_->failed()) stop();
-  if (time_->fast() && sample.tick % kDrainEveryTicks == 0) recorder_->drain();
+  if (time_->fast() && sample.tick % kDrainProbingEveryTicks == 0) recorder_->drain();
 }
 
 TrialSnapshot ProbingRig::latest(const trial::Header& header) const {

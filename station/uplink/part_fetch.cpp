@@ -16,11 +16,7 @@ namespace uplink {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::uint64_t kPiece_bytes = 4u << 20;
-
-core::Error changed(const std::string& case_id, const std::string& what) {
-  return {core::Errc::corrupt, fmt::format("case {}: {}", case_id.substr(0, 12), what)};
-}
+constexpr std::uint64_t kFetched_bytes = 4u << 20;
 
 /// A file that grows; what is written stays through a kill of the process.
 class Growing {
@@ -74,10 +70,11 @@ core::Result<core::Bytes> Fetching::range(std::uint64_t at, std::uint64_t size) 
                         .max_answer_bytes = size};
   auto answer = TRY(server.send(request));
   if (answer.status != 206 && !(answer.status == 200 && size == part.size_bytes))
-    return answer.status / 100 == 2 ? changed(case_id, part.name + ": the server ignores ranges")
-                                    : error_of(request, answer);
+    return answer.status / 100 == 2
+               ? case_changed(case_id, part.name + ": the server ignores ranges")
+               : error_of(request, answer);
   if (answer.body.size() != size)
-    return changed(case_id, part.name + ": a piece has the wrong size");
+    return case_changed(case_id, part.name + ": a piece has the wrong size");
   fetched_bytes += size;
   return std::move(answer.body);
 }
@@ -116,7 +113,7 @@ core::Result<void> Fetching::resume(const std::vector<Segment>& plan) const {
   for (const Segment& segment : plan) {
     while (done < segment.offset + segment.size) {
       const std::uint64_t skipped = done - segment.offset;
-      const std::uint64_t size = std::min(kPiece_bytes, segment.size - skipped);
+      const std::uint64_t size = std::min(kFetched_bytes, segment.size - skipped);
       auto piece =
           TRY(segment.from.empty() ? range(done, size) : bytes_here(segment, skipped, size));
       TRY(file.add(piece));
@@ -132,6 +129,10 @@ core::Result<bool> Fetching::holds() const {
 }
 
 }  // namespace
+
+core::Error case_changed(const std::string& case_id, const std::string& what) {
+  return {core::Errc::corrupt, fmt::format("case {}: {}", case_id.substr(0, 12), what)};
+}
 
 core::Result<void> fetch_part(Server& server, const std::string& case_id, const cases::Part& part,
                               const LocalParts& local, const fs::path& target,
@@ -150,13 +151,13 @@ core::Result<void> fetch_part(Server& server, const std::string& case_id, const 
   if (!whole) return whole.error();
   if (*whole) return {};
   fs::remove(target, ignored);
-  if (!from_here) return changed(case_id, part.name + ": is not what the manifest names");
+  if (!from_here) return case_changed(case_id, part.name + ": is not what the manifest names");
   TRY(fetching.resume({{.offset = 0, .size = part.size_bytes}}));
   whole = fetching.holds();
   if (!whole) return whole.error();
   if (*whole) return {};
   fs::remove(target, ignored);
-  return changed(case_id, part.name + ": is not what the manifest names");
+  return case_changed(case_id, part.name + ": is not what the manifest names");
 }
 
 }  // namespace uplink

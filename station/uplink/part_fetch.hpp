@@ -18,4 +18,7 @@ core::Result<void> fetch_part(Server& server, const std::string& case_id, const 
                               const LocalParts& local, const std::filesystem::path& target,
                               std::uint64_t& fetched_bytes);
 
+/// What a server sent for a case is not what was announced.
+core::Error case_changed(const std::string& case_id, const std::string& what);
+
 }  // namespace tractus::uplink

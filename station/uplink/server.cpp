@@ -4,8 +4,7 @@
 
 namespace tractus {
 namespace uplink {
-namespace {
-core::Errc code_of(int status) {
+core::Errc error_code_of(int status) {
   switch (status) {
     case 400:
       return core::Errc::bad_input;
@@ -23,7 +22,6 @@ core::Errc code_of(int status) {
       return status >= 500 || status == 429 ? core::Errc::unavailable : core::Errc::bad_input;
   }
 }
-}  // namespace
 
 core::Error error_of(const Request& request, const HttpResponse& answer) {
   std::string why = "no reason given";
@@ -31,8 +29,9 @@ core::Error error_of(const Request& request, const HttpResponse& answer) {
       json && json->is_object())
     if (const auto it = json->find("error"); it != json->end() && it->is_string())
       why = it->get<std::string>().substr(0, 300);
-  return {code_of(answer.status), fmt::format("{} {}: the server answers {}: {}", request.method,
-                                              request.path, answer.status, why)};
+  return {error_code_of(answer.status),
+          fmt::format("{} {}: the server answers {}: {}", request.method, request.path,
+                      answer.status, why)};
 }
 
 core::Result<core::Json> json_of(const Request& request, const HttpResponse& answer) {

@@ -34,6 +34,9 @@ class Server {
   virtual core::Result<HttpResponse> send(const Request& request) = 0;
 };
 
+/// What an HTTP status that is no success means.
+core::Errc error_code_of(int status);
+
 /// The answer's body as JSON when the status is 2xx; else the server's own one line as an Error of
 /// the status' kind (5xx and 429: unavailable).
 core::Result<core::Json> json_of(const Request& request, const HttpResponse& answer);

@@ -26,7 +26,7 @@ using boost::system::error_code;
 using std::chrono::milliseconds;
 using Clock = std::chrono::steady_clock;
 
-constexpr long kConnect_s = 5;
+constexpr long kSocketConnect_s = 5;
 constexpr milliseconds kAnswer{10'000}, kSend{5'000}, kGoodbye{200}, kLook{100};
 constexpr std::size_t kMostHead_bytes = 16 * 1024, kMostMessage_bytes = 64 * 1024;
 
@@ -124,17 +124,6 @@ void async_teardown(beast::role_type, CurlStream& stream, Handler&& handler) {
             beast::bind_front_handler(std::forward<Handler>(handler), error_code()));
 }
 
-core::Errc code_of(int status) {
-  switch (status) {
-    case 401:
-      return core::Errc::unauthorised;
-    case 403:
-      return core::Errc::forbidden;
-    default:
-      return status >= 500 || status == 429 ? core::Errc::unavailable : core::Errc::bad_input;
-  }
-}
-
 class BeastLine final : public ServerSocket {
  public:
   BeastLine() : handle_(curl_easy_init()) {}
@@ -161,7 +150,7 @@ class BeastLine final : public ServerSocket {
       curl_easy_setopt(handle_, CURLOPT_CAPATH, nullptr);
     }
     curl_easy_setopt(handle_, CURLOPT_NOSIGNAL, 1L);
-    curl_easy_setopt(handle_, CURLOPT_CONNECTTIMEOUT, kConnect_s);
+    curl_easy_setopt(handle_, CURLOPT_CONNECTTIMEOUT, kSocketConnect_s);
     curl_easy_setopt(handle_, CURLOPT_NOPROGRESS, 0L);
     curl_easy_setopt(handle_, CURLOPT_XFERINFOFUNCTION, stops);
     curl_easy_setopt(handle_, CURLOPT_XFERINFODATA,
@@ -227,7 +216,7 @@ class BeastLine final : public ServerSocket {
     for (auto left = kAnswer; !run(shaken_, kLook); left -= kLook)
       if (stopped || left <= milliseconds(0)) return broken("the server does not answer");
     if (*shaken_ == websocket::error::upgrade_declined)
-      return core::Error{code_of(static_cast<int>(answer_.result_int())),
+      return core::Error{error_code_of(static_cast<int>(answer_.result_int())),
                          fmt::format("live line: the server answers {}", answer_.result_int())};
     if (*shaken_) return parting(*shaken_);
     socket_->next_layer().allow(SIZE_MAX);

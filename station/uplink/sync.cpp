@@ -50,16 +50,13 @@ fs::path incoming_of(const fs::path& cases_folder) {
   return cases_folder.parent_path() / "incoming";
 }
 
-core::Error changed(const std::string& id, const std::string& what) {
-  return {core::Errc::corrupt, fmt::format("case {}: {}", id.substr(0, 12), what)};
-}
-
 /// The manifest of that name, kept in `folder` with its signature.
 core::Result<cases::Case> fetch_manifest(Server& server, const std::string& id,
                                          const fs::path& folder) {
   const std::string path = "/api/v1/cases/" + id;
   auto manifest = TRY(fetch(server, path, kMaxManifest_bytes));
-  if (core::sha256(manifest) != id) return changed(id, "the manifest is not the one of that name");
+  if (core::sha256(manifest) != id)
+    return case_changed(id, "the manifest is not the one of that name");
   auto json = TRY(core::parse_json(core::text_of(manifest), "case.json"));
   auto definition = cases::Case::from_json(json, "case.json: ");
   if (!definition) return definition.error();
@@ -82,7 +79,7 @@ core::Result<void> check_room(const std::string& id, const cases::Case& definiti
   for (const cases::Part& part : definition.parts) {
     if (part.secret) continue;
     if (!plain_name(part.name) || part.size_bytes > kMaxPart_bytes)
-      return changed(id, "a part's name or size is not acceptable");
+      return case_changed(id, "a part's name or size is not acceptable");
     const fs::path there = folder / part.name;
     const std::uint64_t here = fs::exists(there, ignored) ? fs::file_size(there, ignored) : 0;
     wanted += part.size_bytes - std::min(here, part.size_bytes);
@@ -109,7 +106,7 @@ core::Result<void> fetch_case(Server& server, const std::string& id, const fs::p
     TRY(fetch_part(server, id, part, local, folder / part.name, report.bytes_fetched));
   }
   auto opened = TRY(cases::open_case(folder));
-  if (opened.id != id) return changed(id, "holds another case");
+  if (opened.id != id) return case_changed(id, "holds another case");
   if (std::ranges::find(trusted, opened.signer_public_hex) == trusted.end())
     return core::Error{core::Errc::forbidden,
                        fmt::format("case {}: signed by {}, whom this station does not trust",
@@ -123,7 +120,7 @@ core::Result<void> fetch_case(Server& server, const std::string& id, const fs::p
   return core::sync_folder(cases_folder);
 }
 
-bool passes(core::Errc code) {  // worth going on with later
+bool goes_on_later(core::Errc code) {  // worth going on with later
   return code == core::Errc::unavailable || code == core::Errc::io ||
          code == core::Errc::unauthorised;
 }
@@ -149,7 +146,7 @@ core::Result<SyncReport> sync_cases(Server& server, const fs::path& cases_folder
       report.present.push_back(id);
     } else if (auto got = fetch_case(server, id, cases_folder, trusted, limits, report); got) {
       report.fetched.push_back(id);
-    } else if (passes(got.error().code)) {
+    } else if (goes_on_later(got.error().code)) {
       return got.error();
     } else {
       fs::remove_all(incoming_of(cases_folder) / id, ignored);

@@ -107,7 +107,7 @@ std::string note_of(const std::optional<ClockOffset>& offset) {
       .dump();
 }
 
-bool passes(core::Errc code) {  // worth trying again later
+bool later_helps(core::Errc code) {  // worth trying again later
   return code == core::Errc::unavailable || code == core::Errc::cancelled ||
          code == core::Errc::io || code == core::Errc::too_large;
 }
@@ -157,7 +157,7 @@ core::Result<UploadReport> upload_all(Server& server, const Outbox& outbox,
     const auto outcome =
         upload_trial(server, trials_folder / (entry.trial_id + ".ttrial"), entry, progress, offset);
     if (!outcome && outcome.error().code == core::Errc::unauthorised) return outcome.error();
-    const bool later = !outcome && passes(outcome.error().code);
+    const bool later = !outcome && later_helps(outcome.error().code);
     if (!outcome && !later) entry.state = OutboxState::refused, entry.reason = outcome.error().what;
     TRY(outbox.write(entry));
     if (entry.offset_bytes > before || !later)

@@ -1,4 +1,4 @@
-// Types of the API from the server's own description, into src/api/generated/schema.ts.
+// Types of the API and names of the effects from the server's own description, into src/api/generated.
 // TRACTUS_OPENAPI names the description; without it, the server built beside this folder is asked for it.
 import { execFileSync } from 'node:child_process';
 import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
@@ -30,3 +30,7 @@ try {
 const types = astToString(await openapiTS(parsed, { arrayLength: true }));
 mkdirSync(`${root}src/api/generated`, { recursive: true });
 writeFileSync(`${root}src/api/generated/schema.ts`, types);
+writeFileSync(
+  `${root}src/api/generated/effect-labels.ts`,
+  `export const effectLabels: Readonly<Record<string, string | undefined>> = ${JSON.stringify(parsed['x-effect-labels'], null, 2)};\n`,
+);

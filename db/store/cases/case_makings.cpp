@@ -18,11 +18,6 @@ core::Result<CaseMaking> making_from(const Row& row) {
                     row.text(10)};
 }
 
-core::Result<void> done(core::Result<Rows> rows) {
-  if (!rows) return rows.error();
-  return {};
-}
-
 }  // namespace
 
 core::Result<void> add_case_making(Writing& tx, const CaseMaking& making) {

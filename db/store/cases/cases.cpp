@@ -12,7 +12,7 @@ constexpr const char* kSummary =
     "(select count(*) from trials t where t.case_id = c.id), c.kind, "
     "case when c.retired_utc_us is null then 0 else 1 end, c.planned from cases c ";
 
-core::Result<CaseSummary> summary_from(const Row& row) {
+core::Result<CaseSummary> case_from(const Row& row) {
   const auto kind = TRY(row.word<trial::Rig>(5, "cases.kind"));
   return CaseSummary{row.text(0),  row.text(1), row.text(2),  row.integer(3),
                      row.count(4), kind,        row.truth(6), row.truth(7)};
@@ -53,11 +53,11 @@ core::Result<std::vector<CaseSummary>> all_cases(Reading& tx) {
   return all_of(
       tx.query(std::string(kSummary) + "where c.kind = ? order by c.published_utc_us desc, c.id",
                {name_value(trial::Rig::palpation)}),
-      summary_from);
+      case_from);
 }
 
 core::Result<std::optional<CaseSummary>> case_of(Reading& tx, const std::string& id) {
-  return one_of(tx.query(std::string(kSummary) + "where c.id = ?", {id}), summary_from);
+  return one_of(tx.query(std::string(kSummary) + "where c.id = ?", {id}), case_from);
 }
 
 core::Result<void> set_case_retired(Writing& tx, const std::string& id, bool retired,

@@ -37,11 +37,6 @@ core::Result<AnalysisRun> run_from(const Row& row) {
                      row.text(13)};
 }
 
-core::Result<void> done(core::Result<Rows> rows) {
-  if (!rows) return rows.error();
-  return {};
-}
-
 }  // namespace
 
 core::Result<void> add_analysis_plan(Writing& tx, const AnalysisPlan& plan) {

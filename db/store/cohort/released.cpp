@@ -8,7 +8,7 @@ namespace tractus {
 namespace store {
 namespace {
 
-constexpr double kDay_us = 86'400e6;
+constexpr double kDayLength_us = 86'400e6;
 constexpr std::int64_t kMostKnown = 1'000'000;
 
 core::Result<void> check_there(Reading& tx, const std::string& study) {
@@ -80,7 +80,7 @@ void ReleasedTrials::count_days() {
   std::map<std::string, std::int64_t> first;
   for (ReleasedTrial& trial : trials_) {
     const auto at = first.try_emplace(trial.participant, trial.started_utc_us_).first;
-    trial.days = double(trial.started_utc_us_ - at->second) / kDay_us;
+    trial.days = double(trial.started_utc_us_ - at->second) / kDayLength_us;
   }
 }
 

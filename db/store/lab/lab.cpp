@@ -12,7 +12,7 @@ constexpr const char* kModel =
 constexpr const char* kSet =
     "select s.id, s.name, s.made_utc_us, s.made_by, s.rig, s.simulated, s.trials, s.samples, "
     "o.size_bytes from measurement_sets s join objects o on o.sha256 = s.id ";
-constexpr const char* kRun =
+constexpr const char* kSelectRun =
     "select id, kind, model_id, against_id, set_id, wish, state, share, phase, stop, ranking, "
     "result, report, samples, model_sha256, error, made_utc_us, made_by from lab_runs ";
 
@@ -30,7 +30,7 @@ core::Result<MeasurementSet> set_from(const Row& row) {
   return out;
 }
 
-core::Result<LabRun> run_from(const Row& row) {
+core::Result<LabRun> lab_run_from(const Row& row) {
   LabRun out;
   out.id = row.text(0);
   out.kind = TRY(row.word<LabRunKind>(1, "lab_runs.kind"));
@@ -51,11 +51,6 @@ core::Result<LabRun> run_from(const Row& row) {
   out.made_utc_us = row.integer(16);
   out.made_by = row.text(17);
   return out;
-}
-
-core::Result<void> done(core::Result<Rows> rows) {
-  if (!rows) return rows.error();
-  return {};
 }
 
 }  // namespace
@@ -111,18 +106,18 @@ core::Result<void> add_lab_run(Writing& tx, const LabRun& run) {
 }
 
 core::Result<std::optional<LabRun>> lab_run_of(Reading& tx, const std::string& id) {
-  return one_of(tx.query(std::string(kRun) + "where id = ?", {id}), run_from);
+  return one_of(tx.query(std::string(kSelectRun) + "where id = ?", {id}), lab_run_from);
 }
 
 core::Result<std::vector<LabRun>> lab_runs(Reading& tx, const LabRunFilter& filter) {
   const std::string kind(filter.kind ? core::name(*filter.kind) : "");
-  return all_of(
-      tx.query(std::string(kRun) + "where (? = '' or kind = ?) and (? = '' or model_id = ? or "
-                                   "against_id = ?) and (? = '' or set_id = ?) "
-                                   "order by made_utc_us desc, id limit ?",
-               {kind, kind, filter.model_id, filter.model_id, filter.model_id, filter.set_id,
-                filter.set_id, filter.limit}),
-      run_from);
+  return all_of(tx.query(std::string(kSelectRun) +
+                             "where (? = '' or kind = ?) and (? = '' or model_id = ? or "
+                             "against_id = ?) and (? = '' or set_id = ?) "
+                             "order by made_utc_us desc, id limit ?",
+                         {kind, kind, filter.model_id, filter.model_id, filter.model_id,
+                          filter.set_id, filter.set_id, filter.limit}),
+                lab_run_from);
 }
 
 core::Result<bool> note_lab_share(Writing& tx, const std::string& id, double share,

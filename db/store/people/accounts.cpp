@@ -44,8 +44,6 @@ core::Result<Session> session_from(const Row& row) {
                  row.integer(kAccountColumns + 1)};
 }
 
-Value text_or_null(const std::string& text) { return text.empty() ? Value() : Value(text); }
-
 /// The account whose `column` has this value.
 core::Result<std::optional<Account>> account_by(Reading& tx, const char* column,
                                                 const std::string& value) {

@@ -7,11 +7,6 @@ namespace tractus {
 namespace store {
 namespace {
 
-core::Result<void> done(const core::Result<Rows>& rows) {
-  if (!rows) return rows.error();
-  return {};
-}
-
 core::Result<bool> any(const core::Result<Rows>& rows) {
   if (!rows) return rows.error();
   return !rows->empty();

@@ -6,7 +6,8 @@ namespace tractus {
 namespace store {
 namespace {
 
-core::Result<void> run(Writing& tx, std::string_view sql, std::initializer_list<Value> values) {
+core::Result<void> run_statement(Writing& tx, std::string_view sql,
+                                 std::initializer_list<Value> values) {
   TRY(tx.query(sql, values));
   return {};
 }
@@ -62,28 +63,30 @@ core::Result<Failures> failures_of(Reading& tx, const Attempt& attempt, Total to
 core::Result<void> set_failures(Writing& tx, const Attempt& attempt, Total total,
                                 const Failures& failures) {
   const Key key(attempt, total);
-  return run(tx,
-             "insert into sign_in_failures (secret, total, name, origin, failures, at_utc_us) "
-             "values (?, ?, ?, ?, ?, ?) on conflict (secret, total, name, origin) do update "
-             "set failures = excluded.failures, at_utc_us = excluded.at_utc_us",
-             {key.secret, key.total, key.name, key.origin, failures.count, failures.at_utc_us});
+  return run_statement(
+      tx,
+      "insert into sign_in_failures (secret, total, name, origin, failures, at_utc_us) "
+      "values (?, ?, ?, ?, ?, ?) on conflict (secret, total, name, origin) do update "
+      "set failures = excluded.failures, at_utc_us = excluded.at_utc_us",
+      {key.secret, key.total, key.name, key.origin, failures.count, failures.at_utc_us});
 }
 
 core::Result<void> clear_failures(Writing& tx, const Attempt& attempt) {
   const Key key(attempt, Total::pair);
-  return run(tx,
-             "delete from sign_in_failures "
-             "where secret = ? and total = ? and name = ? and origin = ?",
-             {key.secret, key.total, key.name, key.origin});
+  return run_statement(tx,
+                       "delete from sign_in_failures "
+                       "where secret = ? and total = ? and name = ? and origin = ?",
+                       {key.secret, key.total, key.name, key.origin});
 }
 
 core::Result<void> clear_failures_of_name(Writing& tx, Secret secret, const std::string& name) {
-  return run(tx, "delete from sign_in_failures where secret = ? and total <> ? and name = ?",
-             {text_of(secret), text_of(Total::origin), name});
+  return run_statement(tx,
+                       "delete from sign_in_failures where secret = ? and total <> ? and name = ?",
+                       {text_of(secret), text_of(Total::origin), name});
 }
 
 core::Result<void> remove_old_failures(Writing& tx, std::int64_t before_utc_us) {
-  return run(tx, "delete from sign_in_failures where at_utc_us < ?", {before_utc_us});
+  return run_statement(tx, "delete from sign_in_failures where at_utc_us < ?", {before_utc_us});
 }
 
 core::Result<bool> is_known_origin(Reading& tx, const Attempt& attempt) {
@@ -104,18 +107,18 @@ core::Result<bool> is_known_origin(Reading& tx, Secret secret, const std::string
 
 core::Result<void> note_origin(Writing& tx, const std::string& account_id, const Attempt& from,
                                std::int64_t now_utc_us, std::int64_t forget_before_utc_us) {
-  TRY(run(tx, "delete from known_origins where account_id = ? and seen_utc_us < ?",
-          {account_id, forget_before_utc_us}));
-  return run(tx,
-             "insert into known_origins (account_id, secret, origin, seen_utc_us) "
-             "values (?, ?, ?, ?) on conflict (account_id, secret, origin) do update "
-             "set seen_utc_us = excluded.seen_utc_us",
-             {account_id, text_of(from.secret), from.origin, now_utc_us});
+  TRY(run_statement(tx, "delete from known_origins where account_id = ? and seen_utc_us < ?",
+                    {account_id, forget_before_utc_us}));
+  return run_statement(tx,
+                       "insert into known_origins (account_id, secret, origin, seen_utc_us) "
+                       "values (?, ?, ?, ?) on conflict (account_id, secret, origin) do update "
+                       "set seen_utc_us = excluded.seen_utc_us",
+                       {account_id, text_of(from.secret), from.origin, now_utc_us});
 }
 
 core::Result<void> forget_origins(Writing& tx, const std::string& account_id, Secret secret) {
-  return run(tx, "delete from known_origins where account_id = ? and secret = ?",
-             {account_id, text_of(secret)});
+  return run_statement(tx, "delete from known_origins where account_id = ? and secret = ?",
+                       {account_id, text_of(secret)});
 }
 
 }  // namespace store

@@ -2,21 +2,14 @@
 
 #include <fmt/format.h>
 
+#include "core/clock.hpp"
 #include "core/try.hpp"
 #include "db/store/cases/cases.hpp"
+#include "db/store/rows.hpp"
 #include "db/store/studies/study_slots.hpp"
 
 namespace tractus {
 namespace store {
-namespace {
-constexpr std::int64_t kDay_us = 24ll * 3600 * 1'000'000;
-
-core::Result<void> done(core::Result<Rows> rows) {
-  if (!rows) return rows.error();
-  return {};
-}
-}  // namespace
-
 core::Result<void> set_station_last(Writing& tx, const StationLast& last) {
   return done(tx.query(
       "insert into station_states (station_id, seen_utc_us, told) values (?, ?, ?) on conflict "
@@ -34,7 +27,7 @@ core::Result<std::vector<StationLast>> stations_last(Reading& tx) {
 core::Result<void> add_station_note(Writing& tx, const StationNote& note, std::int64_t now_utc_us) {
   auto today = TRY(
       tx.query("select count(*) from station_reports where station_id = ? and received_utc_us > ?",
-               {note.station_id, now_utc_us - kDay_us}));
+               {note.station_id, now_utc_us - core::kDay_us}));
   if (today.front().integer(0) >= kMostNotesADay)
     return core::Error{
         core::Errc::unavailable,

@@ -1,15 +1,11 @@
 #include "db/store/stations/sent_models.hpp"
 
 #include "core/try.hpp"
+#include "db/store/rows.hpp"
 
 namespace tractus {
 namespace store {
 namespace {
-
-core::Result<void> done(const core::Result<Rows>& rows) {
-  if (!rows) return rows.error();
-  return {};
-}
 
 std::optional<std::int64_t> time_or_nothing(const Row& row, std::size_t column) {
   if (std::holds_alternative<std::monostate>(row.value(column))) return std::nullopt;

@@ -8,11 +8,6 @@ namespace tractus {
 namespace store {
 namespace {
 
-core::Result<void> done(const core::Result<Rows>& rows) {
-  if (!rows) return rows.error();
-  return {};
-}
-
 /// Columns as assignment_from reads them; the one placeholder six times: whose counts (empty: all).
 constexpr const char* kAssignment =
     "select a.study_id, s.title, s.state, s.ordering, s.repeats, s.seed, s.on_invalid, "

@@ -16,12 +16,7 @@ constexpr const char* kParticipant =
     "select name, state, level, experience_years, simulated from study_participants ";
 constexpr std::size_t kSlotName_bytes = 32;
 
-core::Result<void> done(const core::Result<Rows>& rows) {
-  if (!rows) return rows.error();
-  return {};
-}
-
-core::Result<StudySummary> summary_from(const Row& row) {
+core::Result<StudySummary> study_summary_from(const Row& row) {
   auto study = TRY(study_from(row));
   return StudySummary{std::move(study), row.count(9), row.count(10), row.count(11)};
 }
@@ -30,8 +25,6 @@ core::Result<Participant> participant_from(const Row& row) {
   const auto state = TRY(row.word<StudyState>(1, "study_participants.state"));
   return Participant{row.text(0), state, row.text(2), row.number_or_null(3), row.truth(4)};
 }
-
-Value text_or_null(const std::string& text) { return text.empty() ? Value() : Value(text); }
 
 core::Result<void> add_slots(Writing& tx, const std::string& study_id, const std::string& name,
                              const std::vector<std::string>& case_order, const AuditStamp& stamp) {
@@ -125,7 +118,7 @@ core::Result<std::vector<StudySummary>> all_studies(Reading& tx) {
           "(select count(*) from study_slots k where k.study_id = s.id and k.state <> 'invalid') "
           "from studies s where s.kind = 'study' "
           "order by s.made_utc_us desc, s.id"),
-      summary_from);
+      study_summary_from);
 }
 
 core::Result<Study> study_of(Reading& tx, const SeriesId& id) {

@@ -17,11 +17,6 @@ constexpr const char* kSlot =
     "k.station_id, k.repeat_of, (select c.planned from cases c where c.id = k.case_id) "
     "from study_slots k ";
 
-core::Result<void> done(const core::Result<Rows>& rows) {
-  if (!rows) return rows.error();
-  return {};
-}
-
 core::Result<Slot> slot_from(const Row& row) {
   const auto state = TRY(row.word<SlotState>(6, "study_slots.state"));
   return Slot{.id = row.text(0),

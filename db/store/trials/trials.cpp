@@ -12,11 +12,6 @@ namespace {
 constexpr const char* kFrom =
     " from trials t join cases c on c.id = t.case_id join stations s on s.id = t.station_id ";
 
-core::Result<void> done(const core::Result<Rows>& rows) {
-  if (!rows) return rows.error();
-  return {};
-}
-
 core::Result<void> add_score(Writing& tx, const std::string& trial_id, std::int64_t position,
                              const ScoreRecord& score) {
   return done(

@@ -15,11 +15,6 @@ core::Result<Upload> upload_from(const Row& row) {
   return Upload{row.text(0), row.text(1), row.text(2), row.count(3), row.text(4), state};
 }
 
-core::Result<void> done(const core::Result<Rows>& rows) {
-  if (!rows) return rows.error();
-  return {};
-}
-
 }  // namespace
 
 core::Result<std::optional<Upload>> upload_of(Reading& tx, const std::string& trial_id) {

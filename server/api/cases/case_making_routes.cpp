@@ -23,7 +23,7 @@ using core::Error;
 using core::Json;
 using core::Result;
 
-constexpr std::uint64_t kMaxBody_bytes = 4096;
+constexpr std::uint64_t kMaxCaseMaking_bytes = 4096;
 constexpr std::size_t kMaxTitle = 200;
 constexpr std::int64_t kMostShown = 50;
 
@@ -207,9 +207,9 @@ std::vector<NamedSchema> making_schemas() {
       {"Retirement", object({{"retired", truth("True if new assignments cannot use the case")}})}};
 }
 
-RouteInfo route(std::string method, std::string path, std::string id, std::string summary,
-                std::string body, std::string answer,
-                Result<http::Response> (*handle)(const Call&)) {
+RouteInfo case_making_route(std::string method, std::string path, std::string id,
+                            std::string summary, std::string body, std::string answer,
+                            Result<http::Response> (*handle)(const Call&)) {
   return {.method = std::move(method),
           .path = "/api/v1/" + path,
           .id = std::move(id),
@@ -217,7 +217,7 @@ RouteInfo route(std::string method, std::string path, std::string id, std::strin
           .who = {Role::admin, Role::faculty},
           .parameters = {},
           .body = std::move(body),
-          .body_limit_bytes = kMaxBody_bytes,
+          .body_limit_bytes = kMaxCaseMaking_bytes,
           .answer = std::move(answer),
           .schemas = {},
           .handle = handle};
@@ -226,29 +226,31 @@ RouteInfo route(std::string method, std::string path, std::string id, std::strin
 }  // namespace
 
 std::vector<RouteInfo> case_making_routes() {
-  RouteInfo look = route("POST", "volumes/{id}/tract", "planTract",
-                         "Examine a planned tract before a case is made: the walls along it, the "
-                         "breach and the problems of the plan",
-                         "TractWish", "PlannedTract", look_at_tract);
+  RouteInfo look =
+      case_making_route("POST", "volumes/{id}/tract", "planTract",
+                        "Examine a planned tract before a case is made: the walls along it, the "
+                        "breach and the problems of the plan",
+                        "TractWish", "PlannedTract", look_at_tract);
   look.parameters = {path_text("id", "Id of the volume")};
   look.audited = false;  // it changes nothing
   look.schemas = tract_schemas();
-  RouteInfo add =
-      route("POST", "cases", "makeCase",
-            "Queue a job that makes a case from a released volume, as `tractus carve` does",
-            "NewCase", "CaseMaking", make);
+  RouteInfo add = case_making_route(
+      "POST", "cases", "makeCase",
+      "Queue a job that makes a case from a released volume, as `tractus carve` does", "NewCase",
+      "CaseMaking", make);
   add.schemas = making_schemas();
-  RouteInfo list =
-      route("GET", "case-makings", "caseMakings", "List the jobs that make cases, newest first", "",
-            "CaseMakings", list_makings);
-  RouteInfo one =
-      route("GET", "case-makings/{id}", "caseMaking", "Read the state of one job that makes a case",
-            "", "CaseMaking", one_making);
+  RouteInfo list = case_making_route("GET", "case-makings", "caseMakings",
+                                     "List the jobs that make cases, newest first", "",
+                                     "CaseMakings", list_makings);
+  RouteInfo one = case_making_route("GET", "case-makings/{id}", "caseMaking",
+                                    "Read the state of one job that makes a case", "", "CaseMaking",
+                                    one_making);
   one.parameters = {path_text("id", "Id of the job that makes the case")};
-  RouteInfo away = route("POST", "cases/{id}/retire", "retireCase",
-                         "Retire a case, so that new assignments cannot use it, or offer it again; "
-                         "existing assignments continue",
-                         "Retirement", "", retire);
+  RouteInfo away =
+      case_making_route("POST", "cases/{id}/retire", "retireCase",
+                        "Retire a case, so that new assignments cannot use it, or offer it again; "
+                        "existing assignments continue",
+                        "Retirement", "", retire);
   away.parameters = {path_text("id", "Id of the case")};
   return {look, add, list, one, away};
 }

@@ -22,7 +22,7 @@ using core::Json;
 using core::Result;
 using scenarios::Scenario;
 
-constexpr std::uint64_t kMaxBody_bytes = 256u << 10;
+constexpr std::uint64_t kMaxScenario_bytes = 256u << 10;
 constexpr std::array kSpeeds_m_s{0.002, 0.005, 0.010};
 
 /// Reads a draft, which has no origin yet; the server writes the origin.
@@ -95,14 +95,16 @@ Result<http::Response> list(const Call& call) {
   return json_response({{"scenarios", versions}, {"tuned", tuned}});
 }
 
-Error absent(const std::string& id) { return {Errc::not_found, "no scenario " + id.substr(0, 64)}; }
+Error no_scenario(const std::string& id) {
+  return {Errc::not_found, "no scenario " + id.substr(0, 64)};
+}
 
 /// The contents of a version; for the name of a kind, those of the tuned scenario of this kind.
 Result<Scenario> contents(Backend& backend, const std::string& id) {
   if (const auto kind = core::from_name<scenarios::Kind>(id)) return scenarios::tuned(*kind);
   const auto version = TRY(
       backend.store.read([&](store::Reading& tx) { return store::scenario_version_of(tx, id); }));
-  if (!version) return absent(id);
+  if (!version) return no_scenario(id);
   auto json = TRY(core::read_json(backend.objects.path_of(version->sha256)));
   return Scenario::from_json(json, "scenario " + id.substr(0, 12) + ": ");
 }
@@ -167,7 +169,7 @@ Result<http::Response> add(const Call& call) {
   return json_response(version_json(version), 201);
 }
 
-Result<http::Response> publish(const Call& call) {
+Result<http::Response> publish_scenario(const Call& call) {
   auto json = TRY(core::parse_json(call.request.body, "body"));
   core::Fields fields(json, "body");
   const Json* published = fields.member("published");
@@ -189,7 +191,7 @@ Result<http::Response> publish(const Call& call) {
   return json_response(version_json(*version));
 }
 
-std::vector<NamedSchema> curve_schemas() {
+std::vector<NamedSchema> scenario_curve_schemas() {
   using namespace schema;
   const Json at =
       object({{"speed_m_s", number("m/s", "Constant speed of the tip into the bone, in m/s")},
@@ -256,9 +258,9 @@ std::vector<NamedSchema> version_schemas() {
       {"Publication", object({{"published", truth("True if assignments can use the version")}})}};
 }
 
-RouteInfo route(std::string method, std::string tail, std::string id, std::string summary,
-                std::string body, std::string answer,
-                Result<http::Response> (*handle)(const Call&)) {
+RouteInfo scenario_route(std::string method, std::string tail, std::string id, std::string summary,
+                         std::string body, std::string answer,
+                         Result<http::Response> (*handle)(const Call&)) {
   RouteInfo out{.method = std::move(method),
                 .path = "/api/v1/scenarios" + tail,
                 .id = std::move(id),
@@ -266,7 +268,7 @@ RouteInfo route(std::string method, std::string tail, std::string id, std::strin
                 .who = {Role::admin, Role::faculty},
                 .parameters = {},
                 .body = std::move(body),
-                .body_limit_bytes = kMaxBody_bytes,
+                .body_limit_bytes = kMaxScenario_bytes,
                 .answer = std::move(answer),
                 .schemas = {},
                 .handle = handle};
@@ -278,24 +280,26 @@ RouteInfo route(std::string method, std::string tail, std::string id, std::strin
 }  // namespace
 
 std::vector<RouteInfo> scenarios_routes() {
-  RouteInfo look =
-      route("POST", "/check", "checkScenario",
-            "Check whether a draft is valid and compute the force that it needs at each depth",
-            "ScenarioDraft", "ScenarioCheck", check);
+  RouteInfo look = scenario_route(
+      "POST", "/check", "checkScenario",
+      "Check whether a draft is valid and compute the force that it needs at each depth",
+      "ScenarioDraft", "ScenarioCheck", check);
   look.audited = false;  // it changes nothing
-  look.schemas = curve_schemas();
-  RouteInfo all = route("GET", "", "scenarios",
-                        "List the versions of scenarios written on this server, newest first, and "
-                        "the tuned scenarios that come with the program",
-                        "", "ScenarioVersions", list);
+  look.schemas = scenario_curve_schemas();
+  RouteInfo all =
+      scenario_route("GET", "", "scenarios",
+                     "List the versions of scenarios written on this server, newest first, and "
+                     "the tuned scenarios that come with the program",
+                     "", "ScenarioVersions", list);
   all.schemas = version_schemas();
   return {look, all,
-          route("GET", "/{id}", "scenario", "Read the file of a version", "", "ScenarioFile", one),
-          route("POST", "", "addScenario", "Store a draft as a new version", "NewScenario",
-                "ScenarioVersion", add),
-          route("POST", "/{id}/publish", "publishScenario",
-                "Publish a version, so that assignments can use it, or withdraw it", "Publication",
-                "ScenarioVersion", publish)};
+          scenario_route("GET", "/{id}", "scenario", "Read the file of a version", "",
+                         "ScenarioFile", one),
+          scenario_route("POST", "", "addScenario", "Store a draft as a new version", "NewScenario",
+                         "ScenarioVersion", add),
+          scenario_route("POST", "/{id}/publish", "publishScenario",
+                         "Publish a version, so that assignments can use it, or withdraw it",
+                         "Publication", "ScenarioVersion", publish_scenario)};
 }
 
 }  // namespace api

@@ -30,8 +30,6 @@ using core::Result;
 constexpr std::size_t kMostRow_bytes = 1 << 20;
 constexpr std::size_t kMaxFormula_bytes = 4096;
 
-Error wrong(std::string what) { return {Errc::bad_input, std::move(what)}; }
-
 /// A plan's file as an object, noted in `tx`.
 Result<void> note_object(store::Writing& tx, const std::string& sha256, const std::string& text,
                          std::int64_t now) {
@@ -45,12 +43,13 @@ Result<Json> unplanned(core::Fields& fields) {
   if (const Json* options = fields.member("options", false)) one["options"] = *options;
   TRY(fields.done());
   const auto method = assessment::method_named(one["method"].get<std::string>());
-  if (!method) return wrong("body: method: " + method.error().what);
+  if (!method) return core::bad_input("body: method: " + method.error().what);
   if (method->formula.empty())
-    return wrong("body: method: " + method->id + " analyses no data: run it with tractus stats");
+    return core::bad_input("body: method: " + method->id +
+                           " analyses no data: run it with tractus stats");
   if (formula.empty())
-    return wrong("body: formula: " + method->id + " needs a formula, for example " +
-                 method->formula);
+    return core::bad_input("body: formula: " + method->id + " needs a formula, for example " +
+                           method->formula);
   one["formula"] = formula;
   one["question"] = method->summary;
   const Json plan = {{"format", "tractus-plan/1"},
@@ -72,7 +71,8 @@ Result<void> take_snapshot(Backend& backend, const std::string& sha256, store::A
       run.description = before.description;
       return check_still_released(backend, run.study, sha256);
     }
-  return wrong("body: snapshot: no analysis of this plan used the data " + sha256.substr(0, 64));
+  return core::bad_input("body: snapshot: no analysis of this plan used the data " +
+                         sha256.substr(0, 64));
 }
 
 Result<void> of_plan(Backend& backend, core::Fields& fields, store::AnalysisRun& run) {
@@ -81,7 +81,7 @@ Result<void> of_plan(Backend& backend, core::Fields& fields, store::AnalysisRun&
   TRY(fields.done());
   const auto plan =
       TRY(backend.store.read([&](store::Reading& tx) { return store::analysis_plan_of(tx, id); }));
-  if (!plan) return wrong("body: plan: there is no plan " + id);
+  if (!plan) return core::bad_input("body: plan: there is no plan " + id);
   run.plan_id = id;
   run.plan = plan->plan;
   run.study = plan->study;
@@ -94,7 +94,7 @@ Result<void> of_method(Backend& backend, core::Fields& fields, store::AnalysisRu
   if (!run.study.empty()) {
     const auto known = TRY(backend.store.read(
         [&](store::Reading& tx) { return store::series_exists(tx, run.study); }));
-    if (!known) return wrong("body: study: there is no study " + run.study.substr(0, 32));
+    if (!known) return core::bad_input("body: study: there is no study " + run.study.substr(0, 32));
   }
   const std::string text = plan.dump();
   const auto kept = TRY(backend.objects.put(core::bytes_of(text)));
@@ -116,7 +116,7 @@ Result<store::AnalysisPlan> locked_plan(Backend& backend, const Json& asked,
   TRY(fields.done());
   const auto scored =
       backend.store.read([&](store::Reading& tx) { return store::scored_trials(tx, out.study); });
-  if (!scored) return wrong("body: " + scored.error().what);
+  if (!scored) return core::bad_input("body: " + scored.error().what);
   out.trials_then = *scored;
   out.data_seen = (seen && seen->get<bool>()) || out.trials_then > 0;
   out.id = core::new_id();

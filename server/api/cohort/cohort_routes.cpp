@@ -18,32 +18,25 @@ using core::Json;
 using core::Result;
 using namespace schema;
 
-constexpr std::uint64_t kMaxAsk_bytes = 16384, kMaxPlan_bytes = 1 << 20;
+constexpr std::uint64_t kMaxCohortAsk_bytes = 16384, kMaxCohortPlan_bytes = 1 << 20;
 constexpr std::int64_t kMostInTable = 20'000;
 
-Json or_null(const std::optional<std::string>& text) { return text ? Json(*text) : Json(); }
-Json or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
-
-Error absent(const char* what, const std::string& id) {
-  return {Errc::not_found, fmt::format("no {} {} here", what, id.substr(0, 64))};
-}
-
-Json run_summary(const store::AnalysisRun& run) {
+Json analysis_summary(const store::AnalysisRun& run) {
   return {{"id", run.id},
-          {"plan", or_null(run.plan_id)},
-          {"study", or_null(run.study)},
+          {"plan", core::or_null(run.plan_id)},
+          {"study", core::or_null(run.study)},
           {"state", name(run.state)},
           {"share", run.share},
           {"error", run.error},
-          {"snapshot", or_null(run.snapshot)},
+          {"snapshot", core::or_null(run.snapshot)},
           {"made_utc_us", run.made_utc_us},
           {"made_by", run.made_by}};
 }
 
 /// The run with its result, the description of its data, and whether an earlier run gave the same
 /// digits.
-Result<Json> run_json(const Call& call, const store::AnalysisRun& run) {
-  Json out = run_summary(run);
+Result<Json> analysis_json(const Call& call, const store::AnalysisRun& run) {
+  Json out = analysis_summary(run);
   for (const auto& [key, object] :
        {std::pair{"data", &run.description}, std::pair{"result", &run.result}}) {
     out[key] = nullptr;
@@ -61,7 +54,7 @@ Result<Json> run_json(const Call& call, const store::AnalysisRun& run) {
 Json plan_json(const store::AnalysisPlan& plan) {
   return {{"id", plan.id},
           {"title", plan.title},
-          {"study", or_null(plan.study)},
+          {"study", core::or_null(plan.study)},
           {"data_seen", plan.data_seen},
           {"trials_then", plan.trials_then},
           {"made_utc_us", plan.made_utc_us},
@@ -94,7 +87,7 @@ Result<http::Response> plan_of(const Call& call) {
   Json out = plan_json(*plan);
   out["plan"] = std::move(file);
   out["analyses"] = Json::array();
-  for (const auto& run : runs) out["analyses"].push_back(run_summary(run));
+  for (const auto& run : runs) out["analyses"].push_back(analysis_summary(run));
   return json_response(out);
 }
 
@@ -102,10 +95,10 @@ Result<http::Response> analyse_cohort(const Call& call) {
   const auto asked = TRY(core::parse_json(call.request.body, "body"));
   const auto run = TRY(queued_analysis(call.backend, asked, call.caller.name));
   call.backend.work_waits();
-  return json_response(run_summary(run), 201);
+  return json_response(analysis_summary(run), 201);
 }
 
-Result<store::AnalysisRun> run_of(const Call& call) {
+Result<store::AnalysisRun> analysis_of(const Call& call) {
   const auto run = TRY(call.backend.store.read(
       [&](store::Reading& tx) { return store::analysis_of(tx, call.text("id")); }));
   if (!run) return absent("analysis", call.text("id"));
@@ -113,14 +106,14 @@ Result<store::AnalysisRun> run_of(const Call& call) {
 }
 
 Result<http::Response> analysis(const Call& call) {
-  const auto run = TRY(run_of(call));
-  const auto json = TRY(run_json(call, run));
+  const auto run = TRY(analysis_of(call));
+  const auto json = TRY(analysis_json(call, run));
   return json_response(json);
 }
 
 /// One file of a finished run.
 Result<http::Response> part_of(const Call& call) {
-  const auto run = TRY(run_of(call));
+  const auto run = TRY(analysis_of(call));
   const std::string& part = call.text("part");
   if (part == "dictionary.json") {
     if (!run.description || !run.data) return absent("dictionary of the analysis", run.id);
@@ -154,8 +147,8 @@ Result<http::Response> table_of(const Call& call) {
   return response;
 }
 
-RouteInfo route(std::string method, std::string tail, std::string id, std::string summary,
-                std::string answer, Result<http::Response> (*handle)(const Call&)) {
+RouteInfo cohort_route(std::string method, std::string tail, std::string id, std::string summary,
+                       std::string answer, Result<http::Response> (*handle)(const Call&)) {
   return research_route(std::move(method), "cohort/" + tail, std::move(id), std::move(summary),
                         std::move(answer), handle);
 }
@@ -247,25 +240,28 @@ std::vector<NamedSchema> answer_schemas() {
 }  // namespace
 
 std::vector<RouteInfo> cohort_routes() {
-  RouteInfo list = route("GET", "plans", "analysisPlans",
-                         "List the locked analysis plans, newest first", "PlanList", list_plans);
+  RouteInfo list =
+      cohort_route("GET", "plans", "analysisPlans", "List the locked analysis plans, newest first",
+                   "PlanList", list_plans);
   list.schemas = {
       {"PlanList", object({{"plans", array(ref("LockedPlan"), "Locked plans, newest first")}})}};
-  RouteInfo one = route("GET", "plans/{id}", "analysisPlan",
-                        "Read a locked plan in full, with its analyses", "PlanAnswer", plan_of);
+  RouteInfo one =
+      cohort_route("GET", "plans/{id}", "analysisPlan",
+                   "Read a locked plan in full, with its analyses", "PlanAnswer", plan_of);
   one.schemas = {{"PlanAnswer",
                   anything("A LockedPlan with two more fields: plan in the format tractus-plan/1, "
                            "and analyses, an array of CohortAnalysis, newest first")}};
-  RouteInfo answered = route("GET", "analyses/{id}", "cohortAnalysis",
-                             "Read the state of an analysis and, when it is done, its result",
-                             "CohortAnswer", analysis);
+  RouteInfo answered = cohort_route(
+      "GET", "analyses/{id}", "cohortAnalysis",
+      "Read the state of an analysis and, when it is done, its result", "CohortAnswer", analysis);
   answered.schemas = answer_schemas();
-  RouteInfo part = route("GET", "analyses/{id}/{part}", "cohortAnalysisPart",
-                         "Read a file of a finished analysis", kBytes, part_of);
+  RouteInfo part = cohort_route("GET", "analyses/{id}/{part}", "cohortAnalysisPart",
+                                "Read a file of a finished analysis", kBytes, part_of);
   part.parameters.push_back(
       path_text("part", "Name of the file: report.html, result.json, data.csv or dictionary.json"));
-  RouteInfo table = route("GET", "table", "cohortTable",
-                          "Export the scored trials as CSV, one row per trial", kBytes, table_of);
+  RouteInfo table =
+      cohort_route("GET", "table", "cohortTable",
+                   "Export the scored trials as CSV, one row per trial", kBytes, table_of);
   table.parameters = {{.in = Parameter::In::query,
                        .name = "study",
                        .kind = Parameter::Kind::text,
@@ -273,16 +269,18 @@ std::vector<RouteInfo> cohort_routes() {
                        .meaning = "Only trials of the study with this id",
                        .required = false,
                        .fallback = std::nullopt}};
-  return {taking(route("POST", "plans", "lockAnalysisPlan",
-                       "Lock an analysis plan before its data are seen", "LockedPlan", lock_plan),
-                 "PlanToLock", kMaxPlan_bytes, plan_schemas()),
+  return {taking(cohort_route("POST", "plans", "lockAnalysisPlan",
+                              "Lock an analysis plan before its data are seen", "LockedPlan",
+                              lock_plan),
+                 "PlanToLock", kMaxCohortPlan_bytes, plan_schemas()),
           list,
           one,
-          taking(route("POST", "analyses", "analyseCohort",
-                       "Queue an analysis of the scored trials, either with a locked plan or with "
-                       "one method",
-                       "CohortAnalysis", analyse_cohort),
-                 "CohortQuestion", kMaxAsk_bytes, run_schemas()),
+          taking(cohort_route(
+                     "POST", "analyses", "analyseCohort",
+                     "Queue an analysis of the scored trials, either with a locked plan or with "
+                     "one method",
+                     "CohortAnalysis", analyse_cohort),
+                 "CohortQuestion", kMaxCohortAsk_bytes, run_schemas()),
           answered,
           part,
           table};

@@ -22,7 +22,7 @@ using store::Tier;
 constexpr std::uint64_t kMostZip_bytes = 256u << 20;
 constexpr std::streamsize kPiece_bytes = 256 << 10;
 
-struct Frees {
+struct FreesArchive {
   void operator()(archive* writer) const { archive_write_free(writer); }
 };
 
@@ -91,7 +91,7 @@ class Zip {
             "the zip is larger than 256 MiB: export one study or use a lower tier"};
   }
   Output out_;
-  std::unique_ptr<archive, Frees> writer_;
+  std::unique_ptr<archive, FreesArchive> writer_;
 };
 
 Result<void> add_samples(Zip& zip, Backend& backend, const std::string& client,

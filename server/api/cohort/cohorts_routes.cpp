@@ -17,9 +17,9 @@ using core::Error;
 using core::Result;
 using store::CohortPart;
 
-constexpr std::uint64_t kMaxBody_bytes = 4096;
+constexpr std::uint64_t kMaxCohorts_bytes = 4096;
 
-core::Json summary_json(const store::Cohort& cohort) {
+core::Json cohort_json(const store::Cohort& cohort) {
   return {{"id", cohort.id},
           {"name", cohort.name},
           {"trainees", cohort.trainees},
@@ -32,7 +32,7 @@ Result<http::Response> list_cohorts(const Call& call) {
     return store::cohorts_of(tx, call.of == Scope::all ? "" : call.caller.id);
   }));
   core::Json list = core::Json::array();
-  for (const auto& cohort : found) list.push_back(summary_json(cohort));
+  for (const auto& cohort : found) list.push_back(cohort_json(cohort));
   return json_response({{"cohorts", list}});
 }
 
@@ -41,7 +41,7 @@ Result<http::Response> cohort_response(store::Store& store, const std::string& i
     auto cohort = TRY(store::cohort_of(tx, id));
     if (!cohort) return Error{Errc::not_found, "no cohort " + id.substr(0, 32)};
     auto people = TRY(store::people_of(tx, id));
-    core::Json out = summary_json(*cohort);
+    core::Json out = cohort_json(*cohort);
     out["people"] = core::Json::array();
     auto invited = TRY(store::invitations_into(tx, id));
     out["invitations"] = core::Json::array();
@@ -127,8 +127,8 @@ Result<http::Response> take_person(const Call& call) {
   return cohort_response(call.backend.store, call.text("id"), 200);
 }
 
-RouteInfo route(std::string method, std::string tail, std::string id, std::string summary,
-                Result<http::Response> (*handle)(const Call&)) {
+RouteInfo cohorts_route(std::string method, std::string tail, std::string id, std::string summary,
+                        Result<http::Response> (*handle)(const Call&)) {
   RouteInfo out{.method = std::move(method),
                 .path = "/api/v1/cohorts" + tail,
                 .id = std::move(id),
@@ -137,7 +137,7 @@ RouteInfo route(std::string method, std::string tail, std::string id, std::strin
                 .object = tail.empty() ? Object::none : Object::cohort,
                 .parameters = {},
                 .body = "",
-                .body_limit_bytes = kMaxBody_bytes,
+                .body_limit_bytes = kMaxCohorts_bytes,
                 .answer = "Cohort",
                 .schemas = {},
                 .handle = handle};
@@ -176,10 +176,10 @@ std::vector<NamedSchema> cohort_schemas() {
 }
 
 RouteInfo putting_route() {
-  RouteInfo out =
-      route("POST", "/{id}/people", "putIntoCohort",
-            "Add a person to a cohort: a trainee as a learner, a member of the faculty as a leader",
-            put_person);
+  RouteInfo out = cohorts_route(
+      "POST", "/{id}/people", "putIntoCohort",
+      "Add a person to a cohort: a trainee as a learner, a member of the faculty as a leader",
+      put_person);
   out.who.push_back(Role::director);
   out.ends = {{"/name", Object::person, out.who, End::By::account_name}};
   out.body = "PersonNamed";
@@ -188,8 +188,9 @@ RouteInfo putting_route() {
 }
 
 RouteInfo taking_route() {
-  RouteInfo out = route("DELETE", "/{id}/people/{account_id}", "takeFromCohort",
-                        "Remove a person from a cohort; the person's trials stay", take_person);
+  RouteInfo out =
+      cohorts_route("DELETE", "/{id}/people/{account_id}", "takeFromCohort",
+                    "Remove a person from a cohort; the person's trials stay", take_person);
   out.parameters.push_back(path_text("account_id", "Id of the person's account"));
   out.ends = {{"account_id", Object::person, out.who}};
   return out;
@@ -198,15 +199,16 @@ RouteInfo taking_route() {
 /// Every person may be invited, because the person accepts or declines.
 std::vector<RouteInfo> inviting_routes() {
   const std::vector<Grant> inviting{Role::admin, Role::director, Role::faculty};
-  RouteInfo ask = route("POST", "/{id}/invitations", "inviteIntoCohort",
-                        "Invite a person into a cohort, without the right to add the person "
-                        "directly; the person accepts or declines",
-                        invite_person);
+  RouteInfo ask =
+      cohorts_route("POST", "/{id}/invitations", "inviteIntoCohort",
+                    "Invite a person into a cohort, without the right to add the person "
+                    "directly; the person accepts or declines",
+                    invite_person);
   ask.who.push_back(Role::director);
   ask.ends = {{"/name", Object::person, inviting, End::By::account_name}};
   ask.body = "PersonNamed";
-  RouteInfo withdraw = route("DELETE", "/{id}/invitations/{name}", "withdrawInvitation",
-                             "Withdraw an invitation", withdraw_invitation);
+  RouteInfo withdraw = cohorts_route("DELETE", "/{id}/invitations/{name}", "withdrawInvitation",
+                                     "Withdraw an invitation", withdraw_invitation);
   withdraw.who.push_back(Role::director);
   withdraw.parameters.push_back(
       path_text("name", "Name of the invited account, as in the invitation"));
@@ -217,7 +219,7 @@ std::vector<RouteInfo> inviting_routes() {
 }  // namespace
 
 std::vector<RouteInfo> cohorts_routes() {
-  RouteInfo list = route(
+  RouteInfo list = cohorts_route(
       "GET", "", "cohorts",
       "List cohorts, sorted by name: all cohorts, or those that the caller leads or is a member of",
       list_cohorts);
@@ -225,13 +227,14 @@ std::vector<RouteInfo> cohorts_routes() {
   list.who = {
       Role::admin, Role::director, {Role::faculty, Scope::cohort}, {Role::trainee, Scope::own}};
   list.schemas = cohort_schemas();
-  RouteInfo one = route("GET", "/{id}", "cohort",
-                        "Read one cohort with its members and open invitations", one_cohort);
+  RouteInfo one =
+      cohorts_route("GET", "/{id}", "cohort",
+                    "Read one cohort with its members and open invitations", one_cohort);
   one.who.push_back(Role::director);
-  RouteInfo add =
-      route("POST", "", "addCohort",
-            "Create a cohort; a member of the faculty who creates a cohort becomes its leader",
-            add_cohort_route);
+  RouteInfo add = cohorts_route(
+      "POST", "", "addCohort",
+      "Create a cohort; a member of the faculty who creates a cohort becomes its leader",
+      add_cohort_route);
   add.body = "NewCohort";
   add.schemas = {
       {"NewCohort",

@@ -115,7 +115,7 @@ constexpr std::array kProbing{
            "flag bits of the format tractus-trial/2, for example late or limited"},
 };
 
-std::string header_of(std::string_view table) {
+std::string csv_header(std::string_view table) {
   std::string out;
   for (const Column& column : kColumns)
     if (column.table == table) out += (out.empty() ? "" : ",") + std::string(column.column);
@@ -132,7 +132,7 @@ Result<store::ReleasedTrials> released_trials(Backend& backend, const std::strin
 }
 
 std::string trials_csv(const store::ReleasedTrials& trials) {
-  std::string out = header_of("trials");
+  std::string out = csv_header("trials");
   for (const store::ReleasedTrial& t : trials.all()) {
     const bool in_study = !t.study.empty();
     out +=
@@ -159,7 +159,7 @@ std::string summary_csv(const store::ReleasedTrials& trials) {
     sum.answered += t.correct.has_value();
     sum.correct += t.correct.value_or(false);
   }
-  std::string out = header_of("summary");
+  std::string out = csv_header("summary");
   for (const auto& [key, sum] : sums)
     out += fmt::format("{},{},{},{},{},{},{},{},{}\r\n", cell(key[0]), cell(key[1]), cell(key[2]),
                        cell(sum.first->level), cell(sum.first->experience_years),

@@ -92,8 +92,8 @@ Result<http::Response> export_key(const Call& call) {
   return csv_response(std::move(csv), "key.csv");
 }
 
-RouteInfo route(std::string tail, std::string id, std::string summary,
-                Result<http::Response> (*handle)(const Call&)) {
+RouteInfo export_route(std::string tail, std::string id, std::string summary,
+                       Result<http::Response> (*handle)(const Call&)) {
   return {.method = "GET",
           .path = "/api/v1/export/" + tail,
           .id = std::move(id),
@@ -116,23 +116,25 @@ std::vector<RouteInfo> export_routes() {
                         .meaning = "Only trials of the study or assignment with this id",
                         .required = false,
                         .fallback = std::nullopt};
-  RouteInfo trials = route("trials.csv", "exportTrials",
-                           "Export the released trials as a CSV table, one row per trial, with "
-                           "pseudonyms in place of names",
-                           export_trials);
+  RouteInfo trials =
+      export_route("trials.csv", "exportTrials",
+                   "Export the released trials as a CSV table, one row per trial, with "
+                   "pseudonyms in place of names",
+                   export_trials);
   trials.parameters = {study};
-  RouteInfo scores = route(
+  RouteInfo scores = export_route(
       "scores.csv", "exportScores",
       "Export the scores of the released trials as a CSV table, one row per score", export_scores);
   scores.parameters = {study};
-  RouteInfo dictionary = route("dictionary.csv", "exportDictionary",
-                               "Export the data dictionary: type, unit and meaning of every column "
-                               "of the exported tables and arrays",
-                               export_dictionary);
+  RouteInfo dictionary =
+      export_route("dictionary.csv", "exportDictionary",
+                   "Export the data dictionary: type, unit and meaning of every column "
+                   "of the exported tables and arrays",
+                   export_dictionary);
   RouteInfo samples =
-      route("trials/{trial}/samples.npy", "exportSamples",
-            "Export the samples of one trial as an array of doubles in NumPy's .npy format",
-            export_samples);
+      export_route("trials/{trial}/samples.npy", "exportSamples",
+                   "Export the samples of one trial as an array of doubles in NumPy's .npy format",
+                   export_samples);
   samples.parameters = {path_text("trial", "Pseudonym of the trial, from trials.csv"),
                         {.in = Parameter::In::query,
                          .name = "rate_Hz",
@@ -142,14 +144,15 @@ std::vector<RouteInfo> export_routes() {
                          .low = 0,
                          .high = 10'000,
                          .fallback = "100"}};
-  RouteInfo summary =
-      route("summary.csv", "exportSummary",
-            "Export the number of trials per person, study and rig as a CSV table", export_summary);
+  RouteInfo summary = export_route(
+      "summary.csv", "exportSummary",
+      "Export the number of trials per person, study and rig as a CSV table", export_summary);
   summary.parameters = {study};
-  RouteInfo cohort = route("cohort.zip", "exportCohort",
-                           "Export a zip with tables, data dictionary and, for participants who "
-                           "consented to it, samples",
-                           export_cohort);
+  RouteInfo cohort =
+      export_route("cohort.zip", "exportCohort",
+                   "Export a zip with tables, data dictionary and, for participants who "
+                   "consented to it, samples",
+                   export_cohort);
   cohort.parameters = {study,
                        {.in = Parameter::In::query,
                         .name = "tier",
@@ -159,10 +162,11 @@ std::vector<RouteInfo> export_routes() {
                                    "reduced (samples at 100 Hz) or full",
                         .required = false,
                         .fallback = "metrics"}};
-  RouteInfo key = route("key.csv", "exportKey",
-                        "Export the table that links pseudonyms with people; every export of this "
-                        "table is written into the audit trail",
-                        export_key);
+  RouteInfo key =
+      export_route("key.csv", "exportKey",
+                   "Export the table that links pseudonyms with people; every export of this "
+                   "table is written into the audit trail",
+                   export_key);
   key.who = {Role::admin};
   return {summary, trials, scores, dictionary, samples, cohort, key};
 }

@@ -120,6 +120,8 @@ Json diagnosis_schema() {
        {"verdict", one_of({"complete", "missing", "partly", "unexplained"},
                           "complete: the model is at the noise floor; missing: the effects below "
                           "bring it there; partly: they explain a part; unexplained: none does")},
+       {"headline", optional(text("the verdict as a sentence"))},
+       {"detail", optional(text("a sentence with the figures of the verdict"))},
        {"probability", share("probability of this answer")},
        {"base", object({{"rmse", figure("root mean square error of the supplied model")},
                         {"held_out_rmse", figure("the same on trials that were not fitted")},

@@ -13,8 +13,6 @@ namespace {
 using core::Json;
 using core::Result;
 
-Json or_null(const std::optional<std::string>& text) { return text ? Json(*text) : Json(); }
-
 /// {"add": […], "own": […]} of the request.
 Json wish_of(const store::LabRun& run) {
   Json wish = core::stored_json(run.wish);
@@ -37,17 +35,13 @@ Json found_json(Json kept) {
 
 }  // namespace
 
-core::Error absent(const char* what, const std::string& id) {
-  return {core::Errc::not_found, fmt::format("no {} {} here", what, id.substr(0, 64))};
-}
-
 Json model_json(const store::ModelVersion& m) {
   return {{"id", m.id},
           {"name", m.name},
           {"rig", m.rig},
           {"note", m.note},
-          {"parent", or_null(m.parent)},
-          {"run", or_null(m.run)},
+          {"parent", core::or_null(m.parent)},
+          {"run", core::or_null(m.run)},
           {"made_utc_us", m.made_utc_us},
           {"made_by", m.made_by}};
 }
@@ -55,7 +49,7 @@ Json model_json(const store::ModelVersion& m) {
 Json set_json(const store::MeasurementSet& set) {
   return {{"id", set.id},
           {"name", set.name},
-          {"rig", or_null(set.rig)},
+          {"rig", core::or_null(set.rig)},
           {"simulated", set.simulated ? Json(*set.simulated) : Json()},
           {"trials", set.rig ? Json(set.trials) : Json()},
           {"samples", set.rig ? Json(set.samples) : Json()},
@@ -73,7 +67,7 @@ Json run_json(const store::LabRun& run, const std::optional<store::ModelVersion>
   Json out{{"id", run.id},
            {"kind", name(run.kind)},
            {"model", run.model_id},
-           {"against", or_null(run.against_id)},
+           {"against", core::or_null(run.against_id)},
            {"measurements", run.set_id},
            {"add", wish["add"]},
            {"own", own},

@@ -28,6 +28,5 @@ RouteInfo lab_route(std::string method, std::string tail, std::string id, std::s
                     std::string answer, core::Result<http::Response> (*handle)(const Call&));
 /// An optional argument in the query.
 Parameter optional_text(std::string name, std::string meaning);
-core::Error absent(const char* what, const std::string& id);
 
 }  // namespace tractus::api

@@ -24,7 +24,7 @@ using core::Json;
 using core::Result;
 using store::LabRunKind;
 
-constexpr std::uint64_t kMaxAsk_bytes = 256 << 10;
+constexpr std::uint64_t kMaxLabRunsAsk_bytes = 256 << 10;
 constexpr std::size_t kMostOwn = 8, kMostAdded = 16;
 constexpr double kLongest_s = 1e6;
 
@@ -159,7 +159,7 @@ Result<http::Response> better_model(const Call& call) {
                              "application/json");
 }
 
-Result<http::Response> stop(const Call& call) {
+Result<http::Response> stop_run(const Call& call) {
   const auto run = TRY(run_of(call));
   TRY(call.backend.store.write([&](store::Writing& tx) {
     return store::ask_to_stop(tx, run.id, call.backend.now_utc_us());
@@ -204,7 +204,7 @@ struct Words {
   std::string name, note;
 };
 
-Result<Words> words_of(const Call& call) {
+Result<Words> version_words(const Call& call) {
   if (call.request.body.empty()) return Words{};
   const auto json = TRY(core::parse_json(call.request.body, "body"));
   core::Fields fields(json, "");
@@ -227,9 +227,9 @@ Result<std::pair<std::string, std::uint64_t>> named_model(const Call& call,
   return std::pair(sha256, std::uint64_t(text.size()));
 }
 
-Result<http::Response> publish(const Call& call) {
+Result<http::Response> publish_run(const Call& call) {
   const auto run = TRY(run_of(call));
-  auto words = TRY(words_of(call));
+  auto words = TRY(version_words(call));
   if (!run.model)
     return Error{Errc::conflict, fmt::format("this {} has no model to publish: it is {}",
                                              name(run.kind), name(run.state))};
@@ -275,7 +275,7 @@ Parameter required_text(std::string name, std::string meaning) {
 
 RouteInfo asking(const char* tail, const char* id, const char* summary, const char* body,
                  core::Json schema, Result<http::Response> (*handle)(const Call&)) {
-  return taking(lab_route("POST", tail, id, summary, "LabRun", handle), body, kMaxAsk_bytes,
+  return taking(lab_route("POST", tail, id, summary, "LabRun", handle), body, kMaxLabRunsAsk_bytes,
                 {{body, std::move(schema)}});
 }
 
@@ -385,7 +385,8 @@ std::vector<RouteInfo> lab_runs_routes() {
   out.push_back(lab_route("GET", "runs/{id}", "labRun",
                           "Read the state of a lab run and its results", "LabRun", one_run));
   out.push_back(lab_route("POST", "runs/{id}/stop", "stopLabRun",
-                          "Stop a lab run; a run that has ended stays unchanged", "LabRun", stop));
+                          "Stop a lab run; a run that has ended stays unchanged", "LabRun",
+                          stop_run));
   out.push_back(lab_route("GET", "runs/{id}/report", "labRunReport",
                           "Read the report of a finished lab run as an HTML page", kBytes,
                           report_of));
@@ -396,8 +397,8 @@ std::vector<RouteInfo> lab_runs_routes() {
       lab_route("POST", "runs/{id}/publish", "publishLabRun",
                 "Publish the model of a lab run as a new version, whose parent is the run's first "
                 "model; a second call answers with the same version",
-                "ModelVersion", publish),
-      "PublishWanted", kMaxAsk_bytes,
+                "ModelVersion", publish_run),
+      "PublishWanted", kMaxLabRunsAsk_bytes,
       {{"PublishWanted",
         object(
             {{"name", schema::optional(text(

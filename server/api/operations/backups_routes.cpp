@@ -54,8 +54,8 @@ Result<http::Response> verify_backup(const Call& call) {
   return json_response(backup_json(begun));
 }
 
-RouteInfo route(std::string method, std::string tail, std::string id, std::string summary,
-                std::string answer, Result<http::Response> (*handle)(const Call&)) {
+RouteInfo backup_route(std::string method, std::string tail, std::string id, std::string summary,
+                       std::string answer, Result<http::Response> (*handle)(const Call&)) {
   RouteInfo out{.method = std::move(method),
                 .path = "/api/v1/backups" + tail,
                 .id = std::move(id),
@@ -74,8 +74,9 @@ RouteInfo route(std::string method, std::string tail, std::string id, std::strin
 
 std::vector<RouteInfo> backups_routes() {
   using namespace schema;
-  RouteInfo list = route("GET", "", "backups", "List the backups on this server, newest first",
-                         "Backups", list_backups);
+  RouteInfo list =
+      backup_route("GET", "", "backups", "List the backups on this server, newest first", "Backups",
+                   list_backups);
   list.schemas = {
       {"BackupTrial",
        object(
@@ -97,12 +98,13 @@ std::vector<RouteInfo> backups_routes() {
                {"trials", integer("1", "Number of trials in the backup")},
                {"verified", nullable(ref("BackupTrial"))}})},
       {"Backups", object({{"backups", array(ref("Backup"), "All backups, newest first")}})}};
-  return {list,
-          route("POST", "", "makeBackup", "Make a backup; the server continues to work meanwhile",
-                "Backup", make_backup),
-          route("POST", "/{id}/verify", "verifyBackup",
-                "Check a backup: restore it to a temporary folder and check the copy", "Backup",
-                verify_backup)};
+  return {
+      list,
+      backup_route("POST", "", "makeBackup",
+                   "Make a backup; the server continues to work meanwhile", "Backup", make_backup),
+      backup_route("POST", "/{id}/verify", "verifyBackup",
+                   "Check a backup: restore it to a temporary folder and check the copy", "Backup",
+                   verify_backup)};
 }
 
 }  // namespace api

@@ -21,7 +21,7 @@ using core::Error;
 using core::Result;
 using store::AccountState;
 
-constexpr std::uint64_t kMaxBody_bytes = 8192;
+constexpr std::uint64_t kMaxAccount_bytes = 8192;
 
 Result<http::Response> list_accounts(const Call& call) {
   auto found =
@@ -171,8 +171,8 @@ Result<http::Response> set_badge(const Call& call) {
   });
 }
 
-RouteInfo route(std::string tail, std::string id, std::string summary, std::string answer,
-                Result<http::Response> (*handle)(const Call&)) {
+RouteInfo account_route(std::string tail, std::string id, std::string summary, std::string answer,
+                        Result<http::Response> (*handle)(const Call&)) {
   RouteInfo out{.method = "POST",
                 .path = "/api/v1/accounts" + tail,
                 .id = std::move(id),
@@ -181,7 +181,7 @@ RouteInfo route(std::string tail, std::string id, std::string summary, std::stri
                 .object = tail.empty() ? Object::none : Object::account,
                 .parameters = {},
                 .body = "",
-                .body_limit_bytes = kMaxBody_bytes,
+                .body_limit_bytes = kMaxAccount_bytes,
                 .answer = std::move(answer),
                 .schemas = {},
                 .handle = handle};
@@ -193,18 +193,18 @@ RouteInfo route(std::string tail, std::string id, std::string summary, std::stri
 
 std::vector<RouteInfo> accounts_routes() {
   using namespace schema;
-  RouteInfo list = route("", "accounts",
-                         "List all accounts, sorted by name, without password hashes and secrets",
-                         "Accounts", list_accounts);
+  RouteInfo list = account_route(
+      "", "accounts", "List all accounts, sorted by name, without password hashes and secrets",
+      "Accounts", list_accounts);
   list.method = "GET";
   list.body_limit_bytes = 0;
   list.schemas = {
       {"Account", account_schema()},
       {"Accounts", object({{"accounts", array(ref("Account"), "All accounts, sorted by name")}})}};
   RouteInfo add =
-      route("", "addAccount",
-            "Create an account; its owner must choose a new password at the first sign-in",
-            "NewAccountMade", add_account_route);
+      account_route("", "addAccount",
+                    "Create an account; its owner must choose a new password at the first sign-in",
+                    "NewAccountMade", add_account_route);
   add.lane = http::Lane::hashing;
   add.body = "NewAccount";
   add.schemas = {
@@ -220,34 +220,35 @@ std::vector<RouteInfo> accounts_routes() {
        object({{"account", ref("Account")},
                {"password", nullable(text("Generated password, shown only in this answer; null if "
                                           "the request gave a password"))}})}};
-  RouteInfo state =
-      route("/{id}/state", "setAccountState",
-            "Disable or enable an account; this ends the account's sessions", "Account", set_state);
+  RouteInfo state = account_route("/{id}/state", "setAccountState",
+                                  "Disable or enable an account; this ends the account's sessions",
+                                  "Account", set_state);
   state.body = "AccountState";
   state.schemas = {
       {"AccountState",
        object({{"state", one_of<AccountState>(
                              "New state of the account; a disabled account cannot sign in")}})}};
-  RouteInfo role =
-      route("/{id}/role", "setAccountRole",
-            "Change the role of an account; this ends the account's sessions", "Account", set_role);
+  RouteInfo role = account_route("/{id}/role", "setAccountRole",
+                                 "Change the role of an account; this ends the account's sessions",
+                                 "Account", set_role);
   role.body = "AccountRole";
   role.schemas = {
       {"AccountRole",
        object({{"role",
                 text("New role: admin, director, faculty, researcher, technician or trainee")}})}};
-  RouteInfo reset =
-      route("/{id}/password", "resetPassword",
-            "Set a new generated password for another person's account; this ends the account's "
-            "sessions, turns its one-time codes off and clears its failed attempts",
-            "PasswordMade", reset_password);
+  RouteInfo reset = account_route(
+      "/{id}/password", "resetPassword",
+      "Set a new generated password for another person's account; this ends the account's "
+      "sessions, turns its one-time codes off and clears its failed attempts",
+      "PasswordMade", reset_password);
   reset.lane = http::Lane::hashing;
   reset.schemas = {{"PasswordMade",
                     object({{"password", text("Generated password, shown only in this answer")}})}};
-  RouteInfo badge = route("/{id}/badge", "setBadge",
-                          "Set or remove the badge and the PIN for stations; this ends the "
-                          "account's sessions and clears the failed attempts with the badge",
-                          "Account", set_badge);
+  RouteInfo badge =
+      account_route("/{id}/badge", "setBadge",
+                    "Set or remove the badge and the PIN for stations; this ends the "
+                    "account's sessions and clears the failed attempts with the badge",
+                    "Account", set_badge);
   badge.lane = http::Lane::hashing;
   badge.who.push_back({Role::faculty, Scope::cohort});
   badge.body = "Badge";

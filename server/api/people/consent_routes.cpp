@@ -16,7 +16,7 @@ using core::Json;
 using core::Result;
 using store::Tier;
 
-constexpr std::uint64_t kMaxBody_bytes = 4096;
+constexpr std::uint64_t kMaxConsent_bytes = 4096;
 constexpr std::size_t kMaxBasis = 500;
 
 Result<Json> own_answer(store::Reading& tx, const std::string& account) {
@@ -111,8 +111,8 @@ Result<http::Response> note_consent(const Call& call) {
   return http::Response{.status = 204, .headers = {}, .body = std::string()};
 }
 
-RouteInfo route(std::string method, std::string path, std::string id, std::string summary,
-                std::vector<Grant> who, Result<http::Response> (*handle)(const Call&)) {
+RouteInfo consent_route(std::string method, std::string path, std::string id, std::string summary,
+                        std::vector<Grant> who, Result<http::Response> (*handle)(const Call&)) {
   return {.method = std::move(method),
           .path = "/api/v1/" + path,
           .id = std::move(id),
@@ -132,9 +132,9 @@ std::vector<RouteInfo> consent_routes() {
   const Json tier = one_of<Tier>(
       "Consent tier, the most data that research may use: none = nothing, summary = counts, "
       "metrics = scores, reduced = samples at 100 Hz, full = every sample");
-  RouteInfo own =
-      route("GET", "session/consent", "ownConsent",
-            "Show which data of the caller's trials research may use", people(), own_consent);
+  RouteInfo own = consent_route("GET", "session/consent", "ownConsent",
+                                "Show which data of the caller's trials research may use", people(),
+                                own_consent);
   own.answer = "OwnConsent";
   own.schemas = {
       {"OwnConsent",
@@ -143,22 +143,23 @@ std::vector<RouteInfo> consent_routes() {
                                          {"title", text("Title of the assignment")},
                                          {"tier", tier}}),
                                  "Consent tier that applies in each assignment of the caller")}})}};
-  RouteInfo say = route("POST", "session/consent", "sayConsent",
-                        "Set or withdraw (tier none) the caller's consent for one study or for all "
-                        "studies; a consent for all studies replaces those for single studies, and "
-                        "it applies to exports immediately",
-                        people(), say_own);
+  RouteInfo say =
+      consent_route("POST", "session/consent", "sayConsent",
+                    "Set or withdraw (tier none) the caller's consent for one study or for all "
+                    "studies; a consent for all studies replaces those for single studies, and "
+                    "it applies to exports immediately",
+                    people(), say_own);
   say.ends = {{"/study", Object::assignment, {}}};
   for (const Grant& grant : people()) say.ends.front().who.push_back({grant.role, Scope::own});
   say.body = "ConsentWord";
-  say.body_limit_bytes = kMaxBody_bytes;
+  say.body_limit_bytes = kMaxConsent_bytes;
   say.answer = "OwnConsent";
   say.schemas = {{"ConsentWord",
                   object({{"study", optional(text("Id of the study or assignment; if it is "
                                                   "missing, the consent applies to all studies"))},
                           {"tier", tier}})}};
-  RouteInfo list = route("GET", "consents", "consents", "List all recorded consents", {Role::admin},
-                         list_consents);
+  RouteInfo list = consent_route("GET", "consents", "consents", "List all recorded consents",
+                                 {Role::admin}, list_consents);
   list.answer = "ConsentList";
   list.schemas = {
       {"ConsentList",
@@ -184,14 +185,15 @@ std::vector<RouteInfo> consent_routes() {
                                                "microseconds since 1970-01-01 UTC")},
                       {"noted_by", text("Name of the account that recorded the consent")}}),
                  "All recorded consents, sorted by account, then by study")}})}};
-  RouteInfo note = route("POST", "consents", "noteConsent",
-                         "Record a signed consent form of a study participant without an account "
-                         "or, for administrators only, of an account",
-                         {Role::admin, Role::researcher}, note_consent);
+  RouteInfo note =
+      consent_route("POST", "consents", "noteConsent",
+                    "Record a signed consent form of a study participant without an account "
+                    "or, for administrators only, of an account",
+                    {Role::admin, Role::researcher}, note_consent);
   note.ends = {{"/account", Object::account, {Role::admin}, End::By::account_name},
                {"/study", Object::study, note.who}};
   note.body = "ConsentForm";
-  note.body_limit_bytes = kMaxBody_bytes;
+  note.body_limit_bytes = kMaxConsent_bytes;
   note.schemas = {
       {"ConsentForm",
        object({{"account",

@@ -43,11 +43,6 @@ const unsigned char* raw(core::ByteView bytes) {
   return reinterpret_cast<const unsigned char*>(bytes.data());
 }
 
-std::string text_field(const Json& object, const char* key) {
-  const auto at = object.find(key);
-  return at != object.end() && at->is_string() ? at->get<std::string>() : std::string();
-}
-
 Key made(const char* kind, OSSL_PARAM_BLD* builder) {
   const Parameters parameters(OSSL_PARAM_BLD_to_param(builder));
   const KeyContext context(EVP_PKEY_CTX_new_from_name(nullptr, kind, nullptr));
@@ -60,8 +55,8 @@ Key made(const char* kind, OSSL_PARAM_BLD* builder) {
 
 /// RFC 7518 section 6.3.1. Keys under 2048 bits are none (section 3.3).
 Key rsa_key(const Json& jwk) {
-  const auto n = core::base64url_decoded(text_field(jwk, "n")),
-             e = core::base64url_decoded(text_field(jwk, "e"));
+  const auto n = core::base64url_decoded(core::text_member(jwk, "n")),
+             e = core::base64url_decoded(core::text_member(jwk, "e"));
   if (!n || !e || n->empty() || e->empty() || n->size() > 1024 || e->size() > 8) return nullptr;
   const Number modulus(BN_bin2bn(raw(*n), int(n->size()), nullptr)),
       exponent(BN_bin2bn(raw(*e), int(e->size()), nullptr));
@@ -74,9 +69,9 @@ Key rsa_key(const Json& jwk) {
 
 /// RFC 7518 section 6.2.1, P-256 alone.
 Key ec_key(const Json& jwk) {
-  const auto x = core::base64url_decoded(text_field(jwk, "x")),
-             y = core::base64url_decoded(text_field(jwk, "y"));
-  if (text_field(jwk, "crv") != "P-256" || !x || !y || x->size() != 32 || y->size() != 32)
+  const auto x = core::base64url_decoded(core::text_member(jwk, "x")),
+             y = core::base64url_decoded(core::text_member(jwk, "y"));
+  if (core::text_member(jwk, "crv") != "P-256" || !x || !y || x->size() != 32 || y->size() != 32)
     return nullptr;
   core::Bytes point{std::byte{4}};  // uncompressed, SEC 1 section 2.3.3
   for (const auto& part : {*x, *y}) point.insert(point.end(), part.begin(), part.end());
@@ -117,10 +112,10 @@ std::vector<const Json*> candidates(const Json& keys, const std::string& kind,
   const auto list = keys.find("keys");
   if (list == keys.end() || !list->is_array()) return out;
   for (const Json& key : *list) {
-    if (!key.is_object() || text_field(key, "kty") != kind) continue;
-    const std::string use = text_field(key, "use"), alg = text_field(key, "alg");
+    if (!key.is_object() || core::text_member(key, "kty") != kind) continue;
+    const std::string use = core::text_member(key, "use"), alg = core::text_member(key, "alg");
     if ((use.empty() || use == "sig") && (alg.empty() || alg == algorithm) &&
-        (kid.empty() || text_field(key, "kid") == kid))
+        (kid.empty() || core::text_member(key, "kid") == kid))
       out.push_back(&key);
   }
   return out;
@@ -128,16 +123,17 @@ std::vector<const Json*> candidates(const Json& keys, const std::string& kind,
 
 Result<void> check_signature(std::string_view signed_part, const core::Bytes& signature,
                              const Json& header, const Json& keys) {
-  const std::string algorithm = text_field(header, "alg");
+  const std::string algorithm = core::text_member(header, "alg");
   if (algorithm != "RS256" && algorithm != "ES256")
     return refused("is not signed with RS256 or ES256");
   if (header.contains("crit"))
     return refused("requires extensions (crit), which are not supported");
   const bool rsa = algorithm == "RS256";
-  const auto fitting = candidates(keys, rsa ? "RSA" : "EC", algorithm, text_field(header, "kid"));
+  const auto fitting =
+      candidates(keys, rsa ? "RSA" : "EC", algorithm, core::text_member(header, "kid"));
   if (fitting.empty())
     return Error{Errc::not_found, "the provider's id_token is signed with an unknown key"};
-  if (fitting.size() > 1 && text_field(header, "kid").empty())
+  if (fitting.size() > 1 && core::text_member(header, "kid").empty())
     return refused("does not name the key (kid) with which it is signed");
   const Key key = rsa ? rsa_key(*fitting.front()) : ec_key(*fitting.front());
   if (!key) return refused("is signed with an invalid key");
@@ -163,7 +159,7 @@ Result<void> check_audience(const Json& claims, const std::string& client_id) {
   if (audience.is_array())
     for (const Json& each : audience) among = among || each == Json(client_id);
   if (!one && !among) return refused("is for another client (aud)");
-  const std::string party = text_field(claims, "azp");
+  const std::string party = core::text_member(claims, "azp");
   if (audience.is_array() && audience.size() > 1 && party.empty())
     return refused("is for several clients and does not name the authorised client (azp)");
   if (!party.empty() && party != client_id) return refused("was issued to another client (azp)");
@@ -171,7 +167,8 @@ Result<void> check_audience(const Json& claims, const std::string& client_id) {
 }
 
 Result<Identity> checked(const Json& claims, const Expected& expected) {
-  if (text_field(claims, "iss") != expected.issuer) return refused("has another issuer (iss)");
+  if (core::text_member(claims, "iss") != expected.issuer)
+    return refused("has another issuer (iss)");
   TRY(check_audience(claims, expected.client_id));
   const std::int64_t expires = seconds_field(claims, "exp"), made_at = seconds_field(claims, "iat");
   if (expires < 0 || expected.now_s > expires + kSkew_s) return refused("has expired");
@@ -180,9 +177,9 @@ Result<Identity> checked(const Json& claims, const Expected& expected) {
   if (expected.now_s - made_at > kMostAge_s) return refused("is too old");
   if (const std::int64_t from = seconds_field(claims, "nbf"); from > expected.now_s + kSkew_s)
     return refused("is not valid yet (nbf)");
-  if (expected.nonce.empty() || text_field(claims, "nonce") != expected.nonce)
+  if (expected.nonce.empty() || core::text_member(claims, "nonce") != expected.nonce)
     return refused("is not the answer to this sign-in");
-  Identity out{text_field(claims, "sub"), text_field(claims, "sid")};
+  Identity out{core::text_member(claims, "sub"), core::text_member(claims, "sid")};
   if (out.subject.empty() || out.subject.size() > kMostSubject)
     return refused("names no person (sub)");
   return out;

@@ -41,8 +41,8 @@ Result<http::Response> decline(const Call& call) {
   return own_invitations(call);
 }
 
-RouteInfo route(std::string method, std::string tail, std::string id, std::string summary,
-                Result<http::Response> (*handle)(const Call&)) {
+RouteInfo invitation_route(std::string method, std::string tail, std::string id,
+                           std::string summary, Result<http::Response> (*handle)(const Call&)) {
   RouteInfo out{.method = std::move(method),
                 .path = "/api/v1/session/invitations" + tail,
                 .id = std::move(id),
@@ -63,9 +63,9 @@ RouteInfo route(std::string method, std::string tail, std::string id, std::strin
 
 std::vector<RouteInfo> invitations_routes() {
   using namespace schema;
-  RouteInfo list =
-      route("GET", "", "ownInvitations",
-            "List the caller's open invitations into cohorts, oldest first", own_invitations);
+  RouteInfo list = invitation_route("GET", "", "ownInvitations",
+                                    "List the caller's open invitations into cohorts, oldest first",
+                                    own_invitations);
   list.schemas = {
       {"Invitation",
        object({{"cohort_id", text("Id of the cohort")},
@@ -76,14 +76,15 @@ std::vector<RouteInfo> invitations_routes() {
       {"Invitations",
        object({{"invitations",
                 array(ref("Invitation"), "Open invitations of the caller, oldest first")}})}};
-  RouteInfo yes = route("POST", "/{cohort}/accept", "acceptInvitation",
-                        "Accept an invitation and join the cohort; the leaders of the cohort can "
-                        "then see the caller's trials",
-                        accept);
+  RouteInfo yes =
+      invitation_route("POST", "/{cohort}/accept", "acceptInvitation",
+                       "Accept an invitation and join the cohort; the leaders of the cohort can "
+                       "then see the caller's trials",
+                       accept);
   // The invitation gives the caller the right to name this cohort.
   yes.ends = {{"cohort", Object::cohort, {Role::trainee, Role::faculty}}};
-  RouteInfo no = route("POST", "/{cohort}/decline", "declineInvitation",
-                       "Decline an invitation; the invitation is removed", decline);
+  RouteInfo no = invitation_route("POST", "/{cohort}/decline", "declineInvitation",
+                                  "Decline an invitation; the invitation is removed", decline);
   no.ends = yes.ends;
   return {list, yes, no};
 }

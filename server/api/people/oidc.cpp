@@ -18,11 +18,6 @@ constexpr std::int64_t kKept_s = 3600, kAgain_s = 10;
 
 std::string random_text() { return core::base64url(core::random_bytes(32)); }
 
-std::string text_field(const Json& object, const char* key) {
-  const auto at = object.find(key);
-  return at != object.end() && at->is_string() ? at->get<std::string>() : std::string();
-}
-
 /// RFC 7636 section 4.2, S256.
 std::string challenge_of(const std::string& verifier) {
   return core::base64url(*core::hex_decoded(core::sha256(core::bytes_of(verifier))));
@@ -82,17 +77,17 @@ Result<Json> Oidc::fetched_description() const {
   const auto unfit = [](const std::string& what) {
     return Error{Errc::corrupt, "the provider's description " + what};
   };
-  if (text_field(*json, "issuer") != settings_.issuer) return unfit("has another issuer");
+  if (core::text_member(*json, "issuer") != settings_.issuer) return unfit("has another issuer");
   for (const char* key : {"authorization_endpoint", "token_endpoint", "jwks_uri"})
-    if (!is_safe_address(text_field(*json, key)))
+    if (!is_safe_address(core::text_member(*json, key)))
       return unfit(std::string("has no https address: ") + key);
   return json;
 }
 
 Result<Json> Oidc::keys(std::int64_t age_s) const {
   const auto description = TRY(described());
-  return keys_.at_most(age_s,
-                       [&] { return json_at(text_field(description, "jwks_uri"), settings_); });
+  return keys_.at_most(
+      age_s, [&] { return json_at(core::text_member(description, "jwks_uri"), settings_); });
 }
 
 /// The token endpoint's answer to a code. A refusal is no failure of the provider: who sends it
@@ -100,7 +95,7 @@ Result<Json> Oidc::keys(std::int64_t age_s) const {
 Result<Json> Oidc::tokens(const std::string& code, const OidcAttempt& attempt) const {
   const auto description = TRY(described());
   TRY(breaker_.check());
-  auto answer = fetch({.url = text_field(description, "token_endpoint"),
+  auto answer = fetch({.url = core::text_member(description, "token_endpoint"),
                        .form = {{{"grant_type", "authorization_code"},
                                  {"code", code},
                                  {"redirect_uri", settings_.base + "/api/v1/session/oidc/callback"},
@@ -118,7 +113,7 @@ Result<Json> Oidc::tokens(const std::string& code, const OidcAttempt& attempt) c
 
 Result<std::string> Oidc::sign_in_address(const OidcAttempt& attempt) const {
   const auto description = TRY(described());
-  const std::string endpoint = text_field(description, "authorization_endpoint");
+  const std::string endpoint = core::text_member(description, "authorization_endpoint");
   std::string out = endpoint + (endpoint.find('?') == std::string::npos ? "?" : "&");
   const std::pair<const char*, std::string> asked[] = {
       {"response_type", "code"},
@@ -138,7 +133,7 @@ Result<std::string> Oidc::sign_in_address(const OidcAttempt& attempt) const {
 Result<Identity> Oidc::redeemed(const std::string& code, const OidcAttempt& attempt,
                                 std::int64_t utc_s) const {
   const auto json = TRY(tokens(code, attempt));
-  const std::string token = text_field(json, "id_token");
+  const std::string token = core::text_member(json, "id_token");
   const Expected expected{settings_.issuer, settings_.client_id, attempt.nonce, utc_s};
   auto known = keys(kKept_s);
   if (!known) return known.error();
@@ -154,7 +149,7 @@ Result<Identity> Oidc::redeemed(const std::string& code, const OidcAttempt& atte
 
 Result<std::string> Oidc::sign_out_address() const {
   const auto description = TRY(described());
-  const std::string endpoint = text_field(description, "end_session_endpoint");
+  const std::string endpoint = core::text_member(description, "end_session_endpoint");
   if (!is_safe_address(endpoint)) return std::string();
   return endpoint + (endpoint.find('?') == std::string::npos ? "?" : "&") +
          "client_id=" + percent_encoded(settings_.client_id) +

@@ -18,7 +18,7 @@ using core::Errc;
 using core::Error;
 using core::Result;
 
-constexpr std::uint64_t kMaxBody_bytes = 8192;
+constexpr std::uint64_t kMaxOwnAccount_bytes = 8192;
 constexpr const char* kCodesAreOn = "one-time codes are already on: turn them off first";
 constexpr std::size_t kTotpKey_bytes = 20;  // RFC 4226 section 4, R6: as long as SHA-1's output
 
@@ -30,7 +30,7 @@ Result<store::Account> own_account(store::Reading& tx, const Call& call) {
 
 http::Response done() { return {.status = 204, .headers = {}, .body = std::string()}; }
 
-store::Attempt attempt_of(const Call& call) {
+store::Attempt own_attempt_of(const Call& call) {
   return {store::Secret::own_password, call.caller.id, call.caller.session_hash};
 }
 
@@ -57,7 +57,7 @@ Result<void> changed(const Call& call, const Change& change) {
     auto account = TRY(account_of_session(tx, call));
     TRY(change(tx, account));
     TRY(store::set_account(tx, account));
-    TRY(store::clear_failures(tx, attempt_of(call)));
+    TRY(store::clear_failures(tx, own_attempt_of(call)));
     return store::remove_sessions_of(tx, account.id, call.caller.session_hash);
   });
   if (done) close_conversations(call.backend, call.caller.id);
@@ -75,19 +75,19 @@ Result<void> take_code(const Call& call, store::Account& account, const std::str
 /// Runs `change`; a wrong one-time code is counted as a failed attempt.
 Result<http::Response> changed_by_code(const Call& call, const bool& wrong, const Change& change) {
   auto made = changed(call, change);
-  if (wrong) TRY(note_failure(call.backend, attempt_of(call)));
+  if (wrong) TRY(note_failure(call.backend, own_attempt_of(call)));
   if (!made) return made.error();
   return done();
 }
 
 /// The refusal if the password is wrong, or if a required one-time code is missing; else nothing.
 Result<std::optional<http::Response>> refusal_of(const Call& call, const Proof& proof) {
-  auto early = too_early(call.backend, attempt_of(call));
+  auto early = too_early(call.backend, own_attempt_of(call));
   if (!early || *early) return early;
   auto account =
       TRY(call.backend.store.read([&](store::Reading& tx) { return own_account(tx, call); }));
   if (!password_matches(account.password_hash, proof.password)) {
-    TRY(note_failure(call.backend, attempt_of(call)));
+    TRY(note_failure(call.backend, own_attempt_of(call)));
     return Error{Errc::forbidden, std::string("body: /") + proof.field + ": the password is wrong"};
   }
   if (!account.totp_confirmed || !proof.code.empty()) return std::optional<http::Response>();
@@ -147,7 +147,7 @@ Result<http::Response> confirm_codes(const Call& call) {
   core::Fields fields(json, "body");
   const std::string code = fields.text("code", 16);
   TRY(fields.done());
-  auto early = TRY(too_early(call.backend, attempt_of(call)));
+  auto early = TRY(too_early(call.backend, own_attempt_of(call)));
   if (early) return std::move(*early);
   bool wrong = false;
   return changed_by_code(call, wrong, [&](store::Writing&, store::Account& own) -> Result<void> {
@@ -175,8 +175,8 @@ Result<http::Response> end_codes(const Call& call) {
   });
 }
 
-RouteInfo route(std::string method, std::string tail, std::string id, std::string summary,
-                Result<http::Response> (*handle)(const Call&)) {
+RouteInfo own_account_route(std::string method, std::string tail, std::string id,
+                            std::string summary, Result<http::Response> (*handle)(const Call&)) {
   return {.method = std::move(method),
           .path = "/api/v1/session/" + tail,
           .id = std::move(id),
@@ -184,7 +184,7 @@ RouteInfo route(std::string method, std::string tail, std::string id, std::strin
           .who = people(),
           .parameters = {},
           .body = "",
-          .body_limit_bytes = kMaxBody_bytes,
+          .body_limit_bytes = kMaxOwnAccount_bytes,
           .answer = "",
           .schemas = {},
           .handle = handle};
@@ -196,9 +196,9 @@ std::vector<RouteInfo> own_account_routes() {
   using namespace schema;
   const core::Json code_where_asked =
       optional(text("One-time code of six digits; required if the account uses one-time codes"));
-  RouteInfo password =
-      route("POST", "password", "changePassword",
-            "Change the caller's password; this ends the caller's other sessions", change_password);
+  RouteInfo password = own_account_route(
+      "POST", "password", "changePassword",
+      "Change the caller's password; this ends the caller's other sessions", change_password);
   password.before_password_change = true;
   password.lane = http::Lane::hashing;
   password.body = "PasswordChange";
@@ -207,10 +207,11 @@ std::vector<RouteInfo> own_account_routes() {
        object({{"old", text("Current password")},
                {"new", text("New password, 12 to 1024 bytes, different from the current password")},
                {"code", code_where_asked}})}};
-  RouteInfo begin = route("POST", "codes", "beginCodes",
-                          "Create a secret for an authenticator app (RFC 6238); one-time codes are "
-                          "required after the secret is confirmed",
-                          begin_codes);
+  RouteInfo begin =
+      own_account_route("POST", "codes", "beginCodes",
+                        "Create a secret for an authenticator app (RFC 6238); one-time codes are "
+                        "required after the secret is confirmed",
+                        begin_codes);
   begin.lane = http::Lane::hashing;
   begin.body = "PasswordShown";
   begin.answer = "CodesBegun";
@@ -219,15 +220,16 @@ std::vector<RouteInfo> own_account_routes() {
       {"CodesBegun",
        object({{"secret", text("Secret in base32, shown only in this answer")},
                {"uri", text("otpauth:// address of the secret, to be shown as a QR code")}})}};
-  RouteInfo confirm = route("POST", "codes/confirm", "confirmCodes",
-                            "Confirm the secret with a one-time code; from then on signing in "
-                            "requires a one-time code, and the caller's other sessions end",
-                            confirm_codes);
+  RouteInfo confirm =
+      own_account_route("POST", "codes/confirm", "confirmCodes",
+                        "Confirm the secret with a one-time code; from then on signing in "
+                        "requires a one-time code, and the caller's other sessions end",
+                        confirm_codes);
   confirm.body = "OneTimeCode";
   confirm.schemas = {{"OneTimeCode", object({{"code", text("One-time code, six digits")}})}};
-  RouteInfo end =
-      route("POST", "codes/end", "endCodes",
-            "Turn one-time codes off; this ends the caller's other sessions", end_codes);
+  RouteInfo end = own_account_route(
+      "POST", "codes/end", "endCodes",
+      "Turn one-time codes off; this ends the caller's other sessions", end_codes);
   end.lane = http::Lane::hashing;
   end.body = "PasswordAndCode";
   end.schemas = {{"PasswordAndCode", object({{"password", text("Current password of the caller")},

@@ -16,7 +16,7 @@ namespace api {
 namespace {
 constexpr unsigned kDigits = 6;
 
-struct Frees {
+struct FreesCode {
   void operator()(char* text) const { std::free(text); }
 };
 }  // namespace
@@ -47,7 +47,7 @@ std::string base32(core::ByteView bytes) {
   char* text = nullptr;
   std::size_t size = 0;
   const int made = oath_base32_encode(core::text_of(bytes).data(), bytes.size(), &text, &size);
-  const std::unique_ptr<char, Frees> held(text);
+  const std::unique_ptr<char, FreesCode> held(text);
   core::require(made == OATH_OK, "memory for a secret's text");
   const std::string padded(text, size);
   return padded.substr(0, padded.find('='));

@@ -9,7 +9,7 @@ namespace {
 
 using core::Result;
 
-constexpr std::uint64_t kMaxBody_bytes = 4096;
+constexpr std::uint64_t kMaxLive_bytes = 4096;
 constexpr std::size_t kMaxReason = 300;
 
 using Conversing = Result<std::shared_ptr<http::WebSocketHandler>>;
@@ -38,7 +38,7 @@ Result<http::Response> commanded(const Call& call, const wire::StationCommand& c
   return json_response({{"sent", true}}, 202);
 }
 
-Result<http::Response> stop(const Call& call) {
+Result<http::Response> stop_trial(const Call& call) {
   auto json = TRY(core::parse_json(call.request.body, "body"));
   core::Fields fields(json, "body");
   wire::StationCommand command;
@@ -83,7 +83,7 @@ RouteInfo command(std::string tail, std::string id, std::string summary, std::ve
           .who = std::move(who),
           .parameters = {path_text("id", "Id of the station")},
           .body = std::move(body),
-          .body_limit_bytes = kMaxBody_bytes,
+          .body_limit_bytes = kMaxLive_bytes,
           .answer = "CommandSent",
           .schemas = {},
           .handle = handle};
@@ -122,7 +122,7 @@ std::vector<RouteInfo> live_routes() {
   RouteInfo halt = command(
       "stop", "stopStation",
       "Stop the running trial and set the force to zero; a person at the station must resume",
-      watching, "StopStation", stop);
+      watching, "StopStation", stop_trial);
   halt.schemas = {
       {"StopStation",
        object({{"reason",

@@ -17,7 +17,7 @@ using core::Error;
 using core::Json;
 using core::Result;
 
-constexpr std::uint64_t kMaxBody_bytes = 16384;
+constexpr std::uint64_t kMaxSentModel_bytes = 16384;
 constexpr std::size_t kMaxStations = 200;
 
 Result<store::ModelVersion> version_of(store::Reading& tx, const std::string& id) {
@@ -31,17 +31,15 @@ const char* state_of(const store::SentModel& one) {
   return one.asked_utc_us ? "waiting" : "not_sent";
 }
 
-Json time_or_null(const std::optional<std::int64_t>& time) { return time ? Json(*time) : Json(); }
-
 Json sent_json(const std::vector<store::SentModel>& sent) {
   Json list = Json::array();
   for (const auto& one : sent)
     list.push_back({{"id", one.station_id},
                     {"name", one.station_name},
                     {"state", state_of(one)},
-                    {"asked_utc_us", time_or_null(one.asked_utc_us)},
+                    {"asked_utc_us", core::or_null(one.asked_utc_us)},
                     {"asked_by", one.asked_by},
-                    {"there_utc_us", time_or_null(one.there_utc_us)}});
+                    {"there_utc_us", core::or_null(one.there_utc_us)}});
   return {{"stations", list}};
 }
 
@@ -131,8 +129,9 @@ Result<http::Response> is_there(const Call& call) {
   return http::Response{.status = 204, .headers = {}, .body = std::string()};
 }
 
-RouteInfo station_route(std::string method, std::string tail, std::string id, std::string summary,
-                        std::string answer, Result<http::Response> (*handle)(const Call&)) {
+RouteInfo sent_model_route(std::string method, std::string tail, std::string id,
+                           std::string summary, std::string answer,
+                           Result<http::Response> (*handle)(const Call&)) {
   RouteInfo out{.method = std::move(method),
                 .path = "/api/v1/station/models" + tail,
                 .id = std::move(id),
@@ -179,7 +178,7 @@ std::vector<RouteInfo> sent_models_routes() {
           "POST", "models/{id}/send", "sendModel",
           "Send a model version to stations; each station fetches the version at its next request",
           "SentModel", send),
-      "SendModel", kMaxBody_bytes,
+      "SendModel", kMaxSentModel_bytes,
       {{"SendModel",
         object(
             {{"stations",
@@ -189,9 +188,9 @@ std::vector<RouteInfo> sent_models_routes() {
                          "True: the version is sent to every station that is not revoked"))}})}});
   post.who.push_back(Role::technician);
   post.ends = {{"id", Object::model, post.who}, {"/stations/*", Object::station, post.who}};
-  RouteInfo list = station_route("GET", "", "stationModels",
-                                 "List the model versions that were sent to the calling station",
-                                 "StationModels", for_station);
+  RouteInfo list = sent_model_route("GET", "", "stationModels",
+                                    "List the model versions that were sent to the calling station",
+                                    "StationModels", for_station);
   list.schemas = {
       {"StationModel",
        object({{"id", text("Id of the model version, which never changes")},
@@ -204,13 +203,13 @@ std::vector<RouteInfo> sent_models_routes() {
                       "Model versions, sorted by the time when they were sent, oldest first")}})}};
   return {
       where, post, list,
-      station_route(
+      sent_model_route(
           "GET", "/{id}", "stationModelFile",
           "Read the file of a model version that was sent to the calling station, byte for byte",
           "ModelFile", file_for_station),
-      station_route("POST", "/{id}/there", "stationModelThere",
-                    "Report that the calling station has stored the model version on its disk", "",
-                    is_there)};
+      sent_model_route("POST", "/{id}/there", "stationModelThere",
+                       "Report that the calling station has stored the model version on its disk",
+                       "", is_there)};
 }
 
 }  // namespace api

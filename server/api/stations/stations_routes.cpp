@@ -21,7 +21,7 @@ using core::Error;
 using core::Result;
 using store::NoteKind;
 
-constexpr std::uint64_t kMaxBody_bytes = 4096;
+constexpr std::uint64_t kMaxStation_bytes = 4096;
 constexpr std::int64_t kCodeLife_us = 3600ll * 1'000'000;
 
 constexpr std::uint64_t kMaxReport_bytes = 64 * 1024;
@@ -170,8 +170,8 @@ std::vector<NamedSchema> report_schemas() {
                    {"words", text("Result of the calibration in words")}})}};
 }
 
-RouteInfo route(std::string method, std::string tail, std::string id, std::string summary,
-                std::string answer, Result<http::Response> (*handle)(const Call&)) {
+RouteInfo station_route(std::string method, std::string tail, std::string id, std::string summary,
+                        std::string answer, Result<http::Response> (*handle)(const Call&)) {
   return {.method = std::move(method),
           .path = "/api/v1/stations" + tail,
           .id = std::move(id),
@@ -179,7 +179,7 @@ RouteInfo route(std::string method, std::string tail, std::string id, std::strin
           .who = {Role::admin, Role::technician},
           .parameters = {},
           .body = "",
-          .body_limit_bytes = kMaxBody_bytes,
+          .body_limit_bytes = kMaxStation_bytes,
           .answer = std::move(answer),
           .schemas = {},
           .handle = handle};
@@ -189,18 +189,18 @@ RouteInfo route(std::string method, std::string tail, std::string id, std::strin
 
 std::vector<RouteInfo> stations_routes() {
   using namespace schema;
-  RouteInfo list =
-      route("GET", "", "stations", "List the stations with their current state, sorted by name",
-            "Stations", list_stations);
+  RouteInfo list = station_route("GET", "", "stations",
+                                 "List the stations with their current state, sorted by name",
+                                 "Stations", list_stations);
   list.who.push_back(Role::faculty);
   list.who.push_back(Role::director);
   list.schemas = {
       {"StationEntry", object(entry_fields())},
       {"Stations",
        object({{"stations", array(ref("StationEntry"), "All stations, sorted by name")}})}};
-  RouteInfo one =
-      route("GET", "/{id}", "station",
-            "Read one station with its newest self-tests and calibrations", "Station", one_station);
+  RouteInfo one = station_route("GET", "/{id}", "station",
+                                "Read one station with its newest self-tests and calibrations",
+                                "Station", one_station);
   one.who = list.who;
   one.parameters = {path_text("id", "Id of the station")};
   one.schemas = report_schemas();
@@ -232,9 +232,10 @@ std::vector<RouteInfo> stations_routes() {
                          optional(nullable(
                              integer("B", "Free space on the station's disk, in bytes")))}})}},
       .handle = report};
-  RouteInfo code = route("POST", "/codes", "makeEnrolmentCode",
-                         "Create a code with which one station can enrol once within one hour",
-                         "EnrolmentCode", make_code);
+  RouteInfo code =
+      station_route("POST", "/codes", "makeEnrolmentCode",
+                    "Create a code with which one station can enrol once within one hour",
+                    "EnrolmentCode", make_code);
   code.body = "NewStation";
   code.schemas = {
       {"NewStation", object({{"name", text("Name of the new station")}})},
@@ -244,10 +245,11 @@ std::vector<RouteInfo> stations_routes() {
             {"code", text("Enrolment code, shown only in this answer")},
             {"expires_utc_us",
              integer("us", "Time when the code expires, in microseconds since 1970-01-01 UTC")}})}};
-  RouteInfo in = route("POST", "/enrol", "enrolStation",
-                       "Enrol a station with an enrolment code; the station sends the SHA-256 of "
-                       "its token, and the token itself stays on the station",
-                       "Enrolled", enrol);
+  RouteInfo in =
+      station_route("POST", "/enrol", "enrolStation",
+                    "Enrol a station with an enrolment code; the station sends the SHA-256 of "
+                    "its token, and the token itself stays on the station",
+                    "Enrolled", enrol);
   in.who = {};
   in.open = true;
   in.body = "Enrolment";
@@ -261,9 +263,9 @@ std::vector<RouteInfo> stations_routes() {
             {"name", text("Name of the station, as given for the enrolment code")},
             {"case_signer",
              text("Public key of the key with which this server signs cases, in hexadecimal")}})}};
-  RouteInfo out =
-      route("POST", "/{id}/revoke", "revokeStation",
-            "Revoke a station permanently; the server keeps the station's trials", "", revoke);
+  RouteInfo out = station_route(
+      "POST", "/{id}/revoke", "revokeStation",
+      "Revoke a station permanently; the server keeps the station's trials", "", revoke);
   out.parameters = {path_text("id", "Id of the station")};
   return {list, one, code, in, out, said};
 }

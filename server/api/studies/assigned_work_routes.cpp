@@ -24,7 +24,7 @@ using core::Error;
 using core::Result;
 using store::AccountState;
 
-constexpr std::uint64_t kMaxBody_bytes = 1024;
+constexpr std::uint64_t kMaxAssignedWork_bytes = 1024;
 
 /// A ticket is a session of one trainee at one station: it is not valid at other stations, and a
 /// browser's cookie is not valid as a ticket.
@@ -171,8 +171,9 @@ Result<http::Response> next_trial(const Call& call) {
   return json_response(given.work.to_json());
 }
 
-RouteInfo route(std::string tail, std::string id, std::string summary, std::string body,
-                std::string answer, Result<http::Response> (*handle)(const Call&)) {
+RouteInfo assigned_work_route(std::string tail, std::string id, std::string summary,
+                              std::string body, std::string answer,
+                              Result<http::Response> (*handle)(const Call&)) {
   return {.method = "POST",
           .path = "/api/v1/work/" + tail,
           .id = std::move(id),
@@ -180,7 +181,7 @@ RouteInfo route(std::string tail, std::string id, std::string summary, std::stri
           .who = {Role::station},
           .parameters = {},
           .body = std::move(body),
-          .body_limit_bytes = kMaxBody_bytes,
+          .body_limit_bytes = kMaxAssignedWork_bytes,
           .answer = std::move(answer),
           .schemas = {},
           .handle = handle};
@@ -190,10 +191,11 @@ RouteInfo route(std::string tail, std::string id, std::string summary, std::stri
 
 std::vector<RouteInfo> assigned_work_routes() {
   using namespace schema;
-  RouteInfo in = route("sign-in", "signInAtStation",
-                       "Sign a trainee in at the calling station with badge and PIN; after five "
-                       "failed attempts at a station, one attempt is allowed every three minutes",
-                       "BadgeAndPin", "Ticket", sign_in_at_station);
+  RouteInfo in = assigned_work_route(
+      "sign-in", "signInAtStation",
+      "Sign a trainee in at the calling station with badge and PIN; after five "
+      "failed attempts at a station, one attempt is allowed every three minutes",
+      "BadgeAndPin", "Ticket", sign_in_at_station);
   in.lane = http::Lane::hashing;
   in.schemas = {
       {"BadgeAndPin", object({{"badge", text("Text that the station read from the badge")},
@@ -201,10 +203,11 @@ std::vector<RouteInfo> assigned_work_routes() {
       {"Ticket",
        object({{"ticket", text("Ticket for further requests, valid only at the calling station")},
                {"name", text("Name of the account, for the greeting")}})}};
-  RouteInfo next = route("next", "nextTrial",
-                         "Read the next assigned trial of the trainee; the answer stays the same "
-                         "until the trial is uploaded",
-                         "TicketShown", "AssignedWork", next_trial);
+  RouteInfo next =
+      assigned_work_route("next", "nextTrial",
+                          "Read the next assigned trial of the trainee; the answer stays the same "
+                          "until the trial is uploaded",
+                          "TicketShown", "AssignedWork", next_trial);
   next.schemas = {
       {"TicketShown", object({{"ticket", text("Ticket from signInAtStation")}})},
       {"AssignedTrial",
@@ -230,9 +233,9 @@ std::vector<RouteInfo> assigned_work_routes() {
        object({{"participant", text("Pseudonym of the trainee; empty if there is no trial")},
                {"left", integer("1", "Number of trials that the trainee still has to do")},
                {"trial", nullable(ref("AssignedTrial"))}})}};
-  RouteInfo out =
-      route("sign-out", "signOutAtStation", "Sign the trainee out at the calling station",
-            "TicketShown", "", sign_out_at_station);
+  RouteInfo out = assigned_work_route("sign-out", "signOutAtStation",
+                                      "Sign the trainee out at the calling station", "TicketShown",
+                                      "", sign_out_at_station);
   return {in, next, out};
 }
 

@@ -22,8 +22,9 @@ using core::Error;
 using core::Json;
 using core::Result;
 
-constexpr std::size_t kMaxCases = 64, kMaxPeople = 500, kMaxTitle = 200, kMaxText = 128;
-constexpr long kMaxRepeats = 20, kMaxTime_us = 9'000'000'000'000'000, kMaxSeed = 1L << 53;
+constexpr std::size_t kMaxCases = 64, kMaxPeople = 500, kMaxPlanTitle = 200, kMaxText = 128;
+constexpr long kMaxAssignedRepeats = 20, kMaxAssignedTime_us = 9'000'000'000'000'000,
+               kMaxAssignedSeed = 1L << 53;
 
 Result<AssignedCase> case_from(const Json& json, const std::string& where) {
   core::Fields fields(json, where);
@@ -71,20 +72,21 @@ Result<std::vector<std::string>> names_from(const Json* json) {
 store::Assignment assignment_from(core::Fields& fields) {
   store::Assignment out;
   out.study.id = "a-" + core::new_id().substr(0, 24);
-  out.study.title = fields.text("title", kMaxTitle);
+  out.study.title = fields.text("title", kMaxPlanTitle);
   out.study.ordering = fields.word_or("ordering", store::CaseOrder::random);
-  out.study.repeats = fields.integer_or("repeats", 1, 1, kMaxRepeats);
+  out.study.repeats = fields.integer_or("repeats", 1, 1, kMaxAssignedRepeats);
   out.study.on_invalid = fields.word_or("on_invalid", store::Repetition::at_end);
   long drawn = 0;
   for (const std::byte b : core::random_bytes(4)) drawn = drawn * 256 + std::to_integer<long>(b);
-  out.study.seed = fields.integer_or("seed", drawn, 0, kMaxSeed);
-  if (fields.has("due_utc_us")) out.due_utc_us = fields.integer("due_utc_us", 0, kMaxTime_us);
+  out.study.seed = fields.integer_or("seed", drawn, 0, kMaxAssignedSeed);
+  if (fields.has("due_utc_us"))
+    out.due_utc_us = fields.integer("due_utc_us", 0, kMaxAssignedTime_us);
   out.release = fields.word_or("release", store::Release::held);
   if (fields.has("cohort")) out.cohort_id = fields.text("cohort", 64);
   return out;
 }
 
-Error absent(const char* what, const std::string& name) {
+Error nothing_named(const char* what, const std::string& name) {
   return {Errc::not_found, fmt::format("{}: nothing has the name {}", what, name.substr(0, 64))};
 }
 
@@ -94,7 +96,7 @@ Result<std::vector<store::Account>> people_meant(store::Reading& tx, const Assig
   if (plan.assignment.cohort_id) {
     const std::string& cohort = *plan.assignment.cohort_id;
     auto there = TRY(store::cohort_of(tx, cohort));
-    if (!there) return absent("/cohort", cohort);
+    if (!there) return nothing_named("/cohort", cohort);
     auto people = TRY(store::people_of(tx, cohort));
     for (const auto& person : people) {
       if (person.part != store::CohortPart::trainee) continue;
@@ -104,7 +106,7 @@ Result<std::vector<store::Account>> people_meant(store::Reading& tx, const Assig
   }
   for (const std::string& name : plan.people) {
     auto account = TRY(store::account_named(tx, name));
-    if (!account) return absent("/people", name);
+    if (!account) return nothing_named("/people", name);
     if (std::ranges::find(out, account->id, &store::Account::id) == out.end())
       out.push_back(std::move(*account));
   }
@@ -125,7 +127,7 @@ Result<std::vector<std::string>> note_cases(store::Writing& tx, const Assignment
       TRY(store::add_case(tx, summary, {parts[part++]}, stamp.at_utc_us));
     } else {
       auto known = TRY(store::case_of(tx, one.case_id));
-      if (!known) return absent("/cases", one.case_id);
+      if (!known) return nothing_named("/cases", one.case_id);
       if (known->retired) return Error{Errc::conflict, "/cases: " + known->title + " is retired"};
     }
     out.push_back(one.case_id);

@@ -17,17 +17,15 @@ using core::Json;
 using core::Result;
 using store::Release;
 
-constexpr std::uint64_t kMaxPlan_bytes = 4u << 20, kMaxBody_bytes = 4096;
+constexpr std::uint64_t kMaxAssignmentPlan_bytes = 4u << 20, kMaxAssignment_bytes = 4096;
 constexpr long kMaxTime_us = 9'000'000'000'000'000;
-
-Json time_or_null(const std::optional<std::int64_t>& time) { return time ? Json(*time) : Json(); }
 
 /// The answer to a trainee contains neither the order of the cases nor data of other trainees.
 Json assignment_json(const store::Assignment& a, Scope of) {
   Json out{{"id", a.study.id},
            {"title", a.study.title},
            {"state", name(a.study.state)},
-           {"due_utc_us", time_or_null(a.due_utc_us)},
+           {"due_utc_us", core::or_null(a.due_utc_us)},
            {"release", name(a.release)},
            {"done", a.done},
            {"planned", a.planned},
@@ -74,7 +72,7 @@ Result<Json> trials_json(store::Reading& tx, const store::AssignmentId& id,
                    {"reason", trial.reason},
                    {"correct", trial.correct ? Json(*trial.correct) : Json()},
                    {"comments", comments.size()},
-                   {"started_utc_us", time_or_null(trial.started_utc_us)}});
+                   {"started_utc_us", core::or_null(trial.started_utc_us)}});
   }
   return out;
 }
@@ -204,8 +202,9 @@ Result<http::Response> free_person(const Call& call) {
       });
 }
 
-RouteInfo route(std::string method, std::string tail, std::string id, std::string summary,
-                std::string body, Result<http::Response> (*handle)(const Call&)) {
+RouteInfo assignment_route(std::string method, std::string tail, std::string id,
+                           std::string summary, std::string body,
+                           Result<http::Response> (*handle)(const Call&)) {
   RouteInfo out{.method = std::move(method),
                 .path = "/api/v1/assignments" + tail,
                 .id = std::move(id),
@@ -214,7 +213,7 @@ RouteInfo route(std::string method, std::string tail, std::string id, std::strin
                 .object = tail.empty() ? Object::none : Object::assignment,
                 .parameters = {},
                 .body = std::move(body),
-                .body_limit_bytes = kMaxBody_bytes,
+                .body_limit_bytes = kMaxAssignment_bytes,
                 .answer = "Assignment",
                 .schemas = {},
                 .handle = handle};
@@ -222,7 +221,7 @@ RouteInfo route(std::string method, std::string tail, std::string id, std::strin
   return out;
 }
 
-std::vector<schema::Field> summary_fields() {
+std::vector<schema::Field> assignment_fields() {
   using namespace schema;
   return {
       {"id", text("Id of the assignment, which never changes")},
@@ -256,7 +255,7 @@ std::vector<schema::Field> summary_fields() {
 
 std::vector<NamedSchema> read_schemas() {
   using namespace schema;
-  std::vector<Field> whole = summary_fields();
+  std::vector<Field> whole = assignment_fields();
   whole.emplace_back(
       "trainees",
       optional(
@@ -266,7 +265,7 @@ std::vector<NamedSchema> read_schemas() {
                                               "Uploaded trials; for a trainee only the own trials, "
                                               "and only after the release of the results")));
   return {
-      {"AssignmentSummary", object(summary_fields())},
+      {"AssignmentSummary", object(assignment_fields())},
       {"Assignments",
        object({{"assignments", array(ref("AssignmentSummary"),
                                      "Assignments, sorted by due time, earliest first")}})},
@@ -298,7 +297,7 @@ std::vector<NamedSchema> read_schemas() {
       {"Assignment", object(whole)}};
 }
 
-std::vector<NamedSchema> plan_schemas() {
+std::vector<NamedSchema> assignment_schemas() {
   using namespace schema;
   return {
       {"AssignedCase",
@@ -339,16 +338,16 @@ std::vector<NamedSchema> plan_schemas() {
 }
 
 RouteInfo adding_route() {
-  RouteInfo out =
-      route("POST", "", "addAssignment",
-            "Assign cases, or the protocol of a study, to a cohort and to single trainees",
-            "NewAssignment", add_assignment_route);
-  out.body_limit_bytes = kMaxPlan_bytes;
+  RouteInfo out = assignment_route(
+      "POST", "", "addAssignment",
+      "Assign cases, or the protocol of a study, to a cohort and to single trainees",
+      "NewAssignment", add_assignment_route);
+  out.body_limit_bytes = kMaxAssignmentPlan_bytes;
   out.ends = {{"/cohort", Object::cohort, out.who},
               {"/people/*", Object::account, out.who, End::By::account_name},
               {"/cases/*/case", Object::published_case, {Role::admin, Role::faculty}},
               {"/protocol", Object::study, out.who}};
-  out.schemas = plan_schemas();
+  out.schemas = assignment_schemas();
   return out;
 }
 
@@ -356,46 +355,50 @@ RouteInfo adding_route() {
 
 std::vector<RouteInfo> assignments_routes() {
   using namespace schema;
-  RouteInfo list =
-      route("GET", "", "assignments",
-            "List assignments: all, those of cohorts that the caller leads, or the caller's own",
-            "", list_assignments);
+  RouteInfo list = assignment_route(
+      "GET", "", "assignments",
+      "List assignments: all, those of cohorts that the caller leads, or the caller's own", "",
+      list_assignments);
   list.who = {
       Role::admin, Role::director, {Role::faculty, Scope::cohort}, {Role::trainee, Scope::own}};
   list.answer = "Assignments";
   list.schemas = read_schemas();
-  RouteInfo one =
-      route("GET", "/{id}", "assignment",
-            "Read one assignment with its trainees and uploaded trials", "", one_assignment);
+  RouteInfo one = assignment_route("GET", "/{id}", "assignment",
+                                   "Read one assignment with its trainees and uploaded trials", "",
+                                   one_assignment);
   one.who = list.who;
-  RouteInfo release =
-      route("POST", "/{id}/release", "releaseResults",
-            "Set when trainees see their results of an assignment", "Release", set_release);
+  RouteInfo release = assignment_route("POST", "/{id}/release", "releaseResults",
+                                       "Set when trainees see their results of an assignment",
+                                       "Release", set_release);
   release.schemas = {
       {"Release",
        object({{"release",
                 one_of<Release>("When trainees see their results: held = not yet, released = "
                                 "now, at_once = as soon as a trial is uploaded")}})}};
-  RouteInfo due = route("POST", "/{id}/due", "setDue",
-                        "Change or remove the due time of an assignment", "Due", set_due);
+  RouteInfo due =
+      assignment_route("POST", "/{id}/due", "setDue",
+                       "Change or remove the due time of an assignment", "Due", set_due);
   due.schemas = {
       {"Due",
        object({{"due_utc_us",
                 nullable(integer(
                     "us",
                     "New due time, in microseconds since 1970-01-01 UTC; null: no due time"))}})}};
-  RouteInfo person = route("POST", "/{id}/people", "assignPerson", "Add a trainee to an assignment",
-                           "PersonNamed", assign_person);
+  RouteInfo person =
+      assignment_route("POST", "/{id}/people", "assignPerson", "Add a trainee to an assignment",
+                       "PersonNamed", assign_person);
   person.ends = {{"/name", Object::account, person.who, End::By::account_name}};
-  RouteInfo invalid = route("POST", "/{id}/trials/{trial_id}/invalid", "markAssignedTrialInvalid",
-                            "Mark a trial invalid, so that it does not count; the server keeps the "
-                            "trial and repeats it as the assignment states",
-                            "Reason", invalidate);
+  RouteInfo invalid =
+      assignment_route("POST", "/{id}/trials/{trial_id}/invalid", "markAssignedTrialInvalid",
+                       "Mark a trial invalid, so that it does not count; the server keeps the "
+                       "trial and repeats it as the assignment states",
+                       "Reason", invalidate);
   invalid.parameters.push_back(path_text("trial_id", "Id of the trial, 32 hexadecimal characters"));
-  RouteInfo free = route("POST", "/{id}/people/{account_id}/free", "freeAssignedPerson",
-                         "Release the trials of a person that a station has taken, so that any "
-                         "station can take them again",
-                         "Nothing", free_person);
+  RouteInfo free =
+      assignment_route("POST", "/{id}/people/{account_id}/free", "freeAssignedPerson",
+                       "Release the trials of a person that a station has taken, so that any "
+                       "station can take them again",
+                       "Nothing", free_person);
   free.parameters.push_back(path_text("account_id", "Id of the person's account"));
   // Any person of the assignment, including people who have left the cohort since.
   free.ends = {{"account_id", Object::account, {Role::admin, Role::faculty}}};

@@ -8,7 +8,7 @@ namespace tractus {
 namespace api {
 namespace {
 
-constexpr std::uint64_t kMaxPlan_bytes = 4u << 20, kMaxParticipant_bytes = 4096;
+constexpr std::uint64_t kMaxStudyPlan_bytes = 4u << 20, kMaxParticipant_bytes = 4096;
 
 core::Result<http::Response> list_studies(const Call& call) {
   auto found =
@@ -67,7 +67,7 @@ std::vector<RouteInfo> studies_routes() {
       taking(research_route("POST", "studies", "makeStudy",
                             "Create a study with its scenarios, repeats, order and participants",
                             "Study", new_study),
-             "NewStudy", kMaxPlan_bytes, study_deed_schemas());
+             "NewStudy", kMaxStudyPlan_bytes, study_deed_schemas());
   const RouteInfo one =
       research_route("GET", "studies/{id}", "study",
                      "Read a study with its participants and their trials", "Study", one_study);

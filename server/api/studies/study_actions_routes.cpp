@@ -12,7 +12,7 @@ namespace {
 using store::StudyState;
 
 constexpr std::uint64_t kMaxDeed_bytes = 4096;
-constexpr std::size_t kMaxReason = 500;
+constexpr std::size_t kMaxStudyReason = 500;
 
 core::Error no_participant(const std::string& name) {
   return {core::Errc::not_found, "no participant " + name.substr(0, 32) + " in this study"};
@@ -27,7 +27,7 @@ core::Result<Said> said(const Call& call, bool with_state, bool needs_reason) {
   auto json = TRY(core::parse_json(call.request.body, "body"));
   core::Fields fields(json, "");
   Said out;
-  out.reason = fields.text_or("reason", "", kMaxReason);
+  out.reason = fields.text_or("reason", "", kMaxStudyReason);
   if (needs_reason && out.reason.find_first_not_of(" \t\n") == std::string::npos)
     fields.wrong("reason", "a reason is expected");
   if (with_state) out.state = fields.word<StudyState>("state");
@@ -48,7 +48,7 @@ core::Result<http::Response> act_on_study(const Call& call, const std::string& r
   return json_response(study_json(facts));
 }
 
-core::Result<http::Response> set_state(const Call& call) {
+core::Result<http::Response> set_study_state(const Call& call) {
   auto asked = TRY(said(call, true, false));
   return act_on_study(call, asked.reason,
                       [&](store::Writing& tx, const store::StudyId& study,
@@ -85,7 +85,7 @@ core::Result<http::Response> release(const Call& call) {
                       });
 }
 
-core::Result<http::Response> invalidate(const Call& call) {
+core::Result<http::Response> invalidate_slot(const Call& call) {
   auto asked = TRY(said(call, false, true));
   return act_on_study(
       call, asked.reason,
@@ -94,7 +94,8 @@ core::Result<http::Response> invalidate(const Call& call) {
       });
 }
 
-RouteInfo route(std::string tail, std::string id, std::string summary, std::string body) {
+RouteInfo study_actions_route(std::string tail, std::string id, std::string summary,
+                              std::string body) {
   return {.method = "POST",
           .path = "/api/v1/studies/{id}" + tail,
           .id = std::move(id),
@@ -115,29 +116,32 @@ std::vector<RouteInfo> study_actions_routes() {
   const core::Json reason =
       text("Reason for the change, shown in the list of changes, at most 500 characters");
   const Parameter name = path_text("name", "Pseudonym of the participant");
-  RouteInfo whole = route("/state", "setStudyState", "Pause or continue a study", "StateChange");
+  RouteInfo whole =
+      study_actions_route("/state", "setStudyState", "Pause or continue a study", "StateChange");
   whole.schemas = {
       {"StateChange",
        object({{"state", one_of<StudyState>("New state; paused: stations receive no trials")},
                {"reason", optional(reason)}})},
       {"Reason", object({{"reason", reason}})}};
-  whole.handle = set_state;
-  RouteInfo one = route("/participants/{name}/state", "setParticipantState",
-                        "Pause or continue a participant of a study", "StateChange");
+  whole.handle = set_study_state;
+  RouteInfo one = study_actions_route("/participants/{name}/state", "setParticipantState",
+                                      "Pause or continue a participant of a study", "StateChange");
   one.parameters.push_back(name);
   one.handle = set_participant;
-  RouteInfo free = route("/participants/{name}/release", "releaseParticipant",
-                         "Release the trials of a participant that a station has taken, so that "
-                         "any station can take them again",
-                         "Reason");
+  RouteInfo free =
+      study_actions_route("/participants/{name}/release", "releaseParticipant",
+                          "Release the trials of a participant that a station has taken, so that "
+                          "any station can take them again",
+                          "Reason");
   free.parameters.push_back(name);
   free.handle = release;
-  RouteInfo invalid = route("/trials/{trial_id}/invalid", "markTrialInvalid",
-                            "Mark a trial invalid, so that it does not count; the server keeps the "
-                            "trial and repeats its place as the study states",
-                            "Reason");
+  RouteInfo invalid =
+      study_actions_route("/trials/{trial_id}/invalid", "markTrialInvalid",
+                          "Mark a trial invalid, so that it does not count; the server keeps the "
+                          "trial and repeats its place as the study states",
+                          "Reason");
   invalid.parameters.push_back(path_text("trial_id", "Id of the trial, 32 hexadecimal characters"));
-  invalid.handle = invalidate;
+  invalid.handle = invalidate_slot;
   return {whole, one, free, invalid};
 }
 

@@ -12,10 +12,6 @@ namespace {
 using core::Json;
 using store::SlotState;
 
-template <class T>
-Json or_null(const std::optional<T>& value) {
-  return value ? Json(*value) : Json();
-}
 template <core::Named E>
 Json name_or_null(const std::optional<E>& value) {
   return value ? Json(name(*value)) : Json();
@@ -39,12 +35,12 @@ Json trial_json(const store::StudyTrial& trial, bool told) {
           {"reason", trial.reason},
           {"station", trial.station},
           {"changed_utc_us", trial.changed_utc_us},
-          {"started_utc_us", or_null(trial.started_utc_us)},
-          {"duration_s", or_null(trial.duration_s)},
-          {"samples", or_null(trial.samples)},
-          {"sha256", or_null(trial.sha256)},
+          {"started_utc_us", core::or_null(trial.started_utc_us)},
+          {"duration_s", core::or_null(trial.duration_s)},
+          {"samples", core::or_null(trial.samples)},
+          {"sha256", core::or_null(trial.sha256)},
           {"assessment", name_or_null(trial.assessment)},
-          {"correct", told ? or_null(trial.correct) : Json()}};
+          {"correct", told ? core::or_null(trial.correct) : Json()}};
 }
 
 bool unfinished(const store::Slot& slot) {
@@ -123,7 +119,7 @@ Json participant_json(const StudyFacts& facts, const store::Participant& who, co
   return {{"name", who.name},
           {"state", name(who.state)},
           {"level", who.level},
-          {"experience_years", or_null(who.experience_years)},
+          {"experience_years", core::or_null(who.experience_years)},
           {"simulated", who.simulated},
           {"at_station", at_station},
           {"last_station", station_of(facts, who, index)},
@@ -177,8 +173,8 @@ Json event_json(const store::StudyEvent& event) {
   return {{"at_utc_us", event.at_utc_us},
           {"who", event.who},
           {"what", event.what},
-          {"participant", or_null(event.participant)},
-          {"trial_id", or_null(event.trial_id)},
+          {"participant", core::or_null(event.participant)},
+          {"trial_id", core::or_null(event.trial_id)},
           {"reason", event.reason}};
 }
 

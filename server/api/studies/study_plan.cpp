@@ -20,16 +20,17 @@ using core::Json;
 using core::Result;
 
 constexpr long kMaxRepeats = 20;
-constexpr std::size_t kMaxScenarios = 16, kMaxParticipants = 500, kMaxName = 32, kMaxTitle = 200;
+constexpr std::size_t kMaxScenarios = 16, kMaxParticipants = 500, kMaxCode = 32,
+                      kMaxStudyTitle = 200;
 constexpr long kMaxSeed = 9'007'199'254'740'991;  // exact wherever JSON goes
 
 bool is_study_id(const std::string& text) {
-  return !text.empty() && text.size() <= kMaxName && text.front() != '-' &&
+  return !text.empty() && text.size() <= kMaxCode && text.front() != '-' &&
          text.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-") == std::string::npos;
 }
 
 bool is_participant(const std::string& text) {
-  return !text.empty() && text.size() <= kMaxName && std::ranges::all_of(text, [](unsigned char c) {
+  return !text.empty() && text.size() <= kMaxCode && std::ranges::all_of(text, [](unsigned char c) {
     return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '-' ||
            c == '_';
   });
@@ -107,10 +108,10 @@ study::Ordering ordering_of(store::CaseOrder order) {
 Result<store::Study> study_from(const Json& json) {
   core::Fields fields(json, "");
   store::Study out;
-  out.id = fields.text("id", kMaxName);
+  out.id = fields.text("id", kMaxCode);
   if (!is_study_id(out.id))
     fields.wrong("id", "1 to 32 of the characters a-z, 0-9 and - are expected");
-  out.title = fields.text("title", kMaxTitle);
+  out.title = fields.text("title", kMaxStudyTitle);
   out.repeats = fields.integer("repeats", 1, kMaxRepeats);
   out.ordering = case_order(fields.word_or("ordering", study::Ordering::random));
   out.on_invalid = fields.word_or("on_invalid", store::Repetition::at_end);
@@ -156,10 +157,10 @@ Result<store::CasePart> put_scenario(Backend& backend, const scenarios::Scenario
 Result<store::Participant> participant_from(const Json& json, const std::string& where) {
   core::Fields fields(json, where);
   store::Participant out;
-  out.name = fields.text("name", kMaxName);
+  out.name = fields.text("name", kMaxCode);
   if (!is_participant(out.name))
     fields.wrong("name", "a pseudonym of 1 to 32 letters, digits, - and _ is expected");
-  out.level = fields.text_or("level", "", kMaxName);
+  out.level = fields.text_or("level", "", kMaxCode);
   if (fields.has("experience_years"))
     out.experience_years = fields.number("experience_years", 0.0, 80.0);
   out.simulated = flag(fields, "simulated");

@@ -23,7 +23,7 @@ std::vector<Field> study_fields() {
 
 core::Json progress_field(std::string_view meaning) { return integer("1", meaning); }
 
-core::Json trial_schema() {
+core::Json study_trial_schema() {
   return object(
       {{"id", text("Id of the trial, 32 hexadecimal characters")},
        {"state",
@@ -110,7 +110,7 @@ std::vector<NamedSchema> study_schemas() {
                     "Name of the scenario; null while the participant still has trials to do"))},
                {"trials", array(ref("StudyTrial"),
                                 "Trials of the slot, sorted by the time of their last change")}})},
-      {"StudyTrial", trial_schema()}};
+      {"StudyTrial", study_trial_schema()}};
 }
 
 std::vector<NamedSchema> study_deed_schemas() {

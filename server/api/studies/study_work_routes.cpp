@@ -19,13 +19,13 @@ namespace {
 constexpr int kMaxAhead = 400;
 
 /// Result of the transaction that answers a station's request.
-struct Given {
+struct GivenWork {
   store::Participant participant;
   store::Taken taken;
   std::string token_hash;
 };
 
-core::Result<Given> take(store::Writing& tx, const Call& call) {
+core::Result<GivenWork> take(store::Writing& tx, const Call& call) {
   const std::string &id = call.text("id"), &name = call.text("name");
   auto study = TRY(store::find_study(tx, id));
   auto participant = TRY(store::participant_of(tx, study, name));
@@ -35,10 +35,11 @@ core::Result<Given> take(store::Writing& tx, const Call& call) {
   auto token = TRY(store::station_token_hash(tx, call.caller.id));
   auto taken = TRY(store::take_slots(tx, study, *participant, call.caller.id, call.integer("ahead"),
                                      {call.caller.name, call.backend.now_utc_us()}));
-  return Given{std::move(*participant), std::move(taken), std::move(token)};
+  return GivenWork{std::move(*participant), std::move(taken), std::move(token)};
 }
 
-core::Result<std::vector<wire::SealedTrial>> sealed_trials(Backend& backend, const Given& given) {
+core::Result<std::vector<wire::SealedTrial>> sealed_trials(Backend& backend,
+                                                           const GivenWork& given) {
   const study::StationKey key(given.token_hash);
   std::vector<wire::SealedTrial> out;
   std::uint64_t number = given.taken.planned - given.taken.unfinished;
@@ -54,7 +55,7 @@ core::Result<std::vector<wire::SealedTrial>> sealed_trials(Backend& backend, con
 core::Result<http::Response> take_trials(const Call& call) {
   TRY(check_room(call.backend, kTrialToCome_bytes));
   auto given = TRY(call.backend.store.write(
-      [&](store::Writing& tx) -> core::Result<Given> { return take(tx, call); }));
+      [&](store::Writing& tx) -> core::Result<GivenWork> { return take(tx, call); }));
   auto trials = TRY(sealed_trials(call.backend, given));
   const auto& who = given.participant;
   const wire::StudyWork work{call.text("id"),        who.name,

@@ -19,9 +19,9 @@ using core::Error;
 using core::Json;
 using core::Result;
 
-constexpr std::uint64_t kMaxBody_bytes = 16384;
+constexpr std::uint64_t kMaxComment_bytes = 16384;
 constexpr std::size_t kMaxComment = 4000;
-constexpr double kLongest_s = 1e6;
+constexpr double kLatestComment_s = 1e6;
 constexpr std::size_t kPoints = 2000;
 
 Json comment_json(const store::Comment& comment, const std::string& me) {
@@ -53,7 +53,7 @@ Result<http::Response> add_comment(const Call& call) {
   if (comment.text.find_first_not_of(" \t\r\n") == std::string::npos)
     fields.wrong("text", "a comment is expected");
   const Json* at = fields.member("at_s", false);
-  if (at && !at->is_null()) comment.at_s = fields.number("at_s", 0.0, kLongest_s);
+  if (at && !at->is_null()) comment.at_s = fields.number("at_s", 0.0, kLatestComment_s);
   TRY(fields.done());
   TRY(call.backend.store.write([&](store::Writing& tx) -> Result<void> {
     auto trial = TRY(store::trial_of(tx, comment.trial_id));
@@ -153,9 +153,9 @@ Result<http::Response> reference_way(const Call& call) {
                         {"tip_m", Json()}});
 }
 
-RouteInfo route(std::string method, std::string tail, std::string id, std::string summary,
-                std::string body, std::string answer,
-                Result<http::Response> (*handle)(const Call&)) {
+RouteInfo comment_route(std::string method, std::string tail, std::string id, std::string summary,
+                        std::string body, std::string answer,
+                        Result<http::Response> (*handle)(const Call&)) {
   RouteInfo out{.method = method,
                 .path = "/api/v1/trials/{id}" + tail,
                 .id = std::move(id),
@@ -164,7 +164,7 @@ RouteInfo route(std::string method, std::string tail, std::string id, std::strin
                 .object = Object::trial,
                 .parameters = {path_text("id", "Id of the trial")},
                 .body = std::move(body),
-                .body_limit_bytes = kMaxBody_bytes,
+                .body_limit_bytes = kMaxComment_bytes,
                 .answer = std::move(answer),
                 .schemas = {},
                 .handle = handle};
@@ -235,32 +235,35 @@ std::vector<NamedSchema> reference_schemas() {
 }  // namespace
 
 std::vector<RouteInfo> comments_routes() {
-  RouteInfo list = route("GET", "/comments", "trialComments", "List the comments on a trial", "",
-                         "TrialComments", list_comments);
+  RouteInfo list =
+      comment_route("GET", "/comments", "trialComments", "List the comments on a trial", "",
+                    "TrialComments", list_comments);
   list.schemas = comment_schemas();
   RouteInfo take =
-      route("DELETE", "/comments/{comment}", "removeComment", "Remove one of the caller's comments",
-            "", "TrialComments", remove_comment);
+      comment_route("DELETE", "/comments/{comment}", "removeComment",
+                    "Remove one of the caller's comments", "", "TrialComments", remove_comment);
   take.parameters.push_back(path_text("comment", "Id of the comment"));
-  RouteInfo offered = route("GET", "/references", "trialReferences",
-                            "List the trials on the same case that are offered as examples", "",
-                            "ReferenceTrials", references_response);
+  RouteInfo offered = comment_route("GET", "/references", "trialReferences",
+                                    "List the trials on the same case that are offered as examples",
+                                    "", "ReferenceTrials", references_response);
   offered.schemas = reference_schemas();
-  RouteInfo way = route("GET", "/references/{reference}", "referenceWay",
-                        "Read the path of an example trial: position, depth and force over time",
-                        "", "ReferenceWay", reference_way);
+  RouteInfo way =
+      comment_route("GET", "/references/{reference}", "referenceWay",
+                    "Read the path of an example trial: position, depth and force over time", "",
+                    "ReferenceWay", reference_way);
   way.parameters.push_back(path_text("reference", "Id of the example trial"));
   // The example may belong to any person: it is offered to all who did a trial on its case.
   way.ends = {
       {"reference", Object::trial, {Role::admin, Role::director, Role::faculty, Role::trainee}}};
   return {list,
-          route("POST", "/comments", "addComment", "Comment on a trial or on one moment of a trial",
-                "NewComment", "TrialComments", add_comment),
+          comment_route("POST", "/comments", "addComment",
+                        "Comment on a trial or on one moment of a trial", "NewComment",
+                        "TrialComments", add_comment),
           take,
           offered,
-          route("POST", "/reference", "setReference",
-                "Offer a trial as an example on its case, or withdraw the offer", "ReferenceWish",
-                "ReferenceTrials", set_reference),
+          comment_route("POST", "/reference", "setReference",
+                        "Offer a trial as an example on its case, or withdraw the offer",
+                        "ReferenceWish", "ReferenceTrials", set_reference),
           way};
 }
 

@@ -15,7 +15,7 @@ namespace api {
 namespace {
 
 /// What the samples tell in passing.
-struct Tally {
+struct TrialTally {
   trial::TickCounts ticks;
   double first_s = 0.0, last_s = 0.0;
   std::uint32_t first_tick = 0;  ///< those before it are not skipped: nobody recorded them
@@ -72,7 +72,7 @@ core::Result<Promised> promised(store::Reading& tx, const store::Upload& upload)
 }
 
 core::Result<void> check_identity(const store::Upload& upload, const Promised& promised,
-                                  const trial::Trial& trial, const Tally& tally) {
+                                  const trial::Trial& trial, const TrialTally& tally) {
   if (!trial.sealed)
     return core::Error{core::Errc::bad_input,
                        "trial file: the file has no end; run tractus trial recover first"};
@@ -110,7 +110,7 @@ std::string events_text(const std::vector<trial::Event>& events) {
 }
 
 store::TrialRecord record_of(const store::Upload& upload, const trial::Trial& trial,
-                             const Tally& tally) {
+                             const TrialTally& tally) {
   store::TrialRecord out;
   out.summary.id = upload.trial_id;
   out.summary.case_id = upload.case_id;
@@ -136,7 +136,7 @@ core::Result<store::TrialRecord> checked_trial(Backend& backend, const store::Up
   const auto path = backend.partials.path_of(upload.trial_id);
   if (auto fine = check_bytes(backend.partials, upload); !fine)
     return without_path(fine.error(), path);
-  Tally tally;
+  TrialTally tally;
   auto trial = trial::scan_trial(path, [&](const trial::Block& part) { tally.add(part); },
                                  {.max_samples = kMaxTrialSamples, .max_bytes = kMaxTrial_bytes});
   if (!trial) return without_path(trial.error(), path);

@@ -18,7 +18,7 @@ namespace api {
 namespace {
 
 constexpr double kEndOfTime_us = 9e15;  // exact in a double; the year 2255
-constexpr double kLongest_s = 1e6;
+constexpr double kLatestTrial_s = 1e6;
 
 core::Result<http::Response> list_trials(const Call& call) {
   const std::int64_t limit = call.integer("limit");
@@ -208,9 +208,10 @@ std::vector<RouteInfo> trials_routes() {
       query("channels", Kind::text, "",
             "Names of channels, separated by commas; all: every channel of the trial", 0, 0, "all"),
       query("from_s", Kind::number, "s",
-            "Start of the time range, in seconds since the start of the trial", 0, kLongest_s, "0"),
+            "Start of the time range, in seconds since the start of the trial", 0, kLatestTrial_s,
+            "0"),
       query("to_s", Kind::number, "s",
-            "End of the time range, in seconds since the start of the trial", 0, kLongest_s,
+            "End of the time range, in seconds since the start of the trial", 0, kLatestTrial_s,
             "1000000"),
       query("points", Kind::integer, "1", "Largest number of points in the answer", 1, 20000,
             "1000")};

@@ -20,7 +20,7 @@ using core::Json;
 using core::Result;
 using store::VolumeState;
 
-constexpr std::size_t kMaxName = 200, kMaxSource = 1000, kMaxReason = 1000;
+constexpr std::size_t kMaxVolumeName = 200, kMaxSource = 1000, kMaxVolumeReason = 1000;
 
 Json volume_json(const store::VolumeRecord& v) {
   Json out{{"id", v.id}, {"name", v.name}, {"source", v.source}, {"state", name(v.state)}};
@@ -70,11 +70,11 @@ Result<http::Response> one_volume(const Call& call) {
   return json_response(volume_json(v));
 }
 
-Result<http::Response> add(const Call& call) {
+Result<http::Response> add_volume(const Call& call) {
   auto taken = TRY(take_in(call));
   store::VolumeRecord v;
   v.id = core::new_id();
-  v.name = call.text("name").substr(0, kMaxName);
+  v.name = call.text("name").substr(0, kMaxVolumeName);
   v.source = call.text("source").substr(0, kMaxSource);
   v.sha256 = taken.sha256;
   v.size_bytes = taken.size_bytes;
@@ -108,7 +108,7 @@ Result<http::Response> decided(const Call& call, const store::Decision& decision
   return json_response(volume_json(done.value()));
 }
 
-Result<http::Response> release(const Call& call) {
+Result<http::Response> release_volume(const Call& call) {
   auto json = TRY(core::parse_json(call.request.body, "body"));
   core::Fields fields(json, "body");
   const Json* looked = fields.member("looked_at");
@@ -122,12 +122,12 @@ Result<http::Response> release(const Call& call) {
 Result<http::Response> refuse(const Call& call) {
   auto json = TRY(core::parse_json(call.request.body, "body"));
   core::Fields fields(json, "body");
-  const std::string reason = fields.text("reason", kMaxReason);
+  const std::string reason = fields.text("reason", kMaxVolumeReason);
   TRY(fields.done());
   return decided(call, {VolumeState::refused, call.caller.name, reason, call.backend.now_utc_us()});
 }
 
-Result<http::Response> report(const Call& call) {
+Result<http::Response> report_volume(const Call& call) {
   auto v = TRY(volume_of_call(call));
   return json_response(core::stored_json(v.report));
 }
@@ -216,8 +216,8 @@ Parameter side_in_query(std::string fallback, double most) {
           .fallback = std::move(fallback)};
 }
 
-RouteInfo route(std::string method, std::string tail, std::string id, std::string summary,
-                std::string answer, Result<http::Response> (*handle)(const Call&)) {
+RouteInfo volumes_route(std::string method, std::string tail, std::string id, std::string summary,
+                        std::string answer, Result<http::Response> (*handle)(const Call&)) {
   RouteInfo out{.method = std::move(method),
                 .path = "/api/v1/volumes" + tail,
                 .id = std::move(id),
@@ -302,37 +302,38 @@ std::vector<NamedSchema> schemas() {
 }  // namespace
 
 std::vector<RouteInfo> volumes_routes() {
-  RouteInfo list =
-      route("GET", "", "volumes", "List the CT volumes, newest first", "VolumeList", list_volumes);
+  RouteInfo list = volumes_route("GET", "", "volumes", "List the CT volumes, newest first",
+                                 "VolumeList", list_volumes);
   list.schemas = schemas();
-  RouteInfo take = route("POST", "", "addVolume",
-                         "Upload a CT volume: a zip of one DICOM series, or a .nii.gz, .nrrd or "
-                         ".tvol file; the server de-identifies it and holds it for review",
-                         "Volume", add);
+  RouteInfo take =
+      volumes_route("POST", "", "addVolume",
+                    "Upload a CT volume: a zip of one DICOM series, or a .nii.gz, .nrrd or "
+                    ".tvol file; the server de-identifies it and holds it for review",
+                    "Volume", add_volume);
   take.parameters = {text_in_query("name", "Name of the volume; must not contain a patient's name"),
                      text_in_query("source", "Origin of the volume and its licence", false)};
   take.body = kBytes;
   take.body_limit_bytes = kMaxVolume_bytes;
   take.body_to_file = true;
-  RouteInfo out =
-      route("POST", "/{id}/release", "releaseVolume",
-            "Release a held volume for making cases, after a person has looked at its pictures",
-            "Volume", release);
+  RouteInfo out = volumes_route(
+      "POST", "/{id}/release", "releaseVolume",
+      "Release a held volume for making cases, after a person has looked at its pictures", "Volume",
+      release_volume);
   out.who = {Role::admin, Role::director};
   out.body = "VolumeRelease";
   out.body_limit_bytes = 4096;
-  RouteInfo no = route("POST", "/{id}/refuse", "refuseVolume",
-                       "Refuse a held volume: the server removes its voxels and keeps its record",
-                       "Volume", refuse);
+  RouteInfo no = volumes_route(
+      "POST", "/{id}/refuse", "refuseVolume",
+      "Refuse a held volume: the server removes its voxels and keeps its record", "Volume", refuse);
   no.who = {Role::admin, Role::director};
   no.body = "VolumeRefusal";
   no.body_limit_bytes = 8192;
-  RouteInfo plane =
-      route("GET", "/{id}/slice", "volumeSlice",
-            "Read one plane of a volume as grey values 0 to 255, one byte per pixel, row by row; "
-            "the headers X-Dims, X-Spacing-m, X-Origin-m (first pixel, LPS) and X-Directions "
-            "(along a row, along a column) state its position in the patient",
-            kBytes, slice);
+  RouteInfo plane = volumes_route(
+      "GET", "/{id}/slice", "volumeSlice",
+      "Read one plane of a volume as grey values 0 to 255, one byte per pixel, row by row; "
+      "the headers X-Dims, X-Spacing-m, X-Origin-m (first pixel, LPS) and X-Directions "
+      "(along a row, along a column) state its position in the patient",
+      kBytes, slice);
   plane.parameters.push_back(
       text_in_query("axis", "Orientation of the plane: axial, coronal or sagittal"));
   Parameter at = value_in_query("at_m", "",
@@ -343,28 +344,29 @@ std::vector<RouteInfo> volumes_routes() {
   at.fallback = std::nullopt;
   plane.parameters.push_back(at);
   plane.parameters.push_back(side_in_query("512", 2048));
-  RouteInfo block =
-      route("GET", "/{id}/preview", "volumePreview",
-            "Read the whole volume at low resolution as grey values 0 to 255, one byte per voxel "
-            "in the order [k][j][i]; the headers X-Dims, X-Spacing-m, X-Origin-m and X-Directions "
-            "(row-major) state its position in the patient (LPS)",
-            kBytes, preview);
+  RouteInfo block = volumes_route(
+      "GET", "/{id}/preview", "volumePreview",
+      "Read the whole volume at low resolution as grey values 0 to 255, one byte per voxel "
+      "in the order [k][j][i]; the headers X-Dims, X-Spacing-m, X-Origin-m and X-Directions "
+      "(row-major) state its position in the patient (LPS)",
+      kBytes, preview);
   block.parameters.push_back(side_in_query("128", 256));
   for (RouteInfo* picture : {&plane, &block}) {
     picture->parameters.push_back(value_in_query("low", "-200", "CT value that is shown black"));
     picture->parameters.push_back(value_in_query("high", "1200", "CT value that is shown white"));
   }
-  return {list,
-          take,
-          route("GET", "/{id}", "volume", "Read one volume's record", "Volume", one_volume),
-          out,
-          no,
-          route("GET", "/{id}/report", "volumeReport",
-                "Read the de-identification report of a volume: what was removed, replaced and "
-                "kept, by attribute",
-                "VolumeReport", report),
-          plane,
-          block};
+  return {
+      list,
+      take,
+      volumes_route("GET", "/{id}", "volume", "Read one volume's record", "Volume", one_volume),
+      out,
+      no,
+      volumes_route("GET", "/{id}/report", "volumeReport",
+                    "Read the de-identification report of a volume: what was removed, replaced and "
+                    "kept, by attribute",
+                    "VolumeReport", report_volume),
+      plane,
+      block};
 }
 
 }  // namespace api

@@ -21,13 +21,11 @@ namespace fs = std::filesystem;
 using assessment::Plan;
 using core::Json;
 
-struct Options {
+struct AnalyseOptions {
   std::string plan, data, out, who, name, source, against;
   std::vector<std::string> meanings;
   bool data_seen = false, simulated = false, json = false;
 };
-
-core::Error wrong(std::string what) { return {core::Errc::bad_input, std::move(what)}; }
 
 void print(const Json& json) {
   std::puts(json.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
@@ -38,7 +36,7 @@ core::Result<void> refuse_existing(const fs::path& path) {
   return core::Error{core::Errc::conflict, path.string() + ": exists already"};
 }
 
-Outcome make_new(const Options& o) {
+Outcome make_new(const AnalyseOptions& o) {
   TRY(refuse_existing(o.plan));
   TRY(core::write_json(o.plan, assessment::example_plan()));
   std::printf("%s: a plan to edit; then: tractus analyse lock %s --who NAME\n", o.plan.c_str(),
@@ -46,7 +44,7 @@ Outcome make_new(const Options& o) {
   return 0;
 }
 
-Outcome lock(const Options& o) {
+Outcome lock(const AnalyseOptions& o) {
   const auto json = TRY(core::read_json(o.plan));
   const assessment::Lock by{o.who, core::utc_text(core::utc_us()), o.data_seen, ""};
   const auto locked = TRY(assessment::locked(json, o.plan, by));
@@ -59,7 +57,7 @@ Outcome lock(const Options& o) {
   return 0;
 }
 
-Outcome freeze(const Options& o) {
+Outcome freeze(const AnalyseOptions& o) {
   TRY(refuse_existing(o.out));
   auto data = TRY(core::read_file(o.data, 512ull << 20));
   assessment::Freezing by{o.name.empty() ? fs::path(o.data).filename().string() : o.name,
@@ -70,7 +68,7 @@ Outcome freeze(const Options& o) {
   for (const auto& meaning : o.meanings) {
     const auto at = meaning.find('=');
     if (at == std::string::npos)
-      return wrong(fmt::format("--meaning '{}': COLUMN=TEXT is expected", meaning));
+      return core::bad_input(fmt::format("--meaning '{}': COLUMN=TEXT is expected", meaning));
     by.meanings[meaning.substr(0, at)] = meaning.substr(at + 1);
   }
   const auto snapshot = TRY(assessment::frozen(std::move(data), by));
@@ -88,7 +86,7 @@ struct Ran {
   assessment::Analysed analysed;
 };
 
-core::Result<Ran> ran(const Options& o) {
+core::Result<Ran> ran(const AnalyseOptions& o) {
   const auto json = TRY(core::read_json(o.plan));
   const auto plan = TRY(Plan::from_json(json, o.plan));
   TRY(assessment::check_lock(plan, o.plan));
@@ -113,7 +111,7 @@ void print_results(const Json& result) {
                   one["printed"].dump().c_str(), one["computed"].dump().c_str());
 }
 
-Outcome run(const Options& o) {
+Outcome run_analyse(const AnalyseOptions& o) {
   const auto done = TRY(ran(o));
   const std::string text = text_of(done.analysed.result);
   if (!o.out.empty()) TRY(core::write_file(o.out, core::bytes_of(text)));
@@ -129,7 +127,7 @@ Outcome run(const Options& o) {
   return same ? 0 : 1;
 }
 
-Outcome report(const Options& o) {
+Outcome report(const AnalyseOptions& o) {
   TRY(refuse_existing(o.out));
   const auto done = TRY(ran(o));
   auto scratch = TRY(core::ScratchFolder::make(o.out));
@@ -149,7 +147,7 @@ Outcome report(const Options& o) {
   return 0;
 }
 
-using Action = Outcome (*)(const Options&);
+using Action = Outcome (*)(const AnalyseOptions&);
 
 CLI::App* add(CLI::App& app, const char* name, const char* summary, Action action,
               const std::shared_ptr<Action>& chosen) {
@@ -158,14 +156,14 @@ CLI::App* add(CLI::App& app, const char* name, const char* summary, Action actio
   return sub;
 }
 
-void add_actions(CLI::App& app, const std::shared_ptr<Options>& o,
+void add_actions(CLI::App& app, const std::shared_ptr<AnalyseOptions>& o,
                  const std::shared_ptr<Action>& chosen) {
   auto* fresh = add(app, "new", "Write a template of an analysis plan", make_new, chosen);
   auto* locking =
       add(app, "lock", "Lock a plan: add author, time and a hash of its contents", lock, chosen);
   auto* freezing = add(app, "freeze", "Freeze a CSV file as a snapshot with dictionary and hash",
                        freeze, chosen);
-  auto* running = add(app, "run", "Run a locked plan on a frozen snapshot", run, chosen);
+  auto* running = add(app, "run", "Run a locked plan on a frozen snapshot", run_analyse, chosen);
   auto* reporting =
       add(app, "report", "Run a locked plan and write report page, result, data and dictionary",
           report, chosen);
@@ -203,7 +201,7 @@ Command analyse_command() {
           "  tractus analyse run plan.json cohort/ --out result.json\n"
           "  tractus analyse report plan.json cohort/ report/",
           [](CLI::App& app) {
-            auto options = std::make_shared<Options>();
+            auto options = std::make_shared<AnalyseOptions>();
             auto chosen = std::make_shared<Action>(nullptr);
             app.require_subcommand(1);
             add_actions(app, options, chosen);

@@ -20,7 +20,7 @@ using core::Errc;
 using core::Error;
 using core::Json;
 
-struct Options {
+struct AssembleOptions {
   std::string recipe, out, picture;
   bool json = false;
 };
@@ -96,14 +96,14 @@ core::Result<void> write_whole(const std::filesystem::path& target, trial::Palpa
 }
 
 /// Refuses what could not be written at the end, before the work.
-core::Result<void> check(const Options& options, const std::filesystem::path& target) {
+core::Result<void> check(const AssembleOptions& options, const std::filesystem::path& target) {
   if (std::filesystem::exists(target))
     return Error{Errc::conflict, fmt::format("{}: exists already", options.out)};
   if (!options.picture.empty()) return core::may_be_written(options.picture);
   return {};
 }
 
-Outcome run(const Options& options) {
+Outcome run_assemble(const AssembleOptions& options) {
   std::filesystem::path target = options.out;
   if (!target.has_filename()) target = target.parent_path();  // a folder's name may end in a slash
   TRY(check(options, target));
@@ -149,7 +149,7 @@ Command assemble_command() {
       .example =
           "tractus assemble --recipe room/assembly.json --out recordings/ --picture taps.svg",
       .make = [](CLI::App& app) -> std::function<Outcome()> {
-        auto options = std::make_shared<Options>();
+        auto options = std::make_shared<AssembleOptions>();
         app.add_option(
                "--recipe", options->recipe,
                "recipe in the format tractus-assembly/1: the role of each file, body and sensor")
@@ -160,7 +160,7 @@ Command assemble_command() {
             "--picture", options->picture,
             "SVG file with the taps in force and motion on a common clock, for visual inspection");
         app.add_flag("--json", options->json, "print one JSON document on standard output");
-        return [options] { return run(*options); };
+        return [options] { return run_assemble(*options); };
       }};
 }
 

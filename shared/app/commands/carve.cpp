@@ -23,7 +23,7 @@ using core::Errc;
 using core::Error;
 using core::Json;
 
-struct Options {
+struct CarveOptions {
   std::string volume, out, title, source, model, key, png;
   std::string entry, target, length, radius = "1.5", midline;
   std::string breach, breach_depth, breach_at, spacing = "0.35", margin = "20";
@@ -40,7 +40,7 @@ core::Result<void> read_length(const std::string& text, const char* option, Plan
   return {};
 }
 
-core::Result<void> read_breach(const Options& o, cases::CarvingPlan& plan) {
+core::Result<void> read_breach(const CarveOptions& o, cases::CarvingPlan& plan) {
   if (o.breach.empty()) {
     for (const auto& [text, option] :
          {std::pair(&o.breach_depth, "--breach-depth"), std::pair(&o.breach_at, "--breach-at")})
@@ -59,7 +59,7 @@ core::Result<void> read_breach(const Options& o, cases::CarvingPlan& plan) {
   return read_length(o.breach_at, "--breach-at", plan.breach->at_m);
 }
 
-core::Result<cases::CarvingPlan> plan_of(const Options& o) {
+core::Result<cases::CarvingPlan> plan_of(const CarveOptions& o) {
   cases::CarvingPlan plan;
   plan.entry_m = TRY(point_m(o.entry, "--entry"));
   plan.target_m = TRY(point_m(o.target, "--target"));
@@ -73,14 +73,14 @@ core::Result<cases::CarvingPlan> plan_of(const Options& o) {
   return plan;
 }
 
-core::Result<models::PalpationModel> model_of(const Options& o) {
+core::Result<models::PalpationModel> model_of(const CarveOptions& o) {
   if (!o.model.empty()) return models::PalpationModel::read(o.model);
   models::PalpationModel model;
   model.name = "uniform cantilever";
   return model;
 }
 
-core::Result<core::KeyPair> key_of(const Options& o) {
+core::Result<core::KeyPair> key_of(const CarveOptions& o) {
   if (!o.key.empty()) return core::KeyPair::open_or_make(o.key);
   const char *config = std::getenv("XDG_CONFIG_HOME"), *home = std::getenv("HOME");
   if (!(config && *config) && !(home && *home))
@@ -161,7 +161,7 @@ void print_text(const cases::OpenedCase& made, const cases::Carved& carved) {
   fmt::print("{}  {}\n", made.id, made.folder.string());
 }
 
-cases::NewCase case_of(const Options& o, const cases::Carved& carved,
+cases::NewCase case_of(const CarveOptions& o, const cases::Carved& carved,
                        const models::PalpationModel& model, const std::string& source,
                        volume::Volume surroundings) {
   cases::NewCase made{
@@ -190,7 +190,7 @@ Error about(const std::string& file, const Error& error) {
 }
 
 /// The picture of its own goes away again if the case cannot be written.
-Outcome write(const Options& o, cases::NewCase definition, const core::KeyPair& key,
+Outcome write(const CarveOptions& o, cases::NewCase definition, const core::KeyPair& key,
               const cases::Carved& carved) {
   if (!o.png.empty()) TRY(definition.draw(o.png));
   const auto made =
@@ -204,7 +204,7 @@ Outcome write(const Options& o, cases::NewCase definition, const core::KeyPair& 
   return 0;
 }
 
-Outcome run(const Options& o) {
+Outcome run_carve(const CarveOptions& o) {
   const auto plan = TRY(plan_of(o));
   const auto model = TRY(model_of(o));
   if (std::error_code ignored; std::filesystem::exists(o.out, ignored))
@@ -220,7 +220,7 @@ Outcome run(const Options& o) {
   return write(o, case_of(o, *carved, model, ct.source, std::move(*surroundings)), key, *carved);
 }
 
-void add_options(CLI::App& app, Options& o) {
+void add_options(CLI::App& app, CarveOptions& o) {
   app.add_option("--volume", o.volume,
                  "CT volume: a NIfTI, NRRD or .tvol file, or a folder of DICOM slices")
       ->required();
@@ -273,9 +273,9 @@ Command carve_command() {
           "tractus carve --volume l3.nii.gz --entry 46,200,-61 --target 39,158,-61 --breach medial "
           "--out l3-left-medial",
           [](CLI::App& app) {
-            auto options = std::make_shared<Options>();
+            auto options = std::make_shared<CarveOptions>();
             add_options(app, *options);
-            return [options] { return run(*options); };
+            return [options] { return run_carve(*options); };
           }};
 }
 

@@ -16,7 +16,7 @@ namespace {
 
 using core::Json;
 
-struct Options {
+struct CaseOptions {
   std::string folder;
   bool json = false;
 };
@@ -27,7 +27,7 @@ std::string state_of(const cases::OpenedCase& opened, const cases::Part& part) {
   return fmt::format("{}{}", part.secret ? "secret" : "open", here ? "" : ", not here");
 }
 
-int say_broken(const Options& o, const core::Error& error) {
+int say_broken(const CaseOptions& o, const core::Error& error) {
   if (o.json)
     std::puts(Json({{"holds", false}, {"why", error.what}}).dump(2).c_str());
   else
@@ -35,7 +35,7 @@ int say_broken(const Options& o, const core::Error& error) {
   return 1;
 }
 
-Outcome verify(const Options& o) {
+Outcome verify(const CaseOptions& o) {
   const auto opened = cases::open_case(o.folder);
   if (!opened && opened.error().code == core::Errc::corrupt) return say_broken(o, opened.error());
   if (!opened) return opened.error();
@@ -48,7 +48,7 @@ Outcome verify(const Options& o) {
   return 0;
 }
 
-Outcome show(const Options& o) {
+Outcome show(const CaseOptions& o) {
   const auto opened = TRY(cases::open_case(o.folder));
   if (o.json) {
     Json out = {{"case", opened.id}, {"signer", opened.signer_public_hex}};
@@ -79,7 +79,7 @@ Outcome show(const Options& o) {
 Command case_command() {
   return {"case", "Show a case, or verify that it is unchanged since it was signed",
           "tractus case verify l3-left-medial", [](CLI::App& app) {
-            auto options = std::make_shared<Options>();
+            auto options = std::make_shared<CaseOptions>();
             app.require_subcommand(1);
             CLI::App* check =
                 app.add_subcommand("verify",

@@ -11,7 +11,7 @@ namespace tractus {
 namespace commands {
 namespace {
 
-Outcome run(const LabOptions& options) {
+Outcome run_compare(const LabOptions& options) {
   TRY(writable(options.report));
   const auto opened_case = TRY(opened(options));
   const auto answer = lab_io::compared(opened_case);
@@ -31,7 +31,7 @@ Command compare_command() {
           .make = [](CLI::App& app) -> std::function<Outcome()> {
             auto options = std::make_shared<LabOptions>();
             add_lab_options(app, *options);
-            return [options] { return run(*options); };
+            return [options] { return run_compare(*options); };
           }};
 }
 

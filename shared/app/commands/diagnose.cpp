@@ -12,11 +12,11 @@ namespace tractus {
 namespace commands {
 namespace {
 
-struct Options : LabOptions {
+struct DiagnoseOptions : LabOptions {
   std::filesystem::path out_model;
 };
 
-Outcome run(const Options& options) {
+Outcome run_diagnose(const DiagnoseOptions& options) {
   for (const auto& file : {options.report, options.out_model}) TRY(writable(file));
   const auto opened_case = TRY(opened(options));
   lab_io::DiagnoseRequest wish{.options = {}, .report = !options.report.empty()};
@@ -38,12 +38,12 @@ Command diagnose_command() {
               "tractus diagnose --model bone.model.json --measurements recordings/ "
               "--out-model better.model.json --report found.html",
           .make = [](CLI::App& app) -> std::function<Outcome()> {
-            auto options = std::make_shared<Options>();
+            auto options = std::make_shared<DiagnoseOptions>();
             add_lab_options(app, *options);
             add_own_option(app, *options);
             app.add_option("--out-model", options->out_model,
                            "file for the refitted model with the effects that were found");
-            return [options] { return run(*options); };
+            return [options] { return run_diagnose(*options); };
           }};
 }
 

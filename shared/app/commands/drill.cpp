@@ -24,7 +24,7 @@ using core::Json;
 
 constexpr double kSame_N = 1e-6;
 
-struct Options {
+struct DrillOptions {
   std::string trial, volume, case_folder, out;
   bool json = false;
 };
@@ -35,7 +35,7 @@ struct Bone {
   std::optional<cases::OpenedCase> opened;
 };
 
-core::Result<Bone> bone_of(const Options& o) {
+core::Result<Bone> bone_of(const DrillOptions& o) {
   if (o.volume.empty() == o.case_folder.empty())
     return Error{Errc::bad_input, "drill: either --volume FILE or --case FOLDER is expected"};
   Bone bone;
@@ -52,7 +52,7 @@ core::Result<Bone> bone_of(const Options& o) {
 }
 
 /// Forces can be had again where the case's own model ran, without effects.
-core::Result<std::unique_ptr<DrillForces>> forces_of(const Options& o, const Bone& bone) {
+core::Result<std::unique_ptr<DrillForces>> forces_of(const DrillOptions& o, const Bone& bone) {
   if (!bone.opened || !bone.opened->definition.model.effects.empty())
     return std::unique_ptr<DrillForces>();
   const auto trial = TRY(trial::scan_trial(o.trial, [](const trial::Block&) {}));
@@ -94,7 +94,7 @@ void print_replay(const Json& told) {
                forces.at("in_order").get<bool>() ? "" : "; a force changed BEFORE its cause");
 }
 
-Outcome replay(const Options& o) {
+Outcome replay(const DrillOptions& o) {
   const auto bone = TRY(bone_of(o));
   const auto made = TRY(forces_of(o, bone));
   DrillForces* const forces = made.get();
@@ -146,7 +146,7 @@ void print_channel(const drilling::PilotHole& made, const volume::Tract& tract) 
   }
 }
 
-Outcome report(const Options& o) {
+Outcome report(const DrillOptions& o) {
   const auto bone = TRY(bone_of(o));
   if (!bone.opened)
     return Error{Errc::bad_input,
@@ -164,7 +164,7 @@ Outcome report(const Options& o) {
   return again.agrees().value_or(true) ? 0 : 1;
 }
 
-void add_options(CLI::App& app, Options& o) {
+void add_options(CLI::App& app, DrillOptions& o) {
   app.add_option("trial", o.trial, "file of a trial with a burr, .ttrial")->required();
   app.add_option("--case", o.case_folder, "folder of the case that was drilled");
   app.add_option("--volume", o.volume, "volume of the case, .tvol, in place of --case");
@@ -181,7 +181,7 @@ Command drill_command() {
       "tractus drill replay st/trials/ID.ttrial --case undrilled/ --out drilled.tvol\n"
       "  tractus drill report st/trials/ID.ttrial --case undrilled/",
       [](CLI::App& app) {
-        auto options = std::make_shared<Options>();
+        auto options = std::make_shared<DrillOptions>();
         CLI::App* again = app.add_subcommand("replay",
                                              "compute the drilled volume from the trial's samples "
                                              "and compare it with the hash in the trial file");

@@ -21,7 +21,7 @@ using tractus::effects::Expression;
 using tractus::effects::ExpressionRig;
 using tractus::effects::Param;
 
-struct Options {
+struct EffectsOptions {
   std::string id, rig, file;
   bool json = false;
 };
@@ -44,7 +44,7 @@ core::Result<std::vector<Entry>> from_file(const std::string& file) {
   return std::vector<Entry>{{rig, own.facts()}};
 }
 
-core::Result<std::vector<Entry>> chosen(const Options& o) {
+core::Result<std::vector<Entry>> chosen(const EffectsOptions& o) {
   if (!o.file.empty()) return from_file(o.file);
   std::vector<Entry> out;
   for (const auto& info : tractus::effects::probing_effects())
@@ -92,7 +92,7 @@ void print_states() {
   }
 }
 
-Outcome run(const Options& o) {
+Outcome run_effects(const EffectsOptions& o) {
   const auto entries = TRY(chosen(o));
   if (!o.json) {
     for (const Entry& entry : entries) print(entry);
@@ -112,7 +112,7 @@ Command effects_command() {
           "tractus effects --rig probing\n  tractus effects hysteresis\n  tractus effects --check "
           "my_drag.json",
           [](CLI::App& app) {
-            auto options = std::make_shared<Options>();
+            auto options = std::make_shared<EffectsOptions>();
             auto* id = app.add_option("ID", options->id, "id of an effect: show only this effect");
             auto* rig = app.add_option("--rig", options->rig, "show only the effects of this rig")
                             ->check(CLI::IsMember({"probing", "palpation"}));
@@ -122,7 +122,7 @@ Command effects_command() {
                 ->excludes(id)
                 ->excludes(rig);
             app.add_flag("--json", options->json, "print as JSON");
-            return [options] { return run(*options); };
+            return [options] { return run_effects(*options); };
           }};
 }
 

@@ -12,12 +12,12 @@ namespace tractus {
 namespace commands {
 namespace {
 
-struct Options : LabOptions {
+struct FitOptions : LabOptions {
   std::filesystem::path out;
   std::vector<std::string> add;
 };
 
-Outcome run(const Options& options) {
+Outcome run_fit(const FitOptions& options) {
   for (const auto& file : {options.report, options.out}) TRY(writable(file));
   const auto opened_case = TRY(opened(options));
   const auto bar = core::terminal_progress("fitting");
@@ -37,7 +37,7 @@ Command fit_command() {
               "tractus fit --model bone.model.json --measurements recordings/ "
               "--add coulomb_friction --add inertia --out better.model.json",
           .make = [](CLI::App& app) -> std::function<Outcome()> {
-            auto options = std::make_shared<Options>();
+            auto options = std::make_shared<FitOptions>();
             add_lab_options(app, *options);
             app.add_option("--add", options->add,
                            "id of an effect to add (see tractus effects); may be repeated")
@@ -45,7 +45,7 @@ Command fit_command() {
                 ->allow_extra_args(false);
             add_own_option(app, *options);
             app.add_option("--out", options->out, "file for the fitted model")->required();
-            return [options] { return run(*options); };
+            return [options] { return run_fit(*options); };
           }};
 }
 

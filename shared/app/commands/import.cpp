@@ -15,18 +15,18 @@ namespace tractus {
 namespace commands {
 namespace {
 
-struct Options {
+struct ImportOptions {
   std::string source, target, report;
   bool json = false;
 };
 
-std::string joined(const std::vector<std::string>& lines) {
+std::string joined_lines(const std::vector<std::string>& lines) {
   std::string out;
   for (const auto& line : lines) out += (out.empty() ? "" : "; ") + line;
   return out;
 }
 
-void print_json(const Options& o, const volume_io::Imported& in, const std::string& id) {
+void print_json(const ImportOptions& o, const volume_io::Imported& in, const std::string& id) {
   const auto& g = in.volume.geometry;
   const core::Json out = {{"file", o.target},
                           {"id", id},
@@ -39,7 +39,7 @@ void print_json(const Options& o, const volume_io::Imported& in, const std::stri
   std::puts(out.dump(2).c_str());
 }
 
-void print_text(const Options& o, const volume_io::Imported& in, const std::string& id) {
+void print_text(const ImportOptions& o, const volume_io::Imported& in, const std::string& id) {
   const auto& g = in.volume.geometry;
   const auto range = volume::value_range_of(in.volume);
   fmt::print("{}: {} x {} x {} voxels of {:.4g} x {:.4g} x {:.4g} mm, CT values {:.6g} to {:.6g}\n",
@@ -51,12 +51,12 @@ void print_text(const Options& o, const volume_io::Imported& in, const std::stri
   fmt::print("{}  {}\n", id, o.target);
 }
 
-Outcome run(const Options& o) {
+Outcome run_import(const ImportOptions& o) {
   auto in = TRY(volume_io::read_volume(o.source, core::terminal_progress("reading")));
   for (auto& found : volume_io::text_suspicions(in.volume))
     in.suspicions.push_back(std::move(found));
   if (!o.report.empty()) TRY(core::write_json(o.report, in.report));
-  const auto id = TRY(volume::write_volume(o.target, in.volume, {in.source, joined(in.notes)},
+  const auto id = TRY(volume::write_volume(o.target, in.volume, {in.source, joined_lines(in.notes)},
                                            core::terminal_progress("writing")));
   o.json ? print_json(o, in, id) : print_text(o, in, id);
   return 0;
@@ -68,7 +68,7 @@ Command import_command() {
   return {"import",
           "Convert a CT volume (NIfTI, NRRD, or a folder of DICOM slices) to a .tvol file",
           "tractus import spine.nii.gz spine.tvol", [](CLI::App& app) {
-            auto options = std::make_shared<Options>();
+            auto options = std::make_shared<ImportOptions>();
             app.add_option("SRC", options->source,
                            "NIfTI, NRRD or .tvol file, or folder of one DICOM series")
                 ->required();
@@ -78,7 +78,7 @@ Command import_command() {
                            "file for the de-identification report: the action for each DICOM "
                            "attribute, without values");
             app.add_flag("--json", options->json, "print the result as JSON");
-            return [options] { return run(*options); };
+            return [options] { return run_import(*options); };
           }};
 }
 

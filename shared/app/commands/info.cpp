@@ -18,7 +18,7 @@ namespace {
 
 using volume::Vec3;
 
-struct Options {
+struct InfoOptions {
   std::string file, png;
   std::vector<double> at_mm, window{400.0, 1800.0};
   bool json = false;
@@ -124,13 +124,13 @@ void print_text(const Facts& f) {
   print_histogram(f.histogram);
 }
 
-core::Result<void> write_picture(const Options& o, const volume::Volume& v) {
+core::Result<void> write_picture(const InfoOptions& o, const volume::Volume& v) {
   const Vec3 at = o.at_mm.empty() ? volume_io::centre_of(v.geometry)
                                   : Vec3(Vec3(o.at_mm[0], o.at_mm[1], o.at_mm[2]) * 1e-3);
   return volume_io::write_slices_png(o.png, v, at, {.window = {o.window[0], o.window[1]}});
 }
 
-Outcome run(const Options& o) {
+Outcome run_info(const InfoOptions& o) {
   const auto progress = core::terminal_progress("reading");
   std::error_code failure;
   auto stored = volume::VolumeFile::open(o.file);
@@ -156,7 +156,7 @@ Outcome run(const Options& o) {
 Command info_command() {
   return {"info", "Show size, position, values and histogram of a volume, and draw three slices",
           "tractus info spine.tvol --png spine.png --at 0,-35,120", [](CLI::App& app) {
-            auto options = std::make_shared<Options>();
+            auto options = std::make_shared<InfoOptions>();
             app.add_option("FILE", options->file,
                            "a .tvol file, or any file or folder that tractus import reads")
                 ->required();
@@ -172,7 +172,7 @@ Command info_command() {
                 ->delimiter(',')
                 ->expected(2);
             app.add_flag("--json", options->json, "print the result as JSON, in SI units");
-            return [options] { return run(*options); };
+            return [options] { return run_info(*options); };
           }};
 }
 

@@ -31,7 +31,7 @@ using core::Result;
 using Options = ReplayOptions;
 
 /// All that was read and computed, before anything is written.
-struct Work {
+struct ReplayWork {
   models::PalpationModel model;
   trial::PalpationSet set;
   fs::path volume;
@@ -46,21 +46,21 @@ core::Progress part_of(const core::Progress& whole, double from, double width) {
 }
 
 /// The model's volume lies beside the model, else the set names it.
-Result<fs::path> volume_path(const Options& options, const Work& work) {
+Result<fs::path> volume_path(const Options& options, const ReplayWork& work) {
   if (!work.model.volume.empty()) return options.model.parent_path() / work.model.volume;
   if (!work.set.volume.empty()) return work.set.folder / work.set.volume;
   return Error{Errc::bad_input, fmt::format("{}: names no \"volume\", and neither does {}/set.json",
                                             options.model.string(), options.measurements.string())};
 }
 
-Result<models::PalpationRuntime> make_runtime(const Work& work) {
+Result<models::PalpationRuntime> make_runtime(const ReplayWork& work) {
   auto imported =
       TRY(volume_io::read_volume(work.volume, core::terminal_progress("reading the volume")));
   return models::PalpationRuntime::make(work.model, imported.volume,
                                         core::terminal_progress("making the field"));
 }
 
-void add_rows(Work& work) {
+void add_rows(ReplayWork& work) {
   struct Pooled {
     std::vector<math::Wrench> measured, simulated;
   };
@@ -89,8 +89,9 @@ void add_rows(Work& work) {
   work.rows.insert(work.rows.end(), trials.begin(), trials.end());
 }
 
-Result<Work> compute(models::PalpationModel model, const fs::path& folder, const Options& options) {
-  Work work;
+Result<ReplayWork> compute(models::PalpationModel model, const fs::path& folder,
+                           const Options& options) {
+  ReplayWork work;
   auto set = TRY(trial::read_palpation_set(folder));
   work.model = std::move(model);
   work.set = std::move(set);
@@ -131,10 +132,7 @@ bool is_simulated(const trial::PalpationSet& set) {
   return it != set.stated.end() && it->is_boolean() && it->get<bool>();
 }
 
-constexpr const char* kSimulatedNote =
-    "The measurement set states that its measurements are simulated.";
-
-Json summary_of(const Work& work) {
+Json summary_of(const ReplayWork& work) {
   Json json{{"format", "tractus-replay/1"},
             {"model", work.model.name},
             {"volume", work.volume.filename().string()}};
@@ -160,7 +158,7 @@ Json summary_of(const Work& work) {
   return json;
 }
 
-Result<void> write_trials(const Work& work, const fs::path& folder) {
+Result<void> write_trials(const ReplayWork& work, const fs::path& folder) {
   std::error_code failure;
   fs::create_directory(folder, failure);
   if (failure)
@@ -178,7 +176,7 @@ Result<void> write_trials(const Work& work, const fs::path& folder) {
   return {};
 }
 
-Result<void> write(const Work& work, const Options& options) {
+Result<void> write(const ReplayWork& work, const Options& options) {
   auto scratch = TRY(core::ScratchFolder::make(options.out));
   TRY(write_trials(work, scratch.path() / "trials"));
   std::vector<math::Wrench> measured, simulated;
@@ -198,7 +196,7 @@ Result<void> write(const Work& work, const Options& options) {
   return scratch.keep_as(options.out);
 }
 
-void say(const Work& work, const Options& options) {
+void say(const ReplayWork& work, const Options& options) {
   Json summary = summary_of(work);
   const double steps = summary["steps"].get<double>(),
                missed = summary["steps_not_converged"].get<double>();
@@ -221,7 +219,7 @@ void say(const Work& work, const Options& options) {
   fmt::print("Written to {}\n", options.out.string());
 }
 
-Outcome run(const Options& options) {
+Outcome run_replay(const Options& options) {
   std::error_code ignored;
   if (fs::exists(options.out, ignored))
     return Error{Errc::conflict, fmt::format("{}: exists already; remove it or choose another name",
@@ -264,7 +262,7 @@ Command replay_command() {
         app.add_option("--out", options->out, "folder for the results; it must not exist")
             ->required();
         app.add_flag("--json", options->json, "print the summary as JSON");
-        return [options] { return run(*options); };
+        return [options] { return run_replay(*options); };
       }};
 }
 

@@ -22,14 +22,14 @@ using core::Error;
 using core::Json;
 using scenarios::Scenario;
 
-struct Options {
+struct ScenarioOptions {
   std::string kind = "hard", from, name, who, file, out;
   std::vector<std::string> changes;
   std::vector<double> speeds_mm_s{2.0, 5.0, 10.0};
   bool json = false;
 };
 
-Outcome make_new(const Options& o) {
+Outcome make_new(const ScenarioOptions& o) {
   std::error_code ignored;
   if (std::filesystem::exists(o.out, ignored))
     return Error{Errc::conflict,
@@ -88,7 +88,7 @@ void print(const Scenario& scenario, const scenarios::Demand& demand) {
   for (const auto& sentence : demand.excessive) fmt::print("too much: {}\n", sentence);
 }
 
-Outcome check(const Options& o) {
+Outcome check(const ScenarioOptions& o) {
   const auto scenario = TRY(Scenario::read(o.file));
   const auto demand = TRY(scenarios::demand(scenario));
   if (o.json)
@@ -99,7 +99,7 @@ Outcome check(const Options& o) {
   return demand.excessive.empty() ? 0 : 1;
 }
 
-Outcome draw(const Options& o) {
+Outcome draw(const ScenarioOptions& o) {
   const auto scenario = TRY(Scenario::read(o.file));
   std::vector<double> speeds_m_s;
   for (const double speed : o.speeds_mm_s) speeds_m_s.push_back(1e-3 * speed);
@@ -112,7 +112,7 @@ Outcome draw(const Options& o) {
   return 0;
 }
 
-void add_new(CLI::App& app, Options& o) {
+void add_new(CLI::App& app, ScenarioOptions& o) {
   auto* kind = app.add_option("--kind", o.kind, "start from the tuned scenario of this kind")
                    ->check(CLI::IsMember({"hard", "soft", "lateral_breach", "in_out_in"}))
                    ->capture_default_str();
@@ -138,7 +138,7 @@ Command scenario_command() {
           "mine.json\n  tractus scenario check mine.json\n  tractus scenario plot mine.json --out "
           "mine.svg",
           [](CLI::App& app) {
-            auto options = std::make_shared<Options>();
+            auto options = std::make_shared<ScenarioOptions>();
             app.require_subcommand(1);
             CLI::App* make =
                 app.add_subcommand("new", "make a new version, with author, time and parent");

@@ -15,13 +15,13 @@ namespace tractus {
 namespace commands {
 namespace {
 
-struct Options {
+struct StatsOptions {
   std::string data, formula, svg;
   bool json = false, drop_missing = false;
   std::map<std::string, std::string> more;
 };
 
-Outcome run(const assessment::Method& method, const Options& o) {
+Outcome run_stats(const assessment::Method& method, const StatsOptions& o) {
   core::Result<assessment::Findings> found = core::Error{core::Errc::bad_input, ""};
   std::map<std::string, std::string> given;
   for (const auto& [name, value] : o.more)
@@ -60,7 +60,7 @@ std::string example_of(const assessment::Method& method) {
 }
 
 void add_method(CLI::App& app, const assessment::Method& method,
-                const std::shared_ptr<Options>& options, std::string& chosen) {
+                const std::shared_ptr<StatsOptions>& options, std::string& chosen) {
   CLI::App* sub = app.add_subcommand(method.id, method.summary);
   sub->footer("Example:\n  " + example_of(method));
   if (!method.formula.empty()) {
@@ -103,14 +103,14 @@ Command stats_command() {
   return {"stats",
           "Analyse a CSV file: regression, ANOVA, mixed models, recognition, learning curves",
           kExample, [](CLI::App& app) {
-            auto options = std::make_shared<Options>();
+            auto options = std::make_shared<StatsOptions>();
             auto chosen = std::make_shared<std::string>();
             app.require_subcommand(1);
             for (const auto& method : assessment::methods::all())
               add_method(app, method, options, *chosen);
             return [options, chosen]() -> Outcome {
               const auto method = TRY(assessment::method_named(*chosen));
-              return run(method, *options);
+              return run_stats(method, *options);
             };
           }};
 }

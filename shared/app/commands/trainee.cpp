@@ -17,7 +17,7 @@ namespace {
 
 using core::Json;
 
-struct Options {
+struct TraineeOptions {
   std::string data, who, html;
   assessment::TraineeColumns columns;
   double adequate = 0.10, inadequate = 0.25, threshold = 0.0, relapse = 1.25;
@@ -66,7 +66,7 @@ Outcome list_all(const assessment::Cohort& cohort, const assessment::Certificati
   return 0;
 }
 
-Outcome run(const Options& o) {
+Outcome run_trainee(const TraineeOptions& o) {
   const auto rates = TRY(statistics::Rates::make(o.adequate, o.inadequate));
   const auto table =
       TRY(assessment::Table::read(o.data, o.columns.all(), assessment::Missing::keep));
@@ -103,7 +103,7 @@ Command trainee_command() {
           "operation_time_s\n"
           "  where trials.csv has a row per trial: participant,order,scenario,correct,…",
           [](CLI::App& app) {
-            auto o = std::make_shared<Options>();
+            auto o = std::make_shared<TraineeOptions>();
             app.add_option("--data", o->data, "CSV file, one row per trial")->required();
             app.add_option("--who", o->who,
                            "name of the trainee (default: all trainees, one line each)");
@@ -135,7 +135,7 @@ Command trainee_command() {
             app.add_flag("--simulated", o->simulated,
                          "the trials are simulated; the report states this");
             app.add_flag("--json", o->json, "print the result as JSON");
-            return [o] { return run(*o); };
+            return [o] { return run_trainee(*o); };
           }};
 }
 

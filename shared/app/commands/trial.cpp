@@ -24,7 +24,7 @@ namespace commands {
 namespace {
 using core::Json;
 
-struct Options {
+struct TrialOptions {
   std::string file, csv, case_folder, scenario, out;
   std::vector<std::string> files;
   bool json = false;
@@ -102,7 +102,7 @@ void print_json(const trial::Trial& trial, const Passed& passed) {
   std::puts(out.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
 }
 
-Outcome show(const Options& o) {
+Outcome show(const TrialOptions& o) {
   std::optional<TrialCsv> csv;
   if (!o.csv.empty()) {
     auto made = TrialCsv::create(o.csv);
@@ -125,7 +125,7 @@ Outcome show(const Options& o) {
   return 0;
 }
 
-core::Error of_another(const Options& o, const trial::Trial& trial, const std::string& id) {
+core::Error of_another(const TrialOptions& o, const trial::Trial& trial, const std::string& id) {
   return {
       core::Errc::bad_input,
       fmt::format("{}: this trial is of {:.12}…, but {} contains {:.12}…", o.file,
@@ -133,7 +133,7 @@ core::Error of_another(const Options& o, const trial::Trial& trial, const std::s
 }
 
 /// The case of a palpation trial into `subject`. Errors: those of the case, bad_input.
-core::Result<cases::OpenedCase> add_case(const Options& o, metrics::Subject& subject) {
+core::Result<cases::OpenedCase> add_case(const TrialOptions& o, metrics::Subject& subject) {
   if (o.case_folder.empty())
     return core::Error{core::Errc::bad_input,
                        o.file + ": this is a palpation trial: --case FOLDER is expected"};
@@ -147,7 +147,7 @@ core::Result<cases::OpenedCase> add_case(const Options& o, metrics::Subject& sub
   return opened;
 }
 
-core::Result<void> add_scenario(const Options& o, metrics::Subject& subject) {
+core::Result<void> add_scenario(const TrialOptions& o, metrics::Subject& subject) {
   if (o.scenario.empty()) return {};
   const auto scenario = TRY(scenarios::Scenario::read(o.scenario));
   if (subject.trial.header.case_id != scenario.id())
@@ -156,7 +156,7 @@ core::Result<void> add_scenario(const Options& o, metrics::Subject& subject) {
   return {};
 }
 
-Outcome score(const Options& o) {
+Outcome score(const TrialOptions& o) {
   const auto trial = trial::read_trial(o.file);
   if (!trial) return trial.error();
   metrics::Subject subject{*trial};
@@ -187,7 +187,7 @@ Outcome score(const Options& o) {
   return 0;
 }
 
-Outcome recover(const Options& o) {
+Outcome recover(const TrialOptions& o) {
   const auto kept = TRY(trial::recover_trial(o.file));
   if (o.json)
     std::puts(Json({{"samples", kept}}).dump(2).c_str());
@@ -196,7 +196,7 @@ Outcome recover(const Options& o) {
   return 0;
 }
 
-Outcome measurements(const Options& o) {
+Outcome measurements(const TrialOptions& o) {
   const auto samples = TRY(write_trial_set(o.files, o.out));
   if (o.json)
     std::puts(Json({{"trials", o.files.size()}, {"samples", samples}, {"folder", o.out}})
@@ -214,7 +214,7 @@ Command trial_command() {
       "Show or score a recorded trial, recover a trial file after a crash, or write trials as a "
       "measurement set",
       "tractus trial metrics 018f.ttrial --case l3-left-medial", [](CLI::App& app) {
-        auto options = std::make_shared<Options>();
+        auto options = std::make_shared<TrialOptions>();
         app.require_subcommand(1);
         CLI::App* look =
             app.add_subcommand("show", "show person, time, samples, events and end of the trial");

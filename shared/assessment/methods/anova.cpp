@@ -67,8 +67,8 @@ void add_companions(const statistics::Groups& groups, Json& out) {
 
 core::Result<Findings> run_anova(const Analysis& of) {
   if (!of.formula.group.empty())
-    return bad_input("(1|" + of.formula.group +
-                     ") needs 'rm-anova' or 'lmm': anova knows no subjects");
+    return core::bad_input("(1|" + of.formula.group +
+                           ") needs 'rm-anova' or 'lmm': anova knows no subjects");
   const auto column = TRY(single_column(of, "anova"));
   const auto y = TRY(of.table.numbers(of.formula.response));
   const auto groups = groups_in_order(of.table, column, y);

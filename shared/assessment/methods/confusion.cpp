@@ -42,12 +42,12 @@ core::Result<Findings> run_confusion(const Analysis& of) {
   const auto classes = classes_of(of.table, truth, of.formula.response);
   if (classes.size() ==
       levels_of(of.table, truth).size() + levels_of(of.table, of.formula.response).size())
-    return bad_input(fmt::format("{}: '{}' and '{}' have no label in common, as '{}' and '{}'",
-                                 of.table.name(), truth, of.formula.response, classes.front(),
-                                 classes.back()));
+    return core::bad_input(
+        fmt::format("{}: '{}' and '{}' have no label in common, as '{}' and '{}'", of.table.name(),
+                    truth, of.formula.response, classes.front(), classes.back()));
   if (classes.size() > 50)
-    return bad_input(fmt::format("{}: {} classes are too many for a table (at most 50)",
-                                 of.table.name(), classes.size()));
+    return core::bad_input(fmt::format("{}: {} classes are too many for a table (at most 50)",
+                                       of.table.name(), classes.size()));
   statistics::Matrix counts = statistics::Matrix::Zero(std::ssize(classes), std::ssize(classes));
   const auto was = places_of(of.table, truth, classes);
   const auto said = places_of(of.table, of.formula.response, classes);

@@ -33,8 +33,9 @@ void add_test(const std::string& term, const statistics::MeanDifference& d, cons
 core::Result<Findings> of_pairs(const Analysis& of, const std::string& column, const Vector& y) {
   const auto cells = TRY(cells_of(of, {column}, y));
   if (cells.names.size() != 2)
-    return bad_input(fmt::format("{}: column '{}' has {} levels; a paired effect size is of two",
-                                 of.table.name(), column, cells.names.size()));
+    return core::bad_input(
+        fmt::format("{}: column '{}' has {} levels; a paired effect size is of two",
+                    of.table.name(), column, cells.names.size()));
   const Vector difference = cells.values.col(1) - cells.values.col(0);
   const auto d = statistics::paired(cells.values.col(1), cells.values.col(0));
   if (!d) return located(of, d.error());
@@ -58,7 +59,7 @@ core::Result<Findings> of_pairs(const Analysis& of, const std::string& column, c
 core::Result<Findings> of_groups(const Analysis& of, const std::string& column, const Vector& y) {
   const auto groups = groups_in_order(of.table, column, y);
   if (groups.names.size() != 2)
-    return bad_input(
+    return core::bad_input(
         fmt::format("{}: column '{}' has {} values; an effect size is of two groups "
                     "(anova gives those of more)",
                     of.table.name(), column, groups.names.size()));

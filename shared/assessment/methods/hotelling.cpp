@@ -47,14 +47,15 @@ core::Result<Findings> two_groups(const Analysis& of) {
   std::vector<std::string> columns;
   for (const auto& term : of.formula.terms) {
     if (term.variables.size() != 1 || term.variables[0].as != Variable::As::itself)
-      return bad_input("hotelling takes plain columns: write group ~ response + response");
+      return core::bad_input("hotelling takes plain columns: write group ~ response + response");
     columns.push_back(term.variables[0].column);
   }
-  if (columns.empty()) return bad_input("hotelling needs responses: group ~ response + response");
+  if (columns.empty())
+    return core::bad_input("hotelling needs responses: group ~ response + response");
   const Parts parts = parts_of(of.table, of.formula.response);
   if (parts.names.size() != 2)
-    return bad_input(fmt::format("{}: column '{}' has {} values; two groups are compared",
-                                 of.table.name(), of.formula.response, parts.names.size()));
+    return core::bad_input(fmt::format("{}: column '{}' has {} values; two groups are compared",
+                                       of.table.name(), of.formula.response, parts.names.size()));
   const auto values = TRY(responses_of(of, columns));
   const auto fit = statistics::hotelling(Matrix(values(parts.rows[1], Eigen::all)),
                                          Matrix(values(parts.rows[0], Eigen::all)), columns);
@@ -70,7 +71,7 @@ core::Result<Findings> repeated(const Analysis& of) {
   const auto cells = TRY(cells_of(of, {column}, y));
   const auto k = cells.values.cols();
   if (k < 2)
-    return bad_input(
+    return core::bad_input(
         fmt::format("{}: column '{}' has one level: nothing to compare", of.table.name(), column));
   const Matrix steps = cells.values.rightCols(k - 1) - cells.values.leftCols(k - 1);
   std::vector<std::string> names;

@@ -22,7 +22,7 @@ Json row(const char* name, const char* meaning, double single, const statistics:
 core::Result<Findings> run_icc(const Analysis& of) {
   const auto column = TRY(single_column(of, "icc"));
   if (of.formula.group.empty())
-    return bad_input("icc needs the subject: write y ~ repetition + (1|subject)");
+    return core::bad_input("icc needs the subject: write y ~ repetition + (1|subject)");
   const auto y = TRY(of.table.numbers(of.formula.response));
   const auto cells = TRY(cells_of(of, {column}, y));
   const auto fit = statistics::icc(cells.values);

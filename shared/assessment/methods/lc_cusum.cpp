@@ -17,19 +17,15 @@ using core::Json;
 using statistics::Vector;
 
 /// The first trial (1-based) at which `sums` reach `threshold`; 0: none.
-std::size_t first_at(const std::vector<double>& sums, double threshold) {
-  const auto at = std::ranges::find_if(sums, [&](double s) { return s >= threshold - 1e-9; });
-  return at == sums.end() ? 0 : static_cast<std::size_t>(at - sums.begin()) + 1;
-}
-
 Json person_row(const Sequence& person, const statistics::Rates& rates, double h, double relapse) {
   const auto up = statistics::lc_cusum(person.failures, rates);
-  const std::size_t signal = first_at(up, h);
+  const std::size_t signal = statistics::first_at(up, h);
   // Watched for relapse from the signal on, from 0.
   const std::vector<bool> after(person.failures.begin() + static_cast<std::ptrdiff_t>(signal),
                                 person.failures.end());
   const std::size_t alarm =
-      signal == 0 ? 0 : first_at(statistics::deterioration_cusum(after, rates), relapse);
+      signal == 0 ? 0
+                  : statistics::first_at(statistics::deterioration_cusum(after, rates), relapse);
   return {{"person", person.name},
           {"trials", person.failures.size()},
           {"failures", std::ranges::count(person.failures, true)},

@@ -63,7 +63,8 @@ plot::Figure picture(const Analysis& of, const Vector& trial, const Vector& y,
 core::Result<Findings> run_learning_curve(const Analysis& of) {
   const auto problem = TRY(problem_of(of, false));
   if (of.formula.terms.size() != 1 || problem.model.design.columns.cols() != 2)
-    return bad_input("learning-curve takes one number that counts trials: write score ~ trial");
+    return core::bad_input(
+        "learning-curve takes one number that counts trials: write score ~ trial");
   const Vector trial = problem.model.design.columns.col(1);
   Json out = report_head(of, "learning curves by nonlinear least squares");
   std::vector<std::pair<const Shape*, LearningCurve>> fits;
@@ -84,7 +85,7 @@ core::Result<Findings> run_learning_curve(const Analysis& of) {
                              {"rss", fit->rss}});
     fits.emplace_back(&shape, std::move(*fit));
   }
-  if (fits.empty()) return bad_input(of.table.name() + ": " + refusal);
+  if (fits.empty()) return core::bad_input(of.table.name() + ": " + refusal);
   const auto best =
       std::ranges::min_element(fits, {}, [](const auto& fit) { return fit.second.aicc; });
   out["best"] = best->first->name;

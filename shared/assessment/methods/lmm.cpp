@@ -52,7 +52,7 @@ void add_tests(const Analysis& of, const ModelMatrix& model, const statistics::L
 
 core::Result<Findings> run_lmm(const Analysis& of) {
   if (of.formula.group.empty())
-    return bad_input("lmm needs a random intercept: add (1|COLUMN) to the formula");
+    return core::bad_input("lmm needs a random intercept: add (1|COLUMN) to the formula");
   const auto problem = TRY(problem_of(of, true));
   const auto labels = group_labels(of);
   const auto fit = statistics::lmm(problem.design(), problem.y, labels);

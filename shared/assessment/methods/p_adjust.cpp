@@ -17,8 +17,9 @@ core::Result<Findings> run_p_adjust(const Analysis& of) {
   const auto p = TRY(of.table.numbers(of.formula.response));
   for (Eigen::Index i = 0; i < p.size(); ++i)
     if (!(p[i] >= 0.0 && p[i] <= 1.0))
-      return bad_input(fmt::format("{}:{}: {} is no p-value: 0 to 1 is expected", of.table.name(),
-                                   of.table.line(static_cast<std::size_t>(i)), p[i]));
+      return core::bad_input(fmt::format("{}:{}: {} is no p-value: 0 to 1 is expected",
+                                         of.table.name(),
+                                         of.table.line(static_cast<std::size_t>(i)), p[i]));
   const std::vector<double> raw(p.begin(), p.end());
   const auto by = [&](Adjustment how) { return statistics::adjusted(raw, how); };
   const auto bonferroni = by(Adjustment::bonferroni), holm = by(Adjustment::holm),

@@ -35,8 +35,8 @@ core::Result<Findings> slope(const Analysis& of, const std::string& column, cons
 core::Result<Findings> signs(const Analysis& of, const std::string& column, const Vector& y) {
   const auto cells = TRY(cells_of(of, {column}, y));
   if (cells.names.size() != 2)
-    return bad_input(fmt::format("{}: column '{}' has {} levels; flipping signs compares two",
-                                 of.table.name(), column, cells.names.size()));
+    return core::bad_input(fmt::format("{}: column '{}' has {} levels; flipping signs compares two",
+                                       of.table.name(), column, cells.names.size()));
   const Vector difference = cells.values.col(1) - cells.values.col(0);
   const auto test = statistics::sign_flip(difference);
   if (!test) return located(of, test.error());

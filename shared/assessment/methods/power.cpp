@@ -51,15 +51,15 @@ Curve curve_of(const Analysis& of) {
 
 core::Result<Findings> run_power(const Analysis& of) {
   const Curve curve = curve_of(of);
-  if (of.number("effect") == 0.0) return bad_input("power: an effect of 0 is never found");
+  if (of.number("effect") == 0.0) return core::bad_input("power: an effect of 0 is never found");
   if (of.text("test") == "correlation" && std::abs(of.number("effect")) >= 1.0)
-    return bad_input("power: a correlation lies between -1 and 1");
+    return core::bad_input("power: a correlation lies between -1 and 1");
   Json out = {{"method", fmt::format("power of a test: {}", of.text("test"))}};
   out["design"] = {{"effect", of.number("effect")}, {"alpha", of.number("alpha")}};
   if (of.given("n")) {
     const double n = of.number("n");
     if (n < curve.least)
-      return bad_input(
+      return core::bad_input(
           fmt::format("power: n is {}; at least {} {} are needed", n, curve.least, curve.counts));
     out["answer"] = {{"n", n}, {"counts", curve.counts}, {"power", curve.power(n)}};
   } else {

@@ -106,7 +106,7 @@ core::Result<void> add_persons(const Analysis& of, const std::vector<bool>& said
 
 core::Result<Findings> run_recognition(const Analysis& of) {
   if (of.formula.terms.size() != 1 || of.formula.terms[0].variables.size() != 1)
-    return bad_input("recognition compares an answer with the truth: write said ~ breach");
+    return core::bad_input("recognition compares an answer with the truth: write said ~ breach");
   const auto said = TRY(yes_no(of.table, of.formula.response));
   const auto truth = TRY(yes_no(of.table, of.formula.terms[0].variables[0].column));
   const auto correction = correction_of(of.text("correction"));
@@ -114,8 +114,9 @@ core::Result<Findings> run_recognition(const Analysis& of) {
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
   const Answers answers = answers_of(all, said, truth);
   if (answers.hits.trials == 0.0 || answers.false_alarms.trials == 0.0)
-    return bad_input(fmt::format("{}: there is no row {} a breach: d' needs both", of.table.name(),
-                                 answers.hits.trials == 0.0 ? "with" : "without"));
+    return core::bad_input(fmt::format("{}: there is no row {} a breach: d' needs both",
+                                       of.table.name(),
+                                       answers.hits.trials == 0.0 ? "with" : "without"));
   const auto fit = statistics::signal_detection(answers.hits, answers.false_alarms, correction);
   if (!fit) return located(of, fit.error());
   Json out = report_head(of, "signal detection, equal variances");

@@ -54,7 +54,8 @@ core::Result<Roles> roles_of(const Analysis& of) {
   const auto subjects = levels_of(of.table, of.formula.group);
   const auto who = places_of(of.table, of.formula.group, subjects);
   for (const auto& column : of.formula.factors()) {
-    if (column == of.formula.group) return bad_input("the subject cannot be the levels as well");
+    if (column == of.formula.group)
+      return core::bad_input("the subject cannot be the levels as well");
     const auto& cells = of.table.texts(column);
     std::vector<std::string_view> first(subjects.size());
     bool constant = true;
@@ -67,19 +68,19 @@ core::Result<Roles> roles_of(const Analysis& of) {
     } else if (out.between.empty()) {
       out.between = column;
     } else {
-      return bad_input(
+      return core::bad_input(
           fmt::format("'{}' and '{}' both differ between subjects: rm-anova takes one "
                       "such column, lmm any number",
                       out.between, column));
     }
   }
   if (out.within.empty())
-    return bad_input(fmt::format("{}: no column of the formula changes within a '{}'",
-                                 of.table.name(), of.formula.group));
+    return core::bad_input(fmt::format("{}: no column of the formula changes within a '{}'",
+                                       of.table.name(), of.formula.group));
   // All products are analysed, so all must be asked for: otherwise lmm is meant.
   const std::size_t count = of.formula.factors().size();
   if (of.formula.terms.size() != (1u << count) - 1u)
-    return bad_input("rm-anova analyses every interaction: join the columns with '*'");
+    return core::bad_input("rm-anova analyses every interaction: join the columns with '*'");
   return out;
 }
 
@@ -185,10 +186,11 @@ core::Result<Findings> one_factor(const Analysis& of, const std::string& column,
 
 core::Result<Findings> run_rm_anova(const Analysis& of) {
   if (of.formula.group.empty())
-    return bad_input("rm-anova needs the subject: add (1|COLUMN) to the formula");
+    return core::bad_input("rm-anova needs the subject: add (1|COLUMN) to the formula");
   if (of.formula.terms.empty() || !of.formula.trials.empty() || of.formula.trials_number != 1 ||
       !of.formula.intercept)
-    return bad_input("rm-anova compares the levels of columns: write y ~ a * b + (1|subject)");
+    return core::bad_input(
+        "rm-anova compares the levels of columns: write y ~ a * b + (1|subject)");
   const auto roles = TRY(roles_of(of));
   const auto y = TRY(of.table.numbers(of.formula.response));
   if (roles.within.size() == 1 && roles.between.empty()) return one_factor(of, roles.within[0], y);

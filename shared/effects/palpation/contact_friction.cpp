@@ -13,7 +13,7 @@ namespace tractus {
 namespace effects {
 namespace {
 
-constexpr double kRounded_m_s = 1e-4;  // v_ε
+constexpr double kRoundedFriction_m_s = 1e-4;  // v_ε
 
 class ContactFriction final : public PointForce {
  public:
@@ -27,7 +27,7 @@ class ContactFriction final : public PointForce {
     const Vec3 n = elastic.force_N / normal_N, &v = point.v_m_s;
     const double v_n = v.dot(n);
     const Vec3 v_t = v - v_n * n;
-    const double speed = std::sqrt(v_t.squaredNorm() + kRounded_m_s * kRounded_m_s);
+    const double speed = std::sqrt(v_t.squaredNorm() + kRoundedFriction_m_s * kRoundedFriction_m_s);
     const Vec3 t = v_t / speed;
     total.force_N -= coefficient_ * normal_N * t;
     // d(|F| t) = t (nᵀ dF) + |F| dt;  dt = (1 − t tᵀ) dv_t/speed;  dv_t = −(n vᵀ + v_n) dn;

@@ -12,7 +12,7 @@ namespace tractus {
 namespace effects {
 namespace {
 
-constexpr double kRounded_m_s = 3e-5;
+constexpr double kRoundedHysteresis_m_s = 3e-5;
 
 class ContactHysteresis final : public ContactLoss {
  public:
@@ -22,11 +22,11 @@ class ContactHysteresis final : public ContactLoss {
     const double F = elastic.force_N.norm();
     if (!(F > 1e-12)) return;
     const Vec3 n = elastic.force_N / F, &v = point.v_m_s;
-    const double out = v.dot(n) / kRounded_m_s, root = std::sqrt(1.0 + out * out);
+    const double out = v.dot(n) / kRoundedHysteresis_m_s, root = std::sqrt(1.0 + out * out);
     const double share = 1.0 - 0.5 * loss_ * (1.0 + out / root);
     // dn = (1 − n nᵀ) dF/|F|, so F dshare = −½h/(v_ε root³) n vᵀ(1 − n nᵀ) dF
     const Vec3 v_t = v - v.dot(n) * n;
-    const double slope = 0.5 * loss_ / (kRounded_m_s * root * root * root);
+    const double slope = 0.5 * loss_ / (kRoundedHysteresis_m_s * root * root * root);
     elastic.jacobian_N_per_m = (share * elastic.jacobian_N_per_m -
                                 slope * n * (v_t.transpose() * elastic.jacobian_N_per_m))
                                    .eval();

@@ -28,7 +28,7 @@ class Hysteresis final : public ProbeForce {
 };
 
 /// Displacements that fit into the recorded depths, for a friction of 1 N.
-Starts starts(const ProbingStatistics& recordings) {
+Starts hysteresis_starts(const ProbingStatistics& recordings) {
   Starts out;
   for (const double d : spread(1e-5, std::min(0.02, 0.5 * recordings.depth_range_m), 7))
     out.push_back({1.0 / d, std::clamp(d, 1e-6, 0.02)});
@@ -59,7 +59,7 @@ ProbingEffectInfo hysteresis() {
                        .logarithmic = true}},
            .parents = {"coulomb_friction"}},
           made<ProbeForce, Hysteresis>,
-          starts};
+          hysteresis_starts};
 }
 
 }  // namespace effects::probing

@@ -23,7 +23,7 @@ class StribeckFriction final : public ProbeForce {
 };
 
 /// Speeds that occur.
-Starts starts(const ProbingStatistics& recordings) {
+Starts stribeck_friction_starts(const ProbingStatistics& recordings) {
   Starts out;
   for (const double v : spread(std::max(2e-4, recordings.slow_m_s), recordings.fast_m_s, 7))
     out.push_back({1.0, 1.0, std::clamp(v, 1e-4, 0.2)});
@@ -63,7 +63,7 @@ ProbingEffectInfo stribeck_friction() {
        .is_dry = true,
        .admissible = [](std::span<const double> v) { return v[1] >= v[0]; }},
       made<ProbeForce, StribeckFriction>,
-      starts};
+      stribeck_friction_starts};
 }
 
 }  // namespace effects::probing

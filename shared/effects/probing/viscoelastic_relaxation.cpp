@@ -37,7 +37,7 @@ class ViscoelasticRelaxation final : public ProbeForce {
 };
 
 /// Times that fit into the longest trial.
-Starts starts(const ProbingStatistics& recordings) {
+Starts viscoelastic_relaxation_starts(const ProbingStatistics& recordings) {
   Starts out;
   for (const double tau_s : spread(0.02, std::min(90.0, recordings.longest_s), 7))
     out.push_back({500.0, tau_s});
@@ -67,7 +67,7 @@ ProbingEffectInfo viscoelastic_relaxation() {
                        .off = kNoOff,
                        .logarithmic = true}}},
           made<ProbeForce, ViscoelasticRelaxation>,
-          starts};
+          viscoelastic_relaxation_starts};
 }
 
 }  // namespace effects::probing

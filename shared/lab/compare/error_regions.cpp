@@ -182,7 +182,7 @@ constexpr std::array kScales{Scale{"m", 1e3, "mm"}, Scale{"m/s", 1e3, "mm/s"},
                              Scale{"rad", 57.29577951308232, "°"},
                              Scale{"rad/s", 57.29577951308232, "°/s"}};
 
-std::string number(double value, const std::string& unit, bool for_people) {
+std::string written_number(double value, const std::string& unit, bool for_people) {
   std::string shown = unit;
   if (for_people)
     for (const Scale& scale : kScales)
@@ -228,7 +228,7 @@ std::string text(const Condition& condition, const Samples& samples, bool for_pe
     case Condition::Op::above:
     case Condition::Op::below:
       return fmt::format("{} {} {}", feature.name, condition.op == Condition::Op::above ? ">" : "<",
-                         number(condition.bound, feature.unit, for_people));
+                         written_number(condition.bound, feature.unit, for_people));
     case Condition::Op::equals:
       return fmt::format("{} = {}", feature.name, feature.words[condition.word]);
     case Condition::Op::not_equals:

@@ -96,5 +96,16 @@ std::string experiment_for(const ParameterSpace& space, std::string_view a, std:
   return first->experiment + "; then " + second->experiment;
 }
 
+bool covers(std::string_view pattern, std::string_view pointer) {
+  while (!pattern.empty() && !pointer.empty()) {
+    const auto a = pattern.substr(0, pattern.find('/', 1));
+    const auto b = pointer.substr(0, pointer.find('/', 1));
+    if (a != b && a != "/*") return false;
+    pattern.remove_prefix(a.size());
+    pointer.remove_prefix(b.size());
+  }
+  return pattern.empty();
+}
+
 }  // namespace lab
 }  // namespace tractus

@@ -75,4 +75,7 @@ std::vector<Parameter> parameters_of(const effects::EffectFacts& facts);
 /// What to record so that two candidates are told apart, or one shows (`b` empty).
 std::string experiment_for(const ParameterSpace& space, std::string_view a, std::string_view b);
 
+/// Does a JSON pointer lie at or below `pattern`, in which `*` stands for every element?
+bool covers(std::string_view pattern, std::string_view pointer);
+
 }  // namespace tractus::lab

@@ -14,7 +14,7 @@ namespace lab {
 namespace {
 
 /// Units that a name may end in, longest first, and how people write them.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 22> kUnits{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 22> kWrittenUnits{{
     {"_Ns2_per_m2", "N·s²/m²"},
     {"_Nms_per_rad", "N·m·s/rad"},
     {"_Nm_per_rad", "N·m/rad"},
@@ -66,7 +66,7 @@ std::string times_floor(double rmse, double floor) {
 
 NameAndUnit name_and_unit(std::string_view name) {
   NameAndUnit out{std::string(name), ""};
-  for (const auto& [suffix, unit] : kUnits)
+  for (const auto& [suffix, unit] : kWrittenUnits)
     if (name.ends_with(suffix) && name.size() > suffix.size()) {
       out.name = name.substr(0, name.size() - suffix.size());
       out.unit = unit;
@@ -104,31 +104,33 @@ VerdictText sentences(const Diagnosis& d, std::string_view unit) {
   std::vector<std::string> names;
   for (const FoundEffect& found : d.effects) names.push_back(effects::label_of(found.id));
   const std::string these = capital(joined(names));
-  const std::string op = names.size() == 1 ? "is" : "are";
+  const std::string are = names.size() == 1 ? "is" : "are";
   const double after = d.steps.empty() ? d.base.held_out_rmse : d.steps.back().held_out_rmse;
   const double floor = d.base.noise_floor;
-  const std::string falls =
-      fmt::format("On held-out measurements the error falls from {} to {}; the noise floor is {}.",
-                  figure(d.base.held_out_rmse, unit), figure(after, unit), figure(floor, unit));
+  const std::string change = fmt::format(
+      "On held-out trials the error {} from {} to {}; the noise floor is {}.",
+      after < d.base.held_out_rmse ? "falls" : "does not fall: it goes",
+      figure(d.base.held_out_rmse, unit), figure(after, unit), figure(floor, unit));
   switch (d.verdict) {
     case Verdict::complete:
-      return {"Nothing is missing.",
-              fmt::format("The model, refitted, is at the noise floor: an error of {} on held-out "
-                          "measurements against {} of noise. Nothing was added.",
+      return {"No effect is missing.",
+              fmt::format("The error of the refitted model on held-out trials, {}, is at the noise "
+                          "floor, {}. No effect was added.",
                           figure(d.base.held_out_rmse, unit), figure(floor, unit))};
     case Verdict::missing:
-      return {fmt::format("{} {} missing.", these, op), falls};
+      return {fmt::format("{} {} missing.", these, are),
+              change + " This explains the remaining error."};
     case Verdict::partly:
-      return {fmt::format("{} {} missing, and something more.", these, op),
-              fmt::format("{} What remains is {} the noise.{}", falls, times_floor(after, floor),
-                          on_what(d.depends_on))};
+      return {fmt::format("{} {} missing, and at least one other effect.", these, are),
+              fmt::format("{} The remaining error is {} the noise floor.{}", change,
+                          times_floor(after, floor), on_what(d.depends_on))};
     case Verdict::unexplained:
-      return {
-          "Something is missing that is not in the catalogue.",
-          fmt::format("The error of {} on held-out measurements is {} the noise floor of {}, "
-                      "and no effect of the catalogue explains it.{}",
-                      figure(d.base.held_out_rmse, unit), times_floor(d.base.held_out_rmse, floor),
-                      figure(floor, unit), on_what(d.depends_on))};
+      return {"A missing effect is not in the catalogue.",
+              fmt::format("The error of the refitted model on held-out trials, {}, is {} the noise "
+                          "floor, {}, and no effect of the catalogue explains the difference.{}",
+                          figure(d.base.held_out_rmse, unit),
+                          times_floor(d.base.held_out_rmse, floor), figure(floor, unit),
+                          on_what(d.depends_on))};
   }
   return {};
 }

@@ -126,7 +126,11 @@ Result<LabResult> diagnosed(const Case& opened, const DiagnoseRequest& wish,
                                                diagnosis.base_fit.values, wish.options.threads))
       diagnosis.notes.push_back(std::move(remark));
   out.json = lab::to_json(diagnosis);
-  out.json["primary"] = opened.problem->channels().front().name;
+  const std::string& primary = opened.problem->channels().front().name;
+  const auto [headline, detail] = lab::sentences(diagnosis, lab::name_and_unit(primary).unit);
+  out.json["primary"] = primary;
+  out.json["headline"] = headline;
+  out.json["detail"] = detail;
   out.model = opened.problem->model(diagnosis.final_fit.structure, diagnosis.final_fit.values);
   if (wish.report) {
     compare_given(opened, out);

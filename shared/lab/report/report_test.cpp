@@ -141,12 +141,12 @@ TEST(Words, NameEffectsAndUnits) {
 TEST(Words, SayEachVerdict) {
   Diagnosis d = *content().diagnosis;
   d.verdict = Verdict::complete;
-  EXPECT_EQ(sentences(d, "N").headline, "Nothing is missing.");
+  EXPECT_EQ(sentences(d, "N").headline, "No effect is missing.");
   d.verdict = Verdict::partly;
   d.depends_on = "depth";
-  EXPECT_THAT(sentences(d, "N").detail, HasSubstr("the noise. It varies with depth."));
+  EXPECT_THAT(sentences(d, "N").detail, HasSubstr("the noise floor. It varies with depth."));
   d.depends_on = "no recorded signal predicts it";
-  EXPECT_THAT(sentences(d, "N").detail, HasSubstr("the noise. No recorded signal predicts it."));
+  EXPECT_THAT(sentences(d, "N").detail, HasSubstr("the noise floor. No recorded signal predicts it."));
   d.verdict = Verdict::unexplained;
   d.effects.clear();
   EXPECT_THAT(sentences(d, "N").headline, HasSubstr("not in the catalogue"));

@@ -9,14 +9,15 @@ namespace tractus {
 namespace metrics {
 namespace {
 constexpr double kRate_Hz = 200.0;
-constexpr double kEdge = 1e-6;  // of a step: a sample this near to the grid's end still reaches it
-constexpr double kLongest_s = 7200.0;
+constexpr double kEndEdge =
+    1e-6;  // of a step: a sample this near to the grid's end still reaches it
+constexpr double kLongestPath_s = 7200.0;
 
 /// The tip's way on an even grid of 200 Hz from the first sample on, straight between samples.
 std::vector<math::Vec3> even_path(const std::vector<trial::Sample>& samples,
                                   const trial::ProbeShape& probe) {
   const double start_s = samples.front().t_s;
-  const auto steps = std::size_t((samples.back().t_s - start_s) * kRate_Hz + kEdge);
+  const auto steps = std::size_t((samples.back().t_s - start_s) * kRate_Hz + kEndEdge);
   std::vector<math::Vec3> path;
   std::size_t next = 1;
   for (std::size_t i = 0; i <= steps; ++i) {
@@ -38,7 +39,7 @@ Score length_of(const Subject& subject) {
   const auto& samples = subject.trial.samples;
   const char* too_short = "the trial is shorter than 0.1 s";
   if (samples.size() < 2) return {{}, too_short};
-  if (samples.back().t_s - samples.front().t_s > kLongest_s)
+  if (samples.back().t_s - samples.front().t_s > kLongestPath_s)
     return {{}, "the trial is longer than two hours"};
   const auto length_m = smoothed_length_m(even_path(samples, *probe), 1.0 / kRate_Hz);
   return {length_m, length_m ? "" : too_short};

@@ -14,20 +14,21 @@ namespace tractus {
 namespace statistics {
 namespace {
 
-core::Error wrong(std::string what) { return {core::Errc::bad_input, std::move(what)}; }
-
 core::Result<void> check(const Groups& groups) {
   core::require(groups.names.size() == groups.values.size(), "every group has a name");
-  if (groups.values.size() < 2) return wrong("one group: there is nothing to compare it with");
+  if (groups.values.size() < 2)
+    return core::bad_input("one group: there is nothing to compare it with");
   Eigen::Index n = 0;
   for (std::size_t j = 0; j < groups.values.size(); ++j) {
     n += groups.values[j].size();
-    if (groups.values[j].size() == 0) return wrong("group '" + groups.names[j] + "' is empty");
+    if (groups.values[j].size() == 0)
+      return core::bad_input("group '" + groups.names[j] + "' is empty");
     if (!groups.values[j].allFinite())
-      return wrong("group '" + groups.names[j] + "' holds a value that is not a finite number");
+      return core::bad_input("group '" + groups.names[j] +
+                             "' holds a value that is not a finite number");
   }
   if (n <= static_cast<Eigen::Index>(groups.values.size()))
-    return wrong("every group holds one value: there is no spread within groups");
+    return core::bad_input("every group holds one value: there is no spread within groups");
   return {};
 }
 
@@ -79,7 +80,7 @@ core::Result<std::vector<double>> variances(const Groups& groups) {
   for (std::size_t j = 0; j < groups.values.size(); ++j) {
     const auto& values = groups.values[j];
     const double squares = static_cast<double>(moments(values, values[0]).squares);
-    if (!(squares > 0.0)) return wrong("group '" + groups.names[j] + "' has no spread");
+    if (!(squares > 0.0)) return core::bad_input("group '" + groups.names[j] + "' has no spread");
     out.push_back(squares / static_cast<double>(values.size() - 1));
   }
   return out;
@@ -141,7 +142,8 @@ core::Result<OneWay> one_way(const Groups& groups) {
     between += static_cast<long double>(groups.values[j].size()) * d * d;
   }
   const auto k = static_cast<long double>(parts.size());
-  if (!(within > 0.0L)) return wrong("every group is constant: there is no spread to judge by");
+  if (!(within > 0.0L))
+    return core::bad_input("every group is constant: there is no spread to judge by");
   out.grand_mean = static_cast<double>(shift + sum / n);
   out.ss_between = static_cast<double>(between);
   out.ss_within = static_cast<double>(within);

@@ -12,8 +12,6 @@ namespace tractus {
 namespace statistics {
 namespace {
 
-core::Error wrong(std::string what) { return {core::Errc::bad_input, std::move(what)}; }
-
 Vector mean_of(const Matrix& values) {
   const Eigen::RowVectorXd first = values.row(0);
   return (first + (values.rowwise() - first).colwise().mean()).transpose();
@@ -23,7 +21,7 @@ Vector mean_of(const Matrix& values) {
 core::Result<double> distance_squared(const Matrix& centred, double df, const Vector& difference,
                                       const std::vector<std::string>& names) {
   if (const auto named = collinear_columns({centred, names, false}); !named.empty())
-    return wrong("within groups " + named);
+    return core::bad_input("within groups " + named);
   const Vector scale = (centred.colwise().norm() / std::sqrt(df)).transpose();
   const Matrix z = centred * scale.cwiseInverse().asDiagonal();
   const Eigen::ColPivHouseholderQR<Matrix> qr(z);
@@ -39,11 +37,11 @@ core::Result<double> distance_squared(const Matrix& centred, double df, const Ve
 }
 
 core::Result<void> check_rows(const Matrix& values, Eigen::Index least) {
-  if (!values.allFinite()) return wrong("a response is not a finite number");
+  if (!values.allFinite()) return core::bad_input("a response is not a finite number");
   for (Eigen::Index j = 0; j < values.cols(); ++j) TRY(check_range(values.col(j), "a response"));
   if (values.rows() >= least) return {};
-  return wrong(fmt::format("{} rows of {} responses: at least {} are needed", values.rows(),
-                           values.cols(), least));
+  return core::bad_input(fmt::format("{} rows of {} responses: at least {} are needed",
+                                     values.rows(), values.cols(), least));
 }
 
 Hotelling tested(double t_squared, double distance, double rows_factor, double df1, double df2) {
@@ -73,7 +71,7 @@ core::Result<Hotelling> hotelling(const Matrix& values, const std::vector<std::s
 core::Result<Hotelling> hotelling(const Matrix& first, const Matrix& second,
                                   const std::vector<std::string>& names) {
   core::require(first.cols() == second.cols(), "both groups have the same responses");
-  if (first.rows() < 2 || second.rows() < 2) return wrong("each group needs two rows");
+  if (first.rows() < 2 || second.rows() < 2) return core::bad_input("each group needs two rows");
   Matrix centred(first.rows() + second.rows(), first.cols());
   centred << first, second;
   TRY(check_rows(centred, first.cols() + 2));

@@ -12,9 +12,7 @@ namespace tractus {
 namespace statistics {
 namespace {
 
-using Extended = Eigen::Array<long double, Eigen::Dynamic, Eigen::Dynamic>;
-
-core::Error wrong(std::string what) { return {core::Errc::bad_input, std::move(what)}; }
+using ExtendedArray = Eigen::Array<long double, Eigen::Dynamic, Eigen::Dynamic>;
 
 /// An orthonormal basis of the contrasts of k levels, [level][contrast].
 Matrix contrasts(Eigen::Index k) {
@@ -46,8 +44,8 @@ Mauchly mauchly(const Matrix& covariance, double subjects) {
 
 core::Result<void> check(const Matrix& values) {
   if (values.rows() < 2 || values.cols() < 2)
-    return wrong("repeated measures need at least two subjects and two levels");
-  if (!values.allFinite()) return wrong("a value is missing or not a finite number");
+    return core::bad_input("repeated measures need at least two subjects and two levels");
+  if (!values.allFinite()) return core::bad_input("a value is missing or not a finite number");
   TRY(check_range(values.reshaped(), "the response"));
   return {};
 }
@@ -79,12 +77,12 @@ core::Result<RmAnova> rm_anova(const Matrix& values) {
   const auto n = static_cast<long double>(values.rows()),
              k = static_cast<long double>(values.cols());
   const long double shift = values(0, 0);
-  Extended y = values.cast<long double>().array() - shift;
+  ExtendedArray y = values.cast<long double>().array() - shift;
   const long double mean = y.mean();
   y -= mean;
   const Eigen::Array<long double, Eigen::Dynamic, 1> subjects = y.rowwise().mean();
   const Eigen::Array<long double, 1, Eigen::Dynamic> levels = y.colwise().mean();
-  const Extended error = (y.colwise() - subjects).rowwise() - (levels - y.mean());
+  const ExtendedArray error = (y.colwise() - subjects).rowwise() - (levels - y.mean());
   RmAnova out;
   out.level_means = (levels + (mean + shift)).cast<double>().transpose();
   const long double effect = n * (levels - levels.mean()).square().sum();
@@ -93,7 +91,8 @@ core::Result<RmAnova> rm_anova(const Matrix& values) {
   out.ss_subjects = static_cast<double>(k * (subjects - subjects.mean()).square().sum());
   out.ss_error = static_cast<double>(rest);
   if (!(out.ss_error > 1e-28 * (out.ss_effect + out.ss_subjects)))
-    return wrong("subjects differ by constants alone: there is no error to judge the levels by");
+    return core::bad_input(
+        "subjects differ by constants alone: there is no error to judge the levels by");
   if (!std::isfinite(out.ss_error) || !std::isfinite(out.ss_effect + out.ss_subjects))
     return core::Error{core::Errc::out_of_range,
                        "the numbers are too large for sums of squares: rescale them"};

@@ -16,8 +16,6 @@ namespace tractus {
 namespace statistics {
 namespace {
 
-core::Error wrong(std::string what) { return {core::Errc::bad_input, std::move(what)}; }
-
 /// Orthonormal contrasts of k levels, or the weights of their mean scaled to length one.
 Matrix weights(Eigen::Index k, bool contrasts) {
   Matrix with_ones = Matrix::Identity(k, k);
@@ -76,7 +74,7 @@ Scores scores(const RmDesign& design, unsigned mask, std::size_t groups) {
 }
 
 /// Box's expansion of Mauchly's criterion for q contrasts with ν degrees of freedom.
-Mauchly mauchly(const Matrix& error, double nu) {
+Mauchly mauchly_of(const Matrix& error, double nu) {
   const double q = static_cast<double>(error.rows());
   Mauchly out;
   out.df = q * (q + 1.0) / 2.0 - 1.0;
@@ -110,7 +108,7 @@ RmEffect effect(const Scores& s, bool with_group) {
   out.df2 = q * (s.n - g);
   out.f = (out.ss / out.df1) / (out.ss_error / out.df2);
   out.p = out.p_gg = out.p_hf = f_upper(out.f, out.df1, out.df2);
-  out.mauchly = mauchly(s.error, s.n - g);
+  out.mauchly = mauchly_of(s.error, s.n - g);
   out.partial_eta_squared = out.ss / (out.ss + out.ss_error);
   if (q < 2.0) return out;
   out.epsilon_gg = s.error.trace() * s.error.trace() / (q * s.error.squaredNorm());
@@ -131,8 +129,9 @@ core::Result<std::size_t> checked_groups(const RmDesign& design) {
   if (design.levels.size() > 6)
     return core::Error{core::Errc::too_large, "at most six within-subject factors"};
   if (design.values.rows() < 2 || cells < 2)
-    return wrong("repeated measures need at least two subjects and two levels");
-  if (!design.values.allFinite()) return wrong("a value is missing or not a finite number");
+    return core::bad_input("repeated measures need at least two subjects and two levels");
+  if (!design.values.allFinite())
+    return core::bad_input("a value is missing or not a finite number");
   TRY(check_range(design.values.reshaped(), "the response"));
   std::vector<std::size_t> sizes(1, static_cast<std::size_t>(design.values.rows()));
   if (!design.group.empty()) {
@@ -141,7 +140,7 @@ core::Result<std::size_t> checked_groups(const RmDesign& design) {
     for (const std::size_t g : design.group) ++sizes[g];
   }
   if (std::ranges::min(sizes) < 2)
-    return wrong("every group of subjects needs at least two of them");
+    return core::bad_input("every group of subjects needs at least two of them");
   return sizes.size();
 }
 
@@ -156,7 +155,8 @@ core::Result<std::vector<RmEffect>> rm_factorial(const RmDesign& design) {
     const double error = s.error.trace();
     all_error += error;
     if (!(error > 1e-28 * s.means.squaredNorm()))
-      return wrong("subjects differ by constants alone: there is no error to judge the levels by");
+      return core::bad_input(
+          "subjects differ by constants alone: there is no error to judge the levels by");
     if (!std::isfinite(error) || !std::isfinite(s.means.squaredNorm()))
       return core::Error{core::Errc::out_of_range,
                          "the numbers are too large for sums of squares: rescale them"};

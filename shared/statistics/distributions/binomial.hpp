@@ -18,6 +18,12 @@ void parts(const Eigen::ArrayBase<Derived>& eta, typename Derived::PlainObject& 
   softplus = eta.cwiseMax(0.0) + (u == 1.0).select(e, u.log() * e / (u - 1.0));
 }
 
+/// π alone.
+template <class Derived>
+typename Derived::PlainObject inverse_logit(const Eigen::ArrayBase<Derived>& eta) {
+  return 1.0 / (1.0 + (-eta).exp());
+}
+
 /// Rows of the same columns as one row of more trials, in order of first appearance: the likelihood
 /// keeps its shape, its maximum its place.
 struct Merged {

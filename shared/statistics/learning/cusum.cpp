@@ -139,5 +139,10 @@ SprtCharacteristic sprt_characteristic(const Rates& rates, const SprtBounds& bou
   return out;
 }
 
+std::size_t first_at(const std::vector<double>& sums, double limit) {
+  const auto at = std::ranges::find_if(sums, [&](double s) { return s >= limit - 1e-9; });
+  return at == sums.end() ? 0 : static_cast<std::size_t>(at - sums.begin()) + 1;
+}
+
 }  // namespace statistics
 }  // namespace tractus

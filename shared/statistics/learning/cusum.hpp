@@ -61,4 +61,7 @@ struct SprtCharacteristic {
 SprtCharacteristic sprt_characteristic(const Rates& rates, const SprtBounds& bounds, double failure,
                                        int trials);
 
+/// The first place, from 1, where `sums` reach `limit`; 0 for none.
+std::size_t first_at(const std::vector<double>& sums, double limit);
+
 }  // namespace tractus::statistics

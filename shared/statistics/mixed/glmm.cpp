@@ -50,8 +50,6 @@ struct Value {
   Matrix hessian;
 };
 
-Array probability(const Array& eta) { return 1.0 / (1.0 + (-eta).exp()); }
-
 /// The smallest change that a sum of so many terms can show.
 double rounding_of(double log_likelihood) { return 1e-12 * (1.0 + std::abs(log_likelihood)); }
 
@@ -61,7 +59,7 @@ std::pair<double, double> mode(const Group& group, const Array& base, double sig
   const auto height = [&](double z) { return group.kernel(base + sigma * z) - 0.5 * z * z; };
   double z = 0.0, curvature = 1.0;
   for (int i = 0; i < 100; ++i) {
-    const Array pi = probability(base + sigma * z);
+    const Array pi = binomial::inverse_logit(base + sigma * z);
     const double slope = sigma * (group.y - group.m * pi).sum() - z;
     curvature = 1.0 + sigma * sigma * (group.m * pi * (1.0 - pi)).sum();
     double step = slope / curvature;

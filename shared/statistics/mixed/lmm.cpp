@@ -20,7 +20,7 @@ using Column = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
 /// All that the likelihood needs of [X y]: cross products within groups, and group means.
 /// A matrix that acts as `within` across a group and as `between[i]` along its mean gives
 /// [X y]ᵀ f [X y] = within · W + Σ between_i n_i m_i m_iᵀ.
-struct Moments {
+struct GroupMoments {
   Eigen::Index p = 0;
   Real n = 0;
   Column sizes;                     // per group
@@ -33,8 +33,9 @@ struct Moments {
   }
 };
 
-Moments moments(const Design& design, const Vector& y, const std::vector<std::string>& labels) {
-  Moments m;
+GroupMoments moments(const Design& design, const Vector& y,
+                     const std::vector<std::string>& labels) {
+  GroupMoments m;
   m.p = design.columns.cols();
   m.n = static_cast<Real>(y.size());
   std::map<std::string, Eigen::Index> place;
@@ -66,7 +67,7 @@ struct Gls {
   Column contrast;  // (−β, 1): [X y] · contrast is the residual
 };
 
-Gls gls(const Moments& m, Real lambda) {
+Gls gls(const GroupMoments& m, Real lambda) {
   const Column between = (Column::Ones(m.sizes.size()) + lambda * m.sizes).cwiseInverse();
   const Square cross = m.cross(1, between);
   Gls out;
@@ -79,7 +80,7 @@ Gls gls(const Moments& m, Real lambda) {
   return out;
 }
 
-Real criterion(const Moments& m, Real lambda, bool reml) {
+Real criterion(const GroupMoments& m, Real lambda, bool reml) {
   const Gls fit = gls(m, lambda);
   const Real df = reml ? m.n - static_cast<Real>(m.p) : m.n;
   Real out = df * (1 + std::log(2 * Real(M_PIl) * fit.rss / df)) +
@@ -89,7 +90,7 @@ Real criterion(const Moments& m, Real lambda, bool reml) {
 }
 
 /// d criterion / dλ: RSS' by the envelope theorem, (Xᵀ V⁻¹ X)' exactly.
-Real slope(const Moments& m, Real lambda, bool reml) {
+Real slope(const GroupMoments& m, Real lambda, bool reml) {
   const Gls fit = gls(m, lambda);
   const Column inverse = (Column::Ones(m.sizes.size()) + lambda * m.sizes).cwiseInverse();
   const Square change = -m.cross(0, inverse.cwiseAbs2().cwiseProduct(m.sizes));
@@ -101,7 +102,7 @@ Real slope(const Moments& m, Real lambda, bool reml) {
 
 /// λ of the smallest criterion: a coarse search over θ = √λ (the criterion may have two minima),
 /// then bisection on the slope to the last digit.
-Real best_lambda(const Moments& m, bool reml) {
+Real best_lambda(const GroupMoments& m, bool reml) {
   Real best = 0, least = criterion(m, 0, reml), low = 0, high = 1e-8L;
   Real before = 0;
   for (Real lambda = 1e-6L; lambda < 1e10L; lambda *= 1.8L) {
@@ -132,7 +133,7 @@ struct Spectrum {
   }
 };
 
-LmmCurvature curvature(const Moments& m, const Gls& fit, Real tau2, Real sigma2) {
+LmmCurvature curvature(const GroupMoments& m, const Gls& fit, Real tau2, Real sigma2) {
   const Column ones = Column::Ones(m.sizes.size());
   const Spectrum inverse{1 / sigma2, (sigma2 * ones + tau2 * m.sizes).cwiseInverse()};
   const std::array<Spectrum, 2> v = {Spectrum{0, m.sizes}, Spectrum{1, ones}};
@@ -177,13 +178,13 @@ LmmCurvature curvature(const Moments& m, const Gls& fit, Real tau2, Real sigma2)
   return out;
 }
 
-core::Result<Moments> prepared(const Design& design, const Vector& response,
-                               const std::vector<std::string>& labels) {
+core::Result<GroupMoments> prepared(const Design& design, const Vector& response,
+                                    const std::vector<std::string>& labels) {
   core::require(labels.size() == static_cast<std::size_t>(response.size()),
                 "every observation has a group");
   TRY(check(design, response));
   if (!collinear_columns(design).empty()) return collinear_error(design);
-  Moments m = moments(design, response, labels);
+  GroupMoments m = moments(design, response, labels);
   if (m.groups.size() < 2)
     return core::Error{core::Errc::bad_input,
                        "one group: the spread between groups cannot be estimated"};
@@ -197,7 +198,7 @@ core::Result<Moments> prepared(const Design& design, const Vector& response,
   return m;
 }
 
-void add_tests(const Moments& m, const Gls& fit, Lmm& out) {
+void add_tests(const GroupMoments& m, const Gls& fit, Lmm& out) {
   const Eigen::Index p = m.p;
   out.standard_errors = out.covariance.diagonal().cwiseSqrt();
   out.t = out.coefficients.cwiseQuotient(out.standard_errors);
@@ -220,7 +221,7 @@ void add_tests(const Moments& m, const Gls& fit, Lmm& out) {
 core::Result<Lmm> lmm(const Design& design, const Vector& response,
                       const std::vector<std::string>& labels) {
   const auto prepared_moments = TRY(prepared(design, response, labels));
-  const Moments& m = prepared_moments;
+  const GroupMoments& m = prepared_moments;
   const Real lambda = best_lambda(m, true), df = m.n - static_cast<Real>(m.p);
   const Gls fit = gls(m, lambda);
   const Real sigma2 = fit.rss / df;

@@ -23,18 +23,16 @@ double arrangements_of(std::vector<double> sorted) {
   return std::round(out);
 }
 
-core::Error wrong(std::string what) { return {core::Errc::bad_input, std::move(what)}; }
-
 }  // namespace
 
 core::Result<PermutationSlope> permutation_slope(const Vector& x, const Vector& y, double most) {
   core::require(x.size() == y.size(), "a slope is of pairs");
   if (x.size() < 2 || !x.allFinite() || !y.allFinite())
-    return wrong("a slope needs two pairs of finite numbers");
+    return core::bad_input("a slope needs two pairs of finite numbers");
   TRY(check_range(x, "x"));
   TRY(check_range(y, "the response"));
   if (x.maxCoeff() == x.minCoeff() || y.maxCoeff() == y.minCoeff())
-    return wrong("x or y is the same everywhere: there is no slope to test");
+    return core::bad_input("x or y is the same everywhere: there is no slope to test");
   std::vector<double> order(y.begin(), y.end());
   std::ranges::sort(order);
   if (const double count = arrangements_of(order); count > most)
@@ -60,7 +58,7 @@ core::Result<PermutationSlope> permutation_slope(const Vector& x, const Vector& 
 
 core::Result<SignFlip> sign_flip(const Vector& differences) {
   if (differences.size() < 1 || !differences.allFinite())
-    return wrong("a sign-flip test needs finite differences");
+    return core::bad_input("a sign-flip test needs finite differences");
   TRY(check_range(differences, "the difference"));
   if (differences.size() > 28)
     return core::Error{core::Errc::too_large,

@@ -14,8 +14,6 @@ namespace tractus {
 namespace statistics {
 namespace {
 
-core::Error wrong(const char* what) { return {core::Errc::bad_input, what}; }
-
 /// Σ over tied groups of a function of their size.
 template <class F>
 double over_ties(const Vector& values, F of_size) {
@@ -49,8 +47,9 @@ core::Result<Pooled> pooled(const Groups& groups) {
   }
   out.values = Eigen::Map<const Vector>(all.data(), std::ssize(all));
   if (groups.values.size() < 2 || !out.values.allFinite())
-    return wrong("rank tests need two groups of finite numbers");
-  if (out.values.maxCoeff() == out.values.minCoeff()) return wrong("the values are all equal");
+    return core::bad_input("rank tests need two groups of finite numbers");
+  if (out.values.maxCoeff() == out.values.minCoeff())
+    return core::bad_input("the values are all equal");
   return out;
 }
 
@@ -98,15 +97,15 @@ double two_sided(const std::vector<double>& count, std::size_t at) {
 core::Result<void> check_pairs(const Vector& x, const Vector& y) {
   core::require(x.size() == y.size(), "a correlation is of pairs");
   if (x.size() < 3 || !x.allFinite() || !y.allFinite())
-    return wrong("a correlation needs three pairs of finite numbers");
+    return core::bad_input("a correlation needs three pairs of finite numbers");
   if (x.maxCoeff() == x.minCoeff() || y.maxCoeff() == y.minCoeff())
-    return wrong("x or y is the same everywhere: nothing can go with it");
+    return core::bad_input("x or y is the same everywhere: nothing can go with it");
   return {};
 }
 
 core::Result<Matrix> row_ranks(const Matrix& values) {
   if (values.rows() < 2 || values.cols() < 2 || !values.allFinite())
-    return wrong("two subjects, two levels and every value are needed");
+    return core::bad_input("two subjects, two levels and every value are needed");
   Matrix out(values.rows(), values.cols());
   for (Eigen::Index i = 0; i < values.rows(); ++i)
     out.row(i) = ranks(values.row(i).transpose()).transpose();
@@ -281,7 +280,7 @@ core::Result<Friedman> friedman(const Matrix& values) {
   double ties = 0.0;
   for (Eigen::Index i = 0; i < values.rows(); ++i) ties += cubes_of_ties(values.row(i).transpose());
   const double scale = n * k * (k + 1.0) - ties / (k - 1.0);
-  if (!(scale > 0.0)) return wrong("every subject is the same at every level");
+  if (!(scale > 0.0)) return core::bad_input("every subject is the same at every level");
   const Vector sums = ranked.colwise().sum();
   Friedman out;
   out.chi_squared = 12.0 * (sums.array() - 0.5 * n * (k + 1.0)).square().sum() / scale;
@@ -308,7 +307,8 @@ core::Result<RankTest> wilcoxon_signed_rank(const Vector& differences) {
   for (const double d : differences)
     if (d != 0.0) kept.push_back(d);
   const auto n = std::ssize(kept);
-  if (n < 1 || !differences.allFinite()) return wrong("there is no difference other than 0");
+  if (n < 1 || !differences.allFinite())
+    return core::bad_input("there is no difference other than 0");
   if (n > 200) return core::Error{core::Errc::too_large, "exact for up to 200 differences"};
   const Vector d = Eigen::Map<const Vector>(kept.data(), n);
   const auto doubled = doubled_ranks(d.cwiseAbs());
@@ -320,7 +320,7 @@ core::Result<RankTest> wilcoxon_signed_rank(const Vector& differences) {
 
 core::Result<MannWhitney> mann_whitney(const Vector& x, const Vector& y) {
   if (x.size() < 1 || y.size() < 1 || !x.allFinite() || !y.allFinite())
-    return wrong("two samples of finite numbers are needed");
+    return core::bad_input("two samples of finite numbers are needed");
   if (x.size() + y.size() > 200)
     return core::Error{core::Errc::too_large, "exact for up to 200 values in all"};
   Vector all(x.size() + y.size());

@@ -17,8 +17,6 @@ using Extended = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
 
 constexpr double kLargest = 1e141;
 
-core::Error wrong(std::string what) { return {core::Errc::bad_input, std::move(what)}; }
-
 /// Columns scaled to length one; with an intercept, centred first (the ones column stays out).
 Extended normalised(const Design& design) {
   const Eigen::Index first = design.intercept ? 1 : 0;
@@ -55,7 +53,7 @@ core::Result<void> check_shape(const Design& design, const Vector& response) {
   core::require(static_cast<std::size_t>(columns) == design.names.size(),
                 "a design names every column");
   if (rows <= columns)
-    return wrong(
+    return core::bad_input(
         fmt::format("{} row{} cannot determine {} coefficients and an error: at least {} "
                     "are needed",
                     rows, rows == 1 ? "" : "s", columns, columns + 1));
@@ -79,14 +77,14 @@ core::Result<void> check(const Design& design, const Vector& response) {
   const bool fine = response.allFinite() && design.columns.allFinite();
   for (Eigen::Index i = 0; i < rows && !fine; ++i) {
     if (!std::isfinite(response[i]))
-      return wrong(fmt::format("the response in row {} is not a finite number", i + 1));
+      return core::bad_input(fmt::format("the response in row {} is not a finite number", i + 1));
     for (Eigen::Index j = 0; j < columns; ++j)
       if (!std::isfinite(design.columns(i, j)))
-        return wrong(fmt::format("column '{}', row {}: not a finite number",
-                                 design.names[static_cast<std::size_t>(j)], i + 1));
+        return core::bad_input(fmt::format("column '{}', row {}: not a finite number",
+                                           design.names[static_cast<std::size_t>(j)], i + 1));
   }
   if (response.maxCoeff() == response.minCoeff())
-    return wrong(
+    return core::bad_input(
         fmt::format("the response is {} in every row: there is nothing to explain", response[0]));
   for (Eigen::Index j = 0; j < columns; ++j)
     TRY(check_range(design.columns.col(j),
@@ -127,7 +125,7 @@ std::string collinear_columns(const Design& design) {
 
 core::Error collinear_error(const Design& design) {
   if (const std::string named = collinear_columns(design); !named.empty())
-    return wrong("the columns are collinear: " + named);
+    return core::bad_input("the columns are collinear: " + named);
   return {
       core::Errc::out_of_range,
       "the columns are too large, too small or too close to collinear for a double: rescale them"};

@@ -43,8 +43,6 @@ core::Result<void> check_counts(const Design& design, const Counts& counts) {
   return {};
 }
 
-Array probability(const Array& eta) { return 1.0 / (1.0 + (-eta).exp()); }
-
 /// Σ y η − m ln(1 + e^η): the log-likelihood without binomial coefficients.
 double kernel(const Counts& c, const Array& eta) {
   Array pi, softplus;
@@ -70,7 +68,7 @@ Matrix information(const Matrix& x, const Counts& c, const Array& pi) {
 bool newton(const Matrix& x, const Counts& c, const Array& offset, Vector& b, int& iterations) {
   double last = kernel(c, (x * b).array() + offset);
   for (iterations = 1; iterations <= kNewtonLimit; ++iterations) {
-    const Array pi = probability((x * b).array() + offset);
+    const Array pi = binomial::inverse_logit((x * b).array() + offset);
     const Vector score = x.transpose() * (c.successes.array() - c.trials.array() * pi).matrix();
     const Eigen::LDLT<Matrix> ldlt(information(x, c, pi));
     if (ldlt.info() != Eigen::Success || !(ldlt.vectorD().minCoeff() > 0.0)) return false;
@@ -88,7 +86,7 @@ bool newton(const Matrix& x, const Counts& c, const Array& offset, Vector& b, in
     if ((x * b).cwiseAbs().maxCoeff() > 1e3) return false;
   }
   // The last digits may flicker; what keeps growing is separation.
-  const Array pi = probability((x * b).array() + offset);
+  const Array pi = binomial::inverse_logit((x * b).array() + offset);
   const Vector score = x.transpose() * (c.successes.array() - c.trials.array() * pi).matrix();
   const Vector step = information(x, c, pi).ldlt().solve(score);
   return step.allFinite() && (x * step).cwiseAbs().maxCoeff() < 1e-9;
@@ -136,7 +134,7 @@ core::Result<Logistic> logistic(const Design& design, const Counts& counts) {
   const Counts& sums = alike ? alike->counts : counts;
   if (!newton(rows, sums, Array::Zero(rows.rows()), fit.coefficients, fit.iterations))
     return separated();
-  const Array eta = x * fit.coefficients, pi = probability(eta);
+  const Array eta = x * fit.coefficients, pi = binomial::inverse_logit(eta);
   fit.fitted = pi;
   fit.covariance = information(x, counts, pi).ldlt().solve(Matrix::Identity(x.cols(), x.cols()));
   add_wald(fit.covariance, fit);
@@ -181,8 +179,8 @@ core::Result<std::pair<double, double>> profile_interval(const Design& design, c
       if (p > 1 && !newton(rest, sums, offset, others, spent)) return separated();
       const Array eta = (rest * others).array() + offset;
       // d(profile)/db is the score of b where the others are at their best.
-      const double slope =
-          column.dot((sums.successes.array() - sums.trials.array() * probability(eta)).matrix());
+      const double slope = column.dot(
+          (sums.successes.array() - sums.trials.array() * binomial::inverse_logit(eta)).matrix());
       const double step = (top - kernel(sums, eta) - drop) / slope;
       if (!std::isfinite(step) || side * slope >= 0.0) return separated();
       b += step;
@@ -211,13 +209,17 @@ core::Result<Firth> firth_logistic(const Design& design, const Counts& counts) {
   fit.coefficients = Vector::Zero(x.cols());
   const auto penalised = [&](const Vector& b) {
     const Array eta = x * b;
-    return kernel(counts, eta) +
-           0.5 * information(x, counts, probability(eta)).ldlt().vectorD().array().log().sum();
+    return kernel(counts, eta) + 0.5 * information(x, counts, binomial::inverse_logit(eta))
+                                           .ldlt()
+                                           .vectorD()
+                                           .array()
+                                           .log()
+                                           .sum();
   };
   Matrix covariance;
   bool settled = false;
   for (fit.iterations = 1; fit.iterations <= 1000 && !settled; ++fit.iterations) {
-    const Array pi = probability(x * fit.coefficients);
+    const Array pi = binomial::inverse_logit((x * fit.coefficients).array());
     covariance = information(x, counts, pi).ldlt().solve(Matrix::Identity(x.cols(), x.cols()));
     const Array w = counts.trials.array() * pi * (1.0 - pi);
     const Array h = w * (x * covariance).cwiseProduct(x).rowwise().sum().array();
@@ -236,7 +238,7 @@ core::Result<Firth> firth_logistic(const Design& design, const Counts& counts) {
   if (!fit.coefficients.allFinite() || !covariance.allFinite())
     return core::Error{core::Errc::out_of_range, "the information matrix is singular"};
   fit.penalised_log_likelihood = penalised(fit.coefficients);
-  fit.fitted = probability(x * fit.coefficients);
+  fit.fitted = binomial::inverse_logit((x * fit.coefficients).array());
   add_wald(covariance, fit);
   return fit;
 }

@@ -13,6 +13,7 @@
 #include "volume/io/counts.hpp"
 #include "volume/io/deidentify.hpp"
 #include "volume/io/dicom_slices.hpp"
+#include "volume/io/dicom_tags.hpp"
 #include "volume/io/formats.hpp"
 #include "volume/io/gantry_tilt.hpp"
 #include "volume/io/isolated.hpp"
@@ -22,8 +23,6 @@ namespace tractus {
 namespace volume_io {
 namespace fs = std::filesystem;
 namespace {
-
-constexpr std::uint64_t kSliceLimitBytes = 256ull << 20;
 
 /// Decodes the slices in our order; stored numbers, or CT values where slices are scaled
 /// differently.

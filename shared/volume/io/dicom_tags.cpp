@@ -24,11 +24,9 @@ namespace fs = std::filesystem;
 using volume::Vec3;
 namespace {
 
-constexpr std::uint64_t kSliceLimitBytes = 256ull << 20;
-
 const gdcm::Tag kModality(0x0008, 0x0060), kSeries(0x0020, 0x000e), kPosition(0x0020, 0x0032),
     kOrientation(0x0020, 0x0037), kSamples(0x0028, 0x0002), kPhotometric(0x0028, 0x0004),
-    kFrames(0x0028, 0x0008), kRows(0x0028, 0x0010), kColumns(0x0028, 0x0011),
+    kFrames(0x0028, 0x0008), kRowCount(0x0028, 0x0010), kColumns(0x0028, 0x0011),
     kPixelSpacing(0x0028, 0x0030), kBits(0x0028, 0x0100), kSigned(0x0028, 0x0103),
     kIntercept(0x0028, 0x1052), kSlope(0x0028, 0x1053);
 
@@ -100,7 +98,7 @@ void read_geometry(Attributes& tags, Slice& slice) {
 }
 
 void read_pixels(Attributes& tags, Slice& slice, const DicomLayout& layout, core::ByteView file) {
-  slice.rows = tags.whole(kRows, "Rows");
+  slice.rows = tags.whole(kRowCount, "Rows");
   slice.columns = tags.whole(kColumns, "Columns");
   slice.bits = tags.whole(kBits, "Bits Allocated");
   slice.is_signed = tags.whole(kSigned, "Pixel Representation") == 1;
@@ -140,7 +138,7 @@ core::Result<void> read_with_gdcm(gdcm::Reader& reader, const fs::path& path) {
   gdcm::Trace::DebugOff();
   const std::set<gdcm::Tag> wanted = {
       kModality, kSeries,  kPosition,     kOrientation, kSamples, kPhotometric, kFrames,
-      kRows,     kColumns, kPixelSpacing, kBits,        kSigned,  kIntercept,   kSlope};
+      kRowCount, kColumns, kPixelSpacing, kBits,        kSigned,  kIntercept,   kSlope};
   reader.SetFileName(path.c_str());
   bool read = false;
   try {

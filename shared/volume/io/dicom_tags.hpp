@@ -12,4 +12,6 @@ core::Result<Slice> read_slice_tags(const std::filesystem::path& path);
 /// Does the file open as DICOM does?
 bool is_dicom_file(const std::filesystem::path& path);
 
+inline constexpr std::uint64_t kSliceLimitBytes = 256ull << 20;  ///< of one file
+
 }  // namespace tractus::volume_io

@@ -55,7 +55,7 @@ struct Lines {
   std::size_t end = 0;  ///< where the voxels begin when they are in the same file
 };
 
-std::string trimmed(std::string_view text) {
+std::string trimmed_text(std::string_view text) {
   while (!text.empty() && std::isspace(static_cast<unsigned char>(text.front())))
     text.remove_prefix(1);
   while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back())))
@@ -71,7 +71,7 @@ std::string lower(std::string text) {
 
 /// The name a field is known by: lower case, and the one-word spellings spelt out.
 std::string field_name(std::string_view raw) {
-  const std::string name = lower(trimmed(raw));
+  const std::string name = lower(trimmed_text(raw));
   if (name == "datafile") return "data file";
   if (name == "byteskip") return "byte skip";
   if (name == "lineskip") return "line skip";
@@ -96,7 +96,7 @@ core::Result<void> take_line(const std::string& line, int number, const fs::path
                                 printable(line))
                   : fmt::format("line {}: the field \"{}\" is not known", number, printable(name)));
   }
-  if (!fields.emplace(name, trimmed(line.substr(colon + 2))).second)
+  if (!fields.emplace(name, trimmed_text(line.substr(colon + 2))).second)
     return bad(path, fmt::format("line {}: a second \"{}\"", number, name));
   return {};
 }
@@ -107,7 +107,8 @@ core::Result<Lines> lines_of(std::string_view text, const fs::path& path) {
   for (int number = 1;; ++number) {
     const std::size_t end = text.find('\n', at);
     const bool last = end == std::string_view::npos;
-    const std::string line = trimmed(text.substr(at, last ? std::string_view::npos : end - at));
+    const std::string line =
+        trimmed_text(text.substr(at, last ? std::string_view::npos : end - at));
     at = last ? text.size() : end + 1;
     if (number > 1 && line.empty()) break;
     if (last && number > 1 && text.size() >= (1u << 16))
@@ -139,7 +140,7 @@ std::optional<std::vector<double>> numbers_of(std::string text) {
 std::optional<std::vector<Vec3>> vectors_of(std::string_view text, std::size_t count) {
   std::vector<Vec3> out;
   while (true) {
-    const std::string rest = trimmed(text);
+    const std::string rest = trimmed_text(text);
     if (rest.empty()) break;
     const std::size_t close = rest.find(')');
     if (rest[0] != '(' || close == std::string::npos) return {};

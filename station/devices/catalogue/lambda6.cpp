@@ -203,7 +203,7 @@ class Lambda6 final : public Device {
   bool has_gripper_ = false;
 };
 
-core::Result<MadeDevice> make(const DeviceOptions& options) {
+core::Result<MadeDevice> make_lambda6(const DeviceOptions& options) {
   return MadeDevice{.device = std::make_unique<Lambda6>(options)};
 }
 
@@ -215,7 +215,7 @@ DeviceInfo lambda6_device() {
           .kind = DeviceKind::handle,
           .simulated = false,
           .addressed_by = AddressedBy::sdk,
-          .make = make};
+          .make = make_lambda6};
 }
 
 }  // namespace devices

@@ -6,7 +6,7 @@
 namespace tractus::devices {
 namespace {
 
-core::Result<MadeRig> make(const RigOptions& options) {
+core::Result<MadeRig> make_rig(const RigOptions& options) {
   auto device = TRY(modbus_rig(options.address));
   return MadeRig{std::nullopt, options.address, std::move(device)};
 }
@@ -19,7 +19,7 @@ DeviceInfo rig_device() {
           .kind = DeviceKind::rig,
           .simulated = false,
           .addressed_by = AddressedBy::line,
-          .make_rig = make};
+          .make_rig = make_rig};
 }
 
 }  // namespace tractus::devices

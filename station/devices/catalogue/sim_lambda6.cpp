@@ -166,7 +166,7 @@ class SimLambda6 final : public Device, public SimulatedTrainee {
   std::atomic<double> progress_ = 0.0;
 };
 
-core::Result<MadeDevice> make(const DeviceOptions& options) {
+core::Result<MadeDevice> make_sim_lambda6(const DeviceOptions& options) {
   const auto refuse = [](const char* what, double value, const char* range) {
     return core::Error{core::Errc::out_of_range,
                        fmt::format("sim-lambda6: {} {} is outside {}", what, value, range)};
@@ -194,7 +194,7 @@ DeviceInfo sim_lambda6_device() {
           .kind = DeviceKind::handle,
           .simulated = true,
           .addressed_by = AddressedBy::nothing,
-          .make = make};
+          .make = make_sim_lambda6};
 }
 
 }  // namespace devices

@@ -6,7 +6,7 @@
 namespace tractus::devices {
 namespace {
 
-core::Result<MadeRig> make(const RigOptions& options) {
+core::Result<MadeRig> make_sim_rig(const RigOptions& options) {
   auto process = TRY(RigProcess::start({.program = options.program,
                                         .seed = options.seed,
                                         .skill = options.skill,
@@ -25,7 +25,7 @@ DeviceInfo sim_rig_device() {
           .kind = DeviceKind::rig,
           .simulated = true,
           .addressed_by = AddressedBy::nothing,
-          .make_rig = make};
+          .make_rig = make_sim_rig};
 }
 
 }  // namespace tractus::devices

@@ -128,6 +128,8 @@ export const rankedSchema = v.object({
 
 export const diagnosisSchema = v.object({
   verdict: v.picklist(['complete', 'missing', 'partly', 'unexplained']),
+  headline: v.optional(v.string(), ''),
+  detail: v.optional(v.string(), ''),
   probability: figure,
   base: v.object({ rmse: figure, held_out_rmse: figure, noise_floor: figure }),
   effects: v.array(v.object({ id: v.string(), probability: figure, parameters })),

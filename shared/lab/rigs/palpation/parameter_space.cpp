@@ -15,14 +15,14 @@ namespace {
 
 using laws::PalpationParameters;
 
-constexpr const auto& kPrior = kSettings.palpation_prior;
+constexpr const auto& kPalpationPrior = kSettings.palpation_prior;
 
 Parameter factor(double start, double prior_sd) {
   Parameter p{};
   p.start = start;
-  p.low = start / kPrior.most_factor;
-  p.high = start * kPrior.most_factor;
-  p.step = kPrior.logarithmic_step;
+  p.low = start / kPalpationPrior.most_factor;
+  p.high = start * kPalpationPrior.most_factor;
+  p.step = kPalpationPrior.logarithmic_step;
   p.logarithmic = true;
   p.prior_sd = prior_sd;
   return p;
@@ -34,13 +34,8 @@ Parameter length(double start, double low, double high) {
   p.low = low;
   p.high = high;
   p.step = 2e-5;
-  p.prior_sd = kPrior.length_sd_m;
+  p.prior_sd = kPalpationPrior.length_sd_m;
   return p;
-}
-
-/// One JSON pointer with `*` for every element against another without.
-bool covers(std::string_view pattern, std::string_view pointer) {
-  return pointer == pattern || (pointer.starts_with(pattern) && pointer[pattern.size()] == '/');
 }
 
 }  // namespace
@@ -68,19 +63,21 @@ PalpationParameterSpace::PalpationParameterSpace(models::PalpationModel model, d
     slots_.push_back({name, held, std::move(parameter)});
   };
   add("force_factor_Nm", &PalpationParameters::force_factor_Nm,
-      factor(p.force_factor_Nm, kPrior.factor_sd));
-  add("force_scale", &PalpationParameters::force_scale, factor(p.force_scale, kPrior.factor_sd));
-  add("torque_scale", &PalpationParameters::torque_scale, factor(p.torque_scale, kPrior.factor_sd));
+      factor(p.force_factor_Nm, kPalpationPrior.factor_sd));
+  add("force_scale", &PalpationParameters::force_scale,
+      factor(p.force_scale, kPalpationPrior.factor_sd));
+  add("torque_scale", &PalpationParameters::torque_scale,
+      factor(p.torque_scale, kPalpationPrior.factor_sd));
   if (p.points > 1)
     add("point_spacing_m", &PalpationParameters::point_spacing_m,
         length(p.point_spacing_m, 0.3 * p.point_spacing_m,
                std::min(3.0 * p.point_spacing_m, 0.95 * p.length_m / (p.points - 1))));
   add("youngs_modulus_Pa", &PalpationParameters::youngs_modulus_Pa,
-      factor(p.youngs_modulus_Pa, kPrior.factor_sd));
+      factor(p.youngs_modulus_Pa, kPalpationPrior.factor_sd));
   add("length_m", &PalpationParameters::length_m,
       length(p.length_m, std::max(0.8 * p.length_m, 1.01 * (p.points - 1) * p.point_spacing_m),
              1.2 * p.length_m));
-  add("radius_m", &PalpationParameters::radius_m, factor(p.radius_m, kPrior.radius_sd));
+  add("radius_m", &PalpationParameters::radius_m, factor(p.radius_m, kPalpationPrior.radius_sd));
 }
 
 bool PalpationParameterSpace::fixed(const std::string& pointer) const {
@@ -106,7 +103,7 @@ std::vector<Parameter> PalpationParameterSpace::of_effect(const effects::EffectF
   auto out = parameters_of(facts);
   for (std::size_t k = 0; k < out.size(); ++k) {
     Parameter& p = out[k];
-    if (p.logarithmic) p.step = kPrior.logarithmic_step;
+    if (p.logarithmic) p.step = kPalpationPrior.logarithmic_step;
     if (p.shape && !begin.empty()) p.start = std::clamp(begin.front()[k], p.low, p.high);
     if (info && info->replaces) {
       p.shape = false;

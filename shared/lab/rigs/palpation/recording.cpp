@@ -18,7 +18,7 @@ using core::Result;
 using math::Vec3;
 
 constexpr const char* kChannels[] = {"fx_N", "fy_N", "fz_N", "tx_Nm", "ty_Nm", "tz_Nm"};
-constexpr const auto& kPrepared = kSettings.palpation_recording;
+constexpr const auto& kPalpationRecording = kSettings.palpation_recording;
 /// The step that a channel's values were rounded to, 0 if they were not: all lie on a grid of it.
 double rounding_step(const std::vector<double>& y, double most) {
   double least = HUGE_VAL;
@@ -164,7 +164,7 @@ void cut(trial::PalpationMeasurement& trial, std::size_t most) {
   keep(trial.t_s), keep(trial.X_VH), keep(trial.wrench_H);
 }
 
-Error wrong(const std::string& where, const std::string& why) {
+Error unusable_palpation(const std::string& where, const std::string& why) {
   return {Errc::bad_input, fmt::format("{}: {}", where, why)};
 }
 
@@ -180,9 +180,9 @@ Result<PalpationRecording> prepare(trial::PalpationMeasurement&& trial, const Ve
                                    const std::string& where, std::size_t most_samples) {
   PalpationRecording out;
   const std::size_t recorded = trial.t_s.size();
-  if (recorded < kPrepared.fewest_samples)
-    return wrong(where, fmt::format("{} samples, at least {} are expected", recorded,
-                                    kPrepared.fewest_samples));
+  if (recorded < kPalpationRecording.fewest_samples)
+    return unusable_palpation(where, fmt::format("{} samples, at least {} are expected", recorded,
+                                                 kPalpationRecording.fewest_samples));
   if (recorded > most_samples) {
     cut(trial, most_samples);
     out.note = fmt::format(
@@ -192,12 +192,13 @@ Result<PalpationRecording> prepare(trial::PalpationMeasurement&& trial, const Ve
   }
   const std::size_t n = trial.t_s.size();
   const double spacing_s = (trial.t_s.back() - trial.t_s.front()) / double(n - 1);
-  if (spacing_s * kPrepared.slowest_rate_Hz > 1.001)
-    return wrong(where, fmt::format("{:.3g} samples per second, at least {} are expected",
-                                    1.0 / spacing_s, kPrepared.slowest_rate_Hz));
+  if (spacing_s * kPalpationRecording.slowest_rate_Hz > 1.001)
+    return unusable_palpation(
+        where, fmt::format("{:.3g} samples per second, at least {} are expected", 1.0 / spacing_s,
+                           kPalpationRecording.slowest_rate_Hz));
   out.id = trial.id;
   const auto stride =
-      std::size_t(std::max(1.0, std::ceil(0.999 / (spacing_s * kPrepared.fastest_Hz))));
+      std::size_t(std::max(1.0, std::ceil(0.999 / (spacing_s * kPalpationRecording.fastest_Hz))));
   smooth_poses(trial, down, stride, out);
   std::vector<double> column(n);
   for (int c = 0; c < 6; ++c) {

@@ -13,7 +13,7 @@ namespace tractus {
 namespace lab {
 namespace {
 
-constexpr const auto& kPrior = kSettings.probing_prior;
+constexpr const auto& kProbingPrior = kSettings.probing_prior;
 
 Parameter factor(double start, double low, double high) {
   Parameter p{};
@@ -22,20 +22,8 @@ Parameter factor(double start, double low, double high) {
   p.high = high;
   p.logarithmic = true;
   p.step = 1e-3;
-  p.prior_sd = kPrior.factor_sd;
+  p.prior_sd = kProbingPrior.factor_sd;
   return p;
-}
-
-/// One JSON pointer with `*` for every element against another without.
-bool covers(std::string_view pattern, std::string_view pointer) {
-  while (!pattern.empty() && !pointer.empty()) {
-    const auto a = pattern.substr(0, pattern.find('/', 1));
-    const auto b = pointer.substr(0, pointer.find('/', 1));
-    if (a != b && a != "/*") return false;
-    pattern.remove_prefix(a.size());
-    pointer.remove_prefix(b.size());
-  }
-  return pattern.empty();  // what lies above a number fixes it too
 }
 
 }  // namespace
@@ -105,39 +93,42 @@ void ProbingParameterSpace::add_layer(std::size_t k, const Reach& reach) {
   }
   if (layer.stiffness_N_per_m > 0.0)
     add(Kind::stiffness, k, "stiffness_N_per_m",
-        factor(layer.stiffness_N_per_m, layer.stiffness_N_per_m / kPrior.most_factor,
-               std::min(2e5, layer.stiffness_N_per_m * kPrior.most_factor)));
+        factor(layer.stiffness_N_per_m, layer.stiffness_N_per_m / kProbingPrior.most_factor,
+               std::min(2e5, layer.stiffness_N_per_m * kProbingPrior.most_factor)));
   add(Kind::damping, k, "damping_Ns_per_m",
-      factor(layer.damping_Ns_per_m, layer.damping_Ns_per_m / kPrior.most_factor,
-             std::min(1e6, layer.damping_Ns_per_m * kPrior.most_factor)));
+      factor(layer.damping_Ns_per_m, layer.damping_Ns_per_m / kProbingPrior.most_factor,
+             std::min(1e6, layer.damping_Ns_per_m * kProbingPrior.most_factor)));
   Parameter place{};
-  place.step = kPrior.place_step_m;
-  place.prior_sd = kPrior.place_sd_m;
+  place.step = kProbingPrior.place_step_m;
+  place.prior_sd = kProbingPrior.place_sd_m;
   if (layer.stiffness_N_per_m > 0.0) {
     place.start = layer.equilibrium_m;
     place.low = layer.equilibrium_m - 0.1;
     place.high = layer.equilibrium_m + 0.1;
     add(Kind::equilibrium, k, "equilibrium_m", place);
   }
-  place.rough = kPrior.rough_m;
+  place.rough = kProbingPrior.rough_m;
   const auto near = [&](double border_m) {
-    return border_m > reach.least_m - kPrior.near_m && border_m < reach.most_m + kPrior.near_m;
+    return border_m > reach.least_m - kProbingPrior.near_m &&
+           border_m < reach.most_m + kProbingPrior.near_m;
   };
   const double before_m =
       k == 0 ? 0.0 : model_.layers[k - 1].start_m + model_.layers[k - 1].thickness_m;
-  const bool joined = k > 0 && layer.start_m - before_m < kPrior.same_border_m;
+  const bool joined = k > 0 && layer.start_m - before_m < kProbingPrior.same_border_m;
   if (near(layer.start_m) && reach.least_m < layer.start_m) {
     place.start = layer.start_m;
     // A border stays on its side of the middle of each of its layers, so that none passes another.
-    place.low = joined ? model_.layers[k - 1].start_m +
-                             std::max(0.55 * model_.layers[k - 1].thickness_m, kPrior.least_layer_m)
-                       : before_m;
+    place.low =
+        joined ? model_.layers[k - 1].start_m +
+                     std::max(0.55 * model_.layers[k - 1].thickness_m, kProbingPrior.least_layer_m)
+               : before_m;
     place.low = std::min(place.low, layer.start_m);
-    place.high = layer.start_m + std::max(0.0, 0.45 * layer.thickness_m - kPrior.least_layer_m);
+    place.high =
+        layer.start_m + std::max(0.0, 0.45 * layer.thickness_m - kProbingPrior.least_layer_m);
     if (place.high > place.low) add(Kind::start, k, "start_m", place);
   }
-  const bool followed =
-      k + 1 < model_.layers.size() && model_.layers[k + 1].start_m - end_m < kPrior.same_border_m;
+  const bool followed = k + 1 < model_.layers.size() &&
+                        model_.layers[k + 1].start_m - end_m < kProbingPrior.same_border_m;
   if (!followed && near(end_m) && reach.most_m > end_m) {
     place.start = layer.thickness_m;
     place.low = 0.55 * layer.thickness_m;
@@ -204,7 +195,7 @@ models::ProbingModel ProbingParameterSpace::with(const Structure& structure,
         layer.start_m = v;
         if (slot.layer > 0) {
           const laws::Layer& before = model_.layers[slot.layer - 1];
-          if (was.start_m - before.start_m - before.thickness_m < kPrior.same_border_m)
+          if (was.start_m - before.start_m - before.thickness_m < kProbingPrior.same_border_m)
             out.layers[slot.layer - 1].thickness_m = v - out.layers[slot.layer - 1].start_m;
         }
         break;

@@ -24,8 +24,6 @@ using core::Errc;
 using core::Error;
 using core::Result;
 
-constexpr const auto& kPrepared = kSettings.probing_recording;
-
 class ProbingProblem final : public Problem {
  public:
   ProbingProblem(ProbingParameterSpace numbers, std::vector<ProbingRecording> trials, bool turns)
@@ -78,7 +76,7 @@ class ProbingProblem final : public Problem {
   /// Weighs the residuals anew with the borders and dampings that these values have.
   void focus(std::span<const double> values) {
     if (turns_) return;
-    const auto law = numbers_.with({}, values).law(kPrepared.longest_model_m);
+    const auto law = numbers_.with({}, values).law(kProbingRecording.longest_model_m);
     core::require(bool(law), "a fitted model runs");
     for (std::size_t k = 0; k < trials_.size(); ++k) {
       weigh(*law, trials_[k]);
@@ -104,7 +102,7 @@ class ProbingProblem final : public Problem {
   Predicted forces(const Structure& structure, std::span<const double> values,
                    const ProbingRecording& r) const {
     const models::ProbingModel model = numbers_.with(structure, values);
-    const auto runtime = models::ProbingRuntime::make(model, kPrepared.longest_model_m);
+    const auto runtime = models::ProbingRuntime::make(model, kProbingRecording.longest_model_m);
     core::require(bool(runtime), "values within their bounds make a model that runs");
     Predicted out;
     runtime->predict(r.motion, out.forces);
@@ -158,7 +156,7 @@ std::vector<double> ProbingProblem::dry_at_rest(const models::ProbingModel& mode
   for (const effects::EffectInstance& use : model.effects)
     if (numbers_.facts_of(use.id).is_dry) dry.effects.push_back(use);
   if (dry.effects.empty() || r.rest.empty()) return {};
-  const auto runtime = models::ProbingRuntime::make(dry, kPrepared.longest_model_m);
+  const auto runtime = models::ProbingRuntime::make(dry, kProbingRecording.longest_model_m);
   core::require(bool(runtime), "values within their bounds make a model that runs");
   effects::ProbingMotion back = r.at_rest;
   for (double& v : back.v_m_s) v = -v;
@@ -303,11 +301,11 @@ core::Json ProbingProblem::model(const Structure& structure, std::span<const dou
 std::string shorten(trial::ProbingSet& set) {
   std::size_t total = 0;
   for (const auto& t : set.trials) total += t.t_s.size();
-  if (total <= kPrepared.most_samples) return {};
-  const double share = double(kPrepared.most_samples) / double(total);
+  if (total <= kProbingRecording.most_samples) return {};
+  const double share = double(kProbingRecording.most_samples) / double(total);
   for (auto& t : set.trials) {
-    const auto kept = std::min(
-        t.t_s.size(), kPrepared.least_kept_samples + std::size_t(share * double(t.t_s.size())));
+    const auto kept = std::min(t.t_s.size(), kProbingRecording.least_kept_samples +
+                                                 std::size_t(share * double(t.t_s.size())));
     for (auto* all : {&t.t_s, &t.x_m, &t.theta_rad, &t.fz_N, &t.tz_Nm}) {
       if (all->empty()) continue;
       all->resize(kept);

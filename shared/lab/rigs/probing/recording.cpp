@@ -17,8 +17,6 @@ using core::Errc;
 using core::Error;
 using core::Result;
 
-constexpr const auto& kPrepared = kSettings.probing_recording;
-
 /// The smallest difference of two neighbours that are not equal, if all others are multiples of it;
 /// else 0: how coarsely a channel was written down.
 double quantum(std::span<const double> y) {
@@ -75,7 +73,7 @@ double colour(std::span<const double> y, double white_sd) {
   return most;
 }
 
-Error wrong(const std::string& where, const std::string& why) {
+Error unusable_probing(const std::string& where, const std::string& why) {
   return {Errc::bad_input, fmt::format("{}: {}", where, why)};
 }
 
@@ -95,7 +93,7 @@ void prepare_turning(trial::ProbingMeasurement& trial, const trial::StatedNoise&
     motion.theta_rad = std::move(theta.value);
     motion.omega_rad_s = std::move(theta.rate);
     out.omega_sd_rad_s = std::move(theta.rate_sd);
-    motion.rest_rad_s = kPrepared.rest_errors * middle_of(out.omega_sd_rad_s);
+    motion.rest_rad_s = kProbingRecording.rest_errors * middle_of(out.omega_sd_rad_s);
   }
   motion.tz_Nm = std::move(trial.tz_Nm);
 }
@@ -117,7 +115,7 @@ void prepare_sliding(trial::ProbingMeasurement& trial, const trial::StatedNoise&
   out.x_sd_m = std::move(x.value_sd);
   for (double& sd : out.x_sd_m) sd = std::hypot(sd, noise.correlated);
   out.v_sd_m_s = std::move(x.rate_sd);
-  motion.rest_m_s = kPrepared.rest_errors * middle_of(out.v_sd_m_s);
+  motion.rest_m_s = kProbingRecording.rest_errors * middle_of(out.v_sd_m_s);
 }
 
 /// Outputs that say something new: while the probe stands, the longer it stands the rarer, as what
@@ -128,12 +126,12 @@ std::vector<std::size_t> informative(const ProbingRecording& r) {
   double place_m = m.x_m.front(), since_s = m.t_s.front(), next_s = since_s;
   for (std::size_t j = 0; j < r.decimator.size(r.size()); ++j) {
     const std::size_t k = r.decimator.middle(j);
-    if (std::abs(m.x_m[k] - place_m) > kPrepared.same_place_m)
+    if (std::abs(m.x_m[k] - place_m) > kProbingRecording.same_place_m)
       place_m = m.x_m[k], since_s = m.t_s[k];
     const double stood_s = m.t_s[k] - since_s;
-    if (stood_s > kPrepared.long_stand_s && m.t_s[k] < next_s) continue;
+    if (stood_s > kProbingRecording.long_stand_s && m.t_s[k] < next_s) continue;
     out.push_back(j);
-    next_s = m.t_s[k] + stood_s / (kPrepared.long_stand_s * kPrepared.thin_rate_Hz);
+    next_s = m.t_s[k] + stood_s / (kProbingRecording.long_stand_s * kProbingRecording.thin_rate_Hz);
   }
   return out;
 }
@@ -144,7 +142,8 @@ void find_rest(ProbingRecording& r) {
   effects::ProbingMotion& out = r.at_rest;
   out.rest_m_s = 0.0;
   for (std::size_t k = 0; k < r.size(); ++k) {
-    const double told_m_s = std::max(2.0 * m.rest_m_s, kPrepared.rest_errors * r.v_sd_m_s[k]);
+    const double told_m_s =
+        std::max(2.0 * m.rest_m_s, kProbingRecording.rest_errors * r.v_sd_m_s[k]);
     if (std::abs(m.v_m_s[k]) >= told_m_s) continue;
     r.rest.push_back(k);
     out.t_s.push_back(m.t_s[k]);
@@ -161,7 +160,7 @@ void find_turning_rest(ProbingRecording& r) {
   out.rest_rad_s = 0.0;
   for (std::size_t k = 0; k < r.size(); ++k) {
     const double told_rad_s =
-        std::max(2.0 * m.rest_rad_s, kPrepared.rest_errors * r.omega_sd_rad_s[k]);
+        std::max(2.0 * m.rest_rad_s, kProbingRecording.rest_errors * r.omega_sd_rad_s[k]);
     if (std::abs(m.omega_rad_s[k]) >= told_rad_s) continue;
     r.rest.push_back(k);
     out.t_s.push_back(m.t_s[k]);
@@ -205,13 +204,14 @@ Result<ProbingRecording> prepare(trial::ProbingMeasurement&& trial,
                                  const trial::StatedNoise& stated, bool turns,
                                  const std::string& where) {
   const std::size_t n = trial.t_s.size();
-  if (n < kPrepared.fewest_samples)
-    return wrong(where,
-                 fmt::format("{} samples, at least {} are expected", n, kPrepared.fewest_samples));
+  if (n < kProbingRecording.fewest_samples)
+    return unusable_probing(where, fmt::format("{} samples, at least {} are expected", n,
+                                               kProbingRecording.fewest_samples));
   const double spacing_s = (trial.t_s.back() - trial.t_s.front()) / double(n - 1);
-  if (spacing_s * kPrepared.slowest_rate_Hz > 1.001)
-    return wrong(where, fmt::format("{:.3g} samples per second, at least {} are expected",
-                                    1.0 / spacing_s, kPrepared.slowest_rate_Hz));
+  if (spacing_s * kProbingRecording.slowest_rate_Hz > 1.001)
+    return unusable_probing(
+        where, fmt::format("{:.3g} samples per second, at least {} are expected", 1.0 / spacing_s,
+                           kProbingRecording.slowest_rate_Hz));
   ProbingRecording out;
   out.id = trial.id;
   out.motion.t_s = std::move(trial.t_s);
@@ -220,7 +220,7 @@ Result<ProbingRecording> prepare(trial::ProbingMeasurement&& trial,
   if (!turns) out.other = trial.tz_Nm;
   const Noise noise = noise_of(out.measured, turns ? stated.tz_Nm : stated.fz_N);
   out.noise_sd = noise.sd;
-  out.decimator = Decimator(spacing_s, kPrepared.thin_rate_Hz);
+  out.decimator = Decimator(spacing_s, kProbingRecording.thin_rate_Hz);
   out.slow_noise_sd =
       std::hypot(noise.sd * std::sqrt(out.decimator.noise_gain()) *
                      (out.decimator.stride() > 1 ? colour(out.measured, noise.sd) : 1.0),
@@ -255,20 +255,23 @@ void weigh(const laws::ProbingLaw& law, ProbingRecording& r) {
   }
   const auto found = jumps(law, r);
   r.trusted.assign(n, 1.0);
-  const auto reach = std::max(kPrepared.border_samples,
-                              std::size_t(kPrepared.border_s / (r.seconds() / double(n - 1))));
+  const auto reach =
+      std::max(kProbingRecording.border_samples,
+               std::size_t(kProbingRecording.border_s / (r.seconds() / double(n - 1))));
   // What the motion's noise makes of the force must stay well under the sensor's own noise, at the
   // least in the better half of the samples.
   std::vector<double> ordered = motion_variance;
-  const auto half_way = ordered.begin() + std::ptrdiff_t(kPrepared.least_trusted_share * double(n));
+  const auto half_way =
+      ordered.begin() + std::ptrdiff_t(kProbingRecording.least_trusted_share * double(n));
   std::ranges::nth_element(ordered, half_way);
-  const double most = std::max(
-      *half_way, kPrepared.well_known_share * kPrepared.well_known_share * r.noise_sd * r.noise_sd);
+  const double most =
+      std::max(*half_way, kProbingRecording.well_known_share * kProbingRecording.well_known_share *
+                              r.noise_sd * r.noise_sd);
   for (std::size_t k = 0; k < n; ++k)
     if (motion_variance[k] > most) r.trusted[k] = 0.0;
   for (const double border : borders_of(law))
     for (std::size_t k = 0; k < n; ++k)  // on which side is nobody's to tell
-      if (std::abs(m.x_m[k] - border) < kPrepared.on_border_m + 3.0 * r.x_sd_m[k])
+      if (std::abs(m.x_m[k] - border) < kProbingRecording.on_border_m + 3.0 * r.x_sd_m[k])
         r.trusted[k] = 0.0;
   for (const Jump& jump : found)
     for (std::size_t k = jump.sample < reach ? 0 : jump.sample - reach;

@@ -9,11 +9,14 @@
 
 #include "core/result.hpp"
 #include "effects/probing_effect.hpp"
+#include "lab/settings.hpp"
 #include "lab/signal/decimator.hpp"
 #include "laws/probing_law.hpp"
 #include "trial/probing_set.hpp"
 
 namespace tractus::lab {
+
+inline constexpr const auto& kProbingRecording = kSettings.probing_recording;
 
 struct ProbingRecording {
   std::string id;

@@ -124,6 +124,8 @@ describe('two versions', () => {
 describe('the verdict', () => {
   const diagnosis = (changes: Partial<Diagnosis>): Diagnosis => ({
     verdict: 'missing',
+    headline: '',
+    detail: '',
     probability: 0.98,
     base: { rmse: 1.78, held_out_rmse: 1.99, noise_floor: 0.0616 },
     effects: [{ id: 'coulomb_friction', probability: 0.98, parameters: {} }],
@@ -142,31 +144,20 @@ describe('the verdict', () => {
     ...changes,
   });
 
-  it('names what is missing and how far the error falls on trials that were not fitted', () => {
-    const { headline, detail } = verdictOf(diagnosis({}), 'N');
+  it('shows the sentences of the server and the probability', () => {
+    const { tone, headline, detail } = verdictOf(
+      diagnosis({ headline: 'Coulomb friction is missing.', detail: 'The error falls from 1.99 N to 0.05 N.' }),
+    );
+    expect(tone).toBe('accent');
     expect(headline).toBe('Coulomb friction is missing.');
-    expect(plain(detail)).toContain('from 1.99 N to 0.0502 N; the noise floor is 0.0616 N');
+    expect(plain(detail)).toMatch(/^The error falls from 1\.99 N to 0\.05 N\. Probability of this answer: /);
   });
 
-  it('adds nothing where nothing is missing', () => {
-    expect(verdictOf(diagnosis({ verdict: 'complete', effects: [] }), 'N')).toMatchObject({
+  it('names the kind of verdict for a result without sentences', () => {
+    expect(verdictOf(diagnosis({ verdict: 'complete', effects: [] }))).toMatchObject({
       tone: 'good',
       headline: 'No effect is missing.',
     });
-  });
-
-  it('says on what it depends where the catalogue has no name for it', () => {
-    const { headline, detail } = verdictOf(
-      diagnosis({ verdict: 'unexplained', effects: [], depends_on: 'speed' }),
-      'N',
-    );
-    expect(headline).toContain('not in the catalogue');
-    expect(detail).toContain('varies with speed');
-  });
-
-  it('puts two effects into one sentence', () => {
-    const two = ['inertia', 'time_delay'].map((id) => ({ id, probability: 0.9, parameters: {} }));
-    expect(verdictOf(diagnosis({ effects: two }), 'N').headline).toBe('Inertia and Time delay are missing.');
   });
 });
 

@@ -60,7 +60,7 @@ function Undetermined({ diagnosis }: { readonly diagnosis: Diagnosis }) {
 function Found({ run, diagnosis, model, set, rig }: Props & { readonly run: LabRun; readonly diagnosis: Diagnosis }) {
   const effects = useQuery(effectsQuery(rig)).data?.effects ?? [];
   const unit = primaryUnit(run);
-  const { tone, headline, detail } = verdictOf(diagnosis, unit);
+  const { tone, headline, detail } = verdictOf(diagnosis);
   const found = diagnosis.effects.map(({ id }) => effectName(id));
   const drawable: Drawable | null = run.comparisons
     ? {

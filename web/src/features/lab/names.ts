@@ -1,11 +1,12 @@
 /** Display names of effects, channels, runs and steps of the lab. */
 import type { LabRunSummary, MeasurementSet } from '@/api';
+import { effectLabels } from '@/api/generated/effect-labels';
 import { formatCount, kForce, kTorque, nameAndUnit, type Quantity } from '@/units';
 
 /** "coulomb_friction" → "Coulomb friction"; "expression:drag" → "drag (custom formula)". */
 export function effectName(id: string): string {
   if (id.startsWith('expression:')) return `${id.slice('expression:'.length)} (custom formula)`;
-  const words = id.replaceAll('_', ' ');
+  const words = effectLabels[id] ?? id.replaceAll('_', ' ');
   return words.charAt(0).toUpperCase() + words.slice(1);
 }
 
