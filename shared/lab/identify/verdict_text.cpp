@@ -107,10 +107,10 @@ VerdictText sentences(const Diagnosis& d, std::string_view unit) {
   const std::string are = names.size() == 1 ? "is" : "are";
   const double after = d.steps.empty() ? d.base.held_out_rmse : d.steps.back().held_out_rmse;
   const double floor = d.base.noise_floor;
-  const std::string change = fmt::format(
-      "On held-out trials the error {} from {} to {}; the noise floor is {}.",
-      after < d.base.held_out_rmse ? "falls" : "does not fall: it goes",
-      figure(d.base.held_out_rmse, unit), figure(after, unit), figure(floor, unit));
+  const std::string change =
+      fmt::format("On held-out trials the error {} from {} to {}; the noise floor is {}.",
+                  after < d.base.held_out_rmse ? "falls" : "does not fall: it goes",
+                  figure(d.base.held_out_rmse, unit), figure(after, unit), figure(floor, unit));
   switch (d.verdict) {
     case Verdict::complete:
       return {"No effect is missing.",
@@ -125,12 +125,12 @@ VerdictText sentences(const Diagnosis& d, std::string_view unit) {
               fmt::format("{} The remaining error is {} the noise floor.{}", change,
                           times_floor(after, floor), on_what(d.depends_on))};
     case Verdict::unexplained:
-      return {"A missing effect is not in the catalogue.",
-              fmt::format("The error of the refitted model on held-out trials, {}, is {} the noise "
-                          "floor, {}, and no effect of the catalogue explains the difference.{}",
-                          figure(d.base.held_out_rmse, unit),
-                          times_floor(d.base.held_out_rmse, floor), figure(floor, unit),
-                          on_what(d.depends_on))};
+      return {
+          "A missing effect is not in the catalogue.",
+          fmt::format("The error of the refitted model on held-out trials, {}, is {} the noise "
+                      "floor, {}, and no effect of the catalogue explains the difference.{}",
+                      figure(d.base.held_out_rmse, unit), times_floor(d.base.held_out_rmse, floor),
+                      figure(floor, unit), on_what(d.depends_on))};
   }
   return {};
 }

@@ -146,7 +146,8 @@ TEST(Words, SayEachVerdict) {
   d.depends_on = "depth";
   EXPECT_THAT(sentences(d, "N").detail, HasSubstr("the noise floor. It varies with depth."));
   d.depends_on = "no recorded signal predicts it";
-  EXPECT_THAT(sentences(d, "N").detail, HasSubstr("the noise floor. No recorded signal predicts it."));
+  EXPECT_THAT(sentences(d, "N").detail,
+              HasSubstr("the noise floor. No recorded signal predicts it."));
   d.verdict = Verdict::unexplained;
   d.effects.clear();
   EXPECT_THAT(sentences(d, "N").headline, HasSubstr("not in the catalogue"));
