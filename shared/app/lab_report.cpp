@@ -128,6 +128,7 @@ std::string printed_comparison(const lab_io::LabResult& answer) {
     out += "  " + left(channel.name, 12) + right(figure(channel.rmse), 10) +
            right(fmt::format("{:.4f}", channel.r2), 9) + right(figure(channel.noise_floor), 10) +
            right(channel.explained < 0.0 ? "< 0 %" : percent(channel.explained), 11) + "\n";
+  if (const auto judged = lab::judged_text(c); !judged.empty()) out += "\n  " + judged + "\n";
   out += "\n  " + left("where it fails", 44) + right("of error", 9) + right("of time", 9) +
          right("error", 12) + "\n";
   for (const lab::Region& r : c.error_regions.regions)

@@ -15,6 +15,10 @@ namespace tractus::lab {
 
 /// Cut-off frequencies that the smoother tries for a motion, and how it judges them.
 struct SmoothingSettings {
+  /// How much the rate may jump at a break, standard deviation: a massless probe that enters bone. Prior.
+  double jump_rate_m_s = 0.02;
+  /// And the acceleration. Prior.
+  double jump_acceleration_m_s2 = 0.3;
   /// The lowest cut-off that is tried. Tuned.
   double lowest_cutoff_Hz = 0.8;
   /// The highest; hands and drives move below it. Physical.

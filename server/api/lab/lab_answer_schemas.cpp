@@ -62,10 +62,15 @@ Json comparison_schema() {
               {"rmse", figure("root mean square error of the judged channel")},
               {"channels", map(figure("root mean square error"), "error of each channel by name")},
               {"duration_s", number("s", "duration of the trial")}});
-  const Json phase = object({{"phase", text("phase of the motion")},
-                             {"rmse", figure("root mean square error in the phase")},
-                             {"share_of_error", number("1", "share of the squared error")},
-                             {"share_of_time", number("1", "share of the samples")}});
+  const Json phase = object(
+      {{"phase", text("phase of the motion")},
+       {"rmse", figure("root mean square error in the phase")},
+       {"share_of_error", number("1", "share of the squared error")},
+       {"share_of_time", number("1", "share of the samples")},
+       {"judged_share", optional(number("1", "share of the phase's samples that are judged"))}});
+  const Json judgement =
+      object({{"judgement", text("judged, or the reason for which samples are left out")},
+              {"share", number("1", "share of the samples")}});
   return object(
       {{"format", text("tractus-comparison/1")},
        {"primary", text("name of the judged channel")},
@@ -73,7 +78,10 @@ Json comparison_schema() {
        {"trials", array(trial, "comparison of each trial")},
        {"where", array(region_schema(), "regions that hold the error, largest share first")},
        {"where_method", text("how the regions were found and their figures estimated")},
-       {"phases", array(phase, "comparison of each phase of the motion")}});
+       {"phases", array(phase, "comparison of each phase of the motion")},
+       {"judgements",
+        optional(
+            array(judgement, "which samples the errors are of, and why the others are not"))}});
 }
 
 /// One number, or one for each component.

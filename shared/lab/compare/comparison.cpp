@@ -1,9 +1,13 @@
 #include "lab/compare/comparison.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <map>
 
 #include "core/require.hpp"
 #include "lab/settings.hpp"
@@ -56,7 +60,7 @@ Histogram histogram(const std::vector<double>& sorted, double low, double high) 
   return out;
 }
 
-/// Mean and spread of all samples; quantiles and histogram of evenly chosen ones on long sets.
+/// Mean and spread of all judged samples; quantiles and histogram of evenly chosen ones on long sets.
 struct Described {
   Moments moments;
   std::vector<double> sorted;
@@ -67,10 +71,11 @@ Described described(const Samples& samples, const Series& series) {
   const std::size_t every = 1 + total(samples) / kDistribution.most_for_quantiles;
   std::size_t n = 0;
   for (const TrialSamples& trial : samples.trials)
-    for (std::size_t k = 0; k < trial.t_s.size(); ++k, ++n) {
+    for (std::size_t k = 0; k < trial.t_s.size(); ++k) {
+      if (!trial.is_judged(k)) continue;
       const double value = series(trial, k);
       out.moments.take(value);
-      if (n % every == 0) out.sorted.push_back(value);
+      if (n++ % every == 0) out.sorted.push_back(value);
     }
   std::ranges::sort(out.sorted);
   return out;
@@ -111,7 +116,9 @@ double explained(double variance, double rmse, double floor) {
 ChannelComparison channel(const Samples& samples, std::size_t c) {
   const Series measured = [c](const TrialSamples& t, std::size_t k) { return t.measured[c][k]; };
   const Series simulated = [c](const TrialSamples& t, std::size_t k) { return t.simulated[c][k]; };
-  const Series residual = [c](const TrialSamples& t, std::size_t k) { return t.residual(c, k); };
+  const Series residual = [c](const TrialSamples& t, std::size_t k) {
+    return t.is_judged(k) ? t.residual(c, k) : 0.0;  // a gap in the spectrum's series
+  };
   const Described m = described(samples, measured), s = described(samples, simulated),
                   r = described(samples, residual);
   ChannelComparison out;
@@ -137,12 +144,13 @@ ChannelComparison channel(const Samples& samples, std::size_t c) {
 
 TrialComparison trial_comparison(const Samples& samples, const TrialSamples& trial) {
   TrialComparison out{trial.id, 0.0, {}, trial.t_s.back() - trial.t_s.front()};
-  const double n = double(trial.t_s.size());
+  double n = 0.0;
+  for (std::size_t k = 0; k < trial.t_s.size(); ++k) n += trial.is_judged(k);
   for (std::size_t c = 0; c < samples.channels.size(); ++c) {
     double squares = 0.0;
     for (std::size_t k = 0; k < trial.t_s.size(); ++k)
-      squares += trial.residual(c, k) * trial.residual(c, k);
-    out.channels.push_back(std::sqrt(squares / n));
+      if (trial.is_judged(k)) squares += trial.residual(c, k) * trial.residual(c, k);
+    out.channels.push_back(n > 0.0 ? std::sqrt(squares / n) : kNone);
   }
   double squares = 0.0;
   for (const std::size_t c : samples.judged) squares += out.channels[c] * out.channels[c];
@@ -154,21 +162,36 @@ std::vector<PhaseComparison> phases(const Samples& samples) {
   const std::size_t phase = samples.feature("phase");
   if (phase == samples.features.size()) return {};
   const auto& words = samples.features[phase].words;
-  std::vector<double> squares(words.size(), 0.0), rows(words.size(), 0.0);
+  std::vector<double> squares(words.size(), 0.0), judged(words.size(), 0.0),
+      rows(words.size(), 0.0);
   double all_squares = 0.0, all_rows = 0.0;
   for (const TrialSamples& trial : samples.trials)
     for (std::size_t row = 0; row < trial.rows(); ++row) {
       const auto word = std::size_t(trial.features[phase][row]);
-      const double square = samples.squared(trial, row * trial.stride),
-                   weight = double(trial.stride);
-      squares[word] += weight * square, rows[word] += weight;
-      all_squares += weight * square, all_rows += weight;
+      rows[word] += 1.0, all_rows += 1.0;
+      if (!trial.is_judged(row * trial.stride)) continue;
+      const double square = samples.squared(trial, row * trial.stride);
+      squares[word] += square, judged[word] += 1.0, all_squares += square;
     }
   std::vector<PhaseComparison> out;
   for (std::size_t w = 0; w < words.size(); ++w)
     if (rows[w] > 0.0)
-      out.push_back({words[w], std::sqrt(squares[w] / rows[w]),
-                     all_squares > 0.0 ? squares[w] / all_squares : 0.0, rows[w] / all_rows});
+      out.push_back({words[w], judged[w] > 0.0 ? std::sqrt(squares[w] / judged[w]) : kNone,
+                     all_squares > 0.0 ? squares[w] / all_squares : 0.0, rows[w] / all_rows,
+                     judged[w] / rows[w]});
+  return out;
+}
+
+/// What share of the samples each judgement has, most first; those that nothing was left out for are not named.
+std::vector<JudgementShare> judgement_shares(const Samples& samples) {
+  std::map<Judgement, double> counts;
+  double all = 0.0;
+  for (const TrialSamples& trial : samples.trials)
+    for (std::size_t k = 0; k < trial.t_s.size(); ++k, all += 1.0)
+      counts[trial.judgement.empty() ? Judgement::judged : trial.judgement[k]] += 1.0;
+  std::vector<JudgementShare> out;
+  for (const auto& [judgement, count] : counts) out.push_back({judgement, count / all});
+  std::ranges::stable_sort(out, std::greater<>(), &JudgementShare::share);
   return out;
 }
 
@@ -194,8 +217,22 @@ Comparison compare(const Samples& samples) {
   for (const TrialSamples& trial : samples.trials)
     out.trials.push_back(trial_comparison(samples, trial));
   out.phases = phases(samples);
+  out.judgements = judgement_shares(samples);
   out.error_regions = find_error_regions(samples);
   return out;
+}
+
+std::string judged_text(const Comparison& comparison) {
+  double judged = 0.0;
+  std::vector<std::string> others;
+  for (const auto& [judgement, share] : comparison.judgements)
+    if (judgement == Judgement::judged)
+      judged = share;
+    else
+      others.push_back(fmt::format("{:.2g} % {}", 100.0 * share, name(judgement)));
+  if (others.empty()) return "";
+  return fmt::format("{:.3g} % of the samples are judged; left out: {}.", 100.0 * judged,
+                     fmt::join(others, ", "));
 }
 
 }  // namespace lab

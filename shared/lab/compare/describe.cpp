@@ -80,7 +80,8 @@ void add_courses(const States& states, const Residuals& residuals, const TrialSa
   if (!velocity) return;
   Column crossing;
   if (slides)
-    for (const double trusted : residuals.trusted) crossing.push_back(trusted > 0.0 ? 0.0 : 1.0);
+    for (const Judgement j : residuals.judgement)
+      crossing.push_back(j == Judgement::at_border ? 1.0 : 0.0);
   const Courses course = courses(trial.t_s, *velocity, crossing);
   add({"direction", "", slides ? kDirections : kTurningDirections},
       every(course.direction, trial.stride));
@@ -145,6 +146,13 @@ Recorded copied(const Set& set, std::vector<std::string> channels) {
   return out;
 }
 
+/// Has the trial a sample that counts?
+bool judges(const TrialSamples& trial) {
+  for (std::size_t k = 0; k < trial.t_s.size(); ++k)
+    if (trial.is_judged(k)) return true;
+  return false;
+}
+
 }  // namespace
 
 Recorded recorded(const trial::ProbingSet& set) {
@@ -197,9 +205,12 @@ Samples samples_of(const Problem& problem, const Structure& structure,
         simulated[k] -= residuals.channels[from][k];
       trial.simulated.push_back(std::move(simulated));
     }
+    trial.judgement = residuals.judgement;
     add_features(problem.states(t), residuals, problem.rig() == "probing", out, trial);
     out.trials.push_back(std::move(trial));
   }
+  if (std::ranges::none_of(out.trials, judges))
+    for (TrialSamples& trial : out.trials) trial.judgement.clear();
   return out;
 }
 

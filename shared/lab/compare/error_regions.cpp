@@ -69,6 +69,7 @@ void add_rows(const Samples& samples, const Halves& halves, Rows& rows) {
     const TrialSamples& trial = samples.trials[t];
     for (std::size_t row = 0; row < trial.rows(); ++row) {
       const std::size_t k = row * trial.stride;
+      if (!trial.is_judged(k)) continue;
       rows.weight.push_back(double(std::min(trial.stride, trial.t_s.size() - k)));
       rows.error.push_back(samples.squared(trial, k));
       for (std::size_t c = 0; c < samples.judged.size(); ++c)
@@ -87,7 +88,8 @@ void add_bins(const Samples& samples, Rows& rows) {
   for (std::size_t f = 0; f < samples.features.size(); ++f) {
     std::vector<float> values;
     for (const TrialSamples& trial : samples.trials)
-      values.insert(values.end(), trial.features[f].begin(), trial.features[f].end());
+      for (std::size_t row = 0; row < trial.rows(); ++row)
+        if (trial.is_judged(row * trial.stride)) values.push_back(trial.features[f][row]);
     const bool words = !samples.features[f].words.empty();
     if (!words) rows.edges[f] = round_edges(values);
     for (const float value : values) {

@@ -77,11 +77,11 @@ std::vector<double> without(const Solution& at, const Gram& whole, const Gram& f
 }
 
 struct Squares {
-  double trusted = 0.0, trusted_count = 0.0, all = 0.0, all_count = 0.0;
+  double judged = 0.0, count = 0.0;
   std::vector<double> channels;
 };
 
-/// Sums of squares at the full rate between two times of a trial.
+/// Sums of squares of the judged samples between two times of a trial.
 Squares squares(const ResidualModel& model, const Structure& structure,
                 std::span<const double> values, int trial, double from_s, double to_s) {
   const Residuals r = model.full_rate(structure, values, trial);
@@ -89,13 +89,11 @@ Squares squares(const ResidualModel& model, const Structure& structure,
   out.channels.assign(r.channels.size(), 0.0);
   for (std::size_t k = 0; k < r.t_s.size(); ++k) {
     const double t = r.t_s[k] - r.t_s.front();
-    if (t < from_s || t > to_s) continue;
+    if (t < from_s || t > to_s || r.judgement[k] != Judgement::judged) continue;
     for (std::size_t c = 0; c < r.channels.size(); ++c)
       out.channels[c] += r.channels[c][k] * r.channels[c][k];
-    const double square = r.channels[0][k] * r.channels[0][k];
-    out.all += square;
-    out.all_count += 1.0;
-    if (r.trusted[k] > 0.0) out.trusted += square, out.trusted_count += 1.0;
+    out.judged += r.channels[0][k] * r.channels[0][k];
+    out.count += 1.0;
   }
   return out;
 }
@@ -181,9 +179,9 @@ void hold_out(const Residual& residual, const Solution& at, const Gram& whole,
   double sum = 0.0, count = 0.0;
   std::vector<double> by_trial(std::size_t(residual.trials()), 0.0), counts = by_trial;
   for (std::size_t f = 0; f < folds.size(); ++f) {
-    sum += held[f].trusted, count += held[f].trusted_count;
-    by_trial[std::size_t(folds[f].trial)] += held[f].trusted;
-    counts[std::size_t(folds[f].trial)] += held[f].trusted_count;
+    sum += held[f].judged, count += held[f].count;
+    by_trial[std::size_t(folds[f].trial)] += held[f].judged;
+    counts[std::size_t(folds[f].trial)] += held[f].count;
   }
   fit.held_out_rmse = root_mean(sum, count);
   for (std::size_t k = 0; k < by_trial.size(); ++k)
@@ -213,15 +211,13 @@ Fit report(const Residual& residual, Solution& at, bool held_out) {
   total.channels.assign(problem.channels().size(), 0.0);
   for (int k = 0; k < residual.trials(); ++k) {
     const Squares& s = sums[std::size_t(k)];
-    fit.trials.push_back({problem.trial_id(k), root_mean(s.trusted, s.trusted_count),
+    fit.trials.push_back({problem.trial_id(k), root_mean(s.judged, s.count),
                           std::numeric_limits<double>::quiet_NaN()});
-    total.trusted += s.trusted, total.trusted_count += s.trusted_count;
-    total.all += s.all, total.all_count += s.all_count;
+    total.judged += s.judged, total.count += s.count;
     for (std::size_t c = 0; c < s.channels.size(); ++c) total.channels[c] += s.channels[c];
   }
-  fit.rmse = root_mean(total.trusted, total.trusted_count);
-  fit.rmse_all = root_mean(total.all, total.all_count);
-  for (const double c : total.channels) fit.channel_rmse.push_back(root_mean(c, total.all_count));
+  fit.rmse = root_mean(total.judged, total.count);
+  for (const double c : total.channels) fit.channel_rmse.push_back(root_mean(c, total.count));
   fit.held_out_rmse = std::numeric_limits<double>::quiet_NaN();
   if (held_out) hold_out(residual, at, whole, weights, fit);
   return fit;

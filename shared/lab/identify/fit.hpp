@@ -29,7 +29,7 @@ struct FitOptions {
 
 struct TrialError {
   std::string id;
-  double rmse = 0.0;           ///< of the primary channel, full rate, trusted samples
+  double rmse = 0.0;           ///< of the primary channel, full rate, judged samples
   double held_out_rmse = 0.0;  ///< by a fit that did not see the trial
 };
 
@@ -40,7 +40,6 @@ struct Fit {
   Eigen::MatrixXd correlation;       ///< [value][value], 0 with those not informed
   double rmse = 0.0;                 ///< of the primary channel over all trials
   double held_out_rmse = 0.0;        ///< NaN when not asked for
-  double rmse_all = 0.0;             ///< with the samples that are not trusted
   std::vector<double> channel_rmse;  ///< one per RecordedTrials::channels()
   std::vector<TrialError> trials;    ///< one per trial
   Eigen::VectorXd trial_score;       ///< held-out mean squared whitened residual per fold

@@ -31,7 +31,7 @@ Columns columns(const Problem& problem, const Solution& at) {
     for (auto& state : out.states) state.emplace_back();
     const std::size_t stride = 1 + r.t_s.size() / kDependence.rows_per_trial;
     for (std::size_t i = 0; i < r.t_s.size(); i += stride) {
-      if (!(r.trusted[i] > 0.0)) continue;
+      if (r.judgement[i] != Judgement::judged) continue;
       out.errors.back().push_back(r.channels[0][i]);
       for (std::size_t s = 0; s < out.states.size() && s < states.values.size(); ++s)
         out.states[s].back().push_back(states.values[s][i]);

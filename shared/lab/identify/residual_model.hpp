@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "lab/identify/judgement.hpp"
 #include "lab/identify/parameter_space.hpp"
 
 namespace tractus::lab {
@@ -22,8 +23,7 @@ struct Derived {
 struct Residuals {
   std::vector<double> t_s;
   std::vector<std::vector<double>> channels;
-  /// 1 inside, 0 where the motion is too poorly known to judge (layer borders, first contact).
-  std::vector<double> trusted;
+  std::vector<Judgement> judgement;  ///< one per sample
 };
 
 /// Const methods may be called from several threads at once.

@@ -93,7 +93,7 @@ class Toy final : public Problem {
       out.t_s.push_back(0.01 * k);
       out.channels[0].push_back(measured_[std::size_t(t)][std::size_t(k)] -
                                 predicted(structure, v, t, k));
-      out.trusted.push_back(1.0);
+      out.judgement.push_back(Judgement::judged);
     }
     return out;
   }

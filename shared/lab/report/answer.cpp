@@ -159,14 +159,19 @@ Json to_json(const Comparison& comparison) {
     phases.push_back({{"phase", p.phase},
                       {"rmse", number(p.rmse)},
                       {"share_of_error", p.share_of_error},
-                      {"share_of_time", p.share_of_time}});
+                      {"share_of_time", p.share_of_time},
+                      {"judged_share", p.judged_share}});
+  Json judgements = Json::array();
+  for (const JudgementShare& j : comparison.judgements)
+    judgements.push_back({{"judgement", name(j.judgement)}, {"share", j.share}});
   return {{"format", "tractus-comparison/1"},
           {"primary", comparison.judged_name},
           {"channels", channels},
           {"trials", trials},
           {"where", error_regions_json(comparison.error_regions)},
           {"where_method", comparison.error_regions.honest},
-          {"phases", phases}};
+          {"phases", phases},
+          {"judgements", judgements}};
 }
 
 Json to_json(const std::vector<Ranked>& ranking) {

@@ -123,6 +123,8 @@ std::string places(const ReportContent& content) {
   if (content.map)
     body += "<h3>On the wall of the tract</h3>\n" +
             tract_picture(*content.map, content.before.comparison.judged_unit);
+  if (const std::string judged = judged_text(content.before.comparison); !judged.empty())
+    body += "<p>" + escaped(judged) + "</p>\n";
   body += phase_table(content);
   if (content.better)
     body += "<h3>What is left, " + escaped(better_name(content)) + "</h3>\n" +

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "core/require.hpp"
@@ -24,12 +25,19 @@ struct Before {
   double innovation, variance;
 };
 
+/// A break in the filter's units.
+struct Jump {
+  double share, rate_variance, acceleration_variance;
+};
+
 /// The filter in units of one sample's noise and of the mean spacing.
 class Filter {
  public:
   /// @param r  variance of each sample's noise.
-  Filter(std::span<const double> dt, std::span<const double> y, std::span<const double> r)
-      : dt_(dt), y_(y), r_(r) {
+  /// @param jumps  by sample: the break before it.
+  Filter(std::span<const double> dt, std::span<const double> y, std::span<const double> r,
+         std::map<std::size_t, Jump> jumps)
+      : dt_(dt), y_(y), r_(r), jumps_(std::move(jumps)) {
     before_.resize(y.size());
     double most = 1.0;
     for (std::size_t k = 1; k < y.size(); ++k) most = std::max(most, std::abs(y[k] - y[k - 1]));
@@ -41,7 +49,7 @@ class Filter {
     Three x{y_[0], 0.0, 0.0};
     Sym p = first_;
     for (std::size_t k = 0; k < y_.size(); ++k) {
-      if (k > 0) predict(dt_[k], q[k], x, p);
+      if (k > 0) advance(k, q[k], x, p);
       Before& now = before_[k];
       now = {x, p, y_[k] - x[0], p[0] + r_[k]};
       update(now, x, p);
@@ -82,6 +90,16 @@ class Filter {
   }
 
  private:
+  /// From sample k − 1 to k, with the jump between them if there is one.
+  void advance(std::size_t k, double q, Three& x, Sym& p) const {
+    const auto jump = jumps_.find(k);
+    if (jump == jumps_.end()) return predict(dt_[k], q, x, p);
+    predict(jump->second.share * dt_[k], q, x, p);
+    p[3] += jump->second.rate_variance;
+    p[5] += jump->second.acceleration_variance;
+    predict((1.0 - jump->second.share) * dt_[k], q, x, p);
+  }
+
   static void predict(double h, double q, Three& x, Sym& p) {
     x[0] += h * (x[1] + 0.5 * h * x[2]);
     x[1] += h * x[2];
@@ -137,6 +155,7 @@ class Filter {
   }
 
   std::span<const double> dt_, y_, r_;
+  std::map<std::size_t, Jump> jumps_;
   Sym first_{};
   std::vector<Before> before_;
 };
@@ -255,14 +274,20 @@ class Bank {
 
 /// One stretch, into `out` from sample `from` on, without its first `skip` samples.
 void smooth_stretch(std::span<const double> t_s, std::span<const double> y, double sd,
-                    std::span<const double> variance, std::size_t skip, std::size_t from,
-                    Smoothed& out) {
+                    std::span<const double> variance, const std::vector<Break>& breaks,
+                    std::size_t skip, std::size_t from, Smoothed& out) {
   const std::size_t n = y.size();
   const double spacing_s = (t_s.back() - t_s.front()) / double(n - 1);
   std::vector<double> dt(n, 1.0), scaled(n), q(n);
   for (std::size_t k = 1; k < n; ++k) dt[k] = (t_s[k] - t_s[k - 1]) / spacing_s;
   for (std::size_t k = 0; k < n; ++k) scaled[k] = (y[k] - y[0]) / sd;
-  Filter filter(dt, scaled, variance);
+  const double rate = kSmoothing.jump_rate_m_s * spacing_s / sd,
+               acceleration = kSmoothing.jump_acceleration_m_s2 * spacing_s * spacing_s / sd;
+  std::map<std::size_t, Jump> jumps;
+  for (const Break& one : breaks)
+    if (one.sample > from && one.sample < from + n)
+      jumps[one.sample - from] = {one.share, rate * rate, acceleration * acceleration};
+  Filter filter(dt, scaled, variance, std::move(jumps));
   q = Bank(filter, variance, spacing_s).log_intensity();
   for (double& v : q) v = std::exp(v);
   filter.forward(q);
@@ -311,7 +336,8 @@ std::vector<double> rounding_variance(std::span<const double> y) {
   return out;
 }
 
-Smoothed smooth(std::span<const double> t_s, std::span<const double> y, double noise_sd) {
+Smoothed smooth(std::span<const double> t_s, std::span<const double> y, double noise_sd,
+                const std::vector<Break>& breaks) {
   const std::vector<double> variance = rounding_variance(y);
   core::require(t_s.size() == y.size() && y.size() >= 4 && noise_sd > 0.0,
                 "a smoother needs four samples and their noise");
@@ -327,7 +353,7 @@ Smoothed smooth(std::span<const double> t_s, std::span<const double> y, double n
                                 ? n
                                 : from + kSmoothing.stretch_samples;
     smooth_stretch(t_s.subspan(from, end - from), y.subspan(from, end - from), noise_sd,
-                   std::span(variance).subspan(from, end - from),
+                   std::span(variance).subspan(from, end - from), breaks,
                    from == 0 ? 0 : kSmoothing.overlap_samples / 2, from, out);
     if (end == n) break;
     from = end - kSmoothing.overlap_samples;

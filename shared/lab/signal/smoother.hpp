@@ -13,6 +13,12 @@ struct Smoothed {
   double noise_sd = 0.0;  ///< of one recorded sample, as estimated or stated
 };
 
+/// Between two samples the motion's rate and acceleration may jump, as where a probe enters another layer.
+struct Break {
+  std::size_t sample;  ///< the one after it, ≥ 1
+  double share = 0.5;  ///< of the interval that is over when it happens, 0 … 1
+};
+
 /// Standard deviation of the white noise on a smooth signal: from third differences, which a
 /// quadratic does not pass; a low quantile over short stretches, so that kinks and impacts do not count,
 /// not even one every twentieth of a second. Quantisation counts as noise. Fewer than 8 samples: 0.
@@ -29,9 +35,10 @@ std::vector<double> rounding_variance(std::span<const double> y);
 /// along the signal: of a bank of cut-offs, at each moment the one that best predicts the samples
 /// left out round it. Samples that repeat one rounded value count as one. So a pause is smoothed
 /// much and a kink (a border of layers, a stop) little, and the standard errors say so. Time stamps
-/// need not be even.
+/// need not be even. At a break rate and acceleration are free to jump by what SmoothingSettings says, the value is not.
 ///
 /// @param t_s  strictly increasing. @param y  as many. @param noise_sd  of one sample, > 0.
-Smoothed smooth(std::span<const double> t_s, std::span<const double> y, double noise_sd);
+Smoothed smooth(std::span<const double> t_s, std::span<const double> y, double noise_sd,
+                const std::vector<Break>& breaks = {});
 
 }  // namespace tractus::lab

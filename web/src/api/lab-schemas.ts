@@ -106,7 +106,16 @@ export const comparisonSchema = v.object({
   ),
   where: v.array(regionSchema),
   where_method: v.string(),
-  phases: v.array(v.object({ phase: v.string(), rmse: figure, share_of_error: portion, share_of_time: portion })),
+  phases: v.array(
+    v.object({
+      phase: v.string(),
+      rmse: figure,
+      share_of_error: portion,
+      share_of_time: portion,
+      judged_share: v.optional(portion),
+    }),
+  ),
+  judgements: v.optional(v.array(v.object({ judgement: v.string(), share: portion })), []),
 });
 
 const several = v.union([figure, v.array(figure)]);

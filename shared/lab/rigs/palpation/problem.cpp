@@ -263,7 +263,7 @@ Residuals PalpationProblem::full_rate(const Structure& structure, std::span<cons
                                       int k) const {
   const PalpationRecording& r = trial(k);
   const auto predicted = answer(structure, values, r, r.all());
-  Residuals out{r.motion.t_s, std::vector<std::vector<double>>(7), r.trusted};
+  Residuals out{r.motion.t_s, std::vector<std::vector<double>>(7), r.judgement};
   Eigen::MatrixXd slow;
   if (has_drift(structure)) slow = trend(structure, values, k);
   for (auto& channel : out.channels) channel.reserve(r.size());

@@ -210,7 +210,7 @@ Result<PalpationRecording> prepare(trial::PalpationMeasurement&& trial, const Ve
                               out.note.empty() ? "" : "; ", trial.id, kChannels[c]);
   }
   for (std::size_t k = 0; k < n; k += stride) out.measured.push_back(stacked(trial.wrench_H[k]));
-  out.trusted.assign(out.size(), 1.0);
+  out.judgement.assign(out.size(), Judgement::judged);
   choose_instants(out, 1);
   return out;
 }

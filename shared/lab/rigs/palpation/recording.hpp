@@ -37,8 +37,8 @@ struct PalpationRecording {
   std::vector<math::Vec2> deflection_m;  ///< of a model near the truth: where a search begins
   std::vector<Mat6> whitener;            ///< of each instant's residual, lower triangular
   double usual_square = 1.0;             ///< mean of a whitened residual's squares by noise alone
-  std::vector<double> trusted;           ///< 0 or 1, per sample
-  Vec6 floor = Vec6::Zero();             ///< rmse of the trusted samples under a true model
+  std::vector<Judgement> judgement;      ///< per sample
+  Vec6 floor = Vec6::Zero();             ///< rmse of the judged samples under a true model
   std::vector<double> field_per_m;       ///< |g| at the tip, where it touches
 
   std::size_t size() const { return motion.t_s.size(); }

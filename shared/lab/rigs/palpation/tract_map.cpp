@@ -48,7 +48,7 @@ std::optional<TractMap> tract_map(const Samples& samples) {
   double all = 0.0;
   for (const TrialSamples& trial : samples.trials)
     for (std::size_t row = 0; row < trial.rows(); ++row) {
-      if (!touches(samples, trial, row)) continue;
+      if (!trial.is_judged(row * trial.stride) || !touches(samples, trial, row)) continue;
       const double d = (double(trial.features[depth][row]) - range.low) / (range.high - range.low);
       double a = std::fmod(double(trial.features[angle][row]), turn) / turn;
       if (a < 0.0) a += 1.0;

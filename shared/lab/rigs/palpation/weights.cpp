@@ -248,7 +248,7 @@ double at_the_edge_N(const models::PalpationRuntime& runtime, const PalpationRec
   return base.force_scale * base.force_factor_Nm * most_per_m;
 }
 
-/// Trusted samples, the floor over them, and |g| where the tip touches.
+/// Judged samples, the floor over them, and |g| where the tip touches.
 void set_trust(const models::PalpationRuntime& runtime, PalpationRecording& r,
                const models::PalpationAnswer& at, const std::vector<Mat6>& by_motion,
                const std::vector<std::size_t>& snapped) {
@@ -256,29 +256,30 @@ void set_trust(const models::PalpationRuntime& runtime, PalpationRecording& r,
   const double most_N = std::sqrt(sensor.head<3>().sum());
   const double most = std::pow(kWeights.poorly_known_factor * most_N, 2);
   for (std::size_t k = 0; k < r.size(); ++k)
-    r.trusted[k] = at.converged[k] && by_motion[k].topLeftCorner<3, 3>().trace() <= most &&
-                           at_the_edge_N(runtime, r, at, k) <= most_N &&
-                           kWeights.mass_kg * r.a_sd_m_s2[k] <= most_N &&
-                           !sign_unknown(runtime, r, at, k)
-                       ? 1.0
-                       : 0.0;
+    r.judgement[k] = !at.converged[k] ? Judgement::no_equilibrium
+                     : by_motion[k].topLeftCorner<3, 3>().trace() <= most &&
+                             at_the_edge_N(runtime, r, at, k) <= most_N &&
+                             kWeights.mass_kg * r.a_sd_m_s2[k] <= most_N &&
+                             !sign_unknown(runtime, r, at, k)
+                         ? Judgement::judged
+                         : Judgement::unknown_motion;
   const std::size_t reach = snap_reach(r);
   for (const std::size_t k : snapped)
     for (std::size_t i = k - std::min(k, reach); i < std::min(r.size(), k + reach); ++i)
-      r.trusted[i] = 0.0;
+      r.judgement[i] = Judgement::at_jump;
   r.floor.setZero();
   r.field_per_m.clear();
-  double trusted = 0.0;
+  double judged = 0.0;
   for (std::size_t k = 0; k < r.size(); ++k) {
-    if (r.trusted[k] > 0.0) {
+    if (r.judgement[k] == Judgement::judged) {
       r.floor += sensor + Vec6(by_motion[k].diagonal());
-      trusted += 1.0;
+      judged += 1.0;
     }
     if (at.wrench_H[k].force_N.norm() < kWeights.contact_N) continue;
     const Vec3 tip = runtime.tip_m(r.motion.handle[k].X_VH, at.deflection_m[k]);
     r.field_per_m.push_back(runtime.field().gradient_per_m(tip).norm());
   }
-  r.floor = trusted > 0.0 ? Vec6((r.floor / trusted).cwiseSqrt()) : Vec6(sensor.cwiseSqrt());
+  r.floor = judged > 0.0 ? Vec6((r.floor / judged).cwiseSqrt()) : Vec6(sensor.cwiseSqrt());
 }
 
 }  // namespace

@@ -238,7 +238,7 @@ Residuals ProbingProblem::full_rate(const Structure& structure, std::span<const 
   };
   Residuals out{r.motion.t_s,
                 {minus(r.measured, turns_ ? predicted.forces.tz_Nm : predicted.forces.fz_N)},
-                r.trusted};
+                r.judgement};
   if (has_drift(structure)) {
     const Eigen::VectorXd trend = drift(structure, values, k);
     for (std::size_t i = 0; i < r.size(); ++i) out.channels[0][i] -= trend(Eigen::Index(i));
@@ -246,7 +246,7 @@ Residuals ProbingProblem::full_rate(const Structure& structure, std::span<const 
   for (std::size_t i = 0; i < predicted.at_rest_N.size(); ++i) {
     double& residual = out.channels[0][r.rest[i]];
     residual = beyond(residual, predicted.at_rest_N[i]);
-    if (residual == 0.0) out.trusted[r.rest[i]] = 0.0;  // says nothing
+    if (residual == 0.0) out.judgement[r.rest[i]] = Judgement::standstill;
   }
   if (channels_.size() > 1) out.channels.push_back(minus(r.other, predicted.forces.tz_Nm));
   return out;
@@ -329,11 +329,14 @@ Result<std::unique_ptr<Problem>> make_probing_problem(const models::ProbingModel
                                               "a set of one kind is expected",
                                               set.folder.string())};
   const std::string shortened = shorten(set);
+  std::vector<double> borders_m;
+  for (const laws::Layer& layer : model.layers)
+    borders_m.insert(borders_m.end(), {layer.start_m, layer.start_m + layer.thickness_m});
   std::vector<ProbingRecording> recordings(set.trials.size());
   std::vector<std::string> wrong(set.trials.size());
   parallel(int(set.trials.size()), options.threads, [&](int k) {
     auto& t = set.trials[std::size_t(k)];
-    auto ready = prepare(std::move(t), set.noise, turns, (set.folder / t.file).string());
+    auto ready = prepare(std::move(t), set.noise, turns, borders_m, (set.folder / t.file).string());
     if (ready)
       recordings[std::size_t(k)] = std::move(*ready);
     else

@@ -108,14 +108,9 @@ void prepare_sliding(trial::ProbingMeasurement& trial, const trial::StatedNoise&
     return;
   }
   const Noise noise = noise_of(trial.x_m, stated.x_m);
-  Smoothed x = smooth(trial.t_s, trial.x_m, noise.sd);
-  motion.x_m = std::move(x.value);
-  motion.v_m_s = std::move(x.rate);
-  motion.a_m_s2 = std::move(x.acceleration);
-  out.x_sd_m = std::move(x.value_sd);
-  for (double& sd : out.x_sd_m) sd = std::hypot(sd, noise.correlated);
-  out.v_sd_m_s = std::move(x.rate_sd);
-  motion.rest_m_s = kProbingRecording.rest_errors * middle_of(out.v_sd_m_s);
+  out.recorded_x_m = std::move(trial.x_m);
+  out.x_noise_sd_m = noise.sd;
+  out.x_rounding_sd_m = noise.correlated;
 }
 
 /// Outputs that say something new: while the probe stands, the longer it stands the rarer, as what
@@ -140,6 +135,8 @@ std::vector<std::size_t> informative(const ProbingRecording& r) {
 void find_rest(ProbingRecording& r) {
   const effects::ProbingMotion& m = r.motion;
   effects::ProbingMotion& out = r.at_rest;
+  r.rest.clear();
+  out = {};
   out.rest_m_s = 0.0;
   for (std::size_t k = 0; k < r.size(); ++k) {
     const double told_m_s =
@@ -177,13 +174,6 @@ struct Jump {
   double size_N;
 };
 
-std::vector<double> borders_of(const laws::ProbingLaw& law) {
-  std::vector<double> out;
-  for (const laws::Layer& layer : law.parameters().layers)
-    out.insert(out.end(), {layer.start_m, layer.start_m + layer.thickness_m});
-  return out;
-}
-
 std::vector<Jump> jumps(const laws::ProbingLaw& law, const ProbingRecording& r) {
   const std::vector<double> borders = borders_of(law);
   std::vector<Jump> out;
@@ -198,11 +188,64 @@ std::vector<Jump> jumps(const laws::ProbingLaw& law, const ProbingRecording& r) 
   return out;
 }
 
+/// Where recorded positions pass a border: a break in the middle of the interval.
+std::vector<Break> passages(std::span<const double> x_m, std::span<const double> borders_m) {
+  std::vector<Break> out;
+  for (std::size_t k = 1; k < x_m.size(); ++k)
+    if (std::ranges::any_of(borders_m, [&](double b) { return (x_m[k - 1] < b) != (x_m[k] < b); }))
+      out.push_back({k});
+  return out;
+}
+
+/// The share of the interval after which the motion smoothed so far reaches the border.
+double moment_of(const Break& one, const Smoothed& x, std::span<const double> t_s,
+                 std::span<const double> recorded_m, std::span<const double> borders_m) {
+  const std::size_t k = one.sample;
+  const double h = t_s[k] - t_s[k - 1];
+  for (const double border : borders_m)
+    if ((recorded_m[k - 1] < border) != (recorded_m[k] < border)) {
+      const double before = border - x.value[k - 1], after = x.value[k] - border;
+      const double there = x.rate[k - 1] * h, rest = x.rate[k] * h;
+      // From both sides: the share that is left to go before it, and that which was gone since.
+      double sum = 0.0, count = 0.0;
+      if (std::abs(there) > 0.0) sum += before / there, count += 1.0;
+      if (std::abs(rest) > 0.0) sum += 1.0 - after / rest, count += 1.0;
+      return count > 0.0 ? std::clamp(sum / count, 0.02, 0.98) : 0.5;
+    }
+  return one.share;
+}
+
 }  // namespace
+
+std::vector<double> borders_of(const laws::ProbingLaw& law) {
+  std::vector<double> out;
+  for (const laws::Layer& layer : law.parameters().layers)
+    out.insert(out.end(), {layer.start_m, layer.start_m + layer.thickness_m});
+  return out;
+}
+
+void set_motion(ProbingRecording& r, std::span<const double> borders_m) {
+  if (r.recorded_x_m.empty()) return;
+  effects::ProbingMotion& motion = r.motion;
+  std::vector<Break> breaks = passages(r.recorded_x_m, borders_m);
+  Smoothed x = smooth(motion.t_s, r.recorded_x_m, r.x_noise_sd_m, breaks);
+  if (!breaks.empty()) {
+    for (Break& one : breaks) one.share = moment_of(one, x, motion.t_s, r.recorded_x_m, borders_m);
+    x = smooth(motion.t_s, r.recorded_x_m, r.x_noise_sd_m, breaks);
+  }
+  motion.x_m = std::move(x.value);
+  motion.v_m_s = std::move(x.rate);
+  motion.a_m_s2 = std::move(x.acceleration);
+  r.x_sd_m = std::move(x.value_sd);
+  for (double& sd : r.x_sd_m) sd = std::hypot(sd, r.x_rounding_sd_m);
+  r.v_sd_m_s = std::move(x.rate_sd);
+  motion.rest_m_s = kProbingRecording.rest_errors * middle_of(r.v_sd_m_s);
+  find_rest(r);
+}
 
 Result<ProbingRecording> prepare(trial::ProbingMeasurement&& trial,
                                  const trial::StatedNoise& stated, bool turns,
-                                 const std::string& where) {
+                                 std::span<const double> borders_m, const std::string& where) {
   const std::size_t n = trial.t_s.size();
   if (n < kProbingRecording.fewest_samples)
     return unusable_probing(where, fmt::format("{} samples, at least {} are expected", n,
@@ -227,7 +270,7 @@ Result<ProbingRecording> prepare(trial::ProbingMeasurement&& trial,
                  noise.correlated);
   if (!out.other.empty()) out.other_noise_sd = noise_of(out.other, stated.tz_Nm).sd;
   prepare_sliding(trial, stated, out);
-  if (!turns) find_rest(out);
+  set_motion(out, borders_m);
   prepare_turning(trial, stated, out);
   if (turns)
     find_turning_rest(out);
@@ -235,7 +278,7 @@ Result<ProbingRecording> prepare(trial::ProbingMeasurement&& trial,
     out.decimator.choose(informative(out));
   out.measured_thin.resize(out.decimator.size(n));
   out.decimator.apply(out.measured, out.measured_thin);
-  out.trusted.assign(n, 1.0);
+  out.judgement.assign(n, Judgement::judged);
   out.sd_thin.assign(out.measured_thin.size(), out.slow_noise_sd);
   out.floor = out.noise_sd;
   return out;
@@ -254,7 +297,7 @@ void weigh(const laws::ProbingLaw& law, ProbingRecording& r) {
     motion_variance[k] = by_speed * by_speed + border * border;
   }
   const auto found = jumps(law, r);
-  r.trusted.assign(n, 1.0);
+  r.judgement.assign(n, Judgement::judged);
   const auto reach =
       std::max(kProbingRecording.border_samples,
                std::size_t(kProbingRecording.border_s / (r.seconds() / double(n - 1))));
@@ -268,15 +311,15 @@ void weigh(const laws::ProbingLaw& law, ProbingRecording& r) {
       std::max(*half_way, kProbingRecording.well_known_share * kProbingRecording.well_known_share *
                               r.noise_sd * r.noise_sd);
   for (std::size_t k = 0; k < n; ++k)
-    if (motion_variance[k] > most) r.trusted[k] = 0.0;
+    if (motion_variance[k] > most) r.judgement[k] = Judgement::unknown_motion;
   for (const double border : borders_of(law))
     for (std::size_t k = 0; k < n; ++k)  // on which side is nobody's to tell
       if (std::abs(m.x_m[k] - border) < kProbingRecording.on_border_m + 3.0 * r.x_sd_m[k])
-        r.trusted[k] = 0.0;
+        r.judgement[k] = Judgement::at_border;
   for (const Jump& jump : found)
     for (std::size_t k = jump.sample < reach ? 0 : jump.sample - reach;
          k < std::min(n, jump.sample + reach); ++k)
-      r.trusted[k] = 0.0;
+      r.judgement[k] = Judgement::at_border;
   std::vector<double> jump_variance(r.sd_thin.size(), 0.0);
   const std::size_t half = r.decimator.half() + 1;
   std::size_t begin = 0;
@@ -297,7 +340,8 @@ void weigh(const laws::ProbingLaw& law, ProbingRecording& r) {
                              motion_variance[r.decimator.middle(j)] + jump_variance[j]);
   double sum = 0.0, count = 0.0;
   for (std::size_t k = 0; k < n; ++k)
-    if (r.trusted[k] > 0.0) sum += r.noise_sd * r.noise_sd + motion_variance[k], count += 1.0;
+    if (r.judgement[k] == Judgement::judged)
+      sum += r.noise_sd * r.noise_sd + motion_variance[k], count += 1.0;
   r.floor = count > 0.0 ? std::sqrt(sum / count) : r.noise_sd;
 }
 

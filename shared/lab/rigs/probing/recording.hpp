@@ -4,11 +4,13 @@
 
 #include <cmath>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "core/result.hpp"
 #include "effects/probing_effect.hpp"
+#include "lab/identify/judgement.hpp"
 #include "lab/settings.hpp"
 #include "lab/signal/decimator.hpp"
 #include "laws/probing_law.hpp"
@@ -20,6 +22,9 @@ inline constexpr const auto& kProbingRecording = kSettings.probing_recording;
 
 struct ProbingRecording {
   std::string id;
+  std::vector<double> recorded_x_m;  ///< as it came, for smoothing anew; empty without sliding
+  double x_noise_sd_m = 0.0;         ///< of one recorded position
+  double x_rounding_sd_m = 0.0;      ///< the part of it that smoothing does not average away
   effects::ProbingMotion motion;
   std::vector<double> x_sd_m, v_sd_m_s;  ///< standard errors of the smoothed motion
   std::vector<double> omega_sd_rad_s;    ///< the same of the turning; empty without an angle
@@ -35,19 +40,27 @@ struct ProbingRecording {
   std::vector<std::size_t> rest;
   effects::ProbingMotion at_rest;
   // What a border or a poorly known motion makes of an output; set by weigh().
-  std::vector<double> sd_thin;  ///< expected of each output under a true model
-  std::vector<double> trusted;  ///< 0 or 1, full rate
-  double floor = 0.0;           ///< rmse of the trusted samples under a true model
+  std::vector<double> sd_thin;       ///< expected of each output under a true model
+  std::vector<Judgement> judgement;  ///< full rate
+  double floor = 0.0;                ///< rmse of the judged samples under a true model
 
   double seconds() const { return motion.t_s.back() - motion.t_s.front(); }
   std::size_t size() const { return motion.t_s.size(); }
 };
 
 /// Prepares a trial, which is used up. @param turns  compare the torque of the turning stage (a rig
-/// that does not slide). Errors: bad_input naming the trial: too few samples, too slow, no motion.
+/// that does not slide). @param borders_m  of the given model's layers. Errors: bad_input naming the trial: too few samples, too slow, no motion.
 core::Result<ProbingRecording> prepare(trial::ProbingMeasurement&& trial,
                                        const trial::StatedNoise& stated, bool turns,
-                                       const std::string& where);
+                                       std::span<const double> borders_m, const std::string& where);
+
+/// Smooths the recorded positions, with breaks where they pass a border of layers: speed and acceleration may
+/// jump there. The moment of passing is where the smoothed motion before it reaches the border.
+/// @param borders_m  of the model.
+void set_motion(ProbingRecording& recording, std::span<const double> borders_m);
+
+/// Borders of the law's layers.
+std::vector<double> borders_of(const laws::ProbingLaw& law);
 
 /// What lies outside ± of what dry friction at rest may do: exactly 0 within.
 inline double beyond(double residual, double half_width) {

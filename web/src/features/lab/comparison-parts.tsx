@@ -7,7 +7,9 @@ import { channelNameOf, channelUnit } from './names';
 
 export const kFloorMeaning =
   'The error that noise alone causes, estimated from the measurements themselves. No model can have a smaller error.';
-export const kErrorMeaning = 'Root mean square of measured − simulated over all samples.';
+export const kErrorMeaning = 'Root mean square of measured − simulated over all judged samples.';
+const kJudgedMeaning =
+  'Samples where the motion is known well enough to judge the model. Left out: samples at a border between layers, and samples whose motion is too noisy.';
 export const kExplainedMeaning =
   'Share of the variation beyond noise that the model reproduces: 100 % at the noise floor, 0 % for a model that is no better than the mean.';
 
@@ -36,6 +38,7 @@ export function Headline({
     is = after ? primaryOf(after) : null;
   if (!was) return null;
   const unit = channelUnit(was.name);
+  const judged = before.judgements.find(({ judgement }) => judgement === 'judged');
   return (
     <Facts
       facts={[
@@ -72,6 +75,14 @@ export function Headline({
             </strong>
           ),
         },
+        ...(judged
+          ? [
+              {
+                name: <Term definition={kJudgedMeaning}>Judged</Term>,
+                value: <strong className={styles.big}>{formatShare(judged.share)} of the samples</strong>,
+              },
+            ]
+          : []),
         {
           name: 'Recorded',
           value: (
