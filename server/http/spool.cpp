@@ -9,6 +9,7 @@
 #include <cerrno>
 
 #include "server/http/coroutine.hpp"
+#include "server/http/pieces.hpp"
 
 namespace tractus {
 namespace http {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <limits>
 
 #include "core/try.hpp"
@@ -16,6 +17,7 @@ using core::Fields;
 using core::Json;
 using core::Result;
 
+constexpr double kExact_m = 1e-9, kRounding_m = 2e-6;  // of a border
 constexpr std::size_t kMaxLayers = 4096;
 /// The longest travel that the law takes: a model is checked against it, a rig against its own.
 constexpr double kLongestTravel_m = 1.0;
@@ -24,6 +26,23 @@ constexpr double kLongestTravel_m = 1.0;
 double number(Fields& fields, const char* key) {
   constexpr double kAny = std::numeric_limits<double>::max();
   return fields.number(key, -kAny, kAny);
+}
+
+/// Borders that are rounded apart: a layer begins where the one before it ends, and keeps its own end.
+void snap_layers(ProbingModel& model) {
+  for (std::size_t k = 1; k < model.layers.size(); ++k) {
+    const laws::Layer& before = model.layers[k - 1];
+    laws::Layer& layer = model.layers[k];
+    const double end_m = before.start_m + before.thickness_m, gap_m = layer.start_m - end_m;
+    if (std::abs(gap_m) <= kExact_m || std::abs(gap_m) > kRounding_m ||
+        layer.thickness_m + gap_m <= 0.0)
+      continue;
+    layer.start_m = end_m;
+    layer.thickness_m += gap_m;
+    model.remarks.push_back(
+        fmt::format("layer {} begins where layer {} ends: {} of {:.2g} µm was taken as rounding",
+                    k + 1, k, gap_m > 0.0 ? "a gap" : "an overlap", 1e6 * std::abs(gap_m)));
+  }
 }
 
 OptionalError read_layers(Fields& base, ProbingModel& model) {
@@ -39,6 +58,7 @@ OptionalError read_layers(Fields& base, ProbingModel& model) {
                             number(fields, "equilibrium_m")});
     TRY(fields.done());
   }
+  snap_layers(model);
   return std::nullopt;
 }
 

@@ -68,6 +68,23 @@ TEST(ProbingModel, MayHoldOneLayerOrNone) {
   EXPECT_EQ(one->rotary.viscous_Nms_per_rad, laws::RotaryStage{}.viscous_Nms_per_rad);
 }
 
+TEST(ProbingModel, TakesRoundingBetweenLayersAsOneBorder) {
+  for (const double gap_m : {-1e-6, 1e-6}) {
+    Json json = example();
+    Json& layers = json["base"]["layers"];
+    const double border_m =
+        layers[0]["start_m"].get<double>() + layers[0]["thickness_m"].get<double>();
+    const double end_m = border_m + gap_m + layers[1]["thickness_m"].get<double>();
+    layers[1]["start_m"] = border_m + gap_m;
+    const auto model = ProbingModel::from_json(json, "");
+    ASSERT_TRUE(model) << model.error().what;
+    EXPECT_DOUBLE_EQ(model->layers[1].start_m, border_m);
+    EXPECT_DOUBLE_EQ(model->layers[1].start_m + model->layers[1].thickness_m, end_m);
+    ASSERT_EQ(model->remarks.size(), 1u);
+    EXPECT_THAT(model->remarks[0], HasSubstr(gap_m > 0.0 ? "a gap of 1 µm" : "an overlap of 1 µm"));
+  }
+}
+
 TEST(ProbingModel, RefusesByNameWhatCannotBe) {
   EXPECT_THAT(refusal("/base/layers/1/stiffness_N_per_m", "-1"),
               HasSubstr("m.json: /base/layers/1/stiffness_N_per_m: -1"));

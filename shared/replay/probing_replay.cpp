@@ -34,7 +34,8 @@ core::Result<ProbingReplayed> replay(const models::ProbingModel& model,
                                      const trial::StatedNoise& noise, const std::string& where) {
   const auto runtime = TRY(models::ProbingRuntime::make(model, kTravel_m));
   const bool turns = recording.x_m.empty();
-  auto ready = TRY(lab::prepare(trial::ProbingMeasurement(recording), noise, turns, where));
+  auto ready = TRY(lab::prepare(trial::ProbingMeasurement(recording), noise, turns,
+                                lab::borders_of(model.layers), where));
   ProbingReplayed out;
   out.motion = std::move(ready.motion);
   runtime.predict(out.motion, out.forces);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/result.hpp"
+#include "lab/identify/judgement.hpp"
 #include "models/palpation_runtime.hpp"
 #include "trial/measurement_set.hpp"
 

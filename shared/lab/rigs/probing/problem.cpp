@@ -329,9 +329,7 @@ Result<std::unique_ptr<Problem>> make_probing_problem(const models::ProbingModel
                                               "a set of one kind is expected",
                                               set.folder.string())};
   const std::string shortened = shorten(set);
-  std::vector<double> borders_m;
-  for (const laws::Layer& layer : model.layers)
-    borders_m.insert(borders_m.end(), {layer.start_m, layer.start_m + layer.thickness_m});
+  const std::vector<double> borders_m = borders_of(model.layers);
   std::vector<ProbingRecording> recordings(set.trials.size());
   std::vector<std::string> wrong(set.trials.size());
   parallel(int(set.trials.size()), options.threads, [&](int k) {
@@ -359,6 +357,7 @@ Result<std::unique_ptr<Problem>> make_probing_problem(const models::ProbingModel
                              set.folder.string(), reach.most_m - reach.least_m)};
   auto problem = std::make_unique<ProbingProblem>(
       ProbingParameterSpace(model, reach, options.user_effects), std::move(recordings), turns);
+  for (const std::string& remark : model.remarks) problem->note(remark);
   if (!shortened.empty()) problem->note(shortened);
   // Twice: borders and dampings of the file first, then those of a first fit.
   std::vector<double> values;

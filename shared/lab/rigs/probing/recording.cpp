@@ -175,7 +175,7 @@ struct Jump {
 };
 
 std::vector<Jump> jumps(const laws::ProbingLaw& law, const ProbingRecording& r) {
-  const std::vector<double> borders = borders_of(law);
+  const std::vector<double> borders = borders_of(law.parameters().layers);
   std::vector<Jump> out;
   const auto& x = r.motion.x_m;
   for (std::size_t k = 1; k < x.size(); ++k)
@@ -217,9 +217,9 @@ double moment_of(const Break& one, const Smoothed& x, std::span<const double> t_
 
 }  // namespace
 
-std::vector<double> borders_of(const laws::ProbingLaw& law) {
+std::vector<double> borders_of(std::span<const laws::Layer> layers) {
   std::vector<double> out;
-  for (const laws::Layer& layer : law.parameters().layers)
+  for (const laws::Layer& layer : layers)
     out.insert(out.end(), {layer.start_m, layer.start_m + layer.thickness_m});
   return out;
 }
@@ -312,7 +312,7 @@ void weigh(const laws::ProbingLaw& law, ProbingRecording& r) {
                               r.noise_sd * r.noise_sd);
   for (std::size_t k = 0; k < n; ++k)
     if (motion_variance[k] > most) r.judgement[k] = Judgement::unknown_motion;
-  for (const double border : borders_of(law))
+  for (const double border : borders_of(law.parameters().layers))
     for (std::size_t k = 0; k < n; ++k)  // on which side is nobody's to tell
       if (std::abs(m.x_m[k] - border) < kProbingRecording.on_border_m + 3.0 * r.x_sd_m[k])
         r.judgement[k] = Judgement::at_border;

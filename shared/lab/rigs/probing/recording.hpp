@@ -59,8 +59,8 @@ core::Result<ProbingRecording> prepare(trial::ProbingMeasurement&& trial,
 /// @param borders_m  of the model.
 void set_motion(ProbingRecording& recording, std::span<const double> borders_m);
 
-/// Borders of the law's layers.
-std::vector<double> borders_of(const laws::ProbingLaw& law);
+/// Where layers begin and end.
+std::vector<double> borders_of(std::span<const laws::Layer> layers);
 
 /// What lies outside ± of what dry friction at rest may do: exactly 0 within.
 inline double beyond(double residual, double half_width) {
