@@ -8,6 +8,12 @@ semi-implicit: it takes at most the whole velocity, so that a mass may stick.
 An element on the rig of its publication has the published numbers, and is therefore not scaled: such a set is accepted
 if at least 3 % of the force is left after a linear refit of the base. Any other element is scaled to 4 to 10 % of the
 force on short trials, and half of it must be left.
+
+Sources: Noel2016 (J. P. Noel, M. Schoukens: Hysteretic benchmark with a dynamic nonlinearity), Wigren2013 (T. Wigren,
+J. Schoukens: Three free data sets for development and benchmarking in nonlinear system identification), Dahl1976
+(P. R. Dahl: Solid friction damping of mechanical vibrations), Janot2019 (A. Janot, M. Gautier, M. Brunot: Data set and
+reference models of EMPS), Kovacic2011 (I. Kovacic, M. J. Brennan: The Duffing equation). "eq. ?": the equation is the
+known one; its number was not looked up.
 """
 import collections
 import math
@@ -30,12 +36,12 @@ Oscillator = collections.namedtuple("Oscillator", "mass_kg damping_Ns_per_m stif
                                     "rates_Hz band_Hz force_N position_steps_m source")
 OSCILLATORS = {
     "bouc_wen": Oscillator(2.0, 10.0, 5e4, 0.02, 15000.0, (750, 1500, 3000), (5.0, 150.0), (25.0, 60.0), (2e-9, 1e-8),
-                           "Noel2016, eqs (1) to (3) and Table 1; 50 N rms there, 750 Hz"),
+                           "Noel2016, eq. ?; numbers as its table has them, 50 N rms and 750 Hz there"),
     # Wigren2013 prints the equation; the circuit is in volts, so that the numbers are own: 70 Hz, 5 % of damping
     "silverbox": Oscillator(0.5, 22.0, 96720.0, 0.02, 19531.25, (610.3515625, 2441.40625), (1.0, 200.0), (8.0, 25.0),
-                            (1e-9, 5e-9), "Wigren2013, the equation of the Silverbox; numbers own"),
+                            (1e-9, 5e-9), "Wigren2013, eq. ?; numbers own"),
     "dahl": Oscillator(1.0, 4.0, 3950.0, 0.1, 20000.0, (500, 1000, 4000), (1.0, 30.0), (6.0, 15.0), (5e-9, 2e-8),
-                       "Dahl1976, oscillator with solid friction; numbers own"),
+                       "Dahl1976, eq. ?, oscillator with solid friction; numbers own"),
     "servo_axis": Oscillator(95.1089, 203.5034, 0.0, 0.02, 20000.0, (1000,), None, None, (1e-7, 5e-7),
                              "Janot2019 (EMPS), symmetric model; drive 35.15 N/V, gains 160.18 1/s and 243.45 V s/m"),
 }
@@ -59,16 +65,16 @@ IN_CATALOGUE = {
     "inertia": Element("servo_axis", {"mass_kg": 95.1089}, None, "m a, the whole mass: the model has none"),
 }
 IN_NO_CATALOGUE = {
-    "bouc_wen_hysteresis": Element(  # Noel2016, eq. (3) with nu = 1
+    "bouc_wen_hysteresis": Element(  # Noel2016, eq. ?, with nu = 1
         "bouc_wen", {"alpha_N_per_m": 5e4, "beta_per_m": 1e3, "gamma": 0.8, "delta": -1.1}, lambda f, x, v: {
             "alpha_N_per_m": 0.3 * f / x, "beta_per_m": 2.0 / x, "gamma": 0.8, "delta": -1.1},
         "z, dz/dt = alpha v - beta (gamma |v| z + delta v |z|)"),
-    "cubic_stiffness": Element(  # Wigren2013, k(y) = a + b y^2; b own
+    "cubic_stiffness": Element(  # Wigren2013, eq. ?, k(y) = a + b y^2; b own
         "silverbox", {"stiffness_N_per_m3": 1e11}, lambda f, x, v: {"stiffness_N_per_m3": 0.02 * f / x**3}, "b x^3"),
     "direction_dependent_viscosity": Element(  # Janot2019, asymmetric model: 166.7 and 240.4 N s/m, mean 203.5
         "servo_axis", {"half_difference_Ns_per_m": -36.9}, lambda f, x, v: {"half_difference_Ns_per_m": 0.08 * f / v},
         "half_difference |v|"),
-    "quadratic_stiffness": Element(  # Kovacic2011, section 1.2 (Helmholtz-Duffing); number own
+    "quadratic_stiffness": Element(  # Kovacic2011, eq. ? (Helmholtz-Duffing); number own
         None, None, lambda f, x, v: {"stiffness_N_per_m2": 0.045 * f / x**2}, "k2 x^2"),
     "cubic_damping": Element(None, None, lambda f, x, v: {"damping_Ns3_per_m3": 0.02 * f / v**3}, "c3 v^3"),  # own
     "end_stops": Element(None, None, lambda f, x, v: {"stiffness_N_per_m": 0.6 * f / x, "clearance_m": 1.3 * x},
@@ -121,14 +127,16 @@ def advanced(oscillator, hidden, drive):
     bias = p["sensor_bias"]["force_N"] if "sensor_bias" in p else 0.0
     control_steps = int(round(1e-3 * oscillator.grid_Hz))
     for n in range(count):
+        before, u_before = middle, u
         if not closed_loop:
-            u = drive[n]
+            u = 0.5 * (drive[n] + drive[min(n + 1, count - 1)])
         elif n % control_steps == 0:  # Janot2019: volts from the position's error and the speed
             speed, seen = (x - seen) / 1e-3, x
             volts = SPEED_GAIN * (POSITION_GAIN * (drive[n] - oscillator.middle_m - x) - speed)
             u = DRIVE_N_PER_V * numpy.clip(volts, -LIMIT_V, LIMIT_V)
-        position[n], force[n] = x, u
-        before, middle = middle, x + 0.5 * h * v
+        # the force of a step is that of its middle; the recorded one belongs to the moment of the position
+        position[n], force[n] = x, 0.5 * (u_before + u) if closed_loop else drive[n]
+        middle = x + 0.5 * h * v
         dx = middle - before
         added = numpy.full(trials, bias)
         if "hysteresis" in p:  # Dahl: z -> delta sgn(dx) + (z - delta sgn(dx)) exp(-|dx| / delta)
@@ -248,7 +256,8 @@ def model_of(random, oscillator, hidden):
              "damping_Ns_per_m": off(oscillator.damping_Ns_per_m), "equilibrium_m": oscillator.middle_m}
     fixed = ["start_m", "thickness_m", "equilibrium_m"]
     fixed += [] if oscillator.stiffness_N_per_m else ["stiffness_N_per_m"]
-    inertia = [] if "inertia" in hidden else [{"id": "inertia", "parameters": {"mass_kg": off(oscillator.mass_kg)}}]
+    mass_kg = min(off(oscillator.mass_kg), 100.0)  # the catalogue allows no more
+    inertia = [] if "inertia" in hidden else [{"id": "inertia", "parameters": {"mass_kg": mass_kg}}]
     return {"format": "tractus-model/1", "rig": RIG, "name": "oscillator", "base": {"layers": [layer]},
             "fixed": [f"/base/layers/0/{name}" for name in fixed], "effects": inertia}
 

@@ -4,6 +4,11 @@ Motion is prescribed (motor_programs.py). States with memory are advanced by exa
 distance. Friction is sgn(v) smoothed over 50 um/s: it is 0 at standstill, as sgn 0 = 0. The base law is that of
 layered bone, F = K (x - x0) + D v (Probing, eq. (2)), outside the layers 0, and on the rotary stage
 T = c omega + A sin(2 pi theta / pitch) (form of the detents: own).
+
+Sources beside shared/doc/bibliography.md: Bagley1983 (R. L. Bagley, P. J. Torvik: A theoretical basis for the
+application of fractional calculus to viscoelasticity), Ostwald1925 (power law of viscosity), DenHartog1956 (Mechanical
+vibrations), Mullins1948 (softening of rubber by work), Coulomb1785 (friction in proportion to load), Janot2019 (EMPS).
+"eq. ?": the equation is the known one; its number was not looked up.
 """
 import collections
 import math
@@ -266,7 +271,7 @@ IN_NO_CATALOGUE = {
         lambda m, p: p["friction_N"] * numpy.exp(-(((m.x - p["centre_m"]) / p["width_m"]) ** 2)) * sign(m.v)),
         lambda r, c: {"centre_m": r.uniform(0.2, 0.7) * c["depth_m"], "width_m": r.uniform(0.08, 0.2) * c["depth_m"]},
         "friction exp(-((x - centre) / width)^2) sgn v"),
-    "fractional_viscoelasticity": Law(ADDED, "stiffness_N_s_per_m", 300.0, fractional_branch,  # Bagley1983, eq. (1)
+    "fractional_viscoelasticity": Law(ADDED, "stiffness_N_s_per_m", 300.0, fractional_branch,  # Bagley1983, eq. ?
                                       lambda r, c: {"order": r.uniform(0.35, 0.6)}, "k d^order x / dt^order, Caputo"),
     "shear_thinning_drag": Law(ADDED, "coefficient", 10.0, adds(  # Ostwald1925, power law; unit N (s/m)^exponent
         lambda m, p: p["coefficient"] * numpy.sign(m.v) * numpy.abs(m.v) ** p["exponent"]),
@@ -274,7 +279,7 @@ IN_NO_CATALOGUE = {
     "friction_growing_since_reversal": Law(ADDED, "friction_N", 2.0, reversal_friction,  # own; presliding in Olsson1998
                                            lambda r, c: {"half_way_m": log_uniform(r, 3e-4, 2e-3)},
                                            "friction s / (s + half_way) sgn v, s: distance since the last reversal"),
-    "resonator": Law(ADDED, "mass_kg", 0.5, resonator,  # own; a vibration absorber, DenHartog1956, section 3.2
+    "resonator": Law(ADDED, "mass_kg", 0.5, resonator,  # own; a vibration absorber, DenHartog1956, eq. ?
                      lambda r, c: {"frequency_Hz": log_uniform(r, 8.0, 30.0), "damping_ratio": r.uniform(0.01, 0.06)},
                      "m (p^2 w + 2 zeta p w'), w'' + 2 zeta p w' + p^2 w = a"),
     "work_softening": Law(BONE, "surplus", 0.3, work_softening,  # own; after Mullins1948, softening by work

@@ -83,6 +83,19 @@ class Sets(unittest.TestCase):
         positions = numpy.concatenate([columns["x_m"] for _, columns in first.trials])
         self.assertTrue(0.0 < positions.min() and positions.max() < 0.3)
 
+    def test_recordings_with_nothing_hidden_obey_the_equation_of_motion_to_the_stated_noise(self):
+        # m a + c v + k x = F by derivatives in the frequency domain, away from the trial's ends
+        made = oscillators.make(9, [])
+        base, rate_Hz, columns = made.truth["base"], made.truth["sensor"]["rate_Hz"], made.trials[0][1]
+        self.assertEqual((base["oscillator"], made.truth["sensor"]["dropped_rows"]), ("silverbox", 0))
+        x, count = columns["x_m"] - base["middle_m"], len(columns["x_m"])
+        t = numpy.arange(count) / rate_Hz
+        slope = 2j * numpy.pi * numpy.fft.rfftfreq(count, 1 / rate_Hz)
+        spectrum = numpy.fft.rfft(x * numpy.minimum(1.0, numpy.minimum(t, t[-1] - t) / 0.3))
+        v, a = (numpy.fft.irfft(spectrum * slope**order, count) for order in (1, 2))
+        rest = columns["fz_N"] - base["mass_kg"] * a - base["damping_Ns_per_m"] * v - base["stiffness_N_per_m"] * x
+        self.assertLess(oscillators.rms(rest[400:-400]), 1.1 * made.truth["force_noise_sd_N"])
+
 
 if __name__ == "__main__":
     unittest.main()
