@@ -21,8 +21,8 @@ using core::Error;
 
 constexpr std::size_t kMaxPage = 256 * 1024;
 constexpr std::uint16_t kStart = 0x0002, kStop = 0x0000, kBias = 0x0042, kHeader = 0x1234;
-constexpr int kMostDatagramsPassed = 1000;  // datagrams without a record in one call
-constexpr std::int32_t kAnew = 1000;        // a record this far back is no late one
+constexpr int kMostPacketsPassed = 1000;  // datagrams without a record in one call
+constexpr std::int32_t kAnew = 1000;      // a record this far back is no late one
 
 /// What stands between <tag> and </tag>, blanks taken off.
 std::optional<std::string_view> inside(std::string_view xml, const std::string& tag) {
@@ -177,7 +177,7 @@ void NetFtStream::command(std::uint16_t what) const noexcept {
 }
 
 core::Result<std::optional<RdtRecord>> NetFtStream::next(int wait_ms) {
-  for (int passed = 0; passed < kMostDatagramsPassed && socket_.readable(wait_ms); ++passed) {
+  for (int passed = 0; passed < kMostPacketsPassed && socket_.readable(wait_ms); ++passed) {
     std::array<std::byte, 256> datagram;
     const ssize_t size = ::recv(socket_.fd(), datagram.data(), datagram.size(), 0);
     if (size < 0 && (errno == EAGAIN || errno == EINTR)) continue;

@@ -24,9 +24,9 @@ struct TrialSamples {
   std::string id;
   std::vector<double> t_s;
   std::vector<std::vector<double>> measured, simulated;  // [channel][sample]
-  std::vector<Judgement> judgement;  ///< one per sample; empty where every sample counts
   std::size_t stride = 1;
   std::vector<std::vector<float>> features;  // [feature][row]; row k is sample k · stride
+  std::vector<Judgement> judgement = {};     ///< one per sample; empty where every sample counts
 
   std::size_t rows() const { return (t_s.size() + stride - 1) / stride; }
   bool is_judged(std::size_t sample) const {
