@@ -248,6 +248,31 @@ void Selection::refuse_trends() {
   }
 }
 
+/// Root mean square of the judged samples of trials that a fit did not see, without weights.
+double error_on_held_out(const Residual& residual, Solution at) {
+  differentiate(residual, at);
+  return held_out_rmse(residual, at);
+}
+
+/// Weights of a robust fit may hide what an effect makes worse: an effect stays only if the error without weights,
+/// on held-out trials, is lower with it.
+void Selection::require_lower_error() {
+  for (bool dropped = true; dropped && !chosen_.empty();) {
+    dropped = false;
+    const double with = error_on_held_out(residual_, chosen());
+    for (const std::string& id : chosen().structure.effects) {
+      const Structure less = minus(chosen().structure, id);
+      part(Solution(chosen()), less);
+      if (with <
+          (1.0 - kSelection.least_fall) * error_on_held_out(residual_, tried_.at(name(less))))
+        continue;
+      chosen_ = name(less);
+      dropped = true;
+      break;
+    }
+  }
+}
+
 /// How far the places of rest of the base's layers have moved from the model's, root mean square.
 /// `count`: of how many.
 double moved(const Solution& at, int& count) {
@@ -309,6 +334,7 @@ bool Selection::run(const std::function<void()>& after_singles) {
   prefer_parents();
   prune();
   refuse_trends();
+  require_lower_error();
   explain_shifts();
   // In which order they brought most: the best single of them first.
   Structure sum;

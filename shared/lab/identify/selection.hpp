@@ -54,6 +54,7 @@ class Selection {
   void prune();
   void prefer_parents();
   void refuse_trends();
+  void require_lower_error();
   void explain_shifts();
   void explain_shifts_by(const std::string& bias);
   /// The cheapest of a size, most probable first.
