@@ -57,10 +57,11 @@ class World:
         self.rate_Hz = float(layout.choice([r for r in (100, 125, 150, 200, 250) if r * trials * seconds <= ROWS]))
         self.motion = palpate(rng, bone, self.probe, trials, seconds)
         ticks = np.arange(int(seconds * self.rate_Hz))
-        jitter = rng.uniform(-0.02, 0.02, (trials, len(ticks)))
+        self.jitter = float(layout.choice([0.0, 0.02]))  # of the sensor's clock, as a share of its period
+        jitter = self.jitter * rng.uniform(-1, 1, (trials, len(ticks)))
         self.t_s = np.round(np.maximum(ticks + jitter, 0) / self.rate_Hz, 5)
         self.lengths = rng.integers(int(0.88 * len(ticks)), len(ticks) + 1, trials)
-        self.base, self.bend = predict(bone, self.probe, self.motion, self.t_s)
+        self.base, self.bend, _ = predict(bone, self.probe, self.motion, self.t_s)
         self._columns = None
 
     def replay_differs(self):
@@ -73,8 +74,10 @@ class World:
             away.append(np.abs(delta - self.bend[:, j]).max(-1) > 0.05 * MM)
         return float(np.mean(away))
 
-    def force(self, hidden):
-        return predict(self.bone, self.probe, self.motion, self.t_s, hidden)[0]
+    def wrench(self, hidden):
+        """Wrench with effects, and how far its iteration was from its end, in N."""
+        wrench, _, change = predict(self.bone, self.probe, self.motion, self.t_s, hidden)
+        return wrench, self.probe.force_scale * change
 
     def left_share(self, difference):
         """Share of a force difference that no change of the base's free numbers takes up, linearly."""
@@ -94,7 +97,8 @@ class World:
         x, known = effect.start, []
         for _ in range(6):
             q = effect.numbers(x, drawn)
-            difference = (self.force([(effect, q)]) - self.base)[..., :3]
+            wrench, change = self.wrench([(effect, q)])
+            difference = (wrench - self.base)[..., :3]
             share = rms(difference) / rms(self.base[..., :3])
             if abs(np.log(max(share, 1e-9) / target)) < 0.1 or (x == effect.limit and share < target):
                 break
@@ -107,7 +111,8 @@ class World:
         squares = np.sort((difference ** 2).sum(-1), axis=None)
         spread = float(squares[:int(0.995 * squares.size)].sum() / max(squares.sum(), 1e-24))
         return q, {"share_of_force_rms": share, "left_after_base_refit": self.left_share(difference),
-                   "energy_outside_largest_0.5_percent": spread}
+                   "energy_outside_largest_0.5_percent": spread,
+                   "unsettled_share": change / max(rms(difference), 1e-12)}
 
 
 def coloured(rng, shape, dt, sd, tau_s, white):
@@ -207,9 +212,10 @@ def stated_model(seed, probe, bone, volume):
 
 
 def good(figures):
-    """Large enough, not taken up by the base, and more than a few moments at which the probe snaps over an edge."""
+    """Of the wanted size, not taken up by the base, not mostly moments at which the probe snaps over edges, solved."""
     return (0.9 * SHARES[0] < figures["share_of_force_rms"] < 1.1 * SHARES[1]
-            and figures["left_after_base_refit"] > LEAST_LEFT and figures["energy_outside_largest_0.5_percent"] > 0.5)
+            and figures["left_after_base_refit"] > LEAST_LEFT and figures["unsettled_share"] < 0.02
+            and figures["energy_outside_largest_0.5_percent"] > 0.3)
 
 
 def draw_hidden(seed, hidden, bone):
@@ -243,7 +249,7 @@ def make(seed, hidden):
     bone = draw_bone(np.random.default_rng([seed, 0]))
     world, sized, accepted, draws = draw_hidden(seed, hidden, bone)
     probe, pairs = world.probe, [(effect, q) for effect, q, _ in sized]
-    wrench = world.force(pairs) if pairs else world.base
+    wrench, unsettled_N = world.wrench(pairs) if pairs else (world.base, 0.0)
     rng = np.random.default_rng([seed, 5])
     p, q, said, sensor = record(world, wrench, rng)
     nifti = rng.random() < 0.5
@@ -264,10 +270,11 @@ def make(seed, hidden):
     kind = "outside" if set(hidden) & set(OUTSIDE) else ["nothing", "one", "two"][len(hidden)]
     truth = {"generator": NAME, "seed": seed, "rig": RIG, "kind": kind, "hidden": told, "accepted": accepted,
              "left_after_base_refit": min((h["left_after_base_refit"] for h in told), default=None), "draws": draws,
-             "force_noise_sd_N": noise, "force_rms_N": rms(wrench[kept][:, :3]),
+             "force_noise_sd_N": noise, "unsettled_N": unsettled_N, "force_rms_N": rms(wrench[kept][:, :3]),
              "force_peak_N": float(np.linalg.norm(wrench[kept][:, :3], axis=-1).max()),
              "base": {key: plain(value) for key, value in true_base.items()}, "stated_base_off_by_at_most": off,
              "base_fixed": model["fixed"], "bone": {key: plain(value) for key, value in bone.facts.items()},
-             "sensor": {key: plain(value) for key, value in sensor.items()}, "rate_Hz": world.rate_Hz}
+             "sensor": {"rate_Hz": world.rate_Hz, "time_jitter_s": world.jitter / world.rate_Hz,
+                        **{key: plain(value) for key, value in sensor.items()}}}
     stated = {"name": f"drilled pedicle {seed}", "simulated": True, "down": DOWN_V.tolist()}
     return MadeSet(model, stated, trials, {name: content}, truth)

@@ -21,7 +21,7 @@ from point_cloud.physics import bending, contact, equilibrium  # noqa: E402
 def paper_rig(points=1, factor=1.0):
     """The shank of Zoller2020: E = 195 GPa, L = 130 mm, r = 0.7 mm."""
     rig = SimpleNamespace(z=0.13 - 0.009 * np.arange(points), length=0.13, rest=np.zeros((points, 2)), factor=factor,
-                          ball=None, sharp=0.0)
+                          ball=None, sharp=0.0, elastic=[])
     probe = SimpleNamespace(youngs_modulus_Pa=1.95e11)
     rig.phi, rig.k = bending(rig, probe, 0.0007, 0.0007)
     return rig, probe
@@ -116,6 +116,20 @@ class EffectTest(unittest.TestCase):
         c = SimpleNamespace(force=np.ones((1, 4000, 1, 3)), dt=0.005)
         f = EFFECTS["wall_creep"].law(c, {"share": 0.2, "fast_s": 0.2, "slow_s": 2.0})
         self.assertAlmostEqual(f[0, 399, 0, 0], -0.1 * (2 - np.exp(-2 / 0.2) - np.exp(-2 / 2.0)))
+
+    def test_the_slope_of_an_elastic_effect_is_its_derivative(self):
+        bone = draw_bone(np.random.default_rng(1))
+        rig = paper_rig(3, 0.01)[0]
+        effect = EFFECTS["contact_nonlinearity"]
+        rig.elastic = [(effect.law, {"exponent": 1.4, "reference_gradient_per_m": 200, "_factor": 0.01})]
+        r = np.roll(np.eye(3), 1, 0)[None]  # any rotation
+        o = (bone.entry_m + 0.01 * bone.frame[:, 2] + 0.0024 * bone.frame[:, 0] - 0.13 * r[0, :, 2])[None]
+        force, slope = contact(rig, bone.field, o, r, np.zeros((1, 2)))[1:3]
+        self.assertGreater(np.linalg.norm(force[0, 0]), 0.5)
+        for axis, h in enumerate(np.eye(3) * 1e-7):
+            ends = [contact(rig, bone.field, o + s * h, r, np.zeros((1, 2)))[1] for s in (-1, 1)]
+            by_difference = (ends[1] - ends[0])[0, 0] / 2e-7
+            np.testing.assert_allclose(slope[0, 0, :, axis], by_difference, atol=1e-3 * abs(slope).max())
 
     def test_hysteresis_loses_only_on_the_way_out(self):
         f = EFFECTS["contact_hysteresis"].law(self.c, {"loss": 0.4})

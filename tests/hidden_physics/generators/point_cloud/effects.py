@@ -1,7 +1,8 @@
 """The effects that a set may hide, each with its law, its numbers and how they follow from one size.
 
 A law of kind "points" gets the state c of `physics.predict` and returns forces (trials, times, points, 3) in V that
-are added to the elastic ones. Laws without a source are our own, as are all smoothing widths.
+are added to the elastic ones; one of kind "elastic" gets places and elastic forces of points and returns what it adds
+to these. Laws without a source are our own, as are all smoothing widths.
 """
 from types import SimpleNamespace
 
@@ -53,10 +54,9 @@ def low_pass(x, dt, tau_s):
     return remember(lambda y, now: y + (1 - np.exp(-dt / tau_s)) * (now - y), np.zeros_like(x[:, 0]), x)
 
 
-def in_tract(c, p):
+def in_tract(bone, p):
     """Coordinates along the tract's frame and distance past the lumen's side (negative inside it)."""
-    q = (p - c.bone.entry_m) @ c.bone.frame
-    radii = c.bone.radii_m
+    q, radii = (p - bone.entry_m) @ bone.frame, bone.radii_m
     return q, (np.hypot(q[..., 0] / radii[0], q[..., 1] / radii[1]) - 1) * np.sqrt(radii.prod())
 
 
@@ -88,13 +88,15 @@ def contact_damping(c, q):
     return -q["damping_Ns_per_m"] * c.opacity[..., None] * c.v
 
 
-@effect("points", 0.1, 0.7, "c_f g (|g|/g0)^(p-1)",
-        lambda x, d: {"exponent": 1 + d["_sign"] * x, "reference_gradient_per_m": d["reference"]},
-        lambda rng, bone, probe: {"_sign": rng.choice([-1, 1]),
-                                  "reference": rng.uniform(0.15, 0.6) * bone.end_push_per_m.max()})
-def contact_nonlinearity(c, q):
-    relative = np.maximum(size(c.force) / c.factor / q["reference_gradient_per_m"], 1e-6)
-    return c.force * (relative ** (q["exponent"] - 1) - 1)
+@effect("elastic", 0.1, 0.7, "c_f g (|g|/g0)^(p-1)",
+        lambda x, d: {"exponent": 1 + d["sign"] * x, "reference_gradient_per_m": d["reference"],
+                      "_factor": d["factor"]},
+        lambda rng, bone, probe: {"sign": rng.choice([-1, 1]),
+                                  "reference": rng.uniform(0.15, 0.6) * bone.end_push_per_m.max(),
+                                  "factor": probe.force_factor_Nm})
+def contact_nonlinearity(p, force, q):
+    relative = np.maximum(size(force) / q["_factor"] / q["reference_gradient_per_m"], 1e-6)
+    return force * (relative ** (q["exponent"] - 1) - 1)
 
 
 @effect("points", 0.1, 0.95, "F (1 - h) while v . F > 0 (leaving), else F", lambda x, d: {"loss": x})
@@ -184,28 +186,29 @@ def tip_ball(rig, probe, q):
 
 # ---- outside the catalogue --------------------------------------------------------------------------------------
 
-@effect("points", 0.1, 5.0, "a (exp(b d) - 1) towards the axis, d the depth in a soft layer on a part of the side wall",
+@effect("elastic", 0.02, 5.0, "a (exp(b d) - 1) towards the axis, d the depth in a soft layer on part of the side wall",
         lambda x, d: {"force_N": x, "angle_rad": d["angle"], "half_angle_rad": d["half"],
                       "thickness_m": d["thick"], "steepness_per_m": d["steep"] / d["thick"],
-                      "depth_m": d["depth"], "half_length_m": d["long"]},
+                      "depth_m": d["depth"], "half_length_m": d["long"], "_bone": d["bone"]},
         lambda rng, bone, probe: {"angle": rng.uniform(-np.pi, np.pi), "half": rng.uniform(0.7, 1.4),
-                                  "thick": rng.uniform(0.8, 1.5) * MM, "steep": rng.uniform(1.5, 3.0),
-                                  "depth": rng.uniform(0.45, 0.85) * bone.length_m, "long": rng.uniform(6, 10) * MM})
-def tissue_flap(c, q):
-    x, past = in_tract(c, c.p)
+                                  "thick": rng.uniform(1.5, 2.5) * MM, "steep": rng.uniform(1.5, 3.0),
+                                  "depth": rng.uniform(0.45, 0.85) * bone.length_m, "long": rng.uniform(6, 10) * MM,
+                                  "bone": bone})
+def tissue_flap(p, force, q):
+    x, past = in_tract(q["_bone"], p)
     turn = np.angle(np.exp(1j * (np.arctan2(x[..., 1], x[..., 0]) - q["angle_rad"])))
     share = np.exp(-(turn / q["half_angle_rad"]) ** 4 - ((x[..., 2] - q["depth_m"]) / q["half_length_m"]) ** 4)
     depth = np.clip(past + q["thickness_m"], 0, 1.4 * q["thickness_m"])
-    inward = -np.stack([x[..., 0] / c.bone.radii_m[0] ** 2, x[..., 1] / c.bone.radii_m[1] ** 2, 0 * past], -1)
-    force = q["force_N"] * share * np.expm1(q["steepness_per_m"] * depth)
-    return force[..., None] * inward / np.maximum(size(inward), 1e-3) @ c.bone.frame.T
+    inward = -np.stack([x[..., 0], x[..., 1], 0 * past], -1) / np.append(q["_bone"].radii_m, 1) ** 2
+    push = q["force_N"] * share * np.expm1(q["steepness_per_m"] * depth)
+    return push[..., None] * inward / np.maximum(size(inward), 1e-3) @ q["_bone"].frame.T
 
 
-@effect("points", 0.2, 1.2, "c_f (I + e (m m' - I/3)) g with m a direction of the bone in V",
+@effect("elastic", 0.2, 1.2, "c_f (I + e (m m' - I/3)) g with m a direction of the bone in V",
         lambda x, d: {"anisotropy": x, "axis": list(d["axis"])}, lambda rng, bone, probe: {"axis": direction(rng)})
-def anisotropic_wall(c, q):
+def anisotropic_wall(p, force, q):
     m = np.array(q["axis"])
-    return q["anisotropy"] * ((c.force @ m)[..., None] * m - c.force / 3)
+    return q["anisotropy"] * ((force @ m)[..., None] * m - force / 3)
 
 
 @effect("rig", 0.05, 0.6, "unloaded shank at angle (z - z_k) (cos beta, sin beta) beyond a kink near the tip",
@@ -225,11 +228,11 @@ def wall_creep(c, q):
 
 
 @effect("points", 0.3, 6.0, "stiffness x overlap of tip and chip, up to a yield force at which the chip is shoved away",
-        lambda x, d: {"yield_N": x, "stiffness_N_per_m": x / (0.3 * MM), "radius_m": d["radius"], "_at": d["at"]},
+        lambda x, d: {"yield_N": x, "stiffness_N_per_m": x / (0.6 * MM), "radius_m": d["radius"], "_at": d["at"]},
         lambda rng, bone, probe: {"radius": rng.uniform(1.5, 2.5) * MM,
                                   "at": rng.uniform([-.5, -.5, .6], [.5, .5, .9], (64, 3))})
 def moving_debris(c, q):
-    tip = in_tract(c, c.p[:, :, 0])[0]
+    tip = in_tract(c.bone, c.p[:, :, 0])[0]
     widest = np.append(c.bone.radii_m, c.bone.length_m)
     chip, stiff, force = q["_at"][:len(tip)] * widest, q["stiffness_N_per_m"], np.zeros_like(tip)
     for j in range(tip.shape[1]):
@@ -246,14 +249,14 @@ def moving_debris(c, q):
     return at_tip(c, force @ c.bone.frame.T)
 
 
-@effect("points", 3e5, 1e9, "+ b d^2 along the field, d the depth beyond the analytic wall moved in by moved_in_m",
-        lambda x, d: {"stiffening_N_per_m2": x, "moved_in_m": d["inset"]},
-        lambda rng, bone, probe: {"inset": rng.uniform(1.2, 2.2) * bone.spacing_m.mean()})
-def depth_stiffening(c, q):
-    x, past = in_tract(c, c.p)
-    depth = np.maximum(0, np.maximum(past, x[..., 2] - c.bone.length_m) + q["moved_in_m"])[..., None]
+@effect("elastic", 3e5, 1e9, "+ b d^2 along the field, d the depth beyond the analytic wall moved in by moved_in_m",
+        lambda x, d: {"stiffening_N_per_m2": x, "moved_in_m": d["inset"], "_bone": d["bone"]},
+        lambda rng, bone, probe: {"inset": rng.uniform(1.2, 2.2) * bone.spacing_m.mean(), "bone": bone})
+def depth_stiffening(p, force, q):
+    x, past = in_tract(q["_bone"], p)
+    depth = np.maximum(0, np.maximum(past, x[..., 2] - q["_bone"].length_m) + q["moved_in_m"])[..., None]
     depth = depth * (x[..., 2:] > 0)
-    return q["stiffening_N_per_m2"] * np.minimum(depth, 2 * MM) ** 2 * c.force / (size(c.force) + 1e-3)
+    return q["stiffening_N_per_m2"] * np.minimum(depth, 2 * MM) ** 2 * force / (size(force) + 1e-3)
 
 
 @effect("rig", 0.5 * MM, 3 * MM, "tip force = c_f g on the ball's surface, weights exp(sharpness x blurred opacity)",
@@ -302,7 +305,7 @@ def shank_resonance(c, q):
 @effect("points", 5.0, 500, "-c (depth/length of the tract) v at the tip, within the tract",
         lambda x, d: {"damping_Ns_per_m": x})
 def depth_damping(c, q):
-    x, _ = in_tract(c, c.p[:, :, 0])
+    x, _ = in_tract(c.bone, c.p[:, :, 0])
     return at_tip(c, -q["damping_Ns_per_m"] * np.clip(x[..., 2:] / c.bone.length_m, 0, 1) * c.v[:, :, 0])
 
 

@@ -12,7 +12,8 @@ from point_cloud.bone import MM
 def rig_of(probe, hidden):
     """Places, shape and stiffness of the shank (Zoller2020, eq. (4)), changed by the hidden effects on the shank."""
     rig = SimpleNamespace(z=probe.length_m - probe.point_spacing_m * np.arange(probe.points), length=probe.length_m,
-                          factor=probe.force_factor_Nm, rest=np.zeros((probe.points, 2)), ball=None, sharp=0.0)
+                          factor=probe.force_factor_Nm, rest=np.zeros((probe.points, 2)), ball=None, sharp=0.0,
+                          elastic=[(effect.law, q) for effect, q in hidden if effect.kind == "elastic"])
     rig.phi, rig.k = bending(rig, probe, probe.radius_m, probe.radius_m)
     for effect, q in hidden:
         if effect.kind == "rig":
@@ -34,7 +35,8 @@ def bending(rig, probe, handle_radius_m, tip_radius_m):
 
 
 def contact(rig, field, o, r, delta):
-    """Points (N, n, 3) in V, their forces c_f g (Zoller2020, eq. (2)), dF/dp and the blurred opacity there."""
+    """Points (N, n, 3) in V, their forces c_f g (Zoller2020, eq. (2)), dF/dp and the blurred opacity there.
+    Hidden effects on the elastic force are added, their slope by differences along the three axes."""
     place = np.concatenate([rig.rest + rig.phi[:, None] * delta[:, None], np.broadcast_to(
         rig.z[:, None], (len(o), len(rig.z), 1))], -1)
     p = o[:, None] + place @ np.swapaxes(r, -1, -2)
@@ -48,7 +50,13 @@ def contact(rig, field, o, r, delta):
         w /= w.sum(1, keepdims=True)
         g, j, opacity = (np.concatenate([(w.reshape(w.shape + (1,) * (a.ndim - 2)) * a[:, n:]).sum(1)[:, None],
                                          a[:, :n]], 1) for a in (g, j, opacity))
-    return p, rig.factor * g, rig.factor * j, opacity
+    force, slope = rig.factor * g, rig.factor * j
+    given, given_slope, h = force, slope, 1e-8
+    for law, q in rig.elastic:
+        added = law(p, given, q)
+        ahead = [law(p + h * axis, given + h * given_slope[..., k], q) for k, axis in enumerate(np.eye(3))]
+        force, slope = force + added, slope + np.stack([(a - added) / h for a in ahead], -1)
+    return p, force, slope, opacity
 
 
 def equilibrium(rig, field, o, r, delta, extra, tolerance_N=1e-7, rounds=80):
@@ -79,8 +87,10 @@ def equilibrium(rig, field, o, r, delta, extra, tolerance_N=1e-7, rounds=80):
 def predict(bone, probe, motion, t_s, hidden=(), start=None):
     """Wrench (trials, times, 6) on the probe at the origin of H, in H (Zoller2020, eq. (3)), and the deflection.
 
-    `hidden` holds (effect, its numbers). Effects of kind "points" add forces at the points, "shift" moves the probe
-    against the bone, "rig" changes the shank or its tip, "time" shows the force late, "sensor" adds to the wrench."""
+    `hidden` holds (effect, its numbers). Effects of kind "elastic" add to the force law of a point, "points" add
+    forces that depend on velocity or memory, "shift" moves the probe against the bone, "rig" changes the shank or its
+    tip, "time" shows the force late, "sensor" adds to the wrench. Added forces and equilibrium are found in turns,
+    relaxed at each sample by Aitken's rule. The last value returned is the rms of the last change, in N."""
     rig = rig_of(probe, hidden)
     t_s = t_s - sum(q["delay_s"] for effect, q in hidden if effect.kind == "time")
     o, r = motion.pose(t_s)
@@ -93,26 +103,29 @@ def predict(bone, probe, motion, t_s, hidden=(), start=None):
     shape = o.shape[:2]
     flat = [x.reshape((-1,) + x.shape[2:]) for x in (o, r, motion.bending(t_s) if start is None else start)]
     extra, shift = np.zeros(c.v.shape), np.zeros(o.shape)
+    change, relax = np.zeros(c.v.shape), np.ones(o.shape[:2] + (1, 1))
     laws = {kind: [(effect.law, q) for effect, q in hidden if effect.kind == kind]
             for kind in ("points", "shift", "sensor")}
-    for turn in range(12 if laws["points"] or laws["shift"] else 1):
+    for turn in range(30 if laws["points"] or laws["shift"] else 1):
         o_now = flat[0] + shift.reshape(-1, 3)
         flat[2] = equilibrium(rig, bone.field, o_now, flat[1], flat[2], extra.reshape(-1, probe.points, 3))
         p, force, _, opacity = contact(rig, bone.field, o_now, flat[1], flat[2])
         c.p, c.force, c.opacity = (x.reshape(shape + x.shape[1:]) for x in (p, force, opacity))
         c.total = c.force + extra
-        previous = extra, shift
-        extra = sum((law(c, q) for law, q in laws["points"]), np.zeros(c.v.shape))
-        shift = sum((law(c, q) for law, q in laws["shift"]), np.zeros(o.shape))
-        if turn > 6:  # damp what still swings between equilibrium and memory
-            extra, shift = (extra + previous[0]) / 2, (shift + previous[1]) / 2
-        if np.abs(extra - previous[0]).max() < 1e-4 and np.abs(shift - previous[1]).max() < 1e-8:
+        before, change = change, sum((law(c, q) for law, q in laws["points"]), np.zeros(c.v.shape)) - extra
+        moved = sum((law(c, q) for law, q in laws["shift"]), np.zeros(o.shape)) - shift
+        if np.abs(change).max() < 1e-4 and np.abs(moved).max() < 1e-8:
             break
-    total = c.force + extra
+        turned = change - before
+        aitken = -relax * (before * turned).sum((2, 3), keepdims=True)
+        aitken = aitken / np.maximum((turned ** 2).sum((2, 3), keepdims=True), 1e-18)
+        relax = np.clip(aitken, 0.05, 1.0) if turn else relax
+        extra, shift = extra + relax * change, shift + moved
+    total = c.total + change
     lever = c.p - (o + shift)[:, :, None]
     f = probe.force_scale * total.sum(2)
     torque = probe.torque_scale * np.cross(lever, total).sum(2)
     c.wrench = np.concatenate([(x[..., None, :] @ r)[..., 0, :] for x in (f, torque)], -1)
     for law, q in laws["sensor"]:
         c.wrench = c.wrench + law(c, q)
-    return c.wrench, flat[2].reshape(shape + (2,))
+    return c.wrench, flat[2].reshape(shape + (2,)), float(np.sqrt((change ** 2).sum((2, 3)).mean()))
