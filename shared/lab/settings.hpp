@@ -156,6 +156,8 @@ struct PalpationFitSettings {
 
 /// How the motion's errors weigh on a palpation's samples, and which equilibrium the shank was in.
 struct PalpationWeightsSettings {
+  /// At least this share of the samples, the best known ones, is judged. Tuned.
+  double least_judged_share = 0.3;
   /// A sample whose expected error exceeds the sensor's by this factor is not judged. Tuned.
   double poorly_known_factor = 10.0;
   /// Less force at a point is no contact. Physical.

@@ -98,7 +98,10 @@ Squares squares(const ResidualModel& model, const Structure& structure,
   return out;
 }
 
-double root_mean(double sum, double count) { return count > 0.0 ? std::sqrt(sum / count) : 0.0; }
+/// NaN of nothing: an error that nobody could judge is not 0.
+double root_mean(double sum, double count) {
+  return count > 0.0 ? std::sqrt(sum / count) : std::numeric_limits<double>::quiet_NaN();
+}
 
 /// Variances of the numbers from how far the trials (or stretches of time) disagree on them, which
 /// counts what neighbouring residuals have in common: the cluster-robust estimate of [Liang1986],

@@ -248,18 +248,34 @@ double at_the_edge_N(const models::PalpationRuntime& runtime, const PalpationRec
   return base.force_scale * base.force_factor_Nm * most_per_m;
 }
 
+double quantile(std::vector<double> values, double share) {
+  const auto at = values.begin() + std::ptrdiff_t(share * double(values.size()));
+  std::ranges::nth_element(values, at);
+  return *at;
+}
+
+/// Variance of the force that the motion's noise makes at each sample, over the most that may be judged.
+std::vector<double> ignorance_of_motion(const PalpationRecording& r,
+                                        const std::vector<Mat6>& by_motion, double sensor_N) {
+  const double most = std::pow(kWeights.poorly_known_factor * sensor_N, 2);
+  std::vector<double> out(r.size());
+  for (std::size_t k = 0; k < r.size(); ++k)
+    out[k] = std::max(by_motion[k].topLeftCorner<3, 3>().trace() / most,
+                      std::pow(kWeights.mass_kg * r.a_sd_m_s2[k] / sensor_N, 2));
+  return out;
+}
+
 /// Judged samples, the floor over them, and |g| where the tip touches.
 void set_trust(const models::PalpationRuntime& runtime, PalpationRecording& r,
                const models::PalpationAnswer& at, const std::vector<Mat6>& by_motion,
                const std::vector<std::size_t>& snapped) {
   const Vec6 sensor = r.sensor_squares();
   const double most_N = std::sqrt(sensor.head<3>().sum());
-  const double most = std::pow(kWeights.poorly_known_factor * most_N, 2);
+  const std::vector<double> ignorance = ignorance_of_motion(r, by_motion, most_N);
+  const double most = std::max(1.0, quantile(ignorance, kWeights.least_judged_share));
   for (std::size_t k = 0; k < r.size(); ++k)
     r.judgement[k] = !at.converged[k] ? Judgement::no_equilibrium
-                     : by_motion[k].topLeftCorner<3, 3>().trace() <= most &&
-                             at_the_edge_N(runtime, r, at, k) <= most_N &&
-                             kWeights.mass_kg * r.a_sd_m_s2[k] <= most_N &&
+                     : ignorance[k] <= most && at_the_edge_N(runtime, r, at, k) <= most_N &&
                              !sign_unknown(runtime, r, at, k)
                          ? Judgement::judged
                          : Judgement::unknown_motion;
