@@ -104,11 +104,12 @@ const std::map<std::string, Names> kAllowed = {
       "db/store"}},
     // What stations do just now: their words, the database they share, lines to those who look on.
     {"server/live", {"shared/core", "shared/wire", "db/store", "server/http"}},
+    // The effects' labels are part of the API's description, so that pages need none of their own.
     {"server/api",
-     {"server/live", "shared/core", "shared/math", "shared/trial", "shared/metrics", "shared/cases",
-      "shared/scenarios", "shared/study", "shared/volume", "shared/wire", "shared/models",
-      "shared/assessment", "shared/statistics", "shared/lab/io", "db/store", "server/http",
-      "server/jobs"}},
+     {"server/live", "shared/core", "shared/math", "shared/trial", "shared/effects",
+      "shared/metrics", "shared/cases", "shared/scenarios", "shared/study", "shared/volume",
+      "shared/wire", "shared/models", "shared/assessment", "shared/statistics", "shared/lab/io",
+      "db/store", "server/http", "server/jobs"}},
 };
 
 bool is_source(const fs::path& path) {
