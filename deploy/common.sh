@@ -83,13 +83,17 @@ build_programs() {  # build_programs [target...]
   cmake --build --preset $preset ${1:+--target "$@"}
 }
 
-build_web() {
-  say "Building the web pages"
+prepare_web() {  # what the pages' checks need: packages and types
   ( cd web
     if [ ! -e node_modules/.complete ] || [ package-lock.json -nt node_modules/.complete ]; then
       npm ci --no-audit --no-fund --loglevel=error && touch node_modules/.complete
     fi
-    npm run --silent generate
-    npm run --silent build )
+    npm run --silent generate )
+}
+
+build_web() {
+  say "Building the web pages"
+  prepare_web
+  ( cd web && npm run --silent build )
 }
 mkdir -p build
