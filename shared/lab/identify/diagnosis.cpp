@@ -94,10 +94,12 @@ std::vector<Ranked> ranking(const Residual& residual, Selection& selection,
   return out;
 }
 
-Verdict verdict(const Problem& problem, const Solution& base, const Solution& chosen) {
+Verdict verdict(const Problem& problem, const Selection& selection) {
+  const Solution &base = selection.base(), &chosen = selection.chosen();
   const double before = base.mean_square(), after = chosen.mean_square();
   if (chosen.structure.effects.empty())
-    return at_floor(problem, before, before) ? Verdict::complete : Verdict::unexplained;
+    return at_floor(problem, before, before) || selection.immaterial() ? Verdict::complete
+                                                                       : Verdict::unexplained;
   if (at_floor(problem, after, before)) return Verdict::missing;
   return explains(after, before) ? Verdict::partly : Verdict::unexplained;
 }
@@ -124,7 +126,7 @@ Result<Diagnosis> diagnose(const Problem& problem, const DiagnoseOptions& option
   out.notes = problem.notes();
   out.base_fit = report(residual, selection.tried().at(""), true);
   out.base = {out.base_fit.rmse, out.base_fit.held_out_rmse, out.base_fit.noise_floor};
-  out.verdict = verdict(problem, selection.base(), selection.chosen());
+  out.verdict = verdict(problem, selection);
   const bool named = out.verdict == Verdict::missing || out.verdict == Verdict::partly;
   Solution& final = named ? selection.chosen() : selection.tried().at("");
   out.final_fit = report(residual, final, true);

@@ -48,9 +48,10 @@ StructurePosterior::StructurePosterior(const Residual& residual, const Selection
     if (entries_[k].structure == chosen_)
       scores[k] = std::max(of_chosen, best + kPosterior.refused_log_odds);
   const std::size_t count = std::min(chosen_.effects.size(), kPosterior.imitated.size() - 1);
-  outside_ = at_floor(residual.problem(), chosen.mean_square(), base) ? kPosterior.imitated[count]
-             : chosen_.effects.empty()                                ? kPosterior.outside
-                                                                      : kPosterior.stand_in;
+  outside_ = at_floor(residual.problem(), chosen.mean_square(), base) || selection.immaterial()
+                 ? kPosterior.imitated[count]
+             : chosen_.effects.empty() ? kPosterior.outside
+                                       : kPosterior.stand_in;
   // P(structure) ∝ exp(−cost), structures equally likely beforehand [Kass1995].
   double sum = 0.0;
   for (const double s : scores) sum += std::exp(s - best);
