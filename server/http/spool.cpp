@@ -1,5 +1,5 @@
 #include "server/http/spool.hpp"
-//
+
 #include <fcntl.h>
 #include <unistd.h>
 

@@ -90,7 +90,7 @@ struct ProbingRecordingSettings {
   /// The motion is well known where its noise makes less than this share of the sensor's. Tuned.
   double well_known_share = 0.5;
   /// At least this share of the samples, the best known ones, is judged. Tuned.
-  double least_trusted_share = 0.3;
+  double least_judged_share = 0.3;
   /// The longest a model may be: the recording itself says how far it went. Bound.
   double longest_model_m = 1.0;
   /// Samples of a set that are used. Bound.

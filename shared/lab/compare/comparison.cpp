@@ -182,7 +182,7 @@ std::vector<PhaseComparison> phases(const Samples& samples) {
   return out;
 }
 
-/// What share of the samples each judgement has, most first; those that nothing was left out for are not named.
+/// The share of the samples that each judgement has, most first; judgements that no sample has are not named.
 std::vector<JudgementShare> judgement_shares(const Samples& samples) {
   std::map<Judgement, double> counts;
   double all = 0.0;

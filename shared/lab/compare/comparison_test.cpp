@@ -22,6 +22,22 @@ Samples eight() {
   return samples;
 }
 
+TEST(Comparison, CountsTheJudgedSamplesAlone) {
+  // By hand: the last two of the second trial left out, residuals 1, −1, 1, −1 and 2, 2 remain.
+  Samples samples = eight();
+  samples.trials[1].judgement = {Judgement::judged, Judgement::judged, Judgement::at_border,
+                                 Judgement::at_border};
+  const Comparison c = compare(samples);
+  EXPECT_NEAR(c.rmse, std::sqrt(12.0 / 6.0), 1e-12);
+  EXPECT_NEAR(c.trials[1].rmse, 2.0, 1e-12);
+  ASSERT_EQ(c.judgements.size(), 2u);
+  EXPECT_NEAR(c.judgements[0].share, 6.0 / 8.0, 1e-12);
+  EXPECT_EQ(c.judgements[1].judgement, Judgement::at_border);
+  ASSERT_EQ(c.phases.size(), 2u);
+  EXPECT_NEAR(c.phases[1].rmse, std::sqrt((1.0 + 1.0 + 4.0) / 3.0), 1e-12);
+  EXPECT_NEAR(c.phases[1].judged_share, 3.0 / 5.0, 1e-12);
+}
+
 TEST(Comparison, MatchesAHandCalculation) {
   const Comparison out = compare(eight());
   ASSERT_EQ(out.channels.size(), 1u);

@@ -47,6 +47,28 @@ TEST(Smoother, NoiseIsFoundWithinAFewPercent) {
     EXPECT_NEAR(noise_sd(sines(1000.0, 8.0, noise).y), noise, 0.04 * noise);
 }
 
+TEST(Smoother, AtABreakTheSpeedMayJump) {
+  // 10 mm/s, from 0.5004 s on 2 mm/s: the jump lies 0.4 of the way between two samples.
+  std::mt19937_64 random(3);
+  std::normal_distribution<> normal;
+  const double at_s = 0.5004, noise_m = 5e-7;
+  std::vector<double> t_s, y, rate;
+  for (int k = 0; k < 1000; ++k) {
+    const double t = k * 1e-3;
+    t_s.push_back(t);
+    rate.push_back(t < at_s ? 0.010 : 0.002);
+    y.push_back((t < at_s ? 0.010 * t : 0.010 * at_s + 0.002 * (t - at_s)) +
+                noise_m * normal(random));
+  }
+  const auto worst_near = [&](const Smoothed& s) {
+    double worst = 0.0;
+    for (std::size_t k = 480; k < 520; ++k) worst = std::max(worst, std::abs(s.rate[k] - rate[k]));
+    return worst;
+  };
+  EXPECT_GT(worst_near(smooth(t_s, y, noise_m)), 1e-3);
+  EXPECT_LT(worst_near(smooth(t_s, y, noise_m, {{501, 0.4}})), 3e-4);
+}
+
 TEST(Smoother, KinksEveryTwentiethOfASecondAreNoNoise) {
   auto r = sines(1000.0, 8.0, 5e-7);
   for (std::size_t k = 0; k < r.y.size(); ++k) r.y[k] += (k / 50) % 2 ? 1e-3 : 0.0;

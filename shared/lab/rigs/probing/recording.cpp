@@ -305,7 +305,7 @@ void weigh(const laws::ProbingLaw& law, ProbingRecording& r) {
   // least in the better half of the samples.
   std::vector<double> ordered = motion_variance;
   const auto half_way =
-      ordered.begin() + std::ptrdiff_t(kProbingRecording.least_trusted_share * double(n));
+      ordered.begin() + std::ptrdiff_t(kProbingRecording.least_judged_share * double(n));
   std::ranges::nth_element(ordered, half_way);
   const double most =
       std::max(*half_way, kProbingRecording.well_known_share * kProbingRecording.well_known_share *
