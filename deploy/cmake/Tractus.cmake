@@ -79,7 +79,7 @@ function(tractus_compile target kind)
     target_precompile_headers(${target} REUSE_FROM tractus_precompiled_${kind})
     target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)  # for ccache
   endif()
-  if(TRACTUS_UNITY AND kind STREQUAL "library")
+  if(TRACTUS_UNITY)
     target_compile_options(${target} PRIVATE -Wno-subobject-linkage)  # warns of anonymous namespaces in included files
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 6)
   endif()

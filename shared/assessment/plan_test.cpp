@@ -19,7 +19,7 @@ const std::string kExample =
 const std::string kReference =
     std::string(TRACTUS_SOURCE_DIR) + "/tests/golden/statistics-reference/";
 
-Table table_of(const std::string& path) {
+Table table_in_file(const std::string& path) {
   auto out = Table::read(path, {}, Missing::keep);
   EXPECT_TRUE(out) << out.error().what;
   return std::move(*out);
@@ -94,7 +94,7 @@ TEST(Plan, RefusesUnknownMethodsOptionsAndDoubleIds) {
 }
 
 TEST(Analyse, ExcludesWithReasonsCorrectsAndGivesTheSameBytesAgain) {
-  const Table table = table_of(kReference + "data/sim_cohort_trials.csv");
+  const Table table = table_in_file(kReference + "data/sim_cohort_trials.csv");
   const Plan plan = plan_of(small_plan());
   const auto once = analyse(plan, table);
   ASSERT_TRUE(once) << once.error().what;
@@ -121,18 +121,19 @@ TEST(Analyse, ExcludesWithReasonsCorrectsAndGivesTheSameBytesAgain) {
 TEST(Analyse, SaysWhatCouldNotBeDone) {
   Json json = small_plan();
   json["analyses"][0]["formula"] = "breach_velocity_mm_s ~ repetition + (1|scenario)";
-  const auto done = analyse(plan_of(json), table_of(kReference + "data/sim_cohort_trials.csv"));
+  const auto done =
+      analyse(plan_of(json), table_in_file(kReference + "data/sim_cohort_trials.csv"));
   ASSERT_TRUE(done);
   EXPECT_TRUE(done->result["analyses"][0].contains("error"));
   EXPECT_EQ(done->result["families"][0]["tests"][0]["p"], 1.0);
   json["exclusions"][0]["where"] = "repetition >= 1";
-  EXPECT_FALSE(analyse(plan_of(json), table_of(kReference + "data/sim_cohort_trials.csv")));
+  EXPECT_FALSE(analyse(plan_of(json), table_in_file(kReference + "data/sim_cohort_trials.csv")));
 }
 
 TEST(Example, RecomputesTheSixteenPublishedNumbersAndNamesTheSlips) {
   const auto json = core::read_json(kExample + "plan.json");
   ASSERT_TRUE(json) << json.error().what;
-  const auto done = analyse(plan_of(*json), table_of(kExample + "surgeons.csv"));
+  const auto done = analyse(plan_of(*json), table_in_file(kExample + "surgeons.csv"));
   ASSERT_TRUE(done) << done.error().what;
   int agree = 0, disagree = 0;
   for (const auto& one : done->result["published"])
@@ -152,7 +153,7 @@ TEST(Example, RecomputesTheSixteenPublishedNumbersAndNamesTheSlips) {
 TEST(Example, CorrectsThePublishedPValues) {
   const auto json = core::read_json(kExample + "plan-p-values.json");
   ASSERT_TRUE(json);
-  const auto done = analyse(plan_of(*json), table_of(kExample + "p-values.csv"));
+  const auto done = analyse(plan_of(*json), table_in_file(kExample + "p-values.csv"));
   ASSERT_TRUE(done) << done.error().what;
   const std::string page = report_page(*done);
   EXPECT_NE(page.find("0.001608"), std::string::npos);  // R's p.adjust, Table 6

@@ -8,13 +8,13 @@ namespace tractus {
 namespace assessment {
 namespace {
 
-core::Result<Table> table_of(const std::string& text) {
+core::Result<Table> read_table_of(const std::string& text) {
   const auto bytes = core::bytes_of(text);
   return Table::parse({bytes.begin(), bytes.end()}, "t.csv", {}, Missing::keep);
 }
 
 TEST(Table, HoldsQuotedCellsAsTheyWereMeant) {
-  const auto table = table_of(
+  const auto table = read_table_of(
       "\xef\xbb\xbfwho,said,n\r\n"
       "a,\"one, \"\"two\"\"\",1\r\n"
       "b,\"line\r\nbreak\",2\r\n");
@@ -24,18 +24,20 @@ TEST(Table, HoldsQuotedCellsAsTheyWereMeant) {
   EXPECT_TRUE(table->is_numeric("n"));
   EXPECT_EQ(table->line(1), 3u);
 
-  const auto again = table_of(marked(*table, {"", "not \"there\""}));
+  const auto again = read_table_of(marked(*table, {"", "not \"there\""}));
   ASSERT_TRUE(again) << again.error().what;
   EXPECT_EQ(again->texts("said"), table->texts("said"));
   EXPECT_EQ(again->texts("excluded_because")[1], "not \"there\"");
 }
 
 TEST(Table, SaysInWhichLineItStumbled) {
-  EXPECT_EQ(table_of("a,b\n\"1\n\",2\n3\n").error().what, "t.csv:4: 1 cells, the header has 2");
-  EXPECT_EQ(table_of("a,b\n1,\"2\n3,4\n").error().what, "t.csv:2: a quote stays open");
-  EXPECT_EQ(table_of("\n1\n").error().what, "t.csv:1: the header line is empty");
-  EXPECT_EQ(table_of("").error().what, "t.csv:1: the header line is empty");
-  EXPECT_EQ(table_of(std::string("a,\x01\n1,2\n")).error().what, "t.csv:1: this is no text file");
+  EXPECT_EQ(read_table_of("a,b\n\"1\n\",2\n3\n").error().what,
+            "t.csv:4: 1 cells, the header has 2");
+  EXPECT_EQ(read_table_of("a,b\n1,\"2\n3,4\n").error().what, "t.csv:2: a quote stays open");
+  EXPECT_EQ(read_table_of("\n1\n").error().what, "t.csv:1: the header line is empty");
+  EXPECT_EQ(read_table_of("").error().what, "t.csv:1: the header line is empty");
+  EXPECT_EQ(read_table_of(std::string("a,\x01\n1,2\n")).error().what,
+            "t.csv:1: this is no text file");
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace tractus {
 namespace laws {
 namespace {
 
-constexpr double kTurning = 0.5;
+constexpr double kTurning_rad_s = 0.5;
 constexpr int kLaws = 60;
 
 class EveryLaw : public testing::Test {
@@ -109,7 +109,7 @@ TEST_F(EveryLaw, DepthNeverMovesFasterThanTheActuatorAndStaysWithinTheTravel) {
     ProbingState state;
     for (int i = 0; i < 3000; ++i) {
       const double before_m = state.x_m;
-      law.advance(uniform(-50.0, 180.0), kTurning, 1e-3, state);
+      law.advance(uniform(-50.0, 180.0), kTurning_rad_s, 1e-3, state);
       EXPECT_LE(std::abs(state.x_m - before_m), 0.23e-3 * (1.0 + 1e-9));
       EXPECT_GE(state.x_m, 0.0);
       EXPECT_LE(state.x_m, 0.06);
@@ -127,8 +127,8 @@ TEST_F(EveryLaw, AnswersTheSameAtOneAndTenKilohertz) {
     double worst_m = 0.0;
     for (int i = 0; i < 4000; ++i) {
       const double push_N = 90.0 + 60.0 * std::sin(0.01 * i);
-      law.advance(push_N, kTurning, 1e-3, slow);
-      for (int j = 0; j < 10; ++j) law.advance(push_N, kTurning, 1e-4, fast);
+      law.advance(push_N, kTurning_rad_s, 1e-3, slow);
+      for (int j = 0; j < 10; ++j) law.advance(push_N, kTurning_rad_s, 1e-4, fast);
       worst_m = std::max(worst_m, std::abs(slow.x_m - fast.x_m));
     }
     EXPECT_LT(worst_m, 5e-6);
@@ -141,7 +141,7 @@ TEST_F(EveryLaw, MotionFromForceGivesTheForceBack) {
     for (int i = 0; i < 100; ++i) {
       const double x_m = uniform(0.0, 0.054), push_N = uniform(0.0, 150.0);
       ProbingState state{x_m, ProbingMode::bone};
-      const double v = law.advance(push_N, kTurning, 1e-7, state);
+      const double v = law.advance(push_N, kTurning_rad_s, 1e-7, state);
       if (std::abs(v) > 0.229 || law.mode_at(x_m) != law.mode_at(state.x_m)) continue;
       // Over 0.1 µs the depth is as good as still; a border or bare travel within is left out.
       const double given_N = law.force_N(0.5 * (x_m + state.x_m), v);

@@ -13,7 +13,7 @@ namespace {
 using math::Vec3;
 
 /// Bone of 1000 HU where y < 0, soft tissue elsewhere; 1 mm voxels, V centred.
-volume::Volume half_space() {
+volume::Volume small_half_space() {
   volume::Volume v{.geometry = {{24, 24, 24},
                                 Vec3::Constant(1e-3),
                                 Vec3::Constant(-0.0115),
@@ -41,8 +41,8 @@ effects::EffectInstance formula(const char* text, const char* unit) {
 }
 
 laws::ForceSample added(const effects::EffectInstance& use, const Vec3& p_m, const Vec3& v_m_s) {
-  static const auto field = volume::ForceField::make(half_space(), volume::TransferFunction::bone(),
-                                                     volume::FieldKind::paper);
+  static const auto field = volume::ForceField::make(
+      small_half_space(), volume::TransferFunction::bone(), volume::FieldKind::paper);
   auto effect = effects::make_palpation_effect(use);
   EXPECT_TRUE(effect) << effect.error().what;
   const auto sample = field->sample(p_m);

@@ -11,24 +11,24 @@ using core::Json;
 using testing::HasSubstr;
 
 /// The probing example of the file format's definition, its friction left out and one layer added.
-constexpr const char* kExample =
+constexpr const char* kProbingExample =
     R"({"format":"tractus-model/1","rig":"probing","name":"layered bone",
  "base":{"layers":[{"start_m":0,"thickness_m":0.004,"stiffness_N_per_m":4000,"damping_Ns_per_m":2000,"equilibrium_m":0},
                    {"start_m":0.004,"thickness_m":0.006,"stiffness_N_per_m":5000,"damping_Ns_per_m":2500,"equilibrium_m":0.004}],
          "rotary":{"viscous_Nms_per_rad":0.02,"detent_Nm":0.01,"detent_pitch_rad":0.35}},
  "fixed":["/base/layers/*/start_m","/base/rotary/detent_Nm"],"effects":[]})";
 
-Json example() { return *core::parse_json(kExample, "example"); }
+Json probing_example() { return *core::parse_json(kProbingExample, "example"); }
 
 std::string refusal(const char* pointer, const char* value) {
-  Json json = example();
+  Json json = probing_example();
   json[Json::json_pointer(pointer)] = Json::parse(value);
   const auto model = ProbingModel::from_json(json, "m.json: ");
   return model ? "taken" : model.error().what;
 }
 
 TEST(ProbingModel, ReadsTheExampleOfTheFormat) {
-  const auto model = ProbingModel::from_json(example(), "m.json: ");
+  const auto model = ProbingModel::from_json(probing_example(), "m.json: ");
   ASSERT_TRUE(model) << model.error().what;
   EXPECT_EQ(model->name, "layered bone");
   ASSERT_EQ(model->layers.size(), 2u);
@@ -39,14 +39,14 @@ TEST(ProbingModel, ReadsTheExampleOfTheFormat) {
 }
 
 TEST(ProbingModel, IsTheSameValueAfterWritingAndReading) {
-  Json other = example();
+  Json other = probing_example();
   other["base"]["layers"][0]["damping_Ns_per_m"] = 1000.0 / 3.0;  // no short decimal
   const auto text = ProbingModel::from_json(other, "")->to_json().dump();
   EXPECT_EQ(ProbingModel::from_json(*core::parse_json(text, "t"), "")->to_json(), other);
 }
 
 TEST(ProbingModel, RunsTheLawItDescribes) {
-  const auto law = ProbingModel::from_json(example(), "")->law(0.05);
+  const auto law = ProbingModel::from_json(probing_example(), "")->law(0.05);
   ASSERT_TRUE(law);
   // eq. (2): D v + K (x − x0): 2000 · 0.005 + 4000 · 0.003 = 22 N; 2500 · 0.005 + 5000 · 0.002
   // = 22.5
@@ -55,13 +55,13 @@ TEST(ProbingModel, RunsTheLawItDescribes) {
 }
 
 TEST(ProbingModel, MayHoldOneLayerOrNone) {
-  Json json = example();
+  Json json = probing_example();
   json["fixed"] = Json::array();
   json["base"]["layers"] = Json::array();
   const auto none = ProbingModel::from_json(json, "");
   ASSERT_TRUE(none) << none.error().what;
   EXPECT_EQ(none->law(0.05)->force_N(0.02, 0.01), 0.0);
-  json["base"]["layers"] = Json::array({example()["base"]["layers"][0]});
+  json["base"]["layers"] = Json::array({probing_example()["base"]["layers"][0]});
   json["base"].erase("rotary");
   const auto one = ProbingModel::from_json(json, "");
   ASSERT_TRUE(one) << one.error().what;
@@ -70,7 +70,7 @@ TEST(ProbingModel, MayHoldOneLayerOrNone) {
 
 TEST(ProbingModel, TakesRoundingBetweenLayersAsOneBorder) {
   for (const double gap_m : {-1e-6, 1e-6}) {
-    Json json = example();
+    Json json = probing_example();
     Json& layers = json["base"]["layers"];
     const double border_m =
         layers[0]["start_m"].get<double>() + layers[0]["thickness_m"].get<double>();
@@ -110,7 +110,7 @@ TEST(ProbingModel, RefusesByNameWhatCannotBe) {
 }
 
 TEST(AModelFile, SaysWhichRigItIsOf) {
-  const auto probing = model_from_json(example(), "");
+  const auto probing = model_from_json(probing_example(), "");
   ASSERT_TRUE(probing);
   EXPECT_TRUE(std::holds_alternative<ProbingModel>(*probing));
   const auto palpation = model_from_json(Json{{"format", "tractus-model/1"},

@@ -12,7 +12,7 @@ namespace loop {
 namespace {
 using devices::Status;
 using math::Vec3;
-constexpr core::Instant_ns kPeriod = 250'000;
+constexpr core::Instant_ns kDrillingPeriod = 250'000;
 
 /// 1000 HU below the plane z = 0, air above; the burr comes along +z.
 volume::Volume slab() {
@@ -51,8 +51,8 @@ class Plunger final : public devices::Device {
   Vec3 push = Vec3::Zero();
 };
 
-struct Bench {
-  explicit Bench(const drilling::Burr& burr = {}) {
+struct DrillingBench {
+  explicit DrillingBench(const drilling::Burr& burr = {}) {
     auto made = Drilling::make(bone, model, burr);
     core::require(bool(made), "the bench's burr fits its bone");
     drilling = std::move(*made);
@@ -84,7 +84,7 @@ struct Bench {
   const models::PalpationModel model;
   core::ManualClock clock;
   Plunger device;
-  Limiter limiter{HandLimits{}, kPeriod};
+  Limiter limiter{HandLimits{}, kDrillingPeriod};
   SampleRing ring{32768};
   LiveState live;
   std::unique_ptr<Drilling> drilling;
@@ -94,7 +94,7 @@ struct Bench {
 
 /// Does what was recorded say all? The voxels drilled again, and every force felt again with the
 /// changes that its tick had.
-void expect_replays(const Bench& bench, const std::vector<trial::Sample>& samples) {
+void expect_replays(const DrillingBench& bench, const std::vector<trial::Sample>& samples) {
   const auto& setup = bench.drilling->setup();
   auto erosion = drilling::Erosion::make(bench.bone, setup.transfer, setup.burr,
                                          {.length_m = bench.model.base.length_m});
@@ -134,7 +134,7 @@ void expect_replays(const Bench& bench, const std::vector<trial::Sample>& sample
 }
 
 TEST(Drilling, IsFeltAndReplaysFromItsSamplesUnderAManualClock) {
-  Bench bench;
+  DrillingBench bench;
   const auto samples = bench.run(8000, [&] { bench.drilling->work(); });
   ASSERT_EQ(samples.size(), 8000u);
   expect_replays(bench, samples);
@@ -143,7 +143,7 @@ TEST(Drilling, IsFeltAndReplaysFromItsSamplesUnderAManualClock) {
 // The worker races the loop, which runs as fast as it can: what it does when is chance, what the
 // record says is not.
 TEST(Drilling, ReplaysFromItsSamplesWhateverTheWorkersPace) {
-  Bench bench;
+  DrillingBench bench;
   core::MonotonicClock real;
   bench.drilling->start(real);
   const auto samples = bench.run(16000, [&] {
@@ -159,7 +159,7 @@ TEST(Drilling, ReplaysFromItsSamplesWhateverTheWorkersPace) {
 }
 
 TEST(Drilling, TakesNothingWithoutTheButton) {
-  Bench bench;
+  DrillingBench bench;
   bench.device.buttons = 2;
   bench.run(4000, [&] { bench.drilling->work(); });
   EXPECT_EQ(bench.drilling->erosion().changes(), 0u);
@@ -168,7 +168,7 @@ TEST(Drilling, TakesNothingWithoutTheButton) {
 // A burr that takes the bone from under the hand at once: the model's force falls in one tick by
 // more than the slew lets through, and what is rendered does not.
 TEST(Drilling, OfAllTheBoneAtOnceDoesNotJerkTheHand) {
-  Bench bench({.nose_m = 0.0, .rate_per_s = 1000.0, .threshold_N = 2.2, .full_N = 2.201});
+  DrillingBench bench({.nose_m = 0.0, .rate_per_s = 1000.0, .threshold_N = 2.2, .full_N = 2.201});
   bench.device.give_m_per_N = 0.0;
   const auto samples = bench.run(8000, [&] { bench.drilling->work(); });
   const double most_N = bench.limiter.limits().max_force_slew_N_per_s * 0.00025;
@@ -186,14 +186,14 @@ TEST(Drilling, OfAllTheBoneAtOnceDoesNotJerkTheHand) {
 }
 
 TEST(Drilling, AllocatesNothingInTheTick) {
-  Bench bench;
+  DrillingBench bench;
   core::MonotonicClock real;
   bench.drilling->start(real);
   std::uint64_t allocations = 0;
   bench.limiter.arm();
   for (std::uint32_t tick = 0; tick < 8000; ++tick) {
     const AllocationGuard guard;
-    bench.loop->tick(core::Instant_ns{tick} * kPeriod, tick, false);
+    bench.loop->tick(core::Instant_ns{tick} * kDrillingPeriod, tick, false);
     allocations += guard.allocations();
     if (tick % 64 == 0) std::this_thread::yield();
   }
@@ -203,7 +203,7 @@ TEST(Drilling, AllocatesNothingInTheTick) {
 }
 
 TEST(Drilling, SaysWhenTheWorkerIsTooFarBehind) {
-  Bench bench;
+  DrillingBench bench;
   for (std::size_t tick = 0; tick < Drilling::kRoom; ++tick) bench.drilling->worked({});
   EXPECT_FALSE(bench.drilling->fell_behind());
   bench.drilling->worked({});
@@ -211,7 +211,7 @@ TEST(Drilling, SaysWhenTheWorkerIsTooFarBehind) {
 }
 
 TEST(Drilling, ShowsWhatChangedAndNothingTwice) {
-  Bench bench;
+  DrillingBench bench;
   volume::Volume shown = bench.bone;
   int boxes = 0;
   EXPECT_FALSE(bench.drilling->show(shown));
@@ -226,7 +226,7 @@ TEST(Drilling, ShowsWhatChangedAndNothingTwice) {
 }
 
 TEST(Drilling, ShowsWhatEachVoxelLostWhenTheBurrWasAtWork) {
-  Bench bench;
+  DrillingBench bench;
   EXPECT_FALSE(bench.drilling->worn());
   bench.run(4000, [&] { bench.drilling->work(); });
   const auto worn = bench.drilling->worn();

@@ -16,7 +16,7 @@ namespace loop {
 namespace {
 using devices::Status;
 using math::Vec3;
-constexpr core::Instant_ns kPeriod = 250'000;
+constexpr core::Instant_ns kHapticPeriod = 250'000;
 
 class StillDevice final : public devices::Device {
  public:
@@ -58,7 +58,7 @@ struct Rig {
   SomeClock clock;
   StillDevice device;
   Pusher contact;
-  Limiter limiter{HandLimits{}, kPeriod};
+  Limiter limiter{HandLimits{}, kHapticPeriod};
   SampleRing ring{1024};
   LiveState live;
   HapticLoop loop{{clock, device, contact, limiter, ring, live}, {}, Vec3::Zero(), 4000.0};
@@ -114,7 +114,7 @@ TEST(HapticLoop, TurnsTheWrenchFromTheHandleIntoTheDevicesAxes) {
   Rig<core::ManualClock> rig;
   HandLimits limits;
   limits.ramp_s = 0.2;
-  rig.limiter = Limiter(limits, kPeriod);
+  rig.limiter = Limiter(limits, kHapticPeriod);
   rig.device.pose.q =
       math::Quat(Eigen::AngleAxisd(std::numbers::pi / 2, Vec3::UnitZ()));  // H's x is D's y
   rig.limiter.arm();
@@ -153,7 +153,7 @@ TEST(HapticLoop, HoldsTheLastPoseThroughAStaleSampleAndFlagsIt) {
   rig.run(1);
   rig.device.status = Status::stale;
   rig.device.pose.p = {9, 9, 9};
-  rig.loop.tick(rig.clock.now() + kPeriod, 1, false);
+  rig.loop.tick(rig.clock.now() + kHapticPeriod, 1, false);
   std::array<trial::Sample, 4> out;
   ASSERT_EQ(rig.ring.pop(out), 1u);
   EXPECT_TRUE(out[0].flags & trial::kStale);
@@ -179,7 +179,7 @@ TEST(HapticLoop, AllocatesNothingInTheTick) {
   Rig<core::ManualClock> rig;
   rig.limiter.arm();
   const AllocationGuard guard;
-  for (std::uint32_t i = 0; i < 2000; ++i) rig.loop.tick(i * kPeriod, i, false);
+  for (std::uint32_t i = 0; i < 2000; ++i) rig.loop.tick(i * kHapticPeriod, i, false);
   EXPECT_EQ(guard.allocations(), 0u);
 }
 
@@ -194,7 +194,7 @@ TEST(HapticLoop, AllocatesNothingInTheTickWithAnySimulatedDevice) {
                     Vec3::Zero(), 4000.0);
     rig.limiter.arm();
     const AllocationGuard guard;
-    for (std::uint32_t i = 0; i < 80'000; ++i) loop.tick(i * kPeriod, i, false);  // 20 s
+    for (std::uint32_t i = 0; i < 80'000; ++i) loop.tick(i * kHapticPeriod, i, false);  // 20 s
     EXPECT_EQ(guard.allocations(), 0u) << info.id;
   }
 }

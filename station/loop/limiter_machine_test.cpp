@@ -16,14 +16,14 @@ using devices::Status;
 using math::Vec3;
 using math::Wrench;
 
-constexpr core::Instant_ns kPeriod = 250'000;
+constexpr core::Instant_ns kMachinePeriod = 250'000;
 
 /// What may happen in a tick, and the fault it is if it is one.
 struct Stimulus {
   const char* name;
   Fault fault = Fault::none;
   bool stale = false, arm = false;
-  core::Instant_ns elapsed = kPeriod;
+  core::Instant_ns elapsed = kMachinePeriod;
   void (*spoil)(Sample&, Status&, Wrench&) = [](Sample&, Status&, Wrench&) {};
 };
 
@@ -32,7 +32,7 @@ std::vector<Stimulus> stimuli() {
   out[0] = {.name = "push"};
   out[1] = {.name = "other way",
             .spoil = [](Sample&, Status&, Wrench& w) { w.force_N = -w.force_N; }};
-  out[2] = {.name = "late", .elapsed = 6 * kPeriod};
+  out[2] = {.name = "late", .elapsed = 6 * kMachinePeriod};
   out[3] = {.name = "arm", .arm = true};
   out[4] = {.name = "stale", .stale = true, .spoil = [](Sample&, Status& s, Wrench&) {
               s = Status::stale;
@@ -85,7 +85,7 @@ struct Walk {
     const Limiter::Passed out = limiter.pass(now, status, sample, wanted);
     const bool zero = out.wrench.force_N.isZero(0.0) && out.wrench.torque_Nm.isZero(0.0);
     const HandLimits& most = limiter.limits();
-    const double dt_s = double(std::min(s.elapsed, 2 * kPeriod)) * 1e-9 + 1e-9;
+    const double dt_s = double(std::min(s.elapsed, 2 * kMachinePeriod)) * 1e-9 + 1e-9;
     const double change_N = (out.wrench.force_N - force).norm();
     force = out.wrench.force_N;
     if ((s.fault != Fault::none || s.stale) && !zero) return why = "force in a bad tick", false;
@@ -107,7 +107,7 @@ struct Walk {
 Walk fresh(Guard state) {
   HandLimits limits;
   limits.ramp_s = 0.2;
-  Walk walk{Limiter(limits, kPeriod)};
+  Walk walk{Limiter(limits, kMachinePeriod)};
   std::string why;
   const std::vector<Stimulus> all = stimuli();
   if (state == Guard::off) return walk;

@@ -13,7 +13,7 @@ using devices::Sample;
 using devices::Status;
 using math::Vec3;
 using math::Wrench;
-constexpr core::Instant_ns kPeriod = 250'000;
+constexpr core::Instant_ns kLimiterPeriod = 250'000;
 
 HandLimits quick() {
   HandLimits limits;
@@ -22,15 +22,17 @@ HandLimits quick() {
 }
 
 /// A limiter with a still handle, ticking.
-struct Bench {
+struct LimiterBench {
   Limiter limiter;
   core::Instant_ns now = 1'000'000;
   Sample sample;
   Status status = Status::ok;
 
-  explicit Bench(const HandLimits& limits = quick()) : limiter(limits, kPeriod) { limiter.arm(); }
+  explicit LimiterBench(const HandLimits& limits = quick()) : limiter(limits, kLimiterPeriod) {
+    limiter.arm();
+  }
   Limiter::Passed tick(const Wrench& wanted) {
-    now += kPeriod;
+    now += kLimiterPeriod;
     if (status == Status::ok) sample.stamp = now;
     return limiter.pass(now, status, sample, wanted);
   }
@@ -43,7 +45,7 @@ struct Bench {
 Wrench push(double x_N) { return {{x_N, 0, 0}, Vec3::Zero()}; }
 
 TEST(Limiter, LetsASmallForceThroughUnchanged) {
-  Bench bench;
+  LimiterBench bench;
   bench.settle();
   for (int i = 0; i < 10; ++i) bench.tick(push(1.5));
   const auto passed = bench.tick(push(1.5));
@@ -52,13 +54,13 @@ TEST(Limiter, LetsASmallForceThroughUnchanged) {
 }
 
 TEST(Limiter, GivesNothingWhileNobodyHasArmedIt) {
-  Bench bench;
+  LimiterBench bench;
   bench.limiter.disarm();
   for (int i = 0; i < 1000; ++i) EXPECT_TRUE(bench.tick(push(1.0)).wrench.force_N.isZero(0.0));
 }
 
 TEST(Limiter, WaitsForAQuietMomentBeforeTheRamp) {
-  Bench bench;
+  LimiterBench bench;
   for (int i = 0; i < 1000; ++i) EXPECT_TRUE(bench.tick(push(5.0)).wrench.force_N.isZero(0.0));
   EXPECT_EQ(bench.limiter.guard(), Guard::waiting);
 }
@@ -66,7 +68,7 @@ TEST(Limiter, WaitsForAQuietMomentBeforeTheRamp) {
 TEST(Limiter, RampsFromNothingToAllInTheStatedTime) {
   HandLimits limits;
   limits.ramp_s = 0.5;
-  Bench bench(limits);
+  LimiterBench bench(limits);
   for (int i = 0; i < Limiter::kQuietTicks; ++i) bench.tick({});
   // From here the ramp runs: after half of 0.5 s, 1000 ticks of 0.25 ms, half of 4 N.
   Limiter::Passed passed;
@@ -78,7 +80,7 @@ TEST(Limiter, RampsFromNothingToAllInTheStatedTime) {
 
 TEST(Limiter, LatchesOnEachFaultInTheVeryTickAndStaysAtZeroUntilArmed) {
   const auto check = [](Fault expected, auto&& spoil) {
-    Bench bench;
+    LimiterBench bench;
     bench.settle();
     for (int i = 0; i < 50; ++i) bench.tick(push(3.0));
     Wrench wanted = push(3.0);
@@ -94,19 +96,19 @@ TEST(Limiter, LatchesOnEachFaultInTheVeryTickAndStaysAtZeroUntilArmed) {
     for (int i = 0; i < 50; ++i) bench.tick(push(3.0));
     EXPECT_EQ(bench.tick(push(3.0)).wrench.force_N.x(), 3.0) << text_of(expected);
   };
-  check(Fault::not_finite, [](Bench&, Wrench& w) { w.torque_Nm.y() = NAN; });
-  check(Fault::not_finite, [](Bench&, Wrench& w) { w.force_N.z() = INFINITY; });
-  check(Fault::not_finite, [](Bench& b, Wrench&) { b.sample.X_DH.p.x() = NAN; });
-  check(Fault::not_finite, [](Bench& b, Wrench&) { b.sample.X_DH.q.coeffs() *= 2.0; });
+  check(Fault::not_finite, [](LimiterBench&, Wrench& w) { w.torque_Nm.y() = NAN; });
+  check(Fault::not_finite, [](LimiterBench&, Wrench& w) { w.force_N.z() = INFINITY; });
+  check(Fault::not_finite, [](LimiterBench& b, Wrench&) { b.sample.X_DH.p.x() = NAN; });
+  check(Fault::not_finite, [](LimiterBench& b, Wrench&) { b.sample.X_DH.q.coeffs() *= 2.0; });
   check(Fault::jump,
-        [](Bench& b, Wrench&) { b.sample.X_DH.p.x() += 0.006; });  // > 5 mm in one tick
-  check(Fault::speed, [](Bench& b, Wrench&) { b.sample.velocity_m_s.x() = 2.1; });
-  check(Fault::speed, [](Bench& b, Wrench&) { b.sample.angular_velocity_rad_s.x() = 41.0; });
-  check(Fault::device, [](Bench& b, Wrench&) { b.status = Status::fault; });
+        [](LimiterBench& b, Wrench&) { b.sample.X_DH.p.x() += 0.006; });  // > 5 mm in one tick
+  check(Fault::speed, [](LimiterBench& b, Wrench&) { b.sample.velocity_m_s.x() = 2.1; });
+  check(Fault::speed, [](LimiterBench& b, Wrench&) { b.sample.angular_velocity_rad_s.x() = 41.0; });
+  check(Fault::device, [](LimiterBench& b, Wrench&) { b.status = Status::fault; });
 }
 
 TEST(Limiter, ZeroesAStaleTickAndLatchesAfterTwentyMilliseconds) {
-  Bench bench;
+  LimiterBench bench;
   bench.settle();
   for (int i = 0; i < 50; ++i) bench.tick(push(2.0));
   bench.status = Status::stale;
@@ -118,7 +120,7 @@ TEST(Limiter, ZeroesAStaleTickAndLatchesAfterTwentyMilliseconds) {
 }
 
 TEST(Limiter, TreatsAnOldStampAsStaleWhateverTheDeviceSays) {
-  Bench bench;
+  LimiterBench bench;
   bench.settle();
   for (int i = 0; i < 50; ++i) bench.tick(push(2.0));
   bench.now += 6'000'000;
@@ -126,7 +128,7 @@ TEST(Limiter, TreatsAnOldStampAsStaleWhateverTheDeviceSays) {
 }
 
 TEST(Limiter, AllowsAJumpThatALongPauseExplains) {
-  Bench bench;
+  LimiterBench bench;
   bench.settle();
   bench.now += 19'750'000;  // 20 ms at 2 m/s: 40 mm
   bench.sample.X_DH.p.x() = 0.030;
@@ -172,7 +174,7 @@ struct Wild {
 
 TEST(Limiter, HoldsItsPromisesOverAMillionRandomTicks) {
   Wild wild{std::mt19937_64(20240611)};
-  Bench bench;
+  LimiterBench bench;
   Wrench last;
   core::Instant_ns last_now = bench.now;
   bool was_latched = false;
@@ -203,7 +205,7 @@ TEST(Limiter, HoldsItsPromisesOverAMillionRandomTicks) {
     if (!zero) {
       // Time between ticks counts at most twice the period; a nanosecond's worth of room for
       // rounding.
-      const double dt_s = double(std::min(bench.now - last_now, 2 * kPeriod)) * 1e-9;
+      const double dt_s = double(std::min(bench.now - last_now, 2 * kLimiterPeriod)) * 1e-9;
       ASSERT_LE((out.force_N - last.force_N).norm(), limits.max_force_slew_N_per_s * (dt_s + 1e-9));
       ASSERT_LE((out.torque_Nm - last.torque_Nm).norm(),
                 limits.max_torque_slew_Nm_per_s * (dt_s + 1e-9));

@@ -12,9 +12,9 @@ namespace tractus {
 namespace loop {
 namespace {
 constexpr double kRate_Hz = 4000.0;
-constexpr core::Instant_ns kPeriod = 250'000, kStart = 7'000'000'000;
+constexpr core::Instant_ns kLoopPeriod = 250'000, kStart = 7'000'000'000;
 
-struct Bench {
+struct PeriodicBench {
   StumblingClock clock;
   PeriodicLoop loop{clock, kRate_Hz};
   std::vector<PeriodicLoop::Tick> ticks;
@@ -33,23 +33,23 @@ struct Bench {
 };
 
 TEST(PeriodicLoop, KeepsDeadlinesThatAreMultiplesOfThePeriodFromTheStart) {
-  Bench run;
+  PeriodicBench run;
   run.clock.late_ns = {10'000, 0, 60'000, 20'000};  // none by a quarter of 250 µs
   run.ticks_until(5, {0, 100'000, 0, 200'000});
   ASSERT_EQ(run.ticks.size(), 5u);
   for (std::size_t k = 0; k < 5; ++k) {
-    EXPECT_EQ(run.ticks[k].deadline, kStart + core::Instant_ns(k) * kPeriod);
+    EXPECT_EQ(run.ticks[k].deadline, kStart + core::Instant_ns(k) * kLoopPeriod);
     EXPECT_EQ(run.ticks[k].number, k);
     EXPECT_FALSE(run.ticks[k].late);
   }
-  EXPECT_EQ(run.ticks[2].now, kStart + 2 * kPeriod + 60'000);
+  EXPECT_EQ(run.ticks[2].now, kStart + 2 * kLoopPeriod + 60'000);
   EXPECT_EQ(run.loop.started(), kStart);
   EXPECT_EQ(run.loop.counts().late, 0u);
   EXPECT_EQ(run.loop.counts().skipped, 0u);
 }
 
 TEST(PeriodicLoop, CallsATickLateThatWokeMoreThanAQuarterPeriodAfterItsDeadline) {
-  Bench run;
+  PeriodicBench run;
   run.clock.late_ns = {0, 62'500, 62'501, 0};  // a quarter of 250 µs is 62.5
   run.ticks_until(4);
   EXPECT_FALSE(run.ticks[1].late);
@@ -60,22 +60,22 @@ TEST(PeriodicLoop, CallsATickLateThatWokeMoreThanAQuarterPeriodAfterItsDeadline)
 }
 
 TEST(PeriodicLoop, MeasuresLatenessWhenItWokeAlsoAfterATickThatTookTooLong) {
-  Bench run;
+  PeriodicBench run;
   run.ticks_until(3, {350'000});  // ends 100 µs after the second deadline
   EXPECT_TRUE(run.ticks[1].late);
   EXPECT_EQ(run.ticks[1].now, kStart + 350'000);
-  EXPECT_EQ(run.ticks[2].deadline, kStart + 2 * kPeriod);
+  EXPECT_EQ(run.ticks[2].deadline, kStart + 2 * kLoopPeriod);
   EXPECT_FALSE(run.ticks[2].late);
   EXPECT_EQ(run.loop.counts().skipped, 0u);
 }
 
 TEST(PeriodicLoop, SkipsDeadlinesThatPassedWholeAndNeverChasesThem) {
-  Bench run;
+  PeriodicBench run;
   run.clock.late_ns = {0, 1'100'000};  // the second tick wakes 4.4 periods late
   run.ticks_until(4);
   EXPECT_EQ(run.ticks[1].number, 1u);
   EXPECT_EQ(run.ticks[2].number, 6u);  // 2 to 5 passed whole
-  EXPECT_EQ(run.ticks[2].deadline, kStart + 6 * kPeriod);
+  EXPECT_EQ(run.ticks[2].deadline, kStart + 6 * kLoopPeriod);
   EXPECT_EQ(run.ticks[2].now, run.ticks[2].deadline);
   EXPECT_EQ(run.ticks[3].number, 7u);
   EXPECT_EQ(run.loop.counts().skipped, 4u);
@@ -83,7 +83,7 @@ TEST(PeriodicLoop, SkipsDeadlinesThatPassedWholeAndNeverChasesThem) {
 }
 
 TEST(PeriodicLoop, EndsWithTheTickInWhichItIsStopped) {
-  Bench run;
+  PeriodicBench run;
   run.ticks_until(3);
   EXPECT_EQ(run.ticks.size(), 3u);
   run.ticks_until(9);  // stopped once is stopped
@@ -91,7 +91,7 @@ TEST(PeriodicLoop, EndsWithTheTickInWhichItIsStopped) {
 }
 
 TEST(PeriodicLoop, EndsWithoutASkipWhenItIsNotToGoOn) {
-  Bench run;
+  PeriodicBench run;
   run.clock.late_ns = {0, 1'100'000};
   run.loop.run([&](const PeriodicLoop::Tick& tick) { run.ticks.push_back(tick); },
                [&] { return run.ticks.size() < 2; });
@@ -100,11 +100,11 @@ TEST(PeriodicLoop, EndsWithoutASkipWhenItIsNotToGoOn) {
 }
 
 TEST(PeriodicLoop, TimesTheTickAndNotWhatFollowsIt) {
-  Bench run;
+  PeriodicBench run;
   run.loop.run([&](const PeriodicLoop::Tick&) { run.clock.advance(20'500); },
                [&] {
                  run.clock.advance(100'000);
-                 return run.clock.now() < kStart + 100 * kPeriod;
+                 return run.clock.now() < kStart + 100 * kLoopPeriod;
                });
   EXPECT_EQ(run.loop.work().quantile_us(0.99), 21.0);
   EXPECT_EQ(run.loop.wake().quantile_us(0.99), 1.0);

@@ -13,7 +13,7 @@ namespace registers = devices::rig;
 using devices::Exchange;
 using trial::ProbingMode;
 
-constexpr core::Instant_ns kPeriod = 1'000'000;
+constexpr core::Instant_ns kProbingPeriod = 1'000'000;
 
 /// A stage without lag under a constant push, and a bus that takes as long as it is told.
 class FakeRig final : public devices::RigDevice {
@@ -67,7 +67,7 @@ models::ProbingRuntime runtime(double damping_Ns_per_m = 1000.0) {
   return std::move(*made);
 }
 
-struct Bench {
+struct ProbingBench {
   core::ManualClock clock;
   FakeRig device{clock};
   ProbingGuard guard{RigLimits{}, 0.02, 1e-3};
@@ -90,7 +90,7 @@ struct Bench {
 };
 
 TEST(ProbingLoop, MovesByTheLawThroughBoneAndBreachToTheStop) {
-  Bench bench;
+  ProbingBench bench;
   bench.run();
   ASSERT_FALSE(bench.guard.latched()) << text_of(bench.guard.fault());
   bool breach = false;
@@ -114,7 +114,7 @@ TEST(ProbingLoop, MovesByTheLawThroughBoneAndBreachToTheStop) {
 }
 
 TEST(ProbingLoop, HoldsWhileTheProbeTurnsTooSlowly) {
-  Bench bench;
+  ProbingBench bench;
   bench.device.turning_rad_s = 0.17;  // 10 deg/s are 0.1745
   bench.run(1000);
   EXPECT_EQ(bench.samples.back().x_m, 0.0);
@@ -122,7 +122,7 @@ TEST(ProbingLoop, HoldsWhileTheProbeTurnsTooSlowly) {
 }
 
 TEST(ProbingLoop, SamplesEveryTickWithItsRoundTripAndAnUnwrappedAngle) {
-  Bench bench;
+  ProbingBench bench;
   bench.run(400);
   ASSERT_EQ(bench.samples.size(), 400u);
   for (std::size_t k = 0; k < 400; ++k) {
@@ -134,7 +134,7 @@ TEST(ProbingLoop, SamplesEveryTickWithItsRoundTripAndAnUnwrappedAngle) {
 }
 
 TEST(ProbingLoop, CountsWhatWasLateSkippedOrLostAndSaysSoInTheSamples) {
-  Bench bench;
+  ProbingBench bench;
   bench.device.takes_ns.assign(400, 50'000);
   bench.device.takes_ns[300] = 1'200'000;  // into the next period: missed, the next one late
   bench.device.takes_ns[350] = 3'600'000;  // over three more
@@ -155,7 +155,7 @@ TEST(ProbingLoop, CountsWhatWasLateSkippedOrLostAndSaysSoInTheSamples) {
 }
 
 TEST(ProbingLoop, EndsWithTheGuardAndLeavesTheDriveOff) {
-  Bench bench;
+  ProbingBench bench;
   bench.device.how.assign(301, Exchange::ok);
   bench.device.how[300] = Exchange::garbage;
   bench.run();
@@ -165,7 +165,7 @@ TEST(ProbingLoop, EndsWithTheGuardAndLeavesTheDriveOff) {
 }
 
 TEST(ProbingLoop, TakesAnotherLawFromTheNextTickOn) {
-  Bench bench;
+  ProbingBench bench;
   const auto softer = runtime(500.0);
   bench.run(260, [&](const trial::ProbingSample& sample) {
     if (sample.tick == 240) bench.loop.exchange_law(softer);
@@ -175,7 +175,7 @@ TEST(ProbingLoop, TakesAnotherLawFromTheNextTickOn) {
 }
 
 TEST(ProbingLoop, AllocatesNothing) {
-  Bench bench;
+  ProbingBench bench;
   std::uint64_t allocations = 0;
   std::optional<AllocationGuard> guard;  // from the first tick on
   bench.run(400, [&](const trial::ProbingSample& sample) {

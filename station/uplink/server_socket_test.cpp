@@ -38,9 +38,9 @@ std::string accepted(const std::string& key) {
 }
 
 /// Takes one connection, reads the request's head and does the rest in a thread.
-class Server {
+class LocalServer {
  public:
-  explicit Server(std::function<void(Server&)> then)
+  explicit LocalServer(std::function<void(LocalServer&)> then)
       : listener_(::socket(AF_INET, SOCK_STREAM, 0)) {
     sockaddr_in address{};
     address.sin_family = AF_INET;
@@ -60,7 +60,7 @@ class Server {
       then(*this);
     });
   }
-  ~Server() {
+  ~LocalServer() {
     ::shutdown(listener_, SHUT_RDWR);
     thread_.join();
     if (fd_ >= 0) ::close(fd_);
@@ -105,13 +105,13 @@ class Server {
 
 const std::atomic<bool> kGoOn = false;
 
-core::Result<std::unique_ptr<ServerSocket>> opened(const Server& server) {
+core::Result<std::unique_ptr<ServerSocket>> opened(const LocalServer& server) {
   return open_server_socket(server.address(), kGoOn);
 }
 
 /// What comes of a server that accepts, says these bytes and hears the rest.
 core::Error end_after(const std::string& frames) {
-  const Server server([&](Server& peer) {
+  const LocalServer server([&](LocalServer& peer) {
     peer.accept_upgrade(frames);
     peer.hear_out();
   });
@@ -128,7 +128,7 @@ TEST(ServerSocket, AsksWithItsTokenAndHearsTextsHoweverTheirBytesAreCut) {
                                  0x89, 0x05, 'H', 'e', 'l', 'l', 'o', 0x80, 0x02, 'l', 'o'});
   std::string head;
   for (const std::size_t piece : {all.size(), std::size_t{1}, std::size_t{4}}) {
-    const Server server([&](Server& peer) {
+    const LocalServer server([&](LocalServer& peer) {
       head = peer.head();
       peer.accept_upgrade(all.substr(0, piece));  // in one packet with the acceptance
       for (std::size_t at = piece; at < all.size(); at += piece) {
@@ -156,7 +156,7 @@ TEST(ServerSocket, AsksWithItsTokenAndHearsTextsHoweverTheirBytesAreCut) {
 TEST(ServerSocket, SaysMaskedTextsInOneFrameAndAnswersPings) {
   std::string heard;
   {
-    const Server server([&](Server& peer) {
+    const LocalServer server([&](LocalServer& peer) {
       peer.accept_upgrade(bytes({0x89, 0x02, 'h', 'i'}));
       for (std::string more = peer.hear(); !more.empty(); more = peer.hear()) heard += more;
     });
@@ -205,7 +205,7 @@ TEST(ServerSocket, TellsWhyTheServerClosedIt) {
 }
 
 TEST(ServerSocket, IsGoneWithTheConnection) {
-  const Server server([](Server& peer) {
+  const LocalServer server([](LocalServer& peer) {
     peer.accept_upgrade(bytes({0x81, 0x05, 'H'}));
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
     ::shutdown(peer.socket(), SHUT_WR);
@@ -237,7 +237,7 @@ TEST(ServerSocket, TakesNoOtherAnswerForAnAcceptance) {
             "Sec-WebSocket-Accept: s3pPLMBiTxaQ9kYGzzhZRbK+xOo=\r\n\r\n",  // of section 1.3's key
             core::Errc::bad_input},
         Row{"", core::Errc::unavailable}}) {
-    const Server server([said = std::string(answer)](Server& peer) {
+    const LocalServer server([said = std::string(answer)](LocalServer& peer) {
       if (!said.empty()) peer.say(said);
       ::shutdown(peer.socket(), SHUT_WR);
       peer.hear_out();
@@ -252,7 +252,7 @@ TEST(ServerSocket, TakesNoOtherAnswerForAnAcceptance) {
 TEST(ServerSocket, ReadsNoMoreOfAnAnswerThanAHeadsWorth) {
   for (const std::string begun :
        {"HTTP/1.1 101 Yes\r\nX: ", "HTTP/1.1 200 OK\r\nContent-Length: 8000000\r\n\r\n"}) {
-    const Server server([&](Server& peer) {
+    const LocalServer server([&](LocalServer& peer) {
       peer.say(begun + std::string(100'000, 'x'));
       peer.hear_out();
     });
@@ -264,7 +264,7 @@ TEST(ServerSocket, ReadsNoMoreOfAnAnswerThanAHeadsWorth) {
 
 TEST(ServerSocket, StopsToWaitForAnAnswerWhenAsked) {
   std::atomic<bool> stopped = false;
-  const Server server([&](Server& peer) {
+  const LocalServer server([&](LocalServer& peer) {
     stopped = true;
     peer.hear_out();
   });
@@ -275,7 +275,7 @@ TEST(ServerSocket, StopsToWaitForAnAnswerWhenAsked) {
 
 TEST(ServerSocket, GivesUpOnAServerThatDoesNotRead) {
   std::atomic<bool> over = false;
-  const Server server([&](Server& peer) {
+  const LocalServer server([&](LocalServer& peer) {
     peer.accept_upgrade();
     while (!over) std::this_thread::sleep_for(std::chrono::milliseconds(20));
   });

@@ -20,25 +20,25 @@ using models::PalpationModel;
 using models::PalpationMotion;
 using models::PalpationRuntime;
 
-const PalpationEffectInfo& entry(const std::string& id) {
+const PalpationEffectInfo& palpation_entry(const std::string& id) {
   return *std::ranges::find(effects::palpation_effects(), id,
                             [](const auto& info) { return info.facts.id; });
 }
 
-enum class At { off, some, low, high };
+enum class PalpationAt { off, some, low, high };
 
 /// The effect with all its numbers at one place of their ranges. Off, those of shape stay initial;
 /// a taper is off where both radii are the base's. `some` is initial, or a little off zero.
-effects::EffectInstance use_of(const PalpationEffectInfo& info, At at) {
+effects::EffectInstance use_of(const PalpationEffectInfo& info, PalpationAt at) {
   effects::EffectInstance use{info.facts.id, {}};
   for (const Param& p : info.facts.params) {
     double value = p.initial;
-    if (at == At::low) value = p.low;
-    if (at == At::high) value = p.high;
-    if (at == At::off && !std::isnan(p.off)) value = p.off;
-    if (at == At::off && info.facts.id == "shank_taper")
+    if (at == PalpationAt::low) value = p.low;
+    if (at == PalpationAt::high) value = p.high;
+    if (at == PalpationAt::off && !std::isnan(p.off)) value = p.off;
+    if (at == PalpationAt::off && info.facts.id == "shank_taper")
       value = laws::PalpationParameters{}.radius_m;
-    if (at == At::some && value == p.off) value += 0.02 * (p.high - p.low);
+    if (at == PalpationAt::some && value == p.off) value += 0.02 * (p.high - p.low);
     use.values.insert(use.values.end(), std::size_t(p.components), value);
   }
   return use;
@@ -115,7 +115,7 @@ std::vector<Vec3> live(const PalpationRuntime& runtime, const PalpationMotion& m
 
 class EveryPalpationEffect : public testing::TestWithParam<std::string> {
  protected:
-  const PalpationEffectInfo& info_ = entry(GetParam());
+  const PalpationEffectInfo& info_ = palpation_entry(GetParam());
 };
 
 TEST_P(EveryPalpationEffect, SaysWhatItIs) {
@@ -128,20 +128,21 @@ TEST_P(EveryPalpationEffect, SaysWhatItIs) {
     EXPECT_TRUE(std::isnan(p.off) || (p.off >= p.low && p.off <= p.high)) << p.name;
     EXPECT_TRUE(!p.logarithmic || p.low > 0.0) << p.name;
   }
-  for (const std::string& parent : f.parents) EXPECT_EQ(entry(parent).facts.id, parent);
+  for (const std::string& parent : f.parents) EXPECT_EQ(palpation_entry(parent).facts.id, parent);
 }
 
 TEST_P(EveryPalpationEffect, IsNothingWhenOff) {
   const auto motion = strokes();
   EXPECT_LT(greatest_difference(predicted(runtime_of({}), motion),
-                                predicted(runtime_of({use_of(info_, At::off)}), motion)),
+                                predicted(runtime_of({use_of(info_, PalpationAt::off)}), motion)),
             1e-6);  // N: the shank's rest is sought to 1e-3 N, so two ways to it part a little
 }
 
 TEST_P(EveryPalpationEffect, IsSomethingElsewhereUnlessItsCourseIsFree) {
   const auto motion = strokes();
-  const double most = greatest_difference(predicted(runtime_of({}), motion),
-                                          predicted(runtime_of({use_of(info_, At::some)}), motion));
+  const double most =
+      greatest_difference(predicted(runtime_of({}), motion),
+                          predicted(runtime_of({use_of(info_, PalpationAt::some)}), motion));
   if (info_.facts.free_per_trial)
     EXPECT_EQ(most, 0.0);
   else
@@ -150,14 +151,14 @@ TEST_P(EveryPalpationEffect, IsSomethingElsewhereUnlessItsCourseIsFree) {
 
 TEST_P(EveryPalpationEffect, IsFiniteOverItsWholeRange) {
   const auto motion = strokes();
-  for (const At at : {At::some, At::low, At::high})
+  for (const PalpationAt at : {PalpationAt::some, PalpationAt::low, PalpationAt::high})
     for (const auto& wrench : predicted(runtime_of({use_of(info_, at)}), motion).wrench_H)
       ASSERT_TRUE(wrench.force_N.norm() < 1e5 && wrench.torque_Nm.norm() < 1e5) << int(at);
 }
 
 TEST_P(EveryPalpationEffect, AllocatesNothingInATick) {
   const auto motion = strokes();
-  for (const At at : {At::some, At::low, At::high}) {
+  for (const PalpationAt at : {PalpationAt::some, PalpationAt::low, PalpationAt::high}) {
     const auto runtime = runtime_of({use_of(info_, at)});
     laws::PalpationState state;
     const loop::AllocationGuard guard;
@@ -168,15 +169,15 @@ TEST_P(EveryPalpationEffect, AllocatesNothingInATick) {
 
 TEST_P(EveryPalpationEffect, GivesTheSameBitsAgain) {
   const auto motion = strokes();
-  const auto one = runtime_of({use_of(info_, At::some)});
+  const auto one = runtime_of({use_of(info_, PalpationAt::some)});
   EXPECT_EQ(greatest_difference(predicted(one, motion), predicted(one, motion)), 0.0);
-  EXPECT_EQ(live(one, motion), live(runtime_of({use_of(info_, At::some)}), motion));
+  EXPECT_EQ(live(one, motion), live(runtime_of({use_of(info_, PalpationAt::some)}), motion));
 }
 
 TEST_P(EveryPalpationEffect, IsFeltLiveUnlessItBelongsToTheSensor) {
   const auto motion = strokes();
   const auto base = live(runtime_of({}), motion);
-  const auto with = live(runtime_of({use_of(info_, At::some)}), motion);
+  const auto with = live(runtime_of({use_of(info_, PalpationAt::some)}), motion);
   if (info_.facts.kind == Kind::measurement)
     EXPECT_EQ(with, base);
   else
@@ -199,20 +200,20 @@ double work_J(const PalpationRuntime& runtime) {
 TEST_P(EveryPalpationEffect, GivesBackNoMoreWorkThanItGotUnlessItSaysSo) {
   if (info_.facts.kind == Kind::measurement || !info_.facts.passive) return;
   const double base = work_J(runtime_of({}));
-  EXPECT_GT(work_J(runtime_of({use_of(info_, At::some)})) - base, -2e-6)
+  EXPECT_GT(work_J(runtime_of({use_of(info_, PalpationAt::some)})) - base, -2e-6)
       << "of " << base << " J on a conservative field";
 }
 
-std::vector<std::string> ids() {
+std::vector<std::string> palpation_ids() {
   std::vector<std::string> out;
   for (const auto& info : effects::palpation_effects()) out.push_back(info.facts.id);
   return out;
 }
-INSTANTIATE_TEST_SUITE_P(Palpation, EveryPalpationEffect, testing::ValuesIn(ids()),
+INSTANTIATE_TEST_SUITE_P(Palpation, EveryPalpationEffect, testing::ValuesIn(palpation_ids()),
                          [](const auto& one) { return one.param; });
 
 TEST(TheCatalogueOfPalpation, HoldsTheThirteenEffectsOfTheDesign) {
-  EXPECT_THAT(ids(),
+  EXPECT_THAT(palpation_ids(),
               testing::IsSupersetOf({"contact_friction", "contact_damping", "contact_nonlinearity",
                                      "contact_hysteresis", "shank_taper", "shank_curvature",
                                      "pose_offset", "tip_ball", "probe_weight", "probe_inertia",

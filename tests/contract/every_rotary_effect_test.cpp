@@ -18,14 +18,14 @@ using models::ProbingLive;
 using models::ProbingMotion;
 using models::ProbingRuntime;
 
-constexpr double kTravel_m = 0.05, kWall_m = 0.02;
+constexpr double kRotaryTravel_m = 0.05, kWall_m = 0.02;
 
 /// Bone to 50 mm, a wall at 20 mm with 5 mm of soft tissue behind it.
-laws::ProbingParameters bone() {
-  return {.layers = {{0.0, kTravel_m, 4000.0, 2000.0, 0.0}},
+laws::ProbingParameters rotary_bone() {
+  return {.layers = {{0.0, kRotaryTravel_m, 4000.0, 2000.0, 0.0}},
           .walls = {{kWall_m, 0.002, 10.0, 0.005, 500.0}},
           .rotary = {},
-          .travel_m = kTravel_m};
+          .travel_m = kRotaryTravel_m};
 }
 
 /// One turn to and fro in 2 s at a depth that stays: θ = 0.5 sin(π t).
@@ -56,12 +56,12 @@ class EveryRotaryEffect : public testing::TestWithParam<std::string> {
     effects::EffectInstance use{info_.facts.id, {}};
     for (const auto& p : info_.facts.params)
       use.values.push_back(at == At::off ? p.off : at == At::initial ? p.initial : p.high);
-    auto made = ProbingRuntime::make(bone(), std::vector{use});
+    auto made = ProbingRuntime::make(rotary_bone(), std::vector{use});
     EXPECT_TRUE(made) << made.error().what;
     return std::move(*made);
   }
   static ProbingRuntime without() {
-    auto made = ProbingRuntime::make(bone(), {});
+    auto made = ProbingRuntime::make(rotary_bone(), {});
     EXPECT_TRUE(made) << made.error().what;
     return std::move(*made);
   }
@@ -145,13 +145,13 @@ TEST_P(EveryRotaryEffect, GivesBackNoMoreWorkThanItGot) {
   EXPECT_GT(work_J, -1e-9);
 }
 
-std::vector<std::string> ids() {
+std::vector<std::string> rotary_ids() {
   std::vector<std::string> out;
   for (const auto& info : effects::probing_effects())
     if (info.facts.channel == effects::Channel::torque) out.push_back(info.facts.id);
   return out;
 }
-INSTANTIATE_TEST_SUITE_P(Probing, EveryRotaryEffect, testing::ValuesIn(ids()),
+INSTANTIATE_TEST_SUITE_P(Probing, EveryRotaryEffect, testing::ValuesIn(rotary_ids()),
                          [](const auto& one) { return one.param; });
 
 // By hand: 0.05 N·m of friction and a spring of 0.2 N·m/rad at θ = 0.3 rad, turning on:
@@ -160,7 +160,7 @@ TEST(RotaryEffects, AddUpAsByHand) {
   laws::ProbingParameters free{.layers = {},
                                .walls = {},
                                .rotary = {.viscous_Nms_per_rad = 0.0, .detent_Nm = 0.0},
-                               .travel_m = kTravel_m};
+                               .travel_m = kRotaryTravel_m};
   const auto runtime = ProbingRuntime::make(
       free, std::vector<effects::EffectInstance>{{"rotary_coulomb_friction", {0.05}},
                                                  {"rotary_stiffness", {0.2}}});

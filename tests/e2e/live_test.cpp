@@ -84,7 +84,7 @@ class Live : public ::testing::Test {
 };
 
 constexpr const char* kWall = "/api/v1/live";
-constexpr const char* kOwn = "/api/v1/live/station";
+constexpr const char* kLiveLine = "/api/v1/live/station";
 
 TEST_F(Live, AWallShowsAStationThatComesWorksAndGoes) {
   WebSocket wall(server_.port(), kWall, page());
@@ -95,7 +95,7 @@ TEST_F(Live, AWallShowsAStationThatComesWorksAndGoes) {
   ASSERT_EQ((*first)["stations"].size(), 2u);
   EXPECT_EQ((*first)["stations"][0]["state"], "away");
   {
-    WebSocket station(server_.port(), kOwn, world_.station_1);
+    WebSocket station(server_.port(), kLiveLine, world_.station_1);
     ASSERT_EQ(station.status(), 101);
     ASSERT_TRUE(wall.hear_until(shows("station-1", "idle")));
     ASSERT_TRUE(station.say(at_work(2.5).to_json().dump()));
@@ -125,7 +125,7 @@ TEST_F(Live, AWallIsForOurOwnPagesAndForThoseWhoMay) {
   EXPECT_EQ(status(kWall, none), 403);
   EXPECT_EQ(status(kWall, {}), 401);
   EXPECT_EQ(status(kWall, world_.station_1), 403) << "a station sees no other";
-  EXPECT_EQ(status(kOwn, page()), 403);
+  EXPECT_EQ(status(kLiveLine, page()), 403);
   EXPECT_EQ(status("/api/v1/cases", world_.station_1), 400) << "that is no WebSocket";
   EXPECT_EQ(client_.ask("GET", kWall, admin_).status, 426);
   EXPECT_EQ(status(kWall, page()), 101);
@@ -133,7 +133,7 @@ TEST_F(Live, AWallIsForOurOwnPagesAndForThoseWhoMay) {
 
 TEST_F(Live, NobodyIsToldMoreThanTwentyTimesASecond) {
   WebSocket wall(server_.port(), kWall, page());
-  WebSocket station(server_.port(), kOwn, world_.station_1);
+  WebSocket station(server_.port(), kLiveLine, world_.station_1);
   const long begun = WebSocket::now_ms();
   std::jthread working([&](std::stop_token stop) {
     for (int i = 0; i < 100 && !stop.stop_requested(); ++i) {
@@ -159,7 +159,7 @@ TEST_F(Live, ASlowBrowserHoldsUpNobodyAndIsDropped) {
   const auto before = server_.peak_memory_bytes();
   auto slow = std::make_unique<WebSocket>(server_.port(), kWall, page());
   WebSocket wall(server_.port(), kWall, page());
-  WebSocket station(server_.port(), kOwn, world_.station_1);
+  WebSocket station(server_.port(), kLiveLine, world_.station_1);
   ASSERT_EQ(slow->status(), 101);
   long worst_ms = 0;
   for (int i = 1; i <= 60; ++i) {
@@ -187,9 +187,9 @@ TEST_F(Live, ASlowBrowserHoldsUpNobodyAndIsDropped) {
 }
 
 TEST_F(Live, ANewLineOfAStationTakesTheOldOnesPlace) {
-  WebSocket first(server_.port(), kOwn, world_.station_1);
+  WebSocket first(server_.port(), kLiveLine, world_.station_1);
   ASSERT_EQ(first.status(), 101);
-  WebSocket second(server_.port(), kOwn, world_.station_1);
+  WebSocket second(server_.port(), kLiveLine, world_.station_1);
   ASSERT_EQ(second.status(), 101);
   EXPECT_FALSE(first.hear());
   EXPECT_TRUE(first.closed());
@@ -199,12 +199,12 @@ TEST_F(Live, ANewLineOfAStationTakesTheOldOnesPlace) {
 }
 
 TEST_F(Live, AStationThatIsShutOutIsHungUpOn) {
-  WebSocket station(server_.port(), kOwn, world_.station_1);
+  WebSocket station(server_.port(), kLiveLine, world_.station_1);
   ASSERT_EQ(station.status(), 101);
   ASSERT_EQ(post("/stations/" + id_of("station-1") + "/revoke", core::Json::object()).status, 204);
   EXPECT_FALSE(station.hear());
   EXPECT_TRUE(station.closed());
-  EXPECT_EQ(WebSocket(server_.port(), kOwn, world_.station_1).status(), 401);
+  EXPECT_EQ(WebSocket(server_.port(), kLiveLine, world_.station_1).status(), 401);
 }
 
 TEST_F(Live, AStopIsForAStationThatIsThere) {
@@ -212,7 +212,7 @@ TEST_F(Live, AStopIsForAStationThatIsThere) {
   EXPECT_EQ(post("/stations/" + id + "/stop", {{"reason", "look at the hand"}}).status, 409);
   EXPECT_EQ(post("/stations/none/stop", {{"reason", "x"}}).status, 404);
   EXPECT_EQ(post("/stations/" + id + "/stop", {{"reason", "  "}}).status, 400);
-  WebSocket station(server_.port(), kOwn, world_.station_1);
+  WebSocket station(server_.port(), kLiveLine, world_.station_1);
   ASSERT_EQ(station.status(), 101);
   EXPECT_EQ(post("/stations/" + id + "/stop", {{"reason", "look at the hand"}}).status, 202);
   const auto said = station.hear();

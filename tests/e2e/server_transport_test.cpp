@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 /// One server for all tests of the suite, with pages and one second's patience for a request's
 /// head.
-class Transport : public ::testing::Test {
+class ServerTransport : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     world_ = std::make_unique<ServedWorld>();
@@ -36,7 +36,7 @@ class Transport : public ::testing::Test {
   Client client_;
 };
 
-TEST_F(Transport, PagesCarryTheHeadersThatKeepOthersOut) {
+TEST_F(ServerTransport, PagesCarryTheHeadersThatKeepOthersOut) {
   const Answer page = client_.ask("GET", "/trials/abc");
   EXPECT_EQ(page.status, 200);
   EXPECT_EQ(page.body, "<!doctype html>page");
@@ -47,7 +47,7 @@ TEST_F(Transport, PagesCarryTheHeadersThatKeepOthersOut) {
   EXPECT_EQ(page.headers.at("x-content-type-options"), "nosniff");
 }
 
-TEST_F(Transport, NoPathLeadsOutOfThePages) {
+TEST_F(ServerTransport, NoPathLeadsOutOfThePages) {
   for (const char* path :
        {"/../secret.txt", "/%2e%2e/secret.txt", "/..%2fsecret.txt", "/assets/../../secret.txt",
         "/./../secret.txt", "//../secret.txt", "/..\\secret.txt", "/%00/secret.txt"}) {
@@ -59,7 +59,7 @@ TEST_F(Transport, NoPathLeadsOutOfThePages) {
   }
 }
 
-TEST_F(Transport, NoPathLeadsOutOfACase) {
+TEST_F(ServerTransport, NoPathLeadsOutOfACase) {
   for (const char* name :
        {"..%2f..%2ftractus.db", "%2e%2e", "..%2f..%2fserving.lock", "case.json%00"}) {
     const Answer answer = client_.ask("GET", "/api/v1/cases/" + world_->case_id + "/parts/" + name,
@@ -68,14 +68,14 @@ TEST_F(Transport, NoPathLeadsOutOfACase) {
   }
 }
 
-TEST_F(Transport, AHeadThatDripsIsCutOff) {
+TEST_F(ServerTransport, AHeadThatDripsIsCutOff) {
   const RawAnswer answer =
       send_raw(server_->port(), "GET /api/v1/session HTTP/1.1\r\nX-Slow: ", 5000);
   EXPECT_TRUE(answer.closed) << "still open after five seconds";
   EXPECT_TRUE(answer.text.empty() || answer.text.starts_with("HTTP/1.1 408")) << answer.text;
 }
 
-TEST_F(Transport, WhatIsNotHttpIsRefused) {
+TEST_F(ServerTransport, WhatIsNotHttpIsRefused) {
   for (const std::string& rubbish :
        {std::string("\x16\x03\x01 not http at all\r\n\r\n"), std::string("GET / HTTP/9.9\r\n\r\n"),
         std::string("GET no-slash HTTP/1.1\r\n\r\n"),
@@ -89,14 +89,14 @@ TEST_F(Transport, WhatIsNotHttpIsRefused) {
   }
 }
 
-TEST_F(Transport, AHeadWithoutEndIsRefused) {
+TEST_F(ServerTransport, AHeadWithoutEndIsRefused) {
   const RawAnswer answer =
       send_raw(server_->port(), "GET / HTTP/1.1\r\nX-Long: " + std::string(20000, 'x'), 5000);
   EXPECT_TRUE(answer.closed);
   EXPECT_TRUE(answer.text.starts_with("HTTP/1.1 431")) << answer.text.substr(0, 100);
 }
 
-TEST_F(Transport, ABodyIsRefusedBeforeItIsSentWithoutCredentials) {
+TEST_F(ServerTransport, ABodyIsRefusedBeforeItIsSentWithoutCredentials) {
   const RawAnswer answer = send_raw(server_->port(),
                                     "PATCH /api/v1/uploads/" + std::string(32, 'a') +
                                         "?offset_bytes=0 HTTP/1.1\r\nHost: x\r\n"
@@ -105,7 +105,7 @@ TEST_F(Transport, ABodyIsRefusedBeforeItIsSentWithoutCredentials) {
   EXPECT_TRUE(answer.text.starts_with("HTTP/1.1 401")) << answer.text.substr(0, 100);
 }
 
-TEST_F(Transport, ABodyOverTheLimitIsRefused) {
+TEST_F(ServerTransport, ABodyOverTheLimitIsRefused) {
   const std::string id(32, 'a');
   Headers headers = world_->station_1;
   headers["X-Crc32c"] = "00000000";
@@ -118,7 +118,7 @@ TEST_F(Transport, ABodyOverTheLimitIsRefused) {
   EXPECT_EQ(pieces.status, 413) << pieces.body;
 }
 
-TEST_F(Transport, RequestsInOneGoAreAnsweredInOrder) {
+TEST_F(ServerTransport, RequestsInOneGoAreAnsweredInOrder) {
   const RawAnswer answer = send_raw(server_->port(),
                                     "GET /api/v1/cases HTTP/1.1\r\nHost: x\r\n\r\n"
                                     "GET / HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n",
@@ -129,14 +129,14 @@ TEST_F(Transport, RequestsInOneGoAreAnsweredInOrder) {
   EXPECT_NE(second, std::string::npos);
 }
 
-TEST_F(Transport, HeadHasNoBody) {
+TEST_F(ServerTransport, HeadHasNoBody) {
   const RawAnswer answer =
       send_raw(server_->port(), "HEAD / HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n", 5000);
   EXPECT_NE(answer.text.find("Content-Length: 19\r\n"), std::string::npos) << answer.text;
   EXPECT_TRUE(answer.text.ends_with("\r\n\r\n"));
 }
 
-TEST_F(Transport, ThePartsOfACaseComeWholeOrByRange) {
+TEST_F(ServerTransport, ThePartsOfACaseComeWholeOrByRange) {
   const std::string part = "/api/v1/cases/" + world_->case_id + "/parts/volume.tvol";
   const Answer whole = client_.ask("GET", part, world_->station_1);
   ASSERT_EQ(whole.status, 200);
@@ -153,7 +153,7 @@ TEST_F(Transport, ThePartsOfACaseComeWholeOrByRange) {
   EXPECT_EQ(client_.ask("GET", part, ranged).status, 416);
 }
 
-TEST_F(Transport, TheTruthNeverGoesToAStation) {
+TEST_F(ServerTransport, TheTruthNeverGoesToAStation) {
   const std::string truth = "/api/v1/cases/" + world_->case_id + "/parts/truth.json";
   const Answer refused = client_.ask("GET", truth, world_->station_1);
   EXPECT_EQ(refused.status, 403);
@@ -161,13 +161,13 @@ TEST_F(Transport, TheTruthNeverGoesToAStation) {
   EXPECT_EQ(client_.ask("GET", truth, world_->admin(client_)).status, 200);
 }
 
-TEST_F(Transport, TheManifestIsTheSignedBytes) {
+TEST_F(ServerTransport, TheManifestIsTheSignedBytes) {
   std::ifstream file(world_->folder / "case" / "case.json", std::ios::binary);
   const std::string bytes((std::istreambuf_iterator<char>(file)), {});
   EXPECT_EQ(client_.ask("GET", "/api/v1/cases/" + world_->case_id, world_->station_1).body, bytes);
 }
 
-TEST_F(Transport, ThePreviewSaysWhereItLies) {
+TEST_F(ServerTransport, ThePreviewSaysWhereItLies) {
   const Answer answer = client_.ask(
       "GET", "/api/v1/cases/" + world_->case_id + "/preview?max_side=16", world_->station_1);
   ASSERT_EQ(answer.status, 200) << answer.body;
@@ -180,7 +180,7 @@ TEST_F(Transport, ThePreviewSaysWhereItLies) {
   EXPECT_EQ(static_cast<unsigned char>(answer.body.front()), 255) << "1000 HU is bone";
 }
 
-TEST_F(Transport, TheDescriptionIsOpenApi) {
+TEST_F(ServerTransport, TheDescriptionIsOpenApi) {
   const Answer answer = client_.ask("GET", "/api/openapi.json", world_->station_1);
   ASSERT_EQ(answer.status, 200);
   const auto json = answer.json();
@@ -191,7 +191,7 @@ TEST_F(Transport, TheDescriptionIsOpenApi) {
   EXPECT_EQ(core::Json::parse(printed.out, nullptr, false), json);
 }
 
-TEST_F(Transport, ManyAtOnceAreAllAnswered) {
+TEST_F(ServerTransport, ManyAtOnceAreAllAnswered) {
   std::vector<std::thread> threads;
   std::atomic<int> answered = 0;
   for (int i = 0; i < 16; ++i)

@@ -16,7 +16,7 @@ using testing::TestFolder;
 
 // SHA-256 of "abc": FIPS 180-4, example B.1.
 const std::string kAbc = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
-const std::string kTrial(32, '1');
+const std::string kUpload(32, '1');
 
 std::size_t files_in(const std::filesystem::path& folder) {
   std::size_t count = 0;
@@ -58,11 +58,11 @@ TEST(Objects, LinkingTwiceIsLinkingOnce) {
 TEST(PartialFiles, GrowByPiecesAndSayHowMuchIsHere) {
   const TestFolder folder;
   const auto parts = std::move(PartialFiles::open(folder.path()).value());
-  EXPECT_EQ(parts.size_of(kTrial), 0u);
-  ASSERT_TRUE(parts.append(kTrial, 0, core::bytes_of("a")));
-  ASSERT_TRUE(parts.append(kTrial, 1, core::bytes_of("bc")));
-  EXPECT_EQ(parts.size_of(kTrial), 3u);
-  EXPECT_EQ(file_sha256(parts.path_of(kTrial)).value(), kAbc);
+  EXPECT_EQ(parts.size_of(kUpload), 0u);
+  ASSERT_TRUE(parts.append(kUpload, 0, core::bytes_of("a")));
+  ASSERT_TRUE(parts.append(kUpload, 1, core::bytes_of("bc")));
+  EXPECT_EQ(parts.size_of(kUpload), 3u);
+  EXPECT_EQ(file_sha256(parts.path_of(kUpload)).value(), kAbc);
   EXPECT_FALSE(parts.append(std::string(32, 'e'), 3, core::bytes_of("x")));  // has no beginning
 }
 
@@ -70,16 +70,16 @@ TEST(PartialFiles, GrowByPiecesAndSayHowMuchIsHere) {
 TEST(PartialFiles, AreAsLongAsBeforeAfterAWriteThatFailed) {
   const TestFolder folder;
   const auto parts = std::move(PartialFiles::open(folder.path()).value());
-  ASSERT_TRUE(parts.append(kTrial, 0, core::bytes_of("abc")));
+  ASSERT_TRUE(parts.append(kUpload, 0, core::bytes_of("abc")));
   rlimit before{};
   ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
   const rlimit small{1024, before.rlim_max};
   std::signal(SIGXFSZ, SIG_IGN);
   ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
-  const auto written = parts.append(kTrial, 3, core::Bytes(4096));
+  const auto written = parts.append(kUpload, 3, core::Bytes(4096));
   ::setrlimit(RLIMIT_FSIZE, &before);
   EXPECT_FALSE(written);
-  EXPECT_EQ(file_sha256(parts.path_of(kTrial)).value(), kAbc);
+  EXPECT_EQ(file_sha256(parts.path_of(kUpload)).value(), kAbc);
 }
 
 }  // namespace

@@ -22,13 +22,13 @@ core::Result<volume_io::Imported> read(const File& file) {
   return volume_io::read_volume(folder / "v.nii");
 }
 
-struct Lie {
+struct NiftiLie {
   const char* name;
   std::function<void(File&)> tell;
   const char* word;  ///< in the message
 };
 
-class NiftiLies : public testing::TestWithParam<Lie> {};
+class NiftiLies : public testing::TestWithParam<NiftiLie> {};
 
 TEST_P(NiftiLies, IsRefusedInOneLineThatNamesTheFileAndThePlace) {
   File file = plain_nifti();
@@ -44,59 +44,60 @@ const float kNaN = std::numeric_limits<float>::quiet_NaN();
 INSTANTIATE_TEST_SUITE_P(
     All, NiftiLies,
     testing::Values(
-        Lie{"NegativeDim", [](File& f) { f.set<std::int16_t>(44, -4); }, "dim: axis 2"},
-        Lie{"ZeroDim", [](File& f) { f.set<std::int16_t>(46, 0); }, "dim: axis 3"},
-        Lie{"HugeDims",
-            [](File& f) {
-              for (std::size_t a = 42; a < 48; a += 2) f.set<std::int16_t>(a, 32767);
-            },
-            "dim: axis 1"},
-        Lie{"TooManyVoxels",
-            [](File& f) {
-              for (std::size_t a = 42; a < 48; a += 2) f.set<std::int16_t>(a, 4096);
-            },
-            "4096 × 4096"},
-        Lie{"MoreThanTheFileHas", [](File& f) { f.set<std::int16_t>(42, 6); },
-            "its header declares 496"},
-        Lie{"LessThanTheFileHas", [](File& f) { f.set<std::int16_t>(42, 4); },
-            "its header declares 448"},
-        Lie{"Truncated", [](File& f) { f.bytes.resize(400); }, "has 400 bytes"},
-        Lie{"CutInTheHeader", [](File& f) { f.bytes.resize(200); }, "no NIfTI"},
-        Lie{"Series",
-            [](File& f) {
-              f.set<std::int16_t>(40, 4);
-              f.set<std::int16_t>(48, 7);
-            },
-            "dim[4] is 7"},
-        Lie{"Colours", [](File& f) { f.set<std::int16_t>(70, 128); }, "datatype 128"},
-        Lie{"NanSpacing", [](File& f) { f.set<float>(280, kNaN); }, "sform"},
-        Lie{"ZeroSpacing", [](File& f) { f.set<float>(280, 0.0f); }, "sform"},
-        Lie{"InfiniteOrigin",
-            [](File& f) { f.set<float>(292, std::numeric_limits<float>::infinity()); }, "sform"},
-        Lie{"FarOrigin", [](File& f) { f.set<float>(292, 1e30f); }, "origin"},
-        Lie{"Sheared", [](File& f) { f.set<float>(284, 0.3f); }, "right angles"},
-        Lie{"NoOrientation", [](File& f) { f.set<std::int16_t>(254, 0); },
-            "sform_code and qform_code are 0"},
-        Lie{"NanQuaternion",
-            [](File& f) {
-              f.set<std::int16_t>(254, 0);
-              f.set<std::int16_t>(252, 1);
-              f.set<float>(256, kNaN);
-            },
-            "qform"},
-        Lie{"OffsetInTheHeader", [](File& f) { f.set<float>(108, 10.0f); }, "vox_offset 10"},
-        Lie{"OffsetNan", [](File& f) { f.set<float>(108, kNaN); }, "vox_offset"},
-        Lie{"OffsetFar", [](File& f) { f.set<float>(108, 1e15f); }, "vox_offset"},
-        Lie{"SlopeNan", [](File& f) { f.set<float>(112, kNaN); }, "scl_slope"},
-        Lie{"NanVoxel",
-            [](File& f) {
-              f.set<std::int16_t>(70, 16);
-              f.bytes.resize(352);
-              f.bytes.resize(592);
-              f.set<float>(352 + 28, kNaN);
-            },
-            "voxel 7 of 60"},
-        Lie{"Pair", [](File& f) { f.bytes[345] = std::byte{'i'}; }, ".hdr/.img"}),
+        NiftiLie{"NegativeDim", [](File& f) { f.set<std::int16_t>(44, -4); }, "dim: axis 2"},
+        NiftiLie{"ZeroDim", [](File& f) { f.set<std::int16_t>(46, 0); }, "dim: axis 3"},
+        NiftiLie{"HugeDims",
+                 [](File& f) {
+                   for (std::size_t a = 42; a < 48; a += 2) f.set<std::int16_t>(a, 32767);
+                 },
+                 "dim: axis 1"},
+        NiftiLie{"TooManyVoxels",
+                 [](File& f) {
+                   for (std::size_t a = 42; a < 48; a += 2) f.set<std::int16_t>(a, 4096);
+                 },
+                 "4096 × 4096"},
+        NiftiLie{"MoreThanTheFileHas", [](File& f) { f.set<std::int16_t>(42, 6); },
+                 "its header declares 496"},
+        NiftiLie{"LessThanTheFileHas", [](File& f) { f.set<std::int16_t>(42, 4); },
+                 "its header declares 448"},
+        NiftiLie{"Truncated", [](File& f) { f.bytes.resize(400); }, "has 400 bytes"},
+        NiftiLie{"CutInTheHeader", [](File& f) { f.bytes.resize(200); }, "no NIfTI"},
+        NiftiLie{"Series",
+                 [](File& f) {
+                   f.set<std::int16_t>(40, 4);
+                   f.set<std::int16_t>(48, 7);
+                 },
+                 "dim[4] is 7"},
+        NiftiLie{"Colours", [](File& f) { f.set<std::int16_t>(70, 128); }, "datatype 128"},
+        NiftiLie{"NanSpacing", [](File& f) { f.set<float>(280, kNaN); }, "sform"},
+        NiftiLie{"ZeroSpacing", [](File& f) { f.set<float>(280, 0.0f); }, "sform"},
+        NiftiLie{"InfiniteOrigin",
+                 [](File& f) { f.set<float>(292, std::numeric_limits<float>::infinity()); },
+                 "sform"},
+        NiftiLie{"FarOrigin", [](File& f) { f.set<float>(292, 1e30f); }, "origin"},
+        NiftiLie{"Sheared", [](File& f) { f.set<float>(284, 0.3f); }, "right angles"},
+        NiftiLie{"NoOrientation", [](File& f) { f.set<std::int16_t>(254, 0); },
+                 "sform_code and qform_code are 0"},
+        NiftiLie{"NanQuaternion",
+                 [](File& f) {
+                   f.set<std::int16_t>(254, 0);
+                   f.set<std::int16_t>(252, 1);
+                   f.set<float>(256, kNaN);
+                 },
+                 "qform"},
+        NiftiLie{"OffsetInTheHeader", [](File& f) { f.set<float>(108, 10.0f); }, "vox_offset 10"},
+        NiftiLie{"OffsetNan", [](File& f) { f.set<float>(108, kNaN); }, "vox_offset"},
+        NiftiLie{"OffsetFar", [](File& f) { f.set<float>(108, 1e15f); }, "vox_offset"},
+        NiftiLie{"SlopeNan", [](File& f) { f.set<float>(112, kNaN); }, "scl_slope"},
+        NiftiLie{"NanVoxel",
+                 [](File& f) {
+                   f.set<std::int16_t>(70, 16);
+                   f.bytes.resize(352);
+                   f.bytes.resize(592);
+                   f.set<float>(352 + 28, kNaN);
+                 },
+                 "voxel 7 of 60"},
+        NiftiLie{"Pair", [](File& f) { f.bytes[345] = std::byte{'i'}; }, ".hdr/.img"}),
     [](const auto& named) { return std::string(named.param.name); });
 
 TEST(Nifti, ATextFileRenamedIsNoNifti) {

@@ -19,7 +19,7 @@ using volume::Mat3;
 using volume::Vec3;
 namespace fs = std::filesystem;
 
-core::Result<volume_io::Imported> read(const File& file) {
+core::Result<volume_io::Imported> read_nifti(const File& file) {
   const Scratch folder;
   test_support::put(folder / "v.nii", file.bytes);
   return volume_io::read_volume(folder / "v.nii");
@@ -63,7 +63,7 @@ TEST(Nifti, PlacesEveryVoxelBySformInAll48AxisLayouts) {
     File file;
     const Mat3 steps = layout * kSpacing_mm.asDiagonal();
     file.sform(steps, kOrigin_mm);
-    const auto in = read(file);
+    const auto in = read_nifti(file);
     ASSERT_TRUE(in) << in.error().what;
     expect_voxels(*in, steps, kOrigin_mm);
     EXPECT_TRUE(in->notes.empty());
@@ -76,7 +76,7 @@ TEST(Nifti, PlacesEveryVoxelByQformInAll48AxisLayouts) {
     const double qfac = layout.determinant() < 0 ? -1.0 : 1.0;
     const Mat3 rotation = layout * Vec3(1, 1, qfac).asDiagonal();
     file.qform(Eigen::Quaterniond(rotation), qfac, kSpacing_mm, kOrigin_mm);
-    const auto in = read(file);
+    const auto in = read_nifti(file);
     ASSERT_TRUE(in) << in.error().what;
     expect_voxels(*in, layout * kSpacing_mm.asDiagonal(), kOrigin_mm);
   }
@@ -87,7 +87,7 @@ TEST(Nifti, PlacesAnObliqueLeftHandedVolume) {
   const Mat3 steps = Eigen::AngleAxisd(0.4, Vec3(1, 2, -1).normalized()).toRotationMatrix() *
                      Vec3(0.7, 0.8, -1.25).asDiagonal();
   file.sform(steps, kOrigin_mm);
-  const auto in = read(file);
+  const auto in = read_nifti(file);
   ASSERT_TRUE(in) << in.error().what;
   expect_voxels(*in, steps, kOrigin_mm);
 }
@@ -98,7 +98,7 @@ TEST(Nifti, TheSformWinsWhereTheyDisagreeAndThatIsSaid) {
     file.qform(Eigen::Quaterniond::Identity(), qfac, kSpacing_mm, Vec3::Zero());
     const Mat3 steps = Vec3(-0.7, -0.8, 1.25).asDiagonal();
     file.sform(steps, kOrigin_mm);
-    const auto in = read(file);
+    const auto in = read_nifti(file);
     ASSERT_TRUE(in) << in.error().what;
     expect_voxels(*in, steps, kOrigin_mm);
     EXPECT_EQ(in->notes.size(), 1u);
@@ -115,7 +115,7 @@ TEST(Nifti, ReadsEveryKindOfNumberAndItsScaling) {
     file.set<float>(116, -1000.0f);
     file.bytes.resize(352 + 60 * sizeof(T));
     for (std::size_t n = 0; n < 60; ++n) file.set<T>(352 + n * sizeof(T), static_cast<T>(n + 1));
-    const auto in = read(file);
+    const auto in = read_nifti(file);
     ASSERT_TRUE(in) << in.error().what;
     for (std::size_t n = 0; n < 60; ++n)
       EXPECT_EQ(in->volume.intercept + in->volume.slope * in->volume.counts[n],
@@ -137,7 +137,7 @@ TEST(Nifti, ANegativeSlopeTurnsValuesRound) {
   File file = plain_nifti();
   file.set<float>(112, -2.0f);
   file.set<float>(116, 10.0f);
-  const auto in = read(file);
+  const auto in = read_nifti(file);
   ASSERT_TRUE(in) << in.error().what;
   EXPECT_GT(in->volume.slope, 0.0);
   EXPECT_EQ(in->volume.value(0, 0, 0), 10.0 + 2.0 * 50);
@@ -150,7 +150,7 @@ TEST(Nifti, FractionsAreKeptToOneOf65536LevelsAndThatIsSaid) {
   file.bytes.resize(352 + 240);
   for (std::size_t n = 0; n < 60; ++n)
     file.set<float>(352 + 4 * n, static_cast<float>(n) * 33.3f - 1000.1f);
-  const auto in = read(file);
+  const auto in = read_nifti(file);
   ASSERT_TRUE(in) << in.error().what;
   const double level = 59 * 33.3 / 65535;
   for (std::size_t n = 0; n < 60; ++n)
@@ -166,12 +166,12 @@ TEST(Nifti, AnInt32RangeOver65535IsRoundedAndUpTo65535IsKept) {
   file.bytes.resize(352);
   file.bytes.resize(352 + 240);
   file.set<std::int32_t>(352, 65535);
-  auto in = read(file);
+  auto in = read_nifti(file);
   ASSERT_TRUE(in);
   EXPECT_TRUE(in->notes.empty());
   EXPECT_EQ(in->volume.value(0, 0, 0), 65535.0);
   file.set<std::int32_t>(352, 65536);
-  in = read(file);
+  in = read_nifti(file);
   ASSERT_TRUE(in);
   EXPECT_EQ(in->notes.size(), 1u);
 }
@@ -190,7 +190,7 @@ TEST(Nifti, ReadsBigEndianAndGzipToTheSameVolume) {
   };
   swap(0, 4, 1), swap(40, 2, 8), swap(70, 2, 2), swap(76, 4, 11), swap(252, 2, 2), swap(256, 4, 18),
       swap(352, 2, 60);
-  const auto swapped = read(file);
+  const auto swapped = read_nifti(file);
   ASSERT_TRUE(swapped) << swapped.error().what;
   expect_voxels(*swapped, Mat3::Identity(), Vec3::Zero());
 }
@@ -214,7 +214,7 @@ TEST(Nifti, ReadsVersion2) {
   two.set<std::int32_t>(348, 1);
   two.set<std::int32_t>(500, 2);
   two.bytes.insert(two.bytes.end(), one.bytes.begin() + 352, one.bytes.end());
-  const auto in = read(two);
+  const auto in = read_nifti(two);
   ASSERT_TRUE(in) << in.error().what;
   expect_voxels(*in, Mat3::Identity(), Vec3::Zero());
 }

@@ -49,7 +49,8 @@ core::Bytes joined(const std::string& text, const core::Bytes& data) {
   return out;
 }
 
-core::Result<volume_io::Imported> read(const Header& header, const core::Bytes& data = voxels()) {
+core::Result<volume_io::Imported> read_nrrd(const Header& header,
+                                            const core::Bytes& data = voxels()) {
   const Scratch folder;
   test_support::put(folder / "v.nrrd", joined(header.text() + "\n", data));
   return volume_io::read_volume(folder / "v.nrrd");
@@ -82,24 +83,24 @@ core::Bytes zipped(const core::Bytes& data) {
 }
 
 TEST(Nrrd, PlacesEveryVoxelInEachNamedSpace) {
-  expect_voxels(read({}));
-  expect_voxels(read({.space = "LPS"}));
-  expect_voxels(read({.space = "right-anterior-superior"}), {-1, -1, 1});
-  expect_voxels(read({.space = "RAS"}), {-1, -1, 1});
-  expect_voxels(read({.space = "left-anterior-superior"}), {1, -1, 1});
+  expect_voxels(read_nrrd({}));
+  expect_voxels(read_nrrd({.space = "LPS"}));
+  expect_voxels(read_nrrd({.space = "right-anterior-superior"}), {-1, -1, 1});
+  expect_voxels(read_nrrd({.space = "RAS"}), {-1, -1, 1});
+  expect_voxels(read_nrrd({.space = "left-anterior-superior"}), {1, -1, 1});
 }
 
 TEST(Nrrd, ScannerSpaceIsTakenAsHeadFirstSupineAndThatIsSaid) {
-  const auto in = read({.space = "scanner-xyz"});
+  const auto in = read_nrrd({.space = "scanner-xyz"});
   expect_voxels(in);
   ASSERT_EQ(in->notes.size(), 1u);
   EXPECT_NE(in->notes[0].find("head first"), std::string::npos);
 }
 
 TEST(Nrrd, ReadsBigEndianGzipAndDetachedToTheSameVolume) {
-  expect_voxels(read({.endian = "big"}, voxels(true)));
-  expect_voxels(read({.encoding = "gzip"}, zipped(voxels())));
-  expect_voxels(read({.endian = "big", .encoding = "gz"}, zipped(voxels(true))));
+  expect_voxels(read_nrrd({.endian = "big"}, voxels(true)));
+  expect_voxels(read_nrrd({.encoding = "gzip"}, zipped(voxels())));
+  expect_voxels(read_nrrd({.endian = "big", .encoding = "gz"}, zipped(voxels(true))));
   const Scratch folder;
   fs::create_directory(folder / "sub");
   test_support::put(folder / "sub/v.raw", voxels());
@@ -114,23 +115,23 @@ TEST(Nrrd, ReadsBigEndianGzipAndDetachedToTheSameVolume) {
 }
 
 TEST(Nrrd, UnitsOtherThanMillimetresAreFollowed) {
-  const auto in = read({.directions = "(0.001,0,0) (0,0.001,0) (0,0,0.001)",
-                        .origin = "(0.1,0.2,0.3)",
-                        .more = "space units: \"m\" \"m\" \"m\"\n"});
+  const auto in = read_nrrd({.directions = "(0.001,0,0) (0,0.001,0) (0,0,0.001)",
+                             .origin = "(0.1,0.2,0.3)",
+                             .more = "space units: \"m\" \"m\" \"m\"\n"});
   ASSERT_TRUE(in) << in.error().what;
   EXPECT_LT((in->volume.geometry.position_of({1, 2, 3}) - Vec3(0.101, 0.202, 0.303)).norm(), 1e-12);
 }
 
-struct Lie {
+struct NrrdLie {
   const char* name;
   Header header;
   const char* word;
 };
 
-class NrrdLies : public testing::TestWithParam<Lie> {};
+class NrrdLies : public testing::TestWithParam<NrrdLie> {};
 
 TEST_P(NrrdLies, IsRefusedInOneLineThatNamesTheFileAndThePlace) {
-  const auto in = read(GetParam().header);
+  const auto in = read_nrrd(GetParam().header);
   ASSERT_FALSE(in);
   EXPECT_NE(in.error().what.find("v.nrrd: "), std::string::npos) << in.error().what;
   EXPECT_NE(in.error().what.find(GetParam().word), std::string::npos) << in.error().what;
@@ -140,36 +141,36 @@ TEST_P(NrrdLies, IsRefusedInOneLineThatNamesTheFileAndThePlace) {
 INSTANTIATE_TEST_SUITE_P(
     All, NrrdLies,
     testing::Values(
-        Lie{"Billions", {.sizes = "1000000000 1000000000 1000000000"}, "sizes: axis 1"},
-        Lie{"Negative", {.sizes = "5 -4 3"}, "sizes: axis 2"},
-        Lie{"Text", {.sizes = "5 four 3"}, "sizes"},
-        Lie{"Overflow", {.sizes = "99999999999999999999999999 4 3"}, "sizes"},
-        Lie{"Fraction", {.sizes = "5 4 3.5"}, "sizes"},
-        Lie{"TooManyVoxels", {.sizes = "4000 4000 4000"}, "4000 × 4000"},
-        Lie{"MoreThanTheFileHas", {.sizes = "5 4 4"}, "bytes, its header declares"},
-        Lie{"LessThanTheFileHas", {.sizes = "5 4 2"}, "bytes, its header declares"},
-        Lie{"FourDimensions", {.dimension = "4"}, "dimension"},
-        Lie{"NoSpace", {.space = ""}, "line 5"},
-        Lie{"UnknownSpace", {.space = "3D-right-handed"}, "space \"3d-right-handed\""},
-        Lie{"NanSpacing", {.directions = "(nan,0,0) (0,1,0) (0,0,1)"}, "space directions"},
-        Lie{"Sheared", {.directions = "(1,0.2,0) (0,1,0) (0,0,1)"}, "right angles"},
-        Lie{"TwoDirections", {.directions = "(1,0,0) (0,1,0)"}, "space directions"},
-        Lie{"InfiniteOrigin", {.origin = "(inf,0,0)"}, "origin"},
-        Lie{"Block", {.type = "block"}, "type \"block\""},
-        Lie{"Bzip", {.encoding = "bzip2"}, "encoding \"bzip2\""},
-        Lie{"NotReallyGzip", {.encoding = "gzip"}, "no gzip stream begins"},
-        Lie{"Skip", {.more = "byte skip: 100\n"}, "byte skip"},
-        Lie{"TwiceSaid", {.more = "encoding: gzip\n"}, "a second \"encoding\""},
-        Lie{"UnknownField", {.more = "execute: rm\n"}, "line 12: the field \"execute\""},
-        Lie{"Passwords",
-            {.more = "data file: ../../../../etc/passwd\n"},
-            "within the header's own folder"},
-        Lie{"Absolute", {.more = "data file: /etc/passwd\n"}, "within the header's own folder"},
-        Lie{"PasswordsInAPair",
-            {.more = "data file: ../v.raw:=x\n"},
-            "within the header's own folder"},
-        Lie{"Missing", {.more = "data file: nowhere.raw\n"}, "there is no such file"},
-        Lie{"Pattern", {.more = "data file: s%03d.raw 1 9 1\n"}, "several files"}),
+        NrrdLie{"Billions", {.sizes = "1000000000 1000000000 1000000000"}, "sizes: axis 1"},
+        NrrdLie{"Negative", {.sizes = "5 -4 3"}, "sizes: axis 2"},
+        NrrdLie{"Text", {.sizes = "5 four 3"}, "sizes"},
+        NrrdLie{"Overflow", {.sizes = "99999999999999999999999999 4 3"}, "sizes"},
+        NrrdLie{"Fraction", {.sizes = "5 4 3.5"}, "sizes"},
+        NrrdLie{"TooManyVoxels", {.sizes = "4000 4000 4000"}, "4000 × 4000"},
+        NrrdLie{"MoreThanTheFileHas", {.sizes = "5 4 4"}, "bytes, its header declares"},
+        NrrdLie{"LessThanTheFileHas", {.sizes = "5 4 2"}, "bytes, its header declares"},
+        NrrdLie{"FourDimensions", {.dimension = "4"}, "dimension"},
+        NrrdLie{"NoSpace", {.space = ""}, "line 5"},
+        NrrdLie{"UnknownSpace", {.space = "3D-right-handed"}, "space \"3d-right-handed\""},
+        NrrdLie{"NanSpacing", {.directions = "(nan,0,0) (0,1,0) (0,0,1)"}, "space directions"},
+        NrrdLie{"Sheared", {.directions = "(1,0.2,0) (0,1,0) (0,0,1)"}, "right angles"},
+        NrrdLie{"TwoDirections", {.directions = "(1,0,0) (0,1,0)"}, "space directions"},
+        NrrdLie{"InfiniteOrigin", {.origin = "(inf,0,0)"}, "origin"},
+        NrrdLie{"Block", {.type = "block"}, "type \"block\""},
+        NrrdLie{"Bzip", {.encoding = "bzip2"}, "encoding \"bzip2\""},
+        NrrdLie{"NotReallyGzip", {.encoding = "gzip"}, "no gzip stream begins"},
+        NrrdLie{"Skip", {.more = "byte skip: 100\n"}, "byte skip"},
+        NrrdLie{"TwiceSaid", {.more = "encoding: gzip\n"}, "a second \"encoding\""},
+        NrrdLie{"UnknownField", {.more = "execute: rm\n"}, "line 12: the field \"execute\""},
+        NrrdLie{"Passwords",
+                {.more = "data file: ../../../../etc/passwd\n"},
+                "within the header's own folder"},
+        NrrdLie{"Absolute", {.more = "data file: /etc/passwd\n"}, "within the header's own folder"},
+        NrrdLie{"PasswordsInAPair",
+                {.more = "data file: ../v.raw:=x\n"},
+                "within the header's own folder"},
+        NrrdLie{"Missing", {.more = "data file: nowhere.raw\n"}, "there is no such file"},
+        NrrdLie{"Pattern", {.more = "data file: s%03d.raw 1 9 1\n"}, "several files"}),
     [](const auto& named) { return std::string(named.param.name); });
 
 TEST(Nrrd, RandomDamageIsReadOrRefusedAndNothingElse) {

@@ -19,7 +19,7 @@ using volume_io::Overlay;
 /// Simulated: 100 × 80 × 60 mm of water, 1 mm voxels, axes along L, P, S, centred on zero, with a
 /// bone cube of 10 mm at
 /// (+20 left, +10 posterior, +15 superior) mm.
-Volume phantom() {
+Volume picture_phantom() {
   Volume v;
   v.geometry.dims = {101, 81, 61};
   v.geometry.spacing_m = Vec3::Constant(1e-3);
@@ -60,7 +60,7 @@ std::array<int, 2> pixel(int panel, double right_mm, double down_mm) {
 TEST(Picture, ShowsThePatientAsRadiologistsDoAndToScale) {
   const Scratch folder;
   const Vec3 at(0.020, 0.010, 0.015);
-  ASSERT_TRUE(volume_io::write_slices_png(folder / "p.png", phantom(), at, kOptions));
+  ASSERT_TRUE(volume_io::write_slices_png(folder / "p.png", picture_phantom(), at, kOptions));
   Picture picture(folder / "p.png");
   ASSERT_EQ(picture.width(), 3 * 510 + 4 * 8);
   ASSERT_EQ(picture.height(), 510 + 8 + 28);
@@ -78,8 +78,8 @@ TEST(Picture, LeftIsRightAndSuperiorIsUp) {
   const Scratch folder;
   // Slices through the cube's middle, the square centred on the volume: the cube shows beside the
   // middle.
-  ASSERT_TRUE(volume_io::write_slices_png(folder / "p.png", phantom(), {0.020, 0.010, 0.015},
-                                          {.panel_px = 510}));
+  ASSERT_TRUE(volume_io::write_slices_png(folder / "p.png", picture_phantom(),
+                                          {0.020, 0.010, 0.015}, {.panel_px = 510}));
   Picture picture(folder / "p.png");
   const double px_per_mm = 510 / (101 * 1.02);
   const auto look = [&](int panel, double right_mm, double down_mm) {
@@ -97,7 +97,7 @@ TEST(Picture, LeftIsRightAndSuperiorIsUp) {
 
 TEST(Picture, DirectionsOfTheVolumeDoNotChangeThePicture) {
   const Scratch folder;
-  const Volume v = phantom();
+  const Volume v = picture_phantom();
   Volume turned = v;  // the same patient stored with axes P, S, R
   turned.geometry.dims = {81, 61, 101};
   turned.geometry.directions << 0, 0, -1, 1, 0, 0, 0, 1, 0;
@@ -127,8 +127,8 @@ TEST(Picture, OverlaysLieWhereThePatientsPointsAre) {
                .to_m = {0, 0, 1},
                .radius_m = 0.02,
                .colour = {0, 255, 0}};
-  ASSERT_TRUE(volume_io::write_slices_png(folder / "p.png", phantom(), Vec3::Zero(), kOptions,
-                                          std::array{line, ring}));
+  ASSERT_TRUE(volume_io::write_slices_png(folder / "p.png", picture_phantom(), Vec3::Zero(),
+                                          kOptions, std::array{line, ring}));
   Picture picture(folder / "p.png");
   const auto look = [&](int panel, double right_mm, double down_mm) {
     const auto [x, y] = pixel(panel, right_mm, down_mm);
@@ -146,15 +146,15 @@ TEST(Picture, OverlaysLieWhereThePatientsPointsAre) {
 
 TEST(Picture, APointOutsideIsRefusedAndNothingIsWritten) {
   const Scratch folder;
-  const auto out = volume_io::write_slices_png(folder / "p.png", phantom(), {0.2, 0, 0});
+  const auto out = volume_io::write_slices_png(folder / "p.png", picture_phantom(), {0.2, 0, 0});
   ASSERT_FALSE(out);
   EXPECT_EQ(out.error().code, core::Errc::out_of_range);
   EXPECT_NE(out.error().what.find("200.0, 0.0, 0.0 mm lies outside"), std::string::npos)
       << out.error().what;
-  EXPECT_FALSE(volume_io::write_slices_png(folder / "p.png", phantom(), Vec3::Zero(),
+  EXPECT_FALSE(volume_io::write_slices_png(folder / "p.png", picture_phantom(), Vec3::Zero(),
                                            {.window = {0.0, 0.0}}));
-  EXPECT_FALSE(
-      volume_io::write_slices_png(folder / "p.png", phantom(), Vec3::Constant(std::nan(""))));
+  EXPECT_FALSE(volume_io::write_slices_png(folder / "p.png", picture_phantom(),
+                                           Vec3::Constant(std::nan(""))));
   EXPECT_EQ(folder.entries(), 0u);
 }
 
