@@ -112,6 +112,10 @@ function(tractus_add_test name)
       set_property(SOURCE ${source} APPEND PROPERTY COMPILE_DEFINITIONS
         TRACTUS_SOURCE_DIR="${CMAKE_SOURCE_DIR}" TRACTUS_BIN_DIR="${CMAKE_BINARY_DIR}/bin")
     endif()
+    file(STRINGS ${source} allocates REGEX "void\\* operator new" LIMIT_COUNT 1)  # for its whole program: compiled alone
+    if(allocates)
+      set_property(SOURCE ${source} PROPERTY SKIP_UNITY_BUILD_INCLUSION ON)
+    endif()
   endforeach()
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
   tractus_compile(${name} test)

@@ -43,7 +43,7 @@ TEST(DeviceCatalogue, KnowsRigsAndSimulatedDevicesByName) {
 }
 
 TEST(DeviceCatalogue, ListsDevicesForAPerson) {
-  const DeviceInfo &lambda6 = *find("lambda6"), &rig = *find("rig"), &sim_rig = *find("sim-rig");
+  const DeviceInfo lambda6 = *find("lambda6"), rig = *find("rig"), sim_rig = *find("sim-rig");
   EXPECT_EQ(listed({lambda6, rig, sim_rig}), "lambda6, rig or sim-rig");
   EXPECT_EQ(listed({rig, sim_rig}), "rig or sim-rig");
   EXPECT_EQ(listed({rig}), "rig");
