@@ -84,9 +84,10 @@ struct EffectFacts {
   /// A slow course of the sensor that differs from trial to trial: the lab removes it from each
   /// trial and reports its range, which is then its one parameter.
   bool free_per_trial = false;
-  bool is_bias = false;  ///< a constant that the sensor adds to what it shows
-  bool is_dry = false;   ///< dry friction: at standstill it takes any value within its size
-  bool passive = true;   ///< gives back no more work than it got
+  bool is_bias = false;   ///< a constant that the sensor adds to what it shows
+  bool is_delay = false;  ///< the force against the motion
+  bool is_dry = false;    ///< dry friction: at standstill it takes any value within its size
+  bool passive = true;    ///< gives back no more work than it got
   /// Starts that do not depend on the recordings. Empty: the initial values, and a grid over the
   /// range of each parameter of shape.
   Starts starts = {};

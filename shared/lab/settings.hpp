@@ -130,6 +130,9 @@ struct ProbingPriorSettings {
   double least_layer_m = 1e-4;
   /// A stiffness or damping is sought within this factor of its start. Prior.
   double most_factor = 50.0;
+  /// The force may be recorded late or early by this, or by one sample if that is longer, without an effect being
+  /// missing: filters and clocks of a sensor. Standard deviation: half of it. Prior.
+  double most_delay_s = 2.5e-3;
 };
 
 /// How a palpation is prepared.
@@ -302,23 +305,18 @@ struct SelectionSettings {
 
 /// Probabilities over structures.
 struct PosteriorSettings {
-  /// An effect is named at all only if at most this share of the excess is left. Tuned.
-  double most_left = 0.25;
   /// Within this factor of the chosen structure's excess another is as good. Tuned.
   double as_good = 1.5;
   /// The probability at which no further experiment is recommended. Tuned.
   double settled = 0.95;
-  /// Probability that so many effects at the floor only imitate something else: shares of wrong
-  /// answers on the development sets. Tuned.
-  std::array<double, 4> imitated{0.01, 0.01, 0.04, 0.6};
-  /// Probability that what is missing is in no catalogue, if nothing was found and more than the
-  /// floor is left. Tuned.
-  double outside = 0.9;
-  /// And that the effects found only stand in for it. Tuned.
-  double stand_in = 0.7;
-  /// Logarithm of the odds of the chosen structure against one that costs less but was refused.
-  /// Tuned.
-  double refused_log_odds = 1.4;
+  /// Independent observations that a trial is worth when structures are compared: far below the number of samples, for
+  /// what separates structures is small flaws of any model, which all samples of a trial share. Tuned.
+  double observations_per_trial = 12.0;
+  /// Probability that is spread over all structures alike, for what the comparison does not foresee: the share of wrong
+  /// names on the development sets. Tuned.
+  double unforeseen = 0.02;
+  /// Bayesian bootstraps over the trials. Bound.
+  int bootstraps = 400;
 };
 
 /// Held-out errors and standard errors of a fit.
@@ -343,9 +341,22 @@ struct ValidationSettings {
 struct DiagnosisSettings {
   /// Of fewer trials the answer says that more would help. Tuned.
   std::size_t few_trials = 4;
-  /// Stated probability that more than the named effects is missing, if they leave more than the
-  /// floor. Tuned.
-  double more_is_missing = 0.95;
+  /// Signals that predict the rest must do so in this share of the trials. Derived: 8 of 10 have a chance of 5 % by luck.
+  double most_trials = 0.8;
+  /// An error so many times the noise floor is not noise, even if no recorded signal predicts it. Tuned.
+  double far_above_floor = 2.0;
+  /// So many effects at once more often imitate one that is in no catalogue than they are right. Tuned.
+  std::size_t imitating_effects = 3;
+  /// Effects are named only if at most this share of what there was to explain is left. Tuned.
+  double most_left = 0.25;
+  /// Probability that so many only imitate. Tuned.
+  double imitation = 0.6;
+  /// Logarithm of the odds that more is missing than a model has whose error is at the floor. Tuned.
+  double more_log_odds = -4.0;
+  /// And by how much it grows with the logarithm of the error over the floor. Tuned.
+  double more_per_log_error = 6.0;
+  /// And with the share of the error's mean square that signals predict. Tuned.
+  double more_per_share = 10.0;
 };
 
 /// A drift that follows the motion is no sensor's.
@@ -356,18 +367,28 @@ struct DriftOnMotionSettings {
   std::size_t rows_per_trial = 400;
 };
 
-/// On which signals an unexplained residual depends.
+/// Whether what is left can be predicted from the recorded signals.
 struct DependenceSettings {
-  /// Knots of the curve over a signal. Tuned.
-  int knots = 24;
-  /// Moments of a trial that are used. Bound.
-  std::size_t rows_per_trial = 1500;
-  /// A signal that explains less of the variance is not named. Tuned.
+  /// Knots of the curve over a signal. Numeric.
+  int knots = 32;
+  /// Knots of a surface over two, along each. Numeric.
+  int knots_of_pair = 6;
+  /// So many of the signals that predict most alone are taken in pairs. Bound.
+  std::size_t paired = 6;
+  /// Functions in a sum at most. Bound.
+  std::size_t most_functions = 4;
+  /// A further function must take away this share more. Bound.
+  double least_more = 0.005;
+  /// Blocks of neighbouring samples of a trial. Bound.
+  std::size_t blocks_per_trial = 800;
+  /// Time constants of the velocity's memory. Physical.
+  std::array<double, 3> memories_s{0.03, 0.15, 0.8};
+  /// A signal that explains less of the variance is not named. Bound.
   double worth_naming = 0.05;
   /// Signals that are named at most. Bound.
   std::size_t named = 3;
-  /// Added to the normal equations' diagonal. Numeric.
-  double ridge = 1e-3;
+  /// Added to the normal equations' diagonal: a hat is believed to be 0 to within the error of a third of a block. Prior.
+  double ridge = 10.0;
 };
 
 /// Checks of an effect that a user wrote.
@@ -408,10 +429,6 @@ struct ComparisonSettings {
 /// Thresholds of the selection on a rig, as mean squares of the whitened residual: how near to 1 a
 /// true model comes there. All tuned.
 struct SelectionThresholds {
-  /// Below this nothing is left to explain.
-  double at_floor;
-  /// Less than this share of the given model's excess is as good as nothing.
-  double least_excess_share;
   /// Below this no further effect is looked for,
   double stop_below;
   /// nor if the given model is below this and no effect betters it.
@@ -428,17 +445,13 @@ struct SelectionThresholds {
 
 /// The lab's settings, by stage.
 struct Settings {
-  SelectionThresholds probing_thresholds{.at_floor = 1.8,
-                                         .least_excess_share = 0.001,
-                                         .stop_below = 1.25,
+  SelectionThresholds probing_thresholds{.stop_below = 1.25,
                                          .stop_if_given_below = 0.0,
                                          .least_gain_share = 0.12,
                                          .least_gain_of_excess = 0.004,
                                          .observations_per_trial = 12.0,
                                          .drift_r2_on_motion = 0.45};
-  SelectionThresholds palpation_thresholds{.at_floor = 1.1,
-                                           .least_excess_share = 0.0,
-                                           .stop_below = 0.9,
+  SelectionThresholds palpation_thresholds{.stop_below = 0.9,
                                            .stop_if_given_below = 1.1,
                                            .least_gain_share = 0.01,
                                            .least_gain_of_excess = 0.0,

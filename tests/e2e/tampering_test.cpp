@@ -204,7 +204,7 @@ TEST_F(Tampering, AnchorsWaitForAPlaceThatIsAway) {
   fs::create_directories(disk);
   {
     ServerProcess server(world_.data, {"--anchors-to", copy});
-    fs::remove_all(disk);
+    fs::rename(disk, world_.folder / "taken away");  // at once: the server may be writing
     Client client;
     client.speak_to(server.port());
     world_.admin(client);

@@ -31,7 +31,8 @@ PalpationEffectInfo time_delay() {
                                 .initial = 0.005,
                                 .low = -0.1,
                                 .high = 0.2,
-                                .step = 5e-4}}},
+                                .step = 5e-4}},
+                    .is_delay = true},
           .make = [](std::span<const double> values) -> PalpationEffect {
             return std::make_unique<TimeDelay>(values[0]);
           }};

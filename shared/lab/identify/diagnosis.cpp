@@ -94,14 +94,45 @@ std::vector<Ranked> ranking(const Residual& residual, Selection& selection,
   return out;
 }
 
-Verdict verdict(const Problem& problem, const Selection& selection) {
-  const Solution &base = selection.base(), &chosen = selection.chosen();
-  const double before = base.mean_square(), after = chosen.mean_square();
-  if (chosen.structure.effects.empty())
-    return at_floor(problem, before, before) || selection.immaterial() ? Verdict::complete
-                                                                       : Verdict::unexplained;
-  if (at_floor(problem, after, before)) return Verdict::missing;
-  return explains(after, before) ? Verdict::partly : Verdict::unexplained;
+/// Is more left than noise: something that recorded signals predict and that is material, or an error so far above the
+/// floor that no noise explains it?
+bool more_is_missing(const ResidualDependence& rest, const Fit& fit) {
+  const double material = 1.0 - std::pow(1.0 - kSettings.selection.least_fall, 2.0);
+  return (rest.predictable > material && rest.trials_better >= kAnswer.most_trials) ||
+         fit.held_out_rmse > kAnswer.far_above_floor * fit.noise_floor;
+}
+
+/// Do the effects take away most of what there was to take?
+bool explain_most(const ResidualDependence& rest, const Fit& base, const Fit& fit) {
+  const auto square = [](double v) { return v * v; };
+  const double after = square(fit.held_out_rmse);
+  const double least =
+      std::min((1.0 - rest.predictable) * after, std::max(square(fit.noise_floor), 0.0));
+  const double floor =
+      rest.predictable > 0.0 && fit.held_out_rmse < kAnswer.far_above_floor * fit.noise_floor
+          ? (1.0 - rest.predictable) * after
+          : least;
+  return after - floor < kAnswer.most_left * (square(base.held_out_rmse) - floor);
+}
+
+/// Probability that more is missing than the model has: by the error over the floor, and by what signals predict of it.
+double probability_of_more(const ResidualDependence& rest, const Fit& fit) {
+  const double above = std::log(std::max(1.0, fit.held_out_rmse / fit.noise_floor));
+  const double predicted = rest.trials_better >= kAnswer.most_trials ? rest.predictable : 0.0;
+  const double odds = kAnswer.more_log_odds + kAnswer.more_per_log_error * above +
+                      kAnswer.more_per_share * predicted;
+  return 1.0 / (1.0 + std::exp(-odds));
+}
+
+/// Probability that the answer is right as a whole.
+double stated_probability(const Diagnosis& d, const ResidualDependence& rest, double posterior) {
+  const double more =
+      std::clamp(std::max(probability_of_more(rest, d.final_fit),
+                          d.effects.size() >= kAnswer.imitating_effects ? kAnswer.imitation : 0.0),
+                 kSettings.posterior.unforeseen, 1.0 - kSettings.posterior.unforeseen);
+  return d.verdict == Verdict::partly || d.verdict == Verdict::unexplained
+             ? more
+             : posterior * (1.0 - more);
 }
 
 }  // namespace
@@ -126,31 +157,37 @@ Result<Diagnosis> diagnose(const Problem& problem, const DiagnoseOptions& option
   out.notes = problem.notes();
   out.base_fit = report(residual, selection.tried().at(""), true);
   out.base = {out.base_fit.rmse, out.base_fit.held_out_rmse, out.base_fit.noise_floor};
-  out.verdict = verdict(problem, selection);
-  const bool named = out.verdict == Verdict::missing || out.verdict == Verdict::partly;
-  Solution& final = named ? selection.chosen() : selection.tried().at("");
-  out.final_fit = report(residual, final, true);
+  Solution& chosen = selection.chosen();
+  ResidualDependence rest = residual_dependence(residual, chosen);
+  out.final_fit = chosen.structure.effects.empty() ? out.base_fit : report(residual, chosen, true);
+  const bool more = more_is_missing(rest, out.final_fit);
+  const bool named = !chosen.structure.effects.empty() &&
+                     (!more || explain_most(rest, out.base_fit, out.final_fit));
+  const bool imitating = named && chosen.structure.effects.size() >= kAnswer.imitating_effects;
+  out.verdict = named  ? more || imitating ? Verdict::partly : Verdict::missing
+                : more ? Verdict::unexplained
+                       : Verdict::complete;
+  if (!named && !chosen.structure.effects.empty()) {
+    out.final_fit = out.base_fit;
+    rest = residual_dependence(residual, selection.base());
+  }
+  const Solution& final = named ? chosen : selection.base();
   const StructurePosterior posterior(residual, selection, final);
-  if (out.verdict == Verdict::missing && posterior.outside() > 0.5) {
-    out.verdict = Verdict::partly;
+  if (imitating && !more)
     out.notes.push_back(fmt::format(
         "{} effects together bring the residual to the floor; so many at once more likely imitate "
         "one that is in no catalogue",
-        final.structure.effects.size()));
-  }
-  out.probability = out.verdict == Verdict::unexplained ? posterior.outside()
-                    : out.verdict == Verdict::partly    ? kAnswer.more_is_missing
-                                                        : posterior.of_structure(final.structure);
+        chosen.structure.effects.size()));
   for (const std::string& id : named ? selection.order() : std::vector<std::string>{}) {
     out.effects.push_back(found(problem, out.final_fit, id));
     out.effects.back().probability = posterior.of_effect(id);
   }
+  out.probability = stated_probability(out, rest, posterior.of_structure(final.structure));
   out.steps = named ? steps(residual, selection, out)
                     : std::vector<Step>{{"base", out.base.rmse, out.base.held_out_rmse}};
-  if (out.verdict == Verdict::partly || out.verdict == Verdict::unexplained) {
-    const ResidualDependence rest = residual_dependence(residual, final);
+  if (more) {
     out.depends_on = rest.words;
-    out.dependence_explained = rest.explained;
+    out.dependence_explained = rest.predictable;
   }
   if (!selection.refused().empty())
     out.notes.push_back(

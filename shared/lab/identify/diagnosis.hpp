@@ -13,7 +13,7 @@
 namespace tractus::lab {
 
 enum class Verdict {
-  complete,     ///< the model is at the noise floor: nothing is missing, nothing is added
+  complete,     ///< nothing that recorded signals predict is missing, nothing is added
   missing,      ///< the effects found explain the rest
   partly,       ///< effects found, more remains
   unexplained,  ///< something is missing that is not in the catalogue
@@ -61,8 +61,8 @@ struct DiscriminatingExperiment {
 
 struct Diagnosis {
   Verdict verdict = Verdict::complete;
-  /// That the set of effects named (or none) is right; of `unexplained`, that it is in no
-  /// catalogue.
+  /// That the set of effects named (or none) is right; of `partly` and `unexplained`, that more is
+  /// missing than the catalogue names.
   double probability = 0.0;
   struct {
     double rmse = 0.0, held_out_rmse = 0.0, noise_floor = 0.0;
@@ -73,8 +73,8 @@ struct Diagnosis {
   std::vector<std::pair<std::string, std::string>> confounded;
   std::optional<DiscriminatingExperiment> discriminating_experiment;
   std::string depends_on;  ///< what an unexplained rest varies with, in words; else empty
-  double dependence_explained =
-      0.0;  ///< share of the rest over the floor that recorded signals predict
+  /// Share of the rest's mean square that recorded signals predict in held-out trials; 0 unless more is missing.
+  double dependence_explained = 0.0;
   std::vector<std::string> notes;  ///< on the recording and on how the answer was reached
   Fit base_fit;                    ///< of the model as given
   Fit final_fit;                   ///< with the effects named; the base's when nothing is

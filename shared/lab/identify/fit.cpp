@@ -200,7 +200,7 @@ Fit report(const Residual& residual, Solution& at, bool held_out) {
   fit.structure = at.structure;
   fit.values = at.values;
   fit.converged = at.converged;
-  fit.noise_floor = problem.channels().front().noise_floor;
+  fit.noise_floor = problem.noise_floor(at.structure, at.values);
   fit.whitened_rms = std::sqrt(at.mean_square());
   const Eigen::VectorXd weights = robust_weights(at.residual, at.scale);
   Gram whole = gram(at, weights, 0, residual.size());
@@ -234,6 +234,28 @@ double held_out_rmse(const Residual& residual, const Solution& at) {
   fit.trials.resize(std::size_t(residual.trials()));
   hold_out(residual, at, whole, weights, fit);
   return fit.held_out_rmse;
+}
+
+Eigen::VectorXd held_out_losses(const Residual& residual, const Solution& at, double scale) {
+  const auto folds = folds_of(residual);
+  const Eigen::VectorXd weights = robust_weights(at.residual, at.scale);
+  Gram whole = gram(at, weights, 0, residual.size());
+  add_prior(at, whole);
+  Eigen::VectorXd out(folds.size());
+  parallel(int(folds.size()), residual.threads(), [&](int f) {
+    const Fold& fold = folds[std::size_t(f)];
+    const auto values = without(at, whole, gram(at, weights, fold.first, fold.count));
+    Eigen::VectorXd step(at.values.size());
+    for (std::size_t k = 0; k < at.values.size(); ++k)
+      step(Eigen::Index(k)) =
+          coordinate(at.parameters[k], values[k]) - coordinate(at.parameters[k], at.values[k]);
+    const auto here = at.residual.segment(fold.first, fold.count);
+    const Eigen::VectorXd there = here + at.jacobian.middleRows(fold.first, fold.count) * step;
+    // Exactly 0 is that of which the structure says nothing (dry friction at rest).
+    const auto judged = (here.array() != 0.0).eval();
+    out(f) = robust_loss(judged.select(there, 0.0), scale) / std::max(1.0, double(judged.count()));
+  });
+  return out;
 }
 
 Solution fit_base(const Residual& residual) {

@@ -12,6 +12,7 @@ struct Channel {
   std::string name;        ///< "fz_N"; palpation's primary "force_N", the norm of the force's error
   double noise_floor = 0;  ///< rmse that a true model would have: the channel's own noise with the
                            ///< motion's noise as it passes through the base model
+  std::size_t components = 0;  ///< if it is a norm: of so many of the channels after it
 };
 
 /// Named states of one trial at the full rate ("depth_m", "speed_m_s", …), for finding where an

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lab/identify/parallel.hpp"
 #include "lab/settings.hpp"
 
 namespace tractus {
@@ -14,85 +15,246 @@ namespace {
 
 constexpr const auto& kDependence = kSettings.dependence;
 
-/// One state of all trials, thinned, with the error at the same moments.
-struct Columns {
-  std::vector<std::string> names;
-  std::vector<std::vector<std::vector<double>>> states;  // [state][trial][row]
-  std::vector<std::vector<double>> errors;               // [trial][row]
+using Columns = std::vector<std::vector<double>>;
+
+/// A trial (or, of fewer than four, a stretch of one) in blocks of neighbouring judged samples: the means of the signals
+/// and of the error's components there.
+struct Blocks {
+  Columns signals, errors;    // [signal][block], [component][block]
+  std::vector<double> count;  // samples of a block
+  double squares = 0.0;       // of the error's components over all judged samples
 };
 
-Columns columns(const Problem& problem, const Solution& at) {
-  Columns out;
-  for (int k = 0; k < problem.trials(); ++k) {
-    const Residuals r = problem.full_rate(at.structure, at.values, k);
-    const States states = problem.states(k);
-    if (out.names.empty()) out.names = states.names, out.states.resize(states.names.size());
-    out.errors.emplace_back();
-    for (auto& state : out.states) state.emplace_back();
-    const std::size_t stride = 1 + r.t_s.size() / kDependence.rows_per_trial;
-    for (std::size_t i = 0; i < r.t_s.size(); i += stride) {
-      if (r.judgement[i] != Judgement::judged) continue;
-      out.errors.back().push_back(r.channels[0][i]);
-      for (std::size_t s = 0; s < out.states.size() && s < states.values.size(); ++s)
-        out.states[s].back().push_back(states.values[s][i]);
-    }
+/// Σ v Δt that fades with a time constant: the memory of a first-order lag.
+std::vector<double> faded(std::span<const double> t_s, const std::vector<double>& v,
+                          double time_s) {
+  std::vector<double> out(t_s.size(), 0.0);
+  for (std::size_t k = 1; k < t_s.size(); ++k) {
+    const double kept = std::exp(-(t_s[k] - t_s[k - 1]) / time_s);
+    out[k] = out[k - 1] * kept + v[k] * time_s * (1.0 - kept);
   }
   return out;
 }
 
-std::vector<double> quantiles(const std::vector<std::vector<double>>& trials) {
+/// How far the motion has come since it last turned.
+std::vector<double> since_reversal(const std::vector<double>& x, const std::vector<double>& v) {
+  std::vector<double> out(x.size(), 0.0);
+  double turned = x.empty() ? 0.0 : x.front(), last = 0.0;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    if (v[k] * last < 0.0) turned = x[k];
+    if (v[k] != 0.0) last = v[k];
+    out[k] = x[k] - turned;
+  }
+  return out;
+}
+
+/// The states and what they leave behind.
+States with_memory(States states, std::span<const double> t_s) {
+  const auto at = [&](std::string_view name) {
+    return std::size_t(std::ranges::find(states.names, name) - states.names.begin());
+  };
+  const std::size_t depth = at("depth_m"), velocity = at("velocity_m_s");
+  if (depth == states.names.size() || velocity == states.names.size()) return states;
+  const std::vector<double> x = states.values[depth], v = states.values[velocity];
+  for (const double time_s : kDependence.memories_s) {
+    states.names.push_back("earlier velocity");
+    states.values.push_back(faded(t_s, v, time_s));
+  }
+  states.names.push_back("way since reversal");
+  states.values.push_back(since_reversal(x, v));
+  return states;
+}
+
+/// Adds the blocks of a trial's samples from `from` to `end`.
+Blocks blocks_of(const Residuals& r, const States& states, std::span<const std::size_t> components,
+                 std::size_t from, std::size_t end, std::size_t length) {
+  Blocks out;
+  out.signals.resize(states.names.size());
+  out.errors.resize(components.size());
+  for (std::size_t first = from; first < end; first += length) {
+    const std::size_t last = std::min(end, first + length);
+    double count = 0.0;
+    std::vector<double> signal(states.names.size(), 0.0), error(components.size(), 0.0);
+    for (std::size_t k = first; k < last; ++k) {
+      if (r.judgement[k] != Judgement::judged) continue;
+      count += 1.0;
+      for (std::size_t s = 0; s < signal.size(); ++s) signal[s] += states.values[s][k];
+      for (std::size_t c = 0; c < components.size(); ++c) {
+        const double e = r.channels[components[c]][k];
+        error[c] += e;
+        out.squares += e * e;
+      }
+    }
+    if (count == 0.0) continue;
+    for (std::size_t s = 0; s < signal.size(); ++s) out.signals[s].push_back(signal[s] / count);
+    for (std::size_t c = 0; c < error.size(); ++c) out.errors[c].push_back(error[c] / count);
+    out.count.push_back(count);
+  }
+  return out;
+}
+
+struct Set {
+  std::vector<std::string> names;
+  std::vector<Blocks> folds;
+};
+
+Set set_of(const Residual& residual, const Solution& at) {
+  const Problem& problem = residual.problem();
+  std::vector<std::size_t> components;
+  const std::size_t of_norm = problem.channels().front().components;
+  for (std::size_t c = 0; c < std::max<std::size_t>(1, of_norm); ++c)
+    components.push_back(of_norm > 0 ? c + 1 : c);
+  const int pieces = problem.trials() >= kSettings.validation.fewest_trials
+                         ? 1
+                         : kSettings.validation.stretches / problem.trials();
+  std::vector<std::vector<Blocks>> folds(std::size_t(problem.trials()));
+  Set out;
+  out.names =
+      with_memory(problem.states(0), problem.full_rate(at.structure, at.values, 0).t_s).names;
+  parallel(problem.trials(), residual.threads(), [&](int k) {
+    const Residuals r = problem.full_rate(at.structure, at.values, k);
+    const States states = with_memory(problem.states(k), r.t_s);
+    const std::size_t n = r.t_s.size(), length = 1 + n / kDependence.blocks_per_trial;
+    for (int p = 0; p < pieces; ++p)
+      folds[std::size_t(k)].push_back(
+          blocks_of(r, states, components, n * std::size_t(p) / std::size_t(pieces),
+                    n * std::size_t(p + 1) / std::size_t(pieces), length));
+  });
+  for (auto& of_trial : folds)
+    for (Blocks& fold : of_trial) out.folds.push_back(std::move(fold));
+  return out;
+}
+
+/// Quantiles of a signal over all folds.
+std::vector<double> knots_of(const Set& set, std::size_t signal, int count) {
   std::vector<double> all;
-  for (const auto& t : trials) all.insert(all.end(), t.begin(), t.end());
+  for (const Blocks& fold : set.folds)
+    all.insert(all.end(), fold.signals[signal].begin(), fold.signals[signal].end());
   std::ranges::sort(all);
   std::vector<double> out;
   if (all.empty()) return out;
-  for (int k = 0; k < kDependence.knots; ++k) {
-    const double v = all[std::size_t(double(all.size() - 1) * k / (kDependence.knots - 1))];
+  for (int k = 0; k < count; ++k) {
+    const double v = all[std::size_t(double(all.size() - 1) * k / (count - 1))];
     if (out.empty() || v > out.back()) out.push_back(v);
   }
   return out;
 }
 
-/// Where a value lies between the knots: the first of the two, and the weight of the second.
-std::pair<Eigen::Index, double> between(const std::vector<double>& knots, double v) {
-  const auto above = std::ranges::upper_bound(knots, v) - knots.begin();
-  const auto at = std::clamp<std::ptrdiff_t>(above - 1, 0, std::ptrdiff_t(knots.size()) - 2);
-  const double low = knots[std::size_t(at)], high = knots[std::size_t(at) + 1];
-  return {at, std::clamp((v - low) / (high - low), 0.0, 1.0)};
+/// Hats over one signal, or products of hats over two: the columns that differ from 0 at a block.
+class Hats {
+ public:
+  Hats(const Set& set, std::size_t a) : a_(a), knots_a_(knots_of(set, a, kDependence.knots)) {}
+  Hats(const Set& set, std::size_t a, std::size_t b)
+      : a_(a),
+        b_(b),
+        pair_(true),
+        knots_a_(knots_of(set, a, kDependence.knots_of_pair)),
+        knots_b_(knots_of(set, b, kDependence.knots_of_pair)) {}
+
+  bool any() const { return knots_a_.size() > 2 && (!pair_ || knots_b_.size() > 2); }
+  Eigen::Index size() const {
+    return Eigen::Index(knots_a_.size() * (pair_ ? knots_b_.size() : 1));
+  }
+  /// take(column, value).
+  template <class Take>
+  void at(const Blocks& fold, std::size_t block, const Take& take) const {
+    const auto [i, u] = between(knots_a_, fold.signals[a_][block]);
+    if (!pair_) {
+      take(i, 1.0 - u), take(i + 1, u);
+      return;
+    }
+    const auto [j, w] = between(knots_b_, fold.signals[b_][block]);
+    const auto n = Eigen::Index(knots_b_.size());
+    take(i * n + j, (1.0 - u) * (1.0 - w)), take(i * n + j + 1, (1.0 - u) * w);
+    take((i + 1) * n + j, u * (1.0 - w)), take((i + 1) * n + j + 1, u * w);
+  }
+
+ private:
+  /// The first of the two knots that a value lies between, and the weight of the second.
+  static std::pair<Eigen::Index, double> between(const std::vector<double>& knots, double v) {
+    const auto above = std::ranges::upper_bound(knots, v) - knots.begin();
+    const auto at = std::clamp<std::ptrdiff_t>(above - 1, 0, std::ptrdiff_t(knots.size()) - 2);
+    const double low = knots[std::size_t(at)], high = knots[std::size_t(at) + 1];
+    return {at, std::clamp((v - low) / (high - low), 0.0, 1.0)};
+  }
+
+  std::size_t a_ = 0, b_ = 0;
+  bool pair_ = false;
+  std::vector<double> knots_a_, knots_b_;
+};
+
+struct Prediction {
+  double predictable = 0.0, trials_better = 0.0;
+};
+
+/// What a sum of such functions takes away in folds that it was not fitted to.
+Prediction prediction(const Set& set, const std::vector<Hats>& all) {
+  Eigen::Index size = 0;
+  for (const Hats& hats : all) size += hats.size();
+  const std::size_t components = set.folds.front().errors.size(), n = set.folds.size();
+  const auto row_of = [&](const Blocks& fold, std::size_t block) {
+    std::vector<std::pair<Eigen::Index, double>> row;
+    Eigen::Index first = 0;
+    for (const Hats& hats : all) {
+      hats.at(fold, block, [&](Eigen::Index c, double v) { row.emplace_back(first + c, v); });
+      first += hats.size();
+    }
+    return row;
+  };
+  std::vector<Eigen::MatrixXd> a(n), b(n);
+  for (std::size_t f = 0; f < n; ++f) {
+    const Blocks& fold = set.folds[f];
+    Eigen::MatrixXd& am = a[f] = Eigen::MatrixXd::Zero(size, size);
+    Eigen::MatrixXd& bm = b[f] = Eigen::MatrixXd::Zero(size, Eigen::Index(components));
+    for (std::size_t k = 0; k < fold.count.size(); ++k) {
+      const auto row = row_of(fold, k);
+      for (const auto& [i, u] : row) {
+        for (const auto& [j, w] : row) am(i, j) += u * w;
+        for (std::size_t c = 0; c < components; ++c)
+          bm(i, Eigen::Index(c)) += u * fold.errors[c][k];
+      }
+    }
+  }
+  Eigen::MatrixXd whole = kDependence.ridge * Eigen::MatrixXd::Identity(size, size);
+  Eigen::MatrixXd right = Eigen::MatrixXd::Zero(size, Eigen::Index(components));
+  for (std::size_t f = 0; f < n; ++f) whole += a[f], right += b[f];
+  std::vector<double> taken(n, 0.0);
+  for (std::size_t f = 0; f < n; ++f) {
+    const Blocks& fold = set.folds[f];
+    const Eigen::MatrixXd x = (whole - a[f]).llt().solve(right - b[f]);
+    for (std::size_t k = 0; k < fold.count.size(); ++k) {
+      const auto row = row_of(fold, k);
+      for (std::size_t c = 0; c < components; ++c) {
+        double value = 0.0;
+        for (const auto& [i, u] : row) value += u * x(i, Eigen::Index(c));
+        const double e = fold.errors[c][k];
+        taken[f] += fold.count[k] * (e * e - (e - value) * (e - value));
+      }
+    }
+  }
+  double sum = 0.0, squares = 0.0, better = 0.0;
+  for (std::size_t f = 0; f < n; ++f)
+    sum += taken[f], squares += set.folds[f].squares, better += taken[f] > 0.0;
+  return {squares > 0.0 ? std::clamp(sum / squares, 0.0, 1.0) : 0.0, better / double(n)};
 }
 
-/// Share of the errors' squares that a function of one state predicts on held-out halves.
-double predicted_share(const std::vector<std::vector<double>>& state,
-                       const std::vector<std::vector<double>>& errors) {
-  const auto knots = quantiles(state);
-  if (knots.size() < 3) return 0.0;
-  const auto n = Eigen::Index(knots.size());
-  const auto half_of = [&](std::size_t trial, std::size_t row) {
-    return errors.size() > 1 ? trial % 2
-                             : (row * 8 / std::max<std::size_t>(1, errors[0].size())) % 2;
-  };
-  double left = 0.0, all = 0.0;
-  for (std::size_t half = 0; half < 2; ++half) {
-    Eigen::MatrixXd a = Eigen::MatrixXd::Identity(n, n) * kDependence.ridge;
-    Eigen::VectorXd b = Eigen::VectorXd::Zero(n);
-    for (std::size_t t = 0; t < errors.size(); ++t)
-      for (std::size_t i = 0; i < errors[t].size(); ++i) {
-        if (half_of(t, i) == half) continue;
-        const auto [at, w] = between(knots, state[t][i]);
-        a(at, at) += (1 - w) * (1 - w), a(at + 1, at + 1) += w * w;
-        a(at, at + 1) += w * (1 - w), a(at + 1, at) += w * (1 - w);
-        b(at) += (1 - w) * errors[t][i], b(at + 1) += w * errors[t][i];
-      }
-    const Eigen::VectorXd f = a.ldlt().solve(b);
-    for (std::size_t t = 0; t < errors.size(); ++t)
-      for (std::size_t i = 0; i < errors[t].size(); ++i) {
-        if (half_of(t, i) != half) continue;
-        const auto [at, w] = between(knots, state[t][i]);
-        const double rest = errors[t][i] - (1 - w) * f(at) - w * f(at + 1);
-        left += rest * rest, all += errors[t][i] * errors[t][i];
-      }
+/// Forward selection of the functions that take away most.
+Prediction best_sum(const Set& set, const std::vector<Hats>& all, int threads) {
+  std::vector<Hats> sum;
+  Prediction best;
+  while (sum.size() < kDependence.most_functions) {
+    std::vector<Prediction> with(all.size());
+    parallel(int(all.size()), threads, [&](int k) {
+      std::vector<Hats> now = sum;
+      now.push_back(all[std::size_t(k)]);
+      with[std::size_t(k)] = prediction(set, now);
+    });
+    const auto most = std::ranges::max_element(with, {}, &Prediction::predictable);
+    if (most == with.end() || most->predictable < best.predictable + kDependence.least_more) break;
+    best = *most;
+    sum.push_back(all[std::size_t(most - with.begin())]);
   }
-  return all > 0.0 ? std::max(0.0, 1.0 - left / all) : 0.0;
+  return best;
 }
 
 /// "velocity_m_s" → "velocity".
@@ -109,17 +271,28 @@ std::string readable(std::string name) {
 }  // namespace
 
 ResidualDependence residual_dependence(const Residual& residual, const Solution& solution) {
-  const Columns all = columns(residual.problem(), solution);
-  std::vector<std::pair<double, std::string>> shares;
-  for (std::size_t s = 0; s < all.names.size(); ++s)
-    shares.emplace_back(predicted_share(all.states[s], all.errors), readable(all.names[s]));
-  std::ranges::stable_sort(shares, std::greater<>(), &std::pair<double, std::string>::first);
+  const Set set = set_of(residual, solution);
   ResidualDependence out;
-  if (shares.size() > kDependence.named) shares.resize(kDependence.named);
-  for (const auto& [share, name] : shares) {
+  std::vector<std::pair<double, std::size_t>> alone;
+  std::vector<Hats> all;
+  for (std::size_t s = 0; s < set.names.size(); ++s) {
+    const Hats hats(set, s);
+    if (!hats.any()) continue;
+    alone.emplace_back(prediction(set, {hats}).predictable, s);
+    all.push_back(hats);
+  }
+  std::ranges::stable_sort(alone, std::greater<>(), &std::pair<double, std::size_t>::first);
+  for (std::size_t i = 0; i < std::min(kDependence.paired, alone.size()); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (const Hats hats(set, alone[j].second, alone[i].second); hats.any()) all.push_back(hats);
+  const Prediction joint = best_sum(set, all, residual.threads());
+  out.predictable = joint.predictable, out.trials_better = joint.trials_better;
+  for (std::size_t k = 0; k < std::min(kDependence.named, alone.size()); ++k) {
+    const auto& [share, signal] = alone[k];
     if (share < kDependence.worth_naming) break;
     out.explained = std::max(out.explained, share);
-    out.words += fmt::format("{}{} ({:.0f} %)", out.words.empty() ? "" : ", ", name, 100.0 * share);
+    out.words += fmt::format("{}{} ({:.0f} %)", out.words.empty() ? "" : ", ",
+                             readable(set.names[signal]), 100.0 * share);
   }
   if (out.words.empty())
     out.words =

@@ -50,6 +50,10 @@ class ResidualModel {
   /// How many numbers per trial `residuals` has eliminated by itself for that structure.
   virtual int free_per_trial(const Structure& structure) const = 0;
 
+  /// Rmse of the primary's judged samples that a model of this structure and these values would have if it were true:
+  /// the sensor's noise and the errors of the motion as that model passes them on.
+  virtual double noise_floor(const Structure& structure, std::span<const double> values) const = 0;
+
   /// Unweighted error at the full rate.
   virtual Residuals full_rate(const Structure& structure, std::span<const double> values,
                               int trial) const = 0;

@@ -268,9 +268,6 @@ void Selection::require_lower_error() {
         continue;
       chosen_ = name(less);
       dropped = true;
-      immaterial_ = chosen_.empty() && error_on_held_out(residual_, base()) <=
-                                           (1.0 + kSelection.least_fall) *
-                                               residual_.problem().channels().front().noise_floor;
       break;
     }
   }

@@ -36,8 +36,6 @@ class Selection {
   const std::vector<std::string>& order() const { return order_; }
   /// An effect that reached the floor by imitation and is not named for that; empty for none.
   const std::string& refused() const { return refused_; }
-  /// The base is at the floor but for what an effect explains that lowers the error by less than is material.
-  bool immaterial() const { return immaterial_; }
   /// Does the larger bring the residual clearly nearer to the floor than the smaller? @param share
   /// of what the given model left over the floor that it must take away besides; by default that of
   /// the rig's Sharpness.
@@ -70,7 +68,7 @@ class Selection {
   std::map<std::string, LinearScreen> screens_;
   std::vector<std::string> order_;
   std::string chosen_, refused_;
-  bool stopped_ = false, immaterial_ = false;
+  bool stopped_ = false;
 };
 
 /// What a structure costs, in nats: half an effective number of observations times the logarithm of

@@ -9,6 +9,7 @@
 #include "lab/identify/diagnosis.hpp"
 #include "lab/identify/fit.hpp"
 #include "lab/identify/least_squares.hpp"
+#include "lab/identify/residual_dependence.hpp"
 
 namespace tractus {
 namespace lab {
@@ -87,6 +88,9 @@ class Toy final : public Problem {
       out(k) = (measured_[std::size_t(t)][std::size_t(k)] - predicted(structure, v, t, k)) / kNoise;
   }
   int free_per_trial(const Structure&) const override { return 0; }
+  double noise_floor(const Structure&, std::span<const double>) const override {
+    return channels().front().noise_floor;
+  }
   Residuals full_rate(const Structure& structure, std::span<const double> v, int t) const override {
     Residuals out{{}, {{}}, {}};
     for (int k = 0; k < kSamples; ++k) {
@@ -171,6 +175,56 @@ TEST(Diagnose, TwoEffectsAreBothNamedAndOnlyThey) {
   ASSERT_TRUE(d) << d.error().what;
   EXPECT_EQ(d->verdict, Verdict::missing);
   EXPECT_EQ(ids(*d), (Ids{"cube", "sign"}));
+}
+
+/// A fit of the base, as a diagnosis begins.
+Solution base_of(const Residual& residual) {
+  std::vector<double> start;
+  for (const Parameter& p : residual.problem().parameters({})) start.push_back(p.start);
+  return search(residual, {}, std::move(start));
+}
+
+TEST(ResidualDependence, IsTheShareThatAFunctionOfTheSignalsTakesAway) {
+  // cos(4w), w over a cosine: about nothing linear in u. Its mean square over its and the noise's.
+  const Toy toy([](int t, int k) { return 0.2 * std::cos(4.0 * w_of(t, k)); });
+  double squares = 0.0, mean = 0.0;
+  for (int t = 0; t < 8; ++t)
+    for (int k = 0; k < kSamples; ++k) mean += 0.2 * std::cos(4.0 * w_of(t, k)) / (8.0 * kSamples);
+  for (int t = 0; t < 8; ++t)
+    for (int k = 0; k < kSamples; ++k)
+      squares += std::pow(0.2 * std::cos(4.0 * w_of(t, k)) - mean, 2) / (8.0 * kSamples);
+  const Residual residual(toy, 1);
+  const auto found = residual_dependence(residual, base_of(residual));
+  EXPECT_NEAR(found.predictable, squares / (squares + kNoise * kNoise), 0.05);
+  EXPECT_EQ(found.trials_better, 1.0);
+  EXPECT_EQ(found.words.substr(0, 3), "w (");
+}
+
+TEST(ResidualDependence, NoiseIsNotPredictedHoweverSlowItIs) {
+  // A random walk that fades: neighbouring samples are nearly alike, trials have nothing in common.
+  std::mt19937_64 random(23);
+  std::normal_distribution<> normal;
+  std::vector<std::vector<double>> slow(8);
+  for (auto& trial : slow) {
+    double level = 0.0;
+    for (int k = 0; k < kSamples; ++k) trial.push_back(level = 0.95 * level + 0.1 * normal(random));
+  }
+  const Toy toy([&](int t, int k) { return slow[std::size_t(t)][std::size_t(k)]; });
+  const Residual residual(toy, 1);
+  EXPECT_LT(residual_dependence(residual, base_of(residual)).predictable, 0.03);
+}
+
+TEST(Diagnose, NoiseAboveTheStatedFloorThatNothingPredictsIsNoEffect) {
+  std::mt19937_64 random(29);
+  std::normal_distribution<> normal;
+  std::vector<std::vector<double>> more(8);
+  for (auto& trial : more)
+    for (int k = 0; k < kSamples; ++k) trial.push_back(kNoise * normal(random));
+  const Toy toy([&](int t, int k) { return more[std::size_t(t)][std::size_t(k)]; });
+  const auto d = diagnose(toy);
+  ASSERT_TRUE(d);
+  EXPECT_EQ(d->verdict, Verdict::complete);
+  EXPECT_NEAR(d->base.held_out_rmse, std::sqrt(2.0) * kNoise, 0.05 * kNoise);
 }
 
 TEST(Diagnose, ThreeAtOnceAreSaidToBePerhapsAnImitation) {
@@ -317,6 +371,9 @@ class Misra1a final : public Problem {
     for (int k = 0; k < 14; ++k) out(k) = y[k] - b[0] * (1.0 - std::exp(-b[1] * x[k]));
   }
   int free_per_trial(const Structure&) const override { return 0; }
+  double noise_floor(const Structure&, std::span<const double>) const override {
+    return channels().front().noise_floor;
+  }
   Residuals full_rate(const Structure&, std::span<const double>, int) const override { return {}; }
   States states(int) const override { return {}; }
   std::vector<Derived> derived(const Structure&, std::span<const double>,

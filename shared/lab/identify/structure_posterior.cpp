@@ -1,9 +1,10 @@
 #include "lab/identify/structure_posterior.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <random>
 
+#include "lab/identify/fit_report.hpp"
 #include "lab/settings.hpp"
 
 namespace tractus {
@@ -19,45 +20,80 @@ std::vector<std::string> only_in(const Structure& a, const Structure& b) {
   return out;
 }
 
+/// ln of how many structures of that size there are.
+double log_structures(std::size_t candidates, std::size_t size) {
+  return std::lgamma(double(candidates) + 1.0) - std::lgamma(double(size) + 1.0) -
+         std::lgamma(double(candidates - std::min(size, candidates)) + 1.0);
+}
+
 }  // namespace
-
-bool at_floor(const Problem& problem, double mean_square, double before) {
-  const SelectionThresholds& thresholds = problem.selection_thresholds();
-  return mean_square < thresholds.at_floor ||
-         excess(mean_square) < thresholds.least_excess_share * excess(before);
-}
-
-bool explains(double mean_square, double before) {
-  return excess(mean_square) < kPosterior.most_left * excess(before);
-}
 
 StructurePosterior::StructurePosterior(const Residual& residual, const Selection& selection,
                                        const Solution& chosen)
     : chosen_(chosen.structure) {
-  const double base = selection.base().mean_square();
-  std::vector<double> scores;
-  const double of_chosen = -cost(residual, chosen, selection.base());
+  for (const Candidate& candidate : residual.problem().candidates())
+    parents_[candidate.facts.id] = candidate.facts.parents;
+  double scale = 1e300;
+  for (const auto& [key, s] : selection.tried()) scale = std::min(scale, s.scale);
   for (const auto& [key, s] : selection.tried()) {
-    if (!selection.admissible(s)) continue;
-    entries_.push_back({s.structure, 0.0, s.mean_square()});
-    scores.push_back(-cost(residual, s, selection.base()));
+    if (s.jacobian.rows() != residual.size()) continue;
+    if (!(s.structure == chosen_) && !selection.admissible(s)) continue;
+    entries_.push_back({s.structure, 0.0, s.mean_square(), held_out_losses(residual, s, scale)});
   }
-  const double best = *std::ranges::max_element(scores);
-  // Its rivals were refused for reasons of their own.
-  for (std::size_t k = 0; k < scores.size(); ++k)
-    if (entries_[k].structure == chosen_)
-      scores[k] = std::max(of_chosen, best + kPosterior.refused_log_odds);
-  const std::size_t count = std::min(chosen_.effects.size(), kPosterior.imitated.size() - 1);
-  outside_ = at_floor(residual.problem(), chosen.mean_square(), base) || selection.immaterial()
-                 ? kPosterior.imitated[count]
-             : chosen_.effects.empty() ? kPosterior.outside
-                                       : kPosterior.stand_in;
-  // P(structure) ∝ exp(−cost), structures equally likely beforehand [Kass1995].
-  double sum = 0.0;
-  for (const double s : scores) sum += std::exp(s - best);
-  for (std::size_t k = 0; k < scores.size(); ++k)
-    entries_[k].probability = (1.0 - outside_) * std::exp(scores[k] - best) / sum;
+  leave_out_immaterial();
+  weigh(residual);
   std::ranges::stable_sort(entries_, std::greater<>(), &Entry::probability);
+}
+
+/// Is one structure the other without an effect, or with an effect's simpler limit in its place?
+bool StructurePosterior::simpler(const Structure& one, const Structure& other) const {
+  const auto lost = only_in(other, one), gained = only_in(one, other);
+  if (lost.size() != 1 || gained.size() > 1) return false;
+  if (gained.empty()) return true;
+  const auto parents = parents_.find(lost.front());
+  return parents != parents_.end() &&
+         std::ranges::find(parents->second, gained.front()) != parents->second.end();
+}
+
+void StructurePosterior::leave_out_immaterial() {
+  const double least = std::pow(1.0 - kSettings.selection.least_fall, -2.0);
+  std::vector<Entry> material;
+  for (const Entry& whole : entries_) {
+    const bool trifle = std::ranges::any_of(entries_, [&](const Entry& part) {
+      return simpler(part.structure, whole.structure) &&
+             part.losses.sum() < least * whole.losses.sum();
+    });
+    if (!trifle || whole.structure == chosen_) material.push_back(whole);
+  }
+  entries_ = std::move(material);
+}
+
+void StructurePosterior::weigh(const Residual& residual) {
+  const Problem& problem = residual.problem();
+  const Eigen::Index folds = entries_.front().losses.size();
+  const double per_fold = kPosterior.observations_per_trial * residual.trials() / double(folds);
+  Eigen::MatrixXd scores(folds, Eigen::Index(entries_.size()));
+  for (std::size_t m = 0; m < entries_.size(); ++m) {
+    const Structure& structure = entries_[m].structure;
+    const double of_each = 0.5 * problem.free_per_trial(structure) * std::log(per_fold);
+    const double of_all = log_structures(problem.candidates().size(), structure.effects.size());
+    scores.col(Eigen::Index(m)) = -0.5 * per_fold * entries_[m].losses.array().max(1e-300).log() -
+                                  of_each - of_all / double(folds);
+  }
+  std::mt19937_64 random(1);  // the same answer each time
+  std::exponential_distribution<double> share(1.0);
+  for (int draw = 0; draw < kPosterior.bootstraps; ++draw) {
+    Eigen::VectorXd weight(folds);
+    for (double& w : weight) w = share(random);
+    const Eigen::VectorXd total = scores.transpose() * (weight * double(folds) / weight.sum());
+    const Eigen::VectorXd likely = (total.array() - total.maxCoeff()).exp();
+    for (std::size_t m = 0; m < entries_.size(); ++m)
+      entries_[m].probability +=
+          likely(Eigen::Index(m)) / likely.sum() / double(kPosterior.bootstraps);
+  }
+  for (Entry& entry : entries_)
+    entry.probability = (1.0 - kPosterior.unforeseen) * entry.probability +
+                        kPosterior.unforeseen / double(entries_.size());
 }
 
 double StructurePosterior::of_structure(const Structure& structure) const {

@@ -106,7 +106,7 @@ VerdictText sentences(const Diagnosis& d, std::string_view unit) {
   const std::string these = capital(joined(names));
   const std::string are = names.size() == 1 ? "is" : "are";
   const double after = d.steps.empty() ? d.base.held_out_rmse : d.steps.back().held_out_rmse;
-  const double floor = d.base.noise_floor;
+  const double floor = d.effects.empty() ? d.base.noise_floor : d.final_fit.noise_floor;
   const std::string change =
       fmt::format("On held-out trials the error {} from {} to {}; the noise floor is {}.",
                   after < d.base.held_out_rmse ? "falls" : "does not fall: it goes",

@@ -68,6 +68,7 @@ ReportContent content() {
   d.discriminating_experiment = DiscriminatingExperiment{
       {"hysteresis", "coulomb_friction"}, "three small reversals at 12 mm", 0.4};
   d.final_fit.folds = "trials";
+  d.final_fit.noise_floor = 0.05;
   d.final_fit.estimates = {{"/base/layers/0/stiffness_N_per_m", 4100.0, 12.0, true, false},
                            {"/base/layers/0/equilibrium_m", 0.0, INFINITY, false, false},
                            {"coulomb_friction/friction_N", 2.31, 0.02, true, false}};

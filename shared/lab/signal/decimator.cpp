@@ -69,5 +69,16 @@ void Decimator::apply_sizes(std::span<const std::size_t> samples, std::span<cons
   }
 }
 
+double Decimator::third_difference_gain() const {
+  const auto covariance = [&](std::size_t lag) {
+    double sum = 0.0;
+    for (std::size_t k = lag * stride_; k < taps_.size(); ++k)
+      sum += taps_[k] * taps_[k - lag * stride_];
+    return sum;
+  };
+  // Of (1, −3, 3, −1): 20 at lag 0, −15, 6 and −1 at 1 to 3.
+  return covariance(0) + (-15.0 * covariance(1) + 6.0 * covariance(2) - covariance(3)) / 10.0;
+}
+
 }  // namespace lab
 }  // namespace tractus

@@ -33,6 +33,9 @@ class Decimator {
 
   /// Variance of the output for white noise of variance 1.
   double noise_gain() const { return noise_gain_; }
+  /// Variance of the third difference of neighbouring outputs for the same, over 20: what noise_sd would take for the
+  /// outputs' own variance.
+  double third_difference_gain() const;
   double largest_tap() const { return taps_[half()]; }
 
  private:

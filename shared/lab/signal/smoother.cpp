@@ -306,10 +306,8 @@ void smooth_stretch(std::span<const double> t_s, std::span<const double> y, doub
 
 }  // namespace
 
-double noise_sd(std::span<const double> y) {
+double noise_sd(std::span<const double> y, NoiseQuantile of) {
   constexpr std::size_t kWindow = 16;
-  // A low quantile: kinks are in the upper ones. What it is of the mean, by 4e6 simulated samples.
-  constexpr double kQuantile = 0.3, kOfMean = 0.6732;
   if (y.size() < 8) return 0.0;
   std::vector<double> squares;
   const std::size_t window = std::min(kWindow, y.size() - 3);
@@ -321,9 +319,9 @@ double noise_sd(std::span<const double> y) {
     }
     squares.push_back(sum / double(window) / 20.0);  // 1 + 9 + 9 + 1
   }
-  const auto low = squares.begin() + std::ptrdiff_t(kQuantile * double(squares.size()));
+  const auto low = squares.begin() + std::ptrdiff_t(of.share * double(squares.size()));
   std::ranges::nth_element(squares, low);
-  return std::sqrt(*low / kOfMean);
+  return std::sqrt(*low / of.of_mean);
 }
 
 std::vector<double> rounding_variance(std::span<const double> y) {

@@ -6,6 +6,16 @@
 
 namespace tractus::lab {
 
+/// A quantile of the mean square of 16 third differences of white noise, and what it is of the mean, by 4e6 simulated
+/// samples.
+struct NoiseQuantile {
+  double share, of_mean;
+};
+/// A low one: kinks are in the upper ones.
+inline constexpr NoiseQuantile kNoiseQuantile{0.3, 0.6732};
+/// Of the quietest tenth: for what is not noise alone for most of the time.
+inline constexpr NoiseQuantile kQuietestQuantile{0.1, 0.4298};
+
 /// A signal with its first two derivatives, one entry per sample, and their standard errors.
 struct Smoothed {
   std::vector<double> value, rate, acceleration;
@@ -22,7 +32,7 @@ struct Break {
 /// Standard deviation of the white noise on a smooth signal: from third differences, which a
 /// quadratic does not pass; a low quantile over short stretches, so that kinks and impacts do not count,
 /// not even one every twentieth of a second. Quantisation counts as noise. Fewer than 8 samples: 0.
-double noise_sd(std::span<const double> y);
+double noise_sd(std::span<const double> y, NoiseQuantile of = kNoiseQuantile);
 
 /// How much less a sample that repeats its neighbours says than one of its own, as the variance of
 /// its noise over that of others: rounding hides in all of them what it hides in one. 1 where

@@ -47,6 +47,21 @@ TEST(Smoother, NoiseIsFoundWithinAFewPercent) {
     EXPECT_NEAR(noise_sd(sines(1000.0, 8.0, noise).y), noise, 0.04 * noise);
 }
 
+TEST(Decimator, KnowsTheThirdDifferencesOfWhiteNoise) {
+  std::mt19937_64 random(5);
+  std::normal_distribution<> normal;
+  std::vector<double> noise(400'000);
+  for (double& v : noise) v = normal(random);
+  const Decimator decimator(1e-3, 100.0);
+  std::vector<double> thin(decimator.size(noise.size()));
+  decimator.apply(noise, thin);
+  double squares = 0.0;
+  for (std::size_t k = 3; k < thin.size(); ++k)
+    squares += std::pow(thin[k] - 3.0 * thin[k - 1] + 3.0 * thin[k - 2] - thin[k - 3], 2);
+  EXPECT_NEAR(squares / 20.0 / double(thin.size() - 3), decimator.third_difference_gain(),
+              0.03 * decimator.third_difference_gain());
+}
+
 TEST(Smoother, AtABreakTheSpeedMayJump) {
   // 10 mm/s, from 0.5004 s on 2 mm/s: the jump lies 0.4 of the way between two samples.
   std::mt19937_64 random(3);

@@ -78,6 +78,9 @@ class PalpationProblem final : public Problem {
   int free_per_trial(const Structure& structure) const override {
     return has_drift(structure) ? kDriftCounts : 0;
   }
+  double noise_floor(const Structure&, std::span<const double>) const override {
+    return channels_.front().noise_floor;
+  }
   Residuals full_rate(const Structure& structure, std::span<const double> values,
                       int k) const override;
   States states(int k) const override;
@@ -255,7 +258,7 @@ void PalpationProblem::set_channels() {
     count += double(r.size());
   }
   squares /= count;
-  channels_ = {{"force_N", std::sqrt(squares.head<3>().sum())}};
+  channels_ = {{"force_N", std::sqrt(squares.head<3>().sum()), 3}};
   for (int c = 0; c < 6; ++c) channels_.push_back({kChannelNames[c], std::sqrt(squares[c])});
 }
 
@@ -324,6 +327,9 @@ States PalpationProblem::states(int k) const {
   add("acceleration_m_s2", [&](std::size_t i) { return handle(i).a_m_s2.norm(); });
   add("force_N", [&](std::size_t i) { return force[i].norm(); });
   add("omega_rad_s", [&](std::size_t i) { return handle(i).omega_rad_s.norm(); });
+  add("force_x_N", [&](std::size_t i) { return at.wrench_H[i].force_N.x(); });
+  add("force_y_N", [&](std::size_t i) { return at.wrench_H[i].force_N.y(); });
+  add("force_z_N", [&](std::size_t i) { return at.wrench_H[i].force_N.z(); });
   return out;
 }
 

@@ -47,6 +47,7 @@ ProbingParameterSpace::ProbingParameterSpace(models::ProbingModel model, const R
   }
   if (reach.slides) {
     for (std::size_t k = 0; k < model_.layers.size(); ++k) add_layer(k, reach);
+    add_delay(reach.spacing_s);
     return;
   }
   const laws::RotaryStage& r = model_.rotary;
@@ -76,6 +77,7 @@ void ProbingParameterSpace::add(Kind kind, std::size_t layer, const char* name,
                                 const Parameter& parameter) {
   Parameter p = parameter;
   p.pointer = kind >= Kind::viscous ? fmt::format("/base/rotary/{}", name)
+              : kind == Kind::delay ? fmt::format("/sensor/{}", name)
                                     : fmt::format("/base/layers/{}/{}", layer, name);
   if (fixed(p.pointer)) return;
   slots_.push_back({kind, layer});
@@ -138,6 +140,36 @@ void ProbingParameterSpace::add_layer(std::size_t k, const Reach& reach) {
   }
 }
 
+void ProbingParameterSpace::add_delay(double spacing_s) {
+  if (std::ranges::any_of(own_, &effects::EffectFacts::is_delay)) return;
+  Parameter delay{};
+  delay.start = 0.0;
+  delay.high = std::max(kProbingPrior.most_delay_s, spacing_s);
+  delay.low = -delay.high;
+  delay.step = 0.1 * spacing_s;
+  delay.prior_sd = 0.5 * delay.high;
+  add(Kind::delay, 0, "force_delay_s", delay);
+}
+
+bool ProbingParameterSpace::delays(const Structure& structure) const {
+  return std::ranges::any_of(structure.effects,
+                             [&](const std::string& id) { return facts_of(id).is_delay; });
+}
+
+double ProbingParameterSpace::force_delay_s(const Structure& structure,
+                                            std::span<const double> values) const {
+  if (delays(structure)) return 0.0;
+  for (std::size_t k = 0; k < slots_.size(); ++k)
+    if (slots_[k].kind == Kind::delay) return values[k];
+  return 0.0;
+}
+
+void ProbingParameterSpace::begin_at_delay(double delay_s) {
+  for (std::size_t k = 0; k < slots_.size(); ++k)
+    if (slots_[k].kind == Kind::delay)
+      base_[k].start = std::clamp(delay_s, base_[k].low, base_[k].high);
+}
+
 bool ProbingParameterSpace::has(std::string_view effect) const {
   return std::ranges::any_of(model_.effects, [&](const auto& use) { return use.id == effect; });
 }
@@ -152,6 +184,8 @@ std::string ProbingParameterSpace::drift(const Structure& structure) const {
 
 std::vector<Parameter> ProbingParameterSpace::parameters(const Structure& structure) const {
   std::vector<Parameter> out = base_;
+  if (delays(structure))
+    std::erase_if(out, [](const Parameter& p) { return p.pointer.starts_with("/sensor/"); });
   for (std::size_t e = 0; e < own_.size(); ++e) {
     auto own = parameters_of(own_[e]);
     for (std::size_t k = 0; k < own.size(); ++k) {
@@ -170,8 +204,11 @@ models::ProbingModel ProbingParameterSpace::with(const Structure& structure,
                                                  std::span<const double> values) const {
   models::ProbingModel out = model_;
   std::size_t at = 0;
+  const bool own_delay = delays(structure);
   for (const Slot& slot : slots_) {
+    if (slot.kind == Kind::delay && own_delay) continue;
     const double v = values[at++];
+    if (slot.kind == Kind::delay) continue;  // of the recording, not of the model
     if (slot.kind >= Kind::viscous) {
       (slot.kind == Kind::viscous  ? out.rotary.viscous_Nms_per_rad
        : slot.kind == Kind::detent ? out.rotary.detent_Nm

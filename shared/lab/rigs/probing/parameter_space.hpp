@@ -14,7 +14,8 @@ namespace tractus::lab {
 /// How far recordings of a set reached, for what they can inform.
 struct Reach {
   double least_m = 0.0, most_m = 0.0;
-  bool slides = true;  ///< else only the rotary stage's numbers move
+  bool slides = true;       ///< else only the rotary stage's numbers move
+  double spacing_s = 1e-3;  ///< between samples
 };
 
 /// Which numbers of the base are free: those not fixed, of layers that the recordings entered,
@@ -28,6 +29,11 @@ class ProbingParameterSpace {
   std::vector<Parameter> parameters(const Structure& structure) const;
   /// The model with these values. What is free per trial is left out of it.
   models::ProbingModel with(const Structure& structure, std::span<const double> values) const;
+  /// By how much the force is recorded late against the motion: a number of the recording that every fit estimates,
+  /// "/sensor/force_delay_s". 0 where an effect of the model or of the structure has a delay of its own.
+  double force_delay_s(const Structure& structure, std::span<const double> values) const;
+  /// Where every search for that number begins.
+  void begin_at_delay(double delay_s);
   const models::ProbingModel& model() const { return model_; }
   /// Does the given model have an effect of that id already?
   bool has(std::string_view effect) const;
@@ -40,13 +46,15 @@ class ProbingParameterSpace {
   const UserEffects& user_effects() const { return user_effects_; }
 
  private:
-  enum class Kind { stiffness, damping, equilibrium, start, end, viscous, detent, pitch };
+  enum class Kind { stiffness, damping, equilibrium, start, end, delay, viscous, detent, pitch };
   struct Slot {
     Kind kind;
     std::size_t layer;
   };
   void add(Kind kind, std::size_t layer, const char* name, const Parameter& parameter);
   void add_layer(std::size_t layer, const Reach& reach);
+  void add_delay(double spacing_s);
+  bool delays(const Structure& structure) const;
   bool fixed(const std::string& pointer) const;
 
   models::ProbingModel model_;

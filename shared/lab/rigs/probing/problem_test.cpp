@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -65,6 +66,44 @@ std::unique_ptr<Problem> made(trial::ProbingSet set,
   auto problem = make_probing_problem(model, std::move(set));
   EXPECT_TRUE(problem) << problem.error().what;
   return problem ? std::move(*problem) : nullptr;
+}
+
+TEST(ProbingProblem, AForceRecordedALittleLateIsANumberOfTheRecordingAndNoEffect) {
+  constexpr double kLate_s = 1.2e-3;
+  auto set = set_of([](const Moment&) { return 0.0; });
+  for (std::size_t k = 0; k < set.trials.size(); ++k)
+    for (std::size_t i = 0; i < set.trials[k].t_s.size(); ++i) {
+      const Moment now = moment(int(k), set.trials[k].t_s[i]),
+                   then = moment(int(k), set.trials[k].t_s[i] - kLate_s);
+      set.trials[k].fz_N[i] +=
+          kStiffness * (then.x_m - now.x_m) + kDamping * (then.v_m_s - now.v_m_s);
+    }
+  const auto problem = made(std::move(set));
+  const auto d = diagnose(*problem);
+  ASSERT_TRUE(d) << d.error().what;
+  EXPECT_EQ(d->verdict, Verdict::complete);
+  EXPECT_LT(d->base.held_out_rmse, 1.05 * kNoise_N);
+  const auto& all = d->base_fit.estimates;
+  const auto late = std::ranges::find(all, "/sensor/force_delay_s", &Estimate::pointer);
+  ASSERT_NE(late, all.end());
+  EXPECT_NEAR(late->value, kLate_s, 5e-5);
+}
+
+TEST(ProbingProblem, NoiseThatIsColouredIsInTheFloor) {
+  // An autoregressive process of order 1: variance s²/(1 − a²) of steps s, correlated over 1/(1 − a) = 5 samples.
+  std::mt19937_64 random(31);
+  std::normal_distribution<> normal;
+  auto set = set_of([](const Moment&) { return 0.0; });
+  const double step_N = 0.06, total_N = std::hypot(kNoise_N, step_N / std::sqrt(1.0 - 0.64));
+  for (auto& trial : set.trials) {
+    double level = 0.0;
+    for (double& f : trial.fz_N) f += level = 0.8 * level + step_N * normal(random);
+  }
+  const auto problem = made(std::move(set));
+  EXPECT_NEAR(problem->channels().front().noise_floor, total_N, 0.25 * total_N);  // alone: 0.05
+  const auto d = diagnose(*problem);
+  ASSERT_TRUE(d) << d.error().what;
+  EXPECT_EQ(d->verdict, Verdict::complete);
 }
 
 TEST(ProbingProblem, AModelThatIsRightIsAtTheFloorAndItsNumbersAreFound) {

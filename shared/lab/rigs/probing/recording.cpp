@@ -103,7 +103,8 @@ void prepare_sliding(trial::ProbingMeasurement& trial, const trial::StatedNoise&
   effects::ProbingMotion& motion = out.motion;
   const std::size_t n = trial.t_s.size();
   if (trial.x_m.empty()) {
-    for (auto* all : {&motion.x_m, &motion.v_m_s, &motion.a_m_s2, &out.x_sd_m, &out.v_sd_m_s})
+    for (auto* all :
+         {&motion.x_m, &motion.v_m_s, &motion.a_m_s2, &out.x_sd_m, &out.v_sd_m_s, &out.a_sd_m_s2})
       all->assign(n, 0.0);
     return;
   }
@@ -239,6 +240,7 @@ void set_motion(ProbingRecording& r, std::span<const double> borders_m) {
   r.x_sd_m = std::move(x.value_sd);
   for (double& sd : r.x_sd_m) sd = std::hypot(sd, r.x_rounding_sd_m);
   r.v_sd_m_s = std::move(x.rate_sd);
+  r.a_sd_m_s2 = std::move(x.acceleration_sd);
   motion.rest_m_s = kProbingRecording.rest_errors * middle_of(r.v_sd_m_s);
   find_rest(r);
 }
@@ -282,6 +284,48 @@ Result<ProbingRecording> prepare(trial::ProbingMeasurement&& trial,
   out.sd_thin.assign(out.measured_thin.size(), out.slow_noise_sd);
   out.floor = out.noise_sd;
   return out;
+}
+
+namespace {
+
+/// Variance of single samples about the means of blocks of `length`: the tenth of the blocks that is quietest over
+/// that quantile of χ² [Wilson1931, eq. 1], so that only what all blocks hold counts.
+double variance_within(std::span<const double> y, std::size_t length) {
+  std::vector<double> variances;
+  for (std::size_t from = 0; from + length <= y.size(); from += length) {
+    double mean = 0.0, squares = 0.0;
+    for (std::size_t k = from; k < from + length; ++k) mean += y[k] / double(length);
+    for (std::size_t k = from; k < from + length; ++k) squares += (y[k] - mean) * (y[k] - mean);
+    variances.push_back(squares / double(length - 1));
+  }
+  if (variances.empty()) return 0.0;
+  const auto quietest = variances.begin() + std::ptrdiff_t(0.1 * double(variances.size()));
+  std::ranges::nth_element(variances, quietest);
+  constexpr double kTenth = -1.2816;  // of the standard normal
+  const double spread = 2.0 / (9.0 * double(length - 1)),
+               root = 1.0 - spread + kTenth * std::sqrt(spread);
+  return *quietest / (root * root * root);
+}
+
+}  // namespace
+
+void estimate_noise(ProbingRecording& r, std::span<const double> residual,
+                    std::span<const double> thin) {
+  const double gain = r.decimator.noise_gain();
+  // What a model misses is in what it leaves, what it does not miss is in the force: each is a bound.
+  const double slow_sd =
+      std::min(noise_sd(thin, kQuietestQuantile), noise_sd(r.measured_thin, kQuietestQuantile)) *
+      std::sqrt(gain / r.decimator.third_difference_gain());
+  r.slow_noise_sd = std::max(r.slow_noise_sd, slow_sd);
+  const std::size_t stride = r.decimator.stride();
+  if (stride < 4) {
+    if (stride == 1) r.noise_sd = std::max(r.noise_sd, r.slow_noise_sd);
+    return;
+  }
+  const double fast =
+      std::min(variance_within(residual, stride), variance_within(r.measured, stride));
+  const double variance = (1.0 - gain) * fast + r.slow_noise_sd * r.slow_noise_sd;
+  r.noise_sd = std::max(r.noise_sd, std::sqrt(variance));
 }
 
 void weigh(const laws::ProbingLaw& law, ProbingRecording& r) {

@@ -26,12 +26,12 @@ struct ProbingRecording {
   double x_noise_sd_m = 0.0;         ///< of one recorded position
   double x_rounding_sd_m = 0.0;      ///< the part of it that smoothing does not average away
   effects::ProbingMotion motion;
-  std::vector<double> x_sd_m, v_sd_m_s;  ///< standard errors of the smoothed motion
-  std::vector<double> omega_sd_rad_s;    ///< the same of the turning; empty without an angle
-  std::vector<double> measured;          ///< of the primary channel (fz_N, or tz_Nm), full rate
-  std::vector<double> other;             ///< tz_Nm beside fz_N, or empty
-  double noise_sd = 0.0;                 ///< of one sample of `measured`
-  double slow_noise_sd = 0.0;            ///< of one sample after filter and thinning
+  std::vector<double> x_sd_m, v_sd_m_s, a_sd_m_s2;  ///< standard errors of the smoothed motion
+  std::vector<double> omega_sd_rad_s;  ///< the same of the turning; empty without an angle
+  std::vector<double> measured;        ///< of the primary channel (fz_N, or tz_Nm), full rate
+  std::vector<double> other;           ///< tz_Nm beside fz_N, or empty
+  double noise_sd = 0.0;               ///< of one sample of `measured`
+  double slow_noise_sd = 0.0;          ///< of one sample after filter and thinning
   double other_noise_sd = 0.0;
   Decimator decimator{1.0, 1.0};
   std::vector<double> measured_thin;  ///< filtered and thinned
@@ -67,6 +67,12 @@ inline double beyond(double residual, double half_width) {
   const double size = std::abs(residual) - half_width;
   return size <= 0.0 ? 0.0 : residual < 0.0 ? -size : size;
 }
+
+/// Estimates the noise anew from what a fit left over: noise that is coloured shows there at low frequency too, where the
+/// force itself hides it. Never below what single samples say.
+/// @param residual  measured − predicted at the full rate, N. @param thin  the same after filter and thinning, N.
+void estimate_noise(ProbingRecording& recording, std::span<const double> residual,
+                    std::span<const double> thin);
 
 /// What is expected of each output if `law` were true: the sensor's noise, the motion's noise as
 /// the law passes it on, and near a border of layers the error of a sample that is taken on the
