@@ -315,6 +315,8 @@ struct PosteriorSettings {
   /// Probability that is spread over all structures alike, for what the comparison does not foresee: the share of wrong
   /// names on the development sets. Tuned.
   double unforeseen = 0.02;
+  /// Structures that lead for which it is asked whether they lower the unweighted error. Bound.
+  int contenders = 8;
   /// Bayesian bootstraps over the trials. Bound.
   int bootstraps = 400;
 };

@@ -42,6 +42,7 @@ StructurePosterior::StructurePosterior(const Residual& residual, const Selection
   }
   leave_out_immaterial();
   weigh(residual);
+  leave_out_no_better(residual, selection, chosen);
   std::ranges::stable_sort(entries_, std::greater<>(), &Entry::probability);
 }
 
@@ -68,7 +69,22 @@ void StructurePosterior::leave_out_immaterial() {
   entries_ = std::move(material);
 }
 
+/// A larger structure that leads, but does not lower the unweighted held-out error of the primary channel, is none.
+void StructurePosterior::leave_out_no_better(const Residual& residual, const Selection& selection,
+                                             const Solution& chosen) {
+  const double most = (1.0 - kSettings.selection.least_fall) * held_out_rmse(residual, chosen);
+  for (int round = 0; round < kPosterior.contenders; ++round) {
+    const auto leading = std::ranges::max_element(entries_, {}, &Entry::probability);
+    if (leading->structure.effects.size() <= chosen_.effects.size() ||
+        held_out_rmse(residual, selection.tried().at(name(leading->structure))) < most)
+      return;
+    entries_.erase(leading);
+    weigh(residual);
+  }
+}
+
 void StructurePosterior::weigh(const Residual& residual) {
+  for (Entry& entry : entries_) entry.probability = 0.0;
   const Problem& problem = residual.problem();
   const Eigen::Index folds = entries_.front().losses.size();
   const double per_fold = kPosterior.observations_per_trial * residual.trials() / double(folds);

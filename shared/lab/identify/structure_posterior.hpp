@@ -37,6 +37,8 @@ class StructurePosterior {
   };
   void leave_out_immaterial();
   bool simpler(const Structure& one, const Structure& other) const;
+  void leave_out_no_better(const Residual& residual, const Selection& selection,
+                           const Solution& chosen);
   void weigh(const Residual& residual);
 
   std::vector<Entry> entries_;  // most probable first
