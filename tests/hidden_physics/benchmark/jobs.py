@@ -151,14 +151,15 @@ def run_set(planned: plan.PlannedSet, work: pathlib.Path, program: str, label: s
             write_json(truth_file, truth)
         truth = json.loads(truth_file.read_text())
         scratch.mkdir(parents=True, exist_ok=True)
-        for solver in missing:
-            if solver == label:
-                answer = asked_lab(program, folder, scratch, threads)
-                answer["right_model"] = right_model(program, folder, scratch, truth, catalogue[planned.rig])
-            else:
-                import baselines as rivals
-                answer = rivals.answered(solver, folder)
-            write_json(answers[solver], answer)
+        if label in missing:
+            answer = asked_lab(program, folder, scratch, threads)
+            answer["right_model"] = right_model(program, folder, scratch, truth, catalogue[planned.rig])
+            write_json(answers[label], answer)
+        rivals = [solver for solver in missing if solver != label]
+        if rivals:
+            import baselines as rival_solvers
+            for solver, answer in rival_solvers.answered_all(rivals, folder).items():
+                write_json(answers[solver], answer)
         if not keep:
             shutil.rmtree(folder, ignore_errors=True)
         return planned.name, None

@@ -6,10 +6,13 @@ whole counts, a clock with jitter, dropped rows; numbers of the model rounded an
 from __future__ import annotations
 
 import math
+import pathlib
+import sys
 
 import numpy as np
 
-from made_set import decimals
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[1])]
+from made_set import decimals  # noqa: E402
 
 LOADS = ("fz_N", "tz_Nm", "fx_N", "fy_N", "tx_Nm", "ty_Nm")
 UNIT_FORCE = {"fz_N", "fx_N", "fy_N"}
