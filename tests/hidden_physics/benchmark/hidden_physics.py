@@ -14,6 +14,7 @@ sys.path[:0] = [str(HERE)]
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # the processes share the cores
 import jobs  # noqa: E402
 import plan  # noqa: E402
+import recordings  # noqa: E402
 import report  # noqa: E402
 
 ROOT = HERE.parents[2]
@@ -22,7 +23,8 @@ EXAMPLES = """examples:
   deploy/hidden-physics --probing 300 --palpation 300 --jobs 4
   deploy/hidden-physics --generation frozen-1 --probing 300 --palpation 300
   deploy/hidden-physics --program /tmp/old/tractus --label old  another program on the same sets, beside the first
-  deploy/hidden-physics --only probing0004 --keep               one set; its files stay in FOLDER/GENERATION/sets
+  deploy/hidden-physics --probing 10 --only probing0004 --keep  one set; its files stay in FOLDER/GENERATION/sets
+  deploy/hidden-physics --recordings --emps ~/EMPS              real machines
   deploy/hidden-physics --report                                the table of the answers that are there
 
 What has an answer is not run again: a run that was stopped goes on, a larger one adds to a smaller one.
@@ -50,6 +52,8 @@ def parsed(arguments):
     parser.add_argument("--jobs", type=int, default=max(1, (os.cpu_count() or 2) // 2), metavar="N",
                         help="sets at a time (default: half of the cores)")
     parser.add_argument("--threads", type=int, default=2, metavar="N", help="threads of the program (default: 2)")
+    parser.add_argument("--recordings", action="store_true", help="also the real recordings of the repository")
+    parser.add_argument("--emps", metavar="DIR", help="also EMPS, a real servo axis, from this folder of its files")
     parser.add_argument("--only", metavar="TEXT", help="only sets whose name contains this")
     parser.add_argument("--keep", action="store_true", help="keep the sets' files after the answers")
     parser.add_argument("--report", action="store_true", help="run nothing; write the table of what is there")
@@ -60,8 +64,9 @@ def parsed(arguments):
     unknown = [name for name in options.baselines if name not in SOLVERS]
     if unknown:
         parser.error(f"--baselines: {unknown[0]} is none of {', '.join(SOLVERS)}")
-    if not options.report and options.probing + options.palpation < 1:
-        parser.error("nothing to run: give --quick, --probing N or --palpation N, or --report")
+    real = options.recordings or options.emps
+    if not options.report and not real and options.probing + options.palpation < 1:
+        parser.error("nothing to run: give --quick, --probing N, --palpation N, --recordings or --report")
     if min(options.probing, options.palpation) < 0 or options.jobs < 1 or options.threads < 1:
         parser.error("numbers of sets, --jobs and --threads cannot be below 0 or 1")
     if not options.generation.replace("-", "").replace("_", "").replace(".", "").isalnum() or ".." in options.generation:
@@ -103,6 +108,16 @@ def run_all(options, sets, work):
     return len(failures)
 
 
+def run_recordings(options, work):
+    """Has the program answer the real recordings that were asked for."""
+    place = work / options.generation
+    asked = recordings.IN_REPOSITORY if options.recordings else []
+    if options.emps:
+        asked = [*asked, recordings.emps_recording(pathlib.Path(options.emps), work / "emps")]
+    for recording in asked:
+        recordings.answered(recording, options.program, place, options.label, options.threads)
+
+
 def main(arguments=None):
     options = parsed(arguments)
     work = pathlib.Path(options.folder).absolute()
@@ -116,9 +131,10 @@ def main(arguments=None):
         if plan.is_frozen(options.generation):
             print(f"{options.generation} is a frozen generation: its sets are for measuring, never for tuning.",
                   file=sys.stderr)
-        failed = run_all(options, sets, work)
+        failed = run_all(options, sets, work) if sets else 0
+        run_recordings(options, work)
     place = work / options.generation
-    if not (place / "answers").is_dir():
+    if not (place / "answers").is_dir() and not (place / "recordings").is_dir():
         raise SystemExit(f"hidden-physics: {place} holds no answers yet: run without --report first")
     print(report.written(place, options.generation))
     return 1 if failed else 0

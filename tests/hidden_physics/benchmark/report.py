@@ -7,6 +7,7 @@ import json
 import pathlib
 
 import plan
+import recordings
 import scoring
 
 RATES = [  # key, words
@@ -33,6 +34,7 @@ NUMBERS = [
     ("held_out_over_floor", "held-out error / true floor, median and 90th percentile", "{:.2f}"),
     ("right_model_over_floor", "right model's error / true floor, median and 90th percentile", "{:.2f}"),
     ("stated_floor_over_floor", "stated floor / true floor, median", "{:.2f}"),
+    ("cpu_s", "processor time of an answer, median and 90th percentile, s", "{:.1f}"),
     ("wall_s", "wall time of an answer, median and 90th percentile, s", "{:.1f}"),
 ]
 
@@ -40,6 +42,8 @@ NUMBERS = [
 def outcomes_of(place: pathlib.Path) -> dict:
     """Every solver's outcomes, in the order of the sets' names."""
     catalogue = json.loads((place / "catalogue.json").read_text()) if (place / "catalogue.json").exists() else None
+    if not (place / "answers").is_dir():
+        return {}
     if catalogue is None:
         raise SystemExit(f"hidden-physics: {place / 'catalogue.json'} is missing: run one set first")
     found = {}
@@ -138,6 +142,8 @@ def sections(place: pathlib.Path, generation: str) -> list:
             ["stated, mean", "right", "sets"], *([f"{p:.3f}", f"{r:.3f}", str(n)] for p, r, n in stated)]))
         if not plan.is_frozen(generation):
             parts.append((f"{solver}: answers that were not right", wrong_sets(outcomes)))
+    for folder in sorted((place / "recordings").glob("*")):
+        parts.append((f"{folder.name}: real recordings", recordings.rows_of(folder)))
     return parts
 
 
@@ -173,7 +179,7 @@ def page(title: str, parts: list, curves: dict) -> str:
     body = [f"<!doctype html><html lang=en><meta charset=utf-8><title>{html.escape(title)}</title><style>"
             "body{font:14px system-ui;margin:2em;max-width:80em}table{border-collapse:collapse}"
             "td,th{padding:2px 10px;text-align:left;border-bottom:1px solid #ddd}</style>",
-            f"<h1>{html.escape(title)}</h1><p>Simulated measurements. Rates with 95 % intervals (Wilson).</p>"]
+            f"<h1>{html.escape(title)}</h1><p>Simulated measurements, real recordings apart. Rates with 95 % intervals (Wilson).</p>"]
     for solver, bins in curves.items():
         body.append(f"<figure>{reliability_curve(bins)}<figcaption>{html.escape(solver)}: a point is a tenth of the "
                     "scale, its area the number of sets</figcaption></figure>")

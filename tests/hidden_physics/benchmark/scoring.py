@@ -65,6 +65,7 @@ class Outcome:
     right_model_over_floor: float | None = None
     right_model_worst_phase: float | None = None
     wall_s: float | None = None
+    cpu_s: float | None = None
 
 
 # ---- truth
@@ -168,7 +169,7 @@ def outcome(truth: dict, reply: dict, catalogue: dict) -> Outcome:
     foreign = tuple(h for h, n in names.items() if not n)
     gains = {h["id"]: gain(truth, h) for h in truth["hidden"]}
     o = Outcome(truth["set"], truth["rig"], truth["generator"], truth["kind"], hidden, known, foreign,
-                all(g >= MATERIAL for g in gains.values()), gains, wall_s=reply.get("wall_s"))
+                all(g >= MATERIAL for g in gains.values()), gains, wall_s=reply.get("wall_s"), cpu_s=reply.get("cpu_s"))
     if "answer" not in reply:
         o.failed, o.missed = reply.get("failed", "no answer"), known
         return o
@@ -298,5 +299,6 @@ def figures(outcomes: list) -> dict:
                                 quantile([o.held_out_over_floor for o in sure], 0.9)],
         "right_model_over_floor": [median(right_models), quantile(right_models, 0.9)],
         "stated_floor_over_floor": median(o.stated_floor_over_floor for o in outcomes),
+        "cpu_s": [median(o.cpu_s for o in outcomes), quantile([o.cpu_s for o in outcomes], 0.9)],
         "wall_s": [median(o.wall_s for o in outcomes), quantile([o.wall_s for o in outcomes], 0.9)],
     }
