@@ -120,6 +120,17 @@ def wrong_sets(outcomes: list) -> list:
     return rows
 
 
+def unhidden(catalogue: dict) -> list:
+    """Effects of the program's catalogue that a full generator of their rig cannot hide, as rows."""
+    rows = [["generator", "effects of the catalogue that it cannot hide"]]
+    for rig, names in plan.GENERATORS.items():
+        for name in sorted(set(names) - {"oscillators"}):  # the literature's oscillators have their own few
+            module = plan.generator_module(name)
+            made = {scoring.known_as(h, catalogue[rig]) for h in module.CATALOGUE + module.OUTSIDE}
+            rows.append([name, ", ".join(sorted(set(catalogue[rig]) - made)) or "none"])
+    return rows
+
+
 def sections(place: pathlib.Path, generation: str) -> list:
     """(heading, rows) of the report, for text and page alike."""
     found = outcomes_of(place)
@@ -142,6 +153,8 @@ def sections(place: pathlib.Path, generation: str) -> list:
             ["stated, mean", "right", "sets"], *([f"{p:.3f}", f"{r:.3f}", str(n)] for p, r, n in stated)]))
         if not plan.is_frozen(generation):
             parts.append((f"{solver}: answers that were not right", wrong_sets(outcomes)))
+    if found:
+        parts.append(("what the sets do not cover", unhidden(json.loads((place / "catalogue.json").read_text()))))
     for folder in sorted((place / "recordings").glob("*")):
         parts.append((f"{folder.name}: real recordings", recordings.rows_of(folder)))
     return parts

@@ -210,6 +210,12 @@ class Groups(unittest.TestCase):
 
 
 class Page(unittest.TestCase):
+    def test_an_effect_that_joins_the_catalogue_and_that_no_generator_hides_is_said(self):
+        catalogue = {"probing": {"coulomb_friction": FRICTION, "new_effect": {}}, "palpation": {}}
+        rows = dict(report.unhidden(catalogue)[1:])
+        self.assertEqual(rows["closed_loop_hand"], "new_effect")
+        self.assertEqual(rows["point_cloud_probe"], "none")
+
     def test_the_curve_has_a_point_for_each_bin(self):
         curve = report.reliability_curve([(0.5, 1.0, 1), (0.95, 0.5, 2)])
         self.assertEqual(curve.count("<circle"), 2)
