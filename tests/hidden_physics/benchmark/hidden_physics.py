@@ -123,7 +123,9 @@ def main(arguments=None):
     work = pathlib.Path(options.folder).absolute()
     failed = 0
     if not options.report:
-        sets = [s for rig in plan.GENERATORS for s in plan.planned_sets(options.generation, rig, getattr(options, rig))]
+        rigs = [plan.planned_sets(options.generation, rig, getattr(options, rig)) for rig in plan.GENERATORS]
+        sets = [s for _, s in sorted(((k / len(listed), s) for listed in rigs for k, s in enumerate(listed)),
+                                     key=lambda pair: pair[0])]  # a run that is stopped has some of each rig
         if options.only:
             sets = [s for s in sets if options.only in s.name]
             if not sets:

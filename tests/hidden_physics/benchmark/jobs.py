@@ -13,7 +13,9 @@ import time
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent), str(HERE.parent / "generators")]
 import made_set  # noqa: E402
+import motion_floor  # noqa: E402
 import plan  # noqa: E402
+import scoring  # noqa: E402
 import sensor_chain  # noqa: E402
 
 FRESH_SHARE = 0.2  # of the trials: kept back from every solver
@@ -32,7 +34,10 @@ def make_set(planned: plan.PlannedSet, folder: pathlib.Path) -> dict:
     """Makes the set's files: model.json, truth.json, measurements/ for the solvers, fresh/ kept back. Returns truth."""
     made = plan.generator_module(planned.generator).make(planned.seed, list(planned.hidden), planned.shares)
     made = sensor_chain.pass_through(plan.random_of(planned.generation, planned.name, "chain"), made,
-                                     planned.kind == "parameters")
+                                     planned.kind == "parameters", steady_clock=planned.generator == "oscillators")
+    if planned.rig == "probing":
+        made.truth["chain"]["motion_noise_as_force_N"] = motion_floor.motion_floor_N(made.truth, made.trials,
+                                                                                     scoring.true_floor(made.truth))
     made.truth.update(set=planned.name, generation=planned.generation, kind=planned.kind)
     fresh = max(2, round(FRESH_SHARE * len(made.trials)))
     part = folder.with_name(folder.name + ".part")

@@ -77,7 +77,7 @@ def true_floor(truth: dict, channel: str = "force") -> float:
         unit, axes = "Nm", 1
     else:
         native = truth.get("force_noise_without_filter_sd_N", truth["force_noise_sd_N"])
-        native = math.hypot(native, sensor.get("pose_noise_as_force_sd_N", 0.0))
+        native = math.hypot(native, sensor.get("pose_noise_as_force_sd_N", 0.0), chain.get("motion_noise_as_force_N", 0.0))
         unit, axes = "N", 3 if truth["rig"] == "palpation" else 1
     added = chain.get("noise_sd", {}).get(unit, 0.0) ** 2 + chain.get("step", {}).get(unit, 0.0) ** 2 / 12
     return math.sqrt((chain.get("gain", 1.0) * native) ** 2 + axes * added)

@@ -82,8 +82,15 @@ class Chain(unittest.TestCase):
         shown = passed(trial(), delay_s=2e-3)
         np.testing.assert_allclose(shown["x_m"], 0.01 * np.sin(5 * (shown["t_s"] + 2e-3)), atol=2e-7)
         np.testing.assert_allclose(shown["fz_N"], 8 * np.cos(5 * shown["t_s"]), atol=1e-9)
-        half = passed(trial(), delay_s=0.7e-3)  # between two samples
-        np.testing.assert_allclose(half["x_m"][5:-5], 0.01 * np.sin(5 * (half["t_s"][5:-5] + 0.7e-3)), atol=2e-7)
+        slow = {("px_m" if name == "x_m" else name): values for name, values in trial().items()}
+        half = passed(slow, delay_s=0.7e-3)  # a hand's, between two samples
+        np.testing.assert_allclose(half["px_m"][5:-5], 0.01 * np.sin(5 * (half["t_s"][5:-5] + 0.7e-3)), atol=2e-7)
+
+    def test_a_late_force_has_its_motion_where_rows_are_missing_too(self):
+        columns = {name: np.delete(values, [500, 501]) for name, values in trial().items()}
+        shown = passed(columns, delay_s=4e-3)
+        np.testing.assert_allclose(shown["x_m"], 0.01 * np.sin(5 * (shown["t_s"] + 4e-3)), atol=2e-7)
+        self.assertEqual(len(shown["t_s"]), 2000 - 2 - 2 - 2)  # the gap, its shadow, the end
 
     def test_gain_clipping_and_counts(self):
         shown = passed(trial(), gain=1.01, clips_at={"fz_N": 8.0}, step={"N": 0.05, "Nm": 0.0})

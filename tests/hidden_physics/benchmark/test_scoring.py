@@ -47,6 +47,10 @@ class Truth(unittest.TestCase):
         chain = {"gain": 0.99, "noise_sd": {"N": 0.05, "Nm": 0.0}, "step": {"N": 0.12, "Nm": 0.0}}
         self.assertAlmostEqual(scoring.true_floor(truth_of(chain=chain)), math.sqrt(0.013501), places=9)
 
+    def test_floor_holds_what_the_noise_of_the_motion_leaves_of_the_force(self):
+        truth = truth_of(noise=0.3, chain={"motion_noise_as_force_N": 0.4})
+        self.assertAlmostEqual(scoring.true_floor(truth), 0.5, places=9)
+
     def test_floor_of_a_vector_counts_the_chain_on_three_axes_and_the_noise_of_the_pose(self):
         # sqrt(0.3^2 + 0.4^2) = 0.5 N of the generator; 3 axes of 0.1 N: sqrt(0.25 + 0.03)
         truth = truth_of(rig="palpation", noise=0.3, sensor={"pose_noise_as_force_sd_N": 0.4},
